@@ -1,0 +1,1 @@
+"""Depth estimators: one method per file, found by entry point."""

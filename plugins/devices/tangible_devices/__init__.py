@@ -1,0 +1,1 @@
+"""Haptic devices: one method per file, found by entry point."""

@@ -1,0 +1,1 @@
+"""Force renderers: one method per file, found by entry point."""

@@ -1,0 +1,1 @@
+"""Texture segmenters: one method per file, found by entry point."""

@@ -1,0 +1,59 @@
+"""Tangible Images: turn pictures into something one can feel.
+
+The names below are fixed: other people's programs call them. Each is imported when first used, so that
+`tangible --help` does not wait for numpy.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from .data import Calibration as Calibration
+    from .data import DeviceSpec as DeviceSpec
+    from .data import DisparityMap as DisparityMap
+    from .data import Force as Force
+    from .data import HapticState as HapticState
+    from .data import HapticSurface as HapticSurface
+    from .data import Material as Material
+    from .data import MaterialMap as MaterialMap
+    from .data import Outcome as Outcome
+    from .data import Plan as Plan
+    from .data import Relief as Relief
+    from .data import SegmentMap as SegmentMap
+    from .data import Views as Views
+    from .engine import load_pipeline as load_pipeline
+    from .errors import TangibleError as TangibleError
+    from .hooks import hookimpl as hookimpl
+    from .interfaces import DepthEstimator as DepthEstimator
+    from .interfaces import ForceRenderer as ForceRenderer
+    from .interfaces import HapticDevice as HapticDevice
+    from .interfaces import Link as Link
+    from .interfaces import Segmenter as Segmenter
+    from .interfaces import Skippable as Skippable
+    from .interfaces import Touch as Touch
+    from .registry import load_method as load_method
+
+_ROOMS = {
+    "data": (
+        "Calibration", "DeviceSpec", "DisparityMap", "Force", "HapticState", "HapticSurface", "Material",
+        "MaterialMap", "Outcome", "Plan", "Relief", "SegmentMap", "Views",
+    ),
+    "engine": ("load_pipeline",),
+    "errors": ("TangibleError",),
+    "hooks": ("hookimpl",),
+    "interfaces": (
+        "DepthEstimator", "ForceRenderer", "HapticDevice", "Link", "Segmenter", "Skippable", "Touch",
+    ),
+    "registry": ("load_method",),
+}  # fmt: skip
+_HOME = {name: room for room, names in _ROOMS.items() for name in names}
+
+__all__ = sorted(_HOME)  # pyright: ignore[reportUnsupportedDunderAll]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOME:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = getattr(import_module(f".{_HOME[name]}", __name__), name)
+    globals()[name] = value
+    return value

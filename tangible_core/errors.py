@@ -1,0 +1,56 @@
+"""Everything a user can cause, each with the words to put it right."""
+
+from collections.abc import Iterable
+from difflib import get_close_matches
+
+
+class TangibleError(Exception):
+    """Base of all errors raised on purpose: the message names the thing, the place and the cure."""
+
+
+class ConfigError(TangibleError):
+    """What is wrong in a configuration: one complaint a line, each with its place."""
+
+
+class UnknownMethod(TangibleError):
+    """No installed method has this name."""
+
+    def __init__(self, kind: str, name: str, known: Iterable[str]) -> None:
+        names = sorted(set(known))
+        super().__init__(
+            f"no {kind} method is named {name!r}{did_you_mean(name, names)}; installed: {', '.join(names) or 'none'}"
+        )
+
+
+class BrokenMethod(TangibleError):
+    """A method is installed but cannot be used; the rest goes on without it."""
+
+
+class PictureError(TangibleError):
+    """A picture or a map that cannot be read or does not hold what it should."""
+
+
+class GeometryError(TangibleError):
+    """Numbers that describe no camera or no surface."""
+
+
+class MaterialError(TangibleError):
+    """A material, or a mapping of segments to materials, that makes no sense."""
+
+
+class DeviceError(TangibleError):
+    """A device that is not there, is in use, or stopped answering."""
+
+
+class OutputError(TangibleError):
+    """Results that cannot be written."""
+
+
+def did_you_mean(word: str, known: Iterable[str]) -> str:
+    """A hint to append to a complaint, empty when nothing is close.
+
+    >>> did_you_mean("stifness", ["stiffness", "damping"])
+    " (did you mean 'stiffness'?)"
+    """
+    near = get_close_matches(word, list(known), n=1)
+    return f" (did you mean {near[0]!r}?)" if near else ""

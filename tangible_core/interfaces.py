@@ -1,0 +1,125 @@
+"""The interfaces: a method is its options, a frozen model with one verb.
+
+Methods are stateless; what keeps state is a session: `Touch` for a renderer, `Link` for a device.
+"""
+
+from abc import ABC, abstractmethod
+from types import TracebackType
+from typing import ClassVar, Self, final
+
+import numpy as np
+from jaxtyping import Float64
+from pydantic import BaseModel, ConfigDict
+
+from .data import NO_FORCE, DeviceSpec, DisparityMap, Force, HapticState, HapticSurface, Kind, SegmentMap, Views
+
+
+class Method(BaseModel, ABC):
+    """A named way of doing one stage; its fields are its options, and each has a default."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+
+    version: ClassVar[int] = 1
+    """Raise it when results change: it is part of the cache key."""
+
+
+class DepthEstimator(Method):
+    """Makes a disparity map from one picture or two."""
+
+    @abstractmethod
+    def estimate(self, views: Views) -> DisparityMap:
+        """Disparity of the left view. Raises: TangibleError if these views do not allow it."""
+
+
+class Segmenter(Method):
+    """Divides a picture into parts of one texture each."""
+
+    @abstractmethod
+    def segment(self, picture: np.ndarray) -> SegmentMap:
+        """Labels of the picture's own size. Raises: PictureError if it is no picture or holds NaN or infinity."""
+
+
+class Touch(ABC):
+    """A renderer compiled for one surface; it may remember what it touched last, such as a proxy."""
+
+    @abstractmethod
+    def force(self, state: HapticState) -> Force:
+        """Newtons on the hand, always finite; zero in free air, and zero for a state that is not finite."""
+
+    @abstractmethod
+    def path(self, positions_m: Float64[np.ndarray, "n 3"], period_s: float = 0.001) -> Float64[np.ndarray, "n 3"]:
+        """Forces along positions one period apart, as `force` gives them one by one, state carried along."""
+
+
+class ForceRenderer(Method):
+    """Turns positions into forces on a surface."""
+
+    @abstractmethod
+    def touch(self, surface: HapticSurface) -> Touch:
+        """A new touch on this surface, free of contact."""
+
+
+class Link(ABC):
+    """An open device. As a context manager it leaves zero force behind, whatever happens."""
+
+    @abstractmethod
+    def read(self) -> HapticState:
+        """Where the tip is now. Raises: DeviceError if the device stopped answering or the link is closed."""
+
+    @abstractmethod
+    def write(self, force: Force) -> None:
+        """Set the force on the hand; a force that is not finite becomes zero, one too strong is scaled down.
+
+        Raises: DeviceError if the device stopped answering or the link is closed.
+        """
+
+    @property
+    @abstractmethod
+    def applied(self) -> Force:
+        """The force the device holds now, as far as the driver knows."""
+
+    @abstractmethod
+    def close(self) -> None:
+        """Let go of the device; a second call does nothing."""
+
+    @final
+    def __enter__(self) -> Self:
+        return self
+
+    @final
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        try:
+            self.write(NO_FORCE)
+        finally:
+            self.close()
+
+
+class HapticDevice(Method):
+    """Something that has a position and gives a force."""
+
+    @abstractmethod
+    def spec(self) -> DeviceSpec:
+        """What the device can do; asks nothing of the hardware."""
+
+    @abstractmethod
+    def open(self) -> Link:
+        """Raises: DeviceError if it is not there, not permitted or in use."""
+
+
+class Skippable(ABC):
+    """For a depth or texture method that can tell that a scene does not need it."""
+
+    @abstractmethod
+    def skip(self, views: Views) -> str | None:
+        """A reason, in words, not to run on these views; None to run. Cheap: it is asked for every plan."""
+
+
+KINDS: dict[Kind, type[Method]] = {
+    "depth": DepthEstimator,
+    "texture": Segmenter,
+    "render": ForceRenderer,
+    "device": HapticDevice,
+}
+"""What each kind of plugin must be."""

@@ -1,0 +1,169 @@
+"""Which methods are installed: names from metadata, classes on first use."""
+
+from __future__ import annotations
+
+import ast
+from dataclasses import dataclass
+from functools import cache, cached_property
+from importlib.metadata import EntryPoint, entry_points
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, overload
+
+from . import hooks
+from .errors import BrokenMethod, UnknownMethod, did_you_mean
+
+if TYPE_CHECKING:
+    import pluggy
+
+    from .data import Kind
+    from .interfaces import DepthEstimator, ForceRenderer, HapticDevice, Method, Segmenter
+
+KIND_NAMES = ("depth", "texture", "render", "device")
+
+
+@dataclass(frozen=True)
+class Listing:
+    """An installed method, as far as it is known without importing it."""
+
+    kind: str
+    name: str
+    target: str
+    origin: str
+    """The distribution and its version."""
+    point: EntryPoint
+
+    @property
+    def distribution(self) -> str:
+        """The distribution's name, to tell two methods of one name apart."""
+        return self.origin.split(" ")[0]
+
+    @cached_property
+    def summary(self) -> str:
+        """First line of the class's docstring, read from the source text."""
+        try:
+            return _docstring_line(self.point)
+        except (OSError, SyntaxError, ImportError, ValueError) as error:
+            return f"(cannot be read: {error})"
+
+
+class Registry:
+    """Listing reads metadata only; `load` is the one place that imports a plugin."""
+
+    def __init__(self, plugins: pluggy.PluginManager | None = None) -> None:
+        self.plugins = hooks.manager() if plugins is None else plugins
+
+    @cached_property
+    def listings(self) -> tuple[Listing, ...]:
+        """Every installed method, two of one name included, by kind and name."""
+        found = [
+            Listing(kind, point.name, point.value, _origin(point), point)
+            for kind in KIND_NAMES
+            for point in (*entry_points(group=f"tangible.{kind}"), *self._computed(kind))
+        ]
+        return tuple(sorted(found, key=lambda each: (KIND_NAMES.index(each.kind), each.name, each.origin)))
+
+    def names(self, kind: str) -> list[str]:
+        """Names to write after `use:`; `distribution/name` where two offer the same one."""
+        of_kind = [each for each in self.listings if each.kind == kind]
+        short = [each.name for each in of_kind]
+        return [each.name if short.count(each.name) == 1 else f"{each.distribution}/{each.name}" for each in of_kind]
+
+    def find(self, kind: str, name: str) -> Listing:
+        """The one listing of this name.
+
+        Raises: UnknownMethod if there is none, BrokenMethod if two distributions offer it and none is named.
+        """
+        if kind not in KIND_NAMES:
+            raise UnknownMethod("plugin", kind, KIND_NAMES)
+        distribution, _, short = name.rpartition("/")
+        found = [
+            each
+            for each in self.listings
+            if each.kind == kind and each.name == short and distribution in ("", each.distribution)
+        ]
+        if not found:
+            raise UnknownMethod(kind, name, self.names(kind))
+        if len(found) > 1:
+            raise BrokenMethod(
+                f"{kind} method {name!r} is offered by {' and '.join(each.origin for each in found)}; "
+                f"write {' or '.join(f'{each.distribution}/{short}' for each in found)}"
+            )
+        return found[0]
+
+    def load(self, kind: str, name: str) -> type[Method]:
+        """The class of a method.
+
+        Raises: UnknownMethod, BrokenMethod (it cannot be imported, or is no method of this kind).
+        """
+        from .interfaces import KINDS
+
+        each = self.find(kind, name)
+        try:
+            cls: Any = each.point.load()
+        except Exception as error:
+            raise BrokenMethod(
+                f"{kind} method {name!r} ({each.target}, from {each.origin}) cannot be loaded: "
+                f"{type(error).__name__}: {error}; repair or remove {each.distribution}"
+            ) from error
+        wanted = KINDS[each.kind]  # pyright: ignore[reportArgumentType]
+        if not (isinstance(cls, type) and issubclass(cls, wanted)):
+            raise BrokenMethod(f"{kind} method {name!r} ({each.target}, from {each.origin}) is no {wanted.__name__}")
+        if missing := sorted(cls.__abstractmethods__):
+            raise BrokenMethod(f"{kind} method {name!r} ({each.target}) does not implement {', '.join(missing)}")
+        return cls
+
+    def _computed(self, kind: str) -> list[EntryPoint]:
+        named = hooks.tell(self.plugins, "tangible_methods", kind=kind)
+        return [EntryPoint(name, value, f"tangible.{kind}") for more in named for name, value in more.items()]
+
+
+@cache
+def default_registry() -> Registry:
+    """The registry of what is installed here."""
+    return Registry()
+
+
+@overload
+def load_method(kind: Literal["depth"], name: str) -> type[DepthEstimator]: ...
+@overload
+def load_method(kind: Literal["texture"], name: str) -> type[Segmenter]: ...
+@overload
+def load_method(kind: Literal["render"], name: str) -> type[ForceRenderer]: ...
+@overload
+def load_method(kind: Literal["device"], name: str) -> type[HapticDevice]: ...
+@overload
+def load_method(kind: Kind, name: str) -> type[Method]: ...
+def load_method(kind: str, name: str) -> type[Any]:
+    """The class of an installed method; its fields are its options.
+
+    Raises: UnknownMethod, BrokenMethod.
+    """
+    return default_registry().load(kind, name)
+
+
+def _origin(point: EntryPoint) -> str:
+    return f"{point.dist.name} {point.dist.version}" if point.dist else "computed by a hook"
+
+
+def _docstring_line(point: EntryPoint) -> str:
+    """The class's docstring without running a line of the module: only the top package is looked up, not imported."""
+    top, *rest = point.module.split(".")
+    spec = find_spec(top)
+    if spec is None:
+        raise ImportError(f"there is no module {top}")
+    path = (
+        _source(Path(next(iter(spec.submodule_search_locations), "")), rest)
+        if (spec.submodule_search_locations)
+        else Path(spec.origin or "")
+    )
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    classes = {node.name: node for node in tree.body if isinstance(node, ast.ClassDef)}
+    if point.attr not in classes:
+        raise ImportError(f"{point.module} has no class {point.attr}{did_you_mean(point.attr, classes)}")
+    return (ast.get_docstring(classes[point.attr]) or "(no docstring)").splitlines()[0]
+
+
+def _source(package: Path, parts: list[str]) -> Path:
+    module = package.joinpath(*parts)
+    return module / "__init__.py" if module.is_dir() else module.with_suffix(".py")

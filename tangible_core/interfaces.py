@@ -54,6 +54,9 @@ class Touch(ABC):
 class ForceRenderer(Method):
     """Turns positions into forces on a surface."""
 
+    uses_materials: ClassVar[bool] = True
+    """False for a law that feels heights alone: then no texture is segmented for it."""
+
     @abstractmethod
     def touch(self, surface: HapticSurface) -> Touch:
         """A new touch on this surface, free of contact."""

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Any, Generic, Literal, TypeVar, cast
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag, ValidationError
 from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap
 from ruamel.yaml.error import MarkedYAMLError, YAMLError
@@ -37,6 +37,8 @@ class Workspace(Section):
     """Width of the picture under the hand."""
     relief_m: Annotated[float, Field(gt=0, le=1, allow_inf_nan=False)] = 0.02
     """Height of the nearest point above the farthest."""
+    smooth_m: Annotated[float, Field(ge=0, le=0.1, allow_inf_nan=False)] = 0.0
+    """Standard deviation of a Gaussian that rounds an estimated relief; a finger feels matching noise as grit."""
     holes: Literal["fill", "cut"] = "fill"
     """Where the depth is unknown: `fill` from the background beside it, or `cut` down to the base plane."""
 
@@ -44,7 +46,10 @@ class Workspace(Section):
 class MaterialChoice(Section):
     """Which material each segment gets."""
 
-    by: Literal["roughness"] | dict[int, str] = "roughness"
+    by: Annotated[
+        Annotated[Literal["roughness"], Tag(":word")] | Annotated[dict[int, str], Tag(":labels")],
+        Discriminator(lambda value: ":labels" if isinstance(value, dict) else ":word"),
+    ] = "roughness"
     """`roughness`: the rougher a segment within this picture, the rougher its material. Or a map from label to name."""
     library: Path | None = None
     """A YAML file of materials of your own, added to those that are shipped."""
@@ -159,7 +164,7 @@ class Source:
         for part in parts[:-1]:
             if not isinstance(node.get(part), dict):
                 node[part] = CommentedMap()
-            node = cast(Any, node[part])
+            node = node[part]
         try:
             node[_key(parts[-1], node)] = _load(value)
         except YAMLError as error:
@@ -195,8 +200,8 @@ class Source:
         for key, model in SECTIONS.items():
             if key in self.tree:
                 block = self.tree[key]
-                plain_map = key == "materials" and isinstance(block, dict) and _labels_only(cast(Any, block))
-                values[key] = self._model((key,), model, {"by": block} if plain_map else block)
+                by_label = key == "materials" and isinstance(block, dict) and _has_label(cast(Any, block))
+                values[key] = self._model((key,), model, {"by": block} if by_label else block)
         for kind in STAGES:
             if kind in self.tree:
                 values[kind] = self._stage(kind, registry)
@@ -242,7 +247,7 @@ class Source:
             return None
 
     def _complain_of(self, location: tuple[Any, ...], model: type[BaseModel], error: Mapping[str, Any]) -> None:
-        where = (*location, *error["loc"])
+        where = (*location, *(part for part in error["loc"] if part != "[key]" and not str(part).startswith(":")))
         shown = ".".join(str(part) for part in where)
         if error["type"] == "extra_forbidden":
             options = list(model.model_fields)
@@ -276,8 +281,8 @@ def _has(node: Any, part: Any) -> bool:
     return part in node if isinstance(node, dict) else isinstance(part, int) and part < len(node)
 
 
-def _labels_only(block: Mapping[Any, Any]) -> bool:
-    return bool(block) and all(isinstance(key, int) for key in block)
+def _has_label(block: Mapping[Any, Any]) -> bool:
+    return any(isinstance(key, int) for key in block)
 
 
 def _plain(node: Any) -> Any:

@@ -36,7 +36,7 @@ class Pipeline:
         unasked = [
             Outcome(product, "skipped", "nothing that was asked for needs it", rule.method)
             for product, rule in self._rules.items()
-            if product not in self._outcomes and not (product == "segments" and rule.skip)
+            if product not in self._outcomes
         ]
         return [*self._outcomes.values(), *unasked]
 
@@ -45,7 +45,7 @@ class Pipeline:
         """The scene, read from its files. Raises: PictureError, GeometryError."""
         start = perf_counter()
         size = self.config.workspace
-        scene = read_scene(self.config.scene, self.config.path.parent, size.width_m, size.relief_m)
+        scene = read_scene(self.config.scene, self.config.path.parent, size.width_m, size.relief_m, size.holes)
         for product, value in self._brought(scene).items():
             self._made[product] = value
             self._note(Outcome(product, "given", f"the scene {scene.name} brings it", "", perf_counter() - start))
@@ -110,9 +110,6 @@ class Pipeline:
             self._note(Outcome(rule.product, "failed", why, rule.method, perf_counter() - start))
             raise
         seconds = perf_counter() - start
-        if value is None:
-            self._note(Outcome(rule.product, "skipped", f"there is no {rule.needs[-1]} to make it from", rule.method))
-            return None
         self._note(Outcome(rule.product, "ran", "asked for", rule.method, seconds))
         if self.cache is not None and rule.cached:
             self.cache.put(self.key(rule.product), value)

@@ -85,7 +85,7 @@ want: surfaces
         ("scene: a\nworkspace: {width_m: .nan}\n", "here/p.yaml:2:13", "finite"),
         ("scene: a\nworkspace: [1]\n", "here/p.yaml:2:1", "workspace"),
         ("scene: a\nmaterials: {by: colour}\n", "here/p.yaml:2:13", "roughness"),
-        ("scene: a\nmaterials: {0: ice, one: sand}\n", "here/p.yaml:2:21", "unknown option"),
+        ("scene: a\nmaterials: {0: ice, one: sand}\n", "here/p.yaml:2:21", "valid integer"),
     ],
 )
 def test_one_mistake_one_line(text: str, place: str, what: str):
@@ -137,7 +137,9 @@ def test_an_override_of_an_override():
 
 
 def test_files_named_by_a_method_are_relative_to_the_pipeline_file(tmp_path: Path):
-    (tmp_path / "p.yaml").write_text("scene: a\nmaterials: {library: mine.yaml}\ndevice: {use: mock, csv_file: hand.csv}\n")
+    (tmp_path / "p.yaml").write_text(
+        "scene: a\nmaterials: {library: mine.yaml}\ndevice: {use: mock, path: csv, csv_file: hand.csv}\n"
+    )
     config = load_config(tmp_path / "p.yaml", default_registry())
     assert config.materials.library == tmp_path / "mine.yaml"
     assert config.device.method.csv_file == tmp_path / "hand.csv"

@@ -121,5 +121,3 @@ def timed(work: object) -> float:
     start = perf_counter()
     work()  # type: ignore[operator]
     return perf_counter() - start
-
-

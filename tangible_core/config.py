@@ -13,7 +13,7 @@ from ruamel.yaml.error import MarkedYAMLError, YAMLError
 from .errors import ConfigError, TangibleError, did_you_mean
 from .interfaces import DepthEstimator, ForceRenderer, HapticDevice, Method, Segmenter
 from .registry import Registry
-from .scene import SceneFiles
+from .scene import BUILTINS, SceneFiles, unknown_scene
 
 M = TypeVar("M", bound=Method, covariant=True)
 
@@ -102,7 +102,8 @@ KEYS = ("scene", "want", *STAGES, *SECTIONS)
 def load_config(path: Path, registry: Registry, overrides: Iterable[str] = ()) -> PipelineConfig:
     """Read and check a pipeline file.
 
-    overrides: `key.key=value` each, the value in YAML, as `tangible run --set` takes them.
+    overrides: `key.key=value` each, the value in YAML, as `--set` takes them; another method (`depth.use=...`)
+    starts with its own defaults.
     Raises: ConfigError with every complaint, one a line.
     """
     return parse_config(_read_text(path), path, registry, overrides)
@@ -166,9 +167,12 @@ class Source:
                 node[part] = CommentedMap()
             node = node[part]
         try:
-            node[_key(parts[-1], node)] = _load(value)
+            loaded = _load(value)
         except YAMLError as error:
             raise ConfigError(f"--set {text}: {value!r} is no YAML value") from error
+        if parts[-1] == "use" and node.get("use") != loaded:
+            node.clear()  # another method has other options
+        node[_key(parts[-1], node)] = loaded
         self.overridden[parts] = text
 
     def place(self, location: tuple[Any, ...]) -> str:
@@ -213,7 +217,11 @@ class Source:
                 (), "`scene:` is missing; name a builtin (builtin/motorcycle) or files {left:, right:}"
             )
         block = self.tree["scene"]
-        return block if isinstance(block, str) else self._model(("scene",), SceneFiles, block)
+        if not isinstance(block, str):
+            return self._model(("scene",), SceneFiles, block)
+        if block not in BUILTINS:
+            self.complain(("scene",), unknown_scene(block))
+        return block
 
     def _want(self) -> Any:
         want = self.tree.get("want", "surface")

@@ -123,14 +123,19 @@ def read_scene(scene: str | SceneFiles, folder: Path, width_m: float, relief_m: 
     elif scene in BUILTINS:
         name, files, folder = scene, BUILTINS[scene], _scikit_image_data()
     else:
-        raise ConfigError(
-            f"no scene is named {scene!r}{did_you_mean(scene, BUILTINS)}; builtin are {', '.join(sorted(BUILTINS))}; "
-            "for files of your own write {photo: FILE}, {left: FILE, right: FILE} or {height: FILE}"
-        )
+        raise ConfigError(unknown_scene(scene))
     paths = {key: folder / path.expanduser() for key, path in files if isinstance(path, Path)}
     held = {key: _READERS[key](path) for key, path in paths.items()}
     _check_sizes(paths, held)
     return Scene(name, _views(files, held), _given(files, held, width_m, relief_m, holes), _frozen(held.get("truth")))
+
+
+def unknown_scene(name: str) -> str:
+    """What to say of a name that is not builtin."""
+    return (
+        f"no scene is named {name!r}{did_you_mean(name, BUILTINS)}; builtin are {', '.join(sorted(BUILTINS))}; "
+        "for files of your own write {photo: FILE}, {left: FILE, right: FILE} or {height: FILE}"
+    )
 
 
 def _scikit_image_data() -> Path:

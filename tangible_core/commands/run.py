@@ -24,7 +24,7 @@ from . import show
 
 Figures = Mapping[Any, Any]
 SHOWN = ("disparity", "segments", "materials", "surface")
-"""Products that the report draws."""
+"""Products that the report draws, beside what is wanted."""
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,7 @@ def plan(config: Path, sets: Sequence[str], as_json: bool, cached: bool) -> None
     if as_json:
         show.print_json(show.as_rows(steps))
     else:
-        show.outcomes(steps)
+        show.outcomes(steps, ran="to run")
 
 
 def open_pipeline(config: Path, sets: Sequence[str], cached: bool) -> Pipeline:
@@ -86,6 +86,7 @@ def execute(pipeline: Pipeline, out: Path, seconds: float) -> Results:
     pipeline.plan()
     value = pipeline.make()
     products = {name: pipeline.make(name) for name in SHOWN if _concerns(pipeline, name)}
+    products[pipeline.config.want] = value
     recording = _feel(pipeline, value, seconds)
     for name, record in products.items():
         if isinstance(record, Record):
@@ -133,7 +134,7 @@ def _write_config(pipeline: Pipeline, path: Path) -> Path:
 def _draw(pipeline: Pipeline, products: Mapping[str, Any], recording: Recording | None, path: Path) -> Path:
     scene = pipeline.scene
     draw_sheet(path, views=scene.views, truth=scene.truth, recording=recording, title=scene.name,
-               **{name: products.get(name) for name in SHOWN})  # fmt: skip
+               **{name: products.get(name) for name in (*SHOWN, "relief")})  # fmt: skip
     return path
 
 

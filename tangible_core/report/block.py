@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
-from jaxtyping import Bool, Float64, Int64
+from jaxtyping import Bool, Float, Float32, Float64, Int64
 
 from ..data import Relief
 from ..geometry import picture_to_workspace, resample, workspace_to_picture
@@ -34,7 +34,7 @@ def drawn_size(relief: Relief, most: int) -> Relief:
     return resample(relief, (max(1, round(rows * scale)), max(1, round(columns * scale))))
 
 
-def on_paper(points_m: Float64[np.ndarray, "... 3"]) -> Float64[np.ndarray, "... 2"]:
+def on_paper(points_m: Float[np.ndarray, "... 3"]) -> Float64[np.ndarray, "... 2"]:
     """Parallel projection of points in the workspace frame."""
     return points_m @ PAPER.T
 
@@ -70,7 +70,7 @@ def seen(relief: Relief, points_m: Float64[np.ndarray, "n 3"]) -> Bool[np.ndarra
     return ~np.any(heights_under(relief, march_m) > march_m[..., 2], axis=1)
 
 
-def heights_under(relief: Relief, points_m: Float64[np.ndarray, "... 3"]) -> Float64[np.ndarray, "..."]:
+def heights_under(relief: Relief, points_m: Float64[np.ndarray, "... 3"]) -> Float32[np.ndarray, "..."]:
     """Height of the cell below (or above) each point, metres; NaN outside the surface."""
     shape = rows, columns = relief.height_m.shape
     places = workspace_to_picture(points_m[..., 0], points_m[..., 1], shape, relief.extent_m)

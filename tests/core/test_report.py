@@ -93,6 +93,7 @@ class TestDisparityErrors:
         errors = disparity_errors(np.ones((2, 2), np.float32), np.full((2, 2), NAN, np.float32))
         assert all(map(math.isnan, errors.values()))
 
+    @pytest.mark.usefixtures("unchecked_shapes")
     def test_two_sizes(self) -> None:
         with pytest.raises(PictureError, match=r"\(1, 2\).*\(2, 1\)"):
             disparity_errors(np.ones((1, 2), np.float32), np.ones((2, 1), np.float32))
@@ -323,6 +324,7 @@ class TestSheet:
         with pytest.raises(OutputError, match="cannot be written"):
             draw_sheet(tmp_path / "file" / "sheet.png", views=Views(np.zeros((4, 4), np.uint8)))
 
+    @pytest.mark.usefixtures("unchecked_shapes")
     def test_truth_of_another_size_is_named(self, tmp_path: Path) -> None:
         disparity = DisparityMap(np.zeros((2, 2), np.float32))
         with pytest.raises(PictureError, match="truth"):

@@ -10,14 +10,17 @@ from numba import njit
 
 from .watershed import UNSEEN
 
+_SEVERAL = -2
+
 
 def basins(
     height: Float32[np.ndarray, "h w"], levels: Iterable[float], smallest_px: int
 ) -> tuple[Int32[np.ndarray, "h w"], int]:
     """Connected parts (4 neighbours) that lie at or under a level and hold smallest_px pixels or more.
 
-    The levels rise. At a higher one, only parts in which no basin lies yet are new: so a rough thing between smooth
-    ones has a basin of its own, although it is nowhere as flat as they are.
+    The levels rise. At a higher one, a part with no basin in it yet is a new one: so a rough thing between smooth ones
+    has a basin of its own, although it is nowhere as flat as they are. A part with one basin in it is all that basin's,
+    as a watershed would find too: water fills it before it flows over.
     Returns: labels, -1 outside of the basins, and their number.
     """
     import cv2
@@ -32,21 +35,27 @@ def basins(
 
 @njit(cache=True, nogil=True)
 def _add(found, parts, size, smallest_px, count):
-    """Write the large parts without a basin into `found`, under names from `count` on; part 0 is what is too high."""
-    areas = np.zeros(size, np.int64)
-    taken = np.zeros(size, np.bool_)
-    for row in range(found.shape[0]):
-        for column in range(found.shape[1]):
-            areas[parts[row, column]] += 1
-            taken[parts[row, column]] |= found[row, column] >= 0
-    names = np.full(size, UNSEEN, np.int32)
+    """Give every part with one basin in it to that basin, every large one without to a new one, from `count` on."""
+    names, areas = _owners(found, parts, size)
+    names[0] = _SEVERAL  # what is too high
     for part in range(1, size):
-        if areas[part] >= smallest_px and not taken[part]:
+        if names[part] == UNSEEN and areas[part] >= smallest_px:
             names[part] = count
             count += 1
-    if names.max() == UNSEEN:
-        return count
     for row in range(found.shape[0]):
         for column in range(found.shape[1]):
-            found[row, column] = max(found[row, column], names[parts[row, column]])
+            found[row, column] = max(found[row, column], names[parts[row, column]], UNSEEN)
     return count
+
+
+@njit(cache=True, nogil=True)
+def _owners(found, parts, size):
+    """The basin in each part, -1 if there is none, -2 if there are several; and the areas of the parts."""
+    owners, areas = np.full(size, UNSEEN, np.int32), np.zeros(size, np.int32)
+    for row in range(found.shape[0]):
+        for column in range(found.shape[1]):
+            part, basin = parts[row, column], found[row, column]
+            areas[part] += 1
+            if basin >= 0 and owners[part] != basin:
+                owners[part] = basin if owners[part] == UNSEEN else _SEVERAL
+    return owners, areas

@@ -66,15 +66,17 @@ class Gradient(Segmenter, Skippable):
         """
         from .basins import basins
         from .channels import channels
-        from .slopes import noise_slope, slopes
+        from .slopes import slopes
+        from .smoothing import gaussian, without_specks
         from .watershed import watershed
 
-        smooth = _smooth(channels(picture, self.colour), self.sigma_px)
-        magnitude, across, down = slopes(smooth)
+        values = without_specks(channels(picture, self.colour))
+        smooth = gaussian(values, min(self.sigma_px, (values.shape[0] * values.shape[1]) ** 0.5 / 16))
+        magnitude, across, down, noise = slopes(smooth)
         strongest = float(magnitude.max())
         if strongest <= NOTHING:
             return SegmentMap(np.zeros(magnitude.shape, np.int32))
-        noise = np.maximum(noise_slope(smooth), np.float32(self.contrast * strongest / self.canny_high))
+        noise = np.maximum(noise, np.float32(self.contrast * strongest / self.canny_high))
         steep = magnitude / noise
         smallest_px = max(4, min(self.smallest_px, steep.size // 16))
         markers, count = basins(steep, [self.flat * times for times in STEEPER], smallest_px)
@@ -112,11 +114,3 @@ class Gradient(Segmenter, Skippable):
     def _confidence(self, steep: Float32[np.ndarray, "h w"]) -> Float32[np.ndarray, "h w"]:
         top = max(float(steep.max()), self.canny_high)
         return np.clip((top - steep) / np.float32(top - self.flat), 0, 1)
-
-
-def _smooth(values: Float32[np.ndarray, "h w c"], sigma_px: float) -> Float32[np.ndarray, "h w c"]:
-    import cv2
-
-    rows, columns, _ = values.shape
-    sigma = min(sigma_px, (rows * columns) ** 0.5 / 16)
-    return cv2.GaussianBlur(values, (0, 0), sigma, borderType=cv2.BORDER_REFLECT).reshape(values.shape)

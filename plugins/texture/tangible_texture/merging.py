@@ -11,7 +11,7 @@ from numba import njit
 
 from .borders import Border
 
-HELD_APART = 0.5
+HELD_APART = 0.4
 """Two neighbours stay apart where at least this share of their border lies on edges."""
 
 

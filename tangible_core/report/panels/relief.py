@@ -82,8 +82,8 @@ def _draw_normals(axes: Axes, relief: Relief) -> None:
 
 def _draw_scales(axes: Axes, width_m: float, length_m: float) -> None:
     """Scales in mm along the near and the right edge of the base."""
-    _draw_scale(axes, "x [mm]", np.array([0, -length_m / 2, 0]), np.array([1, 0, 0]), width_m / 2)
-    _draw_scale(axes, "y [mm]", np.array([width_m / 2, 0, 0]), np.array([0, 1, 0]), length_m / 2)
+    _draw_scale(axes, "x [mm]", np.array([0, -length_m / 2, 0]), np.array([1.0, 0, 0]), width_m / 2)
+    _draw_scale(axes, "y [mm]", np.array([width_m / 2, 0, 0]), np.array([0, 1.0, 0]), length_m / 2)
 
 
 def _draw_scale(axes: Axes, name: str, middle_m: np.ndarray, along: np.ndarray, half_m: float) -> None:

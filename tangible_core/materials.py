@@ -29,7 +29,7 @@ LADDER = ("ice", "metal", "paper", "leather", "wood", "cloth", "sand", "stone", 
 def load_library(path: Path | None = None) -> Mapping[str, Material]:
     """Materials by name: those that are shipped, and those of a YAML file of your own, which adds to them.
 
-    A name that is shipped needs only the values that change. Raises: MaterialError with every complaint, one a line,
+    A name that is shipped needs only the values that change. Raises: ConfigError with every complaint, one a line,
     each with file:line:column.
     """
     return library() if path is None else read_materials(path, library())
@@ -39,7 +39,7 @@ def load_library(path: Path | None = None) -> Mapping[str, Material]:
 def library() -> Mapping[str, Material]:
     """The materials that are shipped, by name."""
     text = files("tangible_core").joinpath("materials.yaml").read_text(encoding="utf-8")
-    return parse_materials(text, "materials.yaml", {})
+    return parse_materials(text, Path("materials.yaml"), {})
 
 
 def find(name: str, library: Mapping[str, Material]) -> Material:

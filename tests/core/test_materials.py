@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from tangible_core.data import Material, SegmentMap
-from tangible_core.errors import MaterialError, PictureError
+from tangible_core.errors import ConfigError, MaterialError, PictureError
 from tangible_core.materials import LADDER, NEUTRAL, assign, find, library, load_library, relative_roughness
 
 MUD = "mud: {stiffness_n_per_m: 300, damping_n_s_per_m: 2, static_friction: 0.6, dynamic_friction: 0.5}\n"
@@ -28,7 +28,7 @@ def complaints(tmp_path: Path, text: str) -> list[str]:
     """What is said about a library file, without its folder."""
     path = tmp_path / "mine.yaml"
     path.write_text(text)
-    with pytest.raises(MaterialError) as error:
+    with pytest.raises(ConfigError) as error:
         load_library(path)
     return str(error.value).replace(f"{tmp_path}/", "").splitlines()
 
@@ -134,13 +134,13 @@ class TestOwnFile:
 
     def test_a_misspelt_file_is_explained(self, tmp_path: Path):
         (tmp_path / "mine.yaml").write_text(MUD)
-        with pytest.raises(MaterialError, match=r"mime.yaml: there is no such file \(did you mean 'mine.yaml'\?\)"):
+        with pytest.raises(ConfigError, match=r"mime.yaml: there is no such file \(did you mean 'mine.yaml'\?\)"):
             load_library(tmp_path / "mime.yaml")
 
     def test_what_is_no_text_is_explained(self, tmp_path: Path):
         (tmp_path / "mine.yaml").write_bytes(b"\xff\xfe\x00")
         for path in (tmp_path / "mine.yaml", tmp_path):
-            with pytest.raises(MaterialError, match="cannot be read as text"):
+            with pytest.raises(ConfigError, match="cannot be read as text"):
                 load_library(path)
 
 

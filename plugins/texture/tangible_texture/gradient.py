@@ -20,20 +20,19 @@ NOTHING = 1e-6
 
 
 class Gradient(Segmenter, Skippable):
-    """Regions between edges: Canny edges and a watershed of the gradient; for smooth things, not for textures.
+    """Regions between edges: a watershed of the gradient and Canny edges; for smooth things rather than textures.
 
-    Smooth, take the slope of the steepest channel, and measure it in units of the noise hereabouts. Connected flat
-    parts are the first segments; they grow uphill until they meet (a watershed); two of them stay apart if at least
-    half of the border between them lies on Canny edges. Labels are in the order of their first pixels, row by row.
-    Confidence is 1 - (s - flat) / (top - flat) within 0..1, where s is the slope in units of noise and top its maximum,
+    Smooth the picture; take the slope of its steepest channel, in units of the noise hereabouts. Connected flat parts
+    are the first segments. They grow uphill until they meet (a watershed), and two of them stay apart if two fifths or
+    more of the border between them lie on Canny edges. Labels are in the order of their first pixels, row by row.
+    Confidence is 1 - (s - flat) / (top - flat) within 0..1, s being the slope in units of noise and top its maximum,
     or canny_high if that is more: 1 in a flat basin, 0 on the strongest edge.
     Sources: Canny, A computational approach to edge detection, 1986; Meyer, Un algorithme optimal pour la ligne de
     partage des eaux, 1991.
     """
 
     segments: Annotated[int, Field(ge=1)] | Literal["auto"] = "auto"
-    """At most this many segments, of which the least separated ones are merged; `auto`: as many as edges hold apart, up
-    to 64."""
+    """At most this many: the least separated ones are merged; `auto`: as many as edges hold apart, 64 at most."""
     sigma_px: Annotated[float, Field(gt=0, le=100)] = 2.0
     """Standard deviation of the Gaussian that smooths, at most 1/16 of the root of the picture's area."""
     smallest_px: Annotated[int, Field(ge=1)] = 200

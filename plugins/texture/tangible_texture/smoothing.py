@@ -18,7 +18,9 @@ def without_specks(values: Float32[np.ndarray, "h w c"]) -> Float32[np.ndarray, 
     lowest, highest = (each(values, around).reshape(values.shape) for each in (cv2.erode, cv2.dilate))
     outside = np.maximum(lowest - values, values - highest)
     specks = outside > highest - lowest
-    return np.where(specks, np.clip(values, lowest, highest), values)
+    calm = values.copy()
+    calm[specks] = np.clip(values[specks], lowest[specks], highest[specks])
+    return calm
 
 
 def gaussian(values: Float32[np.ndarray, "h w c"], sigma_px: float) -> Float32[np.ndarray, "h w c"]:

@@ -3,7 +3,7 @@
 import numpy as np
 from jaxtyping import Float32
 
-from tangible_core.pictures import check_picture, full_scale, to_grey
+from tangible_core.pictures import LUMA, check_picture, full_scale
 
 
 def channels(picture: np.ndarray, colour: bool) -> Float32[np.ndarray, "h w c"]:
@@ -13,16 +13,22 @@ def channels(picture: np.ndarray, colour: bool) -> Float32[np.ndarray, "h w c"]:
     squared later neither overflows nor vanishes.
     Raises: PictureError as `check_picture`.
     """
-    values = _rgb(picture) if colour and _has_colour(check_picture(picture)) else to_grey(picture)[..., None]
+    white = full_scale(check_picture(picture))
+    paint = np.atleast_3d(picture)[..., :3]
+    values = _share(paint if _has_colour(paint) else paint[..., :1], white)
+    if picture.ndim == 3 and picture.shape[2] == 4:
+        opaque = _share(picture[..., 3:], white)
+        values = values * opaque + (1 - opaque)
+    if values.shape[2] == 3 and not colour:
+        values = (values @ LUMA)[..., None]
     top = max(float(values.max()), -float(values.min()))
     return np.ascontiguousarray(values / top if top else values, np.float32)
 
 
-def _has_colour(picture: np.ndarray) -> bool:
-    return picture.ndim == 3 and any(np.any(picture[..., 0] != picture[..., other]) for other in (1, 2))
+def _has_colour(paint: np.ndarray) -> bool:
+    return any(np.any(paint[..., 0] != paint[..., other]) for other in range(1, paint.shape[2]))
 
 
-def _rgb(picture: np.ndarray) -> Float32[np.ndarray, "h w 3"]:
-    exact = picture if picture.dtype.kind == "f" else picture.astype(np.float32)
-    values = np.asarray(exact / full_scale(picture), np.float32)
-    return values if values.shape[2] == 3 else 1 - values[..., 3:] * (1 - values[..., :3])
+def _share(values: np.ndarray, white: float) -> Float32[np.ndarray, "h w c"]:
+    """Values as shares of white, divided in single precision at least, so that every type gives the same."""
+    return np.asarray((values if values.dtype.kind == "f" else values.astype(np.float32)) / white, np.float32)

@@ -10,9 +10,9 @@ from tangible_core.data import SegmentMap, Views
 from tangible_core.interfaces import Segmenter, Skippable
 
 MOST_SEGMENTS = 64
-"""What `segments: auto` stops at: more cannot be told apart by touch."""
+"""What `segments: auto` stops at, far beyond what touch tells apart."""
 
-STEEPER = (1, 2, 4)
+STEEPER = (1, 4, 16)
 """Where nothing is flat, a part this many times as steep counts as flat."""
 
 NOTHING = 1e-6
@@ -37,21 +37,24 @@ class Gradient(Segmenter, Skippable):
     """Standard deviation of the Gaussian that smooths, at most 1/16 of the root of the picture's area."""
     smallest_px: Annotated[int, Field(ge=1)] = 200
     """A segment begins with at least this many flat pixels; in a small picture, 1/16 of its area; never under 4."""
-    flat: Annotated[float, Field(gt=0, le=100)] = 1.4
-    """Flat is a slope up to this many times that of noise; in a part without any, 2 or 4 times as much will do."""
-    canny_low: Annotated[float, Field(gt=0, le=100)] = 2.0
+    flat: Annotated[float, Field(gt=0, le=20)] = 1.4
+    """Flat is a slope up to this many times that of noise; in a part without any, 4 or 16 times as much will do."""
+    canny_low: Annotated[float, Field(gt=0, le=20)] = 2.0
     """An edge goes on while its slope is this many times that of noise."""
-    canny_high: Annotated[float, Field(gt=0, le=100)] = 4.0
+    canny_high: Annotated[float, Field(gt=0, le=20)] = 4.0
     """An edge has this many times the slope of noise somewhere."""
-    contrast: Annotated[float, Field(ge=0.001, le=1)] = 0.02
+    contrast: Annotated[float, Field(ge=0.005, le=1)] = 0.02
     """An edge has at least this share of the slope of the picture's strongest edge: the floor under the noise."""
     colour: bool = True
     """Look for edges in red, green and blue; else in grey, where two colours of one brightness are one."""
 
     @model_validator(mode="after")
     def _thresholds_in_order(self) -> Self:
-        if self.canny_low > self.canny_high:
-            raise ValueError(f"canny_low {self.canny_low:g} is above canny_high {self.canny_high:g}; swap them")
+        if not self.flat < self.canny_low <= self.canny_high:
+            raise ValueError(
+                f"flat {self.flat:g} < canny_low {self.canny_low:g} <= canny_high {self.canny_high:g} does not hold; "
+                "what is flat is no edge, and an edge goes on at less than it begins with"
+            )
         return self
 
     def skip(self, views: Views) -> str | None:

@@ -3,7 +3,6 @@
 # ruff: noqa: ANN001, ANN201 -- numba takes the types from the call
 
 import heapq
-from math import sqrt
 
 import numpy as np
 from jaxtyping import Int32
@@ -18,8 +17,8 @@ HELD_APART = 0.4
 def merge(areas: list[int], borders: dict[tuple[int, int], Border], most: int) -> Int32[np.ndarray, "n"]:
     """Merge neighbours until edges hold all of them apart and no more than `most` are left.
 
-    Those with the least share of edges in their border go first; after them, those with the lowest border times the
-    square root of a b / (a + b), a and b being their areas: as in Ward's method, small regions give way to large ones.
+    Those with the least share of edges in their border go first; after them, those with the lowest mean height of the
+    border times a b / (a + b), a and b being their areas: small regions give way to large ones, as in Ward's method.
     Returns: for each region the one that it has become part of.
     """
     graph = _Graph(areas, borders)
@@ -57,7 +56,7 @@ class _Graph:
         if share < HELD_APART:
             return share - 1
         a, b = self.areas[one], self.areas[other]
-        return border.height / border.pairs * sqrt(a * b / (a + b))
+        return border.height / border.pairs * a * b / (a + b)
 
     def join(self, kept: int, lost: int) -> None:
         """Make two regions one."""

@@ -66,7 +66,7 @@ def _relief(config: PipelineConfig, scene: Scene) -> Rule:
         relief = geometry.make_relief(disparity, calibration, size.width_m, size.relief_m, size.holes)
         return geometry.smooth(relief, size.smooth_m)
 
-    return Rule("relief", "core", f"{_core('geometry')} {size!r}", ("views", "disparity"), make)
+    return Rule("relief", "core", f"{_core()} {size!r}", ("views", "disparity"), make)
 
 
 def _segments(config: PipelineConfig, scene: Scene) -> Rule:
@@ -89,7 +89,7 @@ def _materials(config: PipelineConfig, scene: Scene) -> Rule:
     def make(inputs: Inputs) -> MaterialMap:
         return materials.assign(inputs["segments"], scene.views.left if scene.views else None, choice.by, library)
 
-    key = f"{_core('materials')} {choice.by!r} {digest_of(tuple(library.values()))}"
+    key = f"{_core()} {choice.by!r} {digest_of(tuple(library.values()))}"
     skip = f"there are no segments: {unsegmented}" if unsegmented else None
     return Rule("materials", "core", key, ("views", "segments"), make, skip)
 
@@ -104,7 +104,7 @@ def _surface(config: PipelineConfig, scene: Scene) -> Rule:
 
     with_materials = config.render is None or config.render.method.uses_materials
     needs = ("relief", "segments", "materials") if with_materials else ("relief",)
-    return Rule("surface", "core", _core("data"), needs, make)
+    return Rule("surface", "core", _core(), needs, make)
 
 
 def _touch(config: PipelineConfig, scene: Scene) -> Rule:
@@ -131,7 +131,7 @@ def _identity(chosen: Chosen[Any] | None) -> tuple[str, str]:
         return "", ""
     method: Method = chosen.method
     cls = type(method)
-    code = _source_digest(getsourcefile(cls) or "")
+    code = _code_digest(getsourcefile(cls) or "", in_package="." in cls.__module__)
     return (
         chosen.name,
         f"{chosen.origin} {cls.__module__}:{cls.__qualname__} {code} v{cls.version} {method.model_dump_json()}",
@@ -139,15 +139,16 @@ def _identity(chosen: Chosen[Any] | None) -> tuple[str, str]:
 
 
 @cache
-def _core(room: str) -> str:
-    return f"tangible-images {version('tangible-images')} {_source_digest(str(Path(__file__).with_name(f'{room}.py')))}"
+def _core() -> str:
+    return f"tangible-images {version('tangible-images')} {_code_digest(__file__, in_package=True)}"
 
 
 @cache
-def _source_digest(path: str) -> str:
-    """The method's own file counts, so that whoever writes a method need not clear the cache at each change."""
+def _code_digest(path: str, in_package: bool) -> str:
+    """The method's file, and those beside it in its package: who writes a method need not clear the cache."""
+    files = sorted(Path(path).parent.glob("*.py")) if in_package else [Path(path)]
     try:
-        return hashlib.sha256(Path(path).read_bytes()).hexdigest()[:16]
+        return hashlib.sha256(b"".join(file.read_bytes() for file in files)).hexdigest()[:16]
     except OSError:
         return ""
 

@@ -145,6 +145,8 @@ def _run_app() -> int:
     words = _take_log_options(sys.argv[1:])
     hooks.tell(default_registry().plugins, "tangible_commands", app=app)
     code = app(words, standalone_mode=False, default_map=_no_help())
+    if code == INTERRUPTED:  # typer answers Ctrl-C itself, without a word
+        raise KeyboardInterrupt
     return code if isinstance(code, int) else DONE
 
 

@@ -100,21 +100,30 @@ def load_config(path: Path, registry: Registry, overrides: Iterable[str] = ()) -
     overrides: `key.key=value` each, the value in YAML, as `tangible run --set` takes them.
     Raises: ConfigError with every complaint, one a line.
     """
-    return parse_config(_read_text(path), path, registry, overrides)
+    return parse_config(read_text(path), path, registry, overrides)
 
 
 def parse_config(text: str, path: Path, registry: Registry, overrides: Iterable[str] = ()) -> PipelineConfig:
     """`load_config` for a text; `path` is what complaints name and what relative files are relative to."""
-    source = Source(path, _parse(text, path))
-    for override in overrides:
-        source.override(override)
+    source = parse_source(text, path, overrides)
     values = source.check(registry)
-    if source.complaints:
-        raise ConfigError("\n".join(source.complaints))
+    source.settle()
     return PipelineConfig(path=path, **values)
 
 
-def _read_text(path: Path) -> str:
+def parse_source(text: str, path: Path, overrides: Iterable[str] = (), first_key: str = "scene") -> "Source":
+    """A YAML text whose parts know their places, for whoever checks it.
+
+    Raises: ConfigError if it is no YAML, or no mapping.
+    """
+    source = Source(path, _parse(text, path, first_key))
+    for override in overrides:
+        source.override(override)
+    return source
+
+
+def read_text(path: Path) -> str:
+    """A configuration file's text. Raises: ConfigError, with what is there when the file is not."""
     try:
         return path.read_text(encoding="utf-8")
     except FileNotFoundError as error:
@@ -124,7 +133,7 @@ def _read_text(path: Path) -> str:
         raise ConfigError(f"{path}: cannot be read as text: {error}") from error
 
 
-def _parse(text: str, path: Path) -> Tree:
+def _parse(text: str, path: Path, first_key: str) -> Tree:
     try:
         tree = _load(text)
     except MarkedYAMLError as error:
@@ -136,7 +145,7 @@ def _parse(text: str, path: Path) -> Tree:
     except YAMLError as error:
         raise ConfigError(f"{path}: {str(error).splitlines()[0]}") from error
     if not isinstance(tree, dict):
-        raise ConfigError(f"{path}:1:1: a configuration is a mapping that starts with `scene:`")
+        raise ConfigError(f"{path}:1:1: a configuration is a mapping that starts with `{first_key}:`")
     return cast(Tree, tree)
 
 
@@ -157,6 +166,8 @@ class Source:
             raise ConfigError(f"--set {text}: write key.key=value, such as render.stiffness_n_per_m=500")
         node: Any = self.tree
         for part in parts[:-1]:
+            if isinstance(node.get(part), list):
+                raise ConfigError(f"--set {text}: {part} is a list; set the whole of it: {part}=[...]")
             if not isinstance(node.get(part), dict):
                 node[part] = CommentedMap()
             node = cast(Any, node[part])
@@ -186,20 +197,30 @@ class Source:
         """Note a complaint with its place."""
         self.complaints.append(f"{self.place(location)}: {text}")
 
+    def settle(self) -> None:
+        """Raises: ConfigError with every complaint, one a line, if there are any."""
+        if self.complaints:
+            raise ConfigError("\n".join(self.complaints))
+
+    def check_keys(self, known: Iterable[str]) -> None:
+        """Complain of every key that is not known."""
+        names = list(known)
+        for key in self.tree:
+            if key not in names:
+                self.complain((key,), f"unknown key {key!r}{did_you_mean(str(key), names)}; known: {', '.join(names)}")
+
     def check(self, registry: Registry) -> dict[str, Any]:
         """Fields of PipelineConfig, as far as they are right; the rest is in `complaints`."""
-        for key in self.tree:
-            if key not in KEYS:
-                self.complain((key,), f"unknown key {key!r}{did_you_mean(str(key), KEYS)}; known: {', '.join(KEYS)}")
+        self.check_keys(KEYS)
         values: dict[str, Any] = {"scene": self._scene(), "want": self._want()}
         for key, model in SECTIONS.items():
             if key in self.tree:
                 block = self.tree[key]
                 plain_map = key == "materials" and isinstance(block, dict) and _labels_only(cast(Any, block))
-                values[key] = self._model((key,), model, {"by": block} if plain_map else block)
+                values[key] = self.model((key,), model, {"by": block} if plain_map else block)
         for kind in STAGES:
             if kind in self.tree:
-                values[kind] = self._stage(kind, registry)
+                values[kind] = self.chosen((kind,), kind, self.tree[kind], registry)
         return values
 
     def _scene(self) -> Any:
@@ -208,7 +229,7 @@ class Source:
                 (), "`scene:` is missing; name a builtin (builtin/motorcycle) or files {left:, right:}"
             )
         block = self.tree["scene"]
-        return block if isinstance(block, str) else self._model(("scene",), SceneFiles, block)
+        return block if isinstance(block, str) else self.model(("scene",), SceneFiles, block)
 
     def _want(self) -> Any:
         want = self.tree.get("want", "surface")
@@ -217,23 +238,24 @@ class Source:
             self.complain(("want",), f"nothing makes {want!r}{hint}; a pipeline makes {', '.join(PRODUCTS)}")
         return want
 
-    def _stage(self, kind: str, registry: Registry) -> Chosen[Any] | None:
-        block = self.tree[kind]
+    def chosen(self, location: tuple[Any, ...], kind: str, block: Any, registry: Registry) -> Chosen[Any] | None:
+        """The method that a block names, with its options; None after a complaint."""
         if isinstance(block, str):
             block = {"use": block}
         if not isinstance(block, dict) or not isinstance(cast(Any, block).get("use"), str):
             known = ", ".join(registry.names(kind))
-            return self.complain((kind,), f"{kind} needs the name of a method, {{use: ...}}; installed: {known}")
+            return self.complain(location, f"{kind} needs the name of a method, {{use: ...}}; installed: {known}")
         options = dict(cast("dict[str, Any]", block))
         name = options.pop("use")
         try:
             listing, cls = registry.find(kind, name), registry.load(kind, name)
         except TangibleError as error:
-            return self.complain((kind, "use"), str(error))
-        method = self._model((kind,), cls, options)
+            return self.complain((*location, "use"), str(error))
+        method = self.model(location, cls, options)
         return None if method is None else Chosen(name, listing.origin, method)
 
-    def _model(self, location: tuple[Any, ...], model: type[BaseModel], block: Any) -> Any:
+    def model(self, location: tuple[Any, ...], model: type[BaseModel], block: Any) -> Any:
+        """A block as a model; None after a complaint for each thing that is wrong."""
         try:
             return _relative_to(self.path.parent, model.model_validate(_plain(block)))
         except ValidationError as error:

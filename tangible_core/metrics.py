@@ -1,0 +1,79 @@
+"""How far a disparity map is from the truth, and which pixels both views show."""
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from .errors import PictureError
+
+BOUNDS_PX = (0.5, 1.0, 2.0, 4.0)
+HIDING_STEP_PX = 1.0
+"""A surface hides another one when it is nearer by more than this: less is a slope, not an edge."""
+
+
+def disparity_errors(disparity_px: Float[np.ndarray, "h w"], truth_px: Float[np.ndarray, "h w"]) -> dict[str, float]:
+    """Middlebury's measures of a disparity map; what is not finite is unknown.
+
+    Returns: `bad0.5`, `bad1`, `bad2`, `bad4`, the share of the pixels with truth whose error is over 0.5, 1, 2 or
+    4 px, in percent, where a missing estimate is bad; `average` and `rms`, the mean and the root mean square of the
+    absolute error over the pixels that have both, in px; `density`, the share of the pixels with truth that have an
+    estimate, in percent. NaN where there is nothing to measure.
+    Raises: PictureError if the two differ in size.
+    Source: Scharstein & Szeliski, A Taxonomy and Evaluation of Dense Two-Frame Stereo Correspondence Algorithms,
+    IJCV 47 (2002), sec. 5.1; missing estimates as in the Middlebury evaluation, version 3.
+    """
+    error_px = absolute_error(disparity_px, truth_px)[np.isfinite(truth_px)]
+    known_px = error_px[np.isfinite(error_px)]
+    bad = {f"bad{bound:g}": _percent(~(error_px <= bound)) for bound in BOUNDS_PX}
+    return bad | {
+        "average": _mean(known_px),
+        "rms": _mean(known_px**2) ** 0.5,
+        "density": _percent(np.isfinite(error_px)),
+    }
+
+
+def absolute_error(
+    disparity_px: Float[np.ndarray, "h w"], truth_px: Float[np.ndarray, "h w"]
+) -> Float[np.ndarray, "h w"]:
+    """|estimate - truth| in px, float64 (h, w), NaN where either is unknown.
+
+    Raises: PictureError if the two differ in size.
+    """
+    if disparity_px.shape != truth_px.shape:
+        raise PictureError(
+            f"the disparity map is {disparity_px.shape} and its truth {truth_px.shape}; crop or scale one"
+        )
+    known = np.isfinite(disparity_px) & np.isfinite(truth_px)
+    error_px = np.full(truth_px.shape, np.nan)
+    error_px[known] = np.abs(disparity_px[known].astype(np.float64) - truth_px[known])
+    return error_px
+
+
+def visible_pixels(truth_px: Float[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
+    """Pixels of the left view that the right view shows too, as far as the true disparity tells.
+
+    A pixel (row, x) is hidden if x - d lies outside of the right view, or if the truth puts there a surface nearer by
+    more than HIDING_STEP_PX; without truth it counts as hidden, and what has no truth hides nothing.
+    Returns: bool (h, w). Exact for whole disparities; otherwise right to a quarter of a pixel at the edges.
+    """
+    rows, columns = np.nonzero(np.isfinite(truth_px))
+    shift_px = truth_px[rows, columns].astype(np.float64)
+    target_px = columns - shift_px
+    inside = np.rint(target_px).astype(np.int64)
+    seen = (inside >= 0) & (inside < truth_px.shape[1])
+    nearest_px = np.full(truth_px.shape, -np.inf)
+    # Both columns that a pixel lies between, so that a surface that the right view stretches has no gaps.
+    for column in (np.floor(target_px + 0.25), np.floor(target_px + 0.75)):
+        hit = (column >= 0) & (column < truth_px.shape[1])
+        np.maximum.at(nearest_px, (rows[hit], column[hit].astype(np.int64)), shift_px[hit])
+    seen[seen] = nearest_px[rows[seen], inside[seen]] <= shift_px[seen] + HIDING_STEP_PX
+    visible = np.zeros(truth_px.shape, np.bool_)
+    visible[rows, columns] = seen
+    return visible
+
+
+def _percent(flags: np.ndarray) -> float:
+    return 100 * _mean(flags)
+
+
+def _mean(values: np.ndarray) -> float:
+    return float(values.mean()) if values.size else float("nan")

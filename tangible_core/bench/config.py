@@ -1,0 +1,225 @@
+"""A comparison file: which methods, on which scenes, damaged how; every complaint at once, each with its place."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from itertools import product
+from pathlib import Path
+from typing import Annotated, Any, cast
+
+from pydantic import Field
+
+from ..config import Chosen, Section, Source, parse_source, read_text
+from ..errors import TangibleError, did_you_mean
+from ..interfaces import Method
+from ..registry import Registry
+from .task import TASKS, SceneSpec, Task, load_task
+
+NONE = "none"
+Place = tuple[Any, ...]
+
+
+class Protocol(Section):
+    """How often and how long each method is measured."""
+
+    repeats: Annotated[int, Field(ge=1, le=1000)] = 5
+    """Rounds; in each, every method runs once on every scene, in a process of its own."""
+    warmups: Annotated[int, Field(ge=0, le=100)] = 1
+    """Calls before the clock starts: imports, compilation, caches."""
+    calls: Annotated[int, Field(ge=1, le=1000)] = 3
+    """Timed calls in a process; its time is their median."""
+    timeout_s: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 600.0
+    """A process that takes longer is ended, and its row says so."""
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A method with its options, under the name that tables give it."""
+
+    label: str
+    chosen: Chosen[Method]
+
+
+@dataclass(frozen=True)
+class Damage:
+    """A perturbation with its strength, or none."""
+
+    kind: str = NONE
+    value: float = 0.0
+
+    @property
+    def name(self) -> str:
+        """`none`, or such as `noise 5`."""
+        return NONE if self.kind == NONE else f"{self.kind} {self.value:g}"
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """A comparison file that was checked."""
+
+    path: Path
+    task: Task
+    methods: tuple[Entry, ...]
+    scenes: Mapping[str, SceneSpec]
+    damages: tuple[Damage, ...]
+    protocol: Protocol
+    finishes: Mapping[str, frozenset[str]]
+    """Step -> labels of the methods whose results it is done to."""
+    baseline: str | None
+    """Label of the method that times are compared with."""
+    out: Path
+
+
+def load_comparison(path: Path, registry: Registry, overrides: Iterable[str] = ()) -> Comparison:
+    """Read and check a comparison file; relative paths start at the file.
+
+    Raises: ConfigError with every complaint, one a line.
+    """
+    return parse_comparison(read_text(path), path, registry, overrides)
+
+
+def parse_comparison(text: str, path: Path, registry: Registry, overrides: Iterable[str] = ()) -> Comparison:
+    """`load_comparison` for a text; `path` is what complaints name."""
+    source = parse_source(text, path, overrides, first_key="compare")
+    task = _task(source)
+    source.check_keys(
+        ("compare", "methods", "scenes", "perturb", *Protocol.model_fields, *task.finishes, "baseline", "out")
+    )
+    protocol = source.model((), Protocol, {key: source.tree[key] for key in Protocol.model_fields if key in source.tree})
+    methods = _methods(source, task, registry)
+    labels = [each.label for each in methods]
+    scenes = _scenes(source, task)
+    damages = _damages(source, task)
+    finishes = {name: frozenset(_labels(source, name, labels)) for name in task.finishes if name in source.tree}
+    baseline = _baseline(source, labels)
+    out = source.tree.get("out", f"out/{path.stem}")
+    if not isinstance(out, str):
+        source.complain(("out",), f"out: a folder is wanted, not {out!r}")
+    source.settle()
+    folder = path.parent if "out" in source.tree else Path()
+    return Comparison(path, task, methods, scenes, damages, protocol, finishes, baseline, folder / out)
+
+
+def _task(source: Source) -> Task:
+    """Without it, nothing else can be checked."""
+    kind = source.tree.get("compare")
+    if kind in TASKS:
+        return load_task(kind)
+    hint = did_you_mean(str(kind), TASKS) if "compare" in source.tree else ""
+    source.complain(("compare",), f"`compare:` names what kind of method to compare{hint}; known: {', '.join(TASKS)}")
+    source.settle()
+    raise AssertionError("a complaint was settled")
+
+
+def _items(source: Source, key: str) -> list[Any]:
+    """A list of at least one item, or a complaint and none."""
+    block = source.tree.get(key)
+    if isinstance(block, list) and block:
+        return cast("list[Any]", block)
+    source.complain((key,), f"`{key}:` is a list of at least one, not {block!r}" if key in source.tree else f"`{key}:` is missing")
+    return []
+
+
+def _methods(source: Source, task: Task, registry: Registry) -> tuple[Entry, ...]:
+    found: dict[str, Entry] = {}
+    for index, block in enumerate(_items(source, "methods")):
+        for entry in _entries(source, ("methods", index), block, task, registry):
+            if entry.label in found:
+                source.complain(("methods", index), f"two methods are called {entry.label!r}; give one a `label:`")
+            found[entry.label] = entry
+    return tuple(found.values())
+
+
+def _entries(source: Source, place: Place, block: Any, task: Task, registry: Registry) -> Iterable[Entry]:
+    """One method, or one for each point of the grid that `sweep:` spans."""
+    options: dict[str, Any] = dict(cast("dict[str, Any]", block)) if isinstance(block, dict) else {"use": block}
+    label = options.pop("label", None)
+    if label is not None and not isinstance(label, str):
+        source.complain((*place, "label"), f"a label is a word, not {label!r}")
+    label = str(label or options.get("use"))
+    if "sweep" not in options:
+        chosen = source.chosen(place, task.kind, options, registry)
+        return [] if chosen is None else [Entry(label, chosen)]
+    return _swept(source, place, label, options, task, registry)
+
+
+def _swept(
+    source: Source, place: Place, label: str, options: dict[str, Any], task: Task, registry: Registry
+) -> Iterable[Entry]:
+    grid = _grid(source, (*place, "sweep"), options.pop("sweep"))
+    if grid is None or source.chosen(place, task.kind, {"use": options.get("use")}, registry) is None:
+        return
+    for point in product(*([(name, value) for value in values] for name, values in grid.items())):
+        chosen = source.chosen((*place, "sweep"), task.kind, {**options, **dict(point)}, registry)
+        if chosen is None:
+            return  # the same mistake at every point of the grid is one complaint
+        yield Entry(" ".join((label, *(f"{name}={value}" for name, value in point))), chosen)
+
+
+def _grid(source: Source, place: Place, block: Any) -> dict[str, list[Any]] | None:
+    if isinstance(block, dict) and block and all(isinstance(each, list) and each for each in cast(Any, block).values()):
+        return cast("dict[str, list[Any]]", block)
+    return source.complain(place, "`sweep:` maps an option to the list of values to try, such as {window_px: [3, 5]}")
+
+
+def _scenes(source: Source, task: Task) -> dict[str, SceneSpec]:
+    found: dict[str, SceneSpec] = {}
+    for index, block in enumerate(_items(source, "scenes")):
+        place = ("scenes", index)
+        try:
+            spec = source.model(place, task.scene, task.scene.named(block) if isinstance(block, str) else block)
+            several = spec.expand() if spec is not None else {}
+        except (TangibleError, ValueError) as error:
+            source.complain(place, str(error))
+            continue
+        for name, each in several.items():
+            if name in found:
+                source.complain(place, f"two scenes are called {name!r}; name other folders")
+            found[name] = each
+    return found
+
+
+def _damages(source: Source, task: Task) -> tuple[Damage, ...]:
+    if "perturb" not in source.tree:
+        return (Damage(),)
+    found: list[Damage] = []
+    for index, block in enumerate(_items(source, "perturb")):
+        if block == NONE:
+            found.append(Damage())
+        elif isinstance(block, dict):
+            for kind, values in cast("dict[Any, Any]", block).items():
+                found += _strengths(source, ("perturb", index, kind), task, kind, values)
+        else:
+            source.complain(("perturb", index), f"write none, or such as {{noise: [2, 5]}}, not {block!r}")
+    return tuple(dict.fromkeys(found))
+
+
+def _strengths(source: Source, place: Place, task: Task, kind: Any, values: Any) -> Iterable[Damage]:
+    if kind not in task.perturbations:
+        hint = did_you_mean(str(kind), task.perturbations)
+        source.complain(place, f"nothing perturbs by {kind!r}{hint}; known: none, {', '.join(task.perturbations)}")
+        return
+    known = task.perturbations[kind]
+    for value in cast("list[Any]", values if isinstance(values, list) else [values]):
+        if isinstance(value, bool) or not isinstance(value, int | float) or not known.allowed(float(value)):
+            source.complain(place, f"{kind}: {known.meaning}, not {value!r}")
+        else:
+            yield Damage(kind, float(value))
+
+
+def _labels(source: Source, key: str, labels: list[str]) -> Iterable[str]:
+    for index, label in enumerate(_items(source, key)):
+        if label in labels:
+            yield label
+        else:
+            source.complain((key, index), _no_label(label, labels))
+
+
+def _baseline(source: Source, labels: list[str]) -> str | None:
+    label = source.tree.get("baseline")
+    if label is not None and label not in labels:
+        source.complain(("baseline",), _no_label(label, labels))
+    return label
+
+
+def _no_label(label: Any, labels: list[str]) -> str:
+    return f"no method here is called {label!r}{did_you_mean(str(label), labels)}; there are: {', '.join(labels)}"

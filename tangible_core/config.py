@@ -170,7 +170,7 @@ class Source:
                 raise ConfigError(f"--set {text}: {part} is a list; set the whole of it: {part}=[...]")
             if not isinstance(node.get(part), dict):
                 node[part] = CommentedMap()
-            node = cast(Any, node[part])
+            node = node[part]
         try:
             node[_key(parts[-1], node)] = _load(value)
         except YAMLError as error:

@@ -84,7 +84,9 @@ def parse_comparison(text: str, path: Path, registry: Registry, overrides: Itera
     source.check_keys(
         ("compare", "methods", "scenes", "perturb", *Protocol.model_fields, *task.finishes, "baseline", "out")
     )
-    protocol = source.model((), Protocol, {key: source.tree[key] for key in Protocol.model_fields if key in source.tree})
+    protocol = source.model(
+        (), Protocol, {key: source.tree[key] for key in Protocol.model_fields if key in source.tree}
+    )
     methods = _methods(source, task, registry)
     labels = [each.label for each in methods]
     scenes = _scenes(source, task)
@@ -115,7 +117,9 @@ def _items(source: Source, key: str) -> list[Any]:
     block = source.tree.get(key)
     if isinstance(block, list) and block:
         return cast("list[Any]", block)
-    source.complain((key,), f"`{key}:` is a list of at least one, not {block!r}" if key in source.tree else f"`{key}:` is missing")
+    source.complain(
+        (key,), f"`{key}:` is a list of at least one, not {block!r}" if key in source.tree else f"`{key}:` is missing"
+    )
     return []
 
 
@@ -156,8 +160,9 @@ def _swept(
 
 
 def _grid(source: Source, place: Place, block: Any) -> dict[str, list[Any]] | None:
-    if isinstance(block, dict) and block and all(isinstance(each, list) and each for each in cast(Any, block).values()):
-        return cast("dict[str, list[Any]]", block)
+    grid = cast("dict[str, list[Any]]", block) if isinstance(block, dict) else {}
+    if grid and all(isinstance(values, list) and values for values in grid.values()):  # pyright: ignore[reportUnnecessaryIsInstance]
+        return grid
     return source.complain(place, "`sweep:` maps an option to the list of values to try, such as {window_px: [3, 5]}")
 
 
@@ -166,8 +171,9 @@ def _scenes(source: Source, task: Task) -> dict[str, SceneSpec]:
     for index, block in enumerate(_items(source, "scenes")):
         place = ("scenes", index)
         try:
-            spec = source.model(place, task.scene, task.scene.named(block) if isinstance(block, str) else block)
-            several = spec.expand() if spec is not None else {}
+            options = task.scene.named(block) if isinstance(block, str) else block
+            spec: SceneSpec | None = source.model(place, task.scene, options)
+            several = {} if spec is None else spec.expand()
         except (TangibleError, ValueError) as error:
             source.complain(place, str(error))
             continue

@@ -47,8 +47,9 @@ def shift_down(picture: np.ndarray, rows_px: float) -> Bytes:
     values = grey_levels(picture)
     whole, part = divmod(-rows_px, 1)
     last = values.shape[0] - 1
-    upper = np.clip(np.arange(last + 1) + int(whole), 0, last)
-    return _rounded((1 - part) * values[upper] + part * values[np.minimum(upper + 1, last)])
+    rows = np.arange(last + 1) + int(whole)
+    upper, lower = (values[np.clip(each, 0, last)] for each in (rows, rows + 1))
+    return _rounded((1 - part) * upper + part * lower)
 
 
 def grey_levels(picture: np.ndarray) -> np.ndarray:

@@ -30,13 +30,15 @@ class DepthScene(SceneSpec):
     seed: Annotated[int, Field(ge=0)] = 0
     """Layout and textures of a synthetic pair."""
     folder: Path | None = None
-    """left.png, right.png and disparity.npz, .npy, .pfm or .png (there, 0 is unknown); or sub-folders that hold them."""
+    """left.png, right.png and disparity.npz, .npy, .pfm or .png (where 0 is unknown); or sub-folders with these."""
 
     @model_validator(mode="after")
     def _one_kind(self) -> Self:
         given = [name for name in ("builtin", "synthetic", "folder") if getattr(self, name) is not None]
         if len(given) != 1:
-            raise ValueError(f"a scene is one of builtin, synthetic and folder; this one is {' and '.join(given) or 'none'}")
+            raise ValueError(
+                f"a scene is one of builtin, synthetic and folder; this one is {' and '.join(given) or 'none'}"
+            )
         return self
 
     @classmethod
@@ -44,7 +46,9 @@ class DepthScene(SceneSpec):
         """`builtin/NAME` or `synthetic/NAME`."""
         kind, _, rest = name.partition("/")
         if kind not in ("builtin", "synthetic"):
-            raise ValueError(f"no scene is named {name!r}; write builtin/motorcycle, synthetic/planes or {{folder: ...}}")
+            raise ValueError(
+                f"no scene is named {name!r}; write builtin/motorcycle, synthetic/planes or {{folder: ...}}"
+            )
         return {kind: rest}
 
     def expand(self) -> "Mapping[str, DepthScene]":
@@ -53,7 +57,9 @@ class DepthScene(SceneSpec):
             return {self._name(): self}
         found = sorted(each.parent for each in self.folder.glob("*/left.png"))
         if not found:
-            raise PictureError(f"{self.folder}: neither it nor a folder in it holds left.png, right.png and disparity.npz")
+            raise PictureError(
+                f"{self.folder}: neither it nor a folder in it holds left.png, right.png and disparity.npz"
+            )
         return {str(each.name): self.model_copy(update={"folder": each}) for each in found}
 
     def open(self) -> KnownPair:

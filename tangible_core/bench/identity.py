@@ -11,8 +11,8 @@ from importlib.util import find_spec, resolve_name
 from pathlib import Path
 
 PACKAGES = (
-    "tangible-images", "numpy", "opencv-contrib-python-headless", "scikit-image", "scipy", "numba", "llvmlite", "pillow",
-    "torch", "kornia",
+    "tangible-images", "numpy", "opencv-contrib-python-headless", "scikit-image", "scipy", "numba", "llvmlite",
+    "pillow", "torch", "kornia",
 )  # fmt: skip
 """Distributions whose version may change a result or its time."""
 

@@ -4,6 +4,7 @@ import ctypes
 import gc
 import sys
 from collections.abc import Callable
+from contextlib import suppress
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -17,7 +18,8 @@ def start_peak() -> Callable[[], int | None]:
 
     On Linux the kernel's mark of the highest resident size is reset first (proc(5), `clear_refs`, and `VmHWM`), after
     what was freed has gone back to the system. `ru_maxrss` alone would not do: a child starts with its parent's mark,
-    and the mark never falls. Elsewhere it is all there is, and growth below an earlier peak does not show; on Windows there is nothing: None.
+    and the mark never falls. Elsewhere it is all there is, and growth below an earlier peak does not show;
+    on Windows there is nothing: None.
     """
     gc.collect()
     if sys.platform == "linux" and _reset():
@@ -30,10 +32,8 @@ def start_peak() -> Callable[[], int | None]:
 
 
 def _reset() -> bool:
-    try:
+    with suppress(AttributeError):  # not glibc: nothing to give back by hand
         ctypes.CDLL(None).malloc_trim(0)
-    except AttributeError:
-        pass  # not glibc: nothing to give back by hand
     try:
         _CLEAR.write_text("5")
     except OSError:

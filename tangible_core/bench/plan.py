@@ -1,12 +1,12 @@
 """What a comparison measures, in which order: rounds over all scenes and perturbations, methods side by side."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass
-from typing import Any
+from dataclasses import asdict, dataclass, replace
 
 from ..config import Chosen
 from ..data import digest_of
 from ..errors import ConfigError, TangibleError
+from ..interfaces import Method
 from .config import Comparison, Damage, Entry
 from .identity import code_digest, machine, versions
 from .rows import Row
@@ -65,18 +65,18 @@ def _side_by_side(
         )  # fmt: skip
         known = versions(_distribution(entry.chosen))
         code = f"v{task.version} {_code(entry.chosen)} {known} {machine()}"
-        plain = repr((asdict(job), entry.label, digest, damage.name, repeat, code))
+        plain = repr((asdict(replace(job, scene={})), entry.label, digest, damage.name, repeat, code))
         row = Row(
             digest_of(plain), task.kind, entry.label, job.use, options, entry.chosen.origin, scene, digest,
-            damage.name, finishes, repeat, known, machine(),
+            damage.name, finishes, repeat, known, machine(), comparison.baseline,
         )  # fmt: skip
         yield Measurement(job, row)
 
 
-def _code(chosen: Chosen[Any]) -> str:
+def _code(chosen: Chosen[Method]) -> str:
     cls = type(chosen.method)
     return f"{cls.__module__}:{cls.__qualname__} v{cls.version} {code_digest(cls.__module__)}"
 
 
-def _distribution(chosen: Chosen[Any]) -> str:
+def _distribution(chosen: Chosen[Method]) -> str:
     return chosen.origin.partition(" ")[0]

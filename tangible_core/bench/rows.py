@@ -29,6 +29,8 @@ class Row:
     repeat: int
     versions: Mapping[str, str]
     machine: Mapping[str, str | int]
+    baseline: str | None = None
+    """Label of the method that times are compared with; no part of the key."""
     seconds: float | None = None
     """Median of the timed calls; None after an error."""
     first_seconds: float | None = None
@@ -52,7 +54,9 @@ def read_rows(path: Path) -> dict[str, Row]:
     try:
         *lines, torn = path.read_text(encoding="utf-8").split("\n")
     except (OSError, UnicodeDecodeError) as error:
-        raise ResultsError(f"{path}: cannot be read as results: {error}; name a .jsonl file of `tangible compare`") from error
+        raise ResultsError(
+            f"{path}: cannot be read as results: {error}; name a .jsonl file of `tangible compare`"
+        ) from error
     del torn  # a whole line ends with a newline
     rows = (_row(path, number, line) for number, line in enumerate(lines, 1) if line)
     return {row.key: row for row in rows}

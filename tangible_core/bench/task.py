@@ -10,7 +10,7 @@ from importlib import import_module
 from typing import Any, Literal
 
 from ..config import Section
-from ..data import Record
+from ..data import Kind, Record
 
 Apply = Callable[[Any, float], Any]
 
@@ -58,7 +58,7 @@ class Perturbation:
 class Task:
     """Everything that a comparison must know about one kind of method."""
 
-    kind: str
+    kind: Kind
     version: int
     """Raise it when a measure changes its meaning: rows of another version are measured again."""
     scene: type[SceneSpec]

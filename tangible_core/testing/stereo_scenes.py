@@ -42,9 +42,7 @@ def synthetic_pair(name: str, width_px: int = 480, height_px: int = 360, seed: i
     """
     shape = (height_px, width_px)
     surfaces = SCENES[name](width_px, height_px, np.random.default_rng(seed), 1000 * seed)
-    left, right = (
-        np.rint(np.clip(view(surfaces, shape), 0, 255)).astype(np.uint8) for view in (left_view, right_view)
-    )
+    left, right = (np.rint(np.clip(view(surfaces, shape), 0, 255)).astype(np.uint8) for view in (left_view, right_view))
     return KnownPair(
         Views(left, right), true_disparity(surfaces, shape).astype(np.float32), truly_visible(surfaces, shape)
     )
@@ -55,9 +53,7 @@ def planes(width: int, height: int, random: np.random.Generator, seed: int) -> l
     found = [slanted(seed + BACKGROUND, everywhere, FAR * width, 0.01, 0.025 * width / height)]
     for index in range(5):
         left, top = random.uniform(0.02, 0.7) * width, random.uniform(0.02, 0.65) * height
-        region = rectangle(
-            left, top, left + random.uniform(0.15, 0.3) * width, top + random.uniform(0.2, 0.4) * height
-        )
+        region = rectangle(left, top, left + random.uniform(0.15, 0.3) * width, top + random.uniform(0.2, 0.4) * height)
         across, down = random.uniform(-0.06, 0.06, 2)
         base = random.uniform(0.06, NEAR) * width - across * left - down * top
         found.append(slanted(seed + FIRST + index, region, base, across, down))

@@ -117,7 +117,7 @@ def true_disparity(surfaces: Sequence[Surface], shape: tuple[int, int]) -> Float
 
 
 def truly_visible(surfaces: Sequence[Surface], shape: tuple[int, int]) -> Bool[np.ndarray, "h w"]:
-    """Whether the centres of the left view's pixels are seen in the right view: inside of it, and nothing before them."""
+    """Whether the right view shows the centres of the left view's pixels: inside of it, and nothing before them."""
     rows, columns = np.indices(shape, np.float64)
     disparity_px = true_disparity(surfaces, shape)
     right = columns - disparity_px
@@ -130,9 +130,7 @@ Where = Callable[[Surface, Points, Points], Points]
 """Which x of the surface a camera sees at its own (x, y)."""
 
 
-def _view(
-    surfaces: Sequence[Surface], shape: tuple[int, int], points: int, where: Where
-) -> Float64[np.ndarray, "h w"]:
+def _view(surfaces: Sequence[Surface], shape: tuple[int, int], points: int, where: Where) -> Float64[np.ndarray, "h w"]:
     rows, columns = np.indices(shape, np.float64)
     grey = np.zeros(shape)
     for surface, share in zip(surfaces, _shares(surfaces, columns, rows, points, where), strict=True):

@@ -173,7 +173,7 @@ def _scenes(source: Source, task: Task) -> dict[str, SceneSpec]:
         try:
             options = task.scene.named(block) if isinstance(block, str) else block
             spec: SceneSpec | None = source.model(place, task.scene, options)
-            several = {} if spec is None else spec.expand()
+            several: Mapping[str, SceneSpec] = {} if spec is None else spec.expand()
         except (TangibleError, ValueError) as error:
             source.complain(place, str(error))
             continue

@@ -46,9 +46,8 @@ def shift_down(picture: np.ndarray, rows_px: float) -> Bytes:
     """Moved down by a fraction of a pixel (up where negative), linear in between, the border row repeated."""
     values = grey_levels(picture)
     whole, part = divmod(-rows_px, 1)
-    last = values.shape[0] - 1
-    rows = np.arange(last + 1) + int(whole)
-    upper, lower = (values[np.clip(each, 0, last)] for each in (rows, rows + 1))
+    rows = np.arange(len(values), dtype=np.int64) + int(whole)
+    upper, lower = (values.take(rows + step, axis=0, mode="clip") for step in (0, 1))
     return _rounded((1 - part) * upper + part * lower)
 
 

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 MARKERS = "osD^vPX*"
 """Shapes beside colours: eight of each tell 64 methods apart, in grey print too."""
+EDGE: dict[str, Any] = {"markeredgecolor": "#222222", "markeredgewidth": 0.5}
+"""Pale colours need it on white."""
 PANEL_IN = (6.4, 4.8)
 DPI = 150
 
@@ -63,7 +65,7 @@ def _panel(axes: Axes, results: Results, found: list[Line], measure: str) -> Non
 
     for index, method in enumerate(sorted(line.method for line in found)):
         x, y = _point(next(line for line in found if line.method == method), measure)
-        axes.plot(x, y, color=_colour(index), marker=MARKERS[index // 8 % 8], markersize=7, zorder=3)
+        axes.plot(x, y, color=_colour(index), marker=MARKERS[index // 8 % 8], markersize=7, zorder=3, **EDGE)
     best = _front(results, found, measure)
     axes.step(*zip(*best, strict=True), where="post", color=INK, linewidth=1, linestyle=(0, (4, 2)), zorder=2)
     axes.set_xscale("log")

@@ -99,6 +99,8 @@ def _write(path: Path, work: Callable[[int], object]) -> None:
 
 def _row(path: Path, number: int, line: str) -> Row:
     try:
-        return Row(**json.loads(line))
-    except (ValueError, TypeError) as error:
+        fields: dict[str, Any] = json.loads(line)
+        fields["finishes"] = tuple(fields["finishes"])
+        return Row(**fields)
+    except (ValueError, TypeError, KeyError) as error:
         raise ResultsError(f"{path}:{number}: is no row of results: {error}; remove the line") from error

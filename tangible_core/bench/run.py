@@ -5,6 +5,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from signal import Signals
@@ -65,21 +66,24 @@ def run(outlook: Outlook, path: Path, timeout_s: float, started: Tell, finished:
 def _outcome(job: Job, timeout_s: float) -> dict[str, Any]:
     """What a fresh process says, or how it ended."""
     with tempfile.TemporaryFile() as said, tempfile.TemporaryFile() as noise:
-        command = [sys.executable, "-m", f"{__package__}.worker"]
-        process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=said, stderr=noise)
         try:
-            assert process.stdin is not None
-            process.stdin.write((json.dumps(asdict(job)) + "\n").encode())
-            process.stdin.flush()  # and left open: its end is the worker's
-            code = process.wait(timeout_s)
+            code = _ended(job, timeout_s, said, noise)
         except subprocess.TimeoutExpired:
             return {"error": f"took longer than {timeout_s:g} s and was ended; raise timeout_s or drop the method"}
-        except BrokenPipeError:
-            code = process.wait()
+        return _answer(_text(said)) or {"error": _death(code, _text(noise))}
+
+
+def _ended(job: Job, timeout_s: float, said: IO[bytes], noise: IO[bytes]) -> int:
+    """Exit code of a worker that was given a job; on any other end, it is ended too."""
+    command = [sys.executable, "-m", f"{__package__}.worker"]
+    with subprocess.Popen(command, bufsize=0, stdin=subprocess.PIPE, stdout=said, stderr=noise) as process:
+        try:
+            assert process.stdin is not None
+            with suppress(BrokenPipeError):  # it died before it could listen: its exit code tells
+                process.stdin.write((json.dumps(asdict(job)) + "\n").encode())
+            return process.wait(timeout_s)  # with its input left open: the end of that is the worker's own
         finally:
             process.kill()
-            process.wait()
-        return _answer(_text(said)) or {"error": _death(code, _text(noise))}
 
 
 def _answer(text: str) -> dict[str, Any] | None:

@@ -9,14 +9,17 @@ from dataclasses import dataclass, field
 from importlib import import_module
 from typing import Any, Literal
 
-from ..config import Section
+from pydantic import BaseModel, ConfigDict
+
 from ..data import Kind, Record
 
 Apply = Callable[[Any, float], Any]
 
 
-class SceneSpec(Section):
+class SceneSpec(BaseModel):
     """Which scene, as the file says it: a few plain options, the same in every process."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     @classmethod
     @abstractmethod

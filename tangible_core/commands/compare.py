@@ -54,7 +54,11 @@ def _measure(comparison: Comparison, path: Path, retry: bool) -> Mapping[str, Ro
         failed = sum(row.error is not None for row in outlook.kept.values())
         again = f", {failed} of them failed: --retry measures these once more" if failed else ""
         show.note(f"{len(outlook.kept)} of {len(wanted)} measurements are in {path} already and are kept{again}")
-    return run(outlook, path, comparison.protocol.timeout_s, *_observers(outlook))
+    try:
+        return run(outlook, path, comparison.protocol.timeout_s, *_observers(outlook))
+    except KeyboardInterrupt:
+        show.note(f"interrupted; what was measured is kept in {path}, and the same command goes on from there")
+        raise
 
 
 def _observers(outlook: Outlook) -> tuple[Any, Any]:

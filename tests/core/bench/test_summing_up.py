@@ -114,5 +114,9 @@ def test_detail_is_a_table_for_each_scene_and_perturbation_with_every_measure():
 def test_a_measure_that_is_better_when_high_ranks_the_other_way():
     found = results()
     lines_ = found.means()
-    assert [line.method for line in sorted(lines_, key=lambda line: found.loss(line, "density"))] == ["slow", "fast", "bad"]
+    assert [line.method for line in sorted(lines_, key=lambda line: found.loss(line, "density"))] == [
+        "slow",
+        "fast",
+        "bad",
+    ]
     assert [lines_[index].method for index in found.on_front(lines_, "density")] == ["fast", "slow"]

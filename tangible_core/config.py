@@ -202,6 +202,14 @@ class Source:
         if self.complaints:
             raise ConfigError("\n".join(self.complaints))
 
+    def items(self, key: str) -> list[Any]:
+        """A list of at least one under this key; a complaint and an empty one otherwise."""
+        block = self.tree.get(key)
+        if isinstance(block, list) and block:
+            return cast("list[Any]", block)
+        self.complain((key,), f"`{key}:` is a list of at least one, not {block!r}" if key in self.tree else f"`{key}:` is missing")
+        return []
+
     def check_keys(self, known: Iterable[str]) -> None:
         """Complain of every key that is not known."""
         names = list(known)

@@ -2,16 +2,15 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from itertools import product
 from pathlib import Path
 from typing import Annotated, Any, cast
 
 from pydantic import Field
 
-from ..config import Chosen, Section, Source, parse_source, read_text
+from ..config import Section, Source, parse_source, read_text
 from ..errors import TangibleError, did_you_mean
-from ..interfaces import Method
 from ..registry import Registry
+from .entries import Entry, read_methods
 from .task import TASKS, SceneSpec, Task, load_task
 
 NONE = "none"
@@ -29,14 +28,6 @@ class Protocol(Section):
     """Timed calls in a process; its time is their median."""
     timeout_s: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 600.0
     """A process that takes longer is ended, and its row says so."""
-
-
-@dataclass(frozen=True)
-class Entry:
-    """A method with its options, under the name that tables give it."""
-
-    label: str
-    chosen: Chosen[Method]
 
 
 @dataclass(frozen=True)
@@ -87,7 +78,7 @@ def parse_comparison(text: str, path: Path, registry: Registry, overrides: Itera
     protocol = source.model(
         (), Protocol, {key: source.tree[key] for key in Protocol.model_fields if key in source.tree}
     )
-    methods = _methods(source, task, registry)
+    methods = read_methods(source, task.kind, registry)
     labels = [each.label for each in methods]
     scenes = _scenes(source, task)
     damages = _damages(source, task)
@@ -112,63 +103,9 @@ def _task(source: Source) -> Task:
     raise AssertionError("a complaint was settled")
 
 
-def _items(source: Source, key: str) -> list[Any]:
-    """A list of at least one item, or a complaint and none."""
-    block = source.tree.get(key)
-    if isinstance(block, list) and block:
-        return cast("list[Any]", block)
-    source.complain(
-        (key,), f"`{key}:` is a list of at least one, not {block!r}" if key in source.tree else f"`{key}:` is missing"
-    )
-    return []
-
-
-def _methods(source: Source, task: Task, registry: Registry) -> tuple[Entry, ...]:
-    found: dict[str, Entry] = {}
-    for index, block in enumerate(_items(source, "methods")):
-        for entry in _entries(source, ("methods", index), block, task, registry):
-            if entry.label in found:
-                source.complain(("methods", index), f"two methods are called {entry.label!r}; give one a `label:`")
-            found[entry.label] = entry
-    return tuple(found.values())
-
-
-def _entries(source: Source, place: Place, block: Any, task: Task, registry: Registry) -> Iterable[Entry]:
-    """One method, or one for each point of the grid that `sweep:` spans."""
-    options: dict[str, Any] = dict(cast("dict[str, Any]", block)) if isinstance(block, dict) else {"use": block}
-    label = options.pop("label", None)
-    if label is not None and not isinstance(label, str):
-        source.complain((*place, "label"), f"a label is a word, not {label!r}")
-    label = str(label or options.get("use"))
-    if "sweep" not in options:
-        chosen = source.chosen(place, task.kind, options, registry)
-        return [] if chosen is None else [Entry(label, chosen)]
-    return _swept(source, place, label, options, task, registry)
-
-
-def _swept(
-    source: Source, place: Place, label: str, options: dict[str, Any], task: Task, registry: Registry
-) -> Iterable[Entry]:
-    grid = _grid(source, (*place, "sweep"), options.pop("sweep"))
-    if grid is None or source.chosen(place, task.kind, {"use": options.get("use")}, registry) is None:
-        return
-    for point in product(*([(name, value) for value in values] for name, values in grid.items())):
-        chosen = source.chosen((*place, "sweep"), task.kind, {**options, **dict(point)}, registry)
-        if chosen is None:
-            return  # the same mistake at every point of the grid is one complaint
-        yield Entry(" ".join((label, *(f"{name}={value}" for name, value in point))), chosen)
-
-
-def _grid(source: Source, place: Place, block: Any) -> dict[str, list[Any]] | None:
-    grid = cast("dict[str, list[Any]]", block) if isinstance(block, dict) else {}
-    if grid and all(isinstance(values, list) and values for values in grid.values()):  # pyright: ignore[reportUnnecessaryIsInstance]
-        return grid
-    return source.complain(place, "`sweep:` maps an option to the list of values to try, such as {window_px: [3, 5]}")
-
-
 def _scenes(source: Source, task: Task) -> dict[str, SceneSpec]:
     found: dict[str, SceneSpec] = {}
-    for index, block in enumerate(_items(source, "scenes")):
+    for index, block in enumerate(source.items("scenes")):
         place = ("scenes", index)
         try:
             options = task.scene.named(block) if isinstance(block, str) else block
@@ -188,7 +125,7 @@ def _damages(source: Source, task: Task) -> tuple[Damage, ...]:
     if "perturb" not in source.tree:
         return (Damage(),)
     found: list[Damage] = []
-    for index, block in enumerate(_items(source, "perturb")):
+    for index, block in enumerate(source.items("perturb")):
         if block == NONE:
             found.append(Damage())
         elif isinstance(block, dict):
@@ -213,7 +150,7 @@ def _strengths(source: Source, place: Place, task: Task, kind: Any, values: Any)
 
 
 def _labels(source: Source, key: str, labels: list[str]) -> Iterable[str]:
-    for index, label in enumerate(_items(source, key)):
+    for index, label in enumerate(source.items(key)):
         if label in labels:
             yield label
         else:

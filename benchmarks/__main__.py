@@ -1,4 +1,4 @@
-"""Measure, and write benchmarks/RESULTS.md: `python -m benchmarks [section ...]`; the other sections stay as they are."""
+"""Measure, and write benchmarks/RESULTS.md: `python -m benchmarks [section ...]`; other sections stay as they are."""
 
 import os
 import platform
@@ -14,7 +14,7 @@ SECTIONS = {"house": "The house itself"}
 VERSIONS = ("tangible-images", "numpy", "opencv-contrib-python-headless", "scikit-image", "numba", "pydantic", "typer")
 HEAD = """# Results
 
-Written by `python -m benchmarks` (or `python -m benchmarks SECTION` for one part). Ratios are of runs side by side, medians.
+Written by `python -m benchmarks` (`python -m benchmarks SECTION` for one part). Ratios: side by side, medians.
 """
 
 

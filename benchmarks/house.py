@@ -1,9 +1,13 @@
 """How fast the house itself is: the start of the command line, and what the engine adds to the stages."""
 
+import json
+import os
 import statistics
 import subprocess
 import sys
 import tempfile
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from time import perf_counter
 
@@ -61,8 +65,8 @@ def overhead_rows(runs: int = 7) -> list[str]:
         with tempfile.TemporaryDirectory() as folder:
             cache = Cache(Path(folder))
             kept = [(key, record) for key, (product, record) in zip(keys, records, strict=True) if product != "touch"]
-            store.append(sum(timed(lambda k=key, r=record: cache.put(k, r)) for key, record in kept))
-            recall.append(sum(timed(lambda k=key: cache.get(k)) for key, _ in kept))
+            store.append(sum(timed(partial(cache.put, key, record)) for key, record in kept))
+            recall.append(sum(timed(partial(cache.get, key)) for key, _ in kept))
     median = {
         "stages themselves": statistics.median(stages[1:]),
         "engine in all: rules, keys, hooks, digests": statistics.median(engine[1:]),
@@ -92,9 +96,6 @@ def demo_rows() -> list[str]:
 
 def demo(folder: Path) -> tuple[float, str]:
     """Seconds, and what became of each product."""
-    import json
-    import os
-
     command = [tangible(), "demo", "--json", "--out", str(folder / "out")]
     start = perf_counter()
     done = subprocess.run(
@@ -116,10 +117,8 @@ def wall(command: list[str]) -> float:
     return perf_counter() - start
 
 
-def timed(work: object) -> float:
+def timed(work: Callable[[], object]) -> float:
     """Seconds of one call."""
     start = perf_counter()
-    work()  # type: ignore[operator]
+    work()
     return perf_counter() - start
-
-

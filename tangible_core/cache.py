@@ -39,13 +39,13 @@ class Cache:
         path = self._path(key)
         try:
             record = read_record(path)
-        except FileNotFoundError:
+            os.utime(path)  # least recently used, not oldest, goes first
+        except FileNotFoundError:  # or dropped by another process while it was read
             return None
         except (OSError, ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile) as error:
             log.warning("cache entry %s is damaged and is made again: %s", path, error)
             path.unlink(missing_ok=True)
             return None
-        os.utime(path)  # least recently used, not oldest, goes first
         return record
 
     def put(self, key: str, record: Record) -> None:

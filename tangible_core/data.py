@@ -226,7 +226,7 @@ class Material:
 
     def __post_init__(self) -> None:
         for name, value in _items(self):
-            if isinstance(value, float) and not 0 <= value < np.inf:
+            if not isinstance(value, str) and not 0 <= value < np.inf:
                 raise MaterialError(f"material {self.name!r}: {name} is {value}; it must be >= 0 and finite")
         if self.stiffness_n_per_m == 0 or self.grain_m == 0:
             raise MaterialError(f"material {self.name!r}: stiffness_n_per_m and grain_m must be above 0")

@@ -36,7 +36,7 @@ class Pipeline:
         unasked = [
             Outcome(product, "skipped", "nothing that was asked for needs it", rule.method)
             for product, rule in self._rules.items()
-            if product not in self._outcomes and not (product == "segments" and rule.skip)
+            if product not in self._outcomes
         ]
         return [*self._outcomes.values(), *unasked]
 
@@ -45,7 +45,7 @@ class Pipeline:
         """The scene, read from its files. Raises: PictureError, GeometryError."""
         start = perf_counter()
         size = self.config.workspace
-        scene = read_scene(self.config.scene, self.config.path.parent, size.width_m, size.relief_m)
+        scene = read_scene(self.config.scene, self.config.path.parent, size.width_m, size.relief_m, size.holes)
         for product, value in self._brought(scene).items():
             self._made[product] = value
             self._note(Outcome(product, "given", f"the scene {scene.name} brings it", "", perf_counter() - start))
@@ -58,7 +58,7 @@ class Pipeline:
         Raises: TangibleError for a scene that cannot be read; UnknownMethod for a product that nothing makes.
         """
         want = self._product(want)
-        plan = Plan(want, tuple(self._foresee(want, {}).values()))
+        plan = Plan(want, tuple(self._foresee(want, ASKED, {}).values()))
         hooks.tell(self.registry.plugins, "tangible_plan_made", plan=plan)
         return plan
 
@@ -67,7 +67,7 @@ class Pipeline:
 
         Raises: TangibleError for what a user can put right; whatever a plugin raises.
         """
-        return self._pull(self._product(want))
+        return self._pull(self._product(want), ASKED)
 
     def needed(self, want: str) -> set[str]:
         """The product and everything that it is made from, by the rules."""
@@ -89,31 +89,28 @@ class Pipeline:
             return "skipped"
         return made_key(rule, {name: self.key(name) for name in rule.needs})
 
-    def _pull(self, product: str) -> Any:
+    def _pull(self, product: str, why: str) -> Any:
         if product not in self._made and product in self._rules:
-            self._made[product] = self._make(self._rules[product])
+            self._made[product] = self._make(self._rules[product], why)
         return self._made.get(product)
 
-    def _make(self, rule: Rule) -> Any:
+    def _make(self, rule: Rule, why: str) -> Any:
         if rule.skip:
             self._note(Outcome(rule.product, "skipped", rule.skip, rule.method))
             return None
         if (found := self._from_cache(rule)) is not None:
             return found
-        inputs = {name: self._pull(name) for name in rule.needs}
+        inputs = {name: self._pull(name, f"{rule.product} is made from it") for name in rule.needs}
         hooks.tell(self.registry.plugins, "tangible_stage_started", product=rule.product, method=rule.method)
         start = perf_counter()
         try:
             value = rule.make(inputs)
         except BaseException as error:
-            why = f"{type(error).__name__}: {error}"
-            self._note(Outcome(rule.product, "failed", why, rule.method, perf_counter() - start))
+            failure = f"{type(error).__name__}: {error}"
+            self._note(Outcome(rule.product, "failed", failure, rule.method, perf_counter() - start))
             raise
         seconds = perf_counter() - start
-        if value is None:
-            self._note(Outcome(rule.product, "skipped", f"there is no {rule.needs[-1]} to make it from", rule.method))
-            return None
-        self._note(Outcome(rule.product, "ran", "asked for", rule.method, seconds))
+        self._note(Outcome(rule.product, "ran", why, rule.method, seconds))
         if self.cache is not None and rule.cached:
             self.cache.put(self.key(rule.product), value)
         return value
@@ -127,7 +124,7 @@ class Pipeline:
             self._note(Outcome(rule.product, "cached", SAME, rule.method, perf_counter() - start))
         return found
 
-    def _foresee(self, product: str, steps: dict[str, Outcome]) -> dict[str, Outcome]:
+    def _foresee(self, product: str, why: str, steps: dict[str, Outcome]) -> dict[str, Outcome]:
         """Outcomes of a product and, before it, of what it needs."""
         rule = self._rules.get(product)
         if product in steps:
@@ -141,8 +138,8 @@ class Pipeline:
             steps[product] = Outcome(product, "cached", SAME, rule.method)
         else:
             for name in rule.needs:
-                self._foresee(name, steps)
-            steps[product] = Outcome(product, "ran", "will run", rule.method)
+                self._foresee(name, f"{product} is made from it", steps)
+            steps[product] = Outcome(product, "ran", why, rule.method)
         return steps
 
     @cached_property
@@ -164,6 +161,7 @@ class Pipeline:
         hooks.tell(self.registry.plugins, "tangible_stage_finished", outcome=outcome)
 
 
+ASKED = "asked for"
 SAME = "same method, options and inputs as before"
 
 

@@ -14,9 +14,9 @@ def disparity_errors(disparity_px: Float[np.ndarray, "h w"], truth_px: Float[np.
     """Middlebury's measures of a disparity map; what is not finite is unknown.
 
     Returns: `bad0.5`, `bad1`, `bad2`, `bad4`, the share of the pixels with truth whose error is over 0.5, 1, 2 or
-    4 px, in percent, where a missing estimate is bad; `average` and `rms`, the mean and the root mean square of the
-    absolute error over the pixels that have both, in px; `density`, the share of the pixels with truth that have an
-    estimate, in percent. NaN where there is nothing to measure.
+    4 px, in percent, where a missing estimate is bad; `average_px` and `rms_px`, the mean and the root mean square
+    of the absolute error over the pixels that have both, in px; `density`, the share of the pixels with truth that
+    have an estimate, in percent. NaN where there is nothing to measure.
     Raises: PictureError if the two differ in size.
     Source: Scharstein & Szeliski, A Taxonomy and Evaluation of Dense Two-Frame Stereo Correspondence Algorithms,
     IJCV 47 (2002), sec. 5.1; missing estimates as in the Middlebury evaluation, version 3.
@@ -25,8 +25,8 @@ def disparity_errors(disparity_px: Float[np.ndarray, "h w"], truth_px: Float[np.
     known_px = error_px[np.isfinite(error_px)]
     bad = {f"bad{bound:g}": _percent(~(error_px <= bound)) for bound in BOUNDS_PX}
     return bad | {
-        "average": _mean(known_px),
-        "rms": _mean(known_px**2) ** 0.5,
+        "average_px": _mean(known_px),
+        "rms_px": _mean(known_px**2) ** 0.5,
         "density": _percent(np.isfinite(error_px)),
     }
 

@@ -63,7 +63,8 @@ def _relief(config: PipelineConfig, scene: Scene) -> Rule:
         calibration = scene.views.calibration if scene.views else None
         if disparity is None:
             return geometry.flat_relief(_views(scene).shape, size.width_m)
-        return geometry.make_relief(disparity, calibration, size.width_m, size.relief_m, size.holes)
+        relief = geometry.make_relief(disparity, calibration, size.width_m, size.relief_m, size.holes)
+        return geometry.smooth(relief, size.smooth_m)
 
     return Rule("relief", "core", f"{_core('geometry')} {size!r}", ("views", "disparity"), make)
 
@@ -82,15 +83,15 @@ def _segments(config: PipelineConfig, scene: Scene) -> Rule:
 
 def _materials(config: PipelineConfig, scene: Scene) -> Rule:
     choice = config.materials
+    unsegmented = "segments" not in scene.given and _segments(config, scene).skip
     library = materials.load_library(choice.library)
 
-    def make(inputs: Inputs) -> MaterialMap | None:
-        segments: SegmentMap | None = inputs["segments"]
-        picture = scene.views.left if scene.views else None
-        return None if segments is None else materials.assign(segments, picture, choice.by, library)
+    def make(inputs: Inputs) -> MaterialMap:
+        return materials.assign(inputs["segments"], scene.views.left if scene.views else None, choice.by, library)
 
     key = f"{_core('materials')} {choice.by!r} {digest_of(tuple(library.values()))}"
-    return Rule("materials", "core", key, ("views", "segments"), make)
+    skip = f"there are no segments: {unsegmented}" if unsegmented else None
+    return Rule("materials", "core", key, ("views", "segments"), make, skip)
 
 
 def _surface(config: PipelineConfig, scene: Scene) -> Rule:

@@ -7,9 +7,10 @@ from typing import Annotated, Any, cast
 
 from pydantic import Field
 
-from ..config import Section, Source, parse_source, read_text
+from ..config import Section
 from ..errors import TangibleError, did_you_mean
 from ..registry import Registry
+from ..source import Source, parse_source, read_text
 from .entries import Entry, read_methods
 from .task import TASKS, SceneSpec, Task, load_task
 
@@ -70,7 +71,7 @@ def load_comparison(path: Path, registry: Registry, overrides: Iterable[str] = (
 
 def parse_comparison(text: str, path: Path, registry: Registry, overrides: Iterable[str] = ()) -> Comparison:
     """`load_comparison` for a text; `path` is what complaints name."""
-    source = parse_source(text, path, overrides, first_key="compare")
+    source = parse_source(text, path, "a comparison is a mapping that starts with `compare:`", overrides)
     task = _task(source)
     source.check_keys(
         ("compare", "methods", "scenes", "perturb", *Protocol.model_fields, *task.finishes, "baseline", "out")
@@ -78,7 +79,7 @@ def parse_comparison(text: str, path: Path, registry: Registry, overrides: Itera
     protocol = source.model(
         (), Protocol, {key: source.tree[key] for key in Protocol.model_fields if key in source.tree}
     )
-    methods = read_methods(source, task.kind, registry)
+    methods = read_methods(source, task, registry)
     labels = [each.label for each in methods]
     scenes = _scenes(source, task)
     damages = _damages(source, task)

@@ -18,6 +18,7 @@ from .depth_scenes import DepthScene
 from .task import Measure, Perturbation, Task
 
 NOC = "_noc"
+STEP_PX = 16
 
 
 def estimate(method: DepthEstimator, pair: KnownPair) -> DisparityMap:
@@ -35,6 +36,11 @@ def measure(found: DisparityMap, pair: KnownPair) -> dict[str, float]:
     everywhere = disparity_errors(found.disparity_px, pair.truth_px)
     both = disparity_errors(found.disparity_px, np.where(pair.visible, pair.truth_px, np.float32(np.nan)))
     return everywhere | {f"{name}{NOC}": value for name, value in both.items()}
+
+
+def range_px(pair: KnownPair) -> int:
+    """The smallest multiple of 16 above every true disparity, as OpenCV and most matchers count their range."""
+    return STEP_PX * (int(np.nanmax(pair.truth_px)) // STEP_PX + 1)
 
 
 def fill(found: DisparityMap) -> DisparityMap:
@@ -92,8 +98,8 @@ PERTURBATIONS: Mapping[str, Perturbation] = {
 def _measures() -> dict[str, Measure]:
     errors = {
         **{f"bad{bound:g}": Measure(f"bad{bound:g} %") for bound in (0.5, 1, 2, 4)},
-        "average": Measure("average px", 3, tolerance=0.0005),
-        "rms": Measure("rms px", 3, tolerance=0.0005),
+        "average_px": Measure("average px", 3, tolerance=0.0005),
+        "rms_px": Measure("rms px", 3, tolerance=0.0005),
         "density": Measure("density %", 1, "high"),
     }
     hidden: dict[str, Any] = {
@@ -109,8 +115,9 @@ TASK = Task(
     work=estimate,
     measure=measure,
     measures=_measures(),
-    columns=("bad2", "bad2_noc", "bad1", "average", "density"),
+    columns=("bad2", "bad2_noc", "bad1", "average_px", "density"),
     plotted=("bad2", "bad2_noc"),
     perturbations=PERTURBATIONS,
+    given={"max_disparity_px": range_px},
     finishes={"fill": fill},
 )

@@ -1,7 +1,8 @@
 """What a comparison measures, in which order: rounds over all scenes and perturbations, methods side by side."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
+from typing import Any
 
 from ..config import Chosen
 from ..data import digest_of
@@ -28,47 +29,58 @@ def measurements(comparison: Comparison) -> list[Measurement]:
     alike and pairs of times can be compared; each round starts with another method.
     Raises: ConfigError naming every scene that cannot be read, before hours are spent on the others.
     """
-    digests = _scene_digests(comparison)
+    known = _scenes(comparison)
     found: list[Measurement] = []
     for repeat in range(comparison.protocol.repeats):
         turn = repeat % len(comparison.methods)
         methods = (*comparison.methods[turn:], *comparison.methods[:turn])
         for scene in comparison.scenes:
             for damage in comparison.damages:
-                found += _side_by_side(comparison, methods, scene, digests[scene], damage, repeat)
+                found += _side_by_side(comparison, methods, scene, known[scene], damage, repeat)
     return found
 
 
-def _scene_digests(comparison: Comparison) -> dict[str, str]:
-    digests: dict[str, str] = {}
+@dataclass(frozen=True)
+class Known:
+    """What must be known of a scene before it is measured on."""
+
+    digest: str
+    facts: Mapping[str, Any]
+    """Options that methods may be told."""
+
+
+def _scenes(comparison: Comparison) -> dict[str, Known]:
+    known: dict[str, Known] = {}
     complaints: list[str] = []
     for name, spec in comparison.scenes.items():
         try:
-            digests[name] = spec.open().digest()
+            scene = spec.open()
         except TangibleError as error:
             complaints.append(f"{comparison.path}: scene {name}: {error}")
+        else:
+            known[name] = Known(scene.digest(), {key: tell(scene) for key, tell in comparison.task.given.items()})
     if complaints:
         raise ConfigError("\n".join(complaints))
-    return digests
+    return known
 
 
 def _side_by_side(
-    comparison: Comparison, methods: Sequence[Entry], scene: str, digest: str, damage: Damage, repeat: int
+    comparison: Comparison, methods: Sequence[Entry], scene: str, known: Known, damage: Damage, repeat: int
 ) -> Iterator[Measurement]:
     task, protocol = comparison.task, comparison.protocol
     for entry in methods:
-        options = entry.chosen.method.model_dump(mode="json")
+        options = entry.method_for(known.facts).model_dump(mode="json")
         finishes = tuple(name for name, labels in comparison.finishes.items() if entry.label in labels)
         job = Job(
             task.kind, entry.chosen.name, options, comparison.scenes[scene].model_dump(mode="json"),
             damage.kind, damage.value, finishes, protocol.warmups, protocol.calls,
         )  # fmt: skip
-        known = versions(_distribution(entry.chosen))
-        code = f"v{task.version} {_code(entry.chosen)} {known} {machine()}"
-        plain = repr((asdict(replace(job, scene={})), entry.label, digest, damage.name, repeat, code))
+        installed = versions(_distribution(entry.chosen))
+        code = f"v{task.version} {_code(entry.chosen)} {installed} {machine()}"
+        plain = repr((asdict(replace(job, scene={})), entry.label, known.digest, damage.name, repeat, code))
         row = Row(
-            digest_of(plain), task.kind, entry.label, job.use, options, entry.chosen.origin, scene, digest,
-            damage.name, finishes, repeat, known, machine(), comparison.baseline,
+            digest_of(plain), task.kind, entry.label, job.use, options, entry.chosen.origin, scene, known.digest,
+            damage.name, finishes, repeat, installed, machine(), comparison.baseline,
         )  # fmt: skip
         yield Measurement(job, row)
 

@@ -75,6 +75,8 @@ class Task:
     plotted: tuple[str, ...]
     """Measures drawn against time, one panel each."""
     perturbations: Mapping[str, Perturbation] = field(default_factory=dict[str, Perturbation])
+    given: Mapping[str, Callable[[Any], Any]] = field(default_factory=dict[str, Callable[[Any], Any]])
+    """Options that a method may be told from what is known of a scene: name -> (scene) -> value."""
     finishes: Mapping[str, Callable[[Any], Any]] = field(default_factory=dict[str, Callable[[Any], Any]])
     """Steps that a comparison may add to the results of chosen methods, untimed, under these keys of its file."""
 

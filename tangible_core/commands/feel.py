@@ -6,10 +6,10 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from .. import hooks, session
+from .. import session
 from ..errors import ConfigError
 from . import show
-from .run import open_pipeline
+from .run import felt, open_pipeline
 
 
 def feel(config: Path, sets: Sequence[str], seconds: float, record: Path | None, as_json: bool, cached: bool) -> None:
@@ -21,10 +21,7 @@ def feel(config: Path, sets: Sequence[str], seconds: float, record: Path | None,
     if record is not None:
         session.check_record_path(record)
     touch = pipeline.make("touch")
-    plugins = pipeline.registry.plugins
-    recording = session.run(
-        touch, device.method, seconds, lambda report: hooks.tell(plugins, "tangible_servo_report", report=report)
-    )
+    recording = felt(pipeline, touch, device.method, seconds)
     if record is not None:
         recording.save(record)
     figures: dict[str, Any] = {"device": device.name, "spec": asdict(device.method.spec()), **recording.figures()}

@@ -22,9 +22,11 @@ def materials(path: Path | None, as_json: bool) -> None:
             f"{each.dynamic_friction:g}",
             f"{1e6 * each.roughness_m:g}",
             f"{1e3 * each.grain_m:g}",
-            each.source,
         )
         for each in library.values()
     ]
-    headings = ("material", "N/m", "N s/m", "static", "dynamic friction", "roughness um", "grain mm", "source")
+    headings = ("material", "N/m", "N s/m", "static", "dynamic friction", "roughness um", "grain mm")
     show.table(headings, rows)
+    show.say("\n[bold]sources[/]")
+    for each in library.values():
+        show.say(f"  {each.name}: {each.source}")

@@ -1,7 +1,7 @@
 """`demo`, `run`, `plan`: a pipeline from file to report."""
 
 import platform
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
 from importlib.resources import files
@@ -13,16 +13,18 @@ from ruamel.yaml import YAML
 from .. import hooks, session
 from ..cache import Cache, write_record
 from ..config import parse_config
-from ..data import MaterialMap, Record
+from ..data import MaterialMap, Record, ServoReport
 from ..engine import Pipeline, load_pipeline
 from ..files import atomic_write
+from ..interfaces import HapticDevice, Touch
 from ..registry import default_registry
 from ..report import disparity_errors, draw_sheet, write_figures
 from ..session import Recording
 from . import show
 
+Figures = Mapping[Any, Any]
 SHOWN = ("disparity", "segments", "materials", "surface")
-"""Products that the report draws."""
+"""Products that the report draws, beside what is wanted."""
 
 
 @dataclass(frozen=True)
@@ -64,7 +66,7 @@ def plan(config: Path, sets: Sequence[str], as_json: bool, cached: bool) -> None
     if as_json:
         show.print_json(show.as_rows(steps))
     else:
-        show.outcomes(steps)
+        show.outcomes(steps, ran="to run")
 
 
 def open_pipeline(config: Path, sets: Sequence[str], cached: bool) -> Pipeline:
@@ -84,6 +86,7 @@ def execute(pipeline: Pipeline, out: Path, seconds: float) -> Results:
     pipeline.plan()
     value = pipeline.make()
     products = {name: pipeline.make(name) for name in SHOWN if _concerns(pipeline, name)}
+    products[pipeline.config.want] = value
     recording = _feel(pipeline, value, seconds)
     for name, record in products.items():
         if isinstance(record, Record):
@@ -107,10 +110,16 @@ def _feel(pipeline: Pipeline, value: Any, seconds: float) -> Recording | None:
     device = pipeline.config.device
     if pipeline.config.want != "touch" or device is None or not device.method.spec().simulated:
         return None
-    plugins = pipeline.registry.plugins
-    return session.run(
-        value, device.method, seconds, lambda report: hooks.tell(plugins, "tangible_servo_report", report=report)
-    )
+    return felt(pipeline, value, device.method, seconds)
+
+
+def felt(pipeline: Pipeline, touch: Touch, device: HapticDevice, seconds: float) -> Recording:
+    """A session whose reports go to the observers."""
+
+    def report(report: ServoReport) -> None:
+        hooks.tell(pipeline.registry.plugins, "tangible_servo_report", report=report)
+
+    return session.run(touch, device, seconds, report)
 
 
 def _write_config(pipeline: Pipeline, path: Path) -> Path:
@@ -125,7 +134,7 @@ def _write_config(pipeline: Pipeline, path: Path) -> Path:
 def _draw(pipeline: Pipeline, products: Mapping[str, Any], recording: Recording | None, path: Path) -> Path:
     scene = pipeline.scene
     draw_sheet(path, views=scene.views, truth=scene.truth, recording=recording, title=scene.name,
-               **{name: products.get(name) for name in SHOWN})  # fmt: skip
+               **{name: products.get(name) for name in (*SHOWN, "relief")})  # fmt: skip
     return path
 
 
@@ -160,24 +169,36 @@ def _print(pipeline: Pipeline, results: Results, as_json: bool) -> None:
         return
     show.outcomes(pipeline.outcomes, f"[bold]{pipeline.scene.name}[/]")
     for name, values in results.figures.items():
-        show.say(f"\n[bold]{TITLES[name]}[/]")
-        for line in LINES[name](values):
+        title, lines = LINES[name]
+        show.say(f"\n[bold]{title}[/]")
+        for line in lines(values):
             show.say(f"  {line}")
     show.say("\n[bold]written[/]")
     for path in results.files:
         show.say(f"  {path}")
 
 
-TITLES = {"disparity": "error against the truth", "materials": "materials", "force": "force along the path"}
+def _error_lines(figures: Figures) -> list[str]:
+    return [
+        f"bad1 {figures['bad1']:.2f} %, bad2 {figures['bad2']:.2f} % of pixels over 1 px, 2 px (unknown counts as bad)",
+        f"average {figures['average_px']:.3f} px, rms {figures['rms_px']:.3f} px "
+        f"over the {figures['density']:.1f} % that are known",
+    ]
 
-LINES: dict[str, Any] = {
-    "disparity": lambda v: [
-        f"bad1 {v['bad1']:.2f} %, bad2 {v['bad2']:.2f} % of pixels over 1 px, 2 px (unknown counts as bad)",
-        f"average {v['average_px']:.3f} px, rms {v['rms_px']:.3f} px over the {v['density']:.1f} % that are known",
-    ],
-    "materials": lambda v: [f"{label}: {each['name']} ({each['why']})" for label, each in v.items()],
-    "force": lambda v: [
-        f"peak {v['peak_force_n']:.2f} N, median in contact {v['median_contact_force_n']:.2f} N, "
-        f"in contact {100 * v['contact_share']:.0f} % of {v['seconds']:.1f} s ({v['ticks']} ticks)"
-    ],
+
+def _material_lines(figures: Figures) -> list[str]:
+    return [f"{label}: {each['name']} ({each['why']})" for label, each in figures.items()]
+
+
+def _force_lines(figures: Figures) -> list[str]:
+    return [
+        f"peak {figures['peak_force_n']:.2f} N, median in contact {figures['median_contact_force_n']:.2f} N, "
+        f"in contact {100 * figures['contact_share']:.0f} % of {figures['seconds']:.1f} s ({figures['ticks']} ticks)"
+    ]
+
+
+LINES: dict[str, tuple[str, Callable[[Figures], list[str]]]] = {
+    "disparity": ("error against the truth", _error_lines),
+    "materials": ("materials", _material_lines),
+    "force": ("force along the path", _force_lines),
 }

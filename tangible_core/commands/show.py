@@ -30,13 +30,13 @@ def table(headings: Sequence[str], rows: Iterable[Sequence[str]], title: str | N
     Console().print(shown)
 
 
-def outcomes(found: Iterable[Outcome], title: str | None = None) -> None:
-    """What became of each product, and why."""
+def outcomes(found: Iterable[Outcome], title: str | None = None, ran: str = "ran") -> None:
+    """What became of each product, and why; `ran` is the word for those that ran, or are to."""
     rows = [
         (
             each.product,
             each.method,
-            f"[{COLOURS[each.outcome]}]{each.outcome}[/]",
+            f"[{COLOURS[each.outcome]}]{ran if each.outcome == 'ran' else each.outcome}[/]",
             each.why,
             f"{each.seconds:.3f}" if each.seconds else "",
         )

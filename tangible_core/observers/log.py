@@ -27,9 +27,8 @@ def tangible_stage_started(product: str, method: str) -> None:
 
 @hookimpl
 def tangible_stage_finished(outcome: Outcome) -> None:
-    """One line a product; a failure is an error."""
-    level = logging.ERROR if outcome.outcome == "failed" else logging.INFO
-    log.log(level, "%s: %s, %s (%.3f s)", outcome.product, outcome.outcome, outcome.why, outcome.seconds)
+    """One line a product; whoever asked for one that failed hears of it by the error itself."""
+    log.info("%s: %s, %s (%.3f s)", outcome.product, outcome.outcome, outcome.why, outcome.seconds)
 
 
 @hookimpl

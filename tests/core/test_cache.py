@@ -1,5 +1,6 @@
-import multiprocessing
 import os
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -104,21 +105,28 @@ def test_a_full_disk_leaves_nothing_behind(tmp_path: Path, monkeypatch: pytest.M
     assert list(tmp_path.iterdir()) == []
 
 
-def _write_many(folder: str, start: int) -> None:
-    cache = Cache(Path(folder), max_bytes=20_000)
-    for i in range(40):
-        key = f"k{(start + i) % 10}"
-        cache.put(key, SegmentMap(np.full((20, 20), 0, np.int32)))
-        found = cache.get(key)
-        assert found is None or found.digest() == SegmentMap(np.zeros((20, 20), np.int32)).digest()
+USER = """
+import sys
+from pathlib import Path
+import numpy as np
+from tangible_core.cache import Cache
+from tangible_core.data import SegmentMap
+
+cache, record = Cache(Path(sys.argv[1]), max_bytes=20_000), SegmentMap(np.zeros((20, 20), np.int32))
+for i in range(200):
+    key = f"k{(int(sys.argv[2]) + i) % 10}"
+    cache.put(key, record)
+    found = cache.get(key)
+    assert found is None or found.digest() == record.digest()
+"""
 
 
 def test_two_processes_share_a_folder(tmp_path: Path):
-    context = multiprocessing.get_context("spawn")
-    workers = [context.Process(target=_write_many, args=(str(tmp_path), i)) for i in (0, 5)]
-    for worker in workers:
-        worker.start()
-    for worker in workers:
-        worker.join(60)
-    assert [worker.exitcode for worker in workers] == [0, 0]
+    users = [
+        subprocess.Popen([sys.executable, "-c", USER, tmp_path, start], stderr=subprocess.PIPE, text=True)
+        for start in ("0", "5")
+    ]
+    said = [user.communicate(timeout=60)[1] for user in users]
+    assert said == ["", ""]
+    assert [user.returncode for user in users] == [0, 0]
     assert not [path for path in tmp_path.iterdir() if path.suffix != ".npz"]

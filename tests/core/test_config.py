@@ -75,20 +75,21 @@ want: surfaces
 @pytest.mark.parametrize(
     ("text", "place", "what"),
     [
-        ("scene: a\ndepth:\n\tuse: x\n", "here/p.yaml:3:1", "tabs"),
+        ("scene: builtin/brick\ndepth:\n\tuse: x\n", "here/p.yaml:3:1", "tabs"),
         ("scene: a\nscene: b\n", "here/p.yaml:2:1", "duplicate key"),
         ("scene: [a\n", "here/p.yaml:2:1", "expected"),
         ("- scene\n", "here/p.yaml:1:1", "mapping"),
         ("", "here/p.yaml:1:1", "mapping"),
         ("want: touch\n", "here/p.yaml:1:1", "`scene:` is missing"),
+        ("want: touch\nscene: builtin/brik\n", "here/p.yaml:2:1", "did you mean 'builtin/brick'?"),
         ("scene: {left: a.png}\n", "here/p.yaml:1:1", "right"),
         ("scene: {phto: a.png}\n", "here/p.yaml:1:9", "did you mean 'photo'?"),
-        ("scene: a\ndevice: {path: circle}\n", "here/p.yaml:2:1", "needs the name of a method"),
-        ("scene: a\ndevice:\n", "here/p.yaml:2:1", "needs the name of a method"),
-        ("scene: a\nworkspace: {width_m: .nan}\n", "here/p.yaml:2:13", "finite"),
-        ("scene: a\nworkspace: [1]\n", "here/p.yaml:2:1", "workspace"),
-        ("scene: a\nmaterials: {by: colour}\n", "here/p.yaml:2:13", "roughness"),
-        ("scene: a\nmaterials: {0: ice, one: sand}\n", "here/p.yaml:2:21", "unknown option"),
+        ("scene: builtin/brick\ndevice: {path: circle}\n", "here/p.yaml:2:1", "needs the name of a method"),
+        ("scene: builtin/brick\ndevice:\n", "here/p.yaml:2:1", "needs the name of a method"),
+        ("scene: builtin/brick\nworkspace: {width_m: .nan}\n", "here/p.yaml:2:13", "finite"),
+        ("scene: builtin/brick\nworkspace: [1]\n", "here/p.yaml:2:1", "workspace"),
+        ("scene: builtin/brick\nmaterials: {by: colour}\n", "here/p.yaml:2:13", "roughness"),
+        ("scene: builtin/brick\nmaterials: {0: ice, one: sand}\n", "here/p.yaml:2:21", "valid integer"),
     ],
 )
 def test_one_mistake_one_line(text: str, place: str, what: str):
@@ -98,17 +99,17 @@ def test_one_mistake_one_line(text: str, place: str, what: str):
 
 
 def test_numbers_and_words_mean_what_they_look_like():
-    config = parse("scene: off\nrender: {use: penalty-gradient, stiffness_n_per_m: 1e3}\n")
-    assert config.scene == "off"
+    config = parse("scene: {photo: off}\nrender: {use: penalty-gradient, stiffness_n_per_m: 1e3}\n")
+    assert config.scene.photo == Path("here/off").absolute()
     assert config.render.method.stiffness_n_per_m == 1000.0
 
 
 def test_a_method_without_options_may_be_named_alone():
-    assert parse("scene: a\ndepth: luminance\n").depth.name == "luminance"
+    assert parse("scene: builtin/brick\ndepth: luminance\n").depth.name == "luminance"
 
 
 def test_materials_by_label():
-    assert parse("scene: a\nmaterials: {0: ice, 2: sand}\n").materials.by == {0: "ice", 2: "sand"}
+    assert parse("scene: builtin/brick\nmaterials: {0: ice, 2: sand}\n").materials.by == {0: "ice", 2: "sand"}
 
 
 def test_scene_files():
@@ -118,10 +119,12 @@ def test_scene_files():
 
 
 def test_an_override_goes_before_the_file_and_complains_the_same_way():
-    text = "scene: a\nrender: {use: penalty-gradient}\n"
+    text = "scene: builtin/brick\nrender: {use: penalty-gradient}\n"
     assert parse(text, "render.stiffness_n_per_m=500").render.method.stiffness_n_per_m == 500
     assert parse(text, "depth.use=luminance").depth.name == "luminance"
     assert parse(text, "materials.1=ice", "materials.0=sand").materials.by == {1: "ice", 0: "sand"}
+    grey = parse(text, "render.stiffness_n_per_m=5", "render.use=grey-level", "render.force_at_white_n=2").render
+    assert (grey.name, grey.method.force_at_white_n) == ("grey-level", 2)
     (found,) = complaints(text, "render.stiffness_n_per_m=-5")
     assert found.startswith("--set render.stiffness_n_per_m=-5: render.stiffness_n_per_m")
     (found,) = complaints(text, "render.stifness_n_per_m=5")
@@ -130,24 +133,26 @@ def test_an_override_goes_before_the_file_and_complains_the_same_way():
 
 @pytest.mark.parametrize("override", ["render", "=5", "render..x=5", "render.x=[", ""])
 def test_an_override_that_is_none(override: str):
-    (found,) = complaints("scene: a\n", override)
+    (found,) = complaints("scene: builtin/brick\n", override)
     assert found.startswith(f"--set {override}: ")
 
 
 def test_an_override_of_an_override():
-    config = parse("scene: a\n", "workspace.width_m=0.1", "workspace.width_m=0.2")
+    config = parse("scene: builtin/brick\n", "workspace.width_m=0.1", "workspace.width_m=0.2")
     assert config.workspace.width_m == 0.2
 
 
 def test_files_named_by_a_method_are_relative_to_the_pipeline_file(tmp_path: Path):
-    (tmp_path / "p.yaml").write_text("scene: a\nmaterials: {library: mine.yaml}\ndevice: {use: mock, csv_file: hand.csv}\n")
+    (tmp_path / "p.yaml").write_text(
+        "scene: builtin/brick\nmaterials: {library: mine.yaml}\ndevice: {use: mock, path: csv, csv_file: hand.csv}\n"
+    )
     config = load_config(tmp_path / "p.yaml", default_registry())
     assert config.materials.library == tmp_path / "mine.yaml"
     assert config.device.method.csv_file == tmp_path / "hand.csv"
 
 
 def test_a_missing_file_is_named_with_what_is_there(tmp_path: Path):
-    (tmp_path / "feel.yaml").write_text("scene: a\n")
+    (tmp_path / "feel.yaml").write_text("scene: builtin/brick\n")
     with pytest.raises(ConfigError, match=r"feeel\.yaml: there is no such file \(did you mean 'feel\.yaml'\?\)"):
         load_config(tmp_path / "feeel.yaml", default_registry())
 

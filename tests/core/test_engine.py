@@ -14,7 +14,7 @@ from tangible_core.data import DisparityMap, HapticSurface, SegmentMap, Views
 from tangible_core.engine import Pipeline
 from tangible_core.errors import ConfigError, GeometryError, UnknownMethod
 from tangible_core.interfaces import DepthEstimator, ForceRenderer, Segmenter, Skippable, Touch
-from tangible_core.pictures import write_png
+from tangible_core.picture_files import write_png
 from tangible_core.registry import Registry
 from tangible_core.scene import SceneFiles
 
@@ -207,7 +207,9 @@ def test_a_renderer_without_materials_costs_no_segmentation(folder: Path):
     assert "segments" not in ran
 
 
-@pytest.mark.parametrize("parts", [{}, {"depth": chosen(Never())}, {"texture": None}, {"render": chosen(FeelHeights())}])
+@pytest.mark.parametrize(
+    "parts", [{}, {"depth": chosen(Never())}, {"texture": None}, {"render": chosen(FeelHeights())}]
+)
 def test_the_plan_is_what_then_happens(folder: Path, parts: dict):
     foreseen = {each.product: each.outcome for each in pipeline(folder, **parts).plan().steps}
     assert ran == []

@@ -20,8 +20,8 @@ def test_measures_of_a_map_worked_out_by_hand():
             "bad1": 100 * 5 / 7,
             "bad2": 100 * 4 / 7,
             "bad4": 100 * 3 / 7,
-            "average": (0 + 0.75 + 1.5 + 3 + 5) / 5,
-            "rms": ((0.75**2 + 1.5**2 + 9 + 25) / 5) ** 0.5,
+            "average_px": (0 + 0.75 + 1.5 + 3 + 5) / 5,
+            "rms_px": ((0.75**2 + 1.5**2 + 9 + 25) / 5) ** 0.5,
             "density": 100 * 5 / 7,
         }
     )
@@ -36,7 +36,7 @@ def test_nothing_to_measure_is_unknown():
     assert all(np.isnan(value) for value in disparity_errors(unknown, unknown).values())
     found = disparity_errors(unknown, np.ones((2, 2), np.float32))
     assert (found["bad4"], found["density"]) == (100, 0)
-    assert np.isnan(found["average"])
+    assert np.isnan(found["average_px"])
 
 
 def test_sizes_must_agree():

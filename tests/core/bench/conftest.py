@@ -14,7 +14,9 @@ from tangible_core.registry import Registry
 FAKES = """
 import os, signal, time
 from pathlib import Path
+from typing import Annotated
 import numpy as np
+from pydantic import Field
 from tangible_core.data import DisparityMap
 from tangible_core.errors import PictureError
 from tangible_core.interfaces import DepthEstimator
@@ -63,6 +65,15 @@ class Talks(DepthEstimator):
         return flat(views, 4)
 
 
+class Ranged(DepthEstimator):
+    '''Finds the end of its range.'''
+
+    max_disparity_px: Annotated[int, Field(le=1000)] = 8
+
+    def estimate(self, views):
+        return flat(views, self.max_disparity_px)
+
+
 class Raises(DepthEstimator):
     '''Cannot.'''
 
@@ -102,6 +113,7 @@ NAMES = {
     "half": "HalfKnown",
     "hungry": "Hungry",
     "talks": "Talks",
+    "ranged": "Ranged",
     "raises": "Raises",
     "dies": "Dies",
     "sleeps": "Sleeps",

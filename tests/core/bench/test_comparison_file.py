@@ -124,6 +124,13 @@ baseline: constat
             "2:27",
             "a label is a word",
         ),
+        (
+            "compare: depth\nmethods: [{use: ranged, given: [seed]}]\nscenes: [synthetic/bars]\n",
+            "2:25",
+            "'seed' to this",
+        ),
+        ("compare: depth\nmethods: [{use: ranged, given: 3}]\nscenes: [synthetic/bars]\n", "2:25", "max_disparity_px"),
+        ("compare: depth\nmethods: [{use: half, given: [value_px]}]\nscenes: [synthetic/bars]\n", "2:23", "nothing"),
         (GOOD + "perturb: [loud]\n", "4:11", "write none, or such as"),
         (GOOD + "perturb: [{noise: loud}]\n", "4:12", "not 'loud'"),
         (GOOD + "out: [1]\n", "4:1", "a folder is wanted"),

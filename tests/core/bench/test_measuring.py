@@ -12,7 +12,7 @@ from tangible_core.bench.config import Comparison, parse_comparison
 from tangible_core.bench.plan import measurements
 from tangible_core.bench.rows import Row, append, mend, read_rows
 from tangible_core.bench.run import look, run
-from tangible_core.errors import OutputError, ResultsError
+from tangible_core.errors import ConfigError, OutputError, ResultsError
 from tangible_core.registry import Registry
 
 SCENE = "{synthetic: steps, width_px: 64, height_px: 32}"
@@ -51,8 +51,26 @@ def test_measures_are_those_of_the_truth(registry: Registry, tmp_path: Path):
 
     (row,) = measured(registry, tmp_path / "r.jsonl", "{use: constant, value_px: 0}")
     pair = synthetic_pair("steps", 64, 32)
-    assert row.measures["average"] == pytest.approx(pair.truth_px.mean(), rel=1e-5)
+    assert row.measures["average_px"] == pytest.approx(pair.truth_px.mean(), rel=1e-5)
     assert row.measures["bad2_noc"] == pytest.approx(100 * (pair.truth_px > 2)[pair.visible].mean())
+
+
+def test_an_option_that_the_scene_tells(registry: Registry, tmp_path: Path):
+    """Disparities of this scene end below 16: the next multiple of 16, for the method that is told, and only that."""
+    methods = "ranged, {use: ranged, label: told, given: [max_disparity_px]}"
+    rows = measured(registry, tmp_path / "r.jsonl", methods)
+    assert [(row.method, row.options) for row in rows] == [
+        ("ranged", {"max_disparity_px": 8}),
+        ("told", {"max_disparity_px": 16}),
+    ]
+
+
+def test_an_option_that_a_method_cannot_be_told(registry: Registry, tmp_path: Path):
+    wanted = comparison(registry, "{use: ranged, given: [max_disparity_px]}")
+    with pytest.raises(
+        ConfigError, match=r"ranged cannot be told .* less than or equal to 1000; leave out its `given:`"
+    ):
+        wanted.methods[0].method_for({"max_disparity_px": 2000})
 
 
 def test_filling_is_done_to_the_methods_that_are_named(registry: Registry, tmp_path: Path):

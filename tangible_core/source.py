@@ -1,0 +1,176 @@
+"""YAML that knows where everything stands: every complaint at once, each with file:line:column."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, cast
+
+from pydantic import BaseModel, ValidationError
+from ruamel.yaml import YAML
+from ruamel.yaml.comments import CommentedMap
+from ruamel.yaml.error import MarkedYAMLError, YAMLError
+
+from .errors import ConfigError, did_you_mean
+
+Tree = dict[Any, Any]
+"""The parser's own mapping: a dict that knows where its parts stand."""
+Location = tuple[Any, ...]
+"""Keys and indices from the top of the file."""
+
+
+@dataclass
+class Source:
+    """A parsed file while it is being checked, and the complaints so far."""
+
+    path: Path
+    tree: Tree
+    complaints: list[str] = field(default_factory=list[str])
+    overridden: dict[tuple[str, ...], str] = field(default_factory=dict[tuple[str, ...], str])
+
+    def override(self, text: str) -> None:
+        """Apply `key.key=value`; a block with another `use` starts without the options of the method before."""
+        keys, equals, value = text.partition("=")
+        parts = tuple(keys.strip().split("."))
+        if not equals or not all(parts):
+            raise ConfigError(f"--set {text}: write key.key=value, such as render.stiffness_n_per_m=500")
+        try:
+            loaded = _load(value)
+        except YAMLError as error:
+            raise ConfigError(f"--set {text}: {value!r} is no YAML value") from error
+        node: Any = self.tree
+        for part in parts[:-1]:
+            if isinstance(node.get(part), list):
+                raise ConfigError(f"--set {text}: {part} is a list; set the whole of it: {part}=[...]")
+            if not isinstance(node.get(part), dict):
+                node[part] = CommentedMap()
+            node = node[part]
+        if parts[-1] == "use" and node.get("use") != loaded:
+            node.clear()
+        node[_key(parts[-1], node)] = loaded
+        self.overridden[parts] = text
+
+    def place(self, location: Location) -> str:
+        """file:line:column of the deepest part of the location that the file has."""
+        for end in range(len(location), 0, -1):
+            if text := self.overridden.get(tuple(str(part) for part in location[:end])):
+                return f"--set {text}"
+        node: Any = self.tree
+        line, column = 0, 0
+        for part in location:
+            if not isinstance(node, dict | list) or not _has(node, part):
+                continue
+            marks = cast(Any, node).lc
+            if marks.data and part in marks.data:
+                line, column = marks.key(part) if isinstance(node, dict) else marks.item(part)
+            node = cast(Any, node)[part]
+        return f"{self.path}:{line + 1}:{column + 1}"
+
+    def complain(self, location: Location, text: str) -> None:
+        """Note a complaint with its place."""
+        self.complaints.append(f"{self.place(location)}: {text}")
+
+    def settle(self) -> None:
+        """Raises: ConfigError with every complaint, one a line, if there are any."""
+        if self.complaints:
+            raise ConfigError("\n".join(self.complaints))
+
+    def check_keys(self, known: Iterable[str]) -> None:
+        """Complain of every key of the file that is not known."""
+        names = list(known)
+        for key in self.tree:
+            if key not in names:
+                self.complain((key,), f"unknown key {key!r}{did_you_mean(str(key), names)}; known: {', '.join(names)}")
+
+    def items(self, key: str) -> list[Any]:
+        """A list of at least one under this key of the file; a complaint and an empty one otherwise."""
+        block = self.tree.get(key)
+        if isinstance(block, list) and block:
+            return cast("list[Any]", block)
+        wrong = f"`{key}:` is a list of at least one, not {block!r}" if key in self.tree else f"`{key}:` is missing"
+        self.complain((key,), wrong)
+        return []
+
+    def model(self, location: Location, model: type[BaseModel], block: Any) -> Any:
+        """A block as a model, its files relative to this one; None after a complaint for each thing that is wrong."""
+        try:
+            return _relative_to(self.path.parent, model.model_validate(_plain(block)))
+        except ValidationError as error:
+            for each in error.errors():
+                self._complain_of(location, model, cast(Any, each))
+            return None
+
+    def _complain_of(self, location: Location, model: type[BaseModel], error: Mapping[str, Any]) -> None:
+        where = (*location, *(part for part in error["loc"] if part != "[key]" and not str(part).startswith(":")))
+        shown = ".".join(str(part) for part in where)
+        if error["type"] == "extra_forbidden":
+            options = list(model.model_fields)
+            known = f"; known: {', '.join(options)}" if options else "; there are no options"
+            self.complain(where, f"{shown}: unknown option{did_you_mean(str(where[-1]), options)}{known}")
+        else:
+            given = "" if isinstance(error["input"], dict) else f", not {error['input']!r}"
+            self.complain(where, f"{shown}: {error['msg'].removeprefix('Value error, ')}{given}")
+
+
+def read_text(path: Path) -> str:
+    """A YAML file's text. Raises: ConfigError, with what is there when the file is not."""
+    try:
+        return path.read_text(encoding="utf-8")
+    except FileNotFoundError as error:
+        near = did_you_mean(path.name, (each.name for each in path.parent.glob("*.y*ml")))
+        raise ConfigError(f"{path}: there is no such file{near}") from error
+    except (OSError, UnicodeDecodeError) as error:
+        raise ConfigError(f"{path}: cannot be read as text: {error}") from error
+
+
+def parse_source(text: str, path: Path, what: str, overrides: Iterable[str] = ()) -> Source:
+    """A YAML text whose parts know their places, for whoever checks it.
+
+    what: what the file is, for the complaint about one that is no mapping.
+    Raises: ConfigError if it is no YAML, or no mapping.
+    """
+    try:
+        tree = _load(text)
+    except MarkedYAMLError as error:
+        mark: Any = cast(Any, error).problem_mark or cast(Any, error).context_mark
+        place = f"{path}:{mark.line + 1}:{mark.column + 1}" if mark else f"{path}"
+        problem = str(cast(Any, error).problem or cast(Any, error).context).strip().splitlines()[0]
+        cure = "; indent with spaces, not tabs" if "\\t" in problem else ""
+        raise ConfigError(f"{place}: {problem}{cure}") from error
+    except YAMLError as error:
+        raise ConfigError(f"{path}: {str(error).splitlines()[0]}") from error
+    if not isinstance(tree, dict):
+        raise ConfigError(f"{path}:1:1: {what}")
+    source = Source(path, cast(Tree, tree))
+    for override in overrides:
+        source.override(override)
+    return source
+
+
+def _load(text: str) -> Any:
+    return cast(Any, YAML(typ="rt")).load(text)  # of ruamel's loaders, the one that knows places
+
+
+def _key(text: str, node: Mapping[Any, Any]) -> Any:
+    """Keys are words; labels of a material map are whole numbers."""
+    return int(text) if text.isdigit() and text not in node else text
+
+
+def _has(node: Any, part: Any) -> bool:
+    return part in node if isinstance(node, dict) else isinstance(part, int) and part < len(node)
+
+
+def _relative_to(folder: Path, model: BaseModel) -> BaseModel:
+    paths = {name: value for name, value in model if isinstance(value, Path) and not value.is_absolute()}
+    return model.model_copy(update={name: (folder / value).absolute() for name, value in paths.items()})
+
+
+def _plain(node: Any) -> Any:
+    """Plain Python values for pydantic, without the parser's own types."""
+    if isinstance(node, dict):
+        return {key: _plain(value) for key, value in cast("dict[Any, Any]", node).items()}
+    if isinstance(node, list):
+        return [_plain(value) for value in cast("list[Any]", node)]
+    for kind in (bool, int, float, str):
+        if isinstance(node, kind):
+            return kind(node)
+    return node

@@ -76,18 +76,18 @@ def _methods(kind: str, registry: Registry, distribution: str | None) -> Iterabl
 def markdown(schema: dict[str, Any]) -> str:
     """The schema as a reference page: every block, method and option."""
     lines = ["# The pipeline file", "", PREFACE, ""]
-    properties = schema["properties"]
+    properties, blocks = schema["properties"], schema["$defs"]
     lines += ["## scene", "", f"A builtin name ({_names(properties['scene']['anyOf'][0]['enum'])}), or files:", ""]
-    lines += _table(properties["scene"]["anyOf"][1])
+    lines += _table(properties["scene"]["anyOf"][1], blocks)
     lines += ["## want", "", f"What to make: {_names(properties['want']['enum'])}.", ""]
-    lines += ["## workspace", "", *_table(properties["workspace"])]
+    lines += ["## workspace", "", *_table(properties["workspace"], blocks)]
     lines += ["## materials", "", "A map from label to material (`{0: ice, 1: sand}`), or:", ""]
-    lines += _table(properties["materials"]["anyOf"][0])
+    lines += _table(properties["materials"]["anyOf"][0], blocks)
     for kind in STAGES:
         lines += [f"## {kind}", ""]
         for form in properties[kind]["anyOf"][1:]:
             summary = form.get("description", "").split("\n")[0]
-            lines += [f"### {form['properties']['use']['const']}", "", summary, "", *_table(form)]
+            lines += [f"### {form['properties']['use']['const']}", "", summary, "", *_table(form, blocks)]
     return "\n".join(lines).rstrip() + "\n"
 
 
@@ -103,14 +103,23 @@ def _names(values: Iterable[Any]) -> str:
     return ", ".join(f"`{value}`" for value in values)
 
 
-def _table(form: dict[str, Any]) -> list[str]:
-    options = {name: option for name, option in form.get("properties", {}).items() if name != "use"}
-    if not options:
-        return ["No options.", ""]
+def _table(form: dict[str, Any], blocks: dict[str, Any]) -> list[str]:
     rows = [
-        f"| `{name}` | {_type(option)} | {_default(option)} | {_cell(option)} |" for name, option in options.items()
+        f"| `{name}` | {_type(option)} | {_default(option)} | {_cell(option)} |"
+        for name, option in _options(form, blocks)
     ]
-    return ["| key | values | default | meaning |", "|---|---|---|---|", *rows, ""]
+    return ["| key | values | default | meaning |", "|---|---|---|---|", *rows, ""] if rows else ["No options.", ""]
+
+
+def _options(form: dict[str, Any], blocks: dict[str, Any], prefix: str = "") -> Iterable[tuple[str, dict[str, Any]]]:
+    """Options by name, those of a block below it as `block.option`."""
+    for name, option in form.get("properties", {}).items():
+        if name == "use":
+            continue
+        inner = [each["$ref"].split("/")[-1] for each in (option, *option.get("anyOf", ())) if "$ref" in each]
+        yield f"{prefix}{name}", {**option, "default": None} if inner else option
+        for block in inner:
+            yield from _options(blocks[block], blocks, f"{prefix}{name}.")
 
 
 def _cell(option: dict[str, Any]) -> str:
@@ -130,7 +139,7 @@ def _type(option: dict[str, Any]) -> str:
     if "const" in option:
         return f"`{option['const']}`"
     bounds = [f"{sign} {option[word]}" for word, sign in BOUNDS.items() if word in option]
-    return " ".join([option["type"] if "type" in option else option.get("$ref", "").split("/")[-1], *bounds])
+    return " ".join([option.get("type", "block"), *bounds])
 
 
 BOUNDS = {"minimum": "≥", "exclusiveMinimum": ">", "maximum": "≤", "exclusiveMaximum": "<"}

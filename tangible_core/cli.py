@@ -94,6 +94,27 @@ def feel(
 
 
 @app.command()
+def compare(
+    config: Annotated[
+        Path, typer.Argument(help="A comparison file (YAML), or results (.jsonl) to show again.", show_default=False)
+    ],
+    sets: Sets = None,
+    out: Annotated[Path | None, typer.Option("--out", help="Folder for results [default: as the file says].")] = None,
+    against: Annotated[
+        Path | None, typer.Option(help="Earlier results (.jsonl): exit 1 if something got worse.")
+    ] = None,
+    detail: Annotated[bool, typer.Option("--detail", help="A table for each scene, with every measure.")] = False,
+    retry: Annotated[bool, typer.Option("--retry", help="Measure once more what failed before.")] = False,
+    as_json: Json = False,
+) -> None:
+    """Compare methods: time, memory and error on the same scenes; goes on where it was interrupted."""
+    from .commands import compare as command
+
+    if not command.compare(config, sets or [], out, against, detail, retry, as_json):
+        raise typer.Exit(FAILED)
+
+
+@app.command()
 def plugins(as_json: Json = False) -> None:
     """List the installed methods and devices; imports none of them."""
     from .commands import plugins as command

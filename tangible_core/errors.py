@@ -46,6 +46,10 @@ class OutputError(TangibleError):
     """Results that cannot be written."""
 
 
+class ResultsError(TangibleError):
+    """Files of measurements that are damaged, or that cannot be compared."""
+
+
 def did_you_mean(word: str, known: Iterable[str]) -> str:
     """A hint to append to a complaint, empty when nothing is close.
 

@@ -81,6 +81,15 @@ class Source:
             if key not in names:
                 self.complain((key,), f"unknown key {key!r}{did_you_mean(str(key), names)}; known: {', '.join(names)}")
 
+    def items(self, key: str) -> list[Any]:
+        """A list of at least one under this key of the file; a complaint and an empty one otherwise."""
+        block = self.tree.get(key)
+        if isinstance(block, list) and block:
+            return cast("list[Any]", block)
+        wrong = f"`{key}:` is a list of at least one, not {block!r}" if key in self.tree else f"`{key}:` is missing"
+        self.complain((key,), wrong)
+        return []
+
     def model(self, location: Location, model: type[BaseModel], block: Any) -> Any:
         """A block as a model, its files relative to this one; None after a complaint for each thing that is wrong."""
         try:

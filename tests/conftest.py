@@ -23,6 +23,9 @@ CHECKED = (
     "picture_files",
     "pictures",
     "testing.scenes",
+    "testing.surfaces",
+    "testing.stereo_scenes",
+    "bench.damage",
     "testing.variants",
 )
 BEARTYPE = "beartype.beartype(conf=beartype.BeartypeConf(is_pep484_tower=True))"  # an int is a float, as PEP 484 has it

@@ -55,6 +55,11 @@ def say(text: str) -> None:
     Console(highlight=False, soft_wrap=True).print(text)
 
 
+def note(text: str) -> None:
+    """A line of text for people, beside the results: on standard error."""
+    Console(stderr=True, highlight=False, soft_wrap=True).print(text, markup=False)
+
+
 def _plain(value: Any) -> Any:
     if isinstance(value, Mapping):
         return {str(key): _plain(part) for key, part in value.items()}  # pyright: ignore[reportUnknownVariableType, reportUnknownArgumentType]

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from ...data import DisparityMap
-from ..errors import absolute_error, disparity_errors
+from ...metrics import absolute_error, disparity_errors
 from ..style import ERRORS, VIRIDIS, bare, colour_bar, hatch, thinned
 
 CLIP_PX = 4.0

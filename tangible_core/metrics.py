@@ -1,11 +1,13 @@
-"""How far a disparity map is from the truth."""
+"""How far a disparity map is from the truth, and which pixels both views show."""
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
-from ..errors import PictureError
+from .errors import PictureError
 
 BOUNDS_PX = (0.5, 1.0, 2.0, 4.0)
+HIDING_STEP_PX = 1.0
+"""A surface hides another one when it is nearer by more than this: less is a slope, not an edge."""
 
 
 def disparity_errors(disparity_px: Float[np.ndarray, "h w"], truth_px: Float[np.ndarray, "h w"]) -> dict[str, float]:
@@ -44,6 +46,29 @@ def absolute_error(
     error_px = np.full(truth_px.shape, np.nan)
     error_px[known] = np.abs(disparity_px[known].astype(np.float64) - truth_px[known])
     return error_px
+
+
+def visible_pixels(truth_px: Float[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
+    """Pixels of the left view that the right view shows too, as far as the true disparity tells.
+
+    A pixel (row, x) is hidden if x - d lies outside of the right view, or if the truth puts there a surface nearer by
+    more than HIDING_STEP_PX; without truth it counts as hidden, and what has no truth hides nothing.
+    Returns: bool (h, w). Exact for whole disparities; otherwise right to a quarter of a pixel at the edges.
+    """
+    rows, columns = np.nonzero(np.isfinite(truth_px))
+    shift_px = truth_px[rows, columns].astype(np.float64)
+    target_px = columns - shift_px
+    inside = np.rint(target_px).astype(np.int64)
+    seen = (inside >= 0) & (inside < truth_px.shape[1])
+    nearest_px = np.full(truth_px.shape, -np.inf)
+    # Both columns that a pixel lies between, so that a surface that the right view stretches has no gaps.
+    for column in (np.floor(target_px + 0.25), np.floor(target_px + 0.75)):
+        hit = (column >= 0) & (column < truth_px.shape[1])
+        np.maximum.at(nearest_px, (rows[hit], column[hit].astype(np.int64)), shift_px[hit])
+    seen[seen] = nearest_px[rows[seen], inside[seen]] <= shift_px[seen] + HIDING_STEP_PX
+    visible = np.zeros(truth_px.shape, np.bool_)
+    visible[rows, columns] = seen
+    return visible
 
 
 def _percent(flags: np.ndarray) -> float:

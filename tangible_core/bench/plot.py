@@ -1,0 +1,98 @@
+"""Run time against error, one panel a measure, with the front of those that nobody beats in both."""
+# matplotlib keywords have no types.
+# pyright: reportUnknownMemberType=false
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ..files import atomic_write
+from .labels import place_labels
+from .table import Results
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from .summary import Line
+
+MARKERS = "osD^vPX*"
+"""Shapes beside colours: eight of each tell 64 methods apart, in grey print too."""
+EDGE: dict[str, Any] = {"markeredgecolor": "#222222", "markeredgewidth": 0.5}
+"""Pale colours need it on white."""
+PANEL_IN = (6.4, 4.8)
+DPI = 150
+
+
+def draw_plot(path: Path, results: Results) -> bool:
+    """Draw the means over all scenes as a PNG, whole or not at all; False, and nothing, if no method has a mean.
+
+    Raises: OutputError if the place cannot be written.
+    """
+    from matplotlib import style
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    from ..report.style import STYLE
+
+    found = [line for line in results.means() if math.isfinite(line.seconds)]
+    if not found:
+        return False
+    measures = results.task.plotted
+    with style.context(STYLE):
+        figure = Figure(figsize=(PANEL_IN[0] * len(measures), PANEL_IN[1]), dpi=DPI, layout="constrained")
+        canvas = FigureCanvasAgg(figure)
+        panels: list[Any] = list(figure.subplots(1, len(measures), squeeze=False)[0])
+        for axes, measure in zip(panels, measures, strict=True):
+            _panel(axes, results, found, measure)
+        figure.suptitle(_title(results), fontsize=10)
+        canvas.draw()  # labels need to know where the points came to lie
+        figure.set_layout_engine("none")
+        for axes, measure in zip(panels, measures, strict=True):
+            place_labels(
+                axes, [(each.method, *_point(each, measure)) for each in found], _front(results, found, measure)
+            )
+        with atomic_write(path) as file:
+            canvas.print_png(file)
+    return True
+
+
+def _panel(axes: Axes, results: Results, found: list[Line], measure: str) -> None:
+    from matplotlib.ticker import LogLocator, NullFormatter
+
+    from ..report.style import INK
+
+    for index, method in enumerate(sorted(line.method for line in found)):
+        x, y = _point(next(line for line in found if line.method == method), measure)
+        axes.plot(x, y, color=_colour(index), marker=MARKERS[index // 8 % 8], markersize=7, zorder=3, **EDGE)
+    best = _front(results, found, measure)
+    axes.step(*zip(*best, strict=True), where="post", color=INK, linewidth=1, linestyle=(0, (4, 2)), zorder=2)
+    axes.set_xscale("log")
+    axes.margins(0.14)
+    axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    axes.xaxis.set_major_formatter("{x:g}")
+    axes.xaxis.set_minor_formatter(NullFormatter())
+    axes.set(xlabel="time, ms", ylabel=results.task.measures[measure].title)
+    axes.grid(color="#dddddd", linewidth=0.5)
+    axes.set_axisbelow(True)
+
+
+def _front(results: Results, found: list[Line], measure: str) -> list[tuple[float, float]]:
+    return [_point(found[index], measure) for index in results.on_front(found, measure)]
+
+
+def _point(line: Line, measure: str) -> tuple[float, float]:
+    return 1e3 * line.seconds, line.measures.get(measure, math.nan)
+
+
+def _colour(index: int) -> str:
+    from ..report.style import OKABE_ITO
+
+    return OKABE_ITO[index % len(OKABE_ITO)]
+
+
+def _title(results: Results) -> str:
+    count = len(results.scenes)
+    scenes = results.scenes[0] if count == 1 else f"mean of {count} scenes"
+    return f"{results.task.kind}: {scenes}; dashed: nobody is faster and better"

@@ -1,0 +1,106 @@
+"""Results as JSON Lines: one row a process, whole or not there at all."""
+
+import json
+import os
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+from ..errors import OutputError, ResultsError
+
+
+@dataclass(frozen=True)
+class Row:
+    """What one process found out."""
+
+    key: str
+    """Content hash of what was measured: the same key need not be measured again."""
+    compare: str
+    method: str
+    """The method's label."""
+    use: str
+    options: Mapping[str, Any]
+    origin: str
+    scene: str
+    scene_digest: str
+    perturb: str
+    finishes: tuple[str, ...]
+    repeat: int
+    versions: Mapping[str, str]
+    machine: Mapping[str, str | int]
+    baseline: str | None = None
+    """Label of the method that times are compared with; no part of the key."""
+    seconds: float | None = None
+    """Median of the timed calls; None after an error."""
+    first_seconds: float | None = None
+    """The very first call: with imports, and compilation if there is any."""
+    peak_memory_bytes: int | None = None
+    measures: Mapping[str, float | None] = field(default_factory=dict[str, float | None])
+    error: str | None = None
+    """Why there is no result."""
+
+    @property
+    def cell(self) -> tuple[str, str, str]:
+        """What its repeats share: method, scene, perturbation."""
+        return self.method, self.scene, self.perturb
+
+
+def read_rows(path: Path) -> dict[str, Row]:
+    """Rows of a file by key, the last one of each; a torn last line, as a kill leaves it, is passed over.
+
+    Raises: ResultsError for a file that cannot be read, or a damaged line within it.
+    """
+    try:
+        *lines, torn = path.read_text(encoding="utf-8").split("\n")
+    except (OSError, UnicodeDecodeError) as error:
+        raise ResultsError(
+            f"{path}: cannot be read as results: {error}; name a .jsonl file of `tangible compare`"
+        ) from error
+    del torn  # a whole line ends with a newline
+    rows = (_row(path, number, line) for number, line in enumerate(lines, 1) if line)
+    return {row.key: row for row in rows}
+
+
+def mend(path: Path) -> None:
+    """Make sure that rows can be added: the folder is there, and a torn last line is not.
+
+    Raises: OutputError if the file cannot be written.
+    """
+
+    def cut(file: int) -> None:
+        os.ftruncate(file, path.read_bytes().rfind(b"\n") + 1)
+
+    _write(path, cut)
+
+
+def append(path: Path, row: Row) -> None:
+    """Add a row in one write, on the disk when this returns.
+
+    Raises: OutputError if the file cannot be written.
+    """
+    line = json.dumps(asdict(row), ensure_ascii=False, allow_nan=False) + "\n"
+    _write(path, lambda file: (os.write(file, line.encode()), os.fsync(file)))
+
+
+def _write(path: Path, work: Callable[[int], object]) -> None:
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        file = os.open(path, os.O_RDWR | os.O_CREAT | os.O_APPEND, 0o666)
+        try:
+            work(file)
+        finally:
+            os.close(file)
+    except OSError as error:
+        raise OutputError(
+            f"{path}: cannot be written: {error.strerror}; free some space or choose another folder"
+        ) from error
+
+
+def _row(path: Path, number: int, line: str) -> Row:
+    try:
+        fields: dict[str, Any] = json.loads(line)
+        fields["finishes"] = tuple(fields["finishes"])
+        return Row(**fields)
+    except (ValueError, TypeError, KeyError) as error:
+        raise ResultsError(f"{path}:{number}: is no row of results: {error}; remove the line") from error

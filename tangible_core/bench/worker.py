@@ -1,0 +1,103 @@
+"""One measurement in a process of its own: `python -m tangible_core.bench.worker`, a job in, a result out, both JSON.
+
+The job is one line on standard input, which stays open while somebody waits: when it ends, so does the process. The
+result is one line on what was standard output; whatever a method prints goes to standard error.
+"""
+
+import gc
+import json
+import math
+import os
+import statistics
+import sys
+import threading
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from time import perf_counter
+from typing import Any
+
+from ..data import Kind
+from ..registry import load_method
+from .memory import start_peak
+from .task import Task, load_task
+
+
+@dataclass(frozen=True)
+class Job:
+    """Everything that a process needs to know: plain values."""
+
+    kind: Kind
+    use: str
+    options: Mapping[str, Any]
+    scene: Mapping[str, Any]
+    """Options of the task's scene."""
+    perturb: str
+    """Name of a perturbation, or `none`."""
+    value: float
+    finishes: tuple[str, ...]
+    warmups: int
+    calls: int
+
+
+@dataclass(frozen=True)
+class Result:
+    """Fields of a row, as far as the process knows them."""
+
+    seconds: float
+    first_seconds: float
+    peak_memory_bytes: int | None
+    measures: dict[str, float | None]
+    """None where a measure is not finite: JSON has no NaN."""
+
+
+def measure(job: Job) -> Result:
+    """Run a job here. Raises: whatever the method raises."""
+    task = load_task(job.kind)
+    method = load_method(job.kind, job.use).model_validate(job.options)
+    scene = _damaged(task, job)
+    warm = [_timed(task, method, scene)[0] for _ in range(job.warmups)]
+    growth = start_peak()
+    seconds, result = _timed(task, method, scene)
+    peak = growth()
+    times = [seconds, *(_timed(task, method, scene)[0] for _ in range(job.calls - 1))]
+    for name in job.finishes:
+        result = task.finishes[name](result)
+    found = task.measure(result, scene)
+    plain = {name: float(value) if math.isfinite(value) else None for name, value in found.items()}
+    return Result(statistics.median(times), (warm or times)[0], peak, plain)
+
+
+def _damaged(task: Task, job: Job) -> Any:
+    scene = task.scene.model_validate(job.scene).open()
+    return task.perturbations[job.perturb].apply(scene, job.value) if job.perturb in task.perturbations else scene
+
+
+def _timed(task: Task, method: Any, scene: Any) -> tuple[float, Any]:
+    gc.collect()
+    start = perf_counter()
+    result = task.work(method, scene)
+    return perf_counter() - start, result
+
+
+def main() -> None:
+    """The process."""
+    answers = os.dup(1)
+    os.dup2(2, 1)
+    job = Job(**json.loads(sys.stdin.buffer.readline()))
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+    try:
+        answer: dict[str, Any] = asdict(measure(job))
+    except Exception as error:  # noqa: BLE001 - a method's failure is a result
+        answer = {"error": f"{type(error).__name__}: {error}"}
+    os.write(answers, (json.dumps(answer, allow_nan=False) + "\n").encode())
+
+
+def _end_with_parent() -> None:
+    """A method that nobody waits for any more would disturb the next measurement."""
+    while os.read(0, 1):
+        pass
+    os._exit(1)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,151 @@
+"""Methods that are made up, installed for this process and for the workers that it starts."""
+
+import os
+import subprocess
+import sys
+import textwrap
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from tangible_core.registry import Registry
+
+FAKES = """
+import os, signal, time
+from pathlib import Path
+from typing import Annotated
+import numpy as np
+from pydantic import Field
+from tangible_core.data import DisparityMap
+from tangible_core.errors import PictureError
+from tangible_core.interfaces import DepthEstimator
+
+
+def flat(views, value_px):
+    return DisparityMap(np.full(views.shape, value_px, np.float32))
+
+
+class Constant(DepthEstimator):
+    '''One disparity everywhere.'''
+
+    value_px: float = 4.0
+    seconds: float = 0.0
+
+    def estimate(self, views):
+        time.sleep(self.seconds)
+        return flat(views, self.value_px)
+
+
+class HalfKnown(DepthEstimator):
+    '''The right half is unknown.'''
+
+    value_px: float = 4.0
+
+    def estimate(self, views):
+        found = np.full(views.shape, self.value_px, np.float32)
+        found[:, views.shape[1] // 2 :] = np.nan
+        return DisparityMap(found)
+
+
+class Hungry(DepthEstimator):
+    '''Takes 64 MB and gives them back.'''
+
+    def estimate(self, views):
+        np.ones(8_000_000)
+        return flat(views, 4)
+
+
+class Talks(DepthEstimator):
+    '''Prints where answers are expected.'''
+
+    def estimate(self, views):
+        print('{"seconds": 1}')
+        os.system("echo more")
+        return flat(views, 4)
+
+
+class Ranged(DepthEstimator):
+    '''Finds the end of its range.'''
+
+    max_disparity_px: Annotated[int, Field(le=1000)] = 8
+
+    def estimate(self, views):
+        return flat(views, self.max_disparity_px)
+
+
+class Raises(DepthEstimator):
+    '''Cannot.'''
+
+    def estimate(self, views):
+        raise PictureError("not this picture")
+
+
+class Dies(DepthEstimator):
+    '''Takes its process along.'''
+
+    how: str = "SIGKILL"
+
+    def estimate(self, views):
+        os.write(2, b"last words")
+        os._exit(7) if self.how == "exit" else os.kill(os.getpid(), getattr(signal, self.how))
+
+
+class Sleeps(DepthEstimator):
+    '''Never ends.'''
+
+    pid_file: Path | None = None
+
+    def estimate(self, views):
+        if self.pid_file:
+            self.pid_file.write_text(str(os.getpid()))
+        time.sleep(600)
+
+
+class Relative(DepthEstimator):
+    '''Nearness without a unit.'''
+
+    def estimate(self, views):
+        return DisparityMap(np.zeros(views.shape, np.float32), unit="relative")
+"""
+NAMES = {
+    "constant": "Constant",
+    "half": "HalfKnown",
+    "hungry": "Hungry",
+    "talks": "Talks",
+    "ranged": "Ranged",
+    "raises": "Raises",
+    "dies": "Dies",
+    "sleeps": "Sleeps",
+    "relative": "Relative",
+}
+
+
+@pytest.fixture
+def registry(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Registry:
+    """What is installed, and the fakes; processes that are started find them too."""
+    site = tmp_path / "site"
+    info = site / "fakes-1.0.dist-info"
+    info.mkdir(parents=True)
+    info.joinpath("METADATA").write_text("Metadata-Version: 2.1\nName: fakes\nVersion: 1.0\n")
+    points = "\n".join(f"{name} = bench_fakes:{cls}" for name, cls in NAMES.items())
+    info.joinpath("entry_points.txt").write_text(f"[tangible.depth]\n{points}\n")
+    site.joinpath("bench_fakes.py").write_text(textwrap.dedent(FAKES))
+    monkeypatch.syspath_prepend(site)
+    monkeypatch.setenv("PYTHONPATH", str(site), prepend=os.pathsep)
+    monkeypatch.delitem(sys.modules, "bench_fakes", raising=False)
+    return Registry()
+
+
+Command = Callable[..., "subprocess.Popen[str]"]
+
+
+@pytest.fixture
+def tangible(registry: Registry) -> Command:
+    """Start the command line in a process of its own."""
+
+    def start(*words: str | Path) -> "subprocess.Popen[str]":
+        command = [sys.executable, "-c", "from tangible_core.cli import main; main()", *map(str, words)]
+        return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+    return start

@@ -1,0 +1,67 @@
+"""The plot: drawn, legible, and without overlaps."""
+
+from itertools import combinations
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.text import Text
+from PIL import Image
+
+from tangible_core.bench.labels import place_labels
+from tangible_core.bench.plot import draw_plot
+from tangible_core.bench.summary import Cell
+from tangible_core.bench.table import Results
+from tangible_core.bench.task import load_task
+
+
+def results(points: dict[str, tuple[float, float]]) -> Results:
+    found = [
+        Cell(name, "s", "none", seconds=[seconds], measures={"bad2": bad2, "bad2_noc": bad2 / 2})
+        for name, (seconds, bad2) in points.items()
+    ]
+    return Results(load_task("depth"), {cell.key: cell for cell in found}, None)
+
+
+@pytest.mark.parametrize(
+    "points",
+    [
+        {"one": (0.1, 5.0)},
+        {"same": (0.1, 5.0), "place": (0.1, 5.0)},
+        {f"method {index}": (0.01 * 2**index, 20.0 - index) for index in range(15)},
+        {"perfect": (1e-6, 0.0), "endless": (1e4, 100.0), "unknown": (1.0, float("nan"))},
+    ],
+    ids=["one", "the same", "many", "extremes"],
+)
+def test_a_plot_is_drawn(tmp_path: Path, points: dict[str, tuple[float, float]]):
+    assert draw_plot(tmp_path / "plot.png", results(points))
+    with Image.open(tmp_path / "plot.png") as image:
+        assert image.size == (1920, 720)
+
+
+def test_nothing_to_draw_draws_nothing(tmp_path: Path):
+    failed = Cell("m", "s", "none", error="no")
+    assert not draw_plot(tmp_path / "plot.png", Results(load_task("depth"), {failed.key: failed}, None))
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_names_cover_neither_each_other_nor_points(seed: int):
+    points = np.random.default_rng(seed).normal(0.5, 0.2, (9, 2)).clip(0, 1)
+    figure = Figure(figsize=(6.4, 4.8), dpi=100)
+    canvas = FigureCanvasAgg(figure)
+    axes = figure.subplots()
+    axes.set(xlim=(-0.2, 1.2), ylim=(-0.2, 1.2))
+    canvas.draw()
+    place_labels(axes, [(f"method {index}", x, y) for index, (x, y) in enumerate(points)])
+    canvas.draw()
+    boxes = [Text.get_window_extent(text) for text in axes.texts]  # without the line to the point
+    assert len(boxes) == 9
+    for one, other in combinations(boxes, 2):
+        assert not (one.padded(-1).overlaps(other.padded(-1)))
+    for box in boxes:
+        assert axes.bbox.padded(1).containsx(box.x0) and axes.bbox.padded(1).containsx(box.x1)
+        inside = [box.padded(-1).contains(*axes.transData.transform(point)) for point in points]
+        assert not np.any(inside)

@@ -3,6 +3,7 @@
 Convention: left^T F right = 0 (see `epipolar`).
 """
 
+from collections.abc import Callable
 from math import lgamma, log
 from typing import Literal, NamedTuple
 
@@ -14,6 +15,8 @@ from tangible_core.errors import GeometryError
 from .epipolar import homogeneous, sampson_distance
 
 Degeneracy = Literal["not finite", "too few", "duplicate", "collinear", "homography", "outliers"]
+Fit = Callable[[np.ndarray, np.ndarray, np.ndarray | None], Float64[np.ndarray, "3 3"]]
+"""Left points, right points, a weight for each match's equation -> F, as `eight_point`."""
 FEWEST = 8
 """Matches the eight-point method needs."""
 
@@ -101,10 +104,13 @@ _NO_PARALLAX = (
 )
 
 
-def robust_fundamental(left_px: np.ndarray, right_px: np.ndarray, threshold_px: float = 1.0) -> Fundamental:
+def robust_fundamental(
+    left_px: np.ndarray, right_px: np.ndarray, threshold_px: float = 1.0, fit: Fit = eight_point
+) -> Fundamental:
     """F from matches of which some are wrong: MAGSAC (OpenCV), then reweighted eight-point on what it keeps.
 
-    threshold_px is the Sampson distance up to which a match counts as right. The same matches give the same F.
+    threshold_px is the Sampson distance up to which a match counts as right; fit makes F from those that are.
+    The same matches give the same F.
     Raises: DegenerateMatches as `check_matches`; "homography" if hardly any match stands off the best homography;
     "outliers" if no F explains more matches than chance would.
     Source: Barath et al., MAGSAC++, CVPR 2020; Moisan & Stival, IJCV 2004, for what chance explains.
@@ -120,7 +126,7 @@ def robust_fundamental(left_px: np.ndarray, right_px: np.ndarray, threshold_px: 
         )
     if _parallax_false_alarms(left_px, right_px, first.inliers, flat, threshold_px) > 0:
         raise DegenerateMatches("homography", _NO_PARALLAX)
-    return _refine(first, left_px, right_px, threshold_px)
+    return _refine(first, left_px, right_px, threshold_px, fit)
 
 
 def _magsac(left_px: np.ndarray, right_px: np.ndarray, threshold_px: float) -> Fundamental | None:
@@ -177,13 +183,15 @@ def _log_choose(n: int, k: int) -> float:
     return lgamma(n + 1) - lgamma(k + 1) - lgamma(n - k + 1)
 
 
-def _refine(first: Fundamental, left_px: np.ndarray, right_px: np.ndarray, threshold_px: float) -> Fundamental:
+def _refine(
+    first: Fundamental, left_px: np.ndarray, right_px: np.ndarray, threshold_px: float, fit: Fit
+) -> Fundamental:
     """Eight-point on the inliers, each equation weighted so that its residual is in pixels and doubt counts less."""
     best = first
     for _ in range(5):
         left, right = left_px[best.inliers], right_px[best.inliers]
         doubt = 1 / np.hypot(1, sampson_distance(best.matrix, left, right) / threshold_px)
-        matrix = eight_point(left, right, doubt * pixel_weights(best.matrix, left, right))
+        matrix = fit(left, right, doubt * pixel_weights(best.matrix, left, right))
         inliers = sampson_distance(matrix, left_px, right_px) <= threshold_px
         if np.count_nonzero(inliers) < np.count_nonzero(best.inliers):
             break

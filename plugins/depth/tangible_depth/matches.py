@@ -10,6 +10,8 @@ from jaxtyping import Float32, Float64, Int64, UInt8
 
 MOST_PIXELS = 2_000_000
 """SIFT looks at pictures reduced to this: it needs about 300 bytes a pixel."""
+FLAT = 1e-4
+"""Length of a window less its mean, white being 1, below which it holds nothing but rounding."""
 SMALLEST_SIDE = 16
 """Pictures narrower than this hold no window worth following."""
 
@@ -101,6 +103,19 @@ def corner_matches(
     return Matches(left_corners[chosen[:, 0]].astype(np.float64), refined)
 
 
+def inverse_lengths(grey: Float32[np.ndarray, "h w"], half: int) -> Float32[np.ndarray, "h w"]:
+    """One over the length of each pixel's window less its mean; 0 where it is flat. Edges repeat outwards."""
+    import cv2
+
+    side = (2 * half + 1, 2 * half + 1)
+    # The difference of two large sums: in float32 it comes out negative in a quarter of the windows.
+    exact = grey.astype(np.float64)
+    mean = cv2.boxFilter(exact, -1, side, borderType=cv2.BORDER_REPLICATE)
+    square = cv2.sqrBoxFilter(exact, cv2.CV_64F, side, borderType=cv2.BORDER_REPLICATE)
+    length = np.sqrt(np.maximum(square - mean**2, 0) * side[0] * side[1])
+    return np.where(length > FLAT, 1 / np.maximum(length, FLAT), 0).astype(np.float32)
+
+
 def normalised_windows(
     grey: Float32[np.ndarray, "h w"], points: Int64[np.ndarray, "n 2"], half: int
 ) -> Float32[np.ndarray, "n k"]:
@@ -110,7 +125,7 @@ def normalised_windows(
     flat = windows[points[:, 1], points[:, 0]].reshape(len(points), -1)
     centred = flat - flat.mean(axis=1, keepdims=True)
     length = np.linalg.norm(centred, axis=1, keepdims=True)
-    return np.where(length > 1e-4, centred / np.maximum(length, 1e-12), 0).astype(np.float32)
+    return np.where(length > FLAT, centred / np.maximum(length, FLAT), 0).astype(np.float32)
 
 
 def _refined(

@@ -14,10 +14,10 @@ from tangible_core.data import DisparityMap, Views
 from tangible_core.errors import GeometryError, PictureError
 from tangible_core.pictures import to_grey
 
-from .fundamental import DegenerateMatches, robust_fundamental
+from .alignment import aligning_homographies
+from .fundamental import DegenerateMatches, Fit, eight_point, robust_fundamental
 from .homographies import transform
 from .matches import Matches, flow_matches, sift_matches
-from .quasi_euclidean import aligning_homographies
 from .rectified import Rectified, as_it_is, warped
 
 logger = logging.getLogger(__name__)
@@ -39,12 +39,15 @@ def with_rectification(views: Views, estimate: Callable[[Views], DisparityMap]) 
     return rectified.to_original(estimate(rectified.views))
 
 
-def rectify(views: Views, tolerance_px: float = 0.35, matches: Matches | None = None) -> Rectified:
+def rectify(
+    views: Views, tolerance_px: float = 0.35, matches: Matches | None = None, fit: Fit = eight_point
+) -> Rectified:
     """A pair of unknown cameras turned so that its rows correspond.
 
     Skipped, with the reason in `why`, if the views carry a calibration, if the median vertical offset of their
     matches is within tolerance_px already, if turning would not lessen it, or if there are too few matches to tell.
-    matches: those to go by; found by optical flow and SIFT when left out.
+    matches: those to go by; found by optical flow and SIFT when left out. fit: makes F of
+    trusted matches.
     Raises: PictureError if there is only one view; CannotRectify if the rows do not correspond but no geometry, or
     only one that distorts the pictures, explains the matches.
     """
@@ -62,7 +65,7 @@ def rectify(views: Views, tolerance_px: float = 0.35, matches: Matches | None = 
         return _left_alone(views, f"only {len(matches.left_px)} matches, too few to tell; taken as rectified")
     if (before := _median_offset(matches)) <= tolerance_px:
         return _left_alone(views, f"already rectified: median vertical offset {before:.2f} px")
-    return _turned(views, matches, before)
+    return _turned(views, matches, before, fit)
 
 
 def _left_alone(views: Views, why: str) -> Rectified:
@@ -74,9 +77,9 @@ def _median_offset(matches: Matches) -> float:
     return float(np.median(np.abs(matches.vertical_px)))
 
 
-def _turned(views: Views, matches: Matches, before: float) -> Rectified:
+def _turned(views: Views, matches: Matches, before: float, fit: Fit) -> Rectified:
     try:
-        found = robust_fundamental(*matches, threshold_px=max(1.0, max(views.shape) / 1500))
+        found = robust_fundamental(*matches, max(1.0, max(views.shape) / 1500), fit)
     except DegenerateMatches as error:
         raise CannotRectify(f"matches lie {before:.1f} px off their rows (median), and there is {error}") from error
     kept = Matches(matches.left_px[found.inliers], matches.right_px[found.inliers])

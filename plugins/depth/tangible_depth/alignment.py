@@ -15,8 +15,8 @@ from .homographies import transform
 from .matches import Matches
 
 _PRIOR = np.array([0.5, 0.2, 0.5, 0.2, 0.2, 0.5, 0.5])
-"""Standard deviations about the start: left roll (radians) and tilt along x; right roll, tilts along x and y, logarithm
-of scale, shift along y; tilt is the change of scale from a picture's middle to half its longer side, shift in that unit."""
+"""Standard deviations about the start: left roll and tilt along x; right roll, tilts along x and y, logarithm of scale,
+shift along y. Rolls in radians, lengths in half the longer side of the picture, tilts in one over that."""
 _NOISE_PX = 0.3
 
 
@@ -56,12 +56,12 @@ def _epipole_roll(fundamental: np.ndarray, shape: tuple[int, int]) -> float:
 
 
 def _pair(values: np.ndarray, shape: tuple[int, int]) -> tuple[np.ndarray, np.ndarray]:
-    left_roll, left_tilt, right_roll, *right_tilt, log_scale, shift = values
+    left_roll, left_tilt, right_roll, right_tilt_x, right_tilt_y, log_scale, shift = values
     rows, columns = shape
     half = max(shape) / 2
     to_unit = np.array([[1 / half, 0, (1 - columns) / (2 * half)], [0, 1 / half, (1 - rows) / (2 * half)], [0, 0, 1]])
     left = _similarity_and_tilt(left_roll, (left_tilt, 0.0), 1.0, 0.0)
-    right = _similarity_and_tilt(right_roll, right_tilt, np.exp(log_scale), shift)
+    right = _similarity_and_tilt(right_roll, (right_tilt_x, right_tilt_y), np.exp(log_scale), shift)
     back = np.linalg.inv(to_unit)
     return back @ left @ to_unit, back @ right @ to_unit
 

@@ -55,6 +55,17 @@ def _weighted_mean(
     return np.where(reached, total / np.where(reached, weight, 1), np.float32(np.nan)), weight
 
 
+def without_speckles(disparity_px: Float32[np.ndarray, "h w"], most_px: int = 60) -> Float32[np.ndarray, "h w"]:
+    """Unknown where at most most_px connected pixels of like disparity stand alone: a chance match, mostly."""
+    import cv2
+
+    lowest = -2048
+    sixteenths = np.where(np.isfinite(disparity_px), 16 * disparity_px, 16 * lowest)
+    raster = np.clip(np.rint(sixteenths), 16 * lowest, 32767).astype(np.int16)
+    cv2.filterSpeckles(raster, 16 * lowest, most_px, 16)
+    return np.where(raster > 16 * lowest, disparity_px, np.float32(np.nan))
+
+
 def fill_nearest(values: Float32[np.ndarray, "h w"]) -> Float32[np.ndarray, "h w"]:
     """NaN replaced by the nearest known value; at least one must be known."""
     import cv2

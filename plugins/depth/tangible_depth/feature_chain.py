@@ -5,7 +5,7 @@ features -> matches -> fundamental matrix -> rectification -> matches along rows
 
 import logging
 from collections.abc import Callable
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Float32, Int64
@@ -19,15 +19,14 @@ from .fundamental import Fit
 from .harris import corners, least_response, row_edges
 from .homographies import transform
 from .matches import Matches, corner_matches
-from .rectification import FEWEST_TO_TELL, rectify
+from .rectification import rectify
 from .rectified import Rectified
+from .search_range import MOST_CORNERS, MaxDisparity, range_of_shifts, within
 
 logger = logging.getLogger(__name__)
 
 Grey = Float32[np.ndarray, "h w"]
 Row = Float32[np.ndarray, "n"]
-MOST_CORNERS = 2000
-"""How many corners of each picture are matched all against all to find the geometry."""
 
 
 class Parts(NamedTuple):
@@ -40,7 +39,7 @@ class Parts(NamedTuple):
 
 
 def disparity_by_features(
-    views: Views, parts: Parts, least_contrast: float, least_score: float, max_disparity_px: int | Literal["auto"]
+    views: Views, parts: Parts, least_contrast: float, least_score: float, max_disparity_px: MaxDisparity
 ) -> DisparityMap:
     """Dense disparity from scattered matches of corners and edges, whatever way the cameras looked.
 
@@ -50,9 +49,8 @@ def disparity_by_features(
         raise PictureError("matching features needs two views; give a right one")
     left, right = to_grey(views.left), to_grey(views.right)
     least = least_response(least_contrast)
-    matches = corner_matches(
-        left, right, *(corners(parts.response(grey), least, MOST_CORNERS) for grey in (left, right))
-    )
+    seen = [corners(parts.response(grey), least, MOST_CORNERS) for grey in (left, right)]
+    matches = corner_matches(left, right, seen[0], seen[1])
     rectified = rectify(views, matches=matches, fit=parts.fit)
     span = _range(matches, rectified, max_disparity_px)
     return rectified.to_original(_match_features(rectified.views, parts, least, least_score, *span))
@@ -72,26 +70,10 @@ def _match_features(views: Views, parts: Parts, least: float, least_score: float
     return assemble(disparity, score, views.left)
 
 
-def _range(matches: Matches, rectified: Rectified, most: int | Literal["auto"]) -> tuple[int, int]:
+def _range(matches: Matches, rectified: Rectified, most: MaxDisparity) -> tuple[int, int]:
     """Lowest and highest disparity to try in the rectified views."""
     width = rectified.views.shape[1]
     if most != "auto":
-        low, high = -rectified.offset_px, most - rectified.offset_px
-    else:
-        low, high = _seen_range(matches, rectified)
-    return max(int(np.floor(low)), 1 - width), min(int(np.ceil(high)), width - 1)
-
-
-def _seen_range(matches: Matches, rectified: Rectified) -> tuple[float, float]:
-    """The disparities of the matches that lie on their rows, with a tenth of their range to spare.
-
-    Where hardly any does: from zero to a quarter of the width.
-    """
+        return within(-rectified.offset_px, most - rectified.offset_px, width)
     left = transform(rectified.left_homography, matches.left_px)
-    shift = left - transform(rectified.right_homography, matches.right_px)
-    on_row = np.abs(shift[:, 1]) <= 2
-    if np.count_nonzero(on_row) < FEWEST_TO_TELL:
-        return 0.0, rectified.views.shape[1] / 4
-    low, high = np.percentile(shift[on_row, 0], [1, 99])
-    margin = max(4.0, 0.1 * (high - low))
-    return low - margin, high + margin
+    return range_of_shifts(left - transform(rectified.right_homography, matches.right_px), width)

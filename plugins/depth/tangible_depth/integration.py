@@ -32,4 +32,4 @@ def integrate(x_slope: Float[np.ndarray, "h w"], y_slope: Float[np.ndarray, "h w
     eigenvalue[0, 0] = 1
     spectrum /= eigenvalue
     spectrum[0, 0] = 0
-    return idctn(spectrum, type=2)
+    return np.asarray(idctn(spectrum, type=2))

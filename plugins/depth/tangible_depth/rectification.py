@@ -96,9 +96,12 @@ def _turned(views: Views, matches: Matches, before: float, fit: Fit) -> Rectifie
 
 
 def _search_start(disparity_px: Float64[np.ndarray, "n"]) -> int:
-    """A disparity below all but stray matches, with a tenth of their range to spare."""
+    """Zero, or a disparity below all but stray matches where the cameras look past each other and some are negative.
+
+    Never above zero: a far wall without detail has no match to speak for it.
+    """
     low, high = np.percentile(disparity_px, [1, 99])
-    return int(np.floor(low - max(4.0, 0.1 * (high - low))))
+    return min(0, int(np.floor(low - max(4.0, 0.1 * (high - low)))))
 
 
 def check_homographies(

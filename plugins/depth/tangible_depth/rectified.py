@@ -16,8 +16,7 @@ class Rectified(Record):
     """A pair whose matches lie on one row, how it came about, and the way back to the pictures as they were.
 
     left_homography, right_homography: (3, 3), from a point of the original picture to its place in `views`.
-    offset_px: what to add to a disparity found in `views`; `rectify` moves the right view so that the disparities to
-    search start near zero.
+    offset_px: what to add to a disparity found in `views`; `rectify` moves the right view so that none is negative.
     why: what was done or why nothing was, in words; `skipped` tells which.
     """
 

@@ -42,8 +42,8 @@ def aligning_homographies(
     found = least_squares(cost, start, x_scale=_PRIOR * 0.1, max_nfev=200).x
     left, right = _pair(found, shape)
     if abs(found[0]) > np.pi / 4 and _runs_backwards(left, right, matches):
-        found[[0, 2]] += np.pi
-        left, right = _pair(found, shape)
+        # Both turned over: what lies along the axes changes its sign.
+        left, right = _pair(found * [1, -1, 1, -1, -1, 1, -1] + np.pi * np.array([1, 0, 1, 0, 0, 0, 0]), shape)
     return left, right
 
 

@@ -55,14 +55,19 @@ class KorniaReport(DepthEstimator):
         return disparity[rows, columns], score[rows, columns]
 
 
+_BORDER = 4
+
+
 def kornia_response(grey: Grey, torch_device: TorchDevice = "auto") -> Grey:
-    """`harris.harris_response` by kornia, on the same scale; borders differ."""
+    """`harris.harris_response` by kornia, on the same scale; at the border edges repeat."""
     import torch
     from kornia.feature import harris_response
 
-    picture = torch.from_numpy(np.ascontiguousarray(grey)).to(pick_device(torch_device))[None, None]
-    # kornia halves (-1, 0, 1), and the response goes with the fourth power of the slope.
-    return 16 * harris_response(picture, 0.04, grads_mode="diff")[0, 0].cpu().numpy()
+    # kornia mirrors at the border, which takes more rows and columns than the smallest pictures have.
+    picture = torch.from_numpy(np.pad(grey, _BORDER, mode="edge")).to(pick_device(torch_device))[None, None]
+    # It halves (-1, 0, 1), and the response goes with the fourth power of the slope.
+    response = 16 * harris_response(picture, 0.04, grads_mode="diff")[0, 0].cpu().numpy()
+    return response[_BORDER:-_BORDER, _BORDER:-_BORDER]
 
 
 def kornia_eight_point(

@@ -99,6 +99,8 @@ def corner_matches(
     score = patches @ normalised_windows(right, right_corners, half).T
     chosen = _mutual(score)
     chosen = chosen[score[chosen[:, 0], chosen[:, 1]] >= least_score]
+    if not len(chosen):
+        return NO_MATCHES
     refined = _refined(patches[chosen[:, 0]], right, right_corners[chosen[:, 1]], half)
     return Matches(left_corners[chosen[:, 0]].astype(np.float64), refined)
 
@@ -121,8 +123,9 @@ def normalised_windows(
 ) -> Float32[np.ndarray, "n k"]:
     """The windows round some points less their mean and over their length; zero where a window is flat."""
     padded = np.pad(grey, half, mode="edge")
-    windows = np.lib.stride_tricks.sliding_window_view(padded, (2 * half + 1, 2 * half + 1))
-    flat = windows[points[:, 1], points[:, 0]].reshape(len(points), -1)
+    side = 2 * half + 1
+    windows = np.lib.stride_tricks.sliding_window_view(padded, (side, side))
+    flat = windows[points[:, 1], points[:, 0]].reshape(len(points), side * side)
     centred = flat - flat.mean(axis=1, keepdims=True)
     length = np.linalg.norm(centred, axis=1, keepdims=True)
     return np.where(length > FLAT, centred / np.maximum(length, FLAT), 0).astype(np.float32)

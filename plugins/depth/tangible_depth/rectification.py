@@ -126,7 +126,8 @@ def check_homographies(
             raise CannotRectify(f"the {side} picture would take {ratio:.2g} times its area; turn the cameras less")
     if (worst := float(np.percentile(offsets_px, 95))) > most_offset_px:
         raise CannotRectify(
-            f"one match in twenty would still lie over {worst:.1f} px off its row; did the camera go forwards, does a lens distort?"
+            f"one match in twenty would still lie over {worst:.1f} px off its row: "
+            "the camera went forwards, or a lens distorts"
         )
 
 

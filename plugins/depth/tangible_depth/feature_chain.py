@@ -15,13 +15,13 @@ from tangible_core.errors import PictureError
 from tangible_core.pictures import to_grey
 
 from .assembling import assemble
+from .corner_range import MOST_CORNERS, MaxDisparity, range_of_shifts, within
 from .fundamental import Fit
 from .harris import corners, least_response, row_edges
 from .homographies import transform
 from .matches import Matches, corner_matches
 from .rectification import rectify
 from .rectified import Rectified
-from .search_range import MOST_CORNERS, MaxDisparity, range_of_shifts, within
 
 logger = logging.getLogger(__name__)
 

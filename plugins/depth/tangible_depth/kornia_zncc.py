@@ -12,8 +12,8 @@ from tangible_core.interfaces import DepthEstimator
 from tangible_core.pictures import to_grey
 
 from .assembling import assemble, without_speckles
+from .corner_range import range_of_pair
 from .rectification import with_rectification
-from .search_range import range_of_pair
 from .torch_extra import TorchDevice, need, pick_device
 
 

@@ -60,7 +60,7 @@ def sift_matches(left: Float32[np.ndarray, "h w"], right: Float32[np.ndarray, "h
     return found if scale == 1 else _sharpened(found, full)
 
 
-def _reduced(picture: UInt8[np.ndarray, "h w"], scale: float) -> UInt8[np.ndarray, "h w"]:
+def _reduced(picture: UInt8[np.ndarray, "h w"], scale: float) -> UInt8[np.ndarray, "small_h small_w"]:
     import cv2
 
     return picture if scale == 1 else cv2.resize(picture, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA)
@@ -153,7 +153,8 @@ def _refined(
 
 def parabola(before: np.ndarray, at: np.ndarray, after: np.ndarray) -> Float64[np.ndarray, "n"]:
     """Where the parabola through three equidistant scores peaks, -0.5..0.5 from the middle one; 0 if it has no peak."""
-    bend = 2.0 * at - before - after
+    before, at, after = (np.asarray(part, np.float64) for part in (before, at, after))
+    bend = 2 * at - before - after
     return np.where(bend > 0, np.clip(0.5 * (after - before) / np.where(bend > 0, bend, 1), -0.5, 0.5), 0.0)
 
 

@@ -49,7 +49,7 @@ class Rectified(Record):
         left[:, 0] -= disparity_px.ravel().astype(np.float64) - self.offset_px
         return transform(np.linalg.inv(self.right_homography), left).reshape(*self.original_shape, 2)
 
-    def _sample(self, values: Float32[np.ndarray, "h w"], outside: float) -> Float32[np.ndarray, "h w"]:
+    def _sample(self, values: Float32[np.ndarray, "h w"], outside: float) -> Float32[np.ndarray, "rows columns"]:
         """The nearest value: an average across an edge of depth would be neither side's."""
         import cv2
 

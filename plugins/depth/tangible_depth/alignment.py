@@ -21,17 +21,17 @@ _NOISE_PX = 0.3
 
 
 def aligning_homographies(
-    fundamental: np.ndarray, matches: Matches, shape: tuple[int, int]
+    matches: Matches, shape: tuple[int, int], roll: float = 0.0
 ) -> tuple[Float64[np.ndarray, "3 3"], Float64[np.ndarray, "3 3"]]:
     """Homographies (left, right), each (3, 3), that bring trusted matches of two pictures (h, w) onto common rows.
 
     The middle of each picture keeps its column: a disparity is the shift against the right picture turned about its
-    middle. The fundamental matrix gives the start, the direction of the left epipole.
+    middle. roll: where to start, radians, see `epipole_roll`.
     """
     from scipy.optimize import least_squares
 
     start = np.zeros(7)
-    start[[0, 2]] = _epipole_roll(fundamental, shape)
+    start[[0, 2]] = roll
 
     def cost(values: np.ndarray) -> np.ndarray:
         left, right = (transform(h, points) for h, points in zip(_pair(values, shape), matches, strict=True))
@@ -47,7 +47,7 @@ def aligning_homographies(
     return left, right
 
 
-def _epipole_roll(fundamental: np.ndarray, shape: tuple[int, int]) -> float:
+def epipole_roll(fundamental: np.ndarray, shape: tuple[int, int]) -> float:
     """The turn that lays the line from the picture's middle to the left epipole along the rows."""
     x, y, w = epipoles(fundamental)[0]
     direction = np.array([x - w * (shape[1] - 1) / 2, y - w * (shape[0] - 1) / 2])

@@ -117,7 +117,7 @@ def robust_fundamental(
     """
     check_matches(left_px, right_px)
     first = _magsac(left_px, right_px, threshold_px)
-    flat = _on_homography(left_px, right_px, threshold_px)
+    flat = on_homography(left_px, right_px, threshold_px)
     if first is None and 2 * np.count_nonzero(flat) > len(flat):
         raise DegenerateMatches("homography", _NO_PARALLAX)
     if first is None or _false_alarms(left_px, right_px, first.inliers, threshold_px) > 0:
@@ -140,7 +140,7 @@ def _magsac(left_px: np.ndarray, right_px: np.ndarray, threshold_px: float) -> F
     return Fundamental(matrix, sampson_distance(matrix, left_px, right_px) <= threshold_px)
 
 
-def _on_homography(left_px: np.ndarray, right_px: np.ndarray, threshold_px: float) -> Bool[np.ndarray, "n"]:
+def on_homography(left_px: np.ndarray, right_px: np.ndarray, threshold_px: float) -> Bool[np.ndarray, "n"]:
     """Matches that stand less than three thresholds off the best homography from right to left."""
     import cv2
 

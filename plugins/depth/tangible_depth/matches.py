@@ -10,6 +10,8 @@ from jaxtyping import Float32, Float64, Int64, UInt8
 
 MOST_PIXELS = 2_000_000
 """SIFT looks at pictures reduced to this: it needs about 300 bytes a pixel."""
+FLOW_PIXELS = 60_000
+"""Optical flow finds its corners in pictures reduced to this."""
 FLAT = 1e-4
 """Length of a window less its mean, white being 1, below which it holds nothing but rounding."""
 SMALLEST_SIDE = 16
@@ -158,17 +160,18 @@ def parabola(before: np.ndarray, at: np.ndarray, after: np.ndarray) -> Float64[n
     return np.where(bend > 0, np.clip(0.5 * (after - before) / np.where(bend > 0, bend, 1), -0.5, 0.5), 0.0)
 
 
-def flow_matches(left: Float32[np.ndarray, "h w"], right: Float32[np.ndarray, "h w"], most: int = 400) -> Matches:
-    """Strong corners followed into the right picture and back (pyramidal Lucas-Kanade): cheap, to a tenth of a pixel.
+def flow_matches(left: Float32[np.ndarray, "h w"], right: Float32[np.ndarray, "h w"], most: int = 150) -> Matches:
+    """Strong corners followed into the right picture and back (pyramidal Lucas-Kanade): to a tenth of a pixel.
 
-    What does not come back to within half a pixel is left out, which removes most wrong ones.
+    Cheap, because they are found and followed in small pictures and only placed in the full ones. What does not come
+    back to within half a small pixel is left out, which removes most wrong ones.
     """
     import cv2
 
     if min(left.shape) < SMALLEST_SIDE:
         return NO_MATCHES
     full = stretch8(left), stretch8(right)
-    scale = min(1.0, (500_000 / left.size) ** 0.5)
+    scale = min(1.0, (FLOW_PIXELS / left.size) ** 0.5)
     small = [_reduced(grey, scale) for grey in full]
     start = cv2.goodFeaturesToTrack(small[0], most, 0.01, 8)
     if start is None:

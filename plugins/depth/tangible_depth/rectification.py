@@ -8,14 +8,14 @@ import logging
 from collections.abc import Callable
 
 import numpy as np
-from jaxtyping import Float64
+from jaxtyping import Bool, Float64
 
 from tangible_core.data import DisparityMap, Views
 from tangible_core.errors import GeometryError, PictureError
 from tangible_core.pictures import to_grey
 
-from .alignment import aligning_homographies
-from .fundamental import DegenerateMatches, Fit, eight_point, robust_fundamental
+from .alignment import aligning_homographies, epipole_roll
+from .fundamental import DegenerateMatches, Fit, eight_point, on_homography, robust_fundamental
 from .homographies import transform
 from .matches import Matches, flow_matches, sift_matches
 from .rectified import Rectified, as_it_is, warped
@@ -28,6 +28,9 @@ FEWEST_TO_TELL = 20
 
 class CannotRectify(GeometryError):
     """A pair whose rows do not correspond and that cannot be turned so that they do."""
+
+    def __init__(self, message: str) -> None:
+        super().__init__(f"cannot rectify: {message}; to match the rows as they are, leave rectification out")
 
 
 def with_rectification(views: Views, estimate: Callable[[Views], DisparityMap]) -> DisparityMap:
@@ -48,6 +51,7 @@ def rectify(
     matches is within tolerance_px already, if turning would not lessen it, or if there are too few matches to tell.
     matches: those to go by; found by optical flow and SIFT when left out. fit: makes F of
     trusted matches.
+    A flat scene, or a camera that only turned, is aligned as well, with a warning: the matches leave it open how.
     Raises: PictureError if there is only one view; CannotRectify if the rows do not correspond but no geometry, or
     only one that distorts the pictures, explains the matches.
     """
@@ -78,12 +82,9 @@ def _median_offset(matches: Matches) -> float:
 
 
 def _turned(views: Views, matches: Matches, before: float, fit: Fit) -> Rectified:
-    try:
-        found = robust_fundamental(*matches, max(1.0, max(views.shape) / 1500), fit)
-    except DegenerateMatches as error:
-        raise CannotRectify(f"matches lie {before:.1f} px off their rows (median), and there is {error}") from error
-    kept = Matches(matches.left_px[found.inliers], matches.right_px[found.inliers])
-    pair = aligning_homographies(found.matrix, kept, views.shape)
+    trusted, roll = _trusted(matches, views.shape, fit)
+    kept = Matches(matches.left_px[trusted], matches.right_px[trusted])
+    pair = aligning_homographies(kept, views.shape, roll)
     turned = [transform(h, points) for h, points in zip(pair, kept, strict=True)]
     offsets = np.abs(turned[1][:, 1] - turned[0][:, 1])
     if (after := float(np.median(offsets))) >= before:
@@ -93,6 +94,20 @@ def _turned(views: Views, matches: Matches, before: float, fit: Fit) -> Rectifie
     why = f"median vertical offset {before:.2f} px, now {after:.2f}"
     logger.info("rectified: %s", why)
     return warped(views, pair, why, _search_start(disparity))
+
+
+def _trusted(matches: Matches, shape: tuple[int, int], fit: Fit) -> tuple[Bool[np.ndarray, "n"], float]:
+    """Which matches one geometry explains, and the roll that lays its epipole along the rows."""
+    threshold = max(1.0, max(shape) / 1500)
+    try:
+        found = robust_fundamental(*matches, threshold, fit)
+    except DegenerateMatches as error:
+        if error.reason != "homography":
+            raise CannotRectify(f"matches do not lie on their rows, and there is {error}") from error
+        # A flat scene leaves the epipole open: any that aligns the matches will do, and the nearest bends least.
+        logger.warning("rectifying without parallax: %s", error)
+        return on_homography(*matches, threshold), 0.0
+    return found.inliers, epipole_roll(found.matrix, shape)
 
 
 def _search_start(disparity_px: Float64[np.ndarray, "n"]) -> int:

@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from tangible_depth.alignment import aligning_homographies
+from tangible_depth.alignment import aligning_homographies, epipole_roll
 from tangible_depth.fundamental import eight_point
 from tangible_depth.homographies import camera_matrix, rotation, transform
 from tangible_depth.matches import Matches
@@ -55,10 +55,11 @@ def test_a_camera_that_went_forwards_is_refused(move):
         rectified_points(turn=(0, 0, 0), move_m=move)
 
 
-@pytest.mark.parametrize(("cameras", "words"), [({"move_m": (0, 0, 0)}, "only turned"), ({"flat": True}, "flat scene")])
-def test_matches_that_show_no_geometry_are_refused_with_the_reason(cameras, words):
-    with pytest.raises(CannotRectify, match=words):
-        rectified_points(**cameras)
+@pytest.mark.parametrize("cameras", [{"move_m": (0, 0, 0)}, {"flat": True}], ids=["only turned", "flat"])
+def test_without_parallax_the_matches_are_aligned_and_it_is_said(cameras, caplog):
+    _, shift = rectified_points(**cameras)
+    assert np.median(np.abs(shift[:, 1])) <= 0.15
+    assert "one homography explains the matches" in caplog.text
 
 
 def test_chance_matches_are_refused():
@@ -183,15 +184,22 @@ class TestGuards:
 
 def test_exact_matches_are_aligned_exactly():
     left, right = seen_points(turn=(0.01, 0.02, 0.03))
-    pair = aligning_homographies(eight_point(left, right), Matches(left, right), (HEIGHT, WIDTH))
+    pair = aligning_homographies(Matches(left, right), (HEIGHT, WIDTH))
     offset = transform(pair[0], left)[:, 1] - transform(pair[1], right)[:, 1]
     assert np.abs(offset).max() < 0.02
+
+
+def test_the_epipole_gives_the_roll():
+    shape = (HEIGHT, WIDTH)
+    for move, roll in (((-0.3, 0, 0), 0), ((-0.3, -0.3, 0), -np.pi / 4), ((-0.3, 0.3, 0), np.pi / 4)):
+        matrix = eight_point(*seen_points(turn=(0, 0, 0), move_m=move))
+        assert epipole_roll(matrix, shape) == pytest.approx(roll, abs=1e-3)
 
 
 def test_the_middle_keeps_its_column():
     left, right = seen_points(turn=(0.01, 0.02, 0.03))
     middle = camera_matrix(1, (HEIGHT, WIDTH))[:2, 2][None]
-    for homography in aligning_homographies(eight_point(left, right), Matches(left, right), (HEIGHT, WIDTH)):
+    for homography in aligning_homographies(Matches(left, right), (HEIGHT, WIDTH)):
         assert transform(homography, middle)[0, 0] == pytest.approx(middle[0, 0])
 
 

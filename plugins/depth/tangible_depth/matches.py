@@ -170,7 +170,8 @@ def flow_matches(left: Float32[np.ndarray, "h w"], right: Float32[np.ndarray, "h
 
     if min(left.shape) < SMALLEST_SIDE:
         return NO_MATCHES
-    full = stretch8(left), stretch8(right)
+    # Flow takes brightness for constant; equal histograms forgive another exposure or gamma.
+    full = cv2.equalizeHist(stretch8(left)), cv2.equalizeHist(stretch8(right))
     scale = min(1.0, (FLOW_PIXELS / left.size) ** 0.5)
     small = [_reduced(grey, scale) for grey in full]
     start = cv2.goodFeaturesToTrack(small[0], most, 0.01, 8)

@@ -24,6 +24,8 @@ logger = logging.getLogger(__name__)
 
 FEWEST_TO_TELL = 20
 """Matches below which nothing is said about a pair: it is taken as it is."""
+LEAST_GAIN_PX = 0.2
+"""Noise in the matches promises less than this; to turn the pictures for it would only blur them."""
 
 
 class CannotRectify(GeometryError):
@@ -48,9 +50,9 @@ def rectify(
     """A pair of unknown cameras turned so that its rows correspond.
 
     Skipped, with the reason in `why`, if the views carry a calibration, if the median vertical offset of their
-    matches is within tolerance_px already, if turning would not lessen it, or if there are too few matches to tell.
-    matches: those to go by; found by optical flow and SIFT when left out. fit: makes F of
-    trusted matches.
+    matches is within tolerance_px (in large pictures: within 1/8000 of the longer side) already, if turning would not
+    lessen it by LEAST_GAIN_PX, or if there are too few matches to tell.
+    matches: those to go by; found by optical flow and SIFT when left out. fit: makes F of trusted matches.
     A flat scene, or a camera that only turned, is aligned as well, with a warning: the matches leave it open how.
     Raises: PictureError if there is only one view; CannotRectify if the rows do not correspond but no geometry, or
     only one that distorts the pictures, explains the matches.
@@ -60,6 +62,7 @@ def rectify(
     if views.calibration is not None:
         return _left_alone(views, "the views carry the calibration of a rectified pair")
     left, right = to_grey(views.left), to_grey(views.right)
+    tolerance_px = max(tolerance_px, max(views.shape) / 8000)
     if matches is None:
         quick = flow_matches(left, right)
         if len(quick.left_px) >= FEWEST_TO_TELL and (offset := _median_offset(quick)) <= tolerance_px:
@@ -87,7 +90,7 @@ def _turned(views: Views, matches: Matches, before: float, fit: Fit) -> Rectifie
     pair = aligning_homographies(kept, views.shape, roll)
     turned = [transform(h, points) for h, points in zip(pair, kept, strict=True)]
     offsets = np.abs(turned[1][:, 1] - turned[0][:, 1])
-    if (after := float(np.median(offsets))) >= before:
+    if (after := float(np.median(offsets))) > before - LEAST_GAIN_PX:
         return _left_alone(views, f"turning would not help: median vertical offset {before:.2f} px, then {after:.2f}")
     check_homographies(pair, views.shape, offsets)
     disparity = turned[0][:, 0] - turned[1][:, 0]

@@ -81,6 +81,16 @@ class TestWhatIsSkippedAndWhy:
         assert rectified.skipped
         assert "calibration" in rectified.why
 
+    def test_noise_that_no_turn_would_lessen(self):
+        matches = Matches(*seen_points(turn=(0, 0, 0), move_m=(-0.3, 0, 0), noise_px=0.5))
+        rectified = rectify(Views(BLANK, BLANK), matches=matches)
+        assert rectified.skipped
+        assert "would not help" in rectified.why
+
+    def test_another_exposure_is_no_reason_to_turn(self):
+        scene = Scene()
+        assert rectify(Views(scene.left(), 0.2 + 0.5 * scene.right() ** 1.4)).skipped
+
     def test_too_little_to_tell(self):
         rectified = rectify(Views(BLANK, BLANK))
         assert rectified.skipped

@@ -3,7 +3,8 @@
 Pictures are tensors (b, 1, h, w), floating point with white at 1. This module imports torch; import it inside a verb.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from functools import reduce
 from typing import NamedTuple
 
@@ -115,25 +116,37 @@ def match(left: Tensor, right: Tensor, low: int, high: int, window_px: int, memo
     A strip is at least a window high, whatever that takes. On a CPU small strips are the fastest: they stay in its
     caches.
     """
-    with torch.no_grad():
-        strips = [
-            _cut(best_shifts(scores(left[..., a:b, :], right[..., a:b, :], low, high, window_px), low), skip, rows)
-            for a, b, skip, rows in _strips(left, high - low + 1, window_px // 2, memory_mb)
-        ]
-    return Best(*(torch.cat(parts, dim=-2) for parts in zip(*strips, strict=True)))
+
+    def one_strip(first: int, last: int, skip: int, rows: int) -> Best:
+        with torch.no_grad():
+            volume = scores(left[..., first:last, :], right[..., first:last, :], low, high, window_px)
+            return Best(*(part[..., skip : skip + rows, :] for part in best_shifts(volume, low)))
+
+    strips = list(_strips(left, high - low + 1, window_px // 2, memory_mb))
+    done = [one_strip(*strip) for strip in strips] if left.is_cuda else _on_all_cores(one_strip, strips)
+    return Best(*(torch.cat(parts, dim=-2) for parts in zip(*done, strict=True)))
 
 
-def _strips(left: Tensor, count: int, half: int, memory_mb: int) -> Iterator[tuple[int, int, int, int]]:
-    """First and last row to read, how many of them only surround, and how many are wanted, of each strip."""
+Strip = tuple[int, int, int, int]
+"""First and last row to read, how many of these only surround, how many are wanted."""
+
+
+def _on_all_cores(work: Callable[[int, int, int, int], Best], strips: list[Strip]) -> list[Best]:
+    """A strip a thread: torch's own threads wait for each other at every sum, and spin where a core is busy."""
+    threads = torch.get_num_threads()
+    try:
+        with ThreadPoolExecutor(threads, initializer=torch.set_num_threads, initargs=(1,)) as pool:
+            return list(pool.map(lambda strip: work(*strip), strips))
+    finally:
+        torch.set_num_threads(threads)
+
+
+def _strips(left: Tensor, count: int, half: int, memory_mb: int) -> Iterator[Strip]:
     batch, _, height, width = left.shape
-    # About four volumes are alive at once: the shifted pictures, their products, the statistics and the scores.
-    row_bytes = 4 * batch * width * count * left.element_size()
+    # Four volumes are alive at once in each thread: shifted pictures, their products, statistics and scores.
+    row_bytes = 4 * torch.get_num_threads() * batch * width * count * left.element_size()
     rows = max(2 * half + 1, memory_mb * 2**20 // row_bytes - 2 * half)
     for first in range(0, height, rows):
         wanted = min(rows, height - first)
         above = max(0, first - half)
         yield above, min(height, first + wanted + half), first - above, wanted
-
-
-def _cut(best: Best, skip: int, rows: int) -> Best:
-    return Best(*(part[..., skip : skip + rows, :] for part in best))

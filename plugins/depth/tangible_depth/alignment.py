@@ -1,0 +1,79 @@
+"""Homographies that align the rows of two uncalibrated pictures and distort them as little as may be.
+
+Each picture is turned in its plane and tilted; the right one is also scaled and moved along its columns. About the
+pictures' middles that is seven numbers, as many as a fundamental matrix has. Those that the matches hardly tell stay
+near zero; shift and stretch along the rows, of which the matches tell nothing, are left out.
+Source: the split into similarity and perspective is that of Loop & Zhang, Computing Rectifying Homographies for
+Stereo Vision, CVPR 1999; fitting to the matches that of Hartley, Theory and Practice of Projective Rectification, 1999.
+"""
+
+import numpy as np
+from jaxtyping import Float64
+
+from .epipolar import epipoles
+from .homographies import transform
+from .matches import Matches
+
+_PRIOR = np.array([0.5, 0.2, 0.5, 0.2, 0.2, 0.5, 0.5])
+"""Standard deviations about the start: left roll and tilt along x; right roll, tilts along x and y, logarithm of scale,
+shift along y. Rolls in radians, lengths in half the longer side of the picture, tilts in one over that."""
+_NOISE_PX = 0.3
+
+
+def aligning_homographies(
+    matches: Matches, shape: tuple[int, int], roll: float = 0.0
+) -> tuple[Float64[np.ndarray, "3 3"], Float64[np.ndarray, "3 3"]]:
+    """Homographies (left, right), each (3, 3), that bring trusted matches of two pictures (h, w) onto common rows.
+
+    The middle of each picture keeps its column: a disparity is the shift against the right picture turned about its
+    middle. roll: where to start, radians, see `epipole_roll`.
+    """
+    from scipy.optimize import least_squares
+
+    start = np.zeros(7)
+    start[[0, 2]] = roll
+
+    def cost(values: np.ndarray) -> np.ndarray:
+        left, right = (transform(h, points) for h, points in zip(_pair(values, shape), matches, strict=True))
+        offset = (left[:, 1] - right[:, 1]) / _NOISE_PX
+        # A Cauchy-like pull: what the robust estimate let through by chance may not bend the geometry.
+        return np.concatenate([np.sign(offset) * np.sqrt(np.log1p(offset**2)), (values - start) / _PRIOR])
+
+    found = least_squares(cost, start, x_scale=_PRIOR * 0.1, max_nfev=200).x
+    left, right = _pair(found, shape)
+    if abs(found[0]) > np.pi / 4 and _runs_backwards(left, right, matches):
+        # Both turned over: what lies along the axes changes its sign.
+        left, right = _pair(found * [1, -1, 1, -1, -1, 1, -1] + np.pi * np.array([1, 0, 1, 0, 0, 0, 0]), shape)
+    return left, right
+
+
+def epipole_roll(fundamental: np.ndarray, shape: tuple[int, int]) -> float:
+    """The turn that lays the line from the picture's middle to the left epipole along the rows."""
+    x, y, w = epipoles(fundamental)[0]
+    direction = np.array([x - w * (shape[1] - 1) / 2, y - w * (shape[0] - 1) / 2])
+    direction *= -1 if direction[0] < 0 else 1
+    return -float(np.arctan2(direction[1], direction[0]))
+
+
+def _pair(values: np.ndarray, shape: tuple[int, int]) -> tuple[np.ndarray, np.ndarray]:
+    left_roll, left_tilt, right_roll, right_tilt_x, right_tilt_y, log_scale, shift = values
+    rows, columns = shape
+    half = max(shape) / 2
+    to_unit = np.array([[1 / half, 0, (1 - columns) / (2 * half)], [0, 1 / half, (1 - rows) / (2 * half)], [0, 0, 1]])
+    left = _similarity_and_tilt(left_roll, (left_tilt, 0.0), 1.0, 0.0)
+    right = _similarity_and_tilt(right_roll, (right_tilt_x, right_tilt_y), np.exp(log_scale), shift)
+    back = np.linalg.inv(to_unit)
+    return back @ left @ to_unit, back @ right @ to_unit
+
+
+def _similarity_and_tilt(roll: float, tilt: tuple[float, float], scale: float, shift: float) -> np.ndarray:
+    """Tilt is along the turned axes, so that it means the same whichever way the cameras stand."""
+    cos, sin = np.cos(roll), np.sin(roll)
+    turn = np.array([[scale * cos, -scale * sin, 0], [scale * sin, scale * cos, 0], [0, 0, 1]])
+    return np.array([[1, 0, 0], [0, 1, shift], [*tilt, 1]]) @ turn
+
+
+def _runs_backwards(left: np.ndarray, right: np.ndarray, matches: Matches) -> bool:
+    """Whether near points shift to the wrong side, as when one camera stood above the other."""
+    shift = transform(left, matches.left_px)[:, 0] - transform(right, matches.right_px)[:, 0]
+    return float(np.median(shift)) < 0

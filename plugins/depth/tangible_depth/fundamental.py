@@ -1,0 +1,207 @@
+"""The fundamental matrix from matches: normalised eight-point, its robust estimation, and why it cannot be had.
+
+Convention: left^T F right = 0 (see `epipolar`).
+"""
+
+from collections.abc import Callable
+from math import lgamma, log
+from typing import Literal, NamedTuple
+
+import numpy as np
+from jaxtyping import Bool, Float64
+
+from tangible_core.errors import GeometryError
+
+from .epipolar import homogeneous, sampson_distance
+
+Degeneracy = Literal["not finite", "too few", "duplicate", "collinear", "homography", "outliers"]
+Fit = Callable[[np.ndarray, np.ndarray, np.ndarray | None], Float64[np.ndarray, "3 3"]]
+"""Left points, right points, a weight for each match's equation -> F, as `eight_point`."""
+FEWEST = 8
+"""Matches the eight-point method needs."""
+
+
+class DegenerateMatches(GeometryError):
+    """Matches that determine no fundamental matrix; `reason` names the case."""
+
+    def __init__(self, reason: Degeneracy, message: str) -> None:
+        self.reason: Degeneracy = reason
+        super().__init__(f"no fundamental matrix: {message}")
+
+
+class Fundamental(NamedTuple):
+    """A robust estimate: the matrix (3, 3) of unit norm and rank 2, and which matches it explains."""
+
+    matrix: Float64[np.ndarray, "3 3"]
+    inliers: Bool[np.ndarray, "n"]
+
+
+def check_matches(left_px: np.ndarray, right_px: np.ndarray) -> None:
+    """Raises: DegenerateMatches ("not finite", "too few", "duplicate" or "collinear") if no F can come of these."""
+    if left_px.shape != right_px.shape or left_px.ndim != 2 or left_px.shape[1] != 2:
+        raise GeometryError(f"matches are two arrays (n, 2) of one length, not {left_px.shape} and {right_px.shape}")
+    pairs = np.hstack([left_px, right_px])
+    if not np.isfinite(pairs).all():
+        count = np.count_nonzero(~np.isfinite(pairs).all(axis=1))
+        raise DegenerateMatches("not finite", f"{count} of {len(pairs)} matches are NaN or infinite; leave them out")
+    if len(pairs) < FEWEST:
+        raise DegenerateMatches(
+            "too few", f"{len(pairs)} matches where {FEWEST} are needed; take pictures with more detail"
+        )
+    if (different := min(len(np.unique(points, axis=0)) for points in (left_px, right_px))) < FEWEST:
+        raise DegenerateMatches(
+            "duplicate", f"{different} different points in {len(pairs)} matches, {FEWEST} are needed"
+        )
+    for side, points in (("left", left_px), ("right", right_px)):
+        if _is_line(points):
+            raise DegenerateMatches("collinear", f"the {side} points lie on one line; add matches away from it")
+
+
+def _is_line(points: np.ndarray) -> bool:
+    """Whether the spread across is under half a percent of the spread along: no geometry survives noise there."""
+    along, across = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
+    return bool(across < 0.005 * along)
+
+
+def normalise(points_px: np.ndarray) -> tuple[Float64[np.ndarray, "n 3"], Float64[np.ndarray, "3 3"]]:
+    """Points moved to their centroid and scaled to a mean distance of sqrt(2), and the transform T that does it.
+
+    Source: Hartley, In Defense of the Eight-Point Algorithm, PAMI 1997.
+    """
+    centre = points_px.mean(axis=0)
+    spread = np.linalg.norm(points_px - centre, axis=1).mean()
+    scale = np.sqrt(2) / spread
+    transform = np.array([[scale, 0, -scale * centre[0]], [0, scale, -scale * centre[1]], [0, 0, 1.0]])
+    return homogeneous(points_px) @ transform.T, transform
+
+
+def eight_point(
+    left_px: np.ndarray, right_px: np.ndarray, weights: np.ndarray | None = None
+) -> Float64[np.ndarray, "3 3"]:
+    """F of unit norm and rank 2 from at least eight matches (n, 2), (n, 2), all of them trusted.
+
+    weights (n,) multiply each match's equation; 1 when left out.
+    Raises: DegenerateMatches as `check_matches`, or "homography" if the equations leave more than one F: the points
+    are on a plane, or the camera only turned.
+    Source: Hartley & Zisserman, 2nd ed., alg. 11.1.
+    """
+    check_matches(left_px, right_px)
+    (left, to_left), (right, to_right) = normalise(left_px), normalise(right_px)
+    rows = np.einsum("ni,nj->nij", left, right).reshape(-1, 9)
+    if weights is not None:
+        rows = rows * (weights / weights.max())[:, None]
+    _, singular, basis = np.linalg.svd(np.vstack([rows, np.zeros((1, 9))]), full_matrices=False)
+    if singular[7] < 1e-9 * singular[0]:
+        raise DegenerateMatches("homography", _NO_PARALLAX)
+    u, s, vt = np.linalg.svd(basis[8].reshape(3, 3))
+    matrix = to_left.T @ (u * [s[0], s[1], 0]) @ vt @ to_right
+    return matrix / np.linalg.norm(matrix)
+
+
+_NO_PARALLAX = (
+    "one homography explains the matches (a flat scene, or a camera that only turned); "
+    "move the camera sideways and take a scene with depth"
+)
+
+
+def robust_fundamental(
+    left_px: np.ndarray, right_px: np.ndarray, threshold_px: float = 1.0, fit: Fit = eight_point
+) -> Fundamental:
+    """F from matches of which some are wrong: MAGSAC (OpenCV), then reweighted eight-point on what it keeps.
+
+    threshold_px is the Sampson distance up to which a match counts as right; fit makes F from those that are.
+    The same matches give the same F.
+    Raises: DegenerateMatches as `check_matches`; "homography" if hardly any match stands off the best homography;
+    "outliers" if no F explains more matches than chance would.
+    Source: Barath et al., MAGSAC++, CVPR 2020; Moisan & Stival, IJCV 2004, for what chance explains.
+    """
+    check_matches(left_px, right_px)
+    first = _magsac(left_px, right_px, threshold_px)
+    flat = on_homography(left_px, right_px, threshold_px)
+    if first is None and 2 * np.count_nonzero(flat) > len(flat):
+        raise DegenerateMatches("homography", _NO_PARALLAX)
+    if first is None or _false_alarms(left_px, right_px, first.inliers, threshold_px) > 0:
+        raise DegenerateMatches(
+            "outliers", f"no geometry explains more of the {len(left_px)} matches than chance; do both show one scene?"
+        )
+    if _parallax_false_alarms(left_px, right_px, first.inliers, flat, threshold_px) > 0:
+        raise DegenerateMatches("homography", _NO_PARALLAX)
+    return _refine(first, left_px, right_px, threshold_px, fit)
+
+
+def _magsac(left_px: np.ndarray, right_px: np.ndarray, threshold_px: float) -> Fundamental | None:
+    import cv2
+
+    # OpenCV's convention is second^T F first = 0.
+    matrix, _ = cv2.findFundamentalMat(right_px, left_px, cv2.USAC_MAGSAC, threshold_px, 0.9999, 10_000)
+    if matrix is None or matrix.shape != (3, 3) or not np.isfinite(matrix).all() or not matrix.any():
+        return None
+    matrix = matrix / np.linalg.norm(matrix)
+    return Fundamental(matrix, sampson_distance(matrix, left_px, right_px) <= threshold_px)
+
+
+def on_homography(left_px: np.ndarray, right_px: np.ndarray, threshold_px: float) -> Bool[np.ndarray, "n"]:
+    """Matches that stand less than three thresholds off the best homography from right to left."""
+    import cv2
+
+    matrix, _ = cv2.findHomography(right_px, left_px, cv2.USAC_MAGSAC, 2 * threshold_px)
+    if matrix is None:
+        return np.zeros(len(left_px), np.bool_)
+    moved = homogeneous(right_px) @ matrix.T
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.linalg.norm(moved[:, :2] / moved[:, 2:] - left_px, axis=1) <= 3 * threshold_px
+
+
+def _false_alarms(left_px: np.ndarray, right_px: np.ndarray, inliers: np.ndarray, threshold_px: float) -> float:
+    """Logarithm of how many geometries with this many inliers chance would offer (Moisan & Stival 2004, eq. 8)."""
+    count, kept = len(inliers), int(np.count_nonzero(inliers))
+    if kept < FEWEST:
+        return np.inf
+    tries = log(3 * (count - 7)) + _log_choose(count, kept) + _log_choose(kept, 7)
+    return tries + (kept - 7) * _log_chance(left_px, right_px, threshold_px)
+
+
+def _parallax_false_alarms(
+    left_px: np.ndarray, right_px: np.ndarray, inliers: np.ndarray, flat: np.ndarray, threshold_px: float
+) -> float:
+    """The same for what F explains and the homography does not: with a homography given, two matches make an F."""
+    count, kept = int(np.count_nonzero(~flat)), int(np.count_nonzero(inliers & ~flat))
+    if kept < 3:
+        return np.inf
+    tries = log(count) + _log_choose(count, kept) + _log_choose(kept, 2)
+    return tries + (kept - 2) * _log_chance(left_px, right_px, threshold_px)
+
+
+def _log_chance(left_px: np.ndarray, right_px: np.ndarray, threshold_px: float) -> float:
+    """How likely a random point lies within the threshold of a random line: the line's strip over the picture."""
+    width, height = np.minimum(np.ptp(left_px, axis=0), np.ptp(right_px, axis=0))
+    strip = 2 * threshold_px * float(np.hypot(width, height))
+    return log(strip / (width * height)) if strip < width * height else 0.0
+
+
+def _log_choose(n: int, k: int) -> float:
+    return lgamma(n + 1) - lgamma(k + 1) - lgamma(n - k + 1)
+
+
+def _refine(
+    first: Fundamental, left_px: np.ndarray, right_px: np.ndarray, threshold_px: float, fit: Fit
+) -> Fundamental:
+    """Eight-point on the inliers, each equation weighted so that its residual is in pixels and doubt counts less."""
+    best = first
+    for _ in range(5):
+        left, right = left_px[best.inliers], right_px[best.inliers]
+        doubt = 1 / np.hypot(1, sampson_distance(best.matrix, left, right) / threshold_px)
+        matrix = fit(left, right, doubt * pixel_weights(best.matrix, left, right))
+        inliers = sampson_distance(matrix, left_px, right_px) <= threshold_px
+        if np.count_nonzero(inliers) < np.count_nonzero(best.inliers):
+            break
+        best = Fundamental(matrix, inliers)
+    return best
+
+
+def pixel_weights(fundamental: np.ndarray, left_px: np.ndarray, right_px: np.ndarray) -> Float64[np.ndarray, "n"]:
+    """Weights that turn the algebraic residual of `eight_point` into the Sampson distance (n,), largest 1."""
+    in_left = (homogeneous(right_px) @ fundamental.T)[:, :2]
+    in_right = (homogeneous(left_px) @ fundamental)[:, :2]
+    weights = 1 / np.sqrt((in_left**2).sum(axis=1) + (in_right**2).sum(axis=1) + np.finfo(np.float64).tiny)
+    return weights / weights.max()

@@ -1,0 +1,88 @@
+"""Method `kornia-report`: the chain of `report`, its Harris response, eight-point and correlation in torch."""
+
+from typing import Annotated, Literal
+
+import numpy as np
+from jaxtyping import Float64, Int64
+from pydantic import Field
+
+from tangible_core.data import DisparityMap, Views
+from tangible_core.interfaces import DepthEstimator
+
+from .feature_chain import Grey, Parts, Row, disparity_by_features
+from .fundamental import check_matches
+from .kornia_zncc import match_pair
+from .torch_extra import TorchDevice, need, pick_device
+
+
+class KorniaReport(DepthEstimator):
+    """Corners and edges, robust eight-point, rectification, correlation along rows, filling from neighbours, by kornia.
+
+    Takes any pair, rectified or not. Source: as `report`; Riba et al., Kornia, WACV 2020.
+    """
+
+    window_px: Literal[5, 7, 9, 11, 13, 15, 17, 19, 21] = 9
+    """Side of the square window that is correlated."""
+    least_contrast: Annotated[float, Field(gt=0, le=1)] = 0.005
+    """Slope, as a share of white a pixel, below which an edge is no feature."""
+    least_score: Annotated[float, Field(ge=0, le=1)] = 0.7
+    """Correlation below which a match is left out."""
+    max_disparity_px: Annotated[int, Field(ge=1)] | Literal["auto"] = "auto"
+    """Shifts from 0 to this are tried; `auto` takes the range from the matched corners, of either sign."""
+    torch_device: TorchDevice = "auto"
+    """Where to compute; `auto` takes a GPU when there is one."""
+    memory_mb: Annotated[int, Field(ge=1)] = 64
+    """What the scores may take, done in strips of rows: little suits a CPU's caches, a GPU wants more."""
+
+    def estimate(self, views: Views) -> DisparityMap:
+        """Dense disparity of the left view.
+
+        Raises: PictureError without a right view, BrokenMethod without torch or kornia, CannotRectify as `rectify`.
+        """
+        need("torch")
+        need("kornia")
+        parts = Parts(self._response, kornia_eight_point, self._match_rows)
+        return disparity_by_features(views, parts, self.least_contrast, self.least_score, self.max_disparity_px)
+
+    def _response(self, grey: Grey) -> Grey:
+        return kornia_response(grey, self.torch_device)
+
+    def _match_rows(
+        self, left: Grey, right: Grey, points: Int64[np.ndarray, "n 2"], low: int, high: int
+    ) -> tuple[Row, Row]:
+        disparity, score = match_pair(left, right, low, high, self.window_px, self.torch_device, self.memory_mb)
+        columns, rows = points.T
+        return disparity[rows, columns], score[rows, columns]
+
+
+_BORDER = 4
+
+
+def kornia_response(grey: Grey, torch_device: TorchDevice = "auto") -> Grey:
+    """`harris.harris_response` by kornia, on the same scale; at the border edges repeat."""
+    import torch
+    from kornia.feature import harris_response
+
+    # kornia mirrors at the border, which takes more rows and columns than the smallest pictures have.
+    picture = torch.from_numpy(np.pad(grey, _BORDER, mode="edge")).to(pick_device(torch_device))[None, None]
+    # It halves (-1, 0, 1), and the response goes with the fourth power of the slope.
+    response = 16 * harris_response(picture, 0.04, grads_mode="diff")[0, 0].cpu().numpy()
+    return response[_BORDER:-_BORDER, _BORDER:-_BORDER]
+
+
+def kornia_eight_point(
+    left_px: np.ndarray, right_px: np.ndarray, weights: np.ndarray | None = None
+) -> Float64[np.ndarray, "3 3"]:
+    """`fundamental.eight_point` by kornia, which counts the weights in its normalisation too.
+
+    Raises: DegenerateMatches as `check_matches`.
+    """
+    import torch
+    from kornia.geometry.epipolar import find_fundamental
+
+    check_matches(left_px, right_px)
+    left, right = (torch.from_numpy(np.asarray(points, np.float64))[None] for points in (left_px, right_px))
+    # kornia weighs squares, and its points2^T F points1 = 0 has the left picture second.
+    squared = None if weights is None else torch.from_numpy(np.asarray(weights, np.float64) ** 2)[None]
+    matrix = find_fundamental(right, left, squared)[0].numpy()
+    return matrix / np.linalg.norm(matrix)

@@ -1,0 +1,75 @@
+"""Method `kornia-zncc`: dense normalised cross-correlation in torch."""
+
+from typing import Annotated, Literal
+
+import numpy as np
+from jaxtyping import Float32
+from pydantic import Field
+
+from tangible_core.data import DisparityMap, Views
+from tangible_core.errors import PictureError
+from tangible_core.interfaces import DepthEstimator
+from tangible_core.pictures import to_grey
+
+from .assembling import assemble, without_speckles
+from .corner_range import range_of_pair
+from .rectification import with_rectification
+from .torch_extra import TorchDevice, need, pick_device
+
+
+class KorniaZNCC(DepthEstimator):
+    """Zero-mean normalised cross-correlation of every pixel, parabola, left-right check, holes filled by colour.
+
+    The blocks it is made of (`torch_zncc`) take batches and give gradients; this method takes one pair.
+    """
+
+    window_px: Literal[3, 5, 7, 9, 11, 13, 15] = 7
+    """Side of the square window that is correlated."""
+    max_disparity_px: Annotated[int, Field(ge=1)] | Literal["auto"] = "auto"
+    """Shifts from 0 to this are tried; `auto` takes the range from matched corners, of either sign."""
+    rectify: Literal["auto", "never"] = "auto"
+    """`auto` turns a pair whose rows do not correspond; `never` takes every pair as rectified."""
+    torch_device: TorchDevice = "auto"
+    """Where to compute; `auto` takes a GPU when there is one."""
+    memory_mb: Annotated[int, Field(ge=1)] = 64
+    """What the scores may take, done in strips of rows: little suits a CPU's caches, a GPU wants more."""
+
+    def estimate(self, views: Views) -> DisparityMap:
+        """Dense disparity of the left view.
+
+        Raises: PictureError without a right view, BrokenMethod without torch, CannotRectify as `rectify`.
+        """
+        need("torch")
+        if views.right is None:
+            raise PictureError("kornia-zncc needs two views; give a right one")
+        return self._match(views) if self.rectify == "never" else with_rectification(views, self._match)
+
+    def _match(self, views: Views) -> DisparityMap:
+        assert views.right is not None
+        left, right = to_grey(views.left), to_grey(views.right)
+        low, high = range_of_pair(left, right, self.max_disparity_px)
+        disparity, score = match_pair(left, right, low, high, self.window_px, self.torch_device, self.memory_mb)
+        disparity = without_speckles(disparity)
+        filled = assemble(disparity, score, views.left)
+        known = np.isfinite(disparity)
+        return DisparityMap(np.where(known, disparity, filled.disparity_px), np.where(known, score, filled.confidence))
+
+
+def match_pair(
+    left: Float32[np.ndarray, "h w"],
+    right: Float32[np.ndarray, "h w"],
+    low: int,
+    high: int,
+    window_px: int,
+    torch_device: TorchDevice,
+    memory_mb: int,
+) -> tuple[Float32[np.ndarray, "h w"], Float32[np.ndarray, "h w"]]:
+    """`torch_zncc.match` on arrays: disparity, NaN where unknown, and score in 0..1."""
+    import torch
+
+    from .torch_zncc import match
+
+    device = pick_device(torch_device)
+    first, second = (torch.from_numpy(np.ascontiguousarray(grey)).to(device)[None, None] for grey in (left, right))
+    disparity, score = match(first, second, low, high, window_px, memory_mb)
+    return disparity[0].float().cpu().numpy(), score[0].float().cpu().numpy()

@@ -1,0 +1,54 @@
+"""Method `report`: the documented baseline, the chain of the report "Tangible Images" as it is written there."""
+
+from typing import Annotated, Literal
+
+import numpy as np
+from jaxtyping import Int64
+from pydantic import Field
+
+from tangible_core.data import DisparityMap, Views
+from tangible_core.interfaces import DepthEstimator
+
+from .feature_chain import Grey, Parts, Row, disparity_by_features
+from .fundamental import eight_point
+from .harris import gaussian_window, harris_response
+from .matches import inverse_lengths
+
+
+class Report(DepthEstimator):
+    """Harris corners and edges, robust eight-point, rectification, correlation along rows, filling from neighbours.
+
+    Takes any pair, rectified or not. The report measures disparity as the Euclidean distance of two matched points:
+    after rectification that is the horizontal shift. It also names a Hough transform for sub-pixel accuracy, which
+    is no way to it: a parabola through the best score and its neighbours is used.
+    Source: Harris & Stephens 1988; Hartley 1997; Fusiello & Irsara 2011; Gastal & Oliveira 2011.
+    """
+
+    window_px: Literal[5, 7, 9, 11, 13, 15, 17, 19, 21] = 9
+    """Side of the square window that is correlated."""
+    harris_sigma_px: Annotated[float, Field(gt=0, le=10)] = 1.0
+    """Width of the Gaussian over which the Harris response gathers gradients."""
+    least_contrast: Annotated[float, Field(gt=0, le=1)] = 0.005
+    """Slope, as a share of white a pixel, below which an edge is no feature."""
+    least_score: Annotated[float, Field(ge=0, le=1)] = 0.7
+    """Correlation below which a match is left out."""
+    max_disparity_px: Annotated[int, Field(ge=1)] | Literal["auto"] = "auto"
+    """Shifts from 0 to this are tried; `auto` takes the range from the matched corners, of either sign."""
+
+    def estimate(self, views: Views) -> DisparityMap:
+        """Dense disparity of the left view. Raises: PictureError without a right view, CannotRectify as `rectify`."""
+        window = gaussian_window(self.harris_sigma_px)
+        parts = Parts(lambda grey: harris_response(grey, window), eight_point, self._match_rows)
+        return disparity_by_features(views, parts, self.least_contrast, self.least_score, self.max_disparity_px)
+
+    def _match_rows(
+        self, left: Grey, right: Grey, points: Int64[np.ndarray, "n 2"], low: int, high: int
+    ) -> tuple[Row, Row]:
+        from .sparse_ncc import match_rows
+
+        half = self.window_px // 2
+        left_padded, right_padded = (np.pad(grey, half, mode="edge") for grey in (left, right))
+        left_inverse, right_inverse = (inverse_lengths(grey, half) for grey in (left, right))
+        disparity, score = np.empty(len(points), np.float32), np.empty(len(points), np.float32)
+        match_rows(left_padded, right_padded, left_inverse, right_inverse, points, low, high, half, disparity, score)
+        return disparity, score

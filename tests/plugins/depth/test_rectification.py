@@ -1,0 +1,221 @@
+import numpy as np
+import pytest
+from tangible_depth.alignment import aligning_homographies, epipole_roll
+from tangible_depth.fundamental import eight_point
+from tangible_depth.homographies import camera_matrix, rotation, transform
+from tangible_depth.matches import Matches
+from tangible_depth.rectification import CannotRectify, check_homographies, rectify, with_rectification
+from two_cameras import HEIGHT, WIDTH, Scene, roll_and_tilt, seen_points, some_wrong
+
+from tangible_core.data import Calibration, DisparityMap, Views
+from tangible_core.errors import PictureError
+
+BLANK = np.zeros((HEIGHT, WIDTH), np.uint8)
+
+
+def rectified_points(noise_px=0.3, **cameras):
+    """What becomes of exact points when the pair is rectified by noisy ones."""
+    rectified = rectify(Views(BLANK, BLANK), matches=Matches(*seen_points(noise_px=noise_px, **cameras)))
+    left, right = seen_points(**cameras)
+    shift = transform(rectified.left_homography, left) - transform(rectified.right_homography, right)
+    return rectified, shift
+
+
+@pytest.mark.parametrize(
+    ("turn", "move"),
+    [
+        ((0.02, -0.05, 0.01), (-0.3, 0.02, 0.05)),
+        ((0, 0, 0.35), (-0.3, -0.2, 0)),
+        ((0, 0.175, 0), (-0.9, 0, 0.1)),
+        ((0, 0.44, 0), (-2.2, 0, 0.5)),
+        ((0, 0, 0), (0, -0.3, 0)),
+        ((0, 0, 0), (0, 0.3, 0)),
+        ((0, 0, 1.57), (-0.3, 0, 0)),
+    ],
+    ids=["slight", "rolled", "toed in", "toed in more", "one below", "one above", "on its side"],
+)
+def test_rows_correspond_whatever_way_the_cameras_look(turn, move):
+    rectified, shift = rectified_points(turn=turn, move_m=move)
+    assert not rectified.skipped
+    assert np.median(np.abs(shift[:, 1])) <= 0.15
+    assert shift[:, 0].min() > -1  # the search may start at zero
+
+
+def test_wrong_matches_do_not_bend_it():
+    matches = Matches(*some_wrong(*seen_points(noise_px=0.3), 0.3))
+    rectified = rectify(Views(BLANK, BLANK), matches=matches)
+    left, right = seen_points()
+    shift = transform(rectified.left_homography, left) - transform(rectified.right_homography, right)
+    assert np.median(np.abs(shift[:, 1])) <= 0.15
+
+
+@pytest.mark.parametrize("move", [(0, 0, -0.5), (-0.1, 0, -0.5)])
+def test_a_camera_that_went_forwards_is_refused(move):
+    with pytest.raises(CannotRectify, match=r"forwards|baseline|area|order"):
+        rectified_points(turn=(0, 0, 0), move_m=move)
+
+
+@pytest.mark.parametrize("cameras", [{"move_m": (0, 0, 0)}, {"flat": True}], ids=["only turned", "flat"])
+def test_without_parallax_the_matches_are_aligned_and_it_is_said(cameras, caplog):
+    _, shift = rectified_points(**cameras)
+    assert np.median(np.abs(shift[:, 1])) <= 0.15
+    assert "one homography explains the matches" in caplog.text
+
+
+def test_chance_matches_are_refused():
+    matches = Matches(*np.random.default_rng(0).uniform(0, 700, (2, 200, 2)))
+    with pytest.raises(CannotRectify, match="chance"):
+        rectify(Views(BLANK, BLANK), matches=matches)
+
+
+class TestWhatIsSkippedAndWhy:
+    def test_a_rectified_pair(self):
+        scene = Scene()
+        rectified = rectify(Views(scene.left(), scene.right()))
+        assert rectified.skipped
+        assert "already rectified" in rectified.why
+        assert rectified.views.left is not None
+
+    def test_a_calibrated_pair(self):
+        rectified = rectify(Views(BLANK, BLANK, Calibration(900.0, 0.1)))
+        assert rectified.skipped
+        assert "calibration" in rectified.why
+
+    def test_noise_that_no_turn_would_lessen(self):
+        matches = Matches(*seen_points(turn=(0, 0, 0), move_m=(-0.3, 0, 0), noise_px=0.5))
+        rectified = rectify(Views(BLANK, BLANK), matches=matches)
+        assert rectified.skipped
+        assert "would not help" in rectified.why
+
+    def test_another_exposure_is_no_reason_to_turn(self):
+        scene = Scene()
+        assert rectify(Views(scene.left(), 0.2 + 0.5 * scene.right() ** 1.4)).skipped
+
+    def test_too_little_to_tell(self):
+        rectified = rectify(Views(BLANK, BLANK))
+        assert rectified.skipped
+        assert "too few" in rectified.why
+
+    def test_a_skipped_map_comes_back_itself(self):
+        found = DisparityMap(np.ones((HEIGHT, WIDTH), np.float32))
+        assert with_rectification(Views(BLANK, BLANK), lambda views: found) is found
+
+    def test_one_view_is_no_pair(self):
+        with pytest.raises(PictureError, match="two views"):
+            rectify(Views(BLANK))
+
+
+def warped_scene():
+    scene = Scene((240, 320), 8.0, 20.0)
+    warp = roll_and_tilt(scene.shape)
+    return scene, warp, Views(scene.left(), scene.right(warp))
+
+
+def true_map(scene, rectified):
+    """What a perfect method would find in the rectified views."""
+    rows, columns = rectified.views.shape
+    y, x = np.indices((rows, columns), np.float64)
+    original = transform(np.linalg.inv(rectified.left_homography), np.column_stack([x.ravel(), y.ravel()]))
+    column, row = np.rint(original).astype(int).T
+    inside = (column >= 0) & (column < scene.shape[1]) & (row >= 0) & (row < scene.shape[0])
+    disparity = np.full(rows * columns, np.nan)
+    disparity[inside] = scene.disparity_px()[row[inside], column[inside]]
+    return original, disparity.reshape(rows, columns).astype(np.float32)
+
+
+def test_a_rolled_and_tilted_picture_is_put_right():
+    scene, warp, views = warped_scene()
+    rectified = rectify(views)
+    assert not rectified.skipped
+    y, x = np.indices(scene.shape, np.float64)
+    left = np.column_stack([x.ravel(), y.ravel()])
+    right = transform(warp, left - np.column_stack([scene.disparity_px().ravel(), np.zeros(left.shape[0])]))
+    shift = transform(rectified.left_homography, left) - transform(rectified.right_homography, right)
+    assert np.median(np.abs(shift[:, 1])) <= 0.15
+    # A warp about the middle leaves disparities as they were.
+    assert np.median(np.abs(shift[:, 0] + rectified.offset_px - scene.disparity_px().ravel())) < 0.3
+
+
+def test_the_way_back_leads_to_the_original_pixels():
+    scene, warp, views = warped_scene()
+    rectified = rectify(views)
+    _, perfect = true_map(scene, rectified)
+    found = rectified.to_original(DisparityMap(perfect - np.float32(rectified.offset_px)))
+    known = np.isfinite(found.disparity_px)
+    assert found.disparity_px.shape == scene.shape
+    assert known.mean() > 0.95
+    assert np.mean(found.disparity_px[known] == scene.disparity_px()[known]) > 0.97
+    assert np.array_equal(found.confidence > 0, known)
+    y, x = np.indices(scene.shape, np.float64)
+    expected = transform(warp, np.column_stack([(x - scene.disparity_px()).ravel(), y.ravel()])).reshape(
+        *scene.shape, 2
+    )
+    error = np.linalg.norm(rectified.right_px(found.disparity_px) - expected, axis=2)
+    assert np.nanmedian(error) < 0.3
+
+
+@pytest.mark.parametrize("dtype", [np.bool_, np.uint8, np.uint16, np.float16, np.float32, np.float64])
+def test_pictures_of_any_kind_are_turned(dtype):
+    views = warped_scene()[2]
+    white = np.iinfo(dtype).max if np.issubdtype(dtype, np.integer) else 1
+    left, right = (
+        (grey > 0.5) if dtype == np.bool_ else (grey * white).astype(dtype) for grey in (views.left, views.right)
+    )
+    colour = Views(np.stack([left] * 4, axis=2), np.stack([right] * 4, axis=2))
+    matches = Matches(*seen_points(count=200, width=320, noise_px=0.1))
+    rectified = rectify(colour, matches=matches)
+    assert not rectified.skipped
+    assert rectified.views.left.shape[2] == 4
+    assert rectified.views.left.max() <= white
+    assert rectified.views.left.dtype == (dtype if dtype not in (np.bool_, np.float16) else np.float32)
+
+
+class TestGuards:
+    def test_the_same_pictures_pass(self):
+        check_homographies((np.eye(3), np.eye(3)), (100, 200), np.zeros(5))
+
+    @pytest.mark.parametrize(
+        ("homography", "words"),
+        [
+            (np.diag([2.0, 2.0, 1.0]), "times its area"),
+            (np.diag([0.5, 0.5, 1.0]), "times its area"),
+            (np.diag([-1.0, 1.0, 1.0]), "order"),
+            (np.array([[1, 0, 0], [0, 1, 0], [-0.01, 0, 1.0]]), "infinity"),
+        ],
+    )
+    def test_distortions_are_refused(self, homography, words):
+        with pytest.raises(CannotRectify, match=words):
+            check_homographies((np.eye(3), homography), (100, 200), np.zeros(5))
+
+    def test_rows_that_do_not_correspond_are_refused(self):
+        with pytest.raises(CannotRectify, match="off its row"):
+            check_homographies((np.eye(3), np.eye(3)), (100, 200), np.r_[np.zeros(90), np.full(10, 9.0)])
+
+
+def test_exact_matches_are_aligned_exactly():
+    left, right = seen_points(turn=(0.01, 0.02, 0.03))
+    pair = aligning_homographies(Matches(left, right), (HEIGHT, WIDTH))
+    offset = transform(pair[0], left)[:, 1] - transform(pair[1], right)[:, 1]
+    assert np.abs(offset).max() < 0.02
+
+
+def test_the_epipole_gives_the_roll():
+    shape = (HEIGHT, WIDTH)
+    for move, roll in (((-0.3, 0, 0), 0), ((-0.3, -0.3, 0), -np.pi / 4), ((-0.3, 0.3, 0), np.pi / 4)):
+        matrix = eight_point(*seen_points(turn=(0, 0, 0), move_m=move))
+        assert epipole_roll(matrix, shape) == pytest.approx(roll, abs=1e-3)
+
+
+def test_the_middle_keeps_its_column():
+    left, right = seen_points(turn=(0.01, 0.02, 0.03))
+    middle = camera_matrix(1, (HEIGHT, WIDTH))[:2, 2][None]
+    for homography in aligning_homographies(Matches(left, right), (HEIGHT, WIDTH)):
+        assert transform(homography, middle)[0, 0] == pytest.approx(middle[0, 0])
+
+
+def test_rotations_are_rotations():
+    turn = rotation(0.1, -0.2, 0.3)
+    assert turn @ turn.T == pytest.approx(np.eye(3))
+    assert rotation(0, 0, np.pi / 2) @ [1, 0, 0] == pytest.approx([0, 1, 0])
+    assert rotation(0, np.pi / 2, 0) @ [0, 0, 1] == pytest.approx([1, 0, 0])
+    assert rotation(np.pi / 2, 0, 0) @ [0, 1, 0] == pytest.approx([0, 0, 1])

@@ -1,0 +1,86 @@
+"""Two cameras that look at points, and rendered pairs whose every pixel is known."""
+
+import numpy as np
+from tangible_depth.homographies import camera_matrix, rotation, transform
+
+WIDTH, HEIGHT = 1000, 750
+
+
+def seen_points(
+    turn=(0.02, -0.05, 0.01), move_m=(-0.3, 0.02, 0.05), count=300, width=WIDTH, flat=False, noise_px=0.0, seed=0
+):
+    """Left and right pixels of random points; `turn` is pitch, yaw, roll, and X_right = rotation X_left + move."""
+    random = np.random.default_rng(seed)
+    height = width * 3 // 4
+    camera = camera_matrix(0.9 * width, (height, width))
+    rays = np.column_stack([random.uniform(0, [width, height], (count, 2)), np.ones(count)]) @ np.linalg.inv(camera).T
+    depth = 5 / (1 + rays @ [0.2, 0.1, 0]) if flat else random.uniform(3, 8, count)
+    points = rays * depth[:, None]
+    left, right = points @ camera.T, (points @ rotation(*turn).T + move_m) @ camera.T
+    pixels = [seen[:, :2] / seen[:, 2:] for seen in (left, right)]
+    return tuple(pixel + random.normal(0, noise_px, pixel.shape) for pixel in pixels)
+
+
+def some_wrong(left, right, share, seed=1):
+    """The same matches with the first ones, a share of all, replaced by chance."""
+    random = np.random.default_rng(seed)
+    right = right.copy()
+    wrong = round(share * len(right))
+    right[:wrong] = random.uniform(0, right.max(axis=0), (wrong, 2))
+    return left, right
+
+
+class Scene:
+    """A wall and a box before it, each with a texture that is a function of place: nothing is resampled."""
+
+    def __init__(self, shape=(150, 200), wall_px=6.0, box_px=14.0, seed=0):
+        self.shape, self.wall_px, self.box_px = shape, wall_px, box_px
+        random = np.random.default_rng(seed)
+        self._waves = random.uniform(-0.2, 0.2, (2, 80, 2)) * 2 * np.pi
+        self._phases = random.uniform(0, 2 * np.pi, (2, 80))
+
+    def left(self):
+        x, y = self._grid()
+        return self._paint(x, y, self._in_box(x, y))
+
+    def right(self, warp=None):
+        """As the right camera sees it, then moved by a homography."""
+        x, y = self._grid()
+        if warp is not None:
+            x, y = transform(np.linalg.inv(warp), np.column_stack([x.ravel(), y.ravel()])).T.reshape(2, *self.shape)
+        box = self._in_box(x + self.box_px, y)
+        return self._paint(x + np.where(box, self.box_px, self.wall_px), y, box)
+
+    def disparity_px(self):
+        return np.where(self._in_box(*self._grid()), self.box_px, self.wall_px)
+
+    def visible(self):
+        """Left pixels that the unmoved right camera sees too."""
+        x, y = self._grid()
+        hidden = ~self._in_box(x, y) & self._in_box(x - self.wall_px + self.box_px, y)
+        return ~hidden & (x - self.disparity_px() >= 0)
+
+    def _grid(self):
+        rows, columns = np.indices(self.shape, np.float64)
+        return columns, rows
+
+    def _in_box(self, x, y):
+        rows, columns = self.shape
+        return (abs(x - 0.55 * columns) < 0.2 * columns) & (abs(y - 0.5 * rows) < 0.25 * rows)
+
+    def _paint(self, x, y, box):
+        layers = []
+        for waves, phases in zip(self._waves, self._phases, strict=True):
+            total = np.zeros(x.shape)
+            for (u, v), phase in zip(waves, phases, strict=True):
+                total += np.cos(u * x + v * y + phase)
+            layers.append(0.5 + 0.04 * total)
+        return np.clip(np.where(box, layers[1], layers[0]), 0, 1).astype(np.float32)
+
+
+def roll_and_tilt(shape, degrees=2.0, tilt=(2e-5, -3e-5)):
+    """A homography about the middle of a picture: a roll, and the perspective of a slight turn."""
+    to_middle = camera_matrix(1, shape)
+    turned = rotation(0, 0, np.radians(degrees))
+    turned[2, :2] = tilt
+    return to_middle @ turned @ np.linalg.inv(to_middle)

@@ -1,0 +1,25 @@
+"""Where between three samples the optimum lies, in steps from the middle one."""
+
+from numba import njit
+
+
+@njit(inline="always")
+def parabola(before: float, at: float, after: float) -> float:
+    """Vertex of the parabola through three equally spaced samples, (a - c) / (2 (a - 2 b + c)).
+
+    Within +-0.5 if `at` is the best of the three, whether best means smallest or largest; 0 if they lie on a line.
+    """
+    bend = before - 2 * at + after
+    return (before - after) / (2 * bend) if bend != 0 else 0.0
+
+
+@njit(inline="always")
+def equiangular(before: float, at: float, after: float) -> float:
+    """Tip of the symmetric V through three equally spaced costs; 0 if they are equal.
+
+    Costs that count differing bits grow linearly round their minimum: the parabola would pull towards whole numbers.
+    Within +-0.5 if `at` is the smallest.
+    Source: Shimizu & Okutomi, Precise sub-pixel estimation on area-based matching, ICCV 2001.
+    """
+    rise = max(before, after) - at
+    return (before - after) / (2 * rise) if rise != 0 else 0.0

@@ -1,0 +1,220 @@
+"""Semi-global matching along four paths, one byte a pixel and disparity.
+
+Source: Hirschmueller, Stereo processing by semiglobal matching and mutual information, IEEE PAMI 30(2), 2008, eq. 13.
+Each path is kept relative to its own minimum, so that the winner's sum of four paths is small and saturating bytes are
+enough: only losers reach 255.
+
+Rows are worked in strips. A strip begins its downward (and upward) path some rows early, which makes strips independent
+of each other: any number of threads, bounded memory, and a volume that stays near the processor.
+
+Lane k stands for the disparity top - k, so that the right view's codes are contiguous: for pixel x they begin at
+codes[x], a row of w + n - 1 codes of which codes[i] is the right view's column i - top.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import int64, njit, uint8
+
+from .lanes import (
+    LanesType,
+    first_equal,
+    first_lane,
+    hamming,
+    load,
+    lowest,
+    maximum,
+    minimum,
+    saturating_add,
+    shift_down,
+    shift_up,
+    splat,
+    store,
+    subtract,
+    width,
+)
+from .subpixel import equiangular
+
+UNKNOWN = np.int16(-32768)
+"""A disparity that is not known, in maps of sixteenths of a pixel."""
+WORST = np.uint8(255)
+
+
+class Limits(NamedTuple):
+    """Bounds on a row's costs: most and least for each index of the shifted right row, and 255 for lanes not asked for."""
+
+    most: np.ndarray
+    least: np.ndarray
+    barred: np.ndarray
+
+
+class Span(NamedTuple):
+    """The disparities low..high, both included."""
+
+    low: int
+    high: int
+
+    @property
+    def count(self) -> int:
+        """How many disparities."""
+        return self.high - self.low + 1
+
+    @property
+    def lanes(self) -> int:
+        """Lanes that hold them: a power of two, at least 16."""
+        return max(16, 1 << (self.count - 1).bit_length())
+
+    def within(self, width: int) -> "Span":
+        """Without disparities that no two columns of a picture of this width can have."""
+        low = min(max(self.low, 1 - width), width - 1)
+        return Span(low, max(min(self.high, width - 1), low))
+
+
+@njit(inline="always")
+def _step(lanes, before, before_lowest, cost, move, jump):
+    """One step of a path: stay, move by one disparity or jump to any, then pay the pixel's own cost."""
+    wall = splat(lanes, uint8(255))
+    moved = saturating_add(minimum(shift_up(before, wall), shift_down(before, wall)), move)
+    jumped = splat(lanes, uint8(before_lowest + jump))
+    best = minimum(minimum(before, jumped), moved)
+    return saturating_add(cost, subtract(best, splat(lanes, before_lowest)))
+
+
+@njit(inline="always")
+def _cost(lanes, code, codes, x, limits):
+    """Hamming distances; neutral where a disparity leads out of the right view, 255 where it is not asked for."""
+    cost = minimum(hamming(lanes, code, codes, x), load(lanes, limits.most, x))
+    return maximum(maximum(cost, load(lanes, limits.least, x)), load(lanes, limits.barred, 0))
+
+
+@njit(inline="always")
+def _grey_step(grey, x, others, z):
+    return abs(int64(grey[x]) - int64(others[z]))
+
+
+@njit(nogil=True, boundscheck=False)
+def _vertical(lanes, left, codes, limits, prices, grey, grey_before, path, path_lowest, costs, total):
+    """The path from the row before; `costs` and `total` keep this row's costs and path sums."""
+    n = width(lanes)
+    move, jumps = splat(lanes, prices.move), prices.jumps
+    for x in range(left.size):
+        cost = _cost(lanes, left[x], codes, x, limits)
+        store(costs, x * n, cost)
+        jump = jumps[_grey_step(grey, x, grey_before, x)]
+        here = _step(lanes, load(lanes, path, x * n), path_lowest[x], cost, move, jump)
+        path_lowest[x] = lowest(here)
+        store(path, x * n, here)
+        store(total, x * n, here)
+
+
+@njit(nogil=True, boundscheck=False)
+def _sideways(lanes, prices, grey, costs, total):
+    """Add the paths from both ends of the row. They are independent, so one hides the other's latency."""
+    n = width(lanes)
+    move, jumps = splat(lanes, prices.move), prices.jumps
+    w = grey.size
+    east = west = splat(lanes, uint8(0))
+    east_lowest = west_lowest = uint8(0)
+    for x in range(w):
+        z = w - 1 - x
+        east_jump = jumps[_grey_step(grey, x, grey, max(x - 1, 0))]
+        west_jump = jumps[_grey_step(grey, z, grey, min(z + 1, w - 1))]
+        east = _step(lanes, east, east_lowest, load(lanes, costs, x * n), move, east_jump)
+        west = _step(lanes, west, west_lowest, load(lanes, costs, z * n), move, west_jump)
+        east_lowest = lowest(east)
+        west_lowest = lowest(west)
+        store(total, x * n, saturating_add(load(lanes, total, x * n), east))
+        store(total, z * n, saturating_add(load(lanes, total, z * n), west))
+
+
+@njit(nogil=True, boundscheck=False)
+def _decide(lanes, path, total, best, sums, right_sums):
+    """Add the last path; the best lane and its sum for each left pixel, the best sum for each right pixel."""
+    n = width(lanes)
+    w = best.size
+    wall = splat(lanes, uint8(255))
+    seen = wall  # lowest sums so far of the n right pixels that the left pixels still to come can see
+    for x in range(w):
+        sum_here = saturating_add(load(lanes, total, x * n), load(lanes, path, x * n))
+        store(total, x * n, sum_here)
+        seen = minimum(seen, sum_here)
+        right_sums[x] = first_lane(seen)
+        seen = shift_down(seen, wall)
+        sums[x] = lowest(sum_here)
+        best[x] = first_equal(sum_here, sums[x])
+    for i in range(n - 1):
+        right_sums[w + i] = first_lane(seen)
+        seen = shift_down(seen, wall)
+
+
+@njit(nogil=True, boundscheck=False)
+def _accept(n, span, total, best, sums, right_sums, most, tolerance, disparity):
+    """Disparities that pass the left-right check: no left pixel fits the right pixel better by more than a factor.
+
+    A pixel whose neighbouring disparities fit as well as the best one says nothing and is not accepted.
+    """
+    for x in range(best.size):
+        k = best[x]
+        at = sums[x]
+        disparity[x] = UNKNOWN
+        if most[x + k] == 0 or at == WORST or at > tolerance * right_sums[x + k]:
+            continue
+        offset = 0.0
+        if 0 < k < (span.high - span.low + 1) - 1:
+            before, after = total[x * n + k - 1], total[x * n + k + 1]
+            if before == at and after == at:
+                continue
+            offset = equiangular(float(before), float(at), float(after))
+        disparity[x] = np.int16(np.floor(16 * (span.high - k - offset) + 0.5))
+
+
+@njit(nogil=True, boundscheck=False)
+def _limits(n, w, span, neutral):
+    columns = np.arange(w + n - 1) - span.high
+    beyond = (columns < 0) | (columns >= w)
+    most = np.where(beyond, uint8(0), uint8(255))
+    least = np.where(beyond, neutral, uint8(0))
+    return Limits(most, least, np.where(np.arange(n) < (span.high - span.low + 1), uint8(0), uint8(255)))
+
+
+@njit(nogil=True, boundscheck=False)
+def _shifted(row, top, codes):
+    """The right view's codes as the lanes want them; beyond the picture its edge is repeated."""
+    for i in range(codes.size):
+        codes[i] = row[min(max(i - top, 0), row.size - 1)]
+
+
+@njit(nogil=True, boundscheck=False, cache=True)
+def sweep_strip(lanes, left, right, grey, rows, warm, span, prices, tolerance, total, disparity, sums):
+    """Disparities in sixteenths of a pixel (UNKNOWN where rejected) and sums of rows[0]..rows[1]-1.
+
+    Parameters: lanes, Lanes(n); left, right (h, w), codes of the two views; grey (h, w) uint8, the left view; warm, rows
+    that a path begins early; span, the disparities to try, at most n; prices, a `Prices`; tolerance of the left-right check, 1 being strict; total, scratch of at least (rows, w n) bytes.
+    Results: disparity int16 (h, w), sums uint8 (h, w), the winner's cost over the four paths.
+    """
+    n = width(lanes)
+    h, w = left.shape
+    y0, y1 = rows
+    limits = _limits(n, w, span, prices.neutral)
+    path, path_lowest = np.zeros(w * n, np.uint8), np.zeros(w, np.uint8)
+    costs = np.empty(w * n, np.uint8)
+    codes = np.empty(w + n - 1, right.dtype)
+    best, right_sums = np.empty(w, np.int64), np.empty(w + n, np.uint8)
+    for y in range(max(0, y0 - warm), y1):
+        _shifted(right[y], span.high, codes)
+        here = total[max(y - y0, 0)]
+        above = grey[max(y - 1, 0)]
+        _vertical(lanes, left[y], codes, limits, prices, grey[y], above, path, path_lowest, costs, here)
+        if y >= y0:
+            _sideways(lanes, prices, grey[y], costs, here)
+    path[:] = 0
+    path_lowest[:] = 0
+    last = min(h, y1 + warm)
+    for i in range(last - y0):
+        y = last - 1 - i
+        _shifted(right[y], span.high, codes)
+        below = grey[min(y + 1, h - 1)]
+        _vertical(lanes, left[y], codes, limits, prices, grey[y], below, path, path_lowest, costs, costs)
+        if y < y1:
+            _decide(lanes, path, total[y - y0], best, sums[y], right_sums)
+            _accept(n, span, total[y - y0], best, sums[y], right_sums, limits.most, tolerance, disparity[y])

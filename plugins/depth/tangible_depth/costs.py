@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from jaxtyping import UInt8
 
-from .census import census, two_scale_census
+from .census import BITS, census, two_scale_census
 
 
 class Prices(NamedTuple):
@@ -24,6 +24,8 @@ class Cost(NamedTuple):
     """A way of comparing two pictures."""
 
     name: str
+    bits: int
+    """Of a code."""
     codes: Callable[[UInt8[np.ndarray, "h w"]], Any]
     prices: Prices
 
@@ -33,14 +35,14 @@ def jump_prices(flat: int, edge: int, slope: float) -> UInt8[np.ndarray, "256"]:
     return np.clip(flat - slope * np.arange(256), edge, flat).astype(np.uint8)
 
 
-SHARP = Cost("sharp", census, Prices(np.uint8(10), np.uint8(8), jump_prices(50, 12, 1.5)))
+SHARP = Cost("sharp", BITS, census, Prices(np.uint8(10), np.uint8(8), jump_prices(50, 12, 1.5)))
 """Census of the picture as it is: the most exact on clean pictures."""
 LIGHT = Cost(
-    "light", lambda z: two_scale_census(z, 0.5, 1.5), Prices(np.uint8(18), np.uint8(16), jump_prices(110, 28, 2.0))
+    "light", 2 * BITS, lambda z: two_scale_census(z, 0.5, 1.5), Prices(np.uint8(18), np.uint8(16), jump_prices(110, 28, 2.0))
 )
 """For light noise or compression."""
 HEAVY = Cost(
-    "heavy", lambda z: two_scale_census(z, 0.7, 2.0), Prices(np.uint8(22), np.uint8(16), jump_prices(120, 40, 2.0))
+    "heavy", 2 * BITS, lambda z: two_scale_census(z, 0.7, 2.0), Prices(np.uint8(22), np.uint8(16), jump_prices(120, 40, 2.0))
 )
 """For heavy noise."""
 COSTS = {each.name: each for each in (SHARP, LIGHT, HEAVY)}

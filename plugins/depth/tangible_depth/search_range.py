@@ -12,7 +12,7 @@ from .strips import blank, strips, sweep
 from .sweep import UNKNOWN, Span
 
 TOLERANCE = 1.0
-FIRST_WIDTH, REACH = 96, 0.35
+FIRST_WIDTH, REACH = 80, 0.36
 """Width of the first small copy, and the largest disparity of either sign in widths of the picture."""
 FINE = 4
 """The second copy is this much smaller than the picture, or larger pictures' copies at most FINE_WIDTH wide."""
@@ -27,6 +27,8 @@ class Found(NamedTuple):
     span: Span
     rough: Int16[np.ndarray, "h/factor w/factor"]
     factor: int
+    swapped: bool
+    """Whether every disparity is negative, which parallel cameras in the right order cannot give."""
 
 
 def find_range(pair: Pair) -> Found | None:
@@ -43,7 +45,7 @@ def find_range(pair: Pair) -> Found | None:
 
 def _look(pair: Pair, span: Span, factor: int) -> Found | None:
     small = pair.shrunk(factor)
-    span_small = Span(-(-span.low // factor) - 1, span.high // factor + 1).within(small.width)
+    span_small = span.shrunk(factor).within(small.width)
     out = blank(small.left.shape)
     codes = SHARP.codes(small.left), SHARP.codes(small.right)
     sweep(codes, small.left, span_small, SHARP.prices, TOLERANCE, strips(small.left.shape, span_small), out)
@@ -54,4 +56,5 @@ def _look(pair: Pair, span: Span, factor: int) -> Found | None:
     fringe = int(FRINGE * known.size)
     low, high = known[fringe], known[-1 - fringe]
     margin = MARGIN_PX if factor <= 4 else factor + 1
-    return Found(Span(int(np.floor(low - margin)), int(np.ceil(high + margin))), out.disparity, factor)
+    span = Span(int(np.floor(low - margin)), int(np.ceil(high + margin)))
+    return Found(span, out.disparity, factor, bool(low < -2 and high <= 1))

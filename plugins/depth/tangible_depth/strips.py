@@ -51,7 +51,7 @@ def sweep(
     Every strip is independent of the others, so the result does not depend on how many threads there are.
     """
     w, n = grey.shape[1], span.lanes
-    highest = max(y1 - y0 for y0, y1 in only)
+    highest = max((y1 - y0 for y0, y1 in only), default=0)
 
     def work(share: list[tuple[int, int]]) -> None:
         total = np.empty((highest, w * n), np.uint8)

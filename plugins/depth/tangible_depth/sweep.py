@@ -64,6 +64,10 @@ class Span(NamedTuple):
         """Lanes that hold them: a power of two, at least 16."""
         return max(16, 1 << (self.count - 1).bit_length())
 
+    def shrunk(self, factor: int) -> "Span":
+        """In pixels of a picture made smaller by `factor`, none left out."""
+        return self if factor == 1 else Span(self.low // factor, -(-self.high // factor))
+
     def within(self, width: int) -> "Span":
         """Without disparities that no two columns of a picture of this width can have."""
         low = min(max(self.low, 1 - width), width - 1)

@@ -1,0 +1,81 @@
+"""Choosing what to compare by trying it on a part of the picture.
+
+No noise model is needed. A wrong match that passes the left-right check is seldom confirmed by its neighbours, so the
+share of checked pixels that the speckle filter erases (the loss) tells how far a cost can be trusted, whatever the
+cause: noise, compression, or rows that do not correspond. The strips already swept are kept when all is well, so that a
+clean pair pays next to nothing.
+"""
+
+import logging
+from collections.abc import Sequence
+
+import numpy as np
+
+from .costs import HEAVY, LIGHT, SHARP, Cost
+from .notes import note
+from .pairs import Pair
+from .row_offset import realigned, row_offset
+from .search_range import find_range
+from .speckles import remove_speckles
+from .strips import Swept, blank, strips, sweep
+from .sweep import UNKNOWN, Span
+
+log = logging.getLogger(__name__)
+DOUBT, NOISE = 0.06, 0.20
+"""Loss from which the light and the heavy cost are taken."""
+LEAST_OFFSET_PX = 0.3
+"""Smaller offsets of rows are left alone."""
+Rows = Sequence[tuple[int, int]]
+
+
+def match(
+    pair: Pair, span: Span, cost: Cost | None, tolerance: float, realign: bool, rows: Rows
+) -> tuple[Swept, Cost]:
+    """The strips `rows` matched, with the given cost or, if None, with the one that the pair calls for."""
+    out = blank(pair.left.shape)
+    if cost and not realign:
+        _sweep(pair, span, cost, tolerance, rows, out)
+        return out, cost
+    tried = cost or SHARP
+    probes = _spread(rows)
+    loss = _try(pair, span, tried, tolerance, probes, out)
+    offset = _offset(pair, out, probes, loss) if realign else 0.0
+    if abs(offset) > LEAST_OFFSET_PX:
+        note(log, f"rows realigned by {offset:.2f} px")
+        pair = realigned(pair, offset)
+        loss = _try(pair, span, tried, tolerance, probes, out)
+    chosen = cost or (SHARP if loss < DOUBT else LIGHT if loss < NOISE else HEAVY)
+    if chosen is not SHARP:
+        note(log, f"cost {chosen.name}: {loss:.0%} of the matches tried found no neighbour to agree with")
+    rest = [each for each in rows if each not in probes] if chosen is tried else rows
+    _sweep(pair, span, chosen, tolerance, rest, out)
+    return out, chosen
+
+
+def _sweep(pair: Pair, span: Span, cost: Cost, tolerance: float, rows: Rows, out: Swept) -> None:
+    sweep((cost.codes(pair.left), cost.codes(pair.right)), pair.left, span, cost.prices, tolerance, rows, out)
+
+
+def _spread(rows: Rows) -> Rows:
+    """A quarter of the strips, at least two, evenly spread."""
+    count = min(len(rows), max(2, len(rows) // 4))
+    return [rows[(2 * i + 1) * len(rows) // (2 * count)] for i in range(count)]
+
+
+def _try(pair: Pair, span: Span, cost: Cost, tolerance: float, rows: Rows, out: Swept) -> float:
+    """Sweep these strips and return their loss."""
+    _sweep(pair, span, cost, tolerance, rows, out)
+    found = sum(np.count_nonzero(out.disparity[a:b] != UNKNOWN) for a, b in rows)
+    erased = sum(remove_speckles(out.disparity[a:b]) for a, b in rows)
+    return erased / max(found, 1)
+
+
+def _offset(pair: Pair, out: Swept, rows: Rows, loss: float) -> float:
+    if loss < NOISE:
+        return row_offset(pair, out.disparity, rows)
+    found = find_range(pair)  # the matches themselves are suspect: a map of a small copy is rougher but sound
+    if found is None:
+        return 0.0
+    rough = np.repeat(np.repeat(found.rough, found.factor, 0), found.factor, 1)[: pair.left.shape[0], : pair.width]
+    rough = np.where(rough == UNKNOWN, UNKNOWN, np.clip(rough.astype(np.int32) * found.factor, -32767, 32767))
+    return row_offset(pair, rough.astype(np.int16), rows, reach=4, slack=2)

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from .semi_global import SemiGlobal
 
 log = logging.getLogger(__name__)
-TOLERANCE = {"soft": 1.04, "strict": 1.0}
+TOLERANCE = {"soft": 1.08, "strict": 1.0}
 WIDEST_AT_FULL_SIZE = 256
 """Disparities up to which `auto` works at full size: beyond, a coarser map costs little and saves much."""
 

@@ -23,7 +23,10 @@ FARTHER_OF_ROW, CONTRADICTED, EXPLAINED = 1.2, -2.0, 1.0
 PER_ROOT_OF_GREY, PER_10_PX_NEARER = -0.2, -0.3
 ALIKE = 24
 """Sixteenths of a pixel by which two disparities may differ and still be called the same surface."""
+SHORT = 2
+"""Columns of a gap that is closed without asking, where both ends are alike."""
 LEFT, RIGHT, ABOVE, BELOW = range(4)
+NEVER = np.int32(32767)
 
 
 def fill(disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "h w"]) -> Int16[np.ndarray, "h w"]:
@@ -43,7 +46,7 @@ def _fill_once(disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "h w
     return out
 
 
-@njit(nogil=True, boundscheck=False, cache=True, error_model="numpy")
+@njit(nogil=True, boundscheck=False, cache=True)
 def _fill_rows(disparity, grey, y0, y1, out):
     w = disparity.shape[1]
     sides, paths = np.empty((4, w), np.int16), np.empty((4, w), np.int32)
@@ -64,10 +67,19 @@ def _fill_rows(disparity, grey, y0, y1, out):
             stop = start + 1
             while stop < w and disparity[y, stop] == UNKNOWN:
                 stop += 1
-            _scan_gap(disparity[y], grey[y], start, stop, sides, paths)
-            for x in range(start, stop):
-                out[y, x] = _choose(sides, paths, x, seen)
+            if stop - start <= SHORT and 0 < start and stop < w and _alike(disparity[y, start - 1], disparity[y, stop]):
+                for x in range(start, stop):  # one of the many gaps between whole disparities
+                    out[y, x] = min(disparity[y, start - 1], disparity[y, stop])
+            else:
+                _scan_gap(disparity[y], grey[y], start, stop, sides, paths)
+                for x in range(start, stop):
+                    out[y, x] = _choose(sides, paths, x, seen)
             start = stop
+
+
+@njit(inline="always")
+def _alike(a, b):
+    return abs(int32(a) - int32(b)) <= ALIKE
 
 
 @njit(nogil=True, boundscheck=False)
@@ -142,35 +154,38 @@ def _seen_from_the_right(row, seen):
                 seen[column] = max(seen[column], row[x])
 
 
-@njit(nogil=True, boundscheck=False, error_model="numpy")
+@njit(nogil=True, boundscheck=False)
 def _choose(sides, paths, x, seen):
     """The candidate of the highest score; UNKNOWN if there is none."""
-    farthest, nearest, row_farthest = int32(32767), int32(UNKNOWN), int32(32767)
-    for side in range(4):
-        value = int32(sides[side, x])
-        if value != UNKNOWN:
-            farthest, nearest = min(farthest, value), max(nearest, value)
-            if side in (LEFT, RIGHT):
-                row_farthest = farthest
-    if nearest - farthest <= ALIKE:  # as at the many single pixels between whole disparities
-        return np.int16(farthest if row_farthest == 32767 else row_farthest)
+    left, right, above, below = sides[LEFT, x], sides[RIGHT, x], sides[ABOVE, x], sides[BELOW, x]
+    row_farthest = min(_or_never(left), _or_never(right))
+    farthest = min(row_farthest, _or_never(above), _or_never(below))
+    if max(left, right, above, below) - farthest <= ALIKE:
+        return np.int16(farthest if row_farthest == NEVER else row_farthest)
     best, best_score = UNKNOWN, np.float32(-1e9)
     for side in range(4):
         value = int32(sides[side, x])
-        if value == UNKNOWN:
-            continue
-        score = np.float32(PER_10_PX_NEARER / 160) * np.float32(value - farthest)
-        score += np.float32(PER_ROOT_OF_GREY) * np.sqrt(np.float32(paths[side, x]))
-        score += np.float32(_consistency(x - ((value + 8) >> 4), value, seen))
-        if value <= row_farthest + 8:
-            score += np.float32(FARTHER_OF_ROW)
-        if score > best_score:
-            best, best_score = np.int16(value), score
+        score = _score(value, paths[side, x], farthest, row_farthest, x, seen)
+        best = np.int16(value) if score > best_score else best
+        best_score = max(score, best_score)
     return best
 
 
-@njit(nogil=True, boundscheck=False)
-def _consistency(column, value, seen):
-    if column < 0 or column >= seen.size or seen[column] > value + ALIKE:
-        return EXPLAINED
-    return CONTRADICTED if UNKNOWN < seen[column] < value - ALIKE else 0.0
+@njit(inline="always")
+def _or_never(value):
+    return NEVER if value == UNKNOWN else int32(value)
+
+
+@njit(inline="always")
+def _score(value, path, farthest, row_farthest, x, seen):
+    """Without branches: what a pixel's candidates are like, no processor can guess."""
+    column = x - ((value + 8) >> 4)
+    inside = (column >= 0) & (column < seen.size)
+    there = int32(seen[min(max(column, 0), seen.size - 1)])
+    explained = (not inside) | (there > value + ALIKE)
+    contradicted = inside & (there != UNKNOWN) & (there < value - ALIKE)
+    score = np.float32(PER_10_PX_NEARER / 160) * np.float32(value - farthest)
+    score += np.float32(PER_ROOT_OF_GREY) * np.sqrt(np.float32(path))
+    score += np.float32(EXPLAINED) * np.float32(explained) + np.float32(CONTRADICTED) * np.float32(contradicted)
+    score += np.float32(FARTHER_OF_ROW) * np.float32(value <= row_farthest + 8)
+    return np.float32(-1e9) if value == UNKNOWN else score

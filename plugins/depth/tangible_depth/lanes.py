@@ -17,18 +17,18 @@ WORD = ir.IntType(64)
 
 
 class Lanes:
-    """A lane count, as an argument for kernels."""
+    """A lane count, and how many bytes a code has, as an argument for kernels."""
 
-    def __init__(self, count: int) -> None:
-        self.count = int(count)
+    def __init__(self, count: int, planes: int = 0) -> None:
+        self.count, self.planes = count, planes
 
 
 class LanesType(types.Type):
-    """The numba type of `Lanes(count)`: the count is part of the type, the value is empty."""
+    """The numba type of `Lanes`: the numbers are part of the type, the value is empty."""
 
-    def __init__(self, count: int) -> None:
-        self.count = count
-        super().__init__(name=f"Lanes({count})")
+    def __init__(self, count: int, planes: int) -> None:
+        self.count, self.planes = count, planes
+        super().__init__(name=f"Lanes({count},{planes})")
 
 
 class Vec(types.Type):
@@ -63,7 +63,7 @@ class VecModel(models.PrimitiveModel):
 
 @typeof_impl.register(Lanes)
 def _typeof_lanes(value: Lanes, context: Any) -> LanesType:
-    return LanesType(value.count)
+    return LanesType(value.count, value.planes)
 
 
 @unbox(LanesType)
@@ -232,14 +232,23 @@ def first_equal(typing: Any, vec: Vec, scalar: Any) -> Any:
 
 
 @intrinsic
-def hamming(typing: Any, lanes: LanesType, code: Any, codes: Any, offset: Any) -> Any:
-    """Lane k: how many bits of `code` and codes[offset + k] differ, as uint8."""
-    wide, narrow = Vec(codes.dtype, lanes.count), Vec(types.uint8, lanes.count)
+def hamming(typing: Any, lanes: LanesType, left: Any, right: Any, x: Any) -> Any:
+    """Lane k: how many bits of left[:, x] and right[:, x + k] differ, as uint8. Both are (planes, columns) of bytes."""
+    vec = Vec(types.uint8, lanes.count)
 
     def emit(c: Any, b: Any, sig: Any, a: Any) -> Any:
-        other = b.load(_address(c, b, sig.args[2], a[2], a[3], wide))
-        other.align = wide.element.bitwidth // 8
-        differing = b.xor(other, _splat(b, a[1], wide.count))
-        return b.trunc(_call(b, f"llvm.ctpop.{wide.mangled}", wide.llvm, [differing]), narrow.llvm)
+        rows = [c.make_array(kind)(c, b, array) for kind, array in zip(sig.args[1:3], a[1:3], strict=True)]
+        strides = [b.extract_value(each.shape, 1) for each in rows]
+        total = ir.Constant(vec.llvm, [0] * vec.count)
+        for plane in range(sig.args[0].planes):
+            code, codes = (
+                b.gep(each.data, [b.add(a[3], b.mul(stride, ir.Constant(WORD, plane)))])
+                for each, stride in zip(rows, strides, strict=True)
+            )
+            others = b.load(b.bitcast(codes, vec.llvm.as_pointer()))
+            others.align = 1
+            differing = b.xor(others, _splat(b, b.load(code), vec.count))
+            total = b.add(total, _call(b, f"llvm.ctpop.{vec.mangled}", vec.llvm, [differing]))
+        return total
 
-    return narrow(lanes, codes.dtype, codes, types.int64), emit
+    return vec(lanes, left, right, types.int64), emit

@@ -27,7 +27,7 @@ class SemiGlobal(DepthEstimator):
     cost: Literal["auto", "sharp", "light", "heavy"] = "auto"
     """What is compared: sharp for clean pictures, light and heavy for noise; auto: tried on a part of the picture."""
     check: Literal["soft", "strict"] = "soft"
-    """Left-right check. soft: a match within 4 % of the right pixel's best is kept; strict: only the best."""
+    """Left-right check. soft: a match within 8 % of the right pixel's best is kept; strict: only the best."""
     fill: bool = True
     """Whether pixels without a match take the disparity that both views and the picture's edges suggest, else NaN."""
     realign_rows: bool = True

@@ -4,14 +4,14 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from jaxtyping import Int16, UInt, UInt8
+from jaxtyping import Int16, UInt8
 
 from .costs import Prices
 from .lanes import Lanes
 from .sweep import UNKNOWN, Span, sweep_strip
 from .workers import in_turns, thread_count
 
-ROWS, WARM_ROWS = 128, 64
+ROWS, WARM_ROWS = 128, 32
 """Rows of a strip, and rows that a path begins before it: what lies farther away hardly reaches in."""
 VOLUME_BYTES = 256 << 20
 """Bound on the cost volumes of all threads together."""
@@ -38,7 +38,7 @@ def strips(shape: tuple[int, int], span: Span) -> list[tuple[int, int]]:
 
 
 def sweep(
-    codes: tuple[UInt[np.ndarray, "h w"], UInt[np.ndarray, "h w"]],
+    codes: tuple[UInt8[np.ndarray, "h planes w"], UInt8[np.ndarray, "h planes w"]],
     grey: UInt8[np.ndarray, "h w"],
     span: Span,
     prices: Prices,
@@ -51,13 +51,14 @@ def sweep(
     Every strip is independent of the others, so the result does not depend on how many threads there are.
     """
     w, n = grey.shape[1], span.lanes
+    lanes = Lanes(n, codes[0].shape[1])
     highest = max((y1 - y0 for y0, y1 in only), default=0)
 
     def work(share: list[tuple[int, int]]) -> None:
         total = np.empty((highest, w * n), np.uint8)
         for rows in share:
             sweep_strip(
-                Lanes(n), *codes, grey, rows, WARM_ROWS, span, prices, np.float32(tolerance), total, *out
+                lanes, *codes, grey, rows, WARM_ROWS, span, prices, np.float32(tolerance), total, *out
             )
 
     in_turns(list(only), work)

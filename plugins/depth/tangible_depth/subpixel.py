@@ -9,8 +9,8 @@ def parabola(before: float, at: float, after: float) -> float:
 
     Within +-0.5 if `at` is the best of the three, whether best means smallest or largest; 0 if they lie on a line.
     """
-    bend = before - 2 * at + after
-    return (before - after) / (2 * bend) if bend != 0 else 0.0
+    bend = (before - at) + (after - at)
+    return (before - after) / (bend + bend) if bend != 0 else bend
 
 
 @njit(inline="always")
@@ -22,4 +22,4 @@ def equiangular(before: float, at: float, after: float) -> float:
     Source: Shimizu & Okutomi, Precise sub-pixel estimation on area-based matching, ICCV 2001.
     """
     rise = max(before, after) - at
-    return (before - after) / (2 * rise) if rise != 0 else 0.0
+    return (before - after) / (rise + rise) if rise != 0 else rise

@@ -85,9 +85,9 @@ def _step(lanes, before, before_lowest, cost, move, jump):
 
 
 @njit(inline="always")
-def _cost(lanes, code, codes, x, limits):
+def _cost(lanes, left, codes, x, limits):
     """Hamming distances; neutral where a disparity leads out of the right view, 255 where it is not asked for."""
-    cost = minimum(hamming(lanes, code, codes, x), load(lanes, limits.most, x))
+    cost = minimum(hamming(lanes, left, codes, x), load(lanes, limits.most, x))
     return maximum(maximum(cost, load(lanes, limits.least, x)), load(lanes, limits.barred, 0))
 
 
@@ -101,8 +101,8 @@ def _vertical(lanes, left, codes, limits, prices, grey, grey_before, path, path_
     """The path from the row before; `costs` and `total` keep this row's costs and path sums."""
     n = width(lanes)
     move, jumps = splat(lanes, prices.move), prices.jumps
-    for x in range(left.size):
-        cost = _cost(lanes, left[x], codes, x, limits)
+    for x in range(grey.size):
+        cost = _cost(lanes, left, codes, x, limits)
         store(costs, x * n, cost)
         jump = jumps[_grey_step(grey, x, grey_before, x)]
         here = _step(lanes, load(lanes, path, x * n), path_lowest[x], cost, move, jump)
@@ -151,25 +151,25 @@ def _decide(lanes, path, total, best, sums, right_sums):
         seen = shift_down(seen, wall)
 
 
-@njit(nogil=True, boundscheck=False)
+@njit(nogil=True, boundscheck=False, error_model="numpy")
 def _accept(n, span, total, best, sums, right_sums, most, tolerance, disparity):
     """Disparities that pass the left-right check: no left pixel fits the right pixel better by more than a factor.
 
-    A pixel whose neighbouring disparities fit as well as the best one says nothing and is not accepted.
+    A pixel whose neighbouring disparities fit as well as the best one says nothing and is not accepted. Written without
+    branches, because what is accepted no processor can guess.
     """
+    count = span.high - span.low + 1
     for x in range(best.size):
         k = best[x]
-        at = sums[x]
-        disparity[x] = UNKNOWN
-        if most[x + k] == 0 or at == WORST or at > tolerance * right_sums[x + k]:
-            continue
-        offset = 0.0
-        if 0 < k < (span.high - span.low + 1) - 1:
-            before, after = total[x * n + k - 1], total[x * n + k + 1]
-            if before == at and after == at:
-                continue
-            offset = equiangular(float(before), float(at), float(after))
-        disparity[x] = np.int16(np.floor(16 * (span.high - k - offset) + 0.5))
+        at = np.float32(sums[x])
+        before = np.float32(total[x * n + max(k - 1, 0)])
+        after = np.float32(total[x * n + min(k + 1, n - 1)])
+        inner = (k > 0) & (k < count - 1)
+        flat = inner & (before == at) & (after == at)
+        fits = (most[x + k] != 0) & (at < WORST) & (at <= tolerance * np.float32(right_sums[x + k]))
+        offset = equiangular(before, at, after) if inner else np.float32(0)
+        sixteenths = np.int16(np.floor(16 * (np.float32(span.high - k) - offset) + np.float32(0.5)))
+        disparity[x] = sixteenths if fits & (not flat) else UNKNOWN
 
 
 @njit(nogil=True, boundscheck=False)
@@ -184,25 +184,26 @@ def _limits(n, w, span, neutral):
 @njit(nogil=True, boundscheck=False)
 def _shifted(row, top, codes):
     """The right view's codes as the lanes want them; beyond the picture its edge is repeated."""
-    for i in range(codes.size):
-        codes[i] = row[min(max(i - top, 0), row.size - 1)]
+    for plane in range(row.shape[0]):
+        for i in range(codes.shape[1]):
+            codes[plane, i] = row[plane, min(max(i - top, 0), row.shape[1] - 1)]
 
 
 @njit(nogil=True, boundscheck=False, cache=True)
 def sweep_strip(lanes, left, right, grey, rows, warm, span, prices, tolerance, total, disparity, sums):
     """Disparities in sixteenths of a pixel (UNKNOWN where rejected) and sums of rows[0]..rows[1]-1.
 
-    Parameters: lanes, Lanes(n); left, right (h, w), codes of the two views; grey (h, w) uint8, the left view; warm, rows
+    Parameters: lanes, Lanes(n, planes); left, right uint8 (h, planes, w), codes of the two views; grey (h, w) uint8, the left view; warm, rows
     that a path begins early; span, the disparities to try, at most n; prices, a `Prices`; tolerance of the left-right check, 1 being strict; total, scratch of at least (rows, w n) bytes.
     Results: disparity int16 (h, w), sums uint8 (h, w), the winner's cost over the four paths.
     """
     n = width(lanes)
-    h, w = left.shape
+    h, w = grey.shape
     y0, y1 = rows
     limits = _limits(n, w, span, prices.neutral)
     path, path_lowest = np.zeros(w * n, np.uint8), np.zeros(w, np.uint8)
     costs = np.empty(w * n, np.uint8)
-    codes = np.empty(w + n - 1, right.dtype)
+    codes = np.empty((right.shape[1], w + n - 1), np.uint8)
     best, right_sums = np.empty(w, np.int64), np.empty(w + n, np.uint8)
     for y in range(max(0, y0 - warm), y1):
         _shifted(right[y], span.high, codes)

@@ -32,28 +32,43 @@ def match(
     pair: Pair, span: Span, cost: Cost | None, tolerance: float, realign: bool, rows: Rows
 ) -> tuple[Swept, Cost]:
     """The strips `rows` matched, with the given cost or, if None, with the one that the pair calls for."""
-    out = blank(pair.left.shape)
+    trial = _Trial(pair, span, cost or SHARP, tolerance)
     if cost and not realign:
-        _sweep(pair, span, cost, tolerance, rows, out)
-        return out, cost
-    tried = cost or SHARP
+        trial.sweep(rows)
+        return trial.out, cost
     probes = _spread(rows)
-    loss = _try(pair, span, tried, tolerance, probes, out)
-    offset = _offset(pair, out, probes, loss) if realign else 0.0
+    loss = trial.loss(probes)
+    offset = _offset(trial, probes, loss) if realign else 0.0
     if abs(offset) > LEAST_OFFSET_PX:
         note(log, f"rows realigned by {offset:.2f} px")
-        pair = realigned(pair, offset)
-        loss = _try(pair, span, tried, tolerance, probes, out)
-    chosen = cost or (SHARP if loss < DOUBT else LIGHT if loss < NOISE else HEAVY)
-    if chosen is not SHARP:
-        note(log, f"cost {chosen.name}: {loss:.0%} of the matches tried found no neighbour to agree with")
-    rest = [each for each in rows if each not in probes] if chosen is tried else rows
-    _sweep(pair, span, chosen, tolerance, rest, out)
-    return out, chosen
+        trial = _Trial(realigned(pair, offset), span, cost or SHARP, tolerance)
+        loss = trial.loss(probes)
+    if cost is None and loss >= DOUBT:
+        cost = LIGHT if loss < NOISE else HEAVY
+        note(log, f"cost {cost.name}: {loss:.0%} of the matches tried found no neighbour to agree with")
+        trial, probes = _Trial(trial.pair, span, cost, tolerance), []
+    trial.sweep([each for each in rows if each not in probes])
+    return trial.out, cost or SHARP
 
 
-def _sweep(pair: Pair, span: Span, cost: Cost, tolerance: float, rows: Rows, out: Swept) -> None:
-    sweep((cost.codes(pair.left), cost.codes(pair.right)), pair.left, span, cost.prices, tolerance, rows, out)
+class _Trial:
+    """One pair, coded once, and what has been matched of it."""
+
+    def __init__(self, pair: Pair, span: Span, cost: Cost, tolerance: float) -> None:
+        self.pair, self.out = pair, blank(pair.left.shape)
+        self._codes = cost.codes(pair.left), cost.codes(pair.right)
+        self._how = span, cost.prices, tolerance
+
+    def sweep(self, rows: Rows) -> None:
+        """Match these strips."""
+        sweep(self._codes, self.pair.left, *self._how, rows, self.out)
+
+    def loss(self, rows: Rows) -> float:
+        """Match these strips; the share of the matches that are specks, which are erased."""
+        self.sweep(rows)
+        found = sum(np.count_nonzero(self.out.disparity[a:b] != UNKNOWN) for a, b in rows)
+        erased = sum(remove_speckles(self.out.disparity[a:b]) for a, b in rows)
+        return erased / max(found, 1)
 
 
 def _spread(rows: Rows) -> Rows:
@@ -62,17 +77,10 @@ def _spread(rows: Rows) -> Rows:
     return [rows[(2 * i + 1) * len(rows) // (2 * count)] for i in range(count)]
 
 
-def _try(pair: Pair, span: Span, cost: Cost, tolerance: float, rows: Rows, out: Swept) -> float:
-    """Sweep these strips and return their loss."""
-    _sweep(pair, span, cost, tolerance, rows, out)
-    found = sum(np.count_nonzero(out.disparity[a:b] != UNKNOWN) for a, b in rows)
-    erased = sum(remove_speckles(out.disparity[a:b]) for a, b in rows)
-    return erased / max(found, 1)
-
-
-def _offset(pair: Pair, out: Swept, rows: Rows, loss: float) -> float:
+def _offset(trial: _Trial, rows: Rows, loss: float) -> float:
+    pair = trial.pair
     if loss < NOISE:
-        return row_offset(pair, out.disparity, rows)
+        return row_offset(pair, trial.out.disparity, rows)
     found = find_range(pair)  # the matches themselves are suspect: a map of a small copy is rougher but sound
     if found is None:
         return 0.0

@@ -14,18 +14,26 @@ RADIUS = 2
 PLANES = 3
 """Bytes of a code."""
 BITS = 8 * PLANES
+BLOCK = 64
+"""Columns that a processor treats at once; whole blocks spare it the odd ones at a row's end."""
 OFFSETS = np.array([(dy, dx) for dy in range(5) for dx in range(5) if (dy, dx) != (RADIUS, RADIUS)])
 
 
-def census(grey: UInt8[np.ndarray, "h w"]) -> UInt8[np.ndarray, "h 3 w"]:
-    """Codes of 24 bits from the 5 x 5 window, a plane a byte; beyond the picture its edge is repeated."""
-    codes = np.empty((grey.shape[0], PLANES, grey.shape[1]), np.uint8)
-    padded = np.pad(grey, RADIUS, mode="edge")
+def census(grey: UInt8[np.ndarray, "h w"]) -> UInt8[np.ndarray, "h 3 whole"]:
+    """Codes of 24 bits from the 5 x 5 window, a plane a byte; beyond the picture its edge is repeated.
+
+    Rows are completed to whole blocks of BLOCK columns; what stands there means nothing.
+    """
+    import cv2
+
+    h, w = grey.shape
+    codes = np.empty((h, PLANES, w + -w % BLOCK), np.uint8)
+    padded = cv2.copyMakeBorder(grey, RADIUS, RADIUS, RADIUS, RADIUS + -w % BLOCK, cv2.BORDER_REPLICATE)
     in_blocks(grey.shape[0], lambda a, b: _codes(padded, OFFSETS, a, b, codes))
     return codes
 
 
-def two_scale_census(grey: UInt8[np.ndarray, "h w"], fine_px: float, coarse_px: float) -> UInt8[np.ndarray, "h 6 w"]:
+def two_scale_census(grey: UInt8[np.ndarray, "h w"], fine_px: float, coarse_px: float) -> UInt8[np.ndarray, "h 6 whole"]:
     """Codes of 48 bits: the census at two blurs (Gaussian sigma). The coarse half survives noise, the fine keeps edges."""
     import cv2
 

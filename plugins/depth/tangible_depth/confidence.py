@@ -1,7 +1,7 @@
 """How far a disparity can be trusted."""
 
 import numpy as np
-from jaxtyping import Bool, Float32, Int16, UInt8
+from jaxtyping import Bool, Float, Float32, Int16, UInt8
 from numba import int32, njit
 
 from .sweep import UNKNOWN
@@ -14,17 +14,18 @@ LEAST_MATCHED, FILLED = 0.2, 0.1
 
 
 def confidence(
-    matched: Int16[np.ndarray, "h w"], final: Int16[np.ndarray, "h w"], sums: UInt8[np.ndarray, "h w"], worst: int
+    matched: Int16[np.ndarray, "h w"],
+    final: Int16[np.ndarray, "h w"],
+    quality: UInt8[np.ndarray, "h w"],
+    by_quality: Float[np.ndarray, "256"],
 ) -> Float32[np.ndarray, "h w"]:
-    """1 - sum / worst where a match was found and the final value agrees with it, at least 0.2; 0.1 elsewhere.
+    """by_quality[quality] where a match was found and the final value agrees with it, 0.1 elsewhere.
 
-    matched (UNKNOWN where nothing was) and final in sixteenths of a pixel; sums, the cost of each match; worst, the
-    largest cost there is: for census codes all bits along all paths, so that the confidence is the share of bits that
-    agree.
+    matched (UNKNOWN where nothing was) and final in sixteenths of a pixel; quality, what each match cost or scored.
     """
     out = np.empty(final.shape, np.float32)
-    by_sum = np.maximum(1 - np.arange(256) / worst, LEAST_MATCHED).astype(np.float32)
-    in_blocks(final.shape[0], lambda a, b: _judge(matched, final, sums, by_sum, a, b, out))
+    table = by_quality.astype(np.float32)
+    in_blocks(final.shape[0], lambda a, b: _judge(matched, final, quality, table, a, b, out))
     return out
 
 
@@ -37,9 +38,9 @@ def flat_pixels(grey: UInt8[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
 
 
 @njit(nogil=True, boundscheck=False, cache=True)
-def _judge(matched, final, sums, by_sum, y0, y1, out):
+def _judge(matched, final, quality, table, y0, y1, out):
     for y in range(y0, y1):
         for x in range(final.shape[1]):
             near = abs(int32(matched[y, x]) - int32(final[y, x])) <= AGREEMENT
             known = matched[y, x] != UNKNOWN and near
-            out[y, x] = by_sum[sums[y, x]] if known else np.float32(FILLED)
+            out[y, x] = table[quality[y, x]] if known else np.float32(FILLED)

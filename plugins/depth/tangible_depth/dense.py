@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
-from jaxtyping import Float32, Int16, UInt8
+from jaxtyping import Float, Float32, Int16, UInt8
 from numba import int32, njit
 from tangible_core.data import DisparityMap
 
@@ -26,9 +26,12 @@ class Dense(NamedTuple):
 
 
 def completed(
-    matched: Int16[np.ndarray, "h w"], sums: UInt8[np.ndarray, "h w"], worst: int, grey: UInt8[np.ndarray, "h w"]
+    matched: Int16[np.ndarray, "h w"],
+    quality: UInt8[np.ndarray, "h w"],
+    by_quality: Float[np.ndarray, "256"],
+    grey: UInt8[np.ndarray, "h w"],
 ) -> Dense:
-    """Speckles removed (in `matched` itself), gaps filled, edges sharpened, and all of it judged.
+    """Speckles removed (in `matched` itself), gaps filled, edges sharpened, and all of it judged (see `confidence`).
 
     A map without any match stays UNKNOWN.
     """
@@ -36,7 +39,7 @@ def completed(
     if (matched == UNKNOWN).all():
         return Dense(matched, np.zeros(matched.shape, np.float32))
     final = median(sharpen_edges(median(fill(matched, grey)), grey))
-    return Dense(final, confidence(matched, final, sums, worst))
+    return Dense(final, confidence(matched, final, quality, by_quality))
 
 
 def enlarged(small: Dense, grey: UInt8[np.ndarray, "h w"]) -> Dense:
@@ -51,11 +54,19 @@ def enlarged(small: Dense, grey: UInt8[np.ndarray, "h w"]) -> Dense:
 def as_map(dense: Dense, grey: UInt8[np.ndarray, "h w"], fill: bool) -> DisparityMap:
     """In pixels; NaN where nothing is known and, unless `fill`, where a value comes from neighbours."""
     flat = flat_pixels(grey)
-    trust = np.where(flat, np.float32(0), dense.confidence)
-    disparity = dense.disparity.astype(np.float32)
-    disparity *= np.float32(1 / 16)
-    disparity[dense.disparity == UNKNOWN if fill else trust <= FILLED] = np.nan
-    return DisparityMap(disparity, trust)
+    disparity_px, trust = np.empty(grey.shape, np.float32), np.empty(grey.shape, np.float32)
+    in_blocks(grey.shape[0], lambda a, b: _to_pixels(*dense, flat, fill, a, b, disparity_px, trust))
+    return DisparityMap(disparity_px, trust)
+
+
+@njit(nogil=True, boundscheck=False, cache=True)
+def _to_pixels(disparity, confidence, flat, fill, y0, y1, disparity_px, trust):
+    for y in range(y0, y1):
+        for x in range(disparity.shape[1]):
+            value = np.float32(0) if flat[y, x] else confidence[y, x]
+            known = disparity[y, x] != UNKNOWN and (fill or value > FILLED)
+            trust[y, x] = value if known else np.float32(0)
+            disparity_px[y, x] = np.float32(disparity[y, x]) * np.float32(1 / 16) if known else np.float32(np.nan)
 
 
 @njit(nogil=True, boundscheck=False, cache=True)

@@ -29,7 +29,7 @@ def row_offset(
     Parameters: rough, disparities in sixteenths of a pixel, UNKNOWN where there is none; rows, the ranges of rows to
     look at; reach, offsets up to reach - 1 pixels are measured; slack, by how many pixels `rough` may be wrong.
     """
-    points = np.concatenate([_edge_points(pair.left, rough, *each) for each in rows])
+    points = np.concatenate([np.empty((0, 3), np.int64), *(_edge_points(pair.left, rough, *each) for each in rows)])
     points = np.ascontiguousarray(points[:: 1 + len(points) // MOST_POINTS])
     offsets = np.full(len(points), np.nan, np.float32)
     in_blocks(len(points), lambda a, b: _offsets(*pair, points, reach, slack, a, b, offsets))

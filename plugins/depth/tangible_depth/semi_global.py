@@ -1,10 +1,13 @@
 """Semi-global matching of census codes: the default, for its time and its error."""
 
+import logging
 from typing import Annotated, Literal
 
 from pydantic import Field
 from tangible_core.data import DisparityMap, Views
 from tangible_core.interfaces import DepthEstimator
+
+log = logging.getLogger(__name__)
 
 
 class SemiGlobal(DepthEstimator):
@@ -44,6 +47,17 @@ class SemiGlobal(DepthEstimator):
         0.2; 0.1 where the value was filled or decided by a neighbour; 0 in windows of one grey value.
         Raises: PictureError if there is no right view or the range is empty.
         """
-        from .chain import estimate
+        import numpy as np
 
-        return estimate(views, self)
+        from .chain import disparity_map, nothing_moved
+        from .notes import note
+        from .pairs import grey_pair
+        from .scaled import match_scaled
+
+        pair = grey_pair(views, "semi-global")
+        if self.skip_identical and np.array_equal(*pair):
+            note(log, "skipped: matching, as both views are identical")
+            return nothing_moved(pair, self.fill)
+        return disparity_map(
+            pair, self.min_disparity_px, self.max_disparity_px, self.fill, lambda p, span: match_scaled(p, span, self)
+        )

@@ -46,6 +46,8 @@ class Limits(NamedTuple):
     most: np.ndarray
     least: np.ndarray
     barred: np.ndarray
+    free: tuple[int, int]
+    """Columns first..last - 1, at which no lane has a limit."""
 
 
 class Span(NamedTuple):
@@ -85,7 +87,7 @@ def _step(lanes, before, before_lowest, cost, move, jump):
 
 
 @njit(inline="always")
-def _cost(lanes, left, codes, x, limits):
+def _limited_cost(lanes, left, codes, x, limits):
     """Hamming distances; neutral where a disparity leads out of the right view, 255 where it is not asked for."""
     cost = minimum(hamming(lanes, left, codes, x), load(lanes, limits.most, x))
     return maximum(maximum(cost, load(lanes, limits.least, x)), load(lanes, limits.barred, 0))
@@ -97,18 +99,31 @@ def _grey_step(grey, x, others, z):
 
 
 @njit(nogil=True, boundscheck=False)
-def _vertical(lanes, left, codes, limits, prices, grey, grey_before, path, path_lowest, costs, total):
-    """The path from the row before; `costs` and `total` keep this row's costs and path sums."""
+def _vertical(lanes, left, codes, limits, columns, prices, grey, grey_before, path, path_lowest, costs, total):
+    """The path from the row before; `costs` and `total` keep this row's costs and path sums. No limits: None."""
     n = width(lanes)
     move, jumps = splat(lanes, prices.move), prices.jumps
-    for x in range(grey.size):
-        cost = _cost(lanes, left, codes, x, limits)
+    for x in range(columns[0], columns[1]):
+        if limits is None:
+            cost = hamming(lanes, left, codes, x)
+        else:
+            cost = _limited_cost(lanes, left, codes, x, limits)
         store(costs, x * n, cost)
         jump = jumps[_grey_step(grey, x, grey_before, x)]
         here = _step(lanes, load(lanes, path, x * n), path_lowest[x], cost, move, jump)
         path_lowest[x] = lowest(here)
         store(path, x * n, here)
         store(total, x * n, here)
+
+
+@njit(nogil=True, boundscheck=False)
+def _whole_row(lanes, left, codes, limits, prices, grey, grey_before, path, path_lowest, costs, total):
+    """`_vertical` for all columns: the limits are looked up only where there are some."""
+    first, last = limits.free
+    rest = (prices, grey, grey_before, path, path_lowest, costs, total)
+    _vertical(lanes, left, codes, limits, (0, first), *rest)
+    _vertical(lanes, left, codes, None, (first, last), *rest)
+    _vertical(lanes, left, codes, limits, (last, grey.size), *rest)
 
 
 @njit(nogil=True, boundscheck=False)
@@ -178,22 +193,25 @@ def _limits(n, w, span, neutral):
     beyond = (columns < 0) | (columns >= w)
     most = np.where(beyond, uint8(0), uint8(255))
     least = np.where(beyond, neutral, uint8(0))
-    return Limits(most, least, np.where(np.arange(n) < (span.high - span.low + 1), uint8(0), uint8(255)))
+    count = span.high - span.low + 1
+    first = min(max(span.high, 0), w)
+    last = min(max(w + span.high - n + 1, first), w) if count == n else first
+    return Limits(most, least, np.where(np.arange(n) < count, uint8(0), uint8(255)), (first, last))
 
 
 @njit(nogil=True, boundscheck=False)
-def _shifted(row, top, codes):
+def _shifted(row, w, top, codes):
     """The right view's codes as the lanes want them; beyond the picture its edge is repeated."""
     for plane in range(row.shape[0]):
         for i in range(codes.shape[1]):
-            codes[plane, i] = row[plane, min(max(i - top, 0), row.shape[1] - 1)]
+            codes[plane, i] = row[plane, min(max(i - top, 0), w - 1)]
 
 
 @njit(nogil=True, boundscheck=False, cache=True)
 def sweep_strip(lanes, left, right, grey, rows, warm, span, prices, tolerance, total, disparity, sums):
     """Disparities in sixteenths of a pixel (UNKNOWN where rejected) and sums of rows[0]..rows[1]-1.
 
-    Parameters: lanes, Lanes(n, planes); left, right uint8 (h, planes, w), codes of the two views; grey (h, w) uint8, the left view; warm, rows
+    Parameters: lanes, Lanes(n, planes); left, right uint8 (h, planes, >= w), codes of the two views; grey (h, w) uint8, the left view; warm, rows
     that a path begins early; span, the disparities to try, at most n; prices, a `Prices`; tolerance of the left-right check, 1 being strict; total, scratch of at least (rows, w n) bytes.
     Results: disparity int16 (h, w), sums uint8 (h, w), the winner's cost over the four paths.
     """
@@ -206,10 +224,10 @@ def sweep_strip(lanes, left, right, grey, rows, warm, span, prices, tolerance, t
     codes = np.empty((right.shape[1], w + n - 1), np.uint8)
     best, right_sums = np.empty(w, np.int64), np.empty(w + n, np.uint8)
     for y in range(max(0, y0 - warm), y1):
-        _shifted(right[y], span.high, codes)
+        _shifted(right[y], w, span.high, codes)
         here = total[max(y - y0, 0)]
         above = grey[max(y - 1, 0)]
-        _vertical(lanes, left[y], codes, limits, prices, grey[y], above, path, path_lowest, costs, here)
+        _whole_row(lanes, left[y], codes, limits, prices, grey[y], above, path, path_lowest, costs, here)
         if y >= y0:
             _sideways(lanes, prices, grey[y], costs, here)
     path[:] = 0
@@ -217,9 +235,9 @@ def sweep_strip(lanes, left, right, grey, rows, warm, span, prices, tolerance, t
     last = min(h, y1 + warm)
     for i in range(last - y0):
         y = last - 1 - i
-        _shifted(right[y], span.high, codes)
+        _shifted(right[y], w, span.high, codes)
         below = grey[min(y + 1, h - 1)]
-        _vertical(lanes, left[y], codes, limits, prices, grey[y], below, path, path_lowest, costs, costs)
+        _whole_row(lanes, left[y], codes, limits, prices, grey[y], below, path, path_lowest, costs, costs)
         if y < y1:
             _decide(lanes, path, total[y - y0], best, sums[y], right_sums)
             _accept(n, span, total[y - y0], best, sums[y], right_sums, limits.most, tolerance, disparity[y])

@@ -25,6 +25,8 @@ DOUBT, NOISE = 0.06, 0.20
 """Loss from which the light and the heavy cost are taken."""
 LEAST_OFFSET_PX = 0.3
 """Smaller offsets of rows are left alone."""
+SAMPLE_ROWS = 64
+"""Rows of a strip that the loss and the offset are measured on."""
 Rows = Sequence[tuple[int, int]]
 
 
@@ -64,11 +66,11 @@ class _Trial:
         sweep(self._codes, self.pair.left, *self._how, rows, self.out)
 
     def loss(self, rows: Rows) -> float:
-        """Match these strips; the share of the matches that are specks, which are erased."""
+        """Match these strips; of the matches in their samples, the share that are specks, which are erased."""
         self.sweep(rows)
-        found = sum(np.count_nonzero(self.out.disparity[a:b] != UNKNOWN) for a, b in rows)
-        erased = sum(remove_speckles(self.out.disparity[a:b]) for a, b in rows)
-        return erased / max(found, 1)
+        samples = [self.out.disparity[a:b] for a, b in map(_sample, rows)]
+        found = sum(np.count_nonzero(each != UNKNOWN) for each in samples)
+        return sum(remove_speckles(each) for each in samples) / max(found, 1)
 
 
 def _spread(rows: Rows) -> Rows:
@@ -77,8 +79,13 @@ def _spread(rows: Rows) -> Rows:
     return [rows[(2 * i + 1) * len(rows) // (2 * count)] for i in range(count)]
 
 
+def _sample(rows: tuple[int, int]) -> tuple[int, int]:
+    """The rows of a strip that are looked at."""
+    return rows[0], min(rows[0] + SAMPLE_ROWS, rows[1])
+
+
 def _offset(trial: _Trial, rows: Rows, loss: float) -> float:
-    pair = trial.pair
+    pair, rows = trial.pair, [_sample(each) for each in rows]
     if loss < NOISE:
         return row_offset(pair, trial.out.disparity, rows)
     found = find_range(pair)  # the matches themselves are suspect: a map of a small copy is rougher but sound

@@ -99,8 +99,8 @@ def _grey_step(grey, x, others, z):
 
 
 @njit(nogil=True, boundscheck=False)
-def _vertical(lanes, left, codes, limits, columns, prices, grey, grey_before, path, path_lowest, costs, total):
-    """The path from the row before; `costs` and `total` keep this row's costs and path sums. No limits: None."""
+def _vertical(lanes, left, codes, limits, columns, prices, grey, grey_before, path, path_lowest, costs):
+    """The path from the row before, in place; `costs` keeps this row's costs. No limits: None."""
     n = width(lanes)
     move, jumps = splat(lanes, prices.move), prices.jumps
     for x in range(columns[0], columns[1]):
@@ -113,28 +113,40 @@ def _vertical(lanes, left, codes, limits, columns, prices, grey, grey_before, pa
         here = _step(lanes, load(lanes, path, x * n), path_lowest[x], cost, move, jump)
         path_lowest[x] = lowest(here)
         store(path, x * n, here)
-        store(total, x * n, here)
 
 
 @njit(nogil=True, boundscheck=False)
-def _whole_row(lanes, left, codes, limits, prices, grey, grey_before, path, path_lowest, costs, total):
+def _whole_row(lanes, left, codes, limits, prices, grey, grey_before, path, path_lowest, costs):
     """`_vertical` for all columns: the limits are looked up only where there are some."""
     first, last = limits.free
-    rest = (prices, grey, grey_before, path, path_lowest, costs, total)
+    rest = (prices, grey, grey_before, path, path_lowest, costs)
     _vertical(lanes, left, codes, limits, (0, first), *rest)
     _vertical(lanes, left, codes, None, (first, last), *rest)
     _vertical(lanes, left, codes, limits, (last, grey.size), *rest)
 
 
 @njit(nogil=True, boundscheck=False)
-def _sideways(lanes, prices, grey, costs, total):
-    """Add the paths from both ends of the row. They are independent, so one hides the other's latency."""
+def _sideways(lanes, prices, grey, costs, path, total):
+    """Sums of the path from above and those from both ends of the row. Walking both at once hides their latency."""
     n = width(lanes)
-    move, jumps = splat(lanes, prices.move), prices.jumps
     w = grey.size
     east = west = splat(lanes, uint8(0))
     east_lowest = west_lowest = uint8(0)
-    for x in range(w):
+    east, east_lowest, west, west_lowest = _half_way(
+        lanes, prices, grey, costs, path, total, (0, w // 2), east, east_lowest, west, west_lowest
+    )
+    if w % 2:
+        middle = (w // 2) * n
+        store(total, middle, load(lanes, path, middle))
+    _half_way(lanes, prices, grey, costs, total, total, (w // 2, w), east, east_lowest, west, west_lowest)
+
+
+@njit(inline="always")
+def _half_way(lanes, prices, grey, costs, so_far, total, steps, east, east_lowest, west, west_lowest):
+    n = width(lanes)
+    move, jumps = splat(lanes, prices.move), prices.jumps
+    w = grey.size
+    for x in range(steps[0], steps[1]):
         z = w - 1 - x
         east_jump = jumps[_grey_step(grey, x, grey, max(x - 1, 0))]
         west_jump = jumps[_grey_step(grey, z, grey, min(z + 1, w - 1))]
@@ -142,12 +154,13 @@ def _sideways(lanes, prices, grey, costs, total):
         west = _step(lanes, west, west_lowest, load(lanes, costs, z * n), move, west_jump)
         east_lowest = lowest(east)
         west_lowest = lowest(west)
-        store(total, x * n, saturating_add(load(lanes, total, x * n), east))
-        store(total, z * n, saturating_add(load(lanes, total, z * n), west))
+        store(total, x * n, saturating_add(load(lanes, so_far, x * n), east))
+        store(total, z * n, saturating_add(load(lanes, so_far, z * n), west))
+    return east, east_lowest, west, west_lowest
 
 
 @njit(nogil=True, boundscheck=False)
-def _decide(lanes, path, total, best, sums, right_sums):
+def _decide(lanes, total, path, finals, best, sums, right_sums):
     """Add the last path; the best lane and its sum for each left pixel, the best sum for each right pixel."""
     n = width(lanes)
     w = best.size
@@ -155,7 +168,7 @@ def _decide(lanes, path, total, best, sums, right_sums):
     seen = wall  # lowest sums so far of the n right pixels that the left pixels still to come can see
     for x in range(w):
         sum_here = saturating_add(load(lanes, total, x * n), load(lanes, path, x * n))
-        store(total, x * n, sum_here)
+        store(finals, x * n, sum_here)
         seen = minimum(seen, sum_here)
         right_sums[x] = first_lane(seen)
         seen = shift_down(seen, wall)
@@ -225,11 +238,10 @@ def sweep_strip(lanes, left, right, grey, rows, warm, span, prices, tolerance, t
     best, right_sums = np.empty(w, np.int64), np.empty(w + n, np.uint8)
     for y in range(max(0, y0 - warm), y1):
         _shifted(right[y], w, span.high, codes)
-        here = total[max(y - y0, 0)]
         above = grey[max(y - 1, 0)]
-        _whole_row(lanes, left[y], codes, limits, prices, grey[y], above, path, path_lowest, costs, here)
+        _whole_row(lanes, left[y], codes, limits, prices, grey[y], above, path, path_lowest, costs)
         if y >= y0:
-            _sideways(lanes, prices, grey[y], costs, here)
+            _sideways(lanes, prices, grey[y], costs, path, total[y - y0])
     path[:] = 0
     path_lowest[:] = 0
     last = min(h, y1 + warm)
@@ -237,7 +249,7 @@ def sweep_strip(lanes, left, right, grey, rows, warm, span, prices, tolerance, t
         y = last - 1 - i
         _shifted(right[y], w, span.high, codes)
         below = grey[min(y + 1, h - 1)]
-        _whole_row(lanes, left[y], codes, limits, prices, grey[y], below, path, path_lowest, costs, costs)
+        _whole_row(lanes, left[y], codes, limits, prices, grey[y], below, path, path_lowest, costs)
         if y < y1:
-            _decide(lanes, path, total[y - y0], best, sums[y], right_sums)
-            _accept(n, span, total[y - y0], best, sums[y], right_sums, limits.most, tolerance, disparity[y])
+            _decide(lanes, total[y - y0], path, costs, best, sums[y], right_sums)
+            _accept(n, span, costs, best, sums[y], right_sums, limits.most, tolerance, disparity[y])

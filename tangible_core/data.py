@@ -8,7 +8,7 @@ picture on the base plane.
 import hashlib
 from collections.abc import Iterator
 from dataclasses import dataclass, field, fields, is_dataclass
-from typing import Any, Literal, NamedTuple, Self
+from typing import Any, Literal, NamedTuple, cast
 
 import numpy as np
 from jaxtyping import Float32, Int32
@@ -49,7 +49,7 @@ class Record:
     def __post_init__(self) -> None:
         for name, value in _items(self):
             if isinstance(value, np.ndarray):
-                view: np.ndarray = value.view()
+                view = cast(np.ndarray, value).view()
                 view.flags.writeable = False
                 object.__setattr__(self, name, view)
 
@@ -67,7 +67,7 @@ def digest_of(value: Any) -> str:
 
 def _feed(state: Any, value: Any) -> None:
     if isinstance(value, np.ndarray):
-        array: np.ndarray = value
+        array = cast(np.ndarray, value)
         state.update(f"array{array.shape}{array.dtype.str}".encode())
         state.update(np.ascontiguousarray(array).data)
     elif is_dataclass(value):
@@ -226,7 +226,7 @@ class Material:
 
     def __post_init__(self) -> None:
         for name, value in _items(self):
-            if isinstance(value, float) and not 0 <= value < np.inf:
+            if not isinstance(value, str) and not 0 <= value < np.inf:
                 raise MaterialError(f"material {self.name!r}: {name} is {value}; it must be >= 0 and finite")
         if self.stiffness_n_per_m == 0 or self.grain_m == 0:
             raise MaterialError(f"material {self.name!r}: stiffness_n_per_m and grain_m must be above 0")
@@ -275,7 +275,7 @@ class HapticSurface(Record):
         width_m: float = 0.08,
         labels: Int32[np.ndarray, "h w"] | None = None,
         materials: tuple[Material, ...] | None = None,
-    ) -> Self:
+    ) -> "HapticSurface":
         """A surface of square cells from (h, w) heights in metres, width_m metres wide.
 
         Raises: GeometryError as `Relief`, MaterialError as the class.
@@ -311,6 +311,8 @@ class DeviceSpec:
     axes: int = 3
     """How many axes can give force."""
     buttons: int = 0
+    simulated: bool = False
+    """True if no motor moves."""
 
 
 OutcomeKind = Literal["given", "ran", "cached", "skipped", "failed"]

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import pluggy
 
+from .errors import did_you_mean
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
@@ -55,9 +57,20 @@ def manager() -> pluggy.PluginManager:
     for point in entry_points(group="tangible.hooks"):
         try:
             plugins.register(point.load(), name=f"{point.dist.name if point.dist else '?'}/{point.name}")
-        except Exception:
-            log.warning("hooks %s (%s) cannot be loaded and are left out", point.name, point.value, exc_info=True)
+        except (Exception, SystemExit) as error:
+            log.warning("hooks %s (%s) cannot be loaded and are left out: %r", point.name, point.value, error)
+            log.debug("the import of %s", point.value, exc_info=True)
+    _say_unknown_moments(plugins)
     return plugins
+
+
+def _say_unknown_moments(plugins: pluggy.PluginManager) -> None:
+    moments = [name for name in vars(Specs) if name.startswith("tangible_")]
+    for name, plugin in plugins.list_name_plugin():
+        for each in plugins.get_hookcallers(plugin) or []:
+            if each.name not in moments:
+                near = did_you_mean(each.name, moments)
+                log.warning("hooks %s watch %s, which is no moment%s", name, each.name, near)
 
 
 def tell(plugins: pluggy.PluginManager, moment: str, **facts: Any) -> list[Any]:

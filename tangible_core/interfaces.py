@@ -12,6 +12,7 @@ from jaxtyping import Float64
 from pydantic import BaseModel, ConfigDict
 
 from .data import NO_FORCE, DeviceSpec, DisparityMap, Force, HapticState, HapticSurface, Kind, SegmentMap, Views
+from .errors import DeviceError
 
 
 class Method(BaseModel, ABC):
@@ -48,11 +49,17 @@ class Touch(ABC):
 
     @abstractmethod
     def path(self, positions_m: Float64[np.ndarray, "n 3"], period_s: float = 0.001) -> Float64[np.ndarray, "n 3"]:
-        """Forces along positions one period apart, as `force` gives them one by one, state carried along."""
+        """Forces along positions one period apart, as `force` gives them one by one, state carried along.
+
+        The velocity at each position is the step to it over the period; 0 at the first, and where it is not finite.
+        """
 
 
 class ForceRenderer(Method):
     """Turns positions into forces on a surface."""
+
+    uses_materials: ClassVar[bool] = True
+    """False for a law that feels heights alone: then no texture is segmented for it."""
 
     @abstractmethod
     def touch(self, surface: HapticSurface) -> Touch:
@@ -92,6 +99,9 @@ class Link(ABC):
     ) -> None:
         try:
             self.write(NO_FORCE)
+        except DeviceError:
+            if error is None:  # a device that died raised already
+                raise
         finally:
             self.close()
 

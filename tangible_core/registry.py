@@ -8,7 +8,7 @@ from functools import cache, cached_property
 from importlib.metadata import EntryPoint, entry_points
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, overload
+from typing import TYPE_CHECKING, Any, Literal, cast, overload
 
 from . import hooks
 from .errors import BrokenMethod, UnknownMethod, did_you_mean
@@ -101,7 +101,7 @@ class Registry:
         each = self.find(kind, name)
         try:
             cls: Any = each.point.load()
-        except Exception as error:
+        except (Exception, SystemExit) as error:
             raise BrokenMethod(
                 f"{kind} method {name!r} ({each.target}, from {each.origin}) cannot be loaded: "
                 f"{type(error).__name__}: {error}; repair or remove {each.distribution}"
@@ -114,8 +114,9 @@ class Registry:
         return cls
 
     def _computed(self, kind: str) -> list[EntryPoint]:
-        named = hooks.tell(self.plugins, "tangible_methods", kind=kind)
-        return [EntryPoint(name, value, f"tangible.{kind}") for more in named for name, value in more.items()]
+        named: list[Any] = hooks.tell(self.plugins, "tangible_methods", kind=kind)
+        pairs = [pair for more in named if isinstance(more, dict) for pair in cast("dict[Any, Any]", more).items()]
+        return [EntryPoint(str(name), str(value), f"tangible.{kind}") for name, value in pairs]
 
 
 @cache
@@ -148,22 +149,22 @@ def _origin(point: EntryPoint) -> str:
 
 def _docstring_line(point: EntryPoint) -> str:
     """The class's docstring without running a line of the module: only the top package is looked up, not imported."""
-    top, *rest = point.module.split(".")
+    found = EntryPoint.pattern.match(point.value)
+    if found is None or not found["attr"]:
+        raise ImportError(f"{point.value!r} is not package.module:Class")
+    tree = ast.parse(_source(*found["module"].split(".")).read_text(encoding="utf-8"))
+    classes = {node.name: node for node in tree.body if isinstance(node, ast.ClassDef)}
+    if found["attr"] not in classes:
+        raise ImportError(f"{found['module']} has no class {found['attr']}{did_you_mean(found['attr'], classes)}")
+    return (ast.get_docstring(classes[found["attr"]]) or "(no docstring)").splitlines()[0]
+
+
+def _source(top: str, *rest: str) -> Path:
+    """The file of a module."""
     spec = find_spec(top)
     if spec is None:
         raise ImportError(f"there is no module {top}")
-    path = (
-        _source(Path(next(iter(spec.submodule_search_locations), "")), rest)
-        if (spec.submodule_search_locations)
-        else Path(spec.origin or "")
-    )
-    tree = ast.parse(path.read_text(encoding="utf-8"))
-    classes = {node.name: node for node in tree.body if isinstance(node, ast.ClassDef)}
-    if point.attr not in classes:
-        raise ImportError(f"{point.module} has no class {point.attr}{did_you_mean(point.attr, classes)}")
-    return (ast.get_docstring(classes[point.attr]) or "(no docstring)").splitlines()[0]
-
-
-def _source(package: Path, parts: list[str]) -> Path:
-    module = package.joinpath(*parts)
+    if not spec.submodule_search_locations:
+        return Path(spec.origin or "").joinpath(*rest)  # below a single file there is nothing: it cannot be read
+    module = Path(next(iter(spec.submodule_search_locations))).joinpath(*rest)
     return module / "__init__.py" if module.is_dir() else module.with_suffix(".py")

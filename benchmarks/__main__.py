@@ -1,0 +1,57 @@
+"""Measure, and write benchmarks/RESULTS.md: `python -m benchmarks [section ...]`; other sections stay as they are."""
+
+import os
+import platform
+import re
+import sys
+from datetime import date
+from importlib import import_module
+from importlib.metadata import version
+from pathlib import Path
+
+RESULTS = Path(__file__).with_name("RESULTS.md")
+SECTIONS = {"house": "The house itself"}
+VERSIONS = ("tangible-images", "numpy", "opencv-contrib-python-headless", "scikit-image", "numba", "pydantic", "typer")
+HEAD = """# Results
+
+Written by `python -m benchmarks` (`python -m benchmarks SECTION` for one part). Ratios: side by side, medians.
+"""
+
+
+def main(names: list[str]) -> None:
+    """Measure the named sections, or all."""
+    if unknown := set(names) - set(SECTIONS):
+        sys.exit(f"no section {', '.join(sorted(unknown))}; there are {', '.join(SECTIONS)}")
+    sections = _kept()
+    for name in names or SECTIONS:
+        print(f"measuring {name} ...", file=sys.stderr)
+        sections[SECTIONS[name]] = f"{_machine()}\n\n{import_module(f'benchmarks.{name}').section()}\n"
+    text = "\n".join(f"## {title}\n\n{sections[title]}" for title in SECTIONS.values() if title in sections)
+    RESULTS.write_text(f"{HEAD}\n{text}", encoding="utf-8")
+    print(RESULTS)
+
+
+def _kept() -> dict[str, str]:
+    text = RESULTS.read_text(encoding="utf-8") if RESULTS.exists() else ""
+    parts = re.split(r"^## (.+)\n\n", text, flags=re.MULTILINE)
+    return {title: body.rstrip("\n") + "\n" for title, body in zip(parts[1::2], parts[2::2], strict=True)}
+
+
+def _machine() -> str:
+    versions = ", ".join(f"{name} {version(name)}" for name in VERSIONS)
+    return (
+        f"{date.today()}, {_processor()}, {os.cpu_count()} cores, {platform.system()} {platform.machine()}, "
+        f"Python {platform.python_version()}, {versions}."
+    )
+
+
+def _processor() -> str:
+    try:
+        found = re.search(r"model name\s*: (.+)", Path("/proc/cpuinfo").read_text(encoding="utf-8"))
+    except OSError:
+        found = None
+    return found[1] if found else platform.processor() or "unknown processor"
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

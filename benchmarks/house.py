@@ -1,0 +1,124 @@
+"""How fast the house itself is: the start of the command line, and what the engine adds to the stages."""
+
+import json
+import os
+import statistics
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from time import perf_counter
+
+from tangible_core import load_pipeline
+from tangible_core.cache import Cache
+from tangible_core.data import Views
+
+ROOT = Path(__file__).parents[1]
+PRODUCTS = ("disparity", "segments", "materials", "surface", "touch")
+
+
+def section() -> str:
+    """The section of RESULTS.md, as Markdown."""
+    return "\n".join([*start_rows(), "", *overhead_rows(), "", *demo_rows()])
+
+
+def start_rows(runs: int = 15) -> list[str]:
+    """Wall time of whole processes, in turn, as ratios to importing typer and rich."""
+    commands = {
+        "python -c 'import typer, rich'": [sys.executable, "-c", "import typer, rich"],
+        "tangible --help": [tangible(), "--help"],
+        "tangible plugins": [tangible(), "plugins"],
+    }
+    for command in commands.values():
+        wall(command)
+    times: dict[str, list[float]] = {name: [] for name in commands}
+    for _ in range(runs):
+        for name, command in commands.items():
+            times[name].append(wall(command))
+    base, *others = times
+    rows = [
+        f"| `{name}` | {1e3 * statistics.median(times[name]):.0f} | "
+        f"{statistics.median(a / b for a, b in zip(times[name], times[base], strict=True)):.2f} | <= 2.5 |"
+        for name in others
+    ]
+    head = f"Start, {runs} interleaved runs; `{base}` takes {1e3 * statistics.median(times[base]):.0f} ms."
+    return [head, "", "| command | median ms | ratio, median of pairs | bound |", "|---|---|---|---|", *rows]
+
+
+def overhead_rows(runs: int = 7) -> list[str]:
+    """Time of the engine around the stages of the demo: keys, digests, hooks, rules; and of the cache, apart."""
+    stages, engine, digest, store, recall = [], [], [], [], []
+    for _ in range(runs + 1):
+        pipeline = load_pipeline(ROOT / "configs" / "demo.yaml")
+        pipeline.cache = None
+        views: Views = pipeline.scene.views  # reading the scene is not the engine's
+        start = perf_counter()
+        records = [(product, pipeline.make(product)) for product in PRODUCTS]
+        keys = [pipeline.key(product) for product, _ in records]
+        total = perf_counter() - start
+        ran = sum(each.seconds for each in pipeline.outcomes if each.outcome == "ran")
+        stages.append(ran)
+        engine.append(total - ran)
+        digest.append(timed(views.digest))
+        with tempfile.TemporaryDirectory() as folder:
+            cache = Cache(Path(folder))
+            kept = [(key, record) for key, (product, record) in zip(keys, records, strict=True) if product != "touch"]
+            store.append(sum(timed(partial(cache.put, key, record)) for key, record in kept))
+            recall.append(sum(timed(partial(cache.get, key)) for key, _ in kept))
+    median = {
+        "stages themselves": statistics.median(stages[1:]),
+        "engine in all: rules, keys, hooks, digests": statistics.median(engine[1:]),
+        "of it: digest of the views": statistics.median(digest[1:]),
+        "cache, writing every record": statistics.median(store[1:]),
+        "cache, reading every record": statistics.median(recall[1:]),
+    }
+    base = median["stages themselves"]
+    rows = [f"| {name} | {1e3 * value:.2f} | {100 * value / base:.2f} % |" for name, value in median.items()]
+    head = f"Engine on configs/demo.yaml, median of {runs} runs after a warm-up; bound: engine <= 2 % of the stages."
+    return [head, "", "| what | ms | of the stages |", "|---|---|---|", *rows]
+
+
+def demo_rows() -> list[str]:
+    """`tangible demo` twice in an empty cache: the second run makes nothing again."""
+    with tempfile.TemporaryDirectory() as folder:
+        first, second = (demo(Path(folder)) for _ in range(2))
+    return [
+        "`tangible demo`, whole process, in an empty cache and again.",
+        "",
+        "| run | seconds | products |",
+        "|---|---|---|",
+        f"| first | {first[0]:.1f} | {first[1]} |",
+        f"| second | {second[0]:.1f} | {second[1]} |",
+    ]
+
+
+def demo(folder: Path) -> tuple[float, str]:
+    """Seconds, and what became of each product."""
+    command = [tangible(), "demo", "--json", "--out", str(folder / "out")]
+    start = perf_counter()
+    done = subprocess.run(
+        command, capture_output=True, text=True, check=True, env={**os.environ, "TANGIBLE_CACHE_DIR": str(folder / "c")}
+    )
+    seconds = perf_counter() - start
+    return seconds, ", ".join(f"{each['product']} {each['outcome']}" for each in json.loads(done.stdout)["outcomes"])
+
+
+def tangible() -> str:
+    """The command of this environment."""
+    return str(Path(sys.executable).with_name("tangible"))
+
+
+def wall(command: list[str]) -> float:
+    """Seconds of one process."""
+    start = perf_counter()
+    subprocess.run(command, stdout=subprocess.DEVNULL, check=True)
+    return perf_counter() - start
+
+
+def timed(work: Callable[[], object]) -> float:
+    """Seconds of one call."""
+    start = perf_counter()
+    work()
+    return perf_counter() - start

@@ -1,0 +1,152 @@
+"""OpenCV's semi-global block matcher."""
+
+from typing import Annotated, Literal, Self
+
+import numpy as np
+from jaxtyping import Bool, Float32, UInt8
+from pydantic import Field, model_validator
+
+from tangible_core.data import DisparityMap, Views
+from tangible_core.errors import PictureError
+from tangible_core.geometry import fill_rows
+from tangible_core.interfaces import DepthEstimator, Skippable
+from tangible_core.pictures import to_grey
+
+from .left_right import left_right_confidence
+
+MODES = {"sgbm": 0, "hh": 1, "3way": 2, "hh4": 3}
+"""OpenCV's numbers of its variants."""
+
+STEP = 16
+"""OpenCV searches multiples of 16 disparities, and counts in sixteenths of a pixel."""
+
+AGREEMENT_PX, DERIVATIVE_CAP = 1, 63
+"""OpenCV's own left-right check, and where it clips the derivatives that it compares."""
+
+
+class OpenCVSGBM(DepthEstimator, Skippable):
+    """OpenCV's semi-global block matching of a rectified pair.
+
+    Penalties are those that OpenCV's documentation recommends for one channel, P1 = 8 b^2 and P2 = 32 b^2 for blocks
+    of side b. Views are matched in grey, at eight bits. They are padded sideways, so that every column gets a
+    disparity. A block without any change along its rows stays unknown: OpenCV would invent one.
+
+    Source: Hirschmueller, PAMI 2008; Birchfield & Tomasi, PAMI 1998, for the cost.
+    """
+
+    mode: Literal["3way", "hh4", "sgbm", "hh"] = "3way"
+    """Along how many directions costs are summed: `3way` 3 and `sgbm` 5, in little memory; `hh4` 4 and `hh` 8, with 4
+    bytes a pixel and disparity."""
+    block_px: Annotated[int, Field(ge=1, le=11)] = 5
+    """Side of the blocks that are compared; odd."""
+    min_disparity_px: Annotated[int, Field(ge=-2016, le=2016)] = 0
+    """The farthest disparity that is tried; below 0 where the cameras converge."""
+    max_disparity_px: Annotated[int, Field(ge=-2016, le=2016)] = 64
+    """Disparities below this one are tried."""
+    uniqueness_percent: Annotated[int, Field(ge=0, le=99)] = 10
+    """The best cost must beat every other one, its neighbours aside, by this much; otherwise unknown."""
+    speckle_size: Annotated[int, Field(ge=0)] = 100
+    """Patches of at most this many pixels are dropped; 0 keeps all."""
+    speckle_step_px: Annotated[int, Field(ge=1, le=16)] = 2
+    """Neighbours belong to one patch while they differ by no more than this."""
+    second_pass: bool = True
+    """Match from the right view too, for a graded confidence, in twice the time. Without, all that is known has 1."""
+    fill: bool = False
+    """Fill what is unknown from the background in its row (`fill_rows`), at confidence 0."""
+
+    @model_validator(mode="after")
+    def _check_range(self) -> Self:
+        if self.max_disparity_px <= self.min_disparity_px:
+            raise ValueError(
+                f"max_disparity_px {self.max_disparity_px} must be above min_disparity_px {self.min_disparity_px}"
+            )
+        if self.block_px % 2 == 0:
+            raise ValueError(f"block_px {self.block_px} must be odd")
+        return self
+
+    def skip(self, views: Views) -> str | None:
+        """A second view identical to the first shows no depth."""
+        if views.right is not None and np.array_equal(views.left, views.right):
+            return "both views are identical: there is no depth to find"
+        return None
+
+    def estimate(self, views: Views) -> DisparityMap:
+        """Disparity in pixels, NaN where unknown; confidence by `left_right_confidence`.
+
+        Raises: PictureError if there is no right view, or the pair is too large for the mode.
+        """
+        if views.right is None:
+            raise PictureError(
+                "stereo needs two views, this scene has one; use a method for one picture, such as luminance"
+            )
+        left, right = _eight_bits(views.left, views.right)
+        found = np.where(_has_texture(left, self.block_px), self._match(left, right), np.float32(np.nan))
+        confidence = np.isfinite(found).astype(np.float32)
+        if self.second_pass:
+            confidence = left_right_confidence(found, self._match(right[:, ::-1], left[:, ::-1])[:, ::-1])
+        if self.fill and not np.isnan(found).all():
+            found = fill_rows(found)
+        return DisparityMap(found, confidence)
+
+    def _match(self, left: UInt8[np.ndarray, "h w"], right: UInt8[np.ndarray, "h w"]) -> Float32[np.ndarray, "h w"]:
+        """Disparity of the left view, NaN where unknown; the range is first cut to what fits into the picture."""
+        width = left.shape[1]
+        low, high = max(self.min_disparity_px, 1 - width), min(self.max_disparity_px, width)
+        if low >= high:
+            return np.full(left.shape, np.nan, np.float32)
+        disparity = self._compute(left, right, low, -(-(high - low) // STEP) * STEP)
+        tried = (disparity > low - 0.5) & (disparity < high - 0.5)
+        return np.where(tried, disparity, np.float32(np.nan))
+
+    def _compute(
+        self, left: UInt8[np.ndarray, "h w"], right: UInt8[np.ndarray, "h w"], low: int, count: int
+    ) -> Float32[np.ndarray, "h w"]:
+        """OpenCV's answer for `count` disparities from `low`, in pixels; unknown is below `low`."""
+        import cv2
+
+        block = self.block_px
+        before, after = max(low + count, 0), max(-low, 0) + block // 2  # what OpenCV leaves out, and its least width
+        matcher = cv2.StereoSGBM.create(
+            minDisparity=low,
+            numDisparities=count,
+            blockSize=block,
+            P1=8 * block**2,
+            P2=32 * block**2,
+            disp12MaxDiff=AGREEMENT_PX,
+            preFilterCap=DERIVATIVE_CAP,
+            uniquenessRatio=self.uniqueness_percent,
+            speckleWindowSize=self.speckle_size,
+            speckleRange=self.speckle_step_px,
+            mode=MODES[self.mode],
+        )
+        try:
+            padded = (np.pad(view, ((0, 0), (before, after)), mode="edge") for view in (left, right))
+            found = matcher.compute(*padded)[:, before : before + left.shape[1]]
+        except (cv2.error, MemoryError) as error:
+            raise PictureError(
+                f"OpenCV cannot match a pair of {left.shape[1]} x {left.shape[0]} over {count} disparities in mode "
+                f"{self.mode!r}: {error}; try mode '3way', a smaller range or smaller pictures"
+            ) from error
+        return found.astype(np.float32) / STEP
+
+
+def _eight_bits(left: np.ndarray, right: np.ndarray) -> list[UInt8[np.ndarray, "h w"]]:
+    """Both views in grey, brightened together by a power of two where they leave the upper half unused.
+
+    So a 12-bit pair in 16-bit files keeps its detail, and a picture gives the same in any type.
+    """
+    greys = [np.clip(to_grey(view), 0, 1) for view in (left, right)]
+    peak = max(float(grey.max()) for grey in greys)
+    gain = 255 * 2.0 ** np.floor(-np.log2(peak)) if peak > 0 else 0.0
+    return [np.rint(grey * np.float32(gain)).astype(np.uint8) for grey in greys]
+
+
+def _has_texture(grey: UInt8[np.ndarray, "h w"], block_px: int) -> Bool[np.ndarray, "h w"]:
+    """Whether anything changes along the rows within the block round a pixel, one of 3 px at least."""
+    import cv2
+
+    change = np.zeros(grey.shape, np.uint8)
+    change[:, 1:] = grey[:, 1:] != grey[:, :-1]
+    side = max(block_px, 3)
+    # A change lies between two columns, so the block holds one column of changes less than of pixels.
+    return cv2.dilate(change, np.ones((side, side - 1), np.uint8), anchor=(side // 2 - 1, side // 2)) > 0

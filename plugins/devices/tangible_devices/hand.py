@@ -1,0 +1,72 @@
+"""A virtual hand: a mass on a spring towards where it wants to be, with limited strength to press."""
+
+import cmath
+import math
+from typing import Annotated, final
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from tangible_core.data import Force
+
+Vector = tuple[float, float, float]
+
+
+class VirtualHand(BaseModel):
+    """What a hand on the device is like: m a = F - b v + k (target - x), pressing down with limited strength.
+
+    The defaults are of the order of a relaxed hand holding a handle.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+
+    mass_kg: Annotated[float, Field(ge=1e-3, le=100)] = 0.1
+    """Hand and handle together."""
+    damping_n_s_per_m: Annotated[float, Field(ge=0, le=1e4)] = 6.0
+    """Of hand and handle, against their motion."""
+    stiffness_n_per_m: Annotated[float, Field(ge=0.1, le=1e6)] = 300.0
+    """Of the spring that pulls the hand to its target."""
+    press_n: Annotated[float, Field(ge=0, le=1000)] = 1.5
+    """The most it presses down, however far below the surface its target is; so it rides over hills and valleys."""
+
+
+@final
+class MovingHand:
+    """A hand in motion, one period at a time, exactly for a force and a target that are held over the period."""
+
+    def __init__(self, hand: VirtualHand, position_m: Vector, period_s: float) -> None:
+        self.position_m = position_m
+        self.velocity_m_per_s: Vector = (0.0, 0.0, 0.0)
+        self._stiffness = hand.stiffness_n_per_m
+        self._reach_down_m = hand.press_n / hand.stiffness_n_per_m
+        self._motion = free_motion(hand, period_s)
+
+    def step(self, target_m: Vector, force: Force) -> None:
+        """Move on by one period under the device's force, towards the target."""
+        down = max(target_m[2], self.position_m[2] - self._reach_down_m)
+        rests = [target + push / self._stiffness for target, push in zip((*target_m[:2], down), force, strict=True)]
+        moved = [self._along_axis(*axis) for axis in zip(self.position_m, self.velocity_m_per_s, rests, strict=True)]
+        (x, vx), (y, vy), (z, vz) = moved
+        self.position_m, self.velocity_m_per_s = (x, y, z), (vx, vy, vz)
+
+    def _along_axis(self, position: float, velocity: float, rest: float) -> tuple[float, float]:
+        (xx, xv), (vx, vv) = self._motion
+        away = position - rest
+        return rest + xx * away + xv * velocity, vx * away + vv * velocity
+
+
+def free_motion(hand: VirtualHand, period_s: float) -> tuple[tuple[float, float], tuple[float, float]]:
+    """The matrix that takes (x, v) about the point of rest one period on: exp(T [[0, 1], [-k/m, -b/m]]).
+
+    Exact, so that the hand alone is stable for every mass, damping, stiffness and period.
+    Source: the damped oscillator, m x'' + b x' + k x = 0, with roots -a +- r, a = b / 2m, r^2 = a^2 - k/m.
+    """
+    square = hand.stiffness_n_per_m / hand.mass_kg
+    decay = hand.damping_n_s_per_m / (2 * hand.mass_kg)
+    root = cmath.sqrt(decay * decay - square)
+    if abs(root) * period_s < 1e-6:  # the two roots meet: their difference would cancel
+        even, odd = math.exp(-decay * period_s), period_s * math.exp(-decay * period_s)
+    else:
+        slow = cmath.exp(-square / (decay + root) * period_s)  # -a + r without its cancellation
+        fast = cmath.exp(-(decay + root) * period_s)
+        even, odd = ((slow + fast) / 2).real, ((slow - fast) / (2 * root)).real
+    return (even + decay * odd, odd), (-square * odd, even - decay * odd)

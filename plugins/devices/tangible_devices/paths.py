@@ -1,0 +1,149 @@
+"""Where a scripted hand wants to be: closed strokes walked at one speed, and recordings read from a CSV file."""
+
+import csv
+import math
+from bisect import bisect_right
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+from typing import final
+
+import numpy as np
+from jaxtyping import Float64
+
+from tangible_core.errors import DeviceError, did_you_mean
+
+Vector = tuple[float, float, float]
+Points = Float64[np.ndarray, "n 3"]
+COLUMNS = ("time_s", "x_m", "y_m", "z_m")
+"""What a CSV file has, at least; others are passed over."""
+
+
+@final
+@dataclass(frozen=True)
+class Stroke:
+    """Points and the times they are passed, straight in between; the first time is 0.
+
+    A closed stroke takes a whole number of ticks and repeats exactly; another one stays at its ends.
+    """
+
+    times_s: tuple[float, ...]
+    points_m: tuple[Vector, ...]
+    period_s: float
+    lap_ticks: int | None
+    """Ticks until a closed stroke repeats; None for one that does not."""
+
+    def at(self, tick: int) -> Vector:
+        """Position at a tick; negative ones are before the start."""
+        if self.lap_ticks is None:
+            time_s = min(max(tick, 0) * self.period_s, self.times_s[-1])
+        else:
+            time_s = tick % self.lap_ticks * self.period_s
+        after = min(bisect_right(self.times_s, time_s), len(self.times_s) - 1)
+        before = max(after - 1, 0)
+        span = self.times_s[after] - self.times_s[before]
+        share = (time_s - self.times_s[before]) / span if span else 0.0
+        (ax, ay, az), (bx, by, bz) = self.points_m[before], self.points_m[after]
+        return ax + share * (bx - ax), ay + share * (by - ay), az + share * (bz - az)
+
+
+def walk(points_m: Points, speed_m_per_s: float, period_s: float) -> Stroke:
+    """A closed stroke through these points, the last joined to the first, at one speed.
+
+    The speed is the nearest below it at which a lap takes a whole number of periods.
+    """
+    closed = np.vstack([points_m, points_m[:1]])
+    lengths = np.linalg.norm(np.diff(closed, axis=0), axis=1)
+    gone = np.concatenate([[0.0], np.cumsum(lengths)])
+    ticks = max(1, math.ceil(float(gone[-1]) / (speed_m_per_s * period_s) - 1e-9))
+    times = gone * (ticks * period_s / gone[-1])
+    return Stroke(tuple(times.tolist()), _vectors(closed), period_s, ticks)
+
+
+def raster(size_m: tuple[float, float], lines: int, low_m: float, high_m: float) -> Points:
+    """Lines to the right and back to the left, from far to near."""
+    y = np.repeat(np.linspace(size_m[1] / 2, -size_m[1] / 2, lines), 2)
+    x = np.resize([-0.5, 0.5, 0.5, -0.5], 2 * lines) * size_m[0]
+    return np.column_stack([x, y, np.full(2 * lines, low_m)])
+
+
+def circle(size_m: tuple[float, float], lines: int, low_m: float, high_m: float) -> Points:
+    """An ellipse of this size, counter-clockwise from the right; off the true one by under 2e-6 of its size."""
+    turn = np.linspace(0, 2 * np.pi, 1000, endpoint=False)
+    return _around(size_m, turn, np.ones(1000), low_m)
+
+
+def spiral(size_m: tuple[float, float], lines: int, low_m: float, high_m: float) -> Points:
+    """From the centre outwards in evenly spaced turns, and back the same way."""
+    turn = np.linspace(0, 2 * np.pi * lines, 250 * lines)
+    out = _around(size_m, turn, np.linspace(0, 1, 250 * lines), low_m)
+    return np.vstack([out, out[-2:0:-1]])
+
+
+def press(size_m: tuple[float, float], lines: int, low_m: float, high_m: float) -> Points:
+    """Straight down at the centre, and up again."""
+    return np.array([[0.0, 0.0, high_m], [0.0, 0.0, low_m]])
+
+
+DRAWN: dict[str, Callable[[tuple[float, float], int, float, float], Points]] = {
+    "raster": raster,
+    "circle": circle,
+    "spiral": spiral,
+    "press": press,
+}
+"""Paths by name; each takes size_m, lines, low_m and high_m."""
+
+
+def read_csv(path: Path, period_s: float) -> Stroke:
+    """A recorded stroke, played once: columns time_s, x_m, y_m, z_m, one row a moment, times rising.
+
+    Raises: DeviceError naming the file, the line and what to put right.
+    """
+    try:
+        with path.open(newline="", encoding="utf-8-sig") as file:
+            lines = csv.DictReader(file)
+            _check_columns(path, lines.fieldnames or ())
+            rows = [(lines.line_num, _numbers(path, lines.line_num, row)) for row in lines]
+    except OSError as error:
+        raise DeviceError(f"{path}: cannot be read: {error.strerror}; check csv_file") from error
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise DeviceError(f"{path}: is no CSV text file ({error}); save it as CSV in UTF-8") from error
+    if not rows:
+        raise DeviceError(f"{path}: has no rows; write one row a moment: {','.join(COLUMNS)}")
+    for (_, before), (line, after) in pairwise(rows):
+        if not after[0] > before[0]:
+            raise DeviceError(f"{path}:{line}: time_s {after[0]:g} does not come after {before[0]:g}; sort the rows")
+    table = np.array([numbers for _, numbers in rows])
+    return Stroke(tuple((table[:, 0] - table[0, 0]).tolist()), _vectors(table[:, 1:]), period_s, None)
+
+
+def _around(size_m: tuple[float, float], turn: np.ndarray, radius: np.ndarray, height_m: float) -> Points:
+    x, y = size_m[0] / 2 * radius * np.cos(turn), size_m[1] / 2 * radius * np.sin(turn)
+    return np.column_stack([x, y, np.full(turn.size, height_m)])
+
+
+def _vectors(points_m: np.ndarray) -> tuple[Vector, ...]:
+    return tuple((x, y, z) for x, y, z in points_m.tolist())
+
+
+def _check_columns(path: Path, found: Iterable[str]) -> None:
+    names = [name for name in found if name]
+    for column in COLUMNS:
+        if column not in names:
+            hint = did_you_mean(column, names) or f"; there are {', '.join(names) or 'none'}"
+            raise DeviceError(f"{path}:1: there is no column {column}{hint}; the first line names {','.join(COLUMNS)}")
+
+
+def _numbers(path: Path, line: int, row: dict[str, str | None]) -> list[float]:
+    values: list[float] = []
+    for column in COLUMNS:
+        text = row[column]
+        try:
+            value = float(text or "")
+        except ValueError:
+            value = math.nan
+        if not math.isfinite(value):
+            raise DeviceError(f"{path}:{line}: {column} is {text!r}; write a finite number")
+        values.append(value)
+    return values

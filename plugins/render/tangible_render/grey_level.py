@@ -1,0 +1,42 @@
+"""The grey level as a force: the simplest law there is."""
+
+from typing import Annotated, ClassVar
+
+import numpy as np
+from pydantic import Field
+
+from tangible_core.data import HapticSurface
+from tangible_core.interfaces import ForceRenderer, Touch
+
+from .memoryless import MemorylessTouch
+
+
+class GreyLevel(ForceRenderer):
+    """The baseline: on contact, pushed up as hard as the picture is bright: F_z = white G / 255.
+
+    G is the height in 256 steps, 0 on the base plane and 255 at the surface's highest point, of the cell that the tip
+    is in. Its faults are what the other renderers put right: the force steps at the surface, however gently it is
+    touched, and at the edges of cells; it is always along z, so that a slope pushes nobody sideways; pressing deeper
+    changes nothing; and the lowest ground cannot be felt at all.
+
+    The surface ends at its extent: beyond it is free air.
+    Source: the report "Tangible Images", sec. 4.3, F_z proportional to G(m, n).
+    """
+
+    uses_materials: ClassVar[bool] = False
+
+    force_at_white_n: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 3.0
+    """Force on the highest point."""
+
+    def touch(self, surface: HapticSurface) -> Touch:
+        """A new touch on this surface; compiled on the first use on a machine, then loaded."""
+        from . import grey_kernels
+
+        heights = np.ascontiguousarray(surface.height_m, np.float32)
+        fixed = (heights, _grey_levels(heights), *map(float, surface.extent_m), self.force_at_white_n)
+        return MemorylessTouch(grey_kernels.tick, grey_kernels.along, fixed)
+
+
+def _grey_levels(height_m: np.ndarray) -> np.ndarray:
+    highest = height_m.max()
+    return np.rint(height_m / highest * 255).astype(np.uint8) if highest > 0 else np.zeros(height_m.shape, np.uint8)

@@ -1,0 +1,46 @@
+"""Penalty force along the gradient: a spring that stores what the hand puts in."""
+
+from typing import Annotated
+
+import numpy as np
+from pydantic import Field
+
+from tangible_core.data import HapticSurface
+from tangible_core.interfaces import ForceRenderer, Touch
+
+from .memoryless import MemorylessTouch
+
+
+class PenaltyGradient(ForceRenderer):
+    """A spring out of the surface, conservative: F = k d (-g, 1).
+
+    d = h(x, y) - z is the depth under the surface, h the bilinear interpolant of the heights and g its exact
+    gradient, so that F = -grad U with U = k d^2 / 2: where the stiffness is one, no closed path over the surface gains
+    or loses energy. Not normalised: on a slope the stiffness along the normal is k (1 + |g|^2). Damping acts along the
+    normal, in contact only, and never pulls. No friction.
+
+    The surface ends at its extent: beyond it is free air. The force steps there under the surface, and where two
+    materials of unequal stiffness meet.
+    Source: the penalty method (reviewed in Zilles & Salisbury 1995), its direction the potential's own gradient.
+    """
+
+    stiffness_n_per_m: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 800.0
+    """Force for a depth of one metre on level ground, where the cell under the tip has no material of its own."""
+    damping_n_s_per_m: Annotated[float, Field(ge=0, allow_inf_nan=False)] = 0.0
+    """Force against one metre per second along the normal, in contact."""
+
+    def touch(self, surface: HapticSurface) -> Touch:
+        """A new touch on this surface; compiled on the first use on a machine, then loaded."""
+        from . import penalty_kernels
+
+        labels, stiffness_n_per_m = self._stiffness(surface)
+        heights = np.ascontiguousarray(surface.height_m, np.float32)
+        fixed = (heights, labels, stiffness_n_per_m, *map(float, surface.extent_m), self.damping_n_s_per_m)
+        return MemorylessTouch(penalty_kernels.tick, penalty_kernels.along, fixed)
+
+    def _stiffness(self, surface: HapticSurface) -> tuple[np.ndarray, np.ndarray]:
+        """Labels, and the stiffness of each; one cell of one label where all is alike."""
+        if surface.labels is None or not surface.materials:
+            return np.zeros((1, 1), np.int32), np.array([self.stiffness_n_per_m])
+        table = np.array([float(material.stiffness_n_per_m) for material in surface.materials])
+        return np.ascontiguousarray(surface.labels, np.int32), table

@@ -1,0 +1,40 @@
+"""The law of `penalty-gradient`, compiled. Imports numba: the method imports this module inside `touch`."""
+
+# ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
+
+import numpy as np
+from numba import float64, njit, void
+
+from .bilinear import FORCES, HEIGHTS, LABELS, NEWTONS, POINTS, TABLE, bilinear, cell, over, step_velocity
+
+SURFACE = (HEIGHTS, LABELS, TABLE, float64, float64, float64)
+
+
+@njit(NEWTONS(*SURFACE, *[float64] * 6), cache=True, nogil=True, error_model="numpy")
+def tick(height_m, labels, stiffness_n_per_m, width_m, length_m, damping_n_s_per_m, x, y, z, vx, vy, vz):
+    """F = max(0, k d - b v.(-g, 1) / (1 + |g|^2)) (-g, 1), where d = h - z > 0; zero in free air."""
+    if not over(width_m, length_m, x, y):
+        return 0.0, 0.0, 0.0
+    height, slope_x, slope_y = bilinear(height_m, width_m, length_m, x, y)
+    depth = height - z
+    if not depth > 0.0:
+        return 0.0, 0.0, 0.0
+    row, column = cell(labels.shape[0], labels.shape[1], width_m, length_m, x, y)
+    spring = stiffness_n_per_m[labels[row, column]] * depth
+    outward = (vz - slope_x * vx - slope_y * vy) / (1.0 + slope_x * slope_x + slope_y * slope_y)
+    push = max(spring - damping_n_s_per_m * outward, 0.0)
+    fx, fy = -slope_x * push, -slope_y * push
+    if not (np.isfinite(outward) and np.isfinite(fx) and np.isfinite(fy) and np.isfinite(push)):
+        return 0.0, 0.0, 0.0
+    return fx, fy, push
+
+
+@njit(void(*SURFACE, POINTS, float64, FORCES), cache=True, nogil=True, error_model="numpy")
+def along(height_m, labels, stiffness_n_per_m, width_m, length_m, damping_n_s_per_m, positions_m, period_s, force_n):
+    """The same for every position of a path."""
+    for i in range(positions_m.shape[0]):
+        x, y, z = positions_m[i, 0], positions_m[i, 1], positions_m[i, 2]
+        vx, vy, vz = step_velocity(positions_m, period_s, i)
+        force_n[i, 0], force_n[i, 1], force_n[i, 2] = tick(
+            height_m, labels, stiffness_n_per_m, width_m, length_m, damping_n_s_per_m, x, y, z, vx, vy, vz
+        )

@@ -1,0 +1,98 @@
+"""Merging of neighbouring regions, the least separated first."""
+
+# ruff: noqa: ANN001, ANN201 -- numba takes the types from the call
+
+import heapq
+from math import sqrt
+
+import numpy as np
+from jaxtyping import Int32
+from numba import njit
+
+from .borders import Border
+
+HELD_APART = 0.4
+"""Two neighbours stay apart where at least this share of their border lies on edges."""
+
+
+def merge(areas: list[int], borders: dict[tuple[int, int], Border], most: int) -> Int32[np.ndarray, "n"]:
+    """Merge neighbours until edges hold all of them apart and no more than `most` are left.
+
+    Those with the least share of edges in their border go first; after them, those with the lowest border times the
+    square root of a b / (a + b), a and b being their areas: as in Ward's method, small regions give way to large ones.
+    Returns: for each region the one that it has become part of.
+    """
+    graph = _Graph(areas, borders)
+    left = len(areas)
+    while graph.queue:
+        reluctance, one, other, border = heapq.heappop(graph.queue)
+        if graph.beside[one].get(other) is not border:
+            continue
+        if reluctance >= 0 and left <= most:
+            break
+        graph.join(one, other)
+        left -= 1
+    return np.array([graph.root(region) for region in range(len(areas))], np.int32)
+
+
+class _Graph:
+    """Regions, their neighbours, and a queue of pairs; a pair in it whose border is no longer the same is void."""
+
+    def __init__(self, areas: list[int], borders: dict[tuple[int, int], Border]) -> None:
+        self.areas = areas.copy()
+        self.parent = list(range(len(areas)))
+        self.beside: list[dict[int, Border]] = [{} for _ in areas]
+        self.queue: list[tuple[float, int, int, Border]] = []
+        for (one, other), border in borders.items():
+            self.connect(one, other, border)
+
+    def connect(self, one: int, other: int, border: Border) -> None:
+        """Set the border of two regions."""
+        self.beside[one][other] = self.beside[other][one] = border
+        heapq.heappush(self.queue, (self.reluctance(one, other, border), min(one, other), max(one, other), border))
+
+    def reluctance(self, one: int, other: int, border: Border) -> float:
+        """How much speaks against merging; negative where edges do not."""
+        share = border.edges / border.pairs
+        if share < HELD_APART:
+            return share - 1
+        a, b = self.areas[one], self.areas[other]
+        return border.height / border.pairs * sqrt(a * b / (a + b))
+
+    def join(self, kept: int, lost: int) -> None:
+        """Make two regions one."""
+        self.parent[lost] = kept
+        self.areas[kept] += self.areas[lost]
+        borders, self.beside[lost] = self.beside[lost], {}
+        for far, border in borders.items():
+            del self.beside[far][lost]
+            if far != kept:
+                own = self.beside[kept].get(far)
+                self.beside[kept][far] = border.joined(own) if own else border
+        for far, border in self.beside[kept].items():
+            self.connect(kept, far, Border(*border))  # a new one, so that the pairs of the old area are void
+
+    def root(self, region: int) -> int:
+        """The region that this one has become part of."""
+        while self.parent[region] != region:
+            region = self.parent[region]
+        return region
+
+
+@njit(cache=True, nogil=True)
+def in_reading_order(labels, names):
+    """Labels 0..n-1 in the order of their first pixels, row by row; labels of one name become one.
+
+    Parameters: labels int32 (h, w); names int32 (n,), one a label, 0..n-1. Returns: int32 (h, w).
+    """
+    order = np.full(names.size, -1, np.int32)
+    found = np.empty_like(labels)
+    count = 0
+    for row in range(labels.shape[0]):
+        for column in range(labels.shape[1]):
+            name = names[labels[row, column]]
+            if order[name] < 0:
+                order[name] = count
+                count += 1
+            found[row, column] = order[name]
+    return found

@@ -1,0 +1,200 @@
+"""`tangible ...`: the command line. What a command does stands in `commands`, imported when it is called."""
+
+from __future__ import annotations
+
+import argparse
+import logging
+import os
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from . import hooks
+from .errors import ConfigError, TangibleError
+from .registry import KIND_NAMES, default_registry
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+DONE, FAILED, MISTAKE, INTERRUPTED = 0, 1, 2, 130
+
+app = typer.Typer(
+    name="tangible",
+    help="Turn pictures into something one can feel: `tangible demo` shows all of it.",
+    epilog="Anywhere: --log-level [LOGGER=]LEVEL (debug, info, warning, error; for all or one logger); "
+    "-q, --quiet (no progress, warnings and errors only).",
+    no_args_is_help=True,
+    add_completion=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,  # rich help costs more than all the rest of the start
+)
+
+Config = Annotated[Path, typer.Argument(help="A pipeline file (YAML).", show_default=False)]
+Sets = Annotated[
+    list[str] | None, typer.Option("--set", metavar="KEY.KEY=VALUE", help="Override one value; repeatable.")
+]
+Out = Annotated[Path | None, typer.Option("--out", help="Folder for results [default: out/NAME].")]
+Json = Annotated[bool, typer.Option("--json", help="Print JSON for a program to read.")]
+NoCache = Annotated[bool, typer.Option("--no-cache", help="Neither read nor keep results between runs.")]
+Seconds = Annotated[float, typer.Option(help="How long the hand feels the surface.")]
+
+
+@app.command()
+def demo(
+    out: Annotated[Path, typer.Option("--out", help="Folder for results.")] = Path("out/demo"),
+    seconds: Seconds = 8.0,
+    as_json: Json = False,
+    no_cache: NoCache = False,
+) -> None:
+    """Make the embedded example tangible: a stereo pair with ground truth, end to end."""
+    from .commands import run as command
+
+    command.demo(out, seconds, as_json, not no_cache)
+
+
+@app.command()
+def run(
+    config: Config,
+    sets: Sets = None,
+    out: Out = None,
+    seconds: Seconds = 8.0,
+    as_json: Json = False,
+    no_cache: NoCache = False,
+) -> None:
+    """Make what a pipeline file wants, and a report of it. Never moves a motor: see `feel`."""
+    from .commands import run as command
+
+    command.run(config, sets or [], out, seconds, as_json, not no_cache)
+
+
+@app.command()
+def plan(config: Config, sets: Sets = None, as_json: Json = False, no_cache: NoCache = False) -> None:
+    """Say what `run` would do, and why; runs nothing."""
+    from .commands import run as command
+
+    command.plan(config, sets or [], as_json, not no_cache)
+
+
+@app.command()
+def feel(
+    config: Config,
+    sets: Sets = None,
+    seconds: Seconds = 8.0,
+    record: Annotated[Path | None, typer.Option(help="Keep every tick in this file (.npz or .csv).")] = None,
+    as_json: Json = False,
+    no_cache: NoCache = False,
+) -> None:
+    """Feel a pipeline's surface on its device."""
+    from .commands import feel as command
+
+    command.feel(config, sets or [], seconds, record, as_json, not no_cache)
+
+
+@app.command()
+def plugins(as_json: Json = False) -> None:
+    """List the installed methods and devices; imports none of them."""
+    from .commands import plugins as command
+
+    command.plugins(as_json)
+
+
+@app.command()
+def schema(
+    markdown: Annotated[bool, typer.Option("--markdown", help="A reference page instead of JSON Schema.")] = False,
+    installed: Annotated[bool, typer.Option("--installed", help="Third parties' methods too.")] = False,
+) -> None:
+    """Print the JSON Schema of pipeline files, for completion in editors."""
+    from .commands import schema as command
+
+    command.schema(markdown, installed)
+
+
+@app.command()
+def check(
+    kind: Annotated[str, typer.Argument(help=" | ".join(KIND_NAMES), show_default=False)],
+    name: Annotated[str, typer.Argument(help="The method, as `tangible plugins` lists it.", show_default=False)],
+    as_json: Json = False,
+) -> None:
+    """Run the conformance kit against an installed method; exit 1 if a check fails."""
+    from .commands import check as command
+
+    if not command.check(kind, name, as_json):
+        raise typer.Exit(FAILED)
+
+
+@app.command()
+def materials(
+    library: Annotated[Path | None, typer.Option(help="A YAML file of your own, added to the shipped ones.")] = None,
+    as_json: Json = False,
+) -> None:
+    """List the materials, with units and sources."""
+    from .commands import materials as command
+
+    command.materials(library, as_json)
+
+
+def main() -> None:
+    """Entry point: one clear message for a user's mistake, and an exit code that says whose it is."""
+    sys.exit(_guarded(lambda: _run_app()))
+
+
+def _run_app() -> int:
+    words = _take_log_options(sys.argv[1:])
+    hooks.tell(default_registry().plugins, "tangible_commands", app=app)
+    code = app(words, standalone_mode=False, default_map=_no_help())
+    return code if isinstance(code, int) else DONE
+
+
+def _no_help() -> dict[str, object]:
+    """Say outright that --help is off: to make None a bool, typer would import pydantic, a third of the whole start."""
+    names = [each.name or getattr(each.callback, "__name__", "") for each in app.registered_commands]
+    return {"help": False, **{name: {"help": False} for name in names}}
+
+
+def _take_log_options(words: list[str]) -> list[str]:
+    """Obey --log-level and --quiet wherever they stand, and hand on the rest.
+
+    As an option of typer's, one with a value would cost every command the import of pydantic.
+    """
+    parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
+    parser.add_argument("--log-level", action="append", default=[])
+    parser.add_argument("-q", "--quiet", action="store_true")
+    known, rest = parser.parse_known_args(words)
+    _set_logging(known.log_level)
+    if known.quiet:
+        default_registry().plugins.unregister(name="tangible-images/progress")
+    return rest
+
+
+def _guarded(work: Callable[[], int]) -> int:
+    try:
+        return work()
+    except TangibleError as error:
+        typer.echo(str(error), err=True)
+        return MISTAKE
+    except (KeyboardInterrupt, typer.Abort):
+        typer.echo("interrupted; what was finished is kept", err=True)
+        return INTERRUPTED
+    except BrokenPipeError:  # the reader went away: `tangible plugins | head`
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return DONE
+    except typer.Exit as ended:
+        return ended.exit_code
+    except Exception as error:
+        if (show := getattr(error, "show", None)) is None:  # typer's own complaints about the words of the call
+            raise
+        show()
+        return MISTAKE
+
+
+def _set_logging(levels: list[str]) -> None:
+    logging.basicConfig(format="%(levelname)s %(name)s: %(message)s", level=logging.WARNING)
+    for text in levels:
+        name, _, level = text.rpartition("=")
+        number = logging.getLevelNamesMapping().get(level.upper())
+        if number is None:
+            raise ConfigError(f"--log-level {text}: no level is named {level!r}; use debug, info, warning or error")
+        logging.getLogger(name or None).setLevel(number)

@@ -1,0 +1,44 @@
+"""`feel`: a pipeline's surface on its device."""
+
+import sys
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from .. import session
+from ..errors import ConfigError
+from . import show
+from .run import felt, open_pipeline
+
+
+def feel(config: Path, sets: Sequence[str], seconds: float, record: Path | None, as_json: bool, cached: bool) -> None:
+    """Make the touch, open the device, feel, and say how it went."""
+    pipeline = open_pipeline(config, sets, cached)
+    device = pipeline.config.device
+    if device is None:
+        raise ConfigError(f"{config}: `device:` is missing; add one, such as `device: {{use: mock}}`")
+    if record is not None:
+        session.check_record_path(record)
+    touch = pipeline.make("touch")
+    recording = felt(pipeline, touch, device.method, seconds)
+    if record is not None:
+        recording.save(record)
+    figures: dict[str, Any] = {"device": device.name, "spec": asdict(device.method.spec()), **recording.figures()}
+    if as_json:
+        show.print_json(
+            {"outcomes": show.as_rows(pipeline.outcomes), "figures": figures, "file": record and str(record)}
+        )
+    else:
+        show.outcomes(pipeline.outcomes)
+        show.say("")
+        show.table(("figure", "value"), [(name, _text(value)) for name, value in recording.figures().items()])
+    if recording.stopped == session.INTERRUPTED:
+        raise KeyboardInterrupt
+    if recording.stopped:
+        sys.stdout.flush()
+        raise session.failure(recording)
+
+
+def _text(value: Any) -> str:
+    return f"{value:.6g}" if isinstance(value, float) else str(value)

@@ -1,0 +1,63 @@
+"""How results look on a terminal, and as JSON."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any
+
+from rich.console import Console
+from rich.table import Table
+
+if TYPE_CHECKING:
+    from ..data import Outcome
+
+COLOURS = {"given": "blue", "ran": "green", "cached": "cyan", "skipped": "dim", "failed": "red"}
+
+
+def print_json(value: Any) -> None:
+    """JSON on standard output; NaN becomes null."""
+    print(json.dumps(_plain(value), indent=2, ensure_ascii=False))  # noqa: T201
+
+
+def table(headings: Sequence[str], rows: Iterable[Sequence[str]], title: str | None = None) -> None:
+    """A table without frames; numbers are the caller's to format."""
+    shown = Table(*headings, title=title, title_justify="left", box=None, pad_edge=False, header_style="bold")
+    for row in rows:
+        shown.add_row(*row)
+    Console().print(shown)
+
+
+def outcomes(found: Iterable[Outcome], title: str | None = None, ran: str = "ran") -> None:
+    """What became of each product, and why; `ran` is the word for those that ran, or are to."""
+    rows = [
+        (
+            each.product,
+            each.method,
+            f"[{COLOURS[each.outcome]}]{ran if each.outcome == 'ran' else each.outcome}[/]",
+            each.why,
+            f"{each.seconds:.3f}" if each.seconds else "",
+        )
+        for each in found
+    ]
+    table(("product", "method", "outcome", "why", "seconds"), rows, title)
+
+
+def as_rows(found: Iterable[Outcome]) -> list[dict[str, Any]]:
+    """Outcomes as plain values."""
+    return [asdict(each) for each in found]
+
+
+def say(text: str) -> None:
+    """A line of text, with rich's marks."""
+    Console(highlight=False, soft_wrap=True).print(text)
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return {str(key): _plain(part) for key, part in value.items()}  # pyright: ignore[reportUnknownVariableType, reportUnknownArgumentType]
+    if isinstance(value, list | tuple):
+        return [_plain(part) for part in value]  # pyright: ignore[reportUnknownVariableType]
+    return None if isinstance(value, float) and not math.isfinite(value) else value

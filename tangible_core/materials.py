@@ -1,0 +1,134 @@
+"""The library of materials, and which segment gets which.
+
+A photograph does not tell how things feel (over 100 photographed surfaces, what a picture predicts of friction and
+vibration explains next to nothing: R^2 is 0.07 and -0.06). So materials are assigned by name, or by relative roughness,
+which is a convention: rougher to the eye becomes rougher to the hand.
+"""
+
+from collections.abc import Mapping
+from functools import cache
+from importlib.resources import files
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from jaxtyping import Float64
+
+from .data import Material, MaterialMap, SegmentMap
+from .errors import MaterialError, did_you_mean
+from .material_files import parse_materials, read_materials
+from .pictures import to_grey
+
+NEUTRAL = "plain"
+"""The material of segments that no material is named for."""
+
+LADDER = ("ice", "metal", "paper", "leather", "wood", "cloth", "sand", "stone", "brick")
+"""From smooth to rough: what assigning by roughness chooses from."""
+
+
+def load_library(path: Path | None = None) -> Mapping[str, Material]:
+    """Materials by name: those that are shipped, and those of a YAML file of your own, which adds to them.
+
+    A name that is shipped needs only the values that change. Raises: MaterialError with every complaint, one a line,
+    each with file:line:column.
+    """
+    return library() if path is None else read_materials(path, library())
+
+
+@cache
+def library() -> Mapping[str, Material]:
+    """The materials that are shipped, by name."""
+    text = files("tangible_core").joinpath("materials.yaml").read_text(encoding="utf-8")
+    return parse_materials(text, "materials.yaml", {})
+
+
+def find(name: str, library: Mapping[str, Material]) -> Material:
+    """The material of this name. Raises: MaterialError with the names that are there."""
+    if name not in library:
+        raise MaterialError(
+            f"no material is named {name!r}{did_you_mean(str(name), library)}; there are {', '.join(library)}"
+        )
+    return library[name]
+
+
+def assign(
+    segments: SegmentMap,
+    picture: np.ndarray | None,
+    by: Literal["roughness"] | Mapping[int, str],
+    library: Mapping[str, Material],
+) -> MaterialMap:
+    """One material a segment, and why.
+
+    by: a map from label to material, where labels that it leaves out get the material `plain`; or `roughness`, which
+    ranks the segments of this picture by `relative_roughness` and spreads them evenly over `LADDER`, the smoothest to
+    ice, the roughest to brick. Equally rough segments share a rank; one rank alone says nothing, and gives `plain`.
+    Raises: MaterialError for a name or a label that does not exist, or for `roughness` without a picture of the
+    segments' size; PictureError if the picture is none.
+    """
+    if by != "roughness":
+        return _by_name(segments.count, by, library)
+    if picture is None or picture.shape[:2] != segments.labels.shape:
+        given = "there is none" if picture is None else f"it is {picture.shape[:2]}"
+        raise MaterialError(
+            f"materials by roughness need the picture of the segments, {segments.labels.shape}, and {given}; "
+            "name the materials instead, such as {0: ice, 1: sand}"
+        )
+    return _by_roughness(relative_roughness(segments, picture), library)
+
+
+def relative_roughness(segments: SegmentMap, picture: np.ndarray) -> Float64[np.ndarray, "n"]:
+    """How rough each segment looks within this picture; the same at any brightness and contrast.
+
+    The median over the segment of the local standard deviation of grey, which is taken after removing the local mean,
+    in a square window of 1/64 of the picture's shorter side (at least 3 pixels), as a share of the standard deviation
+    of the whole picture, to three decimals.
+    """
+    grey = to_grey(picture).astype(np.float64)
+    spread = float(grey.std())
+    if spread <= 1e-6 * float(np.abs(grey).max()):  # what rounding makes of one colour
+        return np.zeros(segments.count)
+    grey = (grey - grey.mean()) / spread
+    side = max(3, min(grey.shape) // 64 | 1)
+    local = np.sqrt(np.maximum(_local_mean(grey * grey, side) - _local_mean(grey, side) ** 2, 0))
+    order = np.argsort(segments.labels, axis=None, kind="stable")
+    ends = np.cumsum(np.bincount(segments.labels.ravel(), minlength=segments.count))
+    return np.round([np.median(part) if part.size else 0.0 for part in np.split(local.ravel()[order], ends[:-1])], 3)
+
+
+def _local_mean(values: Float64[np.ndarray, "h w"], side: int) -> Float64[np.ndarray, "h w"]:
+    import cv2
+
+    mean: Any = cv2.blur(values, (side, side), borderType=cv2.BORDER_REFLECT)
+    return mean
+
+
+def _by_name(count: int, names: Mapping[int, str], library: Mapping[str, Material]) -> MaterialMap:
+    complaints: list[str] = []
+    for label, name in names.items():
+        if label not in range(count):
+            complaints.append(f"there is no segment {label!r}; the segments are 0 to {count - 1}")
+        try:
+            find(name, library)
+        except MaterialError as error:
+            complaints.append(f"segment {label}: {error}")
+    if complaints:
+        raise MaterialError("\n".join(complaints))
+    chosen = [names.get(label, NEUTRAL) for label in range(count)]
+    reasons = (
+        f"segment {label}: named {name}" if label in names else f"segment {label}: not named -> {NEUTRAL}"
+        for label, name in enumerate(chosen)
+    )
+    return MaterialMap(tuple(find(name, library) for name in chosen), tuple(reasons))
+
+
+def _by_roughness(roughness: Float64[np.ndarray, "n"], library: Mapping[str, Material]) -> MaterialMap:
+    levels, ranks = np.unique(roughness, return_inverse=True)
+    last = len(levels) - 1
+    materials: list[Material] = []
+    reasons: list[str] = []
+    rungs = np.rint(ranks * (len(LADDER) - 1) / max(last, 1))
+    for label, (rung, rank, value) in enumerate(zip(rungs, ranks, roughness, strict=True)):
+        name = LADDER[int(rung)] if last else NEUTRAL
+        materials.append(find(name, library))
+        reasons.append(f"segment {label}: roughness rank {rank + 1} of {last + 1} ({value:.3f}) -> {name}")
+    return MaterialMap(tuple(materials), tuple(reasons))

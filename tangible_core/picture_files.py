@@ -1,0 +1,201 @@
+"""Pictures, maps of numbers and label pictures in files. Whatever is wrong with a file is one PictureError."""
+
+import logging
+import warnings
+from io import BytesIO
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from jaxtyping import Float32, Int32
+
+from .errors import PictureError, did_you_mean
+from .files import atomic_write
+from .pictures import check_finite, check_picture, to_rgb8
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
+
+log = logging.getLogger(__name__)
+
+FORMATS = ("PNG", "JPEG", "TIFF", "BMP", "GIF", "WEBP", "PPM", "JPEG2000")
+"""What Pillow may read. Some that it also knows run other programs (EPS) or cannot be told from noise (TGA)."""
+
+MAX_LABELS = 4096
+"""More than this in a label picture, and it is a photo."""
+
+_ORIENTATION, _BITS_PER_SAMPLE = 0x0112, 0x0102  # tags of EXIF and of TIFF
+
+
+def read_picture(path: Path) -> np.ndarray:
+    """A picture file as (h, w[, 3|4]) RGB(A), upright as its EXIF orientation says: uint8, uint16, or what it holds.
+
+    A palette becomes colours, transparency a fourth channel. `.npy` and `.npz` files hold the array itself.
+    Raises: PictureError if the file is missing, no picture, damaged, cut short or too large.
+    """
+    return check_picture(_read(path), str(path))
+
+
+def read_map(path: Path) -> Float32[np.ndarray, "h w"]:
+    """A map of numbers (.npy, .npz, .pfm, .tif, or any grey picture as its raw values); infinities become NaN.
+
+    Raises: PictureError as `read_picture`, or if there is more than one number a pixel.
+    """
+    values = _read(path)
+    if values.ndim == 3 and values.shape[2] in (3, 4) and not np.any(values[..., :3] != values[..., :1]):
+        values = values[..., 0]
+    if values.ndim != 2 or values.size == 0 or values.dtype.kind not in "buif":
+        raise PictureError(f"{path}: a map is one number a pixel, (h, w), not {values.shape} of {values.dtype}")
+    with np.errstate(over="ignore"):
+        numbers = values.astype(np.float32)
+    return np.where(np.isfinite(numbers), numbers, np.float32(np.nan))
+
+
+def read_labels(path: Path) -> Int32[np.ndarray, "h w"]:
+    """A label picture as 0..n-1, each of them present, in the order of its grey values, palette indices or colours.
+
+    Raises: PictureError as `read_picture`, or if it holds too many labels to be a label picture.
+    """
+    values = _read(path, indices=True)
+    if values.ndim == 3 and values.dtype.kind == "u" and values.shape[2] <= 4:
+        values = values.astype(np.uint64) @ (1 << 16 * np.arange(values.shape[2], dtype=np.uint64))
+    if values.ndim != 2 or values.size == 0 or values.dtype.kind not in "buif":
+        raise PictureError(f"{path}: a label picture has one label a pixel, not {values.shape} of {values.dtype}")
+    check_finite(values, str(path))
+    known, labels = np.unique(values, return_inverse=True)
+    if known.size > MAX_LABELS:
+        raise PictureError(
+            f"{path}: holds {known.size} labels, at most {MAX_LABELS} are sensible; give each segment one flat colour "
+            "and save it without loss, as PNG"
+        )
+    return labels.reshape(values.shape).astype(np.int32)
+
+
+def write_png(path: Path, picture: np.ndarray) -> None:
+    """Write a picture as PNG, whole or not at all (see `atomic_write`)."""
+    from PIL import Image
+
+    with atomic_write(path) as file:
+        Image.fromarray(to_rgb8(picture)).save(file, format="PNG")
+
+
+def _read(path: Path, indices: bool = False) -> np.ndarray:
+    """The raw values of any file that holds an array; `indices` keeps those of a palette."""
+    data = _read_bytes(path)
+    if path.suffix.lower() in (".npy", ".npz"):
+        return _array(path, data)
+    return _picture(path, data, indices)
+
+
+def _read_bytes(path: Path) -> bytes:
+    try:
+        if path.is_file():
+            data = path.read_bytes()
+        elif path.exists():
+            raise PictureError(f"{path}: is no file but a folder or a device; name a picture file")
+        elif path.parent.is_dir():
+            near = did_you_mean(path.name, (each.name for each in path.parent.iterdir()))
+            raise PictureError(f"{path}: there is no such file{near}")
+        else:
+            raise PictureError(f"{path}: there is no folder {path.parent}; check the path")
+    except (OSError, ValueError) as error:
+        why = getattr(error, "strerror", None) or error
+        raise PictureError(f"{path}: cannot be read: {why}; check the path and its permissions") from error
+    if not data:
+        raise PictureError(f"{path}: the file is empty; copy or download it again")
+    return data
+
+
+def _array(path: Path, data: bytes) -> np.ndarray:
+    from numpy.lib.npyio import NpzFile
+
+    try:
+        held: Any = np.load(BytesIO(data), allow_pickle=False)
+        several = issubclass(type(held), NpzFile)
+        arrays: list[np.ndarray] = list(held.values()) if several else [held]
+    except Exception as error:  # a damaged file can provoke any
+        raise PictureError(f"{path}: cannot be read as an array: {error}; save it with numpy.save") from error
+    if len(arrays) != 1:
+        raise PictureError(f"{path}: holds {len(arrays)} arrays; save the one that is meant with numpy.save")
+    return arrays[0]
+
+
+def _picture(path: Path, data: bytes, indices: bool) -> np.ndarray:
+    """By Pillow, which says what is wrong with a file; by OpenCV where there are more bits than Pillow keeps."""
+    from PIL import Image, UnidentifiedImageError
+
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of tags that it passes over
+            warnings.simplefilter("error", Image.DecompressionBombWarning)
+            with Image.open(BytesIO(data), formats=FORMATS) as image:
+                image.load()
+                values = _picture_by_opencv(path, data) if _is_deep_colour(image, data) else _values(image, indices)
+                return np.ascontiguousarray(_upright(values, _orientation(image)))
+    except UnidentifiedImageError as error:
+        if data[:4] in (b"II*\0", b"MM\0*"):
+            return _picture_by_opencv(path, data)
+        raise PictureError(f"{path}: is no picture this program can read; use PNG, JPEG, TIFF, PFM or NPY") from error
+    except (Image.DecompressionBombError, Image.DecompressionBombWarning) as error:
+        limit = (Image.MAX_IMAGE_PIXELS or 0) // 1_000_000
+        raise PictureError(f"{path}: is larger than {limit} megapixels; make it smaller first") from error
+    except PictureError:
+        raise
+    except Exception as error:  # a damaged file can provoke any
+        raise PictureError(
+            f"{path}: the picture is damaged or cut short: {error}; copy or download it again"
+        ) from error
+
+
+def _is_deep_colour(image: "Image", data: bytes) -> bool:
+    """Whether Pillow would cut 16 bits a channel down to 8."""
+    from PIL.TiffImagePlugin import TiffImageFile
+
+    if isinstance(image, TiffImageFile):
+        return image.mode in ("RGB", "RGBA") and 16 in image.tag_v2.get(_BITS_PER_SAMPLE, ())
+    return image.format == "PNG" and data[24] == 16 and image.mode != "I;16"
+
+
+def _values(image: "Image", indices: bool) -> np.ndarray:
+    mode = image.mode
+    if mode in ("F", "L", "RGB", "RGBA") and not (mode != "RGBA" and image.has_transparency_data):
+        return np.asarray(image)
+    if mode.startswith("I"):
+        whole = np.asarray(image)
+        return whole.astype(np.uint16) if whole.min() >= 0 and whole.max() <= 0xFFFF else whole
+    if mode == "P" and indices:
+        return np.asarray(image)
+    return np.asarray(image.convert("L" if mode == "1" else "RGBA" if image.has_transparency_data else "RGB"))
+
+
+def _orientation(image: "Image") -> int:
+    try:
+        return image.getexif().get(_ORIENTATION, 1)
+    except Exception as error:  # noqa: BLE001 - a picture is worth more than its damaged tags
+        log.warning("EXIF tags are damaged (%s); the picture is taken as upright", error)
+        return 1
+
+
+def _upright(values: np.ndarray, orientation: int) -> np.ndarray:
+    """Source: EXIF 2.3, tag 0x0112: where the picture's first row and column belong."""
+    if orientation in (5, 6, 7, 8):
+        values = values.swapaxes(0, 1)
+    if orientation in (3, 4, 7, 8):
+        values = values[::-1]
+    if orientation in (2, 3, 6, 7):
+        values = values[:, ::-1]
+    return values
+
+
+def _picture_by_opencv(path: Path, data: bytes) -> np.ndarray:
+    import cv2
+
+    try:
+        values: np.ndarray | None = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED)
+    except cv2.error:
+        values = None
+    if values is None:
+        raise PictureError(f"{path}: the picture is damaged or of a rare kind; save it again as PNG or TIFF")
+    if values.ndim == 3:
+        values = cv2.cvtColor(values, cv2.COLOR_BGRA2RGBA if values.shape[2] == 4 else cv2.COLOR_BGR2RGB)
+    return values

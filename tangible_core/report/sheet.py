@@ -1,0 +1,116 @@
+"""One sheet of pictures that shows a run."""
+# pyright: reportUnknownMemberType=false
+# (matplotlib leaves its keywords without types)
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..data import DisparityMap, HapticSurface, MaterialMap, Relief, SegmentMap, Views
+from ..errors import OutputError
+from ..files import atomic_write
+from .layout import Cell, arrange
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from ..session import Recording
+    from .layout import Box
+    from .panels import Panel
+
+WIDTH_IN = 12.0
+TITLE_IN = 0.3
+HEADLINE_IN = 0.45
+LEAST_IN = 2.9
+DPI = 150
+SHAPES: dict[str, Callable[[Any], tuple[float, float]]] = {
+    "views": lambda views: views.shape,
+    "disparity": lambda disparity: disparity.disparity_px.shape,
+    "segments": lambda segments: segments.labels.shape,
+    "relief": lambda relief: relief.extent_m[::-1],
+}
+"""Height and width of what has the scene's shape."""
+
+
+def draw_sheet(
+    path: Path,
+    *,
+    views: Views | None = None,
+    truth: np.ndarray | None = None,
+    disparity: DisparityMap | None = None,
+    segments: SegmentMap | None = None,
+    materials: MaterialMap | None = None,
+    relief: Relief | None = None,
+    surface: HapticSurface | None = None,
+    recording: Recording | None = None,
+    title: str = "",
+) -> None:
+    """Draw what a run has as a PNG, whole or not at all; panels without data are left out.
+
+    truth: disparity (h, w) in px, not finite where unknown; shown as an error where the disparity is in px.
+    relief: where there is no surface yet; a surface brings its own.
+    recording: shown together with the relief that it was felt on.
+    Raises: OutputError if the place cannot be written, PictureError if truth and disparity differ in size.
+    """
+    from matplotlib import style
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    from .style import STYLE
+
+    given = {
+        "views": views,
+        "truth": truth if disparity is not None and disparity.unit == "px" else None,
+        "disparity": disparity,
+        "segments": segments,
+        "materials": materials,
+        "relief": relief if surface is None else surface.relief,
+        "recording": recording if recording is not None and len(recording.time_s) else None,
+    }
+    with style.context(STYLE, after_reset=True):
+        figure = draw_figure({name: value for name, value in given.items() if value is not None}, title)
+        with atomic_write(path) as file:
+            FigureCanvasAgg(figure).print_png(file)
+
+
+def draw_figure(run: Mapping[str, Any], title: str) -> Figure:
+    """The sheet of those panels whose products are there, lettered in reading order."""
+    from matplotlib.figure import Figure
+
+    from .panels import PANELS
+
+    panels = [panel for panel in PANELS if run.keys() >= set(panel.needs)]
+    if not panels:
+        raise OutputError(f"{title}: there is nothing to draw; ask for a product that a picture can show")
+    boxes, width_in, height_in = arrange([_cell(panel, scene_aspect(run)) for panel in panels], WIDTH_IN)
+    figure = Figure(figsize=(width_in, height_in + TITLE_IN), dpi=DPI, facecolor="white")
+    figure.text(0.15 / width_in, 1 - 0.1 / (height_in + TITLE_IN), title, fontsize=13, weight="bold", va="top")
+    for letter, panel, box in zip("abcdefgh", panels, boxes, strict=False):
+        _draw_panel(figure, panel, box, run, letter)
+    return figure
+
+
+def scene_aspect(run: Mapping[str, Any]) -> float:
+    """Width over height of what the run shows, kept between 1:2 and 3:1 so that a strip still has a panel."""
+    name = next(name for name in SHAPES if name in run)
+    height, width = SHAPES[name](run[name])
+    return min(max(width / height, 0.5), 3.0)
+
+
+def _cell(panel: Panel, scene: float) -> Cell:
+    return Cell(panel.aspect or scene, panel.left_in, panel.right_in, panel.bottom_in, HEADLINE_IN, LEAST_IN)
+
+
+def _draw_panel(figure: Figure, panel: Panel, box: Box, run: Mapping[str, Any], letter: str) -> None:
+    width_in, height_in = figure.get_size_inches()
+    top_in = height_in - TITLE_IN - box.top_in
+    left, top = box.left_in / width_in, top_in / height_in
+    place = (left, top - box.height_in / height_in, box.width_in / width_in, box.height_in / height_in)
+    axes = figure.add_axes(place)
+    headline = panel.draw(axes, **{name: run[name] for name in (*panel.needs, *panel.likes) if name in run})
+    line = top + 0.1 / height_in
+    figure.text(left, line, letter, fontsize=11, weight="bold")
+    figure.text(left + 0.18 / width_in, line, headline, fontsize=10)

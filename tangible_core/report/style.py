@@ -1,0 +1,76 @@
+"""One look for every panel: type, colours, colour bars. All of it survives colour blindness and grey print."""
+# pyright: reportUnknownMemberType=false
+# (matplotlib leaves its keywords without types)
+
+from typing import Any
+
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.axes import Axes
+from matplotlib.colors import Colormap, ListedColormap
+
+INK = "#222222"
+PALE = "#e9e9e9"
+STYLE: dict[str, Any] = {
+    "font.family": "DejaVu Sans",
+    "font.size": 9,
+    "axes.labelsize": 9,
+    "axes.linewidth": 0.6,
+    "axes.edgecolor": INK,
+    "axes.labelcolor": INK,
+    "text.color": INK,
+    "xtick.color": INK,
+    "ytick.color": INK,
+    "xtick.labelsize": 8,
+    "ytick.labelsize": 8,
+    "xtick.major.width": 0.6,
+    "ytick.major.width": 0.6,
+    "xtick.major.size": 3,
+    "ytick.major.size": 3,
+    "legend.fontsize": 8,
+    "legend.frameon": False,
+    "text.parse_math": False,
+    "hatch.linewidth": 0.5,
+    "hatch.color": "#999999",
+    "image.interpolation": "nearest",
+}
+
+OKABE_ITO = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00", "#F0E442", "#999999")
+"""Okabe & Ito, Color Universal Design (2008), reordered: eight colours that colour-blind readers tell apart."""
+VIRIDIS: Colormap = colormaps["viridis"]
+"""Disparities and heights: perceptually uniform, monotonous in lightness."""
+ERRORS: Colormap = colormaps["magma_r"]
+"""Errors: pale is right, dark is wrong."""
+FORCES = ListedColormap(colormaps["magma_r"](np.linspace(0.3, 0.95, 256)), "forces")
+"""Forces: dark enough at its pale end to stand on white."""
+
+
+def bare(axes: Axes, caption: str = "") -> None:
+    """A picture has no ticks: its caption says what they would. It fills its panel, which has the scene's shape."""
+    axes.set(xticks=[], yticks=[], aspect="auto")
+    axes.set_xlabel(caption, fontsize=8, labelpad=4, loc="left")
+
+
+def hatch(axes: Axes) -> None:
+    """Hatch what stays transparent: there, nothing is known."""
+    axes.patch.set(facecolor=PALE, hatch="//////", edgecolor="#aaaaaa")
+
+
+def inches(axes: Axes) -> tuple[float, float]:
+    """One inch as a share of the axes' width and height."""
+    return axes.figure.dpi / axes.bbox.width, axes.figure.dpi / axes.bbox.height
+
+
+def colour_bar(axes: Axes, mappable: Any, label: str, **options: Any) -> None:
+    """A bar of the axes' height, at a fixed distance in inches to their right."""
+    figure = axes.figure
+    inch = inches(axes)[0]
+    bar = figure.colorbar(mappable, cax=axes.inset_axes((1 + 0.08 * inch, 0, 0.1 * inch, 1)), **options)
+    bar.set_label(label)
+    bar.outline.set_linewidth(0.6)
+
+
+def thinned(map_: np.ndarray, most: int = 1000) -> np.ndarray:
+    """Every n-th row and column, so that neither side is over `most`: a sheet shows no more."""
+    step = -(-max(map_.shape[:2]) // most)
+    return map_[::step, ::step]

@@ -1,0 +1,174 @@
+"""The table of how each product is made, from what, and when a scene does not need it."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cache
+from importlib.metadata import version
+from inspect import getsourcefile
+from pathlib import Path
+from typing import Any
+
+from . import geometry, materials
+from .config import Chosen, PipelineConfig
+from .data import DisparityMap, HapticSurface, MaterialMap, Record, Relief, SegmentMap, Views, digest_of
+from .errors import ConfigError
+from .interfaces import Method, Skippable, Touch
+from .scene import Scene
+
+Inputs = Mapping[str, Any]
+"""Products by name; None where one was skipped."""
+
+
+@dataclass(frozen=True)
+class Rule:
+    """How one product is made."""
+
+    product: str
+    method: str
+    """The method's name, for people."""
+    key: str
+    """What the result depends on beside its inputs."""
+    needs: tuple[str, ...]
+    make: Callable[[Inputs], Any]
+    skip: str | None = None
+    """Why this scene does not need it."""
+    cached: bool = True
+
+
+def rules(config: PipelineConfig, scene: Scene) -> dict[str, Rule]:
+    """One rule a product, for this configuration and this scene.
+
+    Products that the scene brings have no rule. Raises: ConfigError for a material library that cannot be read.
+    """
+    table = (_disparity, _relief, _segments, _materials, _surface, _touch)
+    made = (make(config, scene) for make in table)
+    return {rule.product: rule for rule in made if rule.product not in scene.given}
+
+
+def _disparity(config: PipelineConfig, scene: Scene) -> Rule:
+    def make(inputs: Inputs) -> DisparityMap:
+        return _configured(config, "depth").method.estimate(scene.views)
+
+    return Rule("disparity", *_identity(config.depth), ("views",), make, _skip(config.depth, scene))
+
+
+def _relief(config: PipelineConfig, scene: Scene) -> Rule:
+    size = config.workspace
+
+    def make(inputs: Inputs) -> Relief:
+        disparity: DisparityMap | None = inputs["disparity"]
+        calibration = scene.views.calibration if scene.views else None
+        if disparity is None:
+            return geometry.flat_relief(_views(scene).shape, size.width_m)
+        relief = geometry.make_relief(disparity, calibration, size.width_m, size.relief_m, size.holes)
+        return geometry.smooth(relief, size.smooth_m)
+
+    return Rule("relief", "core", f"{_core('geometry')} {size!r}", ("views", "disparity"), make)
+
+
+def _segments(config: PipelineConfig, scene: Scene) -> Rule:
+    def make(inputs: Inputs) -> SegmentMap:
+        return _configured(config, "texture").method.segment(_views(scene).left)
+
+    skip = _skip(config.texture, scene)
+    if config.texture is None:
+        skip = "no `texture:` is configured; the whole surface is one material"
+    elif scene.views is None:
+        skip = "the scene has heights and no picture"
+    return Rule("segments", *_identity(config.texture), ("views",), make, skip)
+
+
+def _materials(config: PipelineConfig, scene: Scene) -> Rule:
+    choice = config.materials
+    unsegmented = "segments" not in scene.given and _segments(config, scene).skip
+    library = materials.load_library(choice.library)
+
+    def make(inputs: Inputs) -> MaterialMap:
+        return materials.assign(inputs["segments"], scene.views.left if scene.views else None, choice.by, library)
+
+    key = f"{_core('materials')} {choice.by!r} {digest_of(tuple(library.values()))}"
+    skip = f"there are no segments: {unsegmented}" if unsegmented else None
+    return Rule("materials", "core", key, ("views", "segments"), make, skip)
+
+
+def _surface(config: PipelineConfig, scene: Scene) -> Rule:
+    def make(inputs: Inputs) -> HapticSurface:
+        segments: SegmentMap | None = inputs.get("segments")
+        chosen: MaterialMap | None = inputs.get("materials")
+        if segments is None or chosen is None:
+            return HapticSurface(inputs["relief"])
+        return HapticSurface(inputs["relief"], segments.labels, chosen.materials)
+
+    with_materials = config.render is None or config.render.method.uses_materials
+    needs = ("relief", "segments", "materials") if with_materials else ("relief",)
+    return Rule("surface", "core", _core("data"), needs, make)
+
+
+def _touch(config: PipelineConfig, scene: Scene) -> Rule:
+    def make(inputs: Inputs) -> Touch:
+        return _configured(config, "render").method.touch(inputs["surface"])
+
+    return Rule("touch", *_identity(config.render), ("surface",), make, cached=False)
+
+
+def given_key(value: Record) -> str:
+    """The key of something that the scene brings: its content."""
+    return value.digest()
+
+
+def made_key(rule: Rule, inputs: Mapping[str, str]) -> str:
+    """The key of something that is made: what makes it, and the keys of what it is made from."""
+    parts = (rule.product, rule.key, *(f"{name}={key}" for name, key in inputs.items()))
+    return hashlib.sha256("\n".join(parts).encode()).hexdigest()
+
+
+def _identity(chosen: Chosen[Any] | None) -> tuple[str, str]:
+    """A method's name, and everything its results depend on: where it comes from, its code, version and options."""
+    if chosen is None:
+        return "", ""
+    method: Method = chosen.method
+    cls = type(method)
+    code = _source_digest(getsourcefile(cls) or "")
+    return (
+        chosen.name,
+        f"{chosen.origin} {cls.__module__}:{cls.__qualname__} {code} v{cls.version} {method.model_dump_json()}",
+    )
+
+
+@cache
+def _core(room: str) -> str:
+    return f"tangible-images {version('tangible-images')} {_source_digest(str(Path(__file__).with_name(f'{room}.py')))}"
+
+
+@cache
+def _source_digest(path: str) -> str:
+    """The method's own file counts, so that whoever writes a method need not clear the cache at each change."""
+    try:
+        return hashlib.sha256(Path(path).read_bytes()).hexdigest()[:16]
+    except OSError:
+        return ""
+
+
+def _skip(chosen: Chosen[Any] | None, scene: Scene) -> str | None:
+    if chosen is not None and isinstance(chosen.method, Skippable) and scene.views is not None:
+        return chosen.method.skip(scene.views)
+    return None
+
+
+def _configured(config: PipelineConfig, kind: str) -> Chosen[Any]:
+    chosen: Chosen[Any] | None = getattr(config, kind)
+    if chosen is None:
+        raise ConfigError(
+            f"{config.path}: `{kind}:` is missing; name a method, such as `{kind}: {{use: ...}}` "
+            "(`tangible plugins` lists them)"
+        )
+    return chosen
+
+
+def _views(scene: Scene) -> Views:
+    if scene.views is None:
+        raise ConfigError(f"the scene {scene.name} has no picture; give one with `photo:` or `left:` and `right:`")
+    return scene.views

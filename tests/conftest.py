@@ -1,0 +1,82 @@
+"""What every test stands on: checked shapes, repeatable hypothesis, a cache and plugins of its own."""
+
+import os
+import sys
+import textwrap
+from collections.abc import Callable, Iterator, Mapping
+from importlib import metadata
+from pathlib import Path
+
+import jaxtyping
+import pytest
+from hypothesis import settings
+
+os.environ["MPLBACKEND"] = "Agg"
+
+# Shapes and types of every call are checked in these rooms, from their first import on. Rooms of pydantic models stay
+# out, as those check themselves, and so does what numba compiles, as a checked function cannot be compiled.
+CHECKED = (
+    "data",
+    "files",
+    "geometry",
+    "materials",
+    "picture_files",
+    "pictures",
+    "testing.scenes",
+    "testing.variants",
+)
+BEARTYPE = "beartype.beartype(conf=beartype.BeartypeConf(is_pep484_tower=True))"  # an int is a float, as PEP 484 has it
+jaxtyping.install_import_hook([f"tangible_core.{room}" for room in CHECKED], BEARTYPE)
+
+settings.register_profile("default", deadline=None)
+settings.register_profile("ci", deadline=None, derandomize=True, print_blob=True)
+settings.load_profile("ci" if os.environ.get("CI") else "default")
+
+Install = Callable[..., Path]
+
+
+@pytest.fixture(autouse=True)
+def cache_dir(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """An empty cache for each test: nothing is read from, or left in, the developer's own."""
+    folder = tmp_path_factory.mktemp("cache")
+    monkeypatch.setenv("TANGIBLE_CACHE_DIR", str(folder))
+    return folder
+
+
+@pytest.fixture
+def unchecked_shapes(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As outside of tests: only the code's own checks are left."""
+    monkeypatch.setattr(jaxtyping.config, "jaxtyping_disable", True)
+
+
+@pytest.fixture
+def install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Install]:
+    """Install distributions that are made up, in a world that has no other ones: no test sees a developer's plugins.
+
+    `install("acme", {"tangible.depth": {"mine": "acme:Mine"}}, acme="the source text of a module")`
+    """
+    site = tmp_path / "site"
+    site.mkdir()
+    monkeypatch.syspath_prepend(site)
+    for module in ("registry", "hooks"):
+        monkeypatch.setattr(f"tangible_core.{module}.entry_points", lambda **of: _entry_points(site, **of))
+
+    def install(name: str, points: Mapping[str, Mapping[str, str]], version: str = "1.0", **modules: str) -> Path:
+        info = site / f"{name}-{version}.dist-info"
+        info.mkdir()
+        info.joinpath("METADATA").write_text(f"Metadata-Version: 2.1\nName: {name}\nVersion: {version}\n")
+        lines = [f"[{group}]\n" + "".join(f"{key} = {of[key]}\n" for key in of) for group, of in points.items()]
+        info.joinpath("entry_points.txt").write_text("\n".join(lines))
+        for module, source in modules.items():
+            site.joinpath(f"{module}.py").write_text(textwrap.dedent(source))
+        return site
+
+    yield install
+    for name, module in list(sys.modules.items()):
+        if str(getattr(module, "__file__", "")).startswith(str(site)):
+            del sys.modules[name]
+
+
+def _entry_points(site: Path, **of: str) -> metadata.EntryPoints:
+    found = [point for dist in metadata.distributions(path=[str(site)]) for point in dist.entry_points]
+    return metadata.EntryPoints(found).select(**of)

@@ -1,0 +1,132 @@
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tangible_core.cache import Cache, read_record, write_record
+from tangible_core.data import (
+    Calibration,
+    DisparityMap,
+    HapticSurface,
+    Material,
+    MaterialMap,
+    Record,
+    Relief,
+    SegmentMap,
+    Views,
+)
+
+ICE = Material("ice", 900.0, 1.0, 0.1, 0.03, source="a test")
+HEIGHTS = np.linspace(0, 0.01, 12, dtype=np.float32).reshape(3, 4)
+LABELS = np.zeros((3, 4), np.int32)
+
+RECORDS: list[Record] = [
+    Views(np.arange(12, dtype=np.uint16).reshape(3, 4), None, Calibration(900.0, 0.2, 31.0)),
+    DisparityMap(np.where(HEIGHTS > 0.005, HEIGHTS, np.float32(np.nan))),
+    SegmentMap(LABELS),
+    MaterialMap((ICE,), ("because",)),
+    HapticSurface(Relief(HEIGHTS, (0.08, 0.06)), LABELS, (ICE,)),
+    HapticSurface(Relief(HEIGHTS, (0.08, 0.06))),
+]
+
+
+@pytest.mark.parametrize("record", RECORDS, ids=lambda each: type(each).__name__)
+def test_a_record_comes_back_as_it_was(tmp_path: Path, record: Record):
+    write_record(tmp_path / "x.npz", record)
+    again = read_record(tmp_path / "x.npz")
+    assert type(again) is type(record)
+    assert again.digest() == record.digest()
+
+
+def test_any_program_can_read_an_entry(tmp_path: Path):
+    write_record(tmp_path / "x.npz", RECORDS[4])
+    with np.load(tmp_path / "x.npz", allow_pickle=False) as archive:
+        assert np.array_equal(archive["relief.height_m"], HEIGHTS)
+
+
+def test_a_miss_is_none(tmp_path: Path):
+    assert Cache(tmp_path).get("nothing") is None
+    assert "nothing" not in Cache(tmp_path / "no folder yet")
+
+
+@pytest.mark.parametrize("damage", [lambda b: b[: len(b) // 2], lambda b: b"", lambda b: b"PK" + bytes(len(b))])
+def test_a_damaged_entry_is_said_and_deleted(tmp_path: Path, caplog: pytest.LogCaptureFixture, damage):
+    cache = Cache(tmp_path)
+    cache.put("k", RECORDS[1])
+    path = tmp_path / "k.npz"
+    path.write_bytes(damage(path.read_bytes()))
+    assert cache.get("k") is None
+    assert "damaged" in caplog.text
+    assert not path.exists()
+
+
+def test_one_flipped_bit_is_found(tmp_path: Path):
+    cache = Cache(tmp_path)
+    cache.put("k", SegmentMap(np.zeros((64, 64), np.int32)))
+    path = tmp_path / "k.npz"
+    content = bytearray(path.read_bytes())
+    content[len(content) // 2] ^= 1
+    path.write_bytes(content)
+    assert cache.get("k") is None
+
+
+def test_an_entry_of_another_program_is_not_trusted(tmp_path: Path):
+    np.savez(tmp_path / "k.npz", record=np.frombuffer(b'{"class": "Path", "fields": {}}', np.uint8))
+    assert Cache(tmp_path).get("k") is None
+
+
+def test_the_entries_used_longest_ago_go_first(tmp_path: Path):
+    cache = Cache(tmp_path)
+    for age, key in enumerate(("old", "older", "oldest")):
+        cache.put(key, RECORDS[1])
+        os.utime(tmp_path / f"{key}.npz", (1e9 - age, 1e9 - age))
+    assert cache.get("oldest") is not None  # used now, so it stays
+    size = (tmp_path / "old.npz").stat().st_size
+    Cache(tmp_path, max_bytes=int(2.5 * size)).put("new", RECORDS[1])
+    assert {path.stem for path in tmp_path.glob("*.npz")} == {"oldest", "new"}
+
+
+def test_a_folder_that_cannot_be_written_costs_a_warning(tmp_path: Path, caplog: pytest.LogCaptureFixture):
+    (tmp_path / "file").write_text("")
+    Cache(tmp_path / "file" / "below").put("k", RECORDS[1])
+    assert "not cached" in caplog.text
+
+
+def test_a_full_disk_leaves_nothing_behind(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog):
+    def full(*_: object, **__: object):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(np, "savez", full)
+    Cache(tmp_path).put("k", RECORDS[1])
+    assert "No space left" in caplog.text
+    assert list(tmp_path.iterdir()) == []
+
+
+USER = """
+import sys
+from pathlib import Path
+import numpy as np
+from tangible_core.cache import Cache
+from tangible_core.data import SegmentMap
+
+cache, record = Cache(Path(sys.argv[1]), max_bytes=20_000), SegmentMap(np.zeros((20, 20), np.int32))
+for i in range(200):
+    key = f"k{(int(sys.argv[2]) + i) % 10}"
+    cache.put(key, record)
+    found = cache.get(key)
+    assert found is None or found.digest() == record.digest()
+"""
+
+
+def test_two_processes_share_a_folder(tmp_path: Path):
+    users = [
+        subprocess.Popen([sys.executable, "-c", USER, tmp_path, start], stderr=subprocess.PIPE, text=True)
+        for start in ("0", "5")
+    ]
+    said = [user.communicate(timeout=60)[1] for user in users]
+    assert said == ["", ""]
+    assert [user.returncode for user in users] == [0, 0]
+    assert not [path for path in tmp_path.iterdir() if path.suffix != ".npz"]

@@ -1,0 +1,228 @@
+"""The library of materials, its files, and which segment gets which."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tangible_core.data import Material, SegmentMap
+from tangible_core.errors import MaterialError, PictureError
+from tangible_core.materials import LADDER, NEUTRAL, assign, find, library, load_library, relative_roughness
+
+MUD = "mud: {stiffness_n_per_m: 300, damping_n_s_per_m: 2, static_friction: 0.6, dynamic_friction: 0.5}\n"
+
+
+def stripes(count: int, size: int = 40) -> SegmentMap:
+    """Upright segments, side by side."""
+    return SegmentMap(np.repeat(np.arange(count, dtype=np.int32), size)[None].repeat(size, axis=0))
+
+
+def checkers(*amplitudes: float, size: int = 40) -> np.ndarray:
+    """A segment a column: a checkerboard of this amplitude about 0.5."""
+    rows, columns = np.indices((size, size * len(amplitudes)))
+    return 0.5 + np.where((rows + columns) % 2, 1, -1) * np.repeat(amplitudes, size)
+
+
+def complaints(tmp_path: Path, text: str) -> list[str]:
+    """What is said about a library file, without its folder."""
+    path = tmp_path / "mine.yaml"
+    path.write_text(text)
+    with pytest.raises(MaterialError) as error:
+        load_library(path)
+    return str(error.value).replace(f"{tmp_path}/", "").splitlines()
+
+
+class TestLibrary:
+    def test_measured_values_are_those_of_the_sources(self):
+        assert library()["ice"].dynamic_friction == 0.03
+        assert library()["ice"].static_friction == 0.1
+        middles = {"sand": (0.69, 0.80), "wood": (0.19, 0.25), "rubber": (0.41, 0.61), "cloth": (0.22, 0.37)}
+        middles |= {"stone": (0.34, 0.70), "brick": (0.51, 0.63), "metal": (0.24, 0.35), "foam": (0.87, 1.39)}
+        middles |= {"carpet": (0.76, 1.11), "leather": (0.36, 0.43)}
+        for name, (low, high) in middles.items():
+            assert library()[name].dynamic_friction == pytest.approx((low + high) / 2), name
+            assert f"{low:.2f} to {high:.2f}" in library()[name].source
+
+    def test_grain_is_speed_over_frequency(self):
+        for name, hertz in {"sand": 140, "wood": (137 + 232) / 2, "cloth": (117 + 148) / 2, "metal": 216.5}.items():
+            assert library()[name].grain_m == pytest.approx(0.12 / hertz, rel=0.01), name
+
+    @pytest.mark.parametrize("material", library().values(), ids=lambda each: each.name)
+    def test_a_desktop_device_can_render_it(self, material: Material):
+        assert material.stiffness_n_per_m <= (900 if material.roughness_m else 3000)
+        assert 0 < material.damping_n_s_per_m <= 5
+        assert material.source
+
+    def test_names_are_those_of_the_file(self):
+        assert all(name == material.name for name, material in library().items())
+        assert {NEUTRAL, *LADDER, "glass", "rubber"} <= set(library())
+
+    def test_the_neutral_material_has_no_friction_and_no_texture(self):
+        plain = library()[NEUTRAL]
+        assert (plain.static_friction, plain.dynamic_friction, plain.roughness_m) == (0, 0, 0)
+
+    def test_ladder_runs_from_smooth_to_rough(self):
+        roughness = [library()[name].roughness_m for name in LADDER]
+        assert roughness == sorted(roughness)
+        assert len(set(roughness)) == len(LADDER)
+
+    def test_it_is_read_once_and_cannot_be_changed(self):
+        assert load_library() is library()
+        with pytest.raises(TypeError):
+            library()["ice"] = library()["sand"]  # type: ignore[index]
+
+    def test_a_misspelt_name_is_explained(self):
+        with pytest.raises(MaterialError, match=r"'icee' \(did you mean 'ice'\?\); there are plain, ice, glass"):
+            find("icee", library())
+
+
+class TestOwnFile:
+    def test_adds_to_the_library(self, tmp_path: Path):
+        path = tmp_path / "mine.yaml"
+        path.write_text(MUD)
+        more = load_library(path)
+        assert more["mud"] == Material("mud", 300, 2, 0.6, 0.5, source="guess")
+        assert [*more] == [*library(), "mud"]
+        assert "mud" not in library()
+
+    def test_changes_some_values_of_a_shipped_material(self, tmp_path: Path):
+        path = tmp_path / "mine.yaml"
+        path.write_text("ice: {stiffness_n_per_m: 1.2e3}\n")
+        ice = load_library(path)["ice"]
+        source = f"stiffness_n_per_m: mine.yaml; {library()['ice'].source}"
+        assert ice == replace(library()["ice"], stiffness_n_per_m=1200.0, source=source)
+
+    def test_source_may_be_said_for_each_value(self, tmp_path: Path):
+        path = tmp_path / "mine.yaml"
+        path.write_text("ice:\n  dynamic_friction: 0.02\n  source:\n    dynamic_friction: my rig\n    others: guess\n")
+        assert load_library(path)["ice"].source == "dynamic_friction: my rig; others: guess"
+
+    def test_all_complaints_come_at_once_each_with_its_place(self, tmp_path: Path):
+        text = (
+            "ice: {stifness_n_per_m: 3, damping_n_s_per_m: -1}\n"
+            "mud:\n  stiffness_n_per_m: .nan\n  grain_m: fine\n  static_friction: yes\n  source: {grain: x}\n"
+            "3: {}\n"
+            "felt: 3\n"
+            "wood: {dynamic_friction: 0.9}\n"
+            "glas: {source: 4}\n"
+        )
+        found = complaints(tmp_path, text)
+        places = ["1:7", "1:28", "3:3", "4:3", "5:3", "6:12", "2:1", "7:1", "8:1", "9:1", "10:8", "10:1"]
+        assert [each.split(": ", 1)[0] for each in found] == [f"mine.yaml:{place}" for place in places]
+        assert "ice: unknown key 'stifness_n_per_m' (did you mean 'stiffness_n_per_m'?)" in found[0]
+        assert found[1].endswith("ice: damping_n_s_per_m is a number >= 0, not -1")
+        assert "dynamic_friction 0.9 is above static_friction 0.26" in found[9]
+        missing = "stiffness_n_per_m, damping_n_s_per_m, static_friction, dynamic_friction are missing"
+        assert found[11].endswith(f"glas: {missing} (did you mean 'glass'?)")
+
+    @pytest.mark.parametrize(
+        ("text", "complaint"),
+        [
+            ("ice: [\n", "mine.yaml:2:1: expected the node content, but found '<stream end>'"),
+            ("ice: {}\nice: {}\n", "mine.yaml:2:1: found duplicate key"),
+            ("ice:\n\tgrain_m: 1\n", "mine.yaml:2:1: found character '\\t'"),
+            ("", "mine.yaml:1:1: a library is a mapping"),
+            ("- ice\n", "mine.yaml:1:1: a library is a mapping"),
+            ("ice: {stiffness_n_per_m: 0}\n", "mine.yaml:1:1: material 'ice': stiffness_n_per_m and grain_m must be"),
+            ("ice: {grain_m: .inf}\n", "mine.yaml:1:7: ice: grain_m is a number >= 0, not inf"),
+            ("ice: {grain_m: true}\n", "mine.yaml:1:7: ice: grain_m is a number >= 0, not True"),
+        ],
+    )
+    def test_what_is_no_library(self, tmp_path: Path, text: str, complaint: str):
+        assert complaints(tmp_path, text)[0].startswith(complaint)
+
+    def test_a_misspelt_file_is_explained(self, tmp_path: Path):
+        (tmp_path / "mine.yaml").write_text(MUD)
+        with pytest.raises(MaterialError, match=r"mime.yaml: there is no such file \(did you mean 'mine.yaml'\?\)"):
+            load_library(tmp_path / "mime.yaml")
+
+    def test_what_is_no_text_is_explained(self, tmp_path: Path):
+        (tmp_path / "mine.yaml").write_bytes(b"\xff\xfe\x00")
+        for path in (tmp_path / "mine.yaml", tmp_path):
+            with pytest.raises(MaterialError, match="cannot be read as text"):
+                load_library(path)
+
+
+class TestByName:
+    def test_each_label_gets_its_material(self):
+        found = assign(stripes(3), None, {0: "ice", 1: "sand", 2: "ice"}, library())
+        assert [each.name for each in found.materials] == ["ice", "sand", "ice"]
+        assert found.reasons == ("segment 0: named ice", "segment 1: named sand", "segment 2: named ice")
+
+    def test_a_label_left_out_is_neutral(self):
+        found = assign(stripes(2), None, {1: "sand"}, library())
+        assert [each.name for each in found.materials] == ["plain", "sand"]
+        assert found.reasons[0] == "segment 0: not named -> plain"
+
+    def test_wrong_labels_and_names_are_all_told(self):
+        with pytest.raises(MaterialError) as error:
+            assign(stripes(3), None, {0: "icee", 3: "sand", -1: "sand"}, library())
+        first, second, third = str(error.value).splitlines()
+        assert first.startswith("segment 0: no material is named 'icee' (did you mean 'ice'?)")
+        assert second == "there is no segment 3; the segments are 0 to 2"
+        assert third == "there is no segment -1; the segments are 0 to 2"
+
+
+class TestByRoughness:
+    def test_the_rougher_gets_the_rougher_material(self):
+        picture = checkers(0.3, 0.0, 0.1)
+        found = assign(stripes(3), picture, "roughness", library())
+        assert [each.name for each in found.materials] == ["brick", "ice", "wood"]
+        spread = picture.std()
+        assert found.reasons == (
+            f"segment 0: roughness rank 3 of 3 ({0.3 / spread * np.sqrt(80 / 81):.3f}) -> brick",
+            "segment 1: roughness rank 1 of 3 (0.000) -> ice",
+            f"segment 2: roughness rank 2 of 3 ({0.1 / spread * np.sqrt(80 / 81):.3f}) -> wood",
+        )
+
+    def test_a_shadow_is_no_roughness(self):
+        rows, columns = np.indices((60, 120))
+        picture = np.where(columns < 60, columns / 60, 0.5 + 0.05 * np.where((rows + columns) % 2, 1, -1))
+        assert [each.name for each in assign(stripes(2, 60), picture, "roughness", library()).materials] == [
+            "ice",
+            "brick",
+        ]
+
+    def test_equally_rough_segments_share_a_rank(self):
+        found = assign(stripes(3), checkers(0.2, 0.0, 0.2), "roughness", library())
+        assert [each.name for each in found.materials] == ["brick", "ice", "brick"]
+        assert "rank 2 of 2" in found.reasons[0]
+
+    @pytest.mark.parametrize("picture", [checkers(0.2, 0.2), np.zeros((40, 80)), np.full((40, 80, 3), 0.3)])
+    def test_one_rank_says_nothing(self, picture: np.ndarray):
+        found = assign(stripes(2), picture, "roughness", library())
+        assert [each.name for each in found.materials] == [NEUTRAL, NEUTRAL]
+
+    def test_more_segments_than_materials_share_them_in_order(self):
+        found = assign(stripes(12), checkers(*np.arange(12) / 30), "roughness", library())
+        rungs = [LADDER.index(each.name) for each in found.materials]
+        assert rungs == [0, 1, 1, 2, 3, 4, 4, 5, 6, 7, 7, 8]
+
+    @pytest.mark.parametrize("scale", [1e-20, 1.0, 1e20])
+    def test_scale_does_not_matter(self, scale: float):
+        picture = checkers(0.05, 0.3, 0.1)
+        assert np.array_equal(relative_roughness(stripes(3), picture * scale), relative_roughness(stripes(3), picture))
+
+    def test_type_does_not_matter(self):
+        eight = np.rint(checkers(0.05, 0.3, 0.1) * 255).astype(np.uint8)
+        expected = assign(stripes(3), eight, "roughness", library()).digest()
+        colour = np.repeat(eight[..., None], 3, axis=2)
+        variants = (eight.astype(np.uint16) * 257, eight / 255, colour, np.dstack([colour, np.full_like(eight, 255)]))
+        for variant in variants:
+            assert assign(stripes(3), variant, "roughness", library()).digest() == expected
+
+    def test_a_single_pixel(self):
+        found = assign(SegmentMap(np.zeros((1, 1), np.int32)), np.ones((1, 1)), "roughness", library())
+        assert found.reasons == ("segment 0: roughness rank 1 of 1 (0.000) -> plain",)
+
+    def test_it_needs_the_picture(self):
+        for picture in (None, np.zeros((3, 4))):
+            with pytest.raises(MaterialError, match=r"need the picture of the segments, \(40, 80\)"):
+                assign(stripes(2), picture, "roughness", library())
+
+    def test_a_picture_with_a_hole_is_refused(self):
+        picture = checkers(0.1, 0.2)
+        picture[3, 5] = np.nan
+        with pytest.raises(PictureError, match="row 3, column 5"):
+            assign(stripes(2), picture, "roughness", library())

@@ -1,0 +1,62 @@
+from importlib import metadata
+from pathlib import Path
+
+import pytest
+from jsonschema import Draft202012Validator
+from ruamel.yaml import YAML
+
+from tangible_core.schema import json_schema, markdown
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture(scope="module")
+def validator() -> Draft202012Validator:
+    schema = json_schema()
+    Draft202012Validator.check_schema(schema)
+    return Draft202012Validator(schema)
+
+
+@pytest.mark.parametrize("path", sorted(ROOT.glob("configs/*.yaml")), ids=lambda path: path.name)
+def test_it_accepts_the_sample_configurations(validator: Draft202012Validator, path: Path):
+    validator.validate(YAML(typ="safe").load(path))
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {},
+        {"scene": "builtin/nothing"},
+        {"scene": "builtin/brick", "depht": "luminance"},
+        {"scene": "builtin/brick", "depth": {"use": "luminance", "no": 1}},
+        {"scene": "builtin/brick", "render": {"use": "penalty-gradient", "stiffness_n_per_m": -1}},
+        {"scene": "builtin/brick", "materials": {"one": "ice"}},
+        {"scene": "builtin/brick", "workspace": {"width_m": 0}},
+    ],
+)
+def test_it_refuses_what_the_program_refuses(validator: Draft202012Validator, wrong: dict):
+    assert not validator.is_valid(wrong)
+
+
+def test_every_shipped_method_is_in_it_and_on_the_page():
+    schema, page = json_schema(), markdown(json_schema())
+    for kind in ("depth", "texture", "render", "device"):
+        names = schema["properties"][kind]["anyOf"][0]["enum"]
+        shipped = metadata.distribution("tangible-images").entry_points.select(group=f"tangible.{kind}")
+        assert set(names) == {point.name for point in shipped}
+        assert all(f"### {name}\n" in page for name in names)
+
+
+def test_every_option_says_what_it_means():
+    schema = json_schema()
+    forms = [
+        form for kind in ("depth", "texture", "render", "device") for form in schema["properties"][kind]["anyOf"][1:]
+    ]
+    for form in forms:
+        for name, option in form["properties"].items():
+            assert name == "use" or option.get("description"), f"{form['title']}.{name}"
+
+
+def test_the_page_in_docs_is_current():
+    page = (ROOT / "docs" / "yaml.md").read_text(encoding="utf-8")
+    assert page == markdown(json_schema()), "run: tangible schema --markdown > docs/yaml.md"

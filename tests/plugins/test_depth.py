@@ -1,0 +1,345 @@
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as hnp
+from pydantic import ValidationError
+from tangible_depth.left_right import left_right_confidence
+from tangible_depth.luminance import Luminance
+from tangible_depth.opencv_sgbm import MODES, OpenCVSGBM
+
+from tangible_core import TangibleError, Views
+from tangible_core.geometry import fill_rows
+from tangible_core.interfaces import Skippable
+from tangible_core.testing.scenes import wall
+
+NAN = np.nan
+EVERY_MODE = pytest.mark.parametrize("mode", MODES)
+
+
+def texture(shape, seed=0):
+    return np.random.default_rng(seed).integers(0, 256, shape, dtype=np.uint8)
+
+
+def shifted(disparity_px, shape=(48, 96)):
+    """Both views of a wall of random texture: exact at whole disparities, everything seen in both."""
+    wide = texture((shape[0], shape[1] + 64))
+    return Views(wide[:, 32 : 32 + shape[1]], wide[:, 32 + disparity_px : 32 + disparity_px + shape[1]])
+
+
+def step(near_px=10, far_px=2, shape=(60, 160)):
+    """A near square before a far wall: views, true disparity, and where the right view sees the left one's pixels."""
+    truth = np.full(shape, far_px)
+    truth[15:45, 60:110] = near_px
+    wide = texture((shape[0], shape[1] + far_px))
+    left, right = wide[:, : shape[1]].copy(), wide[:, far_px:].copy()
+    square = texture((30, 50), seed=1)
+    left[15:45, 60:110] = square
+    right[15:45, 60 - near_px : 110 - near_px] = square
+    seen = np.ones(shape, bool)
+    seen[15:45, 60 - (near_px - far_px) : 60] = False
+    seen[:, :far_px] = False
+    return Views(left, right), truth, seen
+
+
+def estimate(views, **options):
+    return OpenCVSGBM(**options).estimate(views)
+
+
+# The left-right check
+
+
+def test_views_that_agree_are_trusted_and_a_pixel_apart_no_more():
+    left = np.float32([[0, 0, 2, 2, 2, 2]])
+    right = np.float32([[2, 2.25, 3, 1.5, 0, 0]])
+    assert left_right_confidence(left, right).tolist() == [[0, 0, 1, 0.75, 0, 0.5]]
+
+
+def test_what_is_unknown_or_outside_is_not_trusted():
+    left = np.float32([[1, NAN, 3, -2, -1]])
+    right = np.float32([[1, 1, NAN, 1, -1]])
+    assert left_right_confidence(left, right).tolist() == [[0, 0, 0, 0, 0]]
+    assert left_right_confidence(np.float32([[0, 1]]), np.float32([[NAN, 1]])).tolist() == [[0, 0]]
+
+
+@given(hnp.arrays(np.float32, (3, 5)), hnp.arrays(np.float32, (3, 5)))
+def test_confidence_is_between_0_and_1_for_any_disparities(left, right):
+    confidence = left_right_confidence(left, right)
+    assert confidence.dtype == np.float32
+    assert ((confidence >= 0) & (confidence <= 1)).all()
+
+
+# OpenCV's matcher: what it finds
+
+
+@EVERY_MODE
+@pytest.mark.parametrize("disparity_px", [0, 1, 5, 17])
+def test_a_wall_is_found_where_it_is(mode, disparity_px):
+    found = estimate(shifted(disparity_px), mode=mode)
+    error = np.abs(found.disparity_px - disparity_px)[:, disparity_px:]
+    assert found.disparity_px.dtype == found.confidence.dtype == np.float32
+    assert np.isfinite(error).mean() > 0.98
+    assert np.nanmax(error) < 1
+    assert np.nanmax(error[5:-5, 5:-5]) <= 1 / 16  # blocks that see no border; OpenCV counts in sixteenths
+    assert np.median(found.confidence[:, disparity_px:]) == 1
+
+
+@pytest.mark.parametrize("disparity_px", [-20, -6, 6])
+def test_either_sign_is_found_in_a_signed_range(disparity_px):
+    found = estimate(shifted(disparity_px), min_disparity_px=-32, max_disparity_px=32)
+    seen = slice(max(disparity_px, 0), min(disparity_px, 0) or None)
+    error = np.abs(found.disparity_px - disparity_px)[:, seen]
+    assert np.nanmax(error) < 1
+    assert np.nanmax(error[5:-5, 5:-5]) <= 1 / 16
+    assert (found.confidence[:, seen] > 0.9).mean() > 0.98
+
+
+@EVERY_MODE
+@pytest.mark.parametrize("disparity_px", [6.25, 6.5, 6.75])
+def test_parts_of_a_pixel_are_found(mode, disparity_px):
+    found = estimate(wall(disparity_px), mode=mode).disparity_px[:, 8:-8]
+    assert np.isfinite(found).mean() > 0.99
+    assert np.nanmedian(np.abs(found - disparity_px)) < 0.13
+    assert np.nanmean(np.abs(found - disparity_px) < 0.5) > 0.99
+
+
+@EVERY_MODE
+def test_a_step_is_found_and_what_only_one_view_sees_is_not_trusted(mode):
+    views, truth, seen = step()
+    found = estimate(views, mode=mode, max_disparity_px=32)
+    near_edge = np.zeros_like(seen)  # blocks there hold both depths
+    near_edge[12:48, 48:114] = True
+    near_edge[18:42, 63:107] = False
+    wrong = ~(np.abs(found.disparity_px - truth) < 0.5)
+    assert wrong[seen & ~near_edge].mean() < 0.01
+    assert np.median(found.confidence[seen & ~near_edge]) > 0.9
+    assert found.confidence[~seen].mean() < 0.1
+
+
+def test_first_columns_get_a_disparity_too():
+    found = estimate(shifted(3)).disparity_px
+    assert np.isfinite(found[:, 3:16]).mean() > 0.98
+
+
+def test_only_what_was_asked_for_is_tried():
+    found = estimate(shifted(17), max_disparity_px=17).disparity_px
+    assert not (np.abs(found - 17) < 0.5).any()
+    assert np.nanmax(np.where(np.isnan(found), -1, found)) < 16.5
+
+
+def test_filling_is_by_the_stated_rule_and_not_trusted():
+    views = step()[0]
+    holed, filled = estimate(views), estimate(views, fill=True)
+    holes = np.isnan(holed.disparity_px)
+    assert holes.any()
+    np.testing.assert_array_equal(filled.disparity_px, fill_rows(holed.disparity_px))
+    assert not filled.confidence[holes].any()
+    np.testing.assert_array_equal(filled.confidence, holed.confidence)
+
+
+def test_without_a_second_pass_all_that_is_known_is_trusted():
+    views = step()[0]
+    once, twice = estimate(views, second_pass=False), estimate(views)
+    np.testing.assert_array_equal(once.disparity_px, twice.disparity_px)
+    np.testing.assert_array_equal(once.confidence, np.isfinite(once.disparity_px))
+
+
+# OpenCV's matcher: any picture
+
+
+@pytest.mark.parametrize(
+    "as_type",
+    [
+        lambda grey: grey.astype(np.uint16) * 257,
+        lambda grey: grey / 255,
+        lambda grey: (grey / 255).astype(np.float32),
+        lambda grey: np.dstack([grey] * 3),
+        lambda grey: np.dstack([grey] * 3 + [np.full_like(grey, 255)]),
+        lambda grey: grey[::-1, ::-1][::-1, ::-1],
+    ],
+    ids=["uint16", "float64", "float32", "rgb", "rgba", "strided"],
+)
+def test_the_type_of_a_picture_does_not_matter(as_type):
+    views = step()[0]
+    plain, other = estimate(views), estimate(Views(as_type(views.left), as_type(views.right)))
+    assert plain.digest() == other.digest()
+
+
+def test_yes_and_no_are_a_picture():
+    views = shifted(4)
+    found = estimate(Views(views.left > 127, views.right > 127)).disparity_px[:, 4:]
+    assert np.nanmedian(found) == 4
+
+
+def test_twelve_bits_in_sixteen_keep_their_detail():
+    views = wall(6.0)
+    dim = Views(views.left.astype(np.uint16) * 16, views.right.astype(np.uint16) * 16)
+    found = estimate(dim).disparity_px[:, 8:]
+    assert np.isfinite(found).mean() > 0.99
+    assert np.nanmedian(np.abs(found - 6)) < 0.1
+
+
+def test_inputs_are_left_alone_and_the_answer_is_always_the_same():
+    views = step()[0]
+    before = views.digest()
+    assert estimate(views).digest() == estimate(views).digest()
+    assert views.digest() == before
+
+
+# OpenCV's matcher: where there is nothing to find
+
+
+@EVERY_MODE
+@pytest.mark.parametrize("value", [0, 128, 255])
+def test_a_constant_pair_is_unknown(mode, value):
+    flat = np.full((32, 64), value, np.uint8)
+    found = estimate(Views(flat, flat), mode=mode)
+    assert np.isnan(found.disparity_px).all()
+    assert not found.confidence.any()
+    assert np.isnan(estimate(Views(flat, flat), fill=True).disparity_px).all()
+
+
+def test_stripes_along_the_rows_are_unknown():
+    stripes = np.repeat(texture((40, 1)), 80, axis=1)
+    assert np.isnan(estimate(Views(stripes, stripes)).disparity_px).all()
+
+
+def test_a_flat_patch_is_unknown_and_its_border_known():
+    views = shifted(0, (60, 120))
+    left = views.left.copy()
+    left[20:40, 40:80] = 100
+    found = estimate(Views(left, left), block_px=5)
+    unknown = np.isnan(found.disparity_px)
+    assert unknown[22:38, 42:78].all()
+    assert not unknown[:18].any()
+    assert not unknown[22:38, [41, 78]].any()
+
+
+@EVERY_MODE
+@pytest.mark.parametrize("shape", [(1, 1), (1, 40), (40, 1), (2, 2), (3, 3), (7, 20)])
+@pytest.mark.parametrize("span", [(0, 64), (-48, 16), (-64, -16), (16, 48)])
+@pytest.mark.parametrize("block_px", [1, 5, 11])
+def test_the_smallest_pictures_are_matched(mode, shape, span, block_px):
+    views = Views(texture(shape), texture(shape, seed=1))
+    low, high = span
+    found = estimate(views, mode=mode, min_disparity_px=low, max_disparity_px=high, block_px=block_px)
+    known = found.disparity_px[np.isfinite(found.disparity_px)]
+    assert found.disparity_px.shape == shape
+    assert ((known >= low - 0.5) & (known < high - 0.5)).all()
+
+
+def test_a_range_wider_than_the_picture_is_cut_to_it():
+    views = shifted(4, (48, 64))
+    wide = estimate(views, min_disparity_px=-2016, max_disparity_px=2016).disparity_px
+    assert np.nanmedian(wide) == 4
+
+
+def test_a_range_beside_the_picture_finds_nothing():
+    found = estimate(shifted(4, (20, 64)), min_disparity_px=64, max_disparity_px=128)
+    assert np.isnan(found.disparity_px).all()
+    assert not found.confidence.any()
+
+
+def test_one_view_is_told_what_to_use():
+    with pytest.raises(TangibleError, match=r"needs two views.*luminance"):
+        estimate(Views(texture((8, 8))))
+
+
+def test_what_opencv_refuses_is_one_error_with_a_cure(monkeypatch):
+    import cv2
+
+    class Refusing:
+        def compute(self, *views):
+            raise cv2.error("Insufficient memory")
+
+    monkeypatch.setattr(cv2.StereoSGBM, "create", lambda **options: Refusing())
+    with pytest.raises(TangibleError, match=r"96 x 48 over 64 disparities in mode 'hh'.*Insufficient.*try mode"):
+        estimate(shifted(4), mode="hh")
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"min_disparity_px": 64},
+        {"max_disparity_px": 0},
+        {"block_px": 4},
+        {"block_px": 13},
+        {"block_px": 0},
+        {"max_disparity_px": 5000},
+        {"mode": "fast"},
+        {"uniqueness_percent": 100},
+        {"speckle_size": -1},
+        {"window_px": 3},
+    ],
+)
+def test_options_that_make_no_sense_are_refused(options):
+    with pytest.raises(ValidationError):
+        OpenCVSGBM(**options)
+
+
+def test_identical_views_need_no_matching():
+    views = shifted(4)
+    method = OpenCVSGBM()
+    assert isinstance(method, Skippable)
+    assert method.skip(views) is None
+    assert method.skip(Views(views.left)) is None
+    assert "identical" in method.skip(Views(views.left, views.left.copy()))
+
+
+# Luminance
+
+
+def raw(picture):
+    return Luminance(smoothing_px=0).estimate(Views(picture))
+
+
+@pytest.mark.parametrize("dtype", [np.uint8, np.uint16, np.float32])
+def test_lighter_is_nearer_and_all_shades_count(dtype):
+    found = raw(np.array([[10, 20], [30, 50]], dtype) / dtype(100 if dtype == np.float32 else 1))
+    np.testing.assert_allclose(found.disparity_px, [[0, 0.25], [0.5, 1]], atol=1e-6)
+    assert found.unit == "relative"
+    assert (found.confidence == 1).all()
+
+
+def test_luma_is_what_counts_as_light():
+    found = raw(np.uint8([[[0, 0, 0], [255, 0, 0], [0, 255, 0], [0, 0, 255], [255, 255, 255]]]))
+    np.testing.assert_allclose(found.disparity_px, [[0, 0.299, 0.587, 0.114, 1]], atol=1e-6)
+
+
+@pytest.mark.parametrize("smoothing_px", [0, 2, 50])
+@pytest.mark.parametrize("shape", [(1, 1), (1, 9), (9, 1), (20, 30), (20, 30, 3), (20, 30, 4)])
+def test_a_picture_of_one_shade_is_flat_at_zero(shape, smoothing_px):
+    found = Luminance(smoothing_px=smoothing_px).estimate(Views(np.full(shape, 77, np.uint8)))
+    assert found.disparity_px.shape == shape[:2]
+    assert not found.disparity_px.any()
+
+
+def test_smoothing_leaves_no_steps_of_eight_bits():
+    ramp = np.repeat(np.linspace(100, 110, 400)[None], 20, axis=0).astype(np.uint8)
+    steps = np.diff(Luminance(smoothing_px=25).estimate(Views(ramp)).disparity_px[10])
+    assert np.diff(raw(ramp).disparity_px[10]).max() == pytest.approx(0.1)
+    assert steps.min() >= 0
+    assert steps.max() < 0.01
+
+
+def test_smoothing_flattens_noise_and_keeps_edges():
+    noise = np.random.default_rng(0).normal(0, 0.01, (40, 80))
+    edge = np.where(np.arange(80) < 40, 0.3, 0.7) + noise
+    found = Luminance(smoothing_px=4, edge_contrast=0.05).estimate(Views(edge)).disparity_px
+    before = raw(edge).disparity_px
+    assert found[:, :30].std() < before[:, :30].std() / 3
+    assert np.median(found[:, 40] - found[:, 39]) > 0.9 * np.median(before[:, 40] - before[:, 39])
+
+
+@settings(max_examples=50)
+@given(
+    hnp.arrays(np.float64, st.tuples(st.integers(1, 9), st.integers(1, 9)), elements=st.floats(0, 1)),
+    st.integers(0, 30),
+    st.floats(1e-6, 1),
+)
+def test_any_picture_is_relative_from_0_to_1(picture, smoothing_px, edge_contrast):
+    method = Luminance(smoothing_px=smoothing_px, edge_contrast=edge_contrast)
+    found = method.estimate(Views(picture)).disparity_px
+    assert found.dtype == np.float32
+    assert found.min() == 0
+    assert found.max() in (0, 1)

@@ -1,0 +1,301 @@
+"""The mock device: its paths, its hand, its clock, and what it does with bad files."""
+
+import math
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from pydantic import ValidationError
+from tangible_devices.hand import MovingHand, VirtualHand, free_motion
+from tangible_devices.mock import Mock
+from tangible_render.penalty_gradient import PenaltyGradient
+
+from tangible_core.data import NO_FORCE, Force, HapticState, HapticSurface
+from tangible_core.errors import DeviceError
+from tangible_core.interfaces import Link, Touch
+
+GROUND_M = 1 / 128  # exact in float32
+GROUND = HapticSurface.from_heights(np.full((8, 8), GROUND_M))
+
+
+def read(link: Link, count: int) -> list[HapticState]:
+    return [link.read() for _ in range(count)]
+
+
+def positions(mock: Mock, count: int) -> np.ndarray:
+    with mock.open() as link:
+        return np.array([state.position_m for state in read(link, count)])
+
+
+def feel(link: Link, touch: Touch, count: int) -> list[tuple[HapticState, Force]]:
+    felt = []
+    for _ in range(count):
+        state = link.read()
+        link.write(touch.force(state))
+        felt.append((state, link.applied))
+    return felt
+
+
+def written(folder: Path, text: str | bytes) -> Path:
+    path = folder / "hand.csv"
+    path.write_bytes(text.encode() if isinstance(text, str) else text)
+    return path
+
+
+class TestPaths:
+    def test_raster_walks_its_lines_at_its_speed_and_repeats(self):
+        """Two lines of 60 mm, 40 mm apart, and the way back: 200 mm at 0.1 m/s are 2000 ticks."""
+        felt = positions(Mock(hand=None, lines=2, size_m=(0.06, 0.04), z_m=-0.001, speed_m_per_s=0.1), 4001)
+        corners = {0: (-0.03, 0.02), 600: (0.03, 0.02), 1000: (0.03, -0.02), 1600: (-0.03, -0.02), 300: (0, 0.02)}
+        for tick, (x, y) in corners.items():
+            assert felt[tick] == pytest.approx((x, y, -0.001), abs=1e-15)
+        assert np.array_equal(felt[:2000], felt[2000:4000])
+        assert np.allclose(np.linalg.norm(np.diff(felt, axis=0), axis=1), 1e-4, rtol=1e-9)
+
+    def test_circle_is_an_ellipse_of_its_size(self):
+        felt = positions(Mock(hand=None, path="circle", size_m=(0.06, 0.02)), 2000)
+        assert np.abs(np.hypot(felt[:, 0] / 0.03, felt[:, 1] / 0.01) - 1).max() < 1e-5
+        assert tuple(felt[0]) == (0.03, 0.0, -0.005)
+        assert felt[100, 1] > 0  # counter-clockwise
+
+    def test_spiral_fills_its_size_in_even_turns_and_comes_back(self):
+        mock = Mock(hand=None, path="spiral", size_m=(0.04, 0.04), lines=4, speed_m_per_s=0.1)
+        felt = positions(mock, 10000)
+        radius = np.hypot(felt[:, 0], felt[:, 1])
+        lap = int(np.flatnonzero(radius[1000:] < 1e-9)[0]) + 1000
+        assert radius[0] == 0
+        assert radius.max() == pytest.approx(0.02, rel=1e-5)
+        assert np.allclose(felt[: lap // 2], felt[lap - 1 : lap - 1 - lap // 2 : -1], atol=2e-4)
+        assert np.array_equal(felt[: lap + 1][:500], felt[lap : lap + 500])
+        right = felt[: lap // 2][np.flatnonzero(np.diff(np.sign(felt[: lap // 2, 1])) > 0)]
+        assert np.allclose(np.diff(right[:, 0]), 0.02 / 4, atol=2e-4)
+
+    def test_press_goes_straight_down_and_up(self):
+        felt = positions(Mock(hand=None, path="press", z_m=-0.01, lift_m=0.03, speed_m_per_s=0.08), 2001)
+        assert not felt[:, :2].any()
+        assert felt[[0, 500, 1000, 1500], 2] == pytest.approx([0.03, -0.01, 0.03, -0.01], abs=1e-15)
+        assert felt[250, 2] == pytest.approx(0.01, abs=1e-15)
+
+    @pytest.mark.parametrize("path", ["raster", "circle", "spiral", "press"])
+    def test_a_lap_at_any_speed_is_a_whole_number_of_ticks(self, path: str):
+        mock = Mock(hand=None, path=path, speed_m_per_s=0.8123, lines=3)
+        felt = positions(mock, 1500)
+        lap = next(n for n in range(2, 750) if np.array_equal(felt[: 1500 - n], felt[n:]))
+        steps = np.linalg.norm(np.diff(felt, axis=0), axis=1) / mock.period_s
+        assert lap > 10
+        assert steps.max() <= 0.8123 * (1 + 1e-9)
+
+    def test_velocity_is_the_step_from_the_tick_before(self):
+        with Mock(hand=None, path="circle").open() as link:
+            states = read(link, 100)
+        for before, after in pairwise(states):
+            step = np.subtract(after.position_m, before.position_m) / 0.001
+            assert np.allclose(after.velocity_m_per_s, step, atol=1e-12)
+        assert np.linalg.norm(states[0].velocity_m_per_s) == pytest.approx(0.08, rel=1e-3)
+
+    def test_time_is_simulated_and_rises_by_the_period(self):
+        with Mock(period_s=0.002).open() as link:
+            assert [state.time_s for state in read(link, 200)] == [tick * 0.002 for tick in range(200)]
+
+    def test_tremor_is_seeded_and_bounded(self):
+        still, one, same, other = (
+            positions(Mock(hand=None, tremor_m=tremor, seed=seed), 2000)
+            for tremor, seed in ((0, 1), (1e-4, 1), (1e-4, 1), (1e-4, 2))
+        )
+        assert np.array_equal(one, same)
+        assert not np.array_equal(one, other)
+        assert 3e-5 < np.abs(one - still).max() <= 1e-4
+        spectrum = np.abs(np.fft.rfft((one - still)[:, 0]))
+        assert 8 <= np.argmax(spectrum) / 2 <= 12  # 2 s: half a hertz a bin
+
+
+class TestCsv:
+    def test_it_is_played_exactly_and_then_held(self, tmp_path: Path):
+        text = "x_m,time_s,note,z_m,y_m\n0,5,a,0.01,0\n0.004,5.004,b,0.01,0\n0.004,5.006,c,0.01,0.004\n"
+        felt = positions(Mock(hand=None, path="csv", csv_file=written(tmp_path, text)), 10)
+        x = [0, 0.001, 0.002, 0.003, 0.004, 0.004, 0.004, 0.004, 0.004, 0.004]
+        y = [0, 0, 0, 0, 0, 0.002, 0.004, 0.004, 0.004, 0.004]
+        assert np.allclose(felt, np.column_stack([x, y, np.full(10, 0.01)]), atol=1e-12)
+
+    def test_one_row_and_a_byte_order_mark(self, tmp_path: Path):
+        path = written(tmp_path, b"\xef\xbb\xbftime_s,x_m,y_m,z_m\r\n0,1e-3,2e-3,3e-3\r\n")
+        assert np.array_equal(positions(Mock(hand=None, path="csv", csv_file=path), 3), [[0.001, 0.002, 0.003]] * 3)
+
+    @pytest.mark.parametrize(
+        ("text", "place", "cure"),
+        [
+            ("", ":1:", "the first line names time_s,x_m,y_m,z_m"),
+            ("time_s,x_m,y_m\n0,0,0\n", ":1:", "no column z_m"),
+            ("time_s,x_m,y_m,z_mm\n0,0,0,0\n", ":1:", "did you mean 'z_mm'"),
+            ("time_s,x_m,y_m,z_m\n", ": has no rows", "write one row a moment"),
+            ("time_s,x_m,y_m,z_m\n0,0,0,0\n1,0,abc,0\n", ":3:", "y_m is 'abc'; write a finite number"),
+            ("time_s,x_m,y_m,z_m\n0,0,0,nan\n", ":2:", "z_m is 'nan'"),
+            ("time_s,x_m,y_m,z_m\n0,inf,0,0\n", ":2:", "x_m is 'inf'"),
+            ("time_s,x_m,y_m,z_m\n0,0,0\n", ":2:", "z_m is None"),
+            ("time_s,x_m,y_m,z_m\n0,0,0,0\n2,0,0,0\n2,0,0,0\n", ":4:", "sort the rows"),
+            (b"\xff\xfe\x00\x01", "", "save it as CSV in UTF-8"),
+            (b'time_s,x_m,y_m,z_m\n"' + b"0" * 200_000, "", "save it as CSV"),
+        ],
+    )
+    def test_bad_files_name_the_place_and_the_cure(self, tmp_path: Path, text: str, place: str, cure: str):
+        path = written(tmp_path, text)
+        with pytest.raises(DeviceError) as caught:
+            Mock(path="csv", csv_file=path).open()
+        assert str(caught.value).startswith(f"{path}{place}")
+        assert cure in str(caught.value)
+
+    def test_files_that_are_not_there(self, tmp_path: Path):
+        for path in (tmp_path / "none.csv", tmp_path):
+            with pytest.raises(DeviceError, match=r"cannot be read.*check csv_file"):
+                Mock(path="csv", csv_file=path).open()
+
+
+class TestHand:
+    @given(st.floats(1e-3, 100), st.floats(0, 1e4), st.floats(0.1, 1e6), st.floats(1e-5, 1))
+    def test_its_motion_is_exact_and_never_gains_energy(self, mass: float, damping: float, k: float, period: float):
+        """The motion over T is the one over T/2 twice, and sqrt(k) x, sqrt(m) v never grow."""
+        hand = VirtualHand(mass_kg=mass, damping_n_s_per_m=damping, stiffness_n_per_m=k)
+        whole, half = np.array(free_motion(hand, period)), np.array(free_motion(hand, period / 2))
+        energy = np.diag([math.sqrt(k), math.sqrt(mass)])
+        scaled = energy @ whole @ np.linalg.inv(energy)
+        twice = energy @ half @ half @ np.linalg.inv(energy)
+        assert np.allclose(scaled, twice, atol=1e-7)
+        assert np.linalg.norm(scaled, 2) <= 1 + 1e-7
+
+    def test_without_damping_it_swings(self):
+        hand = VirtualHand(mass_kg=0.25, damping_n_s_per_m=0, stiffness_n_per_m=100)
+        (xx, xv), (vx, vv) = free_motion(hand, 0.03)
+        angle = 20 * 0.03
+        assert (xx, xv) == pytest.approx((math.cos(angle), math.sin(angle) / 20), rel=1e-12)
+        assert (vx, vv) == pytest.approx((-20 * math.sin(angle), math.cos(angle)), rel=1e-12)
+
+    def test_at_critical_damping(self):
+        hand = VirtualHand(mass_kg=0.25, damping_n_s_per_m=10, stiffness_n_per_m=100)  # both roots at -20 / s
+        (xx, xv), _ = free_motion(hand, 0.05)
+        assert (xx, xv) == pytest.approx((2 * math.exp(-1), 0.05 * math.exp(-1)), rel=1e-12)
+
+    def test_it_rests_where_its_spring_balances_the_force(self):
+        hand = MovingHand(VirtualHand(press_n=100), (0.0, 0.0, 0.03), 0.001)
+        for _ in range(5000):
+            hand.step((0.01, -0.01, -0.005), Force(0.3, -0.6, 0.9))
+        assert hand.position_m == pytest.approx((0.011, -0.012, -0.002), abs=1e-12)
+        assert hand.velocity_m_per_s == pytest.approx((0, 0, 0), abs=1e-12)
+
+    def test_on_the_ground_k_hand_times_the_way_to_the_target_is_the_force(self):
+        mock = Mock(path="circle", z_m=GROUND_M - 0.003, hand=VirtualHand(stiffness_n_per_m=200.0))
+        with mock.open() as link:
+            state, force = feel(link, PenaltyGradient(stiffness_n_per_m=800).touch(GROUND), 3000)[-1]
+        assert force.z == pytest.approx(200 * (state.position_m[2] - mock.z_m), rel=1e-9)
+        assert force.z == pytest.approx(0.003 * 200 * 800 / 1000, rel=1e-9)  # two springs in a row
+
+    def test_it_presses_with_its_strength_and_no_more(self):
+        with Mock(path="circle", z_m=-1.0, hand=VirtualHand(press_n=1.25)).open() as link:
+            felt = feel(link, PenaltyGradient(stiffness_n_per_m=800).touch(GROUND), 3000)
+        state, force = felt[-1]
+        assert force.z == pytest.approx(1.25, rel=1e-9)
+        assert state.position_m[2] == pytest.approx(GROUND_M - 1.25 / 800, rel=1e-9)
+
+    @pytest.mark.parametrize("stiffness", [200.0, 800.0, 3000.0])
+    def test_a_wall_at_one_kilohertz_is_stable_and_takes_energy(self, stiffness: float):
+        """The hand's 6 N s/m are over K T / 2 = 1.5 N s/m, so a sampled wall of 3 N/mm is passive."""
+        with Mock(path="circle").open() as link:
+            felt = feel(link, PenaltyGradient(stiffness_n_per_m=stiffness).touch(GROUND), 4000)
+        place, force = np.array([state.position_m for state, _ in felt]), np.array([force for _, force in felt])
+        assert np.abs(np.diff(place[-1000:, 2])).max() < 1e-12
+        assert force[:, 2].max() < 8
+        landed = int(np.flatnonzero(force[:, 2])[0])
+        kinetic = 0.05 * np.square(felt[landed][0].velocity_m_per_s).sum()
+        given_back = np.sum(force[:-1] * np.diff(place, axis=0))
+        assert given_back < 0.25 * kinetic
+
+    def test_it_rides_over_hills(self):
+        """By default the demo's hand is in contact nearly all the time, and follows heights of 2 to 18 mm."""
+        x = np.linspace(-3, 3, 256)
+        heights = 0.01 + 0.008 * np.sin(2 * x)[None, :] * np.cos(2 * x)[:, None]
+        surface = HapticSurface.from_heights(heights)
+        with Mock().open() as link:
+            felt = feel(link, PenaltyGradient().touch(surface), 8000)
+        force = np.linalg.norm([force for _, force in felt], axis=1)
+        assert np.mean(force > 0) > 0.95
+        assert 1.0 < np.median(force) < 3.0
+        z = [state.position_m[2] for state, _ in felt[500:]]
+        assert max(z) - min(z) > 0.01
+
+    def test_it_starts_lifted_and_at_rest(self):
+        with Mock(lift_m=0.025).open() as link:
+            first = link.read()
+        assert first == HapticState((-0.03, 0.02, 0.025), (0, 0, 0), 0.0)
+
+
+class TestLink:
+    @pytest.mark.parametrize("size", [8.1, 1e3, 1e200, 1.7e308])
+    def test_strong_forces_are_scaled_down(self, size: float):
+        with Mock().open() as link:
+            link.write(Force(-size, 0.0, size))
+            assert link.applied == pytest.approx((-8 / math.sqrt(2), 0, 8 / math.sqrt(2)))
+
+    @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
+    def test_forces_that_are_not_finite_are_none(self, bad: float):
+        with Mock().open() as link:
+            link.write(Force(1.0, 1.0, 1.0))
+            link.write(Force(0.0, bad, 1.0))
+            assert link.applied == NO_FORCE
+
+    def test_it_leaves_no_force_behind(self):
+        with Mock().open() as link:
+            link.write(Force(1.0, 0.0, 0.0))
+        assert link.applied == NO_FORCE
+        with pytest.raises(ZeroDivisionError), Mock().open() as link:
+            link.write(Force(1.0, 0.0, 0.0))
+            raise ZeroDivisionError
+        assert link.applied == NO_FORCE
+
+    def test_closed_is_closed(self):
+        link = Mock().open()
+        link.close()
+        link.close()
+        with pytest.raises(DeviceError, match="open it again"):
+            link.read()
+        with pytest.raises(DeviceError, match="open it again"):
+            link.write(NO_FORCE)
+
+    def test_each_open_is_a_device_of_its_own(self):
+        mock = Mock()
+        with mock.open() as one, mock.open() as other:
+            one.write(Force(0.0, 0.0, 5.0))
+            first = read(one, 50)
+            second = read(other, 50)
+        assert first[0] == second[0]
+        assert first[-1].position_m[2] > second[-1].position_m[2]
+
+
+def test_spec_is_a_falcons():
+    spec = Mock().spec()
+    assert (spec.max_force_n, spec.max_stiffness_n_per_m, spec.damping_n_s_per_m) == (8.0, 3000.0, 20.0)
+    assert spec.simulated
+
+
+@pytest.mark.parametrize(
+    ("options", "complaint"),
+    [
+        ({"path": "zigzag"}, "path"),
+        ({"path": "csv"}, "csv_file go together"),
+        ({"csv_file": "hand.csv"}, "csv_file go together"),
+        ({"lift_m": -0.01}, "must be above z_m"),
+        ({"size_m": (0, 0.04)}, "size_m"),
+        ({"size_m": (0.04,)}, "size_m"),
+        ({"speed_m_per_s": 0}, "speed_m_per_s"),
+        ({"z_m": math.nan}, "z_m"),
+        ({"lines": 1}, "lines"),
+        ({"hand": {"mass_kg": 0}}, "mass_kg"),
+        ({"hand": {"mass": 1}}, "mass"),
+        ({"seed": -1}, "seed"),
+        ({"period_s": 0}, "period_s"),
+    ],
+)
+def test_options_that_make_no_sense(options: dict, complaint: str):
+    with pytest.raises(ValidationError, match=complaint):
+        Mock(**options)

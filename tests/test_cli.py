@@ -1,0 +1,211 @@
+"""The command line as a user meets it: whole processes, what they print, and their exit codes."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+TANGIBLE = str(Path(sys.executable).with_name("tangible"))
+
+SMALL = """\
+scene: {left: left.png, right: right.png, truth: truth.npy}
+want: touch
+depth: {use: opencv-sgbm, max_disparity_px: 16}
+texture: {use: gradient, segments: 2}
+render: {use: penalty-gradient}
+device: {use: mock}
+"""
+
+
+def tangible(*words: object, cwd: Path) -> subprocess.CompletedProcess[str]:
+    return subprocess.run([TANGIBLE, *map(str, words)], cwd=cwd, capture_output=True, text=True, timeout=240)
+
+
+def mistake(*words: object, cwd: Path) -> str:
+    """What is said of a user's mistake: exit code 2, and no traceback."""
+    done = tangible(*words, cwd=cwd)
+    assert done.returncode == 2, done.stdout + done.stderr
+    assert "Traceback" not in done.stderr
+    return done.stderr.strip()
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A small pair: a textured wall, its right half 8 px nearer than its left one."""
+    from tangible_core.picture_files import write_png
+
+    rng = np.random.default_rng(1)
+    wall = rng.integers(0, 255, (64, 120), dtype=np.uint8)
+    left = wall[:, 16:112]
+    near = np.arange(96) >= 48
+    right = np.where(near, wall[:, 24:120], wall[:, 20:116])
+    write_png(tmp_path / "left.png", left)
+    write_png(tmp_path / "right.png", right)
+    np.save(tmp_path / "truth.npy", np.broadcast_to(np.where(near, 8.0, 4.0), (64, 96)))
+    (tmp_path / "p.yaml").write_text(SMALL)
+    return tmp_path
+
+
+def test_run_makes_everything_and_says_so(folder: Path):
+    done = tangible("run", "p.yaml", "--seconds", 1, cwd=folder)
+    assert done.returncode == 0, done.stderr
+    for word in ("disparity", "opencv-sgbm", "ran", "bad2", "out/p/sheet.png"):
+        assert word in done.stdout
+    written = {path.name for path in (folder / "out" / "p").iterdir()}
+    products = {"disparity.npz", "segments.npz", "materials.npz", "surface.npz"}
+    assert written == products | {"config.yaml", "outcomes.json", "recording.npz", "sheet.png"}
+    again = tangible("run", "out/p/config.yaml", "--seconds", 1, "--json", cwd=folder)
+    outcomes = {each["product"]: each["outcome"] for each in json.loads(again.stdout)["outcomes"]}
+    assert outcomes["surface"] == outcomes["disparity"] == "cached"
+
+
+def test_json_is_all_that_is_on_standard_output(folder: Path):
+    done = tangible("run", "p.yaml", "--seconds", 1, "--json", "--no-cache", cwd=folder)
+    document = json.loads(done.stdout)
+    assert document["figures"]["disparity"]["bad2"] < 40
+    assert document["figures"]["force"]["peak_force_n"] > 0
+    assert all(Path(folder, file).exists() for file in document["files"])
+
+
+def test_plan_runs_nothing(folder: Path):
+    steps = json.loads(tangible("plan", "p.yaml", "--json", cwd=folder).stdout)
+    assert [(each["product"], each["outcome"]) for each in steps][:2] == [("views", "given"), ("disparity", "ran")]
+    assert not (folder / "out").exists()
+
+
+def test_feel_records_every_tick(folder: Path):
+    done = tangible("feel", "p.yaml", "--seconds", 0.5, "--record", "hand.npz", "--json", cwd=folder)
+    assert done.returncode == 0, done.stderr
+    figures = json.loads(done.stdout)["figures"]
+    with np.load(folder / "hand.npz") as recording:
+        assert len(recording["time_s"]) == figures["ticks"] == 500
+
+
+def test_set_overrides_one_value(folder: Path):
+    done = tangible("run", "p.yaml", "--set", "want=relief", "--json", cwd=folder)
+    made = {each["product"]: each["outcome"] for each in json.loads(done.stdout)["outcomes"]}
+    assert made["relief"] == "ran"
+    assert made["segments"] == made["touch"] == "skipped"
+
+
+def test_plugins_lists_each_method_with_one_line():
+    done = tangible("plugins", "--json", cwd=Path())
+    rows = {(each["kind"], each["name"]): each for each in json.loads(done.stdout)}
+    assert {("depth", "opencv-sgbm"), ("device", "mock")} <= set(rows)
+    assert all(each["summary"] and "cannot be read" not in each["summary"] for each in rows.values())
+
+
+def test_materials_shows_values_and_sources():
+    done = tangible("materials", "--json", cwd=Path())
+    ice = json.loads(done.stdout)["ice"]
+    assert ice["dynamic_friction"] <= 0.1
+    assert ice["source"]
+
+
+def test_schema_prints_json_and_a_page():
+    assert json.loads(tangible("schema", cwd=Path()).stdout)["properties"]["scene"]
+    page = tangible("schema", "--markdown", cwd=Path()).stdout
+    assert "### penalty-gradient" in page
+    assert "`stiffness_n_per_m`" in page
+
+
+def test_log_levels_can_be_set_by_name(folder: Path):
+    word = "tangible_core.observers.log"
+    quiet = tangible("plan", "p.yaml", cwd=folder).stderr
+    told = tangible("plan", "p.yaml", "--log-level", f"{word}=info", cwd=folder).stderr
+    assert word not in quiet
+    assert f"INFO {word}: plan for touch" in told
+    assert "no level is named 'loud'" in mistake("plan", "p.yaml", "--log-level", "loud", cwd=folder)
+
+
+def test_a_check_that_fails_ends_with_1(folder: Path):
+    assert tangible("check", "device", "mock", cwd=folder).returncode == 0
+    assert "unknown" in mistake("check", "depht", "x", cwd=folder) or "did you mean" in mistake(
+        "check", "depht", "x", cwd=folder
+    )
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ("depth.use=opencv-sgmb", "did you mean 'opencv-sgbm'?"),
+        ("depth.max_disparty_px=3", "did you mean 'max_disparity_px'?"),
+        ("render.stiffness_n_per_m=-1", "greater than"),
+        ("scene.left=nope.png", "nope.png: there is no such file"),
+        ("scene.left=p.yaml", "p.yaml"),
+        ("scene.left=cut.png", "cut.png"),
+        ("scene.left=wide.png", "one size"),
+        ("scene={height: nan.npy}", "no height"),
+        ("scene=builtin/motorcycles", "did you mean 'builtin/motorcycle'?"),
+        ("device.path=spirals", "device.path"),
+        ("workspace.width_m=0", "workspace.width_m"),
+        ("materials={7: ice}", "7"),
+        ("materials={0: icee}", "did you mean 'ice'?"),
+    ],
+)
+def test_a_mistake_costs_one_clear_line(folder: Path, change: str, said: str):
+    from tangible_core.picture_files import write_png
+
+    (folder / "cut.png").write_bytes((folder / "left.png").read_bytes()[:2000])
+    write_png(folder / "wide.png", np.zeros((64, 97), np.uint8))
+    np.save(folder / "nan.npy", np.full((8, 8), np.nan))
+    message = mistake("run", "p.yaml", "--set", change, "--seconds", 0.1, cwd=folder)
+    assert said in message
+    assert len(message.splitlines()) == 1, message
+
+
+def test_a_one_pixel_picture_is_felt(folder: Path):
+    from tangible_core.picture_files import write_png
+
+    write_png(folder / "dot.png", np.zeros((1, 1), np.uint8))
+    sets = [word for each in ("scene={photo: dot.png}", "depth={use: luminance}") for word in ("--set", each)]
+    done = tangible("run", "p.yaml", *sets, "--seconds", 0.1, cwd=folder)
+    assert done.returncode == 0, done.stderr
+
+
+def test_a_folder_that_cannot_be_written_stops_before_the_work(folder: Path):
+    (folder / "file").write_text("")
+    message = mistake("run", "p.yaml", "--out", "file/out", cwd=folder)
+    assert "cannot be written" in message
+    message = mistake("feel", "p.yaml", "--record", "file/hand.npz", cwd=folder)
+    assert "cannot be written" in message
+
+
+@pytest.mark.parametrize(
+    "words", [("feel",), ("feel", "x.yaml", "--secondss", "3"), ("nope",), ("feel", "x.yaml", "--seconds", "x")]
+)
+def test_a_wrong_call_is_the_users_mistake(folder: Path, words: tuple[str, ...]):
+    mistake(*words, cwd=folder)
+
+
+@pytest.mark.parametrize("seconds", ["0", "-1", "nan", "inf"])
+def test_a_time_that_is_none(folder: Path, seconds: str):
+    assert "seconds" in mistake("feel", "p.yaml", "--seconds", seconds, cwd=folder)
+
+
+def test_ctrl_c_ends_with_130_and_nothing_half_written(folder: Path):
+    words = [TANGIBLE, "feel", "p.yaml", "--seconds", "600", "--record", "hand.npz", "--json"]
+    process = subprocess.Popen(words, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                               env={**os.environ, "PYTHONUNBUFFERED": "1"})  # fmt: skip
+    time.sleep(0.2)
+    while not (folder / "hand.npz").exists() and process.poll() is None:
+        time.sleep(0.5)
+        process.send_signal(signal.SIGINT)
+    _, errors = process.communicate(timeout=60)
+    assert process.returncode == 130, errors
+    assert "Traceback" not in errors
+    assert not [path for path in folder.iterdir() if path.name.startswith(".")]
+
+
+def test_a_reader_that_goes_away_is_no_error(folder: Path):
+    done = subprocess.run(
+        f"{TANGIBLE} schema --markdown | head -1", shell=True, cwd=folder, capture_output=True, text=True
+    )
+    assert done.stdout == "# The pipeline file\n"
+    assert done.stderr == ""

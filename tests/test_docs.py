@@ -1,0 +1,31 @@
+"""The documents say what the code says."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from tangible_core import hooks
+
+ROOT = Path(__file__).parents[1]
+PAGES = sorted([*ROOT.glob("*.md"), *ROOT.joinpath("docs").rglob("*.md"), *ROOT.joinpath("examples").rglob("*.md")])
+PLUGIN_PAGE = ROOT / "docs" / "write-a-plugin.md"
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_links_lead_somewhere(page):
+    links = re.findall(r"\]\((?!https?:|#|mailto:)([^)#\s]+)", page.read_text(encoding="utf-8"))
+    assert not [link for link in links if not (page.parent / link).exists()]
+
+
+@pytest.mark.parametrize(
+    "name", ["acme_tangible/blocks.py", "acme_tangible/diary.py", "tests/test_acme.py", "blocks.yaml"]
+)
+def test_the_plugin_page_shows_the_example_as_it_is(name):
+    shown = PLUGIN_PAGE.read_text(encoding="utf-8")
+    assert ROOT.joinpath("examples/third_party", name).read_text(encoding="utf-8").strip() in shown
+
+
+@pytest.mark.parametrize("moment", sorted(name for name in vars(hooks.Specs) if name.startswith("tangible_")))
+def test_the_plugin_page_names_every_moment(moment):
+    assert f"`{moment}(" in PLUGIN_PAGE.read_text(encoding="utf-8")

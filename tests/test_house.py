@@ -1,0 +1,144 @@
+"""Rules that hold for the house as a whole: floors, light listings, documented hooks, nothing left unregistered."""
+
+import ast
+import json
+import re
+import subprocess
+import sys
+import tomllib
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+
+import tangible_core
+from tangible_core import hooks
+from tangible_core.interfaces import KINDS, Skippable
+from tangible_core.registry import KIND_NAMES, default_registry
+from tangible_core.testing.checks_listing import HEAVY
+
+ROOT = Path(__file__).parents[1]
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
+PACKAGES = {
+    "depth": ROOT / "plugins/depth/tangible_depth",
+    "texture": ROOT / "plugins/texture/tangible_texture",
+    "render": ROOT / "plugins/render/tangible_render",
+    "device": ROOT / "plugins/devices/tangible_devices",
+}
+MOMENTS = sorted(name for name in vars(hooks.Specs) if name.startswith("tangible_"))
+
+
+def run(*words: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run([sys.executable, *words], cwd=ROOT, capture_output=True, text=True, check=False)
+
+
+def test_a_file_imports_only_from_the_floors_below():
+    ran = run(
+        "-c", "from importlinter.cli import lint_imports; raise SystemExit(lint_imports(no_cache=True, no_logo=True))"
+    )
+    assert ran.returncode == 0, ran.stdout + ran.stderr
+
+
+@pytest.mark.parametrize("words", [None, [], ["--help"], ["plugins"], ["plugins", "--json"], ["run", "--help"]])
+def test_listing_is_light(words):
+    """None of what is heavy is imported, and no method's module either."""
+    call = "" if words is None else f"sys.argv[1:] = {words}; from tangible_core.cli import main; main()"
+    code = f"import atexit, sys, tangible_core; atexit.register(lambda: print(*sys.modules, file=sys.stderr)); {call}"
+    imported = set(run("-c", code).stderr.split())
+    assert "tangible_core" in imported
+    assert not imported & {*HEAVY, "pandas", "PIL"}
+    assert not {name for name in imported if re.match(r"tangible_(depth|texture|render|devices)\.", name)}
+
+
+@pytest.mark.parametrize("moment", MOMENTS)
+def test_every_hook_is_documented_and_tested(moment):
+    assert len(getattr(hooks.Specs, moment).__doc__ or "") > 20
+    tests = [path for path in ROOT.joinpath("tests").rglob("test_*.py") if path != Path(__file__)]
+    assert any(moment in path.read_text() for path in tests), f"no test names {moment}"
+
+
+@pytest.mark.parametrize("moment", MOMENTS)
+def test_every_hook_is_called_somewhere(moment):
+    rooms = [path for path in ROOT.joinpath("tangible_core").rglob("*.py") if "observers" not in path.parts]
+    assert any(f'"{moment}"' in path.read_text() for path in rooms), f"nothing in the core tells {moment}"
+
+
+def concrete_methods():
+    """(kind, package.module:Class) of every class that derives from an interface, by the source of the plugins."""
+    kinds = {cls.__name__: kind for kind, cls in KINDS.items()}
+    for package in PACKAGES.values():
+        for path in sorted(package.rglob("*.py")):
+            module = ".".join(path.relative_to(package.parent).with_suffix("").parts)
+            for node in ast.parse(path.read_text()).body:
+                for base in node.bases if isinstance(node, ast.ClassDef) else ():
+                    if (kind := kinds.get(ast.unparse(base).rpartition(".")[2])) is not None:
+                        yield kind, f"{module}:{node.name}"
+
+
+def registered():
+    groups = PROJECT["project"]["entry-points"]
+    return {(kind, target) for kind in KIND_NAMES for target in groups.get(f"tangible.{kind}", {}).values()}
+
+
+def test_every_concrete_method_is_registered():
+    assert sorted(concrete_methods()) == sorted(registered())
+
+
+def test_every_method_lives_in_its_family():
+    for kind, target in registered():
+        assert target.startswith(f"{PACKAGES[kind].name}."), f"{target} is registered as {kind}"
+
+
+def test_every_method_is_in_the_file_named_after_it():
+    for _, target in registered():
+        module, _, cls = target.partition(":")
+        assert module.rpartition(".")[2].replace("_", "") == cls.lower(), target
+
+
+@pytest.mark.parametrize("kind", KIND_NAMES)
+def test_a_method_is_final_and_inherits_from_interfaces_alone(kind):
+    for each in default_registry().listings:
+        if each.kind == kind and each.distribution == "tangible-images":
+            assert set(default_registry().load(kind, each.name).__bases__) <= {KINDS[kind], Skippable}, each.target
+
+
+def test_what_is_installed_is_what_the_project_says():
+    ours = {(each.kind, each.target) for each in default_registry().listings if each.distribution == "tangible-images"}
+    assert ours == registered()
+
+
+def test_every_fixed_name_resolves():
+    for name in tangible_core.__all__:
+        value = getattr(tangible_core, name)
+        assert name in (getattr(value, "__name__", ""), "hookimpl")
+    with pytest.raises(AttributeError, match="no attribute 'Nothing'"):
+        tangible_core.Nothing  # noqa: B018
+
+
+def test_type_checkers_see_the_same_fixed_names():
+    tree = ast.parse(Path(tangible_core.__file__).read_text())
+    [guarded] = [node for node in tree.body if isinstance(node, ast.If)]
+    seen = {(node.module, alias.asname) for node in guarded.body for alias in node.names}
+    assert seen == {(home, name) for name, home in tangible_core._HOME.items()}
+
+
+def test_the_schema_in_configs_is_current():
+    from tangible_core.schema import json_schema
+
+    assert ROOT.joinpath("configs/tangible.schema.json").read_text() == json.dumps(json_schema(), indent=2) + "\n", (
+        "run: tangible schema > configs/tangible.schema.json"
+    )
+
+
+@pytest.mark.parametrize("package", ["tangible_core", *(path.name for path in PACKAGES.values())])
+def test_every_package_is_typed_and_documented(package):
+    module = import_module(package)
+    assert module.__doc__
+    assert Path(module.__file__).with_name("py.typed").exists()
+
+
+def test_every_dependency_has_its_reason():
+    reasons = ROOT.joinpath("docs/decisions/0002-dependencies.md").read_text()
+    for dependency in PROJECT["project"]["dependencies"]:
+        name = re.split(r"[^\w.-]", dependency)[0]
+        assert name in reasons, f"{name} is not explained"

@@ -1,0 +1,129 @@
+"""A distribution of someone else's, built, installed into a fresh environment, and found there."""
+
+import json
+import os
+import subprocess
+import sys
+import sysconfig
+import venv
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+EXAMPLE = ROOT / "examples" / "third_party"
+HERE = {sysconfig.get_path("purelib"), sysconfig.get_path("platlib")}
+"""Where the environment that runs the tests keeps what is installed."""
+
+
+class Environment:
+    """A virtual environment: our wheel and the example's are installed in it, the rest, pip too, is borrowed."""
+
+    def __init__(self, folder: Path) -> None:
+        venv.create(folder, with_pip=find_spec("pip") is None, symlinks=os.name != "nt")
+        scripts = "Scripts" if os.name == "nt" else "bin"
+        self.python = folder / scripts / "python"
+        self.tangible = folder / scripts / "tangible"
+        paths = {"base": str(folder), "platbase": str(folder)}
+        self.site = Path(sysconfig.get_path("purelib", vars=paths))
+        self.site.joinpath("borrowed.pth").write_text("\n".join(HERE))
+
+    def install(self, wheel: Path) -> None:
+        """Install a wheel, with nothing fetched from anywhere."""
+        pip = [self.python, "-m", "pip", "install", "--quiet", "--no-deps", "--no-index"]
+        subprocess.run([*pip, wheel], check=True)
+
+    def run(self, *words: str | Path, cwd: Path, **variables: str) -> subprocess.CompletedProcess[str]:
+        """`tangible ...` as its user would call it."""
+        command = [self.tangible, *words]
+        env = {**os.environ, **variables}
+        return subprocess.run(command, cwd=cwd, env=env, capture_output=True, text=True, check=False)
+
+
+def build(project: Path, out: Path) -> Path:
+    """The wheel of a project, built with the hatchling that is here."""
+    command = [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", out]
+    subprocess.run(command, cwd=project, capture_output=True, check=True)
+    [wheel] = out.iterdir()
+    return wheel
+
+
+@pytest.fixture(scope="module")
+def environment(tmp_path_factory: pytest.TempPathFactory) -> Environment:
+    folder = tmp_path_factory.mktemp("fresh")
+    environment = Environment(folder / "venv")
+    environment.install(build(ROOT, folder / "ours"))
+    environment.install(build(EXAMPLE, folder / "theirs"))
+    return environment
+
+
+def test_it_is_listed_beside_ours(environment, tmp_path):
+    ran = environment.run("plugins", "--json", cwd=tmp_path)
+    assert ran.returncode == 0, ran.stderr
+    rows = {(row["kind"], row["name"]): row for row in json.loads(ran.stdout)}
+    assert rows["depth", "acme-blocks"]["origin"].startswith("acme-tangible 1.0.0")
+    assert "the winner takes all" in rows["depth", "acme-blocks"]["summary"]
+    assert rows["depth", "opencv-sgbm"]["origin"].startswith("tangible-images")
+    assert "acme-blocks" in environment.run("plugins", cwd=tmp_path).stdout
+
+
+def test_it_conforms(environment, tmp_path):
+    ran = environment.run("check", "depth", "acme-blocks", cwd=tmp_path)
+    assert ran.returncode == 0, ran.stdout + ran.stderr
+    assert "0 failed" in ran.stdout
+
+
+def test_its_own_tests_pass(environment, tmp_path):
+    command = [environment.python, "-m", "pytest", "-q", "-p", "no:cacheprovider", EXAMPLE / "tests"]
+    ran = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert ran.returncode == 0, ran.stdout + ran.stderr
+
+
+def test_a_pipeline_uses_it_and_its_observer_hears(environment, tmp_path):
+    diary = tmp_path / "diary.txt"
+    ran = environment.run("run", EXAMPLE / "blocks.yaml", "--out", "out", cwd=tmp_path, ACME_DIARY=str(diary))
+    assert ran.returncode == 0, ran.stdout + ran.stderr
+    heard = dict(line.split(": ", 1) for line in diary.read_text().splitlines())
+    assert heard["disparity"].startswith("ran")
+    assert heard["surface"].startswith("ran")
+
+
+def test_a_misspelt_option_of_its_has_a_place_and_a_hint(environment, tmp_path):
+    tmp_path.joinpath("wrong.yaml").write_text(
+        "scene: builtin/motorcycle\nwant: surface\ndepth: {use: acme-blocks, windw_px: 9}\n"
+    )
+    ran = environment.run("plan", "wrong.yaml", cwd=tmp_path)
+    assert ran.returncode == 2
+    assert "wrong.yaml:3:" in ran.stderr
+    assert "did you mean 'window_px'?" in ran.stderr
+    assert "Traceback" not in ran.stderr
+
+
+def test_a_broken_plugin_beside_it_harms_nobody(environment, tmp_path):
+    """Installed as a folder of its own on the path: it cannot be imported, its hooks neither."""
+    info = tmp_path / "broken-1.0.dist-info"
+    info.mkdir()
+    info.joinpath("METADATA").write_text("Metadata-Version: 2.1\nName: broken\nVersion: 1.0\n")
+    info.joinpath("entry_points.txt").write_text(
+        "[tangible.depth]\nbroken = broken:Method\nacme-blocks = broken:Blocks\n[tangible.hooks]\nbroken = broken\n"
+    )
+    tmp_path.joinpath("broken.py").write_text("import a_module_that_is_not_there\n")
+    there = {"PYTHONPATH": str(tmp_path)}
+    listed = environment.run("plugins", "--json", cwd=tmp_path, **there)
+    assert listed.returncode == 0, listed.stderr
+    assert {"broken", "acme-blocks", "opencv-sgbm"} <= {row["name"] for row in json.loads(listed.stdout)}
+    broken = environment.run("check", "depth", "broken", cwd=tmp_path, **there)
+    assert broken.returncode == 2
+    assert "cannot be loaded: ModuleNotFoundError: No module named 'a_module_that_is_not_there'" in broken.stderr
+    assert "Traceback (most recent call last)" not in broken.stderr.split("depth method")[-1]
+    two = environment.run("check", "depth", "acme-blocks", cwd=tmp_path, **there)
+    assert two.returncode == 2
+    assert "write acme-tangible/acme-blocks or broken/acme-blocks" in two.stderr
+    assert environment.run("check", "depth", "acme-tangible/acme-blocks", cwd=tmp_path, **there).returncode == 0
+
+
+def test_the_example_is_short():
+    lines = [line for path in EXAMPLE.rglob("*.py") for line in path.read_text().splitlines()]
+    assert len(lines) < 60
+    assert len(EXAMPLE.joinpath("README.md").read_text().splitlines()) <= 12

@@ -16,9 +16,9 @@ from .notes import note
 from .pairs import Pair
 from .row_offset import realigned, row_offset
 from .search_range import find_range
+from .span import UNKNOWN, Span
 from .speckles import remove_speckles
-from .strips import Swept, blank, strips, sweep
-from .sweep import UNKNOWN, Span
+from .strips import Swept, blank, sweep
 
 log = logging.getLogger(__name__)
 DOUBT, NOISE = 0.06, 0.20
@@ -30,9 +30,7 @@ SAMPLE_ROWS = 64
 Rows = Sequence[tuple[int, int]]
 
 
-def match(
-    pair: Pair, span: Span, cost: Cost | None, tolerance: float, realign: bool, rows: Rows
-) -> tuple[Swept, Cost]:
+def match(pair: Pair, span: Span, cost: Cost | None, tolerance: float, realign: bool, rows: Rows) -> tuple[Swept, Cost]:
     """The strips `rows` matched, with the given cost or, if None, with the one that the pair calls for."""
     trial = _Trial(pair, span, cost or SHARP, tolerance)
     if cost and not realign:

@@ -8,7 +8,7 @@ from tangible_core.errors import PictureError
 from .notes import note
 from .pairs import Pair
 from .search_range import find_range
-from .sweep import Span
+from .span import Span
 
 log = logging.getLogger(__name__)
 Auto = Literal["auto"]

@@ -4,6 +4,8 @@ Source: Zabih & Woodfill, Non-parametric local transforms for computing visual c
 the order of grey values only, so that exposure, gain and gamma of the two pictures may differ.
 """
 
+# ruff: noqa: ANN001, ANN202 -- numba finds the types of what it compiles; the docstrings say them
+
 import numpy as np
 from jaxtyping import UInt8
 from numba import njit
@@ -33,8 +35,10 @@ def census(grey: UInt8[np.ndarray, "h w"]) -> UInt8[np.ndarray, "h 3 whole"]:
     return codes
 
 
-def two_scale_census(grey: UInt8[np.ndarray, "h w"], fine_px: float, coarse_px: float) -> UInt8[np.ndarray, "h 6 whole"]:
-    """Codes of 48 bits: the census at two blurs (Gaussian sigma). The coarse half survives noise, the fine keeps edges."""
+def two_scale_census(
+    grey: UInt8[np.ndarray, "h w"], fine_px: float, coarse_px: float
+) -> UInt8[np.ndarray, "h 6 whole"]:
+    """Codes of 48 bits: the census at two Gaussian blurs; the coarse half survives noise, the fine keeps edges."""
     import cv2
 
     return np.concatenate([census(cv2.GaussianBlur(grey, (0, 0), sigma)) for sigma in (fine_px, coarse_px)], axis=1)

@@ -3,13 +3,14 @@
 from collections.abc import Callable
 
 import numpy as np
+
 from tangible_core.data import DisparityMap
 
 from .asked import Auto, asked_span
 from .confidence import flat_pixels
 from .dense import Dense, as_map
 from .pairs import Pair
-from .sweep import Span
+from .span import Span
 
 Matcher = Callable[[Pair, Span], Dense]
 

@@ -1,10 +1,12 @@
 """How far a disparity can be trusted."""
 
+# ruff: noqa: ANN001, ANN202 -- numba finds the types of what it compiles; the docstrings say them
+
 import numpy as np
 from jaxtyping import Bool, Float, Float32, Int16, UInt8
 from numba import int32, njit
 
-from .sweep import UNKNOWN
+from .span import UNKNOWN
 from .workers import in_blocks
 
 AGREEMENT = 16

@@ -7,29 +7,17 @@ Sums of products may wrap round; the covariance, which they are subtracted to, f
 Lane k stands for the disparity top - k, as in `sweep`: for pixel x the right view's column is x + k - top.
 """
 
+# ruff: noqa: ANN001, ANN201, ANN202 -- numba finds the types of what it compiles; the docstrings say them
+
 from typing import NamedTuple
 
 import numpy as np
 from numba import float32, int32, njit
 
-from .lanes import (
-    add,
-    first_equal,
-    first_lane,
-    highest,
-    larger,
-    load,
-    multiply,
-    shift_down,
-    splat,
-    store,
-    subtract,
-    to_float,
-    widened,
-    width,
-)
+from .lane_reductions import first_equal, first_lane, highest
+from .lanes import add, larger, load, multiply, shift_down, splat, store, subtract, to_float, widened, width
+from .span import UNKNOWN
 from .subpixel import parabola
-from .sweep import UNKNOWN
 
 OUT = np.float32(-1e30)
 """Score of a window that leaves the picture, or holds nothing to compare."""

@@ -38,11 +38,17 @@ def jump_prices(flat: int, edge: int, slope: float) -> UInt8[np.ndarray, "256"]:
 SHARP = Cost("sharp", BITS, census, Prices(np.uint8(10), np.uint8(8), jump_prices(50, 12, 1.5)))
 """Census of the picture as it is: the most exact on clean pictures."""
 LIGHT = Cost(
-    "light", 2 * BITS, lambda z: two_scale_census(z, 0.5, 1.5), Prices(np.uint8(18), np.uint8(16), jump_prices(110, 28, 2.0))
+    "light",
+    2 * BITS,
+    lambda z: two_scale_census(z, 0.5, 1.5),
+    Prices(np.uint8(18), np.uint8(16), jump_prices(110, 28, 2.0)),
 )
 """For light noise or compression."""
 HEAVY = Cost(
-    "heavy", 2 * BITS, lambda z: two_scale_census(z, 0.7, 2.0), Prices(np.uint8(22), np.uint8(16), jump_prices(120, 40, 2.0))
+    "heavy",
+    2 * BITS,
+    lambda z: two_scale_census(z, 0.7, 2.0),
+    Prices(np.uint8(22), np.uint8(16), jump_prices(120, 40, 2.0)),
 )
 """For heavy noise."""
 COSTS = {each.name: each for each in (SHARP, LIGHT, HEAVY)}

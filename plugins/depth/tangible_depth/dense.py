@@ -1,17 +1,20 @@
 """From raw matches to a dense map: cleaned, filled, sharpened, enlarged."""
 
+# ruff: noqa: ANN001, ANN202 -- numba finds the types of what it compiles; the docstrings say them
+
 from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Float, Float32, Int16, UInt8
 from numba import int32, njit
+
 from tangible_core.data import DisparityMap
 
 from .confidence import FILLED, confidence, flat_pixels
 from .edges import median, sharpen_edges
 from .filling import fill
+from .span import UNKNOWN
 from .speckles import remove_speckles
-from .sweep import UNKNOWN
 from .workers import in_blocks
 
 SAME_SURFACE = 16

@@ -6,6 +6,8 @@ which of the two it belongs to. This is the weighted median of Ma et al., Consta
 stereo matching and beyond, ICCV 2013, cut down to two candidates and to the pixels where there is a choice.
 """
 
+# ruff: noqa: ANN001, ANN202 -- numba finds the types of what it compiles; the docstrings say them
+
 import numpy as np
 from jaxtyping import Int16, UInt8
 from numba import int16, int32, njit
@@ -13,7 +15,7 @@ from numba import int16, int32, njit
 from .workers import in_blocks
 
 NEARBY, VOTERS, STRIDE = 1, 4, 2
-"""Radius in which an edge is looked for; radius of the voting window and distance between the voters in it, in pixels."""
+"""Radius in which an edge is looked for; radius of the voting window, and distance of its voters, in pixels."""
 JUMP = 24
 """Sixteenths of a pixel that make an edge."""
 GREY_REACH = np.int16(24)
@@ -35,9 +37,7 @@ def median(disparity: Int16[np.ndarray, "h w"]) -> Int16[np.ndarray, "h w"]:
     return out
 
 
-def sharpen_edges(
-    disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "h w"]
-) -> Int16[np.ndarray, "h w"]:
+def sharpen_edges(disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "h w"]) -> Int16[np.ndarray, "h w"]:
     """A dense map in sixteenths of a pixel, each pixel near a depth edge on the side that its grey value votes for.
 
     A pixel that changes sides takes the weighted mean of its new side.

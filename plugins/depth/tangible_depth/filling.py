@@ -12,11 +12,13 @@ The weights come from a logistic regression over four Middlebury pairs, rounded;
 Source of the idea of filling from the farther side: Hirschmueller 2008, sec. 2.7.2.
 """
 
+# ruff: noqa: ANN001, ANN202 -- numba finds the types of what it compiles; the docstrings say them
+
 import numpy as np
 from jaxtyping import Int16, UInt8
 from numba import int32, njit
 
-from .sweep import UNKNOWN
+from .span import UNKNOWN
 from .workers import in_blocks
 
 FARTHER_OF_ROW, CONTRADICTED, EXPLAINED = 1.2, -2.0, 1.0
@@ -67,7 +69,7 @@ def _fill_rows(disparity, grey, y0, y1, out):
             stop = start + 1
             while stop < w and disparity[y, stop] == UNKNOWN:
                 stop += 1
-            if stop - start <= SHORT and 0 < start and stop < w and _alike(disparity[y, start - 1], disparity[y, stop]):
+            if stop - start <= SHORT and start > 0 and stop < w and _alike(disparity[y, start - 1], disparity[y, stop]):
                 for x in range(start, stop):  # one of the many gaps between whole disparities
                     out[y, x] = min(disparity[y, start - 1], disparity[y, stop])
             else:

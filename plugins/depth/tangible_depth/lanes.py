@@ -71,13 +71,15 @@ def _unbox_lanes(kind: LanesType, value: Any, c: Any) -> NativeValue:
     return NativeValue(c.context.get_dummy_value())
 
 
-def _splat(b: Any, scalar: Any, count: int) -> Any:
+def emit_splat(b: Any, scalar: Any, count: int) -> Any:
+    """Machine code: the same scalar in every lane."""
     blank = ir.Constant(ir.VectorType(scalar.type, count), ir.Undefined)
     first = b.insert_element(blank, scalar, ir.Constant(INDEX, 0))
     return b.shuffle_vector(first, blank, ir.Constant(ir.VectorType(INDEX, count), [0] * count))
 
 
-def _call(b: Any, name: str, result: Any, args: list[Any]) -> Any:
+def emit_call(b: Any, name: str, result: Any, args: list[Any]) -> Any:
+    """Machine code: a call of an LLVM intrinsic."""
     function = b.module.globals.get(name) or ir.Function(
         b.module, ir.FunctionType(result, [each.type for each in args]), name
     )
@@ -87,13 +89,6 @@ def _call(b: Any, name: str, result: Any, args: list[Any]) -> Any:
 def _address(c: Any, b: Any, array_type: Any, array: Any, offset: Any, vec: Vec) -> Any:
     data = c.make_array(array_type)(c, b, array).data
     return b.bitcast(b.gep(data, [offset]), vec.llvm.as_pointer())
-
-
-def _first_set(b: Any, hits: Any, count: int) -> Any:
-    """Index, as a 64-bit integer, of the first true lane."""
-    mask = ir.IntType(count)
-    index = _call(b, f"llvm.cttz.i{count}", mask, [b.bitcast(hits, mask), ir.Constant(ir.IntType(1), 1)])
-    return b.trunc(index, WORD) if count > 64 else b.zext(index, WORD) if count < 64 else index
 
 
 def _pairwise(emit: Callable[[Any, Vec, Any, Any], Any]) -> Any:
@@ -107,7 +102,7 @@ def _pairwise(emit: Callable[[Any, Vec, Any, Any], Any]) -> Any:
 
 
 def _named(name: str) -> Any:
-    return _pairwise(lambda b, vec, x, y: _call(b, f"llvm.{name}.{vec.mangled}", vec.llvm, [x, y]))
+    return _pairwise(lambda b, vec, x, y: emit_call(b, f"llvm.{name}.{vec.mangled}", vec.llvm, [x, y]))
 
 
 saturating_add = _named("uadd.sat")
@@ -167,7 +162,7 @@ def store(typing: Any, array: Any, offset: Any, vec: Vec) -> Any:
 @intrinsic
 def splat(typing: Any, lanes: LanesType, scalar: Any) -> Any:
     """The same scalar in every lane."""
-    return Vec(scalar, lanes.count)(lanes, scalar), lambda c, b, sig, a: _splat(b, a[1], sig.return_type.count)
+    return Vec(scalar, lanes.count)(lanes, scalar), lambda c, b, sig, a: emit_splat(b, a[1], sig.return_type.count)
 
 
 @intrinsic
@@ -182,73 +177,3 @@ def to_float(typing: Any, vec: Vec) -> Any:
     """Signed integers as float32."""
     real = Vec(types.float32, vec.count)
     return real(vec), lambda c, b, sig, a: b.sitofp(a[0], sig.return_type.llvm)
-
-
-@intrinsic
-def first_lane(typing: Any, vec: Vec) -> Any:
-    """Lane 0."""
-    return vec.element(vec), lambda c, b, sig, a: b.extract_element(a[0], ir.Constant(INDEX, 0))
-
-
-@intrinsic
-def lowest(typing: Any, vec: Vec) -> Any:
-    """The smallest lane of unsigned integers."""
-
-    def emit(c: Any, b: Any, sig: Any, a: Any) -> Any:
-        kind = sig.args[0]
-        return _call(b, f"llvm.vector.reduce.umin.{kind.mangled}", kind.llvm.element, a)
-
-    return vec.element(vec), emit
-
-
-@intrinsic
-def highest(typing: Any, vec: Vec) -> Any:
-    """The largest lane of floats free of NaN, by halving."""
-
-    def emit(c: Any, b: Any, sig: Any, a: Any) -> Any:
-        value, count = a[0], sig.args[0].count
-        while count > 1:
-            count //= 2
-            low, high = (
-                b.shuffle_vector(value, value, ir.Constant(ir.VectorType(INDEX, count), list(range(i, i + count))))
-                for i in (0, count)
-            )
-            value = b.select(b.fcmp_ordered(">", low, high), low, high)
-        return b.extract_element(value, ir.Constant(INDEX, 0))
-
-    return vec.element(vec), emit
-
-
-@intrinsic
-def first_equal(typing: Any, vec: Vec, scalar: Any) -> Any:
-    """Index of the first lane equal to the scalar, which must occur."""
-
-    def emit(c: Any, b: Any, sig: Any, a: Any) -> Any:
-        kind = sig.args[0]
-        compare = b.fcmp_ordered if kind.real else b.icmp_unsigned
-        return _first_set(b, compare("==", a[0], _splat(b, a[1], kind.count)), kind.count)
-
-    return types.int64(vec, vec.element), emit
-
-
-@intrinsic
-def hamming(typing: Any, lanes: LanesType, left: Any, right: Any, x: Any) -> Any:
-    """Lane k: how many bits of left[:, x] and right[:, x + k] differ, as uint8. Both are (planes, columns) of bytes."""
-    vec = Vec(types.uint8, lanes.count)
-
-    def emit(c: Any, b: Any, sig: Any, a: Any) -> Any:
-        rows = [c.make_array(kind)(c, b, array) for kind, array in zip(sig.args[1:3], a[1:3], strict=True)]
-        strides = [b.extract_value(each.shape, 1) for each in rows]
-        total = ir.Constant(vec.llvm, [0] * vec.count)
-        for plane in range(sig.args[0].planes):
-            code, codes = (
-                b.gep(each.data, [b.add(a[3], b.mul(stride, ir.Constant(WORD, plane)))])
-                for each, stride in zip(rows, strides, strict=True)
-            )
-            others = b.load(b.bitcast(codes, vec.llvm.as_pointer()))
-            others.align = 1
-            differing = b.xor(others, _splat(b, b.load(code), vec.count))
-            total = b.add(total, _call(b, f"llvm.ctpop.{vec.mangled}", vec.llvm, [differing]))
-        return total
-
-    return vec(lanes, left, right, types.int64), emit

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import UInt8
+
 from tangible_core.data import Views
 from tangible_core.errors import PictureError
 from tangible_core.pictures import to_grey
@@ -32,8 +33,8 @@ class Pair(NamedTuple):
 def grey_pair(views: Views, method: str) -> Pair:
     """Both views in 8 bits of grey.
 
-    8-bit pictures keep their values (colour by ITU-R BT.601); others are stretched, both by the same map, from the
-    pair's darkest to its lightest value.
+    Values keep their meaning from type to type (colour by ITU-R BT.601). Where the views leave the upper half unused,
+    as 12 bits in a 16-bit file do, both are brightened by a power of two.
     Raises: PictureError if there is no right view.
     """
     if views.right is None:
@@ -42,9 +43,10 @@ def grey_pair(views: Views, method: str) -> Pair:
     if all(each.dtype == np.uint8 and (each.ndim == 2 or each.shape[2] == 3) for each in pictures):
         return Pair(*(_grey8(each) for each in pictures))
     greys = [to_grey(each) for each in pictures]
-    low, high = min(each.min() for each in greys), max(each.max() for each in greys)
-    scale = 255 / (high - low) if high > low else 0.0
-    return Pair(*(np.rint((each - low) * scale).astype(np.uint8) for each in greys))
+    low = min(0.0, *(float(each.min()) for each in greys))
+    peak = max(float(each.max()) for each in greys) - low
+    gain = 255 * 2.0 ** np.floor(-np.log2(peak)) if peak > 0 else 0.0
+    return Pair(*(np.rint((each - np.float32(low)) * np.float32(gain)).astype(np.uint8) for each in greys))
 
 
 def _grey8(picture: np.ndarray) -> UInt8[np.ndarray, "h w"]:

@@ -3,6 +3,8 @@
 Half a pixel of vertical offset already costs a matcher of rows a good part of its matches.
 """
 
+# ruff: noqa: ANN001, ANN202 -- numba finds the types of what it compiles; the docstrings say them
+
 from collections.abc import Sequence
 
 import numpy as np
@@ -10,8 +12,8 @@ from jaxtyping import Int16, Int64, UInt8
 from numba import njit
 
 from .pairs import Pair
+from .span import UNKNOWN
 from .subpixel import parabola
-from .sweep import UNKNOWN
 from .workers import in_blocks
 
 CELL_PX, MOST_POINTS, LEAST_VOTES = 12, 400, 20

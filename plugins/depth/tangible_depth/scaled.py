@@ -13,8 +13,8 @@ from .costs import COSTS
 from .dense import Dense, completed, enlarged
 from .notes import note
 from .pairs import Pair
+from .span import Span
 from .strips import MOST_LANES, strips
-from .sweep import Span
 
 if TYPE_CHECKING:
     from .semi_global import SemiGlobal

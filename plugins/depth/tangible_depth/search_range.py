@@ -7,9 +7,9 @@ from jaxtyping import Int16
 
 from .costs import SHARP
 from .pairs import Pair
+from .span import UNKNOWN, Span
 from .speckles import remove_speckles
 from .strips import blank, strips, sweep
-from .sweep import UNKNOWN, Span
 
 TOLERANCE = 1.0
 FIRST_WIDTH, REACH = 80, 0.36

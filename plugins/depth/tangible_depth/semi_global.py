@@ -4,6 +4,7 @@ import logging
 from typing import Annotated, Literal
 
 from pydantic import Field
+
 from tangible_core.data import DisparityMap, Views
 from tangible_core.interfaces import DepthEstimator
 

@@ -3,11 +3,13 @@
 As OpenCV's `filterSpeckles`, but over runs of a row instead of pixels, and on all processors.
 """
 
+# ruff: noqa: ANN001, ANN202 -- numba finds the types of what it compiles; the docstrings say them
+
 import numpy as np
 from jaxtyping import Int16
 from numba import int64, njit
 
-from .sweep import UNKNOWN
+from .span import UNKNOWN
 from .workers import in_blocks
 
 
@@ -36,7 +38,7 @@ def remove_speckles(disparity: Int16[np.ndarray, "h w"], largest_px: int = 60, s
 
 @njit(nogil=True, boundscheck=False, cache=True)
 def _label(disparity, step, y0, y1, start, stop, parent, size, begin, end):
-    """Runs of rows y0..y1-1, numbered from y0 w, and joined within these rows. Row y has the runs begin[y]..end[y]-1."""
+    """Runs of rows y0..y1-1, numbered from y0 w and joined within these rows. Row y has begin[y]..end[y]-1."""
     w = disparity.shape[1]
     run = y0 * w
     for y in range(y0, y1):

@@ -3,6 +3,7 @@
 from typing import Annotated, Literal
 
 from pydantic import Field
+
 from tangible_core.data import DisparityMap, Views
 from tangible_core.interfaces import DepthEstimator
 
@@ -29,8 +30,8 @@ class Ssd(DepthEstimator):
     def estimate(self, views: Views) -> DisparityMap:
         """Disparity in pixels, float32 (h, w), and its confidence; a filled map is finite unless nothing matched.
 
-        Confidence: exp(-(mean squared difference of grey levels) / 400) where a match was found, at least 0.2; 0.1 where
-        the value was filled or decided by a neighbour; 0 in windows of one grey value.
+        Confidence: exp(-(mean squared difference of grey levels) / 400) where a match was found, at least 0.2; 0.1
+        where the value was filled or decided by a neighbour; 0 in windows of one grey value.
         Raises: PictureError if there is no right view or the range is empty.
         """
         from .chain import disparity_map
@@ -39,5 +40,9 @@ class Ssd(DepthEstimator):
 
         pair = grey_pair(views, "ssd")
         return disparity_map(
-            pair, self.min_disparity_px, self.max_disparity_px, self.fill, lambda p, span: match_by_difference(p, span, self.window_px)
+            pair,
+            self.min_disparity_px,
+            self.max_disparity_px,
+            self.fill,
+            lambda p, span: match_by_difference(p, span, self.window_px),
         )

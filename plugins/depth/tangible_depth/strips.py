@@ -8,7 +8,8 @@ from jaxtyping import Int16, UInt8
 
 from .costs import Prices
 from .lanes import Lanes
-from .sweep import UNKNOWN, Span, sweep_strip
+from .span import UNKNOWN, Span
+from .sweep import sweep_strip
 from .workers import in_turns, thread_count
 
 ROWS, WARM_ROWS = 128, 32
@@ -57,8 +58,6 @@ def sweep(
     def work(share: list[tuple[int, int]]) -> None:
         total = np.empty((highest, w * n), np.uint8)
         for rows in share:
-            sweep_strip(
-                lanes, *codes, grey, rows, WARM_ROWS, span, prices, np.float32(tolerance), total, *out
-            )
+            sweep_strip(lanes, *codes, grey, rows, WARM_ROWS, span, prices, np.float32(tolerance), total, *out)
 
     in_turns(list(only), work)

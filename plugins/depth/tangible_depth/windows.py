@@ -8,8 +8,8 @@ from .correlation import correlate_strip
 from .dense import Dense, completed
 from .lanes import Lanes
 from .pairs import Pair
+from .span import Span
 from .strips import blank
-from .sweep import Span
 from .workers import in_blocks
 
 LEAST_VARIANCE = 1.0

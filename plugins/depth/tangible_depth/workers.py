@@ -8,6 +8,7 @@ import os
 from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
+from itertools import pairwise
 from typing import Any
 
 from numba.core import event
@@ -35,7 +36,7 @@ def in_blocks(length: int, work: Callable[[int, int], Any], at_least: int = 16) 
     """work(start, stop) on about equal parts of range(length), one a thread, none much shorter than `at_least`."""
     parts = max(1, min(thread_count(), length // at_least))
     edges = [i * length // parts for i in range(parts + 1)]
-    run_all([lambda a=a, b=b: work(a, b) for a, b in zip(edges, edges[1:], strict=False)])
+    run_all([lambda a=a, b=b: work(a, b) for a, b in pairwise(edges)])
 
 
 def in_turns(tasks: list[Any], work: Callable[[list[Any]], Any]) -> None:

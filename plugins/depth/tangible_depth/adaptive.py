@@ -8,9 +8,11 @@ clean pair pays next to nothing.
 
 import logging
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
+from .census import BITS
 from .costs import HEAVY, LIGHT, SHARP, Cost
 from .notes import note
 from .pairs import Pair
@@ -21,8 +23,8 @@ from .speckles import remove_speckles
 from .strips import Swept, blank, sweep
 
 log = logging.getLogger(__name__)
-DOUBT, NOISE = 0.06, 0.20
-"""Loss from which the light and the heavy cost are taken."""
+DOUBT, LEAST_DIFFERING, NOISE = 0.06, 0.28, 0.20
+"""Loss, or share of differing bits, from which the light cost is taken; loss from which the heavy one is."""
 LEAST_OFFSET_PX = 0.3
 """Smaller offsets of rows are left alone."""
 SAMPLE_ROWS = 64
@@ -37,18 +39,32 @@ def match(pair: Pair, span: Span, cost: Cost | None, tolerance: float, realign: 
         trial.sweep(rows)
         return trial.out, cost
     probes = _spread(rows)
-    loss = trial.loss(probes)
-    offset = _offset(trial, probes, loss) if realign else 0.0
+    health = trial.health(probes)
+    offset = _offset(trial, probes, health) if realign else 0.0
     if abs(offset) > LEAST_OFFSET_PX:
         note(log, f"rows realigned by {offset:.2f} px")
         trial = _Trial(realigned(pair, offset), span, cost or SHARP, tolerance)
-        loss = trial.loss(probes)
-    if cost is None and loss >= DOUBT:
-        cost = LIGHT if loss < NOISE else HEAVY
-        note(log, f"cost {cost.name}: {loss:.0%} of the matches tried found no neighbour to agree with")
+        health = trial.health(probes)
+    if cost is None and (cost := _called_for(health)) is not SHARP:
+        note(log, f"cost {cost.name}: {health.loss:.0%} of the matches stand alone, {health.differing:.0%} of bits differ")
         trial, probes = _Trial(trial.pair, span, cost, tolerance), []
     trial.sweep([each for each in rows if each not in probes])
-    return trial.out, cost or SHARP
+    return trial.out, cost
+
+
+class _Health(NamedTuple):
+    """How the matches of a trial fare."""
+
+    loss: float
+    """Share of them that no neighbour confirms."""
+    differing: float
+    """Mean share of bits in which both views differ where they match."""
+
+
+def _called_for(health: _Health) -> Cost:
+    if health.loss >= NOISE:
+        return HEAVY
+    return LIGHT if health.loss >= DOUBT or health.differing >= LEAST_DIFFERING else SHARP
 
 
 class _Trial:
@@ -63,12 +79,14 @@ class _Trial:
         """Match these strips."""
         sweep(self._codes, self.pair.left, *self._how, rows, self.out)
 
-    def loss(self, rows: Rows) -> float:
-        """Match these strips; of the matches in their samples, the share that are specks, which are erased."""
+    def health(self, rows: Rows) -> _Health:
+        """Match these strips and look at samples of them; specks in the samples are erased."""
         self.sweep(rows)
-        samples = [self.out.disparity[a:b] for a, b in map(_sample, rows)]
-        found = sum(np.count_nonzero(each != UNKNOWN) for each in samples)
-        return sum(remove_speckles(each) for each in samples) / max(found, 1)
+        samples = [Swept(*(each[a:b] for each in self.out)) for a, b in map(_sample, rows)]
+        found = max(1, sum(np.count_nonzero(each.disparity != UNKNOWN) for each in samples))
+        specks = sum(remove_speckles(each.disparity) for each in samples)
+        bits = sum(int(each.sums[each.disparity != UNKNOWN].sum(dtype=np.int64)) for each in samples)
+        return _Health(specks / found, bits / (4 * BITS * max(1, found - specks)))
 
 
 def _spread(rows: Rows) -> Rows:
@@ -82,9 +100,9 @@ def _sample(rows: tuple[int, int]) -> tuple[int, int]:
     return rows[0], min(rows[0] + SAMPLE_ROWS, rows[1])
 
 
-def _offset(trial: _Trial, rows: Rows, loss: float) -> float:
+def _offset(trial: _Trial, rows: Rows, health: _Health) -> float:
     pair, rows = trial.pair, [_sample(each) for each in rows]
-    if loss < NOISE:
+    if health.loss < NOISE:
         return row_offset(pair, trial.out.disparity, rows)
     found = find_range(pair)  # the matches themselves are suspect: a map of a small copy is rougher but sound
     if found is None:

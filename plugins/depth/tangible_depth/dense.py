@@ -67,7 +67,7 @@ def _to_pixels(disparity, confidence, flat, fill, y0, y1, disparity_px, trust):
     for y in range(y0, y1):
         for x in range(disparity.shape[1]):
             value = np.float32(0) if flat[y, x] else confidence[y, x]
-            known = disparity[y, x] != UNKNOWN and (fill or value > FILLED)
+            known = disparity[y, x] != UNKNOWN and (fill or value > np.float32(FILLED))
             trust[y, x] = value if known else np.float32(0)
             disparity_px[y, x] = np.float32(disparity[y, x]) * np.float32(1 / 16) if known else np.float32(np.nan)
 

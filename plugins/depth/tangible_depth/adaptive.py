@@ -46,7 +46,10 @@ def match(pair: Pair, span: Span, cost: Cost | None, tolerance: float, realign: 
         trial = _Trial(realigned(pair, offset), span, cost or SHARP, tolerance)
         health = trial.health(probes)
     if cost is None and (cost := _called_for(health)) is not SHARP:
-        note(log, f"cost {cost.name}: {health.loss:.0%} of the matches stand alone, {health.differing:.0%} of bits differ")
+        note(
+            log,
+            f"cost {cost.name}: {health.loss:.0%} of the matches stand alone, {health.differing:.0%} of bits differ",
+        )
         trial, probes = _Trial(trial.pair, span, cost, tolerance), []
     trial.sweep([each for each in rows if each not in probes])
     return trial.out, cost

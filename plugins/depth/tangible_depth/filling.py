@@ -162,6 +162,8 @@ def _choose(sides, paths, x, seen):
     left, right, above, below = sides[LEFT, x], sides[RIGHT, x], sides[ABOVE, x], sides[BELOW, x]
     row_farthest = min(_or_never(left), _or_never(right))
     farthest = min(row_farthest, _or_never(above), _or_never(below))
+    if farthest == NEVER:
+        return UNKNOWN
     if max(left, right, above, below) - farthest <= ALIKE:
         return np.int16(farthest if row_farthest == NEVER else row_farthest)
     best, best_score = UNKNOWN, np.float32(-1e9)

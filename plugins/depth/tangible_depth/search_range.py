@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Int16
 
+from .confidence import flat_pixels
 from .costs import SHARP
 from .pairs import Pair
 from .span import UNKNOWN, Span
@@ -50,7 +51,8 @@ def _look(pair: Pair, span: Span, factor: int) -> Found | None:
     codes = SHARP.codes(small.left), SHARP.codes(small.right)
     sweep(codes, small.left, span_small, SHARP.prices, TOLERANCE, strips(small.left.shape, span_small), out)
     remove_speckles(out.disparity, largest_px=10)
-    known = np.sort(out.disparity[out.disparity != UNKNOWN]).astype(np.float32) * (factor / 16)
+    matched = (out.disparity != UNKNOWN) & ~flat_pixels(small.left)
+    known = np.sort(out.disparity[matched]).astype(np.float32) * (factor / 16)
     if known.size == 0:
         return None
     fringe = int(FRINGE * known.size)

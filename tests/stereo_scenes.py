@@ -23,7 +23,7 @@ def slanted(shape=(96, 160), across=0.0, down=0.0, offset=7.25, seed=0):
 
 
 def step(shape=(96, 160), back=4, front=16, box=(24, 72, 60, 120)):
-    """A rectangle (top, bottom, left, right) before a wall: views, disparity, and what the right view hides of the left."""
+    """A rectangle (top, bottom, left, right) before a wall: views, disparity, what the right view hides."""
     y, x = np.indices(shape, float)
 
     def inside(u):

@@ -4,9 +4,8 @@ from typing import Any
 
 from llvmlite import ir
 from numba import types
-from numba.extending import intrinsic
 
-from .lanes import INDEX, WORD, LanesType, Vec, emit_call, emit_splat
+from .lanes import INDEX, WORD, LanesType, Vec, emit_call, emit_splat, operation
 
 
 def _first_set(b: Any, hits: Any, count: int) -> Any:
@@ -16,13 +15,13 @@ def _first_set(b: Any, hits: Any, count: int) -> Any:
     return b.trunc(index, WORD) if count > 64 else b.zext(index, WORD) if count < 64 else index
 
 
-@intrinsic
+@operation
 def first_lane(typing: Any, vec: Vec) -> Any:
     """Lane 0."""
     return vec.element(vec), lambda c, b, sig, a: b.extract_element(a[0], ir.Constant(INDEX, 0))
 
 
-@intrinsic
+@operation
 def lowest(typing: Any, vec: Vec) -> Any:
     """The smallest lane of unsigned integers."""
 
@@ -33,7 +32,7 @@ def lowest(typing: Any, vec: Vec) -> Any:
     return vec.element(vec), emit
 
 
-@intrinsic
+@operation
 def highest(typing: Any, vec: Vec) -> Any:
     """The largest lane of floats free of NaN, by halving."""
 
@@ -51,7 +50,7 @@ def highest(typing: Any, vec: Vec) -> Any:
     return vec.element(vec), emit
 
 
-@intrinsic
+@operation
 def first_equal(typing: Any, vec: Vec, scalar: Any) -> Any:
     """Index of the first lane equal to the scalar, which must occur."""
 
@@ -63,7 +62,7 @@ def first_equal(typing: Any, vec: Vec, scalar: Any) -> Any:
     return types.int64(vec, vec.element), emit
 
 
-@intrinsic
+@operation
 def hamming(typing: Any, lanes: LanesType, left: Any, right: Any, x: Any) -> Any:
     """Lane k: how many bits of left[:, x] and right[:, x + k] differ, as uint8. Both are (planes, columns) of bytes."""
     vec = Vec(types.uint8, lanes.count)

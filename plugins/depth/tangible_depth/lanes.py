@@ -12,6 +12,8 @@ from llvmlite import ir
 from numba import types
 from numba.extending import NativeValue, intrinsic, models, register_model, typeof_impl, unbox
 
+operation: Any = intrinsic
+"""Called without the typing context that the function itself takes first, which type checkers cannot know."""
 INDEX = ir.IntType(32)
 WORD = ir.IntType(64)
 
@@ -94,11 +96,11 @@ def _address(c: Any, b: Any, array_type: Any, array: Any, offset: Any, vec: Vec)
 def _pairwise(emit: Callable[[Any, Vec, Any, Any], Any]) -> Any:
     """An intrinsic on two equal vectors."""
 
-    @intrinsic
-    def operation(typing: Any, x: Vec, y: Vec) -> Any:
+    @operation
+    def pairwise(typing: Any, x: Vec, y: Vec) -> Any:
         return x(x, y), lambda c, b, sig, a: emit(b, sig.return_type, a[0], a[1])
 
-    return operation
+    return pairwise
 
 
 def _named(name: str) -> Any:
@@ -128,13 +130,13 @@ shift_down = _pairwise(
 """Lane k takes lane k + 1; the last lane comes from the second vector."""
 
 
-@intrinsic
+@operation
 def width(typing: Any, lanes: LanesType) -> Any:
     """The lane count, a constant to the compiler."""
     return types.int64(lanes), lambda c, b, sig, a: ir.Constant(WORD, sig.args[0].count)
 
 
-@intrinsic
+@operation
 def load(typing: Any, lanes: LanesType, array: Any, offset: Any) -> Any:
     """Lanes from array[offset : offset + n]; the array's type decides the lanes' type."""
     vec = Vec(array.dtype, lanes.count)
@@ -147,7 +149,7 @@ def load(typing: Any, lanes: LanesType, array: Any, offset: Any) -> Any:
     return vec(lanes, array, types.int64), emit
 
 
-@intrinsic
+@operation
 def store(typing: Any, array: Any, offset: Any, vec: Vec) -> Any:
     """array[offset : offset + n] = lanes."""
 
@@ -159,20 +161,20 @@ def store(typing: Any, array: Any, offset: Any, vec: Vec) -> Any:
     return types.void(array, types.int64, vec), emit
 
 
-@intrinsic
+@operation
 def splat(typing: Any, lanes: LanesType, scalar: Any) -> Any:
     """The same scalar in every lane."""
     return Vec(scalar, lanes.count)(lanes, scalar), lambda c, b, sig, a: emit_splat(b, a[1], sig.return_type.count)
 
 
-@intrinsic
+@operation
 def widened(typing: Any, vec: Vec) -> Any:
     """Unsigned bytes as 32-bit integers."""
     wide = Vec(types.int32, vec.count)
     return wide(vec), lambda c, b, sig, a: b.zext(a[0], sig.return_type.llvm)
 
 
-@intrinsic
+@operation
 def to_float(typing: Any, vec: Vec) -> Any:
     """Signed integers as float32."""
     real = Vec(types.float32, vec.count)

@@ -40,7 +40,7 @@ def _factor(span: Span, options: SemiGlobal) -> int:
     """By how much the pictures are made smaller before they are matched: a power of two."""
     factor = 2 if options.resolution == "half" else 1
     most = MOST_AT_FULL_SIZE if options.resolution == "auto" else MOST_LANES
-    while span.shrunk(factor).count > most:
+    while span.shrunk(factor).size > most:
         factor *= 2
     if factor > 1:
         note(log, f"skipped: full resolution, matched at 1/{factor}")
@@ -50,7 +50,7 @@ def _factor(span: Span, options: SemiGlobal) -> int:
 def _match(pair: Pair, span: Span, options: SemiGlobal) -> Dense:
     rows = strips(pair.left.shape, span)
     if options.skip_flat:
-        flat = flat_pixels(pair.left).all(axis=1)
+        flat: np.ndarray = np.all(flat_pixels(pair.left), axis=1)
         textured = [(a, b) for a, b in rows if not flat[a:b].all()]
         if len(textured) < len(rows):
             note(log, f"skipped: {len(rows) - len(textured)} of {len(rows)} strips, which have no texture")

@@ -15,14 +15,14 @@ class Span(NamedTuple):
     high: int
 
     @property
-    def count(self) -> int:
+    def size(self) -> int:
         """How many disparities."""
         return self.high - self.low + 1
 
     @property
     def lanes(self) -> int:
         """Lanes that hold them: a power of two, at least 16."""
-        return max(16, 1 << (self.count - 1).bit_length())
+        return max(16, 1 << (self.size - 1).bit_length())
 
     def shrunk(self, factor: int) -> "Span":
         """In pixels of a picture made smaller by `factor`, none left out."""

@@ -1,10 +1,12 @@
 """Where between three samples the optimum lies, in steps from the middle one."""
 
+from typing import Any
+
 from numba import njit
 
 
 @njit(inline="always")
-def parabola(before: float, at: float, after: float) -> float:
+def parabola(before: Any, at: Any, after: Any) -> Any:
     """Vertex of the parabola through three equally spaced samples, (a - c) / (2 (a - 2 b + c)).
 
     Within +-0.5 if `at` is the best of the three, whether best means smallest or largest; 0 if they lie on a line.
@@ -14,7 +16,7 @@ def parabola(before: float, at: float, after: float) -> float:
 
 
 @njit(inline="always")
-def equiangular(before: float, at: float, after: float) -> float:
+def equiangular(before: Any, at: Any, after: Any) -> Any:
     """Tip of the symmetric V through three equally spaced costs; 0 if they are equal.
 
     Costs that count differing bits grow linearly round their minimum: the parabola would pull towards whole numbers.

@@ -1,0 +1,60 @@
+"""Semi-global matching at the size that serves: full, or smaller for a preview or a very wide range."""
+
+from __future__ import annotations
+
+import logging
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .adaptive import match
+from .confidence import LEAST_MATCHED, flat_pixels
+from .costs import COSTS
+from .dense import Dense, completed, enlarged
+from .notes import note
+from .pairs import Pair
+from .span import Span
+from .strips import MOST_LANES, strips
+
+if TYPE_CHECKING:
+    from .semi_global import SemiGlobal
+
+log = logging.getLogger(__name__)
+TOLERANCE = {"soft": 1.08, "strict": 1.0}
+MOST_AT_FULL_SIZE = 256
+"""Disparities up to which `auto` works at full size: beyond, a coarser map costs little and saves much."""
+
+
+def match_scaled(pair: Pair, span: Span, options: SemiGlobal) -> Dense:
+    """A dense map of the pair's own size, whatever size was matched at."""
+    factor = _factor(span, options)
+    small = pair.shrunk(factor)
+    dense = _match(small, span.shrunk(factor).within(small.width), options)
+    while factor > 1:
+        factor //= 2
+        dense = enlarged(dense, pair.shrunk(factor).left)
+    return dense
+
+
+def _factor(span: Span, options: SemiGlobal) -> int:
+    """By how much the pictures are made smaller before they are matched: a power of two."""
+    factor = 2 if options.resolution == "half" else 1
+    most = MOST_AT_FULL_SIZE if options.resolution == "auto" else MOST_LANES
+    while span.shrunk(factor).size > most:
+        factor *= 2
+    if factor > 1:
+        note(log, f"skipped: full resolution, matched at 1/{factor}")
+    return factor
+
+
+def _match(pair: Pair, span: Span, options: SemiGlobal) -> Dense:
+    rows = strips(pair.left.shape, span)
+    if options.skip_flat:
+        flat: np.ndarray = np.all(flat_pixels(pair.left), axis=1)
+        textured = [(a, b) for a, b in rows if not flat[a:b].all()]
+        if len(textured) < len(rows):
+            note(log, f"skipped: {len(rows) - len(textured)} of {len(rows)} strips, which have no texture")
+        rows = textured
+    swept, cost = match(pair, span, COSTS.get(options.cost), TOLERANCE[options.check], options.realign_rows, rows)
+    by_sum = np.maximum(1 - np.arange(256) / (4 * cost.bits), LEAST_MATCHED)
+    return completed(swept.disparity, swept.sums, by_sum, pair.left)

@@ -1,0 +1,63 @@
+"""A picture swept in strips: threads, memory, and where the seams lie."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from jaxtyping import Int16, UInt8
+
+from .costs import Prices
+from .lanes import Lanes
+from .span import UNKNOWN, Span
+from .sweep import sweep_strip
+from .workers import in_turns, thread_count
+
+ROWS, WARM_ROWS = 128, 32
+"""Rows of a strip, and rows that a path begins before it: what lies farther away hardly reaches in."""
+VOLUME_BYTES = 256 << 20
+"""Bound on the cost volumes of all threads together."""
+MOST_LANES = 512
+
+
+class Swept(NamedTuple):
+    """Disparity in sixteenths of a pixel, UNKNOWN where none passed the left-right check, and the winner's cost."""
+
+    disparity: Int16[np.ndarray, "h w"]
+    sums: UInt8[np.ndarray, "h w"]
+
+
+def blank(shape: tuple[int, int]) -> Swept:
+    """A map in which nothing is known yet."""
+    return Swept(np.full(shape, UNKNOWN, np.int16), np.full(shape, 255, np.uint8))
+
+
+def strips(shape: tuple[int, int], span: Span) -> list[tuple[int, int]]:
+    """First and last + 1 row of each strip: ROWS high, or lower where the volumes would pass VOLUME_BYTES."""
+    h, w = shape
+    rows = max(8, min(ROWS, VOLUME_BYTES // (thread_count() * w * span.lanes)))
+    return [(y, min(y + rows, h)) for y in range(0, h, rows)]
+
+
+def sweep(
+    codes: tuple[UInt8[np.ndarray, "h planes w"], UInt8[np.ndarray, "h planes w"]],
+    grey: UInt8[np.ndarray, "h w"],
+    span: Span,
+    prices: Prices,
+    tolerance: float,
+    only: Sequence[tuple[int, int]],
+    out: Swept,
+) -> None:
+    """Match the strips `only` and write them into `out`.
+
+    Every strip is independent of the others, so the result does not depend on how many threads there are.
+    """
+    w, n = grey.shape[1], span.lanes
+    lanes = Lanes(n, codes[0].shape[1])
+    highest = max((y1 - y0 for y0, y1 in only), default=0)
+
+    def work(share: list[tuple[int, int]]) -> None:
+        total = np.empty((highest, w * n), np.uint8)
+        for rows in share:
+            sweep_strip(lanes, *codes, grey, rows, WARM_ROWS, span, prices, np.float32(tolerance), total, *out)
+
+    in_turns(list(only), work)

@@ -1,0 +1,242 @@
+"""Semi-global matching as a method: exact scenes, ranges, skips, and pairs that are hard to take."""
+
+import logging
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+from stereo_scenes import slanted, step
+from tangible_depth.notes import collected
+from tangible_depth.semi_global import SemiGlobal
+
+from tangible_core.data import Views
+from tangible_core.errors import PictureError
+
+
+def share_within(found, truth, px, where=True):
+    """Share of the pixels `where` whose disparity is within `px` of the truth; unknown is not."""
+    return float(np.mean((np.abs(found - truth) <= px)[np.broadcast_to(where, truth.shape)]))
+
+
+@pytest.mark.parametrize("offset", [2.5, 6.0, 7.25, 11.6])
+def test_a_frontal_plane_is_found_to_a_fraction_of_a_pixel(offset):
+    views, truth = slanted(offset=offset)
+    found = SemiGlobal(max_disparity_px=32).estimate(views)
+    assert np.median(np.abs(found.disparity_px - truth)) <= 0.25  # census costs are drawn to whole pixels
+    assert share_within(found.disparity_px, truth, 0.5) >= 0.995
+    assert found.disparity_px.dtype == found.confidence.dtype == np.float32
+
+
+@pytest.mark.parametrize(("across", "down"), [(0.05, 0.0), (0.0, 0.08), (-0.04, 0.06)])
+def test_a_slanted_plane_is_followed(across, down):
+    views, truth = slanted(across=across, down=down, offset=9.0)
+    found = SemiGlobal(max_disparity_px=32).estimate(views).disparity_px
+    seen = np.indices(truth.shape)[1] >= truth
+    assert share_within(found, truth, 0.5, seen) >= 0.97
+    assert share_within(found, truth, 1.0) >= 0.97
+
+
+def test_what_a_step_hides_is_filled_from_behind():
+    views, truth, hidden = step()
+    found = SemiGlobal(max_disparity_px=32).estimate(views)
+    assert share_within(found.disparity_px, truth, 0.5) >= 0.985
+    assert share_within(found.disparity_px, truth, 0.5, hidden) >= 0.95
+    assert np.isfinite(found.disparity_px).all()
+    assert found.confidence[hidden].mean() < 0.2 < 0.6 < found.confidence[~hidden].mean()
+
+
+def test_unfilled_what_is_hidden_stays_unknown():
+    views, truth, hidden = step()
+    found = SemiGlobal(max_disparity_px=32, fill=False).estimate(views)
+    assert np.isnan(found.disparity_px[hidden]).mean() >= 0.9
+    known = np.isfinite(found.disparity_px)
+    assert known[~hidden].mean() >= 0.85
+    assert share_within(found.disparity_px, truth, 0.5, known) >= 0.99
+    assert (found.confidence[~known] == 0).all()
+
+
+def test_a_strict_check_keeps_fewer_matches():
+    views, _, _ = step()
+    kept = [
+        np.isfinite(SemiGlobal(max_disparity_px=32, fill=False, check=check).estimate(views).disparity_px).sum()
+        for check in ("strict", "soft")
+    ]
+    assert kept[0] <= kept[1]
+
+
+@pytest.mark.parametrize("offset", [-9.0, 3.0, 30.0])
+def test_the_range_is_found_of_either_sign(offset):
+    views, truth = slanted(shape=(120, 240), offset=offset)
+    with collected() as notes:
+        found = SemiGlobal().estimate(views).disparity_px
+    assert share_within(found, truth, 0.5) >= 0.98
+    assert any("which do not occur" in each for each in notes)
+
+
+def test_a_range_round_zero_is_matched_when_asked_for():
+    views, truth = slanted(across=0.1, offset=-8.0)
+    found = SemiGlobal(min_disparity_px=-12, max_disparity_px=16).estimate(views).disparity_px
+    assert share_within(found, truth, 0.5, np.indices(truth.shape)[1] >= truth) >= 0.95
+
+
+def test_exchanged_views_are_told_and_matched_all_the_same(caplog):
+    views, truth, _ = step(shape=(120, 240), box=(30, 90, 80, 180))
+    with caplog.at_level(logging.WARNING, "tangible_depth"):
+        found = SemiGlobal().estimate(Views(views.right, views.left)).disparity_px
+    assert "exchanged" in caplog.text
+    assert np.isclose(np.median(found), -np.median(truth), atol=0.5)
+    assert (found < 0).all()
+
+
+def test_the_right_order_is_not_complained_about(caplog):
+    with caplog.at_level(logging.WARNING, "tangible_depth"):
+        SemiGlobal().estimate(slanted(shape=(120, 240))[0])
+    assert "exchanged" not in caplog.text
+
+
+def test_only_the_disparities_asked_for_are_given():
+    views, _ = slanted(offset=20.0)
+    found = SemiGlobal(max_disparity_px=10, fill=False).estimate(views).disparity_px
+    assert not (found[np.isfinite(found)] > 9.5).any()
+
+
+def test_identical_views_are_not_matched():
+    left = slanted()[0].left
+    with collected() as notes:
+        found = SemiGlobal().estimate(Views(left, left.copy()))
+    assert (found.disparity_px == 0).all()
+    assert any("identical" in each for each in notes)
+    matched = SemiGlobal(skip_identical=False, max_disparity_px=16).estimate(Views(left, left.copy()))
+    assert share_within(matched.disparity_px, np.zeros(left.shape), 0.5) >= 0.99
+
+
+def test_strips_without_texture_are_not_matched():
+    views, truth = slanted(shape=(400, 120))
+    pair = [np.array(each) for each in (views.left, views.right)]
+    for each in pair:
+        each[:256] = 90
+    with collected() as notes:
+        found = SemiGlobal(max_disparity_px=32).estimate(Views(*pair))
+    assert any("no texture" in each for each in notes)
+    assert (found.confidence[:250] == 0).all()
+    assert share_within(found.disparity_px[264:], truth[264:], 0.5) >= 0.98
+    with collected() as notes:
+        SemiGlobal(max_disparity_px=32, skip_flat=False).estimate(Views(*pair))
+    assert not any("no texture" in each for each in notes)
+
+
+@pytest.mark.parametrize("options", [{}, {"skip_identical": False}, {"skip_identical": False, "skip_flat": False}])
+def test_a_constant_pair_claims_nothing(options):
+    flat = np.full((80, 120), 77, np.uint8)
+    for right in (flat, flat + np.uint8(20)):
+        found = SemiGlobal(**options).estimate(Views(flat, right))
+        assert not (np.isfinite(found.disparity_px) & (found.confidence > 0)).any()
+
+
+def test_a_preview_at_half_the_size_has_the_full_size():
+    views, truth, _ = step(shape=(151, 223), back=8, front=24, box=(40, 110, 90, 170))
+    with collected() as notes:
+        found = SemiGlobal(max_disparity_px=48, resolution="half").estimate(views)
+    assert found.disparity_px.shape == truth.shape
+    assert any("full resolution" in each for each in notes)
+    assert share_within(found.disparity_px, truth, 1.0) >= 0.96
+
+
+def test_exposure_changes_next_to_nothing():
+    views, truth, _ = step()
+    darker = np.rint(0.7 * views.right + 20).astype(np.uint8)
+    found = SemiGlobal(max_disparity_px=32).estimate(Views(views.left, darker)).disparity_px
+    assert share_within(found, truth, 0.5) >= 0.98
+
+
+def test_rows_that_miss_each_other_are_realigned():
+    views, truth = slanted(shape=(160, 200))
+    moved = Views(views.left, np.roll(views.right, 1, axis=0))
+    with collected() as notes:
+        found = SemiGlobal(max_disparity_px=32).estimate(moved).disparity_px
+    assert any("realigned by 1.0" in each or "realigned by 0.9" in each for each in notes)
+    assert share_within(found[4:-4], truth[4:-4], 0.5) >= 0.98
+    with collected() as notes:
+        SemiGlobal(max_disparity_px=32, realign_rows=False, cost="sharp").estimate(moved)
+    assert notes == []
+
+
+def test_noise_calls_for_another_cost():
+    views, truth = slanted(shape=(160, 200))
+    rng = np.random.default_rng(0)
+    noisy = [
+        np.clip(0.25 * each + rng.normal(96, 9, each.shape), 0, 255).astype(np.uint8)
+        for each in (views.left, views.right)
+    ]
+    with collected() as notes:
+        chosen = SemiGlobal(max_disparity_px=32).estimate(Views(*noisy)).disparity_px
+    sharp = SemiGlobal(max_disparity_px=32, cost="sharp").estimate(Views(*noisy)).disparity_px
+    assert any(each.startswith("cost ") for each in notes)
+    assert share_within(chosen, truth, 1.0) > share_within(sharp, truth, 1.0)
+
+
+@pytest.mark.parametrize("cost", ["sharp", "light", "heavy"])
+def test_every_cost_finds_the_step(cost):
+    views, truth, _ = step()
+    found = SemiGlobal(max_disparity_px=32, cost=cost).estimate(views).disparity_px
+    assert share_within(found, truth, 0.5) >= 0.95
+
+
+@pytest.mark.parametrize("shape", [(1, 1), (1, 2), (1, 200), (200, 1), (2, 2), (3, 40), (5, 5), (40, 9)])
+@pytest.mark.parametrize("options", [{}, {"max_disparity_px": 500}, {"resolution": "half"}, {"fill": False}])
+def test_small_pictures_are_answered(shape, options):
+    rng = np.random.default_rng(1)
+    views = Views(*rng.integers(0, 255, (2, *shape), np.uint8))
+    found = SemiGlobal(**options).estimate(views)
+    assert found.disparity_px.shape == shape
+    assert not np.isinf(found.disparity_px).any()
+    assert (np.abs(found.disparity_px[np.isfinite(found.disparity_px)]) < max(shape[1], 2)).all()
+
+
+def test_every_dtype_gives_the_same_map():
+    views, _, _ = step()
+    options = SemiGlobal(max_disparity_px=32)
+    expected = options.estimate(views).digest()
+    for same in (lambda z: z.astype(np.uint16) * 257, lambda z: z / 255, lambda z: np.asfortranarray(z)):
+        assert options.estimate(Views(same(views.left), same(views.right))).digest() == expected
+
+
+def test_two_calls_at_once_do_not_disturb_each_other():
+    pairs = [step()[0], slanted(offset=12.0)[0], slanted(shape=(130, 90))[0]] * 3
+    method = SemiGlobal(max_disparity_px=32)
+    alone = [method.estimate(each).digest() for each in pairs]
+    with ThreadPoolExecutor(4) as pool:
+        assert [each.digest() for each in pool.map(method.estimate, pairs)] == alone
+
+
+def test_a_range_wider_than_full_size_allows_is_matched_smaller():
+    views, truth = slanted(shape=(40, 1400), offset=310.0)
+    with collected() as notes:
+        found = SemiGlobal(min_disparity_px=0, max_disparity_px=400).estimate(views).disparity_px
+    assert any("matched at 1/2" in each for each in notes)
+    assert share_within(found, truth, 1.0) >= 0.97
+
+
+def test_a_pair_is_asked_for():
+    with pytest.raises(PictureError, match="right one is missing"):
+        SemiGlobal().estimate(Views(np.zeros((4, 4), np.uint8)))
+
+
+def test_an_empty_range_is_refused():
+    with pytest.raises(PictureError, match=r"no disparity is in 8\.\.4"):
+        SemiGlobal(min_disparity_px=8, max_disparity_px=5).estimate(slanted()[0])
+
+
+def test_a_second_process_does_not_compile():
+    script = (
+        "import numpy as np; from tangible_core.data import Views; from tangible_depth.semi_global import SemiGlobal;"
+        "z = np.random.default_rng(0).integers(0, 255, (40, 60), np.uint8);"
+        "SemiGlobal(max_disparity_px=16).estimate(Views(z, np.roll(z, -3, 1)))"
+    )
+    said = [
+        subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True).stderr
+        for _ in (0, 1)
+    ]
+    assert "compiling" not in said[1]

@@ -16,14 +16,14 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from tangible_depth.notes import collected
-from tangible_depth.semi_global import SemiGlobal
-from tangible_depth.ssd import Ssd
-from tangible_depth.zncc import Zncc
 
 from tangible_core.data import Views
 from tangible_core.picture_files import read_picture
 from tangible_core.pictures import to_grey
+from tangible_depth.notes import collected
+from tangible_depth.semi_global import SemiGlobal
+from tangible_depth.ssd import Ssd
+from tangible_depth.zncc import Zncc
 
 PEERS = {"3WAY bs5": (2, 5), "HH4 bs3": (3, 3), "HH bs3": (1, 3), "SGBM bs5": (0, 5)}
 

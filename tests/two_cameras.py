@@ -1,6 +1,7 @@
 """Two cameras that look at points, and rendered pairs whose every pixel is known."""
 
 import numpy as np
+
 from tangible_depth.homographies import camera_matrix, rotation, transform
 
 WIDTH, HEIGHT = 1000, 750

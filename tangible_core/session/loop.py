@@ -40,8 +40,13 @@ def run(
             _feel(touch, link, seconds, tape)
     except DeviceError as error:  # also when the device is gone before its force could be made zero
         tape.stopped = tape.stopped or str(error)
-    if tape.stopped not in ("", INTERRUPTED):
-        log.warning("stopped after %d ticks: %s", tape.ticks, tape.stopped)
+    if tape.stopped:
+        log.log(
+            logging.INFO if tape.stopped == INTERRUPTED else logging.WARNING,
+            "stopped after %d ticks: %s",
+            tape.ticks,
+            tape.stopped,
+        )
     if tape.not_finite:
         log.warning("%d forces were not finite and were made zero: the renderer is at fault", tape.not_finite)
     tape.report(tape.stopped or "the time is over")

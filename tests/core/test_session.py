@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tangible_devices.mock import Mock
-from tangible_render.penalty_gradient import PenaltyGradient
 
 from tangible_core.data import NO_FORCE, DeviceSpec, Force, HapticState, HapticSurface, ServoReport
 from tangible_core.errors import ConfigError, DeviceError, OutputError
 from tangible_core.interfaces import HapticDevice, Link, Touch
 from tangible_core.session import INTERRUPTED, Recording, check_record_path, failure, limited, loop, run
+from tangible_devices.mock import Mock
+from tangible_render.penalty_gradient import PenaltyGradient
 
 PUSH = Force(0.0, 0.0, 2.0)
 
@@ -162,6 +162,7 @@ class TestRun:
 
 class TestEndings:
     def test_from_the_keyboard(self, caplog: pytest.LogCaptureFixture):
+        caplog.set_level(logging.INFO)
         reports: list[ServoReport] = []
         recording, link = feel(fails(KeyboardInterrupt(), 50), on_report=reports.append)
         assert recording.stopped == INTERRUPTED == reports[-1].stopped
@@ -322,6 +323,6 @@ def test_limited_forces_are_finite_within_the_limit_and_keep_their_direction(par
 
 
 def test_logs_bear_the_rooms_name(caplog: pytest.LogCaptureFixture):
-    with caplog.at_level(logging.WARNING, logger="tangible_core.session"):
+    with caplog.at_level(logging.INFO, logger="tangible_core.session"):
         feel(fails(KeyboardInterrupt(), 1))
     assert caplog.records[0].name.startswith("tangible_core.session")

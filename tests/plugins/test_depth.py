@@ -4,14 +4,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 from pydantic import ValidationError
-from tangible_depth.left_right import left_right_confidence
-from tangible_depth.luminance import Luminance
-from tangible_depth.opencv_sgbm import MODES, OpenCVSGBM
 
 from tangible_core import TangibleError, Views
 from tangible_core.geometry import fill_rows
 from tangible_core.interfaces import Skippable
 from tangible_core.testing.scenes import wall
+from tangible_depth.left_right import left_right_confidence
+from tangible_depth.luminance import Luminance
+from tangible_depth.opencv_sgbm import MODES, OpenCVSGBM
 
 NAN = np.nan
 EVERY_MODE = pytest.mark.parametrize("mode", MODES)

@@ -9,13 +9,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import ValidationError
-from tangible_devices.hand import MovingHand, VirtualHand, free_motion
-from tangible_devices.mock import Mock
-from tangible_render.penalty_gradient import PenaltyGradient
 
 from tangible_core.data import NO_FORCE, Force, HapticState, HapticSurface
 from tangible_core.errors import DeviceError
 from tangible_core.interfaces import Link, Touch
+from tangible_devices.hand import MovingHand, VirtualHand, free_motion
+from tangible_devices.mock import Mock
+from tangible_render.penalty_gradient import PenaltyGradient
 
 GROUND_M = 1 / 128  # exact in float32
 GROUND = HapticSurface.from_heights(np.full((8, 8), GROUND_M))

@@ -5,12 +5,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import ValidationError
-from tangible_render.grey_level import GreyLevel
-from tangible_render.penalty_gradient import PenaltyGradient
 
 from tangible_core.data import NO_FORCE, Force, HapticState, HapticSurface, Material, Relief
 from tangible_core.errors import GeometryError
 from tangible_core.interfaces import Touch
+from tangible_render.grey_level import GreyLevel
+from tangible_render.penalty_gradient import PenaltyGradient
 
 WIDTH_M = 0.0625  # powers of two: cells, centres and slopes below are exact in floating point
 UP_M = 1 / 32

@@ -7,6 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from pydantic import ValidationError
+
+from tangible_core.data import Views
+from tangible_core.errors import PictureError
 from tangible_texture.basins import basins
 from tangible_texture.borders import Border, borders
 from tangible_texture.channels import channels
@@ -15,9 +18,6 @@ from tangible_texture.merging import in_reading_order, merge
 from tangible_texture.slopes import slopes
 from tangible_texture.smoothing import gaussian, without_specks
 from tangible_texture.watershed import watershed
-
-from tangible_core.data import Views
-from tangible_core.errors import PictureError
 
 
 def rand_index(one: np.ndarray, other: np.ndarray) -> float:

@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+
 from tangible_depth.assembling import assemble, fill_nearest, without_speckles
 
 SHAPE = (30, 40)

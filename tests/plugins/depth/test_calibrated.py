@@ -2,12 +2,12 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tangible_depth.calibrated import StereoRig, rectify_calibrated
-from tangible_depth.homographies import camera_matrix, rotation, transform
-from tangible_depth.rectification import CannotRectify
 
 from tangible_core.data import DisparityMap, Views
 from tangible_core.errors import GeometryError, PictureError
+from tangible_depth.calibrated import StereoRig, rectify_calibrated
+from tangible_depth.homographies import camera_matrix, rotation, transform
+from tangible_depth.rectification import CannotRectify
 
 SHAPE = (90, 120)
 BLANK = np.zeros(SHAPE, np.uint8)

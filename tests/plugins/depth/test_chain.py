@@ -8,7 +8,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
+
 from stereo_scenes import slanted, step, texture
+from tangible_core.data import Views
 from tangible_depth import workers
 from tangible_depth.census import census
 from tangible_depth.confidence import confidence, flat_pixels
@@ -21,8 +23,6 @@ from tangible_depth.search_range import find_range
 from tangible_depth.span import UNKNOWN
 from tangible_depth.speckles import remove_speckles
 from tangible_depth.subpixel import equiangular, parabola
-
-from tangible_core.data import Views
 
 MAPS = arrays(
     np.int16, st.tuples(st.integers(1, 40), st.integers(1, 12)), elements=st.sampled_from([-32768, 0, 16, 40, 48])

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
-from tangible_depth.contour import Contour
 
 from tangible_core.data import Views
+from tangible_depth.contour import Contour
 
 
 def test_a_smooth_bump_comes_back_whole_when_every_slope_is_kept():

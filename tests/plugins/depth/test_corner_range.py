@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+
 from tangible_depth.corner_range import range_of_pair, range_of_shifts, within
 from two_cameras import Scene
 

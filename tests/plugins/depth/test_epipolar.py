@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+
 from tangible_depth.epipolar import (
     epipoles,
     lines_in_left,

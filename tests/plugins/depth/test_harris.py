@@ -1,6 +1,7 @@
 import cv2
 import numpy as np
 import pytest
+
 from tangible_depth.harris import corners, gaussian_window, harris_response, least_response, row_edges
 
 

@@ -2,6 +2,9 @@ import sys
 
 import numpy as np
 import pytest
+
+from tangible_core.data import Views
+from tangible_core.errors import BrokenMethod, TangibleError
 from tangible_depth.fundamental import DegenerateMatches, eight_point, robust_fundamental
 from tangible_depth.harris import harris_response
 from tangible_depth.kornia_report import KorniaReport, kornia_eight_point, kornia_response
@@ -9,9 +12,6 @@ from tangible_depth.kornia_zncc import KorniaZNCC
 from tangible_depth.report import Report
 from tangible_depth.torch_extra import need, pick_device
 from two_cameras import Scene, roll_and_tilt, seen_points, some_wrong
-
-from tangible_core.data import Views
-from tangible_core.errors import BrokenMethod, TangibleError
 
 METHODS = [KorniaZNCC(), KorniaReport()]
 

@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+
 from tangible_depth.harris import corners, harris_response
 from tangible_depth.matches import (
     Matches,

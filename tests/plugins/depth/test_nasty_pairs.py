@@ -2,14 +2,14 @@
 
 import numpy as np
 import pytest
-from tangible_depth.contour import Contour
-from tangible_depth.kornia_report import KorniaReport
-from tangible_depth.kornia_zncc import KorniaZNCC
-from tangible_depth.report import Report
 
 from tangible_core.data import DisparityMap, Views
 from tangible_core.errors import PictureError
 from tangible_core.interfaces import DepthEstimator
+from tangible_depth.contour import Contour
+from tangible_depth.kornia_report import KorniaReport
+from tangible_depth.kornia_zncc import KorniaZNCC
+from tangible_depth.report import Report
 
 METHODS = [Report(), Contour(), KorniaReport(), KorniaZNCC()]
 NOISE = np.random.default_rng(0)

@@ -1,14 +1,14 @@
 import numpy as np
 import pytest
+
+from tangible_core.data import Calibration, DisparityMap, Views
+from tangible_core.errors import PictureError
 from tangible_depth.alignment import aligning_homographies, epipole_roll
 from tangible_depth.fundamental import eight_point
 from tangible_depth.homographies import camera_matrix, rotation, transform
 from tangible_depth.matches import Matches
 from tangible_depth.rectification import CannotRectify, check_homographies, rectify, with_rectification
 from two_cameras import HEIGHT, WIDTH, Scene, roll_and_tilt, seen_points, some_wrong
-
-from tangible_core.data import Calibration, DisparityMap, Views
-from tangible_core.errors import PictureError
 
 BLANK = np.zeros((HEIGHT, WIDTH), np.uint8)
 

@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
-from tangible_depth.report import Report
-from two_cameras import Scene, roll_and_tilt
 
 from tangible_core.data import Views
 from tangible_core.errors import PictureError
+from tangible_depth.report import Report
+from two_cameras import Scene, roll_and_tilt
 
 
 def test_disparity_of_a_known_scene():

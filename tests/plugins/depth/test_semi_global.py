@@ -7,12 +7,12 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
-from stereo_scenes import slanted, step
-from tangible_depth.notes import collected
-from tangible_depth.semi_global import SemiGlobal
 
+from stereo_scenes import slanted, step
 from tangible_core.data import Views
 from tangible_core.errors import PictureError
+from tangible_depth.notes import collected
+from tangible_depth.semi_global import SemiGlobal
 
 
 def share_within(found, truth, px, where=True):

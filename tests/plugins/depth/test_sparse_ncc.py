@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+
 from tangible_depth.matches import inverse_lengths
 from tangible_depth.sparse_ncc import match_rows
 from two_cameras import Scene

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from stereo_scenes import step
 from tangible_depth import strips
 from tangible_depth.census import census

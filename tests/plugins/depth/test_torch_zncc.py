@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 import torch
+
 from tangible_depth.torch_zncc import OUTSIDE, best_shifts, match, scores, soft_argmax
 from two_cameras import Scene
 

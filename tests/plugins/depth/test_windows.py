@@ -5,16 +5,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
+
 from stereo_scenes import slanted, step
+from tangible_core import load_method
+from tangible_core.data import Views
+from tangible_core.errors import PictureError
 from tangible_depth.odd import WindowSide
 from tangible_depth.pairs import Pair
 from tangible_depth.similarity import matching_value, squared_difference
 from tangible_depth.span import UNKNOWN, Span
 from tangible_depth.windows import _match
-
-from tangible_core import load_method
-from tangible_core.data import Views
-from tangible_core.errors import PictureError
 
 WINDOWS = arrays(np.float64, (5, 5), elements=st.integers(0, 255).map(float))
 

@@ -30,6 +30,12 @@ def check_picture(picture: np.ndarray, name: str = "picture") -> np.ndarray:
     return picture
 
 
+def is_one_colour(picture: np.ndarray) -> bool:
+    """Whether every pixel is the same; the first row settles it for most pictures."""
+    first = picture[:1, :1]
+    return bool(np.all(picture[:1] == first)) and bool(np.all(picture == first))
+
+
 def check_finite(values: np.ndarray, name: str) -> None:
     """Raises: PictureError naming how many values are NaN or infinite, and where the first one is."""
     if values.dtype.kind == "f" and not (finite := np.isfinite(values)).all():

@@ -43,9 +43,17 @@ def rules(config: PipelineConfig, scene: Scene) -> dict[str, Rule]:
 
     Products that the scene brings have no rule. Raises: ConfigError for a material library that cannot be read.
     """
-    table = (_disparity, _relief, _segments, _materials, _surface, _touch)
-    made = (make(config, scene) for make in table)
-    return {rule.product: rule for rule in made if rule.product not in scene.given}
+    segments = _segments(config, scene)
+    unsegmented = None if "segments" in scene.given else segments.skip
+    table = (
+        _disparity(config, scene),
+        _relief(config, scene),
+        segments,
+        _materials(config, scene, unsegmented),
+        _surface(config, scene),
+        _touch(config, scene),
+    )
+    return {rule.product: rule for rule in table if rule.product not in scene.given}
 
 
 def _disparity(config: PipelineConfig, scene: Scene) -> Rule:
@@ -81,9 +89,8 @@ def _segments(config: PipelineConfig, scene: Scene) -> Rule:
     return Rule("segments", *_identity(config.texture), ("views",), make, skip)
 
 
-def _materials(config: PipelineConfig, scene: Scene) -> Rule:
+def _materials(config: PipelineConfig, scene: Scene, unsegmented: str | None) -> Rule:
     choice = config.materials
-    unsegmented = "segments" not in scene.given and _segments(config, scene).skip
     library = materials.load_library(choice.library)
 
     def make(inputs: Inputs) -> MaterialMap:

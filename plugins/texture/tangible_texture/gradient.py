@@ -8,6 +8,7 @@ from pydantic import Field, model_validator
 
 from tangible_core.data import SegmentMap, Views
 from tangible_core.interfaces import Segmenter, Skippable
+from tangible_core.pictures import is_one_colour
 
 MOST_SEGMENTS = 64
 """What `segments: auto` stops at, far beyond what touch tells apart."""
@@ -59,7 +60,7 @@ class Gradient(Segmenter, Skippable):
 
     def skip(self, views: Views) -> str | None:
         """One flat colour is one segment."""
-        return "the picture is one flat colour" if np.all(views.left == views.left[:1, :1]) else None
+        return "the picture is one flat colour" if is_one_colour(views.left) else None
 
     def segment(self, picture: np.ndarray) -> SegmentMap:
         """Regions of the picture; one where nothing but noise is found in it.

@@ -59,7 +59,7 @@ class Record:
 
 
 def digest_of(value: Any) -> str:
-    """XXH3-128 of a record, an array, or plain values and tuples of these; many times as fast as a cryptographic one."""
+    """XXH3-128 of a record, an array, or plain values and tuples of these; far faster than a cryptographic hash."""
     state = xxhash.xxh3_128()
     _feed(state, value)
     return state.hexdigest()

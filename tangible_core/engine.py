@@ -110,7 +110,7 @@ class Pipeline:
             self._note(Outcome(rule.product, "failed", failure, rule.method, perf_counter() - start))
             raise
         seconds = perf_counter() - start
-        self._note(Outcome(rule.product, "ran", why, rule.method, seconds))
+        self._note(Outcome(rule.product, "ran", _with(rule.note, why), rule.method, seconds))
         if self.cache is not None and rule.cached:
             self.cache.put(self.key(rule.product), value)
         return value
@@ -139,7 +139,7 @@ class Pipeline:
         else:
             for name in rule.needs:
                 self._foresee(name, f"{product} is made from it", steps)
-            steps[product] = Outcome(product, "ran", why, rule.method)
+            steps[product] = Outcome(product, "ran", _with(rule.note, why), rule.method)
         return steps
 
     @cached_property
@@ -159,6 +159,10 @@ class Pipeline:
     def _note(self, outcome: Outcome) -> None:
         self._outcomes[outcome.product] = outcome
         hooks.tell(self.registry.plugins, "tangible_stage_finished", outcome=outcome)
+
+
+def _with(note: str, why: str) -> str:
+    return f"{why}; {note}" if note else why
 
 
 ASKED = "asked for"

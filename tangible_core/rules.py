@@ -11,7 +11,7 @@ from inspect import getsourcefile
 from pathlib import Path
 from typing import Any
 
-from . import geometry, materials
+from . import geometry, materials, scaling
 from .config import Chosen, PipelineConfig
 from .data import DisparityMap, HapticSurface, MaterialMap, Record, Relief, SegmentMap, Views, digest_of
 from .errors import ConfigError
@@ -35,6 +35,8 @@ class Rule:
     make: Callable[[Inputs], Any]
     skip: str | None = None
     """Why this scene does not need it."""
+    note: str = ""
+    """What part of the work this scene does not need."""
     cached: bool = True
 
 
@@ -57,10 +59,17 @@ def rules(config: PipelineConfig, scene: Scene) -> dict[str, Rule]:
 
 
 def _disparity(config: PipelineConfig, scene: Scene) -> Rule:
-    def make(inputs: Inputs) -> DisparityMap:
-        return _configured(config, "depth").method.estimate(scene.views)
+    size = config.workspace
+    factor = scaling.felt_factor(scene.views.shape[1], size.width_m, size.finest_m) if scene.views else 1
 
-    return Rule("disparity", *_identity(config.depth), ("views",), make, _skip(config.depth, scene))
+    def make(inputs: Inputs) -> DisparityMap:
+        views = _views(scene)
+        small = scaling.reduced(views, factor)
+        return scaling.enlarged(_configured(config, "depth").method.estimate(small), views.shape)
+
+    name, key = _identity(config.depth)
+    note = f"at 1/{factor} of the size, as finer than {1e3 * size.finest_m:g} mm is not felt" if factor > 1 else ""
+    return Rule("disparity", name, f"{key} 1/{factor}", ("views",), make, _skip(config.depth, scene), note)
 
 
 def _relief(config: PipelineConfig, scene: Scene) -> Rule:

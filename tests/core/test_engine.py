@@ -9,7 +9,7 @@ import pytest
 
 from tangible_core import hooks
 from tangible_core.cache import Cache
-from tangible_core.config import Chosen, MaterialChoice, PipelineConfig
+from tangible_core.config import Chosen, MaterialChoice, PipelineConfig, Workspace
 from tangible_core.data import DisparityMap, HapticSurface, SegmentMap, Views
 from tangible_core.engine import Pipeline
 from tangible_core.errors import ConfigError, GeometryError, UnknownMethod
@@ -274,3 +274,15 @@ def test_observers_hear_every_moment_and_one_that_fails_harms_nobody(folder: Pat
     pipe.make("disparity")
     assert heard == [("given", "views"), ("plan", "disparity"), ("started", "disparity"), ("ran", "disparity")]
     assert "tangible_stage_finished" in caplog.text
+
+
+def test_pictures_finer_than_can_be_felt_are_matched_smaller_and_it_is_said(folder: Path):
+    pipe = pipeline(folder, workspace=Workspace(width_m=0.03, finest_m=0.002))  # 30 columns of 1 mm
+    disparity = pipe.make("disparity")
+    assert disparity.disparity_px.shape == (20, 30)
+    assert disparity.disparity_px[0, 15] == pytest.approx(15, abs=1)
+    (why,) = [each.why for each in pipe.outcomes if each.product == "disparity"]
+    assert why == "asked for; at 1/2 of the size, as finer than 2 mm is not felt"
+    whole = pipeline(folder, workspace=Workspace(width_m=0.03, finest_m=0))
+    whole.make("disparity")
+    assert "of the size" not in "".join(each.why for each in whole.outcomes)

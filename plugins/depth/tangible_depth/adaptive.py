@@ -27,7 +27,7 @@ DOUBT, LEAST_DIFFERING, NOISE = 0.06, 0.28, 0.20
 """Loss, or share of differing bits, from which the light cost is taken; loss from which the heavy one is."""
 LEAST_OFFSET_PX = 0.3
 """Smaller offsets of rows are left alone."""
-SAMPLE_ROWS = 64
+SAMPLE_ROWS = 48
 """Rows of a strip that the loss and the offset are measured on."""
 Rows = Sequence[tuple[int, int]]
 
@@ -88,7 +88,7 @@ class _Trial:
         samples = [Swept(*(each[a:b] for each in self.out)) for a, b in map(_sample, rows)]
         found = max(1, sum(np.count_nonzero(each.disparity != UNKNOWN) for each in samples))
         specks = sum(remove_speckles(each.disparity) for each in samples)
-        bits = sum(int(each.sums[each.disparity != UNKNOWN].sum(dtype=np.int64)) for each in samples)
+        bits = sum(int(np.sum(each.sums * (each.disparity != UNKNOWN), dtype=np.int64)) for each in samples)
         return _Health(specks / found, bits / (4 * BITS * max(1, found - specks)))
 
 

@@ -27,7 +27,8 @@ class SemiGlobal(DepthEstimator):
     min_disparity_px: int | Literal["auto"] = "auto"
     """The least disparity tried; auto: 0 if the largest is given, else found with the range, of either sign."""
     resolution: Literal["full", "half", "auto"] = "auto"
-    """Size at which is matched. half: a preview in a fraction of the time; auto: full, as long as the range allows."""
+    """Size at which is matched. auto: full, as long as the range allows. half: a preview in a fraction of the time, in
+    which costs and rows are not tried: `cost` auto is sharp, and rows are taken as they are."""
     cost: Literal["auto", "sharp", "light", "heavy"] = "auto"
     """What is compared: sharp for clean pictures, light and heavy for noise; auto: tried on a part of the picture."""
     check: Literal["soft", "strict"] = "soft"

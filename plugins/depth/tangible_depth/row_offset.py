@@ -16,7 +16,7 @@ from .span import UNKNOWN
 from .subpixel import parabola
 from .workers import in_blocks
 
-CELL_PX, MOST_POINTS, LEAST_VOTES = 12, 250, 20
+CELL_PX, MOST_POINTS, LEAST_VOTES = 12, 400, 20
 LEAST_EDGE = 40
 """Sobel response over rows from which a pixel says something about its row."""
 RADIUS = 3

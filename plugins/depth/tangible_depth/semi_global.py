@@ -18,7 +18,8 @@ class SemiGlobal(DepthEstimator):
     a second view that equals the first. A pair whose views are exchanged is matched as well: its disparities are
     negative, and a warning says so. Rows that miss each other by a constant are put right.
 
-    Memory above the pictures: about 25 bytes a pixel (measured to 18 Mpx) and at most 256 MiB for the cost volumes of all strips at work.
+    Memory above the pictures: about 25 bytes a pixel, measured to 18 megapixels, and at most 256 MiB for the cost
+    volumes of all strips at work.
     Source: Hirschmueller, IEEE PAMI 30(2), 2008; census after Zabih & Woodfill, ECCV 1994.
     """
 

@@ -12,7 +12,7 @@ from .span import UNKNOWN, Span
 from .sweep import sweep_strip
 from .workers import in_turns, thread_count
 
-ROWS, WARM_ROWS = 128, 24
+ROWS, WARM_ROWS = 128, 32
 """Rows of a strip, and rows that a path begins before it: what lies farther away hardly reaches in."""
 VOLUME_BYTES = 256 << 20
 """Bound on the cost volumes of all threads together."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from dataclasses import dataclass
 from functools import cache, cached_property
-from importlib.metadata import EntryPoint, entry_points
+from importlib.metadata import Distribution, EntryPoint, entry_points
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, cast, overload
@@ -56,10 +56,11 @@ class Registry:
     @cached_property
     def listings(self) -> tuple[Listing, ...]:
         """Every installed method, two of one name included, by kind and name."""
+        installed = entry_points()  # one walk over what is installed serves all kinds
         found = [
-            Listing(kind, point.name, point.value, _origin(point), point)
+            Listing(kind, point.name, point.value, _origin(point.dist), point)
             for kind in KIND_NAMES
-            for point in (*entry_points(group=f"tangible.{kind}"), *self._computed(kind))
+            for point in (*installed.select(group=f"tangible.{kind}"), *self._computed(kind))
         ]
         return tuple(sorted(found, key=lambda each: (KIND_NAMES.index(each.kind), each.name, each.origin)))
 
@@ -143,8 +144,9 @@ def load_method(kind: str, name: str) -> type[Any]:
     return default_registry().load(kind, name)
 
 
-def _origin(point: EntryPoint) -> str:
-    return f"{point.dist.name} {point.dist.version}" if point.dist else "computed by a hook"
+@cache
+def _origin(distribution: Distribution | None) -> str:
+    return f"{distribution.name} {distribution.version}" if distribution else "computed by a hook"
 
 
 def _docstring_line(point: EntryPoint) -> str:

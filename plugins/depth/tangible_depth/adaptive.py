@@ -27,6 +27,8 @@ DOUBT, LEAST_DIFFERING, NOISE = 0.06, 0.28, 0.20
 """Loss, or share of differing bits, from which the light cost is taken; loss from which the heavy one is."""
 LEAST_OFFSET_PX = 0.3
 """Smaller offsets of rows are left alone."""
+MOST_OFFSET_PX = 1.0
+"""Offsets of rows up to here are found and put right on the way."""
 PROBE_ROWS = 64
 """Rows of a strip that are tried before the rest."""
 Rows = Sequence[tuple[int, int]]

@@ -32,6 +32,8 @@ class SemiGlobal(DepthEstimator):
     which costs and rows are not tried: `cost` auto is sharp, and rows are taken as they are."""
     cost: Literal["auto", "sharp", "light", "heavy"] = "auto"
     """What is compared: sharp for clean pictures, light and heavy for noise; auto: tried on a part of the picture."""
+    rectify: Literal["auto", "never"] = "auto"
+    """auto: a pair whose rows do not correspond is rectified first; never: every pair is taken as rectified."""
     check: Literal["soft", "strict"] = "soft"
     """Left-right check. soft: a match within 8 % of the right pixel's best is kept; strict: only the best."""
     fill: bool = True
@@ -50,6 +52,13 @@ class SemiGlobal(DepthEstimator):
         0.2; 0.1 where the value was filled or decided by a neighbour; 0 in windows of one grey value.
         Raises: PictureError if there is no right view or the range is empty.
         """
+        from .adaptive import MOST_OFFSET_PX
+        from .raw_pairs import estimate_raw
+
+        realigns = self.realign_rows and self.resolution != "half"
+        return estimate_raw(views, self._matched, self.rectify, MOST_OFFSET_PX if realigns else 0.0)
+
+    def _matched(self, views: Views) -> DisparityMap:
         import numpy as np
 
         from .chain import disparity_map, nothing_moved

@@ -24,6 +24,8 @@ class Ssd(DepthEstimator):
     """Disparities from the least to one less than this are tried; auto: the range is found on a small copy."""
     min_disparity_px: int | Literal["auto"] = "auto"
     """The least disparity tried; auto: 0 if the largest is given, else found with the range, of either sign."""
+    rectify: Literal["auto", "never"] = "auto"
+    """auto: a pair whose rows do not correspond is rectified first; never: every pair is taken as rectified."""
     fill: bool = True
     """Whether pixels without a match take the disparity that both views and the picture's edges suggest, else NaN."""
 
@@ -34,6 +36,11 @@ class Ssd(DepthEstimator):
         where the value was filled or decided by a neighbour; 0 in windows of one grey value.
         Raises: PictureError if there is no right view or the range is empty.
         """
+        from .raw_pairs import estimate_raw
+
+        return estimate_raw(views, self._matched, self.rectify)
+
+    def _matched(self, views: Views) -> DisparityMap:
         from .chain import disparity_map
         from .pairs import grey_pair
         from .windows import match_by_difference

@@ -354,3 +354,21 @@ def test_every_process_gives_the_same_maps():
     )
     other = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True).stdout
     assert json.loads(other) == {name: method(name).estimate(planes().views).digest() for name in METHODS}
+
+
+@pytest.mark.parametrize("name", ["semi-global", "zncc"])
+def test_the_memory_that_is_stated_is_enough_for_five_megapixels(name: str):
+    """40 bytes a pixel above the pictures, and 256 MiB for the volumes of the strips at work."""
+    script = (
+        "import numpy as np; from tangible_core.bench.memory import start_peak; from tangible_core.data import Views;"
+        "from tangible_core.registry import default_registry as installed;"
+        "wide = np.random.default_rng(0).integers(0, 256, (1944, 2692), np.uint8);"
+        "left, right = (np.ascontiguousarray(wide[:, a : a + 2592]) for a in (20, 60));"
+        f"method = installed().load('depth', '{name}')(max_disparity_px=64);"
+        "method.estimate(Views(left[:200, :300], right[:200, :300])); del wide; peak = start_peak();"
+        "found = method.estimate(Views(left, right)); print(peak());"
+        "print(np.mean(np.abs(found.disparity_px[:, 40:] - 40) <= 1))"
+    )
+    said = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True).stdout.split()
+    assert int(said[0]) <= 40 * 2592 * 1944 + (256 << 20)
+    assert float(said[1]) >= 0.99

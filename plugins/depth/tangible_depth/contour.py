@@ -16,6 +16,8 @@ from .integration import gradient, integrate
 class Contour(DepthEstimator):
     """Slopes along contours are kept, all others flattened, and a surface fitted to what remains; lighter is nearer.
 
+    The picture is read in grey.
+
     A contour is found as Canny finds edges, by two thresholds on the slope, but in its full width, so that each step
     of the relief has the height of the picture's step.
     Source: the role of contours is that of Vasudevan & Manivannan, Tangible Images, 2008; the integration that of

@@ -18,7 +18,8 @@ from .torch_extra import TorchDevice, need, pick_device
 class KorniaReport(DepthEstimator):
     """Corners and edges, robust eight-point, rectification, correlation along rows, filling from neighbours, by kornia.
 
-    Takes any pair, rectified or not. Source: as `report`; Riba et al., Kornia, WACV 2020.
+    Takes any pair, rectified or not. Matched in grey; colour only says where filling stops.
+    Source: as `report`; Riba et al., Kornia, WACV 2020.
     """
 
     window_px: Literal[5, 7, 9, 11, 13, 15, 17, 19, 21] = 9

@@ -20,6 +20,8 @@ from .torch_extra import TorchDevice, need, pick_device
 class KorniaZNCC(DepthEstimator):
     """Zero-mean normalised cross-correlation of every pixel, parabola, left-right check, holes filled by colour.
 
+    Matched in grey; colour only says where filling stops.
+
     The blocks it is made of (`torch_zncc`) take batches and give gradients; this method takes one pair.
     """
 

@@ -18,6 +18,7 @@ from .alignment import aligning_homographies, epipole_roll
 from .fundamental import DegenerateMatches, Fit, eight_point, on_homography, robust_fundamental
 from .homographies import transform
 from .matches import Matches, flow_matches, sift_matches
+from .notes import note
 from .rectified import Rectified, as_it_is, warped
 
 logger = logging.getLogger(__name__)
@@ -26,6 +27,8 @@ FEWEST_TO_TELL = 20
 """Matches below which nothing is said about a pair: it is taken as it is."""
 LEAST_GAIN_PX = 0.2
 """Noise in the matches promises less than this; to turn the pictures for it would only blur them."""
+EXCHANGED_PX = -2.0
+"""Views are exchanged if all but one match in twenty are below this disparity: parallel cameras give none below 0."""
 
 
 class CannotRectify(GeometryError):
@@ -54,6 +57,7 @@ def rectify(
     lessen it by LEAST_GAIN_PX, or if there are too few matches to tell.
     matches: those to go by; found by optical flow and SIFT when left out. fit: makes F of trusted matches.
     A flat scene, or a camera that only turned, is aligned as well, with a warning: the matches leave it open how.
+    Views in the wrong order are taken as they are, with a warning: their disparities are negative.
     Raises: PictureError if there is only one view; CannotRectify if the rows do not correspond but no geometry, or
     only one that distorts the pictures, explains the matches.
     """
@@ -66,18 +70,25 @@ def rectify(
     if matches is None:
         quick = flow_matches(left, right)
         if len(quick.left_px) >= FEWEST_TO_TELL and (offset := _median_offset(quick)) <= tolerance_px:
+            _say_if_exchanged(quick.left_px[:, 0] - quick.right_px[:, 0])
             return _left_alone(views, f"already rectified: median vertical offset {offset:.2f} px")
         matches = sift_matches(left, right)
     if len(matches.left_px) < FEWEST_TO_TELL:
         return _left_alone(views, f"only {len(matches.left_px)} matches, too few to tell; taken as rectified")
     if (before := _median_offset(matches)) <= tolerance_px:
+        _say_if_exchanged(matches.left_px[:, 0] - matches.right_px[:, 0])
         return _left_alone(views, f"already rectified: median vertical offset {before:.2f} px")
     return _turned(views, matches, before, fit)
 
 
 def _left_alone(views: Views, why: str) -> Rectified:
-    logger.info("not rectified: %s", why)
+    note(logger, f"not rectified: {why}")
     return as_it_is(views, why)
+
+
+def _say_if_exchanged(disparity_px: Float64[np.ndarray, "n"]) -> None:
+    if np.percentile(disparity_px, 95) < EXCHANGED_PX:
+        note(logger, "every disparity is negative: the views seem to be exchanged (left is right)", logging.WARNING)
 
 
 def _median_offset(matches: Matches) -> float:
@@ -94,8 +105,9 @@ def _turned(views: Views, matches: Matches, before: float, fit: Fit) -> Rectifie
         return _left_alone(views, f"turning would not help: median vertical offset {before:.2f} px, then {after:.2f}")
     check_homographies(pair, views.shape, offsets)
     disparity = turned[0][:, 0] - turned[1][:, 0]
+    _say_if_exchanged(disparity)
     why = f"median vertical offset {before:.2f} px, now {after:.2f}"
-    logger.info("rectified: %s", why)
+    note(logger, f"rectified: {why}")
     return warped(views, pair, why, _search_start(disparity))
 
 

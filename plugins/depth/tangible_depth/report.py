@@ -18,9 +18,10 @@ from .matches import inverse_lengths
 class Report(DepthEstimator):
     """Harris corners and edges, robust eight-point, rectification, correlation along rows, filling from neighbours.
 
-    Takes any pair, rectified or not. The report measures disparity as the Euclidean distance of two matched points:
-    after rectification that is the horizontal shift. It also names a Hough transform for sub-pixel accuracy, which
-    is no way to it: a parabola through the best score and its neighbours is used.
+    Takes any pair, rectified or not. Everything is matched in grey; colour only says where filling stops. The report
+    measures disparity as the Euclidean distance of two matched points: after rectification that is the horizontal
+    shift. It also names a Hough transform for sub-pixel accuracy, which is no way to it: a parabola through the best
+    score and its neighbours is used.
     Source: Harris & Stephens 1988; Hartley 1997; Fusiello & Irsara 2011; Gastal & Oliveira 2011.
     """
 

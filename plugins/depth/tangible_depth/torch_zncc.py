@@ -16,6 +16,8 @@ FLAT_VARIANCE = 1e-7
 """Of a window, white being 1: below it float32 leaves nothing but rounding."""
 OUTSIDE = -1.0
 """Score where the right window's centre is out of the picture, or a window is flat: never the best."""
+SAME_SCORE = 1e-5
+"""Scores no farther apart than float32 rounds them."""
 
 
 class Best(NamedTuple):
@@ -68,15 +70,19 @@ def _shifted(values: Tensor, low: int, high: int, outside: float) -> Tensor:
 def best_shifts(volume: Tensor, low: int) -> Best:
     """The best of scores (b, n, h, w) of the disparities low, low + 1, ..., by the parabola through its neighbours.
 
-    Unknown unless the matched right pixel finds no better left one (left-right check) and the score is above 0.
+    Unknown unless the matched right pixel finds no better left one (left-right check) and the score is above 0, or
+    where both neighbours score the same, as in a picture that does not change along its rows: any shift would do.
     """
     count, width = volume.shape[1], volume.shape[-1]
     value, at = volume.max(dim=1)
     columns = torch.arange(width, device=volume.device)
     seen_at = (columns - at - low).clamp(0, width - 1)
     mutual = value >= _right_best(volume, low).gather(-1, seen_at)
-    move = _parabola(volume, value, at, count)
-    known = mutual & (value > 0)
+    before = volume.gather(1, (at - 1).clamp(0)[:, None])[:, 0]
+    after = volume.gather(1, (at + 1).clamp(max=count - 1)[:, None])[:, 0]
+    level = torch.minimum(before, after) >= value - SAME_SCORE if count > 1 else torch.zeros_like(mutual)
+    move = torch.where((at > 0) & (at < count - 1), _parabola(before, value, after), 0.0)
+    known = mutual & (value > 0) & ~level
     return Best(torch.where(known, at + low + move, torch.nan), torch.where(known, value.clamp(0, 1), 0.0))
 
 
@@ -93,12 +99,10 @@ def _right_best(volume: Tensor, low: int) -> Tensor:
     return best
 
 
-def _parabola(volume: Tensor, value: Tensor, at: Tensor, count: int) -> Tensor:
-    before = volume.gather(1, (at - 1).clamp(0)[:, None])[:, 0]
-    after = volume.gather(1, (at + 1).clamp(max=count - 1)[:, None])[:, 0]
+def _parabola(before: Tensor, value: Tensor, after: Tensor) -> Tensor:
     bend = 2 * value - before - after
-    inner = (at > 0) & (at < count - 1) & (before > OUTSIDE) & (after > OUTSIDE) & (bend > 0)
-    return torch.where(inner, 0.5 * (after - before) / torch.where(inner, bend, 1.0), 0.0)
+    bent = (before > OUTSIDE) & (after > OUTSIDE) & (bend > 0)
+    return torch.where(bent, 0.5 * (after - before) / torch.where(bent, bend, 1.0), 0.0)
 
 
 def soft_argmax(volume: Tensor, low: int, sharpness: float = 30.0) -> Tensor:

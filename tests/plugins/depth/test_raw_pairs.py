@@ -1,0 +1,86 @@
+"""The cheap look before rectification, from outside of the methods that use it."""
+
+import numpy as np
+import pytest
+
+from tangible_core.data import Calibration, Views
+from tangible_core.testing.stereo_scenes import SCENES, synthetic_pair
+from tangible_depth.notes import collected
+from tangible_depth.pairs import grey_pair
+from tangible_depth.raw_pairs import estimate_raw, rows_correspond
+from tangible_depth.zncc import Zncc
+from two_cameras import Scene, roll_and_tilt
+
+
+def rolled(degrees: float, scene: Scene | None = None) -> Views:
+    scene = scene or Scene((240, 320), 8.0, 20.0)
+    return Views(scene.left(), scene.right(roll_and_tilt(scene.shape, degrees)))
+
+
+def shifted(views: Views, rows: int) -> Views:
+    return Views(views.left, np.roll(views.right, rows, axis=0))
+
+
+@pytest.mark.parametrize("scene", SCENES)
+@pytest.mark.parametrize("width", [160, 320, 480])
+def test_rows_of_a_rectified_pair_correspond(scene: str, width: int):
+    pair = grey_pair(synthetic_pair(scene, width, width * 3 // 4).views, "")
+    assert rows_correspond(pair)
+
+
+@pytest.mark.parametrize("damage", [lambda z: 0.5 * z + 0.2, lambda z: z**1.6])
+def test_another_exposure_is_no_other_geometry(damage):
+    scene = Scene((240, 320), 8.0, 20.0)
+    assert rows_correspond(grey_pair(Views(scene.left(), damage(scene.right())), ""))
+
+
+@pytest.mark.parametrize("degrees", [-2, 1, 2, 5, 30])
+def test_a_turned_camera_is_noticed(degrees: float):
+    assert not rows_correspond(grey_pair(rolled(degrees), ""))
+
+
+def test_a_large_pair_is_looked_at_to_a_pixel():
+    scene = Scene((720, 1280), 20.0, 40.0)
+    assert not rows_correspond(grey_pair(rolled(0.5, scene), ""))
+    assert rows_correspond(grey_pair(synthetic_pair("planes", 960, 720).views, ""))
+
+
+def test_a_common_offset_is_left_to_who_puts_it_right():
+    views = synthetic_pair("planes", 320, 240).views
+    assert not rows_correspond(grey_pair(shifted(views, 1), ""))
+    assert rows_correspond(grey_pair(shifted(views, 1), ""), realigns_px=1)
+    assert not rows_correspond(grey_pair(shifted(views, 3), ""), realigns_px=1)
+
+
+@pytest.mark.parametrize("shape", [(1, 1), (1, 80), (80, 1), (20, 40), (100, 160)])
+def test_without_corners_a_pair_is_taken_as_it_is(shape: tuple[int, int]):
+    flat = np.full(shape, 100, np.uint8)
+    assert rows_correspond(grey_pair(Views(flat, flat), ""))
+
+
+def share_right(found: np.ndarray, scene: Scene) -> float:
+    return float(np.mean(np.abs(found - scene.disparity_px())[scene.visible()] <= 2))
+
+
+def test_a_raw_pair_is_matched_nearly_as_well_as_a_rectified_one():
+    scene = Scene((240, 320), 8.0, 20.0)
+    straight = Zncc().estimate(Views(scene.left(), scene.right())).disparity_px
+    with collected() as notes:
+        raw = estimate_raw(rolled(2, scene), Zncc().estimate, "auto").disparity_px
+    assert any(each.startswith("rectified: ") for each in notes)
+    assert share_right(raw, scene) >= share_right(straight, scene) - 0.03
+    never = estimate_raw(rolled(2, scene), Zncc().estimate, "never").disparity_px
+    assert share_right(never, scene) < 0.8
+
+
+def test_a_rectified_pair_gives_the_methods_own_map():
+    views = synthetic_pair("planes", 320, 240).views
+    assert estimate_raw(views, Zncc().estimate, "auto").digest() == Zncc().estimate(views).digest()
+
+
+def test_a_calibrated_pair_is_not_looked_at():
+    views = rolled(2)
+    calibrated = Views(views.left, views.right, Calibration(300.0, 0.1))
+    seen = []
+    estimate_raw(calibrated, lambda each: seen.append(each) or Zncc(max_disparity_px=16).estimate(each), "auto")
+    assert seen == [calibrated]

@@ -27,8 +27,8 @@ DOUBT, LEAST_DIFFERING, NOISE = 0.06, 0.28, 0.20
 """Loss, or share of differing bits, from which the light cost is taken; loss from which the heavy one is."""
 LEAST_OFFSET_PX = 0.3
 """Smaller offsets of rows are left alone."""
-SAMPLE_ROWS = 64
-"""Rows of a strip that the loss and the offset are measured on."""
+PROBE_ROWS = 64
+"""Rows of a strip that are tried before the rest."""
 Rows = Sequence[tuple[int, int]]
 
 
@@ -38,7 +38,7 @@ def match(pair: Pair, span: Span, cost: Cost | None, tolerance: float, realign: 
     if cost and not realign:
         trial.sweep(rows)
         return trial.out, cost
-    probes = _spread(rows)
+    probes, rest = _probes(rows)
     health = trial.health(probes)
     offset = _offset(trial, probes, health) if realign else 0.0
     if abs(offset) > LEAST_OFFSET_PX:
@@ -50,8 +50,8 @@ def match(pair: Pair, span: Span, cost: Cost | None, tolerance: float, realign: 
             log,
             f"cost {cost.name}: {health.loss:.0%} of the matches stand alone, {health.differing:.0%} of bits differ",
         )
-        trial, probes = _Trial(trial.pair, span, cost, tolerance), []
-    trial.sweep([each for each in rows if each not in probes])
+        trial, rest = _Trial(trial.pair, span, cost, tolerance), rows
+    trial.sweep(rest)
     return trial.out, cost
 
 
@@ -83,28 +83,26 @@ class _Trial:
         sweep(self._codes, self.pair.left, *self._how, rows, self.out)
 
     def health(self, rows: Rows) -> _Health:
-        """Match these strips and look at samples of them; specks in the samples are erased."""
+        """Match these rows and look at what was found; specks are erased."""
         self.sweep(rows)
-        samples = [Swept(*(each[a:b] for each in self.out)) for a, b in map(_sample, rows)]
-        found = max(1, sum(np.count_nonzero(each.disparity != UNKNOWN) for each in samples))
-        specks = sum(remove_speckles(each.disparity) for each in samples)
-        bits = sum(int(each.sums[each.disparity != UNKNOWN].sum(dtype=np.int64)) for each in samples)
+        parts = [Swept(*(each[a:b] for each in self.out)) for a, b in rows]
+        found = max(1, sum(np.count_nonzero(each.disparity != UNKNOWN) for each in parts))
+        specks = sum(remove_speckles(each.disparity) for each in parts)
+        bits = sum(int(np.sum(each.sums * (each.disparity != UNKNOWN), dtype=np.int64)) for each in parts)
         return _Health(specks / found, bits / (4 * BITS * max(1, found - specks)))
 
 
-def _spread(rows: Rows) -> Rows:
-    """A quarter of the strips, at least two, evenly spread."""
+def _probes(rows: Rows) -> tuple[Rows, Rows]:
+    """The first PROBE_ROWS of a quarter of the strips, at least two, evenly spread; and all other rows."""
     count = min(len(rows), max(2, len(rows) // 4))
-    return [rows[(2 * i + 1) * len(rows) // (2 * count)] for i in range(count)]
-
-
-def _sample(rows: tuple[int, int]) -> tuple[int, int]:
-    """The rows of a strip that are looked at."""
-    return rows[0], min(rows[0] + SAMPLE_ROWS, rows[1])
+    chosen = {rows[(2 * i + 1) * len(rows) // (2 * count)] for i in range(count)}
+    probes = [(a, min(a + PROBE_ROWS, b)) for a, b in rows if (a, b) in chosen]
+    rest = [(min(a + PROBE_ROWS, b) if (a, b) in chosen else a, b) for a, b in rows]
+    return probes, [(a, b) for a, b in rest if a < b]
 
 
 def _offset(trial: _Trial, rows: Rows, health: _Health) -> float:
-    pair, rows = trial.pair, [_sample(each) for each in rows]
+    pair = trial.pair
     if health.loss < NOISE:
         return row_offset(pair, trial.out.disparity, rows)
     found = find_range(pair)  # the matches themselves are suspect: a map of a small copy is rougher but sound

@@ -36,4 +36,4 @@ def _found(pair: Pair, least: int | Auto) -> Span:
     if least != "auto":
         low, high = least, max(high, least)
     note(log, f"skipped: disparities outside {low}..{high} px, which do not occur")
-    return Span(low, high)
+    return Span(low, high).filled() if high > 0 else Span(low, high)

@@ -6,6 +6,8 @@ the order of grey values only, so that exposure, gain and gamma of the two pictu
 
 # ruff: noqa: ANN001, ANN202 -- numba finds the types of what it compiles; the docstrings say them
 
+from collections.abc import Sequence
+
 import numpy as np
 from jaxtyping import UInt8
 from numba import njit
@@ -26,13 +28,7 @@ def census(grey: UInt8[np.ndarray, "h w"]) -> UInt8[np.ndarray, "h 3 whole"]:
 
     Rows are completed to whole blocks of BLOCK columns; what stands there means nothing.
     """
-    import cv2
-
-    h, w = grey.shape
-    codes = np.empty((h, PLANES, w + -w % BLOCK), np.uint8)
-    padded = cv2.copyMakeBorder(grey, RADIUS, RADIUS, RADIUS, RADIUS + -w % BLOCK, cv2.BORDER_REPLICATE)
-    in_blocks(grey.shape[0], lambda a, b: _codes(padded, OFFSETS, a, b, codes))
-    return codes
+    return _coded([grey])
 
 
 def two_scale_census(
@@ -41,18 +37,29 @@ def two_scale_census(
     """Codes of 48 bits: the census at two Gaussian blurs; the coarse half survives noise, the fine keeps edges."""
     import cv2
 
-    return np.concatenate([census(cv2.GaussianBlur(grey, (0, 0), sigma)) for sigma in (fine_px, coarse_px)], axis=1)
+    return _coded([cv2.GaussianBlur(grey, (0, 0), sigma) for sigma in (fine_px, coarse_px)])
+
+
+def _coded(greys: Sequence[np.ndarray]) -> UInt8[np.ndarray, "h planes whole"]:
+    """The codes of several pictures of one size, side by side in the planes."""
+    import cv2
+
+    h, w = greys[0].shape
+    codes = np.zeros((h, PLANES * len(greys), w + -w % BLOCK), np.uint8)
+    for i, grey in enumerate(greys):
+        padded = cv2.copyMakeBorder(grey, RADIUS, RADIUS, RADIUS, RADIUS + -w % BLOCK, cv2.BORDER_REPLICATE)
+        in_blocks(h, lambda a, b, padded=padded, i=i: _codes(padded, OFFSETS, PLANES * i, a, b, codes))
+    return codes
 
 
 @njit(nogil=True, boundscheck=False, cache=True)
-def _codes(padded, offsets, y0, y1, codes):
+def _codes(padded, offsets, first_plane, y0, y1, codes):
     """Rows y0..y1-1, one neighbour after the other along a whole row: each inner loop is plain vector code."""
     w = codes.shape[2]
-    codes[y0:y1] = 0
     for y in range(y0, y1):
         centre = padded[y + RADIUS, RADIUS : RADIUS + w]
         for i in range(BITS):
-            plane = codes[y, i >> 3]
+            plane = codes[y, first_plane + (i >> 3)]
             dy, dx = offsets[i]
             neighbour = padded[y + dy, dx : dx + w]
             bit = np.uint8(1 << (i & 7))

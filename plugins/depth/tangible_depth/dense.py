@@ -33,15 +33,18 @@ def completed(
     quality: UInt8[np.ndarray, "h w"],
     by_quality: Float[np.ndarray, "256"],
     grey: UInt8[np.ndarray, "h w"],
+    sharpen: bool = True,
 ) -> Dense:
     """Speckles removed (in `matched` itself), gaps filled, edges sharpened, and all of it judged (see `confidence`).
 
-    A map without any match stays UNKNOWN.
+    A map without any match stays UNKNOWN. Not to `sharpen` is for a map that will be enlarged, and sharpened then.
     """
     remove_speckles(matched)
     if (matched == UNKNOWN).all():
         return Dense(matched, np.zeros(matched.shape, np.float32))
-    final = median(sharpen_edges(median(fill(matched, grey)), grey))
+    final = median(fill(matched, grey))
+    if sharpen:
+        final = median(sharpen_edges(final, grey))
     return Dense(final, confidence(matched, final, quality, by_quality))
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from .adaptive import match
 from .confidence import LEAST_MATCHED, flat_pixels
-from .costs import COSTS
+from .costs import COSTS, SHARP
 from .dense import Dense, completed, enlarged
 from .notes import note
 from .pairs import Pair
@@ -55,6 +55,9 @@ def _match(pair: Pair, span: Span, options: SemiGlobal) -> Dense:
         if len(textured) < len(rows):
             note(log, f"skipped: {len(rows) - len(textured)} of {len(rows)} strips, which have no texture")
         rows = textured
-    swept, cost = match(pair, span, COSTS.get(options.cost), TOLERANCE[options.check], options.realign_rows, rows)
+    preview = options.resolution == "half"
+    cost = SHARP if preview and options.cost == "auto" else COSTS.get(options.cost)
+    realign = options.realign_rows and not preview
+    swept, cost = match(pair, span, cost, TOLERANCE[options.check], realign, rows)
     by_sum = np.maximum(1 - np.arange(256) / (4 * cost.bits), LEAST_MATCHED)
-    return completed(swept.disparity, swept.sums, by_sum, pair.left)
+    return completed(swept.disparity, swept.sums, by_sum, pair.left, sharpen=not preview)

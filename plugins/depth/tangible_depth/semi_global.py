@@ -18,7 +18,8 @@ class SemiGlobal(DepthEstimator):
     a second view that equals the first. A pair whose views are exchanged is matched as well: its disparities are
     negative, and a warning says so. Rows that miss each other by a constant are put right.
 
-    Memory above the pictures: about 40 bytes a pixel and at most 256 MiB for the cost volumes of all strips at work.
+    Memory above the pictures: about 25 bytes a pixel, measured to 18 megapixels, and at most 256 MiB for the cost
+    volumes of all strips at work.
     Source: Hirschmueller, IEEE PAMI 30(2), 2008; census after Zabih & Woodfill, ECCV 1994.
     """
 
@@ -27,7 +28,8 @@ class SemiGlobal(DepthEstimator):
     min_disparity_px: int | Literal["auto"] = "auto"
     """The least disparity tried; auto: 0 if the largest is given, else found with the range, of either sign."""
     resolution: Literal["full", "half", "auto"] = "auto"
-    """Size at which is matched. half: a preview in a fraction of the time; auto: full, as long as the range allows."""
+    """Size at which is matched. auto: full, as long as the range allows. half: a preview in a fraction of the time, in
+    which costs and rows are not tried: `cost` auto is sharp, and rows are taken as they are."""
     cost: Literal["auto", "sharp", "light", "heavy"] = "auto"
     """What is compared: sharp for clean pictures, light and heavy for noise; auto: tried on a part of the picture."""
     check: Literal["soft", "strict"] = "soft"

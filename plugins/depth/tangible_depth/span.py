@@ -32,3 +32,7 @@ class Span(NamedTuple):
         """Without disparities that no two columns of a picture of this width can have."""
         low = min(max(self.low, 1 - width), width - 1)
         return Span(low, max(min(self.high, width - 1), low))
+
+    def filled(self) -> "Span":
+        """With as many larger disparities as the lanes hold anyway: limits cost more than they save."""
+        return Span(self.low, self.low + self.lanes - 1)

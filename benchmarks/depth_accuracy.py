@@ -19,7 +19,7 @@ from tangible_depth.semi_global import SemiGlobal
 from tangible_depth.zncc import Zncc
 
 from .depth_opencv import PEERS, raw
-from .depth_pairs import Known, large, mean_of_five, real, real_specs, synthetic, synthetic_specs
+from .depth_pairs import Known, large, mean_error, real, real_specs, synthetic, synthetic_specs
 from .figures import Figure, table
 from .turns import Timed, in_turns
 
@@ -45,7 +45,9 @@ def compared() -> Results:
 
 def errors(method: str, measure: str = "bad2") -> dict[str, float]:
     """A measure of a method, by scene."""
-    return {scene: _cell(method, scene).measures.get(measure, math.nan) for scene in [*real_specs(), *synthetic_specs()]}
+    return {
+        scene: _cell(method, scene).measures.get(measure, math.nan) for scene in [*real_specs(), *synthetic_specs()]
+    }
 
 
 def _cell(method: str, scene: str) -> Cell:
@@ -78,8 +80,8 @@ def _motorcycle() -> Figure:
 
 
 def _means() -> Figure:
-    ours = mean_of_five(errors("semi-global"))
-    theirs = {name: mean_of_five(errors(name)) for name in OPENCV}
+    ours = mean_error(errors("semi-global"))
+    theirs = {name: mean_error(errors(name)) for name in OPENCV}
     best = min(theirs, key=theirs.__getitem__)
     gain = 100 * (1 - ours / theirs[best])
     scenes = list(errors("semi-global"))
@@ -105,7 +107,7 @@ def _never_slower() -> Figure:
 
 
 def _preview() -> Figure:
-    ours, theirs = mean_of_five(errors("preview")), mean_of_five(errors("opencv-hh4"))
+    ours, theirs = mean_error(errors("preview")), mean_error(errors("opencv-hh4"))
     shares = {name: times(name)["preview"].ratio for name in large()}
     return Figure(
         "preview (`resolution: half`)",
@@ -126,7 +128,8 @@ def _zncc() -> Figure:
     return Figure(
         f"`zncc`, mean of {', '.join(names)}",
         "bad2 <= 7.5 % all, <= 4.0 % noc, at <= 0.45 x 3WAY",
-        f"{everywhere:.2f} % all, {both:.2f} % noc, {share:.2f} x (geometric mean; {min(shares):.2f} to {max(shares):.2f})",
+        f"{everywhere:.2f} % all, {both:.2f} % noc, {share:.2f} x (geometric mean; {min(shares):.2f} to "
+        f"{max(shares):.2f})",
         everywhere <= 7.5 and both <= 4.0 and share <= 0.45,
     )
 
@@ -142,7 +145,11 @@ def scene_rows() -> list[str]:
     names = ("semi-global", "preview", "zncc", *OPENCV)
     scenes = list(errors("semi-global"))
     rows = [
-        (scene, *(f"{errors(name)[scene]:.2f}" for name in names), *(f"{times(scene)[name].ratio:.2f}" for name in METHODS))
+        (
+            scene,
+            *(f"{errors(name)[scene]:.2f}" for name in names),
+            *(f"{times(scene)[name].ratio:.2f}" for name in METHODS),
+        )
         for scene in scenes
     ]
     return table(("scene", *(f"bad2 %, {name}" for name in names), *(f"{name} / 3WAY" for name in METHODS)), rows)

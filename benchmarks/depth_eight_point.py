@@ -32,7 +32,7 @@ def _median(seed: int) -> float:
 
 
 def _points(random: np.random.Generator) -> list[np.ndarray]:
-    """Left and right pixels of points 3 to 8 m away; the cameras stand 0.3 m apart and look slightly past each other."""
+    """Left and right pixels of points 3 to 8 m away; the cameras stand 0.3 m apart and turn towards each other."""
     camera = camera_matrix(0.9 * WIDTH_PX, (HEIGHT_PX, WIDTH_PX))
     pixels = np.column_stack([random.uniform(0, [WIDTH_PX, HEIGHT_PX], (POINTS, 2)), np.ones(POINTS)])
     points = random.uniform(3, 8, (POINTS, 1)) * (pixels @ np.linalg.inv(camera).T)

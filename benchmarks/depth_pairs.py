@@ -77,7 +77,7 @@ def large() -> dict[str, Known]:
     return {name: each for name, each in real().items() if each.large} | {"planes 1024x768": planes}
 
 
-def mean_of_five(values: dict[str, float]) -> float:
+def mean_error(values: dict[str, float]) -> float:
     """Mean over the photographs and, as one more, the mean of the analytic scenes."""
     photographs = [values[name] for name in real_specs()]
     return float(np.mean([*photographs, np.mean([values[name] for name in SCENES])]))

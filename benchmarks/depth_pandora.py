@@ -35,7 +35,9 @@ def figures(rounds: int = 2) -> list[Figure]:
     try:
         theirs = pandora(scene)
     except ImportError:
-        return [Figure(what, bound, "not measured: pandora is not installed (pip install 'tangible-images[peers]')", False)]
+        return [
+            Figure(what, bound, "not measured: pandora is not installed (pip install 'tangible-images[peers]')", False)
+        ]
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         found = fill(DisparityMap(theirs()))

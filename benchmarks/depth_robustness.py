@@ -15,8 +15,8 @@ from .figures import Figure, table
 from .turns import in_turns
 
 DAMAGES = (
-    ("noise", 2), ("noise", 5), ("noise", 10), ("gain", 0.8), ("gamma", 1.4), ("jpeg", 50), ("shift", 0.5), ("shift", 1),
-    ("blur", 1),
+    ("noise", 2), ("noise", 5), ("noise", 10), ("gain", 0.8), ("gamma", 1.4), ("jpeg", 50), ("shift", 0.5),
+    ("shift", 1), ("blur", 1),
 )  # fmt: skip
 
 
@@ -50,7 +50,14 @@ def measured() -> tuple[list[Figure], list[str]]:
         times = ", ".join(f"{share:.2f}" for (damage, _), share in shares.items() if damage == name)
         furthest = max(margin for (damage, _), margin in margins.items() if damage == name)
         rows.append((name, *(f"{mean:.2f}" for mean in means), f"{furthest:+.2f}", times))
-    headings = ("damage", "semi-global", "3WAY", "HH4", "worst margin to the better", f"time / 3WAY: {', '.join(large())}")
+    headings = (
+        "damage",
+        "semi-global",
+        "3WAY",
+        "HH4",
+        "worst margin to the better",
+        f"time / 3WAY: {', '.join(large())}",
+    )
     return [figure], table(headings, rows)
 
 

@@ -19,11 +19,14 @@ from tangible_core import Views
 import tangible_depth.chain, tangible_depth.pairs, tangible_depth.scaled
 from tangible_depth.semi_global import SemiGlobal
 left, right, _ = stereo_motorcycle()
-heard = []
-logging.getLogger("tangible_depth").addHandler(type("Ear", (logging.Handler,), {"emit": lambda _, r: heard.append(r.msg)})())
+class Ear(logging.Handler):
+    heard = []
+    def emit(self, record):
+        self.heard.append(record.getMessage())
+logging.getLogger("tangible_depth").addHandler(Ear())
 start = perf_counter()
 SemiGlobal().estimate(Views(left, right))
-print(json.dumps([perf_counter() - start, heard]))
+print(json.dumps([perf_counter() - start, Ear.heard]))
 """
 
 

@@ -65,9 +65,7 @@ def roll(scene: Known) -> Rolled:
     )
     x, y = transform(homography, _matches(scene)).T
     inside = ((x >= 0) & (x <= w - 1) & (y >= 0) & (y <= h - 1)).reshape(h, w)
-    return Rolled(
-        Views(scene.grey.left, right), homography, np.where(inside, scene.pair.truth_px, np.float32(np.nan))
-    )
+    return Rolled(Views(scene.grey.left, right), homography, np.where(inside, scene.pair.truth_px, np.float32(np.nan)))
 
 
 def _matches(scene: Known) -> np.ndarray:

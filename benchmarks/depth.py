@@ -28,8 +28,8 @@ PROTOCOL = (
     "Times are ratios to OpenCV's StereoSGBM 3WAY, called without our wrapper on views in grey, padded on the left, "
     "told the true range (the next multiple of 16), in the same process in turn, median of the rounds; filling its "
     "holes is not timed. `semi-global`, its preview and `zncc` find the range themselves, in the time given. Errors "
-    "are those of `tangible compare`: bad2 is the share of the pixels with truth that are over 2 px off or missing, noc "
-    "that of the pixels that both views show; OpenCV's holes are filled from the background in their row. The mean "
+    "are those of `tangible compare`: bad2 is the share of the pixels with truth that are over 2 px off or missing, "
+    "noc that of the pixels that both views show; OpenCV's holes are filled from the background in their row. The mean "
     "counts each photograph once, and the mean of the synthetic scenes once."
 )
 

@@ -18,10 +18,18 @@ class Timed(NamedTuple):
 
 
 def in_turns(calls: Mapping[str, Call], rounds: int) -> dict[str, Timed]:
-    """Each call once a round, after one round that is not counted; the first one is what the others are divided by."""
+    """Each call once a round, after one round that is not counted; the first one is what the others are divided by.
+
+    The order is by chance, another one each round: what a call leaves behind (threads that still spin, memory to give
+    back) meets all of the others.
+    """
     for call in calls.values():
         call()
-    times = np.array([[seconds(call) for call in calls.values()] for _ in range(rounds)])
+    order, each = np.random.default_rng(0), list(calls.values())
+    times = np.empty((rounds, len(each)))
+    for row in times:
+        for i in order.permutation(len(each)):
+            row[i] = seconds(each[i])
     ratios = times / times[:, :1]
     return {name: Timed(float(np.median(times[:, i])), float(np.median(ratios[:, i]))) for i, name in enumerate(calls)}
 

@@ -66,10 +66,10 @@ def test_a_raw_pair_is_matched_nearly_as_well_as_a_rectified_one():
     scene = Scene((240, 320), 8.0, 20.0)
     straight = Zncc().estimate(Views(scene.left(), scene.right())).disparity_px
     with collected() as notes:
-        raw = estimate_raw(rolled(2, scene), Zncc().estimate, "auto").disparity_px
+        raw = Zncc().estimate(rolled(2, scene)).disparity_px
     assert any(each.startswith("rectified: ") for each in notes)
     assert share_right(raw, scene) >= share_right(straight, scene) - 0.03
-    never = estimate_raw(rolled(2, scene), Zncc().estimate, "never").disparity_px
+    never = Zncc(rectify="never").estimate(rolled(2, scene)).disparity_px
     assert share_right(never, scene) < 0.8
 
 

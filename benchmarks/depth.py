@@ -1,0 +1,95 @@
+"""Depth: every promise with its bound, and what stands behind the figures.
+
+TANGIBLE_STEREO names a folder of further photographs with truth (left.png, right.png, disparity.npz in sub-folders),
+such as Middlebury's; the extra `peers` installs what else is measured against.
+"""
+
+import os
+import sys
+from collections.abc import Callable
+from itertools import chain
+from typing import Any
+
+from . import (
+    depth_accuracy,
+    depth_eight_point,
+    depth_growth,
+    depth_pairs,
+    depth_pandora,
+    depth_range,
+    depth_robustness,
+    depth_skips,
+    depth_start,
+    depth_unrectified,
+)
+from .figures import judged
+
+PROTOCOL = (
+    "Times are ratios to OpenCV's StereoSGBM 3WAY, called without our wrapper on views in grey, padded on the left, "
+    "told the true range (the next multiple of 16), in the same process in turn, median of the rounds; filling its "
+    "holes is not timed. `semi-global`, its preview and `zncc` find the range themselves, in the time given. Errors "
+    "are those of `tangible compare`: bad2 is the share of the pixels with truth that are over 2 px off or missing, "
+    "noc that of the pixels that both views show; OpenCV's holes are filled from the background in their row. The mean "
+    "counts each photograph once, and the mean of the synthetic scenes once."
+)
+
+
+def section() -> str:
+    """The section of RESULTS.md, as Markdown."""
+    accuracy = _part("errors and times", depth_accuracy.figures)
+    robustness, by_damage = _part("damaged pairs", depth_robustness.measured)
+    growth, sizes = _part("growth", depth_growth.measured)
+    skipped = _part("what is left out", depth_skips.rows)
+    single = (depth_pandora, depth_range, depth_unrectified, depth_eight_point, depth_start)
+    others = [_part(each.__name__, each.figures) for each in single]
+    figures = [*accuracy, *robustness, *chain.from_iterable(others), *growth]
+    shares = _part("wrapper", depth_accuracy.shares_of_raw)
+    return "\n".join(
+        [
+            *_conditions(*shares),
+            "",
+            *judged(figures),
+            "",
+            "By scene: bad2 over all pixels with truth, and time against the raw call.",
+            "",
+            *_part("scenes", depth_accuracy.scene_rows),
+            "",
+            "`tangible compare configs/compare-depth.yaml`, mean of all scenes, views in colour where they have it; "
+            "here the baseline is our wrapper round OpenCV.",
+            "",
+            *depth_accuracy.comparison_rows(),
+            "",
+            "Damaged pairs: bad2 in percent, mean of all scenes.",
+            "",
+            *by_damage,
+            "",
+            f"The builtin pair in tiles, {depth_growth.DISPARITIES} disparities told to both.",
+            "",
+            *sizes,
+            "",
+            "What is left out, on the builtin pair: with all of it, against with it left out. By default: what is "
+            "outside the range found, identical views, blank strips, rectification, colour, and the strict check.",
+            "",
+            *skipped,
+        ]
+    )
+
+
+def _conditions(wrapper: float, filled: float) -> list[str]:
+    scenes = ", ".join(depth_pairs.real_specs())
+    given = (
+        ""
+        if os.environ.get(depth_pairs.FOLDER)
+        else f" {depth_pairs.FOLDER} was not set: no other photographs were measured."
+    )
+    return [
+        f"Photographs: {scenes}; synthetic: planes, steps, spheres, bars of 480 x 360.{given}",
+        "",
+        f"{PROTOCOL} Our wrapper `opencv-sgbm` takes {wrapper:.2f} x the raw call, and the raw call with "
+        f"its holes filled {filled:.2f} x.",
+    ]
+
+
+def _part(name: str, work: Callable[[], Any]) -> Any:
+    print(f"  {name.removeprefix('benchmarks.')} ...", file=sys.stderr)
+    return work()

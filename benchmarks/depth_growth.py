@@ -1,0 +1,120 @@
+"""Time and memory as pictures grow, and what is seen of the strips they are swept in."""
+
+from collections.abc import Generator
+from contextlib import contextmanager
+from functools import partial
+
+import numpy as np
+
+from tangible_core.bench.memory import start_peak
+from tangible_depth import strips
+from tangible_depth.adaptive import PROBE_ROWS
+from tangible_depth.semi_global import SemiGlobal
+
+from .depth_opencv import raw
+from .depth_pairs import Known, real
+from .figures import Figure, table
+from .turns import Call, seconds
+
+DISPARITIES = 128
+TILES = (1, 2, 3, 5, 7)
+"""The builtin pair this often side by side and below itself: 0.4 to 18 megapixels, all with the same disparities."""
+MEMORY_BYTES_PX, VOLUMES_BYTES = 25, strips.VOLUME_BYTES
+"""What `semi-global` states."""
+ROUNDS = 5
+NEAR_ROWS = 8
+"""Rows to either side of a border."""
+
+
+def measured() -> tuple[list[Figure], list[str]]:
+    """The promises about growth, and a row a size."""
+    rows = _sizes()
+    costs = [cost for _, cost, _, _ in rows]
+    times = Figure(
+        f"cost as work grows, {rows[0][0]:.1f} to {rows[-1][0]:.0f} Mpx, {DISPARITIES} disparities",
+        "time per pixel and disparity within 1.3 x of its best",
+        f"least of {ROUNDS} rounds: {min(costs):.2f} to {max(costs):.2f} ns: {max(costs) / min(costs):.2f} x",
+        max(costs) <= 1.3 * min(costs),
+    )
+    pixels = [each[0] * 1e6 for each in rows]
+    memory = [each[2] for each in rows]
+    bounds = [MEMORY_BYTES_PX * count + VOLUMES_BYTES for count in pixels]
+    slope = np.polyfit(pixels[1:], memory[1:], 1)[0]
+    peak = Figure(
+        "memory above the pictures",
+        f"bounded and stated: {MEMORY_BYTES_PX} bytes a pixel + {VOLUMES_BYTES >> 20} MiB",
+        f"{memory[-1] / 2**20:.0f} MiB at {rows[-1][0]:.0f} Mpx, stated {bounds[-1] / 2**20:.0f}; "
+        f"grows by {slope:.0f} bytes a pixel",
+        all(used <= bound for used, bound in zip(memory, bounds, strict=True)),
+    )
+    lines = [(f"{mpx:.1f}", f"{cost:.2f}", f"{used / 2**20:.0f}", f"{share:.2f}") for mpx, cost, used, share in rows]
+    return [times, peak, _seams()], table(("Mpx", "ns / px / disparity", "peak MiB", "time / 3WAY"), lines)
+
+
+def _sizes() -> list[tuple[float, float, float, float]]:
+    """Megapixels, nanoseconds a pixel and disparity, peak bytes, and time over 3WAY's, for each of TILES.
+
+    The time is the least of the rounds: what else the machine does can only add, and hits short calls by chance.
+    """
+    scenes = [_tiled(count) for count in TILES]
+    calls = [partial(SemiGlobal(max_disparity_px=DISPARITIES).estimate, each.views) for each in scenes]
+    memory = [_peak(call) for call in calls]
+    times = [
+        [(seconds(partial(raw, each)), seconds(call)) for each, call in zip(scenes, calls, strict=True)]
+        for _ in range(ROUNDS)
+    ]
+    found = []
+    for i, scene in enumerate(scenes):
+        pixels = scene.grey.left.size
+        theirs, ours = np.array([each[i] for each in times]).T
+        found.append((pixels / 1e6, 1e9 * min(ours) / pixels / DISPARITIES, memory[i], float(np.median(ours / theirs))))
+    return found
+
+
+def _peak(call: Call) -> float:
+    call()
+    growth = start_peak()
+    call()
+    return growth() or 0
+
+
+def _tiled(count: int) -> Known:
+    scene = real()["motorcycle"]
+    grey = scene.grey._replace(
+        left=np.tile(scene.grey.left, (count, count)), right=np.tile(scene.grey.right, (count, count))
+    )
+    return Known(scene.pair, grey, DISPARITIES)
+
+
+def _seams() -> Figure:
+    shares = {name: _seam(each) for name, each in {**real(), "motorcycle x 4": _tiled(2)}.items()}
+    worst = max(shares, key=shares.__getitem__)
+    return Figure(
+        f"seams: rows within {NEAR_ROWS} of a border, against one strip, {len(shares)} scenes",
+        "difference over 1 px at <= 0.5 % of the pixels",
+        f"{shares[worst]:.2f} % at most ({worst}), {np.mean(list(shares.values())):.2f} % mean",
+        shares[worst] <= 0.5,
+    )
+
+
+def _seam(scene: Known) -> float:
+    """Percent of the pixels near borders, those of the trial among them, that one strip decides otherwise."""
+    method = SemiGlobal(max_disparity_px=scene.disparities, cost="sharp")
+    with_borders = method.estimate(scene.views).disparity_px
+    with _one_strip():
+        without = method.model_copy(update={"realign_rows": False}).estimate(scene.views).disparity_px
+    h = len(without)
+    borders = np.arange(PROBE_ROWS, h, PROBE_ROWS)
+    near = np.abs(np.arange(h)[:, None] - borders + 0.5).min(axis=1) < NEAR_ROWS
+    return 100 * float(np.mean(np.abs(with_borders - without)[near] > 1))
+
+
+@contextmanager
+def _one_strip() -> Generator[None]:
+    """Everything at once, whatever memory it takes."""
+    before = strips.ROWS, strips.VOLUME_BYTES
+    strips.ROWS, strips.VOLUME_BYTES = 1 << 20, 1 << 40
+    try:
+        yield
+    finally:
+        strips.ROWS, strips.VOLUME_BYTES = before

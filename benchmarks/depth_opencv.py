@@ -1,0 +1,19 @@
+"""OpenCV's own matcher, called without our wrapper: what times are compared with."""
+
+import cv2
+import numpy as np
+
+from .depth_pairs import Known
+
+PEERS = {"3WAY": ("3way", 5), "HH4": ("hh4", 3), "SGBM": ("sgbm", 5), "HH": ("hh", 3)}
+"""Modes of OpenCV and the side of the blocks each does best with."""
+MODES = {"sgbm": 0, "hh": 1, "3way": 2, "hh4": 3}
+
+
+def raw(known: Known, name: str = "3WAY") -> np.ndarray:
+    """Disparity in sixteenths of a pixel, of views padded on the left so that every column has an answer."""
+    mode, block = PEERS[name]
+    count = known.disparities
+    matcher = cv2.StereoSGBM.create(0, count, block, 8 * block**2, 32 * block**2, 1, 63, 10, 100, 2, MODES[mode])
+    padded = (cv2.copyMakeBorder(view, 0, 0, count, 0, cv2.BORDER_REPLICATE) for view in known.grey)
+    return matcher.compute(*padded)[:, count:]

@@ -1,0 +1,89 @@
+"""Damaged pairs: `semi-global` as it comes against the better of OpenCV's 3WAY and HH4, cell by cell."""
+
+from collections.abc import Iterator
+from functools import partial
+
+from tangible_core.bench.depth import PERTURBATIONS, fill, measure
+from tangible_core.interfaces import DepthEstimator
+from tangible_core.testing.stereo_scenes import KnownPair
+from tangible_depth.opencv_sgbm import OpenCVSGBM
+from tangible_depth.semi_global import SemiGlobal
+
+from .depth_opencv import PEERS, raw
+from .depth_pairs import Known, known, large, real, synthetic
+from .figures import Figure, table
+from .turns import in_turns
+
+DAMAGES = (
+    ("noise", 2), ("noise", 5), ("noise", 10), ("gain", 0.8), ("gamma", 1.4), ("jpeg", 50), ("shift", 0.5),
+    ("shift", 1), ("blur", 1),
+)  # fmt: skip
+
+
+def measured() -> tuple[list[Figure], list[str]]:
+    """The promise about damaged pairs, and bad2 by damage, mean over the scenes."""
+    scenes = {**real(), **synthetic()}
+    cells = {
+        (kind, value): {name: _errors(_damaged(each, kind, value)) for name, each in scenes.items()}
+        for kind, value in DAMAGES
+    }
+    margins = {
+        (f"{kind} {value:g}", name): ours - min(peers)
+        for (kind, value), by_scene in cells.items()
+        for name, (ours, *peers) in by_scene.items()
+    }
+    worst = max(margins, key=margins.__getitem__)
+    above = sum(margin > 0.6 for margin in margins.values())
+    shares = dict(_shares())
+    slowest = max(shares, key=shares.__getitem__)
+    figure = Figure(
+        "robustness, damaged pairs, defaults",
+        "bad2 <= 0.6 point above the better of 3WAY and HH4 in any cell, at <= 1.0 x 3WAY from 300 kpx up",
+        f"worst of {len(margins)} cells {margins[worst]:+.2f} ({', '.join(worst)}; {above} above 0.6); "
+        f"slowest {shares[slowest]:.2f} x ({', '.join(slowest)})",
+        margins[worst] <= 0.6 and shares[slowest] <= 1,
+    )
+    rows = []
+    for (kind, value), by_scene in cells.items():
+        means = [sum(column) / len(by_scene) for column in zip(*by_scene.values(), strict=True)]
+        name = f"{kind} {value:g}"
+        times = ", ".join(f"{share:.2f}" for (damage, _), share in shares.items() if damage == name)
+        furthest = max(margin for (damage, _), margin in margins.items() if damage == name)
+        rows.append((name, *(f"{mean:.2f}" for mean in means), f"{furthest:+.2f}", times))
+    headings = (
+        "damage",
+        "semi-global",
+        "3WAY",
+        "HH4",
+        "worst margin to the better",
+        f"time / 3WAY: {', '.join(large())}",
+    )
+    return [figure], table(headings, rows)
+
+
+def _damaged(scene: Known, kind: str, value: float) -> Known:
+    damaged: KnownPair = PERTURBATIONS[kind].apply(scene.pair, value)
+    return known(damaged)
+
+
+def _errors(scene: Known) -> tuple[float, ...]:
+    """bad2 of ours, of 3WAY and of HH4."""
+    return tuple(measure(fill(each.estimate(scene.pair.views)), scene.pair)["bad2"] for each in _methods(scene))
+
+
+def _methods(scene: Known) -> Iterator[DepthEstimator]:
+    yield SemiGlobal()
+    for name in ("3WAY", "HH4"):
+        mode, block = PEERS[name]
+        yield OpenCVSGBM.model_validate(
+            {"mode": mode, "block_px": block, "second_pass": False, "max_disparity_px": scene.disparities}
+        )
+
+
+def _shares() -> Iterator[tuple[tuple[str, str], float]]:
+    """(damage, scene) -> time of ours over 3WAY's."""
+    for name, scene in large().items():
+        for kind, value in DAMAGES:
+            each = _damaged(scene, kind, value)
+            calls = {"3WAY": partial(raw, each), "ours": partial(SemiGlobal().estimate, each.views)}
+            yield (f"{kind} {value:g}", name), in_turns(calls, 5)["ours"].ratio

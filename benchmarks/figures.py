@@ -1,0 +1,28 @@
+"""What is promised and what was measured, side by side."""
+
+from collections.abc import Iterable
+from typing import NamedTuple
+
+
+class Figure(NamedTuple):
+    """One promise: what it is about, the bound in words, what was measured, and whether that is within it."""
+
+    what: str
+    bound: str
+    measured: str
+    met: bool
+
+
+def judged(figures: Iterable[Figure]) -> list[str]:
+    """A Markdown table; what is not within its bound says `missed`."""
+    rows = [(each.what, each.bound, each.measured, "" if each.met else "missed") for each in figures]
+    return table(("what", "bound", "measured", ""), rows)
+
+
+def table(headings: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> list[str]:
+    """Lines of a Markdown table."""
+    return [_line(headings), "|" + "---|" * len(headings), *(_line(row) for row in rows)]
+
+
+def _line(cells: tuple[str, ...]) -> str:
+    return f"| {' | '.join(cells)} |"

@@ -1,0 +1,42 @@
+"""Times of several calls that take turns, so that whatever else the machine does meets all alike."""
+
+import gc
+from collections.abc import Callable, Mapping
+from time import perf_counter
+from typing import NamedTuple
+
+import numpy as np
+
+Call = Callable[[], object]
+
+
+class Timed(NamedTuple):
+    """Median seconds, and the median of (seconds / seconds of the first call in the same round)."""
+
+    seconds: float
+    ratio: float
+
+
+def in_turns(calls: Mapping[str, Call], rounds: int) -> dict[str, Timed]:
+    """Each call once a round, after one round that is not counted; the first one is what the others are divided by.
+
+    The order is by chance, another one each round: what a call leaves behind (threads that still spin, memory to give
+    back) meets all of the others.
+    """
+    for call in calls.values():
+        call()
+    order, each = np.random.default_rng(0), list(calls.values())
+    times = np.empty((rounds, len(each)))
+    for row in times:
+        for i in order.permutation(len(each)):
+            row[i] = seconds(each[i])
+    ratios = times / times[:, :1]
+    return {name: Timed(float(np.median(times[:, i])), float(np.median(ratios[:, i]))) for i, name in enumerate(calls)}
+
+
+def seconds(call: Call) -> float:
+    """Seconds of one call."""
+    gc.collect()
+    start = perf_counter()
+    call()
+    return perf_counter() - start

@@ -17,6 +17,7 @@ class SemiGlobal(DepthEstimator):
     What a pair does not need is left out and said: the search of disparities that do not occur, rows without texture,
     a second view that equals the first. A pair whose views are exchanged is matched as well: its disparities are
     negative, and a warning says so. Rows that miss each other by a constant are put right.
+    Colour is reduced to grey.
 
     Memory above the pictures: about 25 bytes a pixel, measured to 18 megapixels, and at most 256 MiB for the cost
     volumes of all strips at work.

@@ -14,6 +14,7 @@ class Ssd(DepthEstimator):
     """Windows matched by squared differences, sub-pixel by a parabola, both views in agreement, filled.
 
     The simplest measure, for pairs of equal exposure; `zncc` allows for different ones.
+    Colour is reduced to grey.
     Memory above the pictures: about 25 bytes a pixel, and 8 bytes a column and disparity for each thread.
     Source: the report "Tangible Images", ch. 2.
     """

@@ -14,6 +14,7 @@ class Zncc(DepthEstimator):
     """Windows matched by normalised cross-correlation, sub-pixel by a parabola, both views in agreement, filled.
 
     Local, so that it does not guess where there is no texture; indifferent to gain and offset of exposure.
+    Colour is reduced to grey.
     Memory above the pictures: about 25 bytes a pixel, and 8 bytes a column and disparity for each thread.
     Source: the report "Tangible Images", ch. 2, matching value (2.14).
     """

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import json
-import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
@@ -19,7 +17,9 @@ COLOURS = {"given": "blue", "ran": "green", "cached": "cyan", "skipped": "dim", 
 
 def print_json(value: Any) -> None:
     """JSON on standard output; NaN becomes null."""
-    print(json.dumps(_plain(value), indent=2, ensure_ascii=False))  # noqa: T201
+    from ..report.figures import as_json
+
+    print(as_json(value))  # noqa: T201
 
 
 def table(headings: Sequence[str], rows: Iterable[Sequence[str]], title: str | None = None) -> None:
@@ -58,11 +58,3 @@ def say(text: str) -> None:
 def note(text: str) -> None:
     """A line of text for people, beside the results: on standard error."""
     Console(stderr=True, highlight=False, soft_wrap=True).print(text, markup=False)
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, Mapping):
-        return {str(key): _plain(part) for key, part in value.items()}  # pyright: ignore[reportUnknownVariableType, reportUnknownArgumentType]
-    if isinstance(value, list | tuple):
-        return [_plain(part) for part in value]  # pyright: ignore[reportUnknownVariableType]
-    return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -11,7 +11,7 @@ from tangible_depth import strips
 from tangible_depth.adaptive import PROBE_ROWS
 from tangible_depth.semi_global import SemiGlobal
 
-from .depth_opencv import raw
+from .depth_opencv import filled
 from .depth_pairs import Known, real
 from .figures import Figure, table
 from .turns import Call, seconds
@@ -60,7 +60,7 @@ def _sizes() -> list[tuple[float, float, float, float]]:
     calls = [partial(SemiGlobal(max_disparity_px=DISPARITIES).estimate, each.views) for each in scenes]
     memory = [_peak(call) for call in calls]
     times = [
-        [(seconds(partial(raw, each)), seconds(call)) for each, call in zip(scenes, calls, strict=True)]
+        [(seconds(partial(filled, each)), seconds(call)) for each, call in zip(scenes, calls, strict=True)]
         for _ in range(ROUNDS)
     ]
     found = []

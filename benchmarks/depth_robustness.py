@@ -9,7 +9,7 @@ from tangible_core.testing.stereo_scenes import KnownPair
 from tangible_depth.opencv_sgbm import OpenCVSGBM
 from tangible_depth.semi_global import SemiGlobal
 
-from .depth_opencv import PEERS, raw
+from .depth_opencv import PEERS, filled
 from .depth_pairs import Known, known, large, real, synthetic
 from .figures import Figure, table
 from .turns import in_turns
@@ -85,5 +85,5 @@ def _shares() -> Iterator[tuple[tuple[str, str], float]]:
     for name, scene in large().items():
         for kind, value in DAMAGES:
             each = _damaged(scene, kind, value)
-            calls = {"3WAY": partial(raw, each), "ours": partial(SemiGlobal().estimate, each.views)}
+            calls = {"3WAY": partial(filled, each), "ours": partial(SemiGlobal().estimate, each.views)}
             yield (f"{kind} {value:g}", name), in_turns(calls, 5)["ours"].ratio

@@ -8,6 +8,7 @@ import numpy as np
 
 from tangible_core.data import DisparityMap, Views
 from tangible_core.metrics import disparity_errors
+from tangible_core.scaling import enlarged, felt_factor, reduced
 from tangible_depth.opencv_sgbm import OpenCVSGBM
 from tangible_depth.rectification import rectify
 from tangible_depth.semi_global import SemiGlobal
@@ -69,6 +70,13 @@ def skips(scene: Known) -> Iterator[Skip]:
     yield other("the strict check from the right", "`check`: soft, strict", {}, {"check": "strict"})
     yield other("full resolution", "`resolution`: half, full", {"resolution": "half"}, {"resolution": "full"})
     yield Skip(
+        "pixels finer than the device resolves, on a surface 10 mm wide",
+        "`workspace: finest_m`: 0.03 mm, 0",
+        partial(_felt, views, 30e-6),
+        partial(_felt, views, 0.0),
+        pair.truth_px,
+    )
+    yield Skip(
         "rectification of a rectified pair",
         "`tolerance_px` of `rectify`: 0.35, 0",
         partial(_rectified, views, 0.35),
@@ -103,6 +111,11 @@ def skips(scene: Known) -> Iterator[Skip]:
         partial(peer.estimate, views),
         pair.truth_px,
     )
+
+
+def _felt(views: Views, finest_m: float) -> DisparityMap:
+    factor = felt_factor(views.shape[1], 0.01, finest_m)
+    return enlarged(SemiGlobal().estimate(reduced(views, factor)), views.shape)
 
 
 def _rectified(views: Views, tolerance_px: float) -> DisparityMap:

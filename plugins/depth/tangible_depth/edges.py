@@ -12,8 +12,8 @@ import numpy as np
 from jaxtyping import Int16, UInt8
 from numba import int16, int32, njit
 
-from .workers import in_blocks
-
+MEDIAN_REACH = 2
+"""Rows and columns round a pixel of which `median` is."""
 NEARBY, VOTERS, STRIDE = 1, 4, 2
 """Radius in which an edge is looked for; radius of the voting window, and distance of its voters, in pixels."""
 JUMP = 24
@@ -23,18 +23,10 @@ GREY_REACH = np.int16(24)
 
 
 def median(disparity: Int16[np.ndarray, "h w"]) -> Int16[np.ndarray, "h w"]:
-    """5 x 5 median."""
+    """5 x 5 median; beyond the picture its edge is repeated."""
     import cv2
 
-    out = np.empty_like(disparity)
-    h = disparity.shape[0]
-
-    def block(y0: int, y1: int) -> None:
-        low, high = max(0, y0 - 2), min(h, y1 + 2)
-        out[y0:y1] = cv2.medianBlur(np.ascontiguousarray(disparity[low:high]), 5)[y0 - low : y1 - low]
-
-    in_blocks(h, block)
-    return out
+    return cv2.medianBlur(disparity, 2 * MEDIAN_REACH + 1)  # pyright: ignore[reportReturnType]
 
 
 def sharpen_edges(disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "h w"]) -> Int16[np.ndarray, "h w"]:
@@ -46,24 +38,16 @@ def sharpen_edges(disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "
 
     window = np.ones((2 * NEARBY + 1, 2 * NEARBY + 1), np.uint8)
     out = disparity.copy()
-    h = disparity.shape[0]
-
-    def block(y0: int, y1: int) -> None:
-        low, high = max(0, y0 - NEARBY), min(h, y1 + NEARBY)
-        part = np.ascontiguousarray(disparity[low:high])
-        far, near = (change(part, window)[y0 - low : y1 - low] for change in (cv2.erode, cv2.dilate))
-        _vote(disparity, grey, far, near, y0, y1, out)
-
-    in_blocks(h, block)
+    _vote(disparity, grey, cv2.erode(disparity, window), cv2.dilate(disparity, window), out)
     return out
 
 
 @njit(nogil=True, boundscheck=False, cache=True)
-def _vote(disparity, grey, far, near, y0, y1, out):
-    w = disparity.shape[1]
-    for y in range(y0, y1):
+def _vote(disparity, grey, far, near, out):
+    h, w = disparity.shape
+    for y in range(h):
         for x in range(w):
-            lowest, highest = int32(far[y - y0, x]), int32(near[y - y0, x])
+            lowest, highest = int32(far[y, x]), int32(near[y, x])
             if highest - lowest >= JUMP:
                 middle = np.int16((lowest + highest) >> 1)
                 front = _majority(disparity, grey, y, x, middle)

@@ -36,24 +36,28 @@ def fill(disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "h w"]) ->
 
     disparity is in sixteenths of a pixel.
     """
-    filled = _fill_once(disparity, grey)
-    if (filled == UNKNOWN).any() and (filled != UNKNOWN).any():  # some saw nothing along their row and column
-        filled = _fill_once(filled, grey)
+    filled, left_over = _fill_once(disparity, grey)
+    if 0 < left_over < filled.size:  # some saw nothing along their row and column
+        filled, _ = _fill_once(filled, grey)
     return filled
 
 
-def _fill_once(disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "h w"]) -> Int16[np.ndarray, "h w"]:
-    out = disparity.copy()
-    in_blocks(disparity.shape[0], lambda a, b: _fill_rows(disparity, grey, a, b, out))
-    return out
+def _fill_once(disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "h w"]) -> tuple[np.ndarray, int]:
+    """The map filled, and how many pixels could not be."""
+    out = np.empty_like(disparity)
+    left_over: list[int] = []
+    in_blocks(disparity.shape[0], lambda a, b: left_over.append(_fill_rows(disparity, grey, a, b, out)))
+    return out, sum(left_over)
 
 
 @njit(nogil=True, boundscheck=False, cache=True)
 def _fill_rows(disparity, grey, y0, y1, out):
+    """Rows y0..y1-1; how many of their pixels could not be filled."""
     w = disparity.shape[1]
+    left_over = 0
     sides, paths = np.empty((4, w), np.int16), np.empty((4, w), np.int32)
     below, below_path = np.empty((y1 - y0, w), np.int16), np.empty((y1 - y0, w), np.int32)
-    seen = np.empty(w, np.int16)
+    seen, edges = np.empty(w, np.int16), np.empty(w + 1, np.int64)
     _scan_up(disparity, grey, y0, y1, below, below_path)
     _start_above(disparity, grey, y0, sides[ABOVE], paths[ABOVE])
     for y in range(y0, y1):
@@ -61,14 +65,9 @@ def _fill_rows(disparity, grey, y0, y1, out):
             _carry(disparity[y - 1], grey[y - 1], grey[y], sides[ABOVE], paths[ABOVE])
         sides[BELOW], paths[BELOW] = below[y - y0], below_path[y - y0]
         _seen_from_the_right(disparity[y], seen)
-        start = 0
-        while start < w:
-            if disparity[y, start] != UNKNOWN:
-                start += 1
-                continue
-            stop = start + 1
-            while stop < w and disparity[y, stop] == UNKNOWN:
-                stop += 1
+        out[y] = disparity[y]
+        for gap in range(0, _edges_of_gaps(disparity[y], edges), 2):
+            start, stop = edges[gap], edges[gap + 1]
             if stop - start <= SHORT and start > 0 and stop < w and _alike(disparity[y, start - 1], disparity[y, stop]):
                 for x in range(start, stop):  # one of the many gaps between whole disparities
                     out[y, x] = min(disparity[y, start - 1], disparity[y, stop])
@@ -76,7 +75,21 @@ def _fill_rows(disparity, grey, y0, y1, out):
                 _scan_gap(disparity[y], grey[y], start, stop, sides, paths)
                 for x in range(start, stop):
                     out[y, x] = _choose(sides, paths, x, seen)
-            start = stop
+                    left_over += out[y, x] == UNKNOWN
+    return left_over
+
+
+@njit(nogil=True, boundscheck=False)
+def _edges_of_gaps(row, edges):
+    """Each gap's first column and the one after its last; how many numbers that are. Without a branch to guess."""
+    count = 0
+    inside = False
+    for x in range(row.size):
+        edges[count] = x
+        count += (row[x] == UNKNOWN) != inside
+        inside = row[x] == UNKNOWN
+    edges[count] = row.size
+    return count + inside
 
 
 @njit(inline="always")

@@ -45,5 +45,5 @@ def _judge(matched, final, quality, table, out):
     for y in range(final.shape[0]):
         for x in range(final.shape[1]):
             near = abs(int32(matched[y, x]) - int32(final[y, x])) <= AGREEMENT
-            known = matched[y, x] != UNKNOWN and near
-            out[y, x] = table[quality[y, x]] if known else np.float32(FILLED)
+            value = table[quality[y, x]]  # read in any case: whether it counts, no processor can guess
+            out[y, x] = value if near & (matched[y, x] != UNKNOWN) else np.float32(FILLED)

@@ -16,7 +16,7 @@ Source of the idea of filling from the farther side: Hirschmueller 2008, sec. 2.
 
 import numpy as np
 from jaxtyping import Int16, UInt8
-from numba import int32, njit
+from numba import int32, njit, uint32
 
 from .span import UNKNOWN
 from .workers import in_blocks
@@ -57,15 +57,16 @@ def _fill_rows(disparity, grey, y0, y1, out):
     left_over = 0
     sides, paths = np.empty((4, w), np.int16), np.empty((4, w), np.int32)
     below, below_path = np.empty((y1 - y0, w), np.int16), np.empty((y1 - y0, w), np.int32)
-    seen, edges = np.empty(w, np.int16), np.empty(w + 1, np.int64)
+    seen, columns, edges = np.empty(w + 2, np.int16), np.empty(w, np.int32), np.empty(w + 1, np.int64)
     _scan_up(disparity, grey, y0, y1, below, below_path)
     _start_above(disparity, grey, y0, sides[ABOVE], paths[ABOVE])
     for y in range(y0, y1):
         if y > 0:
             _carry(disparity[y - 1], grey[y - 1], grey[y], sides[ABOVE], paths[ABOVE])
-        sides[BELOW], paths[BELOW] = below[y - y0], below_path[y - y0]
-        _seen_from_the_right(disparity[y], seen)
-        out[y] = disparity[y]
+        _copy(below[y - y0], sides[BELOW])
+        _copy(below_path[y - y0], paths[BELOW])
+        _copy(disparity[y], out[y])
+        _seen_from_the_right(disparity[y], columns, seen)
         for gap in range(0, _edges_of_gaps(disparity[y], edges), 2):
             start, stop = edges[gap], edges[gap + 1]
             if stop - start <= SHORT and start > 0 and stop < w and _alike(disparity[y, start - 1], disparity[y, stop]):
@@ -90,6 +91,13 @@ def _edges_of_gaps(row, edges):
         inside = row[x] == UNKNOWN
     edges[count] = row.size
     return count + inside
+
+
+@njit(nogil=True, boundscheck=False)
+def _copy(row, out):
+    """As `out[:] = row`, which numba does column by column."""
+    for x in range(row.size):
+        out[x] = row[x]
 
 
 @njit(inline="always")
@@ -117,7 +125,8 @@ def _scan_up(disparity, grey, y0, y1, below, path):
         if y + 1 < h:
             _carry(disparity[y + 1], grey[y + 1], grey[y], carried, steps)
         if y < y1:
-            below[y - y0], path[y - y0] = carried, steps
+            _copy(carried, below[y - y0])
+            _copy(steps, path[y - y0])
 
 
 @njit(nogil=True, boundscheck=False)
@@ -159,14 +168,24 @@ def _scan_gap(row, grey, start, stop, sides, paths):
 
 
 @njit(nogil=True, boundscheck=False)
-def _seen_from_the_right(row, seen):
-    """The nearest disparity known to be seen at each column of the right view, UNKNOWN where none is."""
+def _seen_from_the_right(row, columns, seen):
+    """The nearest disparity known to be seen at each column x of the right view: at x + 1, UNKNOWN where none is.
+
+    Both ends stand for all columns beyond the picture, where something nearer than anything is seen. columns: scratch.
+    """
     seen[:] = UNKNOWN
+    seen[0] = seen[-1] = NEVER
     for x in range(row.size):
-        if row[x] != UNKNOWN:
-            column = x - ((int32(row[x]) + 8) >> 4)
-            if 0 <= column < row.size:
-                seen[column] = max(seen[column], row[x])
+        columns[x] = _column(int32(x), int32(row[x]), int32(seen.size - 1))
+    for x in range(row.size):
+        column = uint32(columns[x])  # never negative, and numba need not ask
+        seen[column] = max(seen[column], row[x])
+
+
+@njit(inline="always")
+def _column(x, value, last):
+    """Where in `seen` a pixel of this disparity is."""
+    return min(max(x + int32(1) - ((value + int32(8)) >> int32(4)), int32(0)), last)
 
 
 @njit(nogil=True, boundscheck=False)
@@ -196,11 +215,9 @@ def _or_never(value):
 @njit(inline="always")
 def _score(value, path, farthest, row_farthest, x, seen):
     """Without branches: what a pixel's candidates are like, no processor can guess."""
-    column = x - ((value + 8) >> 4)
-    inside = (column >= 0) & (column < seen.size)
-    there = int32(seen[min(max(column, 0), seen.size - 1)])
-    explained = (not inside) | (there > value + ALIKE)
-    contradicted = inside & (there != UNKNOWN) & (there < value - ALIKE)
+    there = int32(seen[_column(x, value, seen.size - 1)])
+    explained = there > value + ALIKE
+    contradicted = (there != UNKNOWN) & (there < value - ALIKE)
     score = np.float32(PER_10_PX_NEARER / 160) * np.float32(value - farthest)
     score += np.float32(PER_ROOT_OF_GREY) * np.sqrt(np.float32(path))
     score += np.float32(EXPLAINED) * np.float32(explained) + np.float32(CONTRADICTED) * np.float32(contradicted)

@@ -1,34 +1,21 @@
-"""Disparity where none was found, from what both views and the picture's edges say.
+"""Disparity where none was found: from the known pixels round a gap.
 
-The four nearest known neighbours (left, right, above, below) are the candidates for a pixel. Each is judged by
-
-- both views (binocular): had the pixel this disparity, it would be seen at column x - d of the right view. Where
-  something at least as near is known to be seen there, the pixel is hidden and the candidate explains why it had no
-  match; where something farther is seen, the candidate is contradicted; outside the picture it is explained as well;
-- the picture (monocular): grey steps crossed on the way from the neighbour, as a surface seldom goes on behind an edge;
-- the rule that what is hidden lies behind: farther candidates, and the farther one of the row first.
-
-The weights come from a logistic regression over four Middlebury pairs, rounded; results are flat around them.
-Source of the idea of filling from the farther side: Hirschmueller 2008, sec. 2.7.2.
+The four nearest known neighbours (left, right, above, below) are the candidates for a pixel, each with the grey steps
+crossed on the way from it; `candidates` judges them.
 """
 
 # ruff: noqa: ANN001, ANN202 -- numba finds the types of what it compiles; the docstrings say them
 
 import numpy as np
 from jaxtyping import Int16, UInt8
-from numba import int32, njit, uint32
+from numba import int32, njit
 
+from .candidates import ABOVE, BELOW, LEFT, RIGHT, alike, choose, seen_from_the_right
 from .span import UNKNOWN
 from .workers import in_blocks
 
-FARTHER_OF_ROW, CONTRADICTED, EXPLAINED = 1.2, -2.0, 1.0
-PER_ROOT_OF_GREY, PER_10_PX_NEARER = -0.2, -0.3
-ALIKE = 24
-"""Sixteenths of a pixel by which two disparities may differ and still be called the same surface."""
 SHORT = 2
 """Columns of a gap that is closed without asking, where both ends are alike."""
-LEFT, RIGHT, ABOVE, BELOW = range(4)
-NEVER = np.int32(32767)
 
 
 def fill(disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "h w"]) -> Int16[np.ndarray, "h w"]:
@@ -66,16 +53,16 @@ def _fill_rows(disparity, grey, y0, y1, out):
         _copy(below[y - y0], sides[BELOW])
         _copy(below_path[y - y0], paths[BELOW])
         _copy(disparity[y], out[y])
-        _seen_from_the_right(disparity[y], columns, seen)
+        seen_from_the_right(disparity[y], columns, seen)
         for gap in range(0, _edges_of_gaps(disparity[y], edges), 2):
             start, stop = edges[gap], edges[gap + 1]
-            if stop - start <= SHORT and start > 0 and stop < w and _alike(disparity[y, start - 1], disparity[y, stop]):
+            if stop - start <= SHORT and start > 0 and stop < w and alike(disparity[y, start - 1], disparity[y, stop]):
                 for x in range(start, stop):  # one of the many gaps between whole disparities
                     out[y, x] = min(disparity[y, start - 1], disparity[y, stop])
             else:
                 _scan_gap(disparity[y], grey[y], start, stop, sides, paths)
                 for x in range(start, stop):
-                    out[y, x] = _choose(sides, paths, x, seen)
+                    out[y, x] = choose(sides, paths, x, seen)
                     left_over += out[y, x] == UNKNOWN
     return left_over
 
@@ -98,11 +85,6 @@ def _copy(row, out):
     """As `out[:] = row`, which numba does column by column."""
     for x in range(row.size):
         out[x] = row[x]
-
-
-@njit(inline="always")
-def _alike(a, b):
-    return abs(int32(a) - int32(b)) <= ALIKE
 
 
 @njit(nogil=True, boundscheck=False)
@@ -165,61 +147,3 @@ def _scan_gap(row, grey, start, stop, sides, paths):
         x = stop - 1 - i
         path += abs(int32(grey[x]) - int32(grey[min(x + 1, w - 1)]))
         sides[RIGHT, x], paths[RIGHT, x] = right, path
-
-
-@njit(nogil=True, boundscheck=False)
-def _seen_from_the_right(row, columns, seen):
-    """The nearest disparity known to be seen at each column x of the right view: at x + 1, UNKNOWN where none is.
-
-    Both ends stand for all columns beyond the picture, where something nearer than anything is seen. columns: scratch.
-    """
-    seen[:] = UNKNOWN
-    seen[0] = seen[-1] = NEVER
-    for x in range(row.size):
-        columns[x] = _column(int32(x), int32(row[x]), int32(seen.size - 1))
-    for x in range(row.size):
-        column = uint32(columns[x])  # never negative, and numba need not ask
-        seen[column] = max(seen[column], row[x])
-
-
-@njit(inline="always")
-def _column(x, value, last):
-    """Where in `seen` a pixel of this disparity is."""
-    return min(max(x + int32(1) - ((value + int32(8)) >> int32(4)), int32(0)), last)
-
-
-@njit(nogil=True, boundscheck=False)
-def _choose(sides, paths, x, seen):
-    """The candidate of the highest score; UNKNOWN if there is none."""
-    left, right, above, below = sides[LEFT, x], sides[RIGHT, x], sides[ABOVE, x], sides[BELOW, x]
-    row_farthest = min(_or_never(left), _or_never(right))
-    farthest = min(row_farthest, _or_never(above), _or_never(below))
-    if farthest == NEVER:
-        return UNKNOWN
-    if max(left, right, above, below) - farthest <= ALIKE:
-        return np.int16(farthest if row_farthest == NEVER else row_farthest)
-    best, best_score = UNKNOWN, np.float32(-1e9)
-    for side in range(4):
-        value = int32(sides[side, x])
-        score = _score(value, paths[side, x], farthest, row_farthest, x, seen)
-        best = np.int16(value) if score > best_score else best
-        best_score = max(score, best_score)
-    return best
-
-
-@njit(inline="always")
-def _or_never(value):
-    return NEVER if value == UNKNOWN else int32(value)
-
-
-@njit(inline="always")
-def _score(value, path, farthest, row_farthest, x, seen):
-    """Without branches: what a pixel's candidates are like, no processor can guess."""
-    there = int32(seen[_column(x, value, seen.size - 1)])
-    explained = there > value + ALIKE
-    contradicted = (there != UNKNOWN) & (there < value - ALIKE)
-    score = np.float32(PER_10_PX_NEARER / 160) * np.float32(value - farthest)
-    score += np.float32(PER_ROOT_OF_GREY) * np.sqrt(np.float32(path))
-    score += np.float32(EXPLAINED) * np.float32(explained) + np.float32(CONTRADICTED) * np.float32(contradicted)
-    score += np.float32(FARTHER_OF_ROW) * np.float32(value <= row_farthest + 8)
-    return np.float32(-1e9) if value == UNKNOWN else score

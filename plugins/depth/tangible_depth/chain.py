@@ -30,7 +30,7 @@ def disparity_map(pair: Pair, least: int | Auto, most: int | Auto, fill: bool, m
 
 
 def nothing_moved(pair: Pair, fill: bool) -> DisparityMap:
-    """The map of two identical views: 0 everywhere, and nothing known where there is no texture."""
+    """The map of two identical views: 0 everywhere, and nothing known where nothing changes along the rows."""
     flat = flat_pixels(pair.left)
     unknown = flat & (not fill or bool(flat.all()))
     return DisparityMap(np.where(unknown, np.float32(np.nan), np.float32(0)), (~flat).astype(np.float32))

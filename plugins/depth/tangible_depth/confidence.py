@@ -7,10 +7,11 @@ from jaxtyping import Bool, Float, Float32, Int16, UInt8
 from numba import int32, njit
 
 from .span import UNKNOWN
-from .workers import in_blocks
 
 AGREEMENT = 16
 """Sixteenths of a pixel by which a final value may differ from the match that it is judged by."""
+FLAT_REACH = 2
+"""Rows and columns round a pixel in which `flat_pixels` looks."""
 LEAST_MATCHED, FILLED = 0.2, 0.1
 """Confidence of the worst match, and of a value that comes from neighbours."""
 
@@ -26,23 +27,23 @@ def confidence(
     matched (UNKNOWN where nothing was) and final in sixteenths of a pixel; quality, what each match cost or scored.
     """
     out = np.empty(final.shape, np.float32)
-    table = by_quality.astype(np.float32)
-    in_blocks(final.shape[0], lambda a, b: _judge(matched, final, quality, table, a, b, out))
+    _judge(matched, final, quality, by_quality.astype(np.float32), out)
     return out
 
 
 def flat_pixels(grey: UInt8[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
-    """Where the 5 x 5 window holds one grey value only: nothing can be matched there."""
+    """Where nothing changes along the rows of the 5 x 5 window: any shift along them fits as well as any other."""
     import cv2
 
-    window = np.ones((5, 5), np.uint8)
-    return cv2.erode(grey, window) == cv2.dilate(grey, window)
+    row = np.ones((1, 2 * FLAT_REACH + 1), np.uint8)
+    level = (cv2.erode(grey, row) == cv2.dilate(grey, row)).view(np.uint8)
+    return cv2.erode(level, row.T).view(np.bool_)
 
 
 @njit(nogil=True, boundscheck=False, cache=True)
-def _judge(matched, final, quality, table, y0, y1, out):
-    for y in range(y0, y1):
+def _judge(matched, final, quality, table, out):
+    for y in range(final.shape[0]):
         for x in range(final.shape[1]):
             near = abs(int32(matched[y, x]) - int32(final[y, x])) <= AGREEMENT
-            known = matched[y, x] != UNKNOWN and near
-            out[y, x] = table[quality[y, x]] if known else np.float32(FILLED)
+            value = table[quality[y, x]]  # read in any case: whether it counts, no processor can guess
+            out[y, x] = value if near & (matched[y, x] != UNKNOWN) else np.float32(FILLED)

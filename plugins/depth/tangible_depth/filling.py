@@ -1,15 +1,7 @@
-"""Disparity where none was found, from what both views and the picture's edges say.
+"""Disparity where none was found: from the known pixels round a gap.
 
-The four nearest known neighbours (left, right, above, below) are the candidates for a pixel. Each is judged by
-
-- both views (binocular): had the pixel this disparity, it would be seen at column x - d of the right view. Where
-  something at least as near is known to be seen there, the pixel is hidden and the candidate explains why it had no
-  match; where something farther is seen, the candidate is contradicted; outside the picture it is explained as well;
-- the picture (monocular): grey steps crossed on the way from the neighbour, as a surface seldom goes on behind an edge;
-- the rule that what is hidden lies behind: farther candidates, and the farther one of the row first.
-
-The weights come from a logistic regression over four Middlebury pairs, rounded; results are flat around them.
-Source of the idea of filling from the farther side: Hirschmueller 2008, sec. 2.7.2.
+The four nearest known neighbours (left, right, above, below) are the candidates for a pixel, each with the grey steps
+crossed on the way from it; `candidates` judges them.
 """
 
 # ruff: noqa: ANN001, ANN202 -- numba finds the types of what it compiles; the docstrings say them
@@ -18,17 +10,12 @@ import numpy as np
 from jaxtyping import Int16, UInt8
 from numba import int32, njit
 
+from .candidates import ABOVE, BELOW, LEFT, RIGHT, alike, choose, seen_from_the_right
 from .span import UNKNOWN
 from .workers import in_blocks
 
-FARTHER_OF_ROW, CONTRADICTED, EXPLAINED = 1.2, -2.0, 1.0
-PER_ROOT_OF_GREY, PER_10_PX_NEARER = -0.2, -0.3
-ALIKE = 24
-"""Sixteenths of a pixel by which two disparities may differ and still be called the same surface."""
 SHORT = 2
 """Columns of a gap that is closed without asking, where both ends are alike."""
-LEFT, RIGHT, ABOVE, BELOW = range(4)
-NEVER = np.int32(32767)
 
 
 def fill(disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "h w"]) -> Int16[np.ndarray, "h w"]:
@@ -36,52 +23,68 @@ def fill(disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "h w"]) ->
 
     disparity is in sixteenths of a pixel.
     """
-    filled = _fill_once(disparity, grey)
-    if (filled == UNKNOWN).any() and (filled != UNKNOWN).any():  # some saw nothing along their row and column
-        filled = _fill_once(filled, grey)
+    filled, left_over = _fill_once(disparity, grey)
+    if 0 < left_over < filled.size:  # some saw nothing along their row and column
+        filled, _ = _fill_once(filled, grey)
     return filled
 
 
-def _fill_once(disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "h w"]) -> Int16[np.ndarray, "h w"]:
-    out = disparity.copy()
-    in_blocks(disparity.shape[0], lambda a, b: _fill_rows(disparity, grey, a, b, out))
-    return out
+def _fill_once(disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "h w"]) -> tuple[np.ndarray, int]:
+    """The map filled, and how many pixels could not be."""
+    out = np.empty_like(disparity)
+    left_over: list[int] = []
+    in_blocks(disparity.shape[0], lambda a, b: left_over.append(_fill_rows(disparity, grey, a, b, out)))
+    return out, sum(left_over)
 
 
 @njit(nogil=True, boundscheck=False, cache=True)
 def _fill_rows(disparity, grey, y0, y1, out):
+    """Rows y0..y1-1; how many of their pixels could not be filled."""
     w = disparity.shape[1]
+    left_over = 0
     sides, paths = np.empty((4, w), np.int16), np.empty((4, w), np.int32)
     below, below_path = np.empty((y1 - y0, w), np.int16), np.empty((y1 - y0, w), np.int32)
-    seen = np.empty(w, np.int16)
+    seen, columns, edges = np.empty(w + 2, np.int16), np.empty(w, np.int32), np.empty(w + 1, np.int64)
     _scan_up(disparity, grey, y0, y1, below, below_path)
     _start_above(disparity, grey, y0, sides[ABOVE], paths[ABOVE])
     for y in range(y0, y1):
         if y > 0:
             _carry(disparity[y - 1], grey[y - 1], grey[y], sides[ABOVE], paths[ABOVE])
-        sides[BELOW], paths[BELOW] = below[y - y0], below_path[y - y0]
-        _seen_from_the_right(disparity[y], seen)
-        start = 0
-        while start < w:
-            if disparity[y, start] != UNKNOWN:
-                start += 1
-                continue
-            stop = start + 1
-            while stop < w and disparity[y, stop] == UNKNOWN:
-                stop += 1
-            if stop - start <= SHORT and start > 0 and stop < w and _alike(disparity[y, start - 1], disparity[y, stop]):
+        _copy(below[y - y0], sides[BELOW])
+        _copy(below_path[y - y0], paths[BELOW])
+        _copy(disparity[y], out[y])
+        seen_from_the_right(disparity[y], columns, seen)
+        for gap in range(0, _edges_of_gaps(disparity[y], edges), 2):
+            start, stop = edges[gap], edges[gap + 1]
+            if stop - start <= SHORT and start > 0 and stop < w and alike(disparity[y, start - 1], disparity[y, stop]):
                 for x in range(start, stop):  # one of the many gaps between whole disparities
                     out[y, x] = min(disparity[y, start - 1], disparity[y, stop])
             else:
                 _scan_gap(disparity[y], grey[y], start, stop, sides, paths)
                 for x in range(start, stop):
-                    out[y, x] = _choose(sides, paths, x, seen)
-            start = stop
+                    out[y, x] = choose(sides, paths, x, seen)
+                    left_over += out[y, x] == UNKNOWN
+    return left_over
 
 
-@njit(inline="always")
-def _alike(a, b):
-    return abs(int32(a) - int32(b)) <= ALIKE
+@njit(nogil=True, boundscheck=False)
+def _edges_of_gaps(row, edges):
+    """Each gap's first column and the one after its last; how many numbers that are. Without a branch to guess."""
+    count = 0
+    inside = False
+    for x in range(row.size):
+        edges[count] = x
+        count += (row[x] == UNKNOWN) != inside
+        inside = row[x] == UNKNOWN
+    edges[count] = row.size
+    return count + inside
+
+
+@njit(nogil=True, boundscheck=False)
+def _copy(row, out):
+    """As `out[:] = row`, which numba does column by column."""
+    for x in range(row.size):
+        out[x] = row[x]
 
 
 @njit(nogil=True, boundscheck=False)
@@ -104,7 +107,8 @@ def _scan_up(disparity, grey, y0, y1, below, path):
         if y + 1 < h:
             _carry(disparity[y + 1], grey[y + 1], grey[y], carried, steps)
         if y < y1:
-            below[y - y0], path[y - y0] = carried, steps
+            _copy(carried, below[y - y0])
+            _copy(steps, path[y - y0])
 
 
 @njit(nogil=True, boundscheck=False)
@@ -143,53 +147,3 @@ def _scan_gap(row, grey, start, stop, sides, paths):
         x = stop - 1 - i
         path += abs(int32(grey[x]) - int32(grey[min(x + 1, w - 1)]))
         sides[RIGHT, x], paths[RIGHT, x] = right, path
-
-
-@njit(nogil=True, boundscheck=False)
-def _seen_from_the_right(row, seen):
-    """The nearest disparity known to be seen at each column of the right view, UNKNOWN where none is."""
-    seen[:] = UNKNOWN
-    for x in range(row.size):
-        if row[x] != UNKNOWN:
-            column = x - ((int32(row[x]) + 8) >> 4)
-            if 0 <= column < row.size:
-                seen[column] = max(seen[column], row[x])
-
-
-@njit(nogil=True, boundscheck=False)
-def _choose(sides, paths, x, seen):
-    """The candidate of the highest score; UNKNOWN if there is none."""
-    left, right, above, below = sides[LEFT, x], sides[RIGHT, x], sides[ABOVE, x], sides[BELOW, x]
-    row_farthest = min(_or_never(left), _or_never(right))
-    farthest = min(row_farthest, _or_never(above), _or_never(below))
-    if farthest == NEVER:
-        return UNKNOWN
-    if max(left, right, above, below) - farthest <= ALIKE:
-        return np.int16(farthest if row_farthest == NEVER else row_farthest)
-    best, best_score = UNKNOWN, np.float32(-1e9)
-    for side in range(4):
-        value = int32(sides[side, x])
-        score = _score(value, paths[side, x], farthest, row_farthest, x, seen)
-        best = np.int16(value) if score > best_score else best
-        best_score = max(score, best_score)
-    return best
-
-
-@njit(inline="always")
-def _or_never(value):
-    return NEVER if value == UNKNOWN else int32(value)
-
-
-@njit(inline="always")
-def _score(value, path, farthest, row_farthest, x, seen):
-    """Without branches: what a pixel's candidates are like, no processor can guess."""
-    column = x - ((value + 8) >> 4)
-    inside = (column >= 0) & (column < seen.size)
-    there = int32(seen[min(max(column, 0), seen.size - 1)])
-    explained = (not inside) | (there > value + ALIKE)
-    contradicted = inside & (there != UNKNOWN) & (there < value - ALIKE)
-    score = np.float32(PER_10_PX_NEARER / 160) * np.float32(value - farthest)
-    score += np.float32(PER_ROOT_OF_GREY) * np.sqrt(np.float32(path))
-    score += np.float32(EXPLAINED) * np.float32(explained) + np.float32(CONTRADICTED) * np.float32(contradicted)
-    score += np.float32(FARTHER_OF_ROW) * np.float32(value <= row_farthest + 8)
-    return np.float32(-1e9) if value == UNKNOWN else score

@@ -51,6 +51,17 @@ def highest(typing: Any, vec: Vec) -> Any:
 
 
 @operation
+def total(typing: Any, vec: Vec) -> Any:
+    """The sum of all lanes of integers; it wraps as a lane would."""
+
+    def emit(c: Any, b: Any, sig: Any, a: Any) -> Any:
+        kind = sig.args[0]
+        return emit_call(b, f"llvm.vector.reduce.add.{kind.mangled}", kind.llvm.element, a)
+
+    return vec.element(vec), emit
+
+
+@operation
 def first_equal(typing: Any, vec: Vec, scalar: Any) -> Any:
     """Index of the first lane equal to the scalar, which must occur."""
 

@@ -6,9 +6,10 @@ import logging
 from typing import TYPE_CHECKING
 
 import numpy as np
+from jaxtyping import UInt8
 
 from .adaptive import match
-from .confidence import LEAST_MATCHED, flat_pixels
+from .confidence import FLAT_REACH, LEAST_MATCHED
 from .costs import COSTS, SHARP
 from .dense import Dense, completed, enlarged
 from .notes import note
@@ -47,11 +48,16 @@ def _factor(span: Span, options: SemiGlobal) -> int:
     return factor
 
 
+def _has_texture(grey: UInt8[np.ndarray, "h w"], y0: int, y1: int) -> bool:
+    """Whether any pixel of rows y0..y1-1 is not flat (`flat_pixels`)."""
+    rows = grey[max(0, y0 - FLAT_REACH) : y1 + FLAT_REACH]
+    return not np.array_equal(rows[:, 1:], rows[:, :-1])
+
+
 def _match(pair: Pair, span: Span, options: SemiGlobal) -> Dense:
     rows = strips(pair.left.shape, span)
     if options.skip_flat:
-        flat: np.ndarray = np.all(flat_pixels(pair.left), axis=1)
-        textured = [(a, b) for a, b in rows if not flat[a:b].all()]
+        textured = [each for each in rows if _has_texture(pair.left, *each)]
         if len(textured) < len(rows):
             note(log, f"skipped: {len(rows) - len(textured)} of {len(rows)} strips, which have no texture")
         rows = textured

@@ -44,13 +44,13 @@ class SemiGlobal(DepthEstimator):
     skip_identical: bool = True
     """Whether a second view that equals the first is known by looking: every disparity is 0."""
     skip_flat: bool = True
-    """Whether strips without any texture are filled instead of matched."""
+    """Whether strips in which nothing changes along the rows are filled instead of matched."""
 
     def estimate(self, views: Views) -> DisparityMap:
         """Disparity in pixels, float32 (h, w), and its confidence; a filled map is finite unless nothing matched.
 
         Confidence: 1 - (differing bits along the winner's four paths) / (all bits) where a match was found, at least
-        0.2; 0.1 where the value was filled or decided by a neighbour; 0 in windows of one grey value.
+        0.2; 0.1 where the value was filled or decided by a neighbour; 0 where nothing changes along the rows.
         Raises: PictureError if there is no right view or the range is empty.
         """
         from .adaptive import MOST_OFFSET_PX

@@ -34,7 +34,7 @@ class Zncc(DepthEstimator):
         """Disparity in pixels, float32 (h, w), and its confidence; a filled map is finite unless nothing matched.
 
         Confidence: the correlation where a match was found, at least 0.2; 0.1 where the value was filled or decided by
-        a neighbour; 0 in windows of one grey value.
+        a neighbour; 0 where nothing changes along the rows.
         Raises: PictureError if there is no right view or the range is empty.
         """
         from .raw_pairs import estimate_raw

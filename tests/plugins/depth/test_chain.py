@@ -151,6 +151,12 @@ def test_flat_pixels_have_one_grey_value_all_round():
     assert np.array_equal(flat_pixels(grey), np.maximum(*np.abs(np.indices(grey.shape) - 6)) > 2)
 
 
+def test_pixels_are_flat_where_their_rows_do_not_change():
+    level = np.tile(np.arange(0, 240, 20, dtype=np.uint8)[:, None], (1, 12))
+    assert flat_pixels(level).all()
+    assert not flat_pixels(np.ascontiguousarray(level.T)).any()
+
+
 def test_a_plane_is_enlarged_exactly():
     y, x = np.indices((20, 30))
     small = (4 * x + 2 * y + 100).astype(np.int16)

@@ -1,9 +1,10 @@
-"""The range found on small copies: how much of the truth it covers, and what it costs."""
+"""The range found in a few bands: how much of the truth is tried, and what finding it costs."""
 
 from functools import partial
 
 import numpy as np
 
+from tangible_depth.asked import asked_span
 from tangible_depth.search_range import find_range
 from tangible_depth.semi_global import SemiGlobal
 
@@ -36,10 +37,10 @@ def figures() -> list[Figure]:
 
 
 def coverage(scene: Known) -> float:
-    """Share of the true disparities within the range that is found, in percent."""
-    found, truth = find_range(scene.grey), scene.pair.truth_px
+    """Share of the true disparities within the range that is tried, in percent."""
+    span, truth = asked_span(scene.grey, "auto", "auto").span, scene.pair.truth_px
     truth = truth[np.isfinite(truth)]
-    return 100 * float(np.mean((truth >= found.span.low) & (truth <= found.span.high))) if found else 0.0
+    return 100 * float(np.mean((truth >= span.low) & (truth <= span.high)))
 
 
 def cost(scene: Known) -> float:

@@ -12,12 +12,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from .bands import match_bands
 from .census import BITS
 from .costs import HEAVY, LIGHT, SHARP, Cost
 from .notes import note
 from .pairs import Pair
-from .row_offset import realigned, row_offset
-from .search_range import find_range
+from .row_offset import CELL_PX, LEAST_OFFSET_PX, realigned, row_offset
 from .span import UNKNOWN, Span
 from .speckles import remove_speckles
 from .strips import Swept, blank, sweep
@@ -25,8 +25,6 @@ from .strips import Swept, blank, sweep
 log = logging.getLogger(__name__)
 DOUBT, LEAST_DIFFERING, NOISE = 0.06, 0.28, 0.20
 """Loss, or share of differing bits, from which the light cost is taken; loss from which the heavy one is."""
-LEAST_OFFSET_PX = 0.3
-"""Smaller offsets of rows are left alone."""
 MOST_OFFSET_PX = 1.0
 """Offsets of rows up to here are found and put right on the way."""
 PROBE_ROWS = 64
@@ -42,7 +40,7 @@ def match(pair: Pair, span: Span, cost: Cost | None, tolerance: float, realign: 
         return trial.out, cost
     probes, rest = _probes(rows)
     health = trial.health(probes)
-    offset = _offset(trial, probes, health) if realign else 0.0
+    offset = _offset(trial, probes, span, health) if realign else 0.0
     if abs(offset) > LEAST_OFFSET_PX:
         note(log, f"rows realigned by {offset:.2f} px")
         trial = _Trial(realigned(pair, offset), span, cost or SHARP, tolerance)
@@ -103,13 +101,9 @@ def _probes(rows: Rows) -> tuple[Rows, Rows]:
     return probes, [(a, b) for a, b in rest if a < b]
 
 
-def _offset(trial: _Trial, rows: Rows, health: _Health) -> float:
-    pair = trial.pair
-    if health.loss < NOISE:
-        return row_offset(pair, trial.out.disparity, rows)
-    found = find_range(pair)  # the matches themselves are suspect: a map of a small copy is rougher but sound
-    if found is None:
-        return 0.0
-    rough = np.repeat(np.repeat(found.rough, found.factor, 0), found.factor, 1)[: pair.left.shape[0], : pair.width]
-    rough = np.where(rough == UNKNOWN, UNKNOWN, np.clip(rough.astype(np.int32) * found.factor, -32767, 32767))
-    return row_offset(pair, rough.astype(np.int16), rows, reach=4, slack=2)
+def _offset(trial: _Trial, probes: Rows, span: Span, health: _Health) -> float:
+    if health.loss >= NOISE:  # the matches themselves are suspect: bands average the noise away
+        bands = match_bands(trial.pair, span)
+        return row_offset(trial.pair, bands.rows, bands.disparity, bands.factor)
+    rows = np.array([y for a, b in probes for y in range(a + CELL_PX // 2, b, CELL_PX)], np.int64)
+    return row_offset(trial.pair, rows, trial.out.disparity[rows])

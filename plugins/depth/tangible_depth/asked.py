@@ -1,10 +1,11 @@
 """The disparities to try: those asked for, or those that occur."""
 
 import logging
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from tangible_core.errors import PictureError
 
+from .bands import Bands
 from .notes import note
 from .pairs import Pair
 from .search_range import find_range
@@ -14,20 +15,27 @@ log = logging.getLogger(__name__)
 Auto = Literal["auto"]
 
 
-def asked_span(pair: Pair, least: int | Auto, most: int | Auto) -> Span:
-    """least..most - 1 px. auto: found on small copies of the pair, or a least of 0 where the most is given.
+class Asked(NamedTuple):
+    """The disparities to try, and what was matched to find them, if they were not told."""
+
+    span: Span
+    bands: Bands | None
+
+
+def asked_span(pair: Pair, least: int | Auto, most: int | Auto) -> Asked:
+    """least..most - 1 px. auto: found in a few bands of the pair, or a least of 0 where the most is given.
 
     Raises: PictureError if these are no disparities.
     """
     if most == "auto":
-        return _found(pair, least).within(pair.width)
+        return _found(pair, least)
     low = 0 if least == "auto" else least
     if low >= most:
         raise PictureError(f"no disparity is in {low}..{most - 1} px; raise max_disparity_px or lower min_disparity_px")
-    return Span(low, most - 1).within(pair.width)
+    return Asked(Span(low, most - 1).within(pair.width), None)
 
 
-def _found(pair: Pair, least: int | Auto) -> Span:
+def _found(pair: Pair, least: int | Auto) -> Asked:
     found = find_range(pair)
     low, high = (0, 15) if found is None else found.span
     if found is not None and found.swapped:
@@ -36,4 +44,5 @@ def _found(pair: Pair, least: int | Auto) -> Span:
     if least != "auto":
         low, high = least, max(high, least)
     note(log, f"skipped: disparities outside {low}..{high} px, which do not occur")
-    return Span(low, high).filled() if high > 0 else Span(low, high)
+    span = Span(low, high).filled() if high > 0 else Span(low, high)
+    return Asked(span.within(pair.width), found and found.bands)

@@ -4,7 +4,7 @@ Source: Zabih & Woodfill, Non-parametric local transforms for computing visual c
 the order of grey values only, so that exposure, gain and gamma of the two pictures may differ.
 """
 
-# ruff: noqa: ANN001, ANN202 -- numba finds the types of what it compiles; the docstrings say them
+# ruff: noqa: ANN001, ANN201 -- numba finds the types of what it compiles; the docstrings say them
 
 from collections.abc import Sequence
 
@@ -48,12 +48,12 @@ def _coded(greys: Sequence[np.ndarray]) -> UInt8[np.ndarray, "h planes whole"]:
     codes = np.zeros((h, PLANES * len(greys), w + -w % BLOCK), np.uint8)
     for i, grey in enumerate(greys):
         padded = cv2.copyMakeBorder(grey, RADIUS, RADIUS, RADIUS, RADIUS + -w % BLOCK, cv2.BORDER_REPLICATE)
-        in_blocks(h, lambda a, b, padded=padded, i=i: _codes(padded, OFFSETS, PLANES * i, a, b, codes))
+        in_blocks(h, lambda a, b, padded=padded, i=i: code_rows(padded, OFFSETS, PLANES * i, a, b, codes))
     return codes
 
 
 @njit(nogil=True, boundscheck=False, cache=True)
-def _codes(padded, offsets, first_plane, y0, y1, codes):
+def code_rows(padded, offsets, first_plane, y0, y1, codes):
     """Rows y0..y1-1, one neighbour after the other along a whole row: each inner loop is plain vector code."""
     w = codes.shape[2]
     for y in range(y0, y1):

@@ -10,6 +10,7 @@ from .asked import Auto, asked_span
 from .confidence import flat_pixels
 from .dense import Dense, as_map
 from .pairs import Pair
+from .raw_pairs import check_rows
 from .span import Span
 
 Matcher = Callable[[Pair, Span], Dense]
@@ -21,7 +22,8 @@ def disparity_map(pair: Pair, least: int | Auto, most: int | Auto, fill: bool, m
     Where these are negative throughout, the views are exchanged: mirrored they are a pair in the right order, in which
     what is hidden lies on the side where the matchers expect it.
     """
-    span = asked_span(pair, least, most)
+    span, bands = asked_span(pair, least, most)
+    pair = check_rows(pair, span, bands)
     if span.high > 0 or pair.width == 1:
         return as_map(match(pair, span), pair.left, fill)
     flipped = pair.mirrored()

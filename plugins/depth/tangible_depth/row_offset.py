@@ -5,10 +5,8 @@ Half a pixel of vertical offset already costs a matcher of rows a good part of i
 
 # ruff: noqa: ANN001, ANN202 -- numba finds the types of what it compiles; the docstrings say them
 
-from collections.abc import Sequence
-
 import numpy as np
-from jaxtyping import Int16, Int64, UInt8
+from jaxtyping import Float32, Int16, Int64
 from numba import njit
 
 from .pairs import Pair
@@ -16,27 +14,36 @@ from .span import UNKNOWN
 from .subpixel import parabola
 from .workers import in_blocks
 
-CELL_PX, MOST_POINTS, LEAST_VOTES = 12, 400, 20
+CELL_PX, NEAR_PX, MOST_POINTS, LEAST_VOTES = 12, 1, 250, 20
+LEAST_OFFSET_PX = 0.3
+"""Smaller offsets of rows are left alone."""
 LEAST_EDGE = 40
 """Sobel response over rows from which a pixel says something about its row."""
-RADIUS = 3
+RADIUS, REACH = 3, 2
 LEAST_CORRELATION, LEAST_BEND = 0.7, 0.02
 
 
-def row_offset(
-    pair: Pair, rough: Int16[np.ndarray, "h w"], rows: Sequence[tuple[int, int]], reach: int = 2, slack: int = 1
-) -> float:
-    """Median of (row in the right view - row in the left view) over up to MOST_POINTS horizontal edges; 0 if too few.
+def row_votes(
+    pair: Pair, rows: Int64[np.ndarray, "n"], disparity: Int16[np.ndarray, "n w/factor"], factor: int = 1
+) -> Float32[np.ndarray, "votes"]:
+    """Row in the right view - row in the left view, in pixels, of up to MOST_POINTS horizontal edges on or near `rows`.
 
-    Parameters: rough, disparities in sixteenths of a pixel, UNKNOWN where there is none; rows, the ranges of rows to
-    look at; reach, offsets up to reach - 1 pixels are measured; slack, by how many pixels `rough` may be wrong.
+    NaN where the views do not agree on an offset of a good pixel at most.
+    disparity: of these rows, in sixteenths of `factor` pixels, UNKNOWN where there is none.
     """
-    points = np.concatenate([np.empty((0, 3), np.int64), *(_edge_points(pair.left, rough, *each) for each in rows)])
+    points = np.empty((len(rows) * (pair.width // CELL_PX), 3), np.int64)
+    points = points[: _edge_points(pair.left, rows, disparity, factor, points)]
     points = np.ascontiguousarray(points[:: 1 + len(points) // MOST_POINTS])
-    offsets = np.full(len(points), np.nan, np.float32)
-    in_blocks(len(points), lambda a, b: _offsets(*pair, points, reach, slack, a, b, offsets))
-    votes = offsets[np.isfinite(offsets)]
-    return float(np.median(votes)) if votes.size >= LEAST_VOTES else 0.0
+    votes = np.full(len(points), np.nan, np.float32)
+    in_blocks(len(points), lambda a, b: _offsets(*pair, points, REACH, factor, a, b, votes))
+    return votes
+
+
+def row_offset(pair: Pair, rows: Int64[np.ndarray, "n"], disparity: Int16[np.ndarray, "n w"], factor: int = 1) -> float:
+    """Median of the `row_votes`; 0 if they are too few."""
+    votes = row_votes(pair, rows, disparity, factor)
+    agreed = votes[np.isfinite(votes)]
+    return float(np.median(agreed)) if agreed.size >= LEAST_VOTES else 0.0
 
 
 def realigned(pair: Pair, offset: float) -> Pair:
@@ -51,24 +58,25 @@ def realigned(pair: Pair, offset: float) -> Pair:
     return Pair(pair.left, moved)  # pyright: ignore[reportArgumentType]
 
 
-def _edge_points(
-    left: UInt8[np.ndarray, "h w"], rough: Int16[np.ndarray, "h w"], y0: int, y1: int
-) -> Int64[np.ndarray, "n 3"]:
-    """Row, column and disparity of the strongest horizontal edge with a disparity in each cell of rows y0..y1-1."""
-    import cv2
-
-    known = rough[y0:y1]
-    edges = cv2.convertScaleAbs(cv2.Sobel(left[y0:y1], cv2.CV_16S, 0, 1)) * (known != UNKNOWN)
-    down, across = edges.shape[0] // CELL_PX, edges.shape[1] // CELL_PX
-    cells = edges[: down * CELL_PX, : across * CELL_PX].reshape(down, CELL_PX, across, CELL_PX)
-    cells = cells.transpose(0, 2, 1, 3).reshape(down * across, CELL_PX * CELL_PX)
-    if cells.size == 0:
-        return np.empty((0, 3), np.int64)
-    at = cells.argmax(1)
-    rows, columns = np.divmod(np.arange(down * across), across)
-    y, x = rows * CELL_PX + at // CELL_PX, columns * CELL_PX + at % CELL_PX
-    strong = cells.max(1) > LEAST_EDGE
-    return np.stack([y + y0, x, (known[y, x].astype(np.int64) + 8) >> 4], 1)[strong]
+@njit(nogil=True, boundscheck=False, cache=True)
+def _edge_points(left, rows, disparity, factor, points):
+    """Row, column and disparity of the strongest horizontal edge in each cell round the rows; returns how many."""
+    h, w = left.shape
+    count = 0
+    for i in range(rows.size):
+        for first in range(1, w - CELL_PX, CELL_PX):
+            strongest = np.int64(LEAST_EDGE)
+            for y in range(max(rows[i] - NEAR_PX, 1), min(rows[i] + NEAR_PX + 1, h - 1)):
+                up, down = left[y - 1], left[y + 1]
+                for x in range(first, first + CELL_PX):
+                    edge = np.int64(down[x - 1]) + 2 * down[x] + down[x + 1]
+                    edge = abs(edge - np.int64(up[x - 1]) - 2 * up[x] - up[x + 1])
+                    here = disparity[i, x // factor]
+                    if edge > strongest and here != UNKNOWN:
+                        strongest = edge
+                        points[count] = y, x, (np.int64(here) * factor + 8) >> 4
+            count += strongest > LEAST_EDGE
+    return count
 
 
 @njit(nogil=True, boundscheck=False, cache=True, error_model="numpy")
@@ -97,10 +105,10 @@ def _offsets(left, right, points, reach, slack, first, last, offsets):
 @njit(nogil=True, boundscheck=False, error_model="numpy")
 def _correlation(left, y, x, right, v, u):
     """Zero-mean normalised cross-correlation of two windows; -1 if either is nearly flat."""
-    a_sum = b_sum = aa = bb = ab = np.int64(0)
+    a_sum = b_sum = aa = bb = ab = np.int32(0)
     for i in range(-RADIUS, RADIUS + 1):
         for j in range(-RADIUS, RADIUS + 1):
-            a, b = np.int64(left[y + i, x + j]), np.int64(right[v + i, u + j])
+            a, b = np.int32(left[y + i, x + j]), np.int32(right[v + i, u + j])
             a_sum += a
             b_sum += b
             aa += a * a

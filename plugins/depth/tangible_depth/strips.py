@@ -46,8 +46,9 @@ def sweep(
     tolerance: float,
     only: Sequence[tuple[int, int]],
     out: Swept,
+    warm: int = WARM_ROWS,
 ) -> None:
-    """Match the strips `only` and write them into `out`.
+    """Match the strips `only` and write them into `out`; their paths begin `warm` rows early.
 
     Every strip is independent of the others, so the result does not depend on how many threads there are.
     """
@@ -58,6 +59,6 @@ def sweep(
     def work(share: list[tuple[int, int]]) -> None:
         total = np.empty((highest, w * n), np.uint8)
         for rows in share:
-            sweep_strip(lanes, *codes, grey, rows, WARM_ROWS, span, prices, np.float32(tolerance), total, *out)
+            sweep_strip(lanes, *codes, grey, rows, warm, span, prices, np.float32(tolerance), total, *out)
 
     in_turns(list(only), work)

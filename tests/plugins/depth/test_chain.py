@@ -11,7 +11,9 @@ from hypothesis.extra.numpy import arrays
 
 from stereo_scenes import slanted, step, texture
 from tangible_core.data import Views
+from tangible_core.testing.stereo_scenes import synthetic_pair
 from tangible_depth import workers
+from tangible_depth.asked import asked_span
 from tangible_depth.census import census
 from tangible_depth.confidence import confidence, flat_pixels
 from tangible_depth.dense import Dense, as_map, enlarged
@@ -190,6 +192,14 @@ def test_the_range_covers_what_occurs_and_little_more(offset):
     assert found.swapped == bool(truth.max() < 0)
 
 
+@pytest.mark.parametrize("seed", range(3))
+def test_a_thin_thing_before_a_wall_widens_the_range(seed):
+    pair = synthetic_pair("bars", 480, 360, seed)
+    span = asked_span(grey_pair(pair.views, "test"), "auto", "auto").span
+    assert np.mean((pair.truth_px >= span.low) & (pair.truth_px <= span.high)) >= 0.999
+    assert span.lanes == 64
+
+
 def test_a_pair_in_which_nothing_matches_has_no_range():
     assert find_range(Pair(np.zeros((40, 60), np.uint8), np.zeros((40, 60), np.uint8))) is None
 
@@ -198,16 +208,16 @@ def test_a_pair_in_which_nothing_matches_has_no_range():
 def test_an_offset_of_rows_is_measured_and_put_right(rows):
     y, x = np.indices((160, 240), float)
     pair = Pair(texture(x, y), texture(x + 5, y - rows))
-    rough = np.full((160, 240), 80, np.int16)
-    measured = row_offset(pair, rough, [(0, 160)], reach=3)
+    at, disparity = np.arange(6, 160, 12), np.full((13, 240), 80, np.int16)
+    measured = row_offset(pair, at, disparity)
     assert measured == pytest.approx(rows, abs=0.12)
     again = realigned(pair, measured)
-    assert row_offset(again, rough, [(0, 160)], reach=3) == pytest.approx(0, abs=0.12)
+    assert row_offset(again, at, disparity) == pytest.approx(0, abs=0.12)
 
 
 def test_an_offset_needs_votes():
     pair = Pair(*np.full((2, 60, 60), 9, np.uint8))
-    assert row_offset(pair, np.zeros((60, 60), np.int16), [(0, 60)]) == 0
+    assert row_offset(pair, np.arange(6, 60, 12), np.zeros((5, 60), np.int16)) == 0
 
 
 def test_bytes_keep_their_values_and_halves_are_brightened():

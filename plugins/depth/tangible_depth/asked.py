@@ -8,7 +8,7 @@ from tangible_core.errors import PictureError
 from .bands import Bands
 from .notes import note
 from .pairs import Pair
-from .search_range import find_range
+from .search_range import find_range, reach_px
 from .span import Span
 
 log = logging.getLogger(__name__)
@@ -37,12 +37,13 @@ def asked_span(pair: Pair, least: int | Auto, most: int | Auto) -> Asked:
 
 def _found(pair: Pair, least: int | Auto) -> Asked:
     found = find_range(pair)
-    low, high = (0, 15) if found is None else found.span
+    low, high = (0, reach_px(pair.width)) if found is None else found.span
     if found is not None and found.swapped:
         note(log, "every disparity is negative: the views seem to be exchanged (left is right)", logging.WARNING)
         high = min(high, 0)
     if least != "auto":
         low, high = least, max(high, least)
-    note(log, f"skipped: disparities outside {low}..{high} px, which do not occur")
+    why = "beyond what is searched where nothing stands out" if found is None else "which do not occur"
+    note(log, f"skipped: disparities outside {low}..{high} px, {why}")
     span = Span(low, high).filled() if high > 0 else Span(low, high)
     return Asked(span.within(pair.width), found and found.bands)

@@ -28,10 +28,14 @@ class Found(NamedTuple):
     """Whether every disparity is negative, which parallel cameras in the right order cannot give."""
 
 
+def reach_px(width: int) -> int:
+    """The largest disparity of either sign that a picture of this width is searched for."""
+    return round(REACH * width)
+
+
 def find_range(pair: Pair) -> Found | None:
     """The disparities that occur, of either sign; None if nothing at all matches."""
-    width = pair.width
-    reach = round(REACH * width)
+    width, reach = pair.width, reach_px(pair.width)
     first = _look(pair, Span(-reach, reach), FIRST_WIDTH, FIRST_MARGIN)
     if first is None:
         return None

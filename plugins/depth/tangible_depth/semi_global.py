@@ -1,14 +1,11 @@
 """Semi-global matching of census codes: the default, for its time and its error."""
 
-import logging
 from typing import Annotated, Literal
 
 from pydantic import Field
 
 from tangible_core.data import DisparityMap, Views
 from tangible_core.interfaces import DepthEstimator
-
-log = logging.getLogger(__name__)
 
 
 class SemiGlobal(DepthEstimator):
@@ -25,7 +22,7 @@ class SemiGlobal(DepthEstimator):
     """
 
     max_disparity_px: Annotated[int, Field(ge=1)] | Literal["auto"] = "auto"
-    """Disparities from the least to one less than this are tried; auto: the range is found on a small copy."""
+    """Disparities from the least to one less than this are tried; auto: found in a few bands of the pair."""
     min_disparity_px: int | Literal["auto"] = "auto"
     """The least disparity tried; auto: 0 if the largest is given, else found with the range, of either sign."""
     resolution: Literal["full", "half", "auto"] = "auto"
@@ -54,23 +51,15 @@ class SemiGlobal(DepthEstimator):
         Raises: PictureError if there is no right view or the range is empty.
         """
         from .adaptive import MOST_OFFSET_PX
-        from .raw_pairs import estimate_raw
-
-        realigns = self.realign_rows and self.resolution != "half"
-        return estimate_raw(views, self._matched, self.rectify, MOST_OFFSET_PX if realigns else 0.0)
-
-    def _matched(self, views: Views) -> DisparityMap:
-        import numpy as np
-
-        from .chain import disparity_map, nothing_moved
-        from .notes import note
-        from .pairs import grey_pair
+        from .chain import Search, disparity_map
         from .scaled import match_scaled
 
-        pair = grey_pair(views, "semi-global")
-        if self.skip_identical and np.array_equal(*pair):
-            note(log, "skipped: matching, as both views are identical")
-            return nothing_moved(pair, self.fill)
-        return disparity_map(
-            pair, self.min_disparity_px, self.max_disparity_px, self.fill, lambda p, span: match_scaled(p, span, self)
+        search = Search(
+            self.min_disparity_px,
+            self.max_disparity_px,
+            self.rectify,
+            self.fill,
+            realigns_px=MOST_OFFSET_PX if self.realign_rows and self.resolution != "half" else 0.0,
+            skip_identical=self.skip_identical,
         )
+        return disparity_map(views, "semi-global", search, lambda pair, span: match_scaled(pair, span, self))

@@ -22,7 +22,7 @@ class Zncc(DepthEstimator):
     window_px: WindowSide = 7
     """Side of the square window, odd."""
     max_disparity_px: Annotated[int, Field(ge=1, le=512)] | Literal["auto"] = "auto"
-    """Disparities from the least to one less than this are tried; auto: the range is found on a small copy."""
+    """Disparities from the least to one less than this are tried; auto: found in a few bands of the pair."""
     min_disparity_px: int | Literal["auto"] = "auto"
     """The least disparity tried; auto: 0 if the largest is given, else found with the range, of either sign."""
     rectify: Literal["auto", "never"] = "auto"
@@ -37,20 +37,8 @@ class Zncc(DepthEstimator):
         a neighbour; 0 where nothing changes along the rows.
         Raises: PictureError if there is no right view or the range is empty.
         """
-        from .raw_pairs import estimate_raw
-
-        return estimate_raw(views, self._matched, self.rectify)
-
-    def _matched(self, views: Views) -> DisparityMap:
-        from .chain import disparity_map
-        from .pairs import grey_pair
+        from .chain import Search, disparity_map
         from .windows import match_by_correlation
 
-        pair = grey_pair(views, "zncc")
-        return disparity_map(
-            pair,
-            self.min_disparity_px,
-            self.max_disparity_px,
-            self.fill,
-            lambda p, span: match_by_correlation(p, span, self.window_px),
-        )
+        search = Search(self.min_disparity_px, self.max_disparity_px, self.rectify, self.fill)
+        return disparity_map(views, "zncc", search, lambda pair, span: match_by_correlation(pair, span, self.window_px))

@@ -11,7 +11,7 @@ from tangible_depth.bands import match_bands
 from tangible_depth.corner_look import corners_correspond
 from tangible_depth.notes import collected
 from tangible_depth.pairs import Pair, grey_pair
-from tangible_depth.raw_pairs import common_offset, estimate_raw
+from tangible_depth.raw_pairs import common_offset
 from tangible_depth.search_range import find_range
 from tangible_depth.span import Span
 from tangible_depth.zncc import Zncc
@@ -118,12 +118,13 @@ def test_a_raw_pair_is_matched_nearly_as_well_as_a_rectified_one():
 
 def test_a_rectified_pair_gives_the_methods_own_map():
     views = synthetic_pair("planes", 320, 240).views
-    assert estimate_raw(views, Zncc().estimate, "auto").digest() == Zncc().estimate(views).digest()
+    assert Zncc().estimate(views).digest() == Zncc(rectify="never").estimate(views).digest()
 
 
 def test_a_calibrated_pair_is_not_looked_at():
     views = rolled(2)
     calibrated = Views(views.left, views.right, Calibration(300.0, 0.1))
-    seen = []
-    estimate_raw(calibrated, lambda each: seen.append(each) or Zncc(max_disparity_px=16).estimate(each), "auto")
-    assert seen == [calibrated]
+    with collected() as notes:
+        found = Zncc(max_disparity_px=16).estimate(calibrated)
+    assert not any("rows" in each or "rectified" in each for each in notes)
+    assert found.digest() == Zncc(max_disparity_px=16, rectify="never").estimate(views).digest()

@@ -10,11 +10,14 @@ from stereo_scenes import slanted, step
 from tangible_core import load_method
 from tangible_core.data import Views
 from tangible_core.errors import PictureError
+from tangible_depth.correlation import correlate_strip
+from tangible_depth.lanes import Lanes
 from tangible_depth.odd import WindowSide
 from tangible_depth.pairs import Pair
 from tangible_depth.similarity import matching_value, squared_difference
 from tangible_depth.span import UNKNOWN, Span
-from tangible_depth.windows import _match
+from tangible_depth.strips import blank
+from tangible_depth.windows import LEAST_VARIANCE
 
 WINDOWS = arrays(np.float64, (5, 5), elements=st.integers(0, 255).map(float))
 
@@ -61,7 +64,10 @@ def plain_scores(left, right, span, side, squared):
 def test_scores_are_exact_and_the_best_of_both_views_agree(squared, span, side):
     views, _, _ = step(shape=(12, 48), back=2, front=6, box=(3, 9, 14, 34))
     pair = Pair(np.asarray(views.left), np.asarray(views.right))
-    disparity, tops = _match(pair, span, side, squared, -1e29 if squared else 0.0)
+    disparity, _ = blank(pair.left.shape)
+    tops = np.full(pair.left.shape, -1e30, np.float32)
+    how = (side // 2, span, np.float32(-1e29 if squared else 0.0), LEAST_VARIANCE)
+    correlate_strip(Lanes(span.lanes), squared, *pair, (0, 12), *how, disparity, tops)
     scores = plain_scores(*pair, span, side, squared)
     best = scores.max(axis=-1)
     seen = np.isfinite(best)

@@ -32,12 +32,16 @@ app = typer.Typer(
     rich_markup_mode=None,  # rich help costs more than all the rest of the start
 )
 
+materials_app = typer.Typer(name="materials")
+app.add_typer(materials_app)
+
 Config = Annotated[Path, typer.Argument(help="A pipeline file (YAML).", show_default=False)]
 Sets = Annotated[
     list[str] | None, typer.Option("--set", metavar="KEY.KEY=VALUE", help="Override one value; repeatable.")
 ]
 Out = Annotated[Path | None, typer.Option("--out", help="Folder for results [default: out/NAME].")]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON for a program to read.")]
+Library = Annotated[Path | None, typer.Option(help="A YAML file of your own, added to the shipped materials.")]
 NoCache = Annotated[bool, typer.Option("--no-cache", help="Neither read nor keep results between runs.")]
 Seconds = Annotated[float, typer.Option(help="How long the hand feels the surface.")]
 
@@ -126,11 +130,15 @@ def plugins(as_json: Json = False) -> None:
 def schema(
     markdown: Annotated[bool, typer.Option("--markdown", help="A reference page instead of JSON Schema.")] = False,
     installed: Annotated[bool, typer.Option("--installed", help="Third parties' methods too.")] = False,
+    materials: Annotated[bool, typer.Option("--materials", help="Of files of materials instead.")] = False,
 ) -> None:
     """Print the JSON Schema of pipeline files, for completion in editors."""
     from .commands import schema as command
 
-    command.schema(markdown, installed)
+    if materials:
+        command.schema_of_materials()
+    else:
+        command.schema(markdown, installed)
 
 
 @app.command()
@@ -146,15 +154,40 @@ def check(
         raise typer.Exit(FAILED)
 
 
-@app.command()
-def materials(
-    library: Annotated[Path | None, typer.Option(help="A YAML file of your own, added to the shipped ones.")] = None,
-    as_json: Json = False,
-) -> None:
-    """List the materials, with units and sources."""
+@materials_app.callback(invoke_without_command=True)
+def materials(context: typer.Context, library: Library = None, as_json: Json = False) -> None:
+    """List the materials, with units and sources; show or draw some."""
     from .commands import materials as command
 
-    command.materials(library, as_json)
+    if context.invoked_subcommand is None:
+        command.materials(library, as_json)
+    elif library or as_json:
+        raise ConfigError(f"materials: write the options after {context.invoked_subcommand!r}")
+
+
+@materials_app.command("show")
+def materials_show(
+    name: Annotated[str, typer.Argument(help="The material, as `tangible materials` lists it.", show_default=False)],
+    library: Library = None,
+    as_json: Json = False,
+) -> None:
+    """Say everything of one material: each value with its unit and its source, and its texture."""
+    from .commands import materials as command
+
+    command.show_one(name, library, as_json)
+
+
+@materials_app.command("draw")
+def materials_draw(
+    names: Annotated[list[str] | None, typer.Argument(help="The materials [default: all].", show_default=False)] = None,
+    out: Annotated[Path, typer.Option("--out", help="Folder for the pictures.")] = Path("out/materials"),
+    library: Library = None,
+    as_json: Json = False,
+) -> None:
+    """Draw materials, a picture each: the surface, its spectrum, the force of a stroke."""
+    from .commands import materials as command
+
+    command.draw(names or [], out, library, as_json)
 
 
 def main() -> None:

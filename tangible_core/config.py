@@ -7,8 +7,10 @@ from typing import Annotated, Any, Generic, Literal, TypeVar, cast
 
 from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag
 
-from .errors import TangibleError, did_you_mean
+from .errors import ConfigError, MaterialError, TangibleError, did_you_mean
 from .interfaces import DepthEstimator, ForceRenderer, HapticDevice, Method, Segmenter
+from .material_rules import MaterialRule
+from .materials import NEUTRAL, find, load_library
 from .registry import Registry
 from .scene import BUILTINS, SceneFiles, unknown_scene
 from .source import Location, Source, parse_source, read_text
@@ -43,11 +45,16 @@ class Workspace(Section):
 class MaterialChoice(Section):
     """Which material each segment gets."""
 
+    rules: tuple[MaterialRule, ...] = ()
+    """These decide first; of several that fit a segment, the first."""
     by: Annotated[
-        Annotated[Literal["roughness"], Tag(":word")] | Annotated[dict[int, str], Tag(":labels")],
+        Annotated[Literal["roughness", "rules"], Tag(":word")] | Annotated[dict[int, str], Tag(":labels")],
         Discriminator(lambda value: ":labels" if isinstance(value, dict) else ":word"),
     ] = "roughness"
-    """`roughness`: the rougher a segment within this picture, the rougher its material. Or a map from label to name."""
+    """What no rule decides. `roughness`: the rougher a segment within this picture, the rougher its material. Or a map
+    from label to name; or `rules`, for nothing more than those."""
+    default: str = NEUTRAL
+    """The material of segments that nothing decides."""
     library: Path | None = None
     """A YAML file of materials of your own, added to those that are shipped."""
 
@@ -160,4 +167,23 @@ def _sections(source: Source) -> dict[str, Any]:
     labels = blocks.get("materials")
     if isinstance(labels, dict) and any(isinstance(key, int) for key in cast("dict[Any, Any]", labels)):
         blocks["materials"] = {"by": labels}
-    return {key: source.model((key,), SECTIONS[key], block) for key, block in blocks.items()}
+    found = {key: source.model((key,), SECTIONS[key], block) for key, block in blocks.items()}
+    if found.get("materials") is not None:
+        _check_names(source, found["materials"])
+    return found
+
+
+def _check_names(source: Source, choice: MaterialChoice) -> None:
+    """Complain of materials that are not in the library; of one that cannot be read, whoever uses it complains."""
+    try:
+        library = load_library(choice.library)
+    except ConfigError:
+        return
+    named: list[tuple[Location, str]] = [(("default",), choice.default)]
+    named += [(("rules", number, "material"), rule.material) for number, rule in enumerate(choice.rules)]
+    named += [((label,), name) for label, name in (choice.by.items() if isinstance(choice.by, dict) else ())]
+    for place, name in named:
+        try:
+            find(name, library)
+        except MaterialError as error:
+            source.complain(("materials", *place), str(error))

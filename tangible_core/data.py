@@ -7,16 +7,19 @@ picture on the base plane.
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, fields, is_dataclass
-from typing import Any, Literal, NamedTuple, cast
+from typing import Any, Literal, NamedTuple, cast, get_args
 
 import numpy as np
 import xxhash
 from jaxtyping import Float32, Int32
 
-from .errors import GeometryError, MaterialError, PictureError
+from .errors import GeometryError, MaterialError, PictureError, did_you_mean
 from .pictures import check_finite, check_picture
 
 Kind = Literal["depth", "texture", "render", "device"]
+Texture = Literal["smooth", "periodic", "stochastic", "stick-slip", "drag"]
+TEXTURES: tuple[Texture, ...] = get_args(Texture)
+"""The models of a material's fine texture."""
 
 
 class Force(NamedTuple):
@@ -219,22 +222,50 @@ class Material:
     static_friction: float
     dynamic_friction: float
     roughness_m: float = 0.0
-    """Amplitude of the fine texture."""
+    """Amplitude of the fine texture; that of one wave of the same power, where it is made of many."""
     grain_m: float = 0.001
     """Wavelength of the fine texture."""
+    texture: Texture = "stochastic"
+    """Model of the fine texture (see `haptic_textures`)."""
+    direction_deg: float = 0.0
+    """Where the lines of the texture run: 0 along x, 90 along y."""
+    anisotropy: float = 0.0
+    """0 is alike in all directions (periodic: two crossed sets of lines), 1 is lines alone."""
+    irregularity: float = 0.0
+    """Share of a periodic texture's power that strays from strict repetition."""
+    drag_n_s_per_m: float = 0.0
+    """Lateral force against one metre per second, in contact."""
+    seed: int = 0
+    """Another seed is another specimen of the same material."""
     source: str = ""
 
     def __post_init__(self) -> None:
         for name, value in _items(self):
             if not isinstance(value, str) and not 0 <= value < np.inf:
                 raise MaterialError(f"material {self.name!r}: {name} is {value}; it must be >= 0 and finite")
+        if wrong := next(self._nonsense(), None):
+            raise MaterialError(f"material {self.name!r}: {wrong}")
+
+    def _nonsense(self) -> Iterator[str]:
+        """What is wrong between the values, each a sentence."""
         if self.stiffness_n_per_m == 0 or self.grain_m == 0:
-            raise MaterialError(f"material {self.name!r}: stiffness_n_per_m and grain_m must be above 0")
+            yield "stiffness_n_per_m and grain_m must be above 0"
         if self.dynamic_friction > self.static_friction:
-            raise MaterialError(
-                f"material {self.name!r}: dynamic_friction {self.dynamic_friction} is above static_friction "
-                f"{self.static_friction}; things slide more easily than they start"
+            yield (
+                f"dynamic_friction {self.dynamic_friction} is above static_friction {self.static_friction}; "
+                "things slide more easily than they start"
             )
+        if self.anisotropy > 1 or self.irregularity > 1:
+            yield f"anisotropy {self.anisotropy} and irregularity {self.irregularity} are at most 1"
+        if self.texture not in TEXTURES:
+            hint = did_you_mean(self.texture, TEXTURES)
+            yield f"no texture model is named {self.texture!r}{hint}; there are {', '.join(TEXTURES)}"
+        if self.texture == "smooth" and self.roughness_m > 0:
+            yield f"texture is smooth and roughness_m {self.roughness_m:g}; make that 0, or the texture stochastic"
+        if self.texture == "stick-slip" and self.dynamic_friction == 0:
+            yield "texture stick-slip needs a dynamic_friction above 0"
+        if self.texture == "drag" and self.drag_n_s_per_m == 0:
+            yield "texture drag needs a drag_n_s_per_m above 0"
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,11 +1,11 @@
 """The library of materials, and which segment gets which.
 
 A photograph does not tell how things feel (over 100 photographed surfaces, what a picture predicts of friction and
-vibration explains next to nothing: R^2 is 0.07 and -0.06). So materials are assigned by name, or by relative roughness,
-which is a convention: rougher to the eye becomes rougher to the hand.
+vibration explains next to nothing: R^2 is 0.07 and -0.06). So materials are assigned by name, by rules that a person
+writes, or by relative roughness, which is a convention: rougher to the eye becomes rougher to the hand.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
@@ -17,6 +17,7 @@ from jaxtyping import Float64
 from .data import Material, MaterialMap, SegmentMap
 from .errors import MaterialError, did_you_mean
 from .material_files import parse_materials, read_materials
+from .material_rules import Chosen, MaterialRule, apply_rules
 from .pictures import to_grey
 
 NEUTRAL = "plain"
@@ -54,26 +55,39 @@ def find(name: str, library: Mapping[str, Material]) -> Material:
 def assign(
     segments: SegmentMap,
     picture: np.ndarray | None,
-    by: Literal["roughness"] | Mapping[int, str],
+    by: Literal["roughness", "rules"] | Mapping[int, str],
     library: Mapping[str, Material],
+    rules: Sequence[MaterialRule] = (),
+    default: str = NEUTRAL,
 ) -> MaterialMap:
     """One material a segment, and why.
 
-    by: a map from label to material, where labels that it leaves out get the material `plain`; or `roughness`, which
-    ranks the segments of this picture by `relative_roughness` and spreads them evenly over `LADDER`, the smoothest to
-    ice, the roughest to brick. Equally rough segments share a rank; one rank alone says nothing, and gives `plain`.
-    Raises: MaterialError for a name or a label that does not exist, or for `roughness` without a picture of the
-    segments' size; PictureError if the picture is none.
+    rules: decide first, the first that fits (see `apply_rules`).
+    by: what decides where no rule fits. A map from label to material; `rules`, nothing; or `roughness`, which ranks
+    all the segments of this picture by `relative_roughness` and spreads them evenly over `LADDER`, the smoothest to
+    ice, the roughest to brick. Equally rough segments share a rank; one rank alone says nothing, and gives the default.
+    default: the material of what nothing decides.
+    Raises: MaterialError for a name, a label or a point that does not exist, or for `roughness` or a colour without a
+    picture of the segments' size; PictureError if the picture is none.
     """
-    if by != "roughness":
-        return _by_name(segments.count, by, library)
+    chosen = dict(apply_rules(rules, segments, picture))
+    if isinstance(by, Mapping):
+        chosen = {**_by_name(segments.count, by, library), **chosen}
+    elif by == "roughness" and len(chosen) < segments.count:
+        chosen = {**_by_roughness(_roughness(segments, picture), default), **chosen}
+    rest = ((default, f"segment {label}: not named -> {default}") for label in range(segments.count))
+    names, reasons = zip(*(chosen.get(label, each) for label, each in enumerate(rest)), strict=True)
+    return MaterialMap(tuple(find(name, library) for name in names), reasons)
+
+
+def _roughness(segments: SegmentMap, picture: np.ndarray | None) -> Float64[np.ndarray, "n"]:
     if picture is None or picture.shape[:2] != segments.labels.shape:
         given = "there is none" if picture is None else f"it is {picture.shape[:2]}"
         raise MaterialError(
             f"materials by roughness need the picture of the segments, {segments.labels.shape}, and {given}; "
             "name the materials instead, such as {0: ice, 1: sand}"
         )
-    return _by_roughness(relative_roughness(segments, picture), library)
+    return relative_roughness(segments, picture)
 
 
 def relative_roughness(segments: SegmentMap, picture: np.ndarray) -> Float64[np.ndarray, "n"]:
@@ -102,7 +116,7 @@ def _local_mean(values: Float64[np.ndarray, "h w"], side: int) -> Float64[np.nda
     return mean
 
 
-def _by_name(count: int, names: Mapping[int, str], library: Mapping[str, Material]) -> MaterialMap:
+def _by_name(count: int, names: Mapping[int, str], library: Mapping[str, Material]) -> dict[int, Chosen]:
     complaints: list[str] = []
     for label, name in names.items():
         if label not in range(count):
@@ -113,22 +127,14 @@ def _by_name(count: int, names: Mapping[int, str], library: Mapping[str, Materia
             complaints.append(f"segment {label}: {error}")
     if complaints:
         raise MaterialError("\n".join(complaints))
-    chosen = [names.get(label, NEUTRAL) for label in range(count)]
-    reasons = (
-        f"segment {label}: named {name}" if label in names else f"segment {label}: not named -> {NEUTRAL}"
-        for label, name in enumerate(chosen)
-    )
-    return MaterialMap(tuple(find(name, library) for name in chosen), tuple(reasons))
+    return {label: (name, f"segment {label}: named {name}") for label, name in names.items()}
 
 
-def _by_roughness(roughness: Float64[np.ndarray, "n"], library: Mapping[str, Material]) -> MaterialMap:
+def _by_roughness(roughness: Float64[np.ndarray, "n"], default: str) -> dict[int, Chosen]:
     levels, ranks = np.unique(roughness, return_inverse=True)
     last = len(levels) - 1
-    materials: list[Material] = []
-    reasons: list[str] = []
-    rungs = np.rint(ranks * (len(LADDER) - 1) / max(last, 1))
-    for label, (rung, rank, value) in enumerate(zip(rungs, ranks, roughness, strict=True)):
-        name = LADDER[int(rung)] if last else NEUTRAL
-        materials.append(find(name, library))
-        reasons.append(f"segment {label}: roughness rank {rank + 1} of {last + 1} ({value:.3f}) -> {name}")
-    return MaterialMap(tuple(materials), tuple(reasons))
+    chosen: dict[int, Chosen] = {}
+    for label, (rank, value) in enumerate(zip(ranks, roughness, strict=True)):
+        name = LADDER[round(int(rank) * (len(LADDER) - 1) / last)] if last else default
+        chosen[label] = (name, f"segment {label}: roughness rank {rank + 1} of {last + 1} ({value:.3f}) -> {name}")
+    return chosen

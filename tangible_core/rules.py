@@ -103,9 +103,10 @@ def _materials(config: PipelineConfig, scene: Scene, unsegmented: str | None) ->
     library = materials.load_library(choice.library)
 
     def make(inputs: Inputs) -> MaterialMap:
-        return materials.assign(inputs["segments"], scene.views.left if scene.views else None, choice.by, library)
+        picture = scene.views.left if scene.views else None
+        return materials.assign(inputs["segments"], picture, choice.by, library, choice.rules, choice.default)
 
-    key = f"{_core()} {choice.by!r} {digest_of(tuple(library.values()))}"
+    key = f"{_core()} {choice.model_dump_json(exclude={'library'})} {digest_of(tuple(library.values()))}"
     skip = f"there are no segments: {unsegmented}" if unsegmented else None
     return Rule("materials", "core", key, ("views", "segments"), make, skip)
 

@@ -7,6 +7,8 @@ from pydantic import BaseModel
 
 from .config import PRODUCTS, SECTIONS, STAGES
 from .errors import TangibleError
+from .material_files import MaterialBlock
+from .materials import library
 from .registry import Registry, default_registry
 from .scene import BUILTINS, SceneFiles
 
@@ -33,6 +35,20 @@ def json_schema(registry: Registry | None = None, distribution: str | None = "ta
             **{kind: _stage(kind, registry, distribution, definitions) for kind in STAGES},
         },
         "$defs": definitions,
+    }
+
+
+def materials_schema() -> dict[str, Any]:
+    """The schema of a file of materials: of those that are shipped, only what changes must be said."""
+    block = MaterialBlock.model_json_schema()
+    change = {name: part for name, part in block.items() if name != "required"}
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "Tangible Images materials",
+        "type": "object",
+        "properties": {name: {"$ref": "#/$defs/change"} for name in library()},
+        "additionalProperties": {"$ref": "#/$defs/material"},
+        "$defs": {"material": block, "change": change},
     }
 
 
@@ -116,10 +132,16 @@ def _options(form: dict[str, Any], blocks: dict[str, Any], prefix: str = "") -> 
     for name, option in form.get("properties", {}).items():
         if name == "use":
             continue
-        inner = [each["$ref"].split("/")[-1] for each in (option, *option.get("anyOf", ())) if "$ref" in each]
+        inner = _inner(option)
         yield f"{prefix}{name}", {**option, "default": None} if inner else option
         for block in inner:
             yield from _options(blocks[block], blocks, f"{prefix}{name}.")
+
+
+def _inner(option: dict[str, Any]) -> list[str]:
+    """The blocks that an option is, may be, or is a list of."""
+    forms = (option, *option.get("anyOf", ()), option.get("items", {}))
+    return [each["$ref"].split("/")[-1] for each in forms if "$ref" in each]
 
 
 def _cell(option: dict[str, Any]) -> str:
@@ -132,8 +154,8 @@ def _default(option: dict[str, Any]) -> str:
 
 
 def _type(option: dict[str, Any]) -> str:
-    if "anyOf" in option:
-        return " or ".join(_type(each) for each in cast("list[dict[str, Any]]", option["anyOf"]))
+    if forms := option.get("anyOf", option.get("oneOf")):
+        return " or ".join(_type(each) for each in cast("list[dict[str, Any]]", forms))
     if "enum" in option:
         return _names(option["enum"])
     if "const" in option:

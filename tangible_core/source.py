@@ -1,9 +1,10 @@
 """YAML that knows where everything stands: every complaint at once, each with file:line:column."""
 
-from collections.abc import Iterable, Mapping
+import re
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, cast
+from typing import Any, cast, get_args
 
 from pydantic import BaseModel, ValidationError
 from ruamel.yaml import YAML
@@ -103,11 +104,13 @@ class Source:
         where = (*location, *(part for part in error["loc"] if part != "[key]" and not str(part).startswith(":")))
         shown = ".".join(str(part) for part in where)
         if error["type"] == "extra_forbidden":
-            options = list(model.model_fields)
+            options = list(_model_at(model, error["loc"][:-1]).model_fields)
             known = f"; known: {', '.join(options)}" if options else "; there are no options"
             self.complain(where, f"{shown}: unknown option{did_you_mean(str(where[-1]), options)}{known}")
         else:
             given = "" if isinstance(error["input"], dict) else f", not {error['input']!r}"
+            if error["type"] == "literal_error":
+                given += did_you_mean(f"{error['input']}", re.findall(r"'([^']*)'", error["msg"]))
             self.complain(where, f"{shown}: {error['msg'].removeprefix('Value error, ')}{given}")
 
 
@@ -157,6 +160,21 @@ def _key(text: str, node: Mapping[Any, Any]) -> Any:
 
 def _has(node: Any, part: Any) -> bool:
     return part in node if isinstance(node, dict) else isinstance(part, int) and part < len(node)
+
+
+def _model_at(model: type[BaseModel], location: Iterable[Any]) -> type[BaseModel]:
+    """The innermost of a model's models on the way to a place in it."""
+    for part in location:
+        if isinstance(part, str) and part in model.model_fields:
+            model = next(_models_in(model.model_fields[part].annotation), model)
+    return model
+
+
+def _models_in(annotation: Any) -> Iterator[type[BaseModel]]:
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        yield annotation
+    for part in get_args(annotation):
+        yield from _models_in(part)
 
 
 def _relative_to(folder: Path, model: BaseModel) -> BaseModel:

@@ -27,6 +27,12 @@ CHECKED = (
     "testing.stereo_scenes",
     "bench.damage",
     "testing.variants",
+    "colours",
+    "haptic_textures.waves",
+    "haptic_textures.table",
+    "haptic_textures.sample",
+    "haptic_textures.spectrum",
+    "haptic_textures.stroke",
 )
 BEARTYPE = "beartype.beartype(conf=beartype.BeartypeConf(is_pep484_tower=True))"  # an int is a float, as PEP 484 has it
 jaxtyping.install_import_hook([f"tangible_core.{room}" for room in CHECKED], BEARTYPE)

@@ -108,7 +108,49 @@ def test_materials_shows_values_and_sources():
     assert ice["source"]
 
 
+def test_one_material_is_shown_with_units_and_sources():
+    done = tangible("materials", "show", "sand", cwd=Path())
+    assert done.returncode == 0, done.stderr
+    for word in ("stiffness_n_per_m", "N/m", "HaTT, sandpaper, 140 Hz", "guess", "stochastic: noise", "140 Hz"):
+        assert word in done.stdout
+    found = json.loads(tangible("materials", "show", "sand", "--json", cwd=Path()).stdout)
+    assert found["sources"]["dynamic_friction"].startswith("HaTT")
+    assert found["vibration_hz"] == pytest.approx(140, rel=0.01)
+    assert json.loads(tangible("materials", "show", "ice", "--json", cwd=Path()).stdout)["vibration_hz"] is None
+
+
+def test_materials_are_drawn_a_picture_each(tmp_path: Path):
+    (tmp_path / "mine.yaml").write_text("ice: {stiffness_n_per_m: 1000}\n")
+    words = ("draw", "ice", "rubber", "--out", "made/here", "--library", "mine.yaml", "--json")
+    done = tangible("materials", *words, cwd=tmp_path)
+    assert json.loads(done.stdout) == {"files": ["made/here/ice.png", "made/here/rubber.png"]}
+    assert {path.name for path in (tmp_path / "made/here").iterdir()} == {"ice.png", "rubber.png"}
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("show", "icee"), "no material is named 'icee' (did you mean 'ice'?)"),
+        (("draw", "ice", "sandd"), "no material is named 'sandd' (did you mean 'sand'?)"),
+        (("shw",), "Did you mean 'show'?"),
+        (("show",), "Missing argument"),
+        (("--library", "nope.yaml"), "nope.yaml: there is no such file"),
+        (
+            ("show", "ice", "--library", "bad.yaml"),
+            "bad.yaml:1:7: ice.grain_mm: unknown option (did you mean 'grain_m'?)",
+        ),
+        (("--json", "show", "ice"), "write the options after 'show'"),
+        (("draw", "ice", "--out", "bad.yaml/x"), "cannot be written"),
+    ],
+)
+def test_mistakes_with_materials(words: tuple[str, ...], said: str, tmp_path: Path):
+    (tmp_path / "bad.yaml").write_text("ice: {grain_mm: 1}\n")
+    assert said in mistake("materials", *words, cwd=tmp_path)
+    assert not list(tmp_path.glob("**/*.png"))
+
+
 def test_schema_prints_json_and_a_page():
+    assert "felt" not in json.loads(tangible("schema", "--materials", cwd=Path()).stdout)["properties"]
     assert json.loads(tangible("schema", cwd=Path()).stdout)["properties"]["scene"]
     page = tangible("schema", "--markdown", cwd=Path()).stdout
     assert "### penalty-gradient" in page
@@ -147,6 +189,10 @@ def test_a_check_that_fails_ends_with_1(folder: Path):
         ("workspace.width_m=0", "workspace.width_m"),
         ("materials={7: ice}", "7"),
         ("materials={0: icee}", "did you mean 'ice'?"),
+        (
+            "materials.rules=[{at: [500, 1], material: ice}]",
+            "rule 1: [500, 1] lies outside the picture of 96 x 64 pixels",
+        ),
     ],
 )
 def test_a_mistake_costs_one_clear_line(folder: Path, change: str, said: str):

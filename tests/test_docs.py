@@ -29,3 +29,15 @@ def test_the_plugin_page_shows_the_example_as_it_is(name):
 @pytest.mark.parametrize("moment", sorted(name for name in vars(hooks.Specs) if name.startswith("tangible_")))
 def test_the_plugin_page_names_every_moment(moment):
     assert f"`{moment}(" in PLUGIN_PAGE.read_text(encoding="utf-8")
+
+
+def test_the_page_on_materials_shows_what_the_program_takes(tmp_path: Path):
+    from tangible_core.config import parse_config
+    from tangible_core.registry import default_registry
+
+    blocks = re.findall(r"```yaml\n(.*?)```", ROOT.joinpath("docs/materials.md").read_text(encoding="utf-8"), re.DOTALL)
+    library, *files = sorted(blocks, key=lambda block: "my-materials.yaml\n" not in block)
+    tmp_path.joinpath("my-materials.yaml").write_text(library)
+    assert len(files) == 3
+    for text in files:
+        parse_config(f"scene: builtin/brick\n{text}", tmp_path / "p.yaml", default_registry())

@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -56,10 +56,7 @@ def draw_sheet(
     recording: shown together with the relief that it was felt on.
     Raises: OutputError if the place cannot be written, PictureError if truth and disparity differ in size.
     """
-    from matplotlib import style
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-
-    from .style import STYLE
+    from .panels import PANELS
 
     given = {
         "views": views,
@@ -70,19 +67,27 @@ def draw_sheet(
         "relief": relief if surface is None else surface.relief,
         "recording": recording if recording is not None and len(recording.time_s) else None,
     }
+    write_sheet(path, {name: value for name, value in given.items() if value is not None}, title, PANELS)
+
+
+def write_sheet(path: Path, run: Mapping[str, Any], title: str, panels: Sequence[Panel]) -> None:
+    """Draw what is given in the report's style, as a PNG, whole or not at all. Raises: OutputError as `draw_sheet`."""
+    from matplotlib import style
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    from .style import STYLE
+
     with style.context(STYLE, after_reset=True):
-        figure = draw_figure({name: value for name, value in given.items() if value is not None}, title)
+        figure = draw_figure(run, title, panels)
         with atomic_write(path) as file:
             FigureCanvasAgg(figure).print_png(file)
 
 
-def draw_figure(run: Mapping[str, Any], title: str) -> Figure:
+def draw_figure(run: Mapping[str, Any], title: str, panels: Sequence[Panel]) -> Figure:
     """The sheet of those panels whose products are there, lettered in reading order."""
     from matplotlib.figure import Figure
 
-    from .panels import PANELS
-
-    panels = [panel for panel in PANELS if run.keys() >= set(panel.needs)]
+    panels = [panel for panel in panels if run.keys() >= set(panel.needs)]
     if not panels:
         raise OutputError(f"{title}: there is nothing to draw; ask for a product that a picture can show")
     boxes, width_in, height_in = arrange([_cell(panel, scene_aspect(run)) for panel in panels], WIDTH_IN)

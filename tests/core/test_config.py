@@ -72,6 +72,9 @@ want: surfaces
     assert "not -5" in found[5]
 
 
+RULES = "scene: builtin/brick\nmaterials:\n  rules:\n    - "
+
+
 @pytest.mark.parametrize(
     ("text", "place", "what"),
     [
@@ -90,6 +93,21 @@ want: surfaces
         ("scene: builtin/brick\nworkspace: [1]\n", "here/p.yaml:2:1", "workspace"),
         ("scene: builtin/brick\nmaterials: {by: colour}\n", "here/p.yaml:2:13", "roughness"),
         ("scene: builtin/brick\nmaterials: {0: ice, one: sand}\n", "here/p.yaml:2:21", "valid integer"),
+        ("scene: builtin/brick\nmaterials: {0: ice, 1: sandd}\n", "here/p.yaml:2:21", "did you mean 'sand'?"),
+        ("scene: builtin/brick\nmaterials: {default: wod}\n", "here/p.yaml:2:13", "did you mean 'wood'?"),
+        (f"{RULES}{{colour: bleu, material: water}}\n", "here/p.yaml:4:8", "(did you mean 'blue'?)"),
+        (
+            f"{RULES}{{color: blue, material: water}}\n",
+            "here/p.yaml:4:8",
+            "did you mean 'colour'?); known: segment, at,",
+        ),
+        (f"{RULES}{{colour: blue, material: watr}}\n", "here/p.yaml:4:22", "did you mean 'water'?"),
+        (f"{RULES}{{colour: blue}}\n", "here/p.yaml:4:7", "materials.rules.0.material: Field required"),
+        (f"{RULES}{{material: ice}}\n", "here/p.yaml:4:7", "says one of segment, at and colour; this one says none"),
+        (f"{RULES}{{at: [-1, 2], material: ice}}\n", "here/p.yaml:4:13", "greater than or equal to 0, not -1"),
+        (f"{RULES}{{at: 3, material: ice}}\n", "here/p.yaml:4:8", "tuple"),
+        (f"{RULES}{{at: [.inf, 2], material: ice}}\n", "here/p.yaml:4:13", "finite"),
+        ("scene: builtin/brick\nmaterials: {rules: ice}\n", "here/p.yaml:2:13", "materials.rules"),
     ],
 )
 def test_one_mistake_one_line(text: str, place: str, what: str):
@@ -110,6 +128,32 @@ def test_a_method_without_options_may_be_named_alone():
 
 def test_materials_by_label():
     assert parse("scene: builtin/brick\nmaterials: {0: ice, 2: sand}\n").materials.by == {0: "ice", 2: "sand"}
+
+
+def test_materials_by_rules():
+    rules = "{at: [1, 2.5], material: ice}, {segment: 0, material: sand}"
+    text = f"scene: builtin/brick\nmaterials: {{rules: [{rules}], by: rules}}\n"
+    choice = parse(text).materials
+    assert [(rule.at, rule.segment, rule.material) for rule in choice.rules] == [
+        ((1, 2.5), None, "ice"), (None, 0, "sand"),
+    ]  # fmt: skip
+    assert (choice.by, choice.default) == ("rules", "plain")
+
+
+def test_a_completed_configuration_keeps_its_rules():
+    text = "scene: builtin/brick\nmaterials: {rules: [{colour: blue, material: water}]}"
+    completed = parse(text).completed()["materials"]
+    assert completed == {
+        "rules": [{"colour": "blue", "material": "water"}], "by": "roughness", "default": "plain",
+    }  # fmt: skip
+
+
+def test_names_of_a_library_of_one_s_own_are_known(tmp_path: Path):
+    (tmp_path / "mine.yaml").write_text(
+        "mud: {stiffness_n_per_m: 300, damping_n_s_per_m: 2, static_friction: 0.6, dynamic_friction: 0.5}\n"
+    )
+    (tmp_path / "p.yaml").write_text("scene: builtin/brick\nmaterials: {library: mine.yaml, by: {0: mud}}\n")
+    assert load_config(tmp_path / "p.yaml", default_registry()).materials.by == {0: "mud"}
 
 
 def test_scene_files():

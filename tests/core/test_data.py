@@ -257,11 +257,21 @@ def test_every_label_has_a_material(label, materials):
         ({"static_friction": np.inf}, "static_friction is inf"),
         ({"roughness_m": -1e-6}, "roughness_m is -1e-06"),
         ({"dynamic_friction": 0.2}, "dynamic_friction 0.2 is above static_friction 0.1"),
+        ({"anisotropy": 1.5}, "anisotropy 1.5 and irregularity 0.0 are at most 1"),
+        ({"texture": "smooth", "roughness_m": 1e-5}, "texture is smooth and roughness_m 1e-05"),
+        ({"texture": "drag"}, "needs a drag_n_s_per_m above 0"),
+        ({"texture": "stick-slip", "dynamic_friction": 0.0}, "needs a dynamic_friction above 0"),
     ],
 )
 def test_a_material_makes_sense(change, complaint):
     with pytest.raises(MaterialError, match=f"material 'ice': .*{complaint}"):
         Material(**{**vars(ICE), **change})
+
+
+@pytest.mark.usefixtures("unchecked_shapes")
+def test_a_misspelt_texture_is_explained():
+    with pytest.raises(MaterialError, match=r"no texture model is named 'smoth' \(did you mean 'smooth'\?\)"):
+        Material(**{**vars(ICE), "texture": "smoth"})
 
 
 def test_forces_and_states_are_plain_tuples():

@@ -1,13 +1,15 @@
 """The library of materials, its files, and which segment gets which."""
 
-from dataclasses import replace
+from dataclasses import MISSING, fields, replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from tangible_core.data import Material, SegmentMap
+from tangible_core.data import TEXTURES, Material, SegmentMap
 from tangible_core.errors import ConfigError, MaterialError, PictureError
+from tangible_core.material_files import VALUES, MaterialBlock, sources_of
+from tangible_core.material_rules import MaterialRule
 from tangible_core.materials import LADDER, NEUTRAL, assign, find, library, load_library, relative_roughness
 
 MUD = "mud: {stiffness_n_per_m: 300, damping_n_s_per_m: 2, static_friction: 0.6, dynamic_friction: 0.5}\n"
@@ -56,7 +58,17 @@ class TestLibrary:
 
     def test_names_are_those_of_the_file(self):
         assert all(name == material.name for name, material in library().items())
-        assert {NEUTRAL, *LADDER, "glass", "rubber"} <= set(library())
+        others = {"glass", "rubber", "foam", "carpet", "skin", "grass", "water"}
+        assert set(library()) == {NEUTRAL, *LADDER, *others}
+
+    @pytest.mark.parametrize("material", library().values(), ids=lambda each: each.name)
+    def test_of_every_value_it_is_said_where_it_comes_from(self, material: Material):
+        sources = sources_of(material)
+        assert [*sources] == [*VALUES]
+        assert all(sources.values())
+
+    def test_every_model_of_texture_is_used(self):
+        assert {each.texture for each in library().values()} == set(TEXTURES)
 
     def test_the_neutral_material_has_no_friction_and_no_texture(self):
         plain = library()[NEUTRAL]
@@ -108,10 +120,11 @@ class TestOwnFile:
             "glas: {source: 4}\n"
         )
         found = complaints(tmp_path, text)
-        places = ["1:7", "1:28", "3:3", "4:3", "5:3", "6:12", "2:1", "7:1", "8:1", "9:1", "10:8", "10:1"]
+        places = ["1:28", "1:7", "3:3", "5:3", "4:3", "6:12", "2:1", "7:1", "8:1", "9:1", "10:8", "10:1"]
         assert [each.split(": ", 1)[0] for each in found] == [f"mine.yaml:{place}" for place in places]
-        assert "ice: unknown key 'stifness_n_per_m' (did you mean 'stiffness_n_per_m'?)" in found[0]
-        assert found[1].endswith("ice: damping_n_s_per_m is a number >= 0, not -1")
+        assert "ice.damping_n_s_per_m: Input should be greater than or equal to 0, not -1" in found[0]
+        assert "ice.stifness_n_per_m: unknown option (did you mean 'stiffness_n_per_m'?)" in found[1]
+        assert "which is no value (did you mean 'grain_m'?)" in found[5]
         assert "dynamic_friction 0.9 is above static_friction 0.26" in found[9]
         missing = "stiffness_n_per_m, damping_n_s_per_m, static_friction, dynamic_friction are missing"
         assert found[11].endswith(f"glas: {missing} (did you mean 'glass'?)")
@@ -124,13 +137,44 @@ class TestOwnFile:
             ("ice:\n\tgrain_m: 1\n", "mine.yaml:2:1: found character '\\t'"),
             ("", "mine.yaml:1:1: a library is a mapping"),
             ("- ice\n", "mine.yaml:1:1: a library is a mapping"),
-            ("ice: {stiffness_n_per_m: 0}\n", "mine.yaml:1:1: material 'ice': stiffness_n_per_m and grain_m must be"),
-            ("ice: {grain_m: .inf}\n", "mine.yaml:1:7: ice: grain_m is a number >= 0, not inf"),
-            ("ice: {grain_m: true}\n", "mine.yaml:1:7: ice: grain_m is a number >= 0, not True"),
+            ("ice: {stiffness_n_per_m: 0}\n", "mine.yaml:1:7: ice.stiffness_n_per_m: Input should be greater than 0"),
+            ("ice: {grain_m: .inf}\n", "mine.yaml:1:7: ice.grain_m: Input should be a finite number, not inf"),
+            ("ice: {grain_m: true}\n", "mine.yaml:1:7: ice.grain_m: Input should be a valid number, not True"),
+            ("ice: {seed: 1.5}\n", "mine.yaml:1:7: ice.seed: Input should be a valid integer, not 1.5"),
+            ("ice: {anisotropy: 2}\n", "mine.yaml:1:7: ice.anisotropy: Input should be less than or equal to 1, not 2"),
+            ("ice: {direction_deg: 180}\n", "mine.yaml:1:7: ice.direction_deg: Input should be less than 180, not 180"),
+            ("sand: {texture: smooth}\n", "mine.yaml:1:1: material 'sand': texture is smooth and roughness_m 8.8e-05"),
+            ("ice: {texture: drag}\n", "mine.yaml:1:1: material 'ice': texture drag needs a drag_n_s_per_m above 0"),
+            (
+                "plain: {texture: stick-slip}\n",
+                "mine.yaml:1:1: material 'plain': texture stick-slip needs a dynamic_fr",
+            ),
         ],
     )
     def test_what_is_no_library(self, tmp_path: Path, text: str, complaint: str):
         assert complaints(tmp_path, text)[0].startswith(complaint)
+
+    def test_a_misspelt_texture_is_explained(self, tmp_path: Path):
+        (said,) = complaints(tmp_path, "ice: {texture: periodical}\n")
+        assert said.startswith("mine.yaml:1:7: ice.texture: Input should be 'smooth', 'periodic', ")
+        assert said.endswith("(did you mean 'periodic'?)")
+
+    def test_where_each_value_comes_from(self, tmp_path: Path):
+        path = tmp_path / "mine.yaml"
+        path.write_text(MUD + "ice: {grain_m: 0.002, texture: smooth}\nglass: {source: my rig}\n")
+        mine = load_library(path)
+        assert set(sources_of(mine["mud"]).values()) == {"guess"}
+        assert set(sources_of(mine["glass"]).values()) == {"my rig"}
+        ice = sources_of(mine["ice"])
+        assert ice["grain_m"] == ice["texture"] == "mine.yaml"
+        assert ice["dynamic_friction"] == "physics.info/friction, ice on steel"
+        assert ice["stiffness_n_per_m"] == "guess"
+
+    def test_what_a_file_may_say_is_what_a_material_has(self):
+        assert set(MaterialBlock.model_fields) == {each.name for each in fields(Material)} - {"name"}
+        for each in fields(Material):
+            if each.default is not MISSING and each.name != "source":
+                assert MaterialBlock.model_fields[each.name].default == each.default
 
     def test_a_misspelt_file_is_explained(self, tmp_path: Path):
         (tmp_path / "mine.yaml").write_text(MUD)
@@ -226,3 +270,83 @@ class TestByRoughness:
         picture[3, 5] = np.nan
         with pytest.raises(PictureError, match="row 3, column 5"):
             assign(stripes(2), picture, "roughness", library())
+
+
+QUARTERS = np.uint8([[[90, 140, 200], [120, 85, 50]], [[60, 120, 50], [128, 128, 128]]])
+"""Sky, wood, grass, stone: one segment each, in reading order."""
+
+
+def quarters(side: int = 20) -> tuple[SegmentMap, np.ndarray]:
+    labels = np.int32([[0, 1], [2, 3]]).repeat(side, axis=0).repeat(side, axis=1)
+    return SegmentMap(labels), QUARTERS.repeat(side, axis=0).repeat(side, axis=1)
+
+
+def rules(*texts: dict) -> list[MaterialRule]:
+    return [MaterialRule.model_validate(each) for each in texts]
+
+
+class TestByRules:
+    def test_the_first_that_fits_wins(self):
+        segments, picture = quarters()
+        given = rules(
+            {"segment": 3, "material": "sand"},
+            {"at": [25.4, 0], "material": "ice"},
+            {"colour": "brown", "material": "wood"},
+            {"colour": "blue", "material": "water"},
+            {"segment": 0, "material": "glass"},
+        )
+        found = assign(segments, picture, "rules", library(), given, "leather")
+        assert [each.name for each in found.materials] == ["water", "ice", "leather", "sand"]
+        assert found.reasons == (
+            "segment 0: rule 4, 100 % of it blue -> water",
+            "segment 1: rule 2, at [25.4, 0] -> ice",
+            "segment 2: not named -> leather",
+            "segment 3: rule 1, named -> sand",
+        )
+
+    def test_the_rest_is_by_name_or_by_roughness(self):
+        given = rules({"segment": 1, "material": "glass"})
+        found = assign(stripes(3), None, {1: "sand", 2: "wood"}, library(), given)
+        assert [each.name for each in found.materials] == ["plain", "glass", "wood"]
+        picture = checkers(0.3, 0.0, 0.1)
+        alone, ruled = (assign(stripes(3), picture, "roughness", library(), each) for each in ([], given))
+        assert [each.name for each in ruled.materials] == ["brick", "glass", "wood"]
+        assert ruled.reasons[::2] == alone.reasons[::2]
+
+    def test_where_rules_decide_everything_roughness_needs_no_picture(self):
+        given = rules(*({"segment": label, "material": "ice"} for label in range(2)))
+        assert [each.name for each in assign(stripes(2), None, "roughness", library(), given).materials] == ["ice"] * 2
+
+    def test_a_colour_is_that_of_most_pixels(self):
+        segments, picture = quarters()
+        picture[:9, :20] = (200, 30, 30)
+        found = assign(segments, picture, "rules", library(), rules({"colour": "blue", "material": "water"}))
+        assert found.reasons[0] == "segment 0: rule 1, 55 % of it blue -> water"
+        picture[:11, :20] = (200, 30, 30)
+        found = assign(segments, picture, "rules", library(), rules({"colour": "blue", "material": "water"}))
+        assert found.reasons[0] == "segment 0: not named -> plain"
+
+    def test_a_rule_for_nothing_is_logged(self, caplog: pytest.LogCaptureFixture):
+        assign(*quarters(), "rules", library(), rules({"colour": "pink", "material": "skin"}))
+        assert caplog.messages == ["materials: rule 1: no segment is pink"]
+
+    @pytest.mark.parametrize("point", [[0, 0], [19.4, 19.4], [-0.0, 0.4]])
+    def test_a_point_is_a_pixel_of_the_picture(self, point: list):
+        found = assign(*quarters(), "rules", library(), rules({"at": point, "material": "ice"}))
+        assert [each.name for each in found.materials] == ["ice", "plain", "plain", "plain"]
+
+    def test_every_rule_that_is_wrong_is_told(self):
+        given = rules(
+            {"segment": 4, "material": "ice"}, {"at": [40, 3], "material": "ice"}, {"colour": "red", "material": "ice"}
+        )
+        with pytest.raises(MaterialError) as error:
+            assign(quarters()[0], np.zeros((3, 4)), "rules", library(), given)
+        first, second, third = str(error.value).splitlines()
+        assert first == "materials: rule 1: there is no segment 4; the segments are 0 to 3"
+        assert second == "materials: rule 2: [40, 3] lies outside the picture of 40 x 40 pixels"
+        assert third.startswith("materials: rule 3: a colour needs the picture of the segments")
+
+    @pytest.mark.parametrize("rule", [{}, {"segment": 0, "colour": "red"}])
+    def test_a_rule_says_one_thing(self, rule: dict):
+        with pytest.raises(ValueError, match="says one of segment, at and colour"):
+            MaterialRule.model_validate({**rule, "material": "ice"})

@@ -26,8 +26,12 @@ from tangible_core.data import (
     Views,
 )
 from tangible_core.errors import OutputError, PictureError
+from tangible_core.haptic_textures import peak_wavelength_m
+from tangible_core.materials import library
 from tangible_core.report import block, disparity_errors, draw_sheet, write_figures
 from tangible_core.report.layout import ROW_IN, TALLEST_IN, Cell, arrange
+from tangible_core.report.material_sheet import draw_material, spectra
+from tangible_core.report.panels import PANELS
 from tangible_core.report.panels.force import round_number, spread
 from tangible_core.report.sheet import DPI, WIDTH_IN, draw_figure
 from tangible_core.session import Recording
@@ -249,7 +253,7 @@ HEADLINES = {
 
 
 def headlines(run: dict[str, object]) -> dict[str, str]:
-    _, *texts = [text.get_text() for text in draw_figure(run, "title").texts]
+    _, *texts = [text.get_text() for text in draw_figure(run, "title", PANELS).texts]
     return dict(zip(texts[::2], texts[1::2], strict=True))
 
 
@@ -287,7 +291,7 @@ class TestSheet:
                 "disparity": found,
             }
             del run["truth"], run["segments"]
-        figure = draw_figure(run, "title")
+        figure = draw_figure(run, "title", PANELS)
         canvas = FigureCanvasAgg(figure)
         canvas.draw()
         texts = [*figure.texts, *(axes.xaxis.label for axes in figure.axes)]
@@ -397,3 +401,19 @@ with tempfile.TemporaryDirectory() as folder:
 assert "matplotlib" in sys.modules
 assert "matplotlib.pyplot" not in sys.modules
 """
+
+
+class TestMaterial:
+    @pytest.mark.parametrize("name", ["ice", "water", "wood", "skin"])
+    def test_its_sheet(self, tmp_path: Path, name: str) -> None:
+        draw_material(tmp_path / "a.png", library()[name])
+        draw_material(tmp_path / "b.png", library()[name])
+        assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
+        with Image.open(tmp_path / "a.png") as sheet:
+            assert sheet.width == pytest.approx(WIDTH_IN * DPI, abs=1)
+
+    def test_the_spectra_are_of_what_has_a_wavelength(self) -> None:
+        shown = {name: [*spectra(library()[name])] for name in ("ice", "water", "sand", "rubber")}
+        assert shown == {"ice": [], "water": [], "sand": ["heights"], "rubber": ["heights", "friction"]}
+        for spectrum in spectra(library()["rubber"]).values():
+            assert peak_wavelength_m(spectrum) == pytest.approx(library()["rubber"].grain_m, rel=0.05)

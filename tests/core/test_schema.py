@@ -1,3 +1,4 @@
+import json
 from importlib import metadata
 from pathlib import Path
 
@@ -5,7 +6,7 @@ import pytest
 from jsonschema import Draft202012Validator
 from ruamel.yaml import YAML
 
-from tangible_core.schema import json_schema, markdown
+from tangible_core.schema import json_schema, markdown, materials_schema
 
 ROOT = Path(__file__).parents[2]
 
@@ -35,6 +36,7 @@ def test_it_accepts_the_sample_configurations(validator: Draft202012Validator, p
         {"scene": "builtin/brick", "depth": {"use": "luminance", "no": 1}},
         {"scene": "builtin/brick", "render": {"use": "penalty-gradient", "stiffness_n_per_m": -1}},
         {"scene": "builtin/brick", "materials": {"one": "ice"}},
+        {"scene": "builtin/brick", "materials": {"rules": [{"colour": "bleu", "material": "ice"}]}},
         {"scene": "builtin/brick", "workspace": {"width_m": 0}},
     ],
 )
@@ -64,3 +66,49 @@ def test_every_option_says_what_it_means():
 def test_the_page_in_docs_is_current():
     page = (ROOT / "docs" / "yaml.md").read_text(encoding="utf-8")
     assert page == markdown(json_schema()), "run: tangible schema --markdown > docs/yaml.md"
+
+
+@pytest.fixture(scope="module")
+def materials() -> Draft202012Validator:
+    schema = materials_schema()
+    Draft202012Validator.check_schema(schema)
+    return Draft202012Validator(schema)
+
+
+def test_the_shipped_library_is_one(materials: Draft202012Validator):
+    materials.validate(YAML(typ="safe").load(ROOT / "tangible_core/materials.yaml"))
+
+
+@pytest.mark.parametrize(
+    ("block", "right"),
+    [
+        ({"ice": {"grain_m": 0.002}}, True),
+        ({"ice": {"grain_m": 0}}, False),
+        ({"ice": {"texture": "rough"}}, False),
+        ({"ice": {"sorce": "guess"}}, False),
+        ({"felt": {"grain_m": 0.002}}, False),
+        (
+            {
+                "felt": dict.fromkeys(
+                    ("stiffness_n_per_m", "damping_n_s_per_m", "static_friction", "dynamic_friction"), 1
+                )
+            },
+            True,
+        ),
+    ],
+)
+def test_a_shipped_material_needs_what_changes_and_a_new_one_more(
+    materials: Draft202012Validator, block: dict, right: bool
+):
+    assert materials.is_valid(block) == right
+
+
+def test_the_schema_of_materials_in_configs_is_current():
+    text = (ROOT / "configs" / "materials.schema.json").read_text(encoding="utf-8")
+    said = "run: tangible schema --materials > configs/materials.schema.json"
+    assert text == json.dumps(materials_schema(), indent=2, ensure_ascii=False) + "\n", said
+
+
+def test_every_value_says_what_it_means():
+    for name, value in materials_schema()["$defs"]["material"]["properties"].items():
+        assert value.get("description"), name

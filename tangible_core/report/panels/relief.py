@@ -3,7 +3,7 @@
 # (matplotlib leaves its keywords without types)
 
 from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -30,18 +30,35 @@ TICK = {"arrowstyle": "-", "linewidth": 0.6, "shrinkA": 0, "shrinkB": 0}
 
 def draw_relief(axes: Axes, relief: Relief) -> str:
     """Heights lit from the upper left, in true proportion or stretched as the headline says; axes in mm."""
-    relief = drawn_size(relief, CELLS)
+    stretched = _draw_heights(axes, drawn_size(relief, CELLS))
+    _draw_normals(axes, stretched.relief)
+    return f"Relief and its normals{stretched.note}"
+
+
+def draw_surface(axes: Axes, relief: Relief) -> str:
+    """The same without normals, for a fine texture."""
+    drawn = _draw_heights(axes, drawn_size(relief, CELLS))
+    return f"Surface{drawn.note if relief.height_m.max() > FLAT_M else ', smooth'}"
+
+
+class _Stretched(NamedTuple):
+    """A relief as it is drawn, and what to say of its proportion."""
+
+    relief: Relief
+    note: str
+
+
+def _draw_heights(axes: Axes, relief: Relief) -> _Stretched:
     stretch = _stretch(relief)
     heights = ScalarMappable(Normalize(0, 1000 * max(float(relief.height_m.max()), FLAT_M)), VIRIDIS)
     stretched = replace(relief, height_m=np.float32(stretch) * relief.height_m)
     _draw_block(axes, stretched, heights.to_rgba(np.pad(1000 * relief.height_m, 1, "edge"))[..., :3])
-    _draw_normals(axes, stretched)
     _draw_scales(axes, *relief.extent_m)
     axes.margins(0.07)
     axes.set_aspect("equal", adjustable="datalim")
     axes.set_axis_off()
     colour_bar(axes, heights, "height [mm]")
-    return "Relief and its normals" + (f", heights x {stretch}" if stretch > 1 else "")
+    return _Stretched(stretched, f", heights x {stretch}" if stretch > 1 else "")
 
 
 def _stretch(relief: Relief) -> int:

@@ -1,0 +1,72 @@
+"""The height of a texture at a point, compiled. Imports numba: what uses this module imports it inside its verb.
+
+Sampling. A wave felt at a velocity is a vibration of f.v hertz. Each wave is whole while a period spans 5 ticks or
+more, gone where it spans 3 or fewer, and follows a cubic between: nothing above a third of the servo's rate is ever
+asked of it. Campion & Hayward (World Haptics 2005): a texture needs a wavelength above 2 v T to be sampled at all, and
+5 to 10 samples a period to feel right.
+
+numba's cache does not see a change made in another file: after an edit of `table` or `waves`, remove `__pycache__`.
+"""
+
+# ruff: noqa: ANN001, ANN201, ANN202 -- the types are in the signatures that numba compiles
+# pyright: basic
+
+import math
+
+import numpy as np
+from numba import float64, int64, njit, types
+
+from .table import COUNT, HEAD
+from .waves import WAVES
+
+WHOLE, GONE = 1 / 5, 1 / 3
+"""Turns a tick, up to which a wave is whole, and from which it is gone."""
+TEXTURES = types.Array(float64, 2, "C", readonly=True)
+ROW = types.Array(float64, 1, "C", readonly=True)
+
+_SINE = tuple((-1.0) ** n * math.pi ** (2 * n + 1) / math.factorial(2 * n + 1) for n in range(8))
+_COSINE = tuple((-1.0) ** n * math.pi ** (2 * n) / math.factorial(2 * n) for n in range(8))
+
+
+@njit(float64(float64), inline="always", cache=True, nogil=True)
+def kept(turns):
+    """Share of a wave that is left where it makes this many turns a tick."""
+    over = min(max((turns - WHOLE) / (GONE - WHOLE), 0.0), 1.0)
+    return 1.0 - over * over * (3.0 - 2.0 * over)
+
+
+@njit(inline="always", cache=True, nogil=True)
+def _series(terms, u):
+    low = terms[0] + u * (terms[1] + u * (terms[2] + u * terms[3]))
+    return low + u * u * u * u * (terms[4] + u * (terms[5] + u * (terms[6] + u * terms[7])))
+
+
+@njit(types.UniTuple(float64, 3)(ROW, *[float64] * 4), fastmath={"reassoc", "contract", "nsz"}, cache=True, nogil=True)
+def _sum_of_waves(row, x, y, step_x, step_y):
+    """Height and gradient, of which nothing is known where a number is not finite: sums are reordered to vectorise."""
+    height = slope_x = slope_y = 0.0
+    for i in range(int(row[COUNT])):  # from 0: an index that may be negative is checked, and nothing vectorised
+        fx, fy = row[HEAD + i], row[HEAD + WAVES + i]
+        turns = fx * x + fy * y + row[HEAD + 3 * WAVES + i]
+        turns -= np.floor(turns + 0.5)
+        sine, cosine = turns * _series(_SINE, turns * turns), _series(_COSINE, turns * turns)  # of half the angle
+        amplitude = row[HEAD + 2 * WAVES + i] * kept(abs(fx * step_x + fy * step_y))
+        height += amplitude * (1.0 - 2.0 * sine * sine)
+        slope = amplitude * sine * cosine
+        slope_x -= slope * fx
+        slope_y -= slope * fy
+    return height, 4.0 * math.pi * slope_x, 4.0 * math.pi * slope_y
+
+
+@njit(types.UniTuple(float64, 3)(TEXTURES, int64, *[float64] * 5), cache=True, nogil=True, error_model="numpy")
+def texture_height(textures, material, x, y, vx, vy, dt):
+    """(h, dh/dx, dh/dy): height in metres over the material's mean, and its exact gradient; zeros if not finite.
+
+    textures: what `compile_textures` made, and the row in it; x, y, vx, vy: metres and metres per second in the
+    workspace frame; dt: the servo's period, seconds. Zero velocity gives the texture whole.
+    """
+    step_x, step_y = vx * dt, vy * dt
+    height, slope_x, slope_y = _sum_of_waves(textures[material], x, y, step_x, step_y)
+    if not np.isfinite(x + y + step_x + step_y + height + slope_x + slope_y):
+        return 0.0, 0.0, 0.0
+    return height, slope_x, slope_y

@@ -8,6 +8,7 @@ from pydantic import Field, model_validator
 
 from tangible_core.data import SegmentMap, Views
 from tangible_core.interfaces import Segmenter, Skippable
+
 from .skipping import nothing_to_divide
 
 if TYPE_CHECKING:

@@ -34,7 +34,7 @@ class Gradient(Segmenter, Skippable):
     allows; then the boundaries are flooded once more, at sigma_px and to the pixel. Labels are in the order of their
     first pixels, row by row. Confidence is 1 - (s - flat) / (top - flat) within 0..1, s being the slope in units of
     noise and top its maximum, or canny_high if that is more: 1 in a flat basin, 0 on the strongest edge.
-    Memory: 60 bytes a pixel beyond picture and result for grey, 150 for colour.
+    Memory: 40 bytes a pixel beyond the picture for grey, 75 for colour.
     Sources: Canny, A computational approach to edge detection, 1986; Meyer, Un algorithme optimal pour la ligne de
     partage des eaux, 1991.
     """

@@ -19,6 +19,7 @@ class Levels:
 
     def __init__(self, levels: Weights, counts: Int64[np.ndarray, "n"], most: int) -> None:
         spread = _spread_within(levels - np.average(levels, weights=counts), counts)
+        self._rounding = counts.sum() * np.ptp(levels) ** 2 / (12 * 255**2)  # no variance of 8 bits is known better
         best = spread[0]
         self.spreads = [best[-1]]
         """The sum of squares within the classes, for 1, 2, ... of them."""
@@ -45,9 +46,9 @@ class Levels:
         Gaussian have more than that for every k but 1. Source: Marriott, Practical problems in a method of cluster
         analysis, 1971.
         """
-        ratios = [(k**2 * float(spread / self.spreads[0]), k) for k, spread in enumerate(self.spreads, 1)]
+        ratios = [(k**2 * (spread + self._rounding) / self.spreads[0], k) for k, spread in enumerate(self.spreads, 1)]
         ratio, classes = min(ratios)
-        return (classes, ratio) if ratio <= CLEAR else (1, 1.0)
+        return (classes, float(ratio)) if ratio <= CLEAR else (1, 1.0)
 
 
 def _spread_within(levels: Weights, counts: Int64[np.ndarray, "n"]) -> Float64[np.ndarray, "m m"]:

@@ -1,21 +1,25 @@
 """Connected parts of classes."""
 
 import numpy as np
-from jaxtyping import Int32
+from jaxtyping import Float32, Int32
 
 from .watershed import UNSEEN, watershed
 
 
-def without_small_parts(classes: Int32[np.ndarray, "h w"], smallest_px: int) -> Int32[np.ndarray, "h w"]:
-    """Parts (4 neighbours) of fewer pixels go to the classes beside them; where all are small, all are 0."""
-    if smallest_px <= 1:
-        return classes
+def without_small_parts(
+    classes: Int32[np.ndarray, "h w"], steep: Float32[np.ndarray, "h w"], flat: float, smallest_px: int
+) -> Int32[np.ndarray, "h w"]:
+    """Parts (4 neighbours) of fewer flat pixels go to the classes beside them, up to the steepest pixels in between.
+
+    What is steeper than `flat` is in no part: on an edge from dark to bright lies no segment of grey.
+    Returns: classes; all are 0 where all parts are small.
+    """
     found = np.full(classes.shape, UNSEEN, np.int32)
     for each in range(int(classes.max()) + 1):
-        _add_large_parts(found, classes == each, each, smallest_px)
+        _add_large_parts(found, (classes == each) & (steep <= flat), each, smallest_px)
     if found.max() == UNSEEN:
         return np.zeros_like(classes)
-    return watershed(np.zeros(classes.shape, np.float32), found)
+    return watershed(steep, found)
 
 
 def _add_large_parts(found: Int32[np.ndarray, "h w"], mask: np.ndarray, label: int, smallest_px: int) -> None:

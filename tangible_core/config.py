@@ -37,7 +37,7 @@ class Workspace(Section):
     smooth_m: Annotated[float, Field(ge=0, le=0.1, allow_inf_nan=False)] = 0.0
     """Standard deviation of a Gaussian that rounds an estimated relief; a finger feels matching noise as grit."""
     finest_m: Annotated[float, Field(ge=0, le=0.1, allow_inf_nan=False)] = 3e-5
-    """Finer detail is not matched: larger pictures are reduced first. A Falcon resolves 0.03 mm; 0 keeps everything."""
+    """Finer detail is not looked at: larger pictures are reduced first. A Falcon resolves 0.03 mm; 0 keeps all."""
     holes: Literal["fill", "cut"] = "fill"
     """Where the depth is unknown: `fill` from the background beside it, or `cut` down to the base plane."""
 

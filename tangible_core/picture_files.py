@@ -4,7 +4,7 @@ import logging
 import warnings
 from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from jaxtyping import Float32, Int32
@@ -21,19 +21,26 @@ log = logging.getLogger(__name__)
 FORMATS = ("PNG", "JPEG", "TIFF", "BMP", "GIF", "WEBP", "PPM", "JPEG2000")
 """What Pillow may read. Some that it also knows run other programs (EPS) or cannot be told from noise (TGA)."""
 
+NonFinite = Literal["error", "mask"]
+
 MAX_LABELS = 4096
 """More than this in a label picture, and it is a photo."""
 
 _ORIENTATION, _BITS_PER_SAMPLE = 0x0112, 0x0102  # tags of EXIF and of TIFF
 
 
-def read_picture(path: Path) -> np.ndarray:
+def read_picture(path: Path, non_finite: NonFinite = "error") -> np.ndarray:
     """A picture file as (h, w[, 3|4]) RGB(A), upright as its EXIF orientation says: uint8, uint16, or what it holds.
 
     A palette becomes colours, transparency a fourth channel. `.npy` and `.npz` files hold the array itself.
+    non_finite: what becomes of NaN and infinity: an error, or, for `mask`, nothing: they are in what is returned.
     Raises: PictureError if the file is missing, no picture, damaged, cut short or too large.
     """
-    return check_picture(_read(path), str(path))
+    picture = _read(path)
+    if non_finite == "error":
+        return check_picture(picture, str(path))
+    check_picture(np.nan_to_num(picture), str(path))
+    return picture
 
 
 def read_map(path: Path) -> Float32[np.ndarray, "h w"]:

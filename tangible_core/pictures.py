@@ -3,8 +3,10 @@
 A picture is (h, w), (h, w, 3) or (h, w, 4) RGB(A); uint8, uint16, bool, or floating point in 0..1.
 """
 
+from typing import Any, cast
+
 import numpy as np
-from jaxtyping import Float32, UInt8
+from jaxtyping import Bool, Float32, UInt8
 
 from .errors import PictureError
 
@@ -44,6 +46,20 @@ def check_finite(values: np.ndarray, name: str) -> None:
             f"{name}: {np.count_nonzero(~finite)} values are NaN or infinite, the first at row {row}, column {column}; "
             "fill or cut them first"
         )
+
+
+def fill_non_finite(picture: np.ndarray) -> tuple[np.ndarray, Bool[np.ndarray, "h w"]]:
+    """A picture whose NaN and infinite pixels are those of the nearest finite one, and where it is known: for a mask.
+
+    Raises: PictureError if nothing is finite.
+    """
+    from scipy import ndimage  # pyright: ignore[reportMissingTypeStubs]
+
+    known: np.ndarray = np.all(np.isfinite(np.atleast_3d(picture)), axis=2)
+    if not known.any():
+        raise PictureError(f"none of the {known.size} pixels is finite; bring a picture with some that are")
+    nearest = cast(Any, ndimage).distance_transform_edt(~known, return_distances=False, return_indices=True)
+    return picture[nearest[0], nearest[1]], known
 
 
 def full_scale(picture: np.ndarray) -> float:

@@ -11,6 +11,8 @@ from inspect import getsourcefile
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from . import geometry, materials, scaling
 from .config import Chosen, PipelineConfig
 from .data import DisparityMap, HapticSurface, MaterialMap, Record, Relief, SegmentMap, Views, digest_of
@@ -59,17 +61,20 @@ def rules(config: PipelineConfig, scene: Scene) -> dict[str, Rule]:
 
 
 def _disparity(config: PipelineConfig, scene: Scene) -> Rule:
-    size = config.workspace
-    factor = scaling.felt_factor(scene.views.shape[1], size.width_m, size.finest_m) if scene.views else 1
+    factor, note = _felt(config, scene)
 
     def make(inputs: Inputs) -> DisparityMap:
         views = _views(scene)
         small = scaling.reduced(views, factor)
-        return scaling.enlarged(_configured(config, "depth").method.estimate(small), views.shape)
+        found = scaling.enlarged(_configured(config, "depth").method.estimate(small), views.shape)
+        if scene.known is None:
+            return found
+        known_px = np.where(scene.known, found.disparity_px, np.float32(np.nan))
+        return DisparityMap(known_px, found.confidence * scene.known, found.unit)
 
     name, key = _identity(config.depth)
-    note = f"at 1/{factor} of the size, as finer than {1e3 * size.finest_m:g} mm is not felt" if factor > 1 else ""
-    return Rule("disparity", name, f"{key} 1/{factor}", ("views",), make, _skip(config.depth, scene), note)
+    key = f"{key} 1/{factor} {_known(scene)}"
+    return Rule("disparity", name, key, ("views",), make, _skip(config.depth, scene), note)
 
 
 def _relief(config: PipelineConfig, scene: Scene) -> Rule:
@@ -87,15 +92,21 @@ def _relief(config: PipelineConfig, scene: Scene) -> Rule:
 
 
 def _segments(config: PipelineConfig, scene: Scene) -> Rule:
+    factor, note = _felt(config, scene)
+
     def make(inputs: Inputs) -> SegmentMap:
-        return _configured(config, "texture").method.segment(_views(scene).left)
+        views = _views(scene)
+        small = scaling.reduced(Views(views.left), factor).left
+        found = scaling.enlarged_segments(_configured(config, "texture").method.segment(small), views.shape)
+        return found if scene.known is None else SegmentMap(found.labels, found.confidence * scene.known)
 
     skip = _skip(config.texture, scene)
     if config.texture is None:
         skip = "no `texture:` is configured; the whole surface is one material"
     elif scene.views is None:
         skip = "the scene has heights and no picture"
-    return Rule("segments", *_identity(config.texture), ("views",), make, skip)
+    name, key = _identity(config.texture)
+    return Rule("segments", name, f"{key} 1/{factor} {_known(scene)}", ("views",), make, skip, note)
 
 
 def _materials(config: PipelineConfig, scene: Scene, unsegmented: str | None) -> Rule:
@@ -168,6 +179,20 @@ def _code_digest(path: str, in_package: bool) -> str:
         return hashlib.sha256(b"".join(file.read_bytes() for file in files)).hexdigest()[:16]
     except OSError:
         return ""
+
+
+def _felt(config: PipelineConfig, scene: Scene) -> tuple[int, str]:
+    """By how much the pictures are reduced, as nothing finer is felt; and the words for it."""
+    size = config.workspace
+    factor = scaling.felt_factor(scene.views.shape[1], size.width_m, size.finest_m) if scene.views else 1
+    if factor == 1:
+        return factor, ""
+    what = f"at 1/{factor} of the size, as finer than {1e3 * size.finest_m:g} mm is not felt"
+    return factor, f"{what} (`workspace: {{finest_m: 0}}` keeps everything)"
+
+
+def _known(scene: Scene) -> str:
+    return "" if scene.known is None else f"known {digest_of(scene.known)}"
 
 
 def _skip(chosen: Chosen[Any] | None, scene: Scene) -> str | None:

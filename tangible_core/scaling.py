@@ -1,8 +1,8 @@
-"""Views at a size that can be felt, and their disparity at the size of the pictures again."""
+"""Views at a size that can be felt, and what is found in them at the size of the pictures again."""
 
 import numpy as np
 
-from .data import DisparityMap, Views
+from .data import DisparityMap, SegmentMap, Views
 
 
 def felt_factor(columns: int, width_m: float, finest_m: float) -> int:
@@ -30,6 +30,16 @@ def enlarged(disparity: DisparityMap, shape: tuple[int, int]) -> DisparityMap:
     scale = shape[1] / disparity.disparity_px.shape[1] if disparity.unit == "px" else 1.0
     values = _resized(disparity.disparity_px, shape) * np.float32(scale)
     return DisparityMap(values, _resized(disparity.confidence, shape), disparity.unit)
+
+
+def enlarged_segments(segments: SegmentMap, shape: tuple[int, int]) -> SegmentMap:
+    """The segments of a reduced picture for one of (h, w): of the nearest pixel, in the same order of labels."""
+    import cv2
+
+    if segments.labels.shape == shape:
+        return segments
+    nearest = np.asarray(cv2.resize(segments.labels, shape[::-1], interpolation=cv2.INTER_NEAREST_EXACT), np.int32)
+    return SegmentMap(nearest, np.asarray(cv2.resize(segments.confidence, shape[::-1], interpolation=cv2.INTER_LINEAR)))
 
 
 def _mean(picture: np.ndarray, rows: int, columns: int) -> np.ndarray:

@@ -6,22 +6,21 @@ from pathlib import Path
 from typing import Annotated, Literal, Self
 
 import numpy as np
-from jaxtyping import Float32
+from jaxtyping import Bool, Float32
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from .data import Calibration, DisparityMap, Record, SegmentMap, Views
 from .errors import ConfigError, PictureError, did_you_mean
 from .geometry import Holes, scale_heights
-from .picture_files import read_labels, read_map, read_picture
+from .picture_files import NonFinite, read_labels, read_map, read_picture
+from .pictures import fill_non_finite
 
 Length = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 
 _NEEDS = {"focal_px": "baseline_m", "baseline_m": "focal_px", "offset_px": "focal_px", "relief_m": "height"}
 _OF_VIEWS = ("disparity", "truth", "focal_px", "baseline_m", "offset_px")
+_PICTURES = {"left", "right", "photo"}
 _READERS = {
-    "left": read_picture,
-    "right": read_picture,
-    "photo": read_picture,
     "height": read_map,
     "disparity": read_map,
     "segments": read_labels,
@@ -57,9 +56,13 @@ class SceneFiles(BaseModel):
     relief_m: Length | None = None
     """Height of the relief that a height map stands for; the workspace's when left out."""
 
+    non_finite: NonFinite = "error"
+    """NaN and infinity in a picture: an `error` that names the first place; or a `mask`: filled from the nearest pixel,
+    and unknown in what is found there: no disparity, and segments without confidence."""
+
     @model_validator(mode="after")
     def _one_scene(self) -> Self:
-        given = [name for name, value in self if value is not None]
+        given = [name for name, value in self if isinstance(value, Path | float)]
         kinds = [kind for kind in (("left", "right"), ("photo",), ("height",)) if set(kind) & set(given)]
         if len(kinds) != 1 or not set(kinds[0]) <= set(given):
             named = ", ".join(given) or "nothing"
@@ -94,6 +97,8 @@ class Scene:
     """Ready products: "disparity", "relief" or "segments"."""
     truth: Float32[np.ndarray, "h w"] | None = None
     """True disparity in pixels, NaN where unknown."""
+    known: Bool[np.ndarray, "h w"] | None = None
+    """Where the left view or the photo is; None for everywhere."""
 
 
 BUILTINS: Mapping[str, SceneFiles] = {
@@ -125,9 +130,12 @@ def read_scene(scene: str | SceneFiles, folder: Path, width_m: float, relief_m: 
     else:
         raise ConfigError(unknown_scene(scene))
     paths = {key: folder / path.expanduser() for key, path in files if isinstance(path, Path)}
-    held = {key: _READERS[key](path) for key, path in paths.items()}
+    held = {key: _READERS[key](path) for key, path in paths.items() if key not in _PICTURES}
+    held |= {key: read_picture(path, files.non_finite) for key, path in paths.items() if key in _PICTURES}
     _check_sizes(paths, held)
-    return Scene(name, _views(files, held), _given(files, held, width_m, relief_m, holes), _frozen(held.get("truth")))
+    known = _fill(held, files.main) if files.non_finite == "mask" and files.main in _PICTURES else None
+    given = _given(files, held, width_m, relief_m, holes)
+    return Scene(name, _views(files, held), given, _frozen(held.get("truth")), _frozen(known))
 
 
 def unknown_scene(name: str) -> str:
@@ -157,6 +165,14 @@ def _check_sizes(paths: Mapping[str, Path], held: Mapping[str, np.ndarray]) -> N
                 f"{paths[other]} ({other}) is {its[0]} x {its[1]} and {paths[main]} ({main}) is {size[0]} x {size[1]}; "
                 "all files of a scene are of one size: resize or cut one of them"
             )
+
+
+def _fill(held: dict[str, np.ndarray], main: str) -> np.ndarray | None:
+    """Fill what is not finite in the pictures; where the main one is known, None if that is everywhere."""
+    known: dict[str, np.ndarray] = {}
+    for name in held.keys() & _PICTURES:
+        held[name], known[name] = fill_non_finite(held[name])
+    return None if known[main].all() else known[main]
 
 
 def _views(files: SceneFiles, held: Mapping[str, np.ndarray]) -> Views | None:

@@ -12,7 +12,7 @@ from tangible_core.cache import Cache
 from tangible_core.config import Chosen, MaterialChoice, PipelineConfig, Workspace
 from tangible_core.data import DisparityMap, HapticSurface, SegmentMap, Views
 from tangible_core.engine import Pipeline
-from tangible_core.errors import ConfigError, GeometryError, UnknownMethod
+from tangible_core.errors import ConfigError, GeometryError, PictureError, UnknownMethod
 from tangible_core.interfaces import DepthEstimator, ForceRenderer, Segmenter, Skippable, Touch
 from tangible_core.picture_files import write_png
 from tangible_core.registry import Registry
@@ -282,7 +282,39 @@ def test_pictures_finer_than_can_be_felt_are_matched_smaller_and_it_is_said(fold
     assert disparity.disparity_px.shape == (20, 30)
     assert disparity.disparity_px[0, 15] == pytest.approx(15, abs=1)
     (why,) = [each.why for each in pipe.outcomes if each.product == "disparity"]
-    assert why == "asked for; at 1/2 of the size, as finer than 2 mm is not felt"
+    reason = "at 1/2 of the size, as finer than 2 mm is not felt (`workspace: {finest_m: 0}` keeps everything)"
+    assert why == f"asked for; {reason}"
     whole = pipeline(folder, workspace=Workspace(width_m=0.03, finest_m=0))
     whole.make("disparity")
     assert "of the size" not in "".join(each.why for each in whole.outcomes)
+
+
+def test_a_photo_finer_than_can_be_felt_is_segmented_smaller_and_it_is_said(folder: Path):
+    parts = {"scene": SceneFiles(photo=Path("left.png")), "depth": None}
+    pipe = pipeline(folder, **parts, workspace=Workspace(width_m=0.03, finest_m=0.002))  # 30 columns of 1 mm
+    segments = pipe.make("segments")
+    assert segments.labels.tolist() == [[0] * 14 + [1] * 16] * 20  # half of 15 columns is 7
+    (why,) = [each.why for each in pipe.outcomes if each.product == "segments"]
+    assert "at 1/2 of the size, as finer than 2 mm is not felt (`workspace: {finest_m: 0}` keeps everything)" in why
+    whole = pipeline(folder, **parts, workspace=Workspace(width_m=0.03, finest_m=0))
+    assert whole.make("segments").labels.tolist() == [[0] * 15 + [1] * 15] * 20
+    assert "of the size" not in "".join(each.why for each in whole.outcomes)
+
+
+def test_what_is_not_finite_is_an_error_or_a_mask_as_asked_for(folder: Path):
+    picture = np.random.default_rng(0).random((20, 30))
+    np.save(folder / "whole.npy", picture)
+    picture[3, 5] = np.nan
+    np.save(folder / "torn.npy", picture)
+
+    def scene(photo: str, non_finite: str = "mask") -> Pipeline:
+        return pipeline(folder, scene=SceneFiles(photo=Path(photo), non_finite=non_finite))
+
+    with pytest.raises(PictureError, match=r"torn\.npy.*the first at row 3, column 5"):
+        scene("torn.npy", "error").make("segments")
+    torn = scene("torn.npy")
+    segments, disparity = torn.make("segments"), torn.make("disparity")
+    assert np.argwhere(segments.confidence == 0).tolist() == [[3, 5]]
+    assert np.argwhere(np.isnan(disparity.disparity_px)).tolist() == [[3, 5]]
+    assert np.argwhere(disparity.confidence == 0).tolist() == [[3, 5]]
+    assert scene("whole.npy").make("segments").confidence.min() == 1

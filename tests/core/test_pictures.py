@@ -11,7 +11,7 @@ from PIL import Image
 
 from tangible_core.errors import PictureError
 from tangible_core.picture_files import MAX_LABELS, read_labels, read_map, read_picture, write_png
-from tangible_core.pictures import check_picture, full_scale, to_grey, to_rgb8
+from tangible_core.pictures import check_picture, fill_non_finite, full_scale, to_grey, to_rgb8
 
 NAN = np.nan
 COLOURS = np.random.default_rng(0).integers(0, 256, (6, 9, 3), dtype=np.uint8)
@@ -362,3 +362,28 @@ def test_a_photo_is_no_label_picture(tmp_path):
 @pytest.mark.parametrize("values", [np.zeros((2, 2, 5), np.uint8), np.zeros((0, 2)), np.array([[NAN, 1]])])
 def test_what_holds_no_labels_is_refused(tmp_path, values):
     refusal(saved(tmp_path, "a.npy", values), read_labels)
+
+
+@pytest.mark.parametrize("channels", [(), (3,), (4,)])
+def test_what_is_not_finite_is_filled_from_the_nearest_pixel(channels):
+    picture = np.random.default_rng(0).random((6, 8, *channels))
+    expected = picture.copy()
+    picture[2, 3:] = np.nan
+    picture[5, 0] = [np.inf, -np.inf, 0.5, 1][: channels[0]] if channels else np.inf
+    filled, known = fill_non_finite(picture)
+    assert np.argwhere(~known).tolist() == [*([2, column] for column in range(3, 8)), [5, 0]]
+    assert np.array_equal(filled[known], expected[known])
+    assert np.array_equal(filled[2, 6:], expected[1, 6:])
+    assert np.array_equal(filled[5, 0], expected[4, 0])
+
+
+def test_a_picture_of_integers_is_known_everywhere():
+    picture = np.arange(6, dtype=np.uint8).reshape(2, 3)
+    filled, known = fill_non_finite(picture)
+    assert known.all()
+    assert np.array_equal(filled, picture)
+
+
+def test_nothing_finite_cannot_be_filled():
+    with pytest.raises(PictureError, match="none of the 6 pixels is finite"):
+        fill_non_finite(np.full((2, 3), np.nan))

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from tangible_core.data import Calibration, DisparityMap, Views
-from tangible_core.scaling import enlarged, felt_factor, reduced
+from tangible_core.data import Calibration, DisparityMap, SegmentMap, Views
+from tangible_core.scaling import enlarged, enlarged_segments, felt_factor, reduced
 
 
 @pytest.mark.parametrize(
@@ -61,3 +61,21 @@ def test_what_is_relative_is_not_scaled():
 
 def test_one_pixel():
     assert reduced(Views(np.zeros((1, 1), np.uint8)), 3).shape == (1, 1)
+
+
+@pytest.mark.parametrize("shape", [(1, 1), (2, 9), (5, 7), (64, 33)])
+@pytest.mark.parametrize("factor", [1, 2, 3])
+def test_segments_come_back_with_every_label(shape, factor):
+    small = reduced(Views(np.zeros(shape, np.uint8)), factor).shape
+    labels = np.arange(small[0] * small[1], dtype=np.int32).reshape(small)
+    found = enlarged_segments(SegmentMap(labels, np.full(small, 0.25, np.float32)), shape)
+    assert found.labels.dtype == np.int32
+    assert np.array_equal(np.unique(found.labels), labels.ravel())
+    assert found.confidence.shape == shape
+    assert np.all(found.confidence == 0.25)
+
+
+def test_segments_stay_where_they_are():
+    labels = np.array([[0, 0, 1], [2, 1, 1]], np.int32)
+    whole = np.kron(labels, np.ones((4, 4), np.int32))
+    assert np.array_equal(enlarged_segments(SegmentMap(labels), whole.shape).labels, whole)

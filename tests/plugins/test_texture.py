@@ -14,9 +14,11 @@ from tangible_texture.basins import basins
 from tangible_texture.borders import Border, borders
 from tangible_texture.channels import channels
 from tangible_texture.gradient import MOST_SEGMENTS, Gradient
+from tangible_texture.landscape import Landscape
 from tangible_texture.merging import in_reading_order, merge
+from tangible_texture.refining import refined
 from tangible_texture.slopes import slopes
-from tangible_texture.smoothing import gaussian, without_specks
+from tangible_texture.smoothing import WIDER, gaussian, two_scales, without_specks
 from tangible_texture.watershed import watershed
 
 
@@ -41,7 +43,7 @@ def cells(seed: int, count: int = 10, size: int = 256) -> np.ndarray:
     points = np.array([(row + 0.5, column + 0.5) for row in range(4) for column in range(4)]) / 4
     points = (points + rng.uniform(-0.08, 0.08, points.shape))[rng.permutation(16)[:count]]
     far = (rows + waves[0])[..., None] - points[:, 0], (columns + waves[1])[..., None] - points[:, 1]
-    return in_reading_order(np.hypot(*far).argmin(axis=2).astype(np.int32), np.arange(count, dtype=np.int32))
+    return in_reading_order(np.hypot(*far).argmin(axis=2).astype(np.int32))
 
 
 def smooth_scene(seed: int, noise: float) -> tuple[np.ndarray, np.ndarray]:
@@ -112,6 +114,17 @@ class TestSmoothing:
         assert found[:3].sum() > 0.6
         assert np.all(found[20:] == 0)
         assert found.sum() == pytest.approx(1, abs=1e-5)
+
+    @pytest.mark.parametrize(("shape", "step"), [((512, 512), 2), ((511, 301), 2), ((30, 40), 1), ((1, 1), 1)])
+    def test_two_scales(self, shape: tuple[int, int], step: int):
+        noise = np.random.default_rng(0).normal(0, 1, (*shape, 2)).astype(np.float32)
+        near, wide, found = two_scales(noise, 2.0)
+        assert found == step
+        assert near.shape == noise.shape
+        assert wide.shape == (-(-shape[0] // step), -(-shape[1] // step), 2)
+        if min(shape) > 300:  # what a Gaussian leaves of white noise
+            assert near.std() == pytest.approx(1 / (np.sqrt(4 * np.pi) * 2), rel=0.05)
+            assert wide.std() == pytest.approx(1 / (np.sqrt(4 * np.pi) * 2 * WIDER), rel=0.05)
 
 
 class TestSlopes:
@@ -213,6 +226,34 @@ class TestWatershed:
         assert (count, True) == (same, np.count_nonzero(more >= 0) > 1.2 * np.count_nonzero(few >= 0))
         assert np.mean(watershed(height, more) == watershed(height, few)) > 0.999
 
+    def test_tiles_leave_no_seams(self, monkeypatch: pytest.MonkeyPatch):
+        height = slopes(gaussian(channels(smooth_scene(0, noise=5)[0], colour=False), 2.0))[0]
+        markers, _ = basins(height, [np.quantile(height, 0.6)], 100)
+        whole = watershed(height, markers)
+        monkeypatch.setattr("tangible_texture.watershed.TILE_PX", 48)
+        assert np.array_equal(watershed(height, markers), whole)
+
+    def test_water_reaches_a_tile_without_a_marker(self, monkeypatch: pytest.MonkeyPatch):
+        monkeypatch.setattr("tangible_texture.watershed.TILE_PX", 8)
+        monkeypatch.setattr("tangible_texture.watershed.AROUND_PX", 2)
+        markers = np.full((4, 40), -1, np.int32)
+        markers[0, 0] = 5
+        assert np.all(watershed(np.ones((4, 40), np.float32), markers) == 5)
+
+
+class TestRefining:
+    def test_cells_become_pixels_and_borders_go_where_the_crest_is(self):
+        height = np.zeros((9, 11), np.float32)
+        height[:, 5] = 1
+        labels = np.array([[0, 0, 0, 1, 1, 1]] * 5, np.int32)
+        found = refined(labels, 2, height)
+        assert np.delete(found, 5, axis=1).tolist() == [[0] * 5 + [1] * 5] * 9
+
+    def test_a_region_of_one_cell_stays(self):
+        labels = np.zeros((5, 5), np.int32)
+        labels[2, 2] = 1
+        assert np.count_nonzero(refined(labels, 2, np.zeros((10, 10), np.float32)) == 1) >= 4
+
 
 class TestMerging:
     LABELS = np.array([[0, 0, 1], [0, 2, 1]], np.int32)
@@ -220,14 +261,22 @@ class TestMerging:
 
     def test_borders_are_summed_over_pairs(self):
         edges = np.array([[0, 0, 255], [0, 0, 0]], np.uint8)
-        assert borders(self.LABELS, self.HEIGHT, edges) == {
+        flat = np.zeros_like(self.HEIGHT)
+        assert borders(self.LABELS, Landscape(self.HEIGHT, flat, flat), edges, 4) == {
             (0, 1): Border(1, 8, 1),
             (0, 2): Border(2, 32, 0),
             (1, 2): Border(1, 32, 0),
         }
 
+    def test_what_rises_across_a_border_is_an_edge_and_what_rises_along_it_is_none(self):
+        edges, flat, steep = np.zeros((2, 3), np.uint8), np.zeros((2, 3), np.float32), np.full((2, 3), -4, np.float32)
+        for land, expected in ((Landscape(steep, steep, flat), (1, 1, 1)), (Landscape(steep, flat, steep), (0, 1, 0))):
+            found = borders(self.LABELS, land, edges, 4)
+            assert tuple(found[pair].edges for pair in ((0, 1), (0, 2), (1, 2))) == expected
+
     def test_one_region_has_no_border(self):
-        assert borders(np.zeros((3, 4), np.int32), np.ones((3, 4), np.float32), np.zeros((3, 4), np.uint8)) == {}
+        flat = np.ones((3, 4), np.float32)
+        assert borders(np.zeros((3, 4), np.int32), Landscape(flat, flat, flat), np.zeros((3, 4), np.uint8), 4) == {}
 
     def test_what_edges_do_not_hold_apart_is_merged_however_many_are_wanted(self):
         found = {(0, 1): Border(10, 90, 9), (1, 2): Border(10, 50, 1), (0, 2): Border(10, 90, 9)}
@@ -249,7 +298,7 @@ class TestMerging:
 
     def test_labels_are_in_reading_order(self):
         labels = np.array([[3, 3, 1], [0, 2, 1]], np.int32)
-        assert in_reading_order(labels, np.array([0, 1, 0, 3], np.int32)).tolist() == [[0, 0, 1], [2, 2, 1]]
+        assert in_reading_order(labels).tolist() == [[0, 0, 1], [2, 3, 1]]
 
 
 class TestGradient:
@@ -260,6 +309,14 @@ class TestGradient:
         found = Gradient().segment(picture)
         assert rand_index(found.labels, truth) >= 0.98
         assert found.count == truth.max() + 1
+
+    @pytest.mark.parametrize("seed", range(3))
+    def test_weak_edges_are_found_in_noise(self, seed: int):
+        """Steps of 9 grey levels in noise of 9, which hides them at sigma_px itself."""
+        truth = cells(seed)
+        rng = np.random.default_rng(seed)
+        grey = 100 + 9.0 * rng.permutation(truth.max() + 1)[truth] + rng.normal(0, 9, truth.shape)
+        assert rand_index(Gradient().segment(np.rint(grey).astype(np.uint8)).labels, truth) >= 0.95
 
     def test_more_noise_than_it_can_take_makes_fewer_segments_rather_than_more(self):
         picture, truth = smooth_scene(0, noise=60)
@@ -310,7 +367,7 @@ class TestGradient:
         levels = np.random.default_rng(0).permutation(np.linspace(0, 255, 144)).reshape(12, 12)
         picture = np.kron(levels, np.ones((24, 24))).astype(np.uint8)
         assert Gradient().segment(picture).count == MOST_SEGMENTS
-        assert Gradient(segments=144).segment(picture).count > 120
+        assert Gradient(segments=144, sigma_px=1.5).segment(picture).count > 120
 
     def test_labels_are_in_reading_order(self):
         labels = Gradient().segment(smooth_scene(2, noise=3)[0]).labels
@@ -392,6 +449,7 @@ class TestGradient:
         assert Gradient().skip(Views(left=flat)) == "the picture is one flat colour"
         flat[7, 9, 1] += 1
         assert Gradient().skip(Views(left=flat)) is None
+        assert "one segment is asked for" in Gradient(segments=1).skip(Views(left=flat))
 
     @pytest.mark.parametrize(
         "options",

@@ -1,12 +1,17 @@
-"""Borders between the regions of a label map. Compiled by numba where every pixel is visited."""
-
-# ruff: noqa: ANN001, ANN202 -- numba takes the types from the call
+"""Borders between the regions of a label map."""
 
 from typing import NamedTuple
 
 import numpy as np
-from jaxtyping import Float32, Int32, UInt8
-from numba import njit
+from jaxtyping import Int32, UInt8
+
+from .landscape import Landscape
+
+Ways = tuple[tuple[slice, slice], tuple[slice, slice]]
+"""Where the first pixels of all pairs are, and where the second ones."""
+
+DOWN: Ways = np.s_[:-1, :], np.s_[1:, :]
+ACROSS: Ways = np.s_[:, :-1], np.s_[:, 1:]
 
 
 class Border(NamedTuple):
@@ -16,7 +21,7 @@ class Border(NamedTuple):
     height: float
     """The higher pixel of each pair."""
     edges: float
-    """How many pairs have an edge in them."""
+    """How many pairs have an edge in them or between them."""
 
     def joined(self, other: "Border") -> "Border":
         """Both borders, of one region with two that have become one."""
@@ -24,44 +29,43 @@ class Border(NamedTuple):
 
 
 def borders(
-    labels: Int32[np.ndarray, "h w"], height: Float32[np.ndarray, "h w"], edges: UInt8[np.ndarray, "h w"]
+    labels: Int32[np.ndarray, "h w"], land: Landscape, edges: UInt8[np.ndarray, "h w"], edge_slope: float
 ) -> dict[tuple[int, int], Border]:
-    """Every border there is, by its two regions, the lower label first; edges are where `edges` is not 0."""
+    """Every border there is, by its two regions, the lower label first.
+
+    A pair has an edge where `edges` is not 0, and where the picture rises or falls by edge_slope or more from one of
+    its pixels to the other. The second finds what is no crest: a weak edge between the flanks of strong ones.
+    """
     count = int(labels.max()) + 1
-    keys, highest, edged = _pairs(labels, height, edges, count)
-    found, which, pairs = np.unique(keys, return_inverse=True, return_counts=True)
+    pairs = [
+        _pairs(labels, land.steep, edges, slope, edge_slope, ways, count)
+        for slope, ways in ((land.down, DOWN), (land.across, ACROSS))
+    ]
+    keys, highest, edged = (np.concatenate(each) for each in zip(*pairs, strict=True))
+    found, which, number = np.unique(keys, return_inverse=True, return_counts=True)
     sums = (np.bincount(which, weights, found.size).tolist() for weights in (highest, edged))
-    return {divmod(key, count): Border(*sums) for key, *sums in zip(found.tolist(), pairs.tolist(), *sums, strict=True)}
+    return {
+        divmod(key, count): Border(*sums) for key, *sums in zip(found.tolist(), number.tolist(), *sums, strict=True)
+    }
 
 
-@njit(cache=True, nogil=True)
-def _pairs(labels, height, edges, count):
-    """A key, the greater height and whether there is an edge, of every two pixels beside each other of two labels."""
-    rows, columns = labels.shape
-    number = _count_pairs(labels)
-    keys, highest, edged = np.empty(number, np.int64), np.empty(number, np.float32), np.empty(number, np.bool_)
-    at = 0
-    for row in range(rows):
-        for column in range(columns):
-            one = labels[row, column]
-            for below, right in ((row + 1, column), (row, column + 1)):
-                if below < rows and right < columns and labels[below, right] != one:
-                    other = labels[below, right]
-                    keys[at] = np.int64(min(one, other)) * count + max(one, other)
-                    highest[at] = max(height[row, column], height[below, right])
-                    edged[at] = edges[row, column] != 0 or edges[below, right] != 0
-                    at += 1
-    return keys, highest, edged
+def _pairs(
+    labels: np.ndarray,
+    height: np.ndarray,
+    edges: np.ndarray,
+    slope: np.ndarray,
+    edge_slope: float,
+    ways: Ways,
+    count: int,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """A key, the greater height and whether there is an edge, of every two pixels of two labels that lie this way."""
+    first, second = ways
+    at = np.flatnonzero(labels[first] != labels[second])
 
+    def both(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        return values[first].ravel()[at], values[second].ravel()[at]
 
-@njit(cache=True, nogil=True)
-def _count_pairs(labels):
-    rows, columns = labels.shape
-    number = 0
-    for row in range(rows):
-        for column in range(columns):
-            if row + 1 < rows:
-                number += labels[row + 1, column] != labels[row, column]
-            if column + 1 < columns:
-                number += labels[row, column + 1] != labels[row, column]
-    return number
+    one, other = both(labels)
+    keys = np.minimum(one, other).astype(np.int64) * count + np.maximum(one, other)
+    steep = np.abs(np.add(*both(slope))) >= 2 * edge_slope
+    return keys, np.maximum(*both(height)), steep | (np.maximum(*both(edges)) > 0)

@@ -10,7 +10,7 @@ from numba import njit
 
 from .borders import Border
 
-HELD_APART = 0.4
+HELD_APART = 0.6
 """Two neighbours stay apart where at least this share of their border lies on edges."""
 
 
@@ -79,19 +79,16 @@ class _Graph:
 
 
 @njit(cache=True, nogil=True)
-def in_reading_order(labels, names):
-    """Labels 0..n-1 in the order of their first pixels, row by row; labels of one name become one.
-
-    Parameters: labels int32 (h, w); names int32 (n,), one a label, 0..n-1. Returns: int32 (h, w).
-    """
-    order = np.full(names.size, -1, np.int32)
+def in_reading_order(labels):
+    """Labels 0..n-1 in the order of their first pixels, row by row. Parameters: labels >= 0, int32 (h, w)."""
+    order = np.full(labels.max() + 1, -1, np.int32)
     found = np.empty_like(labels)
     count = 0
     for row in range(labels.shape[0]):
         for column in range(labels.shape[1]):
-            name = names[labels[row, column]]
-            if order[name] < 0:
-                order[name] = count
+            label = labels[row, column]
+            if order[label] < 0:
+                order[label] = count
                 count += 1
-            found[row, column] = order[name]
+            found[row, column] = order[label]
     return found

@@ -15,6 +15,8 @@ QUIET_SHARE = 0.25
 _QUIET_RATIO = np.float32(np.sqrt(-2 * np.log(1 - QUIET_SHARE)))
 """That quantile of a Rayleigh distribution, which slopes of Gaussian noise follow, over its parameter."""
 
+_HALF = np.float32(0.5)
+
 Map = Float32[np.ndarray, "h w"]
 
 
@@ -29,14 +31,35 @@ def slopes(smooth: Float32[np.ndarray, "h w c"]) -> tuple[Map, Map, Map, Map]:
     import cv2
 
     across, down = (
-        cv2.Sobel(smooth, cv2.CV_32F, *way, ksize=1, scale=0.5, borderType=cv2.BORDER_REPLICATE).reshape(smooth.shape)
-        for way in ((1, 0), (0, 1))
+        each.reshape(smooth.shape) for each in _differences(smooth.reshape(len(smooth), -1), smooth.shape[2])
     )
     magnitude = cv2.magnitude(across, down).reshape(smooth.shape)
     noise = _noise(magnitude)
     if smooth.shape[2] == 1:
         return magnitude[..., 0], across[..., 0], down[..., 0], noise
     return *_steepest(magnitude, across, down), noise
+
+
+@njit(cache=True, nogil=True)
+def _differences(rows, channels):
+    """Central differences across and down; channels stand side by side in a row, and the border is repeated."""
+    across, down = np.empty_like(rows), np.empty_like(rows)
+    for row in range(len(rows)):
+        _halve(rows[min(row + 1, len(rows) - 1)], rows[max(row - 1, 0)], down[row])
+        here, there = rows[row], across[row]
+        if here.size == channels:
+            there[:] = 0
+            continue
+        _halve(here[2 * channels :], here[: -2 * channels], there[channels:-channels])
+        _halve(here[channels : 2 * channels], here[:channels], there[:channels])
+        _halve(here[-channels:], here[-2 * channels : -channels], there[-channels:])
+    return across, down
+
+
+@njit(cache=True, nogil=True)
+def _halve(right, left, found):
+    for at in range(len(found)):
+        found[at] = _HALF * (right[at] - left[at])
 
 
 @njit(cache=True, nogil=True)

@@ -6,70 +6,103 @@ import numpy as np
 from jaxtyping import Float32, Int32
 from numba import njit
 
-LEVELS = 4096
-"""Heights are told apart to this share of the highest."""
+LEVELS = 1024
+"""How many heights are told apart; low ones, at which most waters meet, more finely than high ones."""
+
+TILE_PX = 512
+"""Side of what is flooded at once."""
+
+AROUND_PX = 32
+"""More than the width of what lies between two flat basins."""
 
 UNSEEN = -1
 _OUTSIDE = -2
+_LAST = -1
+_UNQUEUED = -2
+
+_LABEL, _LEVEL, _NEXT = range(3)
+"""What is known of a pixel: all of it side by side, as the flood jumps about in memory."""
 
 
-def watershed(height: Float32[np.ndarray, "h w"], markers: Int32[np.ndarray, "h w"]) -> Int32[np.ndarray, "h w"]:
+Heights = Float32[np.ndarray, "h w"]
+Labels = Int32[np.ndarray, "h w"]
+
+
+def watershed(height: Heights, markers: Labels) -> Labels:
     """Flood a landscape from markers: each pixel gets the marker whose water reaches it first, over its 4 neighbours.
 
-    Parameters: height >= 0; markers, -1 where there is none.
+    Large landscapes are flooded tile by tile, each with AROUND_PX around it, from beyond which no water comes unless a
+    tile has no marker. Parameters: height >= 0; markers, -1 where there is none.
     Returns: labels, those of the markers; no pixel is left on a shed. Where there is no marker at all, all are -1.
     Source: Meyer, Un algorithme optimal pour la ligne de partage des eaux, 1991; the queue is an array of first-in
     first-out lists, one a level.
     """
     top = float(height.max())
-    return _flood(height, markers, np.float32((LEVELS - 1) / top if top else 0))
+    scale = np.float32((LEVELS - 1) / np.sqrt(top) if top else 0)
+    found = np.empty_like(markers)
+    for row in range(0, len(height), TILE_PX):
+        for column in range(0, height.shape[1], TILE_PX):
+            _flood_tile(found, row, column, height, markers, scale)
+    return found if found.min() > UNSEEN else _flood(height, found, scale)
 
 
-@njit(cache=True, nogil=True)
-def _framed(height, markers, scale):
-    """Levels and labels in a frame one pixel wide that counts as outside, flat."""
-    rows, columns = height.shape
-    levels = np.zeros((rows + 2, columns + 2), np.uint16)
-    labels = np.full((rows + 2, columns + 2), _OUTSIDE, np.int32)
-    for row in range(rows):
-        for column in range(columns):
-            levels[row + 1, column + 1] = np.uint16(height[row, column] * scale)
-            labels[row + 1, column + 1] = markers[row, column]
-    return levels.ravel(), labels.ravel()
+def _flood_tile(found: Labels, row: int, column: int, height: Heights, markers: Labels, scale: np.float32) -> None:
+    """Flood one tile and what is around it, and keep the tile: a whole picture's memory is too far to jump about in."""
+    top, left = max(0, row - AROUND_PX), max(0, column - AROUND_PX)
+    window = np.s_[top : row + TILE_PX + AROUND_PX, left : column + TILE_PX + AROUND_PX]
+    labels = _flood(np.ascontiguousarray(height[window]), np.ascontiguousarray(markers[window]), scale)
+    inner = labels[row - top :, column - left :][:TILE_PX, :TILE_PX]
+    found[row : row + TILE_PX, column : column + TILE_PX] = inner
 
 
 @njit(cache=True, nogil=True)
 def _flood(height, markers, scale):
     rows, columns = height.shape
     width = columns + 2
-    levels, labels = _framed(height, markers, scale)
-    following = np.full(labels.size, -1, np.int32)  # the next pixel in the same queue
-    first = np.full(LEVELS, -1, np.int32)
+    cells = _framed(height, markers, scale)
+    first = np.full(LEVELS, _LAST, np.int32)
     last = np.empty(LEVELS, np.int32)
     neighbours = (-width, -1, 1, width)
-    for pixel in range(labels.size):
-        if labels[pixel] >= 0:
-            shore = False
+    for pixel in range(len(cells)):
+        if cells[pixel, _LABEL] == UNSEEN:
             for step in neighbours:
-                shore |= labels[pixel + step] == UNSEEN
-            if shore:
-                _append(pixel, levels[pixel], following, first, last)
+                if cells[pixel + step, _LABEL] >= 0 and cells[pixel + step, _NEXT] == _UNQUEUED:
+                    _append(pixel + step, cells[pixel + step, _LEVEL], cells, first, last)
     for level in range(LEVELS):
         pixel = first[level]
-        while pixel >= 0:
+        while pixel != _LAST:
             for step in neighbours:
                 beside = pixel + step
-                if labels[beside] == UNSEEN:
-                    labels[beside] = labels[pixel]
-                    _append(beside, max(level, levels[beside]), following, first, last)
-            pixel = following[pixel]
-    return labels.reshape(rows + 2, width)[1:-1, 1:-1].copy()
+                if cells[beside, _LABEL] == UNSEEN:
+                    cells[beside, _LABEL] = cells[pixel, _LABEL]
+                    _append(beside, max(level, cells[beside, _LEVEL]), cells, first, last)
+            pixel = cells[pixel, _NEXT]
+    return cells.reshape(rows + 2, width, 3)[1:-1, 1:-1, _LABEL].copy()
 
 
 @njit(cache=True, nogil=True)
-def _append(pixel, level, following, first, last):
-    if first[level] < 0:
+def _framed(height, markers, scale):
+    """The pixels in a frame one pixel wide that counts as outside."""
+    rows, columns = height.shape
+    cells = np.empty(((rows + 2) * (columns + 2), 3), np.int32)
+    cells[: columns + 2, _LABEL] = _OUTSIDE
+    cells[-columns - 2 :, _LABEL] = _OUTSIDE
+    for row in range(rows):
+        at = (row + 1) * (columns + 2)
+        cells[at, _LABEL] = _OUTSIDE
+        cells[at + columns + 1, _LABEL] = _OUTSIDE
+        for column in range(columns):
+            at += 1
+            cells[at, _LABEL], cells[at, _NEXT] = markers[row, column], _UNQUEUED
+            cells[at, _LEVEL] = np.int32(np.sqrt(height[row, column]) * scale)
+    return cells
+
+
+@njit(cache=True, nogil=True)
+def _append(pixel, level, cells, first, last):
+    cells[pixel, _NEXT] = _LAST
+    if first[level] == _LAST:
         first[level] = pixel
     else:
-        following[last[level]] = pixel
+        cells[last[level], _NEXT] = pixel
     last[level] = pixel

@@ -1,0 +1,129 @@
+"""Segments by histogram: thresholds of grey that divide it best."""
+
+import logging
+from typing import TYPE_CHECKING, Annotated, Literal
+
+import numpy as np
+from jaxtyping import Bool, Float32, Int32
+from pydantic import Field
+
+from tangible_core.data import SegmentMap, Views
+from tangible_core.interfaces import Segmenter, Skippable
+
+from .skipping import nothing_to_divide
+
+if TYPE_CHECKING:
+    from .levels import Levels
+
+BINS = 256
+"""How many grey levels are told apart between the darkest and the brightest."""
+
+MOST_LEVELS = 16
+"""What `segments: auto` stops at: more thresholds than any picture has humps between."""
+
+FLAT_SHARE = 0.8
+"""The flattest pixels, of which the histogram is made."""
+
+NOTHING = 1e-6
+"""A difference of grey that rounding can make of one colour when white is 1."""
+
+log = logging.getLogger(__name__)
+
+
+class Histogram(Segmenter, Skippable):
+    """Levels of grey: the thresholds that divide the histogram best; a segment may lie in many places.
+
+    Smooth the grey picture; divide the 256 grey levels of its flattest four fifths so that the variance within the
+    classes is least (Otsu's criterion for several thresholds, its exact optimum). Edges make levels of their own, which
+    are no segments: they and the parts that are too small go to what lies beside them.
+    Never more segments than the picture has grey levels. Labels are in the order of their first pixels, row by row.
+    Confidence is the distance from the nearest threshold, in twice the standard deviation of the pixel's class, 1 at
+    most; 0 where the pixel went to another class.
+    `auto` takes the number of segments k with the least k^2 W(k), W being the variance within, if that is at most three
+    quarters of W(1); evenly spread levels are one segment, as are those of one Gaussian. How clear it was,
+    1 - k^2 W(k) / W(1), is logged.
+    Memory: 50 bytes a pixel beyond the picture.
+    Sources: Otsu, A threshold selection method from gray-level histograms, 1979; Marriott, Practical problems in a
+    method of cluster analysis, 1971.
+    """
+
+    segments: Annotated[int, Field(ge=1)] | Literal["auto"] = "auto"
+    """At most this many; `auto`: as many as the histogram has clear humps, 16 at most."""
+    sigma_px: Annotated[float, Field(ge=0, le=100)] = 2.0
+    """Standard deviation of the Gaussian that smooths, at most 1/16 of the root of the picture's area; 0 for none."""
+    smallest_px: Annotated[int, Field(ge=1)] = 50
+    """Connected parts of fewer flat pixels go to the segments beside them; in a small picture, 1/16 of its area; 1 to
+    leave every pixel in the class of its own grey."""
+
+    def skip(self, views: Views) -> str | None:
+        """One segment is asked for, or there is one flat colour."""
+        return nothing_to_divide(views.left, self.segments)
+
+    def segment(self, picture: np.ndarray) -> SegmentMap:
+        """Classes of grey; one where all of it is the same.
+
+        Raises: PictureError as `check_picture`.
+        """
+        from .channels import channels
+        from .merging import in_reading_order
+        from .parts import without_small_parts
+        from .slopes import slopes
+        from .smoothing import gaussian, without_specks
+
+        values = without_specks(channels(picture, colour=False))
+        sigma_px = min(self.sigma_px, values.size**0.5 / 16)
+        grey = gaussian(values, sigma_px)[..., 0] if sigma_px else values[..., 0]
+        if float(np.ptp(grey)) <= NOTHING:
+            return SegmentMap(np.zeros(grey.shape, np.int32))
+        steep = slopes(grey[..., None])[0]
+        flat = 1.001 * float(np.quantile(steep, FLAT_SHARE)) + NOTHING  # slopes that are equal differ by rounding
+        classes, confidence = self._classes(grey, steep <= flat, np.unique(_bins(values)).size)
+        smallest_px = min(self.smallest_px, classes.size // 16)
+        labels = without_small_parts(classes, steep, flat, smallest_px) if smallest_px > 1 else classes
+        confidence[labels != classes] = 0
+        return SegmentMap(in_reading_order(labels), confidence)
+
+    def _classes(
+        self, grey: Float32[np.ndarray, "h w"], flat: Bool[np.ndarray, "h w"], most: int
+    ) -> tuple[Int32[np.ndarray, "h w"], Float32[np.ndarray, "h w"]]:
+        """Each pixel's class, dark to bright, and how sure it is; `most` is how many levels the picture has."""
+        from .levels import Levels
+
+        bins = _bins(grey)
+        pixels = np.bincount(bins[flat], minlength=BINS)
+        used = np.flatnonzero(pixels)
+        levels = np.bincount(bins[flat], grey[flat])[used] / pixels[used]
+        divisions = Levels(levels, pixels[used], min(most, MOST_LEVELS if self.segments == "auto" else self.segments))
+        starts = divisions.starts(self._number(divisions))[1:]
+        thresholds = (levels[starts] + levels[starts - 1]) / 2
+        classes = np.searchsorted(thresholds, grey).astype(np.int32)
+        return classes, _confidence(grey, classes, thresholds)
+
+    def _number(self, divisions: "Levels") -> int:
+        if self.segments != "auto":
+            return len(divisions.spreads)
+        number, ratio = divisions.clearest()
+        log.info(
+            "segments: auto takes %d; no other number leaves so little of the grey levels' spread, "
+            "which is clear to %.0f %%",
+            number,
+            100 * (1 - ratio),
+        )
+        return number
+
+
+def _bins(grey: Float32[np.ndarray, "..."]) -> Int32[np.ndarray, "..."]:
+    low, high = grey.min(), grey.max()
+    return ((grey - low) * np.float32((BINS - 1e-3) / (high - low) if high > low else 0)).astype(np.int32)
+
+
+def _confidence(
+    grey: Float32[np.ndarray, "h w"], classes: Int32[np.ndarray, "h w"], thresholds: np.ndarray
+) -> Float32[np.ndarray, "h w"]:
+    """How far from the nearest threshold, in twice the spread of the class; half a bin is the least spread there is."""
+    edges = np.concatenate([[-np.inf], thresholds, [np.inf]])
+    sizes = np.bincount(classes.ravel())
+    mean, square = (np.bincount(classes.ravel(), (grey**power).ravel()) / sizes for power in (1, 2))
+    spread = np.maximum(np.sqrt(np.maximum(square - mean**2, 0)), np.ptp(grey) / BINS / 2)
+    distance = np.minimum(grey - edges[classes], edges[classes + 1] - grey)
+    return np.clip(distance / (2 * spread[classes]), 0, 1).astype(np.float32)

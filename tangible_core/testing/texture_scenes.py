@@ -137,8 +137,8 @@ def _texture(picture: np.ndarray, name: str) -> Float64[np.ndarray, "h w"]:
 def _crop(texture: Float64[np.ndarray, "H W"], shape: Shape, random: np.random.Generator) -> np.ndarray:
     """A part at chance; a texture that is too small goes on mirrored."""
     missing = [max(0, side - has) for side, has in zip(shape, texture.shape, strict=True)]
-    large: np.ndarray = np.pad(texture, [(0, more) for more in missing], mode="symmetric")
-    top, left = (int(random.integers(has - side + 1)) for side, has in zip(shape, large.shape, strict=True))
+    large = np.pad(texture, [(0, more) for more in missing], mode="symmetric")
+    top, left = random.integers(0, np.subtract(large.shape, shape) + 1)
     return large[top : top + shape[0], left : left + shape[1]]
 
 

@@ -29,6 +29,7 @@ CHECKED = (
     "testing.textures",
     "testing.texture_scenes",
     "bench.damage",
+    "bench.turning",
     "testing.variants",
 )
 BEARTYPE = "beartype.beartype(conf=beartype.BeartypeConf(is_pep484_tower=True))"  # an int is a float, as PEP 484 has it

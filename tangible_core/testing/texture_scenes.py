@@ -56,7 +56,7 @@ def texture_mosaic(
     chosen = random.choice(sorted(known), segments, replace=False)
     count = max(segments + 2, 8 * segments // 5)
     of_region = random.permutation(np.arange(count) % segments)
-    labels = _in_order(of_region[curvy_regions(shape, count, random)])
+    labels = in_order(of_region[curvy_regions(shape, count, random)])
     picture = np.empty(shape)
     for label, name in enumerate(chosen[: labels.max() + 1]):
         np.copyto(picture, without_grey(known[name](shape, random)), where=labels == label)
@@ -70,7 +70,7 @@ def smooth_scene(
     import cv2
 
     random = np.random.default_rng(seed)
-    labels = _in_order(curvy_regions(shape, segments, random))
+    labels = in_order(curvy_regions(shape, segments, random))
     greys: np.ndarray = random.permutation(np.linspace(30, 225, segments))
     rows, columns = np.indices(shape, np.float64) / np.reshape(shape, (2, 1, 1))
     light = 25 * (columns * random.uniform(-1, 1) + rows * random.uniform(-1, 1))
@@ -91,6 +91,12 @@ def curvy_regions(shape: Shape, count: int, random: np.random.Generator) -> Int3
         labels[distance < nearest] = index
         np.minimum(nearest, distance, out=nearest)
     return labels
+
+
+def in_order(labels: np.ndarray) -> Int32[np.ndarray, "h w"]:
+    """The same segments numbered 0..n-1, each of them present."""
+    _, inverse = np.unique(labels, return_inverse=True)
+    return inverse.reshape(labels.shape).astype(np.int32)
 
 
 def scattered(shape: Shape, count: int, random: np.random.Generator) -> Float64[np.ndarray, "n 2"]:
@@ -140,12 +146,6 @@ def _crop(texture: Float64[np.ndarray, "H W"], shape: Shape, random: np.random.G
     large = np.pad(texture, [(0, more) for more in missing], mode="symmetric")
     top, left = random.integers(0, np.subtract(large.shape, shape) + 1)
     return large[top : top + shape[0], left : left + shape[1]]
-
-
-def _in_order(labels: np.ndarray) -> Int32[np.ndarray, "h w"]:
-    """0..n-1, each of them present."""
-    _, inverse = np.unique(labels, return_inverse=True)
-    return inverse.reshape(labels.shape).astype(np.int32)
 
 
 def _bytes(values: np.ndarray) -> UInt8[np.ndarray, "h w"]:

@@ -18,11 +18,12 @@ from .texture_scenes import some
 from .turns import in_turns
 
 ROUNDS = 3
+MOSAICS = 3
 
 
 def figures() -> list[Figure]:
     """The promise about torch."""
-    scenes = some()
+    scenes = dict(list(some().items())[:MOSAICS])
     agreements, accuracies = {}, []
     for name, scene in scenes.items():
         theirs = _kornia(scene)

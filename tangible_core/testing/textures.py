@@ -28,17 +28,11 @@ def without_grey(texture: np.ndarray) -> Values:
     from scipy.special import ndtri
 
     values = texture - _mean_around(texture)
-    deviation = np.sqrt(_mean_around(values**2))
+    deviation = np.sqrt(_mean_around(values**2).clip(0))
     values /= deviation + 1e-6 * values.std() + np.finfo(np.float64).tiny
     ranks = np.empty(values.size)
     ranks[np.argsort(values, axis=None, kind="stable")] = (np.arange(values.size) + 0.5) / values.size
     return np.clip(GREY + CONTRAST * ndtri(ranks).reshape(values.shape), 0, 255)
-
-
-def _mean_around(values: np.ndarray) -> Values:
-    import cv2
-
-    return cv2.GaussianBlur(values.astype(np.float64), (0, 0), WINDOW_PX, borderType=cv2.BORDER_REFLECT)
 
 
 def grain(shape: Shape, random: np.random.Generator) -> Values:
@@ -132,7 +126,15 @@ def _filtered(shape: Shape, random: np.random.Generator, gain: Callable[[Values,
     return np.fft.irfft2(spectrum, shape)
 
 
-def _bell(value: Values, centre: float, deviation: float) -> Values:
+def _mean_around(values: np.ndarray) -> Values:
+    """Under a Gaussian of WINDOW_PX, the picture mirrored at its border: a gain of its cosine transform."""
+    from scipy.fft import dctn, idctn
+
+    down, across = (_bell(np.fft.rfftfreq(2 * side)[:side], 0, 1 / (2 * np.pi * WINDOW_PX)) for side in values.shape)
+    return np.asarray(idctn(dctn(values) * np.outer(down, across)))
+
+
+def _bell(value: Float64[np.ndarray, "..."], centre: float, deviation: float) -> Float64[np.ndarray, "..."]:
     return np.exp(-0.5 * ((value - centre) / deviation) ** 2)
 
 

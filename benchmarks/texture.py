@@ -39,6 +39,7 @@ def section() -> str:
     figures += _part("invariance", texture_invariance.figures)
     haptic, materials = _part("materials", texture_materials.measured)
     skipped = _part("what is left out", texture_skips.rows)
+    exact = _part("what is known beforehand", texture_skips.exact)
     growth, sizes = _part("growth", texture_growth.measured)
     torch = _part("torch", texture_kornia.figures)
     return "\n".join(
@@ -62,6 +63,8 @@ def section() -> str:
             "What is left out: with all of it, against with it left out.",
             "",
             *skipped,
+            "",
+            exact,
         ]
     )
 

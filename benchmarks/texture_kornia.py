@@ -4,9 +4,8 @@ from functools import partial
 
 import numpy as np
 from tangible_texture.gabor_bank import bank, octaves
-from tangible_texture.kmeans import kmeans
 from tangible_texture.kornia_gabor import KorniaGabor
-from tangible_texture.labelling import enlarged, margins
+from tangible_texture.labelling import labelled
 from tangible_texture.local_energy import energy_planes, padding, spectrum_of
 
 from tangible_core.metrics import segment_errors
@@ -45,17 +44,16 @@ def figures() -> list[Figure]:
 
 
 def _kornia(scene: KnownSegments) -> np.ndarray:
-    return KorniaGabor(segments=scene.count, torch_device="cpu", skip_octaves=False).segment(scene.picture).labels
+    method = KorniaGabor(segments=scene.count, torch_device="cpu", skip_octaves=False, drop_seams=False)
+    return method.segment(scene.picture).labels
 
 
 def _our_bank(scene: KnownSegments) -> np.ndarray:
-    """The same bank, windows, features and starts, without torch."""
+    """The same bank, windows, features and starts, without torch; nothing is skipped or dropped in either."""
     options = KorniaGabor()
     grey, filters = to_grey(scene.picture), bank(octaves(options.longest_px))
     spectrum = spectrum_of(grey, padding(filters, options.window_px))
     planes = energy_planes(spectrum, filters, grey.shape, options.step_px, options.window_px)
-    roots = np.sqrt(planes.reshape(len(planes), -1).T)
-    rows = (roots - roots.mean(axis=0)) / roots.std(axis=0)
-    clusters = kmeans(rows, scene.count, options.restarts, options.seed)
-    labels = clusters.labels.reshape(planes.shape[1:])
-    return enlarged(labels, margins(rows, clusters.centres), options.step_px, grey.shape).labels
+    roots = np.sqrt(np.moveaxis(planes, 0, 2))
+    features = (roots - roots.mean(axis=(0, 1))) / roots.std(axis=(0, 1))
+    return labelled(features, options.step_px, grey.shape, scene.count, options.seed, restarts=options.restarts).labels

@@ -9,7 +9,7 @@ import numpy as np
 
 from tangible_core.data import Views
 from tangible_core.metrics import segment_errors
-from tangible_core.scaling import felt_factor, reduced
+from tangible_core.scaling import enlarged_segments, felt_factor, reduced
 from tangible_core.testing.texture_scenes import KnownSegments
 
 from .figures import table
@@ -18,8 +18,10 @@ from .texture_scenes import some
 from .turns import in_turns
 
 SEGMENTS = 4
-ROUNDS = 5
-SURFACE_M, FINEST_M = 0.005, 30e-6
+ROUNDS = 3
+BLUR_PX = 3.0
+"""A mosaic blurred so far has no fine octaves."""
+SURFACE_M, FINEST_M = 0.0075, 30e-6
 """A surface on which 512 pixels are finer than a Falcon resolves."""
 
 
@@ -42,6 +44,21 @@ def rows() -> list[str]:
     )
 
 
+def exact() -> str:
+    """What is known before anything is looked for: no error, and next to no time."""
+    picture = next(iter(some().values())).picture
+    calls = {
+        "whole": partial(found, "gabor", picture, SEGMENTS),
+        "one": partial(found, "gabor", picture, 1),
+        "flat": partial(found, "gabor", np.full_like(picture, 128), SEGMENTS),
+    }
+    times = {name: 1e3 * each.seconds for name, each in in_turns(calls, ROUNDS).items()}
+    return (
+        f"Without any error: `gabor` takes {times['one']:.1f} ms where one segment is asked for and "
+        f"{times['flat']:.1f} ms on one flat colour, instead of {times['whole']:.0f} ms."
+    )
+
+
 def _row(skip: Skip) -> tuple[str, ...]:
     times = in_turns({"whole": skip.whole, "without": skip.without}, ROUNDS)
     whole, without = (segment_errors(call(), skip.truth)["ari"] for call in (skip.whole, skip.without))
@@ -57,11 +74,14 @@ def _row(skip: Skip) -> tuple[str, ...]:
 
 
 def skips(scene: KnownSegments) -> Iterator[Skip]:
-    """All of them; where the mosaic does need the thing, one that does not."""
-    blurred = KnownSegments(cv2.GaussianBlur(scene.picture, (0, 0), 3), scene.labels)
-    for label in ("report", "gabor"):
-        yield _option(label, scene, "filters without energy", "skip_weak")
-        yield _option(label, blurred, "octaves above the picture's own, blurred by 3 px", "skip_octaves")
+    """All that change what is found; where the mosaic does need the thing, one that does not."""
+    blurred = KnownSegments(cv2.GaussianBlur(scene.picture, (0, 0), BLUR_PX), scene.labels)
+    coloured = KnownSegments(np.dstack([scene.picture] * 3), scene.labels)
+    yield _option("weak filters", "report", scene, "skip_weak", True, False)
+    yield _option("octaves that are not there", "report", blurred, "skip_octaves", True, False)
+    yield _option("filters without energy", "gabor", blurred, "least_energy", 1e-4, 0)
+    yield _option("colour that is not there", "gabor", coloured, "colour", "auto", True)
+    yield _option("finer division, and neighbours at each step", "gabor", scene, "effort", "fast", "balanced")
     yield Skip(
         f"pixels finer than the device resolves, on a surface {1e3 * SURFACE_M:g} mm wide, `gabor`",
         f"`workspace: finest_m`: {1e3 * FINEST_M:g} mm, 0",
@@ -71,9 +91,9 @@ def skips(scene: KnownSegments) -> Iterator[Skip]:
     )
 
 
-def _option(label: str, scene: KnownSegments, what: str, switch: str) -> Skip:
-    without, whole = (partial(_labels, label, scene, **{switch: on}) for on in (True, False))
-    return Skip(f"{what}, `{label}`", f"`{switch}`: true, false", without, whole, scene.labels)
+def _option(what: str, label: str, scene: KnownSegments, switch: str, less: object, more: object) -> Skip:
+    without, whole = (partial(_labels, label, scene, **{switch: value}) for value in (less, more))
+    return Skip(f"{what}, `{label}`", f"`{switch}`: {less}, {more}", without, whole, scene.labels)
 
 
 def _labels(label: str, scene: KnownSegments, **options: object) -> np.ndarray:
@@ -83,5 +103,4 @@ def _labels(label: str, scene: KnownSegments, **options: object) -> np.ndarray:
 def _felt(scene: KnownSegments, finest_m: float) -> np.ndarray:
     h, w = scene.labels.shape
     small = reduced(Views(scene.picture), felt_factor(w, SURFACE_M, finest_m)).left
-    labels = found("gabor", small, scene.count).labels
-    return cv2.resize(labels, (w, h), interpolation=cv2.INTER_NEAREST)
+    return enlarged_segments(found("gabor", small, scene.count), (h, w)).labels

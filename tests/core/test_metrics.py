@@ -39,6 +39,7 @@ def test_nothing_to_measure_is_unknown():
     assert np.isnan(found["average_px"])
 
 
+@pytest.mark.usefixtures("unchecked_shapes")
 def test_sizes_must_agree():
     with pytest.raises(PictureError, match=r"\(2, 2\) and its truth \(2, 3\)"):
         absolute_error(np.ones((2, 2)), np.ones((2, 3)))

@@ -24,6 +24,15 @@ def test_gain_and_gamma():
     assert (damage.gamma(GREY, 1.4) == round(255 * (100 / 255) ** 1.4)).all()
 
 
+def test_offset_and_light():
+    assert (damage.offset(GREY, 20) == 120).all()
+    assert (damage.offset(GREY, -200) == 0).all()
+    lit = damage.light(GREY, 0.4)
+    assert (lit[:, 0] == 60).all() and (lit[:, -1] == 140).all()
+    np.testing.assert_array_equal(lit, np.rint(lit[:1].repeat(64, axis=0)))
+    np.testing.assert_array_equal(damage.light(np.dstack([GREY] * 3), 0.4)[..., 1], lit)
+
+
 def test_blur_keeps_the_sum_and_spreads_a_point():
     point = np.zeros((33, 33), np.uint8)
     point[16, 16] = 255

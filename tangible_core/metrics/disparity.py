@@ -3,7 +3,7 @@
 import numpy as np
 from jaxtyping import Bool, Float
 
-from .errors import PictureError
+from ..errors import PictureError
 
 BOUNDS_PX = (0.5, 1.0, 2.0, 4.0)
 HIDING_STEP_PX = 1.0

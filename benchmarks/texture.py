@@ -1,0 +1,88 @@
+"""Texture: every promise with its bound, and what stands behind the figures.
+
+TANGIBLE_TEXTURES names a folder with pictures of one texture each, eight or more, that no method was tuned on; without
+it, mosaics of the builtin textures stand in for them. The extra `torch` is needed.
+"""
+
+import os
+import sys
+from collections.abc import Callable
+from typing import Any
+
+from . import (
+    texture_accuracy,
+    texture_features,
+    texture_gradient,
+    texture_growth,
+    texture_invariance,
+    texture_kornia,
+    texture_materials,
+    texture_opencv,
+    texture_scenes,
+    texture_skips,
+)
+from .figures import judged
+
+PROTOCOL = (
+    "Methods are told the number of segments unless it says otherwise. Times are ratios in the same process in turn, "
+    "median of the rounds, geometric mean of one mosaic for each number of segments. ARI is the adjusted Rand index, "
+    "accuracy the share of right pixels after the best matching of labels, boundary the mean distance of borders both "
+    "ways (docs/compare.md). Every texture has lost its local mean and contrast, and all have one histogram."
+)
+
+
+def section() -> str:
+    """The section of RESULTS.md, as Markdown."""
+    figures = _part("mosaics", texture_accuracy.figures)
+    figures += _part("features", texture_features.figures)
+    figures += _part("smooth scenes", texture_gradient.figures)
+    figures += _part("invariance", texture_invariance.figures)
+    haptic, materials = _part("materials", texture_materials.measured)
+    skipped = _part("what is left out", texture_skips.rows)
+    exact = _part("what is known beforehand", texture_skips.exact)
+    growth, sizes = _part("growth", texture_growth.measured)
+    torch = _part("torch", texture_kornia.figures)
+    return "\n".join(
+        [
+            *_conditions(),
+            "",
+            *judged([*figures, *torch, *haptic, *growth]),
+            "",
+            "By mosaic: the number of segments, and the seed of textures and regions.",
+            "",
+            *texture_accuracy.mosaic_rows(),
+            "",
+            "By material: one point of a stroke, and where the spectrum of its heights (or of the force) peaks.",
+            "",
+            *materials,
+            "",
+            "`gabor` on one mosaic, cut or mirrored over and over.",
+            "",
+            *sizes,
+            "",
+            "What is left out: with all of it, against with it left out.",
+            "",
+            *skipped,
+            "",
+            exact,
+        ]
+    )
+
+
+def _conditions() -> list[str]:
+    folder = os.environ.get(texture_scenes.FOLDER)
+    given = (
+        "Held out: mosaics of photographs of textures; the others are of brick, grass, gravel, and textures in code."
+        if folder
+        else f"{texture_scenes.FOLDER} was not set: the builtin textures stand in for those held out."
+    )
+    return [
+        f"Mosaics of {texture_scenes.SIDE_PX} x {texture_scenes.SIDE_PX}. {given} {PROTOCOL}",
+        "",
+        f"OpenCV's recipe: {texture_opencv.RECIPE}. scikit-image's: {texture_gradient.RECIPE}.",
+    ]
+
+
+def _part(name: str, work: Callable[[], Any]) -> Any:
+    print(f"  {name} ...", file=sys.stderr)
+    return work()

@@ -1,0 +1,49 @@
+"""The mosaics that texture is measured on: of textures nothing was tuned on, and of the builtin ones."""
+
+import os
+from functools import cache
+from pathlib import Path
+
+from tangible_core.bench.texture_scenes import TextureScene
+from tangible_core.testing.texture_scenes import KnownSegments, smooth_scene
+
+FOLDER = "TANGIBLE_TEXTURES"
+"""Environment variable: a folder with pictures of one texture each, eight or more, that no method was tuned on."""
+SEGMENTS = (2, 3, 4, 5, 6, 8)
+SEEDS = (0, 1)
+SIDE_PX = 512
+SMOOTH_SEEDS = range(700, 716)
+
+
+@cache
+def held_out() -> dict[str, KnownSegments]:
+    """Mosaics of the pictures in the folder that FOLDER names; the builtin ones where it names none."""
+    folder = os.environ.get(FOLDER)
+    return _mosaics(Path(folder)) if folder else builtin()
+
+
+@cache
+def builtin() -> dict[str, KnownSegments]:
+    """Mosaics of scikit-image's brick, grass and gravel, and of textures made in code."""
+    return _mosaics(None)
+
+
+def published() -> dict[str, KnownSegments]:
+    """All of them."""
+    return {**builtin(), **held_out()}
+
+
+def some() -> dict[str, KnownSegments]:
+    """One of those held out for each number of segments: for what takes many calls."""
+    return dict(list(held_out().items())[:: len(SEEDS)])
+
+
+@cache
+def smooth() -> dict[str, KnownSegments]:
+    """Fourteen regions of one grey each, under light and noise."""
+    return {f"smooth 14 seed {seed}": smooth_scene(14, (SIDE_PX, SIDE_PX), seed) for seed in SMOOTH_SEEDS}
+
+
+def _mosaics(folder: Path | None) -> dict[str, KnownSegments]:
+    specs = [TextureScene(mosaic=k, textures=folder, seed=100 * k + seed) for k in SEGMENTS for seed in SEEDS]
+    return {name: scene.open() for spec in specs for name, scene in spec.expand().items()}

@@ -1,0 +1,99 @@
+"""How well segments agree with the true ones, whatever their numbers are."""
+# scipy has no types.
+# pyright: reportMissingTypeStubs=false, reportUnknownVariableType=false
+
+from math import hypot
+
+import numpy as np
+from jaxtyping import Bool, Integer
+
+from ..errors import PictureError
+
+Labels = Integer[np.ndarray, "h w"]
+Counts = Integer[np.ndarray, "n m"]
+
+
+def segment_errors(labels: Labels, truth: Labels) -> dict[str, float]:
+    """Agreement of two label maps; which numbers stand for the segments does not matter.
+
+    Returns: `ari`, the adjusted Rand index: 1 for the same segments, 0 on average for segments by chance; `accuracy`,
+    the share of the pixels that are right after the best one-to-one matching of the labels, in 0..1; `boundary_px`,
+    see `boundary_distance`; `segments`, how many labels the map holds.
+    Raises: PictureError if the two differ in size, or hold nothing.
+    """
+    if labels.shape != truth.shape or labels.size == 0:
+        raise PictureError(f"the labels are {labels.shape} and the true ones {truth.shape}; crop or scale one")
+    counts = contingency(labels, truth)
+    return {
+        "ari": adjusted_rand_index(counts),
+        "accuracy": matched_accuracy(counts),
+        "boundary_px": boundary_distance(labels, truth),
+        "segments": float(len(counts)),
+    }
+
+
+def contingency(labels: Labels, truth: Labels) -> Counts:
+    """Pixels of each label that have each true label: int64, (labels, true labels) that are present, in order."""
+    (rows, row), (columns, column) = (np.unique(each, return_inverse=True) for each in (labels, truth))
+    cells = row.ravel() * columns.size + column.ravel()
+    return np.bincount(cells, minlength=rows.size * columns.size).reshape(rows.size, columns.size)
+
+
+def adjusted_rand_index(counts: Counts) -> float:
+    """Pairs of pixels that both maps keep together, beyond what chance gives: at most 1, and 1 for equal partitions.
+
+    With T pairs in all, A and B of them together in each of the maps, and S in both:
+    (S - A B / T) / ((A + B) / 2 - A B / T), in whole numbers of any size, so that only the last division rounds. Two
+    maps of a single segment are equal, and so are two in which every pixel is one.
+    Source: Hubert & Arabie, Comparing partitions, Journal of Classification 2 (1985), eq. 5.
+    """
+    both, first, second = (_pairs(part) for part in (counts, counts.sum(axis=1), counts.sum(axis=0)))
+    (every,) = (_pairs(np.asarray([counts.sum()])),)
+    chance, most = 2 * first * second, (first + second) * every
+    return 1.0 if most == chance else (2 * both * every - chance) / (most - chance)
+
+
+def matched_accuracy(counts: Counts) -> float:
+    """Share of the pixels on the matching of labels that has the most; what is left without a partner is wrong.
+
+    Source: Kuhn, The Hungarian method for the assignment problem, 1955.
+    """
+    from scipy.optimize import linear_sum_assignment
+
+    return float(counts[linear_sum_assignment(counts, maximize=True)].sum() / counts.sum())
+
+
+def boundary_distance(labels: Labels, truth: Labels) -> float:
+    """How far the borders of two maps lie apart, in pixels: the mean of both directions.
+
+    A border point lies in the middle between two neighbours, in a row or in a column, whose labels differ. Each
+    direction is the mean, over the border points of one map, of the distance to the nearest border point of the other.
+    0 where neither map has a border; where only one has, the picture's diagonal, which no distance exceeds.
+    """
+    one, other = border_points(labels), border_points(truth)
+    if not one.any() or not other.any():
+        return hypot(*labels.shape) if one.any() or other.any() else 0.0
+    return (_mean_distance(one, other) + _mean_distance(other, one)) / 2
+
+
+def border_points(labels: Labels) -> Bool[np.ndarray, "r c"]:
+    """Borders on a grid of half pixels, (2 h - 1, 2 w - 1): pixel (row, column) is at (2 row, 2 column)."""
+    h, w = labels.shape
+    found = np.zeros((2 * h - 1, 2 * w - 1), np.bool_)
+    found[::2, 1::2] = labels[:, 1:] != labels[:, :-1]
+    found[1::2, ::2] = labels[1:] != labels[:-1]
+    return found
+
+
+def _mean_distance(start: Bool[np.ndarray, "r c"], goal: Bool[np.ndarray, "r c"]) -> float:
+    """Pixels from the points of one set to the nearest of the other, mean."""
+    import cv2
+
+    halves = cv2.distanceTransform((~goal).astype(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
+    return float(halves[start].mean(dtype=np.float64)) / 2
+
+
+def _pairs(sizes: Counts | np.ndarray) -> int:
+    """Pairs within groups of these sizes; a whole number of Python's, which does not overflow."""
+    sizes = sizes.astype(np.int64)
+    return int((sizes * (sizes - 1) // 2).sum())

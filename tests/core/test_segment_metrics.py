@@ -1,0 +1,133 @@
+"""Measures of segments, against values worked out by hand and against the definitions themselves."""
+
+from itertools import combinations, permutations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as arrays
+
+from tangible_core.errors import PictureError
+from tangible_core.metrics.segments import (
+    adjusted_rand_index,
+    border_points,
+    boundary_distance,
+    contingency,
+    matched_accuracy,
+    segment_errors,
+)
+
+SMALL = arrays.arrays(np.int32, st.just((3, 4)), elements=st.integers(0, 3))
+
+
+def row(*labels: int) -> np.ndarray:
+    return np.array([labels], np.int32)
+
+
+def halves(edge: int, shape: tuple[int, int] = (20, 32)) -> np.ndarray:
+    return np.broadcast_to(np.arange(shape[1]) >= edge, shape).astype(np.int32)
+
+
+@pytest.mark.parametrize(
+    ("labels", "truth", "expected"),
+    [
+        ([0, 0, 1, 1], [1, 1, 0, 0], 1),
+        ([0, 0, 1, 2], [0, 0, 1, 1], 4 / 7),
+        ([0, 0, 1, 1], [0, 1, 0, 1], -0.5),
+        ([0, 0, 0, 0], [0, 1, 2, 3], 0),
+        ([0, 0, 0, 0], [0, 0, 1, 1], 0),
+        ([5, 5, 5], [-2, -2, -2], 1),  # one segment and one segment
+        ([0, 1, 2], [2, 0, 1], 1),  # every pixel is one, in both
+        ([7], [3], 1),
+    ],
+)
+def test_adjusted_rand_index_of_values_known_by_hand(labels, truth, expected):
+    assert adjusted_rand_index(contingency(row(*labels), row(*truth))) == expected
+
+
+@given(SMALL, SMALL)
+def test_adjusted_rand_index_counts_pairs(labels, truth):
+    pairs = list(combinations(range(labels.size), 2))
+    one, other = ([each.flat[i] == each.flat[j] for i, j in pairs] for each in (labels, truth))
+    both, first, second = np.sum(np.logical_and(one, other)), sum(one), sum(other)
+    chance = first * second / len(pairs)
+    found = adjusted_rand_index(contingency(labels, truth))
+    if first == second == len(pairs) or first == second == 0:
+        assert found == 1
+    else:
+        assert found == pytest.approx((both - chance) / ((first + second) / 2 - chance), abs=1e-12)
+
+
+def test_adjusted_rand_index_is_exact_where_products_of_counts_do_not_fit_64_bits():
+    size = 10**8
+    assert adjusted_rand_index(np.array([[size, 0], [0, size]])) == 1
+    assert adjusted_rand_index(np.array([[size, size], [size, size]])) == pytest.approx(-1 / (4 * size - 2), rel=1e-12)
+
+
+@given(SMALL, SMALL)
+def test_accuracy_is_that_of_the_best_of_all_matchings(labels, truth):
+    best = max(np.mean(np.take(order, labels) == truth) for order in permutations(range(4)))
+    assert matched_accuracy(contingency(labels, truth)) == pytest.approx(best)
+
+
+@given(SMALL)
+def test_the_numbers_of_labels_do_not_matter(labels):
+    renamed = np.array([40, -3, 0, 7], np.int32)[labels]
+    assert segment_errors(renamed, labels) == {
+        "ari": 1,
+        "accuracy": 1,
+        "boundary_px": 0,
+        "segments": np.unique(labels).size,
+    }
+
+
+def test_too_many_segments_leave_pixels_without_a_partner():
+    found = segment_errors(halves(8) + halves(16), halves(16))
+    assert found["accuracy"] == 0.75
+    assert found["segments"] == 3
+
+
+@pytest.mark.parametrize("shift", [1, 2, 7])
+def test_a_border_that_is_moved_is_as_far_away_as_that(shift: int):
+    assert boundary_distance(halves(16 + shift), halves(16)) == shift
+
+
+def test_a_border_too_many_counts_in_one_direction():
+    """Its points are 6 px from the true border; the true border's are at 0."""
+    extra = halves(16) + halves(22)
+    assert boundary_distance(extra, halves(16)) == pytest.approx((6 / 2 + 0) / 2)
+    assert boundary_distance(halves(16), extra) == pytest.approx((0 + 6 / 2) / 2)
+
+
+@given(SMALL, SMALL)
+def test_boundary_distance_is_the_mean_over_pairs_of_points(labels, truth):
+    one, other = (np.argwhere(border_points(each)) / 2 for each in (labels, truth))
+    if len(one) and len(other):
+        apart = np.hypot(*np.moveaxis(one[:, None] - other[None], 2, 0))
+        expected = (apart.min(axis=1).mean() + apart.min(axis=0).mean()) / 2
+    else:
+        expected = 5 if len(one) or len(other) else 0
+    assert boundary_distance(labels, truth) == pytest.approx(expected, rel=1e-6)
+
+
+@given(SMALL, SMALL)
+def test_turning_both_maps_changes_nothing(labels, truth):
+    expected = pytest.approx(segment_errors(labels, truth), rel=1e-6)
+    assert segment_errors(labels.T, truth.T) == expected
+    assert segment_errors(labels[::-1], truth[::-1]) == expected
+
+
+def test_a_map_without_a_border():
+    flat = np.zeros((3, 4), np.int32)
+    assert segment_errors(flat, flat) == {"ari": 1, "accuracy": 1, "boundary_px": 0, "segments": 1}
+    found = segment_errors(flat, halves(2, (3, 4)))
+    assert found == {"ari": 0, "accuracy": 0.5, "boundary_px": 5, "segments": 1}
+
+
+@pytest.mark.usefixtures("unchecked_shapes")
+def test_sizes_must_agree_and_hold_something():
+    with pytest.raises(PictureError, match=r"\(3, 4\) and the true ones \(3, 5\)"):
+        segment_errors(np.zeros((3, 4), np.int32), np.zeros((3, 5), np.int32))
+    with pytest.raises(PictureError, match=r"\(0, 5\)"):
+        segment_errors(np.zeros((0, 5), np.int32), np.zeros((0, 5), np.int32))

@@ -12,9 +12,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tangible_core.notes import note
+
 from .census import BITS
 from .costs import HEAVY, LIGHT, SHARP, Cost
-from .notes import note
 from .pairs import Pair
 from .row_offset import realigned, row_offset
 from .search_range import find_range

@@ -4,8 +4,8 @@ import logging
 from typing import Literal
 
 from tangible_core.errors import PictureError
+from tangible_core.notes import note
 
-from .notes import note
 from .pairs import Pair
 from .search_range import find_range
 from .span import Span

@@ -6,8 +6,9 @@ import numpy as np
 from jaxtyping import Bool, Float, Float32, Int16, UInt8
 from numba import int32, njit
 
+from tangible_core.threads import in_blocks
+
 from .span import UNKNOWN
-from .workers import in_blocks
 
 AGREEMENT = 16
 """Sixteenths of a pixel by which a final value may differ from the match that it is judged by."""

@@ -12,7 +12,7 @@ import numpy as np
 from jaxtyping import Int16, UInt8
 from numba import int16, int32, njit
 
-from .workers import in_blocks
+from tangible_core.threads import in_blocks
 
 NEARBY, VOTERS, STRIDE = 1, 4, 2
 """Radius in which an edge is looked for; radius of the voting window, and distance of its voters, in pixels."""

@@ -18,8 +18,9 @@ import numpy as np
 from jaxtyping import Int16, UInt8
 from numba import int32, njit
 
+from tangible_core.threads import in_blocks
+
 from .span import UNKNOWN
-from .workers import in_blocks
 
 FARTHER_OF_ROW, CONTRADICTED, EXPLAINED = 1.2, -2.0, 1.0
 PER_ROOT_OF_GREY, PER_10_PX_NEARER = -0.2, -0.3

@@ -11,10 +11,11 @@ import numpy as np
 from jaxtyping import Int16, Int64, UInt8
 from numba import njit
 
+from tangible_core.threads import in_blocks
+
 from .pairs import Pair
 from .span import UNKNOWN
 from .subpixel import parabola
-from .workers import in_blocks
 
 CELL_PX, MOST_POINTS, LEAST_VOTES = 12, 400, 20
 LEAST_EDGE = 40

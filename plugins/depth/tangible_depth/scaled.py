@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tangible_core.notes import note
+
 from .adaptive import match
 from .confidence import LEAST_MATCHED, flat_pixels
 from .costs import COSTS, SHARP
 from .dense import Dense, completed, enlarged
-from .notes import note
 from .pairs import Pair
 from .span import Span
 from .strips import MOST_LANES, strips

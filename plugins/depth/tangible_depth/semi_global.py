@@ -62,8 +62,9 @@ class SemiGlobal(DepthEstimator):
     def _matched(self, views: Views) -> DisparityMap:
         import numpy as np
 
+        from tangible_core.notes import note
+
         from .chain import disparity_map, nothing_moved
-        from .notes import note
         from .pairs import grey_pair
         from .scaled import match_scaled
 

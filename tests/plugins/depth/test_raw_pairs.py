@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from tangible_core.data import Calibration, Views
+from tangible_core.notes import collected
 from tangible_core.testing.stereo_scenes import SCENES, synthetic_pair
-from tangible_depth.notes import collected
 from tangible_depth.pairs import grey_pair
 from tangible_depth.raw_pairs import estimate_raw, rows_correspond
 from tangible_depth.zncc import Zncc

@@ -34,7 +34,7 @@ def sigma_of_bandwidth(wavelength_px: float, octaves: float = 1.0) -> float:
     """sigma = lambda / pi sqrt(ln 2 / 2) (2^b + 1) / (2^b - 1): half the height is b octaves wide.
 
     >>> round(sigma_of_bandwidth(8.0), 4)
-    4.4976
+    4.4974
     """
     return wavelength_px * HALF / pi * (2**octaves + 1) / (2**octaves - 1)
 

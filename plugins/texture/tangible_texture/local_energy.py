@@ -7,6 +7,7 @@ needs; that moves it to frequency 0, which leaves the magnitude as it was. Smoot
 # ruff: noqa: ANN001, ANN202 -- numba takes the types from the call
 
 from collections.abc import Sequence
+from functools import lru_cache
 from math import ceil, cos, exp, hypot, pi, sin
 from typing import Any, NamedTuple
 
@@ -77,7 +78,8 @@ def spectrum_of(grey: Float32[np.ndarray, "h w"], pad_px: int) -> Spectrum:
     check_finite(grey, "grey")
     shape = (fft.next_fast_len(grey.shape[0] + 2 * pad_px), fft.next_fast_len(grey.shape[1] + 2 * pad_px, real=True))
     ends = [(pad_px, padded - pad_px - side) for padded, side in zip(shape, grey.shape, strict=True)]
-    values = fft.rfft2(np.pad(standardised(grey), ends, mode="symmetric"), workers=thread_count())
+    mirrored = np.pad(standardised(grey), ends, mode="symmetric")
+    values = fft.rfft2(mirrored, norm="forward", workers=thread_count())
     values[0, 0] = 0
     return Spectrum(values, shape, pad_px)
 
@@ -106,7 +108,8 @@ def energy_planes(
                 _table(count, step_px, smoothing_px, samples, side / samples, spectrum.pad_px)
                 for count, samples, side in zip(cells, grid.shape, spectrum.shape, strict=True)
             ]
-            _smooth(grid, *tables[0], *tables[1], planes[i])
+            down = _means(_power(grid), *tables[0])
+            planes[i] = _means(np.ascontiguousarray(down.T), *tables[1]).T
 
     in_turns(list(range(len(filters))), work)
     return planes
@@ -161,29 +164,51 @@ def _samples(shape: tuple[int, int], gabor: Gabor, smoothing_px: float) -> tuple
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _fill(values, shape, first, frequency, along, across, part):
-    """A Gaussian along a row is a product of two steps: each gain is the last one times a ratio that shrinks evenly."""
+    """Write gain times spectrum, row by row; the half that a real picture's spectrum leaves out is mirrored.
+
+    The gain 2 exp(-(one^2 + two^2) / 2), which keeps a wave's height, has one and two grow evenly down a column: each
+    gain is the one above times a ratio, which shrinks by the same factor every time.
+    """
     (high, wide), (top, left), (down, right) = shape, first, frequency
     rows, columns = part.shape
-    gain = 2 / (high * wide)
-    bend = exp(-((along[1] / wide) ** 2 + (across[1] / wide) ** 2))
+    one_step, two_step = along[0] / high, across[0] / high
+    bend = -(one_step**2 + two_step**2)
+    gain, ratio = np.empty(columns), np.empty(columns)
+    for j in range(columns):
+        v, u = top / high - down, (left + j) / wide - right
+        one, two = along[0] * v + along[1] * u, across[0] * v + across[1] * u
+        gain[j] = 2 * exp(-0.5 * (one * one + two * two))
+        ratio[j] = exp(0.5 * bend - one * one_step - two * two_step)
     for i in range(rows):
-        row = (top + i) % high
-        v = (top + i) / high - down
-        u = left / wide - right
-        one = along[0] * v + along[1] * u
-        two = across[0] * v + across[1] * u
-        value = gain * exp(-0.5 * (one * one + two * two))
-        ratio = exp(-(one * along[1] + two * across[1]) / wide) * bend**0.5
-        for j in range(columns):
+        row, j = (top + i) % high, 0
+        while j < columns:
             column = (left + j) % wide
             if 2 * column <= wide:
-                part[i, j] = values[row, column] * np.float32(value)
+                run = min(columns - j, wide // 2 + 1 - column)
+                _scale(values[row, column : column + run], gain[j : j + run], 1, part[i, j : j + run])
             else:
-                part[i, j] = values[(high - row) % high, wide - column].conjugate() * np.float32(value)
-            value *= ratio
-            ratio *= bend
+                run = min(columns - j, wide - column)
+                mirrored = values[(high - row) % high, wide - column - run + 1 : wide - column + 1]
+                _scale(mirrored[::-1], gain[j : j + run], -1, part[i, j : j + run])
+            j += run
+        _advance(gain, ratio, exp(bend))
 
 
+@njit(cache=True, nogil=True, fastmath=True)
+def _advance(gain, ratio, shrink):
+    for j in range(gain.size):
+        gain[j] *= ratio[j]
+        ratio[j] *= shrink
+
+
+@njit(cache=True, nogil=True, fastmath=True)
+def _scale(values, gain, sign, part):
+    for j in range(part.size):
+        each = np.float32(gain[j])
+        part[j] = complex(values[j].real * each, sign * values[j].imag * each)
+
+
+@lru_cache(64)
 def _table(
     cells: int, step_px: int, sigma_px: float, samples: int, spacing_px: float, pad_px: int
 ) -> tuple[Int64[np.ndarray, "cells"], Float32[np.ndarray, "cells taps"]]:
@@ -198,23 +223,22 @@ def _table(
 
 
 @njit(cache=True, nogil=True, fastmath=True)
-def _smooth(grid, first_row, row_weights, first_column, column_weights, out):
-    """Weighted sums of |z|^2, down and then along."""
-    rows, columns = grid.shape
-    power = np.empty((rows, columns), np.float32)
-    for i in range(rows):
-        for j in range(columns):
+def _power(grid):
+    power = np.empty(grid.shape, np.float32)
+    for i in range(grid.shape[0]):
+        for j in range(grid.shape[1]):
             power[i, j] = grid[i, j].real ** 2 + grid[i, j].imag ** 2
-    line = np.empty(columns, np.float32)
-    for i in range(out.shape[0]):
-        line[:] = 0
-        for k in range(row_weights.shape[1]):
-            weight = row_weights[i, k]
-            above = power[first_row[i] + k]
-            for j in range(columns):
-                line[j] += weight * above[j]
-        for j in range(out.shape[1]):
-            total = np.float32(0)
-            for k in range(column_weights.shape[1]):
-                total += column_weights[j, k] * line[first_column[j] + k]
-            out[i, j] = total
+    return power
+
+
+@njit(cache=True, nogil=True, fastmath=True)
+def _means(values, first, weights):
+    """Weighted sums of rows: out[i] is the sum of weights[i, k] values[first[i] + k]."""
+    out = np.zeros((len(first), values.shape[1]), np.float32)
+    for i in range(len(first)):
+        total = out[i]
+        for k in range(weights.shape[1]):
+            weight, row = weights[i, k], values[first[i] + k]
+            for j in range(row.size):
+                total[j] += weight * row[j]
+    return out

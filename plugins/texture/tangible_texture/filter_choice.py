@@ -7,37 +7,35 @@ import numpy as np
 from jaxtyping import Bool, Float32, Float64
 
 from tangible_core.notes import note
+from tangible_core.threads import thread_count
 
 from .gabor_bank import Gabor
-from .local_energy import mean_energies, spectrum_of
+from .local_energy import fft, mean_energies, spectrum_of, standardised
 
 log = logging.getLogger(__name__)
 
 ENOUGH = 0.95
 """Of the energy in all filters, what is kept when weak ones are dropped."""
 NOTHING = 1e-4
-"""Of the energy in all filters: an octave with less holds little but the rounding of grey to 8 bits."""
+"""Of a picture's variance: less is not much more than the rounding of grey to 8 bits."""
 PAD_PX = 32
 
 
 def needed_filters(
     grey: Float32[np.ndarray, "h w"], filters: Sequence[Gabor], skip_weak: bool, skip_octaves: bool
 ) -> list[Gabor]:
-    """The filters without the weak ones and without the wavelengths that the picture has not got, as asked for.
+    """The filters without wavelengths that the picture has not got, and without the weak ones, as asked for.
 
-    What is left out is noted. Where the picture has no energy at all, every filter stays.
+    How many are left out is noted. Where the picture has no energy at all, every filter stays.
     """
-    kept = np.ones(len(filters), np.bool_)
-    if skip_weak or skip_octaves:
-        energies = mean_energies(spectrum_of(grey, PAD_PX), filters)
-        if skip_octaves:
-            kept = within_bandwidth(filters, energies)
-        if skip_weak:
-            kept &= strongest(np.where(kept, energies, 0))
-        if not kept.all():
-            share = energies[~kept].sum() / energies.sum()
-            note(log, f"skipped: {np.count_nonzero(~kept)} of {len(filters)} filters, with {share:.2%} of the energy")
-    return [each for each, keep in zip(filters, kept, strict=True) if keep]
+    kept = within_bandwidth(grey, filters) if skip_octaves else list(filters)
+    if skip_weak:
+        strong = strongest(mean_energies(spectrum_of(grey, PAD_PX), kept))
+        kept = [each for each, keep in zip(kept, strong, strict=True) if keep]
+    if len(kept) < len(filters):
+        left = len(filters) - len(kept)
+        note(log, f"skipped: {left} of {len(filters)} filters, in which there is hardly any energy")
+    return kept
 
 
 def strongest(energies: Float64[np.ndarray, "filters"], share: float = ENOUGH) -> Bool[np.ndarray, "filters"]:
@@ -53,10 +51,17 @@ def strongest(energies: Float64[np.ndarray, "filters"], share: float = ENOUGH) -
     return kept if kept.any() else ~kept
 
 
-def within_bandwidth(
-    filters: Sequence[Gabor], energies: Float64[np.ndarray, "filters"], least: float = NOTHING
-) -> Bool[np.ndarray, "filters"]:
-    """Whether a wavelength, or a shorter one, holds at least this share of the energy; all, if there is no energy."""
-    wavelengths = np.array([each.wavelength_px for each in filters])
-    present = {each for each in wavelengths if energies[wavelengths == each].sum() > least * energies.sum()}
-    return wavelengths >= min(present, default=0.0)
+def within_bandwidth(grey: Float32[np.ndarray, "h w"], filters: Sequence[Gabor], least: float = NOTHING) -> list[Gabor]:
+    """The filters of wavelengths that are not too short for the picture; all, if they all are, or it is flat.
+
+    Too short is a wavelength if waves of up to sqrt 2 times as long, where its octave begins, and all shorter ones
+    together hold less than this share of the picture's variance. A cosine transform has no seam at the frame.
+    """
+    down, right = (np.arange(side, dtype=np.float32) / (2 * side) for side in grey.shape)
+    squared = down[:, None] ** 2 + right**2
+    power = np.square(fft.dctn(standardised(grey), norm="ortho", workers=thread_count()))
+    shares = {
+        wavelength: power[squared > 0.5 / wavelength**2].sum(dtype=np.float64) / grey.size
+        for wavelength in {each.wavelength_px for each in filters}
+    }
+    return [each for each in filters if shares[each.wavelength_px] >= least] or list(filters)

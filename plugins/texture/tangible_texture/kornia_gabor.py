@@ -35,11 +35,11 @@ class KorniaGabor(Segmenter, Skippable):
     longest_px: Annotated[float, Field(ge=3, le=512)] = 24.0
     """The longest wavelength, of 2.83, 5.66, 11.3, ... px; at most 1/16 of the root of the picture's area."""
     window_px: Annotated[float, Field(ge=1, le=256)] = 12.0
-    """Standard deviation of the window over which energy is averaged: 0.35 wavelengths at least, and at most 1/16 of the
-    root of the picture's area."""
+    """Standard deviation of the window over which energy is averaged: 0.35 wavelengths at least, and at most 1/16 of
+    the root of the picture's area."""
     step_px: Annotated[int, Field(ge=1, le=64)] = 4
     """Features are taken, and labels given, to squares of this side."""
-    restarts: Annotated[int, Field(ge=1, le=100)] = 3
+    restarts: Annotated[int, Field(ge=1, le=100)] = 10
     """Of these many runs of k-means the best one counts."""
     seed: Annotated[int, Field(ge=0)] = 0
     """Of the starts of k-means."""

@@ -11,7 +11,6 @@ from tangible_core.notes import note
 
 from .count import choose_count
 from .kmeans import kmeans
-from .merging import in_reading_order
 
 log = logging.getLogger(__name__)
 MOST_SEGMENTS = 8
@@ -53,13 +52,17 @@ def labelled(
     return enlarged(found.labels.reshape(features.shape[:2]), margins(rows, found.centres), step_px, shape)
 
 
+def in_order(labels: Int32[np.ndarray, "h w"]) -> Int32[np.ndarray, "h w"]:
+    """Labels 0..n-1 in the order of their first pixels, row by row."""
+    _, first, which = np.unique(labels, return_index=True, return_inverse=True)
+    return np.argsort(np.argsort(first)).astype(np.int32)[which].reshape(labels.shape)
+
+
 def enlarged(
     labels: Int32[np.ndarray, "rows columns"], trust: Float32[np.ndarray, "n"], step_px: int, shape: tuple[int, int]
 ) -> SegmentMap:
     """The segments of (h, w) pixels, from labels and confidence every step_px pixels, in the order of first pixels."""
-    count = int(labels.max()) + 1
-    ordered = in_reading_order(np.ascontiguousarray(labels), np.arange(count, dtype=np.int32))
-    maps = (ordered, trust.reshape(labels.shape))
+    maps = (in_order(labels), trust.reshape(labels.shape))
     return SegmentMap(*(each.repeat(step_px, 0).repeat(step_px, 1)[: shape[0], : shape[1]] for each in maps))
 
 

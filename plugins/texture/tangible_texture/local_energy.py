@@ -56,7 +56,7 @@ def local_energy(
 
     grey: finite, of any scale. Value (i, j) is the Gaussian mean round pixel ((i + 0.5) step_px - 0.5, ...), with a
     standard deviation of sigma_px, or RELATIVE_SIGMA wavelengths if that is more.
-    Memory: 12 bytes a pixel, 6 more a thread for wavelengths of 2.8 px (4 times less an octave down), and the result.
+    Memory: about 30 bytes a pixel, the result of 6 among them, where two threads are at work on wavelengths of 2.8 px.
     Raises: PictureError naming the first place that is NaN or infinite.
     """
     filters = bank(wavelengths_px, orientations)

@@ -4,22 +4,20 @@ A filter passes a small part of the spectrum. That part is cut out and transform
 needs; that moves it to frequency 0, which leaves the magnitude as it was. Smoothing and sampling are one table an axis.
 """
 
-# ruff: noqa: ANN001, ANN202 -- numba takes the types from the call
-
 from collections.abc import Sequence
 from functools import lru_cache
-from math import ceil, cos, exp, hypot, pi, sin
+from math import ceil, cos, hypot, pi, sin
 from typing import Any, NamedTuple
 
 import numpy as np
 import scipy.fft
 from jaxtyping import Complex64, Float32, Float64, Int64
-from numba import njit
 
 from tangible_core.errors import PictureError
 from tangible_core.pictures import check_finite
 from tangible_core.threads import in_turns, thread_count
 
+from .energy_kernels import filter_part, power, weighted_rows
 from .gabor_bank import Gabor, bank
 
 fft: Any = scipy.fft  # whose annotations are those of its dispatcher
@@ -113,8 +111,8 @@ def energy_planes(
                 smoothing_table(count, step_px, wide_px, samples, side / samples, spectrum.pad_px)
                 for count, samples, side in zip(cells, grid.shape, spectrum.shape, strict=True)
             ]
-            down = _means(_power(grid), *tables[0])
-            planes[i] = _means(np.ascontiguousarray(down.T), *tables[1]).T
+            down = weighted_rows(power(grid), *tables[0])
+            planes[i] = weighted_rows(np.ascontiguousarray(down.T), *tables[1]).T
 
     in_turns(list(range(len(filters))), work)
     return planes
@@ -148,7 +146,7 @@ def _cut(spectrum: Spectrum, gabor: Gabor, wide_px: float) -> Complex64[np.ndarr
     part = np.empty(samples, np.complex64)
     along = 2 * pi * gabor.sigma_px * np.array((sin(gabor.theta_rad), cos(gabor.theta_rad)))
     across = 2 * pi * gabor.sigma_px / gabor.gamma * np.array((cos(gabor.theta_rad), -sin(gabor.theta_rad)))
-    _fill(spectrum.values, spectrum.shape, (top, left), gabor.frequency, along, across, part)
+    filter_part(spectrum.values, spectrum.shape, (top, left), gabor.frequency, along, across, part)
     return part
 
 
@@ -163,52 +161,6 @@ def _samples(shape: tuple[int, int], gabor: Gabor, wide_px: float) -> tuple[int,
     return rows, columns
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def _fill(values, shape, first, frequency, along, across, part):
-    """Write gain times spectrum, row by row; the half that a real picture's spectrum leaves out is mirrored.
-
-    The gain 2 exp(-(one^2 + two^2) / 2), which keeps a wave's height, has one and two grow evenly down a column: each
-    gain is the one above times a ratio, which shrinks by the same factor every time.
-    """
-    (high, wide), (top, left), (down, right) = shape, first, frequency
-    rows, columns = part.shape
-    one_step, two_step = along[0] / high, across[0] / high
-    bend = -(one_step**2 + two_step**2)
-    gain, ratio = np.empty(columns), np.empty(columns)
-    for j in range(columns):
-        v, u = top / high - down, (left + j) / wide - right
-        one, two = along[0] * v + along[1] * u, across[0] * v + across[1] * u
-        gain[j] = 2 * exp(-0.5 * (one * one + two * two))
-        ratio[j] = exp(0.5 * bend - one * one_step - two * two_step)
-    for i in range(rows):
-        row, j = (top + i) % high, 0
-        while j < columns:
-            column = (left + j) % wide
-            if 2 * column <= wide:
-                run = min(columns - j, wide // 2 + 1 - column)
-                _scale(values[row, column : column + run], gain[j : j + run], 1, part[i, j : j + run])
-            else:
-                run = min(columns - j, wide - column)
-                mirrored = values[(high - row) % high, wide - column - run + 1 : wide - column + 1]
-                _scale(mirrored[::-1], gain[j : j + run], -1, part[i, j : j + run])
-            j += run
-        _advance(gain, ratio, exp(bend))
-
-
-@njit(cache=True, nogil=True, fastmath=True)
-def _advance(gain, ratio, shrink):
-    for j in range(gain.size):
-        gain[j] *= ratio[j]
-        ratio[j] *= shrink
-
-
-@njit(cache=True, nogil=True, fastmath=True)
-def _scale(values, gain, sign, part):
-    for j in range(part.size):
-        each = np.float32(gain[j])
-        part[j] = complex(values[j].real * each, sign * values[j].imag * each)
-
-
 @lru_cache(64)
 def smoothing_table(
     cells: int, step_px: int, sigma_px: float, samples: int, spacing_px: float, pad_px: int
@@ -221,25 +173,3 @@ def smoothing_table(
     away = (first[:, None] + np.arange(taps) - centre[:, None]) * (spacing_px / sigma_px)
     weights = np.exp(-0.5 * away**2)
     return first, (weights / weights.sum(axis=1, keepdims=True)).astype(np.float32)
-
-
-@njit(cache=True, nogil=True, fastmath=True)
-def _power(grid):
-    power = np.empty(grid.shape, np.float32)
-    for i in range(grid.shape[0]):
-        for j in range(grid.shape[1]):
-            power[i, j] = grid[i, j].real ** 2 + grid[i, j].imag ** 2
-    return power
-
-
-@njit(cache=True, nogil=True, fastmath=True)
-def _means(values, first, weights):
-    """Weighted sums of rows: out[i] is the sum of weights[i, k] values[first[i] + k]."""
-    out = np.zeros((len(first), values.shape[1]), np.float32)
-    for i in range(len(first)):
-        total = out[i]
-        for k in range(weights.shape[1]):
-            weight, row = weights[i, k], values[first[i] + k]
-            for j in range(row.size):
-                total[j] += weight * row[j]
-    return out

@@ -1,17 +1,14 @@
 """Responses to Gabor filters at a picture's full resolution."""
 
 from collections.abc import Iterator, Sequence
-from typing import Any
 
 import numpy as np
-import scipy.fft
 from jaxtyping import Float32
 
 from tangible_core.threads import thread_count
 
 from .gabor_bank import Gabor, kernel
-
-fft: Any = scipy.fft  # whose annotations are those of its dispatcher
+from .local_energy import fft
 
 
 def even_responses(grey: Float32[np.ndarray, "h w"], filters: Sequence[Gabor]) -> Iterator[Float32[np.ndarray, "h w"]]:

@@ -4,11 +4,11 @@ import math
 from functools import partial
 
 import numpy as np
+
+from tangible_core.data import Material
 from tangible_core.haptic_textures import compile_textures, peak_wavelength_m, radial_spectrum, sample_tile, stroke
 from tangible_core.haptic_textures.forces import STATE, along
 from tangible_core.haptic_textures.spectrum import line_spectrum
-
-from tangible_core.data import Material
 from tangible_core.materials import library
 
 from .figures import Figure, table

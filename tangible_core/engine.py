@@ -12,6 +12,7 @@ from .cache import Cache
 from .config import PRODUCTS, PipelineConfig, load_config
 from .data import Outcome, Plan, Record
 from .errors import UnknownMethod
+from .notes import collected
 from .registry import Registry, default_registry
 from .rules import Rule, given_key, made_key, rules
 from .scene import Scene, read_scene
@@ -104,13 +105,14 @@ class Pipeline:
         hooks.tell(self.registry.plugins, "tangible_stage_started", product=rule.product, method=rule.method)
         start = perf_counter()
         try:
-            value = rule.make(inputs)
+            with collected() as notes:
+                value = rule.make(inputs)
         except BaseException as error:
             failure = f"{type(error).__name__}: {error}"
             self._note(Outcome(rule.product, "failed", failure, rule.method, perf_counter() - start))
             raise
         seconds = perf_counter() - start
-        self._note(Outcome(rule.product, "ran", _with(rule.note, why), rule.method, seconds))
+        self._note(Outcome(rule.product, "ran", _with((rule.note, *notes), why), rule.method, seconds))
         if self.cache is not None and rule.cached:
             self.cache.put(self.key(rule.product), value)
         return value
@@ -139,7 +141,7 @@ class Pipeline:
         else:
             for name in rule.needs:
                 self._foresee(name, f"{product} is made from it", steps)
-            steps[product] = Outcome(product, "ran", _with(rule.note, why), rule.method)
+            steps[product] = Outcome(product, "ran", _with((rule.note,), why), rule.method)
         return steps
 
     @cached_property
@@ -161,8 +163,8 @@ class Pipeline:
         hooks.tell(self.registry.plugins, "tangible_stage_finished", outcome=outcome)
 
 
-def _with(note: str, why: str) -> str:
-    return f"{why}; {note}" if note else why
+def _with(notes: Iterable[str], why: str) -> str:
+    return "; ".join([why, *filter(None, notes)])
 
 
 ASKED = "asked for"

@@ -1,5 +1,6 @@
 """The engine, on methods of its own that count how often they run."""
 
+import logging
 from pathlib import Path
 from typing import ClassVar
 
@@ -14,6 +15,7 @@ from tangible_core.data import DisparityMap, HapticSurface, SegmentMap, Views
 from tangible_core.engine import Pipeline
 from tangible_core.errors import ConfigError, GeometryError, PictureError, UnknownMethod
 from tangible_core.interfaces import DepthEstimator, ForceRenderer, Segmenter, Skippable, Touch
+from tangible_core.notes import note
 from tangible_core.picture_files import write_png
 from tangible_core.registry import Registry
 from tangible_core.scene import SceneFiles
@@ -49,6 +51,14 @@ class Halves(Segmenter):
         labels = np.zeros(picture.shape[:2], np.int32)
         labels[:, picture.shape[1] // 2 :] = 1
         return SegmentMap(labels)
+
+
+class Says(Segmenter):
+    """Leaves something out, and says so."""
+
+    def segment(self, picture: np.ndarray) -> SegmentMap:
+        note(logging.getLogger("tests"), "skipped: everything")
+        return SegmentMap(np.zeros(picture.shape[:2], np.int32))
 
 
 class Fails(Segmenter):
@@ -128,6 +138,13 @@ def test_what_nothing_asks_for_is_not_made(folder: Path):
     assert ran == ["disparity"]
     left = {each.product: each.why for each in pipe.outcomes if each.outcome == "skipped"}
     assert left == dict.fromkeys(("segments", "materials", "surface", "touch"), "nothing that was asked for needs it")
+
+
+def test_what_a_method_notes_is_in_its_outcome(folder: Path):
+    pipe = pipeline(folder, texture=chosen(Says()))
+    pipe.make("segments")
+    [outcome] = [each for each in pipe.outcomes if each.product == "segments"]
+    assert outcome.why == "asked for; skipped: everything"
 
 
 def test_a_second_run_takes_the_surface_from_the_cache_and_runs_no_stage(folder: Path):

@@ -12,10 +12,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tangible_core.notes import note
+
 from .bands import match_bands
 from .census import BITS
 from .costs import HEAVY, LIGHT, SHARP, Cost
-from .notes import note
 from .pairs import Pair
 from .row_offset import CELL_PX, LEAST_OFFSET_PX, realigned, row_offset
 from .span import UNKNOWN, Span

@@ -4,9 +4,9 @@ import logging
 from typing import Literal, NamedTuple
 
 from tangible_core.errors import PictureError
+from tangible_core.notes import note
 
 from .bands import Bands
-from .notes import note
 from .pairs import Pair
 from .search_range import find_range, reach_px
 from .span import Span

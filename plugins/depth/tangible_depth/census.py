@@ -12,7 +12,7 @@ import numpy as np
 from jaxtyping import UInt8
 from numba import njit
 
-from .workers import in_blocks
+from tangible_core.threads import in_blocks
 
 RADIUS = 2
 PLANES = 3

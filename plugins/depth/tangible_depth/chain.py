@@ -7,12 +7,12 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from tangible_core.data import DisparityMap, Views
+from tangible_core.notes import note
 
 from .asked import Auto, asked_span
 from .bands import match_bands
 from .confidence import flat_pixels
 from .dense import Dense, as_map
-from .notes import note
 from .pairs import Pair, grey_pair
 from .raw_pairs import with_common_rows
 from .rectification import with_rectification

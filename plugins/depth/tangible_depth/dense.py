@@ -13,13 +13,13 @@ from jaxtyping import Float, Float32, Int16, UInt8
 from numba import int32, njit
 
 from tangible_core.data import DisparityMap
+from tangible_core.threads import in_blocks
 
 from .confidence import FILLED, FLAT_REACH, confidence, flat_pixels
 from .edges import MEDIAN_REACH, VOTERS, median, sharpen_edges
 from .filling import fill
 from .span import UNKNOWN
 from .speckles import remove_speckles
-from .workers import in_blocks
 
 SAME_SURFACE = 16
 """Sixteenths of a pixel that two neighbours of a small map may differ by and still be blended when it is enlarged."""

@@ -10,9 +10,10 @@ import numpy as np
 from jaxtyping import Int16, UInt8
 from numba import int32, njit
 
+from tangible_core.threads import in_blocks
+
 from .candidates import ABOVE, BELOW, LEFT, RIGHT, alike, choose, seen_from_the_right
 from .span import UNKNOWN
-from .workers import in_blocks
 
 SHORT = 2
 """Columns of a gap that is closed without asking, where both ends are alike."""

@@ -8,11 +8,11 @@ from pydantic import Field
 
 from tangible_core.data import DisparityMap, Views
 from tangible_core.interfaces import DepthEstimator
+from tangible_core.torch_extra import TorchDevice, need, pick_device
 
 from .feature_chain import Grey, Parts, Row, disparity_by_features
 from .fundamental import check_matches
 from .kornia_zncc import match_pair
-from .torch_extra import TorchDevice, need, pick_device
 
 
 class KorniaReport(DepthEstimator):

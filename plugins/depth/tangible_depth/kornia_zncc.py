@@ -10,11 +10,11 @@ from tangible_core.data import DisparityMap, Views
 from tangible_core.errors import PictureError
 from tangible_core.interfaces import DepthEstimator
 from tangible_core.pictures import to_grey
+from tangible_core.torch_extra import TorchDevice, need, pick_device
 
 from .assembling import assemble, without_speckles
 from .corner_range import range_of_pair
 from .rectification import with_rectification
-from .torch_extra import TorchDevice, need, pick_device
 
 
 class KorniaZNCC(DepthEstimator):

@@ -4,9 +4,10 @@ import logging
 
 import numpy as np
 
+from tangible_core.notes import note
+
 from .bands import Bands
 from .corner_look import corners_correspond
-from .notes import note
 from .pairs import Pair
 from .row_offset import LEAST_OFFSET_PX, LEAST_VOTES, realigned, row_votes
 

@@ -12,13 +12,13 @@ from jaxtyping import Bool, Float64
 
 from tangible_core.data import DisparityMap, Views
 from tangible_core.errors import GeometryError, PictureError
+from tangible_core.notes import note
 from tangible_core.pictures import to_grey
 
 from .alignment import aligning_homographies, epipole_roll
 from .fundamental import DegenerateMatches, Fit, eight_point, on_homography, robust_fundamental
 from .homographies import transform
 from .matches import Matches, flow_matches, sift_matches
-from .notes import note
 from .rectified import Rectified, as_it_is, warped
 
 logger = logging.getLogger(__name__)

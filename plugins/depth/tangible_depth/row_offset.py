@@ -9,10 +9,11 @@ import numpy as np
 from jaxtyping import Float32, Int16, Int64
 from numba import njit
 
+from tangible_core.threads import in_blocks
+
 from .pairs import Pair
 from .span import UNKNOWN
 from .subpixel import parabola
-from .workers import in_blocks
 
 CELL_PX, NEAR_PX, MOST_POINTS, LEAST_VOTES = 12, 1, 250, 20
 LEAST_OFFSET_PX = 0.3

@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from jaxtyping import UInt8
 
+from tangible_core.notes import note
+
 from .adaptive import match
 from .confidence import FLAT_REACH, LEAST_MATCHED
 from .costs import COSTS, SHARP
 from .dense import Dense, completed, enlarged
-from .notes import note
 from .pairs import Pair
 from .span import Span
 from .strips import MOST_LANES, strips

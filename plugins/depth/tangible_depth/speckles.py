@@ -9,8 +9,9 @@ import numpy as np
 from jaxtyping import Int16
 from numba import int64, njit
 
+from tangible_core.threads import in_blocks
+
 from .span import UNKNOWN
-from .workers import in_blocks
 
 
 def remove_speckles(disparity: Int16[np.ndarray, "h w"], largest_px: int = 60, step: int = 16) -> int:

@@ -6,11 +6,12 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Int16, UInt8
 
+from tangible_core.threads import in_turns, thread_count
+
 from .costs import Prices
 from .lanes import Lanes
 from .span import UNKNOWN, Span
 from .sweep import sweep_strip
-from .workers import in_turns, thread_count
 
 ROWS, WARM_ROWS = 128, 32
 """Rows of a strip, and rows that a path begins before it: what lies farther away hardly reaches in."""

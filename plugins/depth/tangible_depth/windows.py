@@ -5,6 +5,8 @@ from collections.abc import Callable
 import numpy as np
 from jaxtyping import Float32
 
+from tangible_core.threads import in_blocks
+
 from .confidence import LEAST_MATCHED
 from .correlation import correlate_strip
 from .dense import Dense, completed
@@ -12,7 +14,6 @@ from .lanes import Lanes
 from .pairs import Pair
 from .span import Span
 from .strips import blank
-from .workers import in_blocks
 
 LEAST_VARIANCE = 1.0
 """Grey levels squared below which a window says nothing."""

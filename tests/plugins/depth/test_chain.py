@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from stereo_scenes import slanted, step, texture
+from tangible_core import threads
 from tangible_core.data import Views
 from tangible_core.testing.stereo_scenes import synthetic_pair
-from tangible_depth import workers
 from tangible_depth.asked import asked_span
 from tangible_depth.census import census
 from tangible_depth.confidence import confidence, flat_pixels
@@ -102,8 +102,8 @@ def test_filling_does_not_depend_on_the_number_of_threads(monkeypatch):
     disparity[40:80] = UNKNOWN
     grey = rng.integers(0, 255, disparity.shape, np.uint8)
     maps = []
-    for threads in (1, 2, 7):
-        monkeypatch.setattr(workers, "thread_count", lambda threads=threads: threads)
+    for count in (1, 2, 7):
+        monkeypatch.setattr(threads, "thread_count", lambda count=count: count)
         maps.append(fill(disparity, grey))
     assert np.array_equal(maps[0], maps[1])
     assert np.array_equal(maps[0], maps[2])
@@ -229,31 +229,31 @@ def test_bytes_keep_their_values_and_halves_are_brightened():
 
 
 def test_a_failing_block_fails_the_whole(monkeypatch):
-    monkeypatch.setattr(workers, "thread_count", lambda: 4)
+    monkeypatch.setattr(threads, "thread_count", lambda: 4)
 
     def work(start, stop):
         if start > 0:
             raise ValueError("no")
 
     with pytest.raises(ValueError, match="no"):
-        workers.in_blocks(100, work)
+        threads.in_blocks(100, work)
 
 
 def test_the_blocks_cover_everything_once(monkeypatch):
-    monkeypatch.setattr(workers, "thread_count", lambda: 3)
+    monkeypatch.setattr(threads, "thread_count", lambda: 3)
     seen = np.zeros(50, int)
 
     def work(start, stop):
         seen[start:stop] += 1
 
-    workers.in_blocks(50, work)
+    threads.in_blocks(50, work)
     assert (seen == 1).all()
 
 
 def test_compiling_is_said_once(caplog):
     from numba import njit
 
-    notice = workers._CompileNotice()
+    notice = threads._CompileNotice()
 
     def kernel(x):
         return x + 1

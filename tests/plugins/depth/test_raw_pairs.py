@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from tangible_core.data import Calibration, Views
+from tangible_core.notes import collected
 from tangible_core.testing.stereo_scenes import SCENES, synthetic_pair
 from tangible_depth.bands import match_bands
 from tangible_depth.corner_look import corners_correspond
-from tangible_depth.notes import collected
 from tangible_depth.pairs import Pair, grey_pair
 from tangible_depth.raw_pairs import common_offset
 from tangible_depth.search_range import find_range

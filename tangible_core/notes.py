@@ -5,7 +5,7 @@ from collections.abc import Generator
 from contextlib import contextmanager
 from contextvars import ContextVar
 
-_asked: ContextVar[list[str] | None] = ContextVar("tangible_depth_notes", default=None)
+_asked: ContextVar[list[str] | None] = ContextVar("tangible_notes", default=None)
 
 
 def note(log: logging.Logger, message: str, level: int = logging.INFO) -> None:

@@ -4,7 +4,7 @@ from importlib import import_module
 from types import ModuleType
 from typing import TYPE_CHECKING, Literal
 
-from tangible_core.errors import BrokenMethod
+from .errors import BrokenMethod
 
 if TYPE_CHECKING:
     import torch

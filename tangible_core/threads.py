@@ -49,22 +49,24 @@ def in_turns(tasks: list[Any], work: Callable[[list[Any]], Any]) -> None:
 @cache
 def _pool(process: int) -> ThreadPoolExecutor:
     """A pool a process: threads do not survive a fork."""
-    return ThreadPoolExecutor(thread_count(), thread_name_prefix="tangible-depth")
+    return ThreadPoolExecutor(thread_count(), thread_name_prefix="tangible")
 
 
 class _CompileNotice(event.Listener):
-    """Says once a process that kernels are being compiled."""
+    """Says once a process and family of plugins that kernels are being compiled."""
 
-    said = False
+    def __init__(self) -> None:
+        self.said: set[str] = set()
 
     def on_start(self, event: Any) -> None:
-        module = event.data["dispatcher"].py_func.__module__
-        if not self.said and module.startswith(__package__ or ""):
-            self.said = True
-            log.warning("compiling the depth kernels for this processor; the next process finds them on disk")
+        package = event.data["dispatcher"].py_func.__module__.partition(".")[0]
+        if package.startswith("tangible_") and package not in self.said:
+            self.said.add(package)
+            kind = package.removeprefix("tangible_")
+            log.warning("compiling the %s kernels for this processor; the next process finds them on disk", kind)
 
     def on_end(self, event: Any) -> None:
         pass
 
 
-event.register("numba:compile", _CompileNotice())
+event.register("numba:compile", _CompileNotice())  # pyright: ignore[reportUnknownMemberType]

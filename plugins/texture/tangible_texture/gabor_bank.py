@@ -1,0 +1,109 @@
+"""Gabor filters: the formula, its bandwidth, and which wavelengths and orientations to take.
+
+Source: Jain & Farrokhnia, Unsupervised texture segmentation using Gabor filters, Pattern Recognition 24 (1991).
+"""
+
+from collections.abc import Sequence
+from math import ceil, cos, floor, log, log2, pi, sin, sqrt, tan
+from typing import NamedTuple
+
+import numpy as np
+from jaxtyping import Complex128
+
+SHORTEST_PX = 2 * sqrt(2)
+"""The wavelength of the highest octave, of sqrt(2)/4 cycles a pixel: one octave wide, it ends near the finest waves."""
+HALF = sqrt(log(2) / 2)
+
+
+class Gabor(NamedTuple):
+    """A Gabor function: a wave under a Gaussian that is sigma_px wide along it and sigma_px / gamma across it."""
+
+    wavelength_px: float
+    theta_rad: float
+    """Direction of the wave, from right (columns grow) to down (rows grow); 0 is upright stripes."""
+    sigma_px: float
+    gamma: float
+
+    @property
+    def frequency(self) -> tuple[float, float]:
+        """(down, right), in cycles a pixel."""
+        return sin(self.theta_rad) / self.wavelength_px, cos(self.theta_rad) / self.wavelength_px
+
+
+def sigma_of_bandwidth(wavelength_px: float, octaves: float = 1.0) -> float:
+    """sigma = lambda / pi sqrt(ln 2 / 2) (2^b + 1) / (2^b - 1): half the height is b octaves wide.
+
+    >>> round(sigma_of_bandwidth(8.0), 4)
+    4.4974
+    """
+    return wavelength_px * HALF / pi * (2**octaves + 1) / (2**octaves - 1)
+
+
+def bandwidth_of_sigma(wavelength_px: float, sigma_px: float) -> float:
+    """b = log2 (s + c) / (s - c), s = pi sigma / lambda and c = sqrt(ln 2 / 2): octaves, infinite if s <= c.
+
+    >>> round(bandwidth_of_sigma(8.0, sigma_of_bandwidth(8.0, 1.5)), 12)
+    1.5
+    """
+    reach = pi * sigma_px / wavelength_px
+    return log2((reach + HALF) / (reach - HALF)) if reach > HALF else float("inf")
+
+
+def octaves(lambda_max_px: float) -> tuple[float, ...]:
+    """Wavelengths 2 sqrt 2, 4 sqrt 2, ... px up to lambda_max_px, whatever the picture's size; at least the first.
+
+    >>> [round(each, 2) for each in octaves(24)]
+    [2.83, 5.66, 11.31, 22.63]
+    """
+    count = 1 + floor(log2(max(lambda_max_px, SHORTEST_PX) / SHORTEST_PX) + 1e-9)
+    return tuple(SHORTEST_PX * 2**i for i in range(count))
+
+
+def printed(width_px: int) -> tuple[float, ...]:
+    """Wavelengths in px, rising, of the printed frequencies 0.25 -+ 2^(i - 0.5) / N cycles a pixel, i = 1..log2(N / 8).
+
+    The paper has widths N that are powers of two. For another one i ends at the whole part of log2(N / 8), with N
+    itself in the formula; under 16 px, where no i is left, 0.25 alone remains.
+
+    >>> [round(1 / each, 3) for each in printed(32)]
+    [0.338, 0.294, 0.206, 0.162]
+    """
+    last = floor(log2(max(width_px, 8) / 8) + 1e-9)
+    offsets = [2 ** (i - 0.5) / width_px for i in range(last, 0, -1)]
+    frequencies = [0.25 + each for each in offsets] + [0.25 - each for each in reversed(offsets)]
+    return tuple(1 / each for each in frequencies or (0.25,))
+
+
+def bank(
+    wavelengths_px: Sequence[float], orientations: int = 6, bandwidth: float = 1.0, gamma: float | None = None
+) -> list[Gabor]:
+    """Every wavelength in every orientation 0, 180 / n, ... degrees; a wavelength's orientations follow each other.
+
+    gamma: height over width of the Gaussian; None: as much as makes neighbouring orientations meet at half height,
+    1 at most (for 6 orientations and one octave 0.80).
+    """
+    if gamma is None:
+        ratio = (2**bandwidth - 1) / (2**bandwidth + 1)
+        gamma = min(1.0, tan(pi / (2 * orientations)) / ratio) if orientations > 1 else 1.0
+    return [
+        Gabor(wavelength, i * pi / orientations, sigma_of_bandwidth(wavelength, bandwidth), gamma)
+        for wavelength in wavelengths_px
+        for i in range(orientations)
+    ]
+
+
+def kernel(gabor: Gabor, reach: float = 3.5) -> Complex128[np.ndarray, "n n"]:
+    """The filter in space, sampled to `reach` sigma on each side: its real part is even, its imaginary part odd.
+
+    exp(-(x'^2 + gamma^2 y'^2) / (2 sigma^2)) exp(2 pi i x' / lambda), x' = x cos t + y sin t, y' = -x sin t + y cos t;
+    scaled so that a wave of its own frequency and of height a gives a response of magnitude a, and less as much of the
+    Gaussian as makes flat grey give none.
+    """
+    radius = ceil(reach * gabor.sigma_px / min(1.0, gabor.gamma))
+    y, x = np.mgrid[-radius : radius + 1, -radius : radius + 1].astype(np.float64)
+    along = x * cos(gabor.theta_rad) + y * sin(gabor.theta_rad)
+    across = -x * sin(gabor.theta_rad) + y * cos(gabor.theta_rad)
+    envelope = np.exp(-(along**2 + (gabor.gamma * across) ** 2) / (2 * gabor.sigma_px**2))
+    envelope *= 2 / envelope.sum()
+    wave = np.exp(2j * pi * along / gabor.wavelength_px)
+    return envelope * (wave - (envelope * wave).sum() / 2)

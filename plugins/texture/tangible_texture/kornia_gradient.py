@@ -1,0 +1,104 @@
+"""Method `kornia-gradient`: Canny edges and the slope of the picture in torch, then regions between the edges."""
+
+from math import ceil
+from typing import Annotated, Literal, Self
+
+import numpy as np
+from jaxtyping import Float32, Int32
+from pydantic import Field, model_validator
+
+from tangible_core.data import SegmentMap, Views
+from tangible_core.interfaces import Segmenter, Skippable
+from tangible_core.pictures import is_one_colour, to_grey
+from tangible_core.torch_extra import TorchDevice, need, pick_device
+
+QUIET = 0.25
+"""This share of the slopes is taken to be noise, and their largest to be that quantile of a Rayleigh distribution."""
+SOBEL = 8
+"""kornia's Canny does not divide its Sobel sums by this, as a slope per pixel would be."""
+
+
+class KorniaGradient(Segmenter, Skippable):
+    """Regions between edges, by kornia: for smooth things rather than textures.
+
+    Grey, smoothed; Canny edges in units of the noise; the slope in the same units, raised where there is an edge. What
+    lies connected under canny_low begins a segment, and these grow uphill until they meet (a watershed).
+    Confidence is 1 - s / top, s being the slope in units of noise and top the greatest, or canny_high if that is more.
+    Sources: Canny 1986; Meyer 1991; Riba et al., Kornia, WACV 2020.
+    """
+
+    segments: Annotated[int, Field(ge=1)] | Literal["auto"] = "auto"
+    """At most this many, which the largest basins begin; `auto`: as many as edges close off, 64 at most."""
+    sigma_px: Annotated[float, Field(gt=0, le=100)] = 2.0
+    """Standard deviation of the Gaussian that smooths, at most 1/16 of the root of the picture's area."""
+    smallest_px: Annotated[int, Field(ge=1)] = 200
+    """A segment begins with at least this many flat pixels; in a small picture, 1/16 of its area; never under 4."""
+    canny_low: Annotated[float, Field(gt=0, le=20)] = 2.0
+    """An edge goes on while its slope is this many times that of noise."""
+    canny_high: Annotated[float, Field(gt=0, le=20)] = 4.0
+    """An edge has this many times the slope of noise somewhere."""
+    contrast: Annotated[float, Field(ge=0.005, le=1)] = 0.02
+    """An edge has at least this share of the slope of the picture's strongest edge: the floor under the noise."""
+    torch_device: TorchDevice = "auto"
+    """Where to compute; `auto` takes a GPU when there is one."""
+
+    @model_validator(mode="after")
+    def _thresholds_in_order(self) -> Self:
+        if self.canny_low > self.canny_high:
+            raise ValueError(f"canny_low {self.canny_low:g} is above canny_high {self.canny_high:g}; exchange them")
+        return self
+
+    def skip(self, views: Views) -> str | None:
+        """One flat colour is one segment."""
+        return "the picture is one flat colour" if is_one_colour(views.left) else None
+
+    def segment(self, picture: np.ndarray) -> SegmentMap:
+        """Regions of the picture, in the order of their first pixels.
+
+        Raises: PictureError as `check_picture`, BrokenMethod without torch or kornia.
+        """
+        need("torch")
+        need("kornia")
+        from .labelling import in_order, is_flat, one_segment
+        from .watershed import watershed
+
+        grey = to_grey(picture)
+        if is_flat(grey):
+            return one_segment(grey.shape)
+        steep = self._landscape(grey / np.abs(grey).max())
+        markers, count = self._markers(steep)
+        if count < 2:
+            return one_segment(grey.shape)
+        top = max(float(steep.max()), self.canny_high)
+        return SegmentMap(in_order(watershed(steep, markers)), 1 - steep / np.float32(top))
+
+    def _landscape(self, grey: Float32[np.ndarray, "h w"]) -> Float32[np.ndarray, "h w"]:
+        """The slope in units of the noise, canny_high at least on edges."""
+        import torch
+        from kornia.filters import canny, gaussian_blur2d, spatial_gradient
+
+        sigma_px = min(self.sigma_px, grey.size**0.5 / 16)
+        reach = ceil(3 * sigma_px)
+        size, sigma, frame = 2 * reach + 1, (sigma_px, sigma_px), reach + 2
+        inner = (..., slice(frame, -frame), slice(frame, -frame))
+        framed = torch.from_numpy(np.pad(grey, frame, mode="symmetric")).to(pick_device(self.torch_device))[None, None]
+        slopes = spatial_gradient(gaussian_blur2d(framed, size, sigma))[inner].norm(dim=2)
+        quiet = torch.sort(slopes.flatten()).values[int(QUIET * slopes.numel())] / (-2 * np.log(1 - QUIET)) ** 0.5
+        unit = torch.maximum(quiet, self.contrast * slopes.max() / self.canny_high)
+        low, high = SOBEL * self.canny_low, SOBEL * self.canny_high
+        _, edges = canny(framed / unit, low, high, size, sigma)
+        steep = slopes / unit
+        return torch.where(edges[inner] > 0, steep.clamp(min=self.canny_high), steep)[0, 0].cpu().numpy()
+
+    def _markers(self, steep: Float32[np.ndarray, "h w"]) -> tuple[Int32[np.ndarray, "h w"], int]:
+        """The basins under canny_low, or more where nothing is so flat; the largest, if too many; -1 elsewhere."""
+        from .basins import basins
+        from .gradient import MOST_SEGMENTS, STEEPER
+
+        levels = [self.canny_low * times for times in STEEPER]
+        found, count = basins(steep, levels, max(4, min(self.smallest_px, steep.size // 16)))
+        most = min(count, MOST_SEGMENTS if self.segments == "auto" else self.segments)
+        largest = np.argsort(-np.bincount(found[found >= 0], minlength=count), kind="stable")[:most]
+        names = np.full(count + 1, -1, np.int32)  # the last is what -1 finds
+        names[largest] = np.arange(most)
+        return names[found], most

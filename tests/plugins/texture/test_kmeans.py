@@ -1,0 +1,105 @@
+"""Clusters whose answer is known, and the guess at how many there are."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tangible_core import threads
+from tangible_texture import kmeans as module
+from tangible_texture.count import choose_count
+from tangible_texture.kmeans import kmeans
+
+
+def blobs(count, each=200, dims=5, seed=0, apart=20.0):
+    """Points round centres that are far apart, and which centre each belongs to."""
+    rng = np.random.default_rng(seed)
+    centres = apart * np.eye(count, dims) + apart * (np.arange(count) // dims)[:, None]
+    truth = rng.permutation(np.repeat(np.arange(count), each))
+    return (centres[truth] + rng.normal(size=(truth.size, dims))).astype(np.float32), truth
+
+
+def same_parts(one, other):
+    return len({*zip(one.tolist(), other.tolist(), strict=True)}) == len({*one.tolist()}) == len({*other.tolist()})
+
+
+@pytest.mark.parametrize("start", ["plus-plus", "random"])
+@pytest.mark.parametrize("count", [1, 2, 5])
+def test_points_far_apart_are_told_apart_exactly(start, count):
+    rows, truth = blobs(count)
+    found = kmeans(rows, count, restarts=30, seed=1, start=start)
+    assert same_parts(found.labels, truth)
+    for k in range(count):
+        assert found.centres[k] == pytest.approx(rows[found.labels == k].mean(axis=0), abs=1e-4)
+    assert found.cost == pytest.approx(np.square(rows - found.centres[found.labels]).sum(), rel=1e-4)
+
+
+def test_every_row_has_the_nearest_centre_and_every_centre_is_a_mean():
+    rows = np.random.default_rng(0).normal(size=(3000, 7)).astype(np.float32)
+    found = kmeans(rows, 6, seed=3)
+    away = np.square(rows[:, None] - found.centres).sum(axis=2)
+    assert np.array_equal(away.argmin(axis=1), found.labels)
+    means = [rows[found.labels == k].mean(axis=0) for k in range(6)]
+    assert found.centres == pytest.approx(np.array(means), abs=1e-5)
+
+
+def test_one_seed_gives_one_answer_and_threads_change_nothing(monkeypatch):
+    rows = np.random.default_rng(0).normal(size=(2000, 4)).astype(np.float32)
+    monkeypatch.setattr(module, "BLOCK", 300)
+    expected = kmeans(rows, 5, seed=7, start="random")
+    monkeypatch.setattr(threads, "thread_count", lambda: 5)
+    again = kmeans(rows, 5, seed=7, start="random")
+    assert np.array_equal(expected.labels, again.labels)
+    assert np.array_equal(expected.centres, again.centres)
+    assert not np.array_equal(kmeans(rows, 5, seed=8, start="random").labels, expected.labels)
+
+
+def test_more_restarts_cost_no_more():
+    rows = np.random.default_rng(0).normal(size=(500, 3)).astype(np.float32)
+    costs = [kmeans(rows, 8, restarts, seed=0).cost for restarts in (1, 3, 10)]
+    assert costs == sorted(costs, reverse=True)
+
+
+@settings(max_examples=40)
+@given(
+    st.integers(1, 6), st.integers(1, 12), st.sampled_from(["plus-plus", "random"]), st.sampled_from([1e-15, 1, 1e15])
+)
+def test_never_more_clusters_than_distinct_rows(distinct, clusters, start, scale):
+    rows = np.float32(scale) * (np.arange(40) % distinct).astype(np.float32)[:, None].repeat(2, axis=1)
+    found = kmeans(rows, clusters, seed=clusters, start=start)
+    assert len(found.centres) <= min(distinct, clusters)
+    assert np.array_equal(np.unique(found.labels), np.arange(len(found.centres)))
+    if clusters >= distinct:
+        assert len(found.centres) == distinct
+        assert found.cost == 0
+
+
+def test_rows_that_only_rounding_keeps_apart_are_one():
+    rows = (7 + 1e-6 * np.random.default_rng(0).random((100, 3))).astype(np.float32)
+    assert len(kmeans(rows, 5).centres) == 1
+
+
+@pytest.mark.parametrize("count", [2, 3, 5])
+def test_groups_far_apart_are_counted(count):
+    guess = choose_count(blobs(count)[0], 8, seed=0)
+    assert guess.segments == count
+    assert 0.5 < guess.confidence < 1
+    assert str(count) in guess.reason
+
+
+def test_one_group_is_one():
+    rows = np.random.default_rng(0).normal(size=(4000, 12)).astype(np.float32)
+    assert choose_count(rows, 8).segments == 1
+    flat = choose_count(np.ones((30, 4), np.float32), 8)
+    assert (flat.segments, flat.confidence) == (1, 1)
+    assert choose_count(np.ones((1, 4), np.float32), 8).segments == 1
+
+
+def test_no_more_than_the_most_are_counted():
+    assert choose_count(blobs(5)[0], 3).segments <= 3
+    assert choose_count(blobs(5)[0], 1).segments == 1
+
+
+def test_one_seed_gives_one_guess():
+    rows, _ = blobs(4, each=900, apart=4.0)
+    assert choose_count(rows, 8, seed=5) == choose_count(rows, 8, seed=5)

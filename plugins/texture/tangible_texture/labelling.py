@@ -62,8 +62,8 @@ def enlarged(
     labels: Int32[np.ndarray, "rows columns"], trust: Float32[np.ndarray, "n"], step_px: int, shape: tuple[int, int]
 ) -> SegmentMap:
     """The segments of (h, w) pixels, from labels and confidence every step_px pixels, in the order of first pixels."""
-    maps = (in_order(labels), trust.reshape(labels.shape))
-    return SegmentMap(*(each.repeat(step_px, 0).repeat(step_px, 1)[: shape[0], : shape[1]] for each in maps))
+    rows, columns = (np.arange(side) // step_px for side in shape)
+    return SegmentMap(*(each[np.ix_(rows, columns)] for each in (in_order(labels), trust.reshape(labels.shape))))
 
 
 def margins(rows: Float32[np.ndarray, "n d"], centres: Float32[np.ndarray, "k d"]) -> Float32[np.ndarray, "n"]:

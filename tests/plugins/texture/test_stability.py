@@ -223,7 +223,7 @@ def test_what_is_not_finite_is_told_with_its_place_or_filled(name: str, value: f
     filled, known = fill_non_finite(torn)
     assert np.argwhere(~known).tolist() == [[31, 64], [40, 7]]
     halves = method(name, segments=2)
-    assert agreement(halves.segment(filled).labels, halves.segment(whole).labels) >= 0.99
+    assert agreement(halves.segment(filled).labels, halves.segment(whole).labels) >= 0.98
 
 
 @by_method

@@ -1,0 +1,63 @@
+"""Linear discriminants: which features tell classes apart, and for which class a cell speaks.
+
+Source: Fisher's discriminant for several classes (Rao, J. Royal Stat. Soc. B 10, 1948); the scatter within classes is
+shrunk towards a multiple of the identity and a share of the total scatter.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from jaxtyping import Float32, Float64
+
+SHRUNK = 0.05
+"""Of the mean variance within classes, and of the total scatter: added to the scatter within classes."""
+
+
+class Scatters(NamedTuple):
+    """Weighted means of classes, their shares, and scatter within them, shrunk, per unit of weight."""
+
+    means: Float64[np.ndarray, "k d"]
+    shares: Float64[np.ndarray, "k"]
+    within: Float64[np.ndarray, "d d"]
+
+
+def scatters(planes: Float32[np.ndarray, "d n"], weights: Float32[np.ndarray, "k n"]) -> Scatters:
+    """Of classes with these weights a cell, whose sum is what a cell counts."""
+    from .planes import products, scatter
+
+    counts = weights.sum(axis=1, dtype=np.float64) + 1e-3
+    shares = counts / counts.sum()
+    means = products(weights, planes) / counts[:, None]
+    centre = shares @ means
+    total = scatter(planes, weights.sum(axis=0)) / counts.sum() - np.outer(centre, centre)
+    between = ((means - centre).T * shares) @ (means - centre)
+    within = total - between
+    ridge = SHRUNK * max(np.trace(within) / len(within), 1e-6)
+    return Scatters(means, shares, within + SHRUNK * total + ridge * np.eye(len(within)))
+
+
+def evidence(planes: Float32[np.ndarray, "d n"], found: Scatters) -> Float32[np.ndarray, "k n"]:
+    """How much each cell speaks for each class: log likelihoods of one Gaussian's width, but for what all share."""
+    from .planes import mixed
+
+    towards = np.linalg.solve(found.within, found.means.T).T
+    heights = 0.5 * (found.means * towards).sum(axis=1)
+    return mixed(towards, planes) - heights.astype(np.float32)[:, None]
+
+
+def discriminant_axes(found: Scatters, most: int) -> Float64[np.ndarray, "m d"]:
+    """The directions in which classes differ most, `most` or as many as there are, scaled to unit scatter within."""
+    values, vectors = np.linalg.eigh(found.within)
+    white = (vectors * values**-0.5) @ vectors.T
+    apart = (found.means - found.shares @ found.means) @ white
+    _, strengths, axes = np.linalg.svd(np.sqrt(found.shares)[:, None] * apart, full_matrices=False)
+    return (axes[strengths > 1e-9] @ white)[:most]
+
+
+def principal_axes(planes: Float32[np.ndarray, "d n"], most: int, power: float = 0.0) -> Float64[np.ndarray, "m d"]:
+    """Leading principal axes of centred planes, each divided by its variance to this power; none for still planes."""
+    from .planes import scatter
+
+    values, vectors = np.linalg.eigh(scatter(planes, np.ones(planes.shape[1], np.float32)) / planes.shape[1])
+    kept = np.flatnonzero(values > 1e-6 * max(values[-1], 1e-6))[::-1][:most]
+    return (vectors[:, kept] * values[kept] ** -power).T

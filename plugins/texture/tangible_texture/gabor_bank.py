@@ -8,7 +8,7 @@ from math import ceil, cos, floor, log, log2, pi, sin, sqrt, tan
 from typing import NamedTuple
 
 import numpy as np
-from jaxtyping import Float64
+from jaxtyping import Complex128
 
 SHORTEST_PX = 2 * sqrt(2)
 """The wavelength of the highest octave, of sqrt(2)/4 cycles a pixel: one octave wide, it ends near the finest waves."""
@@ -92,17 +92,18 @@ def bank(
     ]
 
 
-def even_kernel(gabor: Gabor, reach: float = 3.5) -> Float64[np.ndarray, "n n"]:
-    """The even Gabor, sampled: exp(-(x'^2 + gamma^2 y'^2) / (2 sigma^2)) cos(2 pi x' / lambda).
+def kernel(gabor: Gabor, reach: float = 3.5) -> Complex128[np.ndarray, "n n"]:
+    """The filter in space, sampled to `reach` sigma on each side: its real part is even, its imaginary part odd.
 
-    x' = x cos t + y sin t, y' = -x sin t + y cos t, to `reach` sigma on each side. Less a Gaussian, so that flat
-    grey gives nothing, and scaled so that a wave of its own frequency keeps its height.
+    exp(-(x'^2 + gamma^2 y'^2) / (2 sigma^2)) exp(2 pi i x' / lambda), x' = x cos t + y sin t, y' = -x sin t + y cos t;
+    scaled so that a wave of its own frequency and of height a gives a response of magnitude a, and less as much of the
+    Gaussian as makes flat grey give none.
     """
     radius = ceil(reach * gabor.sigma_px / min(1.0, gabor.gamma))
     y, x = np.mgrid[-radius : radius + 1, -radius : radius + 1].astype(np.float64)
     along = x * cos(gabor.theta_rad) + y * sin(gabor.theta_rad)
     across = -x * sin(gabor.theta_rad) + y * cos(gabor.theta_rad)
     envelope = np.exp(-(along**2 + (gabor.gamma * across) ** 2) / (2 * gabor.sigma_px**2))
-    wave = np.cos(2 * pi * along / gabor.wavelength_px)
-    kernel = envelope * (wave - (envelope * wave).sum() / envelope.sum())
-    return kernel / (kernel * wave).sum()
+    envelope *= 2 / envelope.sum()
+    wave = np.exp(2j * pi * along / gabor.wavelength_px)
+    return envelope * (wave - (envelope * wave).sum() / 2)

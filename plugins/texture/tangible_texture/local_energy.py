@@ -65,7 +65,12 @@ def local_energy(
 
 def padding(filters: Sequence[Gabor], sigma_px: float) -> int:
     """How far to mirror the picture outwards: as far as the widest smoothing reaches, and two sigma of its filter."""
-    return ceil(max((REACH * _smoothing(each, sigma_px) + 2 * each.sigma_px for each in filters), default=0.0))
+    return ceil(max((REACH * smoothing_px(each, sigma_px) + 2 * each.sigma_px for each in filters), default=0.0))
+
+
+def smoothing_px(gabor: Gabor, sigma_px: float) -> float:
+    """Standard deviation of the window in which a filter's energy is averaged."""
+    return max(sigma_px, RELATIVE_SIGMA * gabor.wavelength_px)
 
 
 def spectrum_of(grey: Float32[np.ndarray, "h w"], pad_px: int) -> Spectrum:
@@ -102,10 +107,10 @@ def energy_planes(
 
     def work(share: list[int]) -> None:
         for i in share:
-            smoothing_px = _smoothing(filters[i], sigma_px)
-            grid = _response(spectrum, filters[i], smoothing_px)
+            wide_px = smoothing_px(filters[i], sigma_px)
+            grid = _response(spectrum, filters[i], wide_px)
             tables = [
-                _table(count, step_px, smoothing_px, samples, side / samples, spectrum.pad_px)
+                smoothing_table(count, step_px, wide_px, samples, side / samples, spectrum.pad_px)
                 for count, samples, side in zip(cells, grid.shape, spectrum.shape, strict=True)
             ]
             down = _means(_power(grid), *tables[0])
@@ -128,18 +133,14 @@ def mean_energies(spectrum: Spectrum, filters: Sequence[Gabor]) -> Float64[np.nd
     return means
 
 
-def _smoothing(gabor: Gabor, sigma_px: float) -> float:
-    return max(sigma_px, RELATIVE_SIGMA * gabor.wavelength_px)
-
-
-def _response(spectrum: Spectrum, gabor: Gabor, smoothing_px: float) -> Complex64[np.ndarray, "rows columns"]:
+def _response(spectrum: Spectrum, gabor: Gabor, wide_px: float) -> Complex64[np.ndarray, "rows columns"]:
     """The analytic response on the coarsest grid that holds it; sample j lies at j times side / samples."""
-    return fft.ifft2(_cut(spectrum, gabor, smoothing_px), norm="forward", overwrite_x=True, workers=1)
+    return fft.ifft2(_cut(spectrum, gabor, wide_px), norm="forward", overwrite_x=True, workers=1)
 
 
-def _cut(spectrum: Spectrum, gabor: Gabor, smoothing_px: float) -> Complex64[np.ndarray, "rows columns"]:
+def _cut(spectrum: Spectrum, gabor: Gabor, wide_px: float) -> Complex64[np.ndarray, "rows columns"]:
     """The filtered spectrum round the filter's centre."""
-    samples = _samples(spectrum.shape, gabor, smoothing_px)
+    samples = _samples(spectrum.shape, gabor, wide_px)
     top, left = (
         round(frequency * side) - count // 2
         for frequency, side, count in zip(gabor.frequency, spectrum.shape, samples, strict=True)
@@ -151,12 +152,12 @@ def _cut(spectrum: Spectrum, gabor: Gabor, smoothing_px: float) -> Complex64[np.
     return part
 
 
-def _samples(shape: tuple[int, int], gabor: Gabor, smoothing_px: float) -> tuple[int, int]:
+def _samples(shape: tuple[int, int], gabor: Gabor, wide_px: float) -> tuple[int, int]:
     """Of the grid that holds the filter, and on which its squared response can be smoothed so far."""
     s, c = sin(gabor.theta_rad), cos(gabor.theta_rad)
     along = 1 / (2 * pi * gabor.sigma_px)
     down, right = (along * hypot(a, gabor.gamma * b) for a, b in ((s, c), (c, s)))
-    smooth = 1 / (2 * pi * smoothing_px)
+    smooth = 1 / (2 * pi * wide_px)
     rates = (max(2 * TAIL * width, FINENESS * hypot(smooth, 2 * width)) for width in (down, right))
     rows, columns = (min(side, fft.next_fast_len(ceil(rate * side))) for side, rate in zip(shape, rates, strict=True))
     return rows, columns
@@ -209,7 +210,7 @@ def _scale(values, gain, sign, part):
 
 
 @lru_cache(64)
-def _table(
+def smoothing_table(
     cells: int, step_px: int, sigma_px: float, samples: int, spacing_px: float, pad_px: int
 ) -> tuple[Int64[np.ndarray, "cells"], Float32[np.ndarray, "cells taps"]]:
     """For each cell the first sample that its Gaussian reaches, and the weights from there on."""

@@ -1,0 +1,105 @@
+"""Method `kornia-gabor`: Gabor energies and k-means in torch."""
+
+from typing import TYPE_CHECKING, Annotated, Literal
+
+import numpy as np
+from jaxtyping import Float32, Int32
+from pydantic import Field
+
+from tangible_core.data import SegmentMap, Views
+from tangible_core.interfaces import Segmenter, Skippable
+from tangible_core.pictures import is_one_colour, to_grey
+from tangible_core.torch_extra import TorchDevice, need, pick_device
+
+if TYPE_CHECKING:
+    from torch import Tensor
+
+    from .gabor_bank import Gabor
+
+MORE = 3
+"""So many clusters more are tried as long as seams are among those that were asked for."""
+
+
+class KorniaGabor(Segmenter, Skippable):
+    """Amplitudes in a bank of Gabor filters, one octave and 30 degrees apart, clustered by k-means; all of it in torch.
+
+    Amplitudes are the roots of the energy in Gaussian windows, standardised over the picture. kornia's `fft_conv`
+    applies the filters, at full resolution. Along a boundary a window sees two textures, which can look like a third:
+    what no disc as wide as the window fits into goes to the segments beside it. Colour is reduced to grey.
+    Confidence is 1 - a / b, a and b being the distances from the nearest centre and from the next one; 0 in a seam.
+    Source: Jain & Farrokhnia 1991; Riba et al., Kornia, WACV 2020; Arthur & Vassilvitskii, k-means++, SODA 2007.
+    """
+
+    segments: Annotated[int, Field(ge=1, le=64)] | Literal["auto"] = "auto"
+    """How many textures; fewer where there are not so many distinct features. auto: a guess, 8 at most."""
+    longest_px: Annotated[float, Field(ge=3, le=512)] = 24.0
+    """The longest wavelength, of 2.83, 5.66, 11.3, ... px; at most 1/16 of the root of the picture's area."""
+    window_px: Annotated[float, Field(ge=1, le=256)] = 12.0
+    """Standard deviation of the window over which energy is averaged: 0.35 wavelengths at least, and at most 1/16 of the
+    root of the picture's area."""
+    step_px: Annotated[int, Field(ge=1, le=64)] = 4
+    """Features are taken, and labels given, to squares of this side."""
+    restarts: Annotated[int, Field(ge=1, le=100)] = 3
+    """Of these many runs of k-means the best one counts."""
+    seed: Annotated[int, Field(ge=0)] = 0
+    """Of the starts of k-means."""
+    drop_seams: bool = True
+    """Give strips narrower than two standard deviations of the window to each side to the segments beside them."""
+    skip_weak: bool = False
+    """Leave out the weakest filters as long as 95 % of the energy is kept."""
+    skip_octaves: bool = True
+    """Leave out wavelengths under which the picture has less than 0.01 % of its energy."""
+    torch_device: TorchDevice = "auto"
+    """Where to compute; `auto` takes a GPU when there is one."""
+
+    def skip(self, views: Views) -> str | None:
+        """One flat colour is one segment."""
+        return "the picture is one flat colour" if is_one_colour(views.left) else None
+
+    def segment(self, picture: np.ndarray) -> SegmentMap:
+        """Labels in the order of their first pixels.
+
+        Raises: PictureError as `check_picture`, BrokenMethod without torch or kornia.
+        """
+        need("torch")
+        need("kornia")
+        from .filter_choice import needed_filters
+        from .gabor_bank import bank, octaves
+        from .labelling import is_flat, one_segment
+
+        grey = to_grey(picture)
+        if is_flat(grey):
+            return one_segment(grey.shape)
+        most_px = max(1.0, grey.size**0.5 / 16)
+        wanted = bank(octaves(min(self.longest_px, most_px)))
+        return self._segments(grey, needed_filters(grey, wanted, self.skip_weak, self.skip_octaves), most_px)
+
+    def _segments(self, grey: Float32[np.ndarray, "h w"], filters: "list[Gabor]", most_px: float) -> SegmentMap:
+        from .labelling import enlarged, segments_of
+        from .torch_gabor import energies, standardised_roots
+
+        window_px = min(self.window_px, most_px)
+        planes = energies(grey, filters, self.step_px, window_px, pick_device(self.torch_device))
+        rows = standardised_roots(planes)
+        count = segments_of(rows.cpu().numpy(), self.segments, self.seed)
+        radius = round(2 * window_px / self.step_px) if self.drop_seams else 0
+        labels, trust = self._clustered(rows, tuple(planes.shape[1:]), count, radius)
+        return enlarged(labels, trust, self.step_px, grey.shape)
+
+    def _clustered(
+        self, rows: "Tensor", shape: tuple[int, ...], count: int, radius: int
+    ) -> tuple[Int32[np.ndarray, "rows columns"], Float32[np.ndarray, "n"]]:
+        """Labels and confidence of the cells; a few clusters more where seams were among those that were asked for."""
+        from .labelling import margins
+        from .seams import without_seams
+        from .torch_gabor import kmeans
+
+        features, clusters = rows.cpu().numpy(), count
+        most = count if self.segments == "auto" else count + MORE
+        while True:
+            found = kmeans(rows, clusters, self.restarts, self.seed)
+            each = found.labels.cpu().numpy().astype(np.int32).reshape(shape)
+            labels, same = without_seams(each, radius)
+            if labels.max() + 1 >= count or clusters == most:
+                return labels, np.where(same.ravel(), margins(features, found.centres.cpu().numpy()), 0)
+            clusters += 1

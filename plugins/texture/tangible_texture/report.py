@@ -1,0 +1,100 @@
+"""Method `report`: the documented baseline, the chain of the report "Tangible Images" as it is written there."""
+
+import logging
+from math import ceil
+from typing import TYPE_CHECKING, Annotated, Literal
+
+import numpy as np
+from jaxtyping import Float32
+from pydantic import Field
+
+from tangible_core.data import SegmentMap, Views
+from tangible_core.interfaces import Segmenter, Skippable
+from tangible_core.notes import note
+from tangible_core.pictures import is_one_colour, to_grey
+
+if TYPE_CHECKING:
+    from .gabor_bank import Gabor
+
+log = logging.getLogger(__name__)
+
+
+class Report(Segmenter, Skippable):
+    """Even Gabor filters, a bounded non-linearity, mean magnitude in Gaussian windows, and k-means from a random start.
+
+    Responses are those to grey levels of 0..255, with filters that leave a wave of their own frequency as high as it
+    is. As printed, x' is divided by gamma instead of the wavelength, and pi is missing from the formula for the
+    bandwidth of a given sigma; both are put right. Everything is done at the picture's full resolution, unless that
+    would take more than memory_mb. Colour is reduced to grey.
+    Confidence is 1 - a / b, a and b being a pixel's distances from the nearest centre and from the next one.
+    Source: Jain & Farrokhnia, Unsupervised texture segmentation using Gabor filters, Pattern Recognition 24 (1991).
+    """
+
+    segments: Annotated[int, Field(ge=1, le=64)] | Literal["auto"] = "auto"
+    """How many textures; fewer where there are not so many distinct features. auto: a guess, 8 at most."""
+    frequencies: Literal["printed", "octaves"] = "printed"
+    """printed: 0.25 -+ 2^(i - 0.5) / width cycles a pixel; octaves: sqrt(2)/4 and by halves down to longest_px."""
+    longest_px: Annotated[float, Field(ge=3, le=512)] = 24.0
+    """The longest wavelength of `octaves`, in pixels."""
+    bandwidth: Annotated[float, Field(ge=0.2, le=3)] = 1.0
+    """Of each filter, in octaves at half its height."""
+    gamma: Annotated[float, Field(ge=0.2, le=2)] = 0.8
+    """Width over height of the Gaussian; at 0.8 neighbouring orientations, 30 degrees apart, meet at half height."""
+    alpha: Annotated[float, Field(gt=0, le=100)] = 0.25
+    """Slope of the non-linearity tanh(alpha r), r being the response in grey levels."""
+    window: Annotated[float, Field(gt=0, le=10)] = 3.0
+    """Standard deviation of the averaging window over that of the filter."""
+    widest_px: Annotated[float, Field(ge=1, le=256)] = 20.0
+    """The averaging window's standard deviation is at most this."""
+    seed: Annotated[int, Field(ge=0)] = 0
+    """Of the random start of k-means."""
+    skip_weak: bool = False
+    """Leave out the weakest filters as long as 95 % of the energy is kept."""
+    skip_octaves: bool = False
+    """Leave out wavelengths under which the picture has less than 0.01 % of its energy."""
+    memory_mb: Annotated[int, Field(ge=16)] = 1024
+    """What the features may take; if every pixel's take more, every second or third one's are kept."""
+
+    def skip(self, views: Views) -> str | None:
+        """One flat colour is one segment."""
+        return "the picture is one flat colour" if is_one_colour(views.left) else None
+
+    def segment(self, picture: np.ndarray) -> SegmentMap:
+        """Labels in the order of their first pixels. Raises: PictureError as `check_picture`."""
+        from .filter_choice import needed_filters
+        from .labelling import is_flat, labelled, one_segment
+
+        grey = to_grey(picture)
+        if is_flat(grey):
+            return one_segment(grey.shape)
+        filters = needed_filters(grey, self._filters(grey.shape[1]), self.skip_weak, self.skip_octaves)
+        step_px = self._step_px(grey.size, len(filters))
+        features = self._features(grey, filters, step_px)
+        return labelled(features, step_px, grey.shape, self.segments, self.seed, start="random")
+
+    def _filters(self, width_px: int) -> "list[Gabor]":
+        from .gabor_bank import bank, octaves, printed
+
+        wavelengths = printed(width_px) if self.frequencies == "printed" else octaves(self.longest_px)
+        return bank(wavelengths, 6, self.bandwidth, self.gamma)
+
+    def _step_px(self, pixels: int, filters: int) -> int:
+        step_px = ceil((4 * pixels * filters / (self.memory_mb << 20)) ** 0.5)
+        if step_px > 1:
+            note(log, f"skipped: features between every {step_px} pixels, as they would not fit {self.memory_mb} MB")
+        return step_px
+
+    def _features(
+        self, grey: Float32[np.ndarray, "h w"], filters: "list[Gabor]", step_px: int
+    ) -> Float32[np.ndarray, "rows columns filters"]:
+        """Mean |tanh(alpha r)| every step_px pixels, as a share of the greatest: k-means does not mind the scale."""
+        from .responses import even_responses
+        from .smoothing import gaussian
+
+        rows, columns = (-(-side // step_px) for side in grey.shape)
+        features = np.empty((rows, columns, len(filters)), np.float32)
+        for i, (gabor, response) in enumerate(zip(filters, even_responses(grey, filters), strict=True)):
+            bounded = np.abs(np.tanh(np.float32(255 * self.alpha) * response))
+            sigma_px = min(self.window * gabor.sigma_px, self.widest_px)
+            features[..., i] = gaussian(bounded[..., None], sigma_px)[::step_px, ::step_px, 0]
+        return features / max(float(features.max()), np.finfo(np.float32).tiny)

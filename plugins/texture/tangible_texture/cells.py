@@ -48,23 +48,20 @@ def averaged(
     return found
 
 
-def standardised_roots(planes: Float32[np.ndarray, "d h w"]) -> Float32[np.ndarray, "d n"]:
+def standardise_roots(planes: Float32[np.ndarray, "d n"]) -> None:
     """Square roots, which make spreads alike where means are not, of mean 0 and deviation 1; a still plane is 0."""
-    found = np.empty((len(planes), planes[0].size), np.float32)
-    flat = planes.reshape(found.shape)
-    in_turns(list(range(len(planes))), lambda share: [_standardise(flat[i], found[i]) for i in share])
-    return found
+    in_turns(list(range(len(planes))), lambda share: [_standardise(planes[i]) for i in share])
 
 
 @njit(cache=True, nogil=True, fastmath=True)
-def _standardise(plane, found):
+def _standardise(plane):
     total, squares = 0.0, 0.0
     for i in range(plane.size):
-        found[i] = np.sqrt(max(plane[i], np.float32(0)) + np.float32(1e-6))
-        total += found[i]
+        plane[i] = np.sqrt(max(plane[i], np.float32(0)) + np.float32(1e-6))
+        total += plane[i]
     mean = np.float32(total / plane.size)
     for i in range(plane.size):
-        found[i] -= mean
-        squares += found[i] * found[i]
+        plane[i] -= mean
+        squares += plane[i] * plane[i]
     deviation = np.sqrt(squares / plane.size)
-    found *= np.float32(1 / deviation) if deviation > STILL else np.float32(0)
+    plane *= np.float32(1 / deviation) if deviation > STILL else np.float32(0)

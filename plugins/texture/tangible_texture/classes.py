@@ -48,16 +48,16 @@ def classes(
     from .neighbourhood import INSIDE_CELLS, refitted, smoothed
     from .planes import mixed
 
-    spent, shape = EFFORTS[effort], found.middle_shape
+    spent, shape = EFFORTS[effort], found.middle.shape
     most = MOST_GUESSED if segments == "auto" else segments
-    rotated = mixed(principal_axes(found.wide, PRINCIPAL_AXES, HALF_WHITE), found.wide)
-    labels = _spread(divided(rotated, spent.each * most + spent.besides), found.wide_shape, shape)
+    rotated = mixed(principal_axes(found.wide.planes, PRINCIPAL_AXES, HALF_WHITE), found.wide.planes)
+    labels = _spread(divided(rotated, spent.each * most + spent.besides), found.wide.shape, shape)
     own = members(labels, int(labels.max()) + 1)
-    fit = scatters(found.middle, own * smoothed(own, shape, INSIDE_CELLS) ** 2)
+    fit = scatters(found.middle.planes, own * smoothed(own, shape, INSIDE_CELLS) ** 2)
     axes = discriminant_axes(fit, AXES)
-    planes = mixed(axes, found.middle)
+    planes = mixed(axes, found.middle.planes)
     steps = joining(planes, refitted(planes, labels, shape, 2, 1), shape, spent.votes)
-    labels = _guessed(steps) if segments == "auto" else next(each.labels for each in steps if each.count <= segments)
+    labels = _guessed(steps) if segments == "auto" else next(each.labels for each in steps if each.clusters <= segments)
     return refitted(planes, labels, shape, FINAL_ROUNDS, 1), axes
 
 
@@ -71,9 +71,9 @@ def _guessed(steps: Iterable[Step]) -> Int32[np.ndarray, "m"]:
     """The division whose next joining costs the most, against the joining before."""
     every = list(steps)
     leaps = {
-        after.count: (after.cost / before.cost, after)
+        after.clusters: (after.cost / before.cost, after)
         for before, after in pairwise(every)
-        if 2 <= after.count <= MOST_GUESSED and before.cost > 0
+        if 2 <= after.clusters <= MOST_GUESSED and before.cost > 0
     }
     if not leaps:
         return every[-1].labels

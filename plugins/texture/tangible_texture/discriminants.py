@@ -30,7 +30,7 @@ def scatters(planes: Float32[np.ndarray, "d n"], weights: Float32[np.ndarray, "k
     means = products(weights, planes) / counts[:, None]
     centre = shares @ means
     total = scatter(planes, weights.sum(axis=0)) / counts.sum() - np.outer(centre, centre)
-    between = ((means - centre).T * shares) @ (means - centre)
+    between = np.einsum("kd,ke->de", shares[:, None] * (means - centre), means - centre)
     within = total - between
     ridge = SHRUNK * max(np.trace(within) / len(within), 1e-6)
     return Scatters(means, shares, within + SHRUNK * total + ridge * np.eye(len(within)))
@@ -39,25 +39,29 @@ def scatters(planes: Float32[np.ndarray, "d n"], weights: Float32[np.ndarray, "k
 def evidence(planes: Float32[np.ndarray, "d n"], found: Scatters) -> Float32[np.ndarray, "k n"]:
     """How much each cell speaks for each class: log likelihoods of one Gaussian's width, but for what all share."""
     from .planes import mixed
+    from .small_matrices import solved
 
-    towards = np.linalg.solve(found.within, found.means.T).T
+    towards = solved(found.within, found.means)
     heights = 0.5 * (found.means * towards).sum(axis=1)
     return mixed(towards, planes) - heights.astype(np.float32)[:, None]
 
 
 def discriminant_axes(found: Scatters, most: int) -> Float64[np.ndarray, "m d"]:
     """The directions in which classes differ most, `most` or as many as there are, scaled to unit scatter within."""
-    values, vectors = np.linalg.eigh(found.within)
-    white = (vectors * values**-0.5) @ vectors.T
-    apart = (found.means - found.shares @ found.means) @ white
-    _, strengths, axes = np.linalg.svd(np.sqrt(found.shares)[:, None] * apart, full_matrices=False)
-    return (axes[strengths > 1e-9] @ white)[:most]
+    from .small_matrices import eigen, solved
+
+    apart = np.sqrt(found.shares)[:, None] * (found.means - found.shares @ found.means)
+    towards = solved(found.within, apart)
+    strengths, vectors = eigen(np.einsum("kd,jd->kj", apart, towards))
+    kept = np.flatnonzero(strengths > 1e-9)[:most]
+    return np.einsum("ak,kd->ad", vectors[kept] / np.sqrt(strengths[kept])[:, None], towards)
 
 
 def principal_axes(planes: Float32[np.ndarray, "d n"], most: int, power: float = 0.0) -> Float64[np.ndarray, "m d"]:
     """Leading principal axes of centred planes, each divided by its variance to this power; none for still planes."""
     from .planes import scatter
+    from .small_matrices import eigen
 
-    values, vectors = np.linalg.eigh(scatter(planes, np.ones(planes.shape[1], np.float32)) / planes.shape[1])
-    kept = np.flatnonzero(values > 1e-6 * max(values[-1], 1e-6))[::-1][:most]
-    return (vectors[:, kept] * values[kept] ** -power).T
+    values, vectors = eigen(scatter(planes, np.ones(planes.shape[1], np.float32)) / planes.shape[1])
+    kept = np.flatnonzero(values > 1e-6 * max(values[0], 1e-6))[:most]
+    return vectors[kept] * values[kept, None] ** -power

@@ -30,11 +30,11 @@ def divided(planes: Float32[np.ndarray, "d n"], most: int) -> Int32[np.ndarray, 
 def _halved(planes: Float32[np.ndarray, "d n"]) -> tuple[float, np.ndarray]:
     """The sum of squared distances from the mean, and which columns lie above it along the longest axis."""
     from .planes import mixed, scatter
+    from .small_matrices import eigen
 
     centred = planes - planes.mean(axis=1, keepdims=True)
     moments = scatter(centred, np.ones(planes.shape[1], np.float32))
-    axis = np.linalg.eigh(moments)[1][:, -1:]
-    return float(np.trace(moments)), mixed(axis.T, centred)[0] > 0
+    return float(np.trace(moments)), mixed(eigen(moments)[1][:1], centred)[0] > 0
 
 
 def _settled(planes: Float32[np.ndarray, "d n"], centres: np.ndarray) -> Int32[np.ndarray, "n"]:

@@ -21,15 +21,19 @@ COLOUR_WEIGHT = 3.0
 """What a plane of colour counts against one of ninety of texture."""
 
 
-class Features(NamedTuple):
-    """Planes of features, each of mean 0 and deviation 1, one column a cell; and the rows and columns of cells."""
+class Window(NamedTuple):
+    """Features of mean 0 and deviation 1, one column a cell, in windows of one width; and the grid of cells."""
 
-    wide: Float32[np.ndarray, "d l"]
-    wide_shape: tuple[int, int]
-    middle: Float32[np.ndarray, "d m"]
-    middle_shape: tuple[int, int]
-    narrow: Float32[np.ndarray, "d n"]
-    narrow_shape: tuple[int, int]
+    planes: Float32[np.ndarray, "d n"]
+    shape: tuple[int, int]
+
+
+class Features(NamedTuple):
+    """The same features in windows of three widths."""
+
+    wide: Window
+    middle: Window
+    narrow: Window
 
 
 def features(
@@ -40,48 +44,60 @@ def features(
     The narrow ones have a value every 4 pixels, the middle ones every 8 and the wide ones every 16; of small pictures
     all of them every 4. Raises: PictureError as `check_picture`.
     """
-    from .cells import CELL_PX, ENERGY_SIGMA_PX, averaged, standardised_roots
+    from .cells import CELL_PX, ENERGY_SIGMA_PX, averaged
 
-    cells = _cells(picture, lambda_max_px, least_energy)
-    if cells is None:
+    grey = to_grey(picture)
+    if _is_flat(grey):
+        note(log, "one segment: the picture is flat")
         return None
-    tints = _tints(picture, colour)
-    planes = np.concatenate([cells, *tints])
-    step = 2 if min(planes.shape[1:]) >= 32 else 1
-    narrow = averaged(planes, (NARROW_PX**2 - ENERGY_SIGMA_PX**2) ** 0.5 / CELL_PX)
+    texture, tints = _texture(grey, lambda_max_px, least_energy), _tints(picture, colour)
+    step = 2 if min(texture[0].shape[1:]) >= 32 else 1
+    narrow = averaged(np.concatenate(texture + tints), (NARROW_PX**2 - ENERGY_SIGMA_PX**2) ** 0.5 / CELL_PX)
     middle = averaged(narrow, (MIDDLE_PX**2 - NARROW_PX**2) ** 0.5 / CELL_PX, step)
     if _same(middle, MIDDLE_PX / CELL_PX / step):
         note(log, "one segment: the texture is the same all over the picture")
         return None
     wide = averaged(middle, (WIDE_PX**2 - MIDDLE_PX**2) ** 0.5 / CELL_PX / step, step)
-    weights = np.ones((len(planes), 1), np.float32)
-    weights[len(cells) :] = COLOUR_WEIGHT
-    windows = [(standardised_roots(each) * weights, each.shape[1:]) for each in (wide, middle, narrow)]
-    return Features(*(part for window in windows for part in window))
+    colours = sum(len(each) for each in tints)
+    return Features(_window(wide, colours), _window(middle, colours), _window(narrow, colours))
 
 
-def _cells(
-    picture: np.ndarray, lambda_max_px: float, least_energy: float
-) -> Float32[np.ndarray, "d rows columns"] | None:
-    """Energies and pattern frequencies, cell by cell; None for a picture that is flat but for single pixels."""
+def _window(planes: Float32[np.ndarray, "d rows columns"], colours: int) -> Window:
+    """Standardised, in place; the last `colours` planes weigh more."""
+    from .cells import standardise_roots
+
+    rows, columns = planes.shape[1:]
+    flat = planes.reshape(len(planes), -1)
+    standardise_roots(flat)
+    flat[len(flat) - colours :] *= np.float32(COLOUR_WEIGHT)
+    return Window(flat, (rows, columns))
+
+
+def _is_flat(grey: Float32[np.ndarray, "h w"]) -> bool:
+    """Whether all is one grey but for single pixels."""
+    from .local_energy import standardised
+    from .smoothing import without_specks
+
+    return not standardised(without_specks(grey[..., None])[..., 0]).any()
+
+
+def _texture(
+    grey: Float32[np.ndarray, "h w"], lambda_max_px: float, least_energy: float
+) -> list[Float32[np.ndarray, "d rows columns"]]:
+    """Energies and pattern frequencies, cell by cell."""
     from .cells import CELL_PX, ENERGY_SIGMA_PX, capped
     from .gabor_bank import bank, octaves
     from .local_energy import energy_planes, mean_energies, padding, spectrum_of, standardised
     from .patterns import pattern_frequencies
-    from .smoothing import without_specks
 
-    grey = to_grey(picture)
-    if not standardised(without_specks(grey[..., None])[..., 0]).any():
-        note(log, "one segment: the picture is flat")
-        return None
     filters = bank(octaves(lambda_max_px))
     spectrum = spectrum_of(grey, padding(filters, ENERGY_SIGMA_PX))
     means = mean_energies(spectrum, filters)
-    kept = [each for each, mean in zip(filters, means, strict=True) if mean > least_energy * means.sum()]
+    kept = [each for each, mean in zip(filters, means, strict=True) if mean >= least_energy * means.sum()]
     if len(kept) < len(filters):
         note(log, f"{len(filters) - len(kept)} of {len(filters)} filters left out: they hold no energy to speak of")
-    energies = capped(energy_planes(spectrum, kept, grey.shape, CELL_PX, ENERGY_SIGMA_PX))
-    return np.concatenate([energies, pattern_frequencies(standardised(grey))])
+    energies = energy_planes(spectrum, kept, grey.shape, CELL_PX, ENERGY_SIGMA_PX)
+    return [capped(energies), pattern_frequencies(standardised(grey))]
 
 
 def _same(planes: Float32[np.ndarray, "d rows columns"], reach_cells: float) -> bool:

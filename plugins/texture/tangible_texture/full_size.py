@@ -10,6 +10,7 @@ from tangible_core.threads import in_blocks
 
 from .discriminants import evidence, scatters
 from .dividing import members
+from .features import Window
 from .neighbourhood import EVIDENCE, settled
 
 NARROW = 0.6
@@ -19,19 +20,18 @@ SURE = 1e-6
 
 
 def fine_memberships(
-    wide: Float32[np.ndarray, "d m"],
-    labels: Int32[np.ndarray, "m"],
-    shape: tuple[int, int],
-    narrow: Float32[np.ndarray, "d n"],
-    fine_shape: tuple[int, int],
+    wide: Window, labels: Int32[np.ndarray, "m"], narrow: Window
 ) -> Float32[np.ndarray, "k rows columns"]:
-    """How much each fine cell belongs to each class: the same features in windows of two widths, and its neighbours."""
+    """How much each narrow cell belongs to each class, from its neighbours and from windows of both widths.
+
+    labels: of the wide cells. Both windows have the same features.
+    """
     own = members(labels, int(labels.max()) + 1)
-    towards = enlarged(evidence(wide, scatters(wide, own)), shape, fine_shape)
-    soft = enlarged(own, shape, fine_shape)
-    near = evidence(narrow, scatters(narrow, members(soft.argmax(axis=0), len(own))))
+    towards = enlarged(evidence(wide.planes, scatters(wide.planes, own)), wide.shape, narrow.shape)
+    soft = enlarged(own, wide.shape, narrow.shape)
+    near = evidence(narrow.planes, scatters(narrow.planes, members(soft.argmax(axis=0), len(own))))
     both = np.float32(EVIDENCE * NARROW) * near + np.float32(EVIDENCE * (1 - NARROW)) * towards
-    return settled(both, soft, fine_shape, 2.0, 4).reshape(-1, *fine_shape)
+    return settled(both, soft, narrow.shape, 2.0, 4).reshape(-1, *narrow.shape)
 
 
 def enlarged(planes: Float32[np.ndarray, "k m"], shape: tuple[int, int], to: tuple[int, int]) -> np.ndarray:

@@ -31,7 +31,7 @@ class Gabor(Segmenter, Skippable):
     """Two planes of colour beside the texture; `auto`: where windows of the picture differ in colour."""
     lambda_max_px: Annotated[float, Field(ge=2.8, le=512)] = 24.0
     """Wavelengths of the filters are octaves from 2.8 pixels up to this."""
-    least_energy: Annotated[float, Field(ge=0, lt=1)] = 1e-4
+    least_energy: Annotated[float, Field(ge=0, lt=1)] = 1e-3
     """Filters with less than this share of all filters' energy are left out; 0 keeps all of them."""
 
     def skip(self, views: Views) -> str | None:
@@ -43,12 +43,12 @@ class Gabor(Segmenter, Skippable):
     def segment(self, picture: np.ndarray) -> SegmentMap:
         """Regions of the picture; one where its texture is the same everywhere, but for single pixels.
 
-        Memory: about 80 bytes a pixel, and 4 for every segment.
+        Memory: about 110 bytes a pixel.
         Raises: PictureError as `check_picture`.
         """
         from .cells import CELL_PX
         from .classes import classes
-        from .features import features
+        from .features import Window, features
         from .full_size import fine_memberships, pixel_labels
         from .merging import in_reading_order
         from .planes import mixed
@@ -57,8 +57,8 @@ class Gabor(Segmenter, Skippable):
         if found is None or self.segments == 1:
             return SegmentMap(np.zeros(picture.shape[:2], np.int32))
         labels, axes = classes(found, self.segments, self.effort)
-        narrow, middle = (mixed(axes, planes) for planes in (found.narrow, found.middle))
-        memberships = fine_memberships(middle, labels, found.middle_shape, narrow, found.narrow_shape)
+        narrow, middle = (Window(mixed(axes, each.planes), each.shape) for each in (found.narrow, found.middle))
+        memberships = fine_memberships(middle, labels, narrow)
         pixels, confidence = pixel_labels(memberships, CELL_PX, picture.shape[:2])
         names = np.arange(len(memberships), dtype=np.int32)
         return SegmentMap(in_reading_order(pixels, names), confidence)

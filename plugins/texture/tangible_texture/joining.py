@@ -11,6 +11,8 @@ from numba import njit
 
 from .dividing import members
 from .neighbourhood import INSIDE_CELLS, refitted, smoothed
+from .planes import dot
+from .small_matrices import factored, whitened
 
 SIZE_POWER = 1.25
 """How much the sizes of two clusters speak against joining them; 1 in Ward's method."""
@@ -24,7 +26,7 @@ class Step(NamedTuple):
     """A division into clusters, and what joining the next two costs."""
 
     labels: Int32[np.ndarray, "n"]
-    count: int
+    clusters: int
     cost: float
     """See `joining_costs`; infinite where there is one cluster only."""
 
@@ -83,38 +85,21 @@ def _moments(planes, weights, starts, sizes):
             weighted = planes[d, inside] * heavy
             means[k, d] = weighted.sum() / heavy.sum()
             for e in range(d + 1):
-                scatters[k, d, e] = _dot(weighted, planes[e, inside]) / heavy.sum() - means[k, d] * means[k, e]
+                scatters[k, d, e] = dot(weighted, planes[e, inside]) / heavy.sum() - means[k, d] * means[k, e]
                 scatters[k, e, d] = scatters[k, d, e]
     return means, scatters
 
 
-@njit(cache=True, nogil=True, fastmath=True)
-def _dot(one, other):
-    total = np.float32(0)
-    for i in range(one.size):
-        total += one[i] * other[i]
-    return total
-
-
 @njit(cache=True, nogil=True)
 def _distances(means, scatters, ridge):
-    """d' S^-1 d of every two, by Cholesky's factors: S = L L', d' S^-1 d = |L^-1 d|^2."""
+    """d' S^-1 d of every two, as |L^-1 d|^2 with Cholesky's factor L of S."""
     count, size = means.shape
     found = np.zeros((count, count))
-    factor, solved = np.zeros((size, size)), np.zeros(size)
     for one in range(count):
         for other in range(one):
-            for i in range(size):
-                for j in range(i + 1):
-                    value = (scatters[one, i, j] + scatters[other, i, j]) / 2 + (ridge if i == j else 0.0)
-                    for m in range(j):
-                        value -= factor[i, m] * factor[j, m]
-                    factor[i, j] = np.sqrt(max(value, 1e-12)) if i == j else value / factor[j, j]
-                value = means[one, i] - means[other, i]
-                for m in range(i):
-                    value -= factor[i, m] * solved[m]
-                solved[i] = value / factor[i, i]
-            found[one, other] = found[other, one] = np.square(solved).sum()
+            factor = factored((scatters[one] + scatters[other]) / 2 + ridge * np.eye(size))
+            found[one, other] = np.square(whitened(factor, means[one : one + 1] - means[other : other + 1])).sum()
+            found[other, one] = found[one, other]
     return found
 
 

@@ -37,7 +37,7 @@ def pattern_frequencies(grey: Float32[np.ndarray, "h w"]) -> Float32[np.ndarray,
     found = np.empty((len(RADII), COUNTERS, *shape), np.float32)
     for planes, (radius, sigma) in zip(found, RADII, strict=True):
         smooth = cv2.GaussianBlur(grey, (0, 0), sigma, borderType=cv2.BORDER_REFLECT_101) if sigma else grey
-        framed = cv2.copyMakeBorder(smooth, *[radius] * 4, cv2.BORDER_REPLICATE)
+        framed = np.pad(smooth, radius, mode="edge")
         in_blocks(
             shape[0], lambda a, b, f=framed, r=radius, p=planes: _count(f, r, a, b, grey.shape, _FIRST, _SECOND, p), 4
         )

@@ -20,11 +20,20 @@ def mixed(weights, planes):
         part = planes[:, start : start + BLOCK]
         for k in range(weights.shape[0]):
             out = found[k, start : start + BLOCK]
-            for d in range(part.shape[0]):
+            for d in range(0, part.shape[0] - 3, 4):  # four at a time: sums are written a fourth as often
+                _add_four(weights[k, d : d + 4], part[d : d + 4], out)
+            for d in range(part.shape[0] // 4 * 4, part.shape[0]):
                 weight, plane = np.float32(weights[k, d]), part[d]
                 for i in range(out.size):
                     out[i] += weight * plane[i]
     return found
+
+
+@njit(cache=True, nogil=True, fastmath=True)
+def _add_four(weights, planes, out):
+    a, b, c, d = np.float32(weights[0]), np.float32(weights[1]), np.float32(weights[2]), np.float32(weights[3])
+    for i in range(out.size):
+        out[i] += a * planes[0, i] + b * planes[1, i] + c * planes[2, i] + d * planes[3, i]
 
 
 @njit(cache=True, nogil=True, fastmath=True)
@@ -35,7 +44,7 @@ def products(one, other):
         for k in range(one.shape[0]):
             left = one[k, start : start + BLOCK]
             for d in range(other.shape[0]):
-                found[k, d] += _dot(left, other[d, start : start + BLOCK])
+                found[k, d] += dot(left, other[d, start : start + BLOCK])
     return found
 
 
@@ -52,7 +61,7 @@ def scatter(planes, weights):
             for i in range(heavy.size):
                 weighted[i] = heavy[i] * plane[i]
             for e in range(d + 1):
-                found[d, e] += _dot(weighted, planes[e, start : start + BLOCK])
+                found[d, e] += dot(weighted, planes[e, start : start + BLOCK])
     for d in range(size):
         for e in range(d):
             found[e, d] = found[d, e]
@@ -60,7 +69,8 @@ def scatter(planes, weights):
 
 
 @njit(cache=True, nogil=True, fastmath=True)
-def _dot(one, other):
+def dot(one, other):
+    """The sum of products of two rows of float32."""
     total = np.float32(0)
     for i in range(one.size):
         total += one[i] * other[i]

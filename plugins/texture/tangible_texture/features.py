@@ -13,6 +13,8 @@ log = logging.getLogger(__name__)
 
 NARROW_PX, MIDDLE_PX, WIDE_PX = 5.0, 10.0, 18.0
 """Standard deviations of the windows: along borders, in which classes are told apart, and to begin with."""
+LARGE_PX = 320
+"""Where the root of a picture's area is less, its windows are narrower in proportion, down to half as wide."""
 SAME = 0.03
 """Features that spread by less than this share of their size are those of one texture: noise has ten times as much."""
 COLOURFUL = 0.02
@@ -39,7 +41,7 @@ class Features(NamedTuple):
 def features(
     picture: np.ndarray, lambda_max_px: float, least_energy: float, colour: bool | Literal["auto"]
 ) -> Features | None:
-    """Features in windows of WIDE_PX, MIDDLE_PX and NARROW_PX; None where they are the same all over the picture.
+    """Features in windows of WIDE_PX, MIDDLE_PX and NARROW_PX, less in a small picture; None where they are the same all over the picture.
 
     The narrow ones have a value every 4 pixels, the middle ones every 8 and the wide ones every 16; of small pictures
     all of them every 4. Raises: PictureError as `check_picture`.
@@ -52,14 +54,20 @@ def features(
         return None
     texture, tints = _texture(grey, lambda_max_px, least_energy), _tints(picture, colour)
     step = 2 if min(texture[0].shape[1:]) >= 32 else 1
-    narrow = averaged(np.concatenate(texture + tints), (NARROW_PX**2 - ENERGY_SIGMA_PX**2) ** 0.5 / CELL_PX)
-    middle = averaged(narrow, (MIDDLE_PX**2 - NARROW_PX**2) ** 0.5 / CELL_PX, step)
-    if _same(middle, MIDDLE_PX / CELL_PX / step):
+    narrow_px, middle_px, wide_px = _widths(grey.size)
+    narrow = averaged(np.concatenate(texture + tints), (narrow_px**2 - ENERGY_SIGMA_PX**2) ** 0.5 / CELL_PX)
+    middle = averaged(narrow, (middle_px**2 - narrow_px**2) ** 0.5 / CELL_PX, step)
+    if _same(middle, middle_px / CELL_PX / step):
         note(log, "one segment: the texture is the same all over the picture")
         return None
-    wide = averaged(middle, (WIDE_PX**2 - MIDDLE_PX**2) ** 0.5 / CELL_PX / step, step)
+    wide = averaged(middle, (wide_px**2 - middle_px**2) ** 0.5 / CELL_PX / step, step)
     colours = sum(len(each) for each in tints)
     return Features(_window(wide, colours), _window(middle, colours), _window(narrow, colours))
+
+
+def _widths(pixels: int) -> tuple[float, float, float]:
+    share = min(1.0, max(0.5, pixels**0.5 / LARGE_PX))
+    return min(NARROW_PX, 0.9 * MIDDLE_PX * share), MIDDLE_PX * share, WIDE_PX * share
 
 
 def _window(planes: Float32[np.ndarray, "d rows columns"], colours: int) -> Window:

@@ -53,7 +53,7 @@ PICTURE, TRUTH = mosaic()
 def test_textures_of_one_brightness_are_told_apart(effort: str):
     found = Gabor(segments=3, effort=effort).segment(PICTURE)
     assert found.count == 3
-    assert rand_index(TRUTH, found.labels) > 0.85
+    assert rand_index(TRUTH, found.labels) > 0.93
     across = found.labels[:, 1:] != found.labels[:, :-1]
     assert found.confidence[:, 1:][across].mean() < found.confidence.mean() - 0.1
 
@@ -101,7 +101,7 @@ def test_flips_and_quarter_turns_flip_and_turn_the_labels(there, back, effort: s
 
 def test_noise_changes_little():
     noisy = PICTURE + 8 / 255 * np.random.default_rng(5).standard_normal(PICTURE.shape)
-    assert rand_index(Gabor(segments=3).segment(PICTURE).labels, Gabor(segments=3).segment(noisy).labels) >= 0.9
+    assert rand_index(Gabor(segments=3).segment(PICTURE).labels, Gabor(segments=3).segment(noisy).labels) >= 0.95
 
 
 def checkerboard(side_px: int) -> np.ndarray:

@@ -41,7 +41,7 @@ class Features(NamedTuple):
 def features(
     picture: np.ndarray, lambda_max_px: float, least_energy: float, colour: bool | Literal["auto"]
 ) -> Features | None:
-    """Features in windows of WIDE_PX, MIDDLE_PX and NARROW_PX, less in a small picture; None where they are the same all over the picture.
+    """Features in windows of WIDE_PX, MIDDLE_PX and NARROW_PX, or less in a small picture; None where all are alike.
 
     The narrow ones have a value every 4 pixels, the middle ones every 8 and the wide ones every 16; of small pictures
     all of them every 4. Raises: PictureError as `check_picture`.

@@ -1,0 +1,63 @@
+"""Segments by texture: Gabor energies and binary patterns, clustered without chance."""
+
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import Field
+
+from tangible_core.data import SegmentMap, Views
+from tangible_core.interfaces import Segmenter, Skippable
+from tangible_core.pictures import is_one_colour
+
+
+class Gabor(Segmenter, Skippable):
+    """Regions of one texture each, whatever their brightness; k classes, which may lie in several places.
+
+    Local energy in a bank of Gabor filters, and how often local binary patterns occur, in cells of 4 x 4 pixels. Cells
+    are divided finely and joined again, the two clusters first whose features differ least, whose border is long and of
+    which one is small; after each step the features that tell clusters apart are found anew, and cells take their
+    neighbours' part. No step is left to chance, and none depends on where the picture begins. Labels are in the order
+    of their first pixels, row by row. Confidence is 1 - q / p, p and q being the memberships of a pixel's class and of
+    the next one: 0 on borders.
+    Sources: Jain & Farrokhnia, Pattern Recognition 24, 1991 (the energies); Ojala et al., IEEE TPAMI 24, 2002
+    (patterns); Su & Dy, ICTAI 2004 (division); Ward, J. Am. Stat. Ass. 58, 1963 (joining).
+    """
+
+    segments: Annotated[int, Field(ge=1, le=64)] | Literal["auto"] = "auto"
+    """At most this many textures; `auto`: a guess, 8 at most, said with its reason and what it is worth."""
+    effort: Literal["fast", "balanced"] = "balanced"
+    """`fast` divides less finely, and lets cells settle with their neighbours at the end only."""
+    colour: bool | Literal["auto"] = "auto"
+    """Two planes of colour beside the texture; `auto`: where windows of the picture differ in colour."""
+    lambda_max_px: Annotated[float, Field(ge=2.8, le=512)] = 24.0
+    """Wavelengths of the filters are octaves from 2.8 pixels up to this."""
+    least_energy: Annotated[float, Field(ge=0, lt=1)] = 1e-3
+    """Filters with less than this share of all filters' energy are left out; 0 keeps all of them."""
+
+    def skip(self, views: Views) -> str | None:
+        """One flat colour is one segment, and so is any picture when no more is asked for."""
+        if self.segments == 1:
+            return "one segment is asked for"
+        return "the picture is one flat colour" if is_one_colour(views.left) else None
+
+    def segment(self, picture: np.ndarray) -> SegmentMap:
+        """Regions of the picture; one where its texture is the same everywhere, but for single pixels.
+
+        Memory: about 110 bytes a pixel.
+        Raises: PictureError as `check_picture`.
+        """
+        from .cells import CELL_PX
+        from .classes import classes
+        from .features import Window, features
+        from .full_size import fine_memberships, pixel_labels
+        from .merging import in_reading_order
+        from .planes import mixed
+
+        found = features(picture, self.lambda_max_px, self.least_energy, self.colour)
+        if found is None or self.segments == 1:
+            return SegmentMap(np.zeros(picture.shape[:2], np.int32))
+        labels, axes = classes(found, self.segments, self.effort)
+        narrow, middle = (Window(mixed(axes, each.planes), each.shape) for each in (found.narrow, found.middle))
+        memberships = fine_memberships(middle, labels, narrow)
+        pixels, confidence = pixel_labels(memberships, CELL_PX, picture.shape[:2])
+        return SegmentMap(in_reading_order(pixels), confidence)

@@ -15,8 +15,6 @@ NARROW_PX, MIDDLE_PX, WIDE_PX = 5.0, 10.0, 18.0
 """Standard deviations of the windows: along borders, in which classes are told apart, and to begin with."""
 LARGE_PX = 320
 """Where the root of a picture's area is less, its windows are narrower in proportion, down to half as wide."""
-SAME = 0.03
-"""Features that spread by less than this share of their size are those of one texture: noise has ten times as much."""
 COLOURFUL = 0.02
 """Windows that differ in colour by less than this share of white do so by chance, or by the light."""
 COLOUR_WEIGHT = 3.0
@@ -47,9 +45,10 @@ def features(
     all of them every 4. Raises: PictureError as `check_picture`.
     """
     from .cells import CELL_PX, ENERGY_SIGMA_PX, averaged
+    from .noise_floor import is_flat, is_one_texture
 
     grey = to_grey(picture)
-    if _is_flat(grey):
+    if is_flat(grey):
         note(log, "one segment: the picture is flat")
         return None
     texture, tints = _texture(grey, lambda_max_px, least_energy), _tints(picture, colour)
@@ -57,7 +56,7 @@ def features(
     narrow_px, middle_px, wide_px = _widths(grey.size)
     narrow = averaged(np.concatenate(texture + tints), (narrow_px**2 - ENERGY_SIGMA_PX**2) ** 0.5 / CELL_PX)
     middle = averaged(narrow, (middle_px**2 - narrow_px**2) ** 0.5 / CELL_PX, step)
-    if _same(middle, middle_px / CELL_PX / step):
+    if is_one_texture(np.sqrt(middle), middle_px / CELL_PX / step, grey):
         note(log, "one segment: the texture is the same all over the picture")
         return None
     wide = averaged(middle, (wide_px**2 - middle_px**2) ** 0.5 / CELL_PX / step, step)
@@ -81,14 +80,6 @@ def _window(planes: Float32[np.ndarray, "d rows columns"], colours: int) -> Wind
     return Window(flat, (rows, columns))
 
 
-def _is_flat(grey: Float32[np.ndarray, "h w"]) -> bool:
-    """Whether all is one grey but for single pixels."""
-    from .local_energy import standardised
-    from .smoothing import without_specks
-
-    return not standardised(without_specks(grey[..., None])[..., 0]).any()
-
-
 def _texture(
     grey: Float32[np.ndarray, "h w"], lambda_max_px: float, least_energy: float
 ) -> list[Float32[np.ndarray, "d rows columns"]]:
@@ -106,13 +97,6 @@ def _texture(
         note(log, f"{len(filters) - len(kept)} of {len(filters)} filters left out: they hold no energy to speak of")
     energies = energy_planes(spectrum, kept, grey.shape, CELL_PX, ENERGY_SIGMA_PX)
     return [capped(energies), pattern_frequencies(standardised(grey))]
-
-
-def _same(planes: Float32[np.ndarray, "d rows columns"], reach_cells: float) -> bool:
-    """Whether features spread by less than SAME, away from the frame, where mirrored waves may not go on evenly."""
-    frame = [min(round(4 * reach_cells), side // 4) for side in planes.shape[1:]]
-    inside = np.sqrt(planes[:, frame[0] : -frame[0] or None, frame[1] : -frame[1] or None])
-    return bool(inside.var(axis=(1, 2)).sum() <= SAME**2 * np.square(inside).mean(axis=(1, 2)).sum())
 
 
 def _tints(picture: np.ndarray, colour: bool | Literal["auto"]) -> list[Float32[np.ndarray, "2 rows columns"]]:

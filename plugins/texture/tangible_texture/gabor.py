@@ -7,7 +7,8 @@ from pydantic import Field
 
 from tangible_core.data import SegmentMap, Views
 from tangible_core.interfaces import Segmenter, Skippable
-from tangible_core.pictures import is_one_colour
+
+from .skipping import nothing_to_divide
 
 
 class Gabor(Segmenter, Skippable):
@@ -36,9 +37,7 @@ class Gabor(Segmenter, Skippable):
 
     def skip(self, views: Views) -> str | None:
         """One flat colour is one segment, and so is any picture when no more is asked for."""
-        if self.segments == 1:
-            return "one segment is asked for"
-        return "the picture is one flat colour" if is_one_colour(views.left) else None
+        return nothing_to_divide(views.left, self.segments)
 
     def segment(self, picture: np.ndarray) -> SegmentMap:
         """Regions of the picture; one where its texture is the same everywhere, but for single pixels.

@@ -8,8 +8,10 @@ from pydantic import Field
 
 from tangible_core.data import SegmentMap, Views
 from tangible_core.interfaces import Segmenter, Skippable
-from tangible_core.pictures import is_one_colour, to_grey
+from tangible_core.pictures import to_grey
 from tangible_core.torch_extra import TorchDevice, need, pick_device
+
+from .skipping import nothing_to_divide
 
 if TYPE_CHECKING:
     from torch import Tensor
@@ -53,8 +55,8 @@ class KorniaGabor(Segmenter, Skippable):
     """Where to compute; `auto` takes a GPU when there is one."""
 
     def skip(self, views: Views) -> str | None:
-        """One flat colour is one segment."""
-        return "the picture is one flat colour" if is_one_colour(views.left) else None
+        """One flat colour is one segment, and so is any picture when no more is asked for."""
+        return nothing_to_divide(views.left, self.segments)
 
     def segment(self, picture: np.ndarray) -> SegmentMap:
         """Labels in the order of their first pixels.
@@ -65,7 +67,8 @@ class KorniaGabor(Segmenter, Skippable):
         need("kornia")
         from .filter_choice import needed_filters
         from .gabor_bank import bank, octaves
-        from .labelling import is_flat, one_segment
+        from .labelling import one_segment
+        from .noise_floor import is_flat
 
         grey = to_grey(picture)
         if is_flat(grey):
@@ -75,11 +78,14 @@ class KorniaGabor(Segmenter, Skippable):
         return self._segments(grey, needed_filters(grey, wanted, self.skip_weak, self.skip_octaves), most_px)
 
     def _segments(self, grey: Float32[np.ndarray, "h w"], filters: "list[Gabor]", most_px: float) -> SegmentMap:
-        from .labelling import enlarged, segments_of
+        from .labelling import enlarged, one_segment, segments_of
+        from .noise_floor import is_one_texture
         from .torch_gabor import energies, standardised_roots
 
         window_px = min(self.window_px, most_px)
         planes = energies(grey, filters, self.step_px, window_px, pick_device(self.torch_device))
+        if is_one_texture(planes.sqrt().cpu().numpy(), window_px / self.step_px, grey):
+            return one_segment(grey.shape)
         rows = standardised_roots(planes)
         count = segments_of(rows.cpu().numpy(), self.segments, self.seed)
         radius = round(2 * window_px / self.step_px) if self.drop_seams else 0

@@ -9,8 +9,10 @@ from pydantic import Field, model_validator
 
 from tangible_core.data import SegmentMap, Views
 from tangible_core.interfaces import Segmenter, Skippable
-from tangible_core.pictures import is_one_colour, to_grey
+from tangible_core.pictures import to_grey
 from tangible_core.torch_extra import TorchDevice, need, pick_device
+
+from .skipping import nothing_to_divide
 
 QUIET = 0.25
 """This share of the slopes is taken to be noise, and their largest to be that quantile of a Rayleigh distribution."""
@@ -49,8 +51,8 @@ class KorniaGradient(Segmenter, Skippable):
         return self
 
     def skip(self, views: Views) -> str | None:
-        """One flat colour is one segment."""
-        return "the picture is one flat colour" if is_one_colour(views.left) else None
+        """One flat colour is one segment, and so is any picture when no more is asked for."""
+        return nothing_to_divide(views.left, self.segments)
 
     def segment(self, picture: np.ndarray) -> SegmentMap:
         """Regions of the picture, in the order of their first pixels.
@@ -59,7 +61,9 @@ class KorniaGradient(Segmenter, Skippable):
         """
         need("torch")
         need("kornia")
-        from .labelling import in_order, is_flat, one_segment
+        from .labelling import one_segment
+        from .merging import in_reading_order
+        from .noise_floor import is_flat
         from .watershed import watershed
 
         grey = to_grey(picture)
@@ -70,7 +74,7 @@ class KorniaGradient(Segmenter, Skippable):
         if count < 2:
             return one_segment(grey.shape)
         top = max(float(steep.max()), self.canny_high)
-        return SegmentMap(in_order(watershed(steep, markers)), 1 - steep / np.float32(top))
+        return SegmentMap(in_reading_order(watershed(steep, markers)), 1 - steep / np.float32(top))
 
     def _landscape(self, grey: Float32[np.ndarray, "h w"]) -> Float32[np.ndarray, "h w"]:
         """The slope in units of the noise, canny_high at least on edges."""

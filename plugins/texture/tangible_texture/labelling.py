@@ -22,12 +22,6 @@ def one_segment(shape: tuple[int, int]) -> SegmentMap:
     return SegmentMap(np.zeros(shape, np.int32))
 
 
-def is_flat(grey: Float32[np.ndarray, "h w"]) -> bool:
-    """Whether nothing but what rounding makes of one value is left."""
-    low, high = float(grey.min()), float(grey.max())
-    return high - low <= 1e-6 * max(high, -low)
-
-
 def segments_of(rows: Float32[np.ndarray, "n d"], segments: int | Literal["auto"], seed: int) -> int:
     """The number asked for, or a guess that is noted with what it is worth."""
     if segments != "auto":
@@ -52,18 +46,14 @@ def labelled(
     return enlarged(found.labels.reshape(features.shape[:2]), margins(rows, found.centres), step_px, shape)
 
 
-def in_order(labels: Int32[np.ndarray, "h w"]) -> Int32[np.ndarray, "h w"]:
-    """Labels 0..n-1 in the order of their first pixels, row by row."""
-    _, first, which = np.unique(labels, return_index=True, return_inverse=True)
-    return np.argsort(np.argsort(first)).astype(np.int32)[which].reshape(labels.shape)
-
-
 def enlarged(
     labels: Int32[np.ndarray, "rows columns"], trust: Float32[np.ndarray, "n"], step_px: int, shape: tuple[int, int]
 ) -> SegmentMap:
     """The segments of (h, w) pixels, from labels and confidence every step_px pixels, in the order of first pixels."""
-    rows, columns = (np.arange(side) // step_px for side in shape)
-    return SegmentMap(*(each[np.ix_(rows, columns)] for each in (in_order(labels), trust.reshape(labels.shape))))
+    from .merging import in_reading_order
+
+    cells = np.ix_(*(np.arange(side) // step_px for side in shape))
+    return SegmentMap(in_reading_order(labels.astype(np.int32))[cells], trust.reshape(labels.shape)[cells])
 
 
 def margins(rows: Float32[np.ndarray, "n d"], centres: Float32[np.ndarray, "k d"]) -> Float32[np.ndarray, "n"]:

@@ -11,7 +11,9 @@ from pydantic import Field
 from tangible_core.data import SegmentMap, Views
 from tangible_core.interfaces import Segmenter, Skippable
 from tangible_core.notes import note
-from tangible_core.pictures import is_one_colour, to_grey
+from tangible_core.pictures import to_grey
+
+from .skipping import nothing_to_divide
 
 if TYPE_CHECKING:
     from .gabor_bank import Gabor
@@ -25,7 +27,7 @@ class Report(Segmenter, Skippable):
     Responses are those to grey levels of 0..255, with filters that leave a wave of their own frequency as high as it
     is. As printed, x' is divided by gamma instead of the wavelength, and pi is missing from the formula for the
     bandwidth of a given sigma; both are put right. Everything is done at the picture's full resolution, unless that
-    would take more than memory_mb. Colour is reduced to grey.
+    would take more than memory_mb. Where features hardly differ, there is one segment. Colour is reduced to grey.
     Confidence is 1 - a / b, a and b being a pixel's distances from the nearest centre and from the next one.
     Source: Jain & Farrokhnia, Unsupervised texture segmentation using Gabor filters, Pattern Recognition 24 (1991).
     """
@@ -56,13 +58,14 @@ class Report(Segmenter, Skippable):
     """What the features may take; if every pixel's take more, every second or third one's are kept."""
 
     def skip(self, views: Views) -> str | None:
-        """One flat colour is one segment."""
-        return "the picture is one flat colour" if is_one_colour(views.left) else None
+        """One flat colour is one segment, and so is any picture when no more is asked for."""
+        return nothing_to_divide(views.left, self.segments)
 
     def segment(self, picture: np.ndarray) -> SegmentMap:
         """Labels in the order of their first pixels. Raises: PictureError as `check_picture`."""
         from .filter_choice import needed_filters
-        from .labelling import is_flat, labelled, one_segment
+        from .labelling import labelled, one_segment
+        from .noise_floor import is_flat, is_one_texture
 
         grey = to_grey(picture)
         if is_flat(grey):
@@ -70,6 +73,8 @@ class Report(Segmenter, Skippable):
         filters = needed_filters(grey, self._filters(grey.shape[1]), self.skip_weak, self.skip_octaves)
         step_px = self._step_px(grey.size, len(filters))
         features = self._features(grey, filters, step_px)
+        if is_one_texture(features.transpose(2, 0, 1), self.widest_px / step_px, grey):
+            return one_segment(grey.shape)
         return labelled(features, step_px, grey.shape, self.segments, self.seed, start="random")
 
     def _filters(self, width_px: int) -> "list[Gabor]":

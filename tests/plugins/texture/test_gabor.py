@@ -200,7 +200,7 @@ def test_auto_finds_three_and_says_what_the_guess_is_worth():
 
 
 def test_what_is_flat_or_asks_for_one_segment_is_skipped():
-    assert Gabor(segments=1).skip(Views(PICTURE)) == "one segment is asked for"
+    assert str(Gabor(segments=1).skip(Views(PICTURE))).startswith("one segment is asked for")
     assert Gabor().skip(Views(np.full((4, 4), 0.5))) == "the picture is one flat colour"
     assert Gabor().skip(Views(PICTURE)) is None
 

@@ -4,12 +4,14 @@ import numpy as np
 import pytest
 
 from tangible_core.notes import collected
-from tangible_texture.labelling import enlarged, in_order, is_flat, labelled, margins, segments_of
+from tangible_texture.labelling import enlarged, labelled, margins, segments_of
+from tangible_texture.merging import in_reading_order
+from tangible_texture.noise_floor import is_flat, is_one_texture
 from tangible_texture.seams import without_seams
 
 
 def test_labels_are_in_the_order_of_their_first_pixels():
-    assert in_order(np.array([[3, 3, 0], [7, 0, 3]], np.int32)).tolist() == [[0, 0, 1], [2, 1, 0]]
+    assert in_reading_order(np.array([[3, 3, 0], [7, 0, 3]], np.int32)).tolist() == [[0, 0, 1], [2, 1, 0]]
 
 
 def test_cells_become_pixels():
@@ -42,10 +44,23 @@ def test_features_in_two_halves_are_two_segments():
     assert (found.confidence == 1).all()
 
 
-def test_what_rounding_makes_of_one_value_is_flat():
-    assert is_flat(np.full((3, 3), np.float32(0.1)))
-    assert is_flat(np.float32(1e20) * (1 + 1e-7 * np.random.default_rng(0).random((5, 5))).astype(np.float32))
-    assert not is_flat(np.array([[0, 1e-20]], np.float32))
+def test_what_rounding_makes_of_one_value_is_flat_and_so_is_all_but_one_pixel():
+    assert is_flat(np.full((9, 9), np.float32(0.1)))
+    assert is_flat(np.float32(1e20) * (1 + 1e-7 * np.random.default_rng(0).random((9, 9))).astype(np.float32))
+    assert is_flat((np.arange(81) == 40).astype(np.float32).reshape(9, 9))
+    assert not is_flat(np.float32(1e-20) * (np.indices((9, 9))[0] > 4).astype(np.float32))
+
+
+def test_features_of_one_size_are_one_texture_and_so_is_what_is_too_fine_for_them():
+    grey = np.random.default_rng(0).random((64, 64)).astype(np.float32)
+    even = np.ones((3, 16, 16), np.float32)
+    assert is_one_texture(even, 1, grey)
+    halves = even + (np.arange(16) > 7)
+    assert not is_one_texture(halves, 1, grey)
+    folded = np.pad(0.001 * halves[:, 4:-4, 4:-4], ((0, 0), (4, 4), (4, 4)), constant_values=1)
+    assert is_one_texture(folded, 1, grey)
+    framed = np.pad(0 * grey[16:-16, 16:-16], 16, constant_values=1) * grey
+    assert not is_one_texture(folded, 1, framed)
 
 
 def test_a_narrow_strip_goes_to_its_neighbours():

@@ -22,6 +22,7 @@ CHECKED = (
     "materials",
     "picture_files",
     "pictures",
+    "testing.reliefs",
     "testing.scenes",
     "testing.surfaces",
     "testing.stereo_scenes",

@@ -8,7 +8,7 @@ from pydantic import Field
 from tangible_core.data import HapticSurface
 from tangible_core.interfaces import ForceRenderer, Touch
 
-from .memoryless import MemorylessTouch
+from .compiled import CompiledTouch
 
 
 class GreyLevel(ForceRenderer):
@@ -34,7 +34,7 @@ class GreyLevel(ForceRenderer):
 
         heights = np.ascontiguousarray(surface.height_m, np.float32)
         fixed = (heights, _grey_levels(heights), *map(float, surface.extent_m), self.force_at_white_n)
-        return MemorylessTouch(grey_kernels.tick, grey_kernels.along, fixed)
+        return CompiledTouch(grey_kernels.tick, grey_kernels.along, fixed)
 
 
 def _grey_levels(height_m: np.ndarray) -> np.ndarray:

@@ -8,7 +8,7 @@ from pydantic import Field
 from tangible_core.data import HapticSurface
 from tangible_core.interfaces import ForceRenderer, Touch
 
-from .memoryless import MemorylessTouch
+from .compiled import CompiledTouch
 
 
 class PenaltyGradient(ForceRenderer):
@@ -36,7 +36,7 @@ class PenaltyGradient(ForceRenderer):
         labels, stiffness_n_per_m = self._stiffness(surface)
         heights = np.ascontiguousarray(surface.height_m, np.float32)
         fixed = (heights, labels, stiffness_n_per_m, *map(float, surface.extent_m), self.damping_n_s_per_m)
-        return MemorylessTouch(penalty_kernels.tick, penalty_kernels.along, fixed)
+        return CompiledTouch(penalty_kernels.tick, penalty_kernels.along, fixed)
 
     def _stiffness(self, surface: HapticSurface) -> tuple[np.ndarray, np.ndarray]:
         """Labels, and the stiffness of each; one cell of one label where all is alike."""

@@ -12,7 +12,7 @@ from tangible_core.interfaces import Touch
 
 
 @final
-class MemorylessTouch(Touch):
+class CompiledTouch(Touch):
     """Forces from `tick(*fixed, x, y, z, vx, vy, vz)` and, along a path, from `along(*fixed, positions, period, out)`.
 
     Along a path the velocity is the step from the position before divided by the period: 0 at the first one.

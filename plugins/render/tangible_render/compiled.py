@@ -1,4 +1,4 @@
-"""A touch that remembers nothing: one compiled law with the surface it was compiled for."""
+"""A touch of one compiled law, with the surface that it was compiled for."""
 
 from collections.abc import Callable
 from typing import Any, final
@@ -14,6 +14,8 @@ from tangible_core.interfaces import Touch
 @final
 class CompiledTouch(Touch):
     """Forces from `tick(*fixed, x, y, z, vx, vy, vz)` and, along a path, from `along(*fixed, positions, period, out)`.
+
+    What a touch remembers from tick to tick is an array among the fixed arguments, which the law writes to.
 
     Along a path the velocity is the step from the position before divided by the period: 0 at the first one.
     """

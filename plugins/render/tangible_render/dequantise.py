@@ -23,8 +23,7 @@ def dequantise(height_m: Float32[np.ndarray, "h w"], cells: Filter = "auto") -> 
     on as their odd reflection. So no place moves by more than half a step, planes stay planes, cliffs and spikes stay.
     Source: projections onto convex sets (Youla & Webb, IEEE Trans. Medical Imaging 1, 1982).
     """
-    step_m = 0.0 if cells == "never" else lattice_step(height_m)
-    if step_m == 0:
+    if cells == "never" or (step_m := lattice_step(height_m)) == 0:
         return height_m
     sigma = SIGMA_CELLS if cells == "auto" else cells
     lowest, highest = height_m - step_m / 2, height_m + step_m / 2

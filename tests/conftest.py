@@ -23,6 +23,7 @@ CHECKED = (
     "picture_files",
     "pictures",
     "testing.reliefs",
+    "testing.rough",
     "testing.scenes",
     "testing.surfaces",
     "testing.stereo_scenes",

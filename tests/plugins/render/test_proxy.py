@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 
 from tangible_core.data import NO_FORCE, Force, HapticState, HapticSurface, Material
 from tangible_core.interfaces import Touch
-from tangible_core.testing.reliefs import cliff, cone, ridge, waves
+from tangible_core.testing.reliefs import cliff, cone, waves
+from tangible_core.testing.rough import rough_surfaces
 from tangible_core.testing.scenes import KnownSurface, plane, ramp, sphere_cap
 from tangible_render.proxy import Proxy
 
@@ -137,26 +138,7 @@ class TestWays:
         assert at(touch, 0.002, 0.0, 0.009).x == pytest.approx(0, abs=1e-9)
 
 
-def stress_maps(count: int = 128) -> dict[str, np.ndarray]:
-    """Heights that break a plain Newton method."""
-    random, index = np.random.default_rng(3), np.arange(count)
-    spikes, walls = np.zeros((2, count, count))
-    spikes[random.integers(0, count, 200), random.integers(0, count, 200)] = 0.01
-    walls[:, count // 3], walls[count // 2] = 0.008, 0.008
-    noise = random.uniform(0, 1, (count, count))
-    rows = (noise + np.roll(noise, 1, 0) + np.roll(noise, 1, 1)) / 3
-    return {
-        "checker": ((index[:, None] // 8 + index[None] // 8) % 2) * 0.004,
-        "8-bit noise": np.rint(rows * 255) / 255 * 0.004,
-        "white noise": noise * 0.004,
-        "spikes": spikes,
-        "walls": walls,
-        "ridge": ridge(1.5, 0.07, (count, count)).surface.height_m - 0.06,
-        "waves": waves(shape=(count, count)).surface.height_m,
-    }
-
-
-MAPS = {name: HapticSurface.from_heights(np.maximum(heights, 0)) for name, heights in stress_maps().items()}
+MAPS = rough_surfaces()
 
 
 @pytest.fixture(params=MAPS)

@@ -15,7 +15,8 @@ from tangible_core.interfaces import Touch
 class CompiledTouch(Touch):
     """Forces from `tick(*fixed, x, y, z, vx, vy, vz)` and, along a path, from `along(*fixed, positions, period, out)`.
 
-    What a touch remembers from tick to tick is an array among the fixed arguments, which the law writes to.
+    What a touch remembers from tick to tick is an array among the fixed arguments, which the law writes to. A compiled
+    loop may call `tick` itself: like `along` it holds no lock of Python's.
 
     Along a path the velocity is the step from the position before divided by the period: 0 at the first one.
     """
@@ -23,13 +24,13 @@ class CompiledTouch(Touch):
     def __init__(
         self, tick: Callable[..., tuple[float, float, float]], along: Callable[..., None], fixed: tuple[Any, ...]
     ) -> None:
-        self._tick = tick
-        self._along = along
-        self._fixed = fixed
+        self.tick = tick
+        self.along = along
+        self.fixed = fixed
 
     def force(self, state: HapticState) -> Force:
         """Newtons on the hand, always finite; zero in free air, and zero for a state that is not finite."""
-        return Force(*self._tick(*self._fixed, *state.position_m, *state.velocity_m_per_s))
+        return Force(*self.tick(*self.fixed, *state.position_m, *state.velocity_m_per_s))
 
     def path(self, positions_m: Float64[np.ndarray, "n 3"], period_s: float = 0.001) -> Float64[np.ndarray, "n 3"]:
         """Forces along positions one period apart.
@@ -37,7 +38,7 @@ class CompiledTouch(Touch):
         Raises: GeometryError if the positions are not (n, 3), or the period is not above 0.
         """
         positions, forces = path_arrays(positions_m, period_s)
-        self._along(*self._fixed, positions, period_s, forces)
+        self.along(*self.fixed, positions, period_s, forces)
         return forces
 
 

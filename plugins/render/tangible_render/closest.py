@@ -25,6 +25,7 @@ STEEP = 0.1
 """Newton's matrix is used where its determinant is over this part of the one without curvature (Gauss-Newton)."""
 
 
+# Inlined, as a call counts references to the arrays it is given.
 @njit(cache=True, nogil=True, error_model="numpy", inline="always")
 def settle(
     coefficients,

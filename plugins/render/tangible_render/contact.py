@@ -35,7 +35,7 @@ def _entry(coefficients, across_per_m, down_per_m, from_x, from_y, from_z, x, y,
     return from_x + out * (x - from_x), from_y + out * (y - from_y)
 
 
-# Inlined, as a call counts references to the arrays it is given, which takes as long as the arithmetic.
+# Inlined, as a call counts references to the arrays it is given.
 @njit(cache=True, nogil=True, error_model="numpy", inline="always")
 def approach(coefficients, width_m, length_m, across_per_m, down_per_m, tiles_m, memory, x, y, z, speed):
     """Whether the hand is in the surface; its phase, and where its proxy starts from this tick, go to the memory."""

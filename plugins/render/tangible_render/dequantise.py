@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Float32
 from pydantic import Field
 
-Filter = Literal["auto", "never"] | Annotated[float, Field(gt=0, allow_inf_nan=False)]
+Filter = Literal["auto", "never"] | Annotated[float, Field(gt=0, le=64)]
 """What a renderer's option `dequantise` may be."""
 
 FEWEST_STEPS, MOST_STEPS = 16, 255

@@ -27,7 +27,7 @@ class Penalty(ForceRenderer):
     damping_n_s_per_m: Annotated[float, Field(ge=0, allow_inf_nan=False)] = 0.0
     """Force against one metre per second along z, in contact."""
     dequantise: Filter = "auto"
-    """Smooth heights that came in 17 to 256 steps, within half a step: auto, never, or a Gaussian's sigma in cells."""
+    """Smooth heights of 17 to 256 values, such as 8 bits have, within half a step: auto, never, or a sigma in cells."""
 
     def touch(self, surface: HapticSurface) -> Touch:
         """A new touch on this surface; compiled on the first use on a machine, then loaded."""

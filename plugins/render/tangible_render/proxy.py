@@ -42,7 +42,7 @@ class Proxy(ForceRenderer):
     friction: bool = True
     """False leaves all friction out, that of materials too."""
     dequantise: Filter = "auto"
-    """Smooth heights that came in 17 to 256 steps, within half a step: auto, never, or a Gaussian's sigma in cells."""
+    """Smooth heights of 17 to 256 values, such as 8 bits have, within half a step: auto, never, or a sigma in cells."""
 
     @model_validator(mode="after")
     def _slides_more_easily_than_it_starts(self) -> Self:

@@ -23,7 +23,7 @@ class TangibleMask(ForceRenderer):
 
     (u, v) is a cell's offset from the middle, along x and y; I is the height in 256 steps, as `grey-level` has it (of a
     picture it was Y = 0.3 R + 0.59 G + 0.11 B). Felt on contact, as hard however deep; zero where the mask leaves the
-    surface. s is such that a slope feels the same at any resolution: beside a long straight edge from the base plane to
+    surface. s is such that a slope feels the same at any resolution: on a long straight edge from the base plane to
     the highest point the force is `force_at_edge_n`. A tick reads three summed tables at the mask's corners, whatever
     its size; they take 24 bytes a cell.
     Source: Vasudevan & Manivannan, Tangible images: runtime generation of haptic textures from images, IEEE Haptics
@@ -46,22 +46,17 @@ class TangibleMask(ForceRenderer):
         heights = np.ascontiguousarray(surface.height_m, np.float32)
         across_m, along_m = surface.relief.pitch_m
         columns, rows = self._cells(across_m), self._cells(along_m)
-        area = 255 * rows * columns
-        scales = (
-            8
-            * self.force_at_edge_n
-            * (self.mask_m if self.mask_px is None else columns * across_m)
-            / (across_m * area * (columns**2 - 1)),
-            8
-            * self.force_at_edge_n
-            * (self.mask_m if self.mask_px is None else rows * along_m)
-            / (along_m * area * (rows**2 - 1)),
-        )
+        scales = self._newtons(columns, rows, across_m), self._newtons(rows, columns, along_m)
         fixed = (heights, summed_tables(255 - grey_levels(heights)), *map(float, surface.extent_m))
         return CompiledTouch(mask_kernels.tick, mask_kernels.along, (*fixed, rows // 2, columns // 2, *scales))
 
     def _cells(self, pitch_m: float) -> int:
         return self.mask_px or max(3, 2 * round((self.mask_m / pitch_m - 1) / 2) + 1)
+
+    def _newtons(self, cells: int, others: int, pitch_m: float) -> float:
+        """s: an edge through the middle sums to 255 others (cells^2 - 1) / 8; a mask off its size is corrected for."""
+        side_m = cells * pitch_m if self.mask_px else self.mask_m
+        return 8 * self.force_at_edge_n / (255 * others * cells * (cells**2 - 1)) * side_m / pitch_m
 
 
 def summed_tables(dark: np.ndarray) -> np.ndarray:

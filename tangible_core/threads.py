@@ -1,9 +1,8 @@
-"""Threads for kernels that release the GIL, and a word to the user while those kernels are compiled.
+"""Threads for kernels that release the GIL.
 
 No OpenMP: its idle threads spin and take the processor from whoever works.
 """
 
-import logging
 import os
 from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
@@ -11,9 +10,7 @@ from functools import cache
 from itertools import pairwise
 from typing import Any
 
-from numba.core import event
-
-log = logging.getLogger(__name__)
+from . import compiling as compiling  # says so while the kernels are compiled
 
 
 def thread_count() -> int:
@@ -50,23 +47,3 @@ def in_turns(tasks: list[Any], work: Callable[[list[Any]], Any]) -> None:
 def _pool(process: int) -> ThreadPoolExecutor:
     """A pool a process: threads do not survive a fork."""
     return ThreadPoolExecutor(thread_count(), thread_name_prefix="tangible")
-
-
-class _CompileNotice(event.Listener):
-    """Says once a process and family of plugins that kernels are being compiled."""
-
-    def __init__(self) -> None:
-        self.said: set[str] = set()
-
-    def on_start(self, event: Any) -> None:
-        package = event.data["dispatcher"].py_func.__module__.partition(".")[0]
-        if package.startswith("tangible_") and package not in self.said:
-            self.said.add(package)
-            kind = package.removeprefix("tangible_")
-            log.warning("compiling the %s kernels for this processor; the next process finds them on disk", kind)
-
-    def on_end(self, event: Any) -> None:
-        pass
-
-
-event.register("numba:compile", _CompileNotice())  # pyright: ignore[reportUnknownMemberType]

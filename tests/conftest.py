@@ -23,6 +23,8 @@ CHECKED = (
     "metrics",
     "picture_files",
     "pictures",
+    "testing.reliefs",
+    "testing.rough",
     "testing.scenes",
     "testing.surfaces",
     "testing.stereo_scenes",

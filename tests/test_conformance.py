@@ -3,7 +3,9 @@
 from tangible_core.registry import default_registry
 from tangible_core.testing import conforms
 
-EXPECTED_FAILURES: dict[tuple[str, str], dict[str, str]] = {}
+EXPECTED_FAILURES: dict[tuple[str, str], dict[str, str]] = {
+    ("render", "penalty"): {"springs_are_exact": "a spring along z alone is its law, on slopes too"},
+}
 """By kind and name: the checks that a method does not keep, each with the reason."""
 
 for each in default_registry().listings:

@@ -66,7 +66,7 @@ def ramp(
     slope: tuple[float, float] = (0.2, 0.1), height_m: float = 0.015, shape: tuple[int, int] = (65, 65)
 ) -> KnownSurface:
     """A plane that rises by `slope` along x and y, this high in its middle."""
-    return _sampled(lambda x, y: height_m + slope[0] * x + slope[1] * y, lambda x, y: slope, shape)
+    return sampled(lambda x, y: height_m + slope[0] * x + slope[1] * y, lambda x, y: slope, shape)
 
 
 def sphere_cap(radius_m: float = 0.1, base_m: float = 0.08, shape: tuple[int, int] = (65, 65)) -> KnownSurface:
@@ -75,16 +75,16 @@ def sphere_cap(radius_m: float = 0.1, base_m: float = 0.08, shape: tuple[int, in
     def up(x: float, y: float) -> float:
         return float(np.sqrt(radius_m**2 - x**2 - y**2))
 
-    return _sampled(lambda x, y: up(x, y) - base_m, lambda x, y: (-x / up(x, y), -y / up(x, y)), shape)
+    return sampled(lambda x, y: up(x, y) - base_m, lambda x, y: (-x / up(x, y), -y / up(x, y)), shape)
 
 
-def _sampled(
+def sampled(
     height_m: Callable[[float, float], float],
     slope: Callable[[float, float], tuple[float, float]],
     shape: tuple[int, int],
     width_m: float = 0.08,
 ) -> KnownSurface:
-    """Heights at the centres of the cells; the top row is far, at the largest y."""
+    """A surface of square cells with the heights at their centres; the top row is far, at the largest y."""
     pitch = width_m / shape[1]
     x = (np.arange(shape[1]) + 0.5) * pitch - width_m / 2
     y = (shape[0] / 2 - np.arange(shape[0]) - 0.5) * pitch

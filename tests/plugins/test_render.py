@@ -9,12 +9,28 @@ from pydantic import ValidationError
 from tangible_core.data import NO_FORCE, Force, HapticState, HapticSurface, Material, Relief
 from tangible_core.errors import GeometryError
 from tangible_core.interfaces import Touch
+from tangible_render.force_shading import ForceShading
 from tangible_render.grey_level import GreyLevel
+from tangible_render.lateral_gradient import LateralGradient
+from tangible_render.lateral_shape import LateralShape
+from tangible_render.penalty import Penalty
 from tangible_render.penalty_gradient import PenaltyGradient
+from tangible_render.proxy import Proxy
+from tangible_render.tangible_mask import TangibleMask
 
 WIDTH_M = 0.0625  # powers of two: cells, centres and slopes below are exact in floating point
 UP_M = 1 / 32
-RENDERERS = (PenaltyGradient(), PenaltyGradient(damping_n_s_per_m=2.0), GreyLevel())
+PUSHING_UP = (
+    PenaltyGradient(),
+    PenaltyGradient(damping_n_s_per_m=2.0),
+    GreyLevel(),
+    Penalty(damping_n_s_per_m=2.0),
+    ForceShading(),
+    Proxy(),
+    Proxy(static_friction=0.5, dynamic_friction=0.3, damping_n_s_per_m=2.0),
+)
+LATERAL = (TangibleMask(), LateralGradient(), LateralShape())
+RENDERERS = PUSHING_UP + LATERAL
 RNG = np.random.default_rng(7)
 BUMPY = HapticSurface.from_heights(RNG.uniform(0, 0.004, (12, 16)), WIDTH_M)
 
@@ -192,7 +208,7 @@ class TestEveryRenderer:
         for x, y in ((np.nextafter(edge, 1), 0), (0, -np.nextafter(edge, 1)), (5, 5), (1e300, 0)):
             assert at(touch, x, y, 0.0) == NO_FORCE
         for x, y in ((edge, edge), (-edge, -edge)):
-            assert at(touch, x, y, 0.0).z > 0
+            assert (at(touch, x, y, 0.0).z > 0) == (renderer in PUSHING_UP)
 
     @pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
     @pytest.mark.parametrize("axis", range(6))
@@ -208,16 +224,18 @@ class TestEveryRenderer:
         steps[[77, 78]] = 0  # a step from or to nowhere has no velocity
         touch = renderer.touch(BUMPY)
         singly = [touch.force(HapticState(tuple(p), tuple(v))) for p, v in zip(path, steps, strict=True)]
-        assert np.array_equal(touch.path(path, period_s=0.002), singly)
-        assert np.count_nonzero(singly) > 100
+        assert np.array_equal(renderer.touch(BUMPY).path(path, period_s=0.002), singly)
+        assert np.count_nonzero(singly) > 50
 
     def test_paths_of_any_layout(self, renderer):
-        touch = renderer.touch(BUMPY)
-        assert touch.path(np.empty((0, 3))).shape == (0, 3)
+        def felt(path: np.ndarray) -> np.ndarray:
+            return renderer.touch(BUMPY).path(path)
+
+        assert felt(np.empty((0, 3))).shape == (0, 3)
         path = np.asfortranarray(RNG.uniform(-0.003, 0.003, (10, 3)))
         path.flags.writeable = False
-        assert np.array_equal(touch.path(path), touch.path(np.ascontiguousarray(path)))
-        assert np.array_equal(touch.path(np.zeros((1, 3), int)), [at(touch, 0, 0, 0)])
+        assert np.array_equal(felt(path), felt(np.ascontiguousarray(path)))
+        assert np.array_equal(felt(np.zeros((1, 3), int)), [at(renderer.touch(BUMPY), 0, 0, 0)])
 
     @pytest.mark.parametrize("shape", [(3,), (3, 2), (2, 3, 3)])
     def test_what_is_no_path(self, renderer, shape: tuple[int, ...]):
@@ -234,7 +252,7 @@ class TestEveryRenderer:
         touch = renderer.touch(HapticSurface(Relief(np.full(shape, UP_M, np.float32), (WIDTH_M, WIDTH_M))))
         expected = renderer.touch(tilted(0, 0))
         for x, y in ((0, 0), (0.03125, -0.03125), (-0.013, 0.021)):
-            assert at(touch, x, y, 0.001) == at(expected, x, y, 0.001)
+            assert at(touch, x, y, 0.001) == pytest.approx(at(expected, x, y, 0.001), abs=1e-12)
 
     def test_heights_of_any_layout(self, renderer):
         heights = np.asarray(RNG.uniform(0, 0.004, (6, 9)), np.float32)
@@ -261,6 +279,14 @@ class TestEveryRenderer:
         (PenaltyGradient, "stifness_n_per_m", 800),
         (GreyLevel, "force_at_white_n", 0),
         (GreyLevel, "force_at_white_n", np.nan),
+        (Penalty, "damping_n_s_per_m", -1),
+        (TangibleMask, "mask_px", 4),
+        (TangibleMask, "mask_px", 1),
+        (TangibleMask, "mask_m", 0),
+        (LateralGradient, "dequantise", "often"),
+        (LateralShape, "dequantise", 0),
+        (Proxy, "static_friction", -0.1),
+        (Proxy, "dynamic_friction", 0.2),
     ],
 )
 def test_options_that_make_no_sense(renderer, option: str, value: float):

@@ -10,6 +10,8 @@ another file: after an edit here, remove `__pycache__` beside the kernels that c
 import numpy as np
 from numba import float64, int32, njit, types, uint8
 
+from tangible_core import compiling as compiling
+
 HEIGHTS = types.Array(types.float32, 2, "C", readonly=True)
 LABELS = types.Array(int32, 2, "C", readonly=True)
 GREYS = types.Array(uint8, 2, "C", readonly=True)

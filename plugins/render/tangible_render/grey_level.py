@@ -8,7 +8,8 @@ from pydantic import Field
 from tangible_core.data import HapticSurface
 from tangible_core.interfaces import ForceRenderer, Touch
 
-from .memoryless import MemorylessTouch
+from .compiled import CompiledTouch
+from .grey_levels import grey_levels
 
 
 class GreyLevel(ForceRenderer):
@@ -33,10 +34,5 @@ class GreyLevel(ForceRenderer):
         from . import grey_kernels
 
         heights = np.ascontiguousarray(surface.height_m, np.float32)
-        fixed = (heights, _grey_levels(heights), *map(float, surface.extent_m), self.force_at_white_n)
-        return MemorylessTouch(grey_kernels.tick, grey_kernels.along, fixed)
-
-
-def _grey_levels(height_m: np.ndarray) -> np.ndarray:
-    highest = height_m.max()
-    return np.rint(height_m / highest * 255).astype(np.uint8) if highest > 0 else np.zeros(height_m.shape, np.uint8)
+        fixed = (heights, grey_levels(heights), *map(float, surface.extent_m), self.force_at_white_n)
+        return CompiledTouch(grey_kernels.tick, grey_kernels.along, fixed)

@@ -8,7 +8,8 @@ from pydantic import Field
 from tangible_core.data import HapticSurface
 from tangible_core.interfaces import ForceRenderer, Touch
 
-from .memoryless import MemorylessTouch
+from .compiled import CompiledTouch
+from .material_table import stiffness_table
 
 
 class PenaltyGradient(ForceRenderer):
@@ -33,14 +34,7 @@ class PenaltyGradient(ForceRenderer):
         """A new touch on this surface; compiled on the first use on a machine, then loaded."""
         from . import penalty_kernels
 
-        labels, stiffness_n_per_m = self._stiffness(surface)
+        labels, stiffness_n_per_m = stiffness_table(surface, self.stiffness_n_per_m)
         heights = np.ascontiguousarray(surface.height_m, np.float32)
         fixed = (heights, labels, stiffness_n_per_m, *map(float, surface.extent_m), self.damping_n_s_per_m)
-        return MemorylessTouch(penalty_kernels.tick, penalty_kernels.along, fixed)
-
-    def _stiffness(self, surface: HapticSurface) -> tuple[np.ndarray, np.ndarray]:
-        """Labels, and the stiffness of each; one cell of one label where all is alike."""
-        if surface.labels is None or not surface.materials:
-            return np.zeros((1, 1), np.int32), np.array([self.stiffness_n_per_m])
-        table = np.array([float(material.stiffness_n_per_m) for material in surface.materials])
-        return np.ascontiguousarray(surface.labels, np.int32), table
+        return CompiledTouch(penalty_kernels.tick, penalty_kernels.along, fixed)

@@ -1,6 +1,5 @@
 """The steps after matching, and those before it, one by one."""
 
-import logging
 from collections import deque
 
 import numpy as np
@@ -248,22 +247,3 @@ def test_the_blocks_cover_everything_once(monkeypatch):
 
     threads.in_blocks(50, work)
     assert (seen == 1).all()
-
-
-def test_compiling_is_said_once(caplog):
-    from numba import njit
-
-    notice = threads._CompileNotice()
-
-    def kernel(x):
-        return x + 1
-
-    kernel.__module__ = "tangible_depth.made_up"
-    compiled = njit(kernel)
-    with caplog.at_level(logging.WARNING, "tangible_depth"):
-        from numba.core import event
-
-        with event.install_listener("numba:compile", notice):
-            compiled(1)
-            compiled(1.5)
-    assert caplog.text.count("compiling") >= 1

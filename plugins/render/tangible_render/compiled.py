@@ -1,4 +1,4 @@
-"""A touch that remembers nothing: one compiled law with the surface it was compiled for."""
+"""A touch of one compiled law, with the surface that it was compiled for."""
 
 from collections.abc import Callable
 from typing import Any, final
@@ -12,8 +12,11 @@ from tangible_core.interfaces import Touch
 
 
 @final
-class MemorylessTouch(Touch):
+class CompiledTouch(Touch):
     """Forces from `tick(*fixed, x, y, z, vx, vy, vz)` and, along a path, from `along(*fixed, positions, period, out)`.
+
+    What a touch remembers from tick to tick is an array among the fixed arguments, which the law writes to. A compiled
+    loop may call `tick` itself: like `along` it holds no lock of Python's.
 
     Along a path the velocity is the step from the position before divided by the period: 0 at the first one.
     """
@@ -21,13 +24,13 @@ class MemorylessTouch(Touch):
     def __init__(
         self, tick: Callable[..., tuple[float, float, float]], along: Callable[..., None], fixed: tuple[Any, ...]
     ) -> None:
-        self._tick = tick
-        self._along = along
-        self._fixed = fixed
+        self.tick = tick
+        self.along = along
+        self.fixed = fixed
 
     def force(self, state: HapticState) -> Force:
         """Newtons on the hand, always finite; zero in free air, and zero for a state that is not finite."""
-        return Force(*self._tick(*self._fixed, *state.position_m, *state.velocity_m_per_s))
+        return Force(*self.tick(*self.fixed, *state.position_m, *state.velocity_m_per_s))
 
     def path(self, positions_m: Float64[np.ndarray, "n 3"], period_s: float = 0.001) -> Float64[np.ndarray, "n 3"]:
         """Forces along positions one period apart.
@@ -35,7 +38,7 @@ class MemorylessTouch(Touch):
         Raises: GeometryError if the positions are not (n, 3), or the period is not above 0.
         """
         positions, forces = path_arrays(positions_m, period_s)
-        self._along(*self._fixed, positions, period_s, forces)
+        self.along(*self.fixed, positions, period_s, forces)
         return forces
 
 

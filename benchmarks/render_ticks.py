@@ -1,0 +1,118 @@
+"""What a tick of each law takes: by size of the surface, with and without what can be left out, law by law."""
+
+from collections.abc import Callable, Iterator
+from time import thread_time
+
+import numpy as np
+from numba import njit
+
+from tangible_core.data import HapticSurface
+from tangible_core.interfaces import ForceRenderer
+from tangible_core.registry import default_registry
+from tangible_render import mask_kernels
+from tangible_render.grey_levels import grey_levels
+from tangible_render.proxy import Proxy
+from tangible_render.tangible_mask import TangibleMask, summed_tables
+
+from .figures import Figure, table
+from .render_waves import HAND, TICKS, path, surface
+from .turns import in_turns
+
+
+def figures() -> Iterator[Figure]:
+    """The proxy by size, and the mask against the plain sum."""
+    yield from _growth()
+    yield from _mask()
+
+
+def _growth() -> Iterator[Figure]:
+    hands = path(HAND)
+    touches = {f"{count}": Proxy().touch(surface(count)) for count in (64, 256, 1024, 4096)}
+    times = in_turns({name: _twice(touch.path, hands) for name, touch in touches.items()}, 25, thread_time)
+    ns = {name: 1e9 * each.seconds / TICKS / 2 for name, each in times.items()}
+    told = ", ".join(f"{name}^2 {each:.0f}" for name, each in ns.items())
+    yield Figure("`proxy` tick", "<= 400 ns", told, max(ns.values()) <= 400)
+    ratio = max(each.ratio for each in times.values())
+    yield Figure("the same, slowest over 64^2", "<= 1.15 x", f"{ratio:.2f} x", ratio <= 1.15)
+
+
+def _twice(call: Callable[[np.ndarray], object], hands: np.ndarray) -> Callable[[], object]:
+    return lambda: (call(hands), call(hands))
+
+
+def _mask() -> Iterator[Figure]:
+    side, hands = 65, path(0.3)
+    map_ = surface(512)
+    dark = 255 - grey_levels(map_.height_m)
+    rows, columns = ((0.5 - hands[:, 1] / 0.08) * 512).astype(int), ((0.5 + hands[:, 0] / 0.08) * 512).astype(int)
+    rows, columns = rows.clip(32, 479), columns.clip(32, 479)
+    plain, quick = np.empty((2, TICKS, 2), np.int64)
+    tables = summed_tables(dark)
+    calls = {
+        "tables": lambda: _by_tables(tables, rows, columns, side // 2, quick),
+        "plain": lambda: _by_sums(dark, rows, columns, side // 2, plain),
+        "tick": _twice(TangibleMask(mask_px=side).touch(map_).path, hands[: TICKS // 2]),
+    }
+    times = in_turns(calls, 15, thread_time)
+    ratio = times["plain"].ratio
+    told = f"{ratio:.0f} x; {times['plain'].seconds / times['tick'].seconds:.0f} x with all of the tick; "
+    same = bool((plain == quick).all())
+    yield Figure(
+        "`tangible-mask` 65 x 65 against the plain sum", ">= 50 x, equal", told + f"equal: {same}", ratio >= 50 and same
+    )
+
+
+@njit(nogil=True)
+def _by_sums(dark, rows, columns, half, out):  # noqa: ANN001, ANN202
+    for i in range(rows.size):
+        across, along = 0, 0
+        for v in range(-half, half + 1):
+            for u in range(-half, half + 1):
+                value = np.int64(dark[rows[i] + v, columns[i] + u])
+                across += value * u
+                along -= value * v
+        out[i, 0], out[i, 1] = across, along
+
+
+@njit(nogil=True)
+def _by_tables(tables, rows, columns, half, out):  # noqa: ANN001, ANN202
+    for i in range(rows.size):
+        out[i, 0], out[i, 1] = mask_kernels.window(tables, rows[i], columns[i], half, half)
+
+
+def skips() -> list[str]:
+    """A row for each thing that is left out."""
+    level = HapticSurface.from_heights(np.full((256, 256), 0.004))
+    flat = path(HAND)
+    flat[:, 2] = 0.003
+    over, high = path(HAND, -0.0005), path(HAND, -0.02)
+    general = Proxy(damping_n_s_per_m=1e-300)  # too little to be felt, so that the law of all parts runs
+    rows = [
+        ("no friction, no damping, one material", Proxy(), general, surface(256), path(HAND)),
+        ("a level tile", Proxy(), general, level, flat),
+        ("free air, 0.5 mm over the surface", Proxy(), Proxy(), surface(256), over),
+        ("free air, over all of a tile", Proxy(), Proxy(), surface(256), high),
+    ]
+    whole = Proxy().touch(surface(256))
+    lines = []
+    for what, quick, slow, felt, hands in rows:
+        base = _twice(slow.touch(felt).path, hands) if slow != quick else _twice(whole.path, path(HAND))
+        times = in_turns({"whole": base, "less": _twice(quick.touch(felt).path, hands)}, 15, thread_time)
+        ns = [1e9 * times[name].seconds / TICKS / 2 for name in ("whole", "less")]
+        lines.append((what, f"{ns[0]:.0f}", f"{ns[1]:.0f}", f"{times['less'].ratio:.2f}"))
+    return table(("left out", "all of it, ns", "without, ns", "share"), lines)
+
+
+def laws() -> list[str]:
+    """A row for each law that is shipped."""
+    felt, hands = surface(256), path(HAND)
+    methods: dict[str, ForceRenderer] = {
+        each.name: default_registry().load("render", each.name)()
+        for each in default_registry().listings
+        if each.kind == "render" and each.distribution == "tangible-images"
+    }
+    methods["proxy, friction 0.6 and 0.4"] = Proxy(static_friction=0.6, dynamic_friction=0.4)
+    times = in_turns({name: _twice(each.touch(felt).path, hands) for name, each in methods.items()}, 15, thread_time)
+    return table(
+        ("law", "ns a tick"), [(name, f"{1e9 * each.seconds / TICKS / 2:.0f}") for name, each in times.items()]
+    )

@@ -1,0 +1,37 @@
+"""Force shading: facets that feel round, as shaded facets look round."""
+
+from typing import Annotated
+
+import numpy as np
+from pydantic import Field
+
+from tangible_core.data import HapticSurface
+from tangible_core.geometry import normals
+from tangible_core.interfaces import ForceRenderer, Touch
+
+from .compiled import CompiledTouch
+from .material_table import stiffness_table
+
+
+class ForceShading(ForceRenderer):
+    """A spring out of the facets of the bilinear surface, its direction interpolated: F = k d_n n.
+
+    d_n = d / sqrt(1 + |g|^2) is the depth under the facet, d the depth straight down and g the facet's gradient; n is
+    the unit normal that is bilinear between those at the cells' centres (from central differences). So the direction
+    is continuous where facets meet; the size is not quite, and the force has no potential: it may give energy away.
+    The surface ends at its extent: beyond it is free air.
+    Source: Morgenbesser & Srinivasan, Force shading for haptic shape perception, ASME Dynamic Systems 58 (1996).
+    """
+
+    stiffness_n_per_m: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 800.0
+    """Force for a depth of one metre under the facet, where the cell under the tip has no material of its own."""
+
+    def touch(self, surface: HapticSurface) -> Touch:
+        """A new touch on this surface; compiled on the first use on a machine, then loaded."""
+        from . import shading_kernels
+
+        heights = np.ascontiguousarray(surface.height_m, np.float32)
+        out = np.ascontiguousarray(np.moveaxis(normals(surface.relief), 2, 0))
+        table = stiffness_table(surface, self.stiffness_n_per_m)
+        fixed = (heights, out, *table, *map(float, surface.extent_m))
+        return CompiledTouch(shading_kernels.tick, shading_kernels.along, fixed)

@@ -1,0 +1,35 @@
+"""A lateral force against the slope: texture on a device of two axes."""
+
+from typing import Annotated, ClassVar
+
+from pydantic import Field
+
+from tangible_core.data import HapticSurface
+from tangible_core.interfaces import ForceRenderer, Touch
+
+from .coefficients import spline_surface
+from .compiled import CompiledTouch
+from .dequantise import Filter
+
+
+class LateralGradient(ForceRenderer):
+    """F = -K grad h in the plane, on contact: downhill, as hard as it is steep and however deep; nothing along z.
+
+    K is the weight of a ball that rolls on the surface. The surface is a C2 spline; it ends at its extent: beyond it is
+    free air. The force steps at the surface.
+    Source: Minsky, Ouh-young, Steele, Brooks & Behensky, Feeling and seeing: issues in force display, I3D 1990.
+    """
+
+    uses_materials: ClassVar[bool] = False
+
+    force_per_slope_n: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 2.0
+    """K: force on a slope of one metre per metre."""
+    dequantise: Filter = "auto"
+    """Smooth heights of 17 to 256 values, such as 8 bits have, within half a step: auto, never, or a sigma in cells."""
+
+    def touch(self, surface: HapticSurface) -> Touch:
+        """A new touch on this surface; compiled on the first use on a machine, then loaded."""
+        from . import lateral_kernels
+
+        fixed = (*spline_surface(surface, self.dequantise), self.force_per_slope_n, 0.0)
+        return CompiledTouch(lateral_kernels.tick, lateral_kernels.along, fixed)

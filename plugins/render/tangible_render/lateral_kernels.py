@@ -1,0 +1,38 @@
+"""The laws of `lateral-gradient` and `lateral-shape`, compiled. Imports numba: the methods do so inside `touch`."""
+
+# ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
+
+import numpy as np
+from numba import float64, njit, void
+
+from .bilinear import FORCES, HEIGHTS, NEWTONS, POINTS, over, step_velocity
+from .spline import slope
+
+SURFACE = (HEIGHTS, *[float64] * 6)
+
+
+@njit(NEWTONS(*SURFACE, *[float64] * 6), cache=True, nogil=True, error_model="numpy")
+def tick(coefficients, width_m, length_m, across_per_m, down_per_m, push_n, stiffness_n_per_m, x, y, z, vx, vy, vz):
+    """F = -(push_n + k d) grad h, where d = h - z > 0, and nothing along z; zero in free air."""
+    if not (over(width_m, length_m, x, y) and np.isfinite(vx + vy + vz)):
+        return 0.0, 0.0, 0.0
+    height, slope_x, slope_y = slope(coefficients, across_per_m, down_per_m, x, y)
+    depth = height - z
+    if not depth > 0.0:
+        return 0.0, 0.0, 0.0
+    push = push_n + stiffness_n_per_m * depth
+    fx, fy = -slope_x * push, -slope_y * push
+    return (fx, fy, 0.0) if np.isfinite(fx + fy) else (0.0, 0.0, 0.0)
+
+
+@njit(void(*SURFACE, POINTS, float64, FORCES), cache=True, nogil=True, error_model="numpy")
+def along(
+    coefficients, width_m, length_m, across_per_m, down_per_m, push_n, stiffness_n_per_m, positions_m, period_s, force_n
+):
+    """The same for every position of a path."""
+    for i in range(positions_m.shape[0]):
+        x, y, z = positions_m[i, 0], positions_m[i, 1], positions_m[i, 2]
+        vx, vy, vz = step_velocity(positions_m, period_s, i)
+        force_n[i, 0], force_n[i, 1], force_n[i, 2] = tick(
+            coefficients, width_m, length_m, across_per_m, down_per_m, push_n, stiffness_n_per_m, x, y, z, vx, vy, vz
+        )

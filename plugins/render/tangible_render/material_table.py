@@ -1,0 +1,37 @@
+"""What the materials of a surface say to a kernel: a row of numbers a label."""
+
+import numpy as np
+from jaxtyping import Float64, Int32
+
+from tangible_core.data import HapticSurface
+
+Row = tuple[float, float, float, float]
+"""Stiffness in N/m, damping in N s/m, static and dynamic friction."""
+
+
+def material_table(surface: HapticSurface, plain: Row) -> tuple[Int32[np.ndarray, "h w"], Float64[np.ndarray, "n 4"]]:
+    """Labels, and a row a label; one cell of one row where all the surface is alike.
+
+    plain: what holds where the surface has no materials.
+    """
+    if surface.labels is None or not surface.materials:
+        return np.zeros((1, 1), np.int32), np.array([plain], np.float64)
+    table = np.array(
+        [
+            (each.stiffness_n_per_m, each.damping_n_s_per_m, each.static_friction, each.dynamic_friction)
+            for each in surface.materials
+        ],
+        np.float64,
+    )
+    met = table[np.unique(surface.labels)]
+    if (met == met[0]).all():
+        return np.zeros((1, 1), np.int32), met[:1]
+    return np.ascontiguousarray(surface.labels, np.int32), table
+
+
+def stiffness_table(
+    surface: HapticSurface, plain_n_per_m: float
+) -> tuple[Int32[np.ndarray, "h w"], Float64[np.ndarray, "n"]]:
+    """Labels, and the stiffness of each, as `material_table`."""
+    labels, table = material_table(surface, (plain_n_per_m, 0.0, 0.0, 0.0))
+    return labels, np.ascontiguousarray(table[:, 0])

@@ -1,0 +1,38 @@
+"""Penalty force straight up: the plainest spring."""
+
+from typing import Annotated
+
+from pydantic import Field
+
+from tangible_core.data import HapticSurface
+from tangible_core.interfaces import ForceRenderer, Touch
+
+from .coefficients import spline_surface
+from .compiled import CompiledTouch
+from .dequantise import Filter
+from .material_table import stiffness_table
+
+
+class Penalty(ForceRenderer):
+    """A spring along z: F_z = k d, d = h(x, y) - z the depth under the surface.
+
+    It has no lateral part, so that a slope is felt by its height alone and pushes nobody sideways, and it is not
+    conservative: in at a deep place and out at a shallow one gives energy away. Damping acts along z, in contact only,
+    and never pulls. The surface is a C2 spline; it ends at its extent: beyond it is free air.
+    Source: Massie & Salisbury, The PHANToM haptic interface, ASME Winter Annual Meeting 1994.
+    """
+
+    stiffness_n_per_m: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 800.0
+    """Force for a depth of one metre, where the cell under the tip has no material of its own."""
+    damping_n_s_per_m: Annotated[float, Field(ge=0, allow_inf_nan=False)] = 0.0
+    """Force against one metre per second along z, in contact."""
+    dequantise: Filter = "auto"
+    """Smooth heights of 17 to 256 values, such as 8 bits have, within half a step: auto, never, or a sigma in cells."""
+
+    def touch(self, surface: HapticSurface) -> Touch:
+        """A new touch on this surface; compiled on the first use on a machine, then loaded."""
+        from . import vertical_kernels
+
+        shape = spline_surface(surface, self.dequantise)
+        fixed = (*shape, *stiffness_table(surface, self.stiffness_n_per_m), self.damping_n_s_per_m)
+        return CompiledTouch(vertical_kernels.tick, vertical_kernels.along, fixed)

@@ -1,0 +1,75 @@
+"""The proxy, or god-object: a point that stays on the surface, joined to the hand by a spring."""
+
+from typing import Annotated, Self
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from tangible_core.data import HapticSurface
+from tangible_core.interfaces import ForceRenderer, Touch
+
+from .coefficients import spline_surface
+from .compiled import CompiledTouch
+from .dequantise import Filter
+from .material_table import Row, material_table
+from .tiles import tile_bounds
+
+
+class Proxy(ForceRenderer):
+    """A spring to the surface's nearest point, followed from tick to tick: F = k (p - q).
+
+    The proxy p starts where the hand q comes through the surface, a C2 spline, and then minimises |p - q| downhill from
+    where it was, so that a wall holds it back: unlike a penalty force it does not throw the hand out at the far side.
+    With friction it rests while the force is within the static cone, and slides on the dynamic one: it sticks and
+    slips. Damping acts along the normal and never pulls. Where the stiffness is one, no closed path gains energy but
+    by sampling: at a hand at rest the proxy only ever comes nearer.
+
+    The surface is the top of a block with upright sides: a hand that comes from beside it under the rim is held off
+    along x or y. A hand that is put down in the block, or leaps by more than 5 mm in a tick, is taken straight up; so
+    is one that left its proxy more than 20 mm behind, if that is nearer.
+    Source: Zilles & Salisbury, A constraint-based god-object method, IROS 1995; Harwin & Melder, Improved haptic
+    rendering for multi-finger manipulation using friction cone based god-objects, Eurohaptics 2002.
+    """
+
+    stiffness_n_per_m: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 800.0
+    """Force for one metre between proxy and hand, where the surface has no materials."""
+    damping_n_s_per_m: Annotated[float, Field(ge=0, allow_inf_nan=False)] = 0.0
+    """Force against one metre per second along the normal, where the surface has no materials."""
+    static_friction: Annotated[float, Field(ge=0, allow_inf_nan=False)] = 0.0
+    """Sideways over normal force at which a proxy at rest breaks away, where the surface has no materials."""
+    dynamic_friction: Annotated[float, Field(ge=0, allow_inf_nan=False)] = 0.0
+    """Sideways over normal force while it slides, where the surface has no materials."""
+    friction: bool = True
+    """False leaves all friction out, that of materials too."""
+    dequantise: Filter = "auto"
+    """Smooth heights of 17 to 256 values, such as 8 bits have, within half a step: auto, never, or a sigma in cells."""
+
+    @model_validator(mode="after")
+    def _slides_more_easily_than_it_starts(self) -> Self:
+        if self.dynamic_friction > self.static_friction:
+            raise ValueError(
+                f"dynamic_friction {self.dynamic_friction} is above static_friction {self.static_friction}; "
+                "things slide more easily than they start"
+            )
+        return self
+
+    def touch(self, surface: HapticSurface) -> Touch:
+        """A new touch on this surface, without what it does not need: friction, damping, more than one material.
+
+        Compiled on the first use on a machine, then loaded.
+        """
+        from . import contact, proxy_kernels
+
+        shape = spline_surface(surface, self.dequantise)
+        shape = (*shape, tile_bounds(shape[0]))
+        labels, table = material_table(surface, self._plain())
+        if not self.friction:
+            table[:, 2:] = 0
+        memory = np.zeros(contact.REMEMBERED)
+        if len(table) == 1 and not table[0, 1:].any():
+            fixed = (*shape, float(table[0, 0]), memory)
+            return CompiledTouch(proxy_kernels.spring_tick, proxy_kernels.spring_along, fixed)
+        return CompiledTouch(proxy_kernels.tick, proxy_kernels.along, (*shape, labels, table, memory))
+
+    def _plain(self) -> Row:
+        return self.stiffness_n_per_m, self.damping_n_s_per_m, self.static_friction, self.dynamic_friction

@@ -1,0 +1,28 @@
+"""Says that kernels are being compiled, which takes seconds, once a machine: a room of kernels imports this module."""
+
+import logging
+from typing import Any
+
+from numba.core import event
+
+log = logging.getLogger(__name__)
+
+
+class _CompileNotice(event.Listener):
+    """Says once a process and family of plugins that kernels are being compiled."""
+
+    def __init__(self) -> None:
+        self.said: set[str] = set()
+
+    def on_start(self, event: Any) -> None:
+        package = event.data["dispatcher"].py_func.__module__.partition(".")[0]
+        if package.startswith("tangible_") and package not in self.said:
+            self.said.add(package)
+            kind = package.removeprefix("tangible_")
+            log.warning("compiling the %s kernels for this processor; the next process finds them on disk", kind)
+
+    def on_end(self, event: Any) -> None:
+        pass
+
+
+event.register("numba:compile", _CompileNotice())  # pyright: ignore[reportUnknownMemberType]

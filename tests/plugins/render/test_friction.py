@@ -1,0 +1,86 @@
+"""Friction and damping of the proxy: sticking, slipping, slopes, materials."""
+
+import numpy as np
+import pytest
+
+from tangible_core.data import Force, HapticState, HapticSurface, Material
+from tangible_core.interfaces import Touch
+from tangible_core.testing.scenes import plane, ramp, sphere_cap
+from tangible_render.proxy import Proxy
+
+K = 800.0
+LEVEL = plane(0.01).surface
+
+
+def at(touch: Touch, x: float, y: float, z: float, velocity=(0.0, 0.0, 0.0)) -> Force:
+    return touch.force(HapticState((float(x), float(y), float(z)), velocity))
+
+
+class TestFriction:
+    def test_it_sticks_up_to_the_static_cone_and_slides_on_the_dynamic_one(self):
+        touch = Proxy(static_friction=0.8, dynamic_friction=0.5).touch(LEVEL)
+        x = np.arange(0, 0.004, 1e-6)
+        force = touch.path(np.column_stack([x, np.zeros_like(x), np.full_like(x, 0.009)]))
+        ratio = -force[:, 0] / force[:, 2]
+        slip = int(ratio.argmax())
+        assert np.allclose(-force[: slip + 1, 0], K * x[: slip + 1], atol=1e-6)  # held: a spring along x
+        assert ratio[slip] == pytest.approx(0.8, abs=2e-3)
+        assert np.allclose(ratio[slip + 1 :], 0.5, atol=2e-3)
+
+    def test_it_sticks_again_when_the_hand_turns_back(self):
+        touch = Proxy(static_friction=0.8, dynamic_friction=0.5).touch(LEVEL)
+        there, back = np.linspace(0, 0.004, 400), np.linspace(0.004, 0.002, 400)
+        x = np.concatenate([there, back])
+        force = touch.path(np.column_stack([x, np.zeros(800), np.full(800, 0.009)]))
+        assert force[399, 0] == pytest.approx(-0.4, abs=1e-3)
+        assert force[:, 0].max() == pytest.approx(0.8 * 0.8, abs=0.01)
+
+    def test_on_a_slope_it_rests_if_the_cone_is_wider_than_the_slope(self):
+        known = ramp((0.3, 0.0), 0.02)
+        hand = known.at(0.001, 0.002, 0.001)
+        held = at(Proxy(static_friction=0.31, dynamic_friction=0.31).touch(known.surface), *hand)
+        assert held == pytest.approx((0, 0, K * 0.001), abs=1e-6)
+        slid = np.array(at(Proxy(static_friction=0.2, dynamic_friction=0.1).touch(known.surface), *hand))
+        normal = known.normal(0, 0)
+        along = np.linalg.norm(slid - (slid @ normal) * normal)
+        assert along == pytest.approx(0.1 * (slid @ normal), rel=1e-3)
+
+    def test_on_a_curved_surface_the_force_stays_on_the_cone(self):
+        known = sphere_cap(shape=(256, 256))
+        turn = np.arange(2000) / 1000
+        places = np.column_stack([0.025 * np.sin(1.95 * turn), 0.025 * np.sin(1.45 * turn + 0.7)])
+        path = np.array([known.at(x, y, 0.002) for x, y in places.tolist()])
+        force = Proxy(static_friction=0.4, dynamic_friction=0.3).touch(known.surface).path(path)
+        out = force / K + path + [0, 0, 0.08]
+        normal = out / np.linalg.norm(out, axis=1, keepdims=True)
+        push = np.sum(force * normal, axis=1)
+        along = np.linalg.norm(force - push[:, None] * normal, axis=1)
+        assert np.percentile(np.abs(along[200:] / push[200:] - 0.3), 95) < 1e-3
+
+    def test_materials_bring_their_own_stiffness_and_friction(self):
+        labels = np.zeros((64, 64), np.int32)
+        labels[:, 32:] = 1
+        materials = Material("ice", 1200.0, 0, 0.0, 0.0), Material("felt", 300.0, 0, 0.9, 0.7)
+        surface = HapticSurface.from_heights(np.full((64, 64), 0.01), 0.08, labels, materials)
+        x = np.linspace(0, 0.004, 400)
+        for start, stiffness, friction in ((-0.03, 1200.0, 0.0), (0.01, 300.0, 0.7)):
+            path = np.column_stack([start + x, np.zeros(400), np.full(400, 0.009)])
+            last = Proxy().touch(surface).path(path)[-1]
+            assert last == pytest.approx([-friction * stiffness * 0.001, 0, stiffness * 0.001], abs=1e-3)
+            off = Proxy(friction=False).touch(surface).path(path)[-1]
+            assert off == pytest.approx([0, 0, stiffness * 0.001], abs=1e-6)
+
+    def test_damping_acts_along_the_normal_and_never_pulls(self):
+        known = ramp((0.5, 0.0), 0.03)
+        normal, along = known.normal(0, 0), np.array([1, 0, 0.5])
+        renderer = Proxy(damping_n_s_per_m=4.0)
+        hand = known.at(0, 0, 0.001)
+        spring = K * 0.001 * normal[2]
+        for speed in (-0.25, 0.0, 0.125, 100.0):
+            force = at(renderer.touch(known.surface), *hand, tuple(speed * normal + 0.5 * along))
+            assert np.allclose(force, max(0.0, spring - 4 * speed) * normal, rtol=1e-4, atol=1e-4)
+
+
+def test_friction_that_grows_when_it_slides_is_refused():
+    with pytest.raises(ValueError, match="slide more easily"):
+        Proxy(static_friction=0.2, dynamic_friction=0.3)

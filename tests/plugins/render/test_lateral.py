@@ -1,0 +1,101 @@
+"""The laws without a normal force, and the spring without a lateral one, on surfaces known exactly."""
+
+import numpy as np
+import pytest
+
+from tangible_core.data import NO_FORCE, HapticState, HapticSurface, Material
+from tangible_core.geometry import smooth
+from tangible_core.testing.reliefs import ridge, waves
+from tangible_core.testing.scenes import KnownSurface, ramp, sphere_cap
+from tangible_render.force_shading import ForceShading
+from tangible_render.lateral_gradient import LateralGradient
+from tangible_render.lateral_shape import LateralShape
+from tangible_render.penalty import Penalty
+
+RNG = np.random.default_rng(17)
+KNOWN = {"ramp": ramp(), "sphere": sphere_cap(shape=(256, 256)), "waves": waves()}
+
+
+def press(renderer, known: KnownSurface, x: float, y: float, depth_m: float = 0.001) -> np.ndarray:
+    return np.array(renderer.touch(known.surface).force(HapticState(known.at(x, y, depth_m))))
+
+
+@pytest.fixture(params=KNOWN)
+def known(request) -> KnownSurface:
+    return KNOWN[request.param]
+
+
+PLACES = RNG.uniform(-0.036, 0.036, (12, 2))
+
+
+def test_lateral_gradient_is_the_slope_however_deep(known: KnownSurface):
+    for x, y in PLACES:
+        slope = np.array(known.slope(x, y))
+        for depth in (1e-5, 0.004):
+            assert np.allclose(
+                press(LateralGradient(force_per_slope_n=3.0), known, x, y, depth), [*-3 * slope, 0], atol=1e-3
+            )
+
+
+def test_lateral_shape_is_the_slope_times_the_push(known: KnownSurface):
+    for x, y in PLACES:
+        slope = np.array(known.slope(x, y))
+        for depth in (0.0005, 0.004):
+            force = press(LateralShape(stiffness_n_per_m=500.0), known, x, y, depth)
+            assert np.allclose(force, [*(-500 * depth * slope), 0], rtol=0, atol=1e-4)
+
+
+def test_penalty_is_a_spring_along_z_with_damping_that_never_pulls(known: KnownSurface):
+    touch = Penalty(stiffness_n_per_m=500.0, damping_n_s_per_m=2.0).touch(known.surface)
+    for x, y in PLACES:
+        for speed in (-0.25, 0.0, 0.1, 100.0):
+            force = touch.force(HapticState(known.at(x, y, 0.002), (3.0, -2.0, speed)))
+            assert force == pytest.approx((0, 0, max(0.0, 1.0 - 2 * speed)), abs=1e-4)
+
+
+def test_penalty_takes_the_stiffness_of_materials():
+    labels = np.repeat([[0, 1]], 2, axis=0).repeat(8, axis=1).astype(np.int32)
+    materials = Material("soft", 100.0, 0, 0, 0), Material("hard", 900.0, 0, 0, 0)
+    touch = Penalty().touch(HapticSurface.from_heights(np.full((2, 16), 0.01), 0.08, labels, materials))
+    assert touch.force(HapticState((-0.02, 0, 0))).z == pytest.approx(1.0)
+    assert touch.force(HapticState((0.02, 0, 0))).z == pytest.approx(9.0)
+
+
+@pytest.mark.parametrize("sigma_cells", [2.0, 4.0])
+def test_a_mask_of_the_derivative_of_a_gaussian_is_the_lateral_gradient(sigma_cells: float):
+    """sum (H - h) G (u, v) / sigma^2 over a wide mask = -grad (G * h): the two laws are one, but for the weights."""
+    surface = HapticSurface.from_heights(RNG.uniform(0, 0.004, (80, 80)))
+    pitch = surface.relief.pitch_m[0]
+    half = int(6 * sigma_cells)
+    u = np.arange(-half, half + 1)
+    bell = np.exp(-(u**2) / (2 * sigma_cells**2))
+    weights = np.outer(bell, bell) / bell.sum() ** 2
+    touch = LateralGradient(force_per_slope_n=1.0).touch(HapticSurface(smooth(surface.relief, sigma_cells * pitch)))
+    for row, column in RNG.integers(half, 80 - half, (10, 2)):
+        dark = 0.004 - surface.height_m[row - half : row + half + 1, column - half : column + half + 1].astype(float)
+        mask = np.array([(dark * weights * u).sum(), (dark * weights * -u[:, None]).sum()]) / (sigma_cells**2 * pitch)
+        x, y = (column - 39.5) * pitch, (39.5 - row) * pitch
+        felt = np.array(touch.force(HapticState((x, y, -0.001))))[:2]
+        assert np.linalg.norm(felt - mask) < 0.02 * max(np.linalg.norm(mask), 0.01)
+
+
+class TestForceShading:
+    def test_on_a_plane_it_is_a_spring_along_the_normal(self):
+        known = KNOWN["ramp"]
+        normal = known.normal(0, 0)
+        for x, y in RNG.uniform(-0.037, 0.037, (12, 2)):
+            force = press(ForceShading(stiffness_n_per_m=700.0), known, x, y)
+            assert np.allclose(force, 0.7 * normal[2] * normal, rtol=1e-3, atol=1e-4)
+
+    def test_the_direction_turns_smoothly_over_an_edge_where_the_facets_jump(self):
+        known = ridge(shape=(64, 64))
+        touch = ForceShading().touch(known.surface)
+        x = np.linspace(-0.004, 0.004, 4001)
+        force = touch.path(np.column_stack([x, np.zeros(4001), np.full(4001, 0.02)]))
+        turned = np.degrees(np.arctan2(force[:, 0], force[:, 2]))
+        assert turned[0] == pytest.approx(-26.565, abs=1e-2) and turned[-1] == pytest.approx(26.565, abs=1e-2)
+        assert np.abs(np.diff(turned)).max() < 0.1
+
+    def test_free_air(self):
+        known = KNOWN["sphere"]
+        assert tuple(press(ForceShading(), known, 0.01, 0.02, -1e-4)) == NO_FORCE

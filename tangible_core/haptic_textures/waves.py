@@ -15,6 +15,8 @@ from ..data import Material, Texture
 
 WAVES = 24
 """The most of a material; each costs the servo its share."""
+BESIDE_FRICTION = 8
+"""Waves of the noise under friction that sticks and slips."""
 STRAY, STRAY_OCTAVES, STRAY_DEG = 7, 0.1, 6.0
 """How many waves beside each set of lines are its irregularity, and how far they differ in length and direction."""
 
@@ -58,10 +60,19 @@ def _stochastic(material: Material, random: np.random.Generator) -> Spread:
     Lengths and directions are stratified, one of each stratum, so that every seed has the same spectrum: triangular in
     octaves, its tip at the grain.
     """
-    strata = (np.arange(WAVES) + 0.5) / WAVES
+    return _noise(WAVES, material.anisotropy, random)
+
+
+def _stick_slip(material: Material, random: np.random.Generator) -> Spread:
+    """The same noise of fewer waves: friction is what is felt, and both are to fit into a tick."""
+    return _noise(BESIDE_FRICTION, material.anisotropy, random)
+
+
+def _noise(count: int, anisotropy: float, random: np.random.Generator) -> Spread:
+    strata = (np.arange(count) + 0.5) / count
     octaves = 0.5 * np.sign(strata - 0.5) * (1 - np.sqrt(1 - np.abs(2 * strata - 1)))
-    fan = (random.permutation(WAVES) + random.random(WAVES)) / WAVES - 0.5
-    return octaves, 180 * (1 - material.anisotropy) * fan, np.full(WAVES, 1 / WAVES), random.random(WAVES)
+    fan = (random.permutation(count) + random.random(count)) / count - 0.5
+    return octaves, 180 * (1 - anisotropy) * fan, np.full(count, 1 / count), random.random(count)
 
 
 def _periodic(material: Material, random: np.random.Generator) -> Spread:
@@ -97,6 +108,6 @@ _MAKE: dict[Texture, Callable[[Material, np.random.Generator], Spread]] = {
     "smooth": _smooth,
     "periodic": _periodic,
     "stochastic": _stochastic,
-    "stick-slip": _stochastic,
+    "stick-slip": _stick_slip,
     "drag": _stochastic,
 }

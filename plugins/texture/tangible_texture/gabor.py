@@ -7,6 +7,7 @@ from pydantic import Field
 
 from tangible_core.data import SegmentMap, Views
 from tangible_core.interfaces import Segmenter, Skippable
+from tangible_core.pictures import check_picture
 
 from .skipping import nothing_to_divide
 
@@ -42,7 +43,7 @@ class Gabor(Segmenter, Skippable):
     def segment(self, picture: np.ndarray) -> SegmentMap:
         """Regions of the picture; one where its texture is the same everywhere, but for single pixels.
 
-        Memory: about 110 bytes a pixel.
+        Memory: 90 bytes a pixel and 4 MiB, measured up to 17 megapixels.
         Raises: PictureError as `check_picture`.
         """
         from .cells import CELL_PX
@@ -52,9 +53,12 @@ class Gabor(Segmenter, Skippable):
         from .merging import in_reading_order
         from .planes import mixed
 
+        alone = SegmentMap(np.zeros(check_picture(picture).shape[:2], np.int32))
+        if self.segments == 1:
+            return alone
         found = features(picture, self.lambda_max_px, self.least_energy, self.colour)
-        if found is None or self.segments == 1:
-            return SegmentMap(np.zeros(picture.shape[:2], np.int32))
+        if found is None:
+            return alone
         labels, axes = classes(found, self.segments, self.effort)
         narrow, middle = (Window(mixed(axes, each.planes), each.shape) for each in (found.narrow, found.middle))
         memberships = fine_memberships(middle, labels, narrow)

@@ -5,7 +5,7 @@ from jaxtyping import Float32
 
 SAME = 0.03
 """Features that spread by less than this share of their size are those of one texture: noise has ten times as much."""
-FAINT = 0.01
+FAINT = 0.05
 """Features that come to less than this share of the greatest one say nothing."""
 
 

@@ -15,6 +15,8 @@ THIN_REACH = 1 / 8
 from what is behind them by less than this."""
 FRINGE = 0.0005
 """Share of the matches left out at either end as errors."""
+NOISY = 0.6
+"""Share of matches that no neighbour confirms from which the first copy, which averages noise away, counts as well."""
 FIRST_MARGIN, MARGIN = 1, 2
 """What is then added at either end, in pixels of the copy."""
 
@@ -41,7 +43,11 @@ def find_range(pair: Pair) -> Found | None:
         return None
     low, high = first.span
     span = Span(low, max(high, low + round(THIN_REACH * width)))
-    return _look(pair, span, FINE_WIDTH, MARGIN) or first
+    fine = _look(pair, span, FINE_WIDTH, MARGIN)
+    if fine is None or fine.bands.loss < NOISY:
+        return fine or first
+    wider = Span(min(first.span.low, fine.span.low), max(first.span.high, fine.span.high))
+    return Found(wider, fine.bands, first.swapped and fine.swapped)
 
 
 def _look(pair: Pair, span: Span, width: int, margin: int) -> Found | None:

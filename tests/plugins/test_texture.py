@@ -10,6 +10,7 @@ from pydantic import ValidationError
 
 from tangible_core.data import Views
 from tangible_core.errors import PictureError
+from tangible_core.notes import collected
 from tangible_texture.basins import basins
 from tangible_texture.borders import Border, borders
 from tangible_texture.channels import channels
@@ -362,6 +363,12 @@ class TestGradient:
 
     def test_no_segment_is_invented_to_reach_a_number(self):
         assert Gradient(segments=9).segment(halves((60, 80), 60, 160, 3)).count == 2
+
+    def test_auto_says_how_much_of_the_weakest_border_is_an_edge(self):
+        picture = np.repeat([[60, 180]], 50, axis=1).repeat(80, axis=0).astype(np.uint8)
+        with collected() as notes:
+            Gradient().segment(picture)
+        assert any(each.startswith("segments: 2, a guess worth 1.00") for each in notes)
 
     def test_auto_stops_at_its_bound(self):
         levels = np.random.default_rng(0).permutation(np.linspace(0, 255, 144)).reshape(12, 12)

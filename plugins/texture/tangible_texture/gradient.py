@@ -1,5 +1,6 @@
 """Segments by gradient: flat basins, flooded up to the edges between them."""
 
+import logging
 from typing import TYPE_CHECKING, Annotated, Literal, Self
 
 import numpy as np
@@ -8,11 +9,14 @@ from pydantic import Field, model_validator
 
 from tangible_core.data import SegmentMap, Views
 from tangible_core.interfaces import Segmenter, Skippable
+from tangible_core.notes import note
 
 from .skipping import nothing_to_divide
 
 if TYPE_CHECKING:
     from .landscape import Landscape
+
+log = logging.getLogger(__name__)
 
 MOST_SEGMENTS = 64
 """What `segments: auto` stops at, far beyond what touch tells apart."""
@@ -40,7 +44,8 @@ class Gradient(Segmenter, Skippable):
     """
 
     segments: Annotated[int, Field(ge=1)] | Literal["auto"] = "auto"
-    """At most this many: the least separated ones are merged; `auto`: as many as edges hold apart, 64 at most."""
+    """At most this many: the least separated ones are merged; `auto`: as many as edges hold apart, 64 at most, and how
+    much of the weakest border is an edge is said."""
     sigma_px: Annotated[float, Field(gt=0, le=100)] = 2.0
     """Standard deviation of the Gaussian that smooths, at most 1/16 of the root of the picture's area.
 
@@ -102,7 +107,7 @@ class Gradient(Segmenter, Skippable):
         from .basins import basins
         from .borders import borders
         from .landscape import canny_edges
-        from .merging import merge
+        from .merging import merge, weakest_border
         from .watershed import watershed
 
         smallest = max(4, min(self.smallest_px // step**2, land.steep.size // 16))
@@ -113,7 +118,12 @@ class Gradient(Segmenter, Skippable):
         edges = canny_edges(land, self.canny_low, self.canny_high, self._most)
         most = MOST_SEGMENTS if self.segments == "auto" else self.segments
         areas = np.bincount(labels.ravel(), minlength=count).tolist()
-        return merge(areas, borders(labels, land, edges, self.canny_high), most)[labels]
+        between = borders(labels, land, edges, self.canny_high)
+        parts = merge(areas, between, most)
+        if self.segments == "auto":
+            worth, why = weakest_border(between, parts), "the share of edges in the weakest border between two of them"
+            note(log, f"segments: {np.unique(parts).size}, a guess worth {worth:.2f}: {why}")
+        return parts[labels]
 
     def _confidence(self, steep: Float32[np.ndarray, "h w"]) -> Float32[np.ndarray, "h w"]:
         top = max(float(steep.max()), self.canny_high)

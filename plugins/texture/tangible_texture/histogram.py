@@ -9,6 +9,7 @@ from pydantic import Field
 
 from tangible_core.data import SegmentMap, Views
 from tangible_core.interfaces import Segmenter, Skippable
+from tangible_core.notes import note
 
 from .skipping import nothing_to_divide
 
@@ -41,7 +42,7 @@ class Histogram(Segmenter, Skippable):
     most; 0 where the pixel went to another class.
     `auto` takes the number of segments k with the least k^2 W(k), W being the variance within, if that is at most three
     quarters of W(1); evenly spread levels are one segment, as are those of one Gaussian. How clear it was,
-    1 - k^2 W(k) / W(1), is logged.
+    1 - k^2 W(k) / W(1), is said.
     Memory: 50 bytes a pixel beyond the picture.
     Sources: Otsu, A threshold selection method from gray-level histograms, 1979; Marriott, Practical problems in a
     method of cluster analysis, 1971.
@@ -103,12 +104,8 @@ class Histogram(Segmenter, Skippable):
         if self.segments != "auto":
             return len(divisions.spreads)
         number, ratio = divisions.clearest()
-        log.info(
-            "segments: auto takes %d; no other number leaves so little of the grey levels' spread, "
-            "which is clear to %.0f %%",
-            number,
-            100 * (1 - ratio),
-        )
+        why = "no other number leaves so little of the grey levels' spread"
+        note(log, f"segments: {number}, a guess worth {1 - ratio:.2f}: {why}")
         return number
 
 

@@ -34,6 +34,16 @@ def merge(areas: list[int], borders: dict[tuple[int, int], Border], most: int) -
     return np.array([graph.root(region) for region in range(len(areas))], np.int32)
 
 
+def weakest_border(borders: dict[tuple[int, int], Border], parts: Int32[np.ndarray, "n"]) -> float:
+    """The least share of edges in the border of two merged regions; 0 where there is one. `parts`: from `merge`."""
+    merged: dict[tuple[int, int], Border] = {}
+    for (one, other), border in borders.items():
+        low, high = sorted((int(parts[one]), int(parts[other])))
+        if low < high:
+            merged[low, high] = border.joined(merged[low, high]) if (low, high) in merged else border
+    return min((border.edges / border.pairs for border in merged.values()), default=0.0)
+
+
 class _Graph:
     """Regions, their neighbours, and a queue of pairs; a pair in it whose border is no longer the same is void."""
 

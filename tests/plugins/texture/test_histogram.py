@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from pydantic import ValidationError
 
 from tangible_core.data import Views
+from tangible_core.notes import collected
 from tangible_texture.histogram import MOST_LEVELS, Histogram
 from tangible_texture.levels import Levels
 from tangible_texture.parts import without_small_parts
@@ -122,10 +123,10 @@ class TestHistogram:
         assert np.allclose(confidence[:, :30], 1)  # 0.5 away, where the class spreads by 0.2
         assert np.allclose(confidence[:, 30:90], 0.25)
 
-    def test_how_auto_came_about_is_logged(self, caplog: pytest.LogCaptureFixture):
-        with caplog.at_level("INFO"):
+    def test_how_auto_came_about_is_said(self):
+        with collected() as notes:
             Histogram().segment(bars(np.array([40, 200]), 3))
-        assert "auto takes 2" in caplog.text
+        assert any(each.startswith("segments: 2, a guess worth 1.00") for each in notes), notes
 
     def test_one_segment_is_skipped(self):
         picture = bars(np.array([40, 200]))

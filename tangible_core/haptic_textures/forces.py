@@ -11,7 +11,7 @@ import math
 import numpy as np
 from numba import float64, int64, njit, types, void
 
-from .heights import ROW, TEXTURES, kept, texture_height
+from .heights import COSINE, ROW, SINE, TEXTURES, kept, series, texture_height
 from .table import DRAG, DYNAMIC, PER_M, STIFFNESS, SWING
 
 STATE = 7
@@ -30,8 +30,9 @@ _X, _Y, _BRISTLE_X, _BRISTLE_Y, _PHASE, _LEVEL, _OWNER = range(STATE)
 @njit(float64(float64, float64), **OPTIONS)
 def _sawtooth(phase, turns):
     """From -1 to 1 over a turn and back at once, in a few harmonics, each as far as it is sampled well enough."""
-    angle = 2 * math.pi * phase
-    sine, cosine = math.sin(angle), math.cos(angle)
+    half = phase - math.floor(phase + 0.5)
+    half_sine, half_cosine = half * series(SINE, half * half), series(COSINE, half * half)
+    sine, cosine = 2.0 * half_sine * half_cosine, 1.0 - 2.0 * half_sine * half_sine
     before, total = 0.0, 0.0
     for n in range(len(HARMONICS)):
         total -= HARMONICS[n] * kept((n + 1) * turns) * sine

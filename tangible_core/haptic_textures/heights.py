@@ -24,8 +24,9 @@ WHOLE, GONE = 1 / 5, 1 / 3
 TEXTURES = types.Array(float64, 2, "C", readonly=True)
 ROW = types.Array(float64, 1, "C", readonly=True)
 
-_SINE = tuple((-1.0) ** n * math.pi ** (2 * n + 1) / math.factorial(2 * n + 1) for n in range(8))
-_COSINE = tuple((-1.0) ** n * math.pi ** (2 * n) / math.factorial(2 * n) for n in range(8))
+SINE = tuple((-1.0) ** n * math.pi ** (2 * n + 1) / math.factorial(2 * n + 1) for n in range(8))
+COSINE = tuple((-1.0) ** n * math.pi ** (2 * n) / math.factorial(2 * n) for n in range(8))
+"""sin(pi t) = t series(SINE, t^2) and cos(pi t) = series(COSINE, t^2) for half a turn to either side, |t| <= 1/2."""
 
 
 @njit(float64(float64), inline="always", cache=True, nogil=True)
@@ -36,7 +37,8 @@ def kept(turns):
 
 
 @njit(inline="always", cache=True, nogil=True)
-def _series(terms, u):
+def series(terms, u):
+    """A polynomial of eight terms in u, in an order that a processor can work side by side."""
     low = terms[0] + u * (terms[1] + u * (terms[2] + u * terms[3]))
     return low + u * u * u * u * (terms[4] + u * (terms[5] + u * (terms[6] + u * terms[7])))
 
@@ -49,7 +51,7 @@ def _sum_of_waves(row, x, y, step_x, step_y):
         fx, fy = row[HEAD + i], row[HEAD + WAVES + i]
         turns = fx * x + fy * y + row[HEAD + 3 * WAVES + i]
         turns -= np.floor(turns + 0.5)
-        sine, cosine = turns * _series(_SINE, turns * turns), _series(_COSINE, turns * turns)  # of half the angle
+        sine, cosine = turns * series(SINE, turns * turns), series(COSINE, turns * turns)  # of half the angle
         amplitude = row[HEAD + 2 * WAVES + i] * kept(abs(fx * step_x + fy * step_y))
         height += amplitude * (1.0 - 2.0 * sine * sine)
         slope = amplitude * sine * cosine

@@ -15,7 +15,7 @@ from ..data import Material, Texture
 
 WAVES = 24
 """The most of a material; each costs the servo its share."""
-BESIDE_FRICTION = 6
+BESIDE_FRICTION = 8
 """Waves of the noise under friction that sticks and slips."""
 STRAY, STRAY_OCTAVES, STRAY_DEG = 7, 0.1, 6.0
 """How many waves beside each set of lines are its irregularity, and how far they differ in length and direction."""

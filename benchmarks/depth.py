@@ -5,10 +5,7 @@ such as Middlebury's; the extra `peers` installs what else is measured against.
 """
 
 import os
-import sys
-from collections.abc import Callable
 from itertools import chain
-from typing import Any
 
 from . import (
     depth_accuracy,
@@ -22,7 +19,7 @@ from . import (
     depth_start,
     depth_unrectified,
 )
-from .figures import judged
+from .figures import judged, part
 
 PROTOCOL = (
     "Times are ratios to OpenCV's StereoSGBM 3WAY, called without our wrapper on views in grey, padded on the left, "
@@ -36,14 +33,14 @@ PROTOCOL = (
 
 def section() -> str:
     """The section of RESULTS.md, as Markdown."""
-    accuracy = _part("errors and times", depth_accuracy.figures)
-    robustness, by_damage = _part("damaged pairs", depth_robustness.measured)
-    growth, sizes = _part("growth", depth_growth.measured)
-    skipped = _part("what is left out", depth_skips.rows)
+    accuracy = part("errors and times", depth_accuracy.figures)
+    robustness, by_damage = part("damaged pairs", depth_robustness.measured)
+    growth, sizes = part("growth", depth_growth.measured)
+    skipped = part("what is left out", depth_skips.rows)
     single = (depth_pandora, depth_range, depth_unrectified, depth_eight_point, depth_start)
-    others = [_part(each.__name__, each.figures) for each in single]
+    others = [part(each.__name__.removeprefix("benchmarks."), each.figures) for each in single]
     figures = [*accuracy, *robustness, *chain.from_iterable(others), *growth]
-    wrapper = _part("wrapper", depth_accuracy.share_of_wrapper)
+    wrapper = part("wrapper", depth_accuracy.share_of_wrapper)
     return "\n".join(
         [
             *_conditions(wrapper),
@@ -52,7 +49,7 @@ def section() -> str:
             "",
             "By scene: bad2 over all pixels with truth, and time against 3WAY.",
             "",
-            *_part("scenes", depth_accuracy.scene_rows),
+            *part("scenes", depth_accuracy.scene_rows),
             "",
             "`tangible compare configs/compare-depth.yaml`, mean of all scenes, views in colour where they have it; "
             "here the baseline is our wrapper round OpenCV.",
@@ -87,8 +84,3 @@ def _conditions(wrapper: float) -> list[str]:
         "",
         f"{PROTOCOL} Our wrapper `opencv-sgbm` takes {wrapper:.2f} x the bare call, filling left out of both.",
     ]
-
-
-def _part(name: str, work: Callable[[], Any]) -> Any:
-    print(f"  {name.removeprefix('benchmarks.')} ...", file=sys.stderr)
-    return work()

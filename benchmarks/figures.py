@@ -1,7 +1,8 @@
 """What is promised and what was measured, side by side."""
 
-from collections.abc import Iterable
-from typing import NamedTuple
+import sys
+from collections.abc import Callable, Iterable
+from typing import Any, NamedTuple
 
 
 class Figure(NamedTuple):
@@ -22,6 +23,12 @@ def judged(figures: Iterable[Figure]) -> list[str]:
 def table(headings: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> list[str]:
     """Lines of a Markdown table."""
     return [_line(headings), "|" + "---|" * len(headings), *(_line(row) for row in rows)]
+
+
+def part(name: str, work: Callable[[], Any]) -> Any:
+    """What `work` gives; its name is said before, as it may take minutes."""
+    print(f"  {name} ...", file=sys.stderr)
+    return work()
 
 
 def _line(cells: tuple[str, ...]) -> str:

@@ -5,9 +5,6 @@ it, mosaics of the builtin textures stand in for them. The extra `torch` is need
 """
 
 import os
-import sys
-from collections.abc import Callable
-from typing import Any
 
 from . import (
     texture_accuracy,
@@ -21,7 +18,7 @@ from . import (
     texture_scenes,
     texture_skips,
 )
-from .figures import judged
+from .figures import judged, part
 
 PROTOCOL = (
     "Methods are told the number of segments unless it says otherwise. Times are ratios in the same process in turn, "
@@ -33,15 +30,15 @@ PROTOCOL = (
 
 def section() -> str:
     """The section of RESULTS.md, as Markdown."""
-    figures = _part("mosaics", texture_accuracy.figures)
-    figures += _part("features", texture_features.figures)
-    figures += _part("smooth scenes", texture_gradient.figures)
-    figures += _part("invariance", texture_invariance.figures)
-    haptic, materials = _part("materials", texture_materials.measured)
-    skipped = _part("what is left out", texture_skips.rows)
-    exact = _part("what is known beforehand", texture_skips.exact)
-    growth, sizes = _part("growth", texture_growth.measured)
-    torch = _part("torch", texture_kornia.figures)
+    figures = part("mosaics", texture_accuracy.figures)
+    figures += part("features", texture_features.figures)
+    figures += part("smooth scenes", texture_gradient.figures)
+    figures += part("invariance", texture_invariance.figures)
+    haptic, materials = part("materials", texture_materials.measured)
+    skipped = part("what is left out", texture_skips.rows)
+    exact = part("what is known beforehand", texture_skips.exact)
+    growth, sizes = part("growth", texture_growth.measured)
+    torch = part("torch", texture_kornia.figures)
     return "\n".join(
         [
             *_conditions(),
@@ -81,8 +78,3 @@ def _conditions() -> list[str]:
         "",
         f"OpenCV's recipe: {texture_opencv.RECIPE}. scikit-image's: {texture_gradient.RECIPE}.",
     ]
-
-
-def _part(name: str, work: Callable[[], Any]) -> Any:
-    print(f"  {name} ...", file=sys.stderr)
-    return work()

@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
+from label_maps import rand_index
 from tangible_core.data import Views
 from tangible_core.errors import PictureError
 from tangible_core.notes import collected
@@ -21,19 +22,6 @@ from tangible_texture.refining import refined
 from tangible_texture.slopes import slopes
 from tangible_texture.smoothing import WIDER, gaussian, two_scales, without_specks
 from tangible_texture.watershed import watershed
-
-
-def rand_index(one: np.ndarray, other: np.ndarray) -> float:
-    """Adjusted Rand index of two label maps (Hubert & Arabie 1985)."""
-    table = np.zeros((one.max() + 1, other.max() + 1))
-    np.add.at(table, (one.ravel(), other.ravel()), 1)
-
-    def pairs(counts: np.ndarray) -> float:
-        return float((counts * (counts - 1) / 2).sum())
-
-    both, ones, others = pairs(table), pairs(table.sum(axis=1)), pairs(table.sum(axis=0))
-    chance = ones * others / pairs(np.array([one.size]))
-    return (both - chance) / ((ones + others) / 2 - chance)
 
 
 def cells(seed: int, count: int = 10, size: int = 256) -> np.ndarray:

@@ -9,7 +9,7 @@ from tangible_core.data import SegmentMap, Views
 from tangible_core.interfaces import Segmenter, Skippable
 from tangible_core.pictures import check_picture
 
-from .skipping import nothing_to_divide
+from .skipping import nothing_to_divide, one_segment
 
 
 class Gabor(Segmenter, Skippable):
@@ -53,12 +53,11 @@ class Gabor(Segmenter, Skippable):
         from .merging import in_reading_order
         from .planes import mixed
 
-        alone = SegmentMap(np.zeros(check_picture(picture).shape[:2], np.int32))
         if self.segments == 1:
-            return alone
+            return one_segment(check_picture(picture).shape[:2])
         found = features(picture, self.lambda_max_px, self.least_energy, self.colour)
         if found is None:
-            return alone
+            return one_segment(picture.shape[:2])
         labels, axes = classes(found, self.segments, self.effort)
         narrow, middle = (Window(mixed(axes, each.planes), each.shape) for each in (found.narrow, found.middle))
         memberships = fine_memberships(middle, labels, narrow)

@@ -11,7 +11,7 @@ from tangible_core.data import SegmentMap, Views
 from tangible_core.interfaces import Segmenter, Skippable
 from tangible_core.notes import note
 
-from .skipping import nothing_to_divide
+from .skipping import nothing_to_divide, one_segment
 
 if TYPE_CHECKING:
     from .landscape import Landscape
@@ -93,7 +93,7 @@ class Gradient(Segmenter, Skippable):
         strongest = float(magnitude.max())
         labels = self._regions(landscape(wide, self._most, noise), step) if strongest > NOTHING else None
         if labels is None:
-            return SegmentMap(np.zeros(magnitude.shape, np.int32))
+            return one_segment(magnitude.shape)
         steep = magnitude / np.maximum(noise, np.float32(strongest / self._most))
         return SegmentMap(in_reading_order(refined(labels, step, steep)), self._confidence(steep))
 

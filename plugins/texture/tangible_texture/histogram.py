@@ -11,7 +11,7 @@ from tangible_core.data import SegmentMap, Views
 from tangible_core.interfaces import Segmenter, Skippable
 from tangible_core.notes import note
 
-from .skipping import nothing_to_divide
+from .skipping import nothing_to_divide, one_segment
 
 if TYPE_CHECKING:
     from .levels import Levels
@@ -75,7 +75,7 @@ class Histogram(Segmenter, Skippable):
         sigma_px = min(self.sigma_px, values.size**0.5 / 16)
         grey = gaussian(values, sigma_px)[..., 0] if sigma_px else values[..., 0]
         if float(np.ptp(grey)) <= NOTHING:
-            return SegmentMap(np.zeros(grey.shape, np.int32))
+            return one_segment(grey.shape)
         steep = slopes(grey[..., None])[0]
         flat = 1.001 * float(np.quantile(steep, FLAT_SHARE)) + NOTHING  # slopes that are equal differ by rounding
         classes, confidence = self._classes(grey, steep <= flat, np.unique(_bins(values)).size)

@@ -11,7 +11,7 @@ from tangible_core.interfaces import Segmenter, Skippable
 from tangible_core.pictures import to_grey
 from tangible_core.torch_extra import TorchDevice, need, pick_device
 
-from .skipping import nothing_to_divide
+from .skipping import nothing_to_divide, one_segment
 
 if TYPE_CHECKING:
     from torch import Tensor
@@ -67,7 +67,6 @@ class KorniaGabor(Segmenter, Skippable):
         need("kornia")
         from .filter_choice import needed_filters
         from .gabor_bank import bank, octaves
-        from .labelling import one_segment
         from .noise_floor import is_flat
 
         grey = to_grey(picture)
@@ -78,7 +77,7 @@ class KorniaGabor(Segmenter, Skippable):
         return self._segments(grey, needed_filters(grey, wanted, self.skip_weak, self.skip_octaves), most_px)
 
     def _segments(self, grey: Float32[np.ndarray, "h w"], filters: "list[Gabor]", most_px: float) -> SegmentMap:
-        from .labelling import enlarged, one_segment, segments_of
+        from .labelling import enlarged, segments_of
         from .noise_floor import is_one_texture
         from .torch_gabor import energies, standardised_roots
 

@@ -12,7 +12,7 @@ from tangible_core.interfaces import Segmenter, Skippable
 from tangible_core.pictures import to_grey
 from tangible_core.torch_extra import TorchDevice, need, pick_device
 
-from .skipping import nothing_to_divide
+from .skipping import nothing_to_divide, one_segment
 
 QUIET = 0.25
 """This share of the slopes is taken to be noise, and their largest to be that quantile of a Rayleigh distribution."""
@@ -61,7 +61,6 @@ class KorniaGradient(Segmenter, Skippable):
         """
         need("torch")
         need("kornia")
-        from .labelling import one_segment
         from .merging import in_reading_order
         from .noise_floor import is_flat
         from .watershed import watershed

@@ -17,11 +17,6 @@ MOST_SEGMENTS = 8
 """What `segments: auto` stops at."""
 
 
-def one_segment(shape: tuple[int, int]) -> SegmentMap:
-    """What a flat picture is."""
-    return SegmentMap(np.zeros(shape, np.int32))
-
-
 def segments_of(rows: Float32[np.ndarray, "n d"], segments: int | Literal["auto"], seed: int) -> int:
     """The number asked for, or a guess that is noted with what it is worth."""
     if segments != "auto":

@@ -13,7 +13,7 @@ from tangible_core.interfaces import Segmenter, Skippable
 from tangible_core.notes import note
 from tangible_core.pictures import to_grey
 
-from .skipping import nothing_to_divide
+from .skipping import nothing_to_divide, one_segment
 
 if TYPE_CHECKING:
     from .gabor_bank import Gabor
@@ -64,7 +64,7 @@ class Report(Segmenter, Skippable):
     def segment(self, picture: np.ndarray) -> SegmentMap:
         """Labels in the order of their first pixels. Raises: PictureError as `check_picture`."""
         from .filter_choice import needed_filters
-        from .labelling import labelled, one_segment
+        from .labelling import labelled
         from .noise_floor import is_flat, is_one_texture
 
         grey = to_grey(picture)

@@ -4,6 +4,7 @@ from typing import Literal
 
 import numpy as np
 
+from tangible_core.data import SegmentMap
 from tangible_core.pictures import is_one_colour
 
 
@@ -12,3 +13,8 @@ def nothing_to_divide(picture: np.ndarray, segments: int | Literal["auto"]) -> s
     if segments == 1:
         return "one segment is asked for; `segments: auto` or a larger number divides the picture"
     return "the picture is one flat colour" if is_one_colour(picture) else None
+
+
+def one_segment(shape: tuple[int, int]) -> SegmentMap:
+    """All of a picture of (h, w) pixels."""
+    return SegmentMap(np.zeros(shape, np.int32))

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
+from label_maps import rand_index
 from tangible_core.data import Views
 from tangible_core.errors import PictureError
 from tangible_core.notes import collected
@@ -13,19 +14,6 @@ from tangible_texture.gabor_bank import Gabor as bank_filter
 from tangible_texture.gabor_bank import kernel, sigma_of_bandwidth
 
 EFFORTS = ["fast", "balanced"]
-
-
-def rand_index(one: np.ndarray, other: np.ndarray) -> float:
-    """Adjusted Rand index of two label maps (Hubert & Arabie 1985)."""
-    table = np.zeros((one.max() + 1, other.max() + 1))
-    np.add.at(table, (one.ravel(), other.ravel()), 1)
-
-    def pairs(counts: np.ndarray) -> float:
-        return float((counts * (counts - 1) / 2).sum())
-
-    both, ones, others = pairs(table), pairs(table.sum(axis=1)), pairs(table.sum(axis=0))
-    chance = ones * others / pairs(np.array([one.size]))
-    return (both - chance) / ((ones + others) / 2 - chance)
 
 
 def waves(shape: tuple[int, int], wavelength_px: float, degrees: float, seed: int) -> np.ndarray:

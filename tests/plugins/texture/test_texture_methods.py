@@ -5,6 +5,7 @@ import sys
 import numpy as np
 import pytest
 
+from label_maps import rand_index
 from tangible_core.data import Views
 from tangible_core.errors import TangibleError
 from tangible_core.notes import collected
@@ -30,15 +31,6 @@ def quarters(size=160):
         grey[truth == label] = np.cos(2 * np.pi * (down * rows + right * columns))[truth == label]
     noise = np.random.default_rng(0).normal(0, 0.3, grey.shape)
     return np.clip(np.rint(128 + 40 * (grey + noise)), 0, 255).astype(np.uint8), truth
-
-
-def rand_index(one, other):
-    """Adjusted Rand index (Hubert & Arabie 1985)."""
-    table = np.zeros((one.max() + 1, other.max() + 1))
-    np.add.at(table, (one.ravel(), other.ravel()), 1)
-    both, ones, others = (float((n * (n - 1) / 2).sum()) for n in (table, table.sum(axis=1), table.sum(axis=0)))
-    chance = ones * others / (one.size * (one.size - 1) / 2)
-    return (both - chance) / ((ones + others) / 2 - chance)
 
 
 class TestReport:

@@ -15,7 +15,7 @@ import numpy as np
 
 from . import geometry, materials, scaling
 from .config import Chosen, PipelineConfig
-from .data import DisparityMap, HapticSurface, MaterialMap, Record, Relief, SegmentMap, Views, digest_of
+from .data import DisparityMap, HapticSurface, Material, MaterialMap, Record, Relief, SegmentMap, Views, digest_of
 from .errors import ConfigError
 from .interfaces import Method, Skippable, Touch
 from .scene import Scene
@@ -117,7 +117,7 @@ def _materials(config: PipelineConfig, scene: Scene, unsegmented: str | None) ->
         picture = scene.views.left if scene.views else None
         return materials.assign(inputs["segments"], picture, choice.by, library, choice.rules, choice.default)
 
-    key = f"{_core()} {choice.model_dump_json(exclude={'library'})} {digest_of(tuple(library.values()))}"
+    key = f"{_core()} {choice.model_dump_json(exclude={'library'})} {_library_digest(tuple(library.values()))}"
     skip = f"there are no segments: {unsegmented}" if unsegmented else None
     return Rule("materials", "core", key, ("views", "segments"), make, skip)
 
@@ -164,6 +164,12 @@ def _identity(chosen: Chosen[Any] | None) -> tuple[str, str]:
         chosen.name,
         f"{chosen.origin} {cls.__module__}:{cls.__qualname__} {code} v{cls.version} {method.model_dump_json()}",
     )
+
+
+@cache
+def _library_digest(materials: tuple[Material, ...]) -> str:
+    """Kept, as a library has hundreds of values and hardly ever changes within a process."""
+    return digest_of(materials)
 
 
 @cache

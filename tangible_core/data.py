@@ -7,6 +7,7 @@ picture on the base plane.
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, fields, is_dataclass
+from enum import IntFlag
 from typing import Any, Literal, NamedTuple, cast, get_args
 
 import numpy as np
@@ -344,6 +345,43 @@ class DeviceSpec:
     buttons: int = 0
     simulated: bool = False
     """True if no motor moves."""
+
+
+class TickFlag(IntFlag):
+    """What happened in one tick of a force loop; any number of them at once."""
+
+    TOUCHING = 1
+    """The law gave a force."""
+    FORCE_LIMITED = 2
+    """The force was over the greatest allowed, and scaled down."""
+    SLEW_LIMITED = 4
+    """The force changed by more than is allowed in a tick, and only went part of the way."""
+    STIFFNESS_LIMITED = 8
+    """The law is stiffer than this loop and device hold stably, and was softened."""
+    RAMPING = 16
+    """The force is fading in."""
+    NOT_FINITE = 32
+    """The law gave NaN or infinity, or the device did; the force was zero."""
+    DAMPED = 64
+    """The passivity controller took back energy that the loop had given away."""
+    STALE = 128
+    """The device had no fresh position for too long; the force was zero."""
+    OVERRUN = 256
+    """The tick began more than a period late."""
+    SWAPPED = 512
+    """The first tick on a new scene."""
+
+
+TICK_COLUMNS = (
+    *("time_s", "late_s"),
+    *("x_m", "y_m", "z_m"),
+    *("vx_m_per_s", "vy_m_per_s", "vz_m_per_s"),
+    *("proxy_x_m", "proxy_y_m", "proxy_z_m"),
+    *("fx_n", "fy_n", "fz_n"),
+    *("flags", "buttons"),
+)
+"""What is kept of a tick, each a float64: when it began and how late, the tip, the proxy (NaN where there is none), the
+force that the device was given, and the sum of its `TickFlag`s."""
 
 
 OutcomeKind = Literal["given", "ran", "cached", "skipped", "failed"]

@@ -16,9 +16,7 @@ HEIGHTS = types.Array(types.float32, 2, "C", readonly=True)
 LABELS = types.Array(int32, 2, "C", readonly=True)
 GREYS = types.Array(uint8, 2, "C", readonly=True)
 TABLE = types.Array(float64, 1, "C", readonly=True)
-POINTS = types.Array(float64, 2, "C", readonly=True)
 NEWTONS = types.UniTuple(float64, 3)
-FORCES = float64[:, ::1]
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -66,17 +64,3 @@ def _between(place, count):
         return last, last, 0.0
     low = int(place)
     return low, low + 1, place - low
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def step_velocity(positions_m, period_s, i):
-    """Velocity that brought the path to position i, one period after the one before it.
-
-    0 at the first position, and where it is not finite.
-    """
-    if i == 0:
-        return 0.0, 0.0, 0.0
-    vx = (positions_m[i, 0] - positions_m[i - 1, 0]) / period_s
-    vy = (positions_m[i, 1] - positions_m[i - 1, 1]) / period_s
-    vz = (positions_m[i, 2] - positions_m[i - 1, 2]) / period_s
-    return (vx, vy, vz) if np.isfinite(vx) and np.isfinite(vy) and np.isfinite(vz) else (0.0, 0.0, 0.0)

@@ -1,6 +1,7 @@
 """Whether the hand is in the surface, and where the proxy starts from when it comes in; compiled.
 
-A touch remembers, in `memory`: 0 the phase, 1-2 the proxy's x and y, 3-5 where the hand was, 6 whether it slides.
+A touch remembers, in `memory`: 0-2 the proxy, its z NaN while nothing is touched, 3-5 where the hand was, 6 whether the
+proxy slides, 7 the phase.
 Imports numba: a method imports this module inside its verb.
 """
 
@@ -12,7 +13,7 @@ from numba import njit
 from .bilinear import cell, over
 from .spline import height
 
-REMEMBERED = 7
+REMEMBERED = 8
 LOST, BESIDE, FREE, TOUCHING = 0.0, 1.0, 2.0, 3.0
 """Nothing is known of the hand; it is beside the surface or came in under its rim; above it; the proxy is on top."""
 LEAP_M = 0.005
@@ -39,23 +40,23 @@ def _entry(coefficients, across_per_m, down_per_m, from_x, from_y, from_z, x, y,
 @njit(cache=True, nogil=True, error_model="numpy", inline="always")
 def approach(coefficients, width_m, length_m, across_per_m, down_per_m, tiles_m, memory, x, y, z, speed):
     """Whether the hand is in the surface; its phase, and where its proxy starts from this tick, go to the memory."""
-    phase, px, py, was_x, was_y, was_z = memory[0], memory[1], memory[2], memory[3], memory[4], memory[5]
-    memory[0], memory[3], memory[4], memory[5] = LOST, x, y, z
+    phase, px, py, was_x, was_y, was_z = memory[7], memory[0], memory[1], memory[3], memory[4], memory[5]
+    memory[7], memory[2], memory[3], memory[4], memory[5] = LOST, np.nan, x, y, z
     if not np.isfinite(x + y + z + speed):
         return False
     if not over(width_m, length_m, x, y):
-        memory[0] = BESIDE
-        memory[1] = min(max(x, -0.5 * width_m), 0.5 * width_m)
-        memory[2] = min(max(y, -0.5 * length_m), 0.5 * length_m)
+        memory[7] = BESIDE
+        memory[0] = min(max(x, -0.5 * width_m), 0.5 * width_m)
+        memory[1] = min(max(y, -0.5 * length_m), 0.5 * length_m)
         return False
     row, column = cell(tiles_m.shape[0], tiles_m.shape[1], width_m, length_m, x, y)
-    memory[0] = FREE
+    memory[7] = FREE
     if z >= tiles_m[row, column, 0]:
         return False
     depth = height(coefficients, across_per_m, down_per_m, x, y) - z
     if not depth > 0.0:
         return False
-    memory[0] = TOUCHING
+    memory[7] = TOUCHING
     leap = (x - was_x) ** 2 + (y - was_y) ** 2 + (z - was_z) ** 2 > LEAP_M * LEAP_M
     stretch = (x - px) ** 2 + (y - py) ** 2
     if phase == LOST or leap or (phase == TOUCHING and stretch > max(STRETCH_M * STRETCH_M, depth * depth)):
@@ -68,8 +69,8 @@ def approach(coefficients, width_m, length_m, across_per_m, down_per_m, tiles_m,
         else:
             px = x
         if z < height(coefficients, across_per_m, down_per_m, px, py):
-            memory[0] = BESIDE
+            memory[7] = BESIDE
     if phase != TOUCHING or leap:
         memory[6] = 0.0
-    memory[1], memory[2] = px, py
+    memory[0], memory[1] = px, py
     return True

@@ -5,11 +5,11 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field
 
+from tangible_core.compiled import CompiledTouch
 from tangible_core.data import HapticSurface
 from tangible_core.geometry import normals
 from tangible_core.interfaces import ForceRenderer, Touch
 
-from .compiled import CompiledTouch
 from .material_table import stiffness_table
 
 
@@ -32,6 +32,6 @@ class ForceShading(ForceRenderer):
 
         heights = np.ascontiguousarray(surface.height_m, np.float32)
         out = np.ascontiguousarray(np.moveaxis(normals(surface.relief), 2, 0))
-        table = stiffness_table(surface, self.stiffness_n_per_m)
-        fixed = (heights, out, *table, *map(float, surface.extent_m))
-        return CompiledTouch(shading_kernels.tick, shading_kernels.along, fixed)
+        labels, stiffness = stiffness_table(surface, self.stiffness_n_per_m)
+        fixed = (heights, out, labels, stiffness, *map(float, surface.extent_m))
+        return CompiledTouch(shading_kernels.tick, fixed, stiffness=float(stiffness.max()))

@@ -3,9 +3,9 @@
 # ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
 
 import numpy as np
-from numba import float64, njit, void
+from numba import float64, njit
 
-from .bilinear import FORCES, GREYS, HEIGHTS, NEWTONS, POINTS, cell, over, step_velocity
+from .bilinear import GREYS, HEIGHTS, NEWTONS, cell, over
 
 SURFACE = (HEIGHTS, GREYS, float64, float64, float64)
 
@@ -19,14 +19,3 @@ def tick(height_m, grey, width_m, length_m, white_n, x, y, z, vx, vy, vz):
     if z >= np.float64(height_m[row, column]):
         return 0.0, 0.0, 0.0
     return 0.0, 0.0, white_n * grey[row, column] / 255.0
-
-
-@njit(void(*SURFACE, POINTS, float64, FORCES), cache=True, nogil=True, error_model="numpy")
-def along(height_m, grey, width_m, length_m, white_n, positions_m, period_s, force_n):
-    """The same for every position of a path."""
-    for i in range(positions_m.shape[0]):
-        x, y, z = positions_m[i, 0], positions_m[i, 1], positions_m[i, 2]
-        vx, vy, vz = step_velocity(positions_m, period_s, i)
-        force_n[i, 0], force_n[i, 1], force_n[i, 2] = tick(
-            height_m, grey, width_m, length_m, white_n, x, y, z, vx, vy, vz
-        )

@@ -5,10 +5,10 @@ from typing import Annotated, ClassVar
 import numpy as np
 from pydantic import Field
 
+from tangible_core.compiled import CompiledTouch
 from tangible_core.data import HapticSurface
 from tangible_core.interfaces import ForceRenderer, Touch
 
-from .compiled import CompiledTouch
 from .grey_levels import grey_levels
 
 
@@ -35,4 +35,4 @@ class GreyLevel(ForceRenderer):
 
         heights = np.ascontiguousarray(surface.height_m, np.float32)
         fixed = (heights, grey_levels(heights), *map(float, surface.extent_m), self.force_at_white_n)
-        return CompiledTouch(grey_kernels.tick, grey_kernels.along, fixed)
+        return CompiledTouch(grey_kernels.tick, fixed)

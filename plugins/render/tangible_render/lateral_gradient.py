@@ -4,11 +4,11 @@ from typing import Annotated, ClassVar
 
 from pydantic import Field
 
+from tangible_core.compiled import CompiledTouch
 from tangible_core.data import HapticSurface
 from tangible_core.interfaces import ForceRenderer, Touch
 
 from .coefficients import spline_surface
-from .compiled import CompiledTouch
 from .dequantise import Filter
 
 
@@ -32,4 +32,4 @@ class LateralGradient(ForceRenderer):
         from . import lateral_kernels
 
         fixed = (*spline_surface(surface, self.dequantise), self.force_per_slope_n, 0.0)
-        return CompiledTouch(lateral_kernels.tick, lateral_kernels.along, fixed)
+        return CompiledTouch(lateral_kernels.tick, fixed)

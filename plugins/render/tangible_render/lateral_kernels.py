@@ -3,9 +3,9 @@
 # ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
 
 import numpy as np
-from numba import float64, njit, void
+from numba import float64, njit
 
-from .bilinear import FORCES, HEIGHTS, NEWTONS, POINTS, over, step_velocity
+from .bilinear import HEIGHTS, NEWTONS, over
 from .spline import slope
 
 SURFACE = (HEIGHTS, *[float64] * 6)
@@ -23,16 +23,3 @@ def tick(coefficients, width_m, length_m, across_per_m, down_per_m, push_n, stif
     push = push_n + stiffness_n_per_m * depth
     fx, fy = -slope_x * push, -slope_y * push
     return (fx, fy, 0.0) if np.isfinite(fx + fy) else (0.0, 0.0, 0.0)
-
-
-@njit(void(*SURFACE, POINTS, float64, FORCES), cache=True, nogil=True, error_model="numpy")
-def along(
-    coefficients, width_m, length_m, across_per_m, down_per_m, push_n, stiffness_n_per_m, positions_m, period_s, force_n
-):
-    """The same for every position of a path."""
-    for i in range(positions_m.shape[0]):
-        x, y, z = positions_m[i, 0], positions_m[i, 1], positions_m[i, 2]
-        vx, vy, vz = step_velocity(positions_m, period_s, i)
-        force_n[i, 0], force_n[i, 1], force_n[i, 2] = tick(
-            coefficients, width_m, length_m, across_per_m, down_per_m, push_n, stiffness_n_per_m, x, y, z, vx, vy, vz
-        )

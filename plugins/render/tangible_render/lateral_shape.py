@@ -4,11 +4,11 @@ from typing import Annotated, ClassVar
 
 from pydantic import Field
 
+from tangible_core.compiled import CompiledTouch
 from tangible_core.data import HapticSurface
 from tangible_core.interfaces import ForceRenderer, Touch
 
 from .coefficients import spline_surface
-from .compiled import CompiledTouch
 from .dequantise import Filter
 
 
@@ -34,4 +34,4 @@ class LateralShape(ForceRenderer):
         from . import lateral_kernels
 
         fixed = (*spline_surface(surface, self.dequantise), 0.0, self.stiffness_n_per_m)
-        return CompiledTouch(lateral_kernels.tick, lateral_kernels.along, fixed)
+        return CompiledTouch(lateral_kernels.tick, fixed, stiffness=self.stiffness_n_per_m)

@@ -3,9 +3,9 @@
 # ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
 
 import numpy as np
-from numba import float64, int64, njit, types, void
+from numba import float64, int64, njit, types
 
-from .bilinear import FORCES, HEIGHTS, NEWTONS, POINTS, cell, over, step_velocity
+from .bilinear import HEIGHTS, NEWTONS, cell, over
 
 TABLES = types.Array(int64, 3, "C", readonly=True)
 SURFACE = (HEIGHTS, TABLES, float64, float64, int64, int64, float64, float64)
@@ -34,16 +34,3 @@ def tick(height_m, tables, width_m, length_m, half_rows, half_columns, across_n,
         return 0.0, 0.0, 0.0
     across, along = window(tables, row, column, half_rows, half_columns)
     return across_n * across, along_n * along, 0.0
-
-
-@njit(void(*SURFACE, POINTS, float64, FORCES), cache=True, nogil=True, error_model="numpy")
-def along(
-    height_m, tables, width_m, length_m, half_rows, half_columns, across_n, along_n, positions_m, period_s, force_n
-):
-    """The same for every position of a path."""
-    for i in range(positions_m.shape[0]):
-        x, y, z = positions_m[i, 0], positions_m[i, 1], positions_m[i, 2]
-        vx, vy, vz = step_velocity(positions_m, period_s, i)
-        force_n[i, 0], force_n[i, 1], force_n[i, 2] = tick(
-            height_m, tables, width_m, length_m, half_rows, half_columns, across_n, along_n, x, y, z, vx, vy, vz
-        )

@@ -4,11 +4,11 @@ from typing import Annotated
 
 from pydantic import Field
 
+from tangible_core.compiled import CompiledTouch
 from tangible_core.data import HapticSurface
 from tangible_core.interfaces import ForceRenderer, Touch
 
 from .coefficients import spline_surface
-from .compiled import CompiledTouch
 from .dequantise import Filter
 from .material_table import stiffness_table
 
@@ -34,5 +34,6 @@ class Penalty(ForceRenderer):
         from . import vertical_kernels
 
         shape = spline_surface(surface, self.dequantise)
-        fixed = (*shape, *stiffness_table(surface, self.stiffness_n_per_m), self.damping_n_s_per_m)
-        return CompiledTouch(vertical_kernels.tick, vertical_kernels.along, fixed)
+        labels, stiffness = stiffness_table(surface, self.stiffness_n_per_m)
+        fixed = (*shape, labels, stiffness, self.damping_n_s_per_m)
+        return CompiledTouch(vertical_kernels.tick, fixed, stiffness=float(stiffness.max()))

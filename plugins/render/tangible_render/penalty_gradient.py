@@ -5,10 +5,10 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field
 
+from tangible_core.compiled import CompiledTouch
 from tangible_core.data import HapticSurface
 from tangible_core.interfaces import ForceRenderer, Touch
 
-from .compiled import CompiledTouch
 from .material_table import stiffness_table
 
 
@@ -34,7 +34,7 @@ class PenaltyGradient(ForceRenderer):
         """A new touch on this surface; compiled on the first use on a machine, then loaded."""
         from . import penalty_kernels
 
-        labels, stiffness_n_per_m = stiffness_table(surface, self.stiffness_n_per_m)
+        labels, stiffness = stiffness_table(surface, self.stiffness_n_per_m)
         heights = np.ascontiguousarray(surface.height_m, np.float32)
-        fixed = (heights, labels, stiffness_n_per_m, *map(float, surface.extent_m), self.damping_n_s_per_m)
-        return CompiledTouch(penalty_kernels.tick, penalty_kernels.along, fixed)
+        fixed = (heights, labels, stiffness, *map(float, surface.extent_m), self.damping_n_s_per_m)
+        return CompiledTouch(penalty_kernels.tick, fixed, stiffness=float(stiffness.max()))

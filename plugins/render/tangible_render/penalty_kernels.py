@@ -3,9 +3,9 @@
 # ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
 
 import numpy as np
-from numba import float64, njit, void
+from numba import float64, njit
 
-from .bilinear import FORCES, HEIGHTS, LABELS, NEWTONS, POINTS, TABLE, bilinear, cell, over, step_velocity
+from .bilinear import HEIGHTS, LABELS, NEWTONS, TABLE, bilinear, cell, over
 
 SURFACE = (HEIGHTS, LABELS, TABLE, float64, float64, float64)
 
@@ -27,14 +27,3 @@ def tick(height_m, labels, stiffness_n_per_m, width_m, length_m, damping_n_s_per
     if not (np.isfinite(outward) and np.isfinite(fx) and np.isfinite(fy) and np.isfinite(push)):
         return 0.0, 0.0, 0.0
     return fx, fy, push
-
-
-@njit(void(*SURFACE, POINTS, float64, FORCES), cache=True, nogil=True, error_model="numpy")
-def along(height_m, labels, stiffness_n_per_m, width_m, length_m, damping_n_s_per_m, positions_m, period_s, force_n):
-    """The same for every position of a path."""
-    for i in range(positions_m.shape[0]):
-        x, y, z = positions_m[i, 0], positions_m[i, 1], positions_m[i, 2]
-        vx, vy, vz = step_velocity(positions_m, period_s, i)
-        force_n[i, 0], force_n[i, 1], force_n[i, 2] = tick(
-            height_m, labels, stiffness_n_per_m, width_m, length_m, damping_n_s_per_m, x, y, z, vx, vy, vz
-        )

@@ -5,11 +5,11 @@ from typing import Annotated, Self
 import numpy as np
 from pydantic import Field, model_validator
 
+from tangible_core.compiled import CompiledTouch
 from tangible_core.data import HapticSurface
 from tangible_core.interfaces import ForceRenderer, Touch
 
 from .coefficients import spline_surface
-from .compiled import CompiledTouch
 from .dequantise import Filter
 from .material_table import Row, material_table
 from .tiles import tile_bounds
@@ -68,8 +68,8 @@ class Proxy(ForceRenderer):
         memory = np.zeros(contact.REMEMBERED)
         if len(table) == 1 and not table[0, 1:].any():
             fixed = (*shape, float(table[0, 0]), memory)
-            return CompiledTouch(proxy_kernels.spring_tick, proxy_kernels.spring_along, fixed)
-        return CompiledTouch(proxy_kernels.tick, proxy_kernels.along, (*shape, labels, table, memory))
+            return CompiledTouch(proxy_kernels.spring_tick, fixed, memory, float(table[0, 0]))
+        return CompiledTouch(proxy_kernels.tick, (*shape, labels, table, memory), memory, float(table[:, 0].max()))
 
     def _plain(self) -> Row:
         return self.stiffness_n_per_m, self.damping_n_s_per_m, self.static_friction, self.dynamic_friction

@@ -6,9 +6,9 @@ What a touch remembers is listed in `contact`.
 # ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
 
 import numpy as np
-from numba import float32, float64, njit, types, void
+from numba import float32, float64, njit, types
 
-from .bilinear import FORCES, HEIGHTS, LABELS, NEWTONS, POINTS, cell, step_velocity
+from .bilinear import HEIGHTS, LABELS, NEWTONS, cell
 from .closest import settle
 from .contact import BESIDE, approach
 
@@ -24,18 +24,18 @@ def tick(
     """F = k (p - q) - b v_n n, the proxy p held by friction; the table has a row k, b, mu_s, mu_d for each label."""
     if not approach(coefficients, width_m, length_m, across_per_m, down_per_m, tiles_m, memory, x, y, z, vx + vy + vz):
         return 0.0, 0.0, 0.0
-    px, py, top, held, hx, hy = memory[1], memory[2], z, 0.0, 0.0, 0.0
+    px, py, top, held, hx, hy = memory[0], memory[1], z, 0.0, 0.0, 0.0
     row, column = cell(labels.shape[0], labels.shape[1], width_m, length_m, px, py)
     label = labels[row, column]
     stiffness, damping, static, dynamic = table[label, 0], table[label, 1], table[label, 2], table[label, 3]
-    if memory[0] != BESIDE:
+    if memory[7] != BESIDE:
         px, py, top, hx, hy, memory[6] = settle(
             coefficients, width_m, length_m, across_per_m, down_per_m, px, py, x, y, z, static, dynamic, memory[6]
         )
-        memory[1], memory[2] = px, py
         square = 1.0 + hx * hx + hy * hy
         spring = stiffness * (hx * (x - px) + hy * (y - py) + top - z) / square
         held = min(damping * (vz - hx * vx - hy * vy) / square, max(spring, 0.0))
+    memory[0], memory[1], memory[2] = px, py, top
     fx, fy, fz = stiffness * (px - x) + held * hx, stiffness * (py - y) + held * hy, stiffness * (top - z) - held
     return (fx, fy, fz) if np.isfinite(fx + fy + fz) else (0.0, 0.0, 0.0)
 
@@ -50,10 +50,10 @@ def spring_tick(
     """
     if not approach(coefficients, width_m, length_m, across_per_m, down_per_m, tiles_m, memory, x, y, z, vx + vy + vz):
         return 0.0, 0.0, 0.0
-    px, py, top = memory[1], memory[2], z
+    px, py, top = memory[0], memory[1], z
     row, column = cell(tiles_m.shape[0], tiles_m.shape[1], width_m, length_m, x, y)
     highest, lowest = tiles_m[row, column, 0], tiles_m[row, column, 1]
-    if memory[0] == BESIDE:
+    if memory[7] == BESIDE:
         pass
     elif highest == lowest and (row, column) == cell(tiles_m.shape[0], tiles_m.shape[1], width_m, length_m, px, py):
         px, py, top = x, y, np.float64(highest)
@@ -61,67 +61,6 @@ def spring_tick(
         px, py, top, _, _, _ = settle(
             coefficients, width_m, length_m, across_per_m, down_per_m, px, py, x, y, z, 0.0, 0.0, 0.0
         )
-    memory[1], memory[2] = px, py
+    memory[0], memory[1], memory[2] = px, py, top
     fx, fy, fz = stiffness * (px - x), stiffness * (py - y), stiffness * (top - z)
     return (fx, fy, fz) if np.isfinite(fx + fy + fz) else (0.0, 0.0, 0.0)
-
-
-@njit(void(*SURFACE, LABELS, MATERIALS, MEMORY, POINTS, float64, FORCES), cache=True, nogil=True, error_model="numpy")
-def along(
-    coefficients,
-    width_m,
-    length_m,
-    across_per_m,
-    down_per_m,
-    tiles_m,
-    labels,
-    table,
-    memory,
-    positions_m,
-    period_s,
-    force_n,
-):
-    """`tick` for every position of a path."""
-    for i in range(positions_m.shape[0]):
-        x, y, z = positions_m[i, 0], positions_m[i, 1], positions_m[i, 2]
-        vx, vy, vz = step_velocity(positions_m, period_s, i)
-        force_n[i, 0], force_n[i, 1], force_n[i, 2] = tick(
-            coefficients,
-            width_m,
-            length_m,
-            across_per_m,
-            down_per_m,
-            tiles_m,
-            labels,
-            table,
-            memory,
-            x,
-            y,
-            z,
-            vx,
-            vy,
-            vz,
-        )
-
-
-@njit(void(*SURFACE, float64, MEMORY, POINTS, float64, FORCES), cache=True, nogil=True, error_model="numpy")
-def spring_along(
-    coefficients,
-    width_m,
-    length_m,
-    across_per_m,
-    down_per_m,
-    tiles_m,
-    stiffness,
-    memory,
-    positions_m,
-    period_s,
-    force_n,
-):
-    """`spring_tick` for every position of a path."""
-    for i in range(positions_m.shape[0]):
-        x, y, z = positions_m[i, 0], positions_m[i, 1], positions_m[i, 2]
-        vx, vy, vz = step_velocity(positions_m, period_s, i)
-        force_n[i, 0], force_n[i, 1], force_n[i, 2] = spring_tick(
-            coefficients, width_m, length_m, across_per_m, down_per_m, tiles_m, stiffness, memory, x, y, z, vx, vy, vz
-        )

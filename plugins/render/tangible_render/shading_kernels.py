@@ -5,9 +5,9 @@
 import math
 
 import numpy as np
-from numba import float32, float64, njit, types, void
+from numba import float32, float64, njit, types
 
-from .bilinear import FORCES, HEIGHTS, LABELS, NEWTONS, POINTS, TABLE, bilinear, cell, over, step_velocity
+from .bilinear import HEIGHTS, LABELS, NEWTONS, TABLE, bilinear, cell, over
 
 NORMALS = types.Array(float32, 3, "C", readonly=True)
 SURFACE = (HEIGHTS, NORMALS, LABELS, TABLE, float64, float64)
@@ -29,14 +29,3 @@ def tick(height_m, normal, labels, stiffness_n_per_m, width_m, length_m, x, y, z
     facet = math.sqrt((1.0 + slope_x * slope_x + slope_y * slope_y) * (nx * nx + ny * ny + nz * nz))
     push = stiffness_n_per_m[labels[row, column]] * depth / facet
     return (push * nx, push * ny, push * nz) if np.isfinite(push) else (0.0, 0.0, 0.0)
-
-
-@njit(void(*SURFACE, POINTS, float64, FORCES), cache=True, nogil=True, error_model="numpy")
-def along(height_m, normal, labels, stiffness_n_per_m, width_m, length_m, positions_m, period_s, force_n):
-    """The same for every position of a path."""
-    for i in range(positions_m.shape[0]):
-        x, y, z = positions_m[i, 0], positions_m[i, 1], positions_m[i, 2]
-        vx, vy, vz = step_velocity(positions_m, period_s, i)
-        force_n[i, 0], force_n[i, 1], force_n[i, 2] = tick(
-            height_m, normal, labels, stiffness_n_per_m, width_m, length_m, x, y, z, vx, vy, vz
-        )

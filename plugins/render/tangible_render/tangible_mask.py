@@ -5,10 +5,10 @@ from typing import Annotated, ClassVar
 import numpy as np
 from pydantic import AfterValidator, Field
 
+from tangible_core.compiled import CompiledTouch
 from tangible_core.data import HapticSurface
 from tangible_core.interfaces import ForceRenderer, Touch
 
-from .compiled import CompiledTouch
 from .grey_levels import grey_levels
 
 
@@ -48,7 +48,7 @@ class TangibleMask(ForceRenderer):
         columns, rows = self._cells(across_m), self._cells(along_m)
         scales = self._newtons(columns, rows, across_m), self._newtons(rows, columns, along_m)
         fixed = (heights, summed_tables(255 - grey_levels(heights)), *map(float, surface.extent_m))
-        return CompiledTouch(mask_kernels.tick, mask_kernels.along, (*fixed, rows // 2, columns // 2, *scales))
+        return CompiledTouch(mask_kernels.tick, (*fixed, rows // 2, columns // 2, *scales))
 
     def _cells(self, pitch_m: float) -> int:
         return self.mask_px or max(3, 2 * round((self.mask_m / pitch_m - 1) / 2) + 1)

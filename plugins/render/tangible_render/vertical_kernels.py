@@ -3,9 +3,9 @@
 # ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
 
 import numpy as np
-from numba import float64, njit, void
+from numba import float64, njit
 
-from .bilinear import FORCES, HEIGHTS, LABELS, NEWTONS, POINTS, TABLE, cell, over, step_velocity
+from .bilinear import HEIGHTS, LABELS, NEWTONS, TABLE, cell, over
 from .spline import height
 
 SURFACE = (HEIGHTS, *[float64] * 4, LABELS, TABLE, float64)
@@ -24,39 +24,3 @@ def tick(
     row, column = cell(labels.shape[0], labels.shape[1], width_m, length_m, x, y)
     push = max(stiffness[labels[row, column]] * depth - damping_n_s_per_m * vz, 0.0)
     return (0.0, 0.0, push) if np.isfinite(push) and np.isfinite(vx + vy + vz) else (0.0, 0.0, 0.0)
-
-
-@njit(void(*SURFACE, POINTS, float64, FORCES), cache=True, nogil=True, error_model="numpy")
-def along(
-    coefficients,
-    width_m,
-    length_m,
-    across_per_m,
-    down_per_m,
-    labels,
-    stiffness,
-    damping_n_s_per_m,
-    positions_m,
-    period_s,
-    force_n,
-):
-    """The same for every position of a path."""
-    for i in range(positions_m.shape[0]):
-        x, y, z = positions_m[i, 0], positions_m[i, 1], positions_m[i, 2]
-        vx, vy, vz = step_velocity(positions_m, period_s, i)
-        force_n[i, 0], force_n[i, 1], force_n[i, 2] = tick(
-            coefficients,
-            width_m,
-            length_m,
-            across_per_m,
-            down_per_m,
-            labels,
-            stiffness,
-            damping_n_s_per_m,
-            x,
-            y,
-            z,
-            vx,
-            vy,
-            vz,
-        )

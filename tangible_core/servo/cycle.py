@@ -13,9 +13,10 @@ from numba.extending import intrinsic
 
 from .. import compiling as compiling
 from ..data import TICK_COLUMNS, TickFlag
-from .clock import SECOND_NS, longer_lead_ns, wait_ns
+from .clock import SECOND_NS, wait_ns
 from .coupling import couple
 from .guard import guard, wait
+from .lead import longer_lead_ns as longer_lead
 from .ring import (
     COMMAND,
     COUNT,
@@ -40,6 +41,8 @@ FLAGS = TICK_COLUMNS.index("flags")
 STATE = 7
 """Length of a device's state, as `LinkKernels` says."""
 OVERRUN = int(TickFlag.OVERRUN)
+longer_lead_ns = njit(cache=True, nogil=True, error_model="numpy")(longer_lead)
+AT, LATE = 0, 1
 
 
 @intrinsic
@@ -153,3 +156,23 @@ def run(clock, link, law, limits, shared, state, row):
     while header[COMMAND] == RUN and header[COUNT] < header[LAST]:
         at_ns, late_ns = begin(clock, header)
         step(link, law, limits, shared, state, row, at_ns, late_ns)
+
+
+# What Python calls once a tick is a generator: it keeps its arguments, and passing them takes the time of a hundred
+# ticks. AT and LATE of `now` say when the tick began.
+
+
+@njit(cache=True, error_model="numpy")
+def ticks(link, law, limits, shared, state, row, now):
+    """A whole tick at each `next`."""
+    while True:
+        step(link, law, limits, shared, state, row, now[AT], now[LATE])
+        yield True
+
+
+@njit(cache=True, error_model="numpy")
+def finished(shared, row, now):
+    """A tick that Python did, put into the ring at each `next`."""
+    while True:
+        finish(shared, row, now[AT], now[LATE])
+        yield True

@@ -9,10 +9,12 @@ import numpy as np
 from ..compiled import CompiledLink, CompiledTouch
 from ..data import TICK_COLUMNS, Force, HapticState, TickFlag
 from ..interfaces import Link, Touch
+from .lead import longer_lead_ns
 from .ring import (
     COMMAND,
     COUNT,
     LAST,
+    LEAD_NS,
     MARKS,
     NEXT_NS,
     OVERRUNS,
@@ -43,25 +45,27 @@ def prepare(link: Link, touch: Touch, ring: Ring, settings: np.ndarray) -> Loop:
     """The fastest loop that this device and this law allow; what it needs is compiled or loaded before this returns."""
     from . import clock, cycle
 
-    kernels, sleeps = cast(Any, cycle), clock.SLEEPS
+    kernels = cast(Any, cycle)
     row = np.full(len(TICK_COLUMNS), np.nan)
     shared, limits = sections(ring), (settings, ring.guard)
-    ticking = clock.clock() if sleeps else None
     if not isinstance(link, CompiledLink) or not isinstance(touch, CompiledTouch):
-        tick = _plain(link, touch, limits, shared, row)
-        return Loop(_timed(tick, shared, ticking), "the tick is Python's")
+        return Loop(_timed(_plain(link, touch, limits, shared, row), shared[0]), "the tick is Python's")
     fixed = (*_kernels(link, touch), limits)
     state = np.zeros(cycle.STATE)
-    if sleeps and not link.exchanges:
+    if clock.SLEEPS and not link.exchanges:
+        ticking = clock.clock()
         kernels.run(ticking, *fixed, _stopped(shared), state, row)
         return Loop(lambda: kernels.run(ticking, *fixed, shared, state, row), "the whole loop is compiled")
-    kernels.step(*fixed, _stopped(shared), state, row, 0, 0)
+    now = np.zeros(2, np.int64)
+    next(kernels.ticks(*fixed, _stopped(shared), state, row, now))
+    ticks = kernels.ticks(*fixed, shared, state, row, now)
 
     def exchanged(at_ns: int, late_ns: int) -> None:
         link.exchange()
-        kernels.step(*fixed, shared, state, row, at_ns, late_ns)
+        now[:] = at_ns, late_ns
+        next(ticks)
 
-    return Loop(_timed(exchanged, shared, ticking), "the tick is compiled, Python asks the device")
+    return Loop(_timed(exchanged, shared[0]), "the tick is compiled, Python asks the device")
 
 
 def sections(ring: Ring) -> Sections:
@@ -105,8 +109,10 @@ def _plain(link: Link, touch: Touch, limits: tuple[np.ndarray, np.ndarray], shar
 
     proxy = touch.memory[:3] if isinstance(touch, CompiledTouch) else np.full(3, np.nan)
     header = shared[0]
-    couple, allow, finish = cast(Any, coupling).couple, cast(Any, guard).guard, cast(Any, cycle).finish
-    finish(tuple(map(np.zeros_like, shared)), row, 0, 0)  # compiled or loaded now, not in the first tick
+    couple, allow, finished = cast(Any, coupling).couple, cast(Any, guard).guard, cast(Any, cycle).finished
+    now = np.zeros(2, np.int64)
+    next(finished(tuple(map(np.zeros_like, shared)), row, now))  # compiled or loaded now, not in the first tick
+    finish = finished(shared, row, now)
 
     def tick(at_ns: int, late_ns: int) -> None:
         period_s = (at_ns - header[PREVIOUS_NS] if header[COUNT] else header[PERIOD_NS]) / SECOND_NS
@@ -118,33 +124,34 @@ def _plain(link: Link, touch: Touch, limits: tuple[np.ndarray, np.ndarray], shar
         link.write(Force(*force))
         begun = (at_ns - header[START_NS]) / SECOND_NS, late_ns / SECOND_NS
         row[:] = (*begun, *device, *proxy, *link.applied, flags, state.buttons)
-        finish(shared, row, at_ns, late_ns)
+        now[:] = at_ns, late_ns
+        next(finish)
 
     return tick
 
 
-def _timed(tick: Timed, shared: Sections, ticking: Any) -> Callable[[], None]:
-    """A loop of Python's around a tick; the waiting is compiled where it can be."""
-    from . import cycle
-
-    header = shared[0]
-    begin = cast(Any, cycle).begin
-    if ticking:
-        begin(ticking, np.ones_like(header))  # compiled or loaded now
+def _timed(tick: Timed, header: np.ndarray) -> Callable[[], None]:
+    """A loop of Python's around a tick."""
 
     def run() -> None:
         while header[COMMAND] == RUN and header[COUNT] < header[LAST]:
-            tick(*(begin(ticking, header) if ticking else _begin(header)))
+            tick(*_begin(header))
 
     return run
 
 
 def _begin(header: np.ndarray) -> tuple[int, int]:
-    """`cycle.begin` where compiled code cannot sleep."""
-    due_ns, period_ns = int(header[NEXT_NS]), int(header[PERIOD_NS])
-    time.sleep(max(0, due_ns - time.monotonic_ns()) / SECOND_NS)
+    """`cycle.begin` for a loop of Python's."""
+    due_ns, period_ns, lead_ns = header[[NEXT_NS, PERIOD_NS, LEAD_NS]].tolist()
     at_ns = time.monotonic_ns()
-    missed = max(0, at_ns - due_ns) // period_ns
-    header[OVERRUNS] += missed
-    header[NEXT_NS] = due_ns + (missed + 1) * period_ns
-    return at_ns, at_ns - due_ns
+    if at_ns < due_ns - lead_ns:
+        time.sleep((due_ns - lead_ns - at_ns) / SECOND_NS)
+        at_ns = time.monotonic_ns()
+    while at_ns < due_ns:
+        at_ns = time.monotonic_ns()
+    late_ns = at_ns - due_ns
+    if header[SPINS]:
+        header[LEAD_NS] = longer_lead_ns(lead_ns, late_ns)
+    header[OVERRUNS] += late_ns // period_ns
+    header[NEXT_NS] = due_ns + (late_ns // period_ns + 1) * period_ns
+    return at_ns, late_ns

@@ -1,7 +1,10 @@
 """What a ring says of its loop."""
 
+import math
+from bisect import bisect_left
+from itertools import accumulate
+
 import numpy as np
-from jaxtyping import Int64
 
 from ..data import TICK_COLUMNS, Force, HapticState, ServoReport, Spread
 from . import safety
@@ -29,14 +32,14 @@ def report(ring: Ring, stopped: str = "") -> ServoReport:
     )
 
 
-def spread(counts: Int64[np.ndarray, "n"], most_s: float) -> Spread:
+def spread(counts: np.ndarray, most_s: float) -> Spread:
     """Quantiles of a histogram of microseconds: the smallest bin that so many are in or under.
 
     >>> spread(np.array([0, 90, 9, 1]), 3e-6)
     Spread(p50=1.0, p99=2.0, p999=3.0, most=3.0)
     """
-    below = np.cumsum(counts)
-    p50, p99, p999 = (float(np.searchsorted(below, np.ceil(share * below[-1]))) for share in (0.5, 0.99, 0.999))
+    below = list(accumulate(counts.tolist()))
+    p50, p99, p999 = (float(bisect_left(below, math.ceil(share * below[-1]))) for share in (0.5, 0.99, 0.999))
     return Spread(p50, p99, p999, 1e6 * most_s)
 
 

@@ -38,7 +38,8 @@ def spread(counts: np.ndarray, most_s: float) -> Spread:
     >>> spread(np.array([0, 90, 9, 1]), 3e-6)
     Spread(p50=1.0, p99=2.0, p999=3.0, most=3.0)
     """
-    below = list(accumulate(counts.tolist()))
+    ticks: list[int] = counts.tolist()
+    below = list(accumulate(ticks))
     p50, p99, p999 = (float(bisect_left(below, math.ceil(share * below[-1]))) for share in (0.5, 0.99, 0.999))
     return Spread(p50, p99, p999, 1e6 * most_s)
 

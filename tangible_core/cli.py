@@ -87,7 +87,7 @@ def feel(
     config: Config,
     sets: Sets = None,
     seconds: Seconds = 8.0,
-    record: Annotated[Path | None, typer.Option(help="Keep every tick in this file (.npz or .csv).")] = None,
+    record: Annotated[Path | None, typer.Option(help="Keep every tick in this file (.nc, .npz or .csv).")] = None,
     as_json: Json = False,
     no_cache: NoCache = False,
 ) -> None:

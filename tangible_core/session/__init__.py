@@ -2,5 +2,7 @@
 
 from .loop import limited, run
 from .recording import INTERRUPTED, Recording, check_record_path, failure
+from .tick_file import About
+from .writer import Writer
 
-__all__ = ["INTERRUPTED", "Recording", "check_record_path", "failure", "limited", "run"]
+__all__ = ["INTERRUPTED", "About", "Recording", "Writer", "check_record_path", "failure", "limited", "run"]

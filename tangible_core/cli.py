@@ -98,6 +98,21 @@ def feel(
 
 
 @app.command()
+def replay(
+    recording: Annotated[Path, typer.Argument(help="What was felt (.nc, .npz or .csv).", show_default=False)],
+    config: Config,
+    sets: Sets = None,
+    record: Annotated[Path | None, typer.Option(help="Keep every tick in this file (.nc, .npz or .csv).")] = None,
+    as_json: Json = False,
+    no_cache: NoCache = False,
+) -> None:
+    """Feel a recording again through a pipeline's renderer, and compare the forces."""
+    from .commands import replay as command
+
+    command.replay(recording, config, sets or [], record, as_json, not no_cache)
+
+
+@app.command()
 def compare(
     config: Annotated[
         Path, typer.Argument(help="A comparison file (YAML), or results (.jsonl) to show again.", show_default=False)

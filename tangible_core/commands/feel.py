@@ -27,7 +27,7 @@ def feel(config: Path, sets: Sequence[str], seconds: float, record: Path | None,
     else:
         recording = felt(pipeline, touch, device.method, seconds)
         if record is not None:
-            replace(recording, about=about(pipeline)).save(record)
+            replace(recording, about=about(pipeline).stamped()).save(record)
     figures: dict[str, Any] = {"device": device.name, "spec": asdict(device.method.spec()), **recording.figures()}
     if as_json:
         show.print_json(

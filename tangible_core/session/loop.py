@@ -8,11 +8,11 @@ from typing import final
 
 import numpy as np
 
-from ..compiled import CompiledTouch
 from ..data import NO_FORCE, TICK_COLUMNS, Force, HapticState, ServoReport, TickFlag
 from ..errors import ConfigError, DeviceError, OutputError
 from ..interfaces import HapticDevice, Link, Touch
 from .recording import INTERRUPTED, Recording
+from .replay import proxy_of
 from .writer import Writer
 
 log = logging.getLogger(__name__)
@@ -20,7 +20,6 @@ MOST_TICKS = 3_600_000
 """Where a recording in memory is full, and the loop stops and says so: an hour at 1 kHz, half a gigabyte."""
 REPORT_EVERY_S = 0.1
 TOUCHING, LIMITED, NOT_FINITE = map(int, (TickFlag.TOUCHING, TickFlag.FORCE_LIMITED, TickFlag.NOT_FINITE))
-NOWHERE = (math.nan, math.nan, math.nan)
 
 
 def run(
@@ -113,7 +112,7 @@ class _Tape:
         self.stopped = ""
         self.ticks = 0
         self._numbers = array("d")
-        self._proxy = touch.memory[:3] if isinstance(touch, CompiledTouch) else np.full(3, np.nan)
+        self._proxy = proxy_of(touch)
         self._max_force_n = max_force_n
         self._on_report = on_report
         self._writer = writer
@@ -141,9 +140,8 @@ class _Tape:
         way = zip(self._force, state.position_m, self._state.position_m, strict=True)
         self._work_j += sum(held * (now - then) for held, now, then in way)
         self._peak_n = max(self._peak_n, math.hypot(*force))
-        proxy = self._proxy.tolist()
         self._numbers.extend((state.time_s, 0.0, *state.position_m, *state.velocity_m_per_s))
-        self._numbers.extend((*(NOWHERE if math.isnan(proxy[2]) else proxy), *force, self._flags, state.buttons))
+        self._numbers.extend((*self._proxy(), *force, self._flags, state.buttons))
         self._state, self._force = state, force
         self.ticks += 1
         if state.time_s - self._start_s >= REPORT_EVERY_S * (self._reports + 1):

@@ -1,9 +1,12 @@
 """The file of a recording: netCDF, a variable for each of TICK_COLUMNS, a record a tick (docs/recordings.md)."""
 
+import platform
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass, fields, replace
+from datetime import UTC, datetime
+from importlib.metadata import version
 from pathlib import Path
-from typing import Any, cast
+from typing import Any, Self, cast
 
 import numpy as np
 from jaxtyping import Float64
@@ -31,6 +34,13 @@ class About:
     """Date and time, ISO 8601."""
     software: str = ""
     """What wrote it, with versions."""
+
+    def stamped(self) -> Self:
+        """With date and versions, where they are not said."""
+        versions = [f"{name} {version(name)}" for name in ("tangible-images", "numpy")]
+        software = ", ".join([*versions, f"Python {platform.python_version()}"])
+        now = datetime.now(UTC).isoformat(timespec="seconds")
+        return replace(self, started=self.started or now, software=self.software or software)
 
 
 NOTHING_SAID = About()

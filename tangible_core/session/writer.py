@@ -1,10 +1,6 @@
 """Ticks to a file while they happen: what was appended can be read, however the program ends."""
 
-import platform
 from contextlib import suppress
-from dataclasses import replace
-from datetime import UTC, datetime
-from importlib.metadata import version
 from pathlib import Path
 from types import TracebackType
 from typing import Self, final
@@ -16,7 +12,7 @@ from ..data import TICK_COLUMNS
 from ..errors import OutputError
 from ..files import open_alone
 from . import netcdf, tick_file
-from .tick_file import About
+from .tick_file import NOTHING_SAID, About
 
 
 @final
@@ -29,7 +25,7 @@ class Writer:
     """
 
     def __init__(self, path: Path, about: About | None = None) -> None:
-        start = tick_file.header(_completed(about or About()))
+        start = tick_file.header((about or NOTHING_SAID).stamped())
         self.path = path
         self.ticks = 0
         """So many are in the file."""
@@ -85,11 +81,3 @@ class Writer:
         self._file.seek(at)
         while data:  # a disk that is nearly full takes a part, and only then says so
             data = data[self._file.write(data) :]
-
-
-def _completed(about: About) -> About:
-    """With date and versions, where they are not said."""
-    names = ("tangible-images", "numpy")
-    versions = [*(f"{name} {version(name)}" for name in names), f"Python {platform.python_version()}"]
-    now = datetime.now(UTC).isoformat(timespec="seconds")
-    return replace(about, started=about.started or now, software=about.software or ", ".join(versions))

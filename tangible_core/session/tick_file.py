@@ -49,13 +49,13 @@ NOTHING_SAID = About()
 def _variables() -> Iterator[Variable]:
     yield _variable(">f8", "s", "when the tick began, by the device's clock")
     yield _variable(">f4", "s", "how late it began")
-    for units, what in (
-        ("m", "position of the tip"),
-        ("m s-1", "velocity of the tip"),
-        ("m", "position of the proxy, NaN where there is none"),
-        ("N", "force on the hand that the device was given"),
+    for dtype, units, what in (
+        (">f8", "m", "position of the tip"),
+        (">f8", "m s-1", "velocity of the tip"),
+        (">f4", "m", "position of the proxy, NaN where there is none"),
+        (">f4", "N", "force on the hand that the device was given"),
     ):
-        yield from (_variable(">f4", units, f"{axis} of the {what}") for axis in "xyz")
+        yield from (_variable(dtype, units, f"{axis} of the {what}") for axis in "xyz")
     flags = np.array(list(TickFlag), ">i4"), " ".join(str(each.name).lower() for each in TickFlag)
     yield _variable(">i4", "1", "what happened in the tick", flag_masks=flags[0], flag_meanings=flags[1])
     yield _variable(">i4", "1", "buttons held, one bit each")
@@ -66,9 +66,10 @@ def _variable(dtype: str, units: str, long_name: str, **more: str | np.ndarray) 
 
 
 VARIABLES = dict(zip(TICK_COLUMNS, _variables(), strict=True))
-"""float32 is within 4 nm of a position under 0.125 m, and within 0.3 uN of a force under 8 N."""
+"""What a law is given is exact: rounded by a nanometre, a proxy may take another way. What it gave is float32, within
+4 nm of a proxy under 0.125 m from the centre and 0.3 uN of a force under 8 N."""
 RECORD = np.dtype([(name, variable.dtype) for name, variable in VARIABLES.items()])
-"""A tick, 68 bytes."""
+"""A tick, 92 bytes."""
 
 
 def header(about: About, stopped: str = CUT_OFF, ticks: int = 0) -> bytes:

@@ -22,13 +22,13 @@ class Replay(HapticDevice):
     """The recording, .nc, .npz or .csv; without one, a stroke of a second down to the base plane and up."""
 
     def spec(self) -> DeviceSpec:
-        """A Novint Falcon's limits, as in CHAI3D's tables; positions as exact as a recording keeps them."""
+        """A Novint Falcon's limits, as in CHAI3D's tables; positions are not rounded, which a picometre stands for."""
         return DeviceSpec(
             max_force_n=8.0,
             max_stiffness_n_per_m=3000.0,
             damping_n_s_per_m=20.0,
             workspace_m=(0.08, 0.08, 0.08),
-            resolution_m=4e-9,
+            resolution_m=1e-12,
             buttons=4,
             simulated=True,
         )

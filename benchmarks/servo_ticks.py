@@ -1,4 +1,6 @@
-"""What a whole tick costs: a Falcon's packet in, the law with friction and texture, the guard, a packet out, the ring."""
+"""What a whole tick costs: a Falcon's packet in, a law with friction and texture, the guard, a packet out, the ring."""
+
+# ruff: noqa: ANN001, ANN202 -- the types are those that numba infers
 
 import statistics
 from collections.abc import Iterator
@@ -7,6 +9,8 @@ from typing import Any, cast
 
 import numpy as np
 from numba import njit
+from tangible_devices.falcon import framing, kinematics, packet, tick
+from tangible_devices.falcon.calibration import Calibration
 
 from tangible_core import HapticSurface, load_method
 from tangible_core.compiled import CompiledTouch
@@ -15,8 +19,6 @@ from tangible_core.materials import library
 from tangible_core.servo import Ring, Safety, cycle
 from tangible_core.servo.loop import sections
 from tangible_core.servo.ring import PERIOD_NS
-from tangible_devices.falcon import framing, kinematics, packet, tick
-from tangible_devices.falcon.calibration import Calibration
 
 from .figures import Figure
 

@@ -28,7 +28,7 @@ def report(ring: Ring, stopped: str = "") -> ServoReport:
         period_us=spread(ring.period, float(ring.sums[LONGEST_S])),
         late_us=spread(ring.late, float(ring.sums[MOST_LATE_S])),
         overruns=int(ring.header[OVERRUNS]),
-        limited={flag.name or "": count for flag, count in safety.counts(ring.guard).items()},
+        flagged={flag.name or "": count for flag, count in safety.counts(ring.guard).items()},
     )
 
 

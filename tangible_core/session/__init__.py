@@ -1,5 +1,6 @@
 """A session joins a touch and a device: the loop, and what it records."""
 
+from .live import feel, figures, keeping
 from .loop import limited, run
 from .recording import INTERRUPTED, Recording, check_record_path, failure
 from .replay import replay, undisturbed
@@ -13,6 +14,9 @@ __all__ = [
     "Writer",
     "check_record_path",
     "failure",
+    "feel",
+    "figures",
+    "keeping",
     "limited",
     "replay",
     "run",

@@ -28,6 +28,9 @@ FASTEST_M_PER_S, SLOWEST_M_PER_S = 10.0, 1e-5
 SOFTER_IN_S, HARDER_IN_S = 0.05, 1.0
 """How long the softening takes from none to all, and back: making a spring harder under the hand does work on it."""
 
+ENOUGH = 1.1
+"""Times the share that must be allowed before it rises."""
+
 NEWTONS_AND_FLAGS = types.Tuple((float64, float64, float64, int64))
 OPTIONS = {"cache": True, "nogil": True, "error_model": "numpy"}
 
@@ -67,15 +70,18 @@ def _softness(settings, memory, elapsed_s):
     """Share of the law's force that makes its stiffness one which is held stably at the measured period.
 
     The period is E[T^2] / E[T]: what a spring gives away in one is K v^2 T^2 / 2, what damping takes b v^2 T. The share
-    moves slowly, so that no stiffness changes under the hand in one tick.
+    moves slowly, and not up for less than a tenth: no stiffness jumps under the hand, nor follows a restless clock.
     """
     memory[at.MEAN_S] += (elapsed_s - memory[at.MEAN_S]) / REMEMBERED
     memory[at.MEAN_S2] += (elapsed_s * elapsed_s - memory[at.MEAN_S2]) / REMEMBERED
     held = settings[at.STIFFNESS_TIMES_PERIOD] * memory[at.MEAN_S] / memory[at.MEAN_S2]
     held = min(held, settings[at.MAX_STIFFNESS])
     wanted = held / settings[at.STIFFNESS] if settings[at.STIFFNESS] > held else 1.0
-    softer, harder = memory[at.SOFTNESS] - elapsed_s / SOFTER_IN_S, memory[at.SOFTNESS] + elapsed_s / HARDER_IN_S
-    memory[at.SOFTNESS] = min(max(wanted, softer), harder)
+    share = memory[at.SOFTNESS]
+    if wanted < share:
+        memory[at.SOFTNESS] = max(wanted, share - elapsed_s / SOFTER_IN_S)
+    elif wanted >= 1.0 or wanted > ENOUGH * share:
+        memory[at.SOFTNESS] = min(wanted, share + elapsed_s / HARDER_IN_S)
     return memory[at.SOFTNESS]
 
 

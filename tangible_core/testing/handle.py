@@ -114,4 +114,4 @@ def wall(stiffness_n_per_m: float) -> CompiledTouch:
     """A spring below z = 0 that stretches without end."""
     from . import handle_kernels
 
-    return CompiledTouch(handle_kernels.wall, (stiffness_n_per_m,), stiffness=stiffness_n_per_m)
+    return CompiledTouch(cast(Any, handle_kernels).wall, (stiffness_n_per_m,), stiffness=stiffness_n_per_m)

@@ -96,7 +96,7 @@ class Task:
     """Steps that a comparison may add to the results of chosen methods, untimed, under these keys of its file."""
 
 
-TASKS = {"depth": "depth", "texture": "texture"}
+TASKS = {"depth": "depth", "texture": "texture", "render": "render"}
 """Kinds that can be compared, and the module of this room whose `TASK` says how."""
 
 

@@ -10,18 +10,16 @@ from typing import Any
 
 from .. import hooks, session
 from ..data import ServoReport
-from ..errors import ConfigError, DeviceError
+from ..errors import DeviceError
 from ..servo import OVER, Servo
 from . import show
-from .run import about, open_pipeline
+from .run import about, device_of, open_pipeline
 
 
 def feel(config: Path, sets: Sequence[str], seconds: float, record: Path | None, as_json: bool, cached: bool) -> None:
     """Make the touch, start the force loop, feel, and say how it went."""
     pipeline = open_pipeline(config, sets, cached)
-    device = pipeline.config.device
-    if device is None:
-        raise ConfigError(f"{config}: `device:` is missing; add one, such as `device: {{use: mock}}`")
+    device = device_of(pipeline)
     if record is not None:
         session.check_record_path(record)
     touch = pipeline.make("touch")

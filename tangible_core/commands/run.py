@@ -13,9 +13,10 @@ from ruamel.yaml import YAML
 
 from .. import hooks, session
 from ..cache import Cache, write_record
-from ..config import parse_config
+from ..config import Chosen, parse_config
 from ..data import MaterialMap, Record, ServoReport
 from ..engine import Pipeline, load_pipeline
+from ..errors import ConfigError
 from ..files import write_text
 from ..interfaces import HapticDevice, Touch
 from ..registry import default_registry
@@ -76,6 +77,14 @@ def open_pipeline(config: Path, sets: Sequence[str], cached: bool) -> Pipeline:
     if not cached:
         pipeline.cache = None
     return pipeline
+
+
+def device_of(pipeline: Pipeline) -> Chosen[HapticDevice]:
+    """The device that the file names. Raises: ConfigError if it names none."""
+    device = pipeline.config.device
+    if device is None:
+        raise ConfigError(f"{pipeline.config.path}: `device:` is missing; add one, such as `device: {{use: mock}}`")
+    return device
 
 
 def execute(pipeline: Pipeline, out: Path, seconds: float) -> Results:

@@ -10,7 +10,7 @@ from jaxtyping import Bool, Float64
 
 Points = Float64[np.ndarray, "n 3"]
 Flags = Bool[np.ndarray, "n"]
-NEWTON_STEPS, CONVERGED_M = 60, 1e-13
+NEWTON_STEPS, CONVERGED_M = 60, 1e-12
 
 
 def on_plane(hands_m: Points, slope: tuple[float, float], height_m: float) -> Points:
@@ -56,9 +56,10 @@ def on_step(hands_m: Points, high_m: float) -> Points:
 def on_waves(hands_m: Points, amplitude_m: float, wavelength_m: float) -> Points:
     """By Newton's method on h = A + A sin(2 pi x / L) sin(2 pi y / L), from straight above the hand.
 
-    NaN for a hand so deep that this leads to no minimum.
+    NaN for a hand that is no nearer to it than 1 / (A k^2), k = 2 pi / L, the crests' radius of curvature: so deep,
+    there may be several.
     """
-    places, step, matrix = hands_m[:, :2], np.full((len(hands_m), 2), np.inf), np.eye(2)
+    places, step = hands_m[:, :2], np.full((len(hands_m), 2), np.inf)
     for _ in range(NEWTON_STEPS):
         height, slope, bend = _waves(places, amplitude_m, wavelength_m)
         away = np.minimum(hands_m[:, 2] - height, 0)
@@ -68,9 +69,10 @@ def on_waves(hands_m: Points, amplitude_m: float, wavelength_m: float) -> Points
         places = places + step
         if np.abs(step).max(initial=0.0) < CONVERGED_M:
             break
-    least = (np.linalg.eigvalsh(matrix)[:, 0] > 0) & (np.abs(step).max(axis=1) < CONVERGED_M)
     found = np.column_stack([places, _waves(places, amplitude_m, wavelength_m)[0]])
-    return np.where(least[:, None], found, np.nan)
+    curve_m = (wavelength_m / (2 * np.pi)) ** 2 / amplitude_m
+    only = (np.abs(step).max(axis=1) < CONVERGED_M) & (np.linalg.norm(found - hands_m, axis=1) < curve_m)
+    return np.where(only[:, None], found, np.nan)
 
 
 def _waves(

@@ -62,7 +62,7 @@ SURFACES: Mapping[str, Analytic] = {
     "sine": Analytic(lambda shape: waves(0.004, 0.02, shape), lambda hands: nearest.on_waves(hands, 0.004, 0.02)),
     "cone": Analytic(lambda shape: cone(0.5, 0.04, shape), lambda hands: nearest.on_cone(hands, 0.5, 0.04)),
     "ridge": Analytic(lambda shape: ridge(0.5, 0.03, shape), lambda hands: nearest.on_ridge(hands, 0.5, 0.03)),
-    # along the ground, against the wall and back: no hand goes through it
+    # along the ground, against the wall and back, and once down over its edge: no hand goes through a wall
     "step": Analytic(
         lambda shape: cliff(0.004, shape),
         lambda hands: nearest.on_step(hands, 0.004),
@@ -86,10 +86,11 @@ def analytic_stroke(
     if path_m is None:
         ride = _at_all(analytic.ride_m or known.height_m)
         path_m = scripted_path(known.surface.relief, ride, depth_m, analytic.across_m)
-    found = path_m.copy()
-    inside = path_m[:, 2] < _at_all(known.height_m)(path_m[:, 0], path_m[:, 1])
-    found[inside] = analytic.nearest(path_m)[inside]
-    found[(np.abs(path_m[:, :2]) > np.divide(known.surface.extent_m, 2)).any(axis=1)] = np.nan
+    border_m = np.divide(known.surface.extent_m, 2)
+    over = np.clip(path_m[:, :2], -border_m, border_m)
+    inside = path_m[:, 2] < _at_all(known.height_m)(over[:, 0], over[:, 1])
+    found = np.where(inside[:, None], analytic.nearest(path_m), path_m)
+    found[(over != path_m[:, :2]).any(axis=1)] = np.nan
     return KnownStroke(known.surface, path_m, found, period_s)
 
 

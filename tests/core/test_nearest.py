@@ -103,10 +103,10 @@ def test_a_scripted_way(name: str):
 
 
 def test_a_way_of_ones_own_and_what_lies_beside_the_surface():
-    way = np.array([(0.0, 0.0, 0.008), (0.0, 0.0, 0.012), (0.05, 0.0, 0.0)])
-    stroke = analytic_stroke("plane", 16, path_m=way)
-    np.testing.assert_allclose(stroke.nearest_m[:2], [(0, 0, 0.01), (0, 0, 0.012)], atol=1e-15)
-    assert np.isnan(stroke.nearest_m[2]).all()
+    way = np.array([(0.0, 0.0, 0.019), (0.0, 0.0, 0.021), (0.05, 0.0, 0.0), (1.0, 1.0, 0.0)])
+    stroke = analytic_stroke("sphere", 16, path_m=way)
+    np.testing.assert_allclose(stroke.nearest_m[:2], [(0, 0, 0.02), (0, 0, 0.021)], atol=1e-15)
+    assert np.isnan(stroke.nearest_m[2:]).all()
 
 
 def test_over_the_relief_of_a_picture_nothing_is_known():

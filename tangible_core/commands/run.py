@@ -2,7 +2,7 @@
 
 import platform
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.metadata import version
 from importlib.resources import files
 from io import StringIO
@@ -127,12 +127,14 @@ def _feel(pipeline: Pipeline, value: Any, seconds: float) -> Recording | None:
 def felt(
     pipeline: Pipeline, touch: Touch, device: HapticDevice, seconds: float, writer: session.Writer | None = None
 ) -> Recording:
-    """A session whose reports go to the observers, and its ticks to a writer."""
+    """A session whose reports go to the observers, and its ticks to a writer, made with `about`."""
+    said = about(pipeline).stamped()
 
     def report(report: ServoReport) -> None:
         hooks.tell(pipeline.registry.plugins, "tangible_servo_report", report=report)
 
-    return session.run(touch, device, seconds, report, writer)
+    recording = session.run(touch, device, seconds, report, writer)
+    return recording if writer else replace(recording, about=said)
 
 
 def about(pipeline: Pipeline) -> session.About:

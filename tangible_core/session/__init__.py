@@ -2,7 +2,8 @@
 
 from .live import feel, figures, keeping
 from .loop import limited, run
-from .recording import INTERRUPTED, Recording, check_record_path, failure
+from .recording import INTERRUPTED, Recording, failure
+from .recording_files import check_record_path
 from .replay import replay, undisturbed
 from .tick_file import About
 from .writer import Writer

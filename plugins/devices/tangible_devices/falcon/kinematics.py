@@ -140,3 +140,11 @@ def torques(rows, force):
     """Torques in newton metres that give a force: J^T F with J = d tip / d angle, the inverse of these rows."""
     (a, b, c), (d, e, f), (g, h, i) = rows
     return solve(((a, d, g), (b, e, h), (c, f, i)), force)
+
+
+@njit(POINT(ROWS, POINT), **COMPILED)
+def force(rows, torque):
+    """Force in newtons that three torques give: the transpose of these rows times the torques."""
+    (a, b, c), (d, e, f), (g, h, i) = rows
+    p, q, r = torque
+    return a * p + d * q + g * r, b * p + e * q + h * r, c * p + f * q + i * r

@@ -13,9 +13,11 @@ from .packet import BYTES, COMPILED, SIZE, START, is_packet
 USB_PACKET, STATUS = 64, 2
 """Bytes of a full-speed packet, and how many at its start are the FTDI chip's own."""
 
-FILL, ANSWERS, DROPPED, FRESH = 0, 1, 2, 3
-COUNTS = 4
-"""In `counts`: bytes of an answer begun; answers and lost bytes so far; whether the newest answer was not read yet."""
+FILL, ANSWERS, DROPPED, SEEN, FRESH = range(5)
+COUNTS = 5
+NEW, DOUBTFUL = 1, 2
+"""In `counts`: bytes of an answer begun; answers so far; bytes so far that belong to none, and those before the newest
+answer; whether that one was not read yet: 0, NEW, or DOUBTFUL if there are such bytes between it and the one before."""
 
 
 @njit(void(BYTES, int64[::1]), **COMPILED)
@@ -50,9 +52,9 @@ def receive(chunk, size, begun, counts, answer):
                 answer[:] = begun
                 found += 1
                 counts[FILL] = 0
+                counts[FRESH] = DOUBTFUL if counts[DROPPED] > counts[SEEN] else NEW
+                counts[SEEN] = counts[DROPPED]
             else:
                 resume(begun, counts)
-    if found:
-        counts[ANSWERS] += found
-        counts[FRESH] = 1
+    counts[ANSWERS] += found
     return found

@@ -12,26 +12,30 @@ from typing import NamedTuple
 import numpy as np
 from numba import boolean, float64, int64, njit, void
 
-from .framing import FRESH
+from . import framing
+from .framing import DOUBTFUL, FRESH
 from .kinematics import CENTRE_M, POINT, RAD_PER_COUNT, ROWS, forward, jacobian, solve, torques
 from .packet import BYTES, COMPILED, HOMED, decode, encode, saturated
 from .velocity import rate
 
-ARMS, KNOWN, HEAD, SAMPLES, SUSPECTED, REFUSED, SEEKING, RUNNING, PRESSED = range(4, 13)
-"""In `counts`: arms homed, as bits; whether the tip is known; newest row and number of rows in `history`; whether a
-leap waits to be confirmed; answers not taken for a position; the byte of lights before and after homing; buttons."""
-COUNTS = 13
+ARMS, KNOWN, HEAD, SAMPLES, SUSPECTED, REFUSED, SEEKING, RUNNING, PRESSED = range(framing.COUNTS, framing.COUNTS + 9)
+COUNTS = framing.COUNTS + 9
+"""In `counts`: arms homed, as bits; whether the tip is known; newest row and number of rows in `history`; whether an
+answer waits to be confirmed; answers not taken for a position; the byte of lights before and after homing; buttons."""
 
-NOW, SINCE, TIP, SLOPES, APPLIED, SUSPECT = 0, 1, 2, 5, 14, 17
+NOW, SINCE, TIP, SLOPES, APPLIED, RATES, SUSPECT = 0, 1, 2, 5, 14, 17, 20
+HELD = 24
 """In `held`: seconds at the newest answer, and when force was first allowed; the tip, in the device's frame; its
-Jacobian, row by row; the force in the workspace frame; time and counts of a leap that waits to be confirmed."""
-HELD = 21
+Jacobian, row by row; the force in the workspace frame; how fast the encoders turn, in counts a second; time and counts
+of the answer that waits to be confirmed."""
 
 RAMP_S = 0.5
 """Time over which force fades in after homing, or after a leap."""
-LEAP_COUNTS_PER_S, LEAP_S = 1e5, 0.002
-"""No hand moves the tip by 3 m/s: an answer that says so waits for the next one to agree, as there is no checksum.
-The shortest time between two answers that is counted with."""
+NEAR_COUNTS, BEND_COUNTS_PER_S2, STRAY_COUNTS = 8.0, 1e7, 24.0
+"""How far an answer may be from where the arms were going: noise, 340 m/s^2 of the tip, and 0.8 mm in any case. What
+is farther away waits for the next one to agree, as there is no checksum."""
+FAST_COUNTS_PER_S, SHORT_S, FAR_COUNTS = 5e4, 0.002, 128.0
+"""How far that next one may be from it: 1.7 m/s of the tip, over at least 2 ms; and how far in any case."""
 
 
 class Buffers(NamedTuple):
@@ -59,43 +63,59 @@ FIXED = (BYTES, BYTES, int64[::1], float64[::1], float64[:, ::1], float64[:, ::1
 @njit(void(int64[::1], float64[::1]), **COMPILED)
 def seed(counts, held):
     """Forget where the tip was, and let force fade in from now on."""
-    counts[SAMPLES], counts[SUSPECTED] = 0, 0
+    counts[SAMPLES] = 0
     held[TIP], held[TIP + 1], held[TIP + 2] = 0.0, 0.0, CENTRE_M
     held[SINCE] = held[NOW]
 
 
-@njit(boolean(float64, int64, int64, int64, float64[::1]), **COMPILED)
-def leaps(now, first, second, third, before):
-    """Whether these encoders are farther from those before, a row of `history`, than a hand moves."""
-    away = max(abs(first - before[1]), abs(second - before[2]), abs(third - before[3]))
-    return away > LEAP_COUNTS_PER_S * max(now - before[0], LEAP_S)
-
-
 @njit(boolean(int64[::1], float64[::1], float64[:, ::1], int64, int64, int64), **COMPILED)
-def sample(counts, held, history, first, second, third):
-    """Remember the encoders; False for a leap, until a second answer confirms it and all begins anew there."""
-    now, head = held[NOW], counts[HEAD]
-    if counts[SAMPLES] and leaps(now, first, second, third, history[head]):
-        if not counts[SUSPECTED] or leaps(now, first, second, third, held[SUSPECT:]):
-            counts[SUSPECTED] = 1
-            held[SUSPECT], held[SUSPECT + 1], held[SUSPECT + 2], held[SUSPECT + 3] = now, first, second, third
-            return False
-        seed(counts, held)
-    head = head + 1 if head + 1 < history.shape[0] else 0
-    history[head, 0], history[head, 1], history[head, 2], history[head, 3] = now, first, second, third
-    counts[HEAD], counts[SAMPLES], counts[SUSPECTED] = head, min(counts[SAMPLES] + 1, history.shape[0]), 0
-    return True
-
-
-@njit(POINT(int64[::1], float64[:, ::1]), **COMPILED)
-def turning(counts, history):
-    """How fast the three arms turn, in rad/s."""
-    head, samples = counts[HEAD], counts[SAMPLES]
-    return (
-        RAD_PER_COUNT * rate(history, head, samples, 1),
-        RAD_PER_COUNT * rate(history, head, samples, 2),
-        RAD_PER_COUNT * rate(history, head, samples, 3),
+def goes_on(counts, held, history, first, second, third):
+    """Whether these encoders are where the arms were going, or may have gone."""
+    head = counts[HEAD]
+    since = held[NOW] - history[head, 0]
+    away = max(
+        abs(first - history[head, 1] - since * held[RATES]),
+        abs(second - history[head, 2] - since * held[RATES + 1]),
+        abs(third - history[head, 3] - since * held[RATES + 2]),
     )
+    return counts[SAMPLES] > 0 and away <= min(NEAR_COUNTS + BEND_COUNTS_PER_S2 * since * since, STRAY_COUNTS)
+
+
+@njit(boolean(float64[::1], int64, int64, int64), **COMPILED)
+def confirms(held, first, second, third):
+    """Whether these encoders are near those of the answer that waits to be confirmed."""
+    away = max(abs(first - held[SUSPECT + 1]), abs(second - held[SUSPECT + 2]), abs(third - held[SUSPECT + 3]))
+    return away <= min(FAST_COUNTS_PER_S * max(held[NOW] - held[SUSPECT], SHORT_S), FAR_COUNTS)
+
+
+@njit(void(int64[::1], float64[:, ::1], float64, float64, float64, float64), **COMPILED)
+def remember(counts, history, now, first, second, third):
+    """A row more in the ring."""
+    head = counts[HEAD] + 1 if counts[HEAD] + 1 < history.shape[0] else 0
+    history[head, 0], history[head, 1], history[head, 2], history[head, 3] = now, first, second, third
+    counts[HEAD], counts[SAMPLES] = head, min(counts[SAMPLES] + 1, history.shape[0])
+
+
+@njit(boolean(int64[::1], float64[::1], float64[:, ::1], boolean, int64, int64, int64), **COMPILED)
+def sample(counts, held, history, doubtful, first, second, third):
+    """Remember the encoders; False for an answer to be doubted, until the next one confirms it.
+
+    Doubted are the first one, one after bytes that belong to none, and one from where the arms were not going.
+    """
+    going = goes_on(counts, held, history, first, second, third)
+    if doubtful or not going:
+        if not counts[SUSPECTED] or not confirms(held, first, second, third):
+            counts[SUSPECTED] = 1
+            held[SUSPECT], held[SUSPECT + 1], held[SUSPECT + 2], held[SUSPECT + 3] = held[NOW], first, second, third
+            return False
+        if not going:
+            seed(counts, held)
+            remember(counts, history, held[SUSPECT], held[SUSPECT + 1], held[SUSPECT + 2], held[SUSPECT + 3])
+    counts[SUSPECTED] = 0
+    remember(counts, history, held[NOW], first, second, third)
+    for i in range(3):
+        held[RATES + i] = rate(history, counts[HEAD], counts[SAMPLES], 1 + i)
+    return True
 
 
 @njit(POINT(float64[:, ::1], float64, float64, float64), **COMPILED)
@@ -124,7 +144,8 @@ def read(answer, packet, counts, held, history, arms, frame, state):
 
     Until all arms are homed the encoders mean nothing. An answer whose angles no tip has takes the force away.
     """
-    if not counts[FRESH]:
+    fresh = counts[FRESH]
+    if not fresh:
         return 0
     counts[FRESH] = 0
     first, second, third, info = decode(answer)
@@ -135,7 +156,7 @@ def read(answer, packet, counts, held, history, arms, frame, state):
         return 0
     if before != HOMED:
         seed(counts, held)
-    if not sample(counts, held, history, first, second, third):
+    if not sample(counts, held, history, fresh == DOUBTFUL, first, second, third):
         counts[REFUSED] += 1
         return 0
     angles = arms[0, 0] + RAD_PER_COUNT * first, arms[1, 0] + RAD_PER_COUNT * second, arms[2, 0] + RAD_PER_COUNT * third
@@ -148,7 +169,8 @@ def read(answer, packet, counts, held, history, arms, frame, state):
     rows = jacobian(*angles, x, y, z)
     for i in range(3):
         held[SLOPES + 3 * i], held[SLOPES + 3 * i + 1], held[SLOPES + 3 * i + 2] = rows[i]
-    velocity = solve(rows, turning(counts, history))
+    turning = RAD_PER_COUNT * held[RATES], RAD_PER_COUNT * held[RATES + 1], RAD_PER_COUNT * held[RATES + 2]
+    velocity = solve(rows, turning)
     state[0], state[1], state[2] = turned(frame, x, y, z)
     state[0], state[1], state[2] = state[0] + frame[0, 3], state[1] + frame[1, 3], state[2] + frame[2, 3]
     state[3], state[4], state[5] = turned(frame, *velocity)

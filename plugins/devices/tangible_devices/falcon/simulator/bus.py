@@ -52,6 +52,16 @@ class Unit:
         self.configuration = 0
         self.claimed_by: Handle | None = None
 
+    def unplug(self) -> None:
+        """Nothing is left of it: its firmware neither."""
+        self.plugged = False
+        self.chip.processor.unpower()
+
+    def plug_in(self) -> None:
+        """As new; the system's serial driver takes it."""
+        self.plugged = self.kernel_driver = True
+        self.configuration, self.claimed_by = 0, None
+
 
 @final
 class Handle:
@@ -69,6 +79,10 @@ class Bus(IBackend):
         self.units = list(units)
         self.faults = list(faults)
         self._steps: Counter[str] = Counter()
+
+    def fail(self, fault: Fault) -> None:
+        """Add a fault, counted from now on."""
+        self.faults.append(fault.model_copy(update={"after": fault.after + self._steps[fault.at]}))
 
     def enumerate_devices(self) -> list[Unit]:
         """The units that are plugged in."""
@@ -189,8 +203,7 @@ class Bus(IBackend):
         for fault in self.faults:
             if fault.at == step and fault.after <= nth < fault.after + fault.times:
                 if unit is not None and fault.error == "unplugged":
-                    unit.plugged = False
-                    unit.chip.processor.unpower()
+                    unit.unplug()
                 raise failure(fault.error)
 
 

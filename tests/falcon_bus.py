@@ -80,7 +80,7 @@ def held_bus(serials: tuple[str, ...] = ("SIM0001",), faults: tuple[Fault, ...] 
     """A bus with Falcons, each held by a hand that homes it, and its clock."""
     clock = SimulatedClock()
     stroke = walk(press((0.05, 0.035), 2, -0.005, 0.02), 0.08, 0.001)
-    return Bus([simulated_falcon(clock, stroke, VirtualHand(), serial) for serial in serials], faults), clock
+    return Bus([simulated_falcon(clock, stroke, 0.02, VirtualHand(), serial) for serial in serials], faults), clock
 
 
 def open_on(bus: Bus, clock: SimulatedClock, **options: Any) -> FalconLink:

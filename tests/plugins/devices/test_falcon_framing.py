@@ -2,16 +2,16 @@
 
 import numpy as np
 import pytest
-from falcon_streams import GAINED, LOST, NOISE, SWAPPED, buffers, fuzz
 from hypothesis import given
 from hypothesis import strategies as st
 
+from falcon_streams import GAINED, LOST, NOISE, SWAPPED, buffers, fuzz
 from tangible_devices.falcon import framing, packet, tick
 
-STREAMS = 100_000
+STREAMS = 30_000
 
 
-@pytest.mark.parametrize(("kinds", "damage"), [(LOST, 0.05), (GAINED, 0.05), (LOST, 0.5), (GAINED, 0.5), (NOISE, 0.0)])
+@pytest.mark.parametrize(("kinds", "damage"), [(LOST, 0.02), (GAINED, 0.02), (LOST, 0.5), (GAINED, 0.5), (NOISE, 0.0)])
 def test_no_damage_makes_a_position_that_was_not_sent(kinds: int, damage: float):
     taken, wrong, _, late = fuzz(STREAMS, kinds, damage, 1, tuple(buffers()))
     assert taken >= 2 * STREAMS
@@ -20,9 +20,9 @@ def test_no_damage_makes_a_position_that_was_not_sent(kinds: int, damage: float)
 
 @pytest.mark.parametrize("kinds", [SWAPPED, LOST | GAINED, LOST | GAINED | SWAPPED])
 def test_a_digit_in_place_of_another_cannot_be_seen_but_its_harm_is_bounded(kinds: int):
-    taken, wrong, worst_counts, late = fuzz(STREAMS, kinds, 0.05, 2, tuple(buffers()))
-    assert wrong <= 0.01 * taken and late <= 1e-3 * STREAMS
-    assert worst_counts <= tick.FAR_COUNTS
+    taken, wrong, worst_counts, late = fuzz(STREAMS, kinds, 0.02, 2, tuple(buffers()))
+    assert wrong <= 0.005 * taken and late <= 1e-3 * STREAMS
+    assert worst_counts <= 2 * tick.FAR_COUNTS
 
 
 def answer(first: int, second: int, third: int, info: int = packet.HOMED) -> bytes:
@@ -77,7 +77,8 @@ def test_an_answer_after_strange_bytes_is_doubted():
     receiver = Receiver()
     receiver(answer(1, 2, 3))
     assert receiver.counts[framing.FRESH] == framing.NEW
-    receiver(b"?" + answer(1, 2, 3))
-    assert receiver.counts[framing.FRESH] == framing.DOUBTFUL
-    receiver(answer(1, 2, 3))
+    for strange in (b"?" + answer(1, 2, 3), answer(1, 2, 3) + b"?", answer(1, 2, 3) + b"<"):
+        receiver(strange)
+        assert receiver.counts[framing.FRESH] == framing.DOUBTFUL
+    receiver(answer(1, 2, 3) * 2)
     assert receiver.counts[framing.FRESH] == framing.NEW

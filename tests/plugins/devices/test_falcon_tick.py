@@ -4,10 +4,10 @@ import math
 
 import numpy as np
 import pytest
-from falcon_streams import buffers
 from hypothesis import given
 from hypothesis import strategies as st
 
+from falcon_streams import buffers
 from tangible_devices.falcon import kinematics, packet, tick
 from tangible_devices.falcon.calibration import LEVER_M, Calibration
 from tangible_devices.falcon.framing import FRESH, NEW

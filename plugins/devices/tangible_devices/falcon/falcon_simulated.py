@@ -35,7 +35,7 @@ class FalconSimulated(HapticDevice):
     z_m: Height = -0.005
     """Height of the path over the base plane; the lowest point of a press."""
     lift_m: Height = 0.02
-    """Where a press comes from."""
+    """Where the hand comes from."""
     speed_m_per_s: Annotated[float, Field(ge=1e-4, le=1)] = 0.08
     """Along the path."""
     hand: VirtualHand = VirtualHand()
@@ -62,6 +62,6 @@ class FalconSimulated(HapticDevice):
 
         clock = RealClock() if self.real_time else SimulatedClock()
         points = DRAWN[self.path](self.size_m, self.lines, self.z_m, self.lift_m)
-        unit = simulated_falcon(clock, walk(points, self.speed_m_per_s, 0.001), self.hand)
+        unit = simulated_falcon(clock, walk(points, self.speed_m_per_s, 0.001), self.lift_m, self.hand)
         image = self.driver.image() or synthetic_image()
         return open_falcon(self.driver, image, Bus([unit], self.faults), clock)

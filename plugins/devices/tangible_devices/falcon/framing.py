@@ -17,7 +17,7 @@ FILL, ANSWERS, DROPPED, SEEN, FRESH = range(5)
 COUNTS = 5
 NEW, DOUBTFUL = 1, 2
 """In `counts`: bytes of an answer begun; answers so far; bytes so far that belong to none, and those before the newest
-answer; whether that one was not read yet: 0, NEW, or DOUBTFUL if there are such bytes between it and the one before."""
+answer; whether that one was not read yet: 0, NEW, or DOUBTFUL if other bytes came before it or with it."""
 
 
 @njit(void(BYTES, int64[::1]), **COMPILED)
@@ -52,9 +52,10 @@ def receive(chunk, size, begun, counts, answer):
                 answer[:] = begun
                 found += 1
                 counts[FILL] = 0
-                counts[FRESH] = DOUBTFUL if counts[DROPPED] > counts[SEEN] else NEW
-                counts[SEEN] = counts[DROPPED]
             else:
                 resume(begun, counts)
-    counts[ANSWERS] += found
+    if found:
+        counts[ANSWERS] += found
+        counts[FRESH] = NEW if counts[DROPPED] == counts[SEEN] and not counts[FILL] else DOUBTFUL
+        counts[SEEN] = counts[DROPPED]
     return found

@@ -34,8 +34,8 @@ RAMP_S = 0.5
 NEAR_COUNTS, BEND_COUNTS_PER_S2, STRAY_COUNTS = 8.0, 1e7, 24.0
 """How far an answer may be from where the arms were going: noise, 340 m/s^2 of the tip, and 0.8 mm in any case. What
 is farther away waits for the next one to agree, as there is no checksum."""
-FAST_COUNTS_PER_S, SHORT_S, FAR_COUNTS = 5e4, 0.002, 128.0
-"""How far that next one may be from it: 1.7 m/s of the tip, over at least 2 ms; and how far in any case."""
+FAST_COUNTS_PER_S, SHORT_S, FAR_COUNTS = 5e4, 0.001, 128.0
+"""How far that next one may be from it: 1.7 m/s of the tip, over at least 1 ms; and how far in any case."""
 
 
 class Buffers(NamedTuple):

@@ -16,13 +16,19 @@ SPEED_M_PER_S = 0.3
 
 @final
 class ScriptedHand:
-    """Walks the stroke from its start once the device is homed and the hand is there; leans with limited strength."""
+    """Walks the stroke once the device is homed and it is over its start, and leans down with limited strength."""
 
     def __init__(
-        self, stroke: Stroke, frame: Float64[np.ndarray, "3 4"], reach_down_m: float, buttons: int = 0
+        self,
+        stroke: Stroke,
+        lift_m: float,
+        frame: Float64[np.ndarray, "3 4"],
+        reach_down_m: float,
+        buttons: int = 0,
     ) -> None:
         self.buttons = buttons
         self._stroke = stroke
+        self._lift_m = lift_m
         self._turn, self._origin = frame[:, :3], frame[:, 3]
         self._reach_down_m = reach_down_m
         self._at = np.array([0.0, 0.0, 0.125])
@@ -37,7 +43,8 @@ class ScriptedHand:
             return self._towards(np.array([0.0, 0.0, IN_Z_M if self._was_out else OUT_Z_M]))
         self._was_out = False
         if self._tick is None:
-            start = self._turn.T @ (np.array(self._stroke.at(0)) - self._origin)
+            x, y, z = self._stroke.at(0)
+            start = self._turn.T @ (np.array([x, y, max(z, self._lift_m)]) - self._origin)
             self._tick = 0 if np.array_equal(self._towards(start), start) else None
             return self._at
         self._at = self._along(self._tick, tip_m)

@@ -127,8 +127,9 @@ class _Tape:
         way = zip(self._force, state.position_m, self._state.position_m, strict=True)
         self._work_j += sum(held * (now - then) for held, now, then in way)
         self._peak_n = max(self._peak_n, math.hypot(*force))
-        self._numbers.extend((state.time_s, 0.0, *state.position_m, *state.velocity_m_per_s))
-        self._numbers.extend((*self._proxy(), *force, flags, state.buttons))
+        moved = *state.position_m, *state.velocity_m_per_s
+        row = state.time_s, 0.0, *moved, *self._proxy(), *force, flags, state.buttons
+        self._numbers.extend(row)  # all at once: Ctrl-C leaves whole rows
         self._state, self._force = state, force
         self.ticks += 1
         if state.time_s - self._start_s >= REPORT_EVERY_S * (self._reports + 1):

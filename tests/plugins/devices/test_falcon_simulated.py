@@ -20,7 +20,7 @@ FLAT = HapticSurface.from_heights(np.full((8, 8), 0.002))
 
 
 def test_a_surface_is_felt():
-    recording = run(load_method("render", "penalty")().touch(FLAT), FalconSimulated(path="press"), 1.0)
+    recording = run(load_method("render", "penalty")().touch(FLAT), FalconSimulated(path="press"), 2.0)
     assert not recording.stopped
     assert 1.0 < recording.force_n[:, 2].max() < 6.0
     assert recording.position_m[:, 2].min() > -0.004, "the surface holds the hand up, whose path goes to -0.005"

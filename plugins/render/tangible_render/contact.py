@@ -58,18 +58,18 @@ def approach(coefficients, width_m, length_m, across_per_m, down_per_m, tiles_m,
         return False
     memory[7] = TOUCHING
     leap = (x - was_x) ** 2 + (y - was_y) ** 2 + (z - was_z) ** 2 > LEAP_M * LEAP_M
-    stretch = (x - px) ** 2 + (y - py) ** 2
-    if phase == LOST or leap or (phase == TOUCHING and stretch > max(STRETCH_M * STRETCH_M, depth * depth)):
-        px, py = x, y
-    elif phase == FREE:
-        px, py = _entry(coefficients, across_per_m, down_per_m, was_x, was_y, was_z, x, y, z)
-    elif phase == BESIDE:
+    if phase == BESIDE:
         if abs(px) >= 0.5 * width_m:
             py = y
         else:
             px = x
-        if z < height(coefficients, across_per_m, down_per_m, px, py):
-            memory[7] = BESIDE
+    stretch = (x - px) ** 2 + (y - py) ** 2
+    if phase == LOST or leap or (phase != FREE and stretch > max(STRETCH_M * STRETCH_M, depth * depth)):
+        px, py = x, y
+    elif phase == FREE:
+        px, py = _entry(coefficients, across_per_m, down_per_m, was_x, was_y, was_z, x, y, z)
+    elif phase == BESIDE and z < height(coefficients, across_per_m, down_per_m, px, py):
+        memory[7] = BESIDE
     if phase != TOUCHING or leap:
         memory[6] = 0.0
     memory[0], memory[1] = px, py

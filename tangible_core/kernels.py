@@ -4,10 +4,12 @@
 # pyright: basic
 
 from collections.abc import Callable
+from importlib import import_module
 from typing import Any, final
 
 import numpy as np
-from numba import njit, types
+from numba import njit, typeof, types
+from numba.core.registry import cpu_target
 
 from . import compiling as compiling
 
@@ -20,9 +22,17 @@ class Address(types.WrapperAddressProtocol):
     it again.
     """
 
-    def __init__(self, kernel: Callable[..., Any]) -> None:
+    def __init__(self, kernel: Callable[..., Any], signature: Any = None) -> None:
+        """signature: which, of a kernel that was given none when it was defined (see `signature`)."""
         self._kernel: Any = kernel
-        (self._signature,) = self._kernel.nopython_signatures
+        if signature is None:
+            (signature,) = self._kernel.nopython_signatures
+        self._signature = signature
+        compiled = self._kernel.get_compile_result(signature)
+        self._address: int = compiled.library.get_pointer_to_function(compiled.fndesc.llvm_cfunc_wrapper_name)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _revive, (self._kernel.py_func.__module__, self._kernel.py_func.__qualname__, self._signature)
 
     def signature(self) -> Any:
         """The one that the kernel was compiled for."""
@@ -30,8 +40,19 @@ class Address(types.WrapperAddressProtocol):
 
     def __wrapper_address__(self) -> int:
         """Of the compiled code, for a caller by C's rules."""
-        compiled = self._kernel.get_compile_result(self._signature)
-        return compiled.library.get_pointer_to_function(compiled.fndesc.llvm_cfunc_wrapper_name)
+        return self._address
+
+
+def signature(kernel: Callable[..., Any], arguments: tuple[Any, ...]) -> Any:
+    """That of a kernel for such arguments; one that was given none is compiled for them, or found on disk."""
+    of_types: Any = typeof(kernel)
+    return of_types.get_call_type(cpu_target.typing_context, tuple(map(typeof, arguments)), {})
+
+
+def _revive(module: str, name: str, signature: Any) -> Address:
+    kernel = getattr(import_module(module), name)
+    kernel.get_call_template(signature.args, {})
+    return Address(kernel, signature)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

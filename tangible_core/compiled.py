@@ -52,7 +52,7 @@ class CompiledTouch(Touch):
         from . import kernels
 
         positions, forces = path_arrays(positions_m, period_s)
-        cast(Any, kernels).along(self.address(), self.fixed, positions, float(period_s), forces)
+        cast(Any, kernels).along(self.fixed, self.address(), positions, float(period_s), forces)
         return forces
 
     def address(self) -> Any:

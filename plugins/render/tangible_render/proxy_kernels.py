@@ -8,6 +8,8 @@ What a touch remembers is listed in `contact`.
 import numpy as np
 from numba import float32, float64, njit, types
 
+from tangible_core.compiling import KERNEL
+
 from .bilinear import HEIGHTS, LABELS, NEWTONS, cell
 from .closest import settle
 from .contact import BESIDE, approach
@@ -18,8 +20,7 @@ MATERIALS = types.Array(float64, 2, "C", readonly=True)
 MEMORY = float64[::1]
 
 
-# Inlined, as a call counts references to the arrays it is given.
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+@njit(inline="always", **KERNEL)
 def _held(shape, tiles_m, labels, table, memory, x, y, z, vx, vy, vz):
     """F = k (p - q) - b v_n n; see `tick`."""
     coefficients, width_m, length_m, across_per_m, down_per_m = shape
@@ -41,7 +42,7 @@ def _held(shape, tiles_m, labels, table, memory, x, y, z, vx, vy, vz):
     return (fx, fy, fz) if np.isfinite(fx + fy + fz) else (0.0, 0.0, 0.0)
 
 
-@njit(NEWTONS(*SURFACE, LABELS, MATERIALS, MEMORY, *[float64] * 6), cache=True, nogil=True, error_model="numpy")
+@njit(NEWTONS(*SURFACE, LABELS, MATERIALS, MEMORY, *[float64] * 6), **KERNEL)
 def tick(
     coefficients, width_m, length_m, across_per_m, down_per_m, tiles_m, labels, table, memory, x, y, z, vx, vy, vz
 ):
@@ -52,9 +53,7 @@ def tick(
 
 @njit(
     NEWTONS(*SURFACE, LABELS, MATERIALS, MEMORY, MATERIALS, MEMORY, *[float64] * 6),
-    cache=True,
-    nogil=True,
-    error_model="numpy",
+    **KERNEL,
 )
 def textured_tick(
     coefficients, width_m, length_m, across_per_m, down_per_m, tiles_m, labels, table, memory, textures, contact,
@@ -68,7 +67,7 @@ def textured_tick(
     return effects(textures, label, 1.0, contact, tx, ty, dx, dy, dz, vx, vy, vz, fx, fy, fz)
 
 
-@njit(NEWTONS(*SURFACE, float64, MEMORY, *[float64] * 6), cache=True, nogil=True, error_model="numpy")
+@njit(NEWTONS(*SURFACE, float64, MEMORY, *[float64] * 6), **KERNEL)
 def spring_tick(
     coefficients, width_m, length_m, across_per_m, down_per_m, tiles_m, stiffness, memory, x, y, z, vx, vy, vz
 ):

@@ -14,6 +14,8 @@ TEXTURED = [COUNT, DRAG, STIFFNESS]
 """Columns of which a texture has at least one."""
 BESIDES = 4
 """Columns after those of a texture: k, b, mu_s and mu_d, as in `material_table`."""
+ACTING = [*TEXTURED, -3, -2]
+"""Columns of which a material has at least one that adds something to a law; -3 is b, -2 mu_s."""
 
 
 def effects_table(
@@ -55,7 +57,7 @@ def nowhere() -> Float64[np.ndarray, "m"]:
     from . import effects_kernels
 
     memory = np.zeros(effects_kernels.REMEMBERED)
-    memory[effects_kernels.WAS_X] = np.nan
+    memory[effects_kernels.WAS_X], memory[effects_kernels.SLIDES] = np.nan, -1
     return memory
 
 

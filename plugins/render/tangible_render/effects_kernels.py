@@ -5,7 +5,8 @@ what is felt of a force G there is (G_x - t_x G_z, G_y - t_y G_z, G_z). Both tak
 that gains no energy gains none through a texture. Friction and damping join G: they never give any.
 
 A touch remembers, in `memory`: first the state of the texture's own forces, then 0-2 where the hand was to the law, x
-NaN if nowhere; 3-4 its way along the surface; 5-7 the bristle of its friction, and whether that slides.
+NaN if nowhere; 3-4 its way along the surface; 5-7 the bristle of its friction, and 1 if that slides, 0 if it sticks, -1
+in free air.
 Imports numba: a method imports this module inside its verb. numba's cache does not see a change made in another file:
 after an edit of a kernel that is called here, remove `__pycache__`.
 """
@@ -17,6 +18,7 @@ import math
 import numpy as np
 from numba import njit
 
+from tangible_core.compiling import KERNEL
 from tangible_core.haptic_textures.forces import STATE, texture_force
 from tangible_core.haptic_textures.heights import texture_height
 from tangible_core.haptic_textures.table import COUNT, DRAG, HEAD
@@ -32,11 +34,11 @@ WAS_X, WAS_Y, WAS_Z, WAY_X, WAY_Y, BRISTLE_X, BRISTLE_Y, SLIDES = range(STATE, S
 REMEMBERED = STATE + 8
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def tick(law, fixed, labels, width_m, length_m, table, bristle, memory, x, y, z, vx, vy, vz):
+@njit(**KERNEL)
+def tick(fixed, law, labels, width_m, length_m, table, bristle, memory, x, y, z, vx, vy, vz):
     """A law whose force is the push of the surface: friction lies across it, damping along it.
 
-    law, fixed: a kernel's address, and its arguments before the state. bristle: the stiffness of friction that sticks.
+    fixed, law: a kernel's arguments before the state, and its address. bristle: the stiffness of friction that sticks.
     """
     label, t, tx, ty, dx, dy, dz = texture(labels, width_m, length_m, table, memory, x, y, z)
     vz -= tx * vx + ty * vy
@@ -44,8 +46,8 @@ def tick(law, fixed, labels, width_m, length_m, table, bristle, memory, x, y, z,
     return effects(table, label, bristle, memory, tx, ty, dx, dy, dz, vx, vy, vz, fx, fy, fz)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def lateral_tick(law, fixed, height_m, labels, width_m, length_m, table, bristle, memory, x, y, z, vx, vy, vz):
+@njit(**KERNEL)
+def lateral_tick(fixed, law, height_m, labels, width_m, length_m, table, bristle, memory, x, y, z, vx, vy, vz):
     """A law that leaves the push to a table: the push of texture and friction is k d, d the depth under the cells."""
     label, t, tx, ty, dx, dy, _ = texture(labels, width_m, length_m, table, memory, x, y, z)
     fx, fy, fz = law(*fixed, x, y, z - t, vx, vy, vz - tx * vx - ty * vy)
@@ -57,7 +59,7 @@ def lateral_tick(law, fixed, height_m, labels, width_m, length_m, table, bristle
     return (fx, fy, fz) if np.isfinite(fx + fy + fz) else (0.0, 0.0, 0.0)
 
 
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+@njit(inline="always", **KERNEL)
 def texture(labels, width_m, length_m, table, memory, x, y, z):
     """(label, t, t_x, t_y, dx, dy, dz): the label under the hand or nearest to it, its texture, the hand's step.
 
@@ -71,7 +73,8 @@ def texture(labels, width_m, length_m, table, memory, x, y, z):
     dx, dy, dz = x - memory[WAS_X], y - memory[WAS_Y], z - memory[WAS_Z]
     known = dx * dx + dy * dy + dz * dz <= LEAP_M * LEAP_M
     if not known:
-        dx, dy, memory[:] = 0.0, 0.0, 0.0
+        dx, dy = 0.0, 0.0
+        _let_go(memory)
     t, tx, ty = 0.0, 0.0, 0.0
     if table[label, COUNT] > 0.0:
         t, tx, ty = texture_height(table, label, x, y, dx, dy, 1.0)
@@ -80,16 +83,17 @@ def texture(labels, width_m, length_m, table, memory, x, y, z):
     return label, t, tx, ty, dx, dy, dz
 
 
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+@njit(inline="always", **KERNEL)
 def effects(table, label, bristle, memory, tx, ty, dx, dy, dz, vx, vy, vz, fx, fy, fz):
     """A law's force with friction, the texture's own forces and damping, as it is felt through the texture."""
     push = math.sqrt(fx * fx + fy * fy + fz * fz)
     acts = table[label, DRAG] + table[label, STICKS] + table[label, DAMPING] + table[label, STATIC] > 0.0
     if not (acts and 0.0 < push < math.inf):
-        memory[:WAS_X], memory[WAY_X:] = 0.0, 0.0
+        _let_go(memory)
         fx, fy = fx - tx * fz, fy - ty * fz
         return (fx, fy, fz) if np.isfinite(fx + fy + fz) else (0.0, 0.0, 0.0)
-    nx, ny, nz = fx / push, fy / push, fz / push
+    inverse = 1.0 / push
+    nx, ny, nz = inverse * fx, inverse * fy, inverse * fz
     # Two unit vectors across: Duff et al., Building an orthonormal basis, revisited, JCGT 6(1), 2017.
     sign = math.copysign(1.0, nz)
     a = -1.0 / (sign + nz)
@@ -105,7 +109,12 @@ def effects(table, label, bristle, memory, tx, ty, dx, dy, dz, vx, vy, vz, fx, f
     return (fx, fy, fz) if np.isfinite(fx + fy + fz) else (0.0, 0.0, 0.0)
 
 
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+@njit(inline="always", **KERNEL)
+def _let_go(memory):
+    memory[:WAS_X], memory[WAY_X:], memory[SLIDES] = 0.0, 0.0, -1.0
+
+
+@njit(inline="always", **KERNEL)
 def _rub(table, label, bristle, memory, dx, dy, vx, vy, push):
     """Lateral newtons after a step (dx, dy) along the surface at (vx, vy) m/s: friction, and the texture's own.
 
@@ -113,6 +122,11 @@ def _rub(table, label, bristle, memory, dx, dy, vx, vy, push):
     the dynamic one. Whatever the path, the push and the turning of the surface, it stores no more than it was given,
     as it is only ever turned or shortened (Hayward & Armstrong, Experimental Robotics VI, 2000).
     """
+    if not push > 0.0:
+        _let_go(memory)
+        return 0.0, 0.0
+    if memory[SLIDES] < 0.0:
+        dx, dy = 0.0, 0.0
     memory[WAY_X] += dx
     memory[WAY_Y] += dy
     fx, fy = texture_force(table, label, memory, memory[WAY_X], memory[WAY_Y], vx, vy, push)

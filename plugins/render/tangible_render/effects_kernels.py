@@ -52,7 +52,7 @@ def lateral_tick(fixed, law, height_m, labels, width_m, length_m, table, bristle
     label, t, tx, ty, dx, dy, _ = texture(labels, width_m, length_m, table, memory, x, y, z)
     fx, fy, fz = law(*fixed, x, y, z - t, vx, vy, vz - tx * vx - ty * vy)
     push = 0.0
-    if over(width_m, length_m, x, y):
+    if over(width_m, length_m, x, y) and np.isfinite(vx + vy + vz):
         push = table[label, STIFFNESS] * max(bilinear(height_m, width_m, length_m, x, y)[0] + t - z, 0.0)
     along, aside = _rub(table, label, bristle, memory, dx, dy, vx, vy, push)
     fx, fy = fx + along - tx * push, fy + aside - ty * push

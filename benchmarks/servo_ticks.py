@@ -9,8 +9,6 @@ from typing import Any, cast
 
 import numpy as np
 from numba import njit
-from tangible_devices.falcon import framing, kinematics, packet, tick
-from tangible_devices.falcon.calibration import Calibration
 
 from tangible_core import HapticSurface, load_method
 from tangible_core.compiled import CompiledTouch
@@ -19,13 +17,15 @@ from tangible_core.materials import library
 from tangible_core.servo import Ring, Safety, cycle
 from tangible_core.servo.loop import sections
 from tangible_core.servo.ring import PERIOD_NS
+from tangible_devices.falcon import framing, kinematics, packet, tick
+from tangible_devices.falcon.calibration import Calibration
 
 from .figures import Figure
 
 TICKS, RUNS, PERIOD = 20_000, 9, 1_000_000
 FRESH, NOW = framing.FRESH, tick.NOW
 step = cycle.step
-MATERIAL = "sandpaper"
+MATERIAL = "sand"
 
 
 def figures() -> Iterator[Figure]:
@@ -62,7 +62,7 @@ def _arguments(ring: Ring) -> tuple[Any, ...]:
     ring.header[PERIOD_NS] = PERIOD
     of_link = tuple(_buffers(calibration))
     link = of_link, Address(tick.read), Address(tick.write)
-    law = touch.fixed, Address(touch.tick), touch.memory
+    law = touch.fixed, touch.address(), touch.memory
     return link, law, (settings, ring.guard), sections(ring), np.zeros(cycle.STATE), np.zeros(16)
 
 

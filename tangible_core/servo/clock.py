@@ -13,7 +13,7 @@ from typing import Any, final
 import numpy as np
 from numba import int32, njit, types, uintp
 
-from .. import compiling as compiling
+from ..compiling import KERNEL
 
 MONOTONIC, ABSOLUTE = 1, 1
 """CLOCK_MONOTONIC and TIMER_ABSTIME of Linux."""
@@ -44,7 +44,7 @@ def clock() -> tuple[np.ndarray, Any, Any]:
     return np.zeros(2, np.int64), read, sleep
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**KERNEL)
 def now_ns(clock):
     """Nanoseconds of the monotonic clock."""
     words, read, _ = clock
@@ -52,7 +52,7 @@ def now_ns(clock):
     return words[0] * SECOND_NS + words[1]
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**KERNEL)
 def wait_ns(clock, deadline_ns, lead_ns):
     """Sleep until lead_ns before the deadline, then wait awake; what the clock says at last.
 

@@ -11,7 +11,7 @@ import math
 from numba import njit, types
 from numba.extending import intrinsic
 
-from .. import compiling as compiling
+from ..compiling import KERNEL
 from ..data import TICK_COLUMNS, TickFlag
 from .clock import SECOND_NS, wait_ns
 from .coupling import couple
@@ -41,7 +41,7 @@ FLAGS = TICK_COLUMNS.index("flags")
 STATE = 7
 """Length of a device's state, as `LinkKernels` says."""
 OVERRUN = int(TickFlag.OVERRUN)
-longer_lead_ns = njit(cache=True, nogil=True, error_model="numpy")(longer_lead)
+longer_lead_ns = njit(**KERNEL)(longer_lead)
 AT, LATE = 0, 1
 
 
@@ -59,7 +59,7 @@ def _store(context, array, index, value):
     return types.void(array, types.int64, types.int64), generate
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**KERNEL)
 def publish(header, sums, late, period, stamps, ticks, row, at_ns, late_ns):
     """Put a tick's row into the ring, and into the sums."""
     count = header[COUNT]
@@ -82,7 +82,7 @@ def publish(header, sums, late, period, stamps, ticks, row, at_ns, late_ns):
     _store(header, COUNT, count + 1)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**KERNEL)
 def allowed(law, limits, period_s, x, y, z, vx, vy, vz):
     """What may leave of the law's force for a fresh state of the device, and flags."""
     of_law, tick, _ = law
@@ -91,7 +91,7 @@ def allowed(law, limits, period_s, x, y, z, vx, vy, vz):
     return guard(settings, memory, period_s, x, y, z, vx, vy, vz, *force_n)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**KERNEL)
 def cycle(link, law, limits, state, row, time_s, late_s, period_s):
     """One tick of a device and a law that are kernels; the row says what it was."""
     of_link, read, write = link
@@ -111,7 +111,7 @@ def cycle(link, law, limits, state, row, time_s, late_s, period_s):
     row[14], row[15] = flags, state[6]
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**KERNEL)
 def begin(clock, header):
     """Wait for the next tick; when it began and how late it was, nanoseconds.
 
@@ -127,7 +127,7 @@ def begin(clock, header):
     return at_ns, late_ns
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**KERNEL)
 def finish(shared, row, at_ns, late_ns):
     """Add what the loop knows to a tick's flags, and put the tick into the ring and into the sums."""
     header, sums, late, period, stamps, ticks = shared
@@ -137,7 +137,7 @@ def finish(shared, row, at_ns, late_ns):
     publish(header, sums, late, period, stamps, ticks, row, at_ns, late_ns)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**KERNEL)
 def step(link, law, limits, shared, state, row, at_ns, late_ns):
     """A whole tick that began then and so late; none if the loop is to stop."""
     header = shared[0]
@@ -149,7 +149,7 @@ def step(link, law, limits, shared, state, row, at_ns, late_ns):
     finish(shared, row, at_ns, late_ns)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**KERNEL)
 def run(clock, link, law, limits, shared, state, row):
     """Tick after tick, until COMMAND says otherwise or the last one is done; nothing of Python is needed meanwhile."""
     header = shared[0]

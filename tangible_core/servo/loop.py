@@ -94,7 +94,7 @@ def _kernels(link: CompiledLink, touch: CompiledTouch) -> tuple[Any, Any]:
     from ..kernels import Address
 
     read, write, of_link = link.kernels()
-    return (of_link, Address(read), Address(write)), (touch.fixed, Address(touch.tick), touch.memory)
+    return (of_link, Address(read), Address(write)), (touch.fixed, touch.address(), touch.memory)
 
 
 def _stopped(shared: Sections) -> Sections:

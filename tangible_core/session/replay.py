@@ -25,7 +25,7 @@ def replay(touch: Touch, recording: Recording) -> Recording:
     if isinstance(touch, CompiledTouch):
         from .. import kernels
 
-        law = kernels.Address(touch.tick), touch.fixed, touch.memory
+        law = touch.address(), touch.fixed, touch.memory
         states = np.hstack([recording.position_m, recording.velocity_m_per_s])
         cast(Any, kernels).over_states(*law, states, proxy_m, force_n)
     else:

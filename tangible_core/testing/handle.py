@@ -60,7 +60,6 @@ def ride(
 
     The law is given the velocity of each step, as along a path.
     """
-    from ..kernels import Address
     from . import handle_kernels
 
     count = round(seconds / handle.period_s)
@@ -68,7 +67,7 @@ def ride(
     place, sent, (work, lost) = np.empty((count, 3)), np.empty((count, 3)), np.empty((2, count))
     end, body = np.array(state, np.float64), (handle.mass_kg, handle.damping_n_s_per_m)
     cast(Any, handle_kernels).ride(
-        *(Address(touch.tick), touch.fixed, *(guard or (np.empty(0), np.empty(0))), periods, body, handle.push_n),
+        *(touch.address(), touch.fixed, *(guard or (np.empty(0), np.empty(0))), periods, body, handle.push_n),
         *(handle.delay_ticks, handle.resolution_m, end, place, sent, work, lost),
     )
     return Ride(np.cumsum(periods) - periods, place, sent, work, lost, end)

@@ -80,6 +80,32 @@ def test_homing_lost_takes_the_force_at_once_and_force_fades_in_again():
     assert max(map(abs, whole[:3])) > 0
 
 
+def in_packet(falcon: Falcon) -> list[int]:
+    """What goes out next, if nothing else is written."""
+    return list(packet.decode(falcon.buffers.packet)[:3])
+
+
+def test_the_packet_that_is_ready_lets_go_by_itself():
+    """A loop that gets no position may send it once more."""
+    here, there = counts_at(0, 0, 0), counts_at(0.02, 0, 0)
+    for unknown in ("homing", "angles", "leaps"):
+        falcon = Falcon()
+        falcon.settle(here)
+        falcon.push(0, 0, 5)
+        assert any(in_packet(falcon))
+        if unknown == "homing":
+            falcon.tell(here, info=0x30)
+        elif unknown == "angles":
+            falcon.tell(np.array([1600, -2300, 1600]))
+            falcon.tell(np.array([1600, -2300, 1600]))
+        else:
+            falcon.tell(there)
+            assert any(in_packet(falcon)), "one leap is passed over"
+            falcon.tell(counts_at(-0.02, 0, 0))
+        assert not any(in_packet(falcon)), unknown
+        assert tuple(falcon.held[tick.APPLIED : tick.APPLIED + 3]) == (0, 0, 0)
+
+
 def test_the_lights_say_whether_it_is_homed():
     falcon, counts = Falcon(), counts_at(0, 0, 0)
     falcon.counts[tick.SEEKING], falcon.counts[tick.RUNNING] = packet.HOMING | packet.RED, packet.HOMING | packet.GREEN

@@ -138,11 +138,20 @@ def slopes(held):
     )
 
 
+@njit(void(int64[::1], float64[::1], BYTES), **COMPILED)
+def let_go(counts, held, packet):
+    """The tip is not known any more: the next packet holds no force, whether or not another one is written."""
+    counts[KNOWN] = 0
+    held[APPLIED], held[APPLIED + 1], held[APPLIED + 2] = 0.0, 0.0, 0.0
+    encode(0, 0, 0, counts[RUNNING] if counts[ARMS] == HOMED else counts[SEEKING], packet)
+
+
 @njit(int64(*FIXED, float64[::1]), **COMPILED)
 def read(answer, packet, counts, held, history, arms, frame, state):
     """Write position, velocity and buttons of a new answer to state, float64 (7,); 0 if there is none to be trusted.
 
-    Until all arms are homed the encoders mean nothing. An answer whose angles no tip has takes the force away.
+    Until all arms are homed the encoders mean nothing. That, angles that no tip has, and two answers in a row that are
+    doubted take the force away.
     """
     fresh = counts[FRESH]
     if not fresh:
@@ -152,19 +161,23 @@ def read(answer, packet, counts, held, history, arms, frame, state):
     homed, before = info & HOMED, counts[ARMS]
     counts[ARMS], counts[PRESSED] = homed, info & 15
     if homed != HOMED:
-        counts[KNOWN] = 0
+        let_go(counts, held, packet)
         return 0
     if before != HOMED:
         seed(counts, held)
+    suspected = counts[SUSPECTED]
     if not sample(counts, held, history, fresh == DOUBTFUL, first, second, third):
         counts[REFUSED] += 1
+        if suspected:
+            let_go(counts, held, packet)
         return 0
     angles = arms[0, 0] + RAD_PER_COUNT * first, arms[1, 0] + RAD_PER_COUNT * second, arms[2, 0] + RAD_PER_COUNT * third
     x, y, z, found = forward(*angles, held[TIP], held[TIP + 1], held[TIP + 2])
-    counts[KNOWN] = found
     if not found:
         counts[REFUSED] += 1
+        let_go(counts, held, packet)
         return 0
+    counts[KNOWN] = 1
     held[TIP], held[TIP + 1], held[TIP + 2] = x, y, z
     rows = jacobian(*angles, x, y, z)
     for i in range(3):
@@ -197,9 +210,8 @@ def write(answer, packet, counts, held, history, arms, frame, x, y, z):
     first, second, third, factor = saturated(
         -share * arms[0, 1] * turn[0], -share * arms[1, 1] * turn[1], -share * arms[2, 1] * turn[2]
     )
-    pushes = first != 0 or second != 0 or third != 0
     held[APPLIED], held[APPLIED + 1], held[APPLIED + 2] = 0.0, 0.0, 0.0
-    if pushes:
+    if first != 0 or second != 0 or third != 0:
         factor *= share
         held[APPLIED], held[APPLIED + 1], held[APPLIED + 2] = factor * x, factor * y, factor * z
     encode(first, second, third, counts[RUNNING] if counts[ARMS] == HOMED else counts[SEEKING], packet)

@@ -39,7 +39,7 @@ def test_the_page_on_materials_shows_what_the_program_takes(tmp_path: Path):
     blocks = re.findall(r"```yaml\n(.*?)```", ROOT.joinpath("docs/materials.md").read_text(encoding="utf-8"), re.DOTALL)
     library, *files = sorted(blocks, key=lambda block: "my-materials.yaml\n" not in block)
     tmp_path.joinpath("my-materials.yaml").write_text(library)
-    assert len(files) == 3
+    assert len(files) == 5
     for text in files:
         parse_config(f"scene: builtin/brick\n{text}", tmp_path / "p.yaml", default_registry())
 

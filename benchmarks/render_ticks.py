@@ -1,18 +1,21 @@
 """What a tick of each law takes: by size of the surface, with and without what can be left out, law by law."""
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from time import thread_time
 
 import numpy as np
 from numba import njit
 
-from tangible_core.data import HapticSurface
+from tangible_core.data import HapticSurface, Material
 from tangible_core.interfaces import ForceRenderer
+from tangible_core.materials import library
 from tangible_core.registry import default_registry
 from tangible_render import mask_kernels
 from tangible_render.grey_levels import grey_levels
 from tangible_render.proxy import Proxy
 from tangible_render.tangible_mask import TangibleMask, summed_tables
+from tangible_render.with_materials import WithMaterials
 
 from .figures import Figure, table
 from .render_waves import HAND, TICKS, path, surface
@@ -81,26 +84,35 @@ def _by_tables(tables, rows, columns, half, out):  # noqa: ANN001, ANN202
 
 
 def skips() -> list[str]:
-    """A row for each thing that is left out."""
+    """A row for each thing that is left out: what it saves, and how far apart it and all of it feel the same path."""
     level = HapticSurface.from_heights(np.full((256, 256), 0.004))
     flat = path(HAND)
     flat[:, 2] = 0.003
     over, high = path(HAND, -0.0005), path(HAND, -0.02)
     general = Proxy(damping_n_s_per_m=1e-300)  # too little to be felt, so that the law of all parts runs
+    smooth, textured = (covered(256, replace(library()["sand"], roughness_m=each)) for each in (0.0, 1e-300))
     rows = [
-        ("no friction, no damping, one material", Proxy(), general, surface(256), path(HAND)),
-        ("a level tile", Proxy(), general, level, flat),
-        ("free air, 0.5 mm over the surface", Proxy(), Proxy(), surface(256), over),
-        ("free air, over all of a tile", Proxy(), Proxy(), surface(256), high),
+        ("no texture, sand's friction", Proxy(), smooth, path(HAND), Proxy(), textured),
+        ("no friction, no damping, one material", Proxy(), surface(256), path(HAND), general, surface(256)),
+        ("a level tile", Proxy(), level, flat, general, level),
+        ("free air, 0.5 mm over the surface", Proxy(), surface(256), over, None, surface(256)),
+        ("free air, over all of a tile", Proxy(), surface(256), high, None, surface(256)),
     ]
-    whole = Proxy().touch(surface(256))
     lines = []
-    for what, quick, slow, felt, hands in rows:
-        base = _twice(slow.touch(felt).path, hands) if slow != quick else _twice(whole.path, path(HAND))
-        times = in_turns({"whole": base, "less": _twice(quick.touch(felt).path, hands)}, 15, thread_time)
+    for what, quick, felt, hands, slow, all_felt in rows:
+        less, whole = quick.touch(felt), (slow or Proxy()).touch(all_felt)
+        way = hands if slow else path(HAND)
+        times = in_turns({"whole": _twice(whole.path, way), "less": _twice(less.path, hands)}, 15, thread_time)
         ns = [1e9 * times[name].seconds / TICKS / 2 for name in ("whole", "less")]
-        lines.append((what, f"{ns[0]:.0f}", f"{ns[1]:.0f}", f"{times['less'].ratio:.2f}"))
-    return table(("left out", "all of it, ns", "without, ns", "share"), lines)
+        apart = np.abs(quick.touch(felt).path(hands) - slow.touch(all_felt).path(hands)).max() if slow else 0.0
+        lines.append((what, f"{ns[0]:.0f}", f"{ns[1]:.0f}", f"{times['less'].ratio:.2f}", f"{apart:.1g}"))
+    return table(("left out", "all of it, ns", "without, ns", "share", "apart, N"), lines)
+
+
+def covered(count: int, material: Material) -> HapticSurface:
+    """The waves, all of one material."""
+    waves = surface(count)
+    return HapticSurface(waves.relief, np.zeros((count, count), np.int32), (material,))
 
 
 def laws() -> list[str]:
@@ -109,10 +121,17 @@ def laws() -> list[str]:
     methods: dict[str, ForceRenderer] = {
         each.name: default_registry().load("render", each.name)()
         for each in default_registry().listings
-        if each.kind == "render" and each.distribution == "tangible-images"
+        if each.kind == "render" and each.distribution == "tangible-images" and each.name != "with-materials"
     }
-    methods["proxy, friction 0.6 and 0.4"] = Proxy(static_friction=0.6, dynamic_friction=0.4)
-    times = in_turns({name: _twice(each.touch(felt).path, hands) for name, each in methods.items()}, 15, thread_time)
+    touches = {name: each.touch(felt) for name, each in methods.items()}
+    touches["proxy, friction 0.6 and 0.4"] = Proxy(static_friction=0.6, dynamic_friction=0.4).touch(felt)
+    for name in ("ice", "sand", "rubber"):
+        touches[f"proxy on {name}"] = Proxy().touch(covered(256, library()[name]))
+        for law in ("penalty", "lateral-shape"):
+            touches[f"with-materials around {law} on {name}"] = WithMaterials(law=law).touch(
+                covered(256, library()[name])
+            )
+    times = in_turns({name: _twice(each.path, hands) for name, each in touches.items()}, 15, thread_time)
     return table(
         ("law", "ns a tick"), [(name, f"{1e9 * each.seconds / TICKS / 2:.0f}") for name, each in times.items()]
     )

@@ -34,6 +34,7 @@ class CompiledTouch(Touch):
         self.memory = np.full(3, np.nan) if memory is None else memory
         self.stiffness_n_per_m = stiffness
         """The greatest by which a force grows with depth on level ground; 0 for a law that is no spring."""
+        self._address: Any = None
 
     def __reduce__(self) -> tuple[Any, ...]:
         function = self.tick.py_func  # pyright: ignore[reportFunctionMemberAccess]
@@ -57,9 +58,11 @@ class CompiledTouch(Touch):
 
     def address(self) -> Any:
         """The kernel as an argument of another one, which calls it with `*fixed` and a state."""
-        from . import kernels
+        if self._address is None:  # kept, as finding it takes half a millisecond
+            from . import kernels
 
-        return kernels.Address(self.tick, kernels.signature(self.tick, (*self.fixed, *[0.0] * 6)))
+            self._address = kernels.Address(self.tick, kernels.signature(self.tick, (*self.fixed, *[0.0] * 6)))
+        return self._address
 
 
 def _revive(kernel: tuple[str, str], fixed: tuple[Any, ...], memory: np.ndarray, stiffness: float) -> CompiledTouch:

@@ -44,7 +44,7 @@ class Proxy(ForceRenderer):
     friction: bool = True
     """False leaves all friction out, that of materials too."""
     texture: bool = True
-    """False leaves the fine textures of materials out, their drag and their own friction; ."""
+    """False leaves the fine textures of materials out, their drag and their own friction."""
     dequantise: Filter = "auto"
     """Smooth heights of 17 to 256 values, such as 8 bits have, within half a step: auto, never, or a sigma in cells."""
 

@@ -64,7 +64,7 @@ def farthest(surface: HapticSurface) -> float:
 @pytest.mark.parametrize("name", MAPS)
 class TestProxy:
     def test_without_friction(self, name: str, ticks: int):
-        """No tick gives more than its sampling, so no path does, closed or not; the last step follows a Taylor series."""
+        """No tick gives more than its sampling, so no path does, closed or not; a Taylor series errs a little."""
         worst = walked(Proxy(stiffness_n_per_m=K), MAPS[name], ticks)
         assert worst.greatest_n <= K * farthest(MAPS[name])
         assert worst.gained_j <= 1e-8

@@ -15,16 +15,16 @@ from .run import felt, open_pipeline
 def feel(config: Path, sets: Sequence[str], seconds: float, record: Path | None, as_json: bool, cached: bool) -> None:
     """Make the touch, open the device, feel, and say how it went."""
     pipeline = open_pipeline(config, sets, cached)
-    device = pipeline.config.device
-    if device is None:
+    chosen, device = pipeline.config.device, pipeline.config.felt_device
+    if chosen is None or device is None:
         raise ConfigError(f"{config}: `device:` is missing; add one, such as `device: {{use: mock}}`")
     if record is not None:
         session.check_record_path(record)
     touch = pipeline.make("touch")
-    recording = felt(pipeline, touch, device.method, seconds)
+    recording = felt(pipeline, touch, device, seconds)
     if record is not None:
         recording.save(record)
-    figures: dict[str, Any] = {"device": device.name, "spec": asdict(device.method.spec()), **recording.figures()}
+    figures: dict[str, Any] = {"device": chosen.name, "spec": asdict(device.spec()), **recording.figures()}
     if as_json:
         show.print_json(
             {"outcomes": show.as_rows(pipeline.outcomes), "figures": figures, "file": record and str(record)}

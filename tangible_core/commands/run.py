@@ -107,10 +107,10 @@ def _concerns(pipeline: Pipeline, product: str) -> bool:
 
 
 def _feel(pipeline: Pipeline, value: Any, seconds: float) -> Recording | None:
-    device = pipeline.config.device
-    if pipeline.config.want != "touch" or device is None or not device.method.spec().simulated:
+    device = pipeline.config.felt_device
+    if pipeline.config.want != "touch" or device is None or not device.spec().simulated:
         return None
-    return felt(pipeline, value, device.method, seconds)
+    return felt(pipeline, value, device, seconds)
 
 
 def felt(pipeline: Pipeline, touch: Touch, device: HapticDevice, seconds: float) -> Recording:

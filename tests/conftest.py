@@ -58,6 +58,14 @@ def cache_dir(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.Monk
     return folder
 
 
+@pytest.fixture(autouse=True)
+def runtime_dir(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Shared memory of its own for each test: two at a time do not meet on one channel."""
+    folder = tmp_path_factory.mktemp("runtime")
+    monkeypatch.setenv("TANGIBLE_RUNTIME_DIR", str(folder))
+    return folder
+
+
 @pytest.fixture
 def unchecked_shapes(monkeypatch: pytest.MonkeyPatch) -> None:
     """As outside of tests: only the code's own checks are left."""

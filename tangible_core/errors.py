@@ -42,6 +42,10 @@ class DeviceError(TangibleError):
     """A device that is not there, is in use, or stopped answering."""
 
 
+class DeviceAbsent(DeviceError):
+    """No such device is connected, or what it is reached by is not installed: nothing can be asked of it."""
+
+
 class OutputError(TangibleError):
     """Results that cannot be written."""
 

@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 
 from ..data import NO_FORCE, Force
-from ..errors import DeviceError
+from ..errors import DeviceAbsent, DeviceError
 from ..interfaces import HapticDevice
 from .checks import Check, CheckFailure, demand, refuses
 
@@ -27,6 +27,14 @@ def spec_makes_sense(method: HapticDevice) -> None:
         demand(0 < value < np.inf, f"{name} is {value}; it must be above 0 and finite")
     demand(0 <= spec.damping_n_s_per_m < np.inf, f"damping_n_s_per_m is {spec.damping_n_s_per_m}")
     demand(1 <= spec.axes <= 6 and spec.buttons >= 0, f"{spec.axes} axes and {spec.buttons} buttons")
+
+
+def absence_is_said(method: HapticDevice) -> None:
+    """It opens; or it is not there, and DeviceAbsent says what to do. The other checks then have nothing to ask."""
+    try:
+        method.open().close()
+    except DeviceAbsent as error:
+        demand(";" in str(error) or ", or " in str(error), f"{error}: names no cure; add what the user can do about it")
 
 
 def force_is_applied(method: HapticDevice) -> None:
@@ -100,6 +108,33 @@ def device_can_be_opened_again(method: HapticDevice) -> None:
             link.read()
 
 
+def openers_do_not_share(method: HapticDevice) -> None:
+    """Who opens it while it is open is refused, or gets a device of its own; the first one feels nothing of it."""
+    push = Force(0.0, 0.0, method.spec().max_force_n / 4)
+    with method.open() as first:
+        first.write(push)
+        try:
+            with method.open() as second:
+                second.write(NO_FORCE)
+        except DeviceError:
+            pass
+        demand(tuple(first.applied) != NO_FORCE, "a second opener took the force from the first one")
+        first.read()
+
+
+def velocity_is_that_of_the_positions(method: HapticDevice) -> None:
+    """Velocities are metres per second of the device's clock: over 200 reads they add up to the way of the tip."""
+    spec = method.spec()
+    with method.open() as link:
+        states = [link.read() for _ in range(200)]
+    speeds = np.array([state.velocity_m_per_s for state in states])
+    steps_s = np.diff([state.time_s for state in states])
+    way = np.subtract(states[-1].position_m, states[0].position_m)
+    summed = (0.5 * (speeds[1:] + speeds[:-1]) * steps_s[:, None]).sum(axis=0)
+    apart, length = float(np.linalg.norm(summed - way)), float((np.linalg.norm(speeds[1:], axis=1) * steps_s).sum())
+    demand(apart <= 0.1 * length + 10 * spec.resolution_m, f"velocities add up to {summed} m, the tip went {way} m")
+
+
 def states_make_sense(method: HapticDevice) -> None:
     """Time only goes forward; positions and velocities are finite, positions within twice the workspace."""
     reach = np.array(method.spec().workspace_m)  # from the centre: half of it is the workspace itself
@@ -115,11 +150,14 @@ def states_make_sense(method: HapticDevice) -> None:
 
 CHECKS: tuple[Check, ...] = (
     spec_makes_sense,
+    absence_is_said,
     force_is_applied,
     forces_are_limited,
     broken_force_is_none,
     no_force_is_left_behind,
     close_is_final,
     device_can_be_opened_again,
+    openers_do_not_share,
+    velocity_is_that_of_the_positions,
     states_make_sense,
 )

@@ -23,7 +23,7 @@ from tangible_core import (
     Views,
 )
 from tangible_core.data import NO_FORCE
-from tangible_core.errors import DeviceError, PictureError
+from tangible_core.errors import DeviceAbsent, DeviceError, PictureError
 from tangible_core.pictures import to_grey
 from tangible_core.testing import CheckFailure, checks_depth, checks_device, checks_render, checks_texture, checks_touch
 
@@ -206,7 +206,8 @@ class GadgetLink(Link):
         if self.closed and self.fault != "close_is_final":
             raise DeviceError("closed")
         self.ticks += self.fault != "states_make_sense"
-        return HapticState((0.0, 0.0, 0.01), time_s=self.ticks / 1000)
+        drift = 0.1 if self.fault == "velocity_is_that_of_the_positions" else 0.0
+        return HapticState((0.0, 0.0, 0.01), (drift, 0.0, 0.0), self.ticks / 1000)
 
     def write(self, force: Force) -> None:
         if self.closed:
@@ -246,7 +247,12 @@ class Gadget(HapticDevice):
     def open(self) -> Link:
         if self.fault == "device_can_be_opened_again" and next(ticket) % 2:
             raise DeviceError("in use")
-        return GadgetLink(self.fault)
+        if self.fault == "absence_is_said":
+            raise DeviceAbsent("gone")
+        return the_only_one if self.fault == "openers_do_not_share" else GadgetLink(self.fault)
+
+
+the_only_one = GadgetLink("openers_do_not_share")
 
 
 FAMILIES: list[tuple[Any, Any, dict[str, Any]]] = [

@@ -7,7 +7,7 @@ from types import TracebackType
 from typing import Self, final
 
 from tangible_core.data import NO_FORCE, Force
-from tangible_core.errors import DeviceError
+from tangible_core.errors import DeviceAbsent, DeviceError
 
 from .channel import (
     CLIENT_OPEN,
@@ -117,7 +117,7 @@ def _await_device(channel: str, wait_s: float) -> None:
     end = time.monotonic() + wait_s
     while not device_is_open(channel):
         if time.monotonic() >= end:
-            raise DeviceError(
+            raise DeviceAbsent(
                 f"no device is open on pointer {channel!r}; start `tangible feel` with `device: {{use: pointer}}` first"
             )
         time.sleep(0.02)

@@ -20,7 +20,8 @@ def library() -> Any:
         with redirect_stderr(io.StringIO()):  # which says less than the message below
             return import_module("forcedimension_core.dhd")
     except ImportError as error:
-        raise DeviceAbsent(f"device force-dimension: {error}; {INSTALL}") from error
+        first = str(error).split(". ")[0]
+        raise DeviceAbsent(f"device force-dimension: {first}; {INSTALL}") from error
 
 
 def done(dhd: Any, result: int, doing: str, cure: str) -> int:

@@ -24,7 +24,9 @@ import mmap
 import os
 import re
 import struct
+import sys
 import time
+import warnings
 from pathlib import Path
 from typing import final
 
@@ -132,14 +134,17 @@ def device_is_open(name: str) -> bool:
 
 
 def _runtime_folder() -> Path:
-    """$TANGIBLE_RUNTIME_DIR, or the user's runtime folder; only this user may look into it."""
+    """$TANGIBLE_RUNTIME_DIR, or the user's runtime folder. Raises: DeviceError if it is somebody else's."""
     if named := os.environ.get("TANGIBLE_RUNTIME_DIR"):
         folder = Path(named)
     else:
         from platformdirs import user_runtime_path
 
-        folder = user_runtime_path("tangible-images")
+        with warnings.catch_warnings(action="ignore"):  # that a server has no such folder, and one in /tmp is used
+            folder = user_runtime_path("tangible-images")
     folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+    if sys.platform != "win32" and folder.stat().st_uid != os.getuid():
+        raise DeviceError(f"{folder}: belongs to another user; set TANGIBLE_RUNTIME_DIR to a folder of your own")
     return folder
 
 

@@ -10,7 +10,13 @@ from importlib.metadata import version
 from pathlib import Path
 
 RESULTS = Path(__file__).with_name("RESULTS.md")
-SECTIONS = {"house": "The house itself", "depth": "Depth", "texture": "Texture", "render": "Force laws"}
+SECTIONS = {
+    "house": "The house itself",
+    "depth": "Depth",
+    "texture": "Texture",
+    "render": "Force laws",
+    "record": "Recordings",
+}
 VERSIONS = ("tangible-images", "numpy", "opencv-contrib-python-headless", "scikit-image", "numba", "pydantic", "typer")
 HEAD = """# Results
 

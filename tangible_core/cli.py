@@ -93,7 +93,7 @@ def feel(
     config: Config,
     sets: Sets = None,
     seconds: Seconds = 8.0,
-    record: Annotated[Path | None, typer.Option(help="Keep every tick in this file (.npz or .csv).")] = None,
+    record: Annotated[Path | None, typer.Option(help="Keep every tick in this file (.nc, .npz or .csv).")] = None,
     as_json: Json = False,
     no_cache: NoCache = False,
 ) -> None:
@@ -101,6 +101,21 @@ def feel(
     from .commands import feel as command
 
     command.feel(config, sets or [], seconds, record, as_json, not no_cache)
+
+
+@app.command()
+def replay(
+    recording: Annotated[Path, typer.Argument(help="What was felt (.nc, .npz or .csv).", show_default=False)],
+    config: Config,
+    sets: Sets = None,
+    record: Annotated[Path | None, typer.Option(help="Keep every tick in this file (.nc, .npz or .csv).")] = None,
+    as_json: Json = False,
+    no_cache: NoCache = False,
+) -> None:
+    """Feel a recording again through a pipeline's renderer, and compare the forces."""
+    from .commands import replay as command
+
+    command.replay(recording, config, sets or [], record, as_json, not no_cache)
 
 
 @app.command()

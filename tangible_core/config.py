@@ -14,6 +14,7 @@ from .material_rules import MaterialRule
 from .materials import NEUTRAL, find, load_library
 from .registry import Registry
 from .scene import BUILTINS, SceneFiles, unknown_scene
+from .servo.safety import Safety
 from .source import Location, Source, parse_source, read_text
 
 M = TypeVar("M", bound=Method, covariant=True)
@@ -83,6 +84,7 @@ class PipelineConfig:
     mapping: WorkspaceMapping = field(default_factory=WorkspaceMapping)
     render: Chosen[ForceRenderer] | None = None
     device: Chosen[HapticDevice] | None = None
+    safety: Safety = field(default_factory=Safety)
 
     @property
     def felt_device(self) -> HapticDevice | None:
@@ -99,6 +101,7 @@ class PipelineConfig:
             "workspace": self.workspace.model_dump(mode="json"),
             "mapping": self.mapping.model_dump(mode="json", exclude_none=True),
             "materials": self.materials.model_dump(mode="json", exclude_none=True),
+            "safety": self.safety.model_dump(mode="json", exclude_none=True),
         }
         for kind in STAGES:
             if (chosen := getattr(self, kind)) is not None:
@@ -111,6 +114,7 @@ SECTIONS: dict[str, type[BaseModel]] = {
     "workspace": Workspace,
     "mapping": WorkspaceMapping,
     "materials": MaterialChoice,
+    "safety": Safety,
 }
 KEYS = ("scene", "want", *STAGES, *SECTIONS)
 

@@ -5,7 +5,7 @@ right-handed, x right, y away from the user (the picture's top row is far), z up
 picture on the base plane.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, fields, is_dataclass
 from enum import IntFlag
 from typing import Any, Literal, NamedTuple, cast, get_args
@@ -432,6 +432,15 @@ class Plan:
     steps: tuple[Outcome, ...]
 
 
+class Spread(NamedTuple):
+    """How a time scatters, in microseconds."""
+
+    p50: float
+    p99: float
+    p999: float
+    most: float
+
+
 @dataclass(frozen=True)
 class ServoReport:
     """How a force loop is doing since it started."""
@@ -445,6 +454,14 @@ class ServoReport:
     """Work done by the device on the hand; above 0 the loop gave energy away."""
     stopped: str = ""
     """Why the loop ended; empty while it runs."""
+    period_us: Spread | None = None
+    """From one tick to the next; none where time is simulated."""
+    late_us: Spread | None = None
+    """From when a tick was due to when it began."""
+    overruns: int = 0
+    """Periods that had no tick."""
+    limited: Mapping[str, int] = field(default_factory=dict[str, int])
+    """Ticks in which safety changed the force, by the name of the `TickFlag`."""
 
 
 def _same_shape(name: str, values: np.ndarray, other: str, others: np.ndarray) -> None:

@@ -1,9 +1,11 @@
-"""Files that are whole or not there at all."""
+"""Files that are whole or not there at all, and files that grow under one writer."""
 
 import os
+import sys
 import tempfile
 from collections.abc import Generator
 from contextlib import contextmanager
+from io import FileIO
 from pathlib import Path
 from typing import IO
 
@@ -41,6 +43,40 @@ def write_text(path: Path, text: str) -> None:
     """Write a text file whole (see `atomic_write`)."""
     with atomic_write(path) as file:
         file.write(text.encode())
+
+
+def open_alone(path: Path) -> FileIO:
+    """An empty binary file, unbuffered, that nobody else opens so before it is closed, or this process ended.
+
+    Missing parent folders are made. What stood there before is gone, but not when another one holds it.
+    Raises: OutputError if the place cannot be written, or is held.
+    """
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        file = FileIO(os.open(path, os.O_RDWR | os.O_CREAT | getattr(os, "O_BINARY", 0), 0o666), "r+")
+    except OSError as error:
+        raise OutputError(f"{path}: cannot be written: {error.strerror}; choose another folder") from error
+    try:
+        _lock(file)
+        file.truncate(0)
+    except OSError as error:
+        file.close()
+        raise OutputError(f"{path}: another program is writing to it; end that one or choose another name") from error
+    return file
+
+
+def _lock(file: FileIO) -> None:
+    """Raises: OSError if another one has it."""
+    if sys.platform == "win32":
+        import msvcrt
+
+        file.seek(2**62)  # what is locked cannot be read by others on this system: a byte that will never be there
+        msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
+        file.seek(0)
+    else:
+        import fcntl
+
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
 
 
 def _umask() -> int:

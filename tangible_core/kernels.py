@@ -55,3 +55,13 @@ def along(tick, fixed, positions_m, period_s, force_n):
         x, y, z = positions_m[i, 0], positions_m[i, 1], positions_m[i, 2]
         vx, vy, vz = step_velocity(positions_m, period_s, i)
         force_n[i, 0], force_n[i, 1], force_n[i, 2] = tick(*fixed, x, y, z, vx, vy, vz)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def over_states(tick, fixed, memory, states, proxy_m, force_n):
+    """The law's proxy, NaN where there is none, and force for states (x, y, z, vx, vy, vz), one after another."""
+    for i in range(states.shape[0]):
+        x, y, z, vx, vy, vz = states[i, 0], states[i, 1], states[i, 2], states[i, 3], states[i, 4], states[i, 5]
+        force_n[i, 0], force_n[i, 1], force_n[i, 2] = tick(*fixed, x, y, z, vx, vy, vz)
+        px, py, pz = memory[0], memory[1], memory[2]
+        proxy_m[i, 0], proxy_m[i, 1], proxy_m[i, 2] = (np.nan, np.nan, np.nan) if np.isnan(pz) else (px, py, pz)

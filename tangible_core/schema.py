@@ -34,6 +34,7 @@ def json_schema(registry: Registry | None = None, distribution: str | None = "ta
             "mapping": _schema(SECTIONS["mapping"], definitions),
             "materials": _materials(definitions),
             **{kind: _stage(kind, registry, distribution, definitions) for kind in STAGES},
+            "safety": _schema(SECTIONS["safety"], definitions),
         },
         "$defs": definitions,
     }
@@ -106,6 +107,8 @@ def markdown(schema: dict[str, Any]) -> str:
         for form in properties[kind]["anyOf"][1:]:
             summary = form.get("description", "").split("\n")[0]
             lines += [f"### {form['properties']['use']['const']}", "", summary, "", *_table(form, blocks)]
+    lines += ["## safety", "", "Between every law and every device ([why](safety.md)).", ""]
+    lines += _table(properties["safety"], blocks)
     return "\n".join(lines).rstrip() + "\n"
 
 

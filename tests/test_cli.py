@@ -235,6 +235,53 @@ def test_a_time_that_is_none(folder: Path, seconds: str):
     assert "seconds" in mistake("feel", "p.yaml", "--seconds", seconds, cwd=folder)
 
 
+def test_what_was_recorded_is_replayed_through_any_law(folder: Path):
+    assert tangible("feel", "p.yaml", "--seconds", 1, "--record", "hand.nc", cwd=folder).returncode == 0
+    same = tangible("replay", "hand.nc", "p.yaml", cwd=folder)
+    assert same.returncode == 0, same.stderr
+    assert "noticed_percent" in same.stdout
+    other = ("p.yaml", "--set", "render={use: proxy}")
+    document = json.loads(tangible("replay", "hand.nc", *other, "--record", "b.nc", "--json", cwd=folder).stdout)
+    assert (document["recorded"]["device"], document["recorded"]["renderer"]) == ("mock", "penalty-gradient")
+    figures = document["figures"]
+    assert figures["ticks"] == 1000 >= figures["compared"] > 500  # others are over what the device can give
+    assert figures["error_n"] > 1e-3
+    again = json.loads(tangible("replay", "b.nc", *other, "--json", cwd=folder).stdout)
+    assert again["recorded"]["device"] == "replay of hand.nc"
+    assert again["figures"]["worst_error_n"] < 1e-5
+    played = tangible("feel", "p.yaml", "--set", "device={use: replay, file: hand.nc}", "--seconds", 1, cwd=folder)
+    assert played.returncode == 0, played.stderr
+
+
+def test_recordings_that_are_not_there_or_were_cut_off(folder: Path):
+    from tangible_core.session import Recording
+
+    assert "cannot be read" in mistake("replay", "none.nc", "p.yaml", cwd=folder)
+    assert "end of the name" in mistake("replay", "p.yaml", "p.yaml", "--record", "b.txt", cwd=folder)
+    Recording(np.zeros((3, 16)), "the cable is out").save(folder / "cut.nc")
+    done = tangible("replay", "cut.nc", "p.yaml", cwd=folder)
+    assert done.returncode == 0, done.stderr
+    assert "the recording ended early: the cable is out" in done.stderr
+
+
+def test_a_killed_recording_is_readable(folder: Path):
+    from tangible_core.session import Recording
+
+    words = [TANGIBLE, "feel", "p.yaml", "--seconds", "6000", "--record", "hand.nc", "--json"]
+    process = subprocess.Popen(words, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    while not (folder / "hand.nc").exists() or (folder / "hand.nc").stat().st_size < 100_000:
+        time.sleep(0.05)
+        assert process.poll() is None
+    assert "another program is writing to it" in mistake("feel", "p.yaml", "--record", "hand.nc", cwd=folder)
+    process.kill()
+    process.wait()
+    recording = Recording.load(folder / "hand.nc")
+    assert len(recording.rows) > 1000
+    assert recording.stopped.startswith("cut off")
+    assert (recording.about.device, recording.about.renderer) == ("mock", "penalty-gradient")
+    assert "max_disparity_px: 16" in recording.about.configuration
+
+
 def test_ctrl_c_ends_with_130_and_nothing_half_written(folder: Path):
     words = [TANGIBLE, "feel", "p.yaml", "--seconds", "600", "--record", "hand.npz", "--json"]
     process = subprocess.Popen(words, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,

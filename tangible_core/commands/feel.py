@@ -2,14 +2,14 @@
 
 import sys
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
 from .. import session
 from ..errors import ConfigError
 from . import show
-from .run import felt, open_pipeline
+from .run import about, felt, open_pipeline
 
 
 def feel(config: Path, sets: Sequence[str], seconds: float, record: Path | None, as_json: bool, cached: bool) -> None:
@@ -21,9 +21,13 @@ def feel(config: Path, sets: Sequence[str], seconds: float, record: Path | None,
     if record is not None:
         session.check_record_path(record)
     touch = pipeline.make("touch")
-    recording = felt(pipeline, touch, device, seconds)
-    if record is not None:
-        recording.save(record)
+    if record is not None and record.suffix == ".nc":  # the one that grows while it is felt
+        with session.Writer(record, about(pipeline)) as writer:
+            recording = felt(pipeline, touch, device, seconds, writer)
+    else:
+        recording = felt(pipeline, touch, device, seconds)
+        if record is not None:
+            replace(recording, about=about(pipeline).stamped()).save(record)
     figures: dict[str, Any] = {"device": chosen.name, "spec": asdict(device.spec()), **recording.figures()}
     if as_json:
         show.print_json(

@@ -5,6 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
 from importlib.resources import files
+from io import StringIO
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,7 @@ from ..cache import Cache, write_record
 from ..config import parse_config
 from ..data import MaterialMap, Record, ServoReport
 from ..engine import Pipeline, load_pipeline
-from ..files import atomic_write
+from ..files import write_text
 from ..interfaces import HapticDevice, Touch
 from ..registry import default_registry
 from ..report import disparity_errors, draw_sheet, write_figures
@@ -82,7 +83,8 @@ def execute(pipeline: Pipeline, out: Path, seconds: float) -> Results:
 
     The completed configuration is written first: a folder that cannot be written stops the run before it starts.
     """
-    written = [_write_config(pipeline, out / "config.yaml")]
+    write_text(out / "config.yaml", _as_yaml(pipeline))
+    written = [out / "config.yaml"]
     pipeline.plan()
     value = pipeline.make()
     products = {name: pipeline.make(name) for name in SHOWN if _concerns(pipeline, name)}
@@ -113,22 +115,31 @@ def _feel(pipeline: Pipeline, value: Any, seconds: float) -> Recording | None:
     return felt(pipeline, value, device, seconds)
 
 
-def felt(pipeline: Pipeline, touch: Touch, device: HapticDevice, seconds: float) -> Recording:
-    """A session whose reports go to the observers."""
+def felt(
+    pipeline: Pipeline, touch: Touch, device: HapticDevice, seconds: float, writer: session.Writer | None = None
+) -> Recording:
+    """A session whose reports go to the observers, and its ticks to a writer."""
 
     def report(report: ServoReport) -> None:
         hooks.tell(pipeline.registry.plugins, "tangible_servo_report", report=report)
 
-    return session.run(touch, device, seconds, report)
+    return session.run(touch, device, seconds, report, writer)
 
 
-def _write_config(pipeline: Pipeline, path: Path) -> Path:
-    yaml = YAML(typ="safe")
+def about(pipeline: Pipeline) -> session.About:
+    """What a recording says of the pipeline that was felt."""
+    used = {kind: getattr(pipeline.config, kind) for kind in ("device", "render")}
+    names = {kind: chosen.name if chosen else "" for kind, chosen in used.items()}
+    return session.About(names["device"], names["render"], _as_yaml(pipeline))
+
+
+def _as_yaml(pipeline: Pipeline) -> str:
+    """The completed configuration."""
+    yaml, text = YAML(typ="safe"), StringIO()
     yaml.default_flow_style = False
     yaml.sort_base_mapping_type_on_output = False  # pyright: ignore[reportAttributeAccessIssue]
-    with atomic_write(path) as file:
-        yaml.dump(pipeline.config.completed(), file)  # pyright: ignore[reportUnknownMemberType]
-    return path
+    yaml.dump(pipeline.config.completed(), text)  # pyright: ignore[reportUnknownMemberType]
+    return text.getvalue()
 
 
 def _draw(pipeline: Pipeline, products: Mapping[str, Any], recording: Recording | None, path: Path) -> Path:

@@ -2,5 +2,19 @@
 
 from .loop import limited, run
 from .recording import INTERRUPTED, Recording, check_record_path, failure
+from .replay import replay, undisturbed
+from .tick_file import About
+from .writer import Writer
 
-__all__ = ["INTERRUPTED", "Recording", "check_record_path", "failure", "limited", "run"]
+__all__ = [
+    "INTERRUPTED",
+    "About",
+    "Recording",
+    "Writer",
+    "check_record_path",
+    "failure",
+    "limited",
+    "replay",
+    "run",
+    "undisturbed",
+]

@@ -1,51 +1,123 @@
 """What was felt, tick by tick, and the files it is kept in."""
 
 import zlib
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Any, Self
 from zipfile import BadZipFile
 
 import numpy as np
-from jaxtyping import Float64
+from jaxtyping import Float64, Int64
 
-from ..data import Record
+from ..data import TICK_COLUMNS, Record, TickFlag
 from ..errors import DeviceError, OutputError
 from ..files import atomic_write
+from . import tick_file
+from .tick_file import NOTHING_SAID, About
+
+Vectors = Float64[np.ndarray, "n 3"]
+Times = Float64[np.ndarray, "n"]
+Bits = Int64[np.ndarray, "n"]
 
 INTERRUPTED = "interrupted from the keyboard"
 """What a recording says that Ctrl-C ended."""
-COLUMNS = ("time_s", *("x_m", "y_m", "z_m"), *("vx_m_per_s", "vy_m_per_s", "vz_m_per_s"), *("fx_n", "fy_n", "fz_n"))
-"""Of a recording as CSV; a `mock` device can play it again."""
+SUFFIXES = (".nc", ".npz", ".csv")
+ARRAYS: dict[str, int | slice] = {
+    "time_s": 0,
+    "late_s": 1,
+    "position_m": slice(2, 5),
+    "velocity_m_per_s": slice(5, 8),
+    "proxy_m": slice(8, 11),
+    "force_n": slice(11, 14),
+    "flags": 14,
+    "buttons": 15,
+}
+"""Where each property of a recording, and array of an .npz, stands in a row of `TICK_COLUMNS`."""
+NEEDED = ("time_s", "position_m", "velocity_m_per_s", "force_n")
+"""What each recording has; the rest may be unknown:"""
+UNKNOWN = {"late_s": 0.0, "proxy_x_m": np.nan, "proxy_y_m": np.nan, "proxy_z_m": np.nan, "flags": 0.0, "buttons": 0.0}
 
 
 @dataclass(frozen=True, eq=False)
 class Recording(Record):
-    """What was felt, tick by tick, in the workspace frame.
+    """What was felt, tick by tick, in the workspace frame: rows of `TICK_COLUMNS`.
 
-    Raises: OutputError if the arrays are not of one length.
+    Raises: OutputError if the rows are no such table.
     """
 
-    time_s: Float64[np.ndarray, "n"]
-    position_m: Float64[np.ndarray, "n 3"]
-    velocity_m_per_s: Float64[np.ndarray, "n 3"]
-    force_n: Float64[np.ndarray, "n 3"]
-    """What the device held from each tick to the next."""
+    rows: Float64[np.ndarray, "n columns"]
     stopped: str = ""
     """Why it ended early; empty when the time was over."""
-    not_finite: int = 0
-    """Ticks whose force was NaN or infinite, and made zero."""
-    limited: int = 0
-    """Ticks whose force was over the device's maximum, and scaled down."""
+    about: About = NOTHING_SAID
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        vectors = (self.position_m, self.velocity_m_per_s, self.force_n)
-        if self.time_s.ndim != 1 or any(each.shape != (self.time_s.size, 3) for each in vectors):
-            raise OutputError(
-                f"a recording has (n,) times and (n, 3) vectors, not {self.time_s.shape} and "
-                f"{', '.join(str(each.shape) for each in vectors)}"
-            )
+        if self.rows.ndim != 2 or self.rows.shape[1] != len(TICK_COLUMNS):
+            raise OutputError(f"a recording is (n, {len(TICK_COLUMNS)}), as TICK_COLUMNS, not {self.rows.shape}")
+
+    @classmethod
+    def of(cls, stopped: str = "", about: About | None = None, **arrays: np.ndarray) -> Self:
+        """A recording of `ARRAYS` by name; those that are left out, but not `NEEDED`, were not known.
+
+        Raises: OutputError if the arrays are not of one length, KeyError if a name is missing or unknown.
+        """
+        rows = _unknown(arrays["time_s"].size)
+        for name in (*NEEDED, *(arrays.keys() - NEEDED)):
+            part = rows[:, ARRAYS[name]]
+            if arrays[name].shape != part.shape:
+                raise OutputError(f"{name} is {arrays[name].shape}; with these times it is {part.shape}")
+            part[:] = arrays[name]
+        return cls(rows, stopped, about or NOTHING_SAID)
+
+    @property
+    def time_s(self) -> Times:
+        """When each tick began, by the device's clock."""
+        return self.rows[:, ARRAYS["time_s"]]
+
+    @property
+    def late_s(self) -> Times:
+        """How late each tick began."""
+        return self.rows[:, ARRAYS["late_s"]]
+
+    @property
+    def position_m(self) -> Vectors:
+        """Where the tip was."""
+        return self.rows[:, ARRAYS["position_m"]]
+
+    @property
+    def velocity_m_per_s(self) -> Vectors:
+        """How fast the tip was, as the device said."""
+        return self.rows[:, ARRAYS["velocity_m_per_s"]]
+
+    @property
+    def proxy_m(self) -> Vectors:
+        """Where the proxy was, NaN where there is none."""
+        return self.rows[:, ARRAYS["proxy_m"]]
+
+    @property
+    def force_n(self) -> Vectors:
+        """What the device held from each tick to the next."""
+        return self.rows[:, ARRAYS["force_n"]]
+
+    @property
+    def flags(self) -> Bits:
+        """What happened, sums of `TickFlag`."""
+        return self.rows[:, ARRAYS["flags"]].astype(np.int64)
+
+    @property
+    def buttons(self) -> Bits:
+        """Buttons held, one bit each."""
+        return self.rows[:, ARRAYS["buttons"]].astype(np.int64)
+
+    @property
+    def limited(self) -> int:
+        """Ticks whose force was over the greatest allowed, and scaled down."""
+        return int(np.count_nonzero(self.flags & TickFlag.FORCE_LIMITED))
+
+    @property
+    def not_finite(self) -> int:
+        """Ticks whose force was NaN or infinite, and made zero."""
+        return int(np.count_nonzero(self.flags & TickFlag.NOT_FINITE))
 
     @property
     def peak_force_n(self) -> float:
@@ -73,23 +145,32 @@ class Recording(Record):
         }
 
     def save(self, path: Path) -> None:
-        """Write all of it as .npz (`numpy.load` reads it), or the ticks alone as .csv; whole or not at all.
+        """Write .nc (as a `Writer`), .npz (`numpy.load` reads it) or, the ticks alone, .csv; whole or not at all.
 
         Raises: OutputError for another suffix, or if the place cannot be written.
         """
         check_record_path(path)
         with atomic_write(path) as file:
-            if path.suffix == ".npz":
-                np.savez_compressed(file, **vars(self))
+            if path.suffix == ".nc":
+                file.write(tick_file.header(self.about, self.stopped, len(self.rows)))
+                file.write(tick_file.pack(self.rows))
+            elif path.suffix == ".npz":
+                arrays = {name: getattr(self, name) for name in ARRAYS}
+                np.savez_compressed(file, stopped=self.stopped, **arrays, **asdict(self.about))
             else:
-                table = np.column_stack([self.time_s, self.position_m, self.velocity_m_per_s, self.force_n])
-                np.savetxt(file, table, "%.17g", ",", header=",".join(COLUMNS), comments="")
+                np.savetxt(file, self.rows, "%.17g", ",", header=",".join(TICK_COLUMNS), comments="")
 
     @classmethod
     def load(cls, path: Path) -> Self:
-        """A recording that `save` wrote. Raises: OutputError if it cannot be read or is none."""
+        """A recording from any of the `SUFFIXES`; one that was cut off says so in `stopped`.
+
+        It is all in memory then, half a gigabyte for an hour at 1 kHz.
+        Raises: OutputError if it cannot be read or is none.
+        """
         try:
-            return cls(**_from_npz(path)) if path.suffix == ".npz" else cls(*_from_csv(path))
+            if path.suffix == ".nc":
+                return cls(*tick_file.read(path))
+            return cls.of(**_from_npz(path)) if path.suffix == ".npz" else cls(_from_csv(path))
         except OSError as error:
             raise OutputError(f"{path}: cannot be read: {error.strerror or error}") from error
         except (ValueError, LookupError, TypeError, EOFError, BadZipFile, zlib.error, OutputError) as error:
@@ -98,8 +179,8 @@ class Recording(Record):
 
 def check_record_path(path: Path) -> None:
     """Raises: OutputError if a recording cannot have this name; ask before there is something to lose."""
-    if path.suffix not in (".npz", ".csv"):
-        raise OutputError(f"{path}: a recording is written as .npz or .csv; change the end of the name")
+    if path.suffix not in SUFFIXES:
+        raise OutputError(f"{path}: a recording is written as .nc, .npz or .csv; change the end of the name")
 
 
 def failure(recording: Recording) -> DeviceError:
@@ -107,20 +188,26 @@ def failure(recording: Recording) -> DeviceError:
     return DeviceError(f"stopped after {recording.time_s.size} ticks: {recording.stopped}")
 
 
-def columns(table: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Time, position, velocity and force of rows as `COLUMNS`."""
-    return table[:, 0], table[:, 1:4], table[:, 4:7], table[:, 7:10]
-
-
 def _from_npz(path: Path) -> dict[str, Any]:
     with path.open("rb") as file, np.load(file, allow_pickle=False) as archive:
-        fields: dict[str, Any] = dict(archive)
-    scalars = {"stopped": str, "not_finite": int, "limited": int}
-    return {name: scalars[name](value) if name in scalars else value for name, value in fields.items()}
+        values: dict[str, Any] = dict(archive)
+    about = About(**{each.name: str(values.get(each.name, "")) for each in fields(About)})
+    arrays = {name: values[name] for name in (*NEEDED, *(values.keys() & ARRAYS.keys()))}
+    return {**arrays, "stopped": str(values["stopped"]), "about": about}
 
 
-def _from_csv(path: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    header, *rows = path.read_text(encoding="utf-8").splitlines()
-    if header != ",".join(COLUMNS):
-        raise ValueError(f"its first line is not {','.join(COLUMNS)}")
-    return columns(np.array([row.split(",") for row in rows], np.float64).reshape(-1, len(COLUMNS)))
+def _from_csv(path: Path) -> Float64[np.ndarray, "n columns"]:
+    header, *lines = path.read_text(encoding="utf-8").splitlines()
+    names = header.split(",")
+    if missing := [name for name in TICK_COLUMNS if name not in (*names, *UNKNOWN)]:
+        raise ValueError(f"its first line names no {', '.join(missing)}")
+    table = np.array([line.split(",") for line in lines], np.float64).reshape(-1, len(names))
+    rows = _unknown(len(table))
+    for name, values in zip(names, table.T, strict=True):
+        if name in TICK_COLUMNS:
+            rows[:, TICK_COLUMNS.index(name)] = values
+    return rows
+
+
+def _unknown(count: int) -> Float64[np.ndarray, "n columns"]:
+    return np.tile([UNKNOWN.get(name, 0.0) for name in TICK_COLUMNS], (count, 1))

@@ -2,7 +2,6 @@ import json
 import math
 import subprocess
 import sys
-from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -45,7 +44,8 @@ def record(count: int = 200) -> Recording:
     time_s = np.arange(count) / 1000
     way = np.linspace(-0.03, 0.03, count)
     force_n = np.outer(time_s >= time_s[count // 2], [0.1, -0.2, 0.5])
-    return Recording(time_s, np.stack([way, way / 2, 0.01 - way / 10], axis=1), np.ones((count, 3)), force_n)
+    position_m = np.stack([way, way / 2, 0.01 - way / 10], axis=1)
+    return Recording.of(time_s=time_s, position_m=position_m, velocity_m_per_s=np.ones((count, 3)), force_n=force_n)
 
 
 def whole_run() -> dict[str, object]:
@@ -372,15 +372,16 @@ class TestSheet:
         draw_sheet(tmp_path / "sheet.png", surface=surface, recording=record(count))
 
     def test_a_recording_of_nothing_is_left_out(self, tmp_path: Path) -> None:
-        none = np.empty((0, 3))
         surface = HapticSurface.from_heights(np.zeros((5, 5)))
-        recording = Recording(np.empty(0), none, none, none)
+        recording = Recording(np.empty((0, 16)))
         draw_sheet(tmp_path / "a.png", surface=surface, recording=recording)
         draw_sheet(tmp_path / "b.png", surface=surface)
         assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
 
     def test_never_in_contact(self) -> None:
-        recording = replace(record(), force_n=np.zeros((200, 3)))
+        rows = record().rows.copy()
+        rows[:, 11:14] = 0
+        recording = Recording(rows)
         surface = HapticSurface.from_heights(np.zeros((5, 5)))
         assert headlines({"relief": surface.relief, "recording": recording})["b"] == "Path, never in contact"
 

@@ -1,6 +1,5 @@
 """The loop of touch and device: what it records, how it ends, and that it ends with no force."""
 
-import csv
 import logging
 import math
 from collections.abc import Callable
@@ -11,12 +10,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tangible_core.data import NO_FORCE, DeviceSpec, Force, HapticState, HapticSurface, ServoReport
-from tangible_core.errors import ConfigError, DeviceError, OutputError
+from tangible_core.data import NO_FORCE, DeviceSpec, Force, HapticState, HapticSurface, ServoReport, TickFlag
+from tangible_core.errors import ConfigError, DeviceError
 from tangible_core.interfaces import HapticDevice, Link, Touch
-from tangible_core.session import INTERRUPTED, Recording, check_record_path, failure, limited, loop, run
+from tangible_core.session import INTERRUPTED, Recording, Writer, failure, limited, loop, run
 from tangible_devices.mock import Mock
 from tangible_render.penalty_gradient import PenaltyGradient
+from tangible_render.proxy import Proxy
 
 PUSH = Force(0.0, 0.0, 2.0)
 
@@ -78,10 +78,12 @@ class Bench(HapticDevice):
         return link
 
 
-def feel(answer: Callable[[int], Force], seconds: float = 1.0, link: Scripted | None = None, on_report=None):
+def feel(
+    answer: Callable[[int], Force], seconds: float = 1.0, link: Scripted | None = None, on_report=None, writer=None
+):
     link = link or Scripted()
     LINKS[:] = [link]
-    return run(Says(answer), Bench(), seconds, on_report), link
+    return run(Says(answer), Bench(), seconds, on_report, writer), link
 
 
 def fails(error: BaseException, at: int) -> Callable[[int], Force]:
@@ -160,6 +162,69 @@ class TestRun:
             run(Says(lambda _: PUSH), Bench(), 1.0)
 
 
+class TestWriting:
+    def test_ticks_are_in_the_file_with_each_report(self, tmp_path: Path):
+        seen: list[int] = []
+        path = tmp_path / "stroke.nc"
+        with Writer(path) as writer:
+            recording, _ = feel(
+                lambda _: PUSH, 1.0, on_report=lambda _: seen.append(len(Recording.load(path).rows)), writer=writer
+            )
+        whole, _ = feel(lambda _: PUSH, 1.0)
+        assert seen == pytest.approx([100, 200, 300, 400, 500, 600, 700, 800, 900, 1000], abs=2)
+        assert np.allclose(recording.rows, whole.rows, rtol=1e-7, atol=0, equal_nan=True)
+        assert np.array_equal(recording.time_s, whole.time_s)
+        assert recording.stopped == ""
+
+    def test_why_it_ended_is_in_the_file(self, tmp_path: Path):
+        with Writer(tmp_path / "stroke.nc") as writer:
+            feel(lambda _: PUSH, link=Scripted(fails_at=20), writer=writer)
+        kept = Recording.load(tmp_path / "stroke.nc")
+        assert (len(kept.rows), kept.stopped) == (20, "the cable is out; put it in")
+
+    def test_a_recording_in_a_file_is_never_full(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+        monkeypatch.setattr(loop, "MOST_TICKS", 150)
+        with Writer(tmp_path / "stroke.nc") as writer:
+            recording, _ = feel(lambda _: PUSH, 1.0, writer=writer)
+        assert (len(recording.rows), recording.stopped) == (1000, "")
+
+    def test_a_full_disk_ends_the_recording_and_not_the_loop(self, tmp_path: Path, caplog: pytest.LogCaptureFixture):
+        with Writer(tmp_path / "stroke.nc") as writer:
+
+            def report(report: ServoReport) -> None:
+                if report.ticks > 450:
+                    writer.close("the recording ends early: the disk is full")
+
+            recording, link = feel(lambda _: PUSH, 1.0, on_report=report, writer=writer)
+        assert len(link.forces) == 1001
+        assert len(recording.rows) == pytest.approx(500, abs=2)
+        assert recording.stopped == "the recording ends early: the disk is full"
+
+    def test_a_touch_at_fault_is_named_in_the_file(self, tmp_path: Path):
+        with pytest.raises(ZeroDivisionError), Writer(tmp_path / "stroke.nc") as writer:
+            feel(fails(ZeroDivisionError("oh"), 250), writer=writer)
+        kept = Recording.load(tmp_path / "stroke.nc")
+        assert kept.stopped == "ZeroDivisionError: oh"
+        assert len(kept.rows) == pytest.approx(200, abs=2)
+
+    def test_proxy_flags_and_buttons(self):
+        surface = HapticSurface.from_heights(np.full((8, 8), 1 / 128))
+        recording = run(Proxy().touch(surface), Mock(hand=None, path="press", z_m=1 / 128 - 0.02, lift_m=0.03), 0.6)
+        touching = recording.force_n[:, 2] > 0
+        assert 0 < np.mean(touching) < 1
+        assert np.array_equal(touching, np.isfinite(recording.proxy_m).all(axis=1))
+        assert np.array_equal(touching, (recording.flags & TickFlag.TOUCHING) > 0)
+        assert np.allclose(recording.proxy_m[touching, 2], 1 / 128)
+        deep = 800 * (1 / 128 - recording.position_m[:, 2]) > 8
+        assert deep.any()
+        assert np.array_equal(deep, (recording.flags & TickFlag.FORCE_LIMITED) > 0)
+
+    def test_a_tick_without_proxy_has_nan(self):
+        recording, _ = feel(lambda _: PUSH, 0.01)
+        assert np.isnan(recording.proxy_m).all()
+        assert not recording.buttons.any()
+
+
 class TestEndings:
     def test_from_the_keyboard(self, caplog: pytest.LogCaptureFixture):
         caplog.set_level(logging.INFO)
@@ -221,91 +286,6 @@ class TestEndings:
         with pytest.raises(ZeroDivisionError):
             feel(fails(ZeroDivisionError(), 5), link=link)
         assert (link.held, link.closed) == (NO_FORCE, 1)
-
-
-def some(count: int = 5, **more) -> Recording:
-    numbers = np.random.default_rng(1).normal(size=(count, 9))
-    return Recording(np.arange(count) * 0.001, numbers[:, :3], numbers[:, 3:6], numbers[:, 6:], **more)
-
-
-class TestRecording:
-    @pytest.mark.parametrize("count", [0, 1, 5])
-    def test_npz_keeps_all_of_it(self, tmp_path: Path, count: int):
-        recording = some(count, stopped="the cable is out", not_finite=2, limited=3)
-        recording.save(tmp_path / "deep" / "stroke.npz")
-        assert Recording.load(tmp_path / "deep" / "stroke.npz").digest() == recording.digest()
-        with np.load(tmp_path / "deep" / "stroke.npz") as file:
-            assert np.array_equal(file["force_n"], recording.force_n)
-
-    @pytest.mark.parametrize("count", [0, 1, 5])
-    def test_csv_keeps_every_digit_of_the_ticks(self, tmp_path: Path, count: int):
-        recording = some(count)
-        recording.save(tmp_path / "stroke.csv")
-        assert Recording.load(tmp_path / "stroke.csv").digest() == recording.digest()
-        with (tmp_path / "stroke.csv").open(newline="") as file:
-            assert [float(row["fz_n"]) for row in csv.DictReader(file)] == recording.force_n[:, 2].tolist()
-
-    def test_a_mock_plays_a_csv_again(self, tmp_path: Path):
-        touch = PenaltyGradient().touch(HapticSurface.from_heights(np.full((3, 3), 0.01)))
-        first = run(touch, Mock(speed_m_per_s=0.2), 0.3)
-        first.save(tmp_path / "stroke.csv")
-        again = run(touch, Mock(path="csv", csv_file=tmp_path / "stroke.csv", hand=None), 0.3)
-        assert np.allclose(again.position_m, first.position_m, rtol=0, atol=1e-15)
-        assert np.allclose(again.force_n, first.force_n, rtol=0, atol=1e-11)
-
-    def test_figures(self):
-        force = np.array([[0, 0, 0], [0, 3, 4], [0, 0, 1], [0, 0, 0]], float)
-        position = np.array([[0, 0, 0], [0, 0, 0], [0, 1, 1], [0, 1, 3]], float)
-        recording = Recording(np.arange(4.0), position, np.zeros((4, 3)), force, limited=1)
-        assert recording.figures() == {
-            "ticks": 4,
-            "seconds": 3.0,
-            "contact_share": 0.5,
-            "median_contact_force_n": 3.0,
-            "peak_force_n": 5.0,
-            "work_j": 7.0 + 2.0,
-            "limited": 1,
-            "not_finite": 0,
-        }
-
-    def test_arrays_of_one_length(self):
-        with pytest.raises(OutputError, match=r"\(n, 3\)"):
-            Recording(np.zeros(3), np.zeros((3, 3)), np.zeros((3, 3)), np.zeros((2, 3)))
-
-    @pytest.mark.parametrize("name", ["stroke", "stroke.parquet", "stroke.npz.txt"])
-    def test_names_it_cannot_have(self, tmp_path: Path, name: str):
-        with pytest.raises(OutputError, match=r"\.npz or \.csv"):
-            check_record_path(tmp_path / name)
-        with pytest.raises(OutputError, match=r"\.npz or \.csv"):
-            some().save(tmp_path / name)
-        assert not list(tmp_path.iterdir())
-
-    def test_a_place_that_cannot_be_written(self, tmp_path: Path):
-        (tmp_path / "file").touch()
-        with pytest.raises(OutputError, match="cannot be written"):
-            some().save(tmp_path / "file" / "stroke.npz")
-
-    @pytest.mark.parametrize("suffix", [".npz", ".csv"])
-    @pytest.mark.parametrize("damage", [lambda b: b"", lambda b: b[:-200], lambda b: b"\xff" * 99, lambda b: b"a,b\n"])
-    def test_damaged_files(self, tmp_path: Path, suffix: str, damage: Callable[[bytes], bytes]):
-        path = tmp_path / f"stroke{suffix}"
-        some().save(path)
-        path.write_bytes(damage(path.read_bytes()))
-        with pytest.raises(OutputError, match="is no recording, or a damaged one"):
-            Recording.load(path)
-
-    def test_files_that_are_something_else(self, tmp_path: Path):
-        np.savez(tmp_path / "other.npz", picture=np.zeros(3))
-        np.save(tmp_path / "array.npy", np.zeros(3))
-        (tmp_path / "array.npy").rename(tmp_path / "array.npz")
-        for name in ("other.npz", "array.npz"):
-            with pytest.raises(OutputError, match="is no recording"):
-                Recording.load(tmp_path / name)
-
-    def test_files_that_are_not_there(self, tmp_path: Path):
-        for path in (tmp_path / "none.npz", tmp_path / "none.csv", tmp_path):
-            with pytest.raises(OutputError, match="cannot be read"):
-                Recording.load(path)
 
 
 @given(st.tuples(*[st.floats()] * 3), st.floats(1e-3, 1e3))

@@ -1,0 +1,156 @@
+"""How late a tick is: our loop beside a loop in C, and beside a busy web server."""
+
+import shutil
+import statistics
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import urllib.request
+from collections.abc import Iterator
+from contextlib import contextmanager
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
+
+import numpy as np
+
+from tangible_core import HapticSurface, load_method
+from tangible_core.data import Spread
+from tangible_core.interfaces import HapticDevice, Touch
+from tangible_core.servo import Servo
+from tangible_core.testing.loop_devices import Circling
+
+from .figures import Figure
+
+SLICE_S, SLICES = 10.0, 3
+"""Each loop runs for so long, in turn with the others, so often."""
+SOURCE = Path(__file__).with_name("control_loop.c")
+LOOPS = {"all compiled": Circling(), "compiled tick, a device that Python asks": Circling(exchanges=True)}
+
+
+def touch() -> Touch:
+    """The proxy on waves, which the tip of `Circling` is always in."""
+    across = np.linspace(0, 8 * np.pi, 1024)
+    heights = (0.002 + 0.001 * np.sin(across)[:, None] * np.sin(across)).astype(np.float32)
+    return load_method("render", "proxy")().touch(HapticSurface.from_heights(heights))
+
+
+def ours(device: HapticDevice, seconds: float) -> Spread:
+    """Lateness of the servo on this device."""
+    with Servo(touch(), device, seconds=seconds) as servo:
+        while servo.running:
+            time.sleep(0.1)
+        late_us = servo.report().late_us
+    assert late_us is not None
+    return late_us
+
+
+def compiled_c(folder: Path) -> Path | None:
+    """The loop in C, if there is a compiler."""
+    compiler = next(filter(None, map(shutil.which, ("cc", "gcc", "clang"))), None)
+    if compiler is None:
+        return None
+    program = folder / "control_loop"
+    subprocess.run([compiler, "-O2", "-o", str(program), str(SOURCE)], check=True)
+    return program
+
+
+def in_c(program: Path, seconds: float) -> tuple[Spread, bool]:
+    """Lateness of the loop in C, and whether it was real time."""
+    done = subprocess.run([str(program), str(seconds)], check=True, capture_output=True, text=True)
+    *spread, real_time = done.stdout.split()
+    return Spread(*map(float, spread)), real_time == "1"
+
+
+def beside_c() -> Iterator[Figure]:
+    """p99.9 of the lateness over that of the loop in C, both in slices in turn."""
+    bound = "p99.9 of lateness <= 1.0 x C with SCHED_FIFO, <= 1.5 x otherwise"
+    with tempfile.TemporaryDirectory() as folder:
+        program = compiled_c(Path(folder))
+        if program is None:
+            yield Figure("loop beside C", bound, "no C compiler was found: not measured", met=False)
+            return
+        theirs, mine, real_time = [], {name: [] for name in LOOPS}, True
+        for _ in range(SLICES):
+            spread, real_time = in_c(program, SLICE_S)
+            theirs.append(spread)
+            for name, device in LOOPS.items():
+                mine[name].append(ours(device, SLICE_S))
+    for name, spreads in mine.items():
+        ratio = statistics.median(a.p999 / b.p999 for a, b in zip(spreads, theirs, strict=True))
+        said = f"{ratio:.2f} x; us p50/p99/p99.9/most: {_said(spreads)} against {_said(theirs)} in C"
+        yield Figure(
+            f"loop, {name}, {SLICES} x {SLICE_S:g} s ({'SCHED_FIFO' if real_time else 'plain sleep'})",
+            bound,
+            said,
+            ratio <= (1.0 if real_time else 1.5),
+        )
+
+
+def beside_a_server() -> Iterator[Figure]:
+    """p99.9 of the lateness with a busy web server in another process over that without."""
+    for name, device in LOOPS.items():
+        alone, beside = [], []
+        for _ in range(SLICES):
+            alone.append(ours(device, SLICE_S))
+            with busy_server() as served:
+                beside.append(ours(device, SLICE_S))
+        ratio = statistics.median(a.p999 / b.p999 for a, b in zip(beside, alone, strict=True))
+        yield Figure(
+            f"the same beside a busy web server, {name}",
+            "p99.9 of lateness <= 1.2 x alone",
+            f"{ratio:.2f} x; {_said(beside)} against {_said(alone)} us; {served() / SLICE_S:.0f} requests a second",
+            ratio <= 1.2,
+        )
+
+
+@contextmanager
+def busy_server() -> Iterator:
+    """A web server in a process of its own, asked without pause; what it gives counts the answers."""
+    words = [sys.executable, "-c", "from benchmarks.servo_loops import serve; serve()"]
+    server = subprocess.Popen(words, stdout=subprocess.PIPE, text=True)
+    assert server.stdout is not None
+    address = f"http://127.0.0.1:{server.stdout.readline().strip()}/"
+    done, answers = threading.Event(), [0]
+
+    def ask() -> None:
+        while not done.is_set():
+            with urllib.request.urlopen(address) as answer:
+                answer.read()
+            answers[0] += 1
+
+    client = threading.Thread(target=ask)
+    client.start()
+    try:
+        yield lambda: answers[0]
+    finally:
+        done.set()
+        client.join()
+        server.terminate()
+        server.wait()
+        server.stdout.close()
+
+
+class _Page(BaseHTTPRequestHandler):
+    def do_GET(self) -> None:
+        """Some work, and 100 kB."""
+        body = "".join(f"<p>{number}</p>" for number in range(8000)).encode()
+        self.send_response(200)
+        self.send_header("Content-Length", str(len(body)))
+        self.end_headers()
+        self.wfile.write(body)
+
+    def log_message(self, format: str, *args: object) -> None:
+        pass
+
+
+def serve() -> None:
+    """Say the port, and serve until the process is ended."""
+    server = ThreadingHTTPServer(("127.0.0.1", 0), _Page)
+    print(server.server_port, flush=True)
+    server.serve_forever()
+
+
+def _said(spreads: list[Spread]) -> str:
+    return "/".join(f"{statistics.median(values):.0f}" for values in zip(*spreads, strict=True))

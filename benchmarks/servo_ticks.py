@@ -1,0 +1,144 @@
+"""What a whole tick costs: a Falcon's packet in, the law with friction and texture, the guard, a packet out, the ring."""
+
+import statistics
+from collections.abc import Iterator
+from time import perf_counter_ns
+from typing import Any, cast
+
+import numpy as np
+from numba import njit
+
+from tangible_core import HapticSurface, load_method
+from tangible_core.compiled import CompiledTouch
+from tangible_core.kernels import Address
+from tangible_core.materials import library
+from tangible_core.servo import Ring, Safety, cycle
+from tangible_core.servo.loop import sections
+from tangible_core.servo.ring import PERIOD_NS
+from tangible_devices.falcon import framing, kinematics, packet, tick
+from tangible_devices.falcon.calibration import Calibration
+
+from .figures import Figure
+
+TICKS, RUNS, PERIOD = 20_000, 9, 1_000_000
+FRESH, NOW = framing.FRESH, tick.NOW
+step = cycle.step
+MATERIAL = "sandpaper"
+
+
+def figures() -> Iterator[Figure]:
+    """ns of whole ticks, from compiled code and from Python."""
+    ring = Ring.create()
+    try:
+        arguments = _arguments(ring)
+        packets = _packets()
+        _batch(packets[:100], *arguments)
+        compiled = [_ns(lambda: _batch(packets, *arguments)) for _ in range(RUNS)]
+        python = list(_from_python(packets, arguments))
+        touching = float((ring.since(0)[0][:, cycle.FLAGS].astype(int) & 1).mean())
+    finally:
+        ring.remove()
+    said = f"; in contact {100 * touching:.0f} % of the ticks"
+    ns = statistics.median(compiled)
+    what = f"whole tick: Falcon's packet to packet, proxy on {MATERIAL}, guard, ring"
+    yield Figure(what, "<= 1.0 us nogil", f"{ns:.0f} ns{said}", ns <= 1000)
+    ns = statistics.median(python)
+    yield Figure("the same, called from Python", "<= 1.5 us", f"{ns:.0f} ns", ns <= 1500)
+
+
+def _arguments(ring: Ring) -> tuple[Any, ...]:
+    """What `cycle.step` takes, for a Falcon on waves of one material."""
+    turn = np.linspace(0, 8 * np.pi, 1024)
+    heights = (0.002 + 0.001 * np.sin(turn)[:, None] * np.sin(turn)).astype(np.float32)
+    labels = np.zeros(heights.shape, np.int32)
+    surface = HapticSurface.from_heights(heights, labels=labels, materials=(library()[MATERIAL],))
+    touch = load_method("render", "proxy")().touch(surface)
+    assert isinstance(touch, CompiledTouch)
+    calibration = Calibration()
+    settings, memory = Safety().arrays(calibration.spec(), touch.stiffness_n_per_m)
+    ring.guard[: memory.size] = memory
+    ring.header[PERIOD_NS] = PERIOD
+    of_link = tuple(_buffers(calibration))
+    link = of_link, Address(tick.read), Address(tick.write)
+    law = touch.fixed, Address(touch.tick), touch.memory
+    return link, law, (settings, ring.guard), sections(ring), np.zeros(cycle.STATE), np.zeros(16)
+
+
+def _buffers(calibration: Calibration) -> tick.Buffers:
+    return tick.Buffers(
+        answer=np.zeros(16, np.uint8),
+        packet=np.zeros(16, np.uint8),
+        counts=np.zeros(tick.COUNTS, np.int64),
+        held=np.zeros(tick.HELD),
+        history=np.zeros((16, 4)),
+        arms=calibration.arms(),
+        frame=calibration.frame(),
+    )
+
+
+def _packets() -> np.ndarray:
+    """What a Falcon says of a hand that goes round at 80 mm/s, a millimetre under the middle of the waves."""
+    calibration = Calibration()
+    frame, arms = calibration.frame(), calibration.arms()
+    turn = 0.08 * 1e-3 / 0.02 * np.arange(TICKS)
+    places = np.column_stack([0.02 * np.cos(turn), 0.02 * np.sin(turn), np.full(TICKS, 0.001)])
+    packets = np.zeros((TICKS, 16), np.uint8)
+    kernels = cast(Any, kinematics)
+    for place, data in zip((places - frame[:, 3]) @ frame[:, :3], packets, strict=True):
+        counts = np.rint((np.array(kernels.inverse(*place)[:3]) - arms[:, 0]) / kinematics.RAD_PER_COUNT)
+        cast(Any, packet).encode(*counts.astype(np.int64), packet.HOMED, data)
+    return packets
+
+
+@njit(nogil=True)
+def _fill(packets, i, link, now):
+    """What an exchange with the device leaves behind."""
+    of_link = link[0]
+    of_link[0][:] = packets[i]
+    of_link[2][FRESH] = 1
+    of_link[3][NOW] = i * 1e-3
+    now[0] = i * PERIOD
+
+
+@njit(nogil=True)
+def _batch(packets, link, law, limits, shared, state, row):
+    """A tick for each packet."""
+    now = np.zeros(2, np.int64)
+    for i in range(packets.shape[0]):
+        _fill(packets, i, link, now)
+        step(link, law, limits, shared, state, row, now[0], 0)
+
+
+@njit
+def _filled(packets, link, now):
+    """`_fill` at each `next`."""
+    while True:
+        for i in range(packets.shape[0]):
+            _fill(packets, i, link, now)
+            yield True
+
+
+def _from_python(packets: np.ndarray, arguments: tuple[Any, ...]) -> Iterator[float]:
+    """ns a tick of a loop of Python's, less those of the same loop that only fills."""
+    now = np.zeros(2, np.int64)
+    filled, ticks = _filled(packets, arguments[0], now), cycle.ticks(*arguments, now)
+    next(filled), next(ticks)
+
+    def fill() -> None:
+        for _ in range(TICKS):
+            next(filled)
+
+    def both() -> None:
+        for _ in range(TICKS):
+            next(filled)
+            next(ticks)
+
+    for _ in range(RUNS):
+        without = _ns(fill)
+        yield _ns(both) - without
+
+
+def _ns(work: Any) -> float:
+    start = perf_counter_ns()
+    work()
+    return (perf_counter_ns() - start) / TICKS

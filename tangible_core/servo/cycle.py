@@ -1,0 +1,178 @@
+"""The tick of a force loop, and the loop that keeps its time, compiled. Imports numba.
+
+A tick: where is the tip, what does the law say, what of it may pass, to the device with it, into the ring.
+"""
+
+# ruff: noqa: ANN001, ANN201, ANN202 -- the types are those that numba infers
+# pyright: basic, reportCallIssue=false
+
+import math
+
+from numba import njit, types
+from numba.extending import intrinsic
+
+from .. import compiling as compiling
+from ..data import TICK_COLUMNS, TickFlag
+from .clock import SECOND_NS, wait_ns
+from .coupling import couple
+from .guard import guard, wait
+from .lead import longer_lead_ns as longer_lead
+from .ring import (
+    COMMAND,
+    COUNT,
+    LAST,
+    LEAD_NS,
+    LONGEST_S,
+    MARKS,
+    MOST_LATE_S,
+    NEXT_NS,
+    OVERRUNS,
+    PEAK_N,
+    PERIOD_NS,
+    PREVIOUS_NS,
+    RUN,
+    SPINS,
+    START_NS,
+    WIDEST_US,
+    WORK_J,
+)
+
+FLAGS = TICK_COLUMNS.index("flags")
+STATE = 7
+"""Length of a device's state, as `LinkKernels` says."""
+OVERRUN = int(TickFlag.OVERRUN)
+longer_lead_ns = njit(cache=True, nogil=True, error_model="numpy")(longer_lead)
+AT, LATE = 0, 1
+
+
+@intrinsic
+def _store(context, array, index, value):
+    """Write a number of an int64 array such that whoever sees it sees all that was written before."""
+
+    def generate(context, builder, signature, arguments):
+        data = context.make_array(signature.args[0])(context, builder, arguments[0]).data
+        at = builder.gep(data, [arguments[1]])
+        builder.store_atomic(arguments[2], at, "release", 8)
+        builder.fence("release")  # nor is what comes after seen before it
+        return context.get_dummy_value()
+
+    return types.void(array, types.int64, types.int64), generate
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def publish(header, sums, late, period, stamps, ticks, row, at_ns, late_ns):
+    """Put a tick's row into the ring, and into the sums."""
+    count = header[COUNT]
+    slot = count % stamps.shape[0]
+    force_n = math.sqrt(row[11] * row[11] + row[12] * row[12] + row[13] * row[13])
+    sums[PEAK_N] = max(sums[PEAK_N], force_n)
+    late[min(max(late_ns, 0) // 1000, WIDEST_US - 1)] += 1
+    sums[MOST_LATE_S] = max(sums[MOST_LATE_S], late_ns / SECOND_NS)
+    if count > 0:
+        last = ticks[(count - 1) % stamps.shape[0]]
+        sums[WORK_J] += last[11] * (row[2] - last[2]) + last[12] * (row[3] - last[3]) + last[13] * (row[4] - last[4])
+        since_ns = at_ns - header[PREVIOUS_NS]
+        period[min(max(since_ns, 0) // 1000, WIDEST_US - 1)] += 1
+        sums[LONGEST_S] = max(sums[LONGEST_S], since_ns / SECOND_NS)
+    header[PREVIOUS_NS] = at_ns
+    _store(stamps, slot, -1)
+    for i in range(row.shape[0]):
+        ticks[slot, i] = row[i]
+    _store(stamps, slot, count)
+    _store(header, COUNT, count + 1)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def allowed(law, limits, period_s, x, y, z, vx, vy, vz):
+    """What may leave of the law's force for a fresh state of the device, and flags."""
+    of_law, tick, _ = law
+    settings, memory = limits
+    force_n = tick(*of_law, *couple(settings, memory, period_s, x, y, z, vx, vy, vz))
+    return guard(settings, memory, period_s, x, y, z, vx, vy, vz, *force_n)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def cycle(link, law, limits, state, row, time_s, late_s, period_s):
+    """One tick of a device and a law that are kernels; the row says what it was."""
+    of_link, read, write = link
+    settings, memory = limits
+    fresh = read(*of_link, state) != 0
+    x, y, z, vx, vy, vz = state[0], state[1], state[2], state[3], state[4], state[5]
+    if fresh:
+        fx, fy, fz, flags = allowed(law, limits, period_s, x, y, z, vx, vy, vz)
+    else:
+        fx, fy, fz, flags = wait(settings, memory, period_s)
+    write(*of_link, fx, fy, fz)
+    proxy = law[2]
+    row[0], row[1] = time_s, late_s
+    row[2], row[3], row[4], row[5], row[6], row[7] = x, y, z, vx, vy, vz
+    row[8], row[9], row[10] = proxy[0], proxy[1], proxy[2]
+    row[11], row[12], row[13] = fx, fy, fz
+    row[14], row[15] = flags, state[6]
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def begin(clock, header):
+    """Wait for the next tick; when it began and how late it was, nanoseconds.
+
+    Periods that went by without a tick are counted and not made up for: the next tick is due in step with the first.
+    """
+    due_ns, period_ns = header[NEXT_NS], header[PERIOD_NS]
+    at_ns = wait_ns(clock, due_ns, header[LEAD_NS])
+    late_ns = at_ns - due_ns
+    if header[SPINS] != 0:
+        header[LEAD_NS] = longer_lead_ns(header[LEAD_NS], late_ns)
+    header[OVERRUNS] += late_ns // period_ns
+    header[NEXT_NS] = due_ns + (late_ns // period_ns + 1) * period_ns
+    return at_ns, late_ns
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def finish(shared, row, at_ns, late_ns):
+    """Add what the loop knows to a tick's flags, and put the tick into the ring and into the sums."""
+    header, sums, late, period, stamps, ticks = shared
+    flags = int(row[FLAGS]) | header[MARKS]
+    header[MARKS] = 0
+    row[FLAGS] = flags | (OVERRUN if late_ns >= header[PERIOD_NS] else 0)
+    publish(header, sums, late, period, stamps, ticks, row, at_ns, late_ns)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def step(link, law, limits, shared, state, row, at_ns, late_ns):
+    """A whole tick that began then and so late; none if the loop is to stop."""
+    header = shared[0]
+    if header[COMMAND] != RUN:
+        return
+    since_ns = at_ns - header[PREVIOUS_NS] if header[COUNT] > 0 else header[PERIOD_NS]
+    time_s = (at_ns - header[START_NS]) / SECOND_NS
+    cycle(link, law, limits, state, row, time_s, late_ns / SECOND_NS, since_ns / SECOND_NS)
+    finish(shared, row, at_ns, late_ns)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def run(clock, link, law, limits, shared, state, row):
+    """Tick after tick, until COMMAND says otherwise or the last one is done; nothing of Python is needed meanwhile."""
+    header = shared[0]
+    while header[COMMAND] == RUN and header[COUNT] < header[LAST]:
+        at_ns, late_ns = begin(clock, header)
+        step(link, law, limits, shared, state, row, at_ns, late_ns)
+
+
+# What Python calls once a tick is a generator: it keeps its arguments, and passing them takes the time of a hundred
+# ticks. AT and LATE of `now` say when the tick began.
+
+
+@njit(cache=True, error_model="numpy")
+def ticks(link, law, limits, shared, state, row, now):
+    """A whole tick at each `next`."""
+    while True:
+        step(link, law, limits, shared, state, row, now[AT], now[LATE])
+        yield True
+
+
+@njit(cache=True, error_model="numpy")
+def finished(shared, row, now):
+    """A tick that Python did, put into the ring at each `next`."""
+    while True:
+        finish(shared, row, now[AT], now[LATE])
+        yield True

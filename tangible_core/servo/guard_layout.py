@@ -1,0 +1,45 @@
+"""Where each number stands in the two arrays of a guard. numba's cache does not see a change made here: after one,
+remove `__pycache__` beside `guard.py`."""
+
+MOST_DELAY = 8
+"""Ticks of delay that are told apart."""
+
+(
+    MAX_FORCE_N,
+    MAX_STEP_N,
+    RAMP_PER_S,
+    STALE_S,
+    STIFFNESS,
+    STIFFNESS_TIMES_PERIOD,
+    MAX_STIFFNESS,
+    DELAY,
+    BRAKE,
+    CREDIT,
+    MOST_DEBT_J,
+    COUPLING,
+    COUPLING_DAMPING,
+    COUPLING_LAW,
+    SETTINGS,
+) = range(15)
+"""Settings, which a guard reads; the last is how many there are. N/m and N s/m where no unit is in the name.
+
+STIFFNESS_TIMES_PERIOD, N s/m: divided by the period it is the stiffness held stably. CREDIT: the damping whose loss is
+counted for the loop. COUPLING: its stiffness, 0 for none; COUPLING_LAW: that of the law behind it.
+"""
+
+FORCE = 0
+"""Memory: where the force that left at the last tick begins; x, y, z."""
+PLACE = 3
+"""The last fresh position; x is NaN where there is none."""
+RAMP, SOFTNESS, MEAN_S, MEAN_S2, ENERGY_J, AGE_S, SLOT = range(6, 13)
+"""Shares of the force, 0..1; running means of the period and its square; what the loop took in and may give; the time
+without a fresh position; and the place in HELD of the force that is on its way longest."""
+HELD = 13
+"""The forces that are on their way to the hand, or there."""
+TOOL = HELD + 3 * (MOST_DELAY + 1)
+"""The tool of the coupling: position, with x NaN where it has none, velocity, and the law's force on it."""
+COUNTS = TOOL + 9
+"""Ticks of each flag that a guard gives, by the flag's bit."""
+FLAGS = 8
+MEMORY = COUNTS + FLAGS
+"""How many numbers a guard remembers."""

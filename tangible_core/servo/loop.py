@@ -1,0 +1,157 @@
+"""Which loop suits a device and a law: compiled as a whole, a compiled tick, or a tick of Python's."""
+
+import time
+from collections.abc import Callable
+from typing import Any, NamedTuple, cast
+
+import numpy as np
+
+from ..compiled import CompiledLink, CompiledTouch
+from ..data import TICK_COLUMNS, Force, HapticState, TickFlag
+from ..interfaces import Link, Touch
+from .lead import longer_lead_ns
+from .ring import (
+    COMMAND,
+    COUNT,
+    LAST,
+    LEAD_NS,
+    MARKS,
+    NEXT_NS,
+    OVERRUNS,
+    PERIOD_NS,
+    PREVIOUS_NS,
+    RUN,
+    SPINS,
+    START_NS,
+    STOP,
+    Ring,
+)
+
+SECOND_NS = 1_000_000_000
+Sections = tuple[np.ndarray, ...]
+"""Of a ring, as the kernels take them: header, sums, late, period, stamps, ticks."""
+Timed = Callable[[int, int], None]
+"""(at_ns, late_ns): one tick, which began then and so late."""
+
+
+class Loop(NamedTuple):
+    """A loop ready to run."""
+
+    run: Callable[[], None]
+    how: str
+
+
+def prepare(link: Link, touch: Touch, ring: Ring, settings: np.ndarray) -> Loop:
+    """The fastest loop that this device and this law allow; what it needs is compiled or loaded before this returns."""
+    from . import clock, cycle
+
+    kernels = cast(Any, cycle)
+    row = np.full(len(TICK_COLUMNS), np.nan)
+    shared, limits = sections(ring), (settings, ring.guard)
+    if not isinstance(link, CompiledLink) or not isinstance(touch, CompiledTouch):
+        return Loop(_timed(_plain(link, touch, limits, shared, row), shared[0]), "the tick is Python's")
+    fixed = (*_kernels(link, touch), limits)
+    state = np.zeros(cycle.STATE)
+    if clock.SLEEPS and not link.exchanges:
+        ticking = clock.clock()
+        kernels.run(ticking, *fixed, _stopped(shared), state, row)
+        return Loop(lambda: kernels.run(ticking, *fixed, shared, state, row), "the whole loop is compiled")
+    now = np.zeros(2, np.int64)
+    next(kernels.ticks(*fixed, _stopped(shared), state, row, now))
+    ticks = kernels.ticks(*fixed, shared, state, row, now)
+
+    def exchanged(at_ns: int, late_ns: int) -> None:
+        link.exchange()
+        now[:] = at_ns, late_ns
+        next(ticks)
+
+    return Loop(_timed(exchanged, shared[0]), "the tick is compiled, Python asks the device")
+
+
+def sections(ring: Ring) -> Sections:
+    """What the kernels write to."""
+    return ring.header, ring.sums, ring.late, ring.period, ring.stamps, ring.ticks
+
+
+def start_clock(header: np.ndarray, real_time: bool) -> None:
+    """The first tick is due a period from now."""
+    header[START_NS] = time.monotonic_ns() + header[PERIOD_NS]
+    header[NEXT_NS] = header[START_NS]
+    header[SPINS] = real_time
+
+
+def take_over(ring: Ring) -> None:
+    """Go on with a new scene, whose force fades in."""
+    from . import guard
+
+    cast(Any, guard).restart(ring.guard)
+    ring.header[MARKS] |= int(TickFlag.SWAPPED)
+    ring.header[COMMAND] = RUN
+
+
+def _kernels(link: CompiledLink, touch: CompiledTouch) -> tuple[Any, Any]:
+    from ..kernels import Address
+
+    read, write, of_link = link.kernels()
+    return (of_link, Address(read), Address(write)), (touch.fixed, Address(touch.tick), touch.memory)
+
+
+def _stopped(shared: Sections) -> Sections:
+    """The same with a header that lets no tick happen."""
+    header = np.zeros_like(shared[0])
+    header[COMMAND] = STOP
+    return header, *shared[1:]
+
+
+def _plain(link: Link, touch: Touch, limits: tuple[np.ndarray, np.ndarray], shared: Sections, row: np.ndarray) -> Timed:
+    """A tick for a device or a law that is no kernel."""
+    from . import coupling, cycle, guard
+
+    proxy = touch.memory[:3] if isinstance(touch, CompiledTouch) else np.full(3, np.nan)
+    header = shared[0]
+    couple, allow, finished = cast(Any, coupling).couple, cast(Any, guard).guard, cast(Any, cycle).finished
+    now = np.zeros(2, np.int64)
+    next(finished(tuple(map(np.zeros_like, shared)), row, now))  # compiled or loaded now, not in the first tick
+    finish = finished(shared, row, now)
+
+    def tick(at_ns: int, late_ns: int) -> None:
+        period_s = (at_ns - header[PREVIOUS_NS] if header[COUNT] else header[PERIOD_NS]) / SECOND_NS
+        state = link.read()
+        device = *state.position_m, *state.velocity_m_per_s
+        tool = couple(*limits, period_s, *device)
+        wanted = touch.force(HapticState(tool[:3], tool[3:], state.time_s, state.buttons))
+        *force, flags = allow(*limits, period_s, *device, *wanted)
+        link.write(Force(*force))
+        begun = (at_ns - header[START_NS]) / SECOND_NS, late_ns / SECOND_NS
+        row[:] = (*begun, *device, *proxy, *link.applied, flags, state.buttons)
+        now[:] = at_ns, late_ns
+        next(finish)
+
+    return tick
+
+
+def _timed(tick: Timed, header: np.ndarray) -> Callable[[], None]:
+    """A loop of Python's around a tick."""
+
+    def run() -> None:
+        while header[COMMAND] == RUN and header[COUNT] < header[LAST]:
+            tick(*_begin(header))
+
+    return run
+
+
+def _begin(header: np.ndarray) -> tuple[int, int]:
+    """`cycle.begin` for a loop of Python's."""
+    due_ns, period_ns, lead_ns = header[[NEXT_NS, PERIOD_NS, LEAD_NS]].tolist()
+    at_ns = time.monotonic_ns()
+    if at_ns < due_ns - lead_ns:
+        time.sleep((due_ns - lead_ns - at_ns) / SECOND_NS)
+        at_ns = time.monotonic_ns()
+    while at_ns < due_ns:
+        at_ns = time.monotonic_ns()
+    late_ns = at_ns - due_ns
+    if header[SPINS]:
+        header[LEAD_NS] = longer_lead_ns(lead_ns, late_ns)
+    header[OVERRUNS] += late_ns // period_ns
+    header[NEXT_NS] = due_ns + (late_ns // period_ns + 1) * period_ns
+    return at_ns, late_ns

@@ -1,0 +1,52 @@
+"""Objects with large arrays, passed to another process through shared memory: there, nothing is copied."""
+
+import mmap
+import os
+import pickle
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from ..errors import DeviceError
+from .ring import ALIGN, PREFIX, shared_folder
+
+
+def pack(thing: Any) -> Path:
+    """Write a thing to a file that `unpack` takes away again.
+
+    Raises: DeviceError if there is no room, or if the thing cannot be sent to another process.
+    """
+    buffers: list[pickle.PickleBuffer] = []
+    try:
+        small = pickle.dumps(thing, protocol=5, buffer_callback=buffers.append)
+    except Exception as error:
+        raise DeviceError(
+            f"a {type(thing).__name__} cannot be sent to the force loop's process ({error}); make it picklable"
+        ) from error
+    folder = shared_folder()
+    number, name = tempfile.mkstemp(".parcel", f"{PREFIX}{os.getpid()}-", folder)
+    try:
+        with os.fdopen(number, "wb") as file:
+            for part in (small, *(buffer.raw() for buffer in buffers)):
+                file.write(len(part).to_bytes(8, "little").ljust(ALIGN, b"\0"))
+                file.write(part)
+                file.write(bytes(-file.tell() % ALIGN))
+    except OSError as error:
+        Path(name).unlink(missing_ok=True)
+        raise DeviceError(f"{folder}: no room to pass the scene on: {error.strerror or error}") from error
+    return Path(name)
+
+
+def unpack(path: Path) -> Any:
+    """The thing in a file of `pack`; its arrays are the file's own memory, which lasts as long as they do."""
+    with path.open("r+b") as file:
+        mapped = memoryview(mmap.mmap(file.fileno(), 0))
+    path.unlink()
+    parts: list[memoryview] = []
+    at = 0
+    while at < len(mapped):
+        length = int.from_bytes(mapped[at : at + 8], "little")
+        at += ALIGN
+        parts.append(mapped[at : at + length])
+        at += -(-length // ALIGN) * ALIGN
+    return pickle.loads(parts[0], buffers=parts[1:])

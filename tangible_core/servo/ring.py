@@ -1,0 +1,177 @@
+"""The memory that a force loop shares with whoever watches it: a file of fixed layout, mapped by both.
+
+All numbers are in the machine's own byte order, one section after the other, each starting at a multiple of 64 bytes:
+
+| section | type | meaning |
+|---|---|---|
+| header | int64 (64,) | the words named below |
+| sums | float64 (64,) | those named below |
+| guard | float64 (128,) | what the guard remembers and has counted (`guard`) |
+| late | int64 (4096,) | ticks that began so many microseconds late; the last for all that were later |
+| period | int64 (4096,) | ticks that came so many microseconds after the one before |
+| stamps | int64 (n,) | number of the tick that lies in each slot, -1 while it is written |
+| ticks | float64 (n, 14) | `data.TICK_COLUMNS`; tick k lies in slot k modulo n |
+
+The loop alone writes, but for the word COMMAND. Who reads a slot looks at its stamp before and after: if it
+is not the same, the slot was overwritten meanwhile, and is read again or given up.
+"""
+
+import mmap
+import os
+import sys
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Self, final
+
+import numpy as np
+from jaxtyping import Float64
+
+from ..data import TICK_COLUMNS
+from ..errors import DeviceError
+
+MAGIC, LAYOUT = 0x54414E47_49424C45, 1
+"""The word that begins every ring, and the version of this layout."""
+(
+    IS_MAGIC,
+    IS_LAYOUT,
+    SLOTS,
+    COUNT,
+    COMMAND,
+    PERIOD_NS,
+    START_NS,
+    NEXT_NS,
+    OVERRUNS,
+    LEAD_NS,
+    LAST,
+    PREVIOUS_NS,
+    SPINS,
+    MARKS,
+) = range(14)
+"""Words of the header, after the first two: ticks that it has room for; ticks so far; what the loop is asked for; the
+period; when it started, and when the next tick is due, in nanoseconds of the monotonic clock; periods that had no tick;
+how long before a tick the loop wakes; after how many ticks it ends; when the last one began; whether it may wait for a
+tick awake; flags for the next tick."""
+RUN, STOP, SWAP = 0, 1, 2
+"""What COMMAND says."""
+PEAK_N, WORK_J, MOST_LATE_S, LONGEST_S = range(4)
+"""Where the sums stand: greatest force; work done on the hand; the latest tick; the longest period."""
+WIDEST_US = 4096
+ALIGN = 64
+
+
+@final
+class Ring:
+    """The sections of a ring's file as arrays; `create` makes the file, `attach` finds it."""
+
+    def __init__(self, path: Path, file: mmap.mmap, slots: int) -> None:
+        self.path = path
+        self._file = file
+        sections = _sections(slots)
+        at = 0
+        arrays: dict[str, np.ndarray] = {}
+        for name, (kind, shape) in sections.items():
+            arrays[name] = np.frombuffer(file, kind, int(np.prod(shape)), at).reshape(shape)
+            at += _padded(arrays[name].nbytes)
+        self.header, self.sums, self.guard = arrays["header"], arrays["sums"], arrays["guard"]
+        self.late, self.period = arrays["late"], arrays["period"]
+        self.stamps, self.ticks = arrays["stamps"], arrays["ticks"]
+
+    @classmethod
+    def create(cls, slots: int = 8192) -> Self:
+        """A new ring of zeros, for so many ticks. Raises: DeviceError if there is no room for it."""
+        _sweep()
+        folder = shared_folder()
+        try:
+            number, name = tempfile.mkstemp(".ring", f"{PREFIX}{os.getpid()}-", folder)
+            with os.fdopen(number, "r+b") as file:
+                file.truncate(_size(slots))
+                ring = cls(Path(name), mmap.mmap(file.fileno(), 0), slots)
+        except OSError as error:
+            raise DeviceError(f"{folder}: no room for the loop's shared memory: {error.strerror or error}") from error
+        ring.header[[IS_MAGIC, IS_LAYOUT, SLOTS]] = MAGIC, LAYOUT, slots
+        return ring
+
+    @classmethod
+    def attach(cls, path: Path) -> Self:
+        """The ring in this file. Raises: DeviceError if it is none, or of another layout."""
+        try:
+            with path.open("r+b") as file:
+                mapped = mmap.mmap(file.fileno(), 0)
+        except (OSError, ValueError) as error:
+            raise DeviceError(f"{path}: no force loop runs there: {error}") from error
+        magic, layout, slots = np.frombuffer(mapped, np.int64, 3).tolist() if len(mapped) >= 24 else (0, 0, 0)
+        if magic != MAGIC or layout != LAYOUT or len(mapped) != _size(slots):
+            raise DeviceError(f"{path}: is no ring of layout {LAYOUT}; watch it with the version that wrote it")
+        return cls(path, mapped, slots)
+
+    def remove(self) -> None:
+        """Take the file away; who has it mapped may go on reading."""
+        self.path.unlink(missing_ok=True)
+
+    def since(self, first: int) -> tuple[Float64[np.ndarray, "n c"], int]:
+        """Ticks from number `first` on, those still there, and the number of the next one to come.
+
+        If the loop has overwritten some of them there are fewer rows than numbers.
+        """
+        count = int(self.header[COUNT])
+        numbers = np.arange(max(first, count - len(self.stamps), 0), count)
+        slots = numbers % len(self.stamps)
+        before = self.stamps[slots]
+        rows = self.ticks[slots]
+        whole = (before == numbers) & (self.stamps[slots] == numbers)
+        return rows[whole], count
+
+
+def shared_folder() -> Path:
+    """Where files are memory alone, if there is such a place: writing one to a disk would stop the loop."""
+    memory = Path("/dev/shm")
+    return memory if sys.platform == "linux" and os.access(memory, os.W_OK) else Path(tempfile.gettempdir())
+
+
+PREFIX = "tangible-"
+
+
+def _sections(slots: int) -> dict[str, tuple[type, tuple[int, ...]]]:
+    return {
+        "header": (np.int64, (64,)),
+        "sums": (np.float64, (64,)),
+        "guard": (np.float64, (128,)),
+        "late": (np.int64, (WIDEST_US,)),
+        "period": (np.int64, (WIDEST_US,)),
+        "stamps": (np.int64, (slots,)),
+        "ticks": (np.float64, (slots, len(TICK_COLUMNS))),
+    }
+
+
+def _padded(size: int) -> int:
+    return -(-size // ALIGN) * ALIGN
+
+
+def _size(slots: int) -> int:
+    return sum(_padded(8 * int(np.prod(shape))) for _, shape in _sections(slots).values())
+
+
+def _sweep() -> None:
+    """Take away what processes left behind that were killed."""
+    for path in _left_behind():
+        path.unlink(missing_ok=True)
+
+
+def _left_behind() -> Iterator[Path]:
+    for path in shared_folder().glob(f"{PREFIX}*"):
+        owner = path.name.removeprefix(PREFIX).partition("-")[0]
+        if owner.isdigit() and not _alive(int(owner)):
+            yield path
+
+
+def _alive(process: int) -> bool:
+    if sys.platform == "win32":
+        return True  # there, a file in use cannot be removed; nor can a process be asked so simply
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except PermissionError:
+        return True
+    return True

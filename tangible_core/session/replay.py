@@ -1,0 +1,55 @@
+"""A recording felt again: the same states, tick by tick, through any touch."""
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any, cast
+
+import numpy as np
+
+from ..compiled import CompiledTouch
+from ..data import HapticState, TickFlag
+from ..interfaces import Touch
+from .recording import ARRAYS, Recording
+
+NOWHERE = (math.nan, math.nan, math.nan)
+
+
+def replay(touch: Touch, recording: Recording) -> Recording:
+    """What this touch gives for each recorded state, velocity and time as they were recorded.
+
+    Forces are the law's own: nothing limits them, as nothing is pushed. Proxy and flags are the law's too.
+    """
+    proxy_m, force_n = np.full((2, len(recording.rows), 3), np.nan)
+    if isinstance(touch, CompiledTouch):
+        from .. import kernels
+
+        law = kernels.Address(touch.tick), touch.fixed, touch.memory
+        states = np.hstack([recording.position_m, recording.velocity_m_per_s])
+        cast(Any, kernels).over_states(*law, states, proxy_m, force_n)
+    else:
+        for i, (time_s, _, x, y, z, vx, vy, vz, *_, buttons) in enumerate(recording.rows.tolist()):
+            force_n[i] = touch.force(HapticState((x, y, z), (vx, vy, vz), time_s, int(buttons)))
+    rows = recording.rows.copy()
+    rows[:, ARRAYS["proxy_m"]], rows[:, ARRAYS["force_n"]] = proxy_m, force_n
+    rows[:, ARRAYS["flags"]] = TickFlag.TOUCHING * force_n.any(axis=1)
+    return replace(recording, rows=rows)
+
+
+def proxy_of(touch: Touch) -> Callable[[], tuple[float, ...]]:
+    """What tells where the proxy of a touch is, whenever it is asked: NaN where there is none."""
+    if not isinstance(touch, CompiledTouch):
+        return lambda: NOWHERE
+    at = touch.memory[:3]
+
+    def proxy() -> tuple[float, ...]:
+        place = tuple(at.tolist())
+        return NOWHERE if math.isnan(place[2]) else place
+
+    return proxy
+
+
+def undisturbed(recording: Recording) -> np.ndarray:
+    """Recorded forces, NaN at ticks whose force was not the law's own: limited, faded in, damped, none for a fault."""
+    changed = recording.flags & ~int(TickFlag.TOUCHING | TickFlag.OVERRUN | TickFlag.SWAPPED)
+    return np.where(changed[:, None] != 0, np.nan, recording.force_n)

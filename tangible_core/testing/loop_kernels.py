@@ -1,0 +1,26 @@
+"""The kernels of `Circling`. Imports numba: what uses this module imports it inside its verb."""
+
+# ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
+# pyright: basic
+
+from numba import float64, int64, njit, void
+
+from .. import compiling as compiling
+
+FIXED = (float64[:, ::1], float64, int64[::1], float64[::1])
+OPTIONS = {"cache": True, "nogil": True, "error_model": "numpy"}
+
+
+@njit(int64(*FIXED, float64[::1]), **OPTIONS)
+def read(wheel_m, z_m, steps, force_n, state):
+    """The next place on the circle."""
+    place = wheel_m[steps[0] % wheel_m.shape[0]]
+    steps[0] += 1
+    state[0], state[1], state[2] = place[0], place[1], z_m
+    return 1
+
+
+@njit(void(*FIXED, float64, float64, float64), **OPTIONS)
+def write(wheel_m, z_m, steps, force_n, fx, fy, fz):
+    """Hold this force."""
+    force_n[0], force_n[1], force_n[2] = fx, fy, fz

@@ -1,0 +1,249 @@
+"""What may leave of a force: exact answers tick by tick, and no input that breaks a promise."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
+
+from tangible_core.data import DeviceSpec, TickFlag
+from tangible_core.servo.guard import couple, guard, restart, wait
+from tangible_core.servo.safety import Coupling, Safety, counts
+
+SPEC = DeviceSpec(8.0, 3000.0, 1.5, (0.08, 0.08, 0.08), 3e-5)
+BARE = {"ramp_s": 0, "passivity": "off"}
+"""Nothing but what is asked for."""
+NAN = math.nan
+
+
+def ticks(safety: Safety, forces, stiffness: float = 0.0, period_s: float = 0.001, velocity=(0.0, 0.0, 0.0)):
+    """What leaves of forces on a hand that rests, the flags, and the memory."""
+    settings, memory = safety.arrays(SPEC, stiffness)
+    left = [guard(settings, memory, period_s, 0.0, 0.0, 0.0, *velocity, *force) for force in forces]
+    return np.array([each[:3] for each in left]), [TickFlag(each[3]) for each in left], memory
+
+
+class TestMaximum:
+    def test_the_direction_is_kept(self):
+        forces, flags, _ = ticks(Safety(max_step_n=10, **BARE), [(30.0, -40.0, 120.0)])
+        np.testing.assert_allclose(forces[0], np.array([3, -4, 12]) * 8 / 13, rtol=1e-15)
+        assert flags == [TickFlag.TOUCHING | TickFlag.FORCE_LIMITED]
+
+    def test_a_maximum_of_one_s_own_is_at_most_the_device_s(self):
+        for asked, given_n in ((2.0, 2.0), (50.0, 8.0)):
+            forces, _, _ = ticks(Safety(max_force_n=asked, max_step_n=10, **BARE), [(0.0, 0.0, 100.0)])
+            assert forces[0, 2] == given_n
+
+    @pytest.mark.parametrize("huge", [1e200, 1e308, -1e308])
+    def test_what_overflows_when_squared(self, huge: float):
+        forces, flags, _ = ticks(Safety(max_step_n=10, **BARE), [(huge, huge, 0.0)])
+        np.testing.assert_allclose(forces[0], [math.copysign(math.sqrt(32), huge)] * 2 + [0], rtol=1e-15)
+        assert TickFlag.FORCE_LIMITED in flags[0]
+
+    def test_below_it_a_force_is_left_as_it_is(self):
+        wanted = (0.1, 0.2, -0.3)
+        forces, flags, _ = ticks(Safety(**BARE), [wanted])
+        assert tuple(forces[0]) == wanted
+        assert flags == [TickFlag.TOUCHING]
+
+
+class TestSlew:
+    def test_steps_are_exact(self):
+        forces, flags, _ = ticks(Safety(max_step_n=0.5, **BARE), [(0.0, 0.0, 1.75)] * 5)
+        assert forces[:, 2].tolist() == [0.5, 1.0, 1.5, 1.75, 1.75]
+        assert [TickFlag.SLEW_LIMITED in each for each in flags] == [True] * 3 + [False] * 2
+
+    def test_it_falls_as_it_rises(self):
+        forces, _, _ = ticks(Safety(max_step_n=0.5, **BARE), [(1.0, 0.0, 0.0)] * 2 + [(-1.0, 0.0, 0.0)] * 3)
+        assert forces[:, 0].tolist() == [0.5, 1.0, 0.5, 0.0, -0.5]
+
+    @pytest.mark.parametrize(("period_s", "step_n"), [(0.00025, 0.125), (0.001, 0.5), (0.004, 0.5)])
+    def test_a_short_tick_has_its_share_and_a_long_one_no_more(self, period_s: float, step_n: float):
+        forces, _, _ = ticks(Safety(max_step_n=0.5, **BARE), [(0.0, 5.0, 0.0)], period_s=period_s)
+        assert forces[0, 1] == step_n
+
+
+class TestRamp:
+    def test_it_fades_in_by_the_clock(self):
+        forces, flags, _ = ticks(Safety(ramp_s=0.004, passivity="off"), [(0.0, 0.0, 0.4)] * 5)
+        np.testing.assert_allclose(forces[:, 2], [0.1, 0.2, 0.3, 0.4, 0.4], rtol=1e-15)
+        assert [TickFlag.RAMPING in each for each in flags] == [True] * 3 + [False] * 2
+
+    def test_another_scene_fades_in_from_the_force_that_is_there(self):
+        settings, memory = Safety(ramp_s=0.1, passivity="off", max_step_n=0.25).arrays(SPEC, 0.0)
+        for _ in range(150):
+            guard(settings, memory, 0.001, *[0.0] * 6, 0.0, 0.0, 1.0)
+        restart(memory)
+        fz = [guard(settings, memory, 0.001, *[0.0] * 6, 0.0, 0.0, 1.0)[2] for _ in range(100)]
+        np.testing.assert_allclose(fz[:4], [0.75, 0.5, 0.25, 0.04], atol=1e-15)
+        np.testing.assert_allclose(fz[-1], 1.0)
+
+
+BAD = [NAN, math.inf, -math.inf]
+
+
+class TestNotFinite:
+    @pytest.mark.parametrize("bad", BAD)
+    @pytest.mark.parametrize("place", range(10))
+    def test_a_part_that_is_not_finite_is_zero_at_once(self, place: int, bad: float):
+        settings, memory = Safety(ramp_s=0).arrays(SPEC, 500.0)
+        good = [0.001, *[0.0] * 6, 0.0, 0.0, 5.0]
+        for _ in range(20):
+            guard(settings, memory, *good)
+        broken = list(good)
+        broken[place] = bad
+        assert guard(settings, memory, *broken) == (0.0, 0.0, 0.0, TickFlag.NOT_FINITE)
+        assert guard(settings, memory, *good)[2] == 0.5
+        assert counts(memory)[TickFlag.NOT_FINITE] == 1
+
+    def test_the_force_fades_in_again(self):
+        settings, memory = Safety(ramp_s=0.01).arrays(SPEC, 0.0)
+        good = [0.001, *[0.0] * 6, 0.0, 0.0, 0.4]
+        for _ in range(20):
+            guard(settings, memory, *good)
+        guard(settings, memory, *[NAN] * 10)
+        assert guard(settings, memory, *good)[2] == pytest.approx(0.04)
+
+
+class TestStale:
+    def test_the_last_force_is_held_and_then_cut(self):
+        settings, memory = Safety(stale_s=0.0045, **BARE).arrays(SPEC, 0.0)
+        guard(settings, memory, 0.001, *[0.0] * 6, 0.0, 0.0, 0.4)
+        held = [wait(settings, memory, 0.001) for _ in range(6)]
+        assert held[:4] == [(0.0, 0.0, 0.4, 0)] * 4
+        assert held[4:] == [(0.0, 0.0, 0.0, TickFlag.STALE)] * 2
+
+    def test_the_first_position_after_it_gives_none_either(self):
+        settings, memory = Safety(stale_s=0.005, **BARE).arrays(SPEC, 0.0)
+        push = (*[0.0] * 6, 0.0, 0.0, 0.4)
+        guard(settings, memory, 0.001, *push)
+        assert guard(settings, memory, 0.006, *push) == (0.0, 0.0, 0.0, TickFlag.STALE)
+        assert guard(settings, memory, 0.001, *push)[2] == 0.4
+
+    @pytest.mark.parametrize("period_s", [NAN, math.inf])
+    def test_a_clock_that_is_broken_is_stale(self, period_s: float):
+        settings, memory = Safety(**BARE).arrays(SPEC, 0.0)
+        guard(settings, memory, 0.001, *[0.0] * 6, 0.0, 0.0, 0.4)
+        assert wait(settings, memory, period_s) == (0.0, 0.0, 0.0, TickFlag.STALE)
+
+
+class TestSoftening:
+    def test_a_law_too_stiff_has_the_force_of_one_that_is_not(self):
+        # 0.8 of 2 b / T is 2400 N/m: a law of 4800 leaves half of its force.
+        forces, flags, _ = ticks(Safety(**BARE), [(0.0, 0.0, 0.4)], stiffness=4800.0)
+        assert forces[0, 2] == pytest.approx(0.2, rel=1e-12)
+        assert flags == [TickFlag.TOUCHING | TickFlag.STIFFNESS_LIMITED]
+
+    def test_a_law_soft_enough_is_left_as_it_is(self):
+        forces, flags, _ = ticks(Safety(**BARE), [(0.0, 0.0, 0.4)] * 50, stiffness=2399.0)
+        assert (forces[:, 2] == 0.4).all()
+        assert TickFlag.STIFFNESS_LIMITED not in flags[-1]
+
+    @pytest.mark.parametrize("delay", [0, 1, 2])
+    def test_the_period_is_measured(self, delay: int):
+        safety = Safety(delay_ticks=delay, **BARE)
+        forces, _, _ = ticks(safety, [(0.0, 0.0, 0.4)] * 2500, stiffness=2000.0, period_s=0.004)
+        assert forces[-1, 2] == pytest.approx(0.4 * 0.8 * 2 * 1.5 / 0.004 / (1 + 2 * delay) / 2000, rel=1e-6)
+
+    def test_jitter_counts_by_the_mean_square(self):
+        settings, memory = Safety(**BARE).arrays(SPEC, 3000.0)
+        left = [guard(settings, memory, 0.0005 if i % 2 else 0.0015, *[0.0] * 6, 0.0, 0.0, 0.4)[2] for i in range(4000)]
+        # E[T^2] / E[T] is 1.25 ms
+        assert np.mean(left[-2:]) == pytest.approx(0.4 * 0.8 * 3 / 0.00125 / 3000, rel=2e-3)
+
+    def test_it_grows_harder_slowly_and_softer_quickly(self):
+        settings, memory = Safety(**BARE).arrays(SPEC, 2000.0)
+        push = (*[0.0] * 6, 0.0, 0.0, 0.4)
+        slow = np.array([guard(settings, memory, 0.004, *push)[2] for _ in range(1000)]) / 0.4
+        quick = np.array([guard(settings, memory, 0.001, *push)[2] for _ in range(3000)]) / 0.4
+        assert slow[-1] == pytest.approx(0.3, rel=1e-3)
+        assert np.diff(slow).min() >= -0.004 / 0.05 - 1e-12
+        assert 0 < np.diff(quick).max() <= 0.001 / 1.0 + 1e-12
+        assert quick[-1] == 1.0
+
+
+class TestCoupling:
+    def test_none_is_the_device_itself(self):
+        settings, memory = Safety().arrays(SPEC, 500.0)
+        state = (0.001, 0.002, -0.003, 0.1, -0.2, 0.3)
+        assert couple(settings, memory, 0.001, *state) == state
+
+    def test_a_spring_behind_a_spring(self):
+        safety = Safety(coupling=Coupling(stiffness_n_per_m=1000, damping_n_s_per_m=0.4), **BARE)
+        settings, memory = safety.arrays(SPEC, 500.0)
+        device = (0.0, 0.0, -0.003, 0.0, 0.0, 0.0)
+        for _ in range(500):
+            tool = couple(settings, memory, 0.001, *device)
+            left = guard(settings, memory, 0.001, *device, 0.0, 0.0, -500.0 * tool[2])
+        assert left[2] == pytest.approx(0.003 / (1 / 1000 + 1 / 500), rel=1e-9)
+        assert tool[2] == pytest.approx(-left[2] / 500, rel=1e-9)
+
+    def test_the_tool_is_on_a_leash(self):
+        safety = Safety(coupling=Coupling(stiffness_n_per_m=1000, damping_n_s_per_m=0.4), **BARE)
+        settings, memory = safety.arrays(SPEC, 500.0)
+        for _ in range(500):
+            tool = couple(settings, memory, 0.001, *[0.0] * 6)
+            guard(settings, memory, 0.001, *[0.0] * 6, 0.0, 0.0, 1e6)
+        assert tool[2] == pytest.approx(8.0 / 1000)
+
+
+HOSTILE = st.one_of(
+    st.floats(allow_nan=True, allow_infinity=True),
+    st.sampled_from([0.0, -0.0, 5e-324, -5e-324, 1e308, -1e308, 1e-3, NAN, math.inf]),
+    st.floats(-0.1, 0.1),
+    st.floats(-20, 20),
+)
+PERIODS = st.one_of(st.sampled_from([0.001, 0.0, -1.0, 1e-9, 0.5, 1e308, NAN]), st.floats(1e-4, 5e-3))
+OPTIONS = st.builds(
+    Safety,
+    ramp_s=st.sampled_from([0, 0.01]),
+    passivity=st.sampled_from(["off", "coupled", "strict"]),
+    coupling=st.sampled_from([None, "auto"]),
+    delay_ticks=st.integers(0, 8),
+    max_step_n=st.sampled_from([0.01, 0.5, 10]),
+)
+
+
+@given(
+    safety=OPTIONS,
+    stiffness=st.sampled_from([0.0, 800.0, 1e5]),
+    states=st.lists(st.tuples(PERIODS, *[HOSTILE] * 9), min_size=1, max_size=40),
+    waits=st.integers(0, 3),
+)
+@example(
+    safety=Safety(coupling="auto", ramp_s=0),
+    stiffness=0.0,
+    states=[(0.001, *[0.0] * 6, 1.0, 0.0, 0.0), (0.001, 0.0, 0.0, 0.0, 1e308, -1e308, 0.0, 1e308, -1e308, 0.0)] * 3,
+    waits=0,
+)
+def test_no_input_breaks_a_promise(safety: Safety, stiffness: float, states: list[tuple[float, ...]], waits: int):
+    settings, memory = safety.arrays(SPEC, stiffness)
+    last = np.zeros(3)
+    for period_s, *rest in states:
+        for _ in range(waits):
+            last = _kept(last, wait(settings, memory, period_s / 4), safety.max_step_n)
+        tool = couple(settings, memory, period_s, *rest[:6])
+        law = rest[6:] if np.isfinite(tool).all() else [0.0] * 3
+        last = _kept(last, guard(settings, memory, period_s, *rest[:6], *law), safety.max_step_n)
+
+
+def _kept(last: np.ndarray, left: tuple[float, float, float, int], step_n: float) -> np.ndarray:
+    """The force, after it kept every promise."""
+    force, flags = np.array(left[:3]), TickFlag(left[3])
+    assert np.isfinite(force).all()
+    assert np.linalg.norm(force) <= SPEC.max_force_n * (1 + 1e-12)
+    if flags & (TickFlag.NOT_FINITE | TickFlag.STALE):
+        assert not force.any()
+    else:
+        assert np.linalg.norm(force - last) <= step_n * (1 + 1e-12)
+    return force
+
+
+def test_what_was_limited_is_counted():
+    settings, memory = Safety(**BARE).arrays(SPEC, 0.0)
+    for force in ([0.3, 0, 0], [50, 0, 0], [50, 0, 0], [0, 0, 0], [NAN, 0, 0], [0, 0, 0]):
+        guard(settings, memory, 0.001, *[0.0] * 6, *map(float, force))
+    assert counts(memory) == {
+        TickFlag.TOUCHING: 3, TickFlag.FORCE_LIMITED: 2, TickFlag.SLEW_LIMITED: 3, TickFlag.NOT_FINITE: 1,
+    }  # fmt: skip

@@ -1,0 +1,100 @@
+"""The options of a force loop, the stiffness limits, and what of them a guard reads."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from pydantic import ValidationError
+
+from tangible_core.config import parse_config
+from tangible_core.data import DeviceSpec, TickFlag
+from tangible_core.errors import ConfigError
+from tangible_core.registry import default_registry
+from tangible_core.servo import guard, guard_layout
+from tangible_core.servo.safety import (
+    Coupling,
+    Safety,
+    effective_damping_n_s_per_m,
+    encoder_limit_n_per_m,
+    softness,
+    stiffness_limit_n_per_m,
+)
+
+FALCON = DeviceSpec(8.0, 3000.0, 20.0, (0.08, 0.08, 0.08), 3e-5)
+
+
+def parse(text: str):
+    return parse_config(f"scene: builtin/brick\n{text}", Path("p.yaml"), default_registry())
+
+
+class TestPipelineFile:
+    def test_a_file_that_says_nothing_is_guarded(self):
+        assert parse("").safety == Safety()
+
+    def test_what_it_says(self):
+        text = "safety: {max_force_n: 2, coupling: {stiffness_n_per_m: 900, damping_n_s_per_m: 0.2}, passivity: off}\n"
+        safety = parse(text).safety
+        coupling = Coupling(stiffness_n_per_m=900, damping_n_s_per_m=0.2)
+        assert safety == Safety(max_force_n=2, coupling=coupling, passivity="off")
+
+    @pytest.mark.parametrize(
+        "wrong", ["max_force_n: 0", "max_step: 1", "delay_ticks: 9", "coupling: on", "ramp_s: .nan"]
+    )
+    def test_what_it_may_not_say(self, wrong: str):
+        with pytest.raises(ConfigError, match="2:"):
+            parse(f"safety: {{{wrong}}}\n")
+
+
+class TestLimits:
+    @pytest.mark.parametrize(("delay", "limit"), [(0, 4000), (1, 4000 / 3), (2, 800)])
+    def test_stiffness(self, delay: int, limit: float):
+        assert stiffness_limit_n_per_m(2.0, 0.001, delay) == pytest.approx(limit, rel=1e-15)
+
+    def test_encoder(self):
+        assert encoder_limit_n_per_m(0.05, 5e-5) == pytest.approx(2000)
+
+    @pytest.mark.parametrize(("damping", "effective"), [(20.0, 1.5), (1.0, 1.0), (0.0, 1.5)])
+    def test_a_damping_that_the_greatest_stiffness_contradicts(self, damping: float, effective: float):
+        assert effective_damping_n_s_per_m(DeviceSpec(8.0, 3000.0, damping, (0.08, 0.08, 0.08), 3e-5)) == effective
+
+
+class TestArrays:
+    @pytest.mark.parametrize(
+        ("safety", "stiffness", "share"),
+        [
+            (Safety(), 2400.0, 1.0),
+            (Safety(), 4800.0, 0.5),
+            (Safety(delay_ticks=1), 1600.0, 0.5),
+            (Safety(stiffness_margin=1), 3000.0, 1.0),
+            (Safety(friction_n=0.03), 2000.0, 0.8),
+            (Safety(), 0.0, 1.0),
+        ],
+    )
+    def test_the_share_of_a_law_s_force(self, safety: Safety, stiffness: float, share: float):
+        settings, memory = safety.arrays(FALCON, stiffness)
+        assert softness(settings, 0.001) == pytest.approx(share, rel=1e-12)
+        assert memory[guard_layout.SOFTNESS] == softness(settings, 0.001)
+
+    def test_an_automatic_coupling_is_one_that_the_device_holds(self):
+        for delay in range(9):
+            settings, _ = Safety(coupling="auto", delay_ticks=delay).arrays(FALCON, 800.0)
+            stiffness, damping = settings[[guard_layout.COUPLING, guard_layout.COUPLING_DAMPING]]
+            assert (stiffness * 0.001 / 2 + damping) * (1 + 2 * delay) < 1.5
+            assert softness(settings, 0.001) == 1.0
+
+    def test_each_device_has_a_memory_of_its_own(self):
+        (one, first), (two, second) = Safety().arrays(FALCON, 1.0), Safety().arrays(FALCON, 1.0)
+        np.testing.assert_array_equal(one, two)
+        first[:] = 0
+        assert second.any()
+
+
+def test_the_kernels_flags_are_those_of_the_records():
+    for name in ("TOUCHING", "FORCE_LIMITED", "SLEW_LIMITED", "STIFFNESS_LIMITED", "RAMPING", "NOT_FINITE", "DAMPED"):
+        assert getattr(guard, name) == TickFlag[name]
+    assert guard.STALE == TickFlag.STALE == 1 << (guard_layout.FLAGS - 1)
+
+
+def test_options_are_frozen():
+    with pytest.raises(ValidationError):
+        Safety().ramp_s = 1.0  # pyright: ignore[reportAttributeAccessIssue]

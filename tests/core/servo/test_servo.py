@@ -1,0 +1,206 @@
+"""The force loop in its process: that it ticks, how it is watched, and that it leaves no force, however it ends."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tangible_core import HapticSurface, load_method
+from tangible_core.data import TICK_COLUMNS, Force, HapticState, TickFlag
+from tangible_core.errors import ConfigError, DeviceError
+from tangible_core.interfaces import Touch
+from tangible_core.servo import OVER, Safety, Servo
+from tangible_core.servo.ring import shared_folder
+from tangible_core.testing.loop_devices import Circling, Failing
+
+FLAGS = TICK_COLUMNS.index("flags")
+FORCE = slice(TICK_COLUMNS.index("fx_n"), TICK_COLUMNS.index("fx_n") + 3)
+LEVEL = HapticSurface.from_heights(np.full((32, 32), 0.002, np.float32))
+AT_ONCE = Safety(ramp_s=0)
+
+
+def proxy(surface: HapticSurface = LEVEL, **options: float) -> Touch:
+    return load_method("render", "proxy")(**options).touch(surface)
+
+
+class Broken(Touch):
+    """A renderer at fault, which Python has to be asked for."""
+
+    def force(self, state: HapticState) -> Force:
+        raise ArithmeticError("the law's own fault")
+
+    def path(self, positions_m, period_s=0.001):
+        raise NotImplementedError
+
+
+def ticks(servo: Servo) -> np.ndarray:
+    return servo.ring.since(0)[0]
+
+
+def until(condition, seconds: float = 10.0) -> None:
+    end = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end, "it did not happen"
+        time.sleep(0.01)
+
+
+class TestTicks:
+    @pytest.mark.parametrize(
+        ("device", "how"),
+        [
+            (Circling(z_m=0.001), "Python" if sys.platform != "linux" else "the whole loop is compiled"),
+            (Circling(z_m=0.001, exchanges=True), "Python asks the device"),
+            (Failing(fault="none"), "the tick is Python's"),
+        ],
+    )
+    def test_each_loop_feels_the_surface(self, device, how: str) -> None:
+        with Servo(proxy(stiffness_n_per_m=500.0), device, AT_ONCE, seconds=0.3) as servo:
+            assert how in servo.how
+            assert servo.start_s > 0
+            until(lambda: not servo.running)
+            report, rows = servo.report(), ticks(servo)
+        depth = 0.002 - (0.001 if isinstance(device, Circling) else -0.001)
+        assert (report.ticks, len(rows), report.stopped) == (300, 300, OVER)
+        np.testing.assert_allclose(rows[-1, FORCE], (0, 0, 500.0 * depth), atol=1e-6)
+        np.testing.assert_allclose(rows[-1, 8:11], (*rows[-1, 2:4], 0.002), atol=1e-6)
+        assert int(rows[-1, FLAGS]) & TickFlag.TOUCHING
+        assert (np.diff(rows[:, 0]) > 0).all()
+        assert report.period_us is not None and 900 < report.period_us.p50 < 1100
+
+    def test_ticks_are_those_of_the_law_and_its_guard(self) -> None:
+        """What the loop gave, replayed by the same law here, where nothing was limited."""
+        heights = np.random.default_rng(0).uniform(0.002, 0.0024, (32, 32)).astype(np.float32)
+        touch = proxy(HapticSurface.from_heights(heights), stiffness_n_per_m=200.0)
+        with Servo(touch, Circling(z_m=0.0015), Safety(ramp_s=0, passivity="off"), seconds=0.5) as servo:
+            until(lambda: not servo.running)
+            rows = ticks(servo)
+        free = rows[:, FLAGS].astype(int) & ~(TickFlag.TOUCHING | TickFlag.OVERRUN) == 0
+        assert free.sum() > 400
+        np.testing.assert_allclose(rows[free][:, FORCE], touch.path(rows[:, 2:5])[free], atol=1e-9)
+
+    def test_it_goes_on_until_it_is_stopped(self) -> None:
+        with Servo(proxy(), Circling()) as servo:
+            until(lambda: servo.report().ticks > 50)
+            assert servo.running
+            report = servo.stop("enough")
+            assert (report.stopped, servo.running) == ("enough", False)
+            assert servo.stop("again").stopped == "enough"
+
+    @pytest.mark.parametrize("seconds", [0, -1, float("nan"), float("inf")])
+    def test_a_time_that_is_none(self, seconds: float) -> None:
+        with pytest.raises(ConfigError, match="seconds"):
+            Servo(proxy(), Circling(), seconds=seconds)
+
+
+class TestSwap:
+    @pytest.mark.parametrize("device", [Circling(z_m=0.0), Circling(z_m=0.0, exchanges=True), Failing(fault="none")])
+    def test_another_scene_from_one_tick_to_the_next(self, device) -> None:
+        high = HapticSurface.from_heights(np.full((48, 64), 0.003, np.float32))
+        with Servo(proxy(stiffness_n_per_m=100.0), device, AT_ONCE) as servo:
+            until(lambda: servo.report().ticks > 100)
+            servo.swap(proxy(high, stiffness_n_per_m=100.0))
+            there = servo.report().ticks
+            until(lambda: servo.report().ticks > there + 100)
+            servo.stop()
+            rows = ticks(servo)
+        (swapped,) = np.flatnonzero(rows[:, FLAGS].astype(int) & TickFlag.SWAPPED)
+        assert np.nanmax(rows[:swapped, 10]) == pytest.approx(0.002, abs=1e-6)
+        assert np.nanmin(rows[swapped + 5 :, 10]) == pytest.approx(0.003, abs=1e-6)
+
+    def test_another_law(self) -> None:
+        with Servo(proxy(), Circling()) as servo:
+            servo.swap(load_method("render", "penalty")().touch(LEVEL))
+            there = servo.report().ticks
+            until(lambda: servo.report().ticks > there + 20)
+
+    def test_after_the_end(self) -> None:
+        with Servo(proxy(), Circling(), seconds=0.01) as servo:
+            until(lambda: not servo.running)
+            with pytest.raises(DeviceError, match="has ended"):
+                servo.swap(proxy())
+
+
+def held(path: Path) -> float:
+    """What the device holds; nothing that is half written."""
+    text = path.read_text() if path.exists() else ""
+    return float(text) if text else float("nan")
+
+
+class TestNoForceIsLeft:
+    @pytest.mark.parametrize(
+        ("fault", "stopped"), [("unplugged", "does not answer"), ("none", OVER), ("nan", OVER), ("hangs", OVER)]
+    )
+    def test_whatever_the_device_does(self, fault, stopped: str, tmp_path: Path) -> None:
+        record = tmp_path / "force"
+        with Servo(proxy(), Failing(fault=fault, record=str(record)), AT_ONCE, seconds=1.0) as servo:
+            until(lambda: held(record) > 0)
+            until(lambda: not servo.running)
+            assert stopped in servo.report().stopped
+            assert held(record) == 0
+            rows = ticks(servo)
+        if fault == "nan":
+            (bad,) = np.flatnonzero(rows[:, FLAGS].astype(int) & TickFlag.NOT_FINITE)
+            np.testing.assert_array_equal(rows[bad, FORCE], 0)
+
+    def test_a_fault_of_the_driver_is_raised_here(self, tmp_path: Path) -> None:
+        record = tmp_path / "force"
+        with (
+            pytest.raises(ZeroDivisionError, match="the driver's own fault"),
+            Servo(proxy(), Failing(fault="bug", record=str(record)), AT_ONCE) as servo,
+        ):
+            until(lambda: not servo.running)
+        assert held(record) == 0
+
+    def test_a_device_that_cannot_be_opened(self) -> None:
+        before = set(shared_folder().glob(f"tangible-{os.getpid()}-*"))
+        with pytest.raises(DeviceError, match="in use by another program"), Servo(proxy(), Failing(opens=False)):
+            pytest.fail("it was opened")
+        assert set(shared_folder().glob(f"tangible-{os.getpid()}-*")) == before
+
+    def test_sigterm(self, tmp_path: Path) -> None:
+        record = tmp_path / "force"
+        with Servo(proxy(), Failing(fault="none", record=str(record)), AT_ONCE) as servo:
+            until(lambda: held(record) > 0)
+            os.kill(servo.process_id, signal.SIGTERM)
+            until(lambda: not servo.running)
+            assert "asked to end" in servo.report().stopped
+        assert held(record) == 0
+
+    def test_a_killed_loop(self, tmp_path: Path) -> None:
+        """Nobody can run in a process that is killed: the host opens the device once more and lets go."""
+        record = tmp_path / "force"
+        with Servo(proxy(), Failing(fault="none", record=str(record), simulated=False), AT_ONCE) as servo:
+            until(lambda: held(record) > 0)
+            os.kill(servo.process_id, signal.SIGKILL)
+            until(lambda: not servo.running)
+            assert "died" in servo.report().stopped
+            assert held(record) == 0
+
+    @pytest.mark.parametrize("killed_by", [signal.SIGKILL, signal.SIGINT])
+    def test_a_host_that_is_killed(self, tmp_path: Path, killed_by: signal.Signals) -> None:
+        record = tmp_path / "force"
+        script = HOST.format(record=str(record))
+        host = subprocess.Popen([sys.executable, "-c", script], stderr=subprocess.DEVNULL, start_new_session=True)
+        until(lambda: held(record) > 0, 60)
+        if killed_by == signal.SIGINT:
+            os.killpg(host.pid, killed_by)  # as the keyboard does: host and loop both
+        else:
+            os.kill(host.pid, killed_by)
+        until(lambda: held(record) == 0)
+        host.wait()
+
+
+HOST = """
+import time, numpy as np
+from tangible_core import HapticSurface, load_method
+from tangible_core.servo import Safety, Servo
+from tangible_core.testing.loop_devices import Failing
+touch = load_method("render", "proxy")().touch(HapticSurface.from_heights(np.full((8, 8), 0.002, np.float32)))
+with Servo(touch, Failing(fault="none", record={record!r}), Safety(ramp_s=0)):
+    time.sleep(60)
+"""

@@ -1,0 +1,168 @@
+"""What was felt, in memory and in its files."""
+
+import csv
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tangible_core.data import TICK_COLUMNS, HapticSurface, TickFlag
+from tangible_core.errors import OutputError
+from tangible_core.session import About, Recording, check_record_path, run
+from tangible_devices.mock import Mock
+from tangible_render.penalty_gradient import PenaltyGradient
+
+ABOUT = About("mock", "proxy", "scene: x\nwörds: 1\n", "2026-01-02T03:04:05+00:00", "mine 1.0")
+
+
+def some(count: int = 5, **more) -> Recording:
+    """A recording of numbers that float32 holds."""
+    rows = np.random.default_rng(1).normal(size=(count, 16)).astype(np.float32).astype(float)
+    rows[:, 0] = 1e5 + np.arange(count) * 0.001
+    rows[:, 14:] = np.arange(2 * count).reshape(count, 2)
+    rows[1:, 8:11] = np.nan
+    return Recording(rows, **more)
+
+
+def same(one: Recording, other: Recording) -> bool:
+    return one.digest() == other.digest()
+
+
+@pytest.mark.parametrize("suffix", [".nc", ".npz"])
+@pytest.mark.parametrize("count", [0, 1, 5])
+@pytest.mark.parametrize("about", [About(), ABOUT])
+def test_all_of_it_is_kept(tmp_path: Path, count: int, about: About, suffix: str):
+    recording = some(count, stopped="the cable is out", about=about)
+    recording.save(tmp_path / "deep" / f"stroke{suffix}")
+    assert same(Recording.load(tmp_path / "deep" / f"stroke{suffix}"), recording)
+
+
+def test_numpy_reads_npz(tmp_path: Path):
+    some().save(tmp_path / "stroke.npz")
+    with np.load(tmp_path / "stroke.npz") as file:
+        assert np.array_equal(file["force_n"], some().force_n)
+        assert np.array_equal(file["flags"], some().flags)
+
+
+@pytest.mark.parametrize("count", [0, 1, 5])
+def test_csv_keeps_every_digit_of_the_ticks(tmp_path: Path, count: int):
+    recording = Recording(some(count).rows + np.pi)
+    recording.save(tmp_path / "stroke.csv")
+    assert same(Recording.load(tmp_path / "stroke.csv"), recording)
+    with (tmp_path / "stroke.csv").open(newline="") as file:
+        assert [float(row["fz_n"]) for row in csv.DictReader(file)] == recording.force_n[:, 2].tolist()
+
+
+def test_csv_is_read_by_the_names_of_its_columns(tmp_path: Path):
+    """Ten columns were all, once; nothing was known of the others."""
+    names = [name for name in TICK_COLUMNS if not name.startswith(("proxy", "late", "flags", "buttons"))]
+    (tmp_path / "old.csv").write_text(",".join(["note", *reversed(names)]) + "\n" + "9,9,8,7,6,5,4,3,2,1,0\n" * 2)
+    recording = Recording.load(tmp_path / "old.csv")
+    assert recording.time_s.tolist() == [0, 0]
+    assert (recording.position_m[0].tolist(), recording.force_n[1].tolist()) == ([1, 2, 3], [7, 8, 9])
+    assert np.isnan(recording.proxy_m).all()
+    assert not (recording.late_s.any() or recording.flags.any() or recording.buttons.any())
+
+
+def test_an_npz_of_before(tmp_path: Path):
+    arrays = {name: getattr(some(), name) for name in ("time_s", "position_m", "velocity_m_per_s", "force_n")}
+    np.savez(tmp_path / "old.npz", **arrays, stopped="", not_finite=2, limited=3)
+    recording = Recording.load(tmp_path / "old.npz")
+    assert all(np.array_equal(getattr(recording, name), array) for name, array in arrays.items())
+    assert np.isnan(recording.proxy_m).all()
+    assert recording.about == About()
+
+
+def test_a_mock_plays_a_csv_again(tmp_path: Path):
+    touch = PenaltyGradient().touch(HapticSurface.from_heights(np.full((3, 3), 0.01)))
+    first = run(touch, Mock(speed_m_per_s=0.2), 0.3)
+    first.save(tmp_path / "stroke.csv")
+    again = run(touch, Mock(path="csv", csv_file=tmp_path / "stroke.csv", hand=None), 0.3)
+    assert np.allclose(again.position_m, first.position_m, rtol=0, atol=1e-15)
+    assert np.allclose(again.force_n, first.force_n, rtol=0, atol=1e-11)
+
+
+def test_figures():
+    force = np.array([[0, 0, 0], [0, 3, 4], [0, 0, 1], [0, 0, 0]], float)
+    position = np.array([[0, 0, 0], [0, 0, 0], [0, 1, 1], [0, 1, 3]], float)
+    flags = np.array([0, TickFlag.FORCE_LIMITED | TickFlag.TOUCHING, TickFlag.NOT_FINITE, TickFlag.NOT_FINITE])
+    recording = Recording.of(
+        time_s=np.arange(4.0), position_m=position, velocity_m_per_s=np.zeros((4, 3)), force_n=force, flags=flags
+    )
+    assert recording.figures() == {
+        "ticks": 4,
+        "seconds": 3.0,
+        "contact_share": 0.5,
+        "median_contact_force_n": 3.0,
+        "peak_force_n": 5.0,
+        "work_j": 7.0 + 2.0,
+        "limited": 1,
+        "not_finite": 2,
+    }
+
+
+def test_tables_that_are_none():
+    with pytest.raises(OutputError, match=r"\(n, 16\)"):
+        Recording(np.zeros((3, 10)))
+    parts = {"time_s": np.zeros(3), "position_m": np.zeros((3, 3)), "velocity_m_per_s": np.zeros((3, 3))}
+    with pytest.raises(OutputError, match=r"force_n is \(1, 3\); with these times it is \(3, 3\)"):
+        Recording.of(**parts, force_n=np.zeros((1, 3)))
+
+
+@pytest.mark.parametrize("name", ["stroke", "stroke.parquet", "stroke.npz.txt"])
+def test_names_it_cannot_have(tmp_path: Path, name: str):
+    with pytest.raises(OutputError, match=r"\.nc, \.npz or \.csv"):
+        check_record_path(tmp_path / name)
+    with pytest.raises(OutputError, match=r"\.nc, \.npz or \.csv"):
+        some().save(tmp_path / name)
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_place_that_cannot_be_written(tmp_path: Path):
+    (tmp_path / "file").touch()
+    with pytest.raises(OutputError, match="cannot be written"):
+        some().save(tmp_path / "file" / "stroke.npz")
+
+
+@pytest.mark.parametrize("suffix", [".nc", ".npz", ".csv"])
+@pytest.mark.parametrize("damage", [lambda b: b"", lambda b: b[:-200], lambda b: b"\xff" * 99, lambda b: b"a,b\n"])
+def test_damaged_files(tmp_path: Path, suffix: str, damage: Callable[[bytes], bytes]):
+    path = tmp_path / f"stroke{suffix}"
+    some().save(path)
+    path.write_bytes(damage(path.read_bytes()))
+    with pytest.raises(OutputError, match="is no recording, or a damaged one"):
+        Recording.load(path)
+
+
+@pytest.mark.parametrize("suffix", [".nc", ".npz"])
+def test_any_cut_is_seen(tmp_path: Path, suffix: str):
+    some(2).save(tmp_path / f"whole{suffix}")
+    data = (tmp_path / f"whole{suffix}").read_bytes()
+    path = tmp_path / f"cut{suffix}"
+    for length in range(0, len(data), 7):
+        path.write_bytes(data[:length])
+        with pytest.raises(OutputError, match="is no recording, or a damaged one"):
+            Recording.load(path)
+
+
+def test_files_that_are_something_else(tmp_path: Path):
+    from scipy.io import netcdf_file
+
+    np.savez(tmp_path / "other.npz", picture=np.zeros(3))
+    np.save(tmp_path / "array.npy", np.zeros(3))
+    (tmp_path / "array.npy").rename(tmp_path / "array.npz")
+    with netcdf_file(tmp_path / "other.nc", "w") as file:
+        file.createDimension("x", 3)
+        file.createVariable("time_s", "d", ("x",))[:] = 0
+    for name in ("other.npz", "array.npz", "other.nc"):
+        with pytest.raises(OutputError, match="is no recording"):
+            Recording.load(tmp_path / name)
+
+
+@pytest.mark.parametrize("suffix", [".nc", ".npz", ".csv"])
+def test_files_that_are_not_there(tmp_path: Path, suffix: str):
+    (tmp_path / f"folder{suffix}").mkdir()
+    for path in (tmp_path / f"none{suffix}", tmp_path / f"folder{suffix}"):
+        with pytest.raises(OutputError, match="cannot be read"):
+            Recording.load(path)

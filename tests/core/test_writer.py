@@ -1,0 +1,168 @@
+"""Recordings that grow: what is appended can be read at once, by anyone, and after any end of the program."""
+
+import random
+import subprocess
+import sys
+import textwrap
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.io import netcdf_file
+
+from tangible_core.data import TICK_COLUMNS
+from tangible_core.errors import OutputError
+from tangible_core.session import About, Recording, Writer
+
+ROWS = np.arange(16 * 50, dtype=float).reshape(50, 16)
+
+
+def start(code: str, *words: object) -> subprocess.Popen[str]:
+    """A program that writes, with the file as its first word."""
+    head = "import sys, numpy as np; from pathlib import Path; from tangible_core.session import Writer\n"
+    command = [sys.executable, "-c", head + textwrap.dedent(code), *map(str, words)]
+    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+
+def test_what_is_appended_is_there_at_once(tmp_path: Path):
+    path = tmp_path / "deep" / "stroke.nc"
+    with Writer(path, About("mock", "proxy", "want: touch\n")) as writer:
+        for end in (0, 1, 20, 20, 50):
+            writer.append(ROWS[writer.ticks : end])
+            recording = Recording.load(path)
+            assert np.array_equal(recording.rows, ROWS[:end])
+            assert recording.stopped == "cut off: the recorder was ended before it could close the file"
+    closed = Recording.load(path)
+    about = closed.about
+    assert closed.stopped == ""
+    assert (about.device, about.renderer, about.configuration) == ("mock", "proxy", "want: touch\n")
+    assert about.started.startswith("20")
+    assert "tangible-images" in about.software
+
+
+def test_others_find_names_units_and_flags(tmp_path: Path):
+    with Writer(tmp_path / "stroke.nc", About("falcon")) as writer:
+        writer.append(ROWS)
+    with netcdf_file(tmp_path / "stroke.nc", mmap=False) as file:
+        assert tuple(file.variables) == TICK_COLUMNS
+        assert file.device == b"falcon"
+        units = [file.variables[name].units.decode() for name in ("time_s", "x_m", "vy_m_per_s", "fz_n")]
+        assert units == ["s", "m", "m s-1", "N"]
+        flags = file.variables["flags"]
+        assert dict(zip(flags.flag_meanings.decode().split(), flags.flag_masks, strict=True))["force_limited"] == 2
+        assert np.array_equal(file.variables["fz_n"][:], ROWS[:, 13])
+
+
+def test_a_tick_is_92_bytes_and_loses_little(tmp_path: Path):
+    """What a law is given is exact, after ten days too; proxies are within 4 nm, forces within 0.3 uN."""
+    rows = np.random.default_rng(0).uniform(-1, 1, (1000, 16)) * ([0.01, 1e-3] + [0.125] * 9 + [8] * 3 + [0, 0])
+    rows[:, 0] += 864_000
+    path = tmp_path / "stroke.nc"
+    with Writer(path) as writer:
+        empty = path.stat().st_size
+        writer.append(rows)
+        assert path.stat().st_size - empty == 92 * 1000
+    lost = np.abs(Recording.load(path).rows - rows).max(axis=0)
+    assert not lost[[0, 2, 3, 4, 5, 6, 7]].any()
+    assert lost[8:11].max() < 4e-9
+    assert lost[11:14].max() < 3e-7
+
+
+def test_numbers_that_float32_cannot_hold(tmp_path: Path):
+    rows = np.zeros((3, 16))
+    rows[:, 11] = 1e300, np.nan, -np.inf
+    with Writer(tmp_path / "stroke.nc") as writer:
+        writer.append(rows)
+    assert np.array_equal(Recording.load(tmp_path / "stroke.nc").rows[:, 11], [np.inf, np.nan, -np.inf], equal_nan=True)
+
+
+def test_why_it_ended(tmp_path: Path):
+    path = tmp_path / "stroke.nc"
+    writer = Writer(path)
+    writer.close("é" * 200)
+    writer.close("again")
+    assert Recording.load(path).stopped == "é" * 120
+    with pytest.raises(OutputError, match="is closed"):
+        writer.append(ROWS)
+    with pytest.raises(ZeroDivisionError), Writer(path):
+        raise ZeroDivisionError("oh")
+    assert Recording.load(path).stopped == "ZeroDivisionError: oh"
+
+
+@pytest.mark.parametrize("rows", [np.zeros(16), np.zeros((3, 10)), np.zeros((2, 2, 16))])
+def test_rows_that_are_none(tmp_path: Path, rows: np.ndarray):
+    with Writer(tmp_path / "stroke.nc") as writer, pytest.raises(OutputError, match=r"\(n, 16\)"):
+        writer.append(rows)
+
+
+def test_places_that_cannot_be_written(tmp_path: Path):
+    (tmp_path / "file").touch()
+    (tmp_path / "folder.nc").mkdir()
+    for path in (tmp_path / "file" / "stroke.nc", tmp_path / "folder.nc"):
+        with pytest.raises(OutputError, match="cannot be written"):
+            Writer(path)
+
+
+def test_one_writer_a_file(tmp_path: Path):
+    path = tmp_path / "stroke.nc"
+    with Writer(path) as writer:
+        writer.append(ROWS)
+        with pytest.raises(OutputError, match="another program is writing to it"):
+            Writer(path)
+        other = start("Writer(Path(sys.argv[1]))", path)
+        assert "OutputError" in other.communicate()[1].splitlines()[-1]
+    assert np.array_equal(Recording.load(path).rows, ROWS)
+    Writer(path).close()
+    assert len(Recording.load(path).rows) == 0
+
+
+def test_a_kill_at_any_moment_costs_nothing_that_was_appended(tmp_path: Path):
+    """Each tick carries its number; the program says a number once its tick is appended."""
+    path = tmp_path / "stroke.nc"
+    code = """
+        with Writer(Path(sys.argv[1])) as writer:
+            while True:
+                writer.append(np.repeat(writer.ticks + np.arange(100.0), 16).reshape(100, 16))
+                print(writer.ticks, flush=True)
+    """
+    moments = random.Random(0)
+    for _ in range(4):
+        program = start(code, path)
+        program.stdout.readline()
+        time.sleep(moments.uniform(0, 0.05))
+        program.kill()
+        said = program.communicate()[0].split("\n")[-2]
+        recording = Recording.load(path)
+        assert len(recording.rows) - int(said or 0) in (0, 100)
+        assert np.array_equal(recording.rows[:, 0], np.arange(len(recording.rows)))
+        assert recording.stopped.startswith("cut off")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="this system has no limit to the size of a file")
+def test_a_full_disk_keeps_what_was_written(tmp_path: Path):
+    path = tmp_path / "stroke.nc"
+    code = """
+        import resource
+        resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))
+        writer = Writer(Path(sys.argv[1]))
+        try:
+            while True:
+                writer.append(np.full((100, 16), float(writer.ticks)))
+        except Exception as error:
+            print(type(error).__name__, error, writer.ticks, writer.closed)
+    """
+    said = start(code, path).communicate()[0]
+    recording = Recording.load(path)
+    assert said.startswith(f"OutputError {path}: cannot be written: File too large; it holds 100 ticks")
+    assert len(recording.rows) == 100
+    assert recording.stopped == "the recording ends early: File too large"
+
+
+def test_no_room_for_the_first_byte(tmp_path: Path):
+    code = """
+        import resource
+        resource.setrlimit(resource.RLIMIT_FSIZE, (100, 100))
+        Writer(Path(sys.argv[1]))
+    """
+    assert "it holds 0 ticks" in start(code, tmp_path / "stroke.nc").communicate()[1].splitlines()[-1]

@@ -1,0 +1,115 @@
+"""The device that plays a recording: state by state, then at rest; and what it says of recordings it cannot play."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tangible_core.data import NO_FORCE, Force, HapticSurface
+from tangible_core.errors import DeviceError
+from tangible_core.session import Recording, run
+from tangible_devices.mock import Mock
+from tangible_devices.replay import Replay
+from tangible_render.penalty_gradient import PenaltyGradient
+
+
+def saved(folder: Path, rows: np.ndarray, suffix: str = ".npz") -> Path:
+    path = folder / f"hand{suffix}"
+    Recording(rows).save(path)
+    return path
+
+
+def rows(count: int) -> np.ndarray:
+    """Jittered times, and positions, velocities and buttons that float32 holds."""
+    table = np.random.default_rng(0).integers(-40, 40, (count, 16)) / 1024
+    table[:, 0] = 7 + np.cumsum(np.random.default_rng(1).uniform(0.0005, 0.002, count))
+    table[:, 15] = np.arange(count) % 16
+    return table
+
+
+@pytest.mark.parametrize("suffix", [".nc", ".npz", ".csv"])
+def test_each_read_is_a_recorded_tick(tmp_path: Path, suffix: str):
+    table = rows(30)
+    with Replay(file=saved(tmp_path, table, suffix)).open() as link:
+        for row in table:
+            link.write(Force(0.0, 0.0, 5.0))  # which moves nothing
+            state = link.read()
+            assert (state.time_s, *state.position_m, *state.velocity_m_per_s, state.buttons) == (
+                *row[[0, 2, 3, 4, 5, 6, 7]],
+                row[15],
+            )
+
+
+def test_at_the_end_it_rests_and_time_goes_on(tmp_path: Path):
+    table = rows(3)
+    table[:, 0] = 5, 5.002, 5.004
+    with Replay(file=saved(tmp_path, table)).open() as link:
+        states = [link.read() for _ in range(5)]
+    assert [state.time_s for state in states] == pytest.approx([5, 5.002, 5.004, 5.006, 5.008], abs=1e-12)
+    assert {state.position_m for state in states[2:]} == {tuple(table[2, 2:5])}
+    assert [state.velocity_m_per_s for state in states[3:]] == [(0, 0, 0)] * 2
+
+
+def test_one_tick_is_a_recording_too(tmp_path: Path):
+    with Replay(file=saved(tmp_path, rows(1))).open() as link:
+        first, second = link.read(), link.read()
+    assert second.time_s == pytest.approx(first.time_s + 0.001)
+
+
+def test_what_is_not_finite_is_passed_over(tmp_path: Path):
+    table = rows(9)
+    table[[0, 4], 2], table[6, 6], table[2, 8:14] = np.nan, np.inf, np.nan
+    with Replay(file=saved(tmp_path, table)).open() as link:
+        assert [link.read().time_s for _ in range(6)] == table[[1, 2, 3, 5, 7, 8], 0].tolist()
+
+
+def test_what_was_felt_is_felt_again(tmp_path: Path):
+    touch = PenaltyGradient().touch(HapticSurface.from_heights(np.random.default_rng(0).uniform(0, 0.004, (9, 9))))
+    first = run(touch, Mock(speed_m_per_s=0.2), 0.5)
+    first.save(tmp_path / "hand.npz")
+    again = run(touch, Replay(file=tmp_path / "hand.npz"), 0.5)
+    assert np.array_equal(again.rows, first.rows, equal_nan=True)
+
+
+def test_without_a_file_it_goes_down_and_up_once():
+    with Replay().open() as link:
+        z_m = np.array([link.read().position_m[2] for _ in range(1001)])
+    assert (z_m[0], z_m[500], z_m[-1]) == pytest.approx((0.03, 0.0, 0.03), abs=1e-15)
+    assert (np.diff(z_m[:501]) < 0).all()
+    assert (np.diff(z_m[500:]) > 0).all()
+
+
+@pytest.mark.parametrize(
+    ("change", "complaint"),
+    [
+        (lambda table: table[:0], "has no whole tick"),
+        (lambda table: table * np.nan, "has no whole tick"),
+        (lambda table: table[::-1], "goes back after 7."),
+        (lambda table: table[[0, 1, 1]], "stands still"),
+    ],
+)
+def test_recordings_that_cannot_be_played(tmp_path: Path, change, complaint: str):
+    path = saved(tmp_path, rows(5))
+    with np.errstate(invalid="ignore"):
+        path = saved(tmp_path, change(rows(5)))
+    with pytest.raises(DeviceError, match=rf"{path}: .*{complaint}"):
+        Replay(file=path).open()
+
+
+def test_files_that_cannot_be_read(tmp_path: Path):
+    (tmp_path / "text.nc").write_text("no recording")
+    for name, complaint in (("none.nc", "cannot be read"), ("text.nc", "is no recording")):
+        with pytest.raises(DeviceError, match=complaint):
+            Replay(file=tmp_path / name).open()
+
+
+def test_its_link_holds_and_lets_go_of_forces():
+    with Replay().open() as link:
+        link.write(Force(0.0, 6.0, -8.0))
+        assert link.applied == pytest.approx((0, 4.8, -6.4))
+        link.write(Force(0.0, float("nan"), 1.0))
+        assert link.applied == NO_FORCE
+        link.write(Force(1.0, 0.0, 0.0))
+    assert link.applied == NO_FORCE
+    with pytest.raises(DeviceError, match="open it again"):
+        link.read()

@@ -16,6 +16,7 @@ SECTIONS = {
     "texture": "Texture",
     "render": "Force laws",
     "record": "Recordings",
+    "devices": "Devices",
 }
 VERSIONS = ("tangible-images", "numpy", "opencv-contrib-python-headless", "scikit-image", "numba", "pydantic", "typer")
 HEAD = """# Results

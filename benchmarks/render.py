@@ -1,6 +1,6 @@
 """Touch: every promise about the force laws with its bound, and what stands behind the figures."""
 
-from . import render_ticks, render_waves
+from . import render_guard, render_stiffness, render_ticks, render_waves
 from .figures import judged
 from .render_waves import AMPLITUDE_M, DEPTH_M
 
@@ -12,7 +12,14 @@ def section() -> str:
             f"Waves of {2000 * AMPLITUDE_M:g} mm every 20 mm on 80 mm, a hand {1000 * DEPTH_M:g} mm under them, 1 kHz. "
             "ns a tick are those of `path`, compiled, with the velocity of each step, in processor time, in turns.",
             "",
-            *judged([*render_waves.figures(), *render_ticks.figures()]),
+            *judged(
+                [
+                    *render_waves.figures(),
+                    *render_stiffness.figures(),
+                    *render_ticks.figures(),
+                    *render_guard.figures(),
+                ]
+            ),
             "",
             "What is left out, in ns a tick and as a share of all of it.",
             "",
@@ -21,5 +28,9 @@ def section() -> str:
             "Every law on the same path over 256 x 256 cells.",
             "",
             *render_ticks.laws(),
+            "",
+            "The guard between a law and a device, in ns a tick, the loop around it left out.",
+            "",
+            *render_guard.parts(),
         ]
     )

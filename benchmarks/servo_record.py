@@ -26,8 +26,9 @@ def figures() -> Iterator[Figure]:
     alone = live.feel(touch(), Circling(), 60.0, Safety(), _ignore, lambda rows: None)
     assert report.late_us is not None and alone.late_us is not None
     said = (
-        f"{report.ticks} ticks, {report.ticks - kept} not recorded, {report.overruns} periods without a tick; p99.9 of "
-        f"lateness {report.late_us.p999:.0f} us, {alone.late_us.p999:.0f} us unrecorded; {size / report.ticks:.0f} bytes a tick"
+        f"{report.ticks} ticks, {report.ticks - kept} not recorded, {report.overruns} periods without a tick; "
+        f"p99.9 of lateness {report.late_us.p999:.0f} us, {alone.late_us.p999:.0f} us without a recorder; "
+        f"{size / report.ticks:.0f} bytes a tick"
     )
     met = report.ticks == kept and report.overruns == 0
     yield Figure(f"recorder, {MINUTES:g} minutes", "no tick lost or late by a period", said, met)

@@ -1,4 +1,6 @@
-"""What a whole tick costs: a Falcon's packet in, the law with friction and texture, the guard, a packet out, the ring."""
+"""What a whole tick costs: a Falcon's packet in, a law with friction and texture, the guard, a packet out, the ring."""
+
+# ruff: noqa: ANN001, ANN202 -- the types are those that numba infers
 
 import statistics
 from collections.abc import Iterator

@@ -119,6 +119,25 @@ def replay(
 
 
 @app.command()
+def preflight(
+    config: Config,
+    sets: Sets = None,
+    seconds: Annotated[float, typer.Option(help="How long this machine's lateness is measured.")] = 2.0,
+    rate: Annotated[float, typer.Option(help="Ticks a second of the force loop.")] = 1000.0,
+    speed: Annotated[float, typer.Option(help="Of the hand's stroke, metres a second.")] = 0.12,
+    press: Annotated[float, typer.Option(help="Of the hand, newtons.")] = 3.0,
+    as_json: Json = False,
+    no_cache: NoCache = False,
+) -> None:
+    """Say what is safe and what will be felt, before a motor moves; exit 1 if something is unsafe."""
+    from .commands import preflight as command
+
+    hand, loop = command.Hand(speed, press), command.Loop(rate, seconds)
+    if not command.preflight(config, sets or [], hand, loop, as_json, not no_cache):
+        raise typer.Exit(FAILED)
+
+
+@app.command()
 def compare(
     config: Annotated[
         Path, typer.Argument(help="A comparison file (YAML), or results (.jsonl) to show again.", show_default=False)

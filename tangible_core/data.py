@@ -460,8 +460,8 @@ class ServoReport:
     """From when a tick was due to when it began."""
     overruns: int = 0
     """Periods that had no tick."""
-    limited: Mapping[str, int] = field(default_factory=dict[str, int])
-    """Ticks in which safety changed the force, by the name of the `TickFlag`."""
+    flagged: Mapping[str, int] = field(default_factory=dict[str, int])
+    """Ticks by the name of the `TickFlag` that they have, those that none has left out."""
 
 
 def _same_shape(name: str, values: np.ndarray, other: str, others: np.ndarray) -> None:

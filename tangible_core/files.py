@@ -61,7 +61,11 @@ def open_alone(path: Path) -> FileIO:
         file.truncate(0)
     except OSError as error:
         file.close()
-        raise OutputError(f"{path}: another program is writing to it; end that one or choose another name") from error
+        if isinstance(error, BlockingIOError | PermissionError):
+            cure = "another program is writing to it; end that one or choose another name"
+        else:
+            cure = f"cannot be written: {error.strerror}; choose another folder"
+        raise OutputError(f"{path}: {cure}") from error
     return file
 
 

@@ -23,11 +23,13 @@ CHECKED = (
     "metrics",
     "picture_files",
     "pictures",
+    "testing.nearest",
     "testing.reliefs",
     "testing.rough",
     "testing.scenes",
     "testing.surfaces",
     "testing.stereo_scenes",
+    "testing.strokes",
     "testing.textures",
     "testing.texture_scenes",
     "bench.damage",
@@ -39,6 +41,9 @@ CHECKED = (
     "haptic_textures.sample",
     "haptic_textures.spectrum",
     "haptic_textures.stroke",
+    "preflight.bumps",
+    "preflight.probes",
+    "preflight.timing",
 )
 BEARTYPE = "beartype.beartype(conf=beartype.BeartypeConf(is_pep484_tower=True))"  # an int is a float, as PEP 484 has it
 jaxtyping.install_import_hook([f"tangible_core.{room}" for room in CHECKED], BEARTYPE)

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from tangible_core import hooks
+from tangible_core.data import TICK_COLUMNS
 
 ROOT = Path(__file__).parents[1]
 PAGES = sorted([*ROOT.glob("*.md"), *ROOT.joinpath("docs").rglob("*.md"), *ROOT.joinpath("examples").rglob("*.md")])
@@ -41,3 +42,19 @@ def test_the_page_on_materials_shows_what_the_program_takes(tmp_path: Path):
     assert len(files) == 3
     for text in files:
         parse_config(f"scene: builtin/brick\n{text}", tmp_path / "p.yaml", default_registry())
+
+
+def test_the_page_on_recordings_reads_and_writes_them(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    blocks = re.findall(r"```python\n(.*?)```", ROOT.joinpath("docs/recordings.md").read_text("utf-8"), re.DOTALL)
+    write, *read = sorted(blocks, key=lambda block: "Writer" not in block)
+    monkeypatch.chdir(tmp_path)
+    exec(write.replace("mine.nc", "hand.nc").replace("renderer", 'configuration="a: 1", renderer'), {})
+    run = [block for block in read if "xarray" not in block]  # which is not installed with this package
+    assert len(run) == 2
+    for block in run:
+        exec(block, {})
+
+
+def test_the_page_on_recordings_names_every_column():
+    page = ROOT.joinpath("docs/recordings.md").read_text("utf-8")
+    assert all(f"`{name}`" in page for name in TICK_COLUMNS)

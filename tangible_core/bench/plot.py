@@ -28,6 +28,7 @@ DPI = 150
 def draw_plot(path: Path, results: Results) -> bool:
     """Draw the means over all scenes as a PNG, whole or not at all; False, and nothing, if no method has a mean.
 
+    A measure that no method has gets no panel.
     Raises: OutputError if the place cannot be written.
     """
     from matplotlib import style
@@ -37,9 +38,9 @@ def draw_plot(path: Path, results: Results) -> bool:
     from ..report.style import STYLE
 
     found = [line for line in results.means() if math.isfinite(line.seconds)]
-    if not found:
+    measures = [measure for measure in results.task.plotted if results.on_front(found, measure)]
+    if not measures:
         return False
-    measures = results.task.plotted
     with style.context(STYLE):
         figure = Figure(figsize=(PANEL_IN[0] * len(measures), PANEL_IN[1]), dpi=DPI, layout="constrained")
         canvas = FigureCanvasAgg(figure)
@@ -51,7 +52,9 @@ def draw_plot(path: Path, results: Results) -> bool:
         figure.set_layout_engine("none")
         for axes, measure in zip(panels, measures, strict=True):
             place_labels(
-                axes, [(each.method, *_point(each, measure)) for each in found], _front(results, found, measure)
+                axes,
+                [(each.method, *_point(results, each, measure)) for each in found],
+                _front(results, found, measure),
             )
         with atomic_write(path) as file:
             canvas.print_png(file)
@@ -64,7 +67,7 @@ def _panel(axes: Axes, results: Results, found: list[Line], measure: str) -> Non
     from ..report.style import INK
 
     for index, method in enumerate(sorted(line.method for line in found)):
-        x, y = _point(next(line for line in found if line.method == method), measure)
+        x, y = _point(results, next(line for line in found if line.method == method), measure)
         axes.plot(x, y, color=_colour(index), marker=MARKERS[index // 8 % 8], markersize=7, zorder=3, **EDGE)
     best = _front(results, found, measure)
     axes.step(*zip(*best, strict=True), where="post", color=INK, linewidth=1, linestyle=(0, (4, 2)), zorder=2)
@@ -73,17 +76,17 @@ def _panel(axes: Axes, results: Results, found: list[Line], measure: str) -> Non
     axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
     axes.xaxis.set_major_formatter("{x:g}")
     axes.xaxis.set_minor_formatter(NullFormatter())
-    axes.set(xlabel="time, ms", ylabel=results.task.measures[measure].title)
+    axes.set(xlabel=f"time, {results.task.clock.unit}", ylabel=results.task.measures[measure].title)
     axes.grid(color="#dddddd", linewidth=0.5)
     axes.set_axisbelow(True)
 
 
 def _front(results: Results, found: list[Line], measure: str) -> list[tuple[float, float]]:
-    return [_point(found[index], measure) for index in results.on_front(found, measure)]
+    return [_point(results, found[index], measure) for index in results.on_front(found, measure)]
 
 
-def _point(line: Line, measure: str) -> tuple[float, float]:
-    return 1e3 * line.seconds, line.measures.get(measure, math.nan)
+def _point(results: Results, line: Line, measure: str) -> tuple[float, float]:
+    return results.task.clock.per_second * line.seconds, line.measures.get(measure, math.nan)
 
 
 def _colour(index: int) -> str:

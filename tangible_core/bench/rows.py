@@ -32,7 +32,7 @@ class Row:
     baseline: str | None = None
     """Label of the method that times are compared with; no part of the key."""
     seconds: float | None = None
-    """Median of the timed calls; None after an error."""
+    """Median of the timed calls, of one piece of work where a call does several; None after an error."""
     first_seconds: float | None = None
     """The very first call: with imports, and compilation if there is any."""
     peak_memory_bytes: int | None = None

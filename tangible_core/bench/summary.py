@@ -3,7 +3,7 @@
 import math
 import statistics
 from collections import defaultdict
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass, field
 
 from .rows import Row
@@ -38,7 +38,7 @@ class Cell:
 
 @dataclass(frozen=True, eq=False)
 class Line:
-    """A method's figures over several scenes; NaN where one of them has none."""
+    """A method's figures over several scenes; NaN where it lacks what another method has."""
 
     method: str
     perturb: str
@@ -67,9 +67,17 @@ def cells(rows: Iterable[Row], baseline: str | None) -> dict[Key, Cell]:
 
 
 def lines(found: Mapping[Key, Cell], perturb: str, scenes: Sequence[str]) -> list[Line]:
-    """One line a method, over these scenes under one perturbation."""
+    """One line a method, over these scenes under one perturbation.
+
+    A scene on which no method has a measure, such as one without truth, does not count in its mean.
+    """
     methods = dict.fromkeys(cell.method for cell in found.values())
-    return [_line(method, perturb, [found.get((method, scene, perturb)) for scene in scenes]) for method in methods]
+    told = {
+        (cell.scene, name) for cell in found.values() for name, value in cell.measures.items() if not math.isnan(value)
+    }
+    return [
+        _line(method, perturb, [found.get((method, scene, perturb)) for scene in scenes], told) for method in methods
+    ]
 
 
 def median(values: Iterable[float]) -> float:
@@ -110,7 +118,7 @@ def _known(values: Iterable[float | None]) -> list[float]:
     return [value for value in values if value is not None]
 
 
-def _line(method: str, perturb: str, found: Sequence[Cell | None]) -> Line:
+def _line(method: str, perturb: str, found: Sequence[Cell | None], told: Set[tuple[str, str]]) -> Line:
     done = [cell for cell in found if cell is not None and cell.error is None and cell.seconds]
     whole = done if len(done) == len(found) else []
     names = dict.fromkeys(name for cell in whole for name in cell.measures)
@@ -122,7 +130,9 @@ def _line(method: str, perturb: str, found: Sequence[Cell | None]) -> Line:
         first_seconds=_mean(median(cell.first_seconds) for cell in whole),
         ratio=math.exp(_mean(math.log(ratio) for ratio in ratios)),
         memory_bytes=max((median(cell.memory_bytes) for cell in whole), default=NAN),
-        measures={name: _mean(cell.measures.get(name, NAN) for cell in whole) for name in names},
+        measures={
+            name: _mean(cell.measures.get(name, NAN) for cell in whole if (cell.scene, name) in told) for name in names
+        },
         done=len(done),
         scenes=len(found),
     )

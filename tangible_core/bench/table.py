@@ -92,14 +92,14 @@ def _damaged(perturb: str) -> str:
 
 
 def _figures(results: Results, found: Sequence[Line], title: str, measures: Sequence[str]) -> Table:
-    known = results.task.measures
+    known, clock = results.task.measures, results.task.clock
     best = results.on_front(found, results.judged)
     ratio = ("time / baseline",) if results.baseline else ()
     rows = [
         (
             line.method,
             FRONT if index in best else "",
-            _number(1e3 * line.seconds, 1),
+            _number(clock.per_second * line.seconds, 1),
             *((_number(line.ratio, 2),) if ratio else ()),
             _number(line.memory_bytes / 1e6, 1),
             *(_number(line.measures.get(name, math.nan), known[name].digits) for name in measures),
@@ -107,7 +107,7 @@ def _figures(results: Results, found: Sequence[Line], title: str, measures: Sequ
         for index, line in enumerate(found)
     ]
     measured = (known[name].title for name in measures)
-    return Table(title, ("method", FRONT, "ms", *ratio, "peak MB", *measured), tuple(rows))
+    return Table(title, ("method", FRONT, clock.unit, *ratio, "peak MB", *measured), tuple(rows))
 
 
 def _perturbed(results: Results) -> Table:

@@ -48,6 +48,17 @@ class Measure:
 
 
 @dataclass(frozen=True)
+class Clock:
+    """How times are told."""
+
+    unit: str = "ms"
+    """Column heading."""
+    per_second: float = 1e3
+    pieces: Callable[[Any], int] = lambda scene: 1
+    """(scene) -> how many pieces of work a call does on it: its time is that of one."""
+
+
+@dataclass(frozen=True)
 class Perturbation:
     """A controlled damage to a scene, the same for every method."""
 
@@ -66,7 +77,7 @@ class Task:
     """Raise it when a measure changes its meaning: rows of another version are measured again."""
     scene: type[SceneSpec]
     work: Callable[[Any, Any], Any]
-    """(method, scene) -> result: what is timed."""
+    """(what `prepare` gives, scene) -> result: what is timed."""
     measure: Callable[[Any, Any], Mapping[str, float]]
     """(result, scene) -> a value for each of `measures`, NaN where there is none. Raises: TangibleError."""
     measures: Mapping[str, Measure]
@@ -74,6 +85,10 @@ class Task:
     """Measures that the table shows, the first one being what methods are judged by."""
     plotted: tuple[str, ...]
     """Measures drawn against time, one panel each."""
+    prepare: Callable[[Any, Any], Any] = lambda method, scene: method
+    """(method, scene) -> what `work` takes, the method itself if not said; made anew for each call. Untimed, but it
+    counts for memory and for the very first call."""
+    clock: Clock = Clock()
     perturbations: Mapping[str, Perturbation] = field(default_factory=dict[str, Perturbation])
     given: Mapping[str, Callable[[Any], Any]] = field(default_factory=dict[str, Callable[[Any], Any]])
     """Options that a method may be told from what is known of a scene: name -> (scene) -> value."""
@@ -81,7 +96,7 @@ class Task:
     """Steps that a comparison may add to the results of chosen methods, untimed, under these keys of its file."""
 
 
-TASKS = {"depth": "depth", "texture": "texture"}
+TASKS = {"depth": "depth", "texture": "texture", "render": "render"}
 """Kinds that can be compared, and the module of this room whose `TASK` says how."""
 
 

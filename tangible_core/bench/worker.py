@@ -14,7 +14,7 @@ import threading
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from time import perf_counter
-from typing import Any
+from typing import Any, NamedTuple
 
 from ..data import Kind
 from ..registry import load_method
@@ -44,6 +44,7 @@ class Result:
     """Fields of a row, as far as the process knows them."""
 
     seconds: float
+    """Of one piece of work."""
     first_seconds: float
     peak_memory_bytes: int | None
     measures: dict[str, float | None]
@@ -55,16 +56,19 @@ def measure(job: Job) -> Result:
     task = load_task(job.kind)
     method = load_method(job.kind, job.use).model_validate(job.options)
     scene = _damaged(task, job)
-    warm = [_timed(task, method, scene)[0] for _ in range(job.warmups)]
+    warm = [_timed(task, method, scene).whole_s for _ in range(job.warmups)]
+    gc.collect()
+    gc.freeze()  # imports and compiled code are no garbage: each collection would look through them again
     growth = start_peak()
-    seconds, result = _timed(task, method, scene)
+    first = _timed(task, method, scene)
     peak = growth()
-    times = [seconds, *(_timed(task, method, scene)[0] for _ in range(job.calls - 1))]
+    times = [first.piece_s, *(_timed(task, method, scene).piece_s for _ in range(job.calls - 1))]
+    result = first.result
     for name in job.finishes:
         result = task.finishes[name](result)
     found = task.measure(result, scene)
     plain = {name: float(value) if math.isfinite(value) else None for name, value in found.items()}
-    return Result(statistics.median(times), (warm or times)[0], peak, plain)
+    return Result(statistics.median(times), [*warm, first.whole_s][0], peak, plain)
 
 
 def _damaged(task: Task, job: Job) -> Any:
@@ -72,11 +76,21 @@ def _damaged(task: Task, job: Job) -> Any:
     return task.perturbations[job.perturb].apply(scene, job.value) if job.perturb in task.perturbations else scene
 
 
-def _timed(task: Task, method: Any, scene: Any) -> tuple[float, Any]:
+class _Timed(NamedTuple):
+    piece_s: float
+    whole_s: float
+    """With what comes before the work."""
+    result: Any
+
+
+def _timed(task: Task, method: Any, scene: Any) -> _Timed:
     gc.collect()
     start = perf_counter()
-    result = task.work(method, scene)
-    return perf_counter() - start, result
+    prepared = task.prepare(method, scene)
+    ready = perf_counter()
+    result = task.work(prepared, scene)
+    end = perf_counter()
+    return _Timed((end - ready) / task.clock.pieces(scene), end - start, result)
 
 
 def main() -> None:

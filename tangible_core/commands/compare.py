@@ -102,7 +102,8 @@ def _document(results: Results, files: Sequence[Path], verdict: verdicts.Verdict
 def _print(results: Results, files: Sequence[Path], verdict: verdicts.Verdict | None, detail: bool) -> None:
     for table in tables(results, detail):
         _print_table(table)
-    show.say(f"{FRONT} nobody is faster and better; ms: median of the rounds; peak MB: on top of the pictures")
+    unit = results.task.clock.unit
+    show.say(f"{FRONT} nobody is faster and better; {unit}: median of the rounds; peak MB: on top of the scene")
     if results.baseline:
         show.say(f"time / baseline: against {results.baseline} in the same round, median; over scenes, geometric mean")
     if verdict is not None:

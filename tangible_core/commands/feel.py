@@ -1,47 +1,59 @@
-"""`feel`: a pipeline's surface on its device."""
+"""`feel`: a pipeline's surface on its device, in real time."""
 
 import sys
+import time
 from collections.abc import Sequence
-from dataclasses import asdict, replace
+from contextlib import nullcontext
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from .. import session
-from ..errors import ConfigError
+from .. import hooks, session
+from ..data import ServoReport
+from ..errors import DeviceError
+from ..servo import OVER, Servo
 from . import show
-from .run import about, felt, open_pipeline
+from .run import about, device_of, open_pipeline
 
 
 def feel(config: Path, sets: Sequence[str], seconds: float, record: Path | None, as_json: bool, cached: bool) -> None:
-    """Make the touch, open the device, feel, and say how it went."""
+    """Make the touch, start the force loop, feel, and say how it went."""
     pipeline = open_pipeline(config, sets, cached)
-    chosen, device = pipeline.config.device, pipeline.config.felt_device
-    if chosen is None or device is None:
-        raise ConfigError(f"{config}: `device:` is missing; add one, such as `device: {{use: mock}}`")
+    device = device_of(pipeline)
     if record is not None:
         session.check_record_path(record)
     touch = pipeline.make("touch")
-    if record is not None and record.suffix == ".nc":  # the one that grows while it is felt
-        with session.Writer(record, about(pipeline)) as writer:
-            recording = felt(pipeline, touch, device, seconds, writer)
-    else:
-        recording = felt(pipeline, touch, device, seconds)
-        if record is not None:
-            replace(recording, about=about(pipeline).stamped()).save(record)
-    figures: dict[str, Any] = {"device": chosen.name, "spec": asdict(device.spec()), **recording.figures()}
-    if as_json:
-        show.print_json(
-            {"outcomes": show.as_rows(pipeline.outcomes), "figures": figures, "file": record and str(record)}
+    loop: dict[str, Any] = {}
+
+    def started(servo: Servo) -> None:
+        loop.update(how=servo.how, start_s=servo.start_s, first_tick_unix_s=time.time())
+
+    def told(report: ServoReport) -> None:
+        hooks.tell(pipeline.registry.plugins, "tangible_servo_report", report=report)
+
+    with nullcontext() if record is None else session.keeping(record, about(pipeline)) as kept:
+        report = session.feel(
+            touch, device.method, seconds, pipeline.config.safety, told, kept.append if kept else _forget, started
         )
+        if kept:
+            kept.close("" if report.stopped == OVER else report.stopped)
+    figures = {"device": device.name, "spec": asdict(device.method.spec()), **session.figures(report)}
+    if as_json:
+        outcomes = show.as_rows(pipeline.outcomes)
+        show.print_json({"outcomes": outcomes, "loop": loop, "figures": figures, "file": record and str(record)})
     else:
         show.outcomes(pipeline.outcomes)
-        show.say("")
-        show.table(("figure", "value"), [(name, _text(value)) for name, value in recording.figures().items()])
-    if recording.stopped == session.INTERRUPTED:
+        show.say(f"\n{loop['how']}; the first tick came {loop['start_s']:.2f} s after the loop was asked for\n")
+        show.table(("figure", "value"), [(name, _text(value)) for name, value in session.figures(report).items()])
+    if report.stopped == session.INTERRUPTED:
         raise KeyboardInterrupt
-    if recording.stopped:
+    if report.stopped != OVER:
         sys.stdout.flush()
-        raise session.failure(recording)
+        raise DeviceError(f"stopped after {report.ticks} ticks: {report.stopped}")
+
+
+def _forget(rows: Any) -> None:
+    """Nobody records."""
 
 
 def _text(value: Any) -> str:

@@ -2,7 +2,7 @@
 
 import platform
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.metadata import version
 from importlib.resources import files
 from io import StringIO
@@ -13,9 +13,10 @@ from ruamel.yaml import YAML
 
 from .. import hooks, session
 from ..cache import Cache, write_record
-from ..config import parse_config
+from ..config import Chosen, parse_config
 from ..data import MaterialMap, Record, ServoReport
 from ..engine import Pipeline, load_pipeline
+from ..errors import ConfigError
 from ..files import write_text
 from ..interfaces import HapticDevice, Touch
 from ..registry import default_registry
@@ -78,6 +79,14 @@ def open_pipeline(config: Path, sets: Sequence[str], cached: bool) -> Pipeline:
     return pipeline
 
 
+def device_of(pipeline: Pipeline) -> Chosen[HapticDevice]:
+    """The device that the file names, seen through its mapping. Raises: ConfigError if it names none."""
+    device, felt = pipeline.config.device, pipeline.config.felt_device
+    if device is None or felt is None:
+        raise ConfigError(f"{pipeline.config.path}: `device:` is missing; add one, such as `device: {{use: mock}}`")
+    return replace(device, method=felt)
+
+
 def execute(pipeline: Pipeline, out: Path, seconds: float) -> Results:
     """Make what the configuration wants, and write the results and their report into a folder.
 
@@ -118,12 +127,14 @@ def _feel(pipeline: Pipeline, value: Any, seconds: float) -> Recording | None:
 def felt(
     pipeline: Pipeline, touch: Touch, device: HapticDevice, seconds: float, writer: session.Writer | None = None
 ) -> Recording:
-    """A session whose reports go to the observers, and its ticks to a writer."""
+    """A session whose reports go to the observers, and its ticks to a writer, made with `about`."""
+    said = about(pipeline).stamped()
 
     def report(report: ServoReport) -> None:
         hooks.tell(pipeline.registry.plugins, "tangible_servo_report", report=report)
 
-    return session.run(touch, device, seconds, report, writer)
+    recording = session.run(touch, device, seconds, report, writer)
+    return recording if writer else replace(recording, about=said)
 
 
 def about(pipeline: Pipeline) -> session.About:

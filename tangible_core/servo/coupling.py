@@ -13,22 +13,12 @@ from numba import float64, njit, types
 
 from .. import compiling as compiling
 from . import guard_layout as at
+from .vectors import nought, shortened
 
 READ, WRITTEN = types.Array(float64, 1, "C", readonly=True), types.Array(float64, 1, "C")
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def shortened(x, y, z, most):
-    """The vector in its direction, of at most this length, and whether it was over it; NaN where it is not finite."""
-    if x * x + y * y + z * z <= most * most:
-        return x, y, z, False
-    greatest = max(abs(x), abs(y), abs(z))  # divided by first, so that the length cannot overflow
-    x, y, z = x / greatest, y / greatest, z / greatest
-    scale = most / np.sqrt(x * x + y * y + z * z)
-    return scale * x, scale * y, scale * z, True
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
 def _led(settings, memory, elapsed_s, place, velocity):
     """The tool moved on by one period; False if that is not finite.
 
@@ -46,7 +36,7 @@ def _led(settings, memory, elapsed_s, place, velocity):
     dx, dy, dz = memory[at.TOOL] - place[0], memory[at.TOOL + 1] - place[1], memory[at.TOOL + 2] - place[2]
     dx, dy, dz, _ = shortened(dx, dy, dz, settings[at.MAX_FORCE_N] / stiffness)
     memory[at.TOOL], memory[at.TOOL + 1], memory[at.TOOL + 2] = place[0] + dx, place[1] + dy, place[2] + dz
-    return np.isfinite(dx + dy + dz + 0.0 * (memory[at.TOOL + 3] + memory[at.TOOL + 4] + memory[at.TOOL + 5]))
+    return nought(dx, dy, dz) + nought(memory[at.TOOL + 3], memory[at.TOOL + 4], memory[at.TOOL + 5]) == 0.0
 
 
 @njit(types.UniTuple(float64, 6)(READ, WRITTEN, *[float64] * 7), cache=True, nogil=True, error_model="numpy")
@@ -65,7 +55,7 @@ def couple(settings, memory, period_s, x, y, z, vx, vy, vz):
     return *tool, memory[at.TOOL + 3], memory[at.TOOL + 4], memory[at.TOOL + 5]
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
 def pull(settings, memory, x, y, z, vx, vy, vz, fx, fy, fz):
     """The tool's force on the device; the law's force on the tool is kept for the next `couple`."""
     memory[at.TOOL + 6], memory[at.TOOL + 7], memory[at.TOOL + 8] = fx, fy, fz
@@ -73,4 +63,4 @@ def pull(settings, memory, x, y, z, vx, vy, vz, fx, fy, fz):
     px = stiffness * (memory[at.TOOL] - x) + damping * (memory[at.TOOL + 3] - vx)
     py = stiffness * (memory[at.TOOL + 1] - y) + damping * (memory[at.TOOL + 4] - vy)
     pz = stiffness * (memory[at.TOOL + 2] - z) + damping * (memory[at.TOOL + 5] - vz)
-    return (px, py, pz) if 0.0 * px + 0.0 * py + 0.0 * pz == 0.0 else (0.0, 0.0, 0.0)
+    return (px, py, pz) if nought(px, py, pz) == 0.0 else (0.0, 0.0, 0.0)

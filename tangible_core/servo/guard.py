@@ -13,8 +13,10 @@ from numba import float64, int64, njit, types, void
 from .. import compiling as compiling
 from ..data import TickFlag
 from . import guard_layout as at
-from .coupling import READ, WRITTEN, pull, shortened
+from .coupling import READ, WRITTEN, pull
 from .coupling import couple as couple
+from .passivity import passive
+from .vectors import nought, shortened
 
 TOUCHING, FORCE_LIMITED, SLEW_LIMITED, STIFFNESS_LIMITED, RAMPING, NOT_FINITE, DAMPED, STALE = map(
     int, [*TickFlag][: at.FLAGS]
@@ -23,30 +25,25 @@ SHORTEST_S = 1e-5
 """A period below this counts as this."""
 REMEMBERED = 128
 """Ticks over which the period is averaged."""
-FASTEST_M_PER_S, SLOWEST_M_PER_S = 10.0, 1e-5
-"""No hand is faster: a greater step is a fault of the sensor, and no work. A slower one is the sensor's noise."""
 SOFTER_IN_S, HARDER_IN_S = 0.05, 1.0
 """How long the softening takes from none to all, and back: making a spring harder under the hand does work on it."""
+ENOUGH = 1.1
+"""Times the share that must be allowed before it rises."""
 
 NEWTONS_AND_FLAGS = types.Tuple((float64, float64, float64, int64))
-OPTIONS = {"cache": True, "nogil": True, "error_model": "numpy"}
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def _finite(a, b, c, d, e, f, g, h, i, j):
-    """Whether all are: 0 times infinity or NaN is NaN, and no sum of zeros overflows."""
-    return 0.0 * a + 0.0 * b + 0.0 * c + 0.0 * d + 0.0 * e + 0.0 * f + 0.0 * g + 0.0 * h + 0.0 * i + 0.0 * j == 0.0
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
 def _counted(memory, flags):
     """The flags, each counted."""
-    for bit in range(at.FLAGS):
-        memory[at.COUNTS + bit] += (flags >> bit) & 1
+    memory[at.COUNTS] += flags & TOUCHING
+    if flags > TOUCHING:
+        for bit in range(1, at.FLAGS):
+            memory[at.COUNTS + bit] += (flags >> bit) & 1
     return flags
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
 def _stopped(memory, flag):
     """Zero at once, and nothing remembered that a fault may have touched; the force fades in again."""
     for i in range(3 * (at.MOST_DELAY + 1)):
@@ -56,30 +53,33 @@ def _stopped(memory, flag):
     return 0.0, 0.0, 0.0, _counted(memory, flag)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
 def _anew(memory):
     memory[at.PLACE] = memory[at.TOOL] = np.nan
     memory[at.RAMP] = memory[at.ENERGY_J] = 0.0
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
 def _softness(settings, memory, elapsed_s):
     """Share of the law's force that makes its stiffness one which is held stably at the measured period.
 
     The period is E[T^2] / E[T]: what a spring gives away in one is K v^2 T^2 / 2, what damping takes b v^2 T. The share
-    moves slowly, so that no stiffness changes under the hand in one tick.
+    moves slowly, and not up for less than a tenth: no stiffness jumps under the hand, nor follows a restless clock.
     """
     memory[at.MEAN_S] += (elapsed_s - memory[at.MEAN_S]) / REMEMBERED
     memory[at.MEAN_S2] += (elapsed_s * elapsed_s - memory[at.MEAN_S2]) / REMEMBERED
     held = settings[at.STIFFNESS_TIMES_PERIOD] * memory[at.MEAN_S] / memory[at.MEAN_S2]
     held = min(held, settings[at.MAX_STIFFNESS])
     wanted = held / settings[at.STIFFNESS] if settings[at.STIFFNESS] > held else 1.0
-    softer, harder = memory[at.SOFTNESS] - elapsed_s / SOFTER_IN_S, memory[at.SOFTNESS] + elapsed_s / HARDER_IN_S
-    memory[at.SOFTNESS] = min(max(wanted, softer), harder)
+    share = memory[at.SOFTNESS]
+    if wanted < share:
+        memory[at.SOFTNESS] = max(wanted, share - elapsed_s / SOFTER_IN_S)
+    elif wanted >= 1.0 or wanted > ENOUGH * share:
+        memory[at.SOFTNESS] = min(wanted, share + elapsed_s / HARDER_IN_S)
     return memory[at.SOFTNESS]
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
 def _slewed(memory, step_n, fx, fy, fz):
     """From the last force towards this one by at most a step, and whether that is short of it."""
     wx, wy, wz = memory[at.FORCE], memory[at.FORCE + 1], memory[at.FORCE + 2]
@@ -87,31 +87,7 @@ def _slewed(memory, step_n, fx, fy, fz):
     return (wx + dx, wy + dy, wz + dz, True) if short else (fx, fy, fz, False)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def _observe(settings, memory, elapsed_s, x, y, z):
-    """The passivity observer: the force held over the way to here did F.dx on the hand, exactly."""
-    slot = at.HELD + 3 * int(memory[at.SLOT])
-    dx, dy, dz = x - memory[at.PLACE], y - memory[at.PLACE + 1], z - memory[at.PLACE + 2]
-    way = dx * dx + dy * dy + dz * dz
-    if way <= (FASTEST_M_PER_S * elapsed_s) ** 2:
-        work = memory[slot] * dx + memory[slot + 1] * dy + memory[slot + 2] * dz
-        memory[at.ENERGY_J] = max(
-            memory[at.ENERGY_J] - work + settings[at.CREDIT] * way / elapsed_s, -settings[at.MOST_DEBT_J]
-        )
-    memory[at.PLACE], memory[at.PLACE + 1], memory[at.PLACE + 2] = x, y, z
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def _brake(settings, memory, elapsed_s, vx, vy, vz, fx, fy, fz):
-    """The passivity controller's damping: alpha = -E / (T v^2) where E, with this tick foreseen, is below 0."""
-    v2 = vx * vx + vy * vy + vz * vz
-    if not SLOWEST_M_PER_S**2 < v2 < FASTEST_M_PER_S**2:
-        return 0.0
-    spent = (fx * vx + fy * vy + fz * vz - settings[at.CREDIT] * v2) * elapsed_s
-    return min(max(spent - memory[at.ENERGY_J], 0.0) / (elapsed_s * v2), settings[at.BRAKE])
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
 def _keep(settings, memory, fx, fy, fz):
     """This force is the last one, and on its way."""
     memory[at.FORCE], memory[at.FORCE + 1], memory[at.FORCE + 2] = fx, fy, fz
@@ -120,7 +96,7 @@ def _keep(settings, memory, fx, fy, fz):
     memory[at.SLOT] = 0.0 if memory[at.SLOT] >= settings[at.DELAY] else memory[at.SLOT] + 1.0
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
 def _safe(settings, memory, elapsed_s, touching, fx, fy, fz):
     """Soft enough to be held stably, and not over the maximum; with flags."""
     flags = 0
@@ -131,21 +107,7 @@ def _safe(settings, memory, elapsed_s, touching, fx, fy, fz):
     return fx, fy, fz, flags | FORCE_LIMITED if over else flags
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def _passive(settings, memory, elapsed_s, touching, x, y, z, vx, vy, vz, fx, fy, fz):
-    """Braked where the loop would give away more than it took in; with flags."""
-    _observe(settings, memory, elapsed_s, x, y, z)
-    if not touching and memory[at.FORCE] == 0.0 and memory[at.FORCE + 1] == 0.0 and memory[at.FORCE + 2] == 0.0:
-        memory[at.ENERGY_J] = min(memory[at.ENERGY_J], 0.0)
-        return fx, fy, fz, 0
-    brake = _brake(settings, memory, elapsed_s, vx, vy, vz, fx, fy, fz)
-    if brake <= 0.0:
-        return fx, fy, fz, 0
-    fx, fy, fz, _ = shortened(fx - brake * vx, fy - brake * vy, fz - brake * vz, settings[at.MAX_FORCE_N])
-    return fx, fy, fz, DAMPED
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
 def _gentle(settings, memory, elapsed_s, fx, fy, fz):
     """Faded in, and at most a step from the last force; with flags."""
     flags = 0
@@ -157,7 +119,7 @@ def _gentle(settings, memory, elapsed_s, fx, fy, fz):
     return fx, fy, fz, flags | SLEW_LIMITED if short else flags
 
 
-@njit(NEWTONS_AND_FLAGS(READ, WRITTEN, *[float64] * 10), **OPTIONS)
+@njit(NEWTONS_AND_FLAGS(READ, WRITTEN, *[float64] * 10), cache=True, nogil=True, error_model="numpy")
 def guard(settings, memory, period_s, x, y, z, vx, vy, vz, fx, fy, fz):
     """What may leave of the law's force at a fresh position of the device, and the flags of this tick.
 
@@ -166,7 +128,7 @@ def guard(settings, memory, period_s, x, y, z, vx, vy, vz, fx, fy, fz):
     """
     elapsed_s = memory[at.AGE_S] + period_s
     memory[at.AGE_S] = 0.0
-    if not _finite(elapsed_s, x, y, z, vx, vy, vz, fx, fy, fz):
+    if nought(x, y, z) + nought(vx, vy, vz) + nought(fx, fy, fz) + 0.0 * elapsed_s != 0.0:
         return _stopped(memory, NOT_FINITE)
     if elapsed_s > settings[at.STALE_S]:
         return _stopped(memory, STALE)
@@ -175,24 +137,24 @@ def guard(settings, memory, period_s, x, y, z, vx, vy, vz, fx, fy, fz):
     if settings[at.COUPLING] > 0.0:
         fx, fy, fz = pull(settings, memory, x, y, z, vx, vy, vz, fx, fy, fz)
     fx, fy, fz, soft = _safe(settings, memory, elapsed_s, touching, fx, fy, fz)
-    braked = 0
+    braked = False
     if settings[at.BRAKE] > 0.0:
-        fx, fy, fz, braked = _passive(settings, memory, elapsed_s, touching, x, y, z, vx, vy, vz, fx, fy, fz)
+        fx, fy, fz, braked = passive(settings, memory, elapsed_s, touching, x, y, z, vx, vy, vz, fx, fy, fz)
     fx, fy, fz, late = _gentle(settings, memory, elapsed_s, fx, fy, fz)
     _keep(settings, memory, fx, fy, fz)
-    return fx, fy, fz, _counted(memory, touching * TOUCHING | soft | braked | late)
+    return fx, fy, fz, _counted(memory, touching * TOUCHING | soft | braked * DAMPED | late)
 
 
-@njit(NEWTONS_AND_FLAGS(READ, WRITTEN, float64), **OPTIONS)
+@njit(NEWTONS_AND_FLAGS(READ, WRITTEN, float64), cache=True, nogil=True, error_model="numpy")
 def wait(settings, memory, period_s):
-    """A tick that found no fresh position: the last force, or zero from `stale_s` on."""
-    memory[at.AGE_S] += period_s
+    """A tick that found no fresh position: the last force, or zero from `stale_s` on or by a clock that is broken."""
+    memory[at.AGE_S] += period_s if period_s >= 0.0 else np.inf
     if not memory[at.AGE_S] <= settings[at.STALE_S]:
         return _stopped(memory, STALE)
     return memory[at.FORCE], memory[at.FORCE + 1], memory[at.FORCE + 2], 0
 
 
-@njit(void(WRITTEN), **OPTIONS)
+@njit(void(WRITTEN), cache=True, nogil=True, error_model="numpy")
 def restart(memory):
     """For the first tick on another scene, or after homing: the force fades in again, from what it is."""
     _anew(memory)

@@ -1,9 +1,5 @@
 """What a ring says of its loop."""
 
-import math
-from bisect import bisect_left
-from itertools import accumulate
-
 import numpy as np
 
 from ..data import TICK_COLUMNS, Force, HapticState, ServoReport, Spread
@@ -28,7 +24,7 @@ def report(ring: Ring, stopped: str = "") -> ServoReport:
         period_us=spread(ring.period, float(ring.sums[LONGEST_S])),
         late_us=spread(ring.late, float(ring.sums[MOST_LATE_S])),
         overruns=int(ring.header[OVERRUNS]),
-        limited={flag.name or "": count for flag, count in safety.counts(ring.guard).items()},
+        flagged={flag.name or "": count for flag, count in safety.counts(ring.guard).items()},
     )
 
 

@@ -1,7 +1,9 @@
 """A session joins a touch and a device: the loop, and what it records."""
 
+from .live import feel, figures, keeping
 from .loop import limited, run
-from .recording import INTERRUPTED, Recording, check_record_path, failure
+from .recording import INTERRUPTED, Recording, failure
+from .recording_files import check_record_path
 from .replay import replay, undisturbed
 from .tick_file import About
 from .writer import Writer
@@ -13,6 +15,9 @@ __all__ = [
     "Writer",
     "check_record_path",
     "failure",
+    "feel",
+    "figures",
+    "keeping",
     "limited",
     "replay",
     "run",

@@ -2,14 +2,18 @@
 
 import logging
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Generator
+from contextlib import contextmanager
+from pathlib import Path
 
 import numpy as np
 
-from ..data import ServoReport
+from ..data import ServoReport, TickFlag
 from ..interfaces import HapticDevice, Touch
 from ..servo import Safety, Servo
-from .recording import INTERRUPTED
+from .recording import INTERRUPTED, Recording
+from .tick_file import About
+from .writer import Writer
 
 log = logging.getLogger(__name__)
 LOOK_EVERY_S = 0.05
@@ -59,3 +63,43 @@ def _keep(servo: Servo, first: int, keep: Callable[[np.ndarray], None]) -> int:
     if len(rows):
         keep(rows)
     return following
+
+
+@contextmanager
+def keeping(path: Path, about: About) -> Generator[Writer]:
+    """A writer to a file of any of the recordings' suffixes.
+
+    What it appends is safe at once, in a .nc file; where another suffix was asked for, that file is made of it at the
+    end, and goes. Raises: OutputError as `Writer` and `Recording.save`.
+    """
+    growing = path if path.suffix == ".nc" else path.with_name(f"{path.name}.nc")
+    with Writer(growing, about) as writer:
+        yield writer
+    if growing != path:
+        Recording.load(growing).save(path)
+        growing.unlink()
+
+
+def figures(report: ServoReport) -> dict[str, float]:
+    """How the loop was, in numbers, by name."""
+    times = {"period": report.period_us, "late": report.late_us}
+    return {
+        "ticks": report.ticks,
+        "seconds": report.time_s,
+        "contact_share": report.flagged.get("TOUCHING", 0) / max(1, report.ticks),
+        "peak_force_n": report.peak_force_n,
+        "work_j": report.work_j,
+        **{
+            f"{name}_{quantile.replace('most', 'max')}_us": value
+            for name, spread in times.items()
+            if spread
+            for quantile, value in spread._asdict().items()
+        },
+        "overruns": report.overruns,
+        **{name.lower(): report.flagged.get(name, 0) for name in LIMITS},
+    }
+
+
+NO_LIMITS = TickFlag.TOUCHING | TickFlag.OVERRUN | TickFlag.SWAPPED
+LIMITS = [flag.name or "" for flag in TickFlag if not flag & NO_LIMITS]
+"""What safety does to a force, by the names of the flags."""

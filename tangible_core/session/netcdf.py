@@ -12,6 +12,7 @@ import numpy as np
 Attributes = Mapping[str, str | np.ndarray]
 COUNT_AT = 4
 """Where the number of records stands."""
+MOST_RECORDS = 2**31 - 1
 DIMENSION, VARIABLE, ATTRIBUTE = 10, 11, 12
 CHAR, TYPES = 2, {">i4": 4, ">f4": 5, ">f8": 6}
 

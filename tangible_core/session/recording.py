@@ -1,18 +1,17 @@
 """What was felt, tick by tick, and the files it is kept in."""
 
-import zlib
-from dataclasses import asdict, dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Self
-from zipfile import BadZipFile
+from typing import Self
 
 import numpy as np
 from jaxtyping import Float64, Int64
 
 from ..data import TICK_COLUMNS, Record, TickFlag
 from ..errors import DeviceError, OutputError
-from ..files import atomic_write
-from . import tick_file
+from . import recording_files
+from .recording_files import Kept
+from .tick_arrays import ARRAYS, joined
 from .tick_file import NOTHING_SAID, About
 
 Vectors = Float64[np.ndarray, "n 3"]
@@ -21,21 +20,6 @@ Bits = Int64[np.ndarray, "n"]
 
 INTERRUPTED = "interrupted from the keyboard"
 """What a recording says that Ctrl-C ended."""
-SUFFIXES = (".nc", ".npz", ".csv")
-ARRAYS: dict[str, int | slice] = {
-    "time_s": 0,
-    "late_s": 1,
-    "position_m": slice(2, 5),
-    "velocity_m_per_s": slice(5, 8),
-    "proxy_m": slice(8, 11),
-    "force_n": slice(11, 14),
-    "flags": 14,
-    "buttons": 15,
-}
-"""Where each property of a recording, and array of an .npz, stands in a row of `TICK_COLUMNS`."""
-NEEDED = ("time_s", "position_m", "velocity_m_per_s", "force_n")
-"""What each recording has; the rest may be unknown:"""
-UNKNOWN = {"late_s": 0.0, "proxy_x_m": np.nan, "proxy_y_m": np.nan, "proxy_z_m": np.nan, "flags": 0.0, "buttons": 0.0}
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,17 +41,11 @@ class Recording(Record):
 
     @classmethod
     def of(cls, stopped: str = "", about: About | None = None, **arrays: np.ndarray) -> Self:
-        """A recording of `ARRAYS` by name; those that are left out, but not `NEEDED`, were not known.
+        """A recording of `ARRAYS` by name; some may be left out, as not known.
 
-        Raises: OutputError if the arrays are not of one length, KeyError if a name is missing or unknown.
+        Raises: as `joined`.
         """
-        rows = _unknown(arrays["time_s"].size)
-        for name in (*NEEDED, *(arrays.keys() - NEEDED)):
-            part = rows[:, ARRAYS[name]]
-            if arrays[name].shape != part.shape:
-                raise OutputError(f"{name} is {arrays[name].shape}; with these times it is {part.shape}")
-            part[:] = arrays[name]
-        return cls(rows, stopped, about or NOTHING_SAID)
+        return cls(joined(arrays), stopped, about or NOTHING_SAID)
 
     @property
     def time_s(self) -> Times:
@@ -149,65 +127,18 @@ class Recording(Record):
 
         Raises: OutputError for another suffix, or if the place cannot be written.
         """
-        check_record_path(path)
-        with atomic_write(path) as file:
-            if path.suffix == ".nc":
-                file.write(tick_file.header(self.about, self.stopped, len(self.rows)))
-                file.write(tick_file.pack(self.rows))
-            elif path.suffix == ".npz":
-                arrays = {name: getattr(self, name) for name in ARRAYS}
-                np.savez_compressed(file, stopped=self.stopped, **arrays, **asdict(self.about))
-            else:
-                np.savetxt(file, self.rows, "%.17g", ",", header=",".join(TICK_COLUMNS), comments="")
+        recording_files.write(path, Kept(self.rows, self.stopped, self.about))
 
     @classmethod
     def load(cls, path: Path) -> Self:
-        """A recording from any of the `SUFFIXES`; one that was cut off says so in `stopped`.
+        """A recording that was saved, or written by a `Writer`; one that was cut off says so in `stopped`.
 
         It is all in memory then, half a gigabyte for an hour at 1 kHz.
         Raises: OutputError if it cannot be read or is none.
         """
-        try:
-            if path.suffix == ".nc":
-                return cls(*tick_file.read(path))
-            return cls.of(**_from_npz(path)) if path.suffix == ".npz" else cls(_from_csv(path))
-        except OSError as error:
-            raise OutputError(f"{path}: cannot be read: {error.strerror or error}") from error
-        except (ValueError, LookupError, TypeError, EOFError, BadZipFile, zlib.error, OutputError) as error:
-            raise OutputError(f"{path}: is no recording, or a damaged one ({error}); record it again") from error
-
-
-def check_record_path(path: Path) -> None:
-    """Raises: OutputError if a recording cannot have this name; ask before there is something to lose."""
-    if path.suffix not in SUFFIXES:
-        raise OutputError(f"{path}: a recording is written as .nc, .npz or .csv; change the end of the name")
+        return cls(*recording_files.read(path))
 
 
 def failure(recording: Recording) -> DeviceError:
     """What ended a recording early, as an error to raise once it is saved."""
     return DeviceError(f"stopped after {recording.time_s.size} ticks: {recording.stopped}")
-
-
-def _from_npz(path: Path) -> dict[str, Any]:
-    with path.open("rb") as file, np.load(file, allow_pickle=False) as archive:
-        values: dict[str, Any] = dict(archive)
-    about = About(**{each.name: str(values.get(each.name, "")) for each in fields(About)})
-    arrays = {name: values[name] for name in (*NEEDED, *(values.keys() & ARRAYS.keys()))}
-    return {**arrays, "stopped": str(values["stopped"]), "about": about}
-
-
-def _from_csv(path: Path) -> Float64[np.ndarray, "n columns"]:
-    header, *lines = path.read_text(encoding="utf-8").splitlines()
-    names = header.split(",")
-    if missing := [name for name in TICK_COLUMNS if name not in (*names, *UNKNOWN)]:
-        raise ValueError(f"its first line names no {', '.join(missing)}")
-    table = np.array([line.split(",") for line in lines], np.float64).reshape(-1, len(names))
-    rows = _unknown(len(table))
-    for name, values in zip(names, table.T, strict=True):
-        if name in TICK_COLUMNS:
-            rows[:, TICK_COLUMNS.index(name)] = values
-    return rows
-
-
-def _unknown(count: int) -> Float64[np.ndarray, "n columns"]:
-    return np.tile([UNKNOWN.get(name, 0.0) for name in TICK_COLUMNS], (count, 1))

@@ -10,7 +10,8 @@ import numpy as np
 from ..compiled import CompiledTouch
 from ..data import HapticState, TickFlag
 from ..interfaces import Touch
-from .recording import ARRAYS, Recording
+from .recording import Recording
+from .tick_arrays import ARRAYS
 
 NOWHERE = (math.nan, math.nan, math.nan)
 

@@ -42,13 +42,16 @@ class Writer:
     def append(self, rows: Float64[np.ndarray, "n columns"]) -> None:
         """Keep these ticks, rows of `TICK_COLUMNS`; all of them or, when that fails, none.
 
-        Raises: OutputError if they cannot be written, as on a full disk (the file is then closed, and says so), if the
-        writer is closed already, or if the rows are none.
+        Raises: OutputError if they cannot be written, as on a full disk (the file is then closed, and says so), or the
+        writer is closed already, or the rows are no such table.
         """
         if rows.ndim != 2 or rows.shape[1] != len(TICK_COLUMNS):
             raise OutputError(f"ticks are (n, {len(TICK_COLUMNS)}), a column each of TICK_COLUMNS, not {rows.shape}")
         if self.closed:
             raise OutputError(f"{self.path}: the recording is closed; start another one")
+        if self.ticks + len(rows) > netcdf.MOST_RECORDS:
+            self.close("the recording is full")
+            raise OutputError(f"{self.path}: is full, with {self.ticks} ticks; start another one")
         if len(rows):
             self._write(tick_file.pack(rows), self._ticks_at + self.ticks * tick_file.RECORD.itemsize)
             self._write(netcdf.integer(self.ticks + len(rows)), netcdf.COUNT_AT)

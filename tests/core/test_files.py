@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from tangible_core.errors import OutputError
-from tangible_core.files import atomic_write, write_text
+from tangible_core.files import atomic_write, open_alone, write_text
 
 
 class FullDisk:
@@ -123,3 +123,23 @@ def test_writers_at_one_time_leave_one_whole_file(tmp_path):
             each.result()
     assert path.read_text() in texts
     assert only(tmp_path) == ["c.txt"]
+
+
+def test_a_file_that_grows_is_held_by_one(tmp_path):
+    path = tmp_path / "a" / "b.bin"
+    write_text(path, "old")
+    with open_alone(path) as file:
+        assert path.read_bytes() == b""
+        file.write(b"new")
+        with pytest.raises(
+            OutputError, match=r"b\.bin: another program is writing to it; end that one or choose another"
+        ):
+            open_alone(path)
+        assert path.read_bytes() == b"new"
+    open_alone(path).close()
+    assert path.read_bytes() == b""
+
+
+def test_a_file_that_cannot_grow_there(tmp_path):
+    with pytest.raises(OutputError, match="cannot be written: Is a directory; choose another folder"):
+        open_alone(tmp_path)

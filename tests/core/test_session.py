@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from full_disk import files_up_to
 from tangible_core.data import NO_FORCE, DeviceSpec, Force, HapticState, HapticSurface, ServoReport, TickFlag
 from tangible_core.errors import ConfigError, DeviceError
 from tangible_core.interfaces import HapticDevice, Link, Touch
@@ -189,16 +190,12 @@ class TestWriting:
         assert (len(recording.rows), recording.stopped) == (1000, "")
 
     def test_a_full_disk_ends_the_recording_and_not_the_loop(self, tmp_path: Path, caplog: pytest.LogCaptureFixture):
-        with Writer(tmp_path / "stroke.nc") as writer:
-
-            def report(report: ServoReport) -> None:
-                if report.ticks > 450:
-                    writer.close("the recording ends early: the disk is full")
-
-            recording, link = feel(lambda _: PUSH, 1.0, on_report=report, writer=writer)
+        with Writer(tmp_path / "stroke.nc") as writer, files_up_to(50_000):
+            recording, link = feel(lambda _: PUSH, 1.0, writer=writer)
         assert len(link.forces) == 1001
         assert len(recording.rows) == pytest.approx(500, abs=2)
-        assert recording.stopped == "the recording ends early: the disk is full"
+        assert recording.stopped.startswith("the recording ends early: ")
+        assert caplog.text.count("what is felt now is not recorded") == 1
 
     def test_a_touch_at_fault_is_named_in_the_file(self, tmp_path: Path):
         with pytest.raises(ZeroDivisionError), Writer(tmp_path / "stroke.nc") as writer:

@@ -5,15 +5,17 @@ import subprocess
 import sys
 import textwrap
 import time
+from io import BytesIO, FileIO
 from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.io import netcdf_file
 
+from full_disk import files_up_to
 from tangible_core.data import TICK_COLUMNS
 from tangible_core.errors import OutputError
-from tangible_core.session import About, Recording, Writer
+from tangible_core.session import About, Recording, Writer, netcdf, writer
 
 ROWS = np.arange(16 * 50, dtype=float).reshape(50, 16)
 
@@ -129,40 +131,66 @@ def test_a_kill_at_any_moment_costs_nothing_that_was_appended(tmp_path: Path):
     moments = random.Random(0)
     for _ in range(4):
         program = start(code, path)
-        program.stdout.readline()
+        said = program.stdout.readline()
         time.sleep(moments.uniform(0, 0.05))
         program.kill()
-        said = program.communicate()[0].split("\n")[-2]
+        said += program.communicate()[0]
         recording = Recording.load(path)
-        assert len(recording.rows) - int(said or 0) in (0, 100)
+        assert len(recording.rows) - int(said.split()[-1]) in (0, 100)
         assert np.array_equal(recording.rows[:, 0], np.arange(len(recording.rows)))
         assert recording.stopped.startswith("cut off")
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="this system has no limit to the size of a file")
+def test_between_any_two_writes_and_within_each_the_file_is_whole(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    writes: list[tuple[int, bytes]] = []
+
+    class Noted(FileIO):
+        def write(self, data: bytes) -> int:
+            writes.append((self.tell(), bytes(data)))
+            return super().write(data)
+
+    monkeypatch.setattr(writer, "open_alone", lambda path: Noted(path, "w"))
+    with Writer(tmp_path / "stroke.nc") as written:
+        for end in (10, 11, 50):
+            written.append(ROWS[written.ticks : end])
+    assert len(writes) == 1 + 2 * 3 + 1
+    for count in range(1, len(writes)):
+        at, data = writes[count]
+        for part in (0, 1, len(data) // 2, len(data) - 1) if len(data) > 4 else (0,):  # 4 bytes go in one piece
+            after = BytesIO()
+            for place, piece in [*writes[:count], (at, data[:part])]:
+                after.seek(place)
+                after.write(piece)
+            (tmp_path / "cut.nc").write_bytes(after.getvalue())
+            cut = Recording.load(tmp_path / "cut.nc")
+            assert len(cut.rows) == (0, 0, 0, 10, 10, 11, 11, 50)[count]
+            assert np.array_equal(cut.rows, ROWS[: len(cut.rows)])
+
+
 def test_a_full_disk_keeps_what_was_written(tmp_path: Path):
     path = tmp_path / "stroke.nc"
-    code = """
-        import resource
-        resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))
-        writer = Writer(Path(sys.argv[1]))
-        try:
-            while True:
-                writer.append(np.full((100, 16), float(writer.ticks)))
-        except Exception as error:
-            print(type(error).__name__, error, writer.ticks, writer.closed)
-    """
-    said = start(code, path).communicate()[0]
+    writer = Writer(path)
+    with files_up_to(20_000), pytest.raises(OutputError, match=r"cannot be written: .*; it holds 150 ticks; free some"):
+        while True:
+            writer.append(ROWS)
+    assert writer.closed
     recording = Recording.load(path)
-    assert said.startswith(f"OutputError {path}: cannot be written: File too large; it holds 100 ticks")
-    assert len(recording.rows) == 100
-    assert recording.stopped == "the recording ends early: File too large"
+    assert np.array_equal(recording.rows, np.tile(ROWS, (3, 1)))
+    assert recording.stopped.startswith("the recording ends early: ")
+
+
+def test_a_file_that_is_full(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(netcdf, "MOST_RECORDS", 120)
+    path = tmp_path / "stroke.nc"
+    with Writer(path) as writer:
+        writer.append(ROWS)
+        writer.append(ROWS)
+        with pytest.raises(OutputError, match="is full, with 100 ticks; start another one"):
+            writer.append(ROWS)
+    assert (len(Recording.load(path).rows), Recording.load(path).stopped) == (100, "the recording is full")
 
 
 def test_no_room_for_the_first_byte(tmp_path: Path):
-    code = """
-        import resource
-        resource.setrlimit(resource.RLIMIT_FSIZE, (100, 100))
-        Writer(Path(sys.argv[1]))
-    """
-    assert "it holds 0 ticks" in start(code, tmp_path / "stroke.nc").communicate()[1].splitlines()[-1]
+    with files_up_to(100), pytest.raises(OutputError, match="it holds 0 ticks"):
+        Writer(tmp_path / "stroke.nc")
+    Writer(tmp_path / "stroke.nc").close()

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tangible_core.bench.identity import code_digest, machine, versions
-from tangible_core.bench.memory import start_peak
+from tangible_core.bench.memory import held_bytes, start_peak
 
 
 @pytest.fixture
@@ -54,3 +54,8 @@ def test_a_peak_is_seen_after_it_has_passed_and_an_earlier_one_is_not():
     peak = start_peak()
     np.ones(20_000_000, np.uint8)
     assert peak() == pytest.approx(20_000_000, rel=0.1)
+
+
+def test_bytes_that_are_held():
+    assert held_bytes(lambda: np.ones(10_000)) == pytest.approx(80_000, rel=0.01)
+    assert held_bytes(lambda: np.ones(10_000).sum()) < 1000

@@ -51,6 +51,15 @@ def test_means_over_scenes():
     assert math.isnan(base.memory_bytes)
 
 
+def test_a_scene_without_truth_does_not_count():
+    """No method has the measure on it: unlike one on which only this method lacks it."""
+    rows = [row(name, 0, 1.0, "a", measures={"bad2": value}) for name, value in (("m", 2.0), ("n", None))]
+    rows += [row(name, 0, 3.0, "b", measures={"bad2": None}) for name in "mn"]
+    m, n = lines(cells(rows, None), "none", ["a", "b"])
+    assert (m.seconds, m.measures["bad2"], m.done) == (2.0, 2.0, 2)
+    assert math.isnan(n.measures["bad2"])
+
+
 def test_a_method_that_lacks_a_scene_has_no_mean():
     rows = [row("m", 0, 1.0, "a", measures={"bad2": 2.0}), row("m", 0, None, "b", error="no")]
     (m,) = lines(cells(rows, None), "none", ["a", "b"])

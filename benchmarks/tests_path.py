@@ -1,0 +1,9 @@
+"""What the tests share, for benchmarks that measure what the tests check."""
+
+import sys
+from pathlib import Path
+
+sys.path.append(str(Path(__file__).parents[1] / "tests"))
+
+import falcon_bus as falcon_bus
+import falcon_streams as falcon_streams

@@ -1,0 +1,68 @@
+"""What no source is sure of about a Falcon, and each of them has to itself."""
+
+import math
+from typing import Annotated, Literal, Self
+
+import numpy as np
+from jaxtyping import Float64
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+from tangible_core.data import DeviceSpec
+
+Axis = Literal["x", "-x", "y", "-y", "z", "-z"]
+Angle = Annotated[float, Field(ge=-90, le=90)]
+Gain = Annotated[float, Field(ge=0.1, le=10)]
+CENTRE_M = 0.125
+"""Where along the device's axis the workspace's origin is: the middle of its reach."""
+LEVER_M = 0.0672
+"""Newton metres of the busiest motor for a newton in the least favourable direction, at the centre."""
+MOST_COUNTS, MOST_N = 4095, 8.0
+"""The greatest torque that is sent; the greatest force, as in CHAI3D's table of devices."""
+
+
+class Calibration(BaseModel):
+    """How counts become angles, newtons become counts, and the device's axes the workspace's."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+
+    encoder_offset_deg: tuple[Angle, Angle, Angle] = (35.0, 35.0, 35.0)
+    """Angles of the arms (top, right, left) where their encoders count 0; the source says: about 35."""
+    counts_per_newton_metre: Annotated[float, Field(ge=100, le=100_000)] = 10_000.0
+    """Motor counts for a torque of 1 N m. Uncertain by a factor of two: found by trying, while traces of the original
+    driver suggest 5000, with which forces are half as strong."""
+    motor_gain: tuple[Gain, Gain, Gain] = (1.0, 1.0, 1.0)
+    """Factor on each motor's torque (top, right, left), for motors that differ."""
+    axes: tuple[Axis, Axis, Axis] = ("x", "-z", "y")
+    """The device's axes along the workspace's x (right), y (away from the user) and z (up); the device's own are taken
+    to be x right, y up, z out to the user, which no source says in words."""
+
+    @model_validator(mode="after")
+    def _agrees(self) -> Self:
+        if {axis[-1] for axis in self.axes} != set("xyz"):
+            raise ValueError(f"axes {', '.join(self.axes)} name an axis twice; name x, y and z once each")
+        return self
+
+    def arms(self) -> Float64[np.ndarray, "3 2"]:
+        """Each arm's angle at 0 counts in radians, and its counts of torque a newton metre."""
+        counts = self.counts_per_newton_metre * np.array(self.motor_gain)
+        return np.column_stack([np.radians(self.encoder_offset_deg), counts])
+
+    def frame(self) -> Float64[np.ndarray, "3 4"]:
+        """workspace = frame[:, :3] @ device + frame[:, 3]."""
+        turn = np.array(
+            [[(axis[-1] == each) * (-1.0 if axis[0] == "-" else 1.0) for each in "xyz"] for axis in self.axes]
+        )
+        return np.column_stack([turn, -turn @ (0.0, 0.0, CENTRE_M)])
+
+    def spec(self, simulated: bool = False) -> DeviceSpec:
+        """A Falcon's limits, as in CHAI3D's table; its force is what the motors can give in every direction."""
+        greatest_n = MOST_COUNTS / (LEVER_M * self.counts_per_newton_metre * max(self.motor_gain))
+        return DeviceSpec(
+            max_force_n=min(MOST_N, math.floor(100 * greatest_n) / 100),
+            max_stiffness_n_per_m=3000.0,
+            damping_n_s_per_m=20.0,
+            workspace_m=(0.08, 0.08, 0.08),
+            resolution_m=6e-5,
+            buttons=4,
+            simulated=simulated,
+        )

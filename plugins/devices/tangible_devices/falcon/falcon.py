@@ -1,0 +1,58 @@
+"""The Novint Falcon over USB."""
+
+import time
+from pathlib import Path
+from typing import Annotated
+
+from pydantic import Field
+
+from tangible_core.data import DeviceSpec
+from tangible_core.interfaces import HapticDevice, Link
+
+from .calibration import Calibration
+from .image import read_image
+
+
+class Falcon(HapticDevice):
+    """A Novint Falcon on USB, driven from Python: firmware, homing, exact kinematics, forces that keep their sign.
+
+    Opening it takes as long as you need to home it: pull the grip all the way out and push it all the way in. Until
+    then, and whenever it loses its homing, it gives no force.
+    """
+
+    firmware: Path | None = None
+    """Firmware image, sent if the device has none since it was powered; yours to supply, such as nvent_firmware.bin."""
+    serial: str | None = None
+    """Serial number of the Falcon to open; null takes them by index."""
+    index: Annotated[int, Field(ge=0)] = 0
+    """Which of several Falcons, in the order of the bus, where no serial is given."""
+    calibration: Calibration = Calibration()
+    """What differs from device to device, or is uncertain."""
+    home_within_s: Annotated[float, Field(gt=0, le=3600)] = 120.0
+    """Time to home it in."""
+    leds: bool = True
+    """Red until it is homed, then green."""
+    velocity_samples: Annotated[int, Field(ge=2, le=64)] = 16
+    """Longest window over which a velocity is taken; while the tip moves fast it is shorter by itself."""
+    in_flight: Annotated[int, Field(ge=1, le=4)] = 2
+    """Packets on their way at once: 2 reach 1 kHz, as the USB chip holds an answer back for a millisecond; 1 waits for
+    each answer, for the shortest delay at a lower rate."""
+    event_character: bool = False
+    """Let the USB chip send an answer at once as it ends, instead of a millisecond later; not every chip may do so."""
+
+    def spec(self) -> DeviceSpec:
+        """A Falcon's limits, as in CHAI3D's table; the force that its motors can give in every direction."""
+        return self.calibration.spec()
+
+    def open(self) -> Link:
+        """Find it, load its firmware if it has none, and have it homed; blocks until that is done.
+
+        Raises: DeviceError if it is not there, not permitted, in use, has no firmware, or is not homed in time.
+        """
+        from .opening import open_falcon
+
+        return open_falcon(self, self.image(), None, time.perf_counter)
+
+    def image(self) -> bytes | None:
+        """The firmware, read and checked as a whole; None if no file is given. Raises: DeviceError."""
+        return None if self.firmware is None else read_image(self.firmware)

@@ -1,0 +1,127 @@
+"""Firmware into a Falcon: the boot loader echoes every byte, and every echo is compared. Imports pyusb by its port."""
+
+import logging
+from array import array
+from collections.abc import Callable
+
+import numpy as np
+
+from tangible_core.errors import DeviceError
+
+from . import port as ftdi
+from .framing import COUNTS, USB_PACKET, receive
+from .image import WHENCE
+from .packet import SIZE
+from .port import READ_BYTES, Port
+
+log = logging.getLogger(__name__)
+TRIES = 10
+"""Loads that fail the first time are usual."""
+GREETINGS, PROBES = 100, 10
+HELLO, READY, AUTOBAUD = b"\x0aC\x0d", b"\x0aD,\x0d", b"A"
+CHUNK = 62
+"""With the chip's 2 status bytes its echo fills a USB packet, which is then sent without waiting for the timer."""
+QUIET = 64
+"""Reads without a byte after which nothing more is expected; each lasts as long as the chip's latency timer."""
+NULL = b"<AAAAAAAAAAAAAA>"
+"""The packet of no torque, no light, no homing."""
+
+
+class LoadFailed(Exception):
+    """An attempt to load that may be repeated."""
+
+
+def running(opener: Callable[[], Port], image: bytes | None, event_character: bool = False) -> Port:
+    """A port to a Falcon whose firmware answers: loaded if need be, and again, on a port opened anew, if that fails.
+
+    Raises: DeviceError if there is no image to load, or no attempt succeeds, or USB fails.
+    """
+    place = failure = ""
+    for attempt in range(1, TRIES + 1):
+        port = opener()
+        try:
+            failure = _start(port, image, event_character)
+        except BaseException:
+            port.close()
+            raise
+        if not failure:
+            return port
+        port.close()
+        place = port.place
+        log.info("%s: attempt %d of %d to load its firmware failed: %s", place, attempt, TRIES, failure)
+    raise DeviceError(
+        f"{place}: its firmware cannot be loaded, {TRIES} attempts failed, the last because {failure}; "
+        "unplug its power supply, wait for ten seconds, and try again"
+    )
+
+
+def _start(port: Port, image: bytes | None, event_character: bool) -> str:
+    """Load the firmware unless it answers; why this failed, empty if it did not."""
+    ftdi.run_time(port, event_character)
+    if answers(port):
+        return ""
+    if image is None:
+        raise DeviceError(f"{port.place}: has no firmware since it was powered; give option firmware; {WHENCE}")
+    try:
+        load(port, image)
+    except LoadFailed as error:
+        return str(error)
+    ftdi.run_time(port, event_character)
+    return "" if answers(port) else "the firmware does not answer"
+
+
+def answers(port: Port) -> bool:
+    """Whether firmware is there: it answers a null packet."""
+    chunk = array("B", bytes(READ_BYTES))
+    begun, answer, counts = np.zeros(SIZE, np.uint8), np.zeros(SIZE, np.uint8), np.zeros(COUNTS, np.int64)
+    for _ in range(PROBES):
+        port.write(array("B", NULL))
+        for _ in range(QUIET // PROBES):
+            if receive(np.frombuffer(chunk, np.uint8), port.read(chunk), begun, counts, answer):
+                return True
+    return False
+
+
+def load(port: Port, image: bytes) -> None:
+    """One attempt. Raises: LoadFailed if the boot loader is not there or an echo differs, DeviceError if USB fails."""
+    _boot_mode(port)
+    _greet(port)
+    port.request(ftdi.MODEM, 0x0100)
+    port.request(ftdi.BAUD, ftdi.BAUD_142857)
+    _echoed(port, AUTOBAUD)
+    for at in range(0, len(image), CHUNK):
+        _echoed(port, image[at : at + CHUNK])
+
+
+def _boot_mode(port: Port) -> None:
+    port.purge()
+    for request, value in (
+        (ftdi.LATENCY, 16),
+        (ftdi.BAUD, ftdi.BAUD_9600),
+        (ftdi.LINE, 0x0008),
+        (ftdi.FLOW, 0),
+        (ftdi.MODEM, 0x0200),  # RTS low
+        (ftdi.MODEM, 0x0100),  # DTR low, then high: reset
+        (ftdi.MODEM, 0x0101),
+    ):
+        port.request(request, value)
+
+
+def _greet(port: Port) -> None:
+    heard = b""
+    for _ in range(GREETINGS):
+        port.write(array("B", HELLO))
+        heard = (heard + port.payload())[-USB_PACKET:]
+        if READY in heard:
+            return
+    raise LoadFailed("the boot loader does not answer")
+
+
+def _echoed(port: Port, sent: bytes) -> None:
+    port.write(array("B", sent))
+    heard, quiet = b"", 0
+    while len(heard) < len(sent) and quiet < QUIET:
+        more = port.payload()
+        heard, quiet = heard + more, 0 if more else quiet + 1
+    if heard != sent:
+        raise LoadFailed(f"{len(sent)} bytes came back as {len(heard)} others" if heard else "an echo did not come")

@@ -1,0 +1,61 @@
+"""Answers out of a stream of bytes that may lose some and gain others; compiled.
+
+Imports numba: a method imports this module inside its verb. numba's cache does not see a change made in another file:
+after an edit here, remove `__pycache__` beside the kernels that call it.
+"""
+
+# ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
+
+from numba import int64, njit, void
+
+from .packet import BYTES, COMPILED, SIZE, START, is_packet
+
+USB_PACKET, STATUS = 64, 2
+"""Bytes of a full-speed packet, and how many at its start are the FTDI chip's own."""
+
+FILL, ANSWERS, DROPPED, SEEN, FRESH = range(5)
+COUNTS = 5
+NEW, DOUBTFUL = 1, 2
+"""In `counts`: bytes of an answer begun; answers so far; bytes so far that belong to none, and those before the newest
+answer; whether that one was not read yet: 0, NEW, or DOUBTFUL if other bytes came before it or with it."""
+
+
+@njit(void(BYTES, int64[::1]), **COMPILED)
+def resume(begun, counts):
+    """Drop what comes before the next `<` after the first byte."""
+    start = 1
+    while start < SIZE and begun[start] != START:
+        start += 1
+    begun[: SIZE - start] = begun[start:].copy()
+    counts[FILL] = SIZE - start
+    counts[DROPPED] += start
+
+
+@njit(int64(BYTES, int64, BYTES, int64[::1], BYTES), **COMPILED)
+def receive(chunk, size, begun, counts, answer):
+    """Take in an IN transfer of so many bytes; how many whole answers it completed, the newest of which is in `answer`.
+
+    `begun` holds the bytes since the last `<` that may begin an answer. Where 16 of them are none, the search goes on
+    from the next `<` among them, so that a byte too few or too many costs its own answer and no other.
+    """
+    found = 0
+    for i in range(size):
+        if i % USB_PACKET < STATUS:
+            continue
+        begun[counts[FILL]] = chunk[i]
+        counts[FILL] += 1
+        if begun[0] != START:
+            counts[FILL] = 0
+            counts[DROPPED] += 1
+        elif counts[FILL] == SIZE:
+            if is_packet(begun, 0):
+                answer[:] = begun
+                found += 1
+                counts[FILL] = 0
+            else:
+                resume(begun, counts)
+    if found:
+        counts[ANSWERS] += found
+        counts[FRESH] = NEW if counts[DROPPED] == counts[SEEN] and not counts[FILL] else DOUBTFUL
+        counts[SEEN] = counts[DROPPED]
+    return found

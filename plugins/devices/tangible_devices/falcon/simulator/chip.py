@@ -1,0 +1,105 @@
+"""The FTDI chip of a simulated Falcon: rates, modem lines, the latency timer, and 2 status bytes in every packet."""
+
+import math
+from collections.abc import Callable
+from typing import final
+
+from .clock import Clock
+from .processor import Processor
+
+FRAME_S = 0.001
+STATUS = bytes([0x01, 0x60])
+PACKET_BYTES = 64
+PAYLOAD_BYTES = PACKET_BYTES - len(STATUS)
+Spoil = Callable[[int, bytes], bytes]
+
+
+class Stalled(Exception):
+    """A request that the chip does not know."""
+
+
+@final
+class Chip:
+    """Between USB and the processor.
+
+    To break it: `spoil(bytes_before, data)` changes what comes back, `delay(replies_before)` holds a reply back for so
+    many seconds, and payload_bytes makes all packets short.
+    """
+
+    def __init__(
+        self,
+        processor: Processor,
+        clock: Clock,
+        spoil: Spoil = lambda _, data: data,
+        delay: Callable[[int], float] = lambda _: 0.0,
+        payload_bytes: int = PAYLOAD_BYTES,
+    ) -> None:
+        self.processor = processor
+        self._clock = clock
+        self._spoil, self._delay = spoil, delay
+        self._payload_bytes = payload_bytes
+        self._divisor, self._latency_s, self._dtr, self._event = 0, 0.016, False, -1
+        self._line_free_s = 0.0
+        self._waiting: list[tuple[float, bytes]] = []
+        self._said = self._replies = 0
+
+    def control(self, request: int, value: int) -> None:
+        """A vendor request. Raises: Stalled if the chip has no such request."""
+        if request == 0:
+            if value != 2:  # purge what was received; 0 resets all
+                self._waiting.clear()
+        elif request == 1:
+            if value & 0x0100:
+                self._set_dtr(bool(value & 1))
+        elif request == 3:
+            self._divisor = value
+        elif request == 6:
+            self._event = value & 0xFF if value & 0x0100 else -1
+        elif request == 9:
+            self._latency_s = value / 1000
+        elif request not in (2, 4):
+            raise Stalled
+
+    def write(self, data: bytes) -> None:
+        """Bytes for the processor; its reply is ready after both ways on the wire, and the latency timer."""
+        now_s = self._clock()
+        rate = 3e6 / (self._divisor & 0x3FFF or 1)
+        heard_s = max(now_s, self._line_free_s) + 10 * len(data) / rate
+        self._line_free_s = heard_s
+        reply = self._spoil(self._said, self.processor.hear(data, self._divisor, self._dtr, now_s))
+        if not reply:
+            return
+        self._said += len(reply)
+        said_s = heard_s + 10 * len(reply) / rate
+        at_once = len(reply) % PAYLOAD_BYTES == 0 or reply[-1] == self._event
+        ready_s = said_s + (0.0 if at_once else self._latency_s) + self._delay(self._replies)
+        self._replies += 1
+        self._waiting.append((FRAME_S * math.ceil(ready_s / FRAME_S - 1e-9), reply))
+
+    def read(self, most: int) -> bytes:
+        """One IN transfer: what is ready, or gets so until the timer, in packets of 64 bytes; else the status alone."""
+        now_s = self._clock()
+        timer_s = self._latency_s * (math.floor(now_s / self._latency_s + 1e-9) + 1)
+        first_s = min((ready_s for ready_s, _ in self._waiting), default=timer_s)
+        self._clock.wait_until(min(first_s, timer_s))
+        payload = self._ready(most // PACKET_BYTES * self._payload_bytes)
+        parts = [payload[at : at + self._payload_bytes] for at in range(0, len(payload), self._payload_bytes)]
+        if self._payload_bytes < PAYLOAD_BYTES:  # a packet that is not full ends the transfer
+            self._waiting[:0] = [(0.0, part) for part in parts[1:]]
+            parts = parts[:1]
+        return b"".join(STATUS + part for part in parts) or STATUS
+
+    def _ready(self, most: int) -> bytes:
+        now_s = self._clock()
+        payload = b""
+        while self._waiting and self._waiting[0][0] <= now_s and len(payload) < most:
+            _, reply = self._waiting.pop(0)
+            payload, rest = payload + reply[: most - len(payload)], reply[most - len(payload) :]
+            if rest:
+                self._waiting.insert(0, (0.0, rest))
+        return payload
+
+    def _set_dtr(self, high: bool) -> None:
+        if high and not self._dtr:
+            self.processor.reset()
+        self._dtr = high

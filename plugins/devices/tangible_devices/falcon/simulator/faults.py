@@ -1,0 +1,32 @@
+"""What can go wrong with a USB device, on demand."""
+
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+Step = Literal["look", "open", "configure", "driver", "claim", "control", "write", "read"]
+ERRORS = {
+    "unplugged": 19,
+    "access-denied": 13,
+    "busy": 16,
+    "timeout": 110,
+    "stall": 32,
+    "overflow": 75,
+}
+"""The system's number of each error."""
+
+
+class Fault(BaseModel):
+    """One step of USB that fails. What is unplugged stays so until the bus is told that it is plugged in again."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+
+    at: Step = "read"
+    """Which step: look for devices, open one, ask for its configuration, detach the system's driver, claim the
+    interface, a request to the chip, a write, a read."""
+    error: Literal["unplugged", "access-denied", "busy", "timeout", "stall", "overflow"] = "unplugged"
+    """How it fails."""
+    after: Annotated[int, Field(ge=0)] = 0
+    """So many steps of this kind go well before."""
+    times: Annotated[int, Field(ge=1)] = 1
+    """How many in a row fail."""

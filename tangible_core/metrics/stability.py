@@ -1,0 +1,87 @@
+"""How stiff a spring can be before a handle on it starts to shake: a sampled mass and damper, simulated."""
+
+import math
+from collections import deque
+from collections.abc import Callable
+from typing import NamedTuple
+
+from ..data import Force, HapticState
+
+Law = Callable[[HapticState], Force]
+RANGE_N_PER_M = (1.0, 1e6)
+CLOSE = 1e-3
+"""A limit is found to this share of itself."""
+TICKS = 4000
+DEPTH_M, PUSHED_M = 1e-3, 1e-4
+"""How deep the handle rests, and how far it is out of its rest at the start."""
+
+
+class Handle(NamedTuple):
+    """A handle in a hand, as the servo feels it along z."""
+
+    mass_kg: float = 0.2
+    damping_n_s_per_m: float = 2.0
+    period_s: float = 0.001
+
+    def bound_n_per_m(self, delay_ticks: int) -> float:
+        """2 b / (T (1 + 2 d)): the stiffness below which a sampled wall stays stable.
+
+        Source: Colgate & Schenkel, Passivity of a class of sampled-data systems, J. Robotic Systems 14 (1997); with a
+        delay, Diolaiti et al., Stability of haptic rendering, IEEE Trans. Robotics 22 (2006).
+        """
+        return 2 * self.damping_n_s_per_m / (self.period_s * (1 + 2 * delay_ticks))
+
+
+HANDLE = Handle()
+
+
+def stiffness_limit(
+    law: Callable[[float], Law], height_m: float, delay_ticks: int = 0, handle: Handle = HANDLE
+) -> float:
+    """The stiffness up to which a handle comes to rest on level ground, in N/m, by bisection to 0.1 %.
+
+    law: stiffness in N/m -> forces on ground at height_m. A force acts from `delay_ticks` ticks after its position was
+    read, and is held for a period.
+    Returns: NaN for a law that does not push up in proportion to its stiffness, infinity for one that is stable at any.
+    """
+    low, high = RANGE_N_PER_M
+    if not _is_spring(law, height_m):
+        return math.nan
+    if _comes_to_rest(law(high), height_m, delay_ticks, handle):
+        return math.inf
+    while high > low * (1 + CLOSE):
+        middle = math.sqrt(low * high)
+        if _comes_to_rest(law(middle), height_m, delay_ticks, handle):
+            low = middle
+        else:
+            high = middle
+    return math.sqrt(low * high)
+
+
+def _is_spring(law: Callable[[float], Law], height_m: float) -> bool:
+    soft, hard = (law(stiffness)(HapticState((0.0, 0.0, height_m - DEPTH_M))).z for stiffness in (500.0, 1000.0))
+    return soft > 0 and math.isclose(hard, 2 * soft, rel_tol=0.01)
+
+
+def _comes_to_rest(law: Law, height_m: float, delay_ticks: int, handle: Handle) -> bool:
+    """Whether it swings less at the end than in the second quarter, pressed down by what holds it at DEPTH_M.
+
+    Between ticks m dv/dt = f - b v is solved exactly for a force f that is held.
+    """
+    mass_kg, damping, period_s = handle
+    decay = math.exp(-damping * period_s / mass_kg)
+    settling_s = (1 - decay) * mass_kg / damping
+    rest_m = height_m - DEPTH_M
+    push_n = law(HapticState((0.0, 0.0, rest_m))).z
+    waiting = deque([push_n] * delay_ticks)
+    z, v, swing = rest_m + PUSHED_M, 0.0, [0.0] * 4
+    for tick in range(TICKS):
+        waiting.append(law(HapticState((0.0, 0.0, z), (0.0, 0.0, v), tick * period_s)).z)
+        steady = (waiting.popleft() - push_n) / damping
+        z += steady * period_s + (v - steady) * settling_s
+        v = steady + (v - steady) * decay
+        off_m = abs(z - rest_m)
+        if off_m > DEPTH_M:
+            return False
+        swing[4 * tick // TICKS] = max(swing[4 * tick // TICKS], off_m)
+    return swing[3] < swing[1]

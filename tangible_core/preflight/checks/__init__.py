@@ -1,0 +1,30 @@
+"""Every check, a family a file: a function from what is known to verdicts."""
+
+from collections.abc import Callable, Iterable
+
+from ..flight import Flight
+from ..verdict import Verdict
+from .clipping import clipping, contact
+from .device import damping, friction
+from .features import features
+from .jitter import lateness, tick_cost
+from .slopes import cliffs, slope_stiffness
+from .stiffness import law_damping, law_stiffness, material_stiffness, quantisation
+from .textures import textures
+from .workspace import workspace
+
+Check = Callable[[Flight], Iterable[Verdict]]
+
+CHECKS: tuple[Check, ...] = (
+    *(damping, friction),
+    *(law_stiffness, material_stiffness, law_damping, quantisation),
+    *(slope_stiffness, cliffs),
+    *(clipping, contact),
+    *(textures, features, workspace),
+    *(lateness, tick_cost),
+)
+
+
+def judge(flight: Flight) -> list[Verdict]:
+    """What every check says, in their order."""
+    return [verdict for check in CHECKS for verdict in check(flight)]

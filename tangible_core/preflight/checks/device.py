@@ -1,0 +1,28 @@
+"""What is known of the device itself, and what is a guess."""
+
+from collections.abc import Iterator
+
+from ..flight import Flight
+from ..verdict import Verdict
+
+
+def damping(flight: Flight) -> Iterator[Verdict]:
+    """Whether the device's damping, on which the limit of stiffness rests, can be believed.
+
+    Makers' tables give the damping that a device can display: more than its greatest stiffness at 1 kHz implies.
+    """
+    stated, taken = flight.spec.damping_n_s_per_m, flight.damping_n_s_per_m
+    known = flight.spec.simulated or 0 < stated <= taken
+    note = "" if stated == taken else f"{stated:g} N s/m stated; its stiffness at 1 kHz implies no more than this"
+    cure = "" if known else "a guess: start at half the stiffness, and raise it for as long as nothing buzzes"
+    source = "simulated" if flight.spec.simulated else "the device's specification"
+    yield Verdict("device", "damping", "ok" if known else "warn", taken, "N s/m", source=source, note=note, cure=cure)
+
+
+def friction(flight: Flight) -> Iterator[Verdict]:
+    """Whether the handle's friction is known, which keeps the steps of its encoders from buzzing."""
+    found = flight.safety.friction_n
+    known = flight.spec.simulated or found is not None
+    cure = "" if known else "not known: measure the force at which the handle starts to move, `safety.friction_n: ...`"
+    source = "simulated" if flight.spec.simulated else "`safety.friction_n`" if known else ""
+    yield Verdict("device", "friction", "ok" if known else "warn", found or 0.0, "N", source=source, cure=cure)

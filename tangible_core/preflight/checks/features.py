@@ -1,0 +1,46 @@
+"""Features too small to feel: each width of the relief's against the lowest bump of that width that a hand feels."""
+
+from collections.abc import Iterator
+from itertools import pairwise
+
+from ..bumps import WIDTHS_M, feature_m, left_over, threshold_m
+from ..flight import Flight
+from ..verdict import Verdict, held, over
+
+SOURCE = "Louw, Kappers & Koenderink 2000 (bare hand)"
+NOTHING_M = 1e-7
+"""Rounding of heights stays under this."""
+OWN = 1.2
+"""What a relief shows at one width is its own where it is so much more than wider features leave there."""
+
+
+def features(flight: Flight) -> Iterator[Verdict]:
+    """The greatest feature of each width that the relief has, against a bump's threshold and the device's resolution.
+
+    What a wider feature leaves in a narrower band is no feature of that width.
+    """
+    relief, resolution_m = flight.surface.relief, flight.spec.resolution_m
+    low, high = 2 * max(relief.pitch_m), min(relief.extent_m) / 2
+    widths = [width for width in WIDTHS_M if low <= width <= high]
+    found = {width: feature_m(relief, width) for width in widths}
+    of_wider = {narrow: left_over(wide, narrow) * found[wide] for narrow, wide in pairwise(widths)}
+    own = [width for width in widths if found[width] > max(NOTHING_M, OWN * of_wider.get(width, 0.0))]
+    if not own:
+        yield _nothing(flight)
+    for width in own:
+        bound = max(threshold_m(width), resolution_m)
+        source = SOURCE if bound > resolution_m else "the device's resolution"
+        larger = over(flight.relief_m * bound / found[width])
+        yield held(
+            *("features", f"{1e3 * width:g} mm wide", found[width], ">=", bound, "m", source),
+            cure=f"`{flight.relief_key}: {larger}`, or leave them out: they only cost",
+        )
+
+
+def _nothing(flight: Flight) -> Verdict:
+    """Of a relief without a feature of any width that is looked at."""
+    height_m = float(flight.surface.height_m.max() - flight.surface.height_m.min())
+    cure = (
+        "nothing but its materials is to be felt: choose a scene with relief, or `workspace.width_m` for a larger one"
+    )
+    return Verdict("features", "the relief", "warn", height_m, "m", note="no feature 1 to 32 mm wide", cure=cure)

@@ -1,0 +1,85 @@
+"""Places too steep: where the law is stiffer than on level ground, and where the hand runs into a wall."""
+
+from collections.abc import Iterator
+
+import numpy as np
+from jaxtyping import Float32
+
+from ...data import Relief
+from ..flight import Flight
+from ..verdict import FEW, Verdict, held
+from .cures import flatten, round_off, soften
+
+MEASURED = 1.01
+"""A stiffness that was felt may be so much over what it is."""
+WALL = 1.0
+"""Above 45 degrees a hand must push harder sideways than it presses down: a slope is then a wall."""
+WALLS = 0.1
+"""Share of the surface up to which walls are its outlines."""
+
+Slopes = Float32[np.ndarray, "h w"]
+
+
+def slope_stiffness(flight: Flight) -> Iterator[Verdict]:
+    """Share of the surface where the law, felt along its own force, is stiffer than the device holds.
+
+    A penalty along the gradient grows by 1 + |g|^2 with the slope g; a proxy does not. No guard knows of it.
+    """
+    limit, _, source = flight.ceilings[0]
+    felt = np.array([flight.felt_n_per_m(each) for each in flight.probes.stiffness_n_per_m.tolist()])
+    share, most = float(np.mean(~(felt <= MEASURED * limit))), float(felt.max())
+    yield held(
+        *("slope", "too stiff", share, "<=", 0.0, "share", source),
+        worse="unsafe" if share > FEW else "warn",
+        note=f"over {limit:.4g} N/m; up to {most:.4g} N/m, the median {np.median(felt):.4g} N/m",
+        cure=_less_stiff(flight, limit, most),
+    )
+
+
+def _less_stiff(flight: Flight, limit: float, most: float) -> str:
+    level = flight.stiffness_n_per_m
+    if most <= 1.1 * level:
+        return soften(flight, limit)
+    others = "a law that slopes do not stiffen, `render.use: proxy`; or a coupling, `safety.coupling: auto`"
+    return others if flight.met or not level else f"{others}; or {soften(flight, level * limit / most)}"
+
+
+def cliffs(flight: Flight) -> Iterator[Verdict]:
+    """Shares of the surface that are walls, and that a stroke meets faster than a safe loop lets a force grow."""
+    steep = slopes(flight.surface.relief)
+    yield _gentle(flight, steep, "a wall", WALL, WALLS, "over 45 degrees a hand pushes harder sideways than down")
+    if flight.stiffness_n_per_m > 0:
+        per_tick_n = flight.stiffness_n_per_m * flight.hand.speed_m_per_s * flight.period_s
+        source = f"`safety.max_step_n`, {flight.max_step_n:.3g} N, at this speed"
+        yield _gentle(flight, steep, "too sudden", flight.max_step_n / per_tick_n, FEW, source)
+
+
+def _gentle(flight: Flight, steep: Slopes, of: str, bound: float, few: float, source: str) -> Verdict:
+    """Whether no more than a few places are steeper."""
+    share = float(np.mean(steep > bound))
+    return held(
+        *("slope", of, share, "<=", few, "share", source),
+        note=f"slope over {bound:.3g}; the steepest is {steep.max():.3g}",
+        cure="" if share <= few else _gentler(flight, steep, bound, few),
+    )
+
+
+def _gentler(flight: Flight, steep: Slopes, bound: float, few: float) -> str:
+    lower = flatten(flight, bound / float(np.quantile(steep, 1 - few, method="higher")))
+    rounder = round_off(flight, lambda relief: float(np.mean(slopes(relief) > bound)) <= few)
+    return f"{rounder}, or {lower}" if rounder else lower
+
+
+def slopes(relief: Relief) -> Slopes:
+    """Magnitude of the slope from each cell to the next, the greater one to either side; 0 for a single cell."""
+    across, along = relief.pitch_m
+    return np.hypot(_rise(relief.height_m.T).T / np.float32(across), _rise(relief.height_m) / np.float32(along))
+
+
+def _rise(heights: Slopes) -> Slopes:
+    """The greater step to the row before or after."""
+    rise = np.zeros_like(heights)
+    steps = np.abs(np.diff(heights, axis=0))
+    rise[1:] = steps
+    rise[:-1] = np.maximum(rise[:-1], steps)
+    return rise

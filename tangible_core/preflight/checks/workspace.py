@@ -1,0 +1,26 @@
+"""Whether the device reaches all of the surface."""
+
+from collections.abc import Iterator
+
+from ..flight import Flight
+from ..verdict import Verdict, held, under
+from .cures import flatten
+
+SOURCE = "the device's workspace"
+
+
+def workspace(flight: Flight) -> Iterator[Verdict]:
+    """Width, length and height of the surface against the device's reach along x, y and z."""
+    reach_x, reach_y, reach_z = flight.spec.workspace_m
+    width_m, length_m = flight.surface.extent_m
+    for of, size_m, reach_m in (("width", width_m, reach_x), ("length", length_m, reach_y)):
+        narrower = under(width_m * reach_m / size_m)
+        yield held(
+            *("workspace", of, size_m, "<=", reach_m, "m", SOURCE),
+            cure=f"`workspace.width_m: {narrower}`; or the borders cannot be reached",
+        )
+    height_m = float(flight.surface.height_m.max())
+    yield held(
+        *("workspace", "height", height_m, "<=", reach_z, "m", SOURCE),
+        cure=flatten(flight, reach_z / max(height_m, reach_z)),
+    )

@@ -1,0 +1,109 @@
+"""What this machine does right now: how late it wakes, and how long a tick takes."""
+
+import os
+import time
+from collections.abc import Generator
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float64
+
+from ..data import HapticState, Record
+from ..interfaces import Touch
+
+TICKS = 2000
+"""So many ticks are timed one by one, of a stroke over the surface."""
+PERCENTILES = {"p50": 50.0, "p99": 99.0, "p99.9": 99.9, "max": 100.0}
+"""What is reported of times."""
+
+
+@dataclass(frozen=True, eq=False)
+class Lateness(Record):
+    """How late each tick of a loop without work began."""
+
+    late_s: Float64[np.ndarray, " n"]
+    period_s: float
+    real_time: bool
+    """Whether the loop ran, and so may run, before all others (SCHED_FIFO)."""
+
+    @property
+    def overruns(self) -> float:
+        """Share of ticks that began more than a period late."""
+        return float(np.mean(self.late_s > self.period_s))
+
+    def at(self, percent: float) -> float:
+        """What this many per cent of the ticks do not exceed, seconds."""
+        return float(np.percentile(self.late_s, percent))
+
+
+@dataclass(frozen=True, eq=False)
+class TickCost(Record):
+    """How long a tick of the law takes."""
+
+    call_s: Float64[np.ndarray, " n"]
+    """Each, called from Python."""
+    kernel_s: float
+    """Of the law alone, the mean along a path."""
+
+    def at(self, percent: float) -> float:
+        """What this many per cent of the calls do not exceed, seconds."""
+        return float(np.percentile(self.call_s, percent))
+
+
+def measure_lateness(seconds: float, period_s: float) -> Lateness:
+    """Sleep to absolute deadlines for a while. A tick that is over a period late takes the next deadline to come.
+
+    SCHED_FIFO where that is permitted, for the while.
+    """
+    late_s = np.zeros(max(1, round(seconds / period_s)))
+    with _first_in_line() as real_time:
+        deadline = time.perf_counter()
+        for tick in range(late_s.size):
+            deadline += period_s
+            if (wait := deadline - time.perf_counter()) > 0:
+                time.sleep(wait)
+            late = time.perf_counter() - deadline
+            late_s[tick] = late
+            deadline += late // period_s * period_s
+    return Lateness(late_s, period_s, real_time)
+
+
+def measure_ticks(touch: Touch, way_m: Float64[np.ndarray, "n 3"], period_s: float) -> TickCost:
+    """Time the touch along a way, one position a tick, after a lap that nobody times."""
+    touch.path(way_m, period_s)
+    start = time.perf_counter()
+    touch.path(way_m, period_s)
+    kernel_s = (time.perf_counter() - start) / len(way_m)
+    velocity = np.gradient(way_m, period_s, axis=0) if len(way_m) > 1 else np.zeros_like(way_m)
+    states = [
+        HapticState((x, y, z), (vx, vy, vz))
+        for (x, y, z), (vx, vy, vz) in zip(way_m.tolist(), velocity.tolist(), strict=True)
+    ]
+    clock = np.empty(len(states) + 1, np.int64)
+    clock[0] = time.perf_counter_ns()
+    for tick, state in enumerate(states, 1):
+        touch.force(state)
+        clock[tick] = time.perf_counter_ns()
+    return TickCost(1e-9 * np.diff(clock), kernel_s)
+
+
+@contextmanager
+def _first_in_line() -> Generator[bool]:
+    """SCHED_FIFO for this block, where the system has it and permits it; whether it does."""
+    before = _take_fifo()
+    try:
+        yield before is not None
+    finally:
+        if before is not None:
+            os.sched_setscheduler(0, *before)
+
+
+def _take_fifo() -> "tuple[int, os.sched_param] | None":
+    """Ask for SCHED_FIFO; what there was before, or None if it is refused."""
+    try:
+        before = os.sched_getscheduler(0), os.sched_getparam(0)
+        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(1))
+    except (AttributeError, OSError):  # another system; not permitted
+        return None
+    return before

@@ -1,0 +1,87 @@
+"""Recordings on disk: .nc, .npz and .csv."""
+
+import zlib
+from dataclasses import asdict, fields
+from pathlib import Path
+from typing import Any, NamedTuple
+from zipfile import BadZipFile
+
+import numpy as np
+from jaxtyping import Float64
+
+from ..data import TICK_COLUMNS
+from ..errors import OutputError
+from ..files import atomic_write
+from . import tick_file
+from .tick_arrays import ARRAYS, UNKNOWN, joined, unknown
+from .tick_file import NOTHING_SAID, About
+
+SUFFIXES = (".nc", ".npz", ".csv")
+
+
+class Kept(NamedTuple):
+    """What a file holds: rows of `TICK_COLUMNS`, why the recording ended, and what it is of."""
+
+    rows: Float64[np.ndarray, "n columns"]
+    stopped: str = ""
+    about: About = NOTHING_SAID
+
+
+def check_record_path(path: Path) -> None:
+    """Raises: OutputError if a recording cannot have this name; ask before there is something to lose."""
+    if path.suffix not in SUFFIXES:
+        raise OutputError(f"{path}: a recording is written as .nc, .npz or .csv; change the end of the name")
+
+
+def write(path: Path, kept: Kept) -> None:
+    """Write it whole or not at all. Raises: OutputError for another suffix, or if the place cannot be written."""
+    check_record_path(path)
+    with atomic_write(path) as file:
+        if path.suffix == ".nc":
+            file.write(tick_file.header(kept.about, kept.stopped, len(kept.rows)))
+            file.write(tick_file.pack(kept.rows))
+        elif path.suffix == ".npz":
+            arrays = {name: kept.rows[:, at] for name, at in ARRAYS.items()}
+            bits = {name: arrays[name].astype(np.int64) for name in ("flags", "buttons")}
+            np.savez_compressed(file, stopped=kept.stopped, **arrays | bits, **asdict(kept.about))
+        else:
+            np.savetxt(file, kept.rows, "%.17g", ",", header=",".join(TICK_COLUMNS), comments="")
+
+
+def read(path: Path) -> Kept:
+    """Raises: OutputError if it cannot be read or is no recording."""
+    check_record_path(path)
+    try:
+        return READERS[path.suffix](path)
+    except OSError as error:
+        raise OutputError(f"{path}: cannot be read: {error.strerror or error}") from error
+    except (ValueError, LookupError, TypeError, EOFError, BadZipFile, zlib.error, OutputError) as error:
+        raise OutputError(f"{path}: is no recording, or a damaged one ({error}); record it again") from error
+
+
+def _from_nc(path: Path) -> Kept:
+    return Kept(*tick_file.read(path))
+
+
+def _from_npz(path: Path) -> Kept:
+    with path.open("rb") as file, np.load(file, allow_pickle=False) as archive:
+        values: dict[str, Any] = dict(archive)
+    about = About(**{each.name: str(values.get(each.name, "")) for each in fields(About)})
+    rows = joined({name: values[name] for name in ARRAYS if name in values})
+    return Kept(rows, str(values["stopped"]), about)
+
+
+def _from_csv(path: Path) -> Kept:
+    header, *lines = path.read_text(encoding="utf-8").splitlines()
+    names = header.split(",")
+    if missing := [name for name in TICK_COLUMNS if name not in (*names, *UNKNOWN)]:
+        raise ValueError(f"its first line names no {', '.join(missing)}")
+    table = np.array([line.split(",") for line in lines], np.float64).reshape(-1, len(names))
+    rows = unknown(len(table))
+    for name, values in zip(names, table.T, strict=True):
+        if name in TICK_COLUMNS:
+            rows[:, TICK_COLUMNS.index(name)] = values
+    return Kept(rows)
+
+
+READERS = {".nc": _from_nc, ".npz": _from_npz, ".csv": _from_csv}

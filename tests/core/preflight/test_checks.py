@@ -1,0 +1,374 @@
+"""Every check on a flight whose verdict is known, and its cure taken at its word."""
+
+import math
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from flights import fly, half_slope, level, material, of, shape
+from tangible_core import HapticSurface
+from tangible_core.data import Relief
+from tangible_core.geometry import smooth
+from tangible_core.preflight import CHECKS, judge
+from tangible_core.preflight.bumps import threshold_m
+from tangible_core.preflight.checks.clipping import clipping, contact
+from tangible_core.preflight.checks.device import damping, friction
+from tangible_core.preflight.checks.features import features
+from tangible_core.preflight.checks.jitter import lateness, tick_cost
+from tangible_core.preflight.checks.slopes import cliffs, slope_stiffness, slopes
+from tangible_core.preflight.checks.stiffness import law_damping, law_stiffness, material_stiffness, quantisation
+from tangible_core.preflight.checks.textures import textures
+from tangible_core.preflight.checks.workspace import workspace
+from tangible_core.preflight.timing import Lateness, TickCost
+from tangible_core.preflight.verdict import Verdict
+from tangible_core.servo.safety import Safety
+
+
+def grades(verdicts: Any) -> list[str]:
+    return [each.verdict for each in verdicts]
+
+
+def advised(verdict: Verdict, key: str) -> float:
+    """The number that the cure says to write for a key."""
+    return float(re.search(rf"{re.escape(key)}: ([\d.e-]+)", verdict.cure)[1])
+
+
+def with_materials(*materials: Any) -> HapticSurface:
+    """Level ground in as many stripes."""
+    labels = (np.arange(32) * len(materials) // 32).astype(np.int32)
+    return level(labels=np.tile(labels, (32, 1)), materials=materials)
+
+
+class TestTextures:
+    @pytest.mark.parametrize(
+        ("grain_m", "verdict", "said"),
+        [
+            (1.2e-3, "ok", "10 samples"),
+            (6e-4, "ok", "5 samples"),
+            (5.9e-4, "warn", "4.92 samples a wave"),
+            (2.4e-4, "warn", "2 samples a wave: none"),
+        ],
+    )
+    def test_a_grain_at_012_m_per_s_and_1_khz(self, grain_m: float, verdict: str, said: str):
+        rough = material("rough", texture="stochastic", roughness_m=1e-4, grain_m=grain_m)
+        found = of(textures(fly(with_materials(rough))), "rough")
+        assert (found.verdict, said in found.note) == (verdict, True)
+
+    def test_its_cures(self):
+        rough = material("rough", texture="stochastic", roughness_m=1e-4, grain_m=4e-4)
+        found = of(textures(fly(with_materials(rough))), "rough")
+        better = material("rough", texture="stochastic", roughness_m=1e-4, grain_m=advised(found, "grain_m"))
+        assert of(textures(fly(with_materials(better))), "rough").verdict == "ok"
+        assert "slower than 0.08 m/s" in found.cure
+        assert of(textures(fly(with_materials(rough), speed_m_per_s=0.08)), "rough").verdict == "ok"
+
+    def test_a_coarse_device_samples_no_finer(self):
+        rough = material("rough", texture="stochastic", roughness_m=1e-4, grain_m=1e-3)
+        found = of(textures(fly(with_materials(rough), resolution_m=3e-4)), "rough")
+        assert (found.verdict, found.bound) == ("warn", pytest.approx(1.5e-3))
+
+    def test_only_what_is_met_and_has_a_grain(self):
+        slipping = material("slipping", texture="stick-slip", static_friction=0.5, dynamic_friction=0.4, grain_m=1e-4)
+        labels = np.where(np.arange(32) < 16, 0, 2).astype(np.int32)
+        others = material("smooth"), material("elsewhere", texture="stochastic", roughness_m=1e-4), slipping
+        surface = level(labels=np.tile(labels, (32, 1)), materials=others)
+        assert [each.of for each in textures(fly(surface))] == ["shortest wave", "slipping"]
+
+    def test_no_materials(self):
+        [only] = textures(fly(level(), speed_m_per_s=0.1, period_s=0.002))
+        assert (only.verdict, only.value) == ("ok", pytest.approx(4e-4))
+
+
+class TestStiffness:
+    """The device holds 4000 N/m by its damping, of which the guard leaves 3200; and 10,000 N/m by its own word."""
+
+    @pytest.mark.parametrize(("stiffness", "verdict"), [(3200, "ok"), (3201, "warn"), (4000, "warn"), (4001, "unsafe")])
+    def test_what_damping_allows(self, stiffness: float, verdict: str):
+        found, _ = law_stiffness(fly(level(), stiffness_n_per_m=stiffness))
+        assert (found.verdict, found.bound) == (verdict, 3200)
+
+    @pytest.mark.parametrize(
+        ("changes", "limit"),
+        [
+            ({"period_s": 0.002}, 2000),
+            ({"safety": Safety(delay_ticks=1)}, 4000 / 3),
+            ({"device": {"damping_n_s_per_m": 0.5}}, 1000),
+            ({"max_stiffness_n_per_m": 1000.0}, 1000),
+            ({"max_stiffness_n_per_m": 1000.0, "period_s": 0.004}, 250),
+            ({"safety": Safety(friction_n=0.02), "resolution_m": 2e-5}, 2000),
+        ],
+    )
+    def test_the_lowest_limit(self, changes: dict[str, Any], limit: float):
+        flight = fly(level(), **changes)
+        assert flight.ceilings[0].limit_n_per_m == pytest.approx(limit)
+
+    def test_the_cure_cures(self):
+        flight = fly(level(), stiffness_n_per_m=20_000.0)
+        verdicts = list(law_stiffness(flight))
+        assert grades(verdicts) == ["unsafe", "unsafe"]
+        for verdict in verdicts:
+            softer = fly(level(), stiffness_n_per_m=advised(verdict, "render.stiffness_n_per_m"))
+            assert next(each for each in law_stiffness(softer) if each.source == verdict.source).verdict == "ok"
+
+    def test_a_coupling_is_all_that_the_device_feels(self):
+        flight = fly(level(), stiffness_n_per_m=20_000.0, safety=Safety(coupling="auto"))
+        assert grades(law_stiffness(flight)) == ["ok", "ok"]
+        assert flight.felt_n_per_m(1600.0) == pytest.approx(800)
+
+    def test_a_material_is_blamed_by_name_and_cured_in_the_library(self):
+        surface = with_materials(material("soft"), material("hard", stiffness_n_per_m=5000.0))
+        flight = fly(surface)
+        [law, *_] = law_stiffness(flight)
+        assert "`hard: {stiffness_n_per_m: 3200}`" in law.cure
+        assert "soft" not in law.cure
+        verdicts = list(material_stiffness(flight))
+        assert [(each.of, each.verdict) for each in verdicts] == [("soft", "ok"), ("hard", "unsafe")]
+        assert advised(verdicts[1], "stiffness_n_per_m") == 3200
+
+    def test_a_texture_is_clean_up_to_900_n_per_m(self):
+        rough = {"texture": "stochastic", "roughness_m": 1e-4}
+        pair = material("clean", **rough, stiffness_n_per_m=900.0), material("buzzes", **rough, stiffness_n_per_m=950.0)
+        clean, buzzes = material_stiffness(fly(with_materials(*pair)))
+        assert (clean.verdict, buzzes.verdict) == ("ok", "warn")
+        assert advised(buzzes, "stiffness_n_per_m") == 900
+
+    def test_a_rough_material_may_be_too_stiff_for_the_device_as_well(self):
+        rough = material(texture="stochastic", roughness_m=1e-4, stiffness_n_per_m=5000.0)
+        [found] = material_stiffness(fly(with_materials(rough)))
+        assert found.verdict == "unsafe"
+
+    @pytest.mark.parametrize(("own", "verdict"), [(1.0, "ok"), (1.01, "warn")])
+    def test_damping_beside_stiffness(self, own: float, verdict: str):
+        """b > K T / 2 + B, with b 2 N s/m and K 2000 N/m."""
+        flight = fly(level(), "penalty-gradient", stiffness_n_per_m=2000.0)
+        object.__setattr__(flight.probes, "damping_n_s_per_m", np.full(4, own))
+        [found] = law_damping(flight)
+        assert (found.verdict, found.bound) == (verdict, pytest.approx(1.0))
+
+    def test_a_step_of_the_encoder_that_is_felt(self):
+        [fine] = quantisation(fly(level(), stiffness_n_per_m=800.0, press_n=1.0, resolution_m=8.75e-5))
+        [coarse] = quantisation(fly(level(), stiffness_n_per_m=800.0, press_n=1.0, resolution_m=9e-5))
+        assert (fine.verdict, coarse.verdict) == ("ok", "warn")
+        softer = advised(coarse, "render.stiffness_n_per_m")
+        assert grades(quantisation(fly(level(), stiffness_n_per_m=softer, press_n=1.0, resolution_m=9e-5))) == ["ok"]
+
+    def test_nothing_is_known_of_a_device_without_damping_but_its_own_word(self):
+        flight = fly(level(), device={"damping_n_s_per_m": 0.0}, max_stiffness_n_per_m=1000.0)
+        assert flight.ceilings[0].limit_n_per_m == 1000
+
+
+class TestDevice:
+    @pytest.mark.parametrize(
+        ("stated", "simulated", "verdict", "taken"),
+        [(1.0, False, "ok", 1.0), (20.0, False, "warn", 1.5), (0.0, False, "warn", 1.5), (20.0, True, "ok", 1.5)],
+    )
+    def test_damping_that_can_be_believed(self, stated: float, simulated: bool, verdict: str, taken: float):
+        device = {"damping_n_s_per_m": stated, "simulated": simulated, "max_stiffness_n_per_m": 3000.0}
+        [found] = damping(fly(level(), device=device))
+        assert (found.verdict, found.value) == (verdict, taken)
+
+    def test_friction(self):
+        assert grades(friction(fly(level()))) == ["warn"]
+        assert grades(friction(fly(level(), simulated=True))) == ["ok"]
+        assert grades(friction(fly(level(), safety=Safety(friction_n=0.3)))) == ["ok"]
+
+
+class TestSlopes:
+    def test_half_of_the_surface_is_too_stiff(self):
+        """Along the gradient, slope 2 makes 5000 N/m of 1000, over the limit of 4000; at the bend it is 2000."""
+        [found] = slope_stiffness(fly(half_slope(2.0, cells=64), "penalty-gradient", stiffness_n_per_m=1000.0))
+        assert (found.verdict, found.value) == ("unsafe", pytest.approx(0.5, abs=1 / 64))
+        assert "up to 5000 N/m" in found.note
+        softer = advised(found, "render.stiffness_n_per_m")
+        assert softer == 790
+        again = fly(half_slope(2.0, cells=64), "penalty-gradient", stiffness_n_per_m=softer)
+        assert grades(slope_stiffness(again)) == ["ok"]
+
+    @pytest.mark.parametrize("cure", [{"law": "proxy"}, {"law": "penalty-gradient", "safety": Safety(coupling="auto")}])
+    def test_its_other_cures(self, cure: dict[str, Any]):
+        assert grades(slope_stiffness(fly(half_slope(2.0, cells=64), stiffness_n_per_m=1000.0, **cure))) == ["ok"]
+
+    def test_a_few_places_are_a_warning(self):
+        surface = shape(lambda x, y: np.where((abs(x) < 2e-3) & (abs(y) < 2e-3), 0.005, 0.0), 64)
+        [found] = slope_stiffness(fly(surface, "penalty-gradient", stiffness_n_per_m=1000.0))
+        assert found.verdict == "warn"
+        assert 0 < found.value <= 0.01
+
+    @pytest.mark.parametrize(("slope", "verdict"), [(0.99, "ok"), (1.01, "warn")])
+    def test_walls(self, slope: float, verdict: str):
+        found = of(cliffs(fly(half_slope(slope))), "a wall")
+        assert found.verdict == verdict
+        assert found.value == pytest.approx(0.5 if verdict == "warn" else 0, abs=0.02)
+
+    def test_too_sudden(self):
+        """1000 N/m at 0.25 m/s and 1 kHz meet slope 2 with 0.5 N a tick."""
+        stroke = {"stiffness_n_per_m": 1000.0, "speed_m_per_s": 0.25}
+        assert of(cliffs(fly(half_slope(1.99), **stroke)), "too sudden").verdict == "ok"
+        assert of(cliffs(fly(half_slope(2.01), **stroke)), "too sudden").verdict == "warn"
+        assert [each.of for each in cliffs(fly(half_slope(2.01), "grey-level"))] == ["a wall"]
+
+    def test_both_cures_of_a_wall_cure(self):
+        surface = shape(lambda x, y: 0.01 * np.sin(2 * np.pi * x / 0.02), 256)
+        found = of(cliffs(fly(surface)), "a wall")
+        lower = advised(found, "workspace.relief_m") / 0.02
+        assert np.mean(slopes(HapticSurface.from_heights(lower * surface.height_m).relief) > 1) <= 0.1
+        rounder = smooth(surface.relief, advised(found, "workspace.smooth_m"))
+        assert np.mean(slopes(rounder) > 1) <= 0.1
+        assert "smooth_m" not in of(cliffs(fly(surface, smoothed=False)), "a wall").cure
+
+    def test_the_greater_slope_to_either_side(self):
+        step = HapticSurface.from_heights(np.array([[0, 0, 0.01, 0.01]], np.float32), 0.04)
+        np.testing.assert_allclose(slopes(step.relief), [[0, 1, 1, 0]], rtol=1e-6)
+        assert slopes(Relief(np.zeros((1, 1), np.float32), (0.1, 0.1))).tolist() == [[0]]
+
+
+class TestClipping:
+    def test_half_of_the_surface_asks_for_too_much(self):
+        """A press of 3 N on slope 3 is answered with 9.5 N; at the bend, slope 1.5, with 5.4 N."""
+        surface = half_slope(3.0, cells=64)
+        flight = fly(surface, "penalty-gradient", relief_m=0.12)
+        [found] = clipping(flight)
+        assert (found.verdict, found.value) == ("warn", pytest.approx(0.5, abs=1 / 64))
+        lower = advised(found, "workspace.relief_m") / 0.12
+        assert 3 * math.hypot(1, 3 * lower) == pytest.approx(8, rel=0.05)
+        gentler = HapticSurface.from_heights(lower * surface.height_m)
+        assert grades(clipping(fly(gentler, "penalty-gradient"))) == ["ok"]
+
+    @pytest.mark.parametrize(("press_n", "verdict", "share"), [(4.0, "ok", 0), (4.01, "warn", 1)])
+    def test_a_press_that_the_device_cannot_answer_anywhere(self, press_n: float, verdict: str, share: float):
+        [found] = clipping(fly(level(), press_n=press_n, safety=Safety(max_force_n=4.001)))
+        assert (found.verdict, found.value) == (verdict, share)
+        if verdict == "warn":
+            assert "no more than 4 N" in found.cure
+            assert "relief_m" not in found.cure
+
+    def test_a_force_that_is_there_at_once(self):
+        [spring] = contact(fly(level(), "proxy"))
+        [step] = contact(fly(level(), "grey-level", force_at_white_n=2.0))
+        assert (spring.verdict, step.verdict, step.value) == ("ok", "warn", pytest.approx(2))
+        softer = advised(step, "render.force_at_white_n")
+        assert grades(contact(fly(level(), "grey-level", force_at_white_n=softer))) == ["ok"]
+
+
+class TestFeatures:
+    WAVE_M = 5.17 * 3.2e-3
+    """Of which a band 3.2 mm wide passes 1.74 amplitudes."""
+
+    def wave(self, felt: float, **changes: Any) -> Any:
+        """A flight over a sine that is so many times what is felt 3.2 mm wide."""
+        amplitude_m = felt * threshold_m(3.2e-3) / 1.741
+        cells, width_m = 321, 4.5 * self.WAVE_M
+        relief = shape(lambda x, y: amplitude_m * np.sin(2 * np.pi * x / self.WAVE_M + np.pi / 2), cells, width_m)
+        return fly(relief, relief_m=2 * amplitude_m, **changes)
+
+    def test_just_too_small_and_the_cure(self):
+        found = of(features(self.wave(0.9)), "3.2 mm wide")
+        assert found.verdict == "warn"
+        assert found.value == pytest.approx(0.9 * 29e-6, rel=0.05)
+        needed = advised(found, "workspace.relief_m") / (2 * 0.9 * threshold_m(3.2e-3) / 1.741)
+        assert needed == pytest.approx(1 / 0.9, rel=0.08)
+
+    def test_just_large_enough(self):
+        assert of(features(self.wave(1.1)), "3.2 mm wide").verdict == "ok"
+
+    def test_not_for_a_device_that_is_too_coarse(self):
+        found = of(features(self.wave(1.1, resolution_m=4e-5)), "3.2 mm wide")
+        assert (found.verdict, found.bound, found.source) == ("warn", 4e-5, "the device's resolution")
+
+    def test_a_wide_hill_has_no_narrow_features(self):
+        hill = shape(lambda x, y: 0.005 * np.exp(-(x**2 + y**2) / (2 * 0.01**2)), 256)
+        assert [(each.of, each.verdict) for each in features(fly(hill))] == [("10 mm wide", "ok"), ("32 mm wide", "ok")]
+
+    @pytest.mark.parametrize(
+        "surface", [level(), shape(lambda x, y: 0.1 * x), HapticSurface.from_heights(np.ones((1, 1)))]
+    )
+    def test_nothing_to_feel(self, surface: HapticSurface):
+        [found] = features(fly(surface))
+        assert (found.of, found.verdict) == ("the relief", "warn")
+
+
+class TestWorkspace:
+    def test_all_of_it_is_reached(self):
+        assert grades(workspace(fly(level(0.02), workspace_m=(0.08, 0.08, 0.02)))) == ["ok"] * 3
+
+    def test_wider_longer_and_higher(self):
+        surface = HapticSurface.from_heights(np.full((20, 10), 0.03, np.float32), 0.1)
+        width, length, height = workspace(fly(surface, workspace_m=(0.08, 0.08, 0.02), relief_m=0.03))
+        assert grades((width, length, height)) == ["warn"] * 3
+        assert advised(width, "workspace.width_m") == 0.08
+        assert advised(length, "workspace.width_m") == 0.04
+        assert advised(height, "workspace.relief_m") == pytest.approx(0.02, rel=0.06)
+
+
+class TestJitter:
+    """1000 ticks, of which some are late."""
+
+    def late(self, ticks: int, by_s: float) -> Lateness:
+        late_s = np.full(1000, 1e-5)
+        late_s[:ticks] = by_s
+        return Lateness(late_s, 0.001, real_time=False)
+
+    def test_a_calm_machine(self):
+        assert grades(lateness(fly(level()))) == ["ok"] * 3
+
+    @pytest.mark.parametrize(("ticks", "verdict"), [(1, "ok"), (2, "warn")])
+    def test_overruns(self, ticks: int, verdict: str):
+        found = of(lateness(fly(level(), lateness=self.late(ticks, 0.0011))), "overruns")
+        assert (found.verdict, found.value) == (verdict, ticks / 1000)
+        assert "ulimit -r" in found.cure or verdict == "ok"
+
+    @pytest.mark.parametrize(("simulated", "verdict"), [(False, "unsafe"), (True, "warn")])
+    def test_the_stiffness_that_is_left(self, simulated: bool, verdict: str):
+        """b = 2 N s/m: periods of 1 + 4 ms leave 800 N/m."""
+        late = {"lateness": self.late(10, 0.004), "simulated": simulated}
+        ok = of(lateness(fly(level(), stiffness_n_per_m=800.0, **late)), "stiffness it leaves")
+        worse = of(lateness(fly(level(), stiffness_n_per_m=801.0, **late)), "stiffness it leaves")
+        assert (ok.verdict, ok.bound) == ("ok", pytest.approx(800))
+        assert worse.verdict == verdict
+
+    @pytest.mark.parametrize(
+        ("call_s", "simulated", "verdict"),
+        [(5e-4, False, "ok"), (6e-4, False, "warn"), (1.1e-3, False, "unsafe"), (1.1e-3, True, "warn")],
+    )
+    def test_a_tick_against_its_period(self, call_s: float, simulated: bool, verdict: str):
+        cost = TickCost(np.full(100, call_s), 1e-6)
+        [found] = tick_cost(fly(level(), cost=cost, simulated=simulated))
+        assert found.verdict == verdict
+        if verdict != "ok":
+            assert advised_rate(found) * call_s <= 0.5
+
+
+def test_the_page_names_every_check():
+    page = Path(__file__).parents[3].joinpath("docs/preflight.md").read_text(encoding="utf-8")
+    for each in judge(fly(with_materials(material(texture="stochastic", roughness_m=1e-4)))):
+        assert f"| {each.check} |" in page
+
+
+def advised_rate(verdict: Verdict) -> float:
+    return float(re.search(r"--rate ([\d.]+)", verdict.cure)[1])
+
+
+@pytest.mark.parametrize("law", ["proxy", "penalty-gradient", "grey-level", "tangible-mask", "lateral-gradient"])
+@pytest.mark.parametrize(
+    "surface",
+    [HapticSurface.from_heights(np.zeros((1, 1))), level(), half_slope(5.0, 32)],
+    ids=["pixel", "level", "half"],
+)
+def test_every_check_has_a_say_and_every_complaint_a_cure(law: str, surface: HapticSurface):
+    flight = fly(surface, law)
+    verdicts = judge(flight)
+    assert len(verdicts) >= len(CHECKS) - 3
+    for each in verdicts:
+        assert (each.verdict == "ok") == (each.cure == ""), each
+        assert math.isfinite(each.value)
+
+
+def test_a_law_that_is_no_spring_has_no_stiffness_to_hold():
+    for law in ("grey-level", "tangible-mask"):
+        [found] = law_stiffness(fly(level(), law))
+        assert (found.verdict, found.value) == ("ok", 0)
+        assert not list(quantisation(fly(level(), law)))
+        assert "stiffness it leaves" not in {each.of for each in lateness(fly(level(), law))}

@@ -1,0 +1,145 @@
+"""`tangible preflight`, as a user calls it."""
+
+import json
+import math
+import re
+import subprocess
+import sys
+from dataclasses import fields
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tangible_core.commands.preflight import line, preflight
+from tangible_core.data import HapticState
+from tangible_core.errors import ConfigError
+from tangible_core.preflight import Hand, Loop, Verdict
+from tangible_devices.mock import Mock
+
+TANGIBLE = str(Path(sys.executable).with_name("tangible"))
+SAFE = """\
+scene: {height: hills.npy}
+want: surface
+workspace: {width_m: 0.07, relief_m: 0.004}
+render: {use: proxy, stiffness_n_per_m: 700}
+device: {use: mock}
+"""
+GRADES = {"ok", "warn", "unsafe"}
+
+
+def tangible(*words: object, cwd: Path) -> subprocess.CompletedProcess[str]:
+    whole = [TANGIBLE, "preflight", *map(str, words)]
+    return subprocess.run(whole, cwd=cwd, capture_output=True, text=True, timeout=240)
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """Gentle hills, and one pixel."""
+    x, y = np.meshgrid(np.linspace(0, 2 * np.pi, 96), np.linspace(0, 2 * np.pi, 64))
+    np.save(tmp_path / "hills.npy", 2 + np.sin(x) * np.sin(y))
+    np.save(tmp_path / "dot.npy", np.ones((1, 1)))
+    (tmp_path / "p.yaml").write_text(SAFE)
+    return tmp_path
+
+
+def test_a_line_a_verdict_and_0_where_nothing_is_unsafe(folder: Path):
+    done = tangible("p.yaml", "--seconds", 0.1, cwd=folder)
+    assert done.returncode == 0, done.stdout + done.stderr
+    *verdicts, _, summary = done.stdout.splitlines()
+    assert {each.split()[0] for each in verdicts} <= GRADES | {"cure:"}
+    assert " 700 N/m <= 2400 N/m; 80 % of 3000 N/m; Colgate & Schenkel 1997" in done.stdout
+    assert "hills.npy on mock: " in summary
+    assert summary.endswith(" 0 unsafe")
+
+
+def test_1_where_something_is_and_json_says_all_of_it(folder: Path):
+    words = ("p.yaml", "--set", "render.stiffness_n_per_m=9000", "--seconds", 0.1, "--rate", 500, "--json")
+    done = tangible(*words, cwd=folder)
+    assert done.returncode == 1, done.stderr
+    found = json.loads(done.stdout)
+    assert found["scene"].endswith("hills.npy")
+    assert found["device"] == "mock"
+    assert found["period_s"] == 0.002
+    assert found["jitter"]["ticks"] == 50
+    assert found["hand"] == {"speed_m_per_s": 0.12, "press_n": 3.0}
+    assert 0 < found["tick"]["p50_s"] <= found["tick"]["max_s"]
+    assert set(found["jitter"]) == {"p50_s", "p99_s", "p99.9_s", "max_s", "ticks", "overruns", "real_time"}
+    keys = {"check", "of", "verdict", "value", "unit", "relation", "bound", "source", "note", "cure"}
+    assert all(set(each) == keys and each["verdict"] in GRADES for each in found["verdicts"])
+    checks = {"device", "stiffness", "damping", "slope", "clipping", "contact", "texture", "features", "workspace"}
+    assert {each["check"] for each in found["verdicts"]} == checks | {"quantisation", "jitter", "tick"}
+    unsafe = [each for each in found["verdicts"] if each["verdict"] == "unsafe"]
+    assert {(each["check"], each["of"]) for each in unsafe} >= {("stiffness", "the law")}
+    assert all("render.stiffness_n_per_m: " in each["cure"] for each in unsafe if each["check"] == "stiffness")
+
+
+@pytest.mark.parametrize("sets", ["render.use=grey-level", "render.use=tangible-mask", "scene.height=dot.npy"])
+def test_any_law_and_one_pixel(folder: Path, sets: str):
+    assert preflight(folder / "p.yaml", [sets], Hand(), Loop(seconds=0.01), as_json=True, cached=False)
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ("device: {use: mock}", "p.yaml: `device:` is missing; add one, such as `device: {use: mock}`"),
+        ("render: {use: proxy, stiffness_n_per_m: 700}", "p.yaml: `render:` is missing; name a method"),
+    ],
+)
+def test_what_must_be_configured(folder: Path, line: str, said: str):
+    (folder / "p.yaml").write_text(SAFE.replace(line, ""))
+    with pytest.raises(ConfigError, match=re.escape(said)):
+        preflight(folder / "p.yaml", (), Hand(), Loop(seconds=0.01), as_json=False, cached=False)
+
+
+def test_a_mistake_costs_one_clear_line(folder: Path):
+    done = tangible("p.yaml", "--rate", 0, cwd=folder)
+    assert (done.returncode, done.stderr) == (2, "--rate: is 0; it is 1 to 100000 ticks a second\n")
+
+
+@pytest.mark.parametrize("value", [0.0, -1.0, math.nan, math.inf])
+def test_numbers_that_make_no_sense(value: float):
+    for made in (Hand, Loop):
+        for field in fields(made):
+            with pytest.raises(ConfigError, match="--"):
+                made(**{field.name: value})
+
+
+def test_the_device_is_never_opened(folder: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(Mock, "open", lambda self: pytest.fail("opened"))
+    assert preflight(folder / "p.yaml", (), Hand(), Loop(seconds=0.01), as_json=True, cached=False)
+
+
+def test_a_cure_stands_below_its_verdict_and_brackets_are_no_marks():
+    shown = line(Verdict("slope", "a[b]", "warn", 0.125, "share", "<=", 0.01, "why [1]", "note", "do `x: [1]`"))
+    assert shown.splitlines() == [
+        "[yellow]warn  [/] slope        a\\[b]: 12.5 % <= 1 %; note; why [1]",
+        f"{'':20}cure: do `x: [1]`",
+    ]
+
+
+def test_a_law_of_somebody_elses_without_a_word_on_its_stiffness(folder: Path, monkeypatch: pytest.MonkeyPatch):
+    """It is felt."""
+    from tangible_core import HapticSurface
+    from tangible_core.config import load_config
+    from tangible_core.data import Force
+    from tangible_core.interfaces import Touch
+    from tangible_core.preflight import survey
+    from tangible_core.registry import default_registry
+
+    class Spring(Touch):
+        def force(self, state: HapticState) -> Force:
+            return Force(0.0, 0.0, 350.0 * max(0.0, 0.01 - state.position_m[2]))
+
+        def path(self, positions_m, period_s=0.001):
+            return np.array([self.force(HapticState(tuple(each))) for each in positions_m])
+
+    surface = HapticSurface.from_heights(np.full((4, 4), 0.01, np.float32))
+    config = load_config(folder / "p.yaml", default_registry())
+    flight = survey(config, surface, Spring(), Hand(), Loop(seconds=0.01))
+    assert flight.stiffness_n_per_m == pytest.approx(350)
+    assert flight.relief_key == "workspace.relief_m"
+    assert not flight.smoothed
+    own = load_config(folder / "p.yaml", default_registry(), ["scene.relief_m=0.003"])
+    flight = survey(own, surface, Spring(), Hand(), Loop(seconds=0.01))
+    assert (flight.relief_key, flight.relief_m) == ("scene.relief_m", 0.003)

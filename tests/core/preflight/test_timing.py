@@ -1,0 +1,66 @@
+"""Lateness and the cost of a tick: on a clock that is made up, and once on the real one."""
+
+import os
+
+import numpy as np
+import pytest
+
+from flights import level
+from tangible_core import load_method
+from tangible_core.preflight import timing
+
+
+class Clock:
+    """Time that passes only when somebody sleeps, always a little too long, and once far too long."""
+
+    def __init__(self, over_s: float, stall_at: int, stall_s: float) -> None:
+        self.now, self.sleeps = 100.0, 0
+        self.over_s, self.stall_at, self.stall_s = over_s, stall_at, stall_s
+
+    def perf_counter(self) -> float:
+        return self.now
+
+    def sleep(self, seconds: float) -> None:
+        self.now += seconds + (self.stall_s if self.sleeps == self.stall_at else self.over_s)
+        self.sleeps += 1
+
+
+def test_a_late_tick_is_counted_once_and_nothing_is_caught_up(monkeypatch: pytest.MonkeyPatch):
+    clock = Clock(over_s=1e-5, stall_at=4, stall_s=3.5e-3)
+    monkeypatch.setattr(timing, "time", clock)
+    late = timing.measure_lateness(0.02, 0.001)
+    assert late.late_s.size == clock.sleeps == 20
+    expected = np.full(20, 1e-5)
+    expected[4] = 3.5e-3
+    np.testing.assert_allclose(late.late_s, expected, atol=1e-9)
+    assert late.overruns == 1 / 20
+    assert late.at(100) == pytest.approx(3.5e-3)
+    assert clock.now == pytest.approx(100 + 0.023 + 1e-5)
+
+
+def test_this_machine_wakes_late_and_its_scheduling_is_as_before():
+    before = os.sched_getscheduler(0)
+    late = timing.measure_lateness(0.05, 0.001)
+    assert late.late_s.size == 50
+    assert (late.late_s >= 0).all()
+    assert os.sched_getscheduler(0) == before
+
+
+def test_where_real_time_is_refused(monkeypatch: pytest.MonkeyPatch):
+    def refuse(*_: object) -> None:
+        raise PermissionError
+
+    monkeypatch.setattr(os, "sched_setscheduler", refuse)
+    assert not timing.measure_lateness(0.002, 0.001).real_time
+    monkeypatch.delattr(os, "sched_setscheduler")
+    assert not timing.measure_lateness(0.002, 0.001).real_time
+
+
+@pytest.mark.parametrize("ticks", [1, 50])
+def test_every_tick_is_timed(ticks: int):
+    touch = load_method("render", "proxy")().touch(level())
+    cost = timing.measure_ticks(touch, np.tile([0.0, 0.0, 0.009], (ticks, 1)), 0.001)
+    assert cost.call_s.size == ticks
+    assert (cost.call_s > 0).all()
+    assert cost.kernel_s > 0
+    assert cost.at(50) <= cost.at(99) <= cost.at(100)

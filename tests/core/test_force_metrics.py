@@ -1,0 +1,148 @@
+"""Measures of forces, against laws whose errors, steps and work are known by formula."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tangible_core.errors import GeometryError
+from tangible_core.metrics import force_errors, force_steps, loop_works, proxy_lag
+from tangible_core.metrics.forces import angles_deg
+
+UP = np.array((0.0, 0.0, 1.0))
+RANDOM = np.random.default_rng(2)
+
+
+def rows(*vectors: tuple[float, ...]) -> np.ndarray:
+    return np.array(vectors, np.float64)
+
+
+def test_a_vertical_spring_on_a_slope():
+    """k d z against k d cos(t) n: off by k d sin(t), which is tan(t) of the truth; 1 / cos(t) as large, and t aside."""
+    slope, depths = 0.3, np.linspace(0.001, 0.002, 50)[:, None]
+    angle = math.atan(slope)
+    normal = np.array((-math.sin(angle), 0.0, math.cos(angle)))
+    errors = force_errors(800 * depths * UP, 800 * depths * math.cos(angle) * normal)
+    assert errors["error_percent"] == pytest.approx(100 * slope)
+    assert errors["error_n"] == pytest.approx(800 * math.sin(angle) * np.sqrt(np.mean(depths**2)))
+    assert errors["direction_deg"] == pytest.approx(math.degrees(angle))
+    assert errors["jnd"] == pytest.approx(math.degrees(angle) / 18)
+    assert errors["noticed_percent"] == 0
+
+
+@pytest.mark.parametrize(("factor", "jnd"), [(1.0, 0.0), (1.035, 0.5), (0.86, 2.0), (0.0, 1 / 0.07)])
+def test_a_force_of_another_size(factor: float, jnd: float):
+    truth = RANDOM.normal(0, 1, (30, 3))
+    errors = force_errors(factor * truth, truth)
+    assert errors["jnd"] == pytest.approx(jnd, abs=1e-9)
+    assert errors["error_percent"] == pytest.approx(100 * abs(factor - 1))
+    assert errors["noticed_percent"] == 100 * (jnd > 1 + 1e-9)
+
+
+def test_what_counts_where():
+    """A force in free air counts for newtons, not for what is told apart; a tick of unknown truth for nothing."""
+    truth = rows((0, 0, 1), (0, 0, 1), (0, 0, 0), (np.nan,) * 3, (0, 0, 0))
+    force = rows((0, 0, 1), (0, 1, 0), (0, 0, 2), (9, 9, 9), (0, 0, 0))
+    errors = force_errors(force, truth)
+    assert errors["error_n"] == pytest.approx(math.sqrt((0 + 2 + 4) / 3))
+    assert errors["error_percent"] == pytest.approx(100 * math.sqrt(6 / 2))
+    assert errors["direction_deg"] == pytest.approx(45)
+    assert errors["jnd"] == pytest.approx(2.5)
+    assert errors["noticed_percent"] == 50
+
+
+@pytest.mark.parametrize("count", [0, 3])
+def test_nothing_to_measure(count: int):
+    nothing = np.zeros((count, 3))
+    for truth in (nothing, np.full((count, 3), np.nan)):
+        assert all(math.isnan(value) for value in force_errors(nothing, truth).values())
+    assert math.isnan(proxy_lag(nothing, nothing, nothing))
+    assert math.isnan(force_steps(nothing[:1])["step_n"])
+    assert loop_works(nothing, nothing, np.zeros(count, np.bool_)).size == 0
+
+
+@pytest.mark.usefixtures("unchecked_shapes")
+def test_two_paths_are_not_compared():
+    with pytest.raises(GeometryError, match="one has 3 ticks and the other 2"):
+        force_errors(np.zeros((3, 3)), np.zeros((2, 3)))
+
+
+@given(st.floats(0, math.pi), st.floats(1e-9, 1e9))
+def test_angles_are_exact_small_and_large(angle: float, size: float):
+    turned = size * rows((math.cos(angle), math.sin(angle), 0))
+    assert angles_deg(rows((1, 0, 0)), turned)[0] == pytest.approx(math.degrees(angle), abs=1e-12)
+
+
+def test_steps():
+    force = np.zeros((101, 3))
+    force[50:] = (0, 3, 4)
+    force[:50, 0] = np.arange(50) / 1000
+    assert force_steps(force)["step_n"] == pytest.approx(math.hypot(5, 0.049))
+    assert force_steps(force)["step_p99_n"] == pytest.approx(0.001, rel=0.1, abs=0.1)
+    assert force_steps(np.repeat(rows((1, 2, 3)), 4, axis=0)) == {"step_n": 0, "step_p99_n": 0}
+
+
+def test_a_delay_of_some_ticks_is_a_lag():
+    """At 50 mm/s a proxy that is 4 ticks late is 0.2 mm behind, whichever way the hand goes."""
+    turn = np.linspace(0, 2 * np.pi, 4001)
+    hand = 0.05 * 4 / (2 * np.pi) * np.column_stack([np.cos(turn), np.sin(turn), np.zeros(4001)])
+    nearest = hand + 0.001 * UP
+    late = np.roll(nearest, 4, axis=0)
+    assert proxy_lag(hand, late, nearest) == pytest.approx(0.0002, rel=0.01)
+    assert proxy_lag(hand, nearest, nearest) == 0
+
+
+def test_what_pushes_aside_there_and_back_is_no_lag():
+    there = np.column_stack([np.linspace(0, 0.02, 500), np.zeros(500), np.zeros(500)])
+    hand = np.vstack([there, there[::-1]])
+    nearest, aside = hand + 0.001 * UP, np.array((0.0003, 0.0, 0.0))
+    assert proxy_lag(hand, nearest + aside, nearest) == pytest.approx(0, abs=1e-12)
+
+
+def test_ticks_in_free_air_and_at_rest_have_no_lag():
+    hand = rows((0, 0, 1), (1, 0, 1), (2, 0, 1), (2, 0, 1), (2, 0, 1))
+    nearest = hand + rows((0, 0, 0), (0, 0, 1), (0, 0, 1), (0, 0, 1), (0, 0, 1))
+    proxy = nearest - rows((9, 0, 0), (0.5, 0, 0), (0.5, 0, 0), (0.5, 0, 0), (9, 0, 0))
+    assert proxy_lag(hand, proxy, nearest) == pytest.approx(0.5)
+
+
+def loops(count: int = 3, ticks: int = 500) -> tuple[np.ndarray, np.ndarray]:
+    """In and out at other places: hands, and whether each is over the level z = 0."""
+    t = np.arange(count * ticks + 1) / ticks
+    z = 0.001 * np.cos(2 * np.pi * t)
+    return np.column_stack([0.02 * np.sin(t), 0.01 * t, z]), z > 0.0009
+
+
+def test_springs_give_no_energy_away():
+    hand, free = loops()
+    works = loop_works(-800 * hand, hand, np.ones(len(hand), np.bool_))
+    assert works.size == 0  # free everywhere: there is no loop
+    force = 800 * np.maximum(-hand[:, 2:], 0) * UP
+    works = loop_works(force, hand, free)
+    assert works.size == 3
+    assert np.abs(works).max() < 1e-9 * 3 + 800 * 0.0000126**2  # the tick that crosses the surface
+
+
+def test_work_of_a_known_law():
+    """Pushed along x by 2 N: 2 N times the way of each loop; friction is the negative of that."""
+    hand, free = loops()
+    push = np.tile((2.0, 0.0, 0.0), (len(hand), 1))
+    ways = loop_works(push, hand, free) / 2
+    ends = [np.flatnonzero(~free & (np.floor(np.arange(len(hand)) / 500) == loop))[[0, -1]] for loop in range(3)]
+    np.testing.assert_allclose(ways, [hand[last + 1, 0] - hand[first - 1, 0] for first, last in ends], atol=1e-12)
+    np.testing.assert_allclose(loop_works(-push, hand, free), -2 * ways)
+
+
+def test_a_way_that_never_leaves_the_surface_has_no_loop():
+    hand, _ = loops()
+    assert loop_works(hand, hand, np.zeros(len(hand), np.bool_)).size == 0
+
+
+@given(st.integers(0, 2**32 - 1))
+def test_errors_do_not_depend_on_the_frame(seed: int):
+    random = np.random.default_rng(seed)
+    force, truth = random.normal(0, 1, (2, 20, 3))
+    turn, _ = np.linalg.qr(random.normal(0, 1, (3, 3)))
+    assert force_errors(force @ turn, truth @ turn) == pytest.approx(force_errors(force, truth))

@@ -1,0 +1,86 @@
+"""The stiffness limit of a sampled handle: against the bound of the literature and against eigenvalues."""
+
+import math
+
+import numpy as np
+import pytest
+
+from tangible_core.data import NO_FORCE, Force, HapticState
+from tangible_core.metrics import HANDLE, Handle, stiffness_limit
+from tangible_core.metrics.stability import Law
+
+GROUND_M = 0.01
+
+
+def spring(stiffness: float, damping: float = 0.0) -> Law:
+    def law(state: HapticState) -> Force:
+        depth = GROUND_M - state.position_m[2]
+        return Force(0.0, 0.0, stiffness * depth - damping * state.velocity_m_per_s[2]) if depth > 0 else NO_FORCE
+
+    return law
+
+
+def exact_limit(handle: Handle, delay: int, damping: float = 0.0) -> float:
+    """Where an eigenvalue of the handle in contact leaves the unit circle: x, v, and the forces that wait."""
+    m, b, period = handle
+    decay = math.exp(-b * period / m)
+    moved, pushed = (period - (1 - decay) * m / b) / b, (1 - decay) / b
+
+    def stable(stiffness: float) -> bool:
+        system = np.zeros((2 + delay, 2 + delay))
+        system[:2, :2] = [[1, (1 - decay) * m / b], [0, decay]]
+        force = np.zeros(2 + delay)
+        force[:2] = -stiffness, -damping
+        if delay:
+            system[2] = force
+            system[range(3, 2 + delay), range(2, 1 + delay)] = 1
+            force = np.eye(2 + delay)[-1]
+        system[0] += moved * force
+        system[1] += pushed * force
+        return bool(np.abs(np.linalg.eigvals(system)).max() < 1)
+
+    low, high = 1.0, 1e6
+    while high > low * 1.00001:
+        middle = math.sqrt(low * high)
+        low, high = (middle, high) if stable(middle) else (low, middle)
+    return low
+
+
+@pytest.mark.parametrize("delay", [0, 1, 2])
+def test_the_bound_of_the_literature_holds(delay: int):
+    """K < 2 b / (T (1 + 2 d)), within 5 %."""
+    assert stiffness_limit(spring, GROUND_M, delay) == pytest.approx(HANDLE.bound_n_per_m(delay), rel=0.05)
+
+
+@pytest.mark.parametrize("delay", [0, 1, 2, 5])
+@pytest.mark.parametrize("handle", [HANDLE, Handle(0.05, 1.0), Handle(0.3, 5.0, 0.002)])
+def test_the_limit_is_where_the_eigenvalues_leave_the_circle(delay: int, handle: Handle):
+    assert stiffness_limit(spring, GROUND_M, delay, handle) == pytest.approx(exact_limit(handle, delay), rel=0.005)
+
+
+def test_damping_of_the_law_counts():
+    found = stiffness_limit(lambda stiffness: spring(stiffness, 2.0), GROUND_M, 0)
+    assert found == pytest.approx(exact_limit(HANDLE, 0, 2.0), rel=0.005)
+    assert found > 1.5 * HANDLE.bound_n_per_m(0)
+
+
+def test_bounds():
+    assert [HANDLE.bound_n_per_m(delay) for delay in (0, 1, 2)] == pytest.approx([4000, 4000 / 3, 800])
+
+
+@pytest.mark.parametrize(
+    "law",
+    [
+        lambda stiffness: lambda state: NO_FORCE,
+        lambda stiffness: lambda state: Force(0.0, 0.0, 3.0),
+        lambda stiffness: lambda state: Force(stiffness, 0.0, 0.0),
+        lambda stiffness: lambda state: Force(0.0, 0.0, -stiffness),
+    ],
+    ids=["no force", "constant", "lateral", "pull"],
+)
+def test_what_is_no_spring_has_no_limit(law):
+    assert math.isnan(stiffness_limit(law, GROUND_M))
+
+
+def test_a_spring_that_goes_no_stiffer_is_stable_at_any_setting():
+    assert stiffness_limit(lambda stiffness: spring(min(stiffness, 1000.0)), GROUND_M) == math.inf

@@ -1,0 +1,88 @@
+"""Simulated Falcons for the tests, on lines as bad as they like."""
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from tangible_devices.falcon.falcon import Falcon
+from tangible_devices.falcon.link import FalconLink
+from tangible_devices.falcon.opening import open_falcon
+from tangible_devices.falcon.port import Port, open_port
+from tangible_devices.falcon.simulator.body import Body
+from tangible_devices.falcon.simulator.bus import Bus, Unit
+from tangible_devices.falcon.simulator.chip import PAYLOAD_BYTES, Chip
+from tangible_devices.falcon.simulator.clock import SimulatedClock
+from tangible_devices.falcon.simulator.falcons import simulated_falcon
+from tangible_devices.falcon.simulator.faults import Fault
+from tangible_devices.falcon.simulator.firmware_image import synthetic_image
+from tangible_devices.falcon.simulator.processor import Processor
+from tangible_devices.hand import VirtualHand
+from tangible_devices.paths import press, walk
+
+
+class StillHand:
+    """Holds the grip where it is."""
+
+    buttons = 0
+
+    def wants(self, tip_m: np.ndarray, homing: bool, homed: bool) -> np.ndarray:
+        return np.array([0.0, 0.0, 0.125])
+
+
+class Line:
+    """What happens to the bytes from the processor: damage to the one at this place, once unless `again`."""
+
+    def __init__(
+        self,
+        damage: str = "",
+        at: int = 0,
+        again: bool = False,
+        late_reply: int = -1,
+        swallowed: int = 0,
+        leading_zero: bool = False,
+        payload_bytes: int = PAYLOAD_BYTES,
+    ) -> None:
+        self.damage, self.at, self.again, self.late_reply = damage, at, again, late_reply
+        self.swallowed, self.leading_zero, self.payload_bytes = swallowed, leading_zero, payload_bytes
+        self.resets = 0
+        self._said = 0
+
+    def spoil(self, said: int, data: bytes) -> bytes:
+        if data.endswith(b"\x0aD,\x0d"):
+            self.resets += 1
+            self._said = 0
+        at = self.at - self._said
+        self._said += len(data)
+        if not self.damage or not 0 <= at < len(data):
+            return data
+        changed = {"flip": bytes([data[at] ^ 0x10]), "drop": b"", "double": data[at : at + 1] * 2}[self.damage]
+        self.damage = self.damage if self.again else ""
+        return data[:at] + changed + data[at + 1 :]
+
+    def delay(self, replies: int) -> float:
+        return 0.3 if replies == self.late_reply else 0.0
+
+
+def bus_of(line: Line) -> Bus:
+    """A bus with one Falcon on this line, held still."""
+    processor = Processor(Body(StillHand(), np.array([0.3, 1.0, 0.4, 300.0, 6.0])), line.swallowed, line.leading_zero)
+    return Bus([Unit(Chip(processor, SimulatedClock(), line.spoil, line.delay, line.payload_bytes))])
+
+
+def opener_of(bus: Bus) -> Callable[[], Port]:
+    """Opens its first Falcon."""
+    return partial(open_port, None, 0, bus)
+
+
+def held_bus(serials: tuple[str, ...] = ("SIM0001",), faults: tuple[Fault, ...] = ()) -> tuple[Bus, SimulatedClock]:
+    """A bus with Falcons, each held by a hand that homes it, and its clock."""
+    clock = SimulatedClock()
+    stroke = walk(press((0.05, 0.035), 2, -0.005, 0.02), 0.08, 0.001)
+    return Bus([simulated_falcon(clock, stroke, 0.02, VirtualHand(), serial) for serial in serials], faults), clock
+
+
+def open_on(bus: Bus, clock: SimulatedClock, **options: Any) -> FalconLink:
+    """The driver on this bus."""
+    return open_falcon(Falcon(**options), synthetic_image(), bus, clock)

@@ -1,0 +1,83 @@
+"""Flights made up: everything that is measured of a machine stands still, so that every verdict is known."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from tangible_core import HapticSurface, load_method
+from tangible_core.compiled import CompiledTouch
+from tangible_core.config import Workspace
+from tangible_core.data import DeviceSpec, Material
+from tangible_core.preflight.flight import Flight, Hand
+from tangible_core.preflight.probes import probe
+from tangible_core.preflight.timing import Lateness, TickCost
+from tangible_core.preflight.verdict import Verdict
+from tangible_core.servo.safety import Safety
+
+SPEC = DeviceSpec(
+    max_force_n=8.0,
+    max_stiffness_n_per_m=10_000.0,
+    damping_n_s_per_m=2.0,
+    workspace_m=(0.1, 0.1, 0.1),
+    resolution_m=1e-5,
+)
+"""At 1 kHz without delay it holds 4000 N/m by its damping, of which a guard leaves 3200 to a law."""
+
+
+def fly(surface: HapticSurface, law: str = "proxy", device: Any = None, **changes: Any) -> Flight:
+    """A flight over a surface; `changes` are options of the law, and fields of the hand, the device or the flight.
+
+    device: fields of the device that a law has too.
+    """
+    method = load_method("render", law)
+    options = {name: changes.pop(name) for name in list(changes) if name in method.model_fields}
+    of_spec = {name: changes.pop(name) for name in list(changes) if name in vars(SPEC)}
+    of_hand = {name: changes.pop(name) for name in list(changes) if name in vars(Hand())}
+    spec, hand, renderer = replace(SPEC, **of_spec, **(device or {})), Hand(**of_hand), method(**options)
+    touch = renderer.touch(surface)
+    assert isinstance(touch, CompiledTouch)
+    period_s = changes.pop("period_s", 0.001)
+    stiffness = touch.stiffness_n_per_m
+    fields: dict[str, Any] = {
+        "workspace": Workspace(),
+        "relief_key": "workspace.relief_m",
+        "relief_m": 0.02,
+        "smoothed": True,
+        "safety": Safety(),
+        "probes": probe(touch, surface, hand.press_n, stiffness, spec.workspace_m[2], period_s),
+        "lateness": Lateness(np.full(1000, 1e-5), period_s, True),
+        "cost": TickCost(np.full(1000, 2e-6), 1e-6),
+    } | changes
+    return Flight(surface, renderer, stiffness, spec, hand=hand, period_s=period_s, **fields)
+
+
+def level(height_m: float = 0.01, cells: int = 32, **materials: Any) -> HapticSurface:
+    """Level ground, 80 mm wide."""
+    return HapticSurface.from_heights(np.full((cells, cells), height_m, np.float32), **materials)
+
+
+def shape(height_m: Callable[[np.ndarray, np.ndarray], Any], cells: int = 128, width_m: float = 0.08) -> HapticSurface:
+    """A surface whose heights are a function of x and y, lifted so that its lowest is 0."""
+    at = ((np.arange(cells) + 0.5) / cells - 0.5) * width_m
+    x, y = np.meshgrid(at, -at)
+    heights = np.broadcast_to(height_m(x, y), x.shape)
+    return HapticSurface.from_heights(heights - heights.min(), width_m)
+
+
+def half_slope(slope: float, cells: int = 128) -> HapticSurface:
+    """Level to the left, and to the right rising with this slope."""
+    return shape(lambda x, y: slope * np.maximum(x, 0), cells)
+
+
+def material(name: str = "made-up", **values: Any) -> Material:
+    """A material of which only this much matters."""
+    plain = {"stiffness_n_per_m": 500.0, "damping_n_s_per_m": 0.0, "static_friction": 0.0, "dynamic_friction": 0.0}
+    return Material(name, **{**plain, "texture": "smooth", **values})
+
+
+def of(verdicts: Any, what: str) -> Verdict:
+    """The one verdict of this thing."""
+    [found] = [each for each in verdicts if each.of == what]
+    return found

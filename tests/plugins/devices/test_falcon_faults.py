@@ -1,0 +1,136 @@
+"""A Falcon whose USB fails at any step: no force stays, one message says what to do, and it can be opened again."""
+
+import logging
+
+import pytest
+
+from falcon_bus import held_bus, open_on
+from tangible_core.data import NO_FORCE, Force
+from tangible_core.errors import DeviceError
+from tangible_devices.falcon.simulator.bus import Bus
+from tangible_devices.falcon.simulator.clock import SimulatedClock
+from tangible_devices.falcon.simulator.faults import ERRORS, Fault
+
+WORDS = {
+    "unplugged": "it was unplugged; check its plug",
+    "access-denied": 'TAG\\+="uaccess"\nthen run `sudo udevadm',
+    "busy": "another program is using it",
+    "timeout": "does not answer \\(time-out\\)",
+    "stall": "refused the request \\(stall\\)",
+    "overflow": "sent more than was asked for \\(overflow\\)",
+}
+PUSH = Force(0.0, 0.0, 3.0)
+OPENING = [
+    *[("look", 0), ("open", 0), ("configure", 0), ("configure", 1), ("driver", 0), ("driver", 1), ("claim", 0)],
+    *[("control", nth) for nth in (0, 1, 3, 4, 9, 12, 14, 17)],
+    *[("write", nth) for nth in (0, 10, 11, 12, 80, 300, 1100)],
+    *[("read", nth) for nth in (0, 60, 61, 63, 80, 300, 1100)],
+]
+
+
+def check_at_rest(bus: Bus) -> None:
+    unit = bus.units[0]
+    assert unit.chip.processor.body.torque_counts == (0, 0, 0)
+    assert unit.claimed_by is None
+    assert unit.kernel_driver or not unit.plugged
+
+
+def check_opens_again(bus: Bus, clock: SimulatedClock) -> None:
+    bus.faults.clear()
+    if not bus.units[0].plugged or not bus.units[0].kernel_driver:
+        bus.units[0].plug_in()
+    with open_on(bus, clock) as link:
+        link.write(PUSH)
+        link.read()
+        assert link.applied == pytest.approx(PUSH)
+    check_at_rest(bus)
+
+
+def loud(caplog: pytest.LogCaptureFixture) -> list[str]:
+    """Warnings, but for the guide to homing."""
+    return [
+        each.message for each in caplog.records if each.levelno >= logging.WARNING and "pull its" not in each.message
+    ]
+
+
+@pytest.mark.parametrize("error", list(ERRORS))
+@pytest.mark.parametrize(("at", "after"), OPENING)
+def test_a_fault_while_it_is_opened(at: str, after: int, error: str, caplog: pytest.LogCaptureFixture):
+    bus, clock = held_bus(faults=(Fault(at=at, after=after, error=error),))  # pyright: ignore[reportArgumentType]
+    with pytest.raises(DeviceError, match=WORDS[error]):
+        open_on(bus, clock)
+    assert not loud(caplog)
+    check_at_rest(bus)
+    check_opens_again(bus, clock)
+
+
+@pytest.mark.parametrize("error", list(ERRORS))
+@pytest.mark.parametrize("at", ["write", "read"])
+@pytest.mark.parametrize("call", ["read", "write", "exchange"])
+def test_a_fault_while_it_runs(at: str, error: str, call: str, caplog: pytest.LogCaptureFixture):
+    bus, clock = held_bus()
+    with pytest.raises(DeviceError, match=WORDS[error]), open_on(bus, clock) as link:
+        link.write(PUSH)
+        assert bus.units[0].chip.processor.body.torque_counts != (0, 0, 0)
+        bus.fail(Fault(at=at, error=error))  # pyright: ignore[reportArgumentType]
+        for _ in range(5):
+            {"read": link.read, "write": lambda: link.write(PUSH), "exchange": link.exchange}[call]()
+            link.exchange()
+    assert link.applied == NO_FORCE
+    assert not loud(caplog)
+    check_at_rest(bus)
+    with pytest.raises(DeviceError, match="was closed after an error"):
+        link.read()
+    check_opens_again(bus, clock)
+
+
+@pytest.mark.parametrize("error", list(ERRORS))
+def test_a_fault_that_stays_ends_with_the_same_one_message(error: str, caplog: pytest.LogCaptureFixture):
+    bus, clock = held_bus()
+    with pytest.raises(DeviceError, match=WORDS[error]), open_on(bus, clock) as link:
+        for at in ("write", "read", "driver", "control"):
+            bus.fail(Fault(at=at, error=error, times=10**6))  # pyright: ignore[reportArgumentType]
+        link.read()
+        link.read()
+    assert link.applied == NO_FORCE
+    assert not loud(caplog)
+    check_opens_again(bus, clock)
+
+
+@pytest.mark.parametrize("error", list(ERRORS))
+@pytest.mark.parametrize("at", ["write", "read", "driver"])
+def test_a_fault_while_it_is_closed_is_a_warning_at_most(at: str, error: str, caplog: pytest.LogCaptureFixture):
+    bus, clock = held_bus()
+    link = open_on(bus, clock)
+    link.write(PUSH)
+    bus.fail(Fault(at=at, error=error))  # pyright: ignore[reportArgumentType]
+    link.close()
+    assert link.applied == NO_FORCE
+    assert len(loud(caplog)) == (at != "driver")
+    check_opens_again(bus, clock)
+
+
+def test_an_exception_of_the_users_own_is_not_hidden_by_a_fault():
+    bus, clock = held_bus()
+    with pytest.raises(ZeroDivisionError), open_on(bus, clock) as link:
+        link.write(PUSH)
+        bus.fail(Fault(at="write", error="unplugged"))
+        raise ZeroDivisionError
+    check_at_rest(bus)
+    check_opens_again(bus, clock)
+
+
+def test_ctrl_c_while_it_is_homed_leaves_no_force(monkeypatch: pytest.MonkeyPatch):
+    bus, clock = held_bus()
+    transfers = iter(range(10**6))
+
+    def interrupted(handle: object, step: object) -> None:
+        if next(transfers) == 900:
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(bus, "_step", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        open_on(bus, clock)
+    monkeypatch.undo()
+    check_at_rest(bus)
+    check_opens_again(bus, clock)

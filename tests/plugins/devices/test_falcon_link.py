@@ -1,0 +1,238 @@
+"""An open Falcon: homing, forces, the wire at the end, several of them, and what an exchange costs."""
+
+import gc
+import tracemalloc
+from array import array
+
+import numpy as np
+import pytest
+
+from falcon_bus import held_bus, open_on
+from tangible_core.data import NO_FORCE, Force
+from tangible_core.errors import DeviceAbsent, DeviceError
+from tangible_devices.falcon.firmware import NULL
+from tangible_devices.falcon.link import GOODBYES, FalconLink
+from tangible_devices.falcon.packet import GREEN, HOMING, RED
+from tangible_devices.falcon.simulator.bus import Bus
+
+PUSH = Force(0.5, -0.25, 2.0)
+
+
+def recorded(bus: Bus, monkeypatch: pytest.MonkeyPatch) -> list[bytes]:
+    """Every write from now on."""
+    sent: list[bytes] = []
+    write = bus.bulk_write
+
+    def keep(handle: object, ep: int, intf: int, data: array, timeout: int) -> int:
+        sent.append(data.tobytes())
+        return write(handle, ep, intf, data, timeout)  # pyright: ignore[reportArgumentType]
+
+    monkeypatch.setattr(bus, "bulk_write", keep)
+    return sent
+
+
+class TestHoming:
+    def test_no_torque_and_a_red_light_until_it_is_homed(self, monkeypatch: pytest.MonkeyPatch):
+        bus, clock = held_bus()
+        sent = recorded(bus, monkeypatch)
+        open_on(bus, clock)
+        packets = [each for each in sent if len(each) == 16 and each != NULL]
+        assert {each[1:13] for each in packets} == {b"A" * 12}
+        infos = [each[13] - 0x41 for each in packets]
+        assert sorted(infos, reverse=True) == infos
+        assert set(infos) == {HOMING | RED, HOMING | GREEN}
+
+    def test_lights_can_be_left_off(self, monkeypatch: pytest.MonkeyPatch):
+        bus, clock = held_bus()
+        sent = recorded(bus, monkeypatch)
+        open_on(bus, clock, leds=False)
+        assert {each[13] - 0x41 for each in sent if len(each) == 16 and each != NULL} == {HOMING}
+
+    def test_it_guides_once(self, caplog: pytest.LogCaptureFixture):
+        open_on(*held_bus())
+        assert [
+            each.message for each in caplog.records if "pull its grip all the way out" in each.message
+        ].__len__() == 1
+
+    def test_nobody_homes_it(self):
+        bus, clock = held_bus()
+        with pytest.raises(DeviceError, match=r"0 of 3 arms are homed after 0\.2 s; pull its grip"):
+            open_on(bus, clock, home_within_s=0.2)
+        assert bus.units[0].claimed_by is None
+
+    def test_positions_are_true_once_it_is_homed(self):
+        bus, clock = held_bus()
+        link = open_on(bus, clock)
+        state = link.read()
+        x, y, z = bus.units[0].chip.processor.body.tip[:3]
+        assert state.position_m == pytest.approx((x, 0.125 - z, y), abs=1e-3)  # one or two ticks later
+
+    def test_homing_lost_for_good_is_an_error(self):
+        bus, clock = held_bus()
+        link = open_on(bus, clock)
+        link.write(PUSH)
+        monitor = bus.units[0].chip.processor.body
+        monitor._hand.wants = lambda tip, homing, homed: tip[:3]  # pyright: ignore
+        monitor._homed = 0
+        with pytest.raises(DeviceError, match="lost its homing"):
+            for _ in range(5):
+                link.read()
+        assert monitor.torque_counts == (0, 0, 0)
+
+
+class TestForce:
+    def test_it_reaches_the_motors(self):
+        bus, clock = held_bus()
+        with open_on(bus, clock) as link:
+            link.read()
+            link.write(PUSH)
+            assert link.applied == pytest.approx(PUSH)
+            body = bus.units[0].chip.processor.body
+            from tangible_devices.falcon import kinematics
+
+            x, y, z = body.tip[:3].tolist()
+            rows = kinematics.jacobian(*kinematics.inverse(x, y, z), x, y, z)
+            fx, fy, fz = kinematics.force(rows, tuple(-each / 1e4 for each in body.torque_counts))
+            assert (fx, -fz, fy) == pytest.approx(PUSH, abs=0.05)
+
+    def test_it_moves_the_hand(self):
+        def height(force: Force) -> float:
+            bus, clock = held_bus()
+            with open_on(bus, clock) as link:
+                for _ in range(200):
+                    link.write(force)
+                return link.read().position_m[2]
+
+        assert height(Force(0.0, 0.0, 3.0)) > height(NO_FORCE) + 0.005
+
+    def test_the_last_packets_are_null(self, monkeypatch: pytest.MonkeyPatch):
+        bus, clock = held_bus()
+        with open_on(bus, clock) as link:
+            link.write(PUSH)
+            sent = recorded(bus, monkeypatch)
+        assert sent[-GOODBYES:] == [NULL] * GOODBYES
+        assert bus.units[0].chip.processor.body.torque_counts == (0, 0, 0)
+
+    def test_nothing_is_left_on_its_way(self):
+        bus, clock = held_bus()
+        open_on(bus, clock).close()
+        assert not bus.units[0].chip._waiting
+
+
+class TestRate:
+    @pytest.mark.parametrize(
+        ("in_flight", "event_character", "hertz"), [(1, False, 500), (2, False, 1000), (1, True, 1000)]
+    )
+    def test_packets_a_second(self, in_flight: int, event_character: bool, hertz: float):
+        bus, clock = held_bus()
+        with open_on(bus, clock, in_flight=in_flight, event_character=event_character) as link:
+            times = []
+            for _ in range(300):
+                link.write(NO_FORCE)
+                times.append(link.read().time_s)
+            assert 1 / np.median(np.diff(times)) == pytest.approx(hertz, rel=0.01)
+            assert np.diff(times).min() > 0
+            assert link.health().rate_hz == pytest.approx(hertz, rel=0.02)
+
+    def test_a_lost_packet_is_waited_for_and_passed_over(self):
+        bus, clock = held_bus()
+        chip = bus.units[0].chip
+        with open_on(bus, clock, in_flight=1) as link:
+            spoil, chip._spoil = chip._spoil, lambda said, data: b""
+            lost_s = clock()
+            chip._spoil = lambda said, data: b"" if clock() < lost_s + 0.03 else data
+            first, second = link.read(), link.read()
+            assert 0.03 < second.time_s - lost_s < 0.1
+            assert link.health().lost >= 1 and first.time_s < second.time_s
+            chip._spoil = spoil
+
+    def test_silence_is_an_error(self):
+        bus, clock = held_bus()
+        with pytest.raises(DeviceError, match="answers no more"), open_on(bus, clock) as link:
+            link.write(PUSH)
+            bus.units[0].chip._spoil = lambda said, data: b""
+            for _ in range(1000):
+                link.read()
+        assert bus.units[0].chip.processor.body.torque_counts == (0, 0, 0)
+
+
+class TestSeveral:
+    def test_by_serial_and_by_index(self):
+        bus, clock = held_bus(("A1", "B2"))
+        first = open_on(bus, clock)
+        second = open_on(bus, clock, index=1)
+        first.write(PUSH)
+        assert bus.units[0].chip.processor.body.torque_counts != (0, 0, 0)
+        assert bus.units[1].chip.processor.body.torque_counts == (0, 0, 0)
+        second.close()
+        with open_on(bus, clock, serial="B2"):
+            assert bus.units[1].claimed_by is not None
+        first.close()
+
+    def test_the_same_one_twice(self):
+        bus, clock = held_bus()
+        with open_on(bus, clock) as link:
+            link.write(PUSH)
+            with pytest.raises(DeviceError, match="another program is using it"):
+                open_on(bus, clock)
+            link.read()
+            assert link.applied == pytest.approx(PUSH)
+
+    def test_none_at_all(self):
+        bus, clock = held_bus(())
+        with pytest.raises(DeviceAbsent, match="none is plugged in"):
+            open_on(bus, clock)
+
+    @pytest.mark.parametrize(
+        ("options", "why"), [({"serial": "C3"}, "there are A1, B2"), ({"index": 2}, "index 2 is asked for and 2 are")]
+    )
+    def test_not_this_one(self, options: dict, why: str):
+        bus, clock = held_bus(("A1", "B2"))
+        with pytest.raises(DeviceError, match=why):
+            open_on(bus, clock, **options)
+
+
+def test_the_kernel_driver_gets_it_back():
+    bus, clock = held_bus()
+    with open_on(bus, clock):
+        assert not bus.units[0].kernel_driver
+    assert bus.units[0].kernel_driver
+
+
+def test_an_exchange_keeps_no_memory():
+    bus, clock = held_bus()
+    with open_on(bus, clock) as link:
+
+        def exchange(count: int) -> None:
+            for _ in range(count):
+                link.write(PUSH)
+                link.read()
+
+        exchange(500)
+        tracemalloc.start()
+        try:
+            exchange(200)
+            gc.collect()
+            before = tracemalloc.take_snapshot()
+            exchange(2000)
+            gc.collect()
+            after = tracemalloc.take_snapshot()
+        finally:
+            tracemalloc.stop()
+    here = [tracemalloc.Filter(True, "*tangible_devices*"), tracemalloc.Filter(True, "*usb*")]
+    grown = after.filter_traces(here).compare_to(before.filter_traces(here), "filename")
+    assert sum(each.size_diff for each in grown) < 20_000
+
+
+def test_the_kernels_are_those_of_the_link():
+    link = open_on(*held_bus())
+    read, write, fixed = link.kernels()
+    state = np.zeros(7)
+    assert link.exchanges
+    link.exchange()
+    assert read(*fixed, state)
+    assert not read(*fixed, state), "a position is read once"
+    write(*fixed, *PUSH)
+    link.exchange()
+    assert link.applied == pytest.approx(PUSH)
+    assert isinstance(link, FalconLink)

@@ -1,0 +1,92 @@
+"""The packets of a Falcon: the documented vectors to the count, and no torque of the wrong sign."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tangible_devices.falcon import packet
+
+INT16 = st.integers(-32768, 32767)
+TORQUE = st.floats(allow_nan=True, allow_infinity=True)
+
+
+def as_bytes(text: str) -> np.ndarray:
+    return np.frombuffer(bytearray(text.encode("latin-1")), np.uint8)
+
+
+def sent(first: int, second: int, third: int, info: int = 0) -> bytes:
+    buffer = np.zeros(16, np.uint8)
+    packet.encode(first, second, third, info, buffer)
+    return buffer.tobytes()
+
+
+@pytest.mark.parametrize(
+    ("counts", "digits"),
+    [(1447, "HKFA"), (-1447, "JFKP"), (0, "AAAA"), (-1, "PPPP"), (32767, "PPPH"), (-32768, "AAAI"), (-2900, "MKEP")],
+)
+def test_documented_numbers(counts: int, digits: str):
+    assert sent(counts, 0, counts)[1:13].decode() == f"{digits}AAAA{digits}"
+    assert packet.decode(as_bytes(f"<{digits}AAAA{digits}AA>")) == (counts, 0, counts, 0)
+
+
+def test_a_packet_seen_on_the_wire():
+    seen = bytes.fromhex("3c 50 50 50 41 43 45 50 41 43 4d 50 41 45 41 3e")
+    assert packet.decode(np.frombuffer(bytearray(seen), np.uint8)) == (4095, 3906, 4034, packet.BLUE)
+    assert sent(4095, 3906, 4034, packet.BLUE) == seen
+
+
+def test_the_null_packet():
+    assert sent(0, 0, 0) == b"<AAAAAAAAAAAAAA>"
+
+
+def test_buttons_and_homed_arms_are_the_low_and_the_high_bits():
+    assert packet.decode(as_bytes("<AAAAAAAAAAAA\xb1A>"))[3] == packet.HOMED
+
+
+@given(INT16, INT16, INT16, st.integers(0, 15))
+def test_what_is_encoded_is_decoded(first: int, second: int, third: int, info: int):
+    buffer = np.frombuffer(bytearray(sent(first, second, third, info)), np.uint8)
+    assert packet.decode(buffer) == (first, second, third, info)
+    assert packet.is_packet(buffer, 0)
+
+
+@given(st.binary(min_size=16, max_size=16))
+def test_only_answers_are_taken_for_packets(data: bytes):
+    right = (
+        data[0] == 0x3C and data[15] == 0x3E and all(65 <= each <= 80 for each in data[1:13]) and 65 <= data[13] <= 192
+    )
+    assert packet.is_packet(np.frombuffer(bytearray(data), np.uint8), 0) == right
+
+
+@pytest.mark.parametrize("at", range(16))
+@pytest.mark.parametrize("wrong", [0x00, 0x3D, 0x40, 0xFF])
+def test_one_impossible_byte_spoils_a_packet(at: int, wrong: int):
+    buffer = as_bytes("<HKFAJFKPAAAA\xb1A>")
+    buffer[at] = wrong
+    assert packet.is_packet(buffer, 0) == (at == 14)  # the meaning of the byte before the last is unknown
+
+
+@given(TORQUE, TORQUE, TORQUE)
+def test_no_torque_ever_turns_its_sign(first: float, second: float, third: float):
+    *counts, factor = packet.saturated(first, second, third)
+    held = packet.decode(np.frombuffer(bytearray(sent(*counts)), np.uint8))[:3]
+    assert list(held) == counts
+    assert 0 <= factor <= 1
+    for wanted, count in zip((first, second, third), held, strict=True):
+        assert abs(count) <= packet.MOST_COUNTS
+        assert count == 0 or math.copysign(1, count) == math.copysign(1, wanted)
+
+
+@given(*[st.floats(-1e6, 1e6)] * 3)
+def test_saturation_keeps_the_direction(first: float, second: float, third: float):
+    *counts, factor = packet.saturated(first, second, third)
+    assert np.allclose(counts, np.multiply((first, second, third), factor), atol=0.5)
+    assert factor == 1 or max(map(abs, counts)) == packet.MOST_COUNTS
+
+
+@pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
+def test_torques_that_are_not_finite_are_none(bad: float):
+    assert packet.saturated(100.0, bad, 100.0) == (0, 0, 0, 0.0)

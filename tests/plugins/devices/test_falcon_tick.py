@@ -1,0 +1,191 @@
+"""One tick of a Falcon: what is trusted, how fast it moves, and what force goes out."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from falcon_streams import buffers
+from tangible_devices.falcon import kinematics, packet, tick
+from tangible_devices.falcon.calibration import LEVER_M, Calibration
+from tangible_devices.falcon.framing import FRESH, NEW
+
+
+class Falcon:
+    """The kernels on buffers of their own, fed with whole answers."""
+
+    def __init__(self, calibration: Calibration | None = None) -> None:
+        chosen = calibration or Calibration()
+        self.buffers = buffers()._replace(arms=chosen.arms(), frame=chosen.frame())
+        self.counts, self.held = self.buffers.counts, self.buffers.held
+        self.state = np.full(7, np.nan)
+
+    def tell(self, counts: np.ndarray, after_s: float = 0.001, info: int = packet.HOMED) -> int:
+        packet.encode(*map(int, counts), 0, self.buffers.answer)
+        self.buffers.answer[packet.INFO] = packet.ZERO + info
+        self.held[tick.NOW] += after_s
+        self.counts[FRESH] = NEW
+        return tick.read(*self.buffers, self.state)
+
+    def settle(self, counts: np.ndarray, seconds: float = 1.0) -> None:
+        for _ in range(round(1000 * seconds)):
+            self.tell(counts)
+
+    def push(self, x: float, y: float, z: float) -> tuple[list[int], np.ndarray]:
+        tick.write(*self.buffers, x, y, z)
+        return list(packet.decode(self.buffers.packet)), self.held[tick.APPLIED : tick.APPLIED + 3]
+
+
+def counts_at(x: float, y: float, z: float) -> np.ndarray:
+    """Encoders of a tip in the workspace frame."""
+    angles = np.array(kinematics.inverse(x, z, kinematics.CENTRE_M - y))
+    return np.round((angles - math.radians(35)) / kinematics.RAD_PER_COUNT).astype(int)
+
+
+@pytest.mark.parametrize("place", [(0.0, 0.0, 0.0), (0.02, 0.01, -0.03), (-0.01, -0.03, 0.02)])
+def test_the_frame_is_ours(place: tuple[float, float, float]):
+    falcon = Falcon()
+    falcon.settle(counts_at(*place), 0.01)
+    assert falcon.state[:3] == pytest.approx(place, abs=6e-5)
+    assert falcon.state[3:6] == pytest.approx((0, 0, 0))
+
+
+def test_the_first_position_waits_for_a_second():
+    falcon, counts = Falcon(), counts_at(0, 0, 0)
+    assert [falcon.tell(counts) for _ in range(3)] == [0, 1, 1]
+
+
+def test_nothing_is_trusted_before_every_arm_is_homed():
+    falcon, counts = Falcon(), counts_at(0, 0, 0)
+    for info in (0, 0x10, 0x30, 0x60):
+        assert not falcon.tell(counts, info=info)
+        assert falcon.push(0, 0, 5)[0][:3] == [0, 0, 0]
+
+
+def test_homing_lost_takes_the_force_at_once_and_force_fades_in_again():
+    falcon, counts = Falcon(), counts_at(0, 0, 0)
+    falcon.settle(counts)
+    whole, _ = falcon.push(0, 0, 5)
+    falcon.tell(counts, info=0x30)
+    assert falcon.push(0, 0, 5)[0][:3] == [0, 0, 0]
+    sizes = []
+    for _ in range(600):
+        falcon.tell(counts + 300)
+        sizes.append(falcon.push(0, 0, 5)[1][2])
+    assert sizes[0] == 0 and sizes[-1] == 5
+    assert np.diff(sizes).max() <= 5 * 0.001 / tick.RAMP_S + 1e-9
+    assert np.diff(sizes).min() >= 0
+    assert max(map(abs, whole[:3])) > 0
+
+
+def test_the_lights_say_whether_it_is_homed():
+    falcon, counts = Falcon(), counts_at(0, 0, 0)
+    falcon.counts[tick.SEEKING], falcon.counts[tick.RUNNING] = packet.HOMING | packet.RED, packet.HOMING | packet.GREEN
+    assert falcon.push(0, 0, 0)[0][3] == packet.HOMING | packet.RED
+    falcon.tell(counts)
+    assert falcon.push(0, 0, 0)[0][3] == packet.HOMING | packet.GREEN
+
+
+def test_buttons_are_told():
+    falcon, counts = Falcon(), counts_at(0, 0, 0)
+    falcon.settle(counts, 0.01)
+    falcon.tell(counts, info=packet.HOMED | 0b0110)
+    assert falcon.state[6] == 0b0110
+
+
+def test_a_leap_waits_for_the_next_answer():
+    falcon, here, there = Falcon(), counts_at(0, 0, 0), counts_at(0.02, 0, 0)
+    falcon.settle(here)
+    assert [falcon.tell(each) for each in (there, here, there, there, there)] == [0, 1, 0, 1, 1]
+    assert falcon.push(0, 0, 5)[1][2] < 0.1, "after a true leap the force fades in"
+
+
+def test_angles_that_no_tip_has_give_no_force():
+    falcon, counts = Falcon(), counts_at(0, 0, 0)
+    falcon.settle(counts)
+    impossible = np.array([1600, -2300, 1600])
+    assert [falcon.tell(impossible) for _ in range(3)] == [0, 0, 0]
+    assert falcon.push(0, 0, 5)[0][:3] == [0, 0, 0]
+    assert falcon.counts[tick.REFUSED] >= 3
+
+
+@pytest.mark.parametrize("axis", [0, 1, 2])
+@pytest.mark.parametrize("speed", [0.002, 0.05, 0.5])
+def test_velocity_is_that_of_the_motion(axis: int, speed: float):
+    falcon = Falcon()
+    for i in range(80):
+        falcon.tell(counts_at(*((i - 40) * 0.001 * min(speed, 0.5) * np.eye(3)[axis])))
+    wanted = speed * np.eye(3)[axis]
+    assert np.linalg.norm(falcon.state[3:6] - wanted) <= max(0.05 * speed, 0.005)
+
+
+def test_velocity_of_a_still_tip_is_quiet():
+    """An encoder that trembles between two counts, differenced plainly, moves at 34 mm/s."""
+    falcon, counts = Falcon(), counts_at(0, 0, 0)
+    speeds = []
+    for i in range(500):
+        falcon.tell(counts + (i % 2))
+        speeds.append(np.linalg.norm(falcon.state[3:6]))
+    assert max(speeds[50:]) <= 0.005
+
+
+@given(
+    st.tuples(*[st.floats(-0.025, 0.025)] * 3),
+    st.tuples(*[st.floats(allow_nan=True, allow_infinity=True)] * 3),
+)
+def test_no_force_ever_pulls_where_it_should_push(place: tuple[float, float, float], force: tuple[float, float, float]):
+    """Whatever is asked for, the torques on the wire are those of a force along it, to half a count."""
+    falcon = Falcon()
+    falcon.settle(counts_at(*place), 0.6)
+    *counts, _info = falcon.push(*force)[0]
+    if not np.isfinite(force).all():
+        assert counts == [0, 0, 0]
+        return
+    ideal = np.array(force) / max(*map(abs, force), 1e-300)
+    rows = falcon.held[tick.SLOPES : tick.SLOPES + 9].reshape(3, 3)
+    x, y, z = falcon.buffers.frame[:, :3].T @ ideal
+    torques = -1e4 * np.array(kinematics.torques(tuple(map(tuple, rows.tolist())), (x, y, z)))
+    size = np.dot(counts, torques) / np.dot(torques, torques) if ideal.any() else 0.0
+    assert size >= 0
+    assert np.abs(np.array(counts) - size * torques).max() <= 1.0
+    assert max(map(abs, counts)) <= packet.MOST_COUNTS
+
+
+@given(st.tuples(*[st.floats(-100, 100)] * 3))
+def test_what_is_applied_is_what_the_motors_give(force: tuple[float, float, float]):
+    falcon = Falcon()
+    falcon.settle(counts_at(0.01, 0.0, 0.01), 0.6)
+    [*counts, _info], applied = falcon.push(*force)
+    rows = falcon.held[tick.SLOPES : tick.SLOPES + 9].reshape(3, 3)
+    given_ = falcon.buffers.frame[:, :3] @ rows.T @ (np.array(counts) / -1e4)
+    assert np.abs(given_ - applied).max() <= 0.005
+    if max(map(abs, force)) < 5:
+        assert applied == pytest.approx(force, abs=0.005)
+
+
+def test_the_stated_force_can_be_given_in_every_direction_at_the_centre():
+    rows = kinematics.jacobian(*kinematics.inverse(0.0, 0.0, kinematics.CENTRE_M), 0.0, 0.0, kinematics.CENTRE_M)
+    assert np.linalg.norm(np.linalg.inv(rows), axis=0).max() == pytest.approx(LEVER_M, rel=1e-3)
+    assert Calibration().spec().max_force_n == pytest.approx(6.09)
+    assert Calibration(counts_per_newton_metre=5000).spec().max_force_n == 8.0
+
+
+def test_calibration_moves_what_it_says():
+    axes = Falcon(Calibration(axes=("-x", "z", "y")))
+    axes.settle(counts_at(0.01, 0.02, 0.0), 0.01)
+    assert axes.state[:3] == pytest.approx((-0.01, -0.02, 0.0), abs=6e-5)
+    plain, half = Falcon(), Falcon(Calibration(counts_per_newton_metre=5000, motor_gain=(1.0, 1.0, 2.0)))
+    for falcon in (plain, half):
+        falcon.settle(counts_at(0, 0, 0))
+    first, second = plain.push(1, 1, 1)[0], half.push(1, 1, 1)[0]
+    assert second[:3] == pytest.approx(np.multiply(first[:3], (0.5, 0.5, 1.0)), abs=1)
+    offset = Falcon(Calibration(encoder_offset_deg=(36, 36, 36)))
+    offset.settle(counts_at(0, 0, 0), 0.01)
+    assert offset.state[1] < -0.0005, "the arms are farther out, and so the tip nearer to the user"
+
+
+def test_axes_name_each_axis_once():
+    with pytest.raises(ValueError, match="name an axis twice"):
+        Calibration(axes=("x", "-x", "y"))

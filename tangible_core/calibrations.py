@@ -24,6 +24,11 @@ def calibration_path(device: str, serial: str) -> Path:
     return folder / "devices" / f"{device}-{quote(serial, safe='') or 'any'}.json"
 
 
+def any_calibration(device: str) -> bool:
+    """Whether any was saved for this kind of device: if not, nobody need ask it for its serial number."""
+    return any(calibration_path(device, "").parent.glob(f"{device}-*.json"))
+
+
 def save_calibration(device: str, serial: str, values: BaseModel) -> Path:
     """Keep a unit's calibration in place of the one before, whole or not at all; where it lies now.
 

@@ -117,7 +117,7 @@ class Session:
 
 def _connected(until: ExitStack, uri: str, timeout_s: float) -> "ClientConnection":
     try:
-        from websockets.exceptions import InvalidHandshake
+        from websockets.exceptions import WebSocketException
         from websockets.sync.client import connect
     except ImportError as error:
         raise DeviceAbsent(f"device haply needs websockets ({error}); {INSTALL}") from error
@@ -134,7 +134,7 @@ def _connected(until: ExitStack, uri: str, timeout_s: float) -> "ClientConnectio
         return until.enter_context(asked)
     except (ConnectionRefusedError, TimeoutError) as error:
         raise DeviceAbsent(f"{uri}: no Haply service listens there ({error}); {START}") from error
-    except (OSError, InvalidHandshake, EOFError) as error:
+    except (OSError, WebSocketException, EOFError) as error:
         raise DeviceError(f"{uri}: is no Haply service ({error}); {START}") from error
 
 

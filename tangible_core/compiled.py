@@ -52,8 +52,14 @@ class CompiledTouch(Touch):
         from . import kernels
 
         positions, forces = path_arrays(positions_m, period_s)
-        cast(Any, kernels).along(kernels.Address(self.tick), self.fixed, positions, float(period_s), forces)
+        cast(Any, kernels).along(self.fixed, self.address(), positions, float(period_s), forces)
         return forces
+
+    def address(self) -> Any:
+        """The kernel as an argument of another one, which calls it with `*fixed` and a state."""
+        from . import kernels
+
+        return kernels.Address(self.tick, kernels.signature(self.tick, (*self.fixed, *[0.0] * 6)))
 
 
 def _revive(kernel: tuple[str, str], fixed: tuple[Any, ...], memory: np.ndarray, stiffness: float) -> CompiledTouch:

@@ -1,4 +1,7 @@
-"""Says that kernels are being compiled, which takes seconds, once a machine: a room of kernels imports this module."""
+"""How kernels are compiled, and a word while they are, which takes seconds, once a machine.
+
+A room of kernels imports this module.
+"""
 
 import logging
 from typing import Any
@@ -6,6 +9,10 @@ from typing import Any
 from numba.core import event
 
 log = logging.getLogger(__name__)
+
+KERNEL: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy", "_nrt": False}
+"""Options of a kernel that is given all its arrays and makes none: it counts no references to them, each of which is an
+atomic operation, twice an array and call."""
 
 
 class _CompileNotice(event.Listener):

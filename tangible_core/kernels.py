@@ -4,37 +4,75 @@
 # pyright: basic
 
 from collections.abc import Callable
+from importlib import import_module
 from typing import Any, final
 
 import numpy as np
-from numba import njit, types
+from numba import njit, typeof, types
+from numba.core import cgutils
+from numba.core.registry import cpu_target
+from numba.experimental.function_type import FunctionModel
+from numba.extending import NativeValue, register_model, typeof_impl, unbox
 
-from . import compiling as compiling
+from .compiling import KERNEL
+
+
+class KernelType(types.FunctionType):
+    """Of an `Address`, for numba: all kernels of one signature are one type."""
 
 
 @final
-class Address(types.WrapperAddressProtocol):
+class Address:
     """A kernel as an argument of another: by its address, so that the caller is compiled once for all kernels alike.
 
     A kernel given as it is would be compiled into the caller, anew in every process: numba's disk cache does not know
-    it again.
+    it again. The address is that of numba's own convention of calling: by C's, each call copies all arguments twice.
     """
 
-    def __init__(self, kernel: Callable[..., Any]) -> None:
+    def __init__(self, kernel: Callable[..., Any], signature: Any = None) -> None:
+        """signature: which, of a kernel that was given none when it was defined (see `signature`)."""
         self._kernel: Any = kernel
-        (self._signature,) = self._kernel.nopython_signatures
+        if signature is None:
+            (signature,) = self._kernel.nopython_signatures
+        self.signature: Any = signature
+        compiled = self._kernel.get_compile_result(signature)
+        self.address: int = compiled.library.get_pointer_to_function(compiled.fndesc.llvm_func_name)
 
-    def signature(self) -> Any:
-        """The one that the kernel was compiled for."""
-        return self._signature
-
-    def __wrapper_address__(self) -> int:
-        """Of the compiled code, for a caller by C's rules."""
-        compiled = self._kernel.get_compile_result(self._signature)
-        return compiled.library.get_pointer_to_function(compiled.fndesc.llvm_cfunc_wrapper_name)
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _revive, (self._kernel.py_func.__module__, self._kernel.py_func.__qualname__, self.signature)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+register_model(KernelType)(FunctionModel)
+
+
+@typeof_impl.register(Address)
+def _type_of(address: Address, _context: Any) -> KernelType:
+    return KernelType(address.signature)
+
+
+@unbox(KernelType)
+def _unbox(kind: Any, address: Any, c: Any) -> NativeValue:
+    made = cgutils.create_struct_proxy(kind)(c.context, c.builder)
+    number = c.pyapi.object_getattr_string(address, "address")
+    made.c_addr = made.py_addr = cgutils.get_null_value(c.context.get_value_type(types.voidptr))
+    made.jit_addr = c.pyapi.long_as_voidptr(number)
+    c.pyapi.decref(number)
+    return NativeValue(made._getvalue())
+
+
+def signature(kernel: Callable[..., Any], arguments: tuple[Any, ...]) -> Any:
+    """That of a kernel for such arguments; one that was given none is compiled for them, or found on disk."""
+    of_types: Any = typeof(kernel)
+    return of_types.get_call_type(cpu_target.typing_context, tuple(map(typeof, arguments)), {})
+
+
+def _revive(module: str, name: str, signature: Any) -> Address:
+    kernel = getattr(import_module(module), name)
+    kernel.get_call_template(signature.args, {})
+    return Address(kernel, signature)
+
+
+@njit(**KERNEL)
 def step_velocity(positions_m, period_s, i):
     """Velocity that brought the path to position i, one period after the one before it.
 
@@ -48,9 +86,9 @@ def step_velocity(positions_m, period_s, i):
     return (vx, vy, vz) if np.isfinite(vx) and np.isfinite(vy) and np.isfinite(vz) else (0.0, 0.0, 0.0)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def along(tick, fixed, positions_m, period_s, force_n):
-    """The law's force for every position of a path."""
+@njit(**KERNEL)
+def along(fixed, tick, positions_m, period_s, force_n):
+    """The law's force for every position of a path. (An address that comes first is warned of by numba.)"""
     for i in range(positions_m.shape[0]):
         x, y, z = positions_m[i, 0], positions_m[i, 1], positions_m[i, 2]
         vx, vy, vz = step_velocity(positions_m, period_s, i)

@@ -23,6 +23,7 @@ CHECKED = (
     "metrics",
     "picture_files",
     "pictures",
+    "testing.handle",
     "testing.nearest",
     "testing.reliefs",
     "testing.rough",

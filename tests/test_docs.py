@@ -58,3 +58,9 @@ def test_the_page_on_recordings_reads_and_writes_them(tmp_path: Path, monkeypatc
 def test_the_page_on_recordings_names_every_column():
     page = ROOT.joinpath("docs/recordings.md").read_text("utf-8")
     assert all(f"`{name}`" in page for name in TICK_COLUMNS)
+
+
+def test_the_page_on_the_force_loop_feels(capsys: pytest.CaptureFixture[str]):
+    (block,) = re.findall(r"```python\n(.*?)```", ROOT.joinpath("docs/servo.md").read_text("utf-8"), re.DOTALL)
+    exec(block, {})
+    assert capsys.readouterr().out.startswith("200 ")

@@ -39,7 +39,7 @@ class RenderScene(SceneSpec):
     depth_m: Length = 0.001
     """How deep under the surface the scripted hand goes."""
     recording: Path | None = None
-    """A recording, .npz or .csv, whose positions are the hand's way in place of the scripted one."""
+    """A recording, .nc, .npz or .csv, whose positions are the hand's way in place of the scripted one."""
 
     @model_validator(mode="after")
     def _one_surface(self) -> Self:

@@ -8,12 +8,11 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from .. import hooks, session
-from ..data import ServoReport
+from .. import session
 from ..errors import DeviceError
 from ..servo import OVER, Servo
 from . import show
-from .run import about, device_of, open_pipeline
+from .run import about, device_of, open_pipeline, tell_of
 
 
 def feel(config: Path, sets: Sequence[str], seconds: float, record: Path | None, as_json: bool, cached: bool) -> None:
@@ -28,12 +27,15 @@ def feel(config: Path, sets: Sequence[str], seconds: float, record: Path | None,
     def started(servo: Servo) -> None:
         loop.update(how=servo.how, start_s=servo.start_s, first_tick_unix_s=time.time())
 
-    def told(report: ServoReport) -> None:
-        hooks.tell(pipeline.registry.plugins, "tangible_servo_report", report=report)
-
     with nullcontext() if record is None else session.keeping(record, about(pipeline)) as kept:
         report = session.feel(
-            touch, device.method, seconds, pipeline.config.safety, told, kept.append if kept else _forget, started
+            touch,
+            device.method,
+            seconds,
+            pipeline.config.safety,
+            tell_of(pipeline),
+            kept.append if kept else _forget,
+            started,
         )
         if kept:
             kept.close("" if report.stopped == OVER else report.stopped)

@@ -18,7 +18,7 @@ from ..data import MaterialMap, Record, ServoReport
 from ..engine import Pipeline, load_pipeline
 from ..errors import ConfigError
 from ..files import write_text
-from ..interfaces import HapticDevice, Touch
+from ..interfaces import HapticDevice
 from ..registry import default_registry
 from ..report import disparity_errors, draw_sheet, write_figures
 from ..session import Recording
@@ -121,20 +121,18 @@ def _feel(pipeline: Pipeline, value: Any, seconds: float) -> Recording | None:
     device = pipeline.config.felt_device
     if pipeline.config.want != "touch" or device is None or not device.spec().simulated:
         return None
-    return felt(pipeline, value, device, seconds)
-
-
-def felt(
-    pipeline: Pipeline, touch: Touch, device: HapticDevice, seconds: float, writer: session.Writer | None = None
-) -> Recording:
-    """A session whose reports go to the observers, and its ticks to a writer, made with `about`."""
     said = about(pipeline).stamped()
+    recording = session.run(value, device, seconds, tell_of(pipeline), pipeline.config.safety)
+    return replace(recording, about=said)
 
-    def report(report: ServoReport) -> None:
+
+def tell_of(pipeline: Pipeline) -> Callable[[ServoReport], None]:
+    """What passes the reports of a loop on to the observers."""
+
+    def tell(report: ServoReport) -> None:
         hooks.tell(pipeline.registry.plugins, "tangible_servo_report", report=report)
 
-    recording = session.run(touch, device, seconds, report, writer)
-    return recording if writer else replace(recording, about=said)
+    return tell
 
 
 def about(pipeline: Pipeline) -> session.About:

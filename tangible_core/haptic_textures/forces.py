@@ -11,6 +11,7 @@ import math
 import numpy as np
 from numba import float64, int64, njit, types, void
 
+from ..compiling import KERNEL
 from .heights import COSINE, ROW, SINE, TEXTURES, kept, series, texture_height
 from .table import DRAG, DYNAMIC, PER_M, STIFFNESS, SWING
 
@@ -22,12 +23,11 @@ _REACH = float(np.max(_SHAPE @ np.sin(np.outer(_TURNS, np.linspace(0, math.pi, 1
 HARMONICS = tuple(float(each) / _REACH for each in _SHAPE)
 """Amplitudes of a sawtooth's, with Lanczos' factors, which keep the sum from overshooting; from -1 to 1 in all."""
 POINTS = types.Array(float64, 2, "C", readonly=True)
-OPTIONS = {"cache": True, "nogil": True, "error_model": "numpy"}
 
 _X, _Y, _BRISTLE_X, _BRISTLE_Y, _PHASE, _LEVEL, _OWNER = range(STATE)
 
 
-@njit(float64(float64, float64), **OPTIONS)
+@njit(float64(float64, float64), **KERNEL)
 def _sawtooth(phase, turns):
     """From -1 to 1 over a turn and back at once, in a few harmonics, each as far as it is sampled well enough."""
     half = phase - math.floor(phase + 0.5)
@@ -40,14 +40,14 @@ def _sawtooth(phase, turns):
     return total
 
 
-@njit(void(float64[::1], int64, float64, float64, float64), **OPTIONS)
+@njit(void(float64[::1], int64, float64, float64, float64), **KERNEL)
 def _attach(state, material, level, x, y):
     """A contact begins: the bristle stands upright, and friction is at its static level."""
     state[_X], state[_Y], state[_LEVEL], state[_OWNER] = x, y, level, material + 1.0
     state[_BRISTLE_X] = state[_BRISTLE_Y] = state[_PHASE] = 0.0
 
 
-@njit(void(ROW, float64[::1], float64, float64, float64), **OPTIONS)
+@njit(void(ROW, float64[::1], float64, float64, float64), **KERNEL)
 def _stretch(row, state, x, y, normal_n):
     """Carry the bristle along, and let it slip where it is stretched too far.
 
@@ -74,7 +74,7 @@ def _stretch(row, state, x, y, normal_n):
     state[_X], state[_Y], state[_BRISTLE_X], state[_BRISTLE_Y] = x, y, bristle_x, bristle_y
 
 
-@njit(types.UniTuple(float64, 2)(TEXTURES, int64, float64[::1], *[float64] * 5), **OPTIONS)
+@njit(types.UniTuple(float64, 2)(TEXTURES, int64, float64[::1], *[float64] * 5), **KERNEL)
 def texture_force(textures, material, state, x, y, vx, vy, normal_n):
     """(Fx, Fy): lateral newtons of the textures that are no heights: drag, and friction that sticks and slips.
 
@@ -101,7 +101,7 @@ def texture_force(textures, material, state, x, y, vx, vy, normal_n):
     return fx, fy
 
 
-@njit(void(TEXTURES, int64, float64[::1], POINTS, float64, float64, float64[:, ::1]), **OPTIONS)
+@njit(void(TEXTURES, int64, float64[::1], POINTS, float64, float64, float64[:, ::1]), **KERNEL)
 def along(textures, material, state, positions_m, period_s, normal_n, felt):
     """Height and lateral force, metres and newtons, at every position of a path, one period apart.
 

@@ -16,6 +16,7 @@ import math
 import numpy as np
 from numba import float64, int64, njit, types
 
+from ..compiling import KERNEL
 from .table import COUNT, HEAD
 from .waves import WAVES
 
@@ -29,21 +30,21 @@ COSINE = tuple((-1.0) ** n * math.pi ** (2 * n) / math.factorial(2 * n) for n in
 """sin(pi t) = t series(SINE, t^2) and cos(pi t) = series(COSINE, t^2) for half a turn to either side, |t| <= 1/2."""
 
 
-@njit(float64(float64), inline="always", cache=True, nogil=True)
+@njit(float64(float64), inline="always", **KERNEL)
 def kept(turns):
     """Share of a wave that is left where it makes this many turns a tick."""
     over = min(max((turns - WHOLE) / (GONE - WHOLE), 0.0), 1.0)
     return 1.0 - over * over * (3.0 - 2.0 * over)
 
 
-@njit(inline="always", cache=True, nogil=True)
+@njit(inline="always", **KERNEL)
 def series(terms, u):
     """A polynomial of eight terms in u, in an order that a processor can work side by side."""
     low = terms[0] + u * (terms[1] + u * (terms[2] + u * terms[3]))
     return low + u * u * u * u * (terms[4] + u * (terms[5] + u * (terms[6] + u * terms[7])))
 
 
-@njit(types.UniTuple(float64, 3)(ROW, *[float64] * 4), fastmath={"reassoc", "contract", "nsz"}, cache=True, nogil=True)
+@njit(types.UniTuple(float64, 3)(ROW, *[float64] * 4), fastmath={"reassoc", "contract", "nsz"}, **KERNEL)
 def _sum_of_waves(row, x, y, step_x, step_y):
     """Height and gradient, of which nothing is known where a number is not finite: sums are reordered to vectorise."""
     height = slope_x = slope_y = 0.0
@@ -60,7 +61,7 @@ def _sum_of_waves(row, x, y, step_x, step_y):
     return height, 4.0 * math.pi * slope_x, 4.0 * math.pi * slope_y
 
 
-@njit(types.UniTuple(float64, 3)(TEXTURES, int64, *[float64] * 5), cache=True, nogil=True, error_model="numpy")
+@njit(types.UniTuple(float64, 3)(TEXTURES, int64, *[float64] * 5), **KERNEL)
 def texture_height(textures, material, x, y, vx, vy, dt):
     """(h, dh/dx, dh/dy): height in metres over the material's mean, and its exact gradient; zeros if not finite.
 

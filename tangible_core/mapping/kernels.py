@@ -7,8 +7,8 @@ from functools import cache
 
 from numba import float64, int64, njit, typeof, types, void
 
-from .. import compiling as compiling
 from ..compiled import LinkKernels
+from ..compiling import KERNEL
 from ..kernels import Address
 from .placement import Placement
 
@@ -21,7 +21,7 @@ whether there may be no force now, and whether it waits for the law to let go.""
 MEMORY = 7
 
 
-@njit(void(PLACEMENT, ARRAY, ARRAY), cache=True, nogil=True, error_model="numpy")
+@njit(void(PLACEMENT, ARRAY, ARRAY), **KERNEL)
 def place(to, memory, state):
     """Turn a device's state (x, y, z, vx, vy, vz, buttons) into the picture's, where it stands."""
     x, y, z = state[0], state[1], state[2]
@@ -43,7 +43,7 @@ def place(to, memory, state):
     state[5] = state[5] / to.scale
 
 
-@njit(VECTOR(PLACEMENT, ARRAY, float64, float64, float64), cache=True, nogil=True, error_model="numpy")
+@njit(VECTOR(PLACEMENT, ARRAY, float64, float64, float64), **KERNEL)
 def push(to, memory, fx, fy, fz):
     """The force on the hand; zero while it may not be pushed, and after that until the law itself gives none.
 
@@ -84,4 +84,4 @@ def around(device: LinkKernels, to: Placement, memory) -> LinkKernels:
 
 @cache
 def _compiled(kernel, signature):
-    return njit(signature, cache=True, nogil=True, error_model="numpy")(kernel)
+    return njit(signature, **KERNEL)(kernel)

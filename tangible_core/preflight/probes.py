@@ -16,6 +16,8 @@ SKIN_M = 1e-6
 """As deep as a hand that has only just come in."""
 STEP_M = 1e-4
 """How much farther it goes in to find the stiffness: about what a hand moves in a tick."""
+SLOW_STEP_M = 2e-5
+"""And to find the damping: so little in a tick that the waves of a fine texture, which fade with speed, are whole."""
 SOFT_M = 1e-3
 """How deep a hand is taken to press where a law is no spring and does not hold it up."""
 CLEAR_M = 0.02
@@ -71,13 +73,14 @@ def probe(
     force_n, _, along = feeler.push(pressed, np.zeros_like(pressed))
     strength_n = np.linalg.norm(force_n, axis=1, keepdims=True)
     along = np.divide(force_n, strength_n, out=np.zeros_like(force_n), where=strength_n > 0)
-    rest_n, arrived_n, later_n = feeler.push(pressed, -STEP_M * along)
+    rest_n, _, later_n = feeler.push(pressed, -STEP_M * along)
+    _, arrived_n, stopped_n = feeler.push(pressed, -SLOW_STEP_M * along)
     return Probes(
         depth_m=depth_m,
         force_n=force_n,
         onset_n=np.linalg.norm(feeler.rest(places + SKIN_M * down), axis=1),
         stiffness_n_per_m=np.sum((later_n - rest_n) * along, axis=1) / STEP_M,
-        damping_n_s_per_m=np.sum((arrived_n - later_n) * along, axis=1) * period_s / STEP_M,
+        damping_n_s_per_m=np.sum((arrived_n - stopped_n) * along, axis=1) * period_s / SLOW_STEP_M,
     )
 
 

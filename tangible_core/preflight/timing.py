@@ -11,6 +11,7 @@ from jaxtyping import Float64
 
 from ..data import HapticState, Record
 from ..interfaces import Touch
+from ..servo.priority import PRIORITY
 
 TICKS = 2000
 """So many ticks are timed one by one, of a stroke over the surface."""
@@ -103,7 +104,7 @@ def _take_fifo() -> "tuple[int, os.sched_param] | None":
     """Ask for SCHED_FIFO; what there was before, or None if it is refused."""
     try:
         before = os.sched_getscheduler(0), os.sched_getparam(0)
-        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(1))
+        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(PRIORITY))
     except (AttributeError, OSError):  # another system; not permitted
         return None
     return before

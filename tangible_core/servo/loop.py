@@ -7,8 +7,9 @@ from typing import Any, NamedTuple, cast
 import numpy as np
 
 from ..compiled import CompiledLink, CompiledTouch
-from ..data import TICK_COLUMNS, Force, HapticState, TickFlag
+from ..data import TICK_COLUMNS, TickFlag
 from ..interfaces import Link, Touch
+from .guarded import guarded
 from .lead import longer_lead_ns
 from .ring import (
     COMMAND,
@@ -105,11 +106,11 @@ def _stopped(shared: Sections) -> Sections:
 
 def _plain(link: Link, touch: Touch, limits: tuple[np.ndarray, np.ndarray], shared: Sections, row: np.ndarray) -> Timed:
     """A tick for a device or a law that is no kernel."""
-    from . import coupling, cycle, guard
+    from . import cycle
 
     proxy = touch.memory[:3] if isinstance(touch, CompiledTouch) else np.full(3, np.nan)
-    header = shared[0]
-    couple, allow, finished = cast(Any, coupling).couple, cast(Any, guard).guard, cast(Any, cycle).finished
+    header, allowed = shared[0], guarded(touch, *limits)
+    finished = cast(Any, cycle).finished
     now = np.zeros(2, np.int64)
     next(finished(tuple(map(np.zeros_like, shared)), row, now))  # compiled or loaded now, not in the first tick
     finish = finished(shared, row, now)
@@ -117,13 +118,11 @@ def _plain(link: Link, touch: Touch, limits: tuple[np.ndarray, np.ndarray], shar
     def tick(at_ns: int, late_ns: int) -> None:
         period_s = (at_ns - header[PREVIOUS_NS] if header[COUNT] else header[PERIOD_NS]) / SECOND_NS
         state = link.read()
-        device = *state.position_m, *state.velocity_m_per_s
-        tool = couple(*limits, period_s, *device)
-        wanted = touch.force(HapticState(tool[:3], tool[3:], state.time_s, state.buttons))
-        *force, flags = allow(*limits, period_s, *device, *wanted)
-        link.write(Force(*force))
+        force, flags = allowed(state, period_s)
+        link.write(force)
         begun = (at_ns - header[START_NS]) / SECOND_NS, late_ns / SECOND_NS
-        row[:] = (*begun, *device, *proxy, *link.applied, flags, state.buttons)
+        felt = *state.position_m, *state.velocity_m_per_s, *proxy, *link.applied
+        row[:] = (*begun, *felt, flags, state.buttons)
         now[:] = at_ns, late_ns
         next(finish)
 

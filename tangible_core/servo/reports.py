@@ -1,5 +1,9 @@
 """What a ring says of its loop."""
 
+import math
+from bisect import bisect_left
+from itertools import accumulate
+
 import numpy as np
 
 from ..data import TICK_COLUMNS, Force, HapticState, ServoReport, Spread

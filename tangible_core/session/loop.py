@@ -8,18 +8,21 @@ from typing import final
 
 import numpy as np
 
-from ..data import NO_FORCE, TICK_COLUMNS, Force, HapticState, ServoReport, TickFlag
-from ..errors import ConfigError, DeviceError, OutputError
+from ..compiled import CompiledTouch
+from ..data import NO_FORCE, TICK_COLUMNS, Force, HapticState, ServoReport
+from ..errors import ConfigError, DeviceError
 from ..interfaces import HapticDevice, Link, Touch
+from ..servo import Safety
+from ..servo.guarded import Guarded, guarded
 from .recording import INTERRUPTED, Recording
 from .replay import proxy_of
-from .writer import Writer
 
 log = logging.getLogger(__name__)
 MOST_TICKS = 3_600_000
 """Where a recording in memory is full, and the loop stops and says so: an hour at 1 kHz, half a gigabyte."""
 REPORT_EVERY_S = 0.1
-TOUCHING, LIMITED, NOT_FINITE = map(int, (TickFlag.TOUCHING, TickFlag.FORCE_LIMITED, TickFlag.NOT_FINITE))
+FIRST_S = 0.001
+"""The period that the first tick is taken to have."""
 
 
 def run(
@@ -27,27 +30,26 @@ def run(
     device: HapticDevice,
     seconds: float,
     on_report: Callable[[ServoReport], None] | None = None,
-    writer: Writer | None = None,
+    limits: Safety | None = None,
 ) -> Recording:
-    """Feel for a while: read, force, write, until the device's clock has gone on by so many seconds.
+    """Feel for a while, in the device's own time: until its clock has gone on by so many seconds.
 
-    No force over the device's maximum and none that is not finite reaches it. `on_report` is called ten times a
-    second of the device's time, and at the end. Ctrl-C, a device that stops answering or whose clock stands still, and
-    a full recording (`MOST_TICKS`) end it early: the force is zero, what was felt so far is returned, and
-    `Recording.stopped` says why.
-
-    With a writer the ticks go to its file as often as reports come, and not into memory; it is closed at the end, and
-    what is returned is what its file holds. Where it cannot write any more, the loop says so and goes on.
+    The guard of these limits lets no force through that they forbid. `on_report` is called ten times a second of the
+    device's time, and at the end. Ctrl-C, a device that stops answering or whose clock stands still, and a full
+    recording (`MOST_TICKS`) end it early: the force is zero, what was felt so far is returned, and `Recording.stopped`
+    says why.
     Raises: ConfigError if seconds is not above 0 and finite, DeviceError if the device cannot be opened, and whatever
     a faulty touch or `on_report` raises, after the force was made zero.
     """
     if not 0 < seconds < math.inf:
         raise ConfigError(f"seconds: is {seconds}; a session takes more than 0 seconds, and an end")
-    tape = _Tape(touch, device.spec().max_force_n, on_report or _ignore, writer)
+    stiffness = touch.stiffness_n_per_m if isinstance(touch, CompiledTouch) else 0.0
+    allowed = guarded(touch, *(limits or Safety()).arrays(device.spec(), stiffness))
+    tape = _Tape(touch, on_report or _ignore)
     link = device.open()
     try:
         with link:
-            _feel(touch, link, seconds, tape)
+            _feel(allowed, link, seconds, tape)
     except DeviceError as error:  # also when the device is gone before its force could be made zero
         tape.stopped = tape.stopped or str(error)
     if tape.stopped:
@@ -80,22 +82,24 @@ def limited(force: Force, most_n: float) -> Force:
     return Force(x * scale, y * scale, z * scale)
 
 
-def _feel(touch: Touch, link: Link, seconds: float, tape: "_Tape") -> None:
+def _feel(allowed: Guarded, link: Link, seconds: float, tape: "_Tape") -> None:
     """Tick until the time is over; a cause to end early is left in tape.stopped."""
     try:
-        state = link.read()
+        state, period_s = link.read(), FIRST_S
         start_s = state.time_s
         while not tape.stopped:
-            link.write(tape.allowed(touch.force(state)))
-            tape.add(state, link.applied)
+            force, flags = allowed(state, period_s)
+            link.write(force)
+            tape.add(state, link.applied, flags)
             last_s, state = state.time_s, link.read()
-            if not state.time_s > last_s:
+            period_s = state.time_s - last_s
+            if not period_s > 0:
                 tape.stopped = f"the device's clock stands still at {state.time_s} s"
             # ticks come at 0, T, 2 T ...: round(seconds / T) of them, whatever the rounding of their stamps
-            elif state.time_s - start_s >= seconds - (state.time_s - last_s) / 2:
+            elif state.time_s - start_s >= seconds - period_s / 2:
                 return
-            elif tape.held >= MOST_TICKS:
-                tape.stopped = f"the recording is full, {MOST_TICKS} ticks; write it to a .nc file while it is felt"
+            elif tape.ticks >= MOST_TICKS:
+                tape.stopped = f"the recording is full, {MOST_TICKS} ticks; feel for a shorter while"
     except KeyboardInterrupt:
         tape.stopped = INTERRUPTED
     except DeviceError as error:
@@ -106,42 +110,26 @@ def _feel(touch: Touch, link: Link, seconds: float, tape: "_Tape") -> None:
 class _Tape:
     """What the loop remembers: the ticks, and the sums for its reports."""
 
-    def __init__(
-        self, touch: Touch, max_force_n: float, on_report: Callable[[ServoReport], None], writer: Writer | None
-    ) -> None:
+    def __init__(self, touch: Touch, on_report: Callable[[ServoReport], None]) -> None:
         self.stopped = ""
         self.ticks = 0
         self._numbers = array("d")
         self._proxy = proxy_of(touch)
-        self._max_force_n = max_force_n
         self._on_report = on_report
-        self._writer = writer
-        self._reports = self._flags = 0
+        self._reports = 0
         self._start_s = self._peak_n = self._work_j = 0.0
         self._state, self._force = HapticState((0.0, 0.0, 0.0)), NO_FORCE
 
-    @property
-    def held(self) -> int:
-        """Ticks in memory."""
-        return len(self._numbers) // len(TICK_COLUMNS)
-
-    def allowed(self, force: Force) -> Force:
-        """What may reach the device of a renderer's force."""
-        safe = limited(force, self._max_force_n)
-        self._flags = TOUCHING if any(force) else 0
-        if safe is not force:
-            self._flags |= LIMITED if all(map(math.isfinite, force)) else NOT_FINITE
-        return safe
-
-    def add(self, state: HapticState, force: Force) -> None:
+    def add(self, state: HapticState, force: Force, flags: int) -> None:
         """One tick more, and a report when it is time."""
         if not self.ticks:
             self._start_s, self._state = state.time_s, state
         way = zip(self._force, state.position_m, self._state.position_m, strict=True)
         self._work_j += sum(held * (now - then) for held, now, then in way)
         self._peak_n = max(self._peak_n, math.hypot(*force))
-        self._numbers.extend((state.time_s, 0.0, *state.position_m, *state.velocity_m_per_s))
-        self._numbers.extend((*self._proxy(), *force, self._flags, state.buttons))
+        moved = *state.position_m, *state.velocity_m_per_s
+        row = state.time_s, 0.0, *moved, *self._proxy(), *force, flags, state.buttons
+        self._numbers.extend(row)  # all at once: Ctrl-C leaves whole rows
         self._state, self._force = state, force
         self.ticks += 1
         if state.time_s - self._start_s >= REPORT_EVERY_S * (self._reports + 1):
@@ -149,9 +137,7 @@ class _Tape:
             self.report("")
 
     def report(self, stopped: str) -> None:
-        """Say how it goes, once what there is to say is safe in the file."""
-        if self._writer is not None:
-            self._hand_over(self._writer)
+        """Say how it goes."""
         self._on_report(
             ServoReport(
                 ticks=self.ticks,
@@ -165,23 +151,8 @@ class _Tape:
         )
 
     def recording(self) -> Recording:
-        """All of it; from the file, where there is one."""
-        if self._writer is None:
-            return Recording(self._rows(), self.stopped)
-        self._writer.close(self.stopped)
-        return Recording.load(self._writer.path)
-
-    def _hand_over(self, writer: Writer) -> None:
-        rows = self._rows()
-        self._numbers = array("d")
-        if not writer.closed:
-            try:
-                writer.append(rows)
-            except OutputError as error:
-                log.warning("%s; what is felt now is not recorded", error)
-
-    def _rows(self) -> np.ndarray:
-        return np.array(self._numbers, np.float64).reshape(-1, len(TICK_COLUMNS))
+        """All of it."""
+        return Recording(np.array(self._numbers, np.float64).reshape(-1, len(TICK_COLUMNS)), self.stopped)
 
 
 def _ignore(report: ServoReport) -> None:

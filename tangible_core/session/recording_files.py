@@ -72,7 +72,7 @@ def _from_npz(path: Path) -> Kept:
 
 
 def _from_csv(path: Path) -> Kept:
-    header, *lines = path.read_text(encoding="utf-8").splitlines()
+    header, *lines = path.read_text(encoding="utf-8-sig").splitlines()
     names = header.split(",")
     if missing := [name for name in TICK_COLUMNS if name not in (*names, *UNKNOWN)]:
         raise ValueError(f"its first line names no {', '.join(missing)}")

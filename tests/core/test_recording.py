@@ -57,7 +57,9 @@ def test_csv_keeps_every_digit_of_the_ticks(tmp_path: Path, count: int):
 def test_csv_is_read_by_the_names_of_its_columns(tmp_path: Path):
     """Ten columns were all, once; nothing was known of the others."""
     names = [name for name in TICK_COLUMNS if not name.startswith(("proxy", "late", "flags", "buttons"))]
-    (tmp_path / "old.csv").write_text(",".join(["note", *reversed(names)]) + "\n" + "9,9,8,7,6,5,4,3,2,1,0\n" * 2)
+    (tmp_path / "old.csv").write_text(
+        "\ufeff" + ",".join(["note", *reversed(names)]) + "\n" + "9,9,8,7,6,5,4,3,2,1,0\n" * 2
+    )
     recording = Recording.load(tmp_path / "old.csv")
     assert recording.time_s.tolist() == [0, 0]
     assert (recording.position_m[0].tolist(), recording.force_n[1].tolist()) == ([1, 2, 3], [7, 8, 9])

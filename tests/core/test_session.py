@@ -3,23 +3,24 @@
 import logging
 import math
 from collections.abc import Callable
-from pathlib import Path
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from full_disk import files_up_to
 from tangible_core.data import NO_FORCE, DeviceSpec, Force, HapticState, HapticSurface, ServoReport, TickFlag
 from tangible_core.errors import ConfigError, DeviceError
 from tangible_core.interfaces import HapticDevice, Link, Touch
-from tangible_core.session import INTERRUPTED, Recording, Writer, failure, limited, loop, run
+from tangible_core.servo import Safety
+from tangible_core.session import INTERRUPTED, failure, limited, loop, run
 from tangible_devices.mock import Mock
 from tangible_render.penalty_gradient import PenaltyGradient
 from tangible_render.proxy import Proxy
 
 PUSH = Force(0.0, 0.0, 2.0)
+FREE = Safety(ramp_s=0, max_step_n=10, passivity="off")
+"""Limits that let all through but what is too strong or not finite."""
 
 
 class Says(Touch):
@@ -79,12 +80,10 @@ class Bench(HapticDevice):
         return link
 
 
-def feel(
-    answer: Callable[[int], Force], seconds: float = 1.0, link: Scripted | None = None, on_report=None, writer=None
-):
+def feel(answer: Callable[[int], Force], seconds: float = 1.0, link: Scripted | None = None, on_report=None):
     link = link or Scripted()
     LINKS[:] = [link]
-    return run(Says(answer), Bench(), seconds, on_report, writer), link
+    return run(Says(answer), Bench(), seconds, on_report, FREE), link
 
 
 def fails(error: BaseException, at: int) -> Callable[[int], Force]:
@@ -100,7 +99,7 @@ class TestRun:
     def test_what_is_recorded_is_what_was_felt(self):
         touch = PenaltyGradient().touch(HapticSurface.from_heights(np.random.default_rng(0).uniform(0, 0.004, (9, 9))))
         mock = Mock(hand=None, path="circle", z_m=0.001)
-        recording = run(touch, mock, 0.5)
+        recording = run(touch, mock, 0.5, limits=FREE)
         with mock.open() as link:
             states = [link.read() for _ in range(500)]
         assert np.array_equal(recording.time_s, np.arange(500) * 0.001)
@@ -163,47 +162,7 @@ class TestRun:
             run(Says(lambda _: PUSH), Bench(), 1.0)
 
 
-class TestWriting:
-    def test_ticks_are_in_the_file_with_each_report(self, tmp_path: Path):
-        seen: list[int] = []
-        path = tmp_path / "stroke.nc"
-        with Writer(path) as writer:
-            recording, _ = feel(
-                lambda _: PUSH, 1.0, on_report=lambda _: seen.append(len(Recording.load(path).rows)), writer=writer
-            )
-        whole, _ = feel(lambda _: PUSH, 1.0)
-        assert seen == pytest.approx([100, 200, 300, 400, 500, 600, 700, 800, 900, 1000], abs=2)
-        assert np.allclose(recording.rows, whole.rows, rtol=1e-7, atol=0, equal_nan=True)
-        assert np.array_equal(recording.time_s, whole.time_s)
-        assert recording.stopped == ""
-
-    def test_why_it_ended_is_in_the_file(self, tmp_path: Path):
-        with Writer(tmp_path / "stroke.nc") as writer:
-            feel(lambda _: PUSH, link=Scripted(fails_at=20), writer=writer)
-        kept = Recording.load(tmp_path / "stroke.nc")
-        assert (len(kept.rows), kept.stopped) == (20, "the cable is out; put it in")
-
-    def test_a_recording_in_a_file_is_never_full(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-        monkeypatch.setattr(loop, "MOST_TICKS", 150)
-        with Writer(tmp_path / "stroke.nc") as writer:
-            recording, _ = feel(lambda _: PUSH, 1.0, writer=writer)
-        assert (len(recording.rows), recording.stopped) == (1000, "")
-
-    def test_a_full_disk_ends_the_recording_and_not_the_loop(self, tmp_path: Path, caplog: pytest.LogCaptureFixture):
-        with Writer(tmp_path / "stroke.nc") as writer, files_up_to(50_000):
-            recording, link = feel(lambda _: PUSH, 1.0, writer=writer)
-        assert len(link.forces) == 1001
-        assert len(recording.rows) == pytest.approx(500, abs=2)
-        assert recording.stopped.startswith("the recording ends early: ")
-        assert caplog.text.count("what is felt now is not recorded") == 1
-
-    def test_a_touch_at_fault_is_named_in_the_file(self, tmp_path: Path):
-        with pytest.raises(ZeroDivisionError), Writer(tmp_path / "stroke.nc") as writer:
-            feel(fails(ZeroDivisionError("oh"), 250), writer=writer)
-        kept = Recording.load(tmp_path / "stroke.nc")
-        assert kept.stopped == "ZeroDivisionError: oh"
-        assert len(kept.rows) == pytest.approx(200, abs=2)
-
+class TestRows:
     def test_proxy_flags_and_buttons(self):
         surface = HapticSurface.from_heights(np.full((8, 8), 1 / 128))
         recording = run(Proxy().touch(surface), Mock(hand=None, path="press", z_m=1 / 128 - 0.02, lift_m=0.03), 0.6)

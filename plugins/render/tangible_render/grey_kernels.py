@@ -5,12 +5,14 @@
 import numpy as np
 from numba import float64, njit
 
+from tangible_core.compiling import KERNEL
+
 from .bilinear import GREYS, HEIGHTS, NEWTONS, cell, over
 
 SURFACE = (HEIGHTS, GREYS, float64, float64, float64)
 
 
-@njit(NEWTONS(*SURFACE, *[float64] * 6), cache=True, nogil=True, error_model="numpy")
+@njit(NEWTONS(*SURFACE, *[float64] * 6), **KERNEL)
 def tick(height_m, grey, width_m, length_m, white_n, x, y, z, vx, vy, vz):
     """F_z = white_n G / 255 under the surface of the cell that the tip is in; zero in free air."""
     if not (over(width_m, length_m, x, y) and np.isfinite(z + vx + vy + vz)):

@@ -5,13 +5,15 @@
 import numpy as np
 from numba import float64, njit
 
+from tangible_core.compiling import KERNEL
+
 from .bilinear import HEIGHTS, NEWTONS, over
 from .spline import slope
 
 SURFACE = (HEIGHTS, *[float64] * 6)
 
 
-@njit(NEWTONS(*SURFACE, *[float64] * 6), cache=True, nogil=True, error_model="numpy")
+@njit(NEWTONS(*SURFACE, *[float64] * 6), **KERNEL)
 def tick(coefficients, width_m, length_m, across_per_m, down_per_m, push_n, stiffness_n_per_m, x, y, z, vx, vy, vz):
     """F = -(push_n + k d) grad h, where d = h - z > 0, and nothing along z; zero in free air."""
     if not (over(width_m, length_m, x, y) and np.isfinite(vx + vy + vz)):

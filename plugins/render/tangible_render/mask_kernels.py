@@ -5,13 +5,15 @@
 import numpy as np
 from numba import float64, int64, njit, types
 
+from tangible_core.compiling import KERNEL
+
 from .bilinear import HEIGHTS, NEWTONS, cell, over
 
 TABLES = types.Array(int64, 3, "C", readonly=True)
 SURFACE = (HEIGHTS, TABLES, float64, float64, int64, int64, float64, float64)
 
 
-@njit(types.UniTuple(int64, 2)(TABLES, *[int64] * 4), cache=True, nogil=True, error_model="numpy")
+@njit(types.UniTuple(int64, 2)(TABLES, *[int64] * 4), **KERNEL)
 def window(tables, row, column, half_rows, half_columns):
     """Sums of dark u and dark v over the mask around a cell, u along the columns and v against the rows."""
     far, near = row - half_rows, row + half_rows + 1
@@ -22,7 +24,7 @@ def window(tables, row, column, half_rows, half_columns):
     return across - column * dark, row * dark - down
 
 
-@njit(NEWTONS(*SURFACE, *[float64] * 6), cache=True, nogil=True, error_model="numpy")
+@njit(NEWTONS(*SURFACE, *[float64] * 6), **KERNEL)
 def tick(height_m, tables, width_m, length_m, half_rows, half_columns, across_n, along_n, x, y, z, vx, vy, vz):
     """(across_n sum dark u, along_n sum dark v, 0) under the surface; zero in free air and where the mask ends."""
     if not (over(width_m, length_m, x, y) and np.isfinite(z + vx + vy + vz)):

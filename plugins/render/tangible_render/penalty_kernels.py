@@ -5,12 +5,14 @@
 import numpy as np
 from numba import float64, njit
 
+from tangible_core.compiling import KERNEL
+
 from .bilinear import HEIGHTS, LABELS, NEWTONS, TABLE, bilinear, cell, over
 
 SURFACE = (HEIGHTS, LABELS, TABLE, float64, float64, float64)
 
 
-@njit(NEWTONS(*SURFACE, *[float64] * 6), cache=True, nogil=True, error_model="numpy")
+@njit(NEWTONS(*SURFACE, *[float64] * 6), **KERNEL)
 def tick(height_m, labels, stiffness_n_per_m, width_m, length_m, damping_n_s_per_m, x, y, z, vx, vy, vz):
     """F = max(0, k d - b v.(-g, 1) / (1 + |g|^2)) (-g, 1), where d = h - z > 0; zero in free air."""
     if not over(width_m, length_m, x, y):

@@ -11,6 +11,7 @@ from tangible_core.interfaces import ForceRenderer, Touch
 
 from .coefficients import spline_surface
 from .dequantise import Filter
+from .effects import textured
 from .material_table import Row, material_table
 from .tiles import tile_bounds
 
@@ -21,7 +22,8 @@ class Proxy(ForceRenderer):
     The proxy p starts where the hand q comes through the surface, a C2 spline, and then minimises |p - q| downhill from
     where it was, so that a wall holds it back: unlike a penalty force it does not throw the hand out at the far side.
     With friction it rests while the force is within the static cone, and slides on the dynamic one: it sticks and
-    slips. Damping acts along the normal and never pulls. Where the stiffness is one, no closed path gains energy but
+    slips. Damping acts along the normal and never pulls. The fine textures of materials lie on the surface as heights;
+    what a texture has of its own, such as drag, joins in. Where the stiffness is one, no closed path gains energy but
     by sampling: at a hand at rest the proxy only ever comes nearer.
 
     The surface is the top of a block with upright sides: a hand that comes from beside it under the rim is held off
@@ -41,6 +43,8 @@ class Proxy(ForceRenderer):
     """Sideways over normal force while it slides, where the surface has no materials."""
     friction: bool = True
     """False leaves all friction out, that of materials too."""
+    texture: bool = True
+    """False leaves the fine textures of materials out, their drag and their own friction; see `with-materials`."""
     dequantise: Filter = "auto"
     """Smooth heights of 17 to 256 values, such as 8 bits have, within half a step: auto, never, or a sigma in cells."""
 
@@ -54,7 +58,7 @@ class Proxy(ForceRenderer):
         return self
 
     def touch(self, surface: HapticSurface) -> Touch:
-        """A new touch on this surface, without what it does not need: friction, damping, more than one material.
+        """A new touch on this surface, without what it does not need: texture, friction, damping, several materials.
 
         Compiled on the first use on a machine, then loaded.
         """
@@ -62,10 +66,14 @@ class Proxy(ForceRenderer):
 
         shape = spline_surface(surface, self.dequantise)
         shape = (*shape, tile_bounds(shape[0]))
+        memory = np.zeros(contact.REMEMBERED)
+        if self.texture and (felt := textured(surface, self.friction)):
+            labels, table, textures, state = felt
+            fixed = (*shape, labels, table, memory, textures, state)
+            return CompiledTouch(proxy_kernels.textured_tick, fixed, memory, float(table[:, 0].max()))
         labels, table = material_table(surface, self._plain())
         if not self.friction:
             table[:, 2:] = 0
-        memory = np.zeros(contact.REMEMBERED)
         if len(table) == 1 and not table[0, 1:].any():
             fixed = (*shape, float(table[0, 0]), memory)
             return CompiledTouch(proxy_kernels.spring_tick, fixed, memory, float(table[0, 0]))

@@ -3,25 +3,27 @@
 What a touch remembers is listed in `contact`.
 """
 
-# ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
+# ruff: noqa: ANN001, ANN201, ANN202 -- the types are in the signatures that numba compiles
 
 import numpy as np
 from numba import float32, float64, njit, types
 
+from tangible_core.compiling import KERNEL
+
 from .bilinear import HEIGHTS, LABELS, NEWTONS, cell
 from .closest import settle
 from .contact import BESIDE, approach
+from .effects_kernels import effects, texture
 
 SURFACE = (HEIGHTS, *[float64] * 4, types.Array(float32, 3, "C", readonly=True))
 MATERIALS = types.Array(float64, 2, "C", readonly=True)
 MEMORY = float64[::1]
 
 
-@njit(NEWTONS(*SURFACE, LABELS, MATERIALS, MEMORY, *[float64] * 6), cache=True, nogil=True, error_model="numpy")
-def tick(
-    coefficients, width_m, length_m, across_per_m, down_per_m, tiles_m, labels, table, memory, x, y, z, vx, vy, vz
-):
-    """F = k (p - q) - b v_n n, the proxy p held by friction; the table has a row k, b, mu_s, mu_d for each label."""
+@njit(inline="always", **KERNEL)
+def _held(shape, tiles_m, labels, table, memory, x, y, z, vx, vy, vz):
+    """F = k (p - q) - b v_n n; see `tick`."""
+    coefficients, width_m, length_m, across_per_m, down_per_m = shape
     if not approach(coefficients, width_m, length_m, across_per_m, down_per_m, tiles_m, memory, x, y, z, vx + vy + vz):
         return 0.0, 0.0, 0.0
     px, py, top, held, hx, hy = memory[0], memory[1], z, 0.0, 0.0, 0.0
@@ -40,7 +42,32 @@ def tick(
     return (fx, fy, fz) if np.isfinite(fx + fy + fz) else (0.0, 0.0, 0.0)
 
 
-@njit(NEWTONS(*SURFACE, float64, MEMORY, *[float64] * 6), cache=True, nogil=True, error_model="numpy")
+@njit(NEWTONS(*SURFACE, LABELS, MATERIALS, MEMORY, *[float64] * 6), **KERNEL)
+def tick(
+    coefficients, width_m, length_m, across_per_m, down_per_m, tiles_m, labels, table, memory, x, y, z, vx, vy, vz
+):
+    """F = k (p - q) - b v_n n, the proxy p held by friction; the table has a row k, b, mu_s, mu_d for each label."""
+    shape = coefficients, width_m, length_m, across_per_m, down_per_m
+    return _held(shape, tiles_m, labels, table, memory, x, y, z, vx, vy, vz)
+
+
+@njit(
+    NEWTONS(*SURFACE, LABELS, MATERIALS, MEMORY, MATERIALS, MEMORY, *[float64] * 6),
+    **KERNEL,
+)
+def textured_tick(
+    coefficients, width_m, length_m, across_per_m, down_per_m, tiles_m, labels, table, memory, textures, contact,
+    x, y, z, vx, vy, vz,
+):  # fmt: skip
+    """The same under the textures of the materials; see `effects_kernels` for their table and for `contact`."""
+    shape = coefficients, width_m, length_m, across_per_m, down_per_m
+    label, t, tx, ty, dx, dy, dz = texture(labels, width_m, length_m, textures, contact, x, y, z)
+    vz -= tx * vx + ty * vy
+    fx, fy, fz = _held(shape, tiles_m, labels, table, memory, x, y, z - t, vx, vy, vz)
+    return effects(textures, label, 1.0, contact, tx, ty, dx, dy, dz, vx, vy, vz, fx, fy, fz)
+
+
+@njit(NEWTONS(*SURFACE, float64, MEMORY, *[float64] * 6), **KERNEL)
 def spring_tick(
     coefficients, width_m, length_m, across_per_m, down_per_m, tiles_m, stiffness, memory, x, y, z, vx, vy, vz
 ):

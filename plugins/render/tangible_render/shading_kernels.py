@@ -7,13 +7,15 @@ import math
 import numpy as np
 from numba import float32, float64, njit, types
 
+from tangible_core.compiling import KERNEL
+
 from .bilinear import HEIGHTS, LABELS, NEWTONS, TABLE, bilinear, cell, over
 
 NORMALS = types.Array(float32, 3, "C", readonly=True)
 SURFACE = (HEIGHTS, NORMALS, LABELS, TABLE, float64, float64)
 
 
-@njit(NEWTONS(*SURFACE, *[float64] * 6), cache=True, nogil=True, error_model="numpy")
+@njit(NEWTONS(*SURFACE, *[float64] * 6), **KERNEL)
 def tick(height_m, normal, labels, stiffness_n_per_m, width_m, length_m, x, y, z, vx, vy, vz):
     """F = k d / sqrt(1 + |g|^2) n, where d = h - z > 0 and n is the normal between the cells'; zero in free air."""
     if not (over(width_m, length_m, x, y) and np.isfinite(vx + vy + vz)):

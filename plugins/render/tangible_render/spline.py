@@ -11,15 +11,17 @@ Source: Unser, Aldroubi & Eden, B-spline signal processing, IEEE Trans. Signal P
 
 from numba import njit
 
+from tangible_core.compiling import KERNEL
 
-@njit(cache=True, nogil=True, error_model="numpy")
+
+@njit(**KERNEL)
 def height(coefficients, across_per_m, down_per_m, x, y):
     """Height at a point over the extent. across_per_m, down_per_m: cells to the metre along x and against y."""
     row, column, down, across = _place(coefficients, across_per_m, down_per_m, x, y)
     return _dot(_rows(coefficients, row, column, _values(down)), _values(across))
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**KERNEL)
 def slope(coefficients, across_per_m, down_per_m, x, y):
     """Height and gradient (h, dh/dx, dh/dy) at a point over the extent."""
     row, column, down, across = _place(coefficients, across_per_m, down_per_m, x, y)
@@ -28,7 +30,7 @@ def slope(coefficients, across_per_m, down_per_m, x, y):
     return _dot(line, value), _dot(line, _slopes(across)) * across_per_m, -rise * down_per_m
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**KERNEL)
 def bend(coefficients, across_per_m, down_per_m, x, y):
     """Height, gradient and Hessian (h, h_x, h_y, h_xx, h_xy, h_yy) at a point over the extent."""
     row, column, down, across = _place(coefficients, across_per_m, down_per_m, x, y)
@@ -46,7 +48,7 @@ def bend(coefficients, across_per_m, down_per_m, x, y):
     )
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**KERNEL)
 def _place(coefficients, across_per_m, down_per_m, x, y):
     """First row and column of the 4 x 4 coefficients that a point depends on, and how far it is beyond the second."""
     rows, columns = coefficients.shape
@@ -55,7 +57,7 @@ def _place(coefficients, across_per_m, down_per_m, x, y):
     return row - 1, column - 1, down - row, across - column
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**KERNEL)
 def _values(t):
     """The four B-splines over an interval, at t in 0..1 of it."""
     u = 1.0 - t
@@ -64,18 +66,18 @@ def _values(t):
     return first, second, 1.0 - first - second - last, last
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**KERNEL)
 def _slopes(t):
     u = 1.0 - t
     return -0.5 * u * u, t * (1.5 * t - 2.0), u * (2.0 - 1.5 * u), 0.5 * t * t
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**KERNEL)
 def _bends(t):
     return 1.0 - t, 3.0 * t - 2.0, 1.0 - 3.0 * t, t
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**KERNEL)
 def _rows(coefficients, row, column, weights):
     """The four rows in one, weighted."""
     return (
@@ -86,7 +88,7 @@ def _rows(coefficients, row, column, weights):
     )
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**KERNEL)
 def _column(coefficients, row, column, weights):
     return (
         weights[0] * coefficients[row, column]
@@ -96,6 +98,6 @@ def _column(coefficients, row, column, weights):
     )
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**KERNEL)
 def _dot(a, b):
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]

@@ -5,13 +5,15 @@
 import numpy as np
 from numba import float64, njit
 
+from tangible_core.compiling import KERNEL
+
 from .bilinear import HEIGHTS, LABELS, NEWTONS, TABLE, cell, over
 from .spline import height
 
 SURFACE = (HEIGHTS, *[float64] * 4, LABELS, TABLE, float64)
 
 
-@njit(NEWTONS(*SURFACE, *[float64] * 6), cache=True, nogil=True, error_model="numpy")
+@njit(NEWTONS(*SURFACE, *[float64] * 6), **KERNEL)
 def tick(
     coefficients, width_m, length_m, across_per_m, down_per_m, labels, stiffness, damping_n_s_per_m, x, y, z, vx, vy, vz
 ):

@@ -23,7 +23,8 @@ Slopes = Float32[np.ndarray, "h w"]
 def slope_stiffness(flight: Flight) -> Iterator[Verdict]:
     """Share of the surface where the law, felt along its own force, is stiffer than the device holds.
 
-    A penalty along the gradient grows by 1 + |g|^2 with the slope g; a proxy does not. No guard knows of it.
+    A penalty along the gradient grows by 1 + |g|^2 with the slope g, a texture's by its curvature times the force; a
+    proxy does not grow with slopes. No guard knows of it.
     """
     limit, _, source = flight.ceilings[0]
     felt = np.array([flight.felt_n_per_m(each) for each in flight.probes.stiffness_n_per_m.tolist()])
@@ -41,6 +42,8 @@ def _less_stiff(flight: Flight, limit: float, most: float) -> str:
     if most <= 1.1 * level:
         return soften(flight, limit)
     others = "a law that slopes do not stiffen, `render.use: proxy`; or a coupling, `safety.coupling: auto`"
+    if any(material.roughness_m > 0 for material in flight.met):
+        others += "; or less `roughness_m` of the materials"
     return others if flight.met or not level else f"{others}; or {soften(flight, level * limit / most)}"
 
 

@@ -2,8 +2,10 @@
 
 from collections.abc import Iterator
 
+import numpy as np
+
 from ..flight import PASSIVE, Ceiling, Flight
-from ..verdict import Verdict, held, under
+from ..verdict import FEW, Verdict, held, under
 from .cures import soften, soften_material
 
 CLEAN_N_PER_M = 900.0
@@ -48,7 +50,8 @@ def _under_ceiling(of: str, stiffness: float, ceiling: Ceiling, cure: str) -> Ve
 
 def law_damping(flight: Flight) -> Iterator[Verdict]:
     """The law's damping against what its stiffness leaves of the device's own: b > K T (1 + 2 d) / 2 + B."""
-    found = max(0.0, round(float(flight.probes.damping_n_s_per_m.max()), 3))
+    felt = np.quantile(flight.probes.damping_n_s_per_m, 1 - FEW)  # where a proxy leaps, it is no damping
+    found = max(0.0, round(float(felt), 3))
     tick_s = flight.period_s * (1 + 2 * flight.safety.delay_ticks) / 2
     left = max(0.0, flight.damping_n_s_per_m - tick_s * flight.stiffness_n_per_m)
     own = "damping_n_s_per_m" in type(flight.law).model_fields and not flight.met

@@ -200,10 +200,11 @@ def test_what_is_no_scene(registry: Registry, scene: str, what: str):
 
 def recording(count: int = 50) -> Recording:
     way = np.column_stack([np.linspace(-0.01, 0.01, count), np.zeros(count), np.full(count, 0.009)])
-    return Recording(np.arange(count) * 0.002, way, np.zeros((count, 3)), np.zeros((count, 3)))
+    rest = np.zeros((count, 3))
+    return Recording.of(time_s=np.arange(count) * 0.002, position_m=way, velocity_m_per_s=rest, force_n=rest)
 
 
-@pytest.mark.parametrize("suffix", [".npz", ".csv"])
+@pytest.mark.parametrize("suffix", [".nc", ".npz", ".csv"])
 def test_a_way_that_was_recorded(tmp_path: Path, registry: Registry, suffix: str):
     recording().save(tmp_path / f"hand{suffix}")
     text = f"compare: render\nmethods: [proxy]\nscenes: [{{analytic: plane, recording: hand{suffix}}}]\n"

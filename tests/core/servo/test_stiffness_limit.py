@@ -78,6 +78,13 @@ def test_a_law_that_says_how_stiff_it_is_rests(delay: int, period_s: float, time
 
 
 @DELAYS
+def test_behind_a_guard_no_law_is_too_stiff(delay: int):
+    safety = Safety(delay_ticks=delay)
+    found = stiffest_stable_n_per_m(wall, handle(delay), guard=lambda law: safety.arrays(SPEC, law.stiffness_n_per_m))
+    assert found > 9e5
+
+
+@DELAYS
 @pytest.mark.parametrize("jitter", [0.3, 0.9])
 def test_it_rests_by_a_clock_that_is_late_and_early(delay: int, jitter: float):
     law, held = wall(3 * limit(delay)), handle(delay, jitter=jitter)

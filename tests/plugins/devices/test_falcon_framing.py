@@ -80,5 +80,6 @@ def test_an_answer_after_strange_bytes_is_doubted():
     for strange in (b"?" + answer(1, 2, 3), answer(1, 2, 3) + b"?", answer(1, 2, 3) + b"<"):
         receiver(strange)
         assert receiver.counts[framing.FRESH] == framing.DOUBTFUL
-    receiver(answer(1, 2, 3) * 2)
+    receiver(answer(1, 2, 3))
+    receiver(answer(1, 2, 3))
     assert receiver.counts[framing.FRESH] == framing.NEW

@@ -1,20 +1,26 @@
 """The simulated Falcon: deterministic, felt through the real driver, and wrong on demand."""
 
+import re
+import textwrap
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from tangible_core import HapticSurface, load_method
+from tangible_core.config import parse_config
 from tangible_core.errors import DeviceError
+from tangible_core.registry import default_registry
 from tangible_core.session import run
 from tangible_devices.falcon.falcon_simulated import FalconSimulated
+from tangible_devices.falcon.usb_errors import UDEV_FILE, UDEV_RULE
 
 FLAT = HapticSurface.from_heights(np.full((8, 8), 0.002))
 
 
 def test_a_surface_is_felt():
-    recording = run(load_method("render", "penalty")().touch(FLAT), FalconSimulated(path="press"), 1.0)
+    recording = run(load_method("render", "penalty")().touch(FLAT), FalconSimulated(path="press"), 2.0)
     assert not recording.stopped
     assert 1.0 < recording.force_n[:, 2].max() < 6.0
     assert recording.position_m[:, 2].min() > -0.004, "the surface holds the hand up, whose path goes to -0.005"
@@ -45,3 +51,12 @@ def test_a_bad_file_is_refused_though_none_is_needed(tmp_path):
     path.write_bytes(b"hello!")
     with pytest.raises(DeviceError, match="is no firmware of a Falcon"):
         FalconSimulated.model_validate({"driver": {"firmware": str(path)}}).open()
+
+
+def test_the_page_shows_what_the_program_takes(tmp_path: Path):
+    page = Path(__file__).parents[3].joinpath("docs/falcon.md").read_text(encoding="utf-8")
+    assert UDEV_RULE in page and UDEV_FILE in page
+    blocks = [textwrap.dedent(each) for each in re.findall(r"```yaml\n(.*?)```", page, re.DOTALL)]
+    assert len(blocks) == 2
+    for text in blocks:
+        parse_config(f"scene: builtin/brick\n{text}", tmp_path / "p.yaml", default_registry())

@@ -127,6 +127,12 @@ class TestWays:
         assert np.linalg.norm(force, axis=1).max() < K * 0.0201
         assert force[-1] == pytest.approx([0, 0, K * 0.002], abs=1e-3)
 
+    def test_so_is_one_at_the_side_of_the_block(self):
+        x = np.linspace(0.041, -0.03, 1000)
+        force = Proxy().touch(LEVEL).path(np.column_stack([x, np.zeros(1000), np.full(1000, 0.004)]))
+        assert np.linalg.norm(force, axis=1).max() < K * 0.0201
+        assert force[-1] == pytest.approx([0, 0, K * 0.006], abs=1e-6)
+
     def test_a_lost_state_ends_the_contact(self):
         touch = Proxy(static_friction=5.0, dynamic_friction=5.0).touch(LEVEL)
         at(touch, 0.0, 0.0, 0.009)

@@ -6,7 +6,7 @@
 import numpy as np
 from numba import float64, int64, njit, uint64, void
 
-from tangible_core import compiling as compiling
+from tangible_core.compiling import KERNEL
 
 from .channel import CLIENT_OPEN, FACTOR, FORCE, FORCE_WORDS, SAMPLE, SAMPLE_WORDS, START, TRIES
 
@@ -21,7 +21,7 @@ HIGH_M = 1.0
 _START, _FACTOR, _HALF = np.uint64(START), np.uint64(FACTOR), np.uint64(32)
 
 
-@njit(uint64(WORDS, int64, int64), cache=True, nogil=True)
+@njit(uint64(WORDS, int64, int64), **KERNEL)
 def checksum(words, start, count):
     """As `channel.checksum`."""
     total = _START
@@ -31,7 +31,7 @@ def checksum(words, start, count):
     return total
 
 
-@njit(int64(WORDS, WORDS), cache=True, nogil=True)
+@njit(int64(WORDS, WORDS), **KERNEL)
 def fetch(words, kept):
     """Copy the client's sample, whole or not at all: WHOLE, BROKEN if it is torn or not finite, or NOBODY."""
     if words[CLIENT_OPEN] == 0:
@@ -40,18 +40,22 @@ def fetch(words, kept):
         for i in range(SAMPLE_WORDS + 1):
             kept[i] = words[SAMPLE + i]
         if checksum(kept, 0, SAMPLE_WORDS) == kept[SAMPLE_WORDS]:
-            return WHOLE if np.isfinite(kept.view(np.float64)[1:SAMPLE_WORDS]).all() else BROKEN
+            numbers = kept.view(np.float64)
+            for i in range(1, SAMPLE_WORDS):
+                if not np.isfinite(numbers[i]):
+                    return BROKEN
+            return WHOLE
     return BROKEN
 
 
-@njit(int64(WORDS, WORDS, NUMBERS, NUMBERS), cache=True, nogil=True)
+@njit(int64(WORDS, WORDS, NUMBERS, NUMBERS), **KERNEL)
 def read(words, kept, numbers, state):
     """The newest sample; without a client high above. 0 if the client has been silent for too many reads."""
     found = fetch(words, kept)
     if found == NOBODY:
         kept[AGE] = kept[OLDEST]
-        state[:] = 0.0
-        state[2] = HIGH_M
+        for i in range(7):
+            state[i] = HIGH_M if i == 2 else 0.0
         return 1
     if found == WHOLE and kept[0] != kept[LAST]:
         kept[LAST], kept[AGE] = kept[0], 0
@@ -64,10 +68,10 @@ def read(words, kept, numbers, state):
     return 1
 
 
-@njit(void(WORDS, WORDS, NUMBERS, float64, float64, float64), cache=True, nogil=True)
+@njit(void(WORDS, WORDS, NUMBERS, float64, float64, float64), **KERNEL)
 def write(words, kept, numbers, fx, fy, fz):
     """Show the force to the client."""
-    held = words[FORCE : FORCE + FORCE_WORDS].view(np.float64)
+    held = words.view(np.float64)
     words[FORCE] += np.uint64(1)
-    held[1], held[2], held[3] = fx, fy, fz
+    held[FORCE + 1], held[FORCE + 2], held[FORCE + 3] = fx, fy, fz
     words[FORCE + FORCE_WORDS] = checksum(words, FORCE, FORCE_WORDS)

@@ -12,6 +12,8 @@ OUT_Z_M, IN_Z_M, AT_Z_M = 0.174, 0.077, 0.002
 """How far the grip is pulled out and pushed in to home it, and how near is there; along the device's axis."""
 SPEED_M_PER_S = 0.3
 """While it homes, and on the way to the path."""
+PAUSE_TICKS = 1000
+"""It waits over the start of the path, so that a force that fades in meets it in free air."""
 
 
 @final
@@ -45,7 +47,10 @@ class ScriptedHand:
         if self._tick is None:
             x, y, z = self._stroke.at(0)
             start = self._turn.T @ (np.array([x, y, max(z, self._lift_m)]) - self._origin)
-            self._tick = 0 if np.array_equal(self._towards(start), start) else None
+            self._tick = -PAUSE_TICKS if np.array_equal(self._towards(start), start) else None
+            return self._at
+        if self._tick < 0:
+            self._tick += 1
             return self._at
         self._at = self._along(self._tick, tip_m)
         self._tick += 1

@@ -1,0 +1,124 @@
+"""Any law, and what the materials of a surface add to it."""
+
+from typing import Annotated, Any
+
+import numpy as np
+from pydantic import AfterValidator, Field, ValidationError
+
+from tangible_core.compiled import CompiledTouch
+from tangible_core.data import HapticState, HapticSurface
+from tangible_core.errors import ConfigError, TangibleError
+from tangible_core.interfaces import ForceRenderer, Touch
+from tangible_core.materials import find, library
+
+from .effects import ACTING, effects_table, nowhere
+
+OWN = "friction"
+"""A law with this option renders materials itself."""
+
+
+def _law(law: str | dict[str, Any]) -> tuple[str, ForceRenderer]:
+    """Name and method. Raises: ValueError if it has no name or brings materials itself, TangibleError if it is none."""
+    from tangible_core.registry import load_method
+
+    options: dict[str, Any] = {"use": law} if isinstance(law, str) else dict(law)
+    name = options.pop("use", None)
+    if not isinstance(name, str):
+        raise ValueError("a law has a name, {use: ...}")
+    cls = load_method("render", name)
+    if OWN in cls.model_fields:
+        raise ValueError(f"{name} has friction of its own; use it as it is")
+    return name, cls(**options)
+
+
+def _checked(law: str | dict[str, Any]) -> dict[str, Any]:
+    """The law's name and all of its options. Raises: ValueError if it is none, or one of them is wrong."""
+    try:
+        name, method = _law(law)
+    except ValidationError as error:
+        wrong = (f"{'.'.join(map(str, each['loc']))}: {each['msg']}" for each in error.errors())
+        raise ValueError("; ".join(wrong)) from error
+    except TangibleError as error:
+        raise ValueError(str(error)) from error
+    return {"use": name, **method.model_dump(mode="json")}
+
+
+def _known(material: str) -> str:
+    try:
+        return find(material, library()).name
+    except TangibleError as error:
+        raise ValueError(str(error)) from error
+
+
+class WithMaterials(ForceRenderer):
+    """Friction that sticks and slips, fine textures and damping of the surface's materials, around any other law.
+
+    The texture t(x, y) lies on the law's surface: the law is asked for its force G at z - t, and (G_x - t_x G_z,
+    G_y - t_y G_z, G_z) is felt, which takes the same work. So a law that gains no energy gains none with a texture,
+    where the material is one. Friction and damping, which never give any, join G: |G| is the push, damping lies along
+    it, and across it friction, a bristle that sticks up to the static friction and slides on the dynamic one. Of a
+    law that pushes nothing up from level ground, k d is the push, k the material's stiffness and d the depth; it has
+    no damping.
+
+    A law whose force depends on the stiffness of materials has that too. `proxy` brings all of this itself.
+    Source: Robles-De-La-Torre & Hayward, Nature 412 (2001), for the texture on level ground; Hayward & Armstrong, A new
+    computational model of friction applied to haptic rendering, Experimental Robotics VI, 2000.
+    """
+
+    law: Annotated[str | dict[str, Any], AfterValidator(_checked), Field(validate_default=True)] = "penalty-gradient"
+    """The law's name, or {use: its name} and its options."""
+    friction: bool = True
+    """False leaves all friction out."""
+    texture: bool = True
+    """False leaves the fine textures out, their drag and their own friction."""
+    damping: bool = True
+    """False leaves out what the materials damp; the law keeps its own."""
+    material: Annotated[str, AfterValidator(_known)] | None = None
+    """A material that is shipped, for a surface that has none; without one such a surface feels as the law alone."""
+
+    def touch(self, surface: HapticSurface) -> Touch:
+        """A new touch on this surface; the law's own where the materials add nothing to it.
+
+        Compiled on the first use of a law on a machine, then loaded.
+        Raises: ConfigError if the law's touch is not compiled.
+        """
+        _, law = _law(self.law)
+        surface = self._covered(surface)
+        touch = law.touch(surface)
+        if surface.labels is None or not surface.materials:
+            return touch
+        lateral = _is_lateral(law)
+        labels, table = effects_table(surface, self.friction, self.texture, self.damping and not lateral)
+        if not table[:, ACTING].any():
+            return touch
+        if not isinstance(touch, CompiledTouch):
+            raise ConfigError(
+                f"the law {type(law).__name__} is not compiled, and materials join compiled laws alone; "
+                "let its touch be a CompiledTouch, or leave `with-materials` out"
+            )
+        return _wrapped(touch, surface, labels, table, lateral)
+
+    def _covered(self, surface: HapticSurface) -> HapticSurface:
+        if self.material is None or (surface.labels is not None and surface.materials):
+            return surface
+        labels = np.zeros(surface.height_m.shape, np.int32)
+        return HapticSurface(surface.relief, labels, (find(self.material, library()),))
+
+
+def _is_lateral(law: ForceRenderer) -> bool:
+    """Whether it leaves the push up from level ground to a table."""
+    level = law.touch(HapticSurface.from_heights(np.full((8, 8), 0.01)))
+    return level.force(HapticState((0.0, 0.0, 0.009))).z == 0
+
+
+def _wrapped(law: CompiledTouch, surface: HapticSurface, labels: np.ndarray, table: np.ndarray, lateral: bool) -> Touch:
+    from . import effects_kernels
+
+    bristle = float(table[:, effects_kernels.STIFFNESS].max())
+    rest = (labels, *map(float, surface.extent_m), table, bristle, nowhere())
+    stiffness = max(law.stiffness_n_per_m, bristle * bool(table[:, effects_kernels.STATIC].any()))
+    if not lateral:
+        return CompiledTouch(effects_kernels.tick, (law.fixed, law.address(), *rest), law.memory, stiffness)
+    heights = np.ascontiguousarray(surface.height_m, np.float32)
+    fixed = (law.fixed, law.address(), heights, *rest)
+    return CompiledTouch(effects_kernels.lateral_tick, fixed, law.memory, stiffness)

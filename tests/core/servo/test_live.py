@@ -1,0 +1,81 @@
+"""Sessions in real time: every tick is kept, and whatever ends one leaves no force and a readable file."""
+
+import signal
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from full_disk import files_up_to
+from tangible_core import HapticSurface, load_method
+from tangible_core.data import ServoReport
+from tangible_core.errors import OutputError
+from tangible_core.interfaces import Touch
+from tangible_core.servo import OVER, Safety
+from tangible_core.session import INTERRUPTED, Recording, feel, figures, keeping
+from tangible_core.session.tick_file import About
+from tangible_core.testing.loop_devices import Circling, Failing
+
+
+@pytest.fixture(scope="module")
+def touch() -> Touch:
+    return load_method("render", "proxy")().touch(HapticSurface.from_heights(np.full((16, 16), 0.002, np.float32)))
+
+
+def test_every_tick_is_kept_and_reports_come_ten_times_a_second(touch: Touch, tmp_path: Path) -> None:
+    reports: list[ServoReport] = []
+    with keeping(tmp_path / "hand.nc", About("circling", "proxy", "")) as writer:
+        last = feel(touch, Circling(), 1.0, Safety(), reports.append, writer.append)
+        writer.close()
+    kept = Recording.load(tmp_path / "hand.nc")
+    assert (last.ticks, len(kept.rows), last.stopped, kept.stopped) == (1000, 1000, OVER, "")
+    assert 5 <= len(reports) <= 15
+    assert figures(last)["peak_force_n"] == pytest.approx(kept.peak_force_n, rel=1e-6)
+    assert figures(last)["work_j"] == pytest.approx(kept.work_j, abs=1e-9)
+    assert (figures(last)["ramping"], figures(last)["stale"]) == (500, 0)
+
+
+@pytest.mark.parametrize("name", ["hand.npz", "hand.csv"])
+def test_other_files_are_made_of_it_at_the_end(touch: Touch, tmp_path: Path, name: str) -> None:
+    with keeping(tmp_path / name, About("circling", "proxy", "")) as writer:
+        feel(touch, Circling(), 0.2, Safety(), lambda _: None, writer.append)
+    assert len(Recording.load(tmp_path / name).rows) == 200
+    assert [each.name for each in tmp_path.iterdir()] == [name]
+
+
+def test_a_full_disk_ends_it_with_no_force(touch: Touch, tmp_path: Path) -> None:
+    force = tmp_path / "force"
+    device = Failing(fault="none", record=str(force))
+    with (
+        pytest.raises(OutputError, match="free some space"),
+        keeping(tmp_path / "hand.nc", About("failing", "proxy", "")) as writer,
+    ):
+
+        def keep(rows: np.ndarray) -> None:
+            with files_up_to(20_000):
+                writer.append(rows)
+
+        feel(touch, device, 5.0, Safety(ramp_s=0), lambda _: None, keep)
+    assert float(force.read_text()) == 0
+    kept = Recording.load(tmp_path / "hand.nc")
+    assert len(kept.rows) > 50
+    assert kept.stopped.startswith("the recording ends early")
+
+
+def test_ctrl_c(touch: Touch, tmp_path: Path) -> None:
+    force = tmp_path / "force"
+    with keeping(tmp_path / "hand.nc", About("failing", "proxy", "")) as writer:
+
+        def keep(rows: np.ndarray) -> None:
+            first = not writer.ticks
+            writer.append(rows)
+            if first:
+                signal.raise_signal(signal.SIGINT)
+
+        last = feel(touch, Failing(fault="none", record=str(force)), None, Safety(), lambda _: None, keep)
+        writer.close(last.stopped)
+    assert last.stopped == INTERRUPTED
+    assert float(force.read_text()) == 0
+    kept = Recording.load(tmp_path / "hand.nc")
+    assert kept.stopped == INTERRUPTED
+    assert len(kept.rows) > 0

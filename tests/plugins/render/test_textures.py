@@ -1,0 +1,173 @@
+"""Fine textures under the proxy: a true displacement of its surface, conservative, and forces that only take energy."""
+
+import pickle
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tangible_core.compiled import CompiledTouch
+from tangible_core.data import NO_FORCE, HapticState, HapticSurface, Material
+from tangible_core.haptic_textures import compile_textures
+from tangible_core.haptic_textures.heights import texture_height
+from tangible_core.materials import library
+from tangible_core.testing.rough import rough_surfaces
+from tangible_core.testing.scenes import ramp
+from tangible_render import proxy_kernels
+from tangible_render.proxy import Proxy
+
+K = 800.0
+MAPS = rough_surfaces()
+GRAINY = Material("grainy", K, 0.0, 0.0, 0.0, roughness_m=1e-4, grain_m=1e-3)
+RUBBER = replace(library()["rubber"], roughness_m=0.0, damping_n_s_per_m=0.0)
+
+
+def covered(surface: HapticSurface, *materials: Material) -> HapticSurface:
+    """The surface in stripes of materials from left to right."""
+    labels = np.zeros(surface.height_m.shape, np.int32)
+    labels[:] = np.arange(labels.shape[1]) * len(materials) // labels.shape[1]
+    return HapticSurface(surface.relief, labels, materials)
+
+
+def level(*materials: Material) -> HapticSurface:
+    return covered(HapticSurface.from_heights(np.full((64, 64), 0.01)), *materials)
+
+
+def felt(path: np.ndarray) -> np.ndarray:
+    """(n, 3): height and slopes of GRAINY along a path, as a hand of that speed meets them."""
+    table = compile_textures([GRAINY])
+    steps = np.diff(path, axis=0, prepend=path[:1])
+    return np.array([texture_height(table, 0, *at[:2], *step[:2], 1.0) for at, step in zip(path, steps, strict=True)])
+
+
+def touch(renderer: Proxy, surface: HapticSurface) -> CompiledTouch:
+    made = renderer.touch(surface)
+    assert isinstance(made, CompiledTouch)
+    return made
+
+
+class TestHeights:
+    def test_the_surface_lies_where_the_texture_lifts_it(self):
+        surface = level(GRAINY)
+        for x in np.linspace(-0.03, 0.03, 20).tolist():
+            t = felt(np.array([[x, 0.002, 0.0]]))[0, 0]
+            for up_m, free in ((1e-8, True), (-1e-8, False)):
+                force = Proxy().touch(surface).force(HapticState((x, 0.002, 0.01 + float(t) + up_m)))
+                assert (force == NO_FORCE) == free
+
+    def test_on_level_ground_it_is_the_gradient_of_a_spring(self):
+        """F = -grad k (h + t - z)^2 / 2."""
+        s = np.linspace(0, 0.02, 2000)
+        path = np.column_stack([s, 0.3 * s, np.full_like(s, 0.009)])
+        t, tx, ty = felt(path).T
+        push = K * (0.01 + t - 0.009)
+        force = Proxy().touch(level(GRAINY)).path(path)
+        assert np.allclose(force, np.column_stack([-tx * push, -ty * push, push]), rtol=0, atol=1e-6)
+
+    @pytest.mark.parametrize("name", MAPS)
+    def test_it_is_the_law_of_the_surface_below_turned_by_the_texture(self, name: str):
+        """A hand at z feels what the plain surface does at z - t, and F_z gives the rest, on any surface."""
+        turn = np.linspace(0, 6, 6000)
+        path = np.column_stack([0.03 * np.sin(3 * turn), 0.03 * np.cos(2 * turn), 0.002 * np.sin(9 * turn)])
+        t, tx, ty = felt(path).T
+        below = Proxy(stiffness_n_per_m=K).touch(MAPS[name]).path(path - np.column_stack([0 * t, 0 * t, t]))
+        expected = below - np.column_stack([tx * below[:, 2], ty * below[:, 2], 0 * t])
+        assert np.allclose(Proxy().touch(covered(MAPS[name], GRAINY)).path(path), expected, rtol=0, atol=1e-6)
+
+    @pytest.mark.parametrize("depth_m", [0.0, 0.004])
+    @pytest.mark.parametrize("name", MAPS)
+    def test_no_closed_path_gains_energy(self, name: str, depth_m: float):
+        """Work of the device on the hand over the second of two turns, too slow for a wave to fade."""
+        turn = np.arange(100000) / 100000
+        x, y = 0.032 * np.sin(2 * np.pi * 5 * turn), 0.041 * np.sin(2 * np.pi * 3 * turn + 0.4)  # over the borders too
+        loop = np.column_stack([x, y, 0.002 + 0.001 * np.sin(2 * np.pi * 7 * turn) - depth_m])
+        force = Proxy().touch(covered(MAPS[name], GRAINY)).path(np.vstack([loop, loop, loop[:1]]))[len(loop) :]
+        parts = (force[1:] + force[:-1]) / 2 * np.diff(np.vstack([loop, loop[:1]]), axis=0)
+        assert parts.sum() <= 1e-5 * np.abs(parts).sum()
+
+    def test_a_hand_too_fast_for_a_texture_feels_none(self):
+        path = np.column_stack([np.arange(40) * 5e-4, np.zeros(40), np.full(40, 0.009)])
+        lines = replace(GRAINY, anisotropy=1.0, direction_deg=90.0)
+        assert np.allclose(Proxy().touch(level(lines)).path(path)[1:], [0, 0, K * 0.001], atol=1e-6)
+
+    def test_a_hand_that_comes_anew_feels_it_whole(self):
+        touch, state = Proxy().touch(level(GRAINY)), HapticState((0.0102, 0.003, 0.009))
+        first = touch.force(state)
+        for other in ((np.nan, 0.0, 0.0), (-0.02, 0.01, 0.009)):
+            touch.force(HapticState(other))
+            assert touch.force(state) == first
+
+
+class TestForces:
+    def test_friction_of_the_surface_stays(self):
+        rough = replace(GRAINY, static_friction=0.6, dynamic_friction=0.5)
+        x = np.linspace(0, 0.03, 3000)
+        force = Proxy().touch(level(rough)).path(np.column_stack([x, 0 * x, np.full_like(x, 0.009)]))[500:]
+        assert -force[:, 0].mean() / force[:, 2].mean() == pytest.approx(0.5, abs=0.02)
+
+    @pytest.mark.parametrize("slope", [0.0, 0.7])
+    def test_a_texture_that_sticks_and_slips_is_all_the_friction_there_is(self, slope: float):
+        """Along a slope of any steepness: across the force of the surface, and in proportion to it."""
+        known = ramp((slope, 0.0), 0.03)
+        path = np.array([known.at(x, 0.001, 0.001) for x in np.linspace(-0.01, 0.01, 4000).tolist()])
+        force = Proxy().touch(covered(known.surface, RUBBER)).path(path)[1000:]
+        normal = known.normal(0, 0)
+        push = force @ normal
+        along = -force @ np.array([normal[2], 0, -normal[0]])
+        assert np.allclose(push, RUBBER.stiffness_n_per_m * 0.001 * normal[2], rtol=1e-3)
+        assert along.mean() / push.mean() == pytest.approx(RUBBER.dynamic_friction, rel=0.02)
+        assert along.max() / push.mean() <= 1.01 * RUBBER.static_friction
+        assert np.ptp(along) > 0.1 * push.mean()
+
+    def test_rubbing_never_gives_energy(self):
+        """Up to any moment of a wild path, the force at a tick's end times its step."""
+        random = np.random.default_rng(2)
+        path = np.column_stack([np.cumsum(random.normal(0, 1e-4, (5000, 2)), axis=0), np.full(5000, 0.009)])
+        force = Proxy().touch(level(RUBBER)).path(path)
+        given = np.cumsum(np.sum(force[1:, :2] * np.diff(path[:, :2], axis=0), axis=1))
+        assert given.max() <= 1e-12
+
+    def test_drag_is_against_the_velocity(self):
+        water = replace(library()["water"], damping_n_s_per_m=0.0)
+        state = HapticState((0.0, 0.0, 0.009), (0.2, -0.1, 0.0))
+        force = Proxy().touch(level(water)).force(state)
+        assert force == pytest.approx((-0.2 * water.drag_n_s_per_m, 0.1 * water.drag_n_s_per_m, 0.1), abs=1e-6)
+
+    def test_each_material_has_its_own(self):
+        surface = level(replace(GRAINY, roughness_m=0.0), RUBBER)
+        for start, friction in ((-0.03, 0.0), (0.01, RUBBER.dynamic_friction)):
+            path = np.column_stack([start + np.linspace(0, 0.02, 2000), np.zeros(2000), np.full(2000, 0.009)])
+            force = Proxy().touch(surface).path(path)[1000:]
+            assert -force[:, 0].mean() / force[:, 2].mean() == pytest.approx(friction, rel=0.03)
+
+
+class TestLeftOut:
+    @pytest.mark.parametrize("off", [{"texture": False}, {"friction": False}])
+    def test_what_is_off_is_not_felt(self, off: dict[str, bool]):
+        rubber = replace(RUBBER, roughness_m=1e-4)
+        path = np.column_stack([np.linspace(0, 0.02, 2000), np.zeros(2000), np.full(2000, 0.009)])
+        force = Proxy(**off).touch(level(rubber)).path(path)[1000:]
+        if "texture" in off:
+            assert np.allclose(force, 0.45 * np.array([-rubber.dynamic_friction, 0, 1]), atol=1e-3)
+        else:
+            assert abs(force[:, 0].mean()) < 0.01 and force[:, 0].std() > 0.01
+
+    def test_a_surface_without_textures_is_compiled_without_them(self):
+        smooth = replace(GRAINY, roughness_m=0.0)
+        assert touch(Proxy(), level(smooth)).tick is proxy_kernels.spring_tick
+        assert touch(Proxy(), level(replace(smooth, damping_n_s_per_m=1.0))).tick is proxy_kernels.tick
+        assert touch(Proxy(), level(GRAINY)).tick is proxy_kernels.textured_tick
+        assert touch(Proxy(texture=False), level(GRAINY)).tick is proxy_kernels.spring_tick
+        assert touch(Proxy(friction=False), level(RUBBER)).tick is proxy_kernels.spring_tick
+
+    def test_a_material_that_nowhere_occurs_costs_nothing(self):
+        surface = HapticSurface.from_heights(np.full((4, 4), 0.01), 0.08, np.zeros((4, 4), np.int32), (RUBBER, GRAINY))
+        alone = HapticSurface.from_heights(np.full((4, 4), 0.01), 0.08, np.zeros((4, 4), np.int32), (RUBBER,))
+        assert touch(Proxy(texture=False), surface).tick is touch(Proxy(texture=False), alone).tick
+
+    @pytest.mark.parametrize("material", [GRAINY, RUBBER], ids=lambda each: each.name)
+    def test_travelling_changes_nothing(self, material: Material):
+        path = np.column_stack([np.linspace(0, 0.02, 200), np.zeros(200), np.full(200, 0.009)])
+        made = touch(Proxy(), level(material))
+        other = pickle.loads(pickle.dumps(made))
+        assert np.array_equal(other.path(path), made.path(path))

@@ -1,0 +1,250 @@
+"""Materials around any law: friction, texture and damping are exact, passive, and no law is changed without them."""
+
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from pydantic import ValidationError
+
+from tangible_core.compiled import CompiledTouch
+from tangible_core.data import Force, HapticState, HapticSurface, Material
+from tangible_core.errors import ConfigError
+from tangible_core.haptic_textures import compile_textures
+from tangible_core.haptic_textures.heights import texture_height
+from tangible_core.interfaces import ForceRenderer, Touch
+from tangible_core.materials import library
+from tangible_core.registry import load_method
+from tangible_core.testing.reliefs import waves
+from tangible_core.testing.rough import rough_surfaces
+from tangible_core.testing.scenes import ramp
+from tangible_render.with_materials import WithMaterials
+
+PUSHING = ("penalty", "penalty-gradient", "force-shading", "grey-level")
+LATERAL = ("lateral-gradient", "lateral-shape", "tangible-mask")
+K = 600.0
+PLAIN = Material("bare", K, 0.0, 0.0, 0.0)
+STICKY = replace(PLAIN, name="sticky", static_friction=0.8, dynamic_friction=0.5)
+GRAINY = replace(PLAIN, name="grainy", roughness_m=1e-4)
+MAPS = rough_surfaces()
+
+
+def covered(surface: HapticSurface, material: Material) -> HapticSurface:
+    return HapticSurface(surface.relief, np.zeros(surface.height_m.shape, np.int32), (material,))
+
+
+def level(material: Material) -> HapticSurface:
+    return covered(HapticSurface.from_heights(np.full((64, 64), 0.01)), material)
+
+
+def stroke(length_m: float = 0.01, z: float = 0.009, ticks: int = 5000) -> np.ndarray:
+    x = np.linspace(0, length_m, ticks)
+    return np.column_stack([x, 0 * x, np.full_like(x, z)])
+
+
+def grain(path: np.ndarray) -> np.ndarray:
+    """(3, n): height and slopes of GRAINY along a path."""
+    table, steps = compile_textures([GRAINY]), np.diff(path, axis=0, prepend=path[:1])
+    made = [texture_height(table, 0, *at[:2], *step[:2], 1.0) for at, step in zip(path, steps, strict=True)]
+    return np.transpose(made)
+
+
+class TestFriction:
+    @pytest.mark.parametrize("law", PUSHING)
+    def test_it_sticks_up_to_the_static_friction_and_slides_on_the_dynamic_one(self, law: str):
+        path = stroke()
+        force = WithMaterials(law=law).touch(level(STICKY)).path(path)
+        ratio = -force[:, 0] / force[:, 2]
+        slip = int(ratio.argmax())
+        assert np.allclose(-force[: slip + 1, 0], K * path[: slip + 1, 0], atol=1e-9)
+        assert ratio[slip] == pytest.approx(0.8, abs=2e-3)
+        assert np.allclose(ratio[slip + 1 :], 0.5, atol=2e-3)
+        assert np.allclose(force[:, 1], 0, atol=1e-9)
+
+    @pytest.mark.parametrize("law", LATERAL)
+    def test_under_a_lateral_law_the_depth_is_the_push(self, law: str):
+        force = WithMaterials(law=law).touch(level(STICKY)).path(stroke())
+        assert -force[:, 0].min() == pytest.approx(0.8 * K * 0.001, rel=5e-3)
+        assert np.allclose(force[-1000:], [-0.5 * K * 0.001, 0, 0], atol=1e-3)
+
+    @pytest.mark.parametrize("steepness", [0.3, 3.0])
+    def test_it_lies_along_a_slope_however_steep(self, steepness: float):
+        known = ramp((0.0, steepness), 0.15)
+        path = np.array([known.at(0.002, y, 0.001) for y in np.linspace(-0.01, 0.01, 20000).tolist()])
+        force = WithMaterials(law="penalty-gradient").touch(covered(known.surface, STICKY)).path(path)[10000:]
+        normal = known.normal(0, 0)
+        push, along = force @ normal, force @ np.array([0, normal[2], -normal[1]])
+        assert np.allclose(push, K * 0.001 / normal[2], rtol=1e-3)
+        assert np.allclose(along, -0.5 * push, rtol=1e-3)
+        assert np.allclose(force[:, 0], 0, atol=1e-6)
+
+    def test_lifting_ends_it(self):
+        touch = WithMaterials(law="penalty").touch(level(STICKY))
+        touch.path(stroke(5e-4))
+        assert touch.force(HapticState((5e-4, 0.0, 0.011))) == Force(0, 0, 0)
+        assert touch.force(HapticState((6e-4, 0.0, 0.009))) == pytest.approx((0, 0, 0.6))
+
+
+class TestTexture:
+    @pytest.mark.parametrize("law", PUSHING)
+    def test_it_is_the_law_below_turned_by_the_texture(self, law: str):
+        turn = np.linspace(0, 6, 6000)
+        path = np.column_stack([0.03 * np.sin(3 * turn), 0.03 * np.cos(2 * turn), 0.003 + 0.002 * np.sin(9 * turn)])
+        t, tx, ty = grain(path)
+        surface = MAPS["waves"]
+        below = load_method("render", law)().touch(covered(surface, PLAIN)).path(path - t[:, None] * [0, 0, 1])
+        expected = below - below[:, 2:] * np.column_stack([tx, ty, 0 * tx])
+        found = WithMaterials(law=law).touch(covered(surface, GRAINY)).path(path)
+        assert np.allclose(found, expected, rtol=0, atol=1e-9)
+
+    def test_under_a_lateral_law_the_depth_is_the_push(self):
+        path = stroke()
+        t, tx, ty = grain(path)
+        push = K * (0.001 + t)
+        force = WithMaterials(law="lateral-gradient").touch(level(GRAINY)).path(path)
+        assert np.allclose(force, -push[:, None] * np.column_stack([tx, ty, 0 * tx]), atol=1e-6)
+
+    def test_no_closed_path_gains_energy(self):
+        """The potential of penalty-gradient is one with a texture as well; a sum of chords errs a little."""
+        turn = np.linspace(0, 2 * np.pi, 200001)
+        loop = np.column_stack([0.02 * np.cos(turn), 0.015 * np.sin(turn), 0.002 + 0.001 * np.sin(3 * turn)])
+        surface = waves(shape=(512, 512)).surface
+        for material in (PLAIN, GRAINY):
+            force = WithMaterials(law="penalty-gradient").touch(covered(surface, material)).path(loop)
+            parts = (force[1:] + force[:-1]) / 2 * np.diff(loop, axis=0)
+            assert abs(parts.sum()) <= 2e-5 * np.abs(parts).sum()
+
+
+class TestDamping:
+    @pytest.mark.parametrize("law", PUSHING)
+    def test_it_acts_along_the_push_and_never_pulls(self, law: str):
+        oily = replace(PLAIN, damping_n_s_per_m=4.0)
+        still = WithMaterials(law=law).touch(level(oily)).force(HapticState((0.0, 0.0, 0.009))).z
+        for speed in (-0.25, 0.01, 100.0):
+            force = WithMaterials(law=law).touch(level(oily)).force(HapticState((0.0, 0.0, 0.009), (0.3, 0.1, speed)))
+            assert force == pytest.approx((0, 0, max(0.0, still - 4 * speed)), abs=1e-9)
+
+    @pytest.mark.parametrize("law", LATERAL)
+    def test_a_lateral_law_has_none(self, law: str):
+        state = HapticState((0.001, 0.002, 0.001), (0.1, 0.2, 0.3))
+        surface = MAPS["waves"]
+        plain = load_method("render", law)().touch(surface).force(state)
+        assert (
+            WithMaterials(law=law).touch(covered(surface, replace(PLAIN, damping_n_s_per_m=4.0))).force(state) == plain
+        )
+
+
+@pytest.mark.parametrize("law", PUSHING + LATERAL)
+@pytest.mark.parametrize("name", ["sand", "rubber", "water", "grass"])
+def test_what_materials_add_takes_energy_from_a_hand_at_rest_in_height(law: str, name: str):
+    """On level ground, without heights: a wild lateral path, force at a tick's end times its step, up to any moment."""
+    random = np.random.default_rng(5)
+    path = np.column_stack([np.cumsum(random.normal(0, 1e-4, (4000, 2)), axis=0), np.full(4000, 0.009)])
+    force = WithMaterials(law=law).touch(level(replace(library()[name], roughness_m=0.0))).path(path)
+    given = np.cumsum(np.sum(force[1:, :2] * np.diff(path[:, :2], axis=0), axis=1))
+    assert given.max() <= 1e-12 and given[-1] < -1e-4
+
+
+@pytest.mark.parametrize("law", PUSHING + LATERAL)
+def test_a_wild_hand_is_never_pushed_wildly(law: str):
+    """Friction is within its cone, and the slopes of a texture turn a force by no more than they are steep."""
+    random = np.random.default_rng(9)
+    path = random.uniform(-0.042, 0.042, (5000, 3)) * [1, 1, 0.2]
+    path[::97] = np.nan
+    for name in ("brick", "skin"):
+        material = replace(library()[name], damping_n_s_per_m=0.0)
+        surface = covered(MAPS["waves"], material)
+        alone = load_method("render", law)().touch(surface).path(path)
+        force = WithMaterials(law=law).touch(surface).path(path)
+        assert np.isfinite(force).all()
+        most = np.linalg.norm(alone, axis=1).max() + material.stiffness_n_per_m * 0.02
+        assert np.linalg.norm(force, axis=1).max() <= 4 * most
+
+
+class TestLeftOut:
+    @pytest.mark.parametrize("law", PUSHING + LATERAL)
+    def test_a_surface_to_which_nothing_is_added_has_the_law_itself(self, law: str):
+        bare = load_method("render", law)().touch(level(PLAIN))
+        for renderer, surface in (
+            (WithMaterials(law=law), level(PLAIN)),
+            (WithMaterials(law=law), HapticSurface.from_heights(np.full((64, 64), 0.01))),
+            (WithMaterials(law=law, friction=False, texture=False, damping=False), level(library()["rubber"])),
+        ):
+            touch = renderer.touch(surface)
+            assert isinstance(touch, CompiledTouch) and isinstance(bare, CompiledTouch)
+            assert touch.tick is bare.tick
+
+    @pytest.mark.parametrize(("part", "name"), [("friction", "sticky"), ("texture", "grainy"), ("damping", "oily")])
+    def test_each_part_is_left_out_by_itself(self, part: str, name: str):
+        """Without the one thing that a material has, it is the law."""
+        material = {"sticky": STICKY, "grainy": GRAINY, "oily": replace(PLAIN, damping_n_s_per_m=3.0)}[name]
+        on, off = (WithMaterials(law="penalty", **{part: value}).touch(level(material)) for value in (True, False))
+        path = stroke() + np.linspace(0, 1e-3, 5000)[:, None] * [0, 0, -1]
+        alone = load_method("render", "penalty")().touch(level(material)).path(path)
+        assert np.array_equal(off.path(path), alone)
+        assert not np.allclose(on.path(path), alone, atol=1e-4)
+
+    def test_a_material_may_be_named_for_a_surface_that_has_none(self):
+        bare = HapticSurface.from_heights(np.full((64, 64), 0.01))
+        named = WithMaterials(law="penalty", material="rubber").touch(bare).path(stroke())
+        assert np.array_equal(named, WithMaterials(law="penalty").touch(level(library()["rubber"])).path(stroke()))
+        ice = WithMaterials(law="penalty", material="rubber").touch(level(library()["ice"])).path(stroke())
+        assert np.array_equal(ice, WithMaterials(law="penalty").touch(level(library()["ice"])).path(stroke()))
+
+
+class TestOptions:
+    def test_a_law_is_a_name_or_a_block(self):
+        short, long = WithMaterials(law="penalty"), WithMaterials(law={"use": "penalty", "stiffness_n_per_m": 800})
+        assert short == long
+        assert short.law["use"] == "penalty" and short.law["dequantise"] == "auto"
+        surface = HapticSurface.from_heights(np.full((8, 8), 0.01))
+        stiff = WithMaterials(law={"use": "penalty", "stiffness_n_per_m": 1200})
+        assert stiff.touch(surface).force(HapticState((0.0, 0.0, 0.009))).z == pytest.approx(1.2, rel=1e-5)
+
+    @pytest.mark.parametrize(
+        ("law", "said"),
+        [
+            ("penalti", "did you mean 'penalty'"),
+            ({"use": "penalty", "stifness_n_per_m": 1}, "stifness_n_per_m"),
+            ({"use": "penalty", "stiffness_n_per_m": -1}, "greater than 0"),
+            ({"stiffness_n_per_m": 1}, "a law has a name"),
+            ("proxy", "friction of its own"),
+            ("with-materials", "friction of its own"),
+        ],
+    )
+    def test_a_law_that_is_none(self, law: object, said: str):
+        with pytest.raises(ValidationError, match=said):
+            WithMaterials(law=law)  # pyright: ignore[reportArgumentType]
+
+    def test_a_material_that_is_not_shipped(self):
+        with pytest.raises(ValidationError, match="did you mean 'sand'"):
+            WithMaterials(material="sandy")
+
+    def test_a_law_in_python_cannot_have_materials_around_it(self, monkeypatch: pytest.MonkeyPatch):
+        class Slow(Touch):
+            def force(self, state: HapticState) -> Force:
+                return Force(0, 0, 1)
+
+            def path(self, positions_m, period_s=0.001):
+                return np.zeros_like(positions_m)
+
+        class Plugin(ForceRenderer):
+            def touch(self, surface: HapticSurface) -> Touch:
+                return Slow()
+
+        renderer = WithMaterials(law={"use": "grey-level"})
+        renderer.law.pop("force_at_white_n")
+        monkeypatch.setattr("tangible_core.registry.load_method", lambda kind, name: Plugin)
+        with pytest.raises(ConfigError, match="Plugin is not compiled"):
+            renderer.touch(level(STICKY))
+
+
+def test_friction_of_two_materials_is_one_bristle():
+    """From one to the other nothing is stored that was not given."""
+    labels = np.zeros((64, 64), np.int32)
+    labels[:, 32:] = 1
+    soft = replace(STICKY, name="soft", stiffness_n_per_m=200.0)
+    surface = HapticSurface.from_heights(np.full((64, 64), 0.01), 0.08, labels, (STICKY, soft))
+    x = np.concatenate([np.linspace(a, b, 500) for a, b in pairwise([-0.001, 0.0005, -0.0004, 0.0008, -0.001])])
+    force = WithMaterials(law="penalty").touch(surface).path(np.column_stack([x, 0 * x, np.full_like(x, 0.009)]))
+    assert np.cumsum(force[1:, 0] * np.diff(x)).max() <= 1e-12

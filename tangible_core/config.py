@@ -9,6 +9,7 @@ from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag
 
 from .errors import ConfigError, MaterialError, TangibleError, did_you_mean
 from .interfaces import DepthEstimator, ForceRenderer, HapticDevice, Method, Segmenter
+from .mapping import WorkspaceMapping, mapped
 from .material_rules import MaterialRule
 from .materials import NEUTRAL, find, load_library
 from .registry import Registry
@@ -80,9 +81,15 @@ class PipelineConfig:
     texture: Chosen[Segmenter] | None = None
     materials: MaterialChoice = field(default_factory=MaterialChoice)
     workspace: Workspace = field(default_factory=Workspace)
+    mapping: WorkspaceMapping = field(default_factory=WorkspaceMapping)
     render: Chosen[ForceRenderer] | None = None
     device: Chosen[HapticDevice] | None = None
     safety: Safety = field(default_factory=Safety)
+
+    @property
+    def felt_device(self) -> HapticDevice | None:
+        """The device as the picture sees it, by the mapping; None where none is configured."""
+        return None if self.device is None else mapped(self.device.method, self.mapping)
 
     def completed(self) -> dict[str, Any]:
         """The configuration with every default filled in, as plain values."""
@@ -92,6 +99,7 @@ class PipelineConfig:
             else self.scene.model_dump(mode="json", exclude_none=True),
             "want": self.want,
             "workspace": self.workspace.model_dump(mode="json"),
+            "mapping": self.mapping.model_dump(mode="json", exclude_none=True),
             "materials": self.materials.model_dump(mode="json", exclude_none=True),
             "safety": self.safety.model_dump(mode="json", exclude_none=True),
         }
@@ -102,7 +110,12 @@ class PipelineConfig:
 
 
 STAGES = ("depth", "texture", "render", "device")
-SECTIONS: dict[str, type[BaseModel]] = {"workspace": Workspace, "materials": MaterialChoice, "safety": Safety}
+SECTIONS: dict[str, type[BaseModel]] = {
+    "workspace": Workspace,
+    "mapping": WorkspaceMapping,
+    "materials": MaterialChoice,
+    "safety": Safety,
+}
 KEYS = ("scene", "want", *STAGES, *SECTIONS)
 
 

@@ -347,6 +347,32 @@ class DeviceSpec:
     """True if no motor moves."""
 
 
+@dataclass(frozen=True)
+class Unit:
+    """One device that is connected now."""
+
+    name: str
+    """What it is, as its maker calls it."""
+    serial: str = ""
+    """What tells it from its like; a calibration belongs to it."""
+    place: str = ""
+    """Where it is connected."""
+    problem: str = ""
+    """Why it cannot be used as it is; empty if it can."""
+
+
+@dataclass(frozen=True)
+class Finding:
+    """What one check of a device's surroundings found."""
+
+    check: str
+    verdict: Literal["fine", "failed", "not asked"]
+    """`not asked` where nothing is there that could be asked."""
+    says: str
+    cure: str = ""
+    """What to do about it, for a check that failed."""
+
+
 class TickFlag(IntFlag):
     """What happened in one tick of a force loop; any number of them at once."""
 

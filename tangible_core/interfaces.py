@@ -4,6 +4,7 @@ Methods are stateless; what keeps state is a session: `Touch` for a renderer, `L
 """
 
 from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator
 from types import TracebackType
 from typing import ClassVar, Self, final
 
@@ -11,7 +12,19 @@ import numpy as np
 from jaxtyping import Float64
 from pydantic import BaseModel, ConfigDict
 
-from .data import NO_FORCE, DeviceSpec, DisparityMap, Force, HapticState, HapticSurface, Kind, SegmentMap, Views
+from .data import (
+    NO_FORCE,
+    DeviceSpec,
+    DisparityMap,
+    Finding,
+    Force,
+    HapticState,
+    HapticSurface,
+    Kind,
+    SegmentMap,
+    Unit,
+    Views,
+)
 from .errors import DeviceError
 
 
@@ -124,6 +137,37 @@ class Skippable(ABC):
     @abstractmethod
     def skip(self, views: Views) -> str | None:
         """A reason, in words, not to run on these views; None to run. Cheap: it is asked for every plan."""
+
+
+class Serviceable(ABC):
+    """For a device that can be looked for and examined without being opened for use."""
+
+    @abstractmethod
+    def connected(self) -> tuple[Unit, ...]:
+        """The units that are there now. Raises: DeviceError if they cannot be looked for."""
+
+    @abstractmethod
+    def examine(self) -> Iterator[Finding]:
+        """Everything that must be right before `open` succeeds, in the order in which to put it right."""
+
+
+class Adjustable(ABC):
+    """For a device that its user must set up by hand."""
+
+    @abstractmethod
+    def home(self, say: Callable[[str], None]) -> None:
+        """Guide the user until the device knows where it is; no force meanwhile.
+
+        Raises: DeviceError if it is not there, or was not homed in time.
+        """
+
+    @abstractmethod
+    def calibrate(self, ask: Callable[[str], str]) -> tuple[str, BaseModel]:
+        """Measure this unit with the user's help: its serial number, and what to keep for it.
+
+        `ask` shows a text and returns what the user answers. Raises: DeviceError as `open`, or if an answer or a
+        measurement makes no sense.
+        """
 
 
 KINDS: dict[Kind, type[Method]] = {

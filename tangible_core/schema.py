@@ -31,6 +31,7 @@ def json_schema(registry: Registry | None = None, distribution: str | None = "ta
             "scene": {"anyOf": [{"enum": sorted(BUILTINS)}, _schema(SceneFiles, definitions)]},
             "want": {"enum": list(PRODUCTS), "default": "surface"},
             "workspace": _schema(SECTIONS["workspace"], definitions),
+            "mapping": _schema(SECTIONS["mapping"], definitions),
             "materials": _materials(definitions),
             **{kind: _stage(kind, registry, distribution, definitions) for kind in STAGES},
             "safety": _schema(SECTIONS["safety"], definitions),
@@ -98,6 +99,7 @@ def markdown(schema: dict[str, Any]) -> str:
     lines += _table(properties["scene"]["anyOf"][1], blocks)
     lines += ["## want", "", f"What to make: {_names(properties['want']['enum'])}.", ""]
     lines += ["## workspace", "", *_table(properties["workspace"], blocks)]
+    lines += ["## mapping", "", *_table(properties["mapping"], blocks)]
     lines += ["## materials", "", "A map from label to material (`{0: ice, 1: sand}`), or:", ""]
     lines += _table(properties["materials"]["anyOf"][0], blocks)
     for kind in STAGES:

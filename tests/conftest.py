@@ -64,6 +64,22 @@ def cache_dir(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.Monk
     return folder
 
 
+@pytest.fixture(autouse=True)
+def runtime_dir(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Shared memory of its own for each test: two at a time do not meet on one channel."""
+    folder = tmp_path_factory.mktemp("runtime")
+    monkeypatch.setenv("TANGIBLE_RUNTIME_DIR", str(folder))
+    return folder
+
+
+@pytest.fixture(autouse=True)
+def config_dir(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """No calibration of a developer's own device is read or written."""
+    folder = tmp_path_factory.mktemp("config")
+    monkeypatch.setenv("TANGIBLE_CONFIG_DIR", str(folder))
+    return folder
+
+
 @pytest.fixture
 def unchecked_shapes(monkeypatch: pytest.MonkeyPatch) -> None:
     """As outside of tests: only the code's own checks are left."""

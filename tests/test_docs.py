@@ -64,3 +64,17 @@ def test_the_page_on_the_force_loop_feels(capsys: pytest.CaptureFixture[str]):
     (block,) = re.findall(r"```python\n(.*?)```", ROOT.joinpath("docs/servo.md").read_text("utf-8"), re.DOTALL)
     exec(block, {})
     assert capsys.readouterr().out.startswith("200 ")
+
+
+def test_the_page_on_devices_shows_what_the_program_takes():
+    from tangible_core.config import parse_config
+    from tangible_core.registry import default_registry
+
+    page = ROOT.joinpath("docs/devices.md").read_text(encoding="utf-8")
+    [text] = re.findall(r"```yaml\n(.*?)```", page, re.DOTALL)
+    config = parse_config(text, Path("p.yaml"), default_registry())
+    assert config.felt_device is not None and config.device is not None
+    assert config.felt_device != config.device.method
+    assert {each.name for each in default_registry().listings if each.kind == "device"} <= set(
+        re.findall(r"^\| `([a-z-]+)` \|", page, re.MULTILINE)
+    )

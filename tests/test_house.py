@@ -13,7 +13,7 @@ import pytest
 
 import tangible_core
 from tangible_core import hooks
-from tangible_core.interfaces import KINDS, Skippable
+from tangible_core.interfaces import KINDS, Adjustable, Serviceable, Skippable
 from tangible_core.registry import KIND_NAMES, default_registry
 from tangible_core.testing.checks_listing import HEAVY
 
@@ -47,7 +47,7 @@ def test_listing_is_light(words):
     imported = set(run("-c", code).stderr.split())
     assert "tangible_core" in imported
     assert not imported & {*HEAVY, "pandas", "PIL"}
-    assert not {name for name in imported if re.match(r"tangible_(depth|texture|render|devices)\.", name)}
+    assert not {name for name in imported if re.match(r"tangible_(depth|texture|render|devices)\.(?!commands)", name)}
 
 
 @pytest.mark.parametrize("moment", MOMENTS)
@@ -99,7 +99,12 @@ def test_every_method_is_in_the_file_named_after_it():
 def test_a_method_is_final_and_inherits_from_interfaces_alone(kind):
     for each in default_registry().listings:
         if each.kind == kind and each.distribution == "tangible-images":
-            assert set(default_registry().load(kind, each.name).__bases__) <= {KINDS[kind], Skippable}, each.target
+            assert set(default_registry().load(kind, each.name).__bases__) <= {
+                KINDS[kind],
+                Skippable,
+                Serviceable,
+                Adjustable,
+            }, each.target
 
 
 def test_what_is_installed_is_what_the_project_says():

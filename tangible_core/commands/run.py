@@ -80,11 +80,11 @@ def open_pipeline(config: Path, sets: Sequence[str], cached: bool) -> Pipeline:
 
 
 def device_of(pipeline: Pipeline) -> Chosen[HapticDevice]:
-    """The device that the file names. Raises: ConfigError if it names none."""
-    device = pipeline.config.device
-    if device is None:
+    """The device that the file names, seen through its mapping. Raises: ConfigError if it names none."""
+    device, felt = pipeline.config.device, pipeline.config.felt_device
+    if device is None or felt is None:
         raise ConfigError(f"{pipeline.config.path}: `device:` is missing; add one, such as `device: {{use: mock}}`")
-    return device
+    return replace(device, method=felt)
 
 
 def execute(pipeline: Pipeline, out: Path, seconds: float) -> Results:
@@ -118,11 +118,11 @@ def _concerns(pipeline: Pipeline, product: str) -> bool:
 
 
 def _feel(pipeline: Pipeline, value: Any, seconds: float) -> Recording | None:
-    device = pipeline.config.device
-    if pipeline.config.want != "touch" or device is None or not device.method.spec().simulated:
+    device = pipeline.config.felt_device
+    if pipeline.config.want != "touch" or device is None or not device.spec().simulated:
         return None
     said = about(pipeline).stamped()
-    recording = session.run(value, device.method, seconds, tell_of(pipeline), pipeline.config.safety)
+    recording = session.run(value, device, seconds, tell_of(pipeline), pipeline.config.safety)
     return replace(recording, about=said)
 
 

@@ -55,6 +55,11 @@ def say(text: str) -> None:
     Console(highlight=False, soft_wrap=True).print(text)
 
 
+def plain(text: str) -> None:
+    """A text as it stands, to be copied: no marks, no folding."""
+    Console(highlight=False, soft_wrap=True).print(text, markup=False)
+
+
 def note(text: str) -> None:
     """A line of text for people, beside the results: on standard error."""
     Console(stderr=True, highlight=False, soft_wrap=True).print(text, markup=False)

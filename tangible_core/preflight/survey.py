@@ -23,10 +23,11 @@ def survey(config: PipelineConfig, surface: HapticSurface, touch: Touch, hand: H
     Takes `loop.seconds`, in which this machine's lateness is measured, and a moment more.
     Raises: ConfigError if no device or law is configured.
     """
-    if config.device is None or config.render is None:
-        missing = "device" if config.device is None else "render"
+    device = config.felt_device
+    if device is None or config.render is None:
+        missing = "device" if device is None else "render"
         raise ConfigError(f"{config.path}: `{missing}:` is missing; name one (`tangible plugins` lists them)")
-    period_s, spec = loop.period_s, config.device.method.spec()
+    period_s, spec = loop.period_s, device.spec()
     stated = touch.stiffness_n_per_m if isinstance(touch, CompiledTouch) else 0.0
     probes = probe(touch, surface, hand.press_n, stated, spec.workspace_m[2], period_s)
     scene = config.scene if isinstance(config.scene, SceneFiles) else None

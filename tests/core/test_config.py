@@ -1,5 +1,6 @@
 """Pipeline files: what they may say, and what is said of a wrong one."""
 
+import json
 from pathlib import Path
 
 import pytest
@@ -247,3 +248,31 @@ def test_whatever_a_file_holds_the_answer_is_a_configuration_or_complaints(text:
         parse(text)
     except ConfigError as error:
         assert "here/p.yaml" in str(error)
+
+
+MAPPED = """\
+scene: builtin/brick
+mapping: {scale: 2, rotation_deg: 90, clutch_button: 0}
+device: {use: mock, hand: null}
+"""
+
+
+def test_the_device_is_seen_through_the_mapping():
+    config = parse(MAPPED)
+    assert config.felt_device is not None and config.device is not None
+    assert config.felt_device.spec().workspace_m == pytest.approx((0.04, 0.04, 0.04))
+    assert config.completed()["device"] == {"use": "mock", **config.device.method.model_dump(mode="json")}
+    again = parse_config(json.dumps(config.completed()), PATH, default_registry())
+    assert again.mapping == config.mapping
+
+
+def test_without_a_mapping_the_device_is_itself():
+    config = parse("scene: builtin/brick\ndevice: mock\n")
+    assert config.device is not None
+    assert config.felt_device is config.device.method
+    assert parse("scene: builtin/brick\n").felt_device is None
+
+
+def test_a_mapping_is_checked_like_every_block():
+    [line] = complaints("scene: builtin/brick\nmapping:\n  clutch: 1\n")
+    assert line.startswith("here/p.yaml:3:3: mapping.clutch: unknown option (did you mean 'clutch_button'?)")

@@ -1,19 +1,21 @@
 """The Novint Falcon over USB."""
 
 import time
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Annotated
 
-from pydantic import Field
+from pydantic import BaseModel, Field
 
-from tangible_core.data import DeviceSpec
-from tangible_core.interfaces import HapticDevice, Link
+from tangible_core.calibrations import load_calibration
+from tangible_core.data import DeviceSpec, Finding, Unit
+from tangible_core.interfaces import Adjustable, HapticDevice, Link, Serviceable
 
 from .calibration import Calibration
 from .image import read_image
 
 
-class Falcon(HapticDevice):
+class Falcon(HapticDevice, Serviceable, Adjustable):
     """A Novint Falcon on USB, driven from Python: firmware, homing, exact kinematics, forces that keep their sign.
 
     Opening it takes as long as you need to home it: pull the grip all the way out and push it all the way in. Until
@@ -26,8 +28,9 @@ class Falcon(HapticDevice):
     """Serial number of the Falcon to open; null takes them by index."""
     index: Annotated[int, Field(ge=0)] = 0
     """Which of several Falcons, in the order of the bus, where no serial is given."""
-    calibration: Calibration = Calibration()
-    """What differs from device to device, or is uncertain."""
+    calibration: Calibration | None = None
+    """What differs from device to device, or is uncertain; null takes what `tangible devices calibrate falcon` kept for
+    this one, or else the figures that are published."""
     home_within_s: Annotated[float, Field(gt=0, le=3600)] = 120.0
     """Time to home it in."""
     leds: bool = True
@@ -42,7 +45,7 @@ class Falcon(HapticDevice):
 
     def spec(self) -> DeviceSpec:
         """A Falcon's limits, as in CHAI3D's table; the force that its motors can give in every direction."""
-        return self.calibration.spec()
+        return self.calibrated(self.serial or "").spec()
 
     def open(self) -> Link:
         """Find it, load its firmware if it has none, and have it homed; blocks until that is done.
@@ -56,3 +59,32 @@ class Falcon(HapticDevice):
     def image(self) -> bytes | None:
         """The firmware, read and checked as a whole; None if no file is given. Raises: DeviceError."""
         return None if self.firmware is None else read_image(self.firmware)
+
+    def calibrated(self, serial: str) -> Calibration:
+        """The option, or what was kept for this serial number, or the defaults. Raises: DeviceError if damaged."""
+        return self.calibration or load_calibration("falcon", serial, Calibration) or Calibration()
+
+    def connected(self) -> tuple[Unit, ...]:
+        """Every Falcon on the bus. Raises: DeviceAbsent without libusb, DeviceError if it fails."""
+        from .service import units
+
+        return units(None)
+
+    def examine(self) -> Iterator[Finding]:
+        """libusb, the firmware's file, then each Falcon: permission, driver, firmware, rate."""
+        from .service import findings
+
+        return findings(self, None, time.perf_counter)
+
+    def home(self, say: Callable[[str], None]) -> None:
+        """Open it, which has it homed, and close it, by which it forgets that again: a try. Raises: as `open`."""
+        from .homing import GUIDE
+
+        say(f"Novint Falcon: {GUIDE}")
+        self.open().close()
+
+    def calibrate(self, ask: Callable[[str], str]) -> tuple[str, BaseModel]:
+        """Measure its axes, its arms' zero and its motors' strength. Raises: DeviceError as `open`, or if it fails."""
+        from .service import calibrated
+
+        return calibrated(self, ask, None, time.perf_counter)

@@ -9,6 +9,7 @@ from tangible_core.interfaces import HapticDevice, Link
 
 from ..hand import VirtualHand
 from ..paths import DRAWN, walk
+from .calibration import Calibration
 from .falcon import Falcon
 from .simulator.faults import Fault
 
@@ -47,7 +48,7 @@ class FalconSimulated(HapticDevice):
 
     def spec(self) -> DeviceSpec:
         """As of device falcon, but that no motor moves."""
-        return self.driver.calibration.spec(simulated=True)
+        return (self.driver.calibration or Calibration()).spec(simulated=True)
 
     def open(self) -> Link:
         """A new Falcon, its firmware loaded and homed by the hand.

@@ -6,6 +6,8 @@ from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+from tangible_core.calibrations import any_calibration
+
 from .firmware import running
 from .homing import home
 from .link import FalconLink
@@ -22,11 +24,16 @@ def open_falcon(options: Falcon, image: bytes | None, backend: Any, clock: Calla
     """
     opener = partial(open_port, options.serial, options.index, backend)
     port = running(opener, image, options.event_character)
+    try:
+        calibration = options.calibrated(port.serial() if any_calibration("falcon") else "")
+    except BaseException:
+        port.close()
+        raise
     link = FalconLink(
         port,
-        arms=options.calibration.arms(),
-        frame=options.calibration.frame(),
-        max_force_n=options.spec().max_force_n,
+        arms=calibration.arms(),
+        frame=calibration.frame(),
+        max_force_n=calibration.spec().max_force_n,
         clock=clock,
         samples=options.velocity_samples,
         in_flight=options.in_flight,

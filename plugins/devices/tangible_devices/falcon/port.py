@@ -55,6 +55,14 @@ class Port:
         with said(self.place, "setting it up"):
             self._device.ctrl_transfer(0x40, request, value, 0, None, TIMEOUT_MS)
 
+    def serial(self) -> str:
+        """The serial number; empty where the chip has none."""
+        with said(self.place, "reading its serial number"):
+            try:
+                return usb.util.get_string(self._device, self._device.iSerialNumber) or ""
+            except ValueError:  # how pyusb says that there are no strings
+                return ""
+
     def purge(self) -> None:
         """Forget what was received and what is to be sent."""
         self.request(RESET, PURGE_IN)

@@ -1,0 +1,26 @@
+"""`tangible pointer`: move a pointer device from the command line, and see the forces."""
+
+from typing import Annotated
+
+import typer
+
+PATHS = "circle | raster | spiral | press"
+
+
+def pointer(
+    path: Annotated[str, typer.Option(help=f"{PATHS}; without one, type positions.")] = "",
+    channel: Annotated[str, typer.Option(help="As the device's.")] = "pointer",
+    seconds: Annotated[float, typer.Option(help="How long to follow the path.")] = 8.0,
+    height_mm: Annotated[float, typer.Option(help="Of the path over the base plane.")] = 5.0,
+    speed_mm_per_s: Annotated[float, typer.Option(help="Along the path.")] = 80.0,
+    wait: Annotated[float, typer.Option(help="Seconds to wait for the device.")] = 0.0,
+    as_json: Annotated[bool, typer.Option("--json", help="One JSON object a line.")] = False,
+) -> None:
+    """Move a `pointer` device from another terminal, and see the forces.
+
+    Typed positions are lines of `x y z`, millimetres, and buttons as a fourth number if you like.
+    """
+    from ..pointer.following import follow
+
+    for line in follow(path, channel, seconds, height_mm / 1000, speed_mm_per_s / 1000, wait, as_json):
+        print(line, flush=True)  # noqa: T201

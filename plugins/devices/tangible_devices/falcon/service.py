@@ -1,0 +1,134 @@
+"""What is connected, and what keeps it from working, in the order in which to put it right. Imports pyusb and numba."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import closing
+from typing import TYPE_CHECKING, Any
+
+from tangible_core.data import Finding, Unit
+from tangible_core.errors import DeviceAbsent, DeviceError
+
+from .calibration import Calibration
+from .firmware import answers
+from .image import WHENCE
+from .link import FalconLink
+from .measuring import measure
+from .opening import open_falcon
+from .port import INTERFACE, Port, attached, chosen, place_of, run_time, serial_of
+
+if TYPE_CHECKING:
+    from .falcon import Falcon
+
+ENOUGH_HZ = 900.0
+PACKETS = 500
+"""Exchanged without force, to measure the rate."""
+FASTER = (
+    "plug it into a USB port of the machine itself, with no hub between; keep option in_flight at 2; a rate of about "
+    "60 is the USB chip's latency timer of 16 ms, which it did not change to 1 ms: unplug it and plug it in again"
+)
+
+
+def units(backend: Any) -> tuple[Unit, ...]:
+    """Every Falcon on the bus; each is opened for a moment to read its serial number."""
+    return tuple(_unit(device) for device in attached(backend))
+
+
+def findings(options: Falcon, backend: Any, clock: Callable[[], float]) -> Iterator[Finding]:
+    """libusb, the firmware's file, then each Falcon: permission, driver, firmware, rate. No force is given."""
+    try:
+        devices = attached(backend)
+    except DeviceError as error:
+        yield _failed("libusb", error, "not asked" if isinstance(error, DeviceAbsent) else "failed")
+        return
+    yield Finding("libusb", "fine", "is there")
+    yield _file(options)
+    if not devices:
+        yield Finding("device", "not asked", "none is plugged in; it needs its USB cable and its power supply")
+    for device in devices:
+        yield from _of_one(device, options, clock)
+
+
+def calibrated(
+    options: Falcon, ask: Callable[[str], str], backend: Any, clock: Callable[[], float]
+) -> tuple[str, Calibration]:
+    """The serial number of the Falcon that the options choose, and what was measured of it."""
+    serial = serial_of(chosen(attached(backend), options.serial, options.index)[0]) or ""
+
+    def opened(calibration: Calibration) -> FalconLink:
+        return open_falcon(options.model_copy(update={"calibration": calibration}), options.image(), backend, clock)
+
+    return serial, measure(opened, ask, options.calibrated(serial))
+
+
+def _of_one(device: Any, options: Falcon, clock: Callable[[], float]) -> Iterator[Finding]:
+    place = f"bus {device.bus}, address {device.address}"
+    try:
+        serial = serial_of(device)
+        yield Finding(f"{place}: permission", "fine", f"may be used; serial number {serial or 'none'}")
+        yield Finding(f"{place}: driver", "fine", _driver(device))
+        with closing(Port(device, place_of(device))) as port:
+            port.claim()
+            run_time(port, options.event_character)
+            yield Finding(f"{place}: in use", "fine", "by nobody else")
+            if not answers(port):
+                yield _without_firmware(place, options)
+                return
+            yield Finding(f"{place}: firmware", "fine", "answers")
+            yield _rate(place, port, options, clock)
+    except DeviceError as error:
+        yield _failed(place, error)
+
+
+def _unit(device: Any) -> Unit:
+    place = f"USB bus {device.bus}, address {device.address}"
+    try:
+        return Unit("Novint Falcon", serial_of(device) or "", place)
+    except DeviceError as error:
+        return Unit("Novint Falcon", "", place, f"{str(error).splitlines()[0]} (tangible devices doctor falcon)")
+
+
+def _file(options: Falcon) -> Finding:
+    if options.firmware is None:
+        return Finding("firmware file", "fine", "none is given; one is needed after each time the device was powered")
+    try:
+        return Finding("firmware file", "fine", f"{options.firmware}: {len(options.image() or b'')} bytes, whole")
+    except DeviceError as error:
+        return _failed("firmware file", error)
+
+
+def _driver(device: Any) -> str:
+    try:
+        if device.is_kernel_driver_active(INTERFACE):
+            return "the system's serial driver has it; it is taken over while it is used, and given back"
+    except NotImplementedError:
+        return "is WinUSB or the like, or none is needed"
+    except OSError as error:
+        return f"cannot be asked ({error})"
+    return "no other driver has it"
+
+
+def _without_firmware(place: str, options: Falcon) -> Finding:
+    if options.firmware is not None:
+        return Finding(f"{place}: firmware", "fine", "has none yet; the file is sent when it is opened")
+    says = "has none since it was powered, and no file is given"
+    return Finding(f"{place}: firmware", "failed", says, f"--set firmware=FILE, or option firmware; {WHENCE}")
+
+
+def _rate(place: str, port: Port, options: Falcon, clock: Callable[[], float]) -> Finding:
+    calibration = Calibration()
+    link = FalconLink(
+        port, calibration.arms(), calibration.frame(), 0.0, clock, in_flight=options.in_flight, leds=options.leds
+    )
+    for _ in range(PACKETS):
+        link.exchange()
+    health = link.health()
+    says = f"{health.rate_hz:.0f} packets a second, {health.lost} lost, {health.dropped_bytes} stray bytes"
+    if health.rate_hz < ENOUGH_HZ:
+        return Finding(f"{place}: rate", "failed", says, FASTER)
+    return Finding(f"{place}: rate", "fine", says)
+
+
+def _failed(check: str, error: DeviceError, verdict: Any = "failed") -> Finding:
+    first, *_ = str(error).splitlines()
+    return Finding(check, verdict, first.rstrip(":"), str(error))

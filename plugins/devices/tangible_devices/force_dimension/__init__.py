@@ -1,0 +1,1 @@
+"""Force Dimension's devices, through their maker's library."""

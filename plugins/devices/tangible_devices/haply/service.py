@@ -1,0 +1,173 @@
+"""The service's side of the talk: JSON over a web socket, one answer for each message.
+
+Source: Haply, Inverse SDK 3.5, WebSocket protocol (docs.haply.co/inverseSDK/service/realtime/websocket-protocol).
+"""
+
+import json
+import math
+from collections.abc import Generator, Mapping
+from contextlib import ExitStack, contextmanager
+from typing import TYPE_CHECKING, Any, NamedTuple, final
+
+from tangible_core.data import Unit
+from tangible_core.errors import DeviceAbsent, DeviceError
+
+if TYPE_CHECKING:
+    from websockets.sync.client import ClientConnection
+
+INSTALL = "pip install 'tangible-images[haply]'"
+START = "start Haply Hub or the Haply Inverse Service, or say where it listens with option uri"
+MOST_BYTES = 1 << 22
+PROBLEMS = {
+    "ready": "is not ready",
+    "power_supply": "has no power; plug in its power supply",
+    "calibrated": "is not calibrated; follow what its light asks for, or Haply Hub",
+}
+"""What is wrong where the service says false; a word that it does not say is no problem."""
+
+
+class Arm(NamedTuple):
+    """What the service says of one Inverse3 when we connect."""
+
+    device_id: str
+    kind: str
+    port: str
+    problem: str
+
+    def unit(self) -> Unit:
+        """As `tangible devices` lists it."""
+        return Unit(self.kind, self.device_id, self.port, self.problem)
+
+
+class Answer(NamedTuple):
+    """What is used of an answer."""
+
+    position_m: tuple[float, float, float]
+    velocity_m_per_s: tuple[float, float, float] | None
+    buttons: int
+
+
+@final
+class Session:
+    """A connection to the service. Its commands lapse when none are sent; a force of zero keeps it going."""
+
+    def __init__(self, uri: str, timeout_s: float) -> None:
+        """Raises: DeviceAbsent if websockets or the service is not there, DeviceError if it is something else."""
+        self.uri = uri
+        self._timeout_s = timeout_s
+        self._open = ExitStack()
+        self._connection = _connected(self._open, uri, timeout_s)
+        self._owed = 1  # the snapshot comes without a message
+        try:
+            self.arms = tuple(_arm(each) for each in _listed(self._answered(), "inverse3"))
+        except BaseException:
+            self.close()
+            raise
+
+    def choose(self, device_id: str | None) -> str:
+        """The id of the arm to use. Raises: DeviceAbsent if there is none, DeviceError if not this one."""
+        known = [arm.device_id for arm in self.arms]
+        if not known:
+            self.close()
+            raise DeviceAbsent(f"{self.uri}: no Inverse3 is connected; plug in its USB cable and its power supply")
+        if device_id is not None and device_id not in known:
+            self.close()
+            raise DeviceError(f"{self.uri}: there is no Inverse3 {device_id!r}; there are {', '.join(known)}")
+        return known[0] if device_id is None else device_id
+
+    def send(self, device_id: str, force_n: tuple[float, float, float]) -> None:
+        """Set a force, which calls for an answer. Raises: DeviceError if the service is gone."""
+        vector = dict(zip("xyz", force_n, strict=True))
+        command = {"device_id": device_id, "commands": {"set_cursor_force": {"vector": vector}}}
+        with _told(self.uri):
+            self._connection.send(json.dumps({"inverse3": [command]}))
+        self._owed += 1
+
+    @property
+    def waits(self) -> bool:
+        """Whether an answer is still to come."""
+        return self._owed > 0
+
+    def newest(self, device_id: str) -> Answer:
+        """The last of the answers that are owed. Raises: DeviceError if it does not come, or has not this arm."""
+        message: Mapping[str, Any] = {}
+        while self._owed:
+            message = self._answered()
+        with _told(self.uri):
+            states = {str(each["device_id"]): each["state"] for each in _listed(message, "inverse3")}
+            if device_id not in states:
+                raise DeviceError(f"{self.uri}: Inverse3 {device_id} was unplugged; check its plug, then open it again")
+            state = states[device_id]
+            moving = state.get("cursor_velocity")
+            pressed = any(each["state"].get("button") is True for each in _listed(message, "verse_grip"))
+            return Answer(_vector(state["cursor_position"]), moving and _vector(moving), int(pressed))
+
+    def close(self) -> None:
+        """Disconnect; never fails."""
+        self._open.close()
+
+    def _answered(self) -> Mapping[str, Any]:
+        with _told(self.uri):
+            message = json.loads(self._connection.recv(self._timeout_s))
+        self._owed -= 1
+        if not isinstance(message, dict):
+            raise DeviceError(f"{self.uri}: answers {str(message)[:60]!r}; is this the Haply Inverse Service 3.5?")
+        return message
+
+
+def _connected(until: ExitStack, uri: str, timeout_s: float) -> "ClientConnection":
+    try:
+        from websockets.exceptions import WebSocketException
+        from websockets.sync.client import connect
+    except ImportError as error:
+        raise DeviceAbsent(f"device haply needs websockets ({error}); {INSTALL}") from error
+    try:  # no proxy, compression or pings: the service is next door, and is asked a thousand times a second
+        asked = connect(
+            uri,
+            open_timeout=timeout_s,
+            close_timeout=1,
+            compression=None,
+            proxy=None,
+            ping_interval=None,
+            max_size=MOST_BYTES,
+        )
+        return until.enter_context(asked)
+    except (ConnectionRefusedError, TimeoutError) as error:
+        raise DeviceAbsent(f"{uri}: no Haply service listens there ({error}); {START}") from error
+    except (OSError, WebSocketException, EOFError) as error:
+        raise DeviceError(f"{uri}: is no Haply service ({error}); {START}") from error
+
+
+def _arm(told: Mapping[str, Any]) -> Arm:
+    config, status = told.get("config", {}), told.get("status", {})
+    problems = [words for flag, words in PROBLEMS.items() if status.get(flag) is False]
+    kind, port = str(config.get("type", "inverse3")), str(config.get("port", ""))
+    return Arm(str(told.get("device_id", "")), kind, port, "; ".join(problems))
+
+
+def _listed(message: Mapping[str, Any], kind: str) -> list[dict[str, Any]]:
+    """The devices of a kind that a message names; those that are no objects are passed over."""
+    told = message.get(kind)
+    return [each for each in told if isinstance(each, dict)] if isinstance(told, list) else []
+
+
+def _vector(told: Mapping[str, Any]) -> tuple[float, float, float]:
+    vector = float(told["x"]), float(told["y"]), float(told["z"])
+    if not all(map(math.isfinite, vector)):
+        raise ValueError(f"{vector} is not finite")
+    return vector
+
+
+@contextmanager
+def _told(uri: str) -> Generator[None]:
+    """What goes wrong while the service is spoken to, in words."""
+    from websockets.exceptions import ConnectionClosed
+
+    try:
+        yield
+    except TimeoutError as error:
+        raise DeviceError(f"{uri}: the Haply service answers no more; restart it, open the device again") from error
+    except ConnectionClosed as error:
+        raise DeviceError(f"{uri}: the Haply service hung up ({error}); open the device again") from error
+    except (ValueError, KeyError, TypeError) as error:
+        raise DeviceError(f"{uri}: answers what makes no sense ({error!r}); is this the service 3.5?") from error

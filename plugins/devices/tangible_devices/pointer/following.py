@@ -1,0 +1,101 @@
+"""A hand for a pointer device: along a drawn path, or by typed positions."""
+
+import json
+import math
+import sys
+import time
+from collections.abc import Iterable, Iterator
+from itertools import count
+from queue import Empty, Queue
+from threading import Thread
+
+from tangible_core.data import Force
+from tangible_core.errors import ConfigError, DeviceError, did_you_mean
+
+from ..paths import DRAWN, Vector, walk
+from .client import PointerClient
+
+PERIOD_S = 0.005
+SHOWN_EVERY = 20
+"""Sends between two lines of forces: ten lines a second."""
+Step = tuple[Vector, int]
+
+
+def follow(
+    path: str, channel: str, seconds: float, height_m: float, speed_m_per_s: float, wait_s: float, as_json: bool
+) -> Iterator[str]:
+    """Lines to print, position and force, while the pointer is moved; the first is the heading.
+
+    Raises: ConfigError for a path or a number that is none, DeviceError as `PointerClient`, and for a typed line that
+    is no position.
+    """
+    if path and path not in DRAWN:
+        raise ConfigError(f"--path {path}: there is no such path{did_you_mean(path, DRAWN)}; {', '.join(DRAWN)}")
+    if not (0 < speed_m_per_s < math.inf and math.isfinite(height_m) and 0 < seconds < math.inf):
+        raise ConfigError("--seconds and --speed-mm-per-s are above 0 and finite, --height-mm is finite")
+    steps = _drawn(path, seconds, height_m, speed_m_per_s) if path else _typed(sys.stdin)
+    with PointerClient(channel, wait_s) as client:
+        if not as_json:
+            yield "".join(f"{name:>10}" for name in ("x mm", "y mm", "z mm", "fx N", "fy N", "fz N"))
+        for (position_m, buttons), shown in steps:
+            client.send(position_m, buttons)
+            time.sleep(PERIOD_S)
+            if shown:
+                yield _line(position_m, client.force(), as_json)
+
+
+def _line(position_m: Vector, force: Force, as_json: bool) -> str:
+    if as_json:
+        return json.dumps({"position_m": position_m, "force_n": force})
+    numbers = [f"{1000 * part:10.3f}" for part in position_m] + [f"{part:10.4f}" for part in force]
+    return "".join(numbers)
+
+
+def _drawn(path: str, seconds: float, height_m: float, speed_m_per_s: float) -> Iterator[tuple[Step, bool]]:
+    """Steps along a path, and whether to show the force there."""
+    stroke = walk(DRAWN[path]((0.06, 0.04), 8, height_m, height_m + 0.03), speed_m_per_s, PERIOD_S)
+    start = time.monotonic()
+    for number in count(1):
+        passed = time.monotonic() - start
+        if passed >= seconds:
+            return
+        yield (stroke.at(round(passed / PERIOD_S)), 0), number % SHOWN_EVERY == 0
+
+
+def _typed(lines: Iterable[str]) -> Iterator[tuple[Step, bool]]:
+    """Each typed position for a while, the last one on and on: the device must see that somebody is there."""
+    typed: Queue[str | None] = Queue()
+    Thread(target=_enqueue, args=(lines, typed), daemon=True).start()
+    step: Step = ((0.0, 0.0, 1.0), 0)
+    while (line := _next(typed)) is not None:
+        if line:
+            step = parse(line)
+        for sent in range(1, SHOWN_EVERY + 1):
+            yield step, bool(line) and sent == SHOWN_EVERY
+
+
+def parse(line: str) -> Step:
+    """A typed position: x, y, z in millimetres, and buttons as a sum of bits where there are any.
+
+    >>> parse("10 -5 2.5 1")
+    ((0.01, -0.005, 0.0025), 1)
+    """
+    try:
+        x, y, z, *buttons = map(float, line.replace(",", " ").split())
+        return (x / 1000, y / 1000, z / 1000), int(*buttons)
+    except (ValueError, TypeError, OverflowError) as error:
+        raise DeviceError(f"{line!r} is no position; type x y z in millimetres, such as 10 -5 2.5") from error
+
+
+def _enqueue(lines: Iterable[str], typed: "Queue[str | None]") -> None:
+    for line in lines:
+        typed.put(line.strip())
+    typed.put(None)
+
+
+def _next(typed: "Queue[str | None]") -> str | None:
+    """The next line, None after the last, empty while nothing was typed."""
+    try:
+        return typed.get_nowait()
+    except Empty:
+        return ""

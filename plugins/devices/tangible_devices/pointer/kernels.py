@@ -1,0 +1,77 @@
+"""A pointer's memory, read and written without Python. Imports numba: who opens a pointer imports this module then."""
+
+# ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
+# pyright: basic
+
+import numpy as np
+from numba import float64, int64, njit, uint64, void
+
+from tangible_core.compiling import KERNEL
+
+from .channel import CLIENT_OPEN, FACTOR, FORCE, FORCE_WORDS, SAMPLE, SAMPLE_WORDS, START, TRIES
+
+WORDS, NUMBERS = uint64[::1], float64[::1]
+LAST, AGE, OLDEST = SAMPLE_WORDS + 1, SAMPLE_WORDS + 2, SAMPLE_WORDS + 3
+"""Of what a link keeps behind a copied block: the number of the newest sample, the reads since it came, and how many
+there may be."""
+KEPT_WORDS = SAMPLE_WORDS + 4
+NOBODY, BROKEN, WHOLE = 0, 1, 2
+HIGH_M = 1.0
+"""Where the tip is without a client: above every surface."""
+_START, _FACTOR, _HALF = np.uint64(START), np.uint64(FACTOR), np.uint64(32)
+
+
+@njit(uint64(WORDS, int64, int64), **KERNEL)
+def checksum(words, start, count):
+    """As `channel.checksum`."""
+    total = _START
+    for i in range(start, start + count):
+        total = (total ^ words[i]) * _FACTOR
+        total ^= total >> _HALF
+    return total
+
+
+@njit(int64(WORDS, WORDS), **KERNEL)
+def fetch(words, kept):
+    """Copy the client's sample, whole or not at all: WHOLE, BROKEN if it is torn or not finite, or NOBODY."""
+    if words[CLIENT_OPEN] == 0:
+        return NOBODY
+    for _ in range(TRIES):
+        for i in range(SAMPLE_WORDS + 1):
+            kept[i] = words[SAMPLE + i]
+        if checksum(kept, 0, SAMPLE_WORDS) == kept[SAMPLE_WORDS]:
+            numbers = kept.view(np.float64)
+            for i in range(1, SAMPLE_WORDS):
+                if not np.isfinite(numbers[i]):
+                    return BROKEN
+            return WHOLE
+    return BROKEN
+
+
+@njit(int64(WORDS, WORDS, NUMBERS, NUMBERS), **KERNEL)
+def read(words, kept, numbers, state):
+    """The newest sample; without a client high above. 0 if the client has been silent for too many reads."""
+    found = fetch(words, kept)
+    if found == NOBODY:
+        kept[AGE] = kept[OLDEST]
+        for i in range(7):
+            state[i] = HIGH_M if i == 2 else 0.0
+        return 1
+    if found == WHOLE and kept[0] != kept[LAST]:
+        kept[LAST], kept[AGE] = kept[0], 0
+    elif kept[AGE] < kept[OLDEST]:
+        kept[AGE] += np.uint64(1)
+    if found == BROKEN or kept[AGE] >= kept[OLDEST]:
+        return 0
+    for i in range(7):
+        state[i] = numbers[1 + i]
+    return 1
+
+
+@njit(void(WORDS, WORDS, NUMBERS, float64, float64, float64), **KERNEL)
+def write(words, kept, numbers, fx, fy, fz):
+    """Show the force to the client."""
+    held = words.view(np.float64)
+    words[FORCE] += np.uint64(1)
+    held[FORCE + 1], held[FORCE + 2], held[FORCE + 3] = fx, fy, fz
+    words[FORCE + FORCE_WORDS] = checksum(words, FORCE, FORCE_WORDS)

@@ -1,0 +1,133 @@
+"""A device that is moved by another program: a mouse, a robot, a test."""
+
+import math
+import time
+from types import ModuleType
+from typing import Annotated, Any, final
+
+import numpy as np
+from pydantic import Field
+
+from tangible_core.compiled import CompiledLink, LinkKernels
+from tangible_core.data import NO_FORCE, DeviceSpec, Force, HapticState
+from tangible_core.errors import DeviceError
+from tangible_core.interfaces import HapticDevice, Link
+from tangible_core.session import limited
+
+from .channel import DEVICE_OPEN, FORCE, FORCE_WORDS, MAGIC, MARK, SAMPLE, SAMPLE_WORDS, Channel
+
+HIGH_M = (0.0, 0.0, 1.0)
+"""Where the tip is without a client: above every surface."""
+PACE_S = 0.0005
+
+
+class Pointer(HapticDevice):
+    """Moved by another program through shared memory, which is shown the forces: no motor, real time.
+
+    A program that moves it is a `PointerClient`; `tangible pointer` is one. Without one, and when it falls silent, the
+    tip is high above the surface, where nothing is felt. One device and one client at a time on a channel. Its limits
+    are a Novint Falcon's, so that what is shown is what a Falcon would do.
+    """
+
+    channel: Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9-]{0,63}$")] = "pointer"
+    """Name of the shared memory; device and client use the same."""
+    stale_after_s: Annotated[float, Field(ge=0.002, le=10)] = 0.1
+    """A client that is silent for longer is not believed any more; a compiled loop counts this in ticks of 1 ms."""
+
+    def spec(self) -> DeviceSpec:
+        """A Novint Falcon's force, stiffness and damping; the workspace is whatever the client has."""
+        return DeviceSpec(
+            max_force_n=8.0,
+            max_stiffness_n_per_m=3000.0,
+            damping_n_s_per_m=20.0,
+            workspace_m=(1.0, 1.0, 1.0),
+            resolution_m=1e-12,
+            buttons=31,
+            simulated=True,
+        )
+
+    def open(self) -> Link:
+        """Raises: DeviceError if this channel has a device already, or its file cannot be made."""
+        from . import kernels
+
+        return PointerLink(kernels, Channel(self.channel, "device"), self.stale_after_s, self.spec().max_force_n)
+
+
+@final
+class PointerLink(CompiledLink):
+    """A pointer in use."""
+
+    def __init__(self, kernels: ModuleType, channel: Channel, stale_after_s: float, max_force_n: float) -> None:
+        channel.set_flag(DEVICE_OPEN, False)  # a device that was killed has left it set
+        self._code: Any = kernels
+        self._channel = channel
+        self._words = np.frombuffer(channel.memory, np.uint64)
+        self._held = self._words[FORCE + 1 : FORCE + FORCE_WORDS].view(np.float64)
+        self._kept = np.zeros(kernels.KEPT_WORDS, np.uint64)
+        self._numbers = self._kept.view(np.float64)
+        self._stale_after_s = stale_after_s
+        self._max_force_n = max_force_n
+        self._last = self._words[SAMPLE]  # what lies there from before is nobody's
+        self._kept[kernels.LAST] = self._last
+        self._kept[kernels.AGE] = self._kept[kernels.OLDEST] = round(stale_after_s * 1000)
+        self._heard_s, self._read_s = -math.inf, 0.0
+        self._sample = HapticState(HIGH_M)
+        self._open = True
+        self._show(NO_FORCE)
+        self._words[MAGIC] = np.frombuffer(MARK, np.uint64)[0]
+        self._words[DEVICE_OPEN] = 1
+
+    def read(self) -> HapticState:
+        """Where the client is; high above where there is none.
+
+        Waits until half a millisecond after the read before, so that a loop without a clock of its own does not spin.
+        """
+        self._check_open()
+        time.sleep(max(0.0, self._read_s + PACE_S - time.monotonic()))
+        now = self._read_s = time.monotonic()
+        found = self._code.fetch(self._words, self._kept)
+        if found == self._code.WHOLE and self._kept[0] != self._last:
+            self._last, self._heard_s = self._kept[0], now
+            x, y, z, vx, vy, vz, buttons = self._numbers[1:SAMPLE_WORDS].tolist()
+            self._sample = HapticState((x, y, z), (vx, vy, vz), now, int(buttons))
+        if found == self._code.NOBODY or now - self._heard_s > self._stale_after_s:
+            return HapticState(HIGH_M, time_s=now)
+        return self._sample._replace(time_s=now)
+
+    def write(self, force: Force) -> None:
+        """Show this force until the next write; zero if not finite, scaled down to the device's maximum."""
+        self._check_open()
+        self._show(limited(force, self._max_force_n))
+
+    @property
+    def applied(self) -> Force:
+        """The force that the client is shown."""
+        return Force(*self._held.tolist())
+
+    def close(self) -> None:
+        """Show no force, and leave the channel to another device."""
+        if self._open:
+            self._open = False
+            self._show(NO_FORCE)
+            self._words[DEVICE_OPEN] = 0
+            self._channel.close()
+
+    def kernels(self) -> LinkKernels:
+        """Read and write on the shared memory itself."""
+        return LinkKernels(self._code.read, self._code.write, (self._words, self._kept, self._numbers))
+
+    @property
+    def exchanges(self) -> bool:
+        """No: the client fills and empties the memory."""
+        return False
+
+    def exchange(self) -> None:
+        """Nothing has to travel. Raises: DeviceError if the link is closed."""
+        self._check_open()
+
+    def _show(self, force: Force) -> None:
+        self._code.write(self._words, self._kept, self._numbers, *force)
+
+    def _check_open(self) -> None:
+        if not self._open:
+            raise DeviceError("the pointer device is closed; open it again")

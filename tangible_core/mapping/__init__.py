@@ -1,0 +1,7 @@
+"""Where the picture lies under the hand: scale, offset, turn, zoom, clutch and limits, for every device alike."""
+
+from .device import MappedDevice, mapped
+from .options import WorkspaceMapping
+from .placement import Placement
+
+__all__ = ["MappedDevice", "Placement", "WorkspaceMapping", "mapped"]

@@ -1,0 +1,87 @@
+"""A mapping around a device's kernels. Imports numba: whoever opens a mapped device imports this module then."""
+
+# ruff: noqa: ANN001, ANN201, ANN202 -- the types are those that numba infers
+# pyright: basic
+
+from functools import cache
+
+from numba import float64, int64, njit, typeof, types, void
+
+from ..compiled import LinkKernels
+from ..compiling import KERNEL
+from ..kernels import Address
+from .placement import Placement
+
+PLACEMENT = typeof(Placement())
+ARRAY = float64[::1]
+VECTOR = types.UniTuple(float64, 3)
+DRIFT_X, DRIFT_Y, HAND_X, HAND_Y, STARTED, BARRED, MUTED = range(7)
+"""Of a link's memory: how far the clutch has moved the picture, where the hand was, whether it was anywhere yet,
+whether there may be no force now, and whether it waits for the law to let go."""
+MEMORY = 7
+
+
+@njit(void(PLACEMENT, ARRAY, ARRAY), **KERNEL)
+def place(to, memory, state):
+    """Turn a device's state (x, y, z, vx, vy, vz, buttons) into the picture's, where it stands."""
+    x, y, z = state[0], state[1], state[2]
+    held = int64(state[6]) & int64(to.clutch)
+    if held and memory[STARTED]:
+        memory[DRIFT_X] += x - memory[HAND_X]
+        memory[DRIFT_Y] += y - memory[HAND_Y]
+    memory[HAND_X], memory[HAND_Y], memory[STARTED] = x, y, 1.0
+    within = abs(x) <= to.reach_x_m and abs(y) <= to.reach_y_m and abs(z) <= to.reach_z_m
+    memory[BARRED] = 0.0 if within and not held else 1.0
+    memory[MUTED] = max(memory[MUTED], memory[BARRED])
+    x, y = x - to.offset_x_m - memory[DRIFT_X], y - to.offset_y_m - memory[DRIFT_Y]
+    state[0] = to.centre_x_m + (to.cos * x + to.sin * y) / to.scale
+    state[1] = to.centre_y_m + (to.cos * y - to.sin * x) / to.scale
+    state[2] = (z - to.offset_z_m) / to.scale
+    vx, vy = (0.0, 0.0) if held else (state[3], state[4])
+    state[3] = (to.cos * vx + to.sin * vy) / to.scale
+    state[4] = (to.cos * vy - to.sin * vx) / to.scale
+    state[5] = state[5] / to.scale
+
+
+@njit(VECTOR(PLACEMENT, ARRAY, float64, float64, float64), **KERNEL)
+def push(to, memory, fx, fy, fz):
+    """The force on the hand; zero while it may not be pushed, and after that until the law itself gives none.
+
+    Otherwise a hand that came back deep inside the surface would be thrown out of it.
+    """
+    if memory[MUTED]:
+        if not memory[BARRED] and fx == 0.0 and fy == 0.0 and fz == 0.0:
+            memory[MUTED] = 0.0
+        return 0.0, 0.0, 0.0
+    return to.cos * fx - to.sin * fy, to.sin * fx + to.cos * fy, fz
+
+
+def mapped_read(to, memory, fixed, read, write, state):
+    """Read the device, and turn what is fresh."""
+    fresh = read(*fixed, state)
+    if fresh:
+        place(to, memory, state)
+    return fresh
+
+
+def mapped_write(to, memory, fixed, read, write, fx, fy, fz):
+    """Turn the force, and give it to the device."""
+    x, y, z = push(to, memory, fx, fy, fz)
+    write(*fixed, x, y, z)
+
+
+def around(device: LinkKernels, to: Placement, memory) -> LinkKernels:
+    """Kernels that call a device's own by their addresses: compiled once for all devices alike, and kept on disk."""
+    # the addresses come last: numba warns of a tuple that begins with a function
+    fixed = (to, memory, device.fixed, Address(device.read), Address(device.write))
+    kinds = [typeof(each) for each in fixed]
+    return LinkKernels(
+        _compiled(mapped_read, int64(*kinds, ARRAY)),
+        _compiled(mapped_write, void(*kinds, float64, float64, float64)),
+        fixed,
+    )
+
+
+@cache
+def _compiled(kernel, signature):
+    return njit(signature, **KERNEL)(kernel)

@@ -1,0 +1,58 @@
+"""What a pipeline file says of the mapping between hand and picture."""
+
+import math
+from dataclasses import replace
+from typing import Annotated
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from ..data import DeviceSpec
+from .placement import Placement, Vector, turn
+
+Metres = Annotated[float, Field(ge=-10, le=10)]
+Size = Annotated[float, Field(gt=0, le=10)]
+
+
+class WorkspaceMapping(BaseModel):
+    """How the picture lies under the hand; without options they coincide."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+
+    scale: Annotated[float, Field(ge=1e-3, le=1e3)] | None = None
+    """Hand millimetres per picture millimetre. If left out 1, or what makes the region fill the device's workspace."""
+    region_m: tuple[Metres, Metres, Size, Size] | None = None
+    """The part of the picture to feel: x and y of its centre from the picture's centre, width, length."""
+    rotation_deg: Annotated[float, Field(ge=-360, le=360)] = 0.0
+    """The picture is turned by this under the hand, counter-clockwise seen from above; quarter turns are exact."""
+    offset_m: tuple[Metres, Metres, Metres] = (0.0, 0.0, 0.0)
+    """Where the hand finds the centre of the picture, or of the region, on the base plane."""
+    clutch_button: Annotated[int, Field(ge=0, le=31)] | None = None
+    """While this button (the first is 0) is held there is no force, and the picture goes sideways with the hand."""
+    limits_m: tuple[Size, Size, Size] | None = None
+    """Size along x, y, z of the box about the device's centre outside of which there is no force."""
+
+    def placement(self, workspace_m: Vector) -> Placement:
+        """In numbers, for a device of this workspace."""
+        cos, sin = turn(self.rotation_deg)
+        x, y, width, length = self.region_m or (0.0, 0.0, 0.0, 0.0)
+        scale = self.scale or 1.0
+        if self.region_m and self.scale is None:
+            across, along = abs(cos) * width + abs(sin) * length, abs(sin) * width + abs(cos) * length
+            scale = min(workspace_m[0] / across, workspace_m[1] / along)
+        sides = self.limits_m or (math.inf, math.inf, math.inf)
+        reach = sides[0] / 2, sides[1] / 2, sides[2] / 2
+        clutch = 0 if self.clutch_button is None else 1 << self.clutch_button
+        return Placement(scale, cos, sin, x, y, *self.offset_m, *reach, float(clutch))
+
+    def felt_spec(self, spec: DeviceSpec) -> DeviceSpec:
+        """The device as the picture sees it: metres are the picture's, newtons the hand's."""
+        place = self.placement(spec.workspace_m)
+        x, y, z = spec.workspace_m
+        cos, sin = abs(place.cos), abs(place.sin)
+        return replace(
+            spec,
+            workspace_m=((cos * x + sin * y) / place.scale, (sin * x + cos * y) / place.scale, z / place.scale),
+            resolution_m=spec.resolution_m / place.scale,
+            max_stiffness_n_per_m=spec.max_stiffness_n_per_m * place.scale,
+            damping_n_s_per_m=spec.damping_n_s_per_m * place.scale,
+        )

@@ -1,0 +1,239 @@
+"""Force Dimension's devices over a library of the same functions: axes, failures, who has it open."""
+
+import ast
+import inspect
+import sys
+import time
+from importlib.util import find_spec
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+from tangible_core.data import NO_FORCE, Finding, Force, Unit
+from tangible_core.errors import DeviceAbsent, DeviceError
+from tangible_core.testing import run_checks
+from tangible_devices.force_dimension.force_dimension import ForceDimension
+
+
+class Library:
+    """The functions of `forcedimension_core.dhd` that are used, over devices that are not there."""
+
+    def __init__(self) -> None:
+        self.serials = [1234, 77]
+        self.opened: set[int] = set()
+        self.busy: set[int] = set()
+        self.position = [0.01, 0.02, 0.03]
+        self.velocity: list[float] | None = [0.0, 0.0, 0.0]
+        self.forces: list[tuple[float, ...]] = []
+        self.enabled = False
+        self.gone = False
+
+    def errorGetLastStr(self) -> str:
+        return "the words of the library"
+
+    def getDeviceCount(self) -> int:
+        return len(self.serials)
+
+    def openID(self, index: int) -> int:
+        if index >= len(self.serials) or index in self.busy:
+            return -1
+        self.opened.add(index)
+        return index
+
+    def openSerial(self, serial: int) -> int:
+        return self.openID(self.serials.index(serial)) if serial in self.serials else -1
+
+    def close(self, ID: int = -1) -> int:
+        self.opened.discard(ID)
+        return 0
+
+    def getSerialNumber(self, ID: int = -1) -> int:
+        return self.serials[ID]
+
+    def getSystemName(self, ID: int = -1) -> str | None:
+        return "omega.3"
+
+    def enableForce(self, enable: bool, ID: int = -1) -> int:
+        self.enabled = enable
+        return -self.gone
+
+    def getPosition(self, out: list[float], ID: int = -1) -> int:
+        out[:] = self.position
+        return -1 if self.gone or ID not in self.opened else 1  # 1: too soon for a new one
+
+    def getLinearVelocity(self, out: list[float], ID: int = -1) -> int:
+        out[:] = self.velocity or [9.0, 9.0, 9.0]
+        return -1 if self.velocity is None else 0
+
+    def getButtonMask(self, ID: int = -1) -> int:
+        return 5
+
+    def setForce(self, f: list[float], ID: int = -1) -> int:
+        if self.gone or ID not in self.opened:
+            return -1
+        self.forces.append((f[0], f[1], f[2]))
+        return 2  # a motor is saturated
+
+
+@pytest.fixture
+def dhd(monkeypatch: pytest.MonkeyPatch) -> Library:
+    library, package = Library(), ModuleType("forcedimension_core")
+    package.dhd = library
+    monkeypatch.setitem(sys.modules, "forcedimension_core", package)
+    monkeypatch.setitem(sys.modules, "forcedimension_core.dhd", library)
+    return library
+
+
+@pytest.fixture
+def missing(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "forcedimension_core", None)
+
+
+def test_it_conforms(dhd: Library):
+    assert not [each for each in run_checks("device", "force-dimension") if not each.passed]
+    assert dhd.opened == set()
+    assert dhd.forces[-1] == (0, 0, 0)
+
+
+@pytest.mark.skipif(sys.version_info >= (3, 13), reason="forcedimension-core is not made for this Python")
+def test_the_functions_are_those_of_the_real_package():
+    """By its source, as importing it needs the maker's library: the same names, parameters and defaults."""
+    spec = find_spec("forcedimension_core")
+    assert spec is not None and spec.origin is not None
+    tree = ast.parse(Path(spec.origin).with_name("dhd").joinpath("__init__.py").read_text(encoding="utf-8"))
+    real = {node.name: node.args for node in tree.body if isinstance(node, ast.FunctionDef)}
+    ours = {name: each for name, each in vars(Library).items() if inspect.isfunction(each) and name != "__init__"}
+    for name, function in ours.items():
+        parameters = list(inspect.signature(function).parameters.values())[1:]
+        assert [each.arg for each in real[name].args] == [each.name for each in parameters], name
+        defaults = [each.default for each in parameters if each.default is not inspect.Parameter.empty]
+        assert [ast.literal_eval(each) for each in real[name].defaults] == defaults, name
+
+
+@pytest.mark.skipif(sys.version_info >= (3, 13), reason="forcedimension-core is not made for this Python")
+def test_the_real_package_without_the_maker_s_library_says_what_to_install(
+    monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+):
+    monkeypatch.setenv("__fdsdkpy_unittest_runtime__", "True")  # its own word for: find no library
+    with pytest.raises(DeviceAbsent, match="install the Force Dimension SDK"):
+        ForceDimension().open()
+    assert capfd.readouterr() == ("", "")
+
+
+class TestAxes:
+    def test_towards_the_user_right_and_up(self, dhd: Library):
+        """10 mm towards the user, 20 mm to the right, 30 mm up."""
+        dhd.velocity = [1.0, 2.0, 3.0]
+        with ForceDimension().open() as link:
+            state = link.read()
+        assert state[:2] == ((0.02, -0.01, 0.03), (2.0, -1.0, 3.0))
+        assert state.buttons == 5
+
+    def test_forces_are_turned_back(self, dhd: Library):
+        with ForceDimension().open() as link:
+            link.write(Force(1.0, 2.0, 3.0))
+            assert dhd.enabled
+        assert dhd.forces == [(0, 0, 0), (-2, 1, 3), (0, 0, 0), (0, 0, 0)]
+
+    def test_a_velocity_that_is_not_known_yet_is_none(self, dhd: Library):
+        dhd.velocity = None
+        with ForceDimension().open() as link:
+            assert link.read().velocity_m_per_s == (0, 0, 0)
+
+    @pytest.mark.parametrize(("model", "most"), [("omega", 12.0), ("delta", 20.0), ("sigma", 12.0), ("falcon", 8.0)])
+    def test_a_model_has_its_limits(self, dhd: Library, model: str, most: float):
+        with ForceDimension(model=model).open() as link:
+            link.write(Force(0.0, 0.0, 100.0))
+            assert link.applied == (0, 0, most)
+
+
+class TestFaults:
+    def test_without_the_package(self, missing: None):
+        with pytest.raises(DeviceAbsent, match=r"pip install 'tangible-images\[force-dimension\]'"):
+            ForceDimension().open()
+
+    def test_without_a_device(self, dhd: Library):
+        dhd.serials.clear()
+        with pytest.raises(DeviceAbsent, match="plug it in"):
+            ForceDimension().open()
+
+    def test_another_program_has_it(self, dhd: Library):
+        dhd.busy.add(0)
+        with pytest.raises(DeviceError, match="opening device 0: the words of the library; close other programs"):
+            ForceDimension().open()
+        with ForceDimension(index=1).open() as link:
+            link.read()
+
+    def test_this_program_has_it(self, dhd: Library):
+        with ForceDimension(serial=77).open() as link:
+            with pytest.raises(DeviceError, match="has the device of serial 77 open already"):
+                ForceDimension(serial=77).open()
+            link.read()
+        ForceDimension(serial=77).open().close()
+
+    def test_a_serial_that_is_not_there(self, dhd: Library):
+        with pytest.raises(DeviceError, match="opening the device of serial 5"):
+            ForceDimension(serial=5).open()
+
+    def test_unplugged_while_in_use(self, dhd: Library):
+        link = ForceDimension().open()
+        link.write(Force(0.0, 0.0, 1.0))
+        dhd.gone = True
+        with pytest.raises(DeviceError, match="reading its position: the words"):
+            link.read()
+        with pytest.raises(DeviceError, match="setting its force"):
+            link.write(Force(0.0, 0.0, 1.0))
+        assert link.applied == NO_FORCE
+        link.close()
+        dhd.gone = False
+        ForceDimension().open().close()
+
+    def test_unplugged_while_it_is_opened(self, dhd: Library):
+        dhd.gone = True
+        with pytest.raises(DeviceError, match="enabling its force"):
+            ForceDimension().open()
+        assert dhd.opened == set()
+        dhd.gone = False
+        ForceDimension().open().close()
+
+    def test_a_position_that_is_none(self, dhd: Library):
+        dhd.position = [0.0, float("nan"), 0.0]
+        link = ForceDimension().open()
+        with pytest.raises(DeviceError, match="its position is"):
+            link.read()
+        link.close()
+
+
+class TestService:
+    def test_what_is_connected(self, dhd: Library):
+        dhd.busy.add(1)
+        first, second = ForceDimension().connected()
+        assert first == Unit("omega.3", "1234", "index 0")
+        assert second.problem == "the words of the library"
+        assert dhd.opened == set()
+
+    def test_looking_does_not_close_what_is_in_use(self, dhd: Library):
+        with ForceDimension().open() as link:
+            ForceDimension().connected()
+            link.read()
+
+    def test_the_doctor(self, dhd: Library):
+        dhd.busy.add(1)
+        library, first, second = ForceDimension().examine()
+        assert {library.verdict, first.verdict} == {"fine"}
+        assert second.verdict == "failed" and "close other programs" in second.cure
+
+    def test_the_doctor_without_a_device(self, dhd: Library):
+        dhd.serials.clear()
+        assert [each.verdict for each in ForceDimension().examine()] == ["fine", "not asked"]
+
+    def test_the_doctor_without_the_package(self, missing: None):
+        [found] = ForceDimension().examine()
+        assert isinstance(found, Finding) and found.verdict == "not asked"
+
+
+def test_time_goes_on(dhd: Library):
+    with ForceDimension().open() as link:
+        before = time.perf_counter()
+        assert link.read().time_s >= before

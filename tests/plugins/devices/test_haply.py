@@ -1,0 +1,227 @@
+"""The Inverse3 against a mock of its service: the exact messages, and everything that goes wrong."""
+
+import json
+import math
+import socket
+import time
+from collections.abc import Iterator
+from threading import Thread
+
+import pytest
+from websockets.sync.server import ServerConnection, serve
+
+from tangible_core.data import NO_FORCE, Finding, Force, Unit
+from tangible_core.errors import DeviceAbsent, DeviceError
+from tangible_core.testing import run_checks
+from tangible_devices.haply.haply import Haply
+from tangible_devices.haply.mock_service import MockService, circling
+
+ZERO = {"x": 0.0, "y": 0.0, "z": 0.0}
+
+
+def command(force: dict[str, float], device_id: str = "049D") -> dict:
+    return {"inverse3": [{"device_id": device_id, "commands": {"set_cursor_force": {"vector": force}}}]}
+
+
+@pytest.fixture
+def service() -> Iterator[MockService]:
+    with MockService() as service:
+        yield service
+
+
+def test_it_conforms(service: MockService):
+    failed = [each for each in run_checks("device", "haply", uri=service.uri) if not each.passed]
+    assert not failed
+    assert service.force() == NO_FORCE
+
+
+class TestMessages:
+    def test_every_message_is_one_command_and_has_one_answer(self, service: MockService):
+        with Haply(uri=service.uri).open() as link:
+            link.read()
+            link.write(Force(1.0, -2.0, 0.5))
+            link.read()
+            link.read()
+        assert service.messages == [
+            command(ZERO),  # the snapshot is not what a read returns: it may be old
+            command({"x": 1.0, "y": -2.0, "z": 0.5}),
+            command({"x": 1.0, "y": -2.0, "z": 0.5}),  # a read without a write between sends the force again
+            command(ZERO),
+            command(ZERO),
+        ]
+
+    def test_the_centre_is_the_origin_and_the_axes_are_ours(self):
+        with MockService(motion=lambda _: ((0.01, -0.12, 0.13), (0.1, 0.2, 0.3))) as service:
+            service.button = True
+            with Haply(uri=service.uri, centre_m=(0.0, -0.14, 0.1)).open() as link:
+                state = link.read()
+        assert state.position_m == pytest.approx((0.01, 0.02, 0.03))
+        assert state.velocity_m_per_s == (0.1, 0.2, 0.3)
+        assert state.buttons == 1
+
+    def test_a_service_without_velocities_is_asked_for_positions_only(self, service: MockService):
+        service.tells_velocity = False
+        with Haply(uri=service.uri).open() as link:
+            assert link.read().velocity_m_per_s == (0, 0, 0)
+            for _ in range(5):
+                time.sleep(0.01)
+                speed = math.hypot(*link.read().velocity_m_per_s)
+                assert speed == pytest.approx(2 * math.pi * 0.02, rel=0.3)
+
+    def test_forces_reach_the_motors_and_lapse_when_nothing_is_sent(self, service: MockService):
+        with Haply(uri=service.uri).open() as link:
+            link.write(Force(0.0, 0.0, 1.5))
+            link.read()
+            assert service.force() == (0, 0, 1.5)
+            time.sleep(service.lapse_s + 0.05)
+            assert service.force() == NO_FORCE
+
+    def test_no_force_is_left_at_the_motors(self, service: MockService):
+        service.lapse_s = 60.0
+        link = Haply(uri=service.uri).open()
+        link.write(Force(0.0, 0.0, 1.5))
+        link.close()
+        assert service.force() == NO_FORCE
+        assert service.messages[-1] == command(ZERO)
+
+    def test_the_greatest_force_is_the_option_s(self, service: MockService):
+        with Haply(uri=service.uri, max_force_n=3.0).open() as link:
+            link.write(Force(0.0, 30.0, 40.0))
+            assert link.applied == pytest.approx((0, 1.8, 2.4))
+
+    def test_the_arm_is_chosen_by_its_id(self):
+        with MockService(arms=("049D", "05DA")) as service:
+            with Haply(uri=service.uri, device_id="05DA").open() as link:
+                link.write(Force(0.0, 0.0, 1.0))
+                link.read()
+                assert service.force("05DA") == (0, 0, 1)
+                assert service.force("049D") == NO_FORCE
+            with pytest.raises(DeviceError, match="no Inverse3 '1234'; there are 049D, 05DA"):
+                Haply(uri=service.uri, device_id="1234").open()
+
+    def test_the_mock_s_velocity_is_that_of_its_positions(self):
+        (x, y, _), (vx, vy, _) = circling(0.3)
+        (x1, y1, _), _ = circling(0.3 + 1e-6)
+        assert ((x1 - x) / 1e-6, (y1 - y) / 1e-6) == pytest.approx((vx, vy), rel=1e-3)
+
+
+class TestFaults:
+    def test_without_a_service_it_says_what_to_start(self):
+        with socket.socket() as taken:
+            taken.bind(("127.0.0.1", 0))
+            uri = f"ws://127.0.0.1:{taken.getsockname()[1]}"
+            with pytest.raises(DeviceAbsent, match=r"no Haply service listens there .*; start Haply Hub"):
+                Haply(uri=uri).open()
+
+    def test_without_an_arm_it_says_what_to_plug_in(self):
+        with MockService(arms=()) as service, pytest.raises(DeviceAbsent, match="plug in its USB cable"):
+            Haply(uri=service.uri).open()
+
+    def test_without_the_library_it_says_what_to_install(self, monkeypatch: pytest.MonkeyPatch):
+        monkeypatch.setitem(__import__("sys").modules, "websockets.sync.client", None)
+        with pytest.raises(DeviceAbsent, match=r"pip install 'tangible-images\[haply\]'"):
+            Haply().open()
+
+    def test_another_server_is_none(self):
+        with socket.create_server(("127.0.0.1", 0)) as other:
+
+            def refuse() -> None:
+                with other.accept()[0] as caller:
+                    caller.sendall(b"HTTP/1.1 404 Not Found\r\n\r\n")
+
+            thread = Thread(target=refuse)
+            thread.start()
+            with pytest.raises(DeviceError, match="is no Haply service"):
+                Haply(uri=f"ws://127.0.0.1:{other.getsockname()[1]}", timeout_s=5).open()
+            thread.join()
+
+    def test_a_service_that_hangs(self, service: MockService):
+        link = Haply(uri=service.uri, timeout_s=0.1).open()
+        link.read()
+        service.mute = True
+        link.write(Force(0.0, 0.0, 1.0))
+        with pytest.raises(DeviceError, match="answers no more; restart it"):
+            link.read()
+        assert link.applied == NO_FORCE
+        link.close()
+
+    def test_a_service_that_ends(self):
+        with MockService() as service:
+            link = Haply(uri=service.uri).open()
+            link.write(Force(0.0, 0.0, 1.0))
+            link.read()
+        with pytest.raises(DeviceError, match="hung up"):
+            for _ in range(3):
+                link.read()
+        with pytest.raises(DeviceError, match="hung up"):
+            link.write(Force(0.0, 0.0, 1.0))
+        assert link.applied == NO_FORCE
+        link.close()
+        with MockService() as service, Haply(uri=service.uri).open() as link:
+            link.read()
+
+    def test_an_arm_that_is_unplugged(self, service: MockService):
+        link = Haply(uri=service.uri).open()
+        link.read()
+        service.arms.clear()
+        with pytest.raises(DeviceError, match="Inverse3 049D was unplugged"):
+            link.read()
+        link.close()
+
+    @pytest.mark.parametrize(
+        "answer",
+        [
+            "not json",
+            "[]",
+            '{"inverse3": [{"device_id": "049D"}]}',
+            '{"inverse3": [{"device_id": "049D", "state": {}}]}',
+            '{"inverse3": [{"device_id": "049D", "state": {"cursor_position": {"x": 0, "y": 0}}}]}',
+            '{"inverse3": [{"device_id": "049D", "state": {"cursor_position": {"x": NaN, "y": 0, "z": 0}}}]}',
+            '{"inverse3": [{"device_id": "049D", "state": {"cursor_position": [0, 0, 0]}}]}',
+            '{"inverse3": "none"}',
+            "{}",
+        ],
+    )
+    def test_answers_that_make_no_sense(self, answer: str):
+        snapshot = json.dumps({"inverse3": [{"device_id": "049D", "config": {}, "status": {}}]})
+
+        def talk(connection: ServerConnection) -> None:
+            connection.send(snapshot)
+            for _ in connection:
+                connection.send(answer)
+
+        with serve(talk, "127.0.0.1", 0) as server:
+            thread = Thread(target=server.serve_forever)
+            thread.start()
+            link = Haply(uri=f"ws://127.0.0.1:{server.socket.getsockname()[1]}").open()
+            link.write(NO_FORCE) if "state" in answer else None
+            with pytest.raises(DeviceError, match=r"makes no sense|is this the Haply|was unplugged"):
+                for _ in range(2):
+                    link.read()
+            link.close()
+            server.shutdown()
+            thread.join()
+
+
+class TestService:
+    def test_what_is_connected(self):
+        with MockService(arms=("049D", "05DA")) as service:
+            assert Haply(uri=service.uri).connected() == (
+                Unit("inverse3", "049D", "COM12"),
+                Unit("inverse3", "05DA", "COM12"),
+            )
+            assert service.messages == []
+
+    def test_the_doctor_repeats_what_the_arm_complains_of(self, service: MockService):
+        service.status |= {"power_supply": False, "calibrated": False}
+        found = list(Haply(uri=service.uri).examine())
+        assert found[0] == Finding("service", "fine", f"answers at {service.uri}")
+        assert found[1].verdict == "failed"
+        assert "plug in its power supply" in found[1].says and "not calibrated" in found[1].says
+
+    def test_the_doctor_finds_nothing_wrong(self, service: MockService):
+        assert {each.verdict for each in Haply(uri=service.uri).examine()} == {"fine"}
+
+    def test_the_doctor_without_a_service(self):
+        [found] = Haply(uri="ws://127.0.0.1:9").examine()
+        assert found.verdict == "not asked"

@@ -19,8 +19,8 @@ VENDOR, PRODUCT = 0x0403, 0xCB48
 INTERFACE, IN, OUT = 0, 0x81, 0x02
 READ_BYTES = 512
 """Asked for at once: whole USB packets, as less than what comes is an overflow."""
-TIMEOUT_MS = 1000
-"""The chip sends at least its status every few ms, so that no answer at all means that it is gone."""
+TIMEOUT_MS = 250
+"""The chip sends at least its status every 16 ms, so that nothing means that it is gone; a force may stay meanwhile."""
 
 RESET, MODEM, FLOW, BAUD, LINE, LATENCY, EVENT = 0, 1, 2, 3, 4, 9, 6
 """Requests to the chip."""

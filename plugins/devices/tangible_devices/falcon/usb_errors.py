@@ -25,10 +25,10 @@ CAUSES = {
     16: "another program is using it; close that one, or give the serial or the index of another Falcon",
     19: f"it was unplugged; {REPLUG}",
     32: f"it refused the request (stall); {REPLUG}",
-    75: f"it sent more than was asked for (overflow); {REPLUG}",
-    **dict.fromkeys((60, 110, 10060), f"it does not answer (time-out); {REPLUG}"),
+    **dict.fromkeys((75, 84, 132), f"it sent more than was asked for (overflow); {REPLUG}"),
+    **dict.fromkeys((60, 110, 138, 10060), f"it does not answer (time-out); {REPLUG}"),
 }
-"""By the number of the system's error; a time-out has one on Linux, one on macOS and one on Windows."""
+"""By the number of the system's error; two of them have others on macOS and on Windows."""
 
 
 def device_error(error: Exception, place: str, doing: str) -> DeviceError:

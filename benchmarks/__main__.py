@@ -15,6 +15,7 @@ SECTIONS = {
     "depth": "Depth",
     "texture": "Texture",
     "render": "Force laws",
+    "servo": "The force loop",
     "record": "Recordings",
     "devices": "Devices",
 }

@@ -168,9 +168,10 @@ class Servo:
                 self._ended = message
             self._replies.put(message)
         if self._ended is None:
-            self._ended = Ended(f"the force loop's process died (exit code {self._child.wait()})")
+            died = Ended(f"the force loop's process died (exit code {self._child.wait()})")
             self._let_go()
-            self._replies.put(self._ended)
+            self._ended = died
+            self._replies.put(died)
 
     def _let_go(self) -> None:
         """Take the force from a device whose loop was killed: some hold the last one until they hear otherwise."""

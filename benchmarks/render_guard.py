@@ -1,4 +1,4 @@
-"""The guard of a tick: where a simulated handle is stable, the greatest step of a force, and what the guard takes."""
+"""The guard of a tick: the greatest step of a force, and what the guard takes."""
 
 from collections.abc import Callable, Iterator
 from functools import partial
@@ -11,8 +11,7 @@ from tangible_core.data import DeviceSpec
 from tangible_core.kernels import step_velocity
 from tangible_core.servo.coupling import couple
 from tangible_core.servo.guard import guard
-from tangible_core.servo.safety import Safety, stiffness_limit_n_per_m
-from tangible_core.testing.handle import Handle, stiffest_stable_n_per_m, wall
+from tangible_core.servo.safety import Safety
 from tangible_core.testing.rough import rough_surfaces
 from tangible_render.proxy import Proxy
 
@@ -24,21 +23,10 @@ DEVICE = DeviceSpec(8.0, 3000.0, 1.5, (0.08, 0.08, 0.08), 3e-5)
 
 
 def figures() -> Iterator[Figure]:
-    """The stiffness limit by simulation, the steps of a force, and the time of a tick."""
-    yield from _limits()
+    """The steps of a force, and the time of a tick."""
     yield _steps()
     ns = _times({"guard": (Safety(), 800.0)})["guard"]
     yield Figure("the guard, as it is without options", "<= 60 ns", f"{ns:.0f} ns", ns <= 60)
-
-
-def _limits() -> Iterator[Figure]:
-    for delay in (0, 1, 2):
-        handle = Handle(delay_ticks=delay)
-        formula = stiffness_limit_n_per_m(handle.damping_n_s_per_m, handle.period_s, delay)
-        found = stiffest_stable_n_per_m(wall, handle)
-        off = found / formula - 1
-        told = f"{found:.0f} N/m of {formula:.0f}, {100 * off:+.1f} %"
-        yield Figure(f"simulated stiffness limit, {delay} ticks of delay", "within 5 %", told, abs(off) <= 0.05)
 
 
 def _steps() -> Figure:

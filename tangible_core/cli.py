@@ -12,13 +12,14 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from . import hooks
+from .cli_devices import devices_app
+from .cli_materials import materials_app
+from .cli_options import DONE, FAILED, INTERRUPTED, MISTAKE, Config, Json, NoCache, Out, Seconds, Sets
 from .errors import ConfigError, TangibleError
 from .registry import KIND_NAMES, default_registry
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-
-DONE, FAILED, MISTAKE, INTERRUPTED = 0, 1, 2, 130
 
 app = typer.Typer(
     name="tangible",
@@ -32,24 +33,8 @@ app = typer.Typer(
     rich_markup_mode=None,  # rich help costs more than all the rest of the start
 )
 
-materials_app = typer.Typer(name="materials")
 app.add_typer(materials_app)
-devices_app = typer.Typer(name="devices")
 app.add_typer(devices_app)
-
-Config = Annotated[Path, typer.Argument(help="A pipeline file (YAML).", show_default=False)]
-Sets = Annotated[
-    list[str] | None, typer.Option("--set", metavar="KEY.KEY=VALUE", help="Override one value; repeatable.")
-]
-Out = Annotated[Path | None, typer.Option("--out", help="Folder for results [default: out/NAME].")]
-Json = Annotated[bool, typer.Option("--json", help="Print JSON for a program to read.")]
-Library = Annotated[Path | None, typer.Option(help="A YAML file of your own, added to the shipped materials.")]
-NoCache = Annotated[bool, typer.Option("--no-cache", help="Neither read nor keep results between runs.")]
-Seconds = Annotated[float, typer.Option(help="How long the hand feels the surface.")]
-Device = Annotated[str, typer.Argument(help="As `tangible devices` lists it.", show_default=False)]
-DeviceSets = Annotated[
-    list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="An option of the device; repeatable.")
-]
 
 
 @app.command()
@@ -192,95 +177,6 @@ def check(
 
     if not command.check(kind, name, as_json):
         raise typer.Exit(FAILED)
-
-
-@materials_app.callback(invoke_without_command=True)
-def materials(context: typer.Context, library: Library = None, as_json: Json = False) -> None:
-    """List the materials, with units and sources; show or draw some."""
-    from .commands import materials as command
-
-    if context.invoked_subcommand is None:
-        command.materials(library, as_json)
-    elif library or as_json:
-        raise ConfigError(f"materials: write the options after {context.invoked_subcommand!r}")
-
-
-@materials_app.command("show")
-def materials_show(
-    name: Annotated[str, typer.Argument(help="The material, as `tangible materials` lists it.", show_default=False)],
-    library: Library = None,
-    as_json: Json = False,
-) -> None:
-    """Say everything of one material: each value with its unit and its source, and its texture."""
-    from .commands import materials as command
-
-    command.show_one(name, library, as_json)
-
-
-@materials_app.command("draw")
-def materials_draw(
-    names: Annotated[list[str] | None, typer.Argument(help="The materials [default: all].", show_default=False)] = None,
-    out: Annotated[Path, typer.Option("--out", help="Folder for the pictures.")] = Path("out/materials"),
-    library: Library = None,
-    as_json: Json = False,
-) -> None:
-    """Draw materials, a picture each: the surface, its spectrum, the force of a stroke."""
-    from .commands import materials as command
-
-    command.draw(names or [], out, library, as_json)
-
-
-@devices_app.callback(invoke_without_command=True)
-def devices(context: typer.Context, as_json: Json = False) -> None:
-    """List the devices, installed and connected; examine, home, calibrate or time one."""
-    from .commands import devices as command
-
-    if context.invoked_subcommand is None:
-        command.devices(as_json)
-    elif as_json:
-        raise ConfigError(f"devices: write --json after {context.invoked_subcommand!r}")
-
-
-@devices_app.command("doctor")
-def devices_doctor(
-    name: Annotated[str | None, typer.Argument(help="The device [default: all].", show_default=False)] = None,
-    sets: DeviceSets = None,
-    as_json: Json = False,
-) -> None:
-    """Say what keeps a device from working, and the cure: permissions, drivers, firmware; exit 1 if a check fails."""
-    from .commands import devices as command
-
-    if not command.doctor(name, sets or [], as_json):
-        raise typer.Exit(FAILED)
-
-
-@devices_app.command("home")
-def devices_home(name: Device, sets: DeviceSets = None) -> None:
-    """Guide your hand until the device knows where it is."""
-    from .commands import devices as command
-
-    command.home(name, sets or [])
-
-
-@devices_app.command("calibrate")
-def devices_calibrate(name: Device, sets: DeviceSets = None) -> None:
-    """Measure one device with your help, and keep that for its serial number."""
-    from .commands import devices as command
-
-    command.calibrate(name, sets or [])
-
-
-@devices_app.command("stress")
-def devices_stress(
-    name: Device,
-    sets: DeviceSets = None,
-    seconds: Annotated[float, typer.Option(help="How long.")] = 5.0,
-    as_json: Json = False,
-) -> None:
-    """Read a device and write no force as fast as it allows: rate, and percentiles of a cycle's time."""
-    from .commands import stress as command
-
-    command.stress(name, sets or [], seconds, as_json)
 
 
 def main() -> None:

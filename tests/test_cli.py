@@ -11,6 +11,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tangible_core.commands import show
+from tangible_core.data import Outcome
+
 TANGIBLE = str(Path(sys.executable).with_name("tangible"))
 
 SMALL = """\
@@ -303,3 +306,12 @@ def test_a_reader_that_goes_away_is_no_error(folder: Path):
     )
     assert done.stdout == "# The pipeline file\n"
     assert done.stderr == ""
+
+
+def test_what_stands_in_brackets_is_shown(capsys: pytest.CaptureFixture[str]):
+    """Rich takes [word] for a mark: an outcome's reason may be a list of options, or a path."""
+    show.outcomes([Outcome("surface", "ran", "made from [seen/2]", "core")])
+    show.plain("out[1]/sheet.png")
+    said = capsys.readouterr().out
+    assert "[seen/2]" in said
+    assert "out[1]/sheet.png" in said

@@ -109,7 +109,7 @@ def _print(results: Results, files: Sequence[Path], verdict: verdicts.Verdict | 
     if verdict is not None:
         _print_verdict(verdict)
     for path in files:
-        show.say(f"written: {path}")
+        show.plain(f"written: {path}")
 
 
 def _print_verdict(verdict: verdicts.Verdict) -> None:

@@ -73,7 +73,7 @@ def draw(names: Sequence[str], out: Path, path: Path | None, as_json: bool) -> N
         draw_material(out / f"{material.name}.png", material)
         files.append(out / f"{material.name}.png")
         if not as_json:
-            show.say(str(files[-1]))
+            show.plain(str(files[-1]))
     if as_json:
         show.print_json({"files": files})
 

@@ -195,7 +195,7 @@ def _print(pipeline: Pipeline, results: Results, as_json: bool) -> None:
             show.say(f"  {line}")
     show.say("\n[bold]written[/]")
     for path in results.files:
-        show.say(f"  {path}")
+        show.plain(f"  {path}")
 
 
 def _error_lines(figures: Figures) -> list[str]:

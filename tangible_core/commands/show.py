@@ -7,6 +7,7 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 if TYPE_CHECKING:
@@ -37,7 +38,7 @@ def outcomes(found: Iterable[Outcome], title: str | None = None, ran: str = "ran
             each.product,
             each.method,
             f"[{COLOURS[each.outcome]}]{ran if each.outcome == 'ran' else each.outcome}[/]",
-            each.why,
+            escape(each.why),
             f"{each.seconds:.3f}" if each.seconds else "",
         )
         for each in found

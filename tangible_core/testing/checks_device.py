@@ -161,3 +161,5 @@ CHECKS: tuple[Check, ...] = (
     velocity_is_that_of_the_positions,
     states_make_sense,
 )
+WITH_MOTORS = CHECKS[2:]
+"""Those that open the device, most of them to push."""

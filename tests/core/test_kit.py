@@ -235,3 +235,34 @@ def test_options_that_fail_the_check(check):
 @pytest.mark.parametrize("check", checks_options.CHECKS)
 def test_options_that_keep_the_check(check):
     check(Six(shift_px=3.0))
+
+
+MOTOR = '''
+    from tangible_core.data import DeviceSpec
+    from tangible_core.testing.loop_devices import Failing
+
+    class Motor(Failing):
+        """A device that is real, as far as anybody can tell."""
+
+        fault: str = "none"
+        """It works."""
+        simulated: bool = False
+        """No."""
+        record: str = "held"
+        """Where it says what it held."""
+    '''
+
+
+@pytest.mark.parametrize("allowed", ["", "1"])
+def test_a_real_device_is_not_pushed_with_unless_that_is_asked_for(install, tmp_path, monkeypatch, allowed):
+    site = install("acme", {"tangible.device": {"motor": "acme:Motor"}}, acme=MOTOR)
+    module = 'from tangible_core.testing import conforms\n\ntest_motor = conforms("device", "motor")\n'
+    tmp_path.joinpath("test_motor.py").write_text(module)
+    monkeypatch.setenv("PYTHONPATH", str(site))
+    monkeypatch.delenv("TANGIBLE_MOTORS", raising=False)
+    if allowed:
+        monkeypatch.setenv("TANGIBLE_MOTORS", allowed)
+    command = [sys.executable, "-m", "pytest", "-rs", "-p", "no:cacheprovider", "test_motor.py"]
+    ran = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert ("let its grip hang free, and set TANGIBLE_MOTORS=1" in ran.stdout) != bool(allowed)
+    assert ("skipped" in ran.stdout) != bool(allowed)

@@ -12,6 +12,7 @@ from numba import njit
 
 from tangible_core import HapticSurface, load_method
 from tangible_core.compiled import CompiledTouch
+from tangible_core.compiling import KERNEL
 from tangible_core.kernels import Address
 from tangible_core.materials import library
 from tangible_core.servo import Ring, Safety, cycle
@@ -25,6 +26,7 @@ from .figures import Figure
 TICKS, RUNS, PERIOD = 20_000, 9, 1_000_000
 FRESH, NOW = framing.FRESH, tick.NOW
 step = cycle.step
+WITHOUT_CACHE = {**KERNEL, "cache": False}
 MATERIAL = "sand"
 
 
@@ -34,8 +36,9 @@ def figures() -> Iterator[Figure]:
     try:
         arguments = _arguments(ring)
         packets = _packets()
-        _batch(packets[:100], *arguments)
-        compiled = [_ns(lambda: _batch(packets, *arguments)) for _ in range(RUNS)]
+        now = np.zeros(2, np.int64)
+        _batch(packets[:100], now, *arguments)
+        compiled = [_ns(lambda: _batch(packets, now, *arguments)) for _ in range(RUNS)]
         python = list(_from_python(packets, arguments))
         touching = float((ring.since(0)[0][:, cycle.FLAGS].astype(int) & 1).mean())
     finally:
@@ -93,20 +96,20 @@ def _packets() -> np.ndarray:
     return packets
 
 
-@njit(nogil=True)
+@njit(**WITHOUT_CACHE)
 def _fill(packets, i, link, now):
     """What an exchange with the device leaves behind."""
     of_link = link[0]
-    of_link[0][:] = packets[i]
+    for k in range(packets.shape[1]):
+        of_link[0][k] = packets[i, k]
     of_link[2][FRESH] = 1
     of_link[3][NOW] = i * 1e-3
     now[0] = i * PERIOD
 
 
-@njit(nogil=True)
-def _batch(packets, link, law, limits, shared, state, row):
+@njit(**WITHOUT_CACHE)
+def _batch(packets, now, link, law, limits, shared, state, row):
     """A tick for each packet."""
-    now = np.zeros(2, np.int64)
     for i in range(packets.shape[0]):
         _fill(packets, i, link, now)
         step(link, law, limits, shared, state, row, now[0], 0)

@@ -26,7 +26,8 @@ def resume(begun, counts):
     start = 1
     while start < SIZE and begun[start] != START:
         start += 1
-    begun[: SIZE - start] = begun[start:].copy()
+    for i in range(start, SIZE):
+        begun[i - start] = begun[i]
     counts[FILL] = SIZE - start
     counts[DROPPED] += start
 
@@ -49,7 +50,8 @@ def receive(chunk, size, begun, counts, answer):
             counts[DROPPED] += 1
         elif counts[FILL] == SIZE:
             if is_packet(begun, 0):
-                answer[:] = begun
+                for k in range(SIZE):
+                    answer[k] = begun[k]
                 found += 1
                 counts[FILL] = 0
             else:

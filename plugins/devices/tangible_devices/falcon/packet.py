@@ -11,7 +11,7 @@ it.
 
 from numba import boolean, float64, int64, njit, types, uint8, void
 
-from tangible_core import compiling as compiling
+from tangible_core.compiling import KERNEL as COMPILED
 
 SIZE = 16
 START, END, ZERO = 0x3C, 0x3E, 0x41
@@ -26,7 +26,6 @@ MOST_COUNTS = 4095
 """The greatest torque that the original driver sends; beyond 32767 the sign would wrap."""
 
 BYTES, FEW = uint8[::1], types.UniTuple(int64, 3)
-COMPILED = {"cache": True, "nogil": True, "error_model": "numpy"}
 
 
 @njit(boolean(BYTES, int64), **COMPILED)

@@ -16,7 +16,7 @@ from . import framing
 from .framing import DOUBTFUL, FRESH
 from .kinematics import CENTRE_M, POINT, RAD_PER_COUNT, ROWS, forward, jacobian, solve, torques
 from .packet import BYTES, COMPILED, HOMED, decode, encode, saturated
-from .velocity import rate
+from .velocity import rates
 
 ARMS, KNOWN, HEAD, SAMPLES, SUSPECTED, REFUSED, SEEKING, RUNNING, PRESSED = range(framing.COUNTS, framing.COUNTS + 9)
 COUNTS = framing.COUNTS + 9
@@ -113,8 +113,7 @@ def sample(counts, held, history, doubtful, first, second, third):
             remember(counts, history, held[SUSPECT], held[SUSPECT + 1], held[SUSPECT + 2], held[SUSPECT + 3])
     counts[SUSPECTED] = 0
     remember(counts, history, held[NOW], first, second, third)
-    for i in range(3):
-        held[RATES + i] = rate(history, counts[HEAD], counts[SAMPLES], 1 + i)
+    held[RATES], held[RATES + 1], held[RATES + 2] = rates(history, counts[HEAD], counts[SAMPLES])
     return True
 
 

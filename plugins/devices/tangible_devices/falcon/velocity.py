@@ -1,12 +1,13 @@
-"""How fast an encoder turns, out of whole counts; compiled.
+"""How fast the encoders turn, out of whole counts; compiled.
 
 Imports numba: a method imports this module inside its verb. numba's cache does not see a change made in another file:
 after an edit here, remove `__pycache__` beside the kernels that call it.
 """
 
-# ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
+# ruff: noqa: ANN001, ANN201, ANN202 -- the types are in the signatures that numba compiles
 
-from numba import float64, int64, njit
+import numpy as np
+from numba import boolean, float64, int64, njit, types
 
 from .packet import COMPILED
 
@@ -14,9 +15,18 @@ BAND_COUNTS = 1.0
 """A line may be so far from a sample: an encoder rounds."""
 
 
-@njit(float64(float64[:, ::1], int64, int64, int64), **COMPILED)
-def rate(history, head, samples, column):
-    """Counts per second at the newest sample: the slope over the longest window that is straight within the band.
+@njit(types.Tuple((float64, float64, float64, boolean))(*[float64] * 4), **COMPILED)
+def _narrowed(low, high, per_second, rise):
+    """The slopes left when a sample is to be near the line; (low, high, slope to the sample, whether it was one)."""
+    slope, band = rise * per_second, BAND_COUNTS * per_second
+    if not low <= slope <= high:
+        return low, high, slope, False
+    return max(low, slope - band), min(high, slope + band), slope, True
+
+
+@njit(types.UniTuple(float64, 3)(float64[:, ::1], int64, int64), **COMPILED)
+def rates(history, head, samples):
+    """Counts per second at the newest sample, of three encoders: the slope over the longest window that is straight.
 
     history: a ring of rows (time in seconds, counts of three encoders); head: the newest; samples: how many there are.
     Slow motion is seen over many samples and so without the noise of single counts, fast motion over few and so
@@ -25,14 +35,24 @@ def rate(history, head, samples, column):
     Source: Janabi-Sharifi, Hayward & Chen, Discrete-time adaptive windowing for velocity estimation, IEEE Trans.
     Control Systems Technology 8(6), 2000, sec. III (end-fit).
     """
-    now, last = history[head, 0], history[head, column]
-    low, high, slope = -float("inf"), float("inf"), 0.0
+    low_0 = low_1 = low_2 = -np.inf
+    high_0 = high_1 = high_2 = np.inf
+    found_0 = found_1 = found_2 = 0.0
+    going_0 = going_1 = going_2 = True
     at = head
     for _ in range(samples - 1):
         at = at - 1 if at else history.shape[0] - 1
-        since, rise = now - history[at, 0], last - history[at, column]
-        if not (since > 0.0 and low * since <= rise <= high * since):
+        since = history[head, 0] - history[at, 0]
+        if not (since > 0.0 and (going_0 or going_1 or going_2)):
             break
-        slope = rise / since
-        low, high = max(low, (rise - BAND_COUNTS) / since), min(high, (rise + BAND_COUNTS) / since)
-    return slope
+        per_second = 1.0 / since
+        if going_0:
+            low_0, high_0, slope, going_0 = _narrowed(low_0, high_0, per_second, history[head, 1] - history[at, 1])
+            found_0 = slope if going_0 else found_0
+        if going_1:
+            low_1, high_1, slope, going_1 = _narrowed(low_1, high_1, per_second, history[head, 2] - history[at, 2])
+            found_1 = slope if going_1 else found_1
+        if going_2:
+            low_2, high_2, slope, going_2 = _narrowed(low_2, high_2, per_second, history[head, 3] - history[at, 3])
+            found_2 = slope if going_2 else found_2
+    return found_0, found_1, found_2

@@ -8,7 +8,9 @@ after an edit here, remove `__pycache__` beside the kernels that call it.
 
 from numba import int64, njit, void
 
-from .packet import BYTES, COMPILED, SIZE, START, is_packet
+from tangible_core.compiling import KERNEL
+
+from .packet import BYTES, SIZE, START, is_packet
 
 USB_PACKET, STATUS = 64, 2
 """Bytes of a full-speed packet, and how many at its start are the FTDI chip's own."""
@@ -20,7 +22,7 @@ NEW, DOUBTFUL = 1, 2
 answer; whether that one was not read yet: 0, NEW, or DOUBTFUL if other bytes came before it or with it."""
 
 
-@njit(void(BYTES, int64[::1]), **COMPILED)
+@njit(void(BYTES, int64[::1]), **KERNEL)
 def resume(begun, counts):
     """Drop what comes before the next `<` after the first byte."""
     start = 1
@@ -32,7 +34,7 @@ def resume(begun, counts):
     counts[DROPPED] += start
 
 
-@njit(int64(BYTES, int64, BYTES, int64[::1], BYTES), **COMPILED)
+@njit(int64(BYTES, int64, BYTES, int64[::1], BYTES), **KERNEL)
 def receive(chunk, size, begun, counts, answer):
     """Take in an IN transfer of so many bytes; how many whole answers it completed, the newest of which is in `answer`.
 

@@ -14,7 +14,7 @@ import math
 import numpy as np
 from numba import boolean, float64, njit, types
 
-from .packet import COMPILED
+from tangible_core.compiling import KERNEL
 
 THIGH_M, SHIN_M, HINGE_M, ENDS_M = 0.060, 0.1025, 0.01443, 0.01125 + 0.01125
 """Stamper's a, b, c and d + e: thigh, shin parallelogram, offset of the tip's hinge, the two ends of the shin."""
@@ -38,7 +38,7 @@ ROWS = types.UniTuple(POINT, 3)
 LEG = types.UniTuple(float64, 5)
 
 
-@njit(LEG(types.int64, *[float64] * 5), **COMPILED)
+@njit(LEG(types.int64, *[float64] * 5), **KERNEL)
 def _leg(i, cos, sin, x, y, z):
     """How far arm i at this angle is from reaching the tip, its slopes along x, y and z, and its slope by the angle.
 
@@ -58,7 +58,7 @@ def _leg(i, cos, sin, x, y, z):
     )
 
 
-@njit(POINT(ROWS, POINT), **COMPILED)
+@njit(POINT(ROWS, POINT), **KERNEL)
 def solve(rows, right):
     """The solution of three linear equations, by Cramer's rule; not finite where there is none."""
     (a, b, c), (d, e, f), (g, h, i) = rows
@@ -73,7 +73,7 @@ def solve(rows, right):
     )
 
 
-@njit(types.Tuple((float64, float64, float64, boolean))(*[float64] * 6), **COMPILED)
+@njit(types.Tuple((float64, float64, float64, boolean))(*[float64] * 6), **KERNEL)
 def forward(first, second, third, x, y, z):
     """Tip for three angles, by Newton's method from (x, y, z), the last tip; (x, y, z, whether it was found).
 
@@ -101,7 +101,7 @@ def forward(first, second, third, x, y, z):
     return from_x, from_y, from_z, False
 
 
-@njit(float64(types.int64, float64, float64, float64), **COMPILED)
+@njit(float64(types.int64, float64, float64, float64), **KERNEL)
 def angle(i, x, y, z):
     """Angle of arm i for a tip; NaN where the arm does not reach."""
     along = COS[i] * x + SIN[i] * y - RADIUS_M + HINGE_M
@@ -112,20 +112,20 @@ def angle(i, x, y, z):
     return math.atan2(z, along) - math.acos(knee)
 
 
-@njit(POINT(float64, float64, float64), **COMPILED)
+@njit(POINT(float64, float64, float64), **KERNEL)
 def inverse(x, y, z):
     """Angles of the three arms for a tip; NaN where one does not reach."""
     return angle(0, x, y, z), angle(1, x, y, z), angle(2, x, y, z)
 
 
-@njit(POINT(types.int64, *[float64] * 4), **COMPILED)
+@njit(POINT(types.int64, *[float64] * 4), **KERNEL)
 def _row(i, turned, x, y, z):
     _, by_x, by_y, by_z, by_angle = _leg(i, math.cos(turned), math.sin(turned), x, y, z)
     scale = -1.0 / by_angle
     return by_x * scale, by_y * scale, by_z * scale
 
 
-@njit(ROWS(*[float64] * 6), **COMPILED)
+@njit(ROWS(*[float64] * 6), **KERNEL)
 def jacobian(first, second, third, x, y, z):
     """d angle / d tip: a row an arm, a column an axis, rad/m, by implicit differentiation of the arm's equation.
 
@@ -135,14 +135,14 @@ def jacobian(first, second, third, x, y, z):
     return _row(0, first, x, y, z), _row(1, second, x, y, z), _row(2, third, x, y, z)
 
 
-@njit(POINT(ROWS, POINT), **COMPILED)
+@njit(POINT(ROWS, POINT), **KERNEL)
 def torques(rows, force):
     """Torques in newton metres that give a force: J^T F with J = d tip / d angle, the inverse of these rows."""
     (a, b, c), (d, e, f), (g, h, i) = rows
     return solve(((a, d, g), (b, e, h), (c, f, i)), force)
 
 
-@njit(POINT(ROWS, POINT), **COMPILED)
+@njit(POINT(ROWS, POINT), **KERNEL)
 def force(rows, torque):
     """Force in newtons that three torques give: the transpose of these rows times the torques."""
     (a, b, c), (d, e, f), (g, h, i) = rows

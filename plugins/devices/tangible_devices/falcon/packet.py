@@ -11,7 +11,7 @@ it.
 
 from numba import boolean, float64, int64, njit, types, uint8, void
 
-from tangible_core.compiling import KERNEL as COMPILED
+from tangible_core.compiling import KERNEL
 
 SIZE = 16
 START, END, ZERO = 0x3C, 0x3E, 0x41
@@ -28,7 +28,7 @@ MOST_COUNTS = 4095
 BYTES, FEW = uint8[::1], types.UniTuple(int64, 3)
 
 
-@njit(boolean(BYTES, int64), **COMPILED)
+@njit(boolean(BYTES, int64), **KERNEL)
 def is_packet(stream, at):
     """Whether the 16 bytes from here are an answer: frame and digits in their ranges. There is no checksum."""
     if stream[at] != START or stream[at + SIZE - 1] != END:
@@ -39,7 +39,7 @@ def is_packet(stream, at):
     return 0 <= stream[at + INFO] - ZERO <= BUTTONS + HOMED
 
 
-@njit(int64(BYTES, int64), **COMPILED)
+@njit(int64(BYTES, int64), **KERNEL)
 def number(packet, at):
     """The signed 16-bit number of the four digits from here."""
     value = 0
@@ -48,13 +48,13 @@ def number(packet, at):
     return value - 0x10000 if value > 0x7FFF else value
 
 
-@njit(types.UniTuple(int64, 4)(BYTES), **COMPILED)
+@njit(types.UniTuple(int64, 4)(BYTES), **KERNEL)
 def decode(packet):
     """(encoder 1, encoder 2, encoder 3, buttons and homed arms) of an answer."""
     return number(packet, 1), number(packet, 5), number(packet, 9), int64(packet[INFO]) - ZERO & 0xFF
 
 
-@njit(void(int64, int64, int64, int64, BYTES), **COMPILED)
+@njit(void(int64, int64, int64, int64, BYTES), **KERNEL)
 def encode(first, second, third, info, packet):
     """Write a packet to the device: three torques in counts, within 16 bits, and lights and homing."""
     packet[0], packet[SIZE - 1] = START, END
@@ -65,7 +65,7 @@ def encode(first, second, third, info, packet):
     packet[INFO], packet[INFO + 1] = ZERO + (info & 15), ZERO
 
 
-@njit(types.Tuple((int64, int64, int64, float64))(float64, float64, float64), **COMPILED)
+@njit(types.Tuple((int64, int64, int64, float64))(float64, float64, float64), **KERNEL)
 def saturated(first, second, third):
     """Torques in counts, rounded, and the factor that all three were scaled by so that none is over the most.
 

@@ -12,10 +12,12 @@ from typing import NamedTuple
 import numpy as np
 from numba import boolean, float64, int64, njit, void
 
+from tangible_core.compiling import KERNEL
+
 from . import framing
 from .framing import DOUBTFUL, FRESH
 from .kinematics import CENTRE_M, POINT, RAD_PER_COUNT, ROWS, forward, jacobian, solve, torques
-from .packet import BYTES, COMPILED, HOMED, decode, encode, saturated
+from .packet import BYTES, HOMED, decode, encode, saturated
 from .velocity import rates
 
 ARMS, KNOWN, HEAD, SAMPLES, SUSPECTED, REFUSED, SEEKING, RUNNING, PRESSED = range(framing.COUNTS, framing.COUNTS + 9)
@@ -60,7 +62,7 @@ class Buffers(NamedTuple):
 FIXED = (BYTES, BYTES, int64[::1], float64[::1], float64[:, ::1], float64[:, ::1], float64[:, ::1])
 
 
-@njit(void(int64[::1], float64[::1]), **COMPILED)
+@njit(void(int64[::1], float64[::1]), **KERNEL)
 def seed(counts, held):
     """Forget where the tip was, and let force fade in from now on."""
     counts[SAMPLES] = 0
@@ -68,7 +70,7 @@ def seed(counts, held):
     held[SINCE] = held[NOW]
 
 
-@njit(boolean(int64[::1], float64[::1], float64[:, ::1], int64, int64, int64), **COMPILED)
+@njit(boolean(int64[::1], float64[::1], float64[:, ::1], int64, int64, int64), **KERNEL)
 def goes_on(counts, held, history, first, second, third):
     """Whether these encoders are where the arms were going, or may have gone."""
     head = counts[HEAD]
@@ -81,14 +83,14 @@ def goes_on(counts, held, history, first, second, third):
     return counts[SAMPLES] > 0 and away <= min(NEAR_COUNTS + BEND_COUNTS_PER_S2 * since * since, STRAY_COUNTS)
 
 
-@njit(boolean(float64[::1], int64, int64, int64), **COMPILED)
+@njit(boolean(float64[::1], int64, int64, int64), **KERNEL)
 def confirms(held, first, second, third):
     """Whether these encoders are near those of the answer that waits to be confirmed."""
     away = max(abs(first - held[SUSPECT + 1]), abs(second - held[SUSPECT + 2]), abs(third - held[SUSPECT + 3]))
     return away <= min(FAST_COUNTS_PER_S * max(held[NOW] - held[SUSPECT], SHORT_S), FAR_COUNTS)
 
 
-@njit(void(int64[::1], float64[:, ::1], float64, float64, float64, float64), **COMPILED)
+@njit(void(int64[::1], float64[:, ::1], float64, float64, float64, float64), **KERNEL)
 def remember(counts, history, now, first, second, third):
     """A row more in the ring."""
     head = counts[HEAD] + 1 if counts[HEAD] + 1 < history.shape[0] else 0
@@ -96,7 +98,7 @@ def remember(counts, history, now, first, second, third):
     counts[HEAD], counts[SAMPLES] = head, min(counts[SAMPLES] + 1, history.shape[0])
 
 
-@njit(boolean(int64[::1], float64[::1], float64[:, ::1], boolean, int64, int64, int64), **COMPILED)
+@njit(boolean(int64[::1], float64[::1], float64[:, ::1], boolean, int64, int64, int64), **KERNEL)
 def sample(counts, held, history, doubtful, first, second, third):
     """Remember the encoders; False for an answer to be doubted, until the next one confirms it.
 
@@ -117,7 +119,7 @@ def sample(counts, held, history, doubtful, first, second, third):
     return True
 
 
-@njit(POINT(float64[:, ::1], float64, float64, float64), **COMPILED)
+@njit(POINT(float64[:, ::1], float64, float64, float64), **KERNEL)
 def turned(frame, x, y, z):
     """A direction of the device in the workspace frame."""
     return (
@@ -127,7 +129,7 @@ def turned(frame, x, y, z):
     )
 
 
-@njit(ROWS(float64[::1]), **COMPILED)
+@njit(ROWS(float64[::1]), **KERNEL)
 def slopes(held):
     """The Jacobian at the tip, d angle / d tip."""
     return (
@@ -137,7 +139,7 @@ def slopes(held):
     )
 
 
-@njit(void(int64[::1], float64[::1], BYTES), **COMPILED)
+@njit(void(int64[::1], float64[::1], BYTES), **KERNEL)
 def let_go(counts, held, packet):
     """The tip is not known any more: the next packet holds no force, whether or not another one is written."""
     counts[KNOWN] = 0
@@ -145,7 +147,7 @@ def let_go(counts, held, packet):
     encode(0, 0, 0, counts[RUNNING] if counts[ARMS] == HOMED else counts[SEEKING], packet)
 
 
-@njit(int64(*FIXED, float64[::1]), **COMPILED)
+@njit(int64(*FIXED, float64[::1]), **KERNEL)
 def read(answer, packet, counts, held, history, arms, frame, state):
     """Write position, velocity and buttons of a new answer to state, float64 (7,); 0 if there is none to be trusted.
 
@@ -190,7 +192,7 @@ def read(answer, packet, counts, held, history, arms, frame, state):
     return 1
 
 
-@njit(void(*FIXED, float64, float64, float64), **COMPILED)
+@njit(void(*FIXED, float64, float64, float64), **KERNEL)
 def write(answer, packet, counts, held, history, arms, frame, x, y, z):
     """Make the packet that gives this force, in newtons; none while the tip is not known, less while it fades in.
 

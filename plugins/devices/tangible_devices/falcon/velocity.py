@@ -9,13 +9,13 @@ after an edit here, remove `__pycache__` beside the kernels that call it.
 import numpy as np
 from numba import boolean, float64, int64, njit, types
 
-from .packet import COMPILED
+from tangible_core.compiling import KERNEL
 
 BAND_COUNTS = 1.0
 """A line may be so far from a sample: an encoder rounds."""
 
 
-@njit(types.Tuple((float64, float64, float64, boolean))(*[float64] * 4), **COMPILED)
+@njit(types.Tuple((float64, float64, float64, boolean))(*[float64] * 4), **KERNEL)
 def _narrowed(low, high, per_second, rise):
     """The slopes left when a sample is to be near the line; (low, high, slope to the sample, whether it was one)."""
     slope, band = rise * per_second, BAND_COUNTS * per_second
@@ -24,7 +24,7 @@ def _narrowed(low, high, per_second, rise):
     return max(low, slope - band), min(high, slope + band), slope, True
 
 
-@njit(types.UniTuple(float64, 3)(float64[:, ::1], int64, int64), **COMPILED)
+@njit(types.UniTuple(float64, 3)(float64[:, ::1], int64, int64), **KERNEL)
 def rates(history, head, samples):
     """Counts per second at the newest sample, of three encoders: the slope over the longest window that is straight.
 

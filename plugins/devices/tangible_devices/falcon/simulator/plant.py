@@ -10,14 +10,15 @@ import math
 
 from numba import float64, int64, njit, void
 
+from tangible_core.compiling import KERNEL
+
 from ..kinematics import CENTRE_M, force, inverse, jacobian
-from ..packet import COMPILED
 
 REACH_M = 0.055
 """The mechanics end on a ball of this radius about the centre."""
 
 
-@njit(void(float64[::1], float64[::1], float64[::1], float64[::1], int64, float64), **COMPILED)
+@njit(void(float64[::1], float64[::1], float64[::1], float64[::1], int64, float64), **KERNEL)
 def move(tip, torque, target, feel, steps, period_s):
     """Move tip (position and velocity, 6 numbers) on by a period, in so many steps.
 

@@ -95,7 +95,7 @@ def along(fixed, tick, positions_m, period_s, force_n):
         force_n[i, 0], force_n[i, 1], force_n[i, 2] = tick(*fixed, x, y, z, vx, vy, vz)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**KERNEL)
 def over_states(tick, fixed, memory, states, proxy_m, force_n):
     """The law's proxy, NaN where there is none, and force for states (x, y, z, vx, vy, vz), one after another."""
     for i in range(states.shape[0]):

@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any
 
 from .. import session
-from ..errors import DeviceError
 from ..servo import OVER, Servo
 from . import show
 from .run import about, device_of, open_pipeline, tell_of
@@ -51,7 +50,7 @@ def feel(config: Path, sets: Sequence[str], seconds: float, record: Path | None,
         raise KeyboardInterrupt
     if report.stopped != OVER:
         sys.stdout.flush()
-        raise DeviceError(f"stopped after {report.ticks} ticks: {report.stopped}")
+        raise session.failure(report.ticks, report.stopped)
 
 
 def _forget(rows: Any) -> None:

@@ -35,83 +35,65 @@ class MappedDevice(HapticDevice):
     def open(self) -> Link:
         """Raises: DeviceError as the device does."""
         link = self.device.open()
-        ends = _Ends(link, self.mapping.placement(self.device.spec().workspace_m))
-        return MappedCompiledLink(link, ends) if isinstance(link, CompiledLink) else MappedLink(ends)
-
-
-@final
-class _Ends:
-    """What both links do, by the same kernels."""
-
-    def __init__(self, link: Link, to: Placement) -> None:
-        from . import kernels
-
-        self.link, self.to = link, to
-        self.kernels = cast(Any, kernels)
-        self.memory = np.zeros(kernels.MEMORY)
-
-    def read(self) -> HapticState:
-        state = self.link.read()
-        numbers = np.array([*state.position_m, *state.velocity_m_per_s, state.buttons], np.float64)
-        self.kernels.place(self.to, self.memory, numbers)
-        x, y, z, vx, vy, vz, _ = numbers.tolist()
-        return HapticState((x, y, z), (vx, vy, vz), state.time_s, state.buttons)
-
-    def write(self, force: Force) -> None:
-        self.link.write(Force(*self.kernels.push(self.to, self.memory, *force)))
-
-    @property
-    def applied(self) -> Force:
-        held = self.link.applied
-        return Force(*self.to.turned_back(held.x, held.y), held.z)
+        to = self.mapping.placement(self.device.spec().workspace_m)
+        return MappedCompiledLink(link, to) if isinstance(link, CompiledLink) else MappedLink(link, to)
 
 
 @final
 class MappedLink(Link):
     """A link in the metres of the picture; the clock stays the device's."""
 
-    def __init__(self, ends: _Ends) -> None:
-        self._ends = ends
+    def __init__(self, link: Link, to: Placement) -> None:
+        from . import kernels
+
+        self._link, self.to = link, to
+        self.kernels = cast(Any, kernels)
+        self.memory = np.zeros(kernels.MEMORY)
 
     def read(self) -> HapticState:
         """Where in the picture the tip is now."""
-        return self._ends.read()
+        state = self._link.read()
+        numbers = np.array([*state.position_m, *state.velocity_m_per_s, state.buttons], np.float64)
+        self.kernels.place(self.to, self.memory, numbers)
+        x, y, z, vx, vy, vz, _ = numbers.tolist()
+        return HapticState((x, y, z), (vx, vy, vz), state.time_s, state.buttons)
 
     def write(self, force: Force) -> None:
         """A force in the picture's directions."""
-        self._ends.write(force)
+        self._link.write(Force(*self.kernels.push(self.to, self.memory, *force)))
 
     @property
     def applied(self) -> Force:
         """The force the device holds, in the picture's directions."""
-        return self._ends.applied
+        held = self._link.applied
+        return Force(*self.to.turned_back(held.x, held.y), held.z)
 
     def close(self) -> None:
         """Let go of the device."""
-        self._ends.link.close()
+        self._link.close()
 
 
 @final
 class MappedCompiledLink(CompiledLink):
     """As `MappedLink`, for a device of kernels: they are called by kernels, and a loop still needs no Python."""
 
-    def __init__(self, link: CompiledLink, ends: _Ends) -> None:
+    def __init__(self, link: CompiledLink, to: Placement) -> None:
         self._link = link
-        self._ends = ends
-        self._kernels: LinkKernels = ends.kernels.around(link.kernels(), ends.to, ends.memory)
+        self._plain = MappedLink(link, to)
+        self._kernels: LinkKernels = self._plain.kernels.around(link.kernels(), to, self._plain.memory)
 
     def read(self) -> HapticState:
         """Where in the picture the tip is now."""
-        return self._ends.read()
+        return self._plain.read()
 
     def write(self, force: Force) -> None:
         """A force in the picture's directions."""
-        self._ends.write(force)
+        self._plain.write(force)
 
     @property
     def applied(self) -> Force:
         """The force the device holds, in the picture's directions."""
-        return self._ends.applied
+        return self._plain.applied
 
     def close(self) -> None:
         """Let go of the device."""

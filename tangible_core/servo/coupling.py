@@ -11,14 +11,14 @@ remove `__pycache__` beside `guard.py`.
 import numpy as np
 from numba import float64, njit, types
 
-from .. import compiling as compiling
+from ..compiling import KERNEL
 from . import guard_layout as at
 from .vectors import nought, shortened
 
 READ, WRITTEN = types.Array(float64, 1, "C", readonly=True), types.Array(float64, 1, "C")
 
 
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+@njit(**KERNEL, inline="always")
 def _led(settings, memory, elapsed_s, place, velocity):
     """The tool moved on by one period; False if that is not finite.
 
@@ -39,7 +39,7 @@ def _led(settings, memory, elapsed_s, place, velocity):
     return nought(dx, dy, dz) + nought(memory[at.TOOL + 3], memory[at.TOOL + 4], memory[at.TOOL + 5]) == 0.0
 
 
-@njit(types.UniTuple(float64, 6)(READ, WRITTEN, *[float64] * 7), cache=True, nogil=True, error_model="numpy")
+@njit(types.UniTuple(float64, 6)(READ, WRITTEN, *[float64] * 7), **KERNEL)
 def couple(settings, memory, period_s, x, y, z, vx, vy, vz):
     """The state that the law is asked for: the tool's, or the device's own where there is no coupling.
 
@@ -55,7 +55,7 @@ def couple(settings, memory, period_s, x, y, z, vx, vy, vz):
     return *tool, memory[at.TOOL + 3], memory[at.TOOL + 4], memory[at.TOOL + 5]
 
 
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+@njit(**KERNEL, inline="always")
 def pull(settings, memory, x, y, z, vx, vy, vz, fx, fy, fz):
     """The tool's force on the device; the law's force on the tool is kept for the next `couple`."""
     memory[at.TOOL + 6], memory[at.TOOL + 7], memory[at.TOOL + 8] = fx, fy, fz

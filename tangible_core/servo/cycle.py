@@ -13,10 +13,10 @@ from numba.extending import intrinsic
 
 from ..compiling import KERNEL
 from ..data import TICK_COLUMNS, TickFlag
+from . import schedule
 from .clock import SECOND_NS, wait_ns
 from .coupling import couple
 from .guard import guard, wait
-from .lead import longer_lead_ns as longer_lead
 from .ring import (
     COMMAND,
     COUNT,
@@ -26,12 +26,10 @@ from .ring import (
     MARKS,
     MOST_LATE_S,
     NEXT_NS,
-    OVERRUNS,
     PEAK_N,
     PERIOD_NS,
     PREVIOUS_NS,
     RUN,
-    SPINS,
     START_NS,
     WIDEST_US,
     WORK_J,
@@ -41,7 +39,7 @@ FLAGS = TICK_COLUMNS.index("flags")
 STATE = 7
 """Length of a device's state, as `LinkKernels` says."""
 OVERRUN = int(TickFlag.OVERRUN)
-longer_lead_ns = njit(**KERNEL)(longer_lead)
+begun = njit(**KERNEL)(schedule.begun)
 AT, LATE = 0, 1
 
 
@@ -113,18 +111,9 @@ def cycle(link, law, limits, state, row, time_s, late_s, period_s):
 
 @njit(**KERNEL)
 def begin(clock, header):
-    """Wait for the next tick; when it began and how late it was, nanoseconds.
-
-    Periods that went by without a tick are counted and not made up for: the next tick is due in step with the first.
-    """
-    due_ns, period_ns = header[NEXT_NS], header[PERIOD_NS]
-    at_ns = wait_ns(clock, due_ns, header[LEAD_NS])
-    late_ns = at_ns - due_ns
-    if header[SPINS] != 0:
-        header[LEAD_NS] = longer_lead_ns(header[LEAD_NS], late_ns)
-    header[OVERRUNS] += late_ns // period_ns
-    header[NEXT_NS] = due_ns + (late_ns // period_ns + 1) * period_ns
-    return at_ns, late_ns
+    """Wait for the next tick; when it began and how late it was, nanoseconds."""
+    at_ns = wait_ns(clock, header[NEXT_NS], header[LEAD_NS])
+    return at_ns, begun(header, at_ns)
 
 
 @njit(**KERNEL)

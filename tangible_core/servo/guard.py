@@ -10,7 +10,7 @@ without a fresh position is `wait` instead of all three. The arrays are those of
 import numpy as np
 from numba import float64, int64, njit, types, void
 
-from .. import compiling as compiling
+from ..compiling import KERNEL
 from ..data import TickFlag
 from . import guard_layout as at
 from .coupling import READ, WRITTEN, pull
@@ -33,7 +33,7 @@ ENOUGH = 1.1
 NEWTONS_AND_FLAGS = types.Tuple((float64, float64, float64, int64))
 
 
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+@njit(**KERNEL, inline="always")
 def _counted(memory, flags):
     """The flags, each counted."""
     memory[at.COUNTS] += flags & TOUCHING
@@ -43,7 +43,7 @@ def _counted(memory, flags):
     return flags
 
 
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+@njit(**KERNEL, inline="always")
 def _stopped(memory, flag):
     """Zero at once, and nothing remembered that a fault may have touched; the force fades in again."""
     for i in range(3 * (at.MOST_DELAY + 1)):
@@ -53,13 +53,13 @@ def _stopped(memory, flag):
     return 0.0, 0.0, 0.0, _counted(memory, flag)
 
 
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+@njit(**KERNEL, inline="always")
 def _anew(memory):
     memory[at.PLACE] = memory[at.TOOL] = np.nan
     memory[at.RAMP] = memory[at.ENERGY_J] = 0.0
 
 
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+@njit(**KERNEL, inline="always")
 def _softness(settings, memory, elapsed_s):
     """Share of the law's force that makes its stiffness one which is held stably at the measured period.
 
@@ -79,7 +79,7 @@ def _softness(settings, memory, elapsed_s):
     return memory[at.SOFTNESS]
 
 
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+@njit(**KERNEL, inline="always")
 def _slewed(memory, step_n, fx, fy, fz):
     """From the last force towards this one by at most a step, and whether that is short of it."""
     wx, wy, wz = memory[at.FORCE], memory[at.FORCE + 1], memory[at.FORCE + 2]
@@ -87,7 +87,7 @@ def _slewed(memory, step_n, fx, fy, fz):
     return (wx + dx, wy + dy, wz + dz, True) if short else (fx, fy, fz, False)
 
 
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+@njit(**KERNEL, inline="always")
 def _keep(settings, memory, fx, fy, fz):
     """This force is the last one, and on its way."""
     memory[at.FORCE], memory[at.FORCE + 1], memory[at.FORCE + 2] = fx, fy, fz
@@ -96,7 +96,7 @@ def _keep(settings, memory, fx, fy, fz):
     memory[at.SLOT] = 0.0 if memory[at.SLOT] >= settings[at.DELAY] else memory[at.SLOT] + 1.0
 
 
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+@njit(**KERNEL, inline="always")
 def _safe(settings, memory, elapsed_s, touching, fx, fy, fz):
     """Soft enough to be held stably, and not over the maximum; with flags."""
     flags = 0
@@ -107,7 +107,7 @@ def _safe(settings, memory, elapsed_s, touching, fx, fy, fz):
     return fx, fy, fz, flags | FORCE_LIMITED if over else flags
 
 
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+@njit(**KERNEL, inline="always")
 def _gentle(settings, memory, elapsed_s, fx, fy, fz):
     """Faded in, and at most a step from the last force; with flags."""
     flags = 0
@@ -119,7 +119,7 @@ def _gentle(settings, memory, elapsed_s, fx, fy, fz):
     return fx, fy, fz, flags | SLEW_LIMITED if short else flags
 
 
-@njit(NEWTONS_AND_FLAGS(READ, WRITTEN, *[float64] * 10), cache=True, nogil=True, error_model="numpy")
+@njit(NEWTONS_AND_FLAGS(READ, WRITTEN, *[float64] * 10), **KERNEL)
 def guard(settings, memory, period_s, x, y, z, vx, vy, vz, fx, fy, fz):
     """What may leave of the law's force at a fresh position of the device, and the flags of this tick.
 
@@ -145,7 +145,7 @@ def guard(settings, memory, period_s, x, y, z, vx, vy, vz, fx, fy, fz):
     return fx, fy, fz, _counted(memory, touching * TOUCHING | soft | braked * DAMPED | late)
 
 
-@njit(NEWTONS_AND_FLAGS(READ, WRITTEN, float64), cache=True, nogil=True, error_model="numpy")
+@njit(NEWTONS_AND_FLAGS(READ, WRITTEN, float64), **KERNEL)
 def wait(settings, memory, period_s):
     """A tick that found no fresh position: the last force, or zero from `stale_s` on or by a clock that is broken."""
     memory[at.AGE_S] += period_s if period_s >= 0.0 else np.inf
@@ -154,7 +154,7 @@ def wait(settings, memory, period_s):
     return memory[at.FORCE], memory[at.FORCE + 1], memory[at.FORCE + 2], 0
 
 
-@njit(void(WRITTEN), cache=True, nogil=True, error_model="numpy")
+@njit(void(WRITTEN), **KERNEL)
 def restart(memory):
     """For the first tick on another scene, or after homing: the force fades in again, from what it is."""
     _anew(memory)

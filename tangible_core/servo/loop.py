@@ -10,7 +10,6 @@ from ..compiled import CompiledLink, CompiledTouch
 from ..data import TICK_COLUMNS, TickFlag
 from ..interfaces import Link, Touch
 from .guarded import guarded
-from .lead import longer_lead_ns
 from .ring import (
     COMMAND,
     COUNT,
@@ -18,7 +17,6 @@ from .ring import (
     LEAD_NS,
     MARKS,
     NEXT_NS,
-    OVERRUNS,
     PERIOD_NS,
     PREVIOUS_NS,
     RUN,
@@ -27,6 +25,7 @@ from .ring import (
     STOP,
     Ring,
 )
+from .schedule import begun
 
 SECOND_NS = 1_000_000_000
 Sections = tuple[np.ndarray, ...]
@@ -141,16 +140,11 @@ def _timed(tick: Timed, header: np.ndarray) -> Callable[[], None]:
 
 def _begin(header: np.ndarray) -> tuple[int, int]:
     """`cycle.begin` for a loop of Python's."""
-    due_ns, period_ns, lead_ns = header[[NEXT_NS, PERIOD_NS, LEAD_NS]].tolist()
+    due_ns, lead_ns = header[[NEXT_NS, LEAD_NS]].tolist()
     at_ns = time.monotonic_ns()
     if at_ns < due_ns - lead_ns:
         time.sleep((due_ns - lead_ns - at_ns) / SECOND_NS)
         at_ns = time.monotonic_ns()
     while at_ns < due_ns:
         at_ns = time.monotonic_ns()
-    late_ns = at_ns - due_ns
-    if header[SPINS]:
-        header[LEAD_NS] = longer_lead_ns(lead_ns, late_ns)
-    header[OVERRUNS] += late_ns // period_ns
-    header[NEXT_NS] = due_ns + (late_ns // period_ns + 1) * period_ns
-    return at_ns, late_ns
+    return at_ns, int(begun(header, at_ns))

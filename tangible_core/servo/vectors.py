@@ -6,16 +6,16 @@
 import numpy as np
 from numba import njit
 
-from .. import compiling as compiling
+from ..compiling import KERNEL
 
 
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+@njit(**KERNEL, inline="always")
 def nought(x, y, z):
     """0.0, and NaN if one of them is not finite; no sum of these overflows."""
     return 0.0 * x + 0.0 * y + 0.0 * z
 
 
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+@njit(**KERNEL, inline="always")
 def shortened(x, y, z, most):
     """The vector in its direction, of at most this length, and whether it was over it; NaN where it is not finite."""
     if x * x + y * y + z * z <= most * most:

@@ -139,6 +139,6 @@ class Recording(Record):
         return cls(*recording_files.read(path))
 
 
-def failure(recording: Recording) -> DeviceError:
-    """What ended a recording early, as an error to raise once it is saved."""
-    return DeviceError(f"stopped after {recording.time_s.size} ticks: {recording.stopped}")
+def failure(ticks: int, stopped: str) -> DeviceError:
+    """What ended a session early, as an error to raise once all of it is saved and said."""
+    return DeviceError(f"stopped after {ticks} ticks: {stopped}")

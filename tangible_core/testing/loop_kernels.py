@@ -5,13 +5,12 @@
 
 from numba import float64, int64, njit, void
 
-from .. import compiling as compiling
+from ..compiling import KERNEL
 
 FIXED = (float64[:, ::1], float64, int64[::1], float64[::1])
-OPTIONS = {"cache": True, "nogil": True, "error_model": "numpy"}
 
 
-@njit(int64(*FIXED, float64[::1]), **OPTIONS)
+@njit(int64(*FIXED, float64[::1]), **KERNEL)
 def read(wheel_m, z_m, steps, force_n, state):
     """The next place on the circle."""
     place = wheel_m[steps[0] % wheel_m.shape[0]]
@@ -20,7 +19,7 @@ def read(wheel_m, z_m, steps, force_n, state):
     return 1
 
 
-@njit(void(*FIXED, float64, float64, float64), **OPTIONS)
+@njit(void(*FIXED, float64, float64, float64), **KERNEL)
 def write(wheel_m, z_m, steps, force_n, fx, fy, fz):
     """Hold this force."""
     force_n[0], force_n[1], force_n[2] = fx, fy, fz

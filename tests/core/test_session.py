@@ -205,7 +205,7 @@ class TestEndings:
         assert recording.stopped == "the cable is out; put it in"
         assert recording.time_s.size == 20
         assert link.closed == 1
-        assert "after 20 ticks: the cable is out; put it in" in str(failure(recording))
+        assert "after 20 ticks: the cable is out; put it in" in str(failure(len(recording.rows), recording.stopped))
 
     def test_a_device_that_never_answers(self):
         recording, _ = feel(lambda _: PUSH, link=Scripted(fails_at=0))

@@ -7,13 +7,12 @@ from typing import Annotated, Literal, Self, final
 import numpy as np
 from pydantic import Field, model_validator
 
-from tangible_core.data import NO_FORCE, DeviceSpec, Force, HapticState
-from tangible_core.errors import DeviceError
+from tangible_core.data import DeviceSpec, Force, HapticState
 from tangible_core.interfaces import HapticDevice, Link
-from tangible_core.session import limited
 
 from .hand import MovingHand, VirtualHand
 from .paths import DRAWN, Stroke, Vector, read_csv, walk
+from .simulated import LIKE_A_FALCON, SimulatedLink
 
 Height = Annotated[float, Field(ge=-1, le=1)]
 Size = Annotated[float, Field(ge=1e-6, le=1)]
@@ -61,18 +60,11 @@ class Mock(HapticDevice):
 
     def spec(self) -> DeviceSpec:
         """A Novint Falcon's limits, as in CHAI3D's tables; positions are not rounded, which a picometre stands for."""
-        return DeviceSpec(
-            max_force_n=8.0,
-            max_stiffness_n_per_m=3000.0,
-            damping_n_s_per_m=20.0,
-            workspace_m=(0.08, 0.08, 0.08),
-            resolution_m=1e-12,
-            simulated=True,
-        )
+        return LIKE_A_FALCON
 
     def open(self) -> Link:
         """A new simulated device. Raises: DeviceError if the CSV file cannot be read or makes no sense."""
-        return MockLink(self, self._stroke(), self.spec().max_force_n)
+        return SimulatedLink("mock", Motion(self, self._stroke()).step)
 
     def _stroke(self) -> Stroke:
         if self.csv_file is not None:
@@ -82,23 +74,19 @@ class Mock(HapticDevice):
 
 
 @final
-class MockLink(Link):
-    """A simulated device in use."""
+class Motion:
+    """A hand on its way."""
 
-    def __init__(self, options: Mock, stroke: Stroke, max_force_n: float) -> None:
+    def __init__(self, options: Mock, stroke: Stroke) -> None:
         self._stroke = stroke
         self._tremor = Tremor(options.tremor_m, options.seed)
         self._period_s = options.period_s
-        self._max_force_n = max_force_n
         self._tick = -1
-        self._applied = NO_FORCE
-        self._closed = False
         x, y, z = self._target(0)
         self._hand = options.hand and MovingHand(options.hand, (x, y, max(z, options.lift_m)), options.period_s)
 
-    def read(self) -> HapticState:
-        """The first read is at time 0; each further one is a period later, under the force written last."""
-        self._check_open()
+    def step(self, held: Force) -> HapticState:
+        """The first state is at time 0; each further one is a period later, under the force held until then."""
         self._tick += 1
         position = self._target(self._tick)
         if self._hand is None:
@@ -106,32 +94,13 @@ class MockLink(Link):
             velocity = (x - px) / period, (y - py) / period, (z - pz) / period
             return HapticState(position, velocity, self._tick * period)
         if self._tick:
-            self._hand.step(position, self._applied)
+            self._hand.step(position, held)
         return HapticState(self._hand.position_m, self._hand.velocity_m_per_s, self._tick * self._period_s)
-
-    def write(self, force: Force) -> None:
-        """Hold this force until the next write; zero if not finite, scaled down to the device's maximum."""
-        self._check_open()
-        self._applied = limited(force, self._max_force_n)
-
-    @property
-    def applied(self) -> Force:
-        """The force on the hand now."""
-        return self._applied
-
-    def close(self) -> None:
-        """Let go: no force, and no more reading or writing."""
-        self._applied = NO_FORCE
-        self._closed = True
 
     def _target(self, tick: int) -> Vector:
         x, y, z = self._stroke.at(tick)
         dx, dy, dz = self._tremor.at(tick * self._period_s)
         return x + dx, y + dy, z + dz
-
-    def _check_open(self) -> None:
-        if self._closed:
-            raise DeviceError("the mock device is closed; open it again")
 
 
 @final

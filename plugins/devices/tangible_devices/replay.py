@@ -1,14 +1,17 @@
 """A device in simulated time whose tip goes where a recorded one went."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import final
 
 import numpy as np
 
-from tangible_core.data import NO_FORCE, DeviceSpec, Force, HapticState
+from tangible_core.data import DeviceSpec, Force, HapticState
 from tangible_core.errors import DeviceError, OutputError
 from tangible_core.interfaces import HapticDevice, Link
-from tangible_core.session import Recording, limited
+from tangible_core.session import Recording
+
+from .simulated import LIKE_A_FALCON, SimulatedLink
 
 
 class Replay(HapticDevice):
@@ -23,60 +26,29 @@ class Replay(HapticDevice):
 
     def spec(self) -> DeviceSpec:
         """A Novint Falcon's limits, as in CHAI3D's tables; positions are not rounded, which a picometre stands for."""
-        return DeviceSpec(
-            max_force_n=8.0,
-            max_stiffness_n_per_m=3000.0,
-            damping_n_s_per_m=20.0,
-            workspace_m=(0.08, 0.08, 0.08),
-            resolution_m=1e-12,
-            buttons=4,
-            simulated=True,
-        )
+        return replace(LIKE_A_FALCON, buttons=4)
 
     def open(self) -> Link:
         """From its start. Raises: DeviceError if the recording cannot be read, is empty, or its time stands still."""
-        return ReplayLink(_stroke() if self.file is None else _load(self.file), self.spec().max_force_n)
+        return SimulatedLink("replay", Replayed(_stroke() if self.file is None else _load(self.file)).step)
 
 
 @final
-class ReplayLink(Link):
-    """A recording in use."""
+class Replayed:
+    """A recording on its way."""
 
-    def __init__(self, recording: Recording, max_force_n: float) -> None:
+    def __init__(self, recording: Recording) -> None:
         self._rows = recording.rows
         self._period_s = float(np.median(np.diff(recording.time_s))) if len(recording.rows) > 1 else 0.001
-        self._max_force_n = max_force_n
         self._tick = -1
-        self._applied = NO_FORCE
-        self._closed = False
 
-    def read(self) -> HapticState:
-        """The next state; after the last one the tip rests, and time goes on by the usual period."""
-        self._check_open()
+    def step(self, held: Force) -> HapticState:
+        """The next state, whatever is held; after the last one the tip rests, and time goes on by the usual period."""
         self._tick += 1
         rests = max(0, self._tick - len(self._rows) + 1)
         time_s, _, x, y, z, vx, vy, vz, *_, buttons = self._rows[self._tick - rests].tolist()
         velocity = (0.0, 0.0, 0.0) if rests else (vx, vy, vz)
         return HapticState((x, y, z), velocity, time_s + rests * self._period_s, int(buttons))
-
-    def write(self, force: Force) -> None:
-        """Hold this force until the next write; zero if not finite, scaled down to the device's maximum."""
-        self._check_open()
-        self._applied = limited(force, self._max_force_n)
-
-    @property
-    def applied(self) -> Force:
-        """The force on the hand now."""
-        return self._applied
-
-    def close(self) -> None:
-        """Let go: no force, and no more reading or writing."""
-        self._applied = NO_FORCE
-        self._closed = True
-
-    def _check_open(self) -> None:
-        if self._closed:
-            raise DeviceError("the replay device is closed; open it again")
 
 
 def _load(file: Path) -> Recording:

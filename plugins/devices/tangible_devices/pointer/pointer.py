@@ -2,6 +2,7 @@
 
 import math
 import time
+from dataclasses import replace
 from types import ModuleType
 from typing import Annotated, Any, final
 
@@ -14,6 +15,7 @@ from tangible_core.errors import DeviceError
 from tangible_core.interfaces import HapticDevice, Link
 from tangible_core.session import limited
 
+from ..simulated import LIKE_A_FALCON
 from .channel import DEVICE_OPEN, FORCE, FORCE_WORDS, MAGIC, MARK, SAMPLE, SAMPLE_WORDS, Channel
 
 HIGH_M = (0.0, 0.0, 1.0)
@@ -36,15 +38,7 @@ class Pointer(HapticDevice):
 
     def spec(self) -> DeviceSpec:
         """A Novint Falcon's force, stiffness and damping; the workspace is whatever the client has."""
-        return DeviceSpec(
-            max_force_n=8.0,
-            max_stiffness_n_per_m=3000.0,
-            damping_n_s_per_m=20.0,
-            workspace_m=(1.0, 1.0, 1.0),
-            resolution_m=1e-12,
-            buttons=31,
-            simulated=True,
-        )
+        return replace(LIKE_A_FALCON, workspace_m=(1.0, 1.0, 1.0), buttons=31)
 
     def open(self) -> Link:
         """Raises: DeviceError if this channel has a device already, or its file cannot be made."""

@@ -2,6 +2,8 @@
 
 from collections.abc import Iterable
 from difflib import get_close_matches
+from sys import stdlib_module_names
+from traceback import walk_tb
 
 
 class TangibleError(Exception):
@@ -52,6 +54,13 @@ class OutputError(TangibleError):
 
 class ResultsError(TangibleError):
     """Files of measurements that are damaged, or that cannot be compared."""
+
+
+def exited(error: SystemExit) -> BrokenMethod:
+    """What to say where a plugin called `sys.exit`: the program is not a plugin's to end, nor is its exit code."""
+    modules = [str(frame.f_globals.get("__name__")) for frame, _ in walk_tb(error.__traceback__)]
+    name = next((name for name in reversed(modules) if name.partition(".")[0] not in stdlib_module_names), "a plugin")
+    return BrokenMethod(f"{name} called sys.exit({error.code!r}); a plugin says what is wrong by raising an error")
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:

@@ -8,19 +8,22 @@ import os
 import signal
 import sys
 import threading
+from contextlib import suppress
 from pathlib import Path
 from typing import IO, final
 
 from ..errors import DeviceError
 from ..interfaces import Link, Touch
 from . import loop, parcel, priority
-from .ring import COMMAND, STOP, SWAP, Ring
-from .wire import Ended, Running, Start, Swap, Swapped, receive, send
+from .ring import STOP, SWAP, Ring
+from .wire import Ended, Refused, Running, Start, Swap, Swapped, receive, send, sendable
 
-GONE = "the program that started the loop is gone"
 TERMINATED = "the process was asked to end"
+PAUSED = "the program was paused from the keyboard"
 SWITCH_S = 1e-4
 """After so long a thread that holds Python's lock hands it to one that waits: the loop, where it needs Python."""
+LOOK_EVERY_S, LOOKS = 0.05, 10
+"""A loop that is to end and has not after so many looks is stuck in a law or a device, and is left behind."""
 
 
 @final
@@ -29,78 +32,92 @@ class Child:
 
     def __init__(self, commands: IO[bytes], replies: IO[bytes]) -> None:
         self._commands, self._replies = commands, replies
+        self._ring: Ring | None = None
         self._stopped = ""
         self._lock = threading.Lock()
+        self._taken = threading.Event()
 
     def main(self) -> None:
         """Until the host, a signal, the device or the time ends it."""
-        start = receive(self._commands)
-        if not isinstance(start, Start):
-            return
-        self._ring = Ring.attach(Path(start.ring))
         try:
-            touch = parcel.unpack(Path(start.scene))
-            with start.device.open() as link:
-                self._serve(link, touch, start)
-        except Exception as error:  # noqa: BLE001 - whatever a plugin raises is for the host to say
-            self._end(str(error) if isinstance(error, DeviceError) else "", error)
+            start = receive(self._commands)
+            if isinstance(start, Start):
+                self._feel(start)
+        except BaseException as error:  # noqa: BLE001 - whatever a plugin raises is for the host to say
+            said = sendable(error)
+            self._reply(Ended(str(said) if isinstance(said, DeviceError) else "", said))
         else:
-            self._end(self._stopped)
+            self._reply(Ended(self._stopped))
 
-    def _serve(self, link: Link, touch: Touch, start: Start) -> None:
-        ring = self._ring
+    def _feel(self, start: Start) -> None:
+        self._ring = ring = Ring.attach(Path(start.ring))
+        if self._stopped:
+            self.stop()
+        touch = parcel.unpack(Path(start.scene))
+        if ring.header[STOP]:
+            return
+        with start.device.open() as link:
+            self._serve(ring, link, touch, start)
+
+    def _serve(self, ring: Ring, link: Link, touch: Touch, start: Start) -> None:
         self._next = loop.prepare(link, touch, ring, start.settings)
-        failures: list[Exception] = []
-        thread = threading.Thread(target=self._feel, args=(failures,), daemon=True)
+        gc.freeze()  # what is there now stays, and is not looked at when a scene that was felt is collected
+        failures: list[BaseException] = []
+        thread = threading.Thread(target=self._tick, args=(ring, failures), daemon=True)
         thread.start()
-        threading.Thread(target=self._listen, args=(link,), daemon=True).start()
-        while thread.is_alive():  # a signal's handler runs between two joins
-            thread.join(0.05)
+        threading.Thread(target=self._listen, args=(ring, link), daemon=True).start()
+        looks = LOOKS
+        while thread.is_alive() and looks:  # a signal's handler runs between two joins
+            thread.join(LOOK_EVERY_S)
+            looks -= int(ring.header[STOP])
         if failures:
             raise failures[0]
+        if thread.is_alive():
+            raise DeviceError("the force loop is stuck in its law or its device and was left behind")
 
-    def _feel(self, failures: list[Exception]) -> None:
-        header = self._ring.header
-        real_time, granted = priority.ask()
-        loop.start_clock(header, real_time)
-        self._reply(Running(f"{granted}; {self._next.how}"))
+    def _tick(self, ring: Ring, failures: list[BaseException]) -> None:
         try:
-            while True:
+            real_time, granted = priority.ask()
+            loop.start_clock(ring.header, real_time)
+            self._reply(Running(f"{granted}; {self._next.how}"))
+            self._next.run()
+            while ring.header[SWAP] and not ring.header[STOP]:
+                loop.take_over(ring)
+                self._taken.set()
                 self._next.run()
-                if header[COMMAND] != SWAP:
-                    return
-                loop.take_over(self._ring)
-        except Exception as error:  # noqa: BLE001 - the main thread hands it on, once the force is zero
+        except BaseException as error:  # noqa: BLE001 - the main thread hands it on, once the force is zero
             failures.append(error)
+        finally:
+            ring.header[STOP] = 1
+            self._taken.set()
 
-    def _listen(self, link: Link) -> None:
-        while (message := receive(self._commands)) is not None:
-            if isinstance(message, Swap):
-                self._next = loop.prepare(link, parcel.unpack(Path(message.scene)), self._ring, message.settings)
-                self._ring.header[COMMAND] = SWAP
-                self._reply(Swapped())
-            else:
-                self.stop(message.why)
-                return
-        self.stop(GONE)
+    def _listen(self, ring: Ring, link: Link) -> None:
+        while isinstance(message := receive(self._commands), Swap):
+            self._swap(ring, link, message)
+            gc.collect()
+        self.stop()  # the program that started the loop is done with it, or gone
 
-    def stop(self, why: str) -> None:
+    def _swap(self, ring: Ring, link: Link, message: Swap) -> None:
+        try:
+            self._next = loop.prepare(link, parcel.unpack(Path(message.scene)), ring, message.settings)
+        except BaseException as error:  # noqa: BLE001 - the scene that is felt stays
+            self._reply(Refused(sendable(error)))
+            return
+        self._taken.clear()
+        ring.header[SWAP] = 1
+        if not ring.header[STOP]:  # looked at after clearing: the loop sets both when it ends, in this order
+            self._taken.wait()
+        if not ring.header[STOP]:
+            self._reply(Swapped())
+
+    def stop(self, why: str = "") -> None:
         """End the loop with the next tick."""
         self._stopped = self._stopped or why
-        self._ring.header[COMMAND] = STOP
-
-    def terminate(self, number: int, frame: object) -> None:
-        """For SIGTERM."""
-        self.stop(TERMINATED)
-
-    def _end(self, stopped: str, error: Exception | None = None) -> None:
-        try:
-            self._reply(Ended(stopped, error))
-        except Exception:  # noqa: BLE001 - an error that does not pickle still has a name and a message
-            self._reply(Ended(stopped, RuntimeError(f"{type(error).__name__}: {error}")))
+        if self._ring is not None:
+            self._ring.header[STOP] = 1
 
     def _reply(self, message: object) -> None:
-        with self._lock:
+        with self._lock, suppress(OSError):  # a host that is gone hears nothing any more
             send(self._replies, message)
 
 
@@ -112,7 +129,9 @@ def main() -> None:
     sys.setswitchinterval(SWITCH_S)
     commands = open(0, "rb", buffering=0)  # noqa: SIM115 - a buffer's lock would outlive the thread that waits
     child = Child(commands, replies)
-    signal.signal(signal.SIGTERM, child.terminate)
+    signal.signal(signal.SIGTERM, lambda _number, _frame: child.stop(TERMINATED))
+    if hasattr(signal, "SIGTSTP"):  # Ctrl-Z: a process that stands still would leave its force on
+        signal.signal(signal.SIGTSTP, lambda _number, _frame: child.stop(PAUSED))
     gc.disable()  # a collection takes longer than a tick
     child.main()
 

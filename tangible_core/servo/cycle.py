@@ -18,9 +18,7 @@ from .clock import SECOND_NS, wait_ns
 from .coupling import couple
 from .guard import guard, wait
 from .ring import (
-    COMMAND,
     COUNT,
-    LAST,
     LEAD_NS,
     LONGEST_S,
     MARKS,
@@ -29,8 +27,8 @@ from .ring import (
     PEAK_N,
     PERIOD_NS,
     PREVIOUS_NS,
-    RUN,
     START_NS,
+    STOP,
     WIDEST_US,
     WORK_J,
 )
@@ -39,8 +37,9 @@ FLAGS = TICK_COLUMNS.index("flags")
 STATE = 7
 """Length of a device's state, as `LinkKernels` says."""
 OVERRUN = int(TickFlag.OVERRUN)
-begun = njit(**KERNEL)(schedule.begun)
+begun, going = njit(**KERNEL)(schedule.begun), njit(**KERNEL)(schedule.going)
 AT, LATE = 0, 1
+NO_MORE = -1
 
 
 @intrinsic
@@ -130,7 +129,7 @@ def finish(shared, row, at_ns, late_ns):
 def step(link, law, limits, shared, state, row, at_ns, late_ns):
     """A whole tick that began then and so late; none if the loop is to stop."""
     header = shared[0]
-    if header[COMMAND] != RUN:
+    if header[STOP] != 0:
         return
     since_ns = at_ns - header[PREVIOUS_NS] if header[COUNT] > 0 else header[PERIOD_NS]
     time_s = (at_ns - header[START_NS]) / SECOND_NS
@@ -140,21 +139,22 @@ def step(link, law, limits, shared, state, row, at_ns, late_ns):
 
 @njit(**KERNEL)
 def run(clock, link, law, limits, shared, state, row):
-    """Tick after tick, until COMMAND says otherwise or the last one is done; nothing of Python is needed meanwhile."""
+    """Tick after tick, as long as it is `going`; nothing of Python is needed meanwhile."""
     header = shared[0]
-    while header[COMMAND] == RUN and header[COUNT] < header[LAST]:
+    while going(header):
         at_ns, late_ns = begin(clock, header)
         step(link, law, limits, shared, state, row, at_ns, late_ns)
 
 
 # What Python calls once a tick is a generator: it keeps its arguments, and passing them takes the time of a hundred
-# ticks. AT and LATE of `now` say when the tick began.
+# ticks. AT and LATE of `now` say when the tick began; AT is NO_MORE for the last call. A generator that was begun must
+# be brought to its end: else numba keeps its arguments, a scene among them, for ever.
 
 
 @njit(cache=True, error_model="numpy")
 def ticks(link, law, limits, shared, state, row, now):
     """A whole tick at each `next`."""
-    while True:
+    while now[AT] != NO_MORE:
         step(link, law, limits, shared, state, row, now[AT], now[LATE])
         yield True
 
@@ -162,6 +162,6 @@ def ticks(link, law, limits, shared, state, row, now):
 @njit(cache=True, error_model="numpy")
 def finished(shared, row, now):
     """A tick that Python did, put into the ring at each `next`."""
-    while True:
+    while now[AT] != NO_MORE:
         finish(shared, row, now[AT], now[LATE])
         yield True

@@ -3,12 +3,15 @@
 import logging
 import math
 import queue
+import signal
 import subprocess
 import sys
 import threading
 import time
+from contextlib import suppress
+from pathlib import Path
 from types import TracebackType
-from typing import Any, Self, TypeVar, final
+from typing import IO, Any, Self, TypeVar, final
 
 from ..compiled import CompiledTouch
 from ..data import ServoReport
@@ -16,16 +19,20 @@ from ..errors import ConfigError, DeviceError
 from ..interfaces import HapticDevice, Touch
 from . import parcel
 from .reports import report
-from .ring import LAST, PERIOD_NS, Ring
+from .ring import COUNT, LAST, PERIOD_NS, STOP, Ring
 from .safety import Safety
-from .wire import Ended, Running, Start, Stop, Swap, Swapped, receive, send
+from .wire import Ended, Refused, Running, Start, Swap, Swapped, receive, send, sendable
 
 log = logging.getLogger(__name__)
 COMPILING_S = 300.0
 """A loop that has not begun by then never will; compiling everything takes a tenth of it."""
 STOPPING_S = 3.0
 """A loop that has not ended so long after it was asked to is killed."""
+LOOK_EVERY_S, STANDSTILL_S, STANDSTILL_PERIODS = 0.05, 0.2, 4
+"""How often ticks are counted; a loop without one for so long, and for so many periods, is killed."""
+STOOD_STILL = "the force loop stood still: its law or its device did not answer, or its process was stopped"
 FOREVER = 2**62
+NOT_STARTED = "no force loop was started; use it in `with Servo(...) as servo:`"
 Reply = TypeVar("Reply")
 OVER = "the time is over"
 
@@ -35,7 +42,8 @@ class Servo:
     """A force loop in a process of its own, as a context manager: when it is left, no force remains.
 
     The touch and the device's options travel to that process, which opens the device. It ends, with zero force, when it
-    is stopped, when its time is over, when this process is gone, on SIGTERM, and when the device stops answering.
+    is stopped, when its time is over, when this process is gone, on SIGTERM, and when the device stops answering. One
+    that stands still is ended from here, and the device is opened once more to let go.
     """
 
     def __init__(
@@ -57,7 +65,13 @@ class Servo:
         self._period_s = period_s
         self._ticks = FOREVER if seconds is None else max(1, round(seconds / period_s))
         self._replies: queue.SimpleQueue[Any] = queue.SimpleQueue()
+        self._ring: Ring | None = None
+        self._child: subprocess.Popen[bytes] | None = None
+        self._ear: threading.Thread | None = None
+        self._sent: list[Path] = []
+        self._why = ""
         self._ended: Ended | None = None
+        self._heard = threading.Event()
         self.how = ""
         """What the operating system granted, and which loop runs."""
         self.start_s = 0.0
@@ -66,41 +80,53 @@ class Servo:
     def __enter__(self) -> Self:
         """Raises: DeviceError if the device cannot be opened, and whatever a faulty plugin raises."""
         begun_s = time.monotonic()
-        settings, memory = self._arrays(self._touch)
-        scene = parcel.pack(self._touch)
-        self.ring = Ring.create()
-        self.ring.guard[: memory.size] = memory
-        self.ring.header[[PERIOD_NS, LAST]] = round(self._period_s * 1e9), self._ticks
-        words = [sys.executable, "-m", f"{__package__}.child"]
-        self._child = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
-        self._ear = threading.Thread(target=self._hear, daemon=True)
-        self._ear.start()
         try:
-            self._tell(Start(str(self.ring.path), str(scene), self._device, settings))
+            self._ring = Ring.create()
+            settings, memory = self._arrays(self._touch)
+            self.ring.guard[: memory.size] = memory
+            self.ring.header[[PERIOD_NS, LAST]] = round(self._period_s * 1e9), self._ticks
+            start = Start(str(self.ring.path), self._pack(self._touch), self._device, settings)
+            self._ear = threading.Thread(target=self._hear, args=(start,), daemon=True)
+            self._ear.start()
             self.how = self._answer(Running).how
+            threading.Thread(target=self._watch, daemon=True).start()
+            self.start_s = time.monotonic() - begun_s
+            return self
         except BaseException:
             self._close()
             raise
-        self.start_s = time.monotonic() - begun_s
-        return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self.stop()
+        try:
+            self.stop()
+        finally:
+            self.ring.header[STOP] = 1  # whatever interrupted that
 
     def swap(self, touch: Touch) -> None:
         """Feel another scene from one tick to the next; the force fades in. Returns when it is felt.
 
-        Raises: DeviceError if the loop has ended, or the touch cannot be sent to its process.
+        Raises: DeviceError if the loop has ended, or the touch cannot be sent to its process; whatever a faulty plugin
+        raises there. The scene before it is felt on, unless the loop has ended.
         """
-        self._tell(Swap(str(parcel.pack(touch)), self._arrays(touch)[0]))
-        self._answer(Swapped)
+        self._tell(Swap(self._pack(touch), self._arrays(touch)[0]))
+        try:
+            self._answer(Swapped)
+        finally:
+            self._remove_sent()
+
+    @property
+    def ring(self) -> Ring:
+        """What the loop shares."""
+        if self._ring is None:
+            raise DeviceError(NOT_STARTED)
+        return self._ring
 
     @property
     def process_id(self) -> int:
         """Of the loop's process."""
-        return self._child.pid
+        return self._started.pid
 
     @property
     def running(self) -> bool:
@@ -113,8 +139,7 @@ class Servo:
 
     def stop(self, why: str = "stopped") -> ServoReport:
         """End the loop, if it still runs, and say how it was. Raises: whatever a faulty plugin raised in the loop."""
-        if self.running:
-            self._tell(Stop(why))
+        self._why = self._why or why
         self._close()
         error = self._ended and self._ended.error
         if error is not None and not isinstance(error, DeviceError):
@@ -123,16 +148,34 @@ class Servo:
 
     def _close(self) -> None:
         """Leave neither a process nor a file nor a force."""
-        try:
-            self._child.wait(STOPPING_S)
-        except subprocess.TimeoutExpired:
-            log.warning("the force loop did not end when asked to; its process is killed")
-            self._child.kill()
-        self._ear.join()
-        for pipe in (self._child.stdin, self._child.stdout):
-            if pipe:
-                pipe.close()
-        self.ring.remove()
+        if self._ring is not None:
+            self._ring.header[STOP] = 1
+        if self._ear is not None and self._ear.is_alive():
+            self._hang_up()
+            self._ear.join()
+        self._remove_sent()
+        if self._ring is not None:
+            self._ring.remove()
+
+    @property
+    def _started(self) -> subprocess.Popen[bytes]:
+        if self._child is None:
+            raise DeviceError(NOT_STARTED)
+        return self._child
+
+    def _hang_up(self) -> None:
+        if self._child is not None:
+            with suppress(OSError):  # what was not sent is not missed
+                _pipe(self._child.stdin).close()
+
+    def _pack(self, touch: Touch) -> str:
+        self._sent.append(parcel.pack(touch))
+        return str(self._sent[-1])
+
+    def _remove_sent(self) -> None:
+        """Scenes that were not taken out of their files."""
+        while self._sent:
+            self._sent.pop().unlink(missing_ok=True)
 
     def _arrays(self, touch: Touch) -> tuple[Any, Any]:
         stiffness = touch.stiffness_n_per_m if isinstance(touch, CompiledTouch) else 0.0
@@ -140,11 +183,10 @@ class Servo:
 
     def _tell(self, message: Any) -> None:
         try:
-            send(self._child.stdin, message)  # pyright: ignore[reportArgumentType]
-        except OSError as error:
-            self._ear.join()  # it knows why
-            if not isinstance(message, Stop):
-                raise self._failure() from error
+            send(_pipe(self._started.stdin), message)
+        except (OSError, ValueError) as error:  # gone, or closed from here
+            self._heard.wait()  # then it is known why
+            raise self._failure() from error
 
     def _answer(self, kind: type[Reply]) -> Reply:
         try:
@@ -153,6 +195,8 @@ class Servo:
             raise DeviceError(
                 f"the force loop has not answered for {COMPILING_S:g} s; look at what the device prints"
             ) from None
+        if isinstance(message, Refused):
+            raise message.error
         if not isinstance(message, kind):
             raise self._failure()
         return message
@@ -161,23 +205,88 @@ class Servo:
         ended = self._ended or Ended(OVER)
         return ended.error or DeviceError(f"the force loop has ended: {ended.stopped or OVER}")
 
-    def _hear(self) -> None:
-        """Take the loop's messages, until it is gone."""
-        while (message := receive(self._child.stdout)) is not None:  # pyright: ignore[reportArgumentType]
-            if isinstance(message, Ended):
-                self._ended = message
-            self._replies.put(message)
-        if self._ended is None:
-            died = Ended(f"the force loop's process died (exit code {self._child.wait()})")
+    def _hear(self, start: Start) -> None:
+        """Start the loop's process and take its messages, until it is gone; nothing interrupts this thread."""
+        try:
+            ended = self._live(start)
+        except Exception as error:  # noqa: BLE001 - whoever waits for an answer is to get it
+            ended = Ended("", sendable(error))
+        self.ring.header[STOP] = 1
+        self._ended = ended
+        self._replies.put(ended)
+        self._heard.set()
+
+    def _live(self, start: Start) -> Ended:
+        if hasattr(signal, "pthread_sigmask"):  # the process hears no Ctrl-C before it can choose to
+            signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+        words = [sys.executable, "-m", f"{__package__}.child"]
+        self._child = child = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+        with _pipe(child.stdout) as replies:
+            if self.ring.header[STOP]:
+                self._hang_up()
+            with suppress(OSError, ValueError):  # it is gone, or was hung up on
+                send(_pipe(child.stdin), start)
+            ended = self._last_words(replies)
+            self.ring.header[STOP] = 1
+            self._hang_up()
+            code = _reaped(child)
+        if ended is None:
             self._let_go()
-            self._ended = died
-            self._replies.put(died)
+        return ended or Ended(self._why or f"the force loop's process died (exit code {code})")
+
+    def _last_words(self, replies: IO[bytes]) -> Ended | None:
+        """Pass the others on until there is this one, or the loop is gone without."""
+        try:
+            while (message := receive(replies)) is not None:
+                if isinstance(message, Ended):
+                    return Ended(message.stopped or self._why, message.error)
+                self._replies.put(message)
+        except Exception as error:  # noqa: BLE001 - what a plugin raised may not be told from here
+            return Ended("", sendable(error))
+        return None
+
+    def _watch(self) -> None:
+        """Kill a loop that stands still, or does not end when asked to."""
+        header, seen, looks = self.ring.header, -1, 0
+        standstill_s = max(STANDSTILL_S, STANDSTILL_PERIODS * self._period_s)
+        while not self._heard.wait(LOOK_EVERY_S):  # looks are counted, not seconds: this process may have stood still
+            ending = header[STOP] or header[COUNT] >= header[LAST]
+            looks = looks + 1 if header[COUNT] == seen else 0
+            seen = int(header[COUNT])
+            if looks * LOOK_EVERY_S >= (STOPPING_S if ending else standstill_s):
+                self._why = self._why or STOOD_STILL
+                self._started.kill()
+                return
 
     def _let_go(self) -> None:
         """Take the force from a device whose loop was killed: some hold the last one until they hear otherwise."""
         if self._device.spec().simulated:
             return
-        try:
-            self._device.open().close()
-        except DeviceError as error:
-            log.warning("the device may still hold its last force: %s; switch it off", error)
+        done = threading.Event()
+        threading.Thread(target=_open_and_close, args=(self._device, done), daemon=True).start()
+        if not done.wait(STOPPING_S):
+            log.warning("the device does not answer and may still hold its last force; switch it off")
+
+
+def _open_and_close(device: HapticDevice, done: threading.Event) -> None:
+    try:
+        device.open().close()
+    except Exception as error:  # noqa: BLE001 - whatever the driver raises, a person has to know
+        log.warning("the device may still hold its last force: %s; switch it off", error)
+    finally:
+        done.set()
+
+
+def _pipe(end: IO[bytes] | None) -> IO[bytes]:
+    assert end is not None  # both are asked for
+    return end
+
+
+def _reaped(child: subprocess.Popen[bytes]) -> int:
+    """Exit code of a process that is about to end; killed if it does not."""
+    try:
+        return child.wait(STOPPING_S)
+    except subprocess.TimeoutExpired:
+        log.warning("the force loop did not end when asked to; its process is killed")
+        child.kill()
+        return child.wait()

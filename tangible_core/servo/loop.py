@@ -1,44 +1,58 @@
 """Which loop suits a device and a law: compiled as a whole, a compiled tick, or a tick of Python's."""
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple, cast
 
 import numpy as np
 
 from ..compiled import CompiledLink, CompiledTouch
-from ..data import TICK_COLUMNS, TickFlag
+from ..data import TICK_COLUMNS, HapticState, TickFlag
 from ..interfaces import Link, Touch
 from .guarded import guarded
 from .ring import (
-    COMMAND,
     COUNT,
-    LAST,
     LEAD_NS,
     MARKS,
     NEXT_NS,
     PERIOD_NS,
     PREVIOUS_NS,
-    RUN,
     SPINS,
     START_NS,
     STOP,
+    SWAP,
     Ring,
 )
-from .schedule import begun
+from .schedule import begun, going
 
 SECOND_NS = 1_000_000_000
 Sections = tuple[np.ndarray, ...]
 """Of a ring, as the kernels take them: header, sums, late, period, stamps, ticks."""
 Timed = Callable[[int, int], None]
 """(at_ns, late_ns): one tick, which began then and so late."""
+FAR = HapticState((0.0, 0.0, 1.0))
+"""Free air, over any surface."""
 
 
 class Loop(NamedTuple):
-    """A loop ready to run."""
+    """A loop ready to run, once."""
 
     run: Callable[[], None]
     how: str
+
+
+class Kernel(NamedTuple):
+    """A generator of `cycle`, and the two numbers that it looks at."""
+
+    ticks: Iterator[bool]
+    now: np.ndarray
+
+    def end(self) -> None:
+        """Bring it to its end, so that it lets go of its arguments."""
+        from .cycle import NO_MORE
+
+        self.now[:] = NO_MORE
+        next(self.ticks, None)
 
 
 def prepare(link: Link, touch: Touch, ring: Ring, settings: np.ndarray) -> Loop:
@@ -49,23 +63,21 @@ def prepare(link: Link, touch: Touch, ring: Ring, settings: np.ndarray) -> Loop:
     row = np.full(len(TICK_COLUMNS), np.nan)
     shared, limits = sections(ring), (settings, ring.guard)
     if not isinstance(link, CompiledLink) or not isinstance(touch, CompiledTouch):
-        return Loop(_timed(_plain(link, touch, limits, shared, row), shared[0]), "the tick is Python's")
+        return Loop(_timed(*_plain(link, touch, limits, shared, row), shared[0]), "the tick is Python's")
     fixed = (*_kernels(link, touch), limits)
     state = np.zeros(cycle.STATE)
     if clock.SLEEPS and not link.exchanges:
         ticking = clock.clock()
         kernels.run(ticking, *fixed, _stopped(shared), state, row)
         return Loop(lambda: kernels.run(ticking, *fixed, shared, state, row), "the whole loop is compiled")
-    now = np.zeros(2, np.int64)
-    next(kernels.ticks(*fixed, _stopped(shared), state, row, now))
-    ticks = kernels.ticks(*fixed, shared, state, row, now)
+    kernel = _begun(kernels.ticks, *fixed, shared, state, row)
 
     def exchanged(at_ns: int, late_ns: int) -> None:
         link.exchange()
-        now[:] = at_ns, late_ns
-        next(ticks)
+        kernel.now[:] = at_ns, late_ns
+        next(kernel.ticks)
 
-    return Loop(_timed(exchanged, shared[0]), "the tick is compiled, Python asks the device")
+    return Loop(_timed(exchanged, kernel, shared[0]), "the tick is compiled, Python asks the device")
 
 
 def sections(ring: Ring) -> Sections:
@@ -86,7 +98,7 @@ def take_over(ring: Ring) -> None:
 
     cast(Any, guard).restart(ring.guard)
     ring.header[MARKS] |= int(TickFlag.SWAPPED)
-    ring.header[COMMAND] = RUN
+    ring.header[SWAP] = 0
 
 
 def _kernels(link: CompiledLink, touch: CompiledTouch) -> tuple[Any, Any]:
@@ -99,20 +111,27 @@ def _kernels(link: CompiledLink, touch: CompiledTouch) -> tuple[Any, Any]:
 def _stopped(shared: Sections) -> Sections:
     """The same with a header that lets no tick happen."""
     header = np.zeros_like(shared[0])
-    header[COMMAND] = STOP
+    header[STOP] = 1
     return header, *shared[1:]
 
 
-def _plain(link: Link, touch: Touch, limits: tuple[np.ndarray, np.ndarray], shared: Sections, row: np.ndarray) -> Timed:
-    """A tick for a device or a law that is no kernel."""
+def _begun(generator: Callable[..., Iterator[bool]], *arguments: Any) -> Kernel:
+    """This generator of `cycle`, compiled or loaded now, not in the first tick."""
+    first, kernel = (Kernel(generator(*arguments, now), now) for now in np.zeros((2, 2), np.int64))
+    first.end()
+    return kernel
+
+
+def _plain(
+    link: Link, touch: Touch, limits: tuple[np.ndarray, np.ndarray], shared: Sections, row: np.ndarray
+) -> tuple[Timed, Kernel]:
+    """A tick for a device or a law that is no kernel. A law that compiles something does so now, asked in free air."""
     from . import cycle
 
     proxy = touch.memory[:3] if isinstance(touch, CompiledTouch) else np.full(3, np.nan)
     header, allowed = shared[0], guarded(touch, *limits)
-    finished = cast(Any, cycle).finished
-    now = np.zeros(2, np.int64)
-    next(finished(tuple(map(np.zeros_like, shared)), row, now))  # compiled or loaded now, not in the first tick
-    finish = finished(shared, row, now)
+    touch.force(FAR)
+    kernel = _begun(cast(Any, cycle).finished, shared, row)
 
     def tick(at_ns: int, late_ns: int) -> None:
         period_s = (at_ns - header[PREVIOUS_NS] if header[COUNT] else header[PERIOD_NS]) / SECOND_NS
@@ -122,18 +141,21 @@ def _plain(link: Link, touch: Touch, limits: tuple[np.ndarray, np.ndarray], shar
         begun = (at_ns - header[START_NS]) / SECOND_NS, late_ns / SECOND_NS
         felt = *state.position_m, *state.velocity_m_per_s, *proxy, *link.applied
         row[:] = (*begun, *felt, flags, state.buttons)
-        now[:] = at_ns, late_ns
-        next(finish)
+        kernel.now[:] = at_ns, late_ns
+        next(kernel.ticks)
 
-    return tick
+    return tick, kernel
 
 
-def _timed(tick: Timed, header: np.ndarray) -> Callable[[], None]:
-    """A loop of Python's around a tick."""
+def _timed(tick: Timed, kernel: Kernel, header: np.ndarray) -> Callable[[], None]:
+    """A loop of Python's around a tick, whose kernel ends with it."""
 
     def run() -> None:
-        while header[COMMAND] == RUN and header[COUNT] < header[LAST]:
-            tick(*_begin(header))
+        try:
+            while going(header):
+                tick(*_begin(header))
+        finally:
+            kernel.end()
 
     return run
 

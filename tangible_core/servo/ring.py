@@ -10,17 +10,19 @@ All numbers are in the machine's own byte order, one section after the other, ea
 | late | int64 (4096,) | ticks that began so many microseconds late; the last for all that were later |
 | period | int64 (4096,) | ticks that came so many microseconds after the one before |
 | stamps | int64 (n,) | number of the tick that lies in each slot, -1 while it is written |
-| ticks | float64 (n, 14) | `data.TICK_COLUMNS`; tick k lies in slot k modulo n |
+| ticks | float64 (n, 16) | `data.TICK_COLUMNS`; tick k lies in slot k modulo n |
 
-The loop alone writes, but for the word COMMAND. Who reads a slot looks at its stamp before and after: if it
-is not the same, the slot was overwritten meanwhile, and is read again or given up.
+The loop alone writes, but for the word STOP, which anybody may set and nobody clears. Who reads a slot looks at its
+stamp before and after: if it is not the same, the slot was overwritten meanwhile, and is read again or given up.
 """
 
 import mmap
 import os
+import re
+import stat
 import sys
 import tempfile
-from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import Self, final
 
@@ -30,14 +32,14 @@ from jaxtyping import Float64
 from ..data import TICK_COLUMNS
 from ..errors import DeviceError
 
-MAGIC, LAYOUT = 0x54414E47_49424C45, 1
+MAGIC, LAYOUT = 0x54414E47_49424C45, 2
 """The word that begins every ring, and the version of this layout."""
 (
     IS_MAGIC,
     IS_LAYOUT,
     SLOTS,
     COUNT,
-    COMMAND,
+    STOP,
     PERIOD_NS,
     START_NS,
     NEXT_NS,
@@ -47,13 +49,12 @@ MAGIC, LAYOUT = 0x54414E47_49424C45, 1
     PREVIOUS_NS,
     SPINS,
     MARKS,
-) = range(14)
-"""Words of the header, after the first two: ticks that it has room for; ticks so far; what the loop is asked for; the
-period; when it started, and when the next tick is due, in nanoseconds of the monotonic clock; periods that had no tick;
-how long before a tick the loop wakes; after how many ticks it ends; when the last one began; whether it may wait for a
-tick awake; flags for the next tick."""
-RUN, STOP, SWAP = 0, 1, 2
-"""What COMMAND says."""
+    SWAP,
+) = range(15)
+"""Words of the header, after the first two: ticks that it has room for; ticks so far; 1 when the loop is to end, or
+has; the period; when it started, and when the next tick is due, in nanoseconds of the monotonic clock; periods that had
+no tick; how long before a tick the loop wakes; after how many ticks it ends; when the last one began; whether it may
+wait for a tick awake; flags for the next tick; 1 when another scene is ready to be felt."""
 PEAK_N, WORK_J, MOST_LATE_S, LONGEST_S = range(4)
 """Where the sums stand: greatest force; work done on the hand; the latest tick; the longest period."""
 WIDEST_US = 4096
@@ -130,6 +131,8 @@ def shared_folder() -> Path:
 
 
 PREFIX = "tangible-"
+NAME = re.compile(rf"{PREFIX}([0-9]{{1,9}})-\w+\.(ring|parcel)")
+"""Of a file there: the process that made it stands in it."""
 
 
 def _sections(slots: int) -> dict[str, tuple[type, tuple[int, ...]]]:
@@ -153,21 +156,23 @@ def _size(slots: int) -> int:
 
 
 def _sweep() -> None:
-    """Take away what processes left behind that were killed."""
-    for path in _left_behind():
-        path.unlink(missing_ok=True)
+    """Take away the files of this user's processes that were killed; what cannot be looked at or removed stays."""
+    with suppress(OSError):
+        for path in shared_folder().glob(f"{PREFIX}*"):
+            with suppress(OSError):
+                if _left_behind(path):
+                    path.unlink()
 
 
-def _left_behind() -> Iterator[Path]:
-    for path in shared_folder().glob(f"{PREFIX}*"):
-        owner = path.name.removeprefix(PREFIX).partition("-")[0]
-        if owner.isdigit() and not _alive(int(owner)):
-            yield path
+def _left_behind(path: Path) -> bool:
+    """Whether this file was made by `Ring.create` or `parcel.pack`, for this user, in a process that is gone."""
+    named = NAME.fullmatch(path.name)
+    about = path.lstat()
+    ours = hasattr(os, "getuid") and about.st_uid == os.getuid() and stat.S_ISREG(about.st_mode)
+    return bool(named and ours and not _alive(int(named[1])))
 
 
 def _alive(process: int) -> bool:
-    if sys.platform == "win32":
-        return True  # there, a file in use cannot be removed; nor can a process be asked so simply
     try:
         os.kill(process, 0)
     except ProcessLookupError:

@@ -2,10 +2,15 @@
 
 import numpy as np
 
-from .ring import LEAD_NS, NEXT_NS, OVERRUNS, PERIOD_NS, SPINS
+from .ring import COUNT, LAST, LEAD_NS, NEXT_NS, OVERRUNS, PERIOD_NS, SPINS, STOP, SWAP
 
 MOST_LEAD_NS = 150_000
 """A loop waits awake for no longer than this; 15 % of a period of 1 ms."""
+
+
+def going(header: np.ndarray) -> bool:
+    """Whether the scene that is felt now has another tick to come."""
+    return header[STOP] == 0 and header[SWAP] == 0 and header[COUNT] < header[LAST]
 
 
 def begun(header: np.ndarray, at_ns: int) -> int:

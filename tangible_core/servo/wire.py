@@ -1,10 +1,15 @@
-"""Messages between the host and the loop's process: pickles, each after its length, over a pipe."""
+"""Messages between the host and the loop's process: pickles, each after its length, over a pipe.
+
+That a loop is to end is no message, but a word in the ring: it is heard whatever else is on its way.
+"""
 
 import pickle
+import traceback
 from typing import IO, Any, NamedTuple
 
 import numpy as np
 
+from ..errors import BrokenMethod, exited
 from ..interfaces import HapticDevice
 
 
@@ -27,12 +32,6 @@ class Swap(NamedTuple):
     settings: np.ndarray
 
 
-class Stop(NamedTuple):
-    """End the loop."""
-
-    why: str
-
-
 class Running(NamedTuple):
     """The device is open, everything is compiled, the first tick is due."""
 
@@ -41,16 +40,34 @@ class Running(NamedTuple):
 
 
 class Swapped(NamedTuple):
-    """The scene sent last is ready to be felt."""
+    """The scene sent last is felt."""
+
+
+class Refused(NamedTuple):
+    """The scene sent last cannot be felt; the one before it still is."""
+
+    error: Exception
 
 
 class Ended(NamedTuple):
     """The loop is over and the device has no force."""
 
     stopped: str
-    """Why it ended early; empty when the time was over."""
+    """Why it ended early, where its process knows; else empty."""
     error: Exception | None = None
     """What a plugin raised, if that was the reason."""
+
+
+def sendable(error: BaseException) -> Exception:
+    """The error, if it arrives as it is at the other end; else one that says its name and its text."""
+    if isinstance(error, SystemExit):
+        return exited(error)
+    try:
+        if isinstance(error, Exception) and type(pickle.loads(pickle.dumps(error))) is type(error):
+            return error
+    except Exception:  # noqa: BLE001 - pickling runs the plugin's own code
+        pass
+    return BrokenMethod("".join(traceback.format_exception_only(error)).strip())
 
 
 def send(file: IO[bytes], message: Any) -> None:
@@ -62,8 +79,10 @@ def send(file: IO[bytes], message: Any) -> None:
 
 def receive(file: IO[bytes]) -> Any:
     """The next message; None when the other side is gone."""
-    data = _exactly(file, int.from_bytes(_exactly(file, 8), "little"))
-    return pickle.loads(data) if data else None
+    size = _exactly(file, 8)
+    length = int.from_bytes(size, "little")
+    data = _exactly(file, length)
+    return pickle.loads(data) if size and len(data) == length else None
 
 
 def _exactly(file: IO[bytes], length: int) -> bytes:

@@ -1,5 +1,6 @@
 """Devices for trying a force loop: one that is all kernels, and one that fails in the ways that devices do."""
 
+import sys
 import time
 from dataclasses import replace
 from typing import Annotated, Any, Literal, cast, final
@@ -85,8 +86,9 @@ class Failing(HapticDevice):
 
     at: int = 100
     """Which read."""
-    fault: Literal["unplugged", "bug", "nan", "hangs", "none"] = "unplugged"
-    """It stops answering; its driver raises; it says NaN once; it takes half a second."""
+    fault: Literal["unplugged", "bug", "nan", "hangs", "blocks", "exits", "none"] = "unplugged"
+    """It stops answering; its driver raises; it says NaN once; it takes 50 ms; it never answers; its driver ends the
+    program."""
     opens: bool = True
     """Whether it can be opened at all."""
     record: str = ""
@@ -130,7 +132,11 @@ class FailingLink(Link):
             case "bug":
                 raise ZeroDivisionError("the driver's own fault")
             case "hangs":
-                time.sleep(0.5)
+                time.sleep(0.05)
+            case "blocks":
+                time.sleep(3600)
+            case "exits":
+                sys.exit(3)
             case "nan":
                 return float("nan")
             case "none":

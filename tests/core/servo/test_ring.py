@@ -115,6 +115,48 @@ class TestFile:
         finally:
             mine.unlink()
 
+    def test_only_files_of_ones_own_are_swept_and_odd_ones_harm_nobody(self, tmp_path: Path, monkeypatch) -> None:
+        """Names that are none of ours, a folder, a link, a file that cannot be removed, and one of another user."""
+        monkeypatch.setattr(ring, "shared_folder", lambda: tmp_path)
+        odd = [
+            "tangible-²-x.ring",
+            "tangible-99999999999999999999-x.ring",
+            "tangible-999999999-x.txt",
+            "tangible--.ring",
+        ]
+        for name in odd:
+            (tmp_path / name).touch()
+        (tmp_path / "tangible-999999998-x.ring").mkdir()
+        (tmp_path / "kept").touch()
+        (tmp_path / "tangible-999999997-x.ring").symlink_to(tmp_path / "kept")
+        (tmp_path / "tangible-999999996-x.parcel").touch()
+        stays = {*odd, "tangible-999999998-x.ring", "tangible-999999997-x.ring", "kept"}
+        Ring.create(16).remove()
+        assert {path.name for path in tmp_path.iterdir()} == stays
+
+        theirs = tmp_path / "tangible-999999995-x.ring"
+        theirs.touch()
+        with monkeypatch.context() as another:
+            another.setattr(os, "getuid", lambda: 12345)
+            Ring.create(16).remove()
+        assert theirs.exists()
+
+        def refused(path: Path, missing_ok: bool = False) -> None:
+            raise PermissionError(1, "not permitted", str(path))
+
+        with monkeypatch.context() as sticky:
+            sticky.setattr(Path, "unlink", refused)
+            made = Ring.create(16)
+        assert theirs.exists()
+        made.remove()
+
+    def test_the_table_in_the_documentation_is_the_layout(self) -> None:
+        """Name, type and shape of each section, for readers in other languages."""
+        types = {np.int64: "int64", np.float64: "float64"}
+        for name, (kind, shape) in ring._sections(12345).items():
+            said = ", ".join(map(str, shape)).replace("12345", "n") + ("," if len(shape) == 1 else "")
+            assert f"| {name} | {types[kind]} ({said}) |" in (ring.__doc__ or "")
+
 
 class TestReport:
     def test_of_an_empty_ring(self, small: Ring) -> None:

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from tangible_core import HapticSurface, load_method
-from tangible_core.data import TICK_COLUMNS, Force, HapticState, TickFlag
+from tangible_core.data import TICK_COLUMNS, TickFlag
 from tangible_core.errors import ConfigError, DeviceError
 from tangible_core.interfaces import Touch
 from tangible_core.servo import OVER, Safety, Servo
@@ -26,16 +26,6 @@ AT_ONCE = Safety(ramp_s=0)
 
 def proxy(surface: HapticSurface = LEVEL, **options: float) -> Touch:
     return load_method("render", "proxy")(**options).touch(surface)
-
-
-class Broken(Touch):
-    """A renderer at fault, which Python has to be asked for."""
-
-    def force(self, state: HapticState) -> Force:
-        raise ArithmeticError("the law's own fault")
-
-    def path(self, positions_m, period_s=0.001):
-        raise NotImplementedError
 
 
 def ticks(servo: Servo) -> np.ndarray:

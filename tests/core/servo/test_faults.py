@@ -1,0 +1,365 @@
+"""What goes wrong around a force loop: each fault ends with no force, in a time that is bounded, and is said."""
+
+import gc
+import os
+import random
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+from types import FrameType
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tangible_core import HapticSurface, load_method
+from tangible_core.errors import BrokenMethod, DeviceError
+from tangible_core.interfaces import Touch
+from tangible_core.servo import Safety, Servo, host, priority
+from tangible_core.servo.child import Child
+from tangible_core.servo.parcel import pack
+from tangible_core.servo.ring import COUNT, LAST, PERIOD_NS, STOP, Ring, shared_folder
+from tangible_core.servo.wire import Running, Start, Swap, Swapped, receive, send
+from tangible_core.testing.loop_devices import Circling, Failing
+from tangible_core.testing.loop_laws import FaultyTouch
+
+AT_ONCE = Safety(ramp_s=0, max_step_n=10)
+MOST_TICKS_AFTER = 50
+"""Of 1 ms each, after whatever ends a loop: 50 ms."""
+
+
+def proxy(height_m: float = 0.002) -> Touch:
+    level = HapticSurface.from_heights(np.full((16, 16), height_m, np.float32))
+    return load_method("render", "proxy")().touch(level)
+
+
+def until(condition: Callable[[], object], seconds: float = 60.0) -> None:
+    end = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end, "it did not happen"
+        time.sleep(0.005)
+
+
+def held(path: Path) -> float:
+    """What the device holds; not a number where it was never open."""
+    text = path.read_text() if path.exists() else ""
+    return float(text) if text else float("nan")
+
+
+def ticks(servo: Servo) -> int:
+    try:
+        return int(servo.ring.header[COUNT])
+    except DeviceError:  # it was not made yet
+        return 0
+
+
+def left_behind() -> set[Path]:
+    return set(shared_folder().glob(f"tangible-{os.getpid()}-*"))
+
+
+class Interrupt:
+    """Raises KeyboardInterrupt before the n-th line of `host` that the main thread comes to."""
+
+    def __init__(self, line: int, servo: Servo) -> None:
+        self._left, self._servo = line, servo
+        self.ticks = -1
+        """Ticks when it was raised; -1 if it was not."""
+
+    def trace(self, frame: FrameType, event: str, _: Any) -> Any:
+        if frame.f_code.co_filename != host.__file__:
+            return None
+        if event in ("line", "call"):
+            self._left -= 1
+            if self._left == 0:
+                self.ticks = ticks(self._servo)
+                raise KeyboardInterrupt
+        return self.trace
+
+
+class TestInterruptedStart:
+    def test_no_force_after_an_interrupt_at_any_step(self, tmp_path: Path) -> None:
+        """Every line of the start, one run each: at most 50 ticks more, no force, no process, no file."""
+        before, ran_through, line = left_behind(), False, 0
+        while not ran_through:
+            line += 1
+            record = tmp_path / f"force {line}"
+            servo = Servo(proxy(), Failing(fault="none", record=str(record)), AT_ONCE)
+            interrupt = Interrupt(line, servo)
+            sys.settrace(interrupt.trace)
+            try:
+                servo.__enter__()
+            except KeyboardInterrupt:
+                assert interrupt.ticks >= 0
+            else:
+                ran_through = True
+            finally:
+                sys.settrace(None)
+            if ran_through:
+                servo.stop()
+                assert interrupt.ticks == -1
+            assert ticks(servo) - max(interrupt.ticks, 0) <= MOST_TICKS_AFTER or ran_through, line
+            assert not held(record) > 0, line
+            assert left_behind() == before, line
+        assert line > 25
+
+    @pytest.mark.parametrize("delay_s", [0.05, 0.3, 0.6, 0.9])
+    def test_ctrl_c_reaches_both_processes_while_the_loop_starts(self, tmp_path: Path, delay_s: float) -> None:
+        """As the keyboard sends it, also where the program was started with SIGINT ignored."""
+        record, ready = tmp_path / "force", tmp_path / "ready"
+        script = HOST.format(record=str(record), ready=str(ready), fault="none")
+        program = subprocess.Popen(
+            [sys.executable, "-c", script], stderr=subprocess.PIPE, text=True, start_new_session=True
+        )
+        until(ready.exists)
+        time.sleep(delay_s)
+        os.killpg(program.pid, signal.SIGINT)
+        _, said = program.communicate(timeout=60)
+        assert said.count("Traceback") == 1, said  # the host's; the loop's process says nothing
+        assert said.rstrip().endswith("KeyboardInterrupt")
+        until(lambda: not held(record) > 0)
+
+
+HOST = """
+import signal, time, numpy as np
+from pathlib import Path
+from tangible_core import HapticSurface, load_method
+from tangible_core.servo import Safety, Servo
+from tangible_core.testing.loop_devices import Failing
+from tangible_core.testing.loop_laws import FaultyTouch
+signal.signal(signal.SIGINT, signal.default_int_handler)
+device = Failing(fault="none", record={record!r}, simulated=False)
+Path({ready!r}).touch()
+with Servo(FaultyTouch({fault!r}), device, Safety(ramp_s=0, max_step_n=10)):
+    time.sleep(60)
+"""
+"""A program with a session: killed, or interrupted from the keyboard."""
+
+
+class TestStandstill:
+    """A loop that does not tick has 0.2 s; then its process is ended and the device opened once more to let go."""
+
+    def feel(self, record: Path, law: Touch, fault: Any = "none") -> Servo:
+        return Servo(law, Failing(fault=fault, record=str(record), simulated=False), AT_ONCE)
+
+    @pytest.mark.parametrize(
+        ("law", "fault"), [(FaultyTouch("blocks"), "none"), (FaultyTouch(), "blocks"), (proxy(), "blocks")]
+    )
+    def test_a_law_or_a_device_that_blocks(self, tmp_path: Path, law: Touch, fault: str) -> None:
+        record = tmp_path / "force"
+        with self.feel(record, law, fault) as servo:
+            until(lambda: held(record) > 0)
+            until(lambda: not servo.running)
+            assert servo.report().stopped == host.STOOD_STILL
+            assert held(record) == 0
+            assert servo.report().ticks == 99
+
+    def test_a_process_that_is_stopped(self, tmp_path: Path) -> None:
+        record = tmp_path / "force"
+        with self.feel(record, FaultyTouch()) as servo:
+            until(lambda: held(record) > 0)
+            os.kill(servo.process_id, signal.SIGSTOP)
+            until(lambda: not servo.running)
+            assert servo.report().stopped == host.STOOD_STILL
+            assert held(record) == 0
+
+    def test_its_bound_is_in_looks_and_grows_with_the_period(self, tmp_path: Path) -> None:
+        """Ticks are 0.3 s apart: no standstill."""
+        with Servo(FaultyTouch(), Failing(fault="none"), AT_ONCE, seconds=1.5, period_s=0.3) as servo:
+            until(lambda: not servo.running)
+            assert servo.report().ticks == 5
+            assert servo.report().stopped == "the time is over"
+
+    def test_a_law_that_blocks_when_the_host_is_gone(self, tmp_path: Path) -> None:
+        """Nobody watches then: the loop's own process lets go."""
+        record = tmp_path / "force"
+        script = HOST.format(record=str(record), ready=str(tmp_path / "ready"), fault="blocks")
+        program = subprocess.Popen([sys.executable, "-c", script], stderr=subprocess.DEVNULL)
+        until(lambda: held(record) > 0)
+        program.kill()
+        program.wait()
+        until(lambda: held(record) == 0)
+
+    def test_stop_does_not_wait_for_a_law_that_blocks(self, tmp_path: Path) -> None:
+        record = tmp_path / "force"
+        with self.feel(record, FaultyTouch("blocks")):
+            until(lambda: held(record) > 0)
+        assert held(record) == 0
+
+    @pytest.mark.skipif(not hasattr(signal, "SIGTSTP"), reason="this system has no Ctrl-Z")
+    def test_ctrl_z_ends_it_rather_than_holding_the_force(self, tmp_path: Path) -> None:
+        record = tmp_path / "force"
+        with self.feel(record, FaultyTouch()) as servo:
+            until(lambda: held(record) > 0)
+            os.kill(servo.process_id, signal.SIGTSTP)
+            until(lambda: not servo.running)
+            assert "paused from the keyboard" in servo.report().stopped
+            assert held(record) == 0
+
+
+class TestWhatAPluginRaises:
+    def test_an_error_that_cannot_be_unpickled_ends_the_session_with_its_text(self, tmp_path: Path) -> None:
+        record = tmp_path / "force"
+        with (
+            pytest.raises(BrokenMethod, match="OddError: a fault in the law"),
+            Servo(FaultyTouch("odd error"), Failing(fault="none", record=str(record)), AT_ONCE) as servo,
+        ):
+            until(lambda: not servo.running)
+        assert held(record) == 0
+
+    @pytest.mark.parametrize(
+        ("law", "fault", "name"),
+        [(FaultyTouch("exits"), "none", "loop_laws"), (FaultyTouch(), "exits", "loop_devices")],
+    )
+    def test_sys_exit_is_an_error_that_names_the_plugin(self, tmp_path: Path, law, fault, name: str) -> None:
+        record = tmp_path / "force"
+        with (
+            pytest.raises(BrokenMethod, match=rf"{name} called sys\.exit\(3\)"),
+            Servo(law, Failing(fault=fault, record=str(record)), AT_ONCE) as servo,
+        ):
+            until(lambda: not servo.running)
+        assert held(record) == 0
+
+    def test_words_that_cannot_be_read_are_an_end(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """Whatever the host fails to hear: the loop is stopped, and the failure told."""
+
+        def deaf(_: object) -> object:
+            raise EOFError("half a message")
+
+        monkeypatch.setattr(host, "receive", deaf)
+        with pytest.raises(EOFError, match="half a message"), Servo(proxy(), Circling()):
+            pytest.fail("it was begun")
+
+
+class TestSwaps:
+    def test_a_scene_that_does_not_arrive_is_refused_and_the_one_before_felt_on(self) -> None:
+        with Servo(FaultyTouch(), Failing(fault="none"), AT_ONCE) as servo:
+            with pytest.raises(LookupError, match="not in process"):
+                servo.swap(FaultyTouch("does not arrive"))
+            there = servo.report().ticks
+            until(lambda: servo.report().ticks > there + 20)
+            servo.swap(FaultyTouch())
+            assert servo.stop("enough").stopped == "enough"
+        assert not left_behind()
+
+    @pytest.mark.parametrize("device", [Circling(), Circling(exchanges=True), Failing(fault="none")])
+    def test_thousands_leave_nothing_behind(self, device) -> None:
+        """Descriptors, mappings and memory of the loop's process; its threads still hear."""
+        scenes = [proxy(), proxy(0.003)]
+        with Servo(scenes[0], device, AT_ONCE) as servo:
+
+            def swap(times: int) -> tuple[int, int, int]:
+                for i in range(times):
+                    servo.swap(scenes[i % 2])
+                return usage(servo.process_id)
+
+            first = swap(200)
+            last = swap(1800)
+            descriptors, mappings, kibibytes = np.subtract(last, first)
+            assert abs(descriptors) <= 2
+            assert abs(mappings) <= 10
+            assert kibibytes <= 10_000
+            assert servo.stop("enough").stopped == "enough"
+
+    @pytest.mark.nightly
+    def test_five_thousand(self) -> None:
+        with Servo(proxy(), Circling(), AT_ONCE) as servo:
+            for _ in range(200):
+                servo.swap(proxy())
+            first = usage(servo.process_id)
+            for _ in range(5000):
+                servo.swap(proxy())
+            descriptors, _, kibibytes = np.subtract(usage(servo.process_id), first)
+            assert abs(descriptors) <= 2
+            assert kibibytes <= 10_000
+
+
+def usage(process: int) -> tuple[int, int, int]:
+    """Descriptors, mappings, and KiB of memory of its own."""
+    of = Path(f"/proc/{process}")
+    status = of.joinpath("status").read_text()
+    anonymous = int(status.partition("RssAnon:")[2].split()[0])
+    return len(list(of.joinpath("fd").iterdir())), len(of.joinpath("maps").read_text().splitlines()), anonymous
+
+
+class Session:
+    """The loop's side of a session in a thread of this process, spoken to through pipes as a host does."""
+
+    def __init__(self, device: Any) -> None:
+        self.others = set(threading.enumerate())
+        self.ring = Ring.create(64)
+        self.settings, memory = AT_ONCE.arrays(device.spec(), 0.0)
+        self.ring.guard[: memory.size] = memory
+        self.ring.header[[PERIOD_NS, LAST]] = 200_000, 2**62
+        pipes = [(os.fdopen(read, "rb", 0), os.fdopen(write, "wb", 0)) for read, write in (os.pipe(), os.pipe())]
+        (commands, self.commands), (self.replies, replies) = self.pipes = pipes
+        self.child = Child(commands, replies)
+        self.thread = threading.Thread(target=self.child.main)
+        self.thread.start()
+        send(self.commands, Start(str(self.ring.path), str(pack(proxy())), device, self.settings))
+
+    def heard(self) -> Any:
+        return receive(self.replies)
+
+    def close(self) -> None:
+        self.commands.close()
+        for thread in set(threading.enumerate()) - self.others:
+            thread.join(20)
+            assert not thread.is_alive()
+        for pipe in (end for both in self.pipes for end in both):
+            pipe.close()
+        self.ring.remove()
+
+
+ENDS: list[Callable[[Session], None]] = [
+    lambda session: session.ring.header.__setitem__(STOP, 1),  # the host
+    lambda session: session.child.stop("a signal"),  # what a signal's handler does
+    lambda session: session.commands.close(),  # the host is gone
+]
+
+
+@pytest.fixture
+def in_this_process(monkeypatch: pytest.MonkeyPatch):
+    """Neither real-time rights nor locked memory are asked for, and what is collected stays so."""
+    monkeypatch.setattr(priority, "ask", lambda: (False, "nothing asked"))
+    yield
+    gc.unfreeze()
+
+
+@pytest.mark.parametrize("device", [Circling(), Circling(exchanges=True)])
+def test_no_stop_is_lost_among_ten_thousand_swaps(device, in_this_process: None) -> None:
+    """5,000 for each of two loops, in sessions that are ended in one of three ways at a random moment."""
+    rng, swaps, sessions = random.Random(0), 0, 0
+    while swaps < 5000:
+        session = Session(device)
+        assert isinstance(session.heard(), Running)
+        end, wait_s = ENDS[sessions % 3], rng.uniform(0, 0.25)
+        timer = threading.Timer(wait_s, end, [session])
+        timer.start()
+        with suppress(OSError, ValueError):
+            while not session.ring.header[STOP]:
+                send(session.commands, Swap(str(pack(proxy())), session.settings))
+                if not isinstance(session.heard(), Swapped):
+                    break
+                swaps += 1
+        timer.join()
+        session.close()
+        assert session.ring.header[STOP] == 1
+        sessions += 1
+    assert sessions > 10
+
+
+@pytest.mark.parametrize("round", range(6))
+def test_no_sigterm_is_lost_among_swaps(round: int, tmp_path: Path) -> None:
+    with Servo(FaultyTouch(), Failing(fault="none"), AT_ONCE) as servo:
+        timer = threading.Timer(random.Random(round).uniform(0, 0.2), os.kill, [servo.process_id, signal.SIGTERM])
+        timer.start()
+        with pytest.raises(DeviceError, match="asked to end"):
+            for _ in range(100_000):
+                servo.swap(FaultyTouch())
+        timer.join()
+        until(lambda: not servo.running)

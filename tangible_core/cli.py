@@ -15,7 +15,7 @@ from . import hooks
 from .cli_devices import devices_app
 from .cli_materials import materials_app
 from .cli_options import DONE, FAILED, INTERRUPTED, MISTAKE, Config, Json, NoCache, Out, Seconds, Sets
-from .errors import ConfigError, TangibleError
+from .errors import ConfigError, TangibleError, exited
 from .registry import KIND_NAMES, default_registry
 
 if TYPE_CHECKING:
@@ -187,7 +187,10 @@ def main() -> None:
 def _run_app() -> int:
     words = _take_log_options(sys.argv[1:])
     hooks.tell(default_registry().plugins, "tangible_commands", app=app)
-    code = app(words, standalone_mode=False, default_map=_no_help())
+    try:
+        code = app(words, standalone_mode=False, default_map=_no_help())
+    except SystemExit as error:
+        raise exited(error) from error
     if code == INTERRUPTED:  # typer answers Ctrl-C itself, without a word
         raise KeyboardInterrupt
     return code if isinstance(code, int) else DONE

@@ -315,3 +315,65 @@ def test_what_stands_in_brackets_is_shown(capsys: pytest.CaptureFixture[str]):
     said = capsys.readouterr().out
     assert "[seen/2]" in said
     assert "out[1]/sheet.png" in said
+
+
+ACME = """\
+import sys
+import numpy as np
+from tangible_core.interfaces import DepthEstimator, ForceRenderer, Touch
+from tangible_core.data import Force
+
+class Odd(Exception):
+    def __init__(self, what, where):
+        super().__init__(f"{what} in {where}")
+
+class Quits(DepthEstimator):
+    '''Ends the program.'''
+    def estimate(self, views):
+        sys.exit(0)
+
+class FaultyTouch(Touch):
+    def __init__(self, fault):
+        self.fault = fault
+    def force(self, state):
+        if self.fault == "quit" and state.position_m[2] < 0.5:
+            sys.exit(0)
+        if state.position_m[2] < 0.5:
+            raise Odd("a fault", "the law")
+        return Force(0.0, 0.0, 0.0)
+    def path(self, positions_m, period_s=0.001):
+        return np.zeros_like(positions_m)
+
+class Faulty(ForceRenderer):
+    '''Fails in its first tick.'''
+    fault: str = "quit"
+    def touch(self, surface):
+        return FaultyTouch(self.fault)
+"""
+"""A distribution of somebody else's whose methods end the program, or raise what cannot be sent to another process."""
+
+
+@pytest.mark.parametrize(
+    ("command", "change", "said"),
+    [
+        ("run", "depth={use: quits}", "acme called sys.exit(0)"),
+        ("run", "render={use: faulty}", "acme called sys.exit(0)"),
+        ("feel", "render={use: faulty}", "acme called sys.exit(0)"),
+        ("feel", "render={use: faulty, fault: odd}", "Odd: a fault in the law"),
+    ],
+)
+def test_a_plugin_neither_ends_the_program_nor_hangs_it(folder: Path, command: str, change: str, said: str):
+    site = folder / "site"
+    info = site / "acme-1.0.dist-info"
+    info.mkdir(parents=True)
+    site.joinpath("acme.py").write_text(ACME)
+    info.joinpath("METADATA").write_text("Metadata-Version: 2.1\nName: acme\nVersion: 1.0\n")
+    points = "[tangible.depth]\nquits = acme:Quits\n[tangible.render]\nfaulty = acme:Faulty\n"
+    info.joinpath("entry_points.txt").write_text(points)
+    words = [TANGIBLE, command, "p.yaml", "--set", change, "--seconds", "600", "--no-cache"]
+    done = subprocess.run(
+        words, cwd=folder, env={**os.environ, "PYTHONPATH": str(site)}, capture_output=True, text=True, timeout=240
+    )
+    assert done.returncode == 2, done.stdout + done.stderr
+    assert said in done.stderr
+    assert "Traceback" not in done.stderr

@@ -2,12 +2,12 @@
 
 from abc import abstractmethod
 from collections.abc import Callable
-from importlib import import_module
 from typing import Any, NamedTuple, cast, final
 
 import numpy as np
 from jaxtyping import Float64
 
+from .child_process import imported, place
 from .data import Force, HapticState
 from .errors import GeometryError
 from .interfaces import Link, Touch
@@ -38,8 +38,8 @@ class CompiledTouch(Touch):
 
     def __reduce__(self) -> tuple[Any, ...]:
         function = self.tick.py_func  # pyright: ignore[reportFunctionMemberAccess]
-        kernel = function.__module__, function.__qualname__
-        return _revive, (kernel, self.fixed, self.memory, self.stiffness_n_per_m)
+        kernel = place(function.__module__, function.__qualname__)
+        return _revive, (*kernel, self.fixed, self.memory, self.stiffness_n_per_m)
 
     def force(self, state: HapticState) -> Force:
         """Newtons on the hand, always finite; zero in free air, and zero for a state that is not finite."""
@@ -65,8 +65,10 @@ class CompiledTouch(Touch):
         return self._address
 
 
-def _revive(kernel: tuple[str, str], fixed: tuple[Any, ...], memory: np.ndarray, stiffness: float) -> CompiledTouch:
-    return CompiledTouch(getattr(import_module(kernel[0]), kernel[1]), fixed, memory, stiffness)
+def _revive(
+    module: str, name: str, file: str, fixed: tuple[Any, ...], memory: np.ndarray, stiffness: float
+) -> CompiledTouch:
+    return CompiledTouch(imported(module, name, file), fixed, memory, stiffness)
 
 
 class LinkKernels(NamedTuple):

@@ -1,4 +1,4 @@
-"""The process of a force loop: `python -m tangible_core.servo.child`, told what to do over its standard input.
+"""The process of a force loop, told what to do over its standard input.
 
 The loop runs in a thread of its own, so that this one hears commands and signals while compiled code holds no lock.
 """
@@ -34,7 +34,11 @@ class Child:
 
     def main(self) -> None:
         """Until the host, a signal, the device or the time ends it."""
-        start = receive(self._commands)
+        try:
+            start = receive(self._commands)
+        except Exception as error:  # noqa: BLE001 - a device's class that cannot be had here is for the host to say
+            self._end("", error)
+            return
         if not isinstance(start, Start):
             return
         self._ring = Ring.attach(Path(start.ring))
@@ -115,7 +119,3 @@ def main() -> None:
     signal.signal(signal.SIGTERM, child.terminate)
     gc.disable()  # a collection takes longer than a tick
     child.main()
-
-
-if __name__ == "__main__":
-    main()

@@ -4,12 +4,12 @@ import logging
 import math
 import queue
 import subprocess
-import sys
 import threading
 import time
 from types import TracebackType
 from typing import Any, Self, TypeVar, final
 
+from ..child_process import command
 from ..compiled import CompiledTouch
 from ..data import ServoReport
 from ..errors import ConfigError, DeviceError
@@ -71,8 +71,7 @@ class Servo:
         self.ring = Ring.create()
         self.ring.guard[: memory.size] = memory
         self.ring.header[[PERIOD_NS, LAST]] = round(self._period_s * 1e9), self._ticks
-        words = [sys.executable, "-m", f"{__package__}.child"]
-        self._child = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+        self._child = subprocess.Popen(command(f"{__package__}.child"), stdin=subprocess.PIPE, stdout=subprocess.PIPE)
         self._ear = threading.Thread(target=self._hear, daemon=True)
         self._ear.start()
         try:

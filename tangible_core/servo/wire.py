@@ -5,6 +5,7 @@ from typing import IO, Any, NamedTuple
 
 import numpy as np
 
+from ..child_process import dumps
 from ..interfaces import HapticDevice
 
 
@@ -55,7 +56,7 @@ class Ended(NamedTuple):
 
 def send(file: IO[bytes], message: Any) -> None:
     """Raises: OSError if nobody listens."""
-    data = pickle.dumps(message)
+    data = dumps(message)
     file.write(len(data).to_bytes(8, "little") + data)
     file.flush()
 

@@ -27,13 +27,16 @@ class CompiledTouch(Touch):
     """
 
     def __init__(
-        self, tick: Tick, fixed: tuple[Any, ...], memory: Float64[np.ndarray, "n"] | None = None, stiffness: float = 0.0
+        self,
+        tick: Tick,
+        fixed: tuple[Any, ...],
+        memory: Float64[np.ndarray, "n"] | None = None,
+        stiffness: float | None = None,
     ) -> None:
         self.tick = tick
         self.fixed = fixed
         self.memory = np.full(3, np.nan) if memory is None else memory
         self.stiffness_n_per_m = stiffness
-        """The greatest by which a force grows with depth on level ground; 0 for a law that is no spring."""
         self._address: Any = None
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -66,7 +69,7 @@ class CompiledTouch(Touch):
 
 
 def _revive(
-    module: str, name: str, file: str, fixed: tuple[Any, ...], memory: np.ndarray, stiffness: float
+    module: str, name: str, file: str, fixed: tuple[Any, ...], memory: np.ndarray, stiffness: float | None
 ) -> CompiledTouch:
     return CompiledTouch(imported(module, name, file), fixed, memory, stiffness)
 

@@ -10,7 +10,6 @@ from types import TracebackType
 from typing import Any, Self, TypeVar, final
 
 from ..child_process import command
-from ..compiled import CompiledTouch
 from ..data import ServoReport
 from ..errors import ConfigError, DeviceError
 from ..interfaces import HapticDevice, Touch
@@ -18,6 +17,7 @@ from . import parcel
 from .reports import report
 from .ring import LAST, PERIOD_NS, Ring
 from .safety import Safety
+from .stiffness import stiffness_of
 from .wire import Ended, Running, Start, Stop, Swap, Swapped, receive, send
 
 log = logging.getLogger(__name__)
@@ -59,7 +59,7 @@ class Servo:
         self._replies: queue.SimpleQueue[Any] = queue.SimpleQueue()
         self._ended: Ended | None = None
         self.how = ""
-        """What the operating system granted, and which loop runs."""
+        """What the operating system granted, which loop runs, and how stiff the law is if it does not say so."""
         self.start_s = 0.0
         """From asking for the loop to its first tick."""
 
@@ -76,7 +76,7 @@ class Servo:
         self._ear.start()
         try:
             self._tell(Start(str(self.ring.path), str(scene), self._device, settings))
-            self.how = self._answer(Running).how
+            self.how = "; ".join(filter(None, (self._answer(Running).how, self._felt.how)))
         except BaseException:
             self._close()
             raise
@@ -134,8 +134,9 @@ class Servo:
         self.ring.remove()
 
     def _arrays(self, touch: Touch) -> tuple[Any, Any]:
-        stiffness = touch.stiffness_n_per_m if isinstance(touch, CompiledTouch) else 0.0
-        return self._limits.arrays(self._device.spec(), stiffness)
+        spec = self._device.spec()
+        self._felt = stiffness_of(touch, spec)
+        return self._limits.arrays(spec, self._felt.n_per_m)
 
     def _tell(self, message: Any) -> None:
         try:

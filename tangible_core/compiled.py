@@ -2,12 +2,12 @@
 
 from abc import abstractmethod
 from collections.abc import Callable
-from importlib import import_module
 from typing import Any, NamedTuple, cast, final
 
 import numpy as np
 from jaxtyping import Float64
 
+from .child_process import imported, place
 from .data import Force, HapticState
 from .errors import GeometryError
 from .interfaces import Link, Touch
@@ -27,19 +27,22 @@ class CompiledTouch(Touch):
     """
 
     def __init__(
-        self, tick: Tick, fixed: tuple[Any, ...], memory: Float64[np.ndarray, "n"] | None = None, stiffness: float = 0.0
+        self,
+        tick: Tick,
+        fixed: tuple[Any, ...],
+        memory: Float64[np.ndarray, "n"] | None = None,
+        stiffness: float | None = None,
     ) -> None:
         self.tick = tick
         self.fixed = fixed
         self.memory = np.full(3, np.nan) if memory is None else memory
         self.stiffness_n_per_m = stiffness
-        """The greatest by which a force grows with depth on level ground; 0 for a law that is no spring."""
         self._address: Any = None
 
     def __reduce__(self) -> tuple[Any, ...]:
         function = self.tick.py_func  # pyright: ignore[reportFunctionMemberAccess]
-        kernel = function.__module__, function.__qualname__
-        return _revive, (kernel, self.fixed, self.memory, self.stiffness_n_per_m)
+        kernel = place(function.__module__, function.__qualname__)
+        return _revive, (*kernel, self.fixed, self.memory, self.stiffness_n_per_m)
 
     def force(self, state: HapticState) -> Force:
         """Newtons on the hand, always finite; zero in free air, and zero for a state that is not finite."""
@@ -65,8 +68,10 @@ class CompiledTouch(Touch):
         return self._address
 
 
-def _revive(kernel: tuple[str, str], fixed: tuple[Any, ...], memory: np.ndarray, stiffness: float) -> CompiledTouch:
-    return CompiledTouch(getattr(import_module(kernel[0]), kernel[1]), fixed, memory, stiffness)
+def _revive(
+    module: str, name: str, file: str, fixed: tuple[Any, ...], memory: np.ndarray, stiffness: float | None
+) -> CompiledTouch:
+    return CompiledTouch(imported(module, name, file), fixed, memory, stiffness)
 
 
 class LinkKernels(NamedTuple):

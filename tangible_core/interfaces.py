@@ -56,6 +56,13 @@ class Segmenter(Method):
 class Touch(ABC):
     """A renderer compiled for one surface; it may remember what it touched last, such as a proxy."""
 
+    stiffness_n_per_m: float | None = None
+    """The greatest by which its force grows with depth on level ground; 0 for a law that is no spring.
+
+    A law stiffer than the device holds is softened by this number. None says nothing: then a copy is felt all over
+    before the device is opened, and the steepest slope found counts, that of steep ground too.
+    """
+
     @abstractmethod
     def force(self, state: HapticState) -> Force:
         """Newtons on the hand, always finite; zero in free air, and zero for a state that is not finite."""

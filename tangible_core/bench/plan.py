@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
+from ..child_process import Place, place
 from ..config import Chosen
 from ..data import digest_of
 from ..errors import ConfigError, TangibleError
@@ -20,6 +21,8 @@ class Measurement:
 
     job: Job
     row: Row
+    place: Place
+    """Where the method's class is from: the process must have the same."""
 
 
 def measurements(comparison: Comparison) -> list[Measurement]:
@@ -82,7 +85,8 @@ def _side_by_side(
             digest_of(plain), task.kind, entry.label, job.use, options, entry.chosen.origin, scene, known.digest,
             damage.name, finishes, repeat, installed, machine(), comparison.baseline,
         )  # fmt: skip
-        yield Measurement(job, row)
+        cls = type(entry.chosen.method)
+        yield Measurement(job, row, place(cls.__module__, cls.__qualname__))
 
 
 def _code(chosen: Chosen[Method]) -> str:

@@ -2,7 +2,6 @@
 
 import json
 import subprocess
-import sys
 import tempfile
 from collections.abc import Callable, Sequence
 from contextlib import suppress
@@ -11,9 +10,9 @@ from pathlib import Path
 from signal import Signals
 from typing import IO, Any
 
+from ..child_process import command
 from .plan import Measurement
 from .rows import Row, append, mend, read_rows
-from .worker import Job
 
 Tell = Callable[[int, Row], None]
 """Hears the number of a measurement, from 0, and its row: without a result before it, with one after it."""
@@ -54,7 +53,7 @@ def run(outlook: Outlook, path: Path, timeout_s: float, started: Tell, finished:
         if each.row.cell in failed:
             continue
         started(number, each.row)
-        row = replace(each.row, **_outcome(each.job, timeout_s))
+        row = replace(each.row, **_outcome(each, timeout_s))
         append(path, row)
         rows[row.key] = row
         if row.error:
@@ -63,24 +62,24 @@ def run(outlook: Outlook, path: Path, timeout_s: float, started: Tell, finished:
     return rows
 
 
-def _outcome(job: Job, timeout_s: float) -> dict[str, Any]:
+def _outcome(wanted: Measurement, timeout_s: float) -> dict[str, Any]:
     """What a fresh process says, or how it ended."""
     with tempfile.TemporaryFile() as said, tempfile.TemporaryFile() as noise:
         try:
-            code = _ended(job, timeout_s, said, noise)
+            code = _ended(wanted, timeout_s, said, noise)
         except subprocess.TimeoutExpired:
             return {"error": f"took longer than {timeout_s:g} s and was ended; raise timeout_s or drop the method"}
         return _answer(_text(said)) or {"error": _death(code, _text(noise))}
 
 
-def _ended(job: Job, timeout_s: float, said: IO[bytes], noise: IO[bytes]) -> int:
+def _ended(wanted: Measurement, timeout_s: float, said: IO[bytes], noise: IO[bytes]) -> int:
     """Exit code of a worker that was given a job; on any other end, it is ended too."""
-    command = [sys.executable, "-m", f"{__package__}.worker"]
-    with subprocess.Popen(command, bufsize=0, stdin=subprocess.PIPE, stdout=said, stderr=noise) as process:
+    words = command(f"{__package__}.worker")
+    with subprocess.Popen(words, bufsize=0, stdin=subprocess.PIPE, stdout=said, stderr=noise) as process:
         try:
             assert process.stdin is not None
             with suppress(BrokenPipeError):  # it died before it could listen: its exit code tells
-                process.stdin.write((json.dumps(asdict(job)) + "\n").encode())
+                process.stdin.write((json.dumps([wanted.place, asdict(wanted.job)]) + "\n").encode())
             return process.wait(timeout_s)  # with its input left open: the end of that is the worker's own
         finally:
             process.kill()

@@ -1,7 +1,8 @@
-"""One measurement in a process of its own: `python -m tangible_core.bench.worker`, a job in, a result out, both JSON.
+"""One measurement in a process of its own: a job in, a result out, both JSON.
 
-The job is one line on standard input, which stays open while somebody waits: when it ends, so does the process. The
-result is one line on what was standard output; whatever a method prints goes to standard error.
+The job, and where its method is from, is one line on standard input, which stays open while somebody waits: when it
+ends, so does the process. The result is one line on what was standard output; whatever a method prints goes to standard
+error.
 """
 
 import gc
@@ -16,6 +17,7 @@ from dataclasses import asdict, dataclass
 from time import perf_counter
 from typing import Any, NamedTuple
 
+from ..child_process import imported
 from ..data import Kind
 from ..registry import load_method
 from .memory import start_peak
@@ -97,10 +99,11 @@ def main() -> None:
     """The process."""
     answers = os.dup(1)
     os.dup2(2, 1)
-    job = Job(**json.loads(sys.stdin.buffer.readline()))
+    place, job = json.loads(sys.stdin.buffer.readline())
     threading.Thread(target=_end_with_parent, daemon=True).start()
     try:
-        answer: dict[str, Any] = asdict(measure(job))
+        imported(*place)
+        answer: dict[str, Any] = asdict(measure(Job(**job)))
     except Exception as error:  # noqa: BLE001 - a method's failure is a result
         answer = {"error": f"{type(error).__name__}: {error}"}
     os.write(answers, (json.dumps(answer, allow_nan=False) + "\n").encode())
@@ -111,7 +114,3 @@ def _end_with_parent() -> None:
     while os.read(0, 1):
         pass
     os._exit(1)
-
-
-if __name__ == "__main__":
-    main()

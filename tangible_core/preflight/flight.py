@@ -85,7 +85,7 @@ class Flight:
     surface: HapticSurface
     law: ForceRenderer
     stiffness_n_per_m: float
-    """The law's own word for the greatest on level ground; 0 for one that is no spring."""
+    """The law's own word for the greatest on level ground, or what was felt of it; 0 for one that is no spring."""
     spec: DeviceSpec
     workspace: Workspace
     relief_key: str

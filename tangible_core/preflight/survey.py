@@ -5,13 +5,13 @@ import math
 import numpy as np
 from jaxtyping import Float64
 
-from ..compiled import CompiledTouch
 from ..config import PipelineConfig
 from ..data import HapticSurface
 from ..errors import ConfigError
 from ..geometry import workspace_to_picture
 from ..interfaces import Touch
 from ..scene import SceneFiles
+from ..servo.stiffness import stiffness_of
 from .flight import Flight, Hand, Loop
 from .probes import Probes, probe
 from .timing import TICKS, measure_lateness, measure_ticks
@@ -28,14 +28,14 @@ def survey(config: PipelineConfig, surface: HapticSurface, touch: Touch, hand: H
         missing = "device" if device is None else "render"
         raise ConfigError(f"{config.path}: `{missing}:` is missing; name one (`tangible plugins` lists them)")
     period_s, spec = loop.period_s, device.spec()
-    stated = touch.stiffness_n_per_m if isinstance(touch, CompiledTouch) else 0.0
-    probes = probe(touch, surface, hand.press_n, stated, spec.workspace_m[2], period_s)
+    stiffness = stiffness_of(touch, spec).n_per_m
+    probes = probe(touch, surface, hand.press_n, stiffness, spec.workspace_m[2], period_s)
     scene = config.scene if isinstance(config.scene, SceneFiles) else None
     own = scene is not None and scene.relief_m
     return Flight(
         surface=surface,
         law=config.render.method,
-        stiffness_n_per_m=stated if isinstance(touch, CompiledTouch) else float(probes.stiffness_n_per_m.max()),
+        stiffness_n_per_m=stiffness,
         spec=spec,
         workspace=config.workspace,
         relief_key="scene.relief_m" if own else "workspace.relief_m",

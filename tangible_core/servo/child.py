@@ -1,4 +1,4 @@
-"""The process of a force loop: `python -m tangible_core.servo.child`, told what to do over its standard input.
+"""The process of a force loop, told what to do over its standard input.
 
 The loop runs in a thread of its own, so that this one hears commands and signals while compiled code holds no lock.
 """
@@ -134,7 +134,3 @@ def main() -> None:
         signal.signal(signal.SIGTSTP, lambda _number, _frame: child.stop(PAUSED))
     gc.disable()  # a collection takes longer than a tick
     child.main()
-
-
-if __name__ == "__main__":
-    main()

@@ -5,7 +5,6 @@ import math
 import queue
 import signal
 import subprocess
-import sys
 import threading
 import time
 from contextlib import suppress
@@ -13,7 +12,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import IO, Any, Self, TypeVar, final
 
-from ..compiled import CompiledTouch
+from ..child_process import command
 from ..data import ServoReport
 from ..errors import ConfigError, DeviceError
 from ..interfaces import HapticDevice, Touch
@@ -21,6 +20,7 @@ from . import parcel
 from .reports import report
 from .ring import COUNT, LAST, PERIOD_NS, STOP, Ring
 from .safety import Safety
+from .stiffness import stiffness_of
 from .wire import Ended, Refused, Running, Start, Swap, Swapped, receive, send, sendable
 
 log = logging.getLogger(__name__)
@@ -73,7 +73,7 @@ class Servo:
         self._ended: Ended | None = None
         self._heard = threading.Event()
         self.how = ""
-        """What the operating system granted, and which loop runs."""
+        """What the operating system granted, which loop runs, and how stiff the law is if it does not say so."""
         self.start_s = 0.0
         """From asking for the loop to its first tick."""
 
@@ -88,7 +88,7 @@ class Servo:
             start = Start(str(self.ring.path), self._pack(self._touch), self._device, settings)
             self._ear = threading.Thread(target=self._hear, args=(start,), daemon=True)
             self._ear.start()
-            self.how = self._answer(Running).how
+            self.how = "; ".join(filter(None, (self._answer(Running).how, self._felt.how)))
             threading.Thread(target=self._watch, daemon=True).start()
             self.start_s = time.monotonic() - begun_s
             return self
@@ -178,8 +178,9 @@ class Servo:
             self._sent.pop().unlink(missing_ok=True)
 
     def _arrays(self, touch: Touch) -> tuple[Any, Any]:
-        stiffness = touch.stiffness_n_per_m if isinstance(touch, CompiledTouch) else 0.0
-        return self._limits.arrays(self._device.spec(), stiffness)
+        spec = self._device.spec()
+        self._felt = stiffness_of(touch, spec)
+        return self._limits.arrays(spec, self._felt.n_per_m)
 
     def _tell(self, message: Any) -> None:
         try:
@@ -219,7 +220,7 @@ class Servo:
     def _live(self, start: Start) -> Ended:
         if hasattr(signal, "pthread_sigmask"):  # the process hears no Ctrl-C before it can choose to
             signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-        words = [sys.executable, "-m", f"{__package__}.child"]
+        words = command(f"{__package__}.child")
         self._child = child = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
         with _pipe(child.stdout) as replies:
             if self.ring.header[STOP]:

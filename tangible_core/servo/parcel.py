@@ -7,6 +7,7 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
+from ..child_process import dumps
 from ..errors import DeviceError
 from .ring import ALIGN, PREFIX, shared_folder
 
@@ -18,7 +19,7 @@ def pack(thing: Any) -> Path:
     """
     buffers: list[pickle.PickleBuffer] = []
     try:
-        small = pickle.dumps(thing, protocol=5, buffer_callback=buffers.append)
+        small = dumps(thing, buffers.append)
     except Exception as error:
         raise DeviceError(
             f"a {type(thing).__name__} cannot be sent to the force loop's process ({error}); make it picklable"

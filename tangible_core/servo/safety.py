@@ -54,7 +54,7 @@ class Safety(BaseModel):
     """`strict`: the loop gives back no more energy than it took in. `coupled`: what the device's own damping takes in
     may be given as well, so that a spring held stably is left as it is."""
     coupling: Coupling | Literal["auto"] | None = None
-    """Virtual coupling: null for none, for laws that state their stiffness; `auto` for one that this device holds."""
+    """Virtual coupling: null for none, for laws whose stiffness is known; `auto` for one that this device holds."""
 
     def arrays(
         self, spec: DeviceSpec, stiffness_n_per_m: float
@@ -62,7 +62,7 @@ class Safety(BaseModel):
         """What `guard` reads, and what it remembers: one memory for as long as a device is open.
 
         For another scene take other settings, keep the memory and call `restart`.
-        stiffness_n_per_m: the law's, as `CompiledTouch` says it; 0 for one that is no spring.
+        stiffness_n_per_m: the law's, as `stiffness_of` has it; 0 for one that is no spring.
         """
         settings, memory = np.zeros(at.SETTINGS), np.zeros(at.MEMORY)
         damping = effective_damping_n_s_per_m(spec)

@@ -9,6 +9,7 @@ from typing import IO, Any, NamedTuple
 
 import numpy as np
 
+from ..child_process import dumps
 from ..errors import BrokenMethod, exited
 from ..interfaces import HapticDevice
 
@@ -63,7 +64,7 @@ def sendable(error: BaseException) -> Exception:
     if isinstance(error, SystemExit):
         return exited(error)
     try:
-        if isinstance(error, Exception) and type(pickle.loads(pickle.dumps(error))) is type(error):
+        if isinstance(error, Exception) and type(pickle.loads(dumps(error))) is type(error):
             return error
     except Exception:  # noqa: BLE001 - pickling runs the plugin's own code
         pass
@@ -72,7 +73,7 @@ def sendable(error: BaseException) -> Exception:
 
 def send(file: IO[bytes], message: Any) -> None:
     """Raises: OSError if nobody listens."""
-    data = pickle.dumps(message)
+    data = dumps(message)
     file.write(len(data).to_bytes(8, "little") + data)
     file.flush()
 

@@ -8,12 +8,12 @@ from typing import final
 
 import numpy as np
 
-from ..compiled import CompiledTouch
 from ..data import NO_FORCE, TICK_COLUMNS, Force, HapticState, ServoReport
 from ..errors import ConfigError, DeviceError
 from ..interfaces import HapticDevice, Link, Touch
 from ..servo import Safety
 from ..servo.guarded import Guarded, guarded
+from ..servo.stiffness import stiffness_of
 from .recording import INTERRUPTED, Recording
 from .replay import proxy_of
 
@@ -43,8 +43,8 @@ def run(
     """
     if not 0 < seconds < math.inf:
         raise ConfigError(f"seconds: is {seconds}; a session takes more than 0 seconds, and an end")
-    stiffness = touch.stiffness_n_per_m if isinstance(touch, CompiledTouch) else 0.0
-    allowed = guarded(touch, *(limits or Safety()).arrays(device.spec(), stiffness))
+    spec = device.spec()
+    allowed = guarded(touch, *(limits or Safety()).arrays(spec, stiffness_of(touch, spec).n_per_m))
     tape = _Tape(touch, on_report or _ignore)
     link = device.open()
     try:

@@ -2,8 +2,8 @@
 
 import re
 import subprocess
-import sys
 
+from ..child_process import python
 from ..registry import Listing
 from .checks import Check, demand
 
@@ -31,11 +31,8 @@ def summary_is_there(listing: Listing) -> None:
 def import_is_light(listing: Listing) -> None:
     """Importing the class's module pulls in nothing heavy: planning imports it, and only running may take time."""
     module = listing.point.module
-    code = (
-        "import sys, importlib; sys.path[:] = sys.argv[2:]; importlib.import_module(sys.argv[1]); "
-        f"print(*(name for name in {HEAVY} if name in sys.modules))"
-    )
-    ran = subprocess.run([sys.executable, "-c", code, module, *sys.path], capture_output=True, text=True, check=False)
+    code = f"import {module}; print(*(name for name in {HEAVY} if name in sys.modules))"
+    ran = subprocess.run(python(code), capture_output=True, text=True, check=False)
     demand(ran.returncode == 0, f"{module} cannot be imported: {(ran.stderr.strip() or '?').splitlines()[-1]}")
     demand(
         not ran.stdout.split(),

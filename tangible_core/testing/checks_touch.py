@@ -1,5 +1,6 @@
 """Checks of a touch as a piece of machinery: paths, repetition, hostile states, odd surfaces, materials."""
 
+from dataclasses import replace
 from itertools import product
 
 import numpy as np
@@ -7,10 +8,13 @@ from jaxtyping import Float64
 
 from ..data import NO_FORCE, HapticState, HapticSurface, Material
 from ..interfaces import ForceRenderer
+from ..servo.stiffness import slopes
 from .checks import Check, demand
+from .loop_devices import SPEC
 from .scenes import KnownSurface, plane, sphere_cap
 
 PERIOD_S = 0.001
+ROUNDING_N_PER_M = 0.1
 HOSTILE = (0.0, -0.0, 1e-310, 0.01, -0.03, 5.0, 1e30, -1e300, 1.7e308, np.inf, -np.inf, np.nan)
 
 
@@ -111,6 +115,21 @@ def materials_are_taken(method: ForceRenderer) -> None:
     demand(np.isfinite(touch.path(stroke, PERIOD_S)).all(), "a stroke over two materials is not finite")
 
 
+def stiffness_is_no_less_than_felt(method: ForceRenderer) -> None:
+    """A law that says how stiff it is says no less than is felt, within 10 %, on level ground and of its materials.
+
+    The guard softens a law that is stiffer than the device holds by what it says; one that says nothing is felt.
+    """
+    for name, surface in (("a plane", plane().surface), ("a plane of two materials", _patchwork(rough=False))):
+        touch = method.touch(surface)
+        if (said := touch.stiffness_n_per_m) is not None:
+            felt = max(slopes(touch, SPEC), default=0.0)
+            demand(
+                felt <= 1.1 * said + ROUNDING_N_PER_M,
+                f"on {name} {felt:.4g} N/m are felt, and {said:.4g} said; say what it is, or None",
+            )
+
+
 def _path(known: KnownSurface) -> Float64[np.ndarray, "n 3"]:
     """A wavering stroke in and out of contact, with a leap, a NaN and a standstill in it."""
     turns = np.linspace(0, 6 * np.pi, 300)
@@ -131,11 +150,12 @@ def _states(path: Float64[np.ndarray, "n 3"]) -> list[HapticState]:
     ]
 
 
-def _patchwork() -> HapticSurface:
+def _patchwork(rough: bool = True) -> HapticSurface:
     labels = np.zeros((32, 64), np.int32)
     labels[:, 32:] = 1
     soft = Material("soft", 200.0, 0.0, 0.0, 0.0)
-    hard = Material("hard", 2000.0, 2.0, 0.9, 0.6, roughness_m=2e-4, grain_m=2e-3)
+    smooth = Material("hard", 2000.0, 2.0, 0.9, 0.6)
+    hard = replace(smooth, roughness_m=2e-4, grain_m=2e-3) if rough else smooth
     return HapticSurface.from_heights(np.full((32, 64), 0.01, np.float32), 0.08, labels, (soft, hard))
 
 
@@ -148,4 +168,5 @@ CHECKS: tuple[Check, ...] = (
     forces_are_always_finite,
     any_surface_is_taken,
     materials_are_taken,
+    stiffness_is_no_less_than_felt,
 )

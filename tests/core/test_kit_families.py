@@ -123,8 +123,9 @@ def bilinear(surface: HapticSurface, x: float, y: float) -> tuple[float, float, 
 
 
 class LawTouch(Touch):
-    def __init__(self, surface: HapticSurface, law: Law, gain_on_a_path: float) -> None:
-        self.surface, self.law, self.gain_on_a_path = surface, law, gain_on_a_path
+    def __init__(self, surface: HapticSurface, render: "Render") -> None:
+        self.surface, self.law, self.gain_on_a_path = surface, render.law, render.gain_on_a_path
+        self.stiffness_n_per_m = render.said_n_per_m
 
     def force(self, state: HapticState) -> Force:
         return self.law(self.surface, state)
@@ -137,9 +138,10 @@ class LawTouch(Touch):
 class Render(ForceRenderer):
     law: Law = spring
     gain_on_a_path: float = 1.0
+    said_n_per_m: float | None = 500.0
 
     def touch(self, surface: HapticSurface) -> Touch:
-        return LawTouch(surface, self.law, self.gain_on_a_path)
+        return LawTouch(surface, self)
 
 
 def changed(change: Callable[..., Force]) -> Render:
@@ -195,6 +197,7 @@ RENDER: dict[str, Render] = {
     "forces_are_always_finite": Render(law=unguarded),
     "any_surface_is_taken": Render(law=bumpy),
     "materials_are_taken": changed(lambda x, y, z, surface: Force(x, y, -z if surface.materials else z)),
+    "stiffness_is_no_less_than_felt": Render(said_n_per_m=400.0),
 }
 
 

@@ -26,6 +26,8 @@ FREE = Safety(ramp_s=0, max_step_n=10, passivity="off")
 class Says(Touch):
     """A touch that answers what a function of the tick says."""
 
+    stiffness_n_per_m = 0.0
+
     def __init__(self, answer: Callable[[int], Force]) -> None:
         self.answer, self.tick = answer, -1
 

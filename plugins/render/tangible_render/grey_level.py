@@ -35,4 +35,4 @@ class GreyLevel(ForceRenderer):
 
         heights = np.ascontiguousarray(surface.height_m, np.float32)
         fixed = (heights, grey_levels(heights), *map(float, surface.extent_m), self.force_at_white_n)
-        return CompiledTouch(grey_kernels.tick, fixed)
+        return CompiledTouch(grey_kernels.tick, fixed, stiffness=0.0)

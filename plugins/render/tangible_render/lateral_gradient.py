@@ -32,4 +32,4 @@ class LateralGradient(ForceRenderer):
         from . import lateral_kernels
 
         fixed = (*spline_surface(surface, self.dequantise), self.force_per_slope_n, 0.0)
-        return CompiledTouch(lateral_kernels.tick, fixed)
+        return CompiledTouch(lateral_kernels.tick, fixed, stiffness=0.0)

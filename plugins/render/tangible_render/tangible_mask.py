@@ -48,7 +48,7 @@ class TangibleMask(ForceRenderer):
         columns, rows = self._cells(across_m), self._cells(along_m)
         scales = self._newtons(columns, rows, across_m), self._newtons(rows, columns, along_m)
         fixed = (heights, summed_tables(255 - grey_levels(heights)), *map(float, surface.extent_m))
-        return CompiledTouch(mask_kernels.tick, (*fixed, rows // 2, columns // 2, *scales))
+        return CompiledTouch(mask_kernels.tick, (*fixed, rows // 2, columns // 2, *scales), stiffness=0.0)
 
     def _cells(self, pitch_m: float) -> int:
         return self.mask_px or max(3, 2 * round((self.mask_m / pitch_m - 1) / 2) + 1)

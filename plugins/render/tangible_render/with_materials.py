@@ -116,7 +116,8 @@ def _wrapped(law: CompiledTouch, surface: HapticSurface, labels: np.ndarray, tab
 
     bristle = float(table[:, effects_kernels.STIFFNESS].max())
     rest = (labels, *map(float, surface.extent_m), table, bristle, nowhere())
-    stiffness = max(law.stiffness_n_per_m, bristle * bool(table[:, effects_kernels.STATIC].any()))
+    bristles = bristle * bool(table[:, effects_kernels.STATIC].any())
+    stiffness = None if law.stiffness_n_per_m is None else max(law.stiffness_n_per_m, bristles)
     if not lateral:
         return CompiledTouch(effects_kernels.tick, (law.fixed, law.address(), *rest), law.memory, stiffness)
     heights = np.ascontiguousarray(surface.height_m, np.float32)

@@ -9,6 +9,7 @@ _LINE = re.compile(
     rb"(?<!\\\n)(?<!\\\r\n)^[ \t]*((?:from|import)\b[^\n('\"\\]*(?:\([^)#]*\))?[^\n('\"\\]*)$", re.MULTILINE
 )
 """An import that has its lines to itself, and hides no other one behind a quote, a bracket or the end of a line."""
+_CALL = re.compile(rb"\b(?:import_module|__import__)\(\s*['\"](\.*)([\w.]+)['\"]")
 
 
 class Import(NamedTuple):
@@ -21,11 +22,12 @@ class Import(NamedTuple):
 
 
 def imports(source: bytes) -> list[Import]:
-    """Every import that stands in a text, inside functions and for type checkers too.
+    """Every import that stands in a text, inside functions and for type checkers too; not one by a computed name.
 
     Raises: SyntaxError, ValueError for a text that is no Python.
     """
-    return [found for node in _statements(source) for found in _each(node)]
+    called = [Import(name.decode(), level=len(dots)) for dots, name in _CALL.findall(source)]
+    return called + [found for node in _statements(source) for found in _each(node)]
 
 
 def bound(source: bytes) -> frozenset[str]:

@@ -321,10 +321,10 @@ class TestPassivity:
     @pytest.mark.parametrize("axis", [0, 1, 2])
     def test_a_leap_along_any_axis_is_no_work(self, axis: int):
         settings, memory = Safety(passivity="strict", **AT_ONCE).arrays(SPEC, 0.0)
-        for way, found in ((0.0, 0.0), (0.009, -0.009), (0.0201, -0.009)):
+        for way, found in ((0.0, 0.0), (0.009, -0.0045), (0.0201, -0.0045)):
             place = way * np.eye(3)[axis]
-            guard(settings, memory, 0.001, *place, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0)
-            assert memory[ENERGY_J] == pytest.approx(max(found, -0.008))
+            guard(settings, memory, 0.001, *place, 0.0, 0.0, 0.0, 0.5, 0.5, 0.5)
+            assert memory[ENERGY_J] == pytest.approx(found)
 
     @pytest.mark.parametrize("axis", [0, 1, 2])
     def test_what_was_taken_in_is_kept_while_a_force_is_on_its_way_down(self, axis: int):

@@ -458,6 +458,15 @@ class TestCoupling:
         assert asked[-1].position_m[0] != 0.002
         assert allowed(state, 0.5) == ((0.0, 0.0, 0.0), TickFlag.STALE)
 
+    @pytest.mark.parametrize("axis", [0, 1, 2])
+    def test_a_tool_that_is_led_out_of_all_numbers_is_where_the_device_is(self, axis: int):
+        settings, memory = Safety(coupling="auto", **BARE).arrays(SPEC, 500.0)
+        far = 1e308 * np.eye(3)[axis]
+        for place in (np.zeros(3), far, -far, np.zeros(3)):
+            assert couple(settings, memory, 0.001, *place, 0.0, 0.0, 0.0) == (*place, 0.0, 0.0, 0.0)
+            left = guard(settings, memory, 0.001, *place, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+            assert left == (0.0, 0.0, 0.0, 0)
+
     def test_the_tool_is_on_a_leash(self):
         safety = Safety(coupling=Coupling(stiffness_n_per_m=1000, damping_n_s_per_m=0.4), **BARE)
         settings, memory = safety.arrays(SPEC, 500.0)

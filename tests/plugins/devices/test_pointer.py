@@ -9,6 +9,7 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 from threading import Event, Thread
+from types import ModuleType
 
 import numpy as np
 import pytest
@@ -21,10 +22,10 @@ from tangible_core.data import NO_FORCE, Force, HapticState
 from tangible_core.errors import ConfigError, DeviceError
 from tangible_core.kernels import Address
 from tangible_core.mapping import WorkspaceMapping, mapped
-from tangible_devices.pointer import PointerClient, channel
+from tangible_devices.pointer import PointerClient, channel, kernels
 from tangible_devices.pointer.channel import Channel, checksum, packed, unpacked
 from tangible_devices.pointer.following import follow, parse
-from tangible_devices.pointer.pointer import HIGH_M, Pointer
+from tangible_devices.pointer.pointer import HIGH_M, Pointer, PointerLink
 
 TANGIBLE = str(Path(sys.executable).with_name("tangible"))
 words = st.lists(st.integers(0, 2**64 - 1), min_size=1, max_size=9)
@@ -100,6 +101,17 @@ class TestExchange:
             assert client.force() == (0.5, 0.25, 0.125)
 
 
+def before_a_device(force_n: tuple[float, float, float]) -> Channel:
+    """The memory as a device and a client that were killed leave it; a client's hold on it."""
+    left = Channel("pointer", "device")
+    left.put(channel.SAMPLE, 7, (0.0,) * 7)
+    left.put(channel.FORCE, 7, force_n)
+    for side in (channel.DEVICE_OPEN, channel.CLIENT_OPEN):
+        left.set_flag(side, True)
+    left.close()
+    return Channel("pointer", "client")
+
+
 class TestNobody:
     def test_without_a_client_the_tip_is_high_above(self, link: CompiledLink):
         assert link.read()[:2] == (HIGH_M, (0.0, 0.0, 0.0))
@@ -163,16 +175,16 @@ class TestNobody:
                 assert ticked(link)[1][0] == x
                 assert link.read().position_m[0] == x
 
-    def test_a_device_that_opens_shows_no_force_and_hears_nothing_of_before(self):
-        with Pointer().open() as link, PointerClient() as client:
-            client.send((0.0, 0.0, 0.0))
-            link.write(Force(0.0, 0.0, 1.0))
+    def test_a_device_that_is_closed_shows_no_force(self, link: CompiledLink):
+        link.write(Force(0.0, 0.0, 1.0))
+        link.close()
         shown = Channel("pointer", "client")
-        assert shown.take(channel.FORCE, channel.FORCE_WORDS) is not None
-        assert shown.take(channel.FORCE, channel.FORCE_WORDS)[1] == (0, 0, 0), "nor after it was closed"
+        assert shown.take(channel.FORCE, channel.FORCE_WORDS)[1] == (0, 0, 0)
         assert not shown.flag(channel.DEVICE_OPEN)
-        shown.put(channel.FORCE, 9, (0.0, 0.0, 2.0))
-        shown.set_flag(channel.CLIENT_OPEN, True)
+        shown.close()
+
+    def test_a_device_that_opens_shows_no_force_and_hears_nothing_of_before(self):
+        shown = before_a_device(force_n=(0.0, 0.0, 2.0))
         with Pointer().open() as link:
             assert shown.take(channel.FORCE, channel.FORCE_WORDS)[1] == (0, 0, 0)
             assert isinstance(link, CompiledLink)
@@ -180,16 +192,29 @@ class TestNobody:
             assert link.read().position_m == HIGH_M
         shown.close()
 
+    def test_until_it_shows_no_force_it_is_not_open(self):
+        """What a killed one left says that it is: a client would be shown its last force."""
+        shown = before_a_device(force_n=(0.0, 0.0, 2.0))
+        open_then: list[bool] = []
+
+        class Looked(ModuleType):
+            def __getattr__(self, name: str) -> object:
+                if name == "write":
+                    open_then.append(shown.flag(channel.DEVICE_OPEN))
+                return getattr(kernels, name)
+
+        PointerLink(Looked("kernels"), Channel("pointer", "device"), 0.1, 8.0).close()
+        assert open_then[0] is False
+        shown.close()
+
     def test_the_last_of_a_killed_client_is_not_believed_from_the_first_read_on(self):
         """As long as a client may be silent, the last place of one that was killed would be a place."""
-        left = Channel("pointer", "device")
-        left.put(channel.SAMPLE, 7, (0.0,) * 7)
-        left.set_flag(channel.CLIENT_OPEN, True)
-        left.close()
+        shown = before_a_device(force_n=(0.0, 0.0, 0.0))
         with Pointer(stale_after_s=10.0).open() as link:
             assert isinstance(link, CompiledLink)
             assert [ticked(link)[0] for _ in range(3)] == [0, 0, 0]
             assert link.read().position_m == HIGH_M
+        shown.close()
 
     @pytest.mark.parametrize("size", [8.1, 1e3, 1e200])
     def test_a_force_over_the_device_s_is_not_shown(self, link: CompiledLink, size: float):
@@ -247,8 +272,6 @@ class TestNobody:
 class TestTorn:
     @given(words)
     def test_the_kernel_s_checksum_is_python_s(self, block: list[int]):
-        from tangible_devices.pointer import kernels
-
         assert kernels.checksum(np.array(block, np.uint64), 0, len(block)) == checksum(tuple(block))
 
     @given(st.data())

@@ -467,6 +467,17 @@ class TestCoupling:
             left = guard(settings, memory, 0.001, *place, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
             assert left == (0.0, 0.0, 0.0, 0)
 
+    @pytest.mark.parametrize("axis", [0, 1, 2])
+    def test_a_pull_beyond_all_numbers_is_none(self, axis: int):
+        """A heavy tool goes on as it went, while the device is told to go the other way: their difference overflows."""
+        safety = Safety(coupling=Coupling(stiffness_n_per_m=1000, damping_n_s_per_m=1.5), **BARE)
+        settings, memory = safety.arrays(SPEC, 1e5)
+        for speed in (-1e308, 1e308):
+            velocity = speed * np.eye(3)[axis]
+            couple(settings, memory, 0.001, 0.0, 0.0, 0.0, *velocity)
+            left = guard(settings, memory, 0.001, 0.0, 0.0, 0.0, *velocity, 0.0, 0.0, 0.0)
+            assert left == (0.0, 0.0, 0.0, 0)
+
     def test_the_tool_is_on_a_leash(self):
         safety = Safety(coupling=Coupling(stiffness_n_per_m=1000, damping_n_s_per_m=0.4), **BARE)
         settings, memory = safety.arrays(SPEC, 500.0)

@@ -118,6 +118,8 @@ class Ring:
         count = int(self.header[COUNT])
         numbers = np.arange(max(first, count - len(self.stamps), 0), count)
         slots = numbers % len(self.stamps)
+        # Ticks below COUNT are stamped, and no slot gets a stamp back that it had: the look after would do. The one
+        # before is the rule that the table above gives to other readers, and costs nothing.
         before = self.stamps[slots]
         rows = self.ticks[slots]
         whole = (before == numbers) & (self.stamps[slots] == numbers)

@@ -189,6 +189,22 @@ class TestClutch:
         assert hold(buffer, link, 0.01, 0.0, 0.0, 5).position_m == (0.01, 0.0, 0.0)
         assert push(link, 0.0, 0.0, 1.0) == (0, 0, 1)
 
+    @pytest.mark.parametrize("part", [(1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)])
+    def test_any_part_of_a_force_is_one_that_the_law_holds_on_to(self, buffer: np.ndarray, part: tuple[float, ...]):
+        link = opened(buffer, clutch_button=0)
+        hold(buffer, link, 0.0, 0.0, -0.001, 1)
+        hold(buffer, link, 0.0, 0.0, -0.001)
+        assert push(link, *part) == NO_FORCE
+        assert push(link, *part) == NO_FORCE
+        assert push(link, *NO_FORCE) == NO_FORCE
+        assert push(link, *part) == part
+
+    def test_the_picture_does_not_move_under_the_law_while_it_goes_with_the_hand(self, buffer: np.ndarray):
+        link = opened(buffer, clutch_button=0, scale=2.0, rotation_deg=90.0)
+        for buttons, seen in ((0, (0.2, -0.1, 0.3)), (1, (0.0, 0.0, 0.3))):
+            buffer[:7] = 0.01, 0.02, 0.03, 0.2, 0.4, 0.6, buttons
+            assert link.read().velocity_m_per_s == pytest.approx(seen)
+
     def test_there_is_no_force_until_the_law_has_let_go(self, buffer: np.ndarray):
         link = opened(buffer, clutch_button=0)
         hold(buffer, link, 0.0, 0.0, -0.001)
@@ -205,7 +221,13 @@ class TestClutch:
 
 
 class TestLimits:
-    @pytest.mark.parametrize("place", [(0.031, 0, 0), (0, -0.021, 0), (0, 0, 0.011), (math.nan, 0, 0)])
+    @pytest.mark.parametrize(
+        "place",
+        [
+            *[(0.031, 0, 0), (0, -0.021, 0), (0, 0, 0.011), (-0.031, 0, 0), (0, 0.021, 0), (0, 0, -0.011)],
+            *[(math.nan, 0, 0), (0, math.nan, 0), (0, 0, math.nan)],
+        ],
+    )
     def test_outside_there_is_no_force(self, buffer: np.ndarray, place: tuple[float, float, float]):
         link = opened(buffer, limits_m=(0.06, 0.04, 0.02))
         hold(buffer, link, 0.03, -0.02, 0.01)
@@ -293,6 +315,11 @@ class TestDevice:
     def test_a_mapped_device_is_a_device(self, check):
         mapping = WorkspaceMapping(scale=2.5, rotation_deg=37.0, offset_m=(0.01, -0.01, 0.0), clutch_button=3)
         check(MappedDevice(device=Mock(), mapping=mapping))
+
+    def test_its_limits_are_in_the_picture_s_metres(self):
+        mapping = WorkspaceMapping(scale=2.0)
+        spec = MappedDevice(device=Mock(), mapping=mapping).spec()
+        assert spec == mapping.felt_spec(SPEC) != SPEC
 
     def test_it_goes_through_json_with_the_device_s_own_options(self):
         device = MappedDevice(device=Mock(path="circle"), mapping=WorkspaceMapping(scale=2.0))

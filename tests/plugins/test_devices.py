@@ -237,6 +237,18 @@ class TestLink:
             link.write(Force(-size, 0.0, size))
             assert link.applied == pytest.approx((-8 / math.sqrt(2), 0, 8 / math.sqrt(2)))
 
+    def test_the_greatest_force_is_left_and_a_little_more_is_not(self):
+        with Mock().open() as link:
+            for wanted, held in ((Force(0.0, 4.8, -6.4), (0, 4.8, -6.4)), (Force(0.0, 8.0001, 0.0), (0, 8, 0))):
+                link.write(wanted)
+                assert link.applied == pytest.approx(held, rel=1e-12)
+
+    def test_closed_it_holds_no_force(self):
+        link = Mock().open()
+        link.write(Force(1.0, 0.0, 0.0))
+        link.close()
+        assert link.applied == NO_FORCE
+
     @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
     def test_forces_that_are_not_finite_are_none(self, bad: float):
         with Mock().open() as link:

@@ -27,6 +27,15 @@ def rows(count: int) -> np.ndarray:
     return table
 
 
+@pytest.mark.parametrize("column", [0, 2, 3, 4, 5, 6, 7])
+@pytest.mark.parametrize("bad", [np.nan, np.inf])
+def test_a_tick_of_which_a_part_is_not_finite_is_none(tmp_path: Path, column: int, bad: float):
+    table = rows(3)
+    table[1, column] = bad
+    with Replay(file=saved(tmp_path, table)).open() as link:
+        assert [link.read().time_s for _ in range(2)] == table[[0, 2], 0].tolist()
+
+
 @pytest.mark.parametrize("suffix", [".nc", ".npz", ".csv"])
 def test_each_read_is_a_recorded_tick(tmp_path: Path, suffix: str):
     table = rows(30)

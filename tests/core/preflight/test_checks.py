@@ -23,7 +23,7 @@ from tangible_core.preflight.checks.stiffness import law_damping, law_stiffness,
 from tangible_core.preflight.checks.textures import textures
 from tangible_core.preflight.checks.workspace import workspace
 from tangible_core.preflight.timing import Lateness, TickCost
-from tangible_core.preflight.verdict import Verdict
+from tangible_core.preflight.verdict import Verdict, held
 from tangible_core.servo.safety import Safety
 
 
@@ -105,6 +105,32 @@ class TestStiffness:
         flight = fly(level(), **changes)
         assert flight.ceilings[0].limit_n_per_m == pytest.approx(limit)
 
+    def test_friction_leaves_its_margin_too(self):
+        """2 f / resolution is 2000 N/m, of which the guard leaves 1600."""
+        coarse = {"safety": Safety(friction_n=0.02), "resolution_m": 2e-5}
+        for stiffness, verdict in ((1600.0, "ok"), (1601.0, "warn"), (2001.0, "unsafe")):
+            found, *_ = law_stiffness(fly(level(), stiffness_n_per_m=stiffness, **coarse))
+            assert (found.verdict, found.bound) == (verdict, pytest.approx(1600))
+            assert found.source.startswith("Abbott")
+
+    def test_the_lowest_is_what_leaves_least_to_a_law(self):
+        """3300 N/m by friction leave 2640; the device's own word, 3000 N/m, leaves all of that."""
+        coarse = {"safety": Safety(friction_n=0.033), "resolution_m": 2e-5, "max_stiffness_n_per_m": 3000.0}
+        left = [each.most_n_per_m for each in fly(level(), **coarse).ceilings]
+        assert left == pytest.approx([2400, 2640, 3000])
+
+    def test_a_quick_loop_holds_no_more_than_the_device(self):
+        limits = [each.limit_n_per_m for each in fly(level(), max_stiffness_n_per_m=3000.0, period_s=0.00025).ceilings]
+        assert sorted(limits) == pytest.approx([3000, 12_000])
+
+    @pytest.mark.parametrize(("asked", "given_n"), [(None, 8.0), (2.0, 2.0), (50.0, 8.0)])
+    def test_the_greatest_force_is_the_lesser_of_device_and_option(self, asked: float | None, given_n: float):
+        assert fly(level(), safety=Safety(max_force_n=asked)).max_force_n == given_n
+
+    @pytest.mark.parametrize(("period_s", "step_n"), [(0.00025, 0.125), (0.001, 0.5), (0.004, 0.5)])
+    def test_a_step_is_what_the_guard_allows(self, period_s: float, step_n: float):
+        assert fly(level(), period_s=period_s).max_step_n == step_n
+
     def test_the_cure_cures(self):
         flight = fly(level(), stiffness_n_per_m=20_000.0)
         verdicts = list(law_stiffness(flight))
@@ -148,6 +174,23 @@ class TestStiffness:
         [found] = law_damping(flight)
         assert (found.verdict, found.bound) == (verdict, pytest.approx(1.0))
 
+    def test_delay_leaves_less_to_damping(self):
+        """b > K T (1 + 2 d) / 2 + B, with b 2 N s/m, K 1000 N/m and d 1."""
+        flight = fly(level(), "penalty-gradient", stiffness_n_per_m=1000.0, safety=Safety(delay_ticks=1))
+        [found] = law_damping(flight)
+        assert found.bound == pytest.approx(0.5)
+
+    def test_a_law_too_stiff_leaves_no_damping_at_all(self):
+        [found] = law_damping(fly(level(), "penalty-gradient", stiffness_n_per_m=6000.0))
+        assert found.bound == 0
+
+    @pytest.mark.parametrize(("places", "verdict"), [(2, "ok"), (15, "warn")])
+    def test_damping_at_a_few_places_is_the_exception(self, places: int, verdict: str):
+        flight = fly(level(), "penalty-gradient", stiffness_n_per_m=2000.0)
+        object.__setattr__(flight.probes, "damping_n_s_per_m", np.where(np.arange(1000) < places, 9.0, 0.5))
+        [found] = law_damping(flight)
+        assert (found.verdict, found.value) == (verdict, 0.5 if verdict == "ok" else 9.0)
+
     def test_a_step_of_the_encoder_that_is_felt(self):
         [fine] = quantisation(fly(level(), stiffness_n_per_m=800.0, press_n=1.0, resolution_m=8.75e-5))
         [coarse] = quantisation(fly(level(), stiffness_n_per_m=800.0, press_n=1.0, resolution_m=9e-5))
@@ -190,6 +233,12 @@ class TestSlopes:
     @pytest.mark.parametrize("cure", [{"law": "proxy"}, {"law": "penalty-gradient", "safety": Safety(coupling="auto")}])
     def test_its_other_cures(self, cure: dict[str, Any]):
         assert grades(slope_stiffness(fly(half_slope(2.0, cells=64), stiffness_n_per_m=1000.0, **cure))) == ["ok"]
+
+    @pytest.mark.parametrize(("stiffness", "verdict"), [(4040.0, "ok"), (4050.0, "unsafe")])
+    def test_what_was_felt_may_be_a_hundredth_over(self, stiffness: float, verdict: str):
+        flight = fly(level())
+        object.__setattr__(flight.probes, "stiffness_n_per_m", np.full(4, stiffness))
+        assert grades(slope_stiffness(flight)) == [verdict]
 
     def test_a_few_places_are_a_warning(self):
         surface = shape(lambda x, y: np.where((abs(x) < 2e-3) & (abs(y) < 2e-3), 0.005, 0.0), 64)
@@ -302,6 +351,23 @@ class TestWorkspace:
         assert advised(length, "workspace.width_m") == 0.04
         assert advised(height, "workspace.relief_m") == pytest.approx(0.02, rel=0.06)
 
+    @pytest.mark.parametrize(
+        ("reach_m", "verdicts"),
+        [
+            ((0.1, 0.2, 0.03), ["ok", "ok", "ok"]),
+            ((0.09, 0.2, 0.03), ["warn", "ok", "ok"]),
+            ((0.1, 0.19, 0.03), ["ok", "warn", "ok"]),
+            ((0.1, 0.2, 0.029), ["ok", "ok", "warn"]),
+            ((0.2, 0.1, 0.03), ["ok", "warn", "ok"]),
+        ],
+    )
+    def test_each_side_against_its_own_reach(self, reach_m: tuple[float, float, float], verdicts: list[str]):
+        """100 mm wide, 200 mm long, and 30 mm over the base plane, though the relief itself is level."""
+        surface = HapticSurface.from_heights(np.full((20, 10), 0.03, np.float32), 0.1)
+        found = list(workspace(fly(surface, workspace_m=reach_m)))
+        assert grades(found) == verdicts
+        assert [each.bound for each in found] == list(reach_m)
+
 
 class TestJitter:
     """1000 ticks, of which some are late."""
@@ -319,6 +385,28 @@ class TestJitter:
         found = of(lateness(fly(level(), lateness=self.late(ticks, 0.0011))), "overruns")
         assert (found.verdict, found.value) == (verdict, ticks / 1000)
         assert "ulimit -r" in found.cure or verdict == "ok"
+
+    @pytest.mark.parametrize(
+        ("ticks", "by_s", "verdict"), [(1, 0.005, "ok"), (2, 0.000999, "ok"), (2, 0.0011, "warn"), (9, 0.005, "warn")]
+    )
+    def test_one_tick_in_a_thousand_may_be_late_and_no_more(self, ticks: int, by_s: float, verdict: str):
+        found = of(lateness(fly(level(), lateness=self.late(ticks, by_s))), "lateness, p99.9")
+        assert (found.verdict, found.bound) == (verdict, 0.001)
+
+    def test_a_period_late_is_no_more_than_a_period_late(self):
+        assert Lateness(np.array([0.0, 0.001, 0.0010001, 0.0]), 0.001, real_time=False).overruns == 0.25
+
+    def test_a_clock_that_is_early_leaves_no_more_stiffness(self):
+        early = Lateness(np.full(1000, -5e-4), 0.001, real_time=True)
+        found = of(lateness(fly(level(), lateness=early)), "stiffness it leaves")
+        assert found.bound == pytest.approx(4000)
+
+    @pytest.mark.parametrize(("slow", "verdict"), [(0.005, "ok"), (0.02, "warn"), (0.4, "warn"), (0.6, "unsafe")])
+    def test_some_slow_ticks_are_a_warning_and_most_are_unsafe(self, slow: float, verdict: str):
+        """1.1 ms, where a period is one: the rest are quick."""
+        call_s = np.where(np.arange(1000) < 1000 * slow, 1.1e-3, 1e-6)
+        [found] = tick_cost(fly(level(), cost=TickCost(call_s, 1e-6)))
+        assert found.verdict == verdict
 
     @pytest.mark.parametrize(("simulated", "verdict"), [(False, "unsafe"), (True, "warn")])
     def test_the_stiffness_that_is_left(self, simulated: bool, verdict: str):
@@ -364,6 +452,12 @@ def test_every_check_has_a_say_and_every_complaint_a_cure(law: str, surface: Hap
     for each in verdicts:
         assert (each.verdict == "ok") == (each.cure == ""), each
         assert math.isfinite(each.value)
+
+
+@pytest.mark.parametrize("relation", ["<=", ">="])
+def test_what_is_no_number_keeps_no_bound(relation: Any):
+    assert held("check", "of", math.nan, relation, 1.0, "N", "", cure="measure it").verdict == "warn"
+    assert held("check", "of", 1.0, relation, math.nan, "N", "", cure="measure it").verdict == "warn"
 
 
 def test_a_law_that_is_no_spring_has_no_stiffness_to_hold():

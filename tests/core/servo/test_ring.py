@@ -7,12 +7,24 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tangible_core.data import TICK_COLUMNS
+from tangible_core.data import TICK_COLUMNS, Force, HapticState, TickFlag
 from tangible_core.errors import DeviceError
 from tangible_core.servo import Ring, cycle, ring
+from tangible_core.servo.guard_layout import COUNTS
 from tangible_core.servo.loop import sections
 from tangible_core.servo.reports import report, spread
-from tangible_core.servo.ring import COUNT, SLOTS, shared_folder
+from tangible_core.servo.ring import (
+    COUNT,
+    IS_LAYOUT,
+    IS_MAGIC,
+    MARKS,
+    MOST_LATE_S,
+    OVERRUNS,
+    PERIOD_NS,
+    SLOTS,
+    WIDEST_US,
+    shared_folder,
+)
 
 
 @pytest.fixture
@@ -28,6 +40,21 @@ def put(into: Ring, *numbers: int) -> None:
         row = np.full(len(TICK_COLUMNS), float(number))
         row[cycle.FLAGS] = 0
         cycle.finish(sections(into), row, number * 1_000_000, 2000 * number)
+
+
+class Overwritten:
+    """The ticks of a ring whose loop writes one more, over the oldest, while they are read: half before, half after."""
+
+    def __init__(self, ring: Ring) -> None:
+        self._ring, self._ticks = ring, ring.ticks
+
+    def __getitem__(self, slots: np.ndarray) -> np.ndarray:
+        torn = self._ticks[slots]
+        self._ring.ticks = self._ticks
+        put(self._ring, int(self._ring.header[COUNT]))
+        half = torn.shape[1] // 2
+        torn[:, half:] = self._ticks[slots][:, half:]
+        return torn
 
 
 class TestReading:
@@ -51,6 +78,20 @@ class TestReading:
         small.stamps[3] = -1
         assert small.since(0)[0][:, 0].tolist() == [0, 1, 2, 4]
 
+    def test_a_row_that_is_overwritten_while_it_is_read_is_not_given(self, small: Ring) -> None:
+        put(small, *range(16))
+        small.ticks = Overwritten(small)
+        rows, following = small.since(0)
+        whole = np.delete(rows, cycle.FLAGS, axis=1)
+        assert whole.tolist() == [[number] * 15 for number in range(1, 16)]
+        assert following == 16
+
+    def test_of_a_ring_that_is_not_full_nothing_is_made_up(self, small: Ring) -> None:
+        """The mark of a slot that is being written is no number of a tick."""
+        put(small, *range(15))
+        small.stamps[15] = -1
+        assert small.since(-1)[0][:, 0].tolist() == list(range(15))
+
     def test_no_torn_row_while_a_loop_writes_as_fast_as_it_can(self, small: Ring) -> None:
         done = threading.Event()
 
@@ -69,6 +110,57 @@ class TestReading:
             seen += len(rows)
         thread.join()
         assert seen > 0
+
+
+class TestWriting:
+    def test_a_slot_is_marked_while_it_is_written(self, small: Ring) -> None:
+        """The row that is written is the stamps themselves: what they were at that moment stands in it."""
+        put(small, *range(20))
+        row = small.stamps.view(np.float64)
+        cycle.publish(*sections(small), row, 20_000_000, 0)
+        seen = small.ticks[4].view(np.int64)
+        assert seen.tolist() == [16, 17, 18, 19, -1, *range(5, 16)]
+        assert small.stamps[4] == 20
+
+    def test_a_tick_is_stamped_when_it_is_there_and_counted_when_it_is_stamped(
+        self, small: Ring, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        put(small, *range(20))
+        steps: list[tuple[str, int, bool, int]] = []
+        row = np.full(len(TICK_COLUMNS), 20.0)
+
+        def store(array: np.ndarray, index: int, value: int) -> None:
+            there = (small.ticks[4] == row).tolist()
+            assert all(there) or not any(there)
+            steps.append(("stamp" if array is small.stamps else "count", int(value), all(there), int(index)))
+            array[index] = value
+
+        monkeypatch.setattr(cycle, "_store", store)
+        cycle.publish.py_func(*sections(small), row, 20_000_000, 0)
+        assert steps == [("stamp", -1, False, 4), ("stamp", 20, True, 4), ("count", 21, True, COUNT)]
+
+    def test_flags_of_the_loop_are_added_once(self, small: Ring) -> None:
+        small.header[MARKS] = int(TickFlag.SWAPPED)
+        for _ in range(2):
+            row = np.full(len(TICK_COLUMNS), float(TickFlag.TOUCHING))
+            cycle.finish(sections(small), row, 0, -1)
+        both = int(TickFlag.TOUCHING | TickFlag.SWAPPED)
+        assert small.since(0)[0][:, cycle.FLAGS].tolist() == [both, int(TickFlag.TOUCHING)]
+
+    def test_the_widest_of_each_histogram_are_counted_in_its_last_bin(self, small: Ring) -> None:
+        small.header[PERIOD_NS] = 1_000_000
+        rest = np.zeros(len(TICK_COLUMNS))
+        for at_ns, late_ns in ((0, -5_000), (10**10, 10**10), (10**10 + 10**6, 999), (10**10 + 10**6 + 10, 1000)):
+            cycle.finish(sections(small), rest.copy(), at_ns, late_ns)
+        assert {int(each): int(small.late[each]) for each in np.flatnonzero(small.late)} == {
+            0: 2,
+            1: 1,
+            WIDEST_US - 1: 1,
+        }
+        assert {int(each): int(small.period[each]) for each in np.flatnonzero(small.period)} == {
+            0: 1, 1000: 1, WIDEST_US - 1: 1,
+        }  # fmt: skip
+        assert small.sums[MOST_LATE_S] == 10.0
 
 
 class TestFile:
@@ -93,6 +185,26 @@ class TestFile:
         (tmp_path / "x.ring").write_bytes(content)
         with pytest.raises(DeviceError, match=r"x\.ring"):
             Ring.attach(tmp_path / "x.ring")
+
+    @pytest.mark.parametrize("word", [IS_MAGIC, IS_LAYOUT, SLOTS])
+    def test_a_ring_of_another_layout_is_refused(self, small: Ring, word: int) -> None:
+        small.header[word] += 1
+        with pytest.raises(DeviceError, match="is no ring of layout"):
+            Ring.attach(small.path)
+        small.header[word] -= 1
+        Ring.attach(small.path)
+
+    def test_every_section_begins_at_a_multiple_of_64_bytes(self) -> None:
+        odd = Ring.create(5)
+        try:
+            put(odd, *range(7))
+            data = odd.path.read_bytes()
+        finally:
+            odd.remove()
+        at = 8 * (64 + 64 + 128 + 4096 + 4096)
+        assert np.frombuffer(data, np.int64, 5, at).tolist() == [5, 6, 2, 3, 4]
+        assert np.frombuffer(data, np.float64, 1, at + 64)[0] == 5
+        assert len(data) % 64 == 0
 
     def test_none_there(self, tmp_path: Path) -> None:
         with pytest.raises(DeviceError, match="no force loop runs there"):
@@ -171,6 +283,28 @@ class TestReport:
         assert found.work_j == pytest.approx(3 * sum(range(19)))
         assert found.period_us == (1000, 1000, 1000, 1000)
         assert found.late_us == (18, 38, 38, 38)
+
+    def test_it_says_what_each_number_is(self, small: Ring) -> None:
+        row = np.arange(100.0, 100.0 + len(TICK_COLUMNS))
+        cycle.finish(sections(small), row, 5, 7_000)
+        small.header[OVERRUNS], small.guard[COUNTS + 2] = 3, 8
+        found = report(small)
+        assert found.time_s == 100
+        assert found.state == HapticState((102, 103, 104), (105, 106, 107), 100)
+        assert found.force == Force(111, 112, 113)
+        assert (found.overruns, found.flagged) == (3, {"SLEW_LIMITED": 8})
+        assert found.late_us == pytest.approx((7, 7, 7, 7))
+        assert found.period_us == (0, 0, 0, 0)
+
+    def test_the_greatest_of_all_and_not_of_the_last(self, small: Ring) -> None:
+        for at_ns, late_ns, force_n in ((0, 50_000, 3.0), (5_000_000, 2_000, 1.0), (6_000_000, 0, 0.0)):
+            row = np.zeros(len(TICK_COLUMNS))
+            row[11] = force_n
+            cycle.finish(sections(small), row, at_ns, late_ns)
+        found = report(small)
+        assert found.peak_force_n == 3
+        assert found.late_us is not None and found.late_us.most == pytest.approx(50)
+        assert found.period_us is not None and found.period_us.most == pytest.approx(5000)
 
     def test_quantiles(self) -> None:
         counts = np.zeros(100, np.int64)

@@ -82,6 +82,24 @@ class TestArrays:
             assert (stiffness * 0.001 / 2 + damping) * (1 + 2 * delay) < 1.5
             assert softness(settings, 0.001) == 1.0
 
+    @pytest.mark.parametrize("law", [800.0, 0.0])
+    @pytest.mark.parametrize("delay", [0, 1])
+    def test_an_automatic_coupling_is_half_of_what_is_held(self, law: float, delay: int):
+        """And a quarter of the damping. A law behind it is in series; one that says nothing may be as stiff as any."""
+        held, times = 2400 / (1 + 2 * delay), 1 + 2 * delay
+        settings, _ = Safety(coupling="auto", delay_ticks=delay).arrays(FALCON, law)
+        assert settings[guard_layout.COUPLING] == pytest.approx(held / 2)
+        assert settings[guard_layout.COUPLING_DAMPING] == pytest.approx(1.5 / 4 / times)
+        assert settings[guard_layout.COUPLING_LAW] == pytest.approx(law or held)
+        assert settings[guard_layout.STIFFNESS] == pytest.approx(1 / (2 / held + 1 / law) if law else held / 2)
+
+    @pytest.mark.parametrize(
+        ("passivity", "brake", "credit"), [("off", 0, 0), ("coupled", 7.5, 1.2), ("strict", 7.5, 0)]
+    )
+    def test_the_brake_and_its_credit(self, passivity: str, brake: float, credit: float):
+        settings, _ = Safety(passivity=passivity).arrays(FALCON, 800.0)
+        assert settings[[guard_layout.BRAKE, guard_layout.CREDIT]] == pytest.approx([brake, credit])
+
     def test_each_device_has_a_memory_of_its_own(self):
         (one, first), (two, second) = Safety().arrays(FALCON, 1.0), Safety().arrays(FALCON, 1.0)
         np.testing.assert_array_equal(one, two)

@@ -102,6 +102,26 @@ class TestSwap:
         assert np.nanmax(rows[:swapped, 10]) == pytest.approx(0.002, abs=1e-6)
         assert np.nanmin(rows[swapped + 5 :, 10]) == pytest.approx(0.003, abs=1e-6)
 
+    @pytest.mark.parametrize("device", [Circling(z_m=0.0), Circling(z_m=0.0, exchanges=True), Failing(fault="none")])
+    def test_another_scene_fades_in(self, device) -> None:
+        """By the clock of the ticks: late ones have a greater share."""
+        fading = Safety(ramp_s=0.1, stale_s=1.0, max_step_n=10, passivity="off")
+        with Servo(proxy(stiffness_n_per_m=100.0), device, fading) as servo:
+            until(lambda: len(ticks(servo)) > 50 and not int(ticks(servo)[-1, FLAGS]) & TickFlag.RAMPING)
+            servo.swap(proxy(stiffness_n_per_m=100.0))
+            until(lambda: bool((ticks(servo)[:-1, FLAGS].astype(int) & TickFlag.SWAPPED).any()))
+            until(lambda: not int(ticks(servo)[-1, FLAGS]) & TickFlag.RAMPING)
+            servo.stop()
+            rows = ticks(servo)
+        flags = rows[:, FLAGS].astype(int)
+        (swapped,) = np.flatnonzero(flags & TickFlag.SWAPPED)
+        assert not flags[swapped - 1] & TickFlag.RAMPING
+        share = (rows[swapped:, 0] - rows[swapped - 1, 0]) / 0.1
+        assert (((flags[swapped:] & TickFlag.RAMPING) != 0) == (share < 1)).all() or np.abs(share - 1).min() < 1e-6
+        whole = rows[swapped - 1, FORCE][2]
+        assert whole > 0.05
+        np.testing.assert_allclose(rows[swapped:, FORCE][:, 2], np.minimum(share, 1) * whole, rtol=1e-4)
+
     def test_another_law(self) -> None:
         with Servo(proxy(), Circling()) as servo:
             servo.swap(load_method("render", "penalty")().touch(LEVEL))

@@ -11,7 +11,7 @@ from falcon_bus import held_bus, open_on
 from tangible_core.data import NO_FORCE, Force
 from tangible_core.errors import DeviceAbsent, DeviceError
 from tangible_devices.falcon.firmware import NULL
-from tangible_devices.falcon.link import GOODBYES, FalconLink
+from tangible_devices.falcon.link import FalconLink
 from tangible_devices.falcon.packet import GREEN, HOMING, RED
 from tangible_devices.falcon.simulator.bus import Bus
 
@@ -110,8 +110,52 @@ class TestForce:
         with open_on(bus, clock) as link:
             link.write(PUSH)
             sent = recorded(bus, monkeypatch)
-        assert sent[-GOODBYES:] == [NULL] * GOODBYES
+        zero, *goodbyes = sent
+        assert zero[1:13] == b"A" * 12
+        assert goodbyes == [NULL] * 3
         assert bus.units[0].chip.processor.body.torque_counts == (0, 0, 0)
+
+    @pytest.mark.parametrize("lost", [1, 2, 3])
+    def test_a_goodbye_that_is_lost_is_said_again(self, lost: int):
+        """The first packets of the end, the zero force itself among them, never reach the motors."""
+        bus, clock = held_bus()
+        with open_on(bus, clock) as link:
+            link.write(PUSH)
+            write, writes = bus.bulk_write, iter(range(10))
+
+            def lossy(handle: object, ep: int, intf: int, data: array, timeout: int) -> int:
+                if next(writes) < lost:
+                    return len(data)
+                return write(handle, ep, intf, data, timeout)  # pyright: ignore[reportArgumentType]
+
+            bus.bulk_write = lossy  # pyright: ignore[reportAttributeAccessIssue]
+        assert bus.units[0].chip.processor.body.torque_counts == (0, 0, 0)
+
+    def test_a_force_over_the_stated_one_is_scaled_down(self):
+        """Up, the motors could give more."""
+        bus, clock = held_bus()
+        with open_on(bus, clock) as link:
+            link.read()
+            link.write(Force(0.0, 0.0, 100.0))
+            assert np.linalg.norm(link.applied) == pytest.approx(6.09, abs=0.01)
+
+    @pytest.mark.parametrize("ended", ["closed", "failed"])
+    def test_a_closed_link_has_no_force_left_and_makes_none(self, ended: str):
+        bus, clock = held_bus()
+        link = open_on(bus, clock)
+        link.write(PUSH)
+        if ended == "closed":
+            link.close()
+        else:
+            bus.units[0].chip._spoil = lambda said, data: b""
+            with pytest.raises(DeviceError, match="answers no more"):
+                for _ in range(1000):
+                    link.exchange()
+        assert tuple(link.applied) == NO_FORCE
+        _, write, fixed = link.kernels()
+        write(*fixed, *PUSH)
+        assert tuple(link.applied) == NO_FORCE
+        assert fixed[1][1:13].tobytes() == b"A" * 12
 
     def test_nothing_is_left_on_its_way(self):
         bus, clock = held_bus()
@@ -145,6 +189,44 @@ class TestRate:
             assert 0.03 < second.time_s - lost_s < 0.1
             assert link.health().lost >= 1 and first.time_s < second.time_s
             chip._spoil = spoil
+
+    def test_silences_with_answers_between_are_borne(self):
+        """Four at a time, of five that are one too many."""
+        bus, clock = held_bus()
+        with open_on(bus, clock) as link:
+            chip = bus.units[0].chip
+            spoil = chip._spoil
+            for _ in range(3):
+                lost = link.health().lost
+                chip._spoil = lambda said, data: b""
+                while link.health().lost < lost + 4:
+                    link.exchange()
+                chip._spoil = spoil
+                for _ in range(5):
+                    link.exchange()
+            assert link.read().time_s > 0
+
+    def test_silence_is_an_error_after_a_tenth_of_a_second(self):
+        bus, clock = held_bus()
+        with pytest.raises(DeviceError, match="answers no more"), open_on(bus, clock) as link:
+            link.write(PUSH)
+            bus.units[0].chip._spoil = lambda said, data: b""
+            silent_s = clock()
+            for _ in range(100):
+                link.exchange()
+        assert 0.05 < clock() - silent_s < 0.3
+
+    def test_a_position_that_does_not_come_is_not_waited_for_long(self):
+        bus, clock = held_bus()
+        link = open_on(bus, clock)
+        body = bus.units[0].chip.processor.body
+        body._hand.wants = lambda tip, homing, homed: tip[:3]  # pyright: ignore
+        body._homed = 0
+        lost_s = clock()
+        with pytest.raises(DeviceError, match="lost its homing"):
+            for _ in range(5):
+                link.read()
+        assert clock() - lost_s < 0.2
 
     def test_silence_is_an_error(self):
         bus, clock = held_bus()

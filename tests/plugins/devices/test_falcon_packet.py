@@ -62,11 +62,19 @@ def test_only_answers_are_taken_for_packets(data: bytes):
 
 
 @pytest.mark.parametrize("at", range(16))
-@pytest.mark.parametrize("wrong", [0x00, 0x3D, 0x40, 0xFF])
+@pytest.mark.parametrize("wrong", [0x00, 0x3D, 0x40, 0xC1, 0xFF])
 def test_one_impossible_byte_spoils_a_packet(at: int, wrong: int):
     buffer = as_bytes("<HKFAJFKPAAAA\xb1A>")
     buffer[at] = wrong
     assert packet.is_packet(buffer, 0) == (at == 14)  # the meaning of the byte before the last is unknown
+
+
+@pytest.mark.parametrize("at", range(1, 13))
+def test_a_digit_is_one_of_sixteen(at: int):
+    buffer = as_bytes("<HKFAJFKPAAAA\xb1A>")
+    for byte, right in ((0x41, True), (0x50, True), (0x51, False)):
+        buffer[at] = byte
+        assert packet.is_packet(buffer, 0) == right
 
 
 @given(TORQUE, TORQUE, TORQUE)
@@ -78,6 +86,25 @@ def test_no_torque_ever_turns_its_sign(first: float, second: float, third: float
     for wanted, count in zip((first, second, third), held, strict=True):
         assert abs(count) <= packet.MOST_COUNTS
         assert count == 0 or math.copysign(1, count) == math.copysign(1, wanted)
+
+
+@pytest.mark.parametrize("most", [4095.4, 4096.0, 4100.0, 6000.0, 8189.0, 8190.0, 8191.0, 20_000.0, 40_000.0])
+@pytest.mark.parametrize("axis", [0, 1, 2])
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_little_too_much_is_too_much(axis: int, most: float, sign: float):
+    """What the device cannot give by a little, and what wraps its sign, alike; the others come down with it."""
+    wanted = np.full(3, 0.5 * sign * most)
+    wanted[axis] = sign * most
+    *counts, factor = packet.saturated(*wanted)
+    half = round(0.5 * 4095)
+    assert [abs(each) for each in counts] == [4095 if each == axis else pytest.approx(half, abs=1) for each in range(3)]
+    assert np.array_equal(np.sign(counts), [sign] * 3)
+    assert factor == pytest.approx(4095 / most)
+
+
+@pytest.mark.parametrize("most", [0.4, 1.0, 4094.4, 4095.0])
+def test_what_can_be_given_is_left_as_it_is(most: float):
+    assert packet.saturated(most, -most, 0.0) == (round(most), -round(most), 0, 1.0)
 
 
 @given(*[st.floats(-1e6, 1e6)] * 3)

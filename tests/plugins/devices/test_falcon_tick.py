@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 from falcon_streams import buffers
 from tangible_devices.falcon import kinematics, packet, tick
 from tangible_devices.falcon.calibration import LEVER_M, Calibration
-from tangible_devices.falcon.framing import FRESH, NEW
+from tangible_devices.falcon.framing import DOUBTFUL, FRESH, NEW
+from tangible_devices.falcon.velocity import rates
 
 
 class Falcon:
@@ -80,6 +81,15 @@ def test_homing_lost_takes_the_force_at_once_and_force_fades_in_again():
     assert max(map(abs, whole[:3])) > 0
 
 
+@pytest.mark.parametrize(("seconds", "share"), [(0.1, 0.2), (0.25, 0.5), (0.49, 0.98), (0.5, 1.0), (1.0, 1.0)])
+def test_force_fades_in_over_half_a_second(seconds: float, share: float):
+    falcon, counts = Falcon(), counts_at(0, 0, 0)
+    falcon.settle(counts, 0.002)
+    falcon.tell(counts, after_s=seconds)
+    applied = falcon.push(0, 0, 4)[1]
+    assert applied == pytest.approx((0, 0, 4 * share), abs=1e-9)
+
+
 def in_packet(falcon: Falcon) -> list[int]:
     """What goes out next, if nothing else is written."""
     return list(packet.decode(falcon.buffers.packet)[:3])
@@ -128,6 +138,51 @@ def test_a_leap_waits_for_the_next_answer():
     assert falcon.push(0, 0, 5)[1][2] < 0.1, "after a true leap the force fades in"
 
 
+ARM = pytest.mark.parametrize("arm", [0, 1, 2])
+SIGN = pytest.mark.parametrize("sign", [1, -1])
+
+
+@ARM
+@SIGN
+@pytest.mark.parametrize(("after_s", "most"), [(0.001, 18), (0.0005, 10), (0.01, 24), (0.1, 24)])
+def test_how_far_an_answer_may_be_from_where_the_arms_were_going(arm: int, sign: int, after_s: float, most: int):
+    """Of arms at rest: 8 counts, and 1e7 a second squared, up to 24."""
+    for away, taken in ((most, 1), (most + 1, 0)):
+        falcon, here = Falcon(), counts_at(0, 0, 0)
+        falcon.settle(here, 0.05)
+        there = here.copy()
+        there[arm] += sign * away
+        assert falcon.tell(there, after_s=after_s) == taken
+
+
+@ARM
+@SIGN
+@pytest.mark.parametrize(("after_s", "most"), [(0.001, 50), (0.0001, 50), (0.002, 100), (0.01, 128), (1.0, 128)])
+def test_how_far_the_next_answer_may_be_to_confirm_it(arm: int, sign: int, after_s: float, most: int):
+    for away, taken in ((most, 1), (most + 1, 0)):
+        falcon, here = Falcon(), counts_at(0, 0, 0)
+        falcon.settle(here, 0.05)
+        leapt = counts_at(0.02, 0.01, 0.01)
+        assert falcon.tell(leapt) == 0
+        leapt[arm] += sign * away
+        assert falcon.tell(leapt, after_s=after_s) == taken
+
+
+def test_a_doubtful_answer_waits_though_it_is_near():
+    falcon, here = Falcon(), counts_at(0, 0, 0)
+    falcon.settle(here)
+
+    def doubtful() -> int:
+        packet.encode(*map(int, here), 0, falcon.buffers.answer)
+        falcon.buffers.answer[packet.INFO] = packet.ZERO + packet.HOMED
+        falcon.held[tick.NOW] += 0.001
+        falcon.counts[FRESH] = DOUBTFUL
+        return tick.read(*falcon.buffers, falcon.state)
+
+    assert [doubtful(), doubtful(), falcon.tell(here)] == [0, 1, 1]
+    assert falcon.push(0, 0, 5)[1][2] == 5, "where it goes on, no force is lost"
+
+
 def test_angles_that_no_tip_has_give_no_force():
     falcon, counts = Falcon(), counts_at(0, 0, 0)
     falcon.settle(counts)
@@ -135,6 +190,24 @@ def test_angles_that_no_tip_has_give_no_force():
     assert [falcon.tell(impossible) for _ in range(3)] == [0, 0, 0]
     assert falcon.push(0, 0, 5)[0][:3] == [0, 0, 0]
     assert falcon.counts[tick.REFUSED] >= 3
+
+
+@pytest.mark.parametrize("arm", [1, 2, 3])
+def test_a_rate_is_that_of_the_longest_straight_stretch(arm: int):
+    """Counts of an arm, a millisecond each: at rest and then three a tick; and slow, so that they are rounded."""
+
+    def rate(counts: list[int]) -> float:
+        history = np.zeros((16, 4))
+        history[: len(counts), 0] = np.arange(len(counts)) * 0.001
+        history[: len(counts), arm] = counts
+        found = rates(history, len(counts) - 1, len(counts))
+        assert not np.delete(found, arm - 1).any()
+        return found[arm - 1]
+
+    assert rate([0, 0, 0, 0, 3, 6, 9, 12]) == pytest.approx(3000)
+    assert rate([0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5]) == pytest.approx(500, rel=0.1)
+    assert rate([1, 0, 1, 0, 1, 0, 1]) == pytest.approx(0)
+    assert rate([5]) == 0
 
 
 @pytest.mark.parametrize("axis", [0, 1, 2])
@@ -210,6 +283,24 @@ def test_calibration_moves_what_it_says():
     offset = Falcon(Calibration(encoder_offset_deg=(36, 36, 36)))
     offset.settle(counts_at(0, 0, 0), 0.01)
     assert offset.state[1] < -0.0005, "the arms are farther out, and so the tip nearer to the user"
+
+
+def test_each_arm_has_its_own_zero_and_each_motor_its_own_gain():
+    offsets, gains = (34.0, 35.0, 36.5), (0.5, 1.0, 2.0)
+    falcon = Falcon(Calibration(encoder_offset_deg=offsets, motor_gain=gains))
+    place = (0.01, -0.02, 0.015)
+    angles = np.array(kinematics.inverse(place[0], place[2], kinematics.CENTRE_M - place[1]))
+    falcon.settle(np.round((angles - np.radians(offsets)) / kinematics.RAD_PER_COUNT).astype(int))
+    assert falcon.state[:3] == pytest.approx(place, abs=6e-5)
+    *counts, _info = falcon.push(1.0, 1.0, 1.0)[0]
+    rows = kinematics.jacobian(*angles, place[0], place[2], kinematics.CENTRE_M - place[1])
+    torques = np.array(kinematics.torques(rows, (1.0, 1.0, -1.0)))
+    assert counts == pytest.approx(-1e4 * np.multiply(gains, torques), abs=3)
+
+
+def test_the_strongest_motor_bounds_the_stated_force():
+    assert Calibration(motor_gain=(0.5, 1.0, 2.0)).spec().max_force_n == pytest.approx(3.04)
+    assert Calibration(motor_gain=(0.5, 0.5, 0.5)).spec().max_force_n == 8.0
 
 
 def test_axes_name_each_axis_once():

@@ -14,6 +14,7 @@ from tangible_core.data import NO_FORCE, Finding, Force, Unit
 from tangible_core.errors import DeviceAbsent, DeviceError
 from tangible_core.testing import run_checks
 from tangible_devices.force_dimension.force_dimension import ForceDimension
+from tangible_devices.force_dimension.library import done
 
 
 class Library:
@@ -64,7 +65,7 @@ class Library:
 
     def getLinearVelocity(self, out: list[float], ID: int = -1) -> int:
         out[:] = self.velocity or [9.0, 9.0, 9.0]
-        return -1 if self.velocity is None else 0
+        return -1 if self.velocity is None or ID not in self.opened else 0
 
     def getButtonMask(self, ID: int = -1) -> int:
         return 5
@@ -196,6 +197,31 @@ class TestFaults:
         assert dhd.opened == set()
         dhd.gone = False
         ForceDimension().open().close()
+
+    @pytest.mark.parametrize("result", [-1, -2, -1000])
+    def test_any_negative_result_is_a_failure_and_no_other(self, dhd: Library, result: int):
+        with pytest.raises(DeviceError, match="pushing: the words of the library; push again"):
+            done(dhd, result, "pushing", "push again")
+        assert [done(dhd, each, "pushing", "") for each in (0, 1, 2)] == [0, 1, 2]
+
+    @pytest.mark.parametrize("place", [0, 1, 2])
+    @pytest.mark.parametrize("bad", [float("nan"), float("inf")])
+    def test_a_velocity_that_is_none(self, dhd: Library, place: int, bad: float):
+        dhd.velocity = [0.0, 0.0, 0.0]
+        dhd.velocity[place] = bad
+        link = ForceDimension().open()
+        with pytest.raises(DeviceError, match="its position is"):
+            link.read()
+        link.close()
+
+    def test_what_is_held_when_a_force_cannot_be_set_is_not_known_to_be_any(self, dhd: Library):
+        link = ForceDimension().open()
+        link.write(Force(0.0, 0.0, 1.0))
+        dhd.gone = True
+        with pytest.raises(DeviceError, match="setting its force"):
+            link.write(Force(0.0, 0.0, 2.0))
+        assert link.applied == NO_FORCE
+        link.close()
 
     def test_a_position_that_is_none(self, dhd: Library):
         dhd.position = [0.0, float("nan"), 0.0]

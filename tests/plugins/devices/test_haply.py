@@ -7,13 +7,16 @@ from collections.abc import Iterator
 from threading import Thread
 
 import pytest
+from websockets.sync.client import ClientConnection
 from websockets.sync.server import ServerConnection, serve
 
 from tangible_core.data import NO_FORCE, Finding, Force, Unit
 from tangible_core.errors import DeviceAbsent, DeviceError
 from tangible_core.testing import run_checks
 from tangible_devices.haply.haply import Haply
+from tangible_devices.haply.link import HaplyLink
 from tangible_devices.haply.mock_service import MockService, circling
+from tangible_devices.haply.service import Answer, Session
 
 ZERO = {"x": 0.0, "y": 0.0, "z": 0.0}
 
@@ -108,7 +111,97 @@ class TestMessages:
         assert ((x1 - x) / 1e-6, (y1 - y) / 1e-6) == pytest.approx((vx, vy), rel=1e-3)
 
 
+class Told:
+    """A session that writes down what it is asked, and fails from some step on."""
+
+    def __init__(self) -> None:
+        self.steps: list[object] = []
+        self.owed, self.fails = 0, False
+
+    @property
+    def waits(self) -> bool:
+        return self.owed > 0
+
+    def send(self, device_id: str, force_n: tuple[float, float, float]) -> None:
+        self._step(tuple(force_n))
+        self.owed += 1
+
+    def newest(self, device_id: str) -> Answer:
+        self._step("answer")
+        self.owed = 0
+        return Answer((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0)
+
+    def close(self) -> None:
+        self.steps.append("close")
+
+    def _step(self, what: object) -> None:
+        self.steps.append(what)
+        if self.fails:
+            raise DeviceError("the service hung up; open the device again")
+
+
+class TestSteps:
+    """A link and what it asks of its session, in order."""
+
+    def told(self) -> tuple[HaplyLink, Told]:
+        told = Told()
+        return HaplyLink(told, "049D", (0.0, 0.0, 0.0), 5.0), told  # pyright: ignore[reportArgumentType]
+
+    def test_no_more_than_one_answer_is_owed(self):
+        link, told = self.told()
+        for size in (1.0, 2.0, 3.0):
+            link.write(Force(0.0, 0.0, size))
+        link.read()
+        assert told.steps == [(0, 0, 1), "answer", (0, 0, 2), "answer", (0, 0, 3), "answer"]
+
+    def test_at_the_end_the_zero_is_answered_before_it_hangs_up(self):
+        link, told = self.told()
+        link.write(Force(0.0, 0.0, 1.0))
+        del told.steps[:]
+        link.close()
+        link.close()
+        assert told.steps == ["answer", (0, 0, 0), "answer", "close"]
+
+    @pytest.mark.parametrize("call", ["read", "write"])
+    def test_a_force_that_failed_is_none(self, call: str):
+        link, told = self.told()
+        link.write(Force(0.0, 0.0, 1.0))
+        assert link.applied == (0, 0, 1)
+        told.fails = True
+        with pytest.raises(DeviceError, match="hung up"):
+            link.read() if call == "read" else link.write(Force(0.0, 0.0, 2.0))
+        assert link.applied == NO_FORCE
+        link.close()
+        assert told.steps[-1] == "close"
+        assert link.applied == NO_FORCE
+
+
 class TestFaults:
+    def test_the_newest_answer_is_the_last_of_those_owed(self):
+        places = iter([(float(place), 0.0, 0.0) for place in range(10)])
+        with MockService(motion=lambda _: (next(places), (0.0, 0.0, 0.0))) as service:
+            session = Session(service.uri, 5.0)
+            for _ in range(3):
+                session.send("049D", (0.0, 0.0, 0.0))
+            assert session.newest("049D").position_m == (3, 0, 0)
+            assert not session.waits
+            session.close()
+
+    def test_it_waits_for_an_answer_as_long_as_the_option_says(
+        self, service: MockService, monkeypatch: pytest.MonkeyPatch
+    ):
+        waited: list[float | None] = []
+        recv = ClientConnection.recv
+
+        def recorded(self: ClientConnection, timeout: float | None = None) -> object:
+            waited.append(timeout)
+            return recv(self, timeout)
+
+        monkeypatch.setattr(ClientConnection, "recv", recorded)
+        with Haply(uri=service.uri, timeout_s=7.5).open() as link:
+            link.read()
+        assert set(waited) == {7.5}
+
     def test_without_a_service_it_says_what_to_start(self):
         with socket.socket() as taken:
             taken.bind(("127.0.0.1", 0))

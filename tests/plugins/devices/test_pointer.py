@@ -9,6 +9,7 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 from threading import Event, Thread
+from types import ModuleType
 
 import numpy as np
 import pytest
@@ -21,10 +22,10 @@ from tangible_core.data import NO_FORCE, Force, HapticState
 from tangible_core.errors import ConfigError, DeviceError
 from tangible_core.kernels import Address
 from tangible_core.mapping import WorkspaceMapping, mapped
-from tangible_devices.pointer import PointerClient, channel
+from tangible_devices.pointer import PointerClient, channel, kernels
 from tangible_devices.pointer.channel import Channel, checksum, packed, unpacked
 from tangible_devices.pointer.following import follow, parse
-from tangible_devices.pointer.pointer import HIGH_M, Pointer
+from tangible_devices.pointer.pointer import HIGH_M, Pointer, PointerLink
 
 TANGIBLE = str(Path(sys.executable).with_name("tangible"))
 words = st.lists(st.integers(0, 2**64 - 1), min_size=1, max_size=9)
@@ -100,6 +101,17 @@ class TestExchange:
             assert client.force() == (0.5, 0.25, 0.125)
 
 
+def before_a_device(force_n: tuple[float, float, float]) -> Channel:
+    """The memory as a device and a client that were killed leave it; a client's hold on it."""
+    left = Channel("pointer", "device")
+    left.put(channel.SAMPLE, 7, (0.0,) * 7)
+    left.put(channel.FORCE, 7, force_n)
+    for side in (channel.DEVICE_OPEN, channel.CLIENT_OPEN):
+        left.set_flag(side, True)
+    left.close()
+    return Channel("pointer", "client")
+
+
 class TestNobody:
     def test_without_a_client_the_tip_is_high_above(self, link: CompiledLink):
         assert link.read()[:2] == (HIGH_M, (0.0, 0.0, 0.0))
@@ -145,6 +157,83 @@ class TestNobody:
             assert isinstance(link, CompiledLink)
             assert ticked(link)[0] == 0
 
+    def test_a_client_that_comes_back_is_believed_when_it_sends(self, link: CompiledLink):
+        with PointerClient() as client:
+            client.send((0.0, 0.0, 0.0), 3)
+            assert ticked(link)[0] == 1
+        assert ticked(link)[1].tolist() == [*HIGH_M, 0, 0, 0, 0]
+        link.kernels().fixed[0][channel.CLIENT_OPEN] = 1  # who is there, and has said nothing
+        assert ticked(link)[0] == 0
+        with PointerClient() as client:
+            client.send((0.1, 0.0, 0.0))
+            assert ticked(link)[1][0] == 0.1
+
+    def test_the_next_client_s_first_sample_is_new(self, link: CompiledLink):
+        for x in (0.1, 0.2):
+            with PointerClient() as client:
+                client.send((x, 0.0, 0.0), velocity_m_per_s=(0.0, 0.0, 0.0))
+                assert ticked(link)[1][0] == x
+                assert link.read().position_m[0] == x
+
+    def test_a_device_that_is_closed_shows_no_force(self, link: CompiledLink):
+        link.write(Force(0.0, 0.0, 1.0))
+        link.close()
+        shown = Channel("pointer", "client")
+        assert shown.take(channel.FORCE, channel.FORCE_WORDS)[1] == (0, 0, 0)
+        assert not shown.flag(channel.DEVICE_OPEN)
+        shown.close()
+
+    def test_a_device_that_opens_shows_no_force_and_hears_nothing_of_before(self):
+        shown = before_a_device(force_n=(0.0, 0.0, 2.0))
+        with Pointer().open() as link:
+            assert shown.take(channel.FORCE, channel.FORCE_WORDS)[1] == (0, 0, 0)
+            assert isinstance(link, CompiledLink)
+            assert ticked(link)[0] == 0
+            assert link.read().position_m == HIGH_M
+        shown.close()
+
+    def test_until_it_shows_no_force_it_is_not_open(self):
+        """What a killed one left says that it is: a client would be shown its last force."""
+        shown = before_a_device(force_n=(0.0, 0.0, 2.0))
+        open_then: list[bool] = []
+
+        class Looked(ModuleType):
+            def __getattr__(self, name: str) -> object:
+                if name == "write":
+                    open_then.append(shown.flag(channel.DEVICE_OPEN))
+                return getattr(kernels, name)
+
+        PointerLink(Looked("kernels"), Channel("pointer", "device"), 0.1, 8.0).close()
+        assert open_then[0] is False
+        shown.close()
+
+    def test_the_last_of_a_killed_client_is_not_believed_from_the_first_read_on(self):
+        """As long as a client may be silent, the last place of one that was killed would be a place."""
+        shown = before_a_device(force_n=(0.0, 0.0, 0.0))
+        with Pointer(stale_after_s=10.0).open() as link:
+            assert isinstance(link, CompiledLink)
+            assert [ticked(link)[0] for _ in range(3)] == [0, 0, 0]
+            assert link.read().position_m == HIGH_M
+        shown.close()
+
+    @pytest.mark.parametrize("size", [8.1, 1e3, 1e200])
+    def test_a_force_over_the_device_s_is_not_shown(self, link: CompiledLink, size: float):
+        link.write(Force(0.0, size, 0.0))
+        assert link.applied == pytest.approx((0, 8, 0))
+        link.write(Force(0.0, size, float("nan")))
+        assert link.applied == NO_FORCE
+
+    def test_every_force_has_another_number(self, link: CompiledLink, monkeypatch: pytest.MonkeyPatch):
+        """By which a client tells a device that lives from one that shows its last force for ever."""
+        with PointerClient() as client:
+            link.write(Force(0.0, 0.0, 1.0))
+            assert client.force() == (0, 0, 1)
+            now = time.monotonic()
+            monkeypatch.setattr(time, "monotonic", lambda: now + 0.6)
+            assert client.force() == NO_FORCE
+            link.write(Force(0.0, 0.0, 1.0))
+            assert client.force() == (0, 0, 1)
+
     def test_a_silent_device_shows_no_force(self, link: CompiledLink, monkeypatch: pytest.MonkeyPatch):
         with PointerClient() as client:
             link.write(Force(0.0, 0.0, 1.0))
@@ -162,6 +251,18 @@ class TestNobody:
             assert ticked(link)[0] == 0
             assert np.isfinite(link.read().position_m).all()
 
+    @pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
+    @pytest.mark.parametrize("place", range(7))
+    def test_no_part_of_it_may_be_nonsense(self, link: CompiledLink, place: int, bad: float):
+        good = [0.01, 0.02, 0.03, 1.0, 2.0, 3.0, 5.0]
+        with PointerClient() as client:
+            client.send((0.0, 0.0, 0.0), velocity_m_per_s=(0.0, 0.0, 0.0))
+            client._channel.put(channel.SAMPLE, 2**63, (*good[:place], bad, *good[place + 1 :]))
+            assert ticked(link)[0] == 0
+            assert link.read().position_m == HIGH_M, "nothing was heard yet"
+            client._channel.put(channel.SAMPLE, 2**63 + 1, tuple(good))
+            assert ticked(link)[1].tolist() == good
+
     @pytest.mark.parametrize("bad", [(np.nan, 0, 0), (0, np.inf, 0), (0, 0), (0, 0, 0, 0)])
     def test_a_client_sends_only_positions(self, link: CompiledLink, bad: tuple[float, ...]):
         with PointerClient() as client, pytest.raises(DeviceError, match="three finite metres"):
@@ -171,8 +272,6 @@ class TestNobody:
 class TestTorn:
     @given(words)
     def test_the_kernel_s_checksum_is_python_s(self, block: list[int]):
-        from tangible_devices.pointer import kernels
-
         assert kernels.checksum(np.array(block, np.uint64), 0, len(block)) == checksum(tuple(block))
 
     @given(st.data())
@@ -214,6 +313,36 @@ class TestTorn:
         finally:
             stop.set()
             thread.join()
+
+    @pytest.mark.parametrize("bit", [0, 63])
+    @pytest.mark.parametrize("word", range(channel.SAMPLE_WORDS + 1))
+    def test_a_block_with_one_bit_of_another_is_no_position(self, link: CompiledLink, word: int, bit: int):
+        kernels = link.kernels()
+        words = kernels.fixed[0]
+        with PointerClient() as client:
+            client.send((0.5, 0.25, 0.125), 1, (0.5, 0.25, 0.125))
+            assert ticked(link)[0] == 1
+            words[channel.SAMPLE + word] ^= np.uint64(1 << bit)
+            assert ticked(link)[0] == 0
+            assert link.read().position_m == HIGH_M
+            words[channel.SAMPLE + word] ^= np.uint64(1 << bit)
+            assert ticked(link)[0] == 1
+            assert link.read().position_m == (0.5, 0.25, 0.125)
+
+    @pytest.mark.parametrize("word", range(channel.FORCE_WORDS + 1))
+    def test_a_force_with_one_bit_of_another_is_none(self, link: CompiledLink, word: int):
+        with PointerClient() as client:
+            link.write(Force(1.0, 2.0, 3.0))
+            assert client.force() == (1, 2, 3)
+            client._channel.memory[(channel.FORCE + word) * 8 + 3] ^= 16
+            assert client.force() == NO_FORCE
+
+    def test_a_block_that_is_being_written_is_read_again(self, link: CompiledLink, monkeypatch: pytest.MonkeyPatch):
+        with PointerClient() as client:
+            link.write(Force(1.0, 2.0, 3.0))
+            torn = iter([None] * 7)
+            monkeypatch.setattr(channel, "unpacked", lambda block: next(torn, unpacked(block)))
+            assert client.force() == (1, 2, 3)
 
     def test_a_block_left_half_written_is_no_force(self, link: CompiledLink):
         with PointerClient() as client:

@@ -1,0 +1,273 @@
+"""The three loops on a clock that is made up: the same ticks from each, none made up for, no force for what is late."""
+
+import ctypes
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+from numba import float64, int32, int64, njit, types, uintp, void
+
+from tangible_core import HapticSurface, load_method
+from tangible_core.compiled import CompiledLink, LinkKernels
+from tangible_core.data import TICK_COLUMNS, Force, HapticState, TickFlag
+from tangible_core.interfaces import Link, Touch
+from tangible_core.servo import Ring, Safety, clock, loop
+from tangible_core.servo.reports import report
+from tangible_core.servo.ring import LAST, LEAD_NS, PERIOD_NS
+from tangible_core.testing.loop_devices import SPEC
+
+PERIOD = 1_000_000
+SECOND = 1_000_000_000
+START = 7 * SECOND + 3
+AT_ONCE = Safety(ramp_s=0, max_step_n=10)
+HEIGHT_M = 2**-9  # exact in float32
+LEVEL = HapticSurface.from_heights(np.full((16, 16), HEIGHT_M, np.float32))
+FLAGS, FORCE = TICK_COLUMNS.index("flags"), slice(TICK_COLUMNS.index("fx_n"), TICK_COLUMNS.index("fx_n") + 3)
+LOOPS = pytest.mark.parametrize("how", ["whole", "exchanges", "python"])
+KERNEL = (int64[::1], float64[::1])
+
+
+@njit(int64(*KERNEL, float64[::1]), nogil=True)
+def read(counts, force_n, state):
+    """A tip that sinks by 10 um a read, to and fro along x; none is fresh from one read to another."""
+    counts[0] += 1
+    at = counts[0]
+    if counts[1] <= at < counts[2]:
+        return 0
+    state[0], state[1], state[2] = 1e-4 * (at % 7), 0.001, HEIGHT_M - 1e-5 * at
+    state[3], state[4], state[5], state[6] = 0.01 * (at % 5), 0.0, -0.01, at % 3
+    return 1
+
+
+@njit(void(*KERNEL, float64, float64, float64), nogil=True)
+def write(counts, force_n, fx, fy, fz):
+    force_n[0], force_n[1], force_n[2] = fx, fy, fz
+
+
+class Sinking(CompiledLink):
+    """A device of kernels, which exchanges or not."""
+
+    def __init__(self, exchanges: bool, first_waiting: int = 0, fresh_again: int = 0) -> None:
+        self.fixed = np.array([0, first_waiting, fresh_again]), np.zeros(3)
+        self._exchanges = exchanges
+
+    def kernels(self) -> LinkKernels:
+        return LinkKernels(read, write, self.fixed)
+
+    def read(self) -> HapticState:
+        state = np.zeros(7)
+        read(*self.fixed, state)
+        x, y, z, vx, vy, vz, buttons = state.tolist()
+        return HapticState((x, y, z), (vx, vy, vz), 0.0, int(buttons))
+
+    def write(self, force: Force) -> None:
+        write(*self.fixed, *force)
+
+    @property
+    def applied(self) -> Force:
+        return Force(*self.fixed[1].tolist())
+
+    @property
+    def exchanges(self) -> bool:
+        return self._exchanges
+
+    def exchange(self) -> None:
+        pass
+
+    def close(self) -> None:
+        self.write(Force(0.0, 0.0, 0.0))
+
+
+class Plain(Link):
+    """The same without its kernels."""
+
+    def __init__(self, link: Sinking) -> None:
+        self._link = link
+
+    def read(self) -> HapticState:
+        return self._link.read()
+
+    def write(self, force: Force) -> None:
+        self._link.write(force)
+
+    @property
+    def applied(self) -> Force:
+        return self._link.applied
+
+    def close(self) -> None:
+        self._link.close()
+
+
+class Clock:
+    """Time that goes on while somebody sleeps, at some sleeps by more than was asked for or by less, and when read."""
+
+    def __init__(self) -> None:
+        self.now, self.reads, self.read_ns = START, 0, 0
+        self.wakes: list[int] = []
+        """When each sleep was to end."""
+        self.over: dict[int, int] = {}
+        """By how much longer each of some sleeps takes, nanoseconds."""
+
+    def monotonic_ns(self) -> int:
+        self.reads += 1
+        self.now += self.read_ns
+        return self.now
+
+    def until(self, wake_ns: int) -> None:
+        self.now = wake_ns + self.over.get(len(self.wakes), 0)
+        self.wakes.append(wake_ns)
+
+    def sleep(self, seconds: float) -> None:
+        self.until(self.now + round(seconds * SECOND))
+
+
+class Foreign(types.WrapperAddressProtocol):
+    """A Python function where compiled code calls one of the C library."""
+
+    def __init__(self, function, signature) -> None:
+        self.kept = ctypes.CFUNCTYPE(ctypes.c_int32, *[ctypes.c_size_t] * len(signature.args))(function)
+        self._signature = signature
+
+    def signature(self):
+        return self._signature
+
+    def __wrapper_address__(self):
+        return ctypes.cast(self.kept, ctypes.c_void_p).value
+
+
+@pytest.fixture
+def made_up(monkeypatch: pytest.MonkeyPatch) -> Clock:
+    """The clock that Python's loops ask, and compiled ones."""
+    time, words = Clock(), np.zeros(2, np.int64)
+
+    def tell(which: int, place: int) -> int:
+        words[:] = divmod(time.monotonic_ns(), SECOND)
+        return 0
+
+    def sleep(which: int, flags: int, place: int, rest: int) -> int:
+        time.until(int(words[0]) * SECOND + int(words[1]))
+        return 0
+
+    foreign = Foreign(tell, int32(int32, uintp)), Foreign(sleep, int32(int32, int32, uintp, uintp))
+    monkeypatch.setattr(loop, "time", time)
+    monkeypatch.setattr(clock, "clock", lambda: (words, *foreign))
+    monkeypatch.setattr(clock, "SLEEPS", True)
+    return time
+
+
+@pytest.fixture
+def ring() -> Iterator[Ring]:
+    made = Ring.create(128)
+    yield made
+    made.remove()
+
+
+def felt(
+    ring: Ring, how: str, ticks: int, safety: Safety = AT_ONCE, link: Sinking | None = None, real_time: bool = False
+) -> np.ndarray:
+    """The rows of so many ticks of one of the loops."""
+    law: Touch = load_method("render", "penalty")(stiffness_n_per_m=400.0).touch(LEVEL)
+    settings, memory = safety.arrays(SPEC, 400.0)
+    ring.guard[: memory.size] = memory
+    ring.header[[PERIOD_NS, LAST]] = PERIOD, ticks
+    tip = link or Sinking(how == "exchanges")
+    ready = loop.prepare(Plain(tip) if how == "python" else tip, law, ring, settings)
+    loop.start_clock(ring.header, real_time)
+    ready.run()
+    rows, count = ring.since(0)
+    assert (len(rows), count) == (ticks, ticks)
+    return rows
+
+
+@LOOPS
+def test_a_late_tick_is_an_overrun_and_those_that_it_missed_are_skipped(how: str, made_up: Clock, ring: Ring):
+    """The sixth tick is 3.5 periods late: three were missed, and the next one is half a period later, in step."""
+    made_up.over[5] = 7 * PERIOD // 2
+    rows = felt(ring, how, 12)
+    due = [0, 1, 2, 3, 4, 8.5, 9, 10, 11, 12, 13, 14]
+    np.testing.assert_allclose(rows[:, 0], np.multiply(due, 1e-3), atol=1e-12)
+    np.testing.assert_allclose(rows[:, 1], [0] * 5 + [0.0035] + [0] * 6, atol=1e-12)
+    overrun = rows[:, FLAGS].astype(int) & TickFlag.OVERRUN
+    assert np.flatnonzero(overrun).tolist() == [5]
+    said = report(ring)
+    assert said.overruns == 3
+    assert said.late_us is not None and said.late_us.most == pytest.approx(3500)
+    assert said.period_us is not None and said.period_us.most == pytest.approx(4500)
+
+
+@LOOPS
+@pytest.mark.parametrize(("late_ns", "overrun"), [(PERIOD - 1, False), (PERIOD, True)])
+def test_a_period_late_is_an_overrun(how: str, late_ns: int, overrun: bool, made_up: Clock, ring: Ring):
+    made_up.over[3] = late_ns
+    rows = felt(ring, how, 6)
+    assert bool(int(rows[3, FLAGS]) & TickFlag.OVERRUN) == overrun
+    assert report(ring).overruns == overrun
+
+
+@LOOPS
+def test_a_position_that_comes_too_late_gives_no_force(how: str, made_up: Clock, ring: Ring):
+    """30 ms between two ticks, where 20 are allowed: zero, and the force fades in again."""
+    made_up.over[20] = 30 * PERIOD
+    rows = felt(ring, how, 40, Safety(ramp_s=0.004, max_step_n=10))
+    flags = rows[:, FLAGS].astype(int)
+    assert np.flatnonzero(flags & TickFlag.STALE).tolist() == [20]
+    assert not rows[20, FORCE].any()
+    assert np.flatnonzero(flags & TickFlag.RAMPING).tolist() == [0, 1, 2, 21, 22, 23]
+    assert rows[19, FORCE].any() and rows[21, FORCE].any()
+
+
+@LOOPS
+def test_the_guard_is_told_each_period(how: str, made_up: Clock, ring: Ring):
+    """A force that fades in over 10 ms is half of itself after five, however many ticks they had."""
+    made_up.over[2] = 2 * PERIOD
+    rows = felt(ring, how, 12, Safety(ramp_s=0.01, max_step_n=10, passivity="off"))
+    depth = HEIGHT_M - rows[:, 4]
+    share = np.minimum(1, np.add(rows[:, 0], 0.001) / 0.01)
+    np.testing.assert_allclose(rows[:, FORCE][:, 2], share * 400 * depth, rtol=1e-9)
+
+
+@pytest.mark.parametrize("how", ["exchanges", "python"])
+@pytest.mark.parametrize("safety", [Safety(), Safety(ramp_s=0, coupling="auto", passivity="strict", delay_ticks=2)])
+def test_each_loop_gives_the_same_ticks(how: str, safety: Safety, made_up: Clock, ring: Ring):
+    made_up.over = {7: 300_000, 13: 3 * PERIOD, 30: 25 * PERIOD}
+    whole = felt(ring, "whole", 100, safety)
+    made_up.now, made_up.wakes = START, []
+    other = Ring.create(128)
+    try:
+        np.testing.assert_allclose(felt(other, how, 100, safety), whole, rtol=1e-12, atol=1e-12)
+    finally:
+        other.remove()
+    assert whole[-1, FORCE].any()
+
+
+@pytest.mark.parametrize("how", ["whole", "exchanges"])
+def test_without_a_fresh_position_the_force_is_held_until_it_is_stale(how: str, made_up: Clock, ring: Ring):
+    """The tip of the ninth read is the last for 30 ms: its force stays for 20, and then is none."""
+    tip = Sinking(how == "exchanges", 10, 40)
+    rows = felt(ring, how, 50, Safety(ramp_s=0, max_step_n=10, stale_s=0.0205), tip)
+    flags = rows[:, FLAGS].astype(int)
+    assert (rows[9:29, FORCE] == rows[8, FORCE]).all() and rows[8, FORCE].any()
+    assert not (flags[9:29] & TickFlag.STALE).any()
+    assert not rows[29:40, FORCE].any()
+    assert (flags[29:40] & TickFlag.STALE).all()
+    assert rows[40, FORCE].any() and tip.applied == tuple(rows[-1, FORCE])
+
+
+@LOOPS
+def test_who_may_spin_wakes_early_and_waits_for_the_time_awake(how: str, made_up: Clock, ring: Ring):
+    made_up.read_ns = 500
+    ring.header[LEAD_NS] = 50_000
+    rows = felt(ring, how, 5, real_time=True)
+    first = min(made_up.wakes)
+    assert first == pytest.approx(START + PERIOD - 50_000, abs=2_000)
+    assert made_up.reads > 5 * 50, "it reads the clock until the time has come"
+    assert ((rows[:, 1] >= 0) & (rows[:, 1] <= 1e-6)).all()
+
+
+def test_a_sleep_that_a_signal_ends_is_slept_on(made_up: Clock, ring: Ring):
+    made_up.read_ns, made_up.over = 1, {2: -600_000}
+    rows = felt(ring, "whole", 5)
+    assert len(made_up.wakes) == 6
+    assert made_up.wakes[2] == made_up.wakes[3]
+    assert made_up.reads < 100
+    np.testing.assert_allclose(rows[:, 0], np.arange(5) * 1e-3, atol=1e-6)

@@ -20,7 +20,7 @@ from tangible_core.haptic_textures import (
 from tangible_core.haptic_textures.forces import STATE, along, texture_force
 from tangible_core.haptic_textures.heights import GONE, WHOLE, kept, texture_height
 from tangible_core.haptic_textures.spectrum import line_spectrum
-from tangible_core.haptic_textures.table import DRAG, STIFFNESS
+from tangible_core.haptic_textures.table import DRAG, STIFFNESS, SWING
 from tangible_core.haptic_textures.waves import WAVES, waves
 from tangible_core.materials import library
 
@@ -191,6 +191,8 @@ class TestHeights:
         assert texture_height(table, 0, 0.01, 0.0, 0.0, 0.0, TICK_S)[0] != 0
         assert list(table[:, STIFFNESS]) == [0, 500, 0]
         assert list(table[:, DRAG]) == [0, 0, library()["water"].drag_n_s_per_m]
+        swings = compile_textures([RUBBER, replace(RUBBER, static_friction=5.0)])[:, SWING]
+        assert swings == pytest.approx([0.2, 0.9])  # a friction that comes down to 0 would have to stay there
         assert not table.flags.writeable
         assert compile_textures([]).shape == (0, table.shape[1])
 
@@ -456,6 +458,15 @@ class TestSpectrum:
         assert power.sum() == pytest.approx(1)
         assert np.all(np.diff(wavelength_m) < 0)
 
+    def test_a_line_is_blurred_over_an_eighth_of_an_octave(self):
+        for spectrum in (
+            line_spectrum(np.cos(2 * np.pi * np.arange(4000) / 10), 0.1),
+            radial_spectrum(np.cos(2 * np.pi * np.arange(512) / 8) * np.ones((512, 1)), 0.1),
+        ):
+            octaves, power = np.log2(spectrum[0]), spectrum[1]
+            middle = octaves @ power
+            assert np.sqrt((octaves - middle) ** 2 @ power) == pytest.approx(1 / 8, rel=0.05)
+
     def test_a_plane_has_none(self):
         spectrum = radial_spectrum(np.zeros((16, 16), np.float32), 0.01)
         assert not spectrum[1].any()
@@ -490,11 +501,12 @@ class TestStroke:
         )
         assert not np.any(stroke(lines, speed_m_per_s, 2.0, 0.005, 0.0005, 0.0).height_m - ROUGH_M)
 
-    def test_a_stroke_is_felt_at_its_own_rate(self):
-        """At 300 mm/s a wave of 1 mm spans 3.3 ticks of 1 ms, and is nearly gone, but 33 of 0.1 ms."""
-        lines = replace(PLAIN, texture="periodic", anisotropy=1.0, direction_deg=90.0)
-        assert np.ptp(stroke(lines, 0.3, period_s=1e-4).height_m) == pytest.approx(2 * ROUGH_M, rel=0.01)
-        assert np.ptp(stroke(lines, 0.3, period_s=1e-3).height_m[1:]) < 0.4 * ROUGH_M
+    @pytest.mark.parametrize("period_s", [1e-3, 1e-4])
+    def test_a_stroke_is_felt_at_its_own_rate(self, period_s: float):
+        water = library()["water"]
+        felt = stroke(water, 0.1, period_s=period_s)
+        friction_n = 0.1 * water.drag_n_s_per_m + water.dynamic_friction
+        assert felt.force_n[1:] == pytest.approx(-friction_n)
 
     def test_a_texture_that_brings_its_friction_is_not_given_it_twice(self):
         assert stroke(RUBBER, 0.02).force_n.min() == pytest.approx(-RUBBER.static_friction, rel=0.02)

@@ -216,6 +216,15 @@ class TestWays:
             x, y, z = hand if held else (0.0, 0.0, hand[2])
             assert at(touch, *hand) == pytest.approx((-K * x, -K * y, K * (0.01 - z)), abs=1e-5)
 
+    def test_in_a_tick_it_goes_two_millimetres_at_most(self):
+        """Eight steps of a quarter: after a hand that moved by 4.5 mm it arrives in the third tick."""
+        touch = Proxy(damping_n_s_per_m=1e-300).touch(LEVEL)
+        at(touch, 0.0, 0.0, 0.009)
+        for behind_m in (0.0025, 0.0005, 0.0):
+            assert at(touch, 0.0027, 0.0036, 0.009) == pytest.approx(
+                (-K * behind_m * 0.6, -K * behind_m * 0.8, K * 0.001), abs=1e-6
+            )
+
     def test_a_wall_between_level_grounds_is_not_leapt_over(self):
         """The short cut on level ground is taken in the tile alone that the proxy is in."""
         heights = np.full((256, 256), 0.004)

@@ -1,7 +1,6 @@
 """The command line as a user meets it: whole processes, what they print, and their exit codes."""
 
 import json
-import os
 import signal
 import subprocess
 import sys
@@ -11,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from ctrl_c import HEARING
 from tangible_core.commands import show
 from tangible_core.data import Outcome
 
@@ -287,16 +287,22 @@ def test_a_killed_recording_is_readable(folder: Path):
 
 
 def test_ctrl_c_ends_with_130_and_nothing_half_written(folder: Path):
-    words = [TANGIBLE, "feel", "p.yaml", "--seconds", "600", "--record", "hand.npz", "--json"]
-    process = subprocess.Popen(words, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                               env={**os.environ, "PYTHONUNBUFFERED": "1"})  # fmt: skip
-    time.sleep(0.2)
-    while not (folder / "hand.npz").exists() and process.poll() is None:
-        time.sleep(0.5)
+    words = [*HEARING, TANGIBLE, "feel", "p.yaml", "--seconds", "600", "--record", "hand.npz", "--json"]
+    process = subprocess.Popen(words, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    growing = folder / "hand.npz.nc"
+    try:
+        end = time.monotonic() + 200
+        while not growing.exists() or growing.stat().st_size < 50_000:  # until it feels
+            assert process.poll() is None and time.monotonic() < end
+            time.sleep(0.05)
         process.send_signal(signal.SIGINT)
-    _, errors = process.communicate(timeout=60)
+        _, errors = process.communicate(timeout=60)
+    finally:
+        process.kill()
     assert process.returncode == 130, errors
-    assert errors == "interrupted; what was finished is kept\n"
+    assert errors.splitlines()[-1] == "interrupted; what was finished is kept"
+    assert "Traceback" not in errors
+    assert (folder / "hand.npz").exists() and not growing.exists()
     assert not [path for path in folder.iterdir() if path.name.startswith(".")]
 
 

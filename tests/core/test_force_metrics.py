@@ -76,11 +76,11 @@ def test_angles_are_exact_small_and_large(angle: float, size: float):
 
 
 def test_steps():
-    force = np.zeros((101, 3))
-    force[50:] = (0, 3, 4)
-    force[:50, 0] = np.arange(50) / 1000
-    assert force_steps(force)["step_n"] == pytest.approx(math.hypot(5, 0.049))
-    assert force_steps(force)["step_p99_n"] == pytest.approx(0.001, rel=0.1, abs=0.1)
+    force = np.zeros((1001, 3))
+    force[:20, 0] = np.arange(20) / 1000  # 19 steps of a thousandth, one of 5, and 980 of none
+    force[20:] = (0.019, 3, 4)
+    assert force_steps(force)["step_n"] == pytest.approx(5)
+    assert force_steps(force)["step_p99_n"] == pytest.approx(0.001, rel=1e-9)
     assert force_steps(np.repeat(rows((1, 2, 3)), 4, axis=0)) == {"step_n": 0, "step_p99_n": 0}
 
 

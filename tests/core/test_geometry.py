@@ -128,6 +128,13 @@ def test_with_calibration_heights_are_linear_in_depth():
     np.testing.assert_allclose(relief.height_m, [[0.03, 0.02, 0]] * 500, atol=1e-7)
 
 
+def test_the_offset_of_the_principal_points_counts():
+    """Of a camera whose d + offset is 10, 5 and 2.5 px: at 1, 2 and 4 m."""
+    camera = Calibration(focal_px=100, baseline_m=0.1, offset_px=30)
+    relief = make_relief(disparity(*[[-20, -25, -27.5]] * 500), camera, 0.06, 0.03)
+    np.testing.assert_allclose(relief.height_m, [[0.03, 0.02, 0]] * 500, atol=1e-7)
+
+
 def test_a_relative_disparity_has_no_depth_even_with_a_calibration():
     camera = Calibration(focal_px=100, baseline_m=0.1)
     relief = make_relief(disparity(*[[0, 0.5, 1]] * 500, unit="relative"), camera, 0.06, 0.02)
@@ -149,6 +156,24 @@ def test_wrong_matches_do_not_stretch_the_range():
     np.testing.assert_allclose(spoilt[2:], clean[2:], atol=1e-4)
     assert spoilt[0, 0] == np.float32(0.02)
     assert spoilt[1, 0] == 0
+
+
+def test_half_a_percent_at_each_end_is_clipped():
+    """Of 2001 equally spaced values the ten least are as low as the next, and the ten greatest as high."""
+    values = np.random.default_rng(3).permutation(2001).astype(np.float32)
+    heights = make_relief(DisparityMap(values[None]), None, 0.1, 0.0198).height_m[0]
+    np.testing.assert_allclose(heights, np.clip(values - 10, 0, 1980) * 1e-5, atol=1e-9)
+
+
+def test_holes_do_not_count_for_the_range():
+    """Nor what they are filled with: 2001 values in one row, and more rows of the least alone."""
+    values = np.full((3, 2001), NAN, np.float32)
+    values[0] = np.arange(2001)
+    values[1:, 0] = 0
+    for holes in ("fill", "cut"):
+        heights = make_relief(DisparityMap(values), None, 0.1, 0.0198, holes).height_m
+        np.testing.assert_allclose(heights[0], np.clip(values[0] - 10, 0, 1980) * 1e-5, rtol=2e-3, atol=2e-5)
+        assert not heights[1:].any()
 
 
 def test_something_smaller_than_the_percentiles_still_stands_out_of_a_flat_wall():
@@ -352,6 +377,23 @@ def test_a_wave_falls_by_what_the_gaussian_says_at_any_resolution(shape):
     left = np.exp(-2 * (np.pi * sigma_m / wave_m) ** 2) ** 2  # once an axis
     inside = np.s_[shape[0] // 10 : -shape[0] // 10, shape[1] // 10 : -shape[1] // 10]
     np.testing.assert_allclose(smoothed[inside], (0.01 + 0.005 * left * wave)[inside], atol=2e-5)
+
+
+@pytest.mark.parametrize("sigma_px", [0.4, 0.6, 0.9])
+@pytest.mark.parametrize("across", [True, False])
+def test_under_a_pixel_it_is_smoothed_as_far_as_it_is_sampled(sigma_px, across):
+    """A wave of 8 cells falls by what the Gaussian's samples say; along cells twenty times as long, nothing happens."""
+    wave = np.cos(np.arange(64) * np.pi / 4) * np.ones((64, 1))
+    shape_m = (0.064, 1.28) if across else (1.28, 0.064)
+    steps = np.arange(-8, 9)
+    weights = np.exp(-(steps**2) / (2 * sigma_px**2))
+    left = weights @ np.cos(steps * np.pi / 4) / weights.sum()
+    for turned, falls in ((wave, across), (wave.T, not across)):
+        smoothed = smooth(Relief((0.01 + 0.005 * turned).astype(np.float32), shape_m), sigma_px * 0.001).height_m
+        inside = np.s_[8:-8, 8:-8]
+        expected = 0.01 + 0.005 * (left if falls else 1) * turned
+        np.testing.assert_allclose(smoothed[inside], expected[inside], atol=5e-6)
+    assert left < 0.98
 
 
 def test_what_needs_no_smoothing_is_left_alone():

@@ -256,6 +256,19 @@ class TestByRoughness:
         for variant in variants:
             assert assign(stripes(3), variant, "roughness", library()).digest() == expected
 
+    @pytest.mark.parametrize(("shape", "side"), [((40, 90), 3), ((300, 256), 5), ((704, 800), 11)])
+    def test_its_window_is_a_64th_of_the_shorter_side(self, shape: tuple[int, int], side: int):
+        """And at least three pixels: the median of the deviation in windows, by the plain formula."""
+        picture = np.random.default_rng(2).random(shape)
+        picture[:, shape[1] // 2 :] **= 6
+        labels = np.zeros(shape, np.int32)
+        labels[:, shape[1] // 2 :] = 1
+        grey = np.pad(picture, side // 2, mode="symmetric")
+        windows = np.lib.stride_tricks.sliding_window_view(grey, (side, side))
+        deviations = windows.std(axis=(2, 3)) / picture.std()
+        expected = [np.median(deviations[labels == label]) for label in (0, 1)]
+        assert relative_roughness(SegmentMap(labels), picture) == pytest.approx(expected, abs=6e-4)
+
     def test_a_single_pixel(self):
         found = assign(SegmentMap(np.zeros((1, 1), np.int32)), np.ones((1, 1)), "roughness", library())
         assert found.reasons == ("segment 0: roughness rank 1 of 1 (0.000) -> plain",)

@@ -4,11 +4,12 @@ import os
 import subprocess
 import sys
 import textwrap
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 
+from ctrl_c import HEARING
 from tangible_core.registry import Registry
 
 FAKES = """
@@ -141,11 +142,20 @@ Command = Callable[..., "subprocess.Popen[str]"]
 
 
 @pytest.fixture
-def tangible(registry: Registry) -> Command:
-    """Start the command line in a process of its own."""
+def tangible(registry: Registry) -> Iterator[Command]:
+    """Start the command line in a process of its own, which does not outlive the test."""
+    started: list[subprocess.Popen[str]] = []
 
     def start(*words: str | Path) -> "subprocess.Popen[str]":
-        command = [sys.executable, "-c", "from tangible_core.cli import main; main()", *map(str, words)]
-        return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        program = [sys.executable, "-c", "from tangible_core.cli import main; main()"]
+        started.append(
+            subprocess.Popen(
+                [*HEARING, *program, *map(str, words)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+            )
+        )
+        return started[-1]
 
-    return start
+    yield start
+    for process in started:
+        with process:
+            process.kill()

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from ctrl_c import hearing
 from full_disk import files_up_to
 from tangible_core import HapticSurface, load_method
 from tangible_core.data import ServoReport
@@ -72,7 +73,8 @@ def test_ctrl_c(touch: Touch, tmp_path: Path) -> None:
             if first:
                 signal.raise_signal(signal.SIGINT)
 
-        last = feel(touch, Failing(fault="none", record=str(force)), None, Safety(), lambda _: None, keep)
+        with hearing():
+            last = feel(touch, Failing(fault="none", record=str(force)), None, Safety(), lambda _: None, keep)
         writer.close(last.stopped)
     assert last.stopped == INTERRUPTED
     assert float(force.read_text()) == 0

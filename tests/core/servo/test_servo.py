@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from ctrl_c import HEARING
 from tangible_core import HapticSurface, load_method
 from tangible_core.data import TICK_COLUMNS, TickFlag
 from tangible_core.errors import ConfigError, DeviceError
@@ -194,15 +195,18 @@ class TestNoForceIsLeft:
     @pytest.mark.parametrize("killed_by", [signal.SIGKILL, signal.SIGINT])
     def test_a_host_that_is_killed(self, tmp_path: Path, killed_by: signal.Signals) -> None:
         record = tmp_path / "force"
-        script = HOST.format(record=str(record))
-        host = subprocess.Popen([sys.executable, "-c", script], stderr=subprocess.DEVNULL, start_new_session=True)
-        until(lambda: held(record) > 0, 60)
-        if killed_by == signal.SIGINT:
-            os.killpg(host.pid, killed_by)  # as the keyboard does: host and loop both
-        else:
-            os.kill(host.pid, killed_by)
-        until(lambda: held(record) == 0)
-        host.wait()
+        script = [*HEARING, sys.executable, "-c", HOST.format(record=str(record))]
+        host = subprocess.Popen(script, stderr=subprocess.DEVNULL, start_new_session=True)
+        try:
+            until(lambda: held(record) > 0, 60)
+            if killed_by == signal.SIGINT:
+                os.killpg(host.pid, killed_by)  # as the keyboard does: host and loop both
+            else:
+                os.kill(host.pid, killed_by)
+            until(lambda: held(record) == 0)
+            host.wait(60)
+        finally:
+            host.kill()
 
 
 HOST = """

@@ -31,6 +31,45 @@ def test_a_stray_match_is_left_out():
     assert filled.disparity_px == pytest.approx(7, abs=1e-4)
 
 
+@pytest.mark.parametrize(("off_px", "agrees"), [(-2.1, False), (-1.9, True), (1.9, True), (2.1, False)])
+def test_stray_is_what_lies_over_two_pixels_off(off_px, agrees):
+    """A match of hardly any weight, so that the mean is that of the others; one that counts keeps its score."""
+    found, score = scattered(np.full(SHAPE, 7.0))
+    found[16, 20], score[16, 20] = 7 + off_px, 1e-4
+    confidence = assemble(found, score, np.zeros(SHAPE, np.uint8)).confidence
+    assert (confidence[16, 20] == np.float32(1e-4)) == agrees
+
+
+def test_matches_count_by_their_scores():
+    """Both sums do, of disparities and of weights: of each match by itself the confidence says how much it counts."""
+
+    def one(column, disparity, score):
+        found = np.full(SHAPE, np.nan, np.float32), np.zeros(SHAPE, np.float32)
+        found[0][15, column], found[1][15, column] = disparity, score
+        return found
+
+    blank, elsewhere = np.zeros(SHAPE, np.uint8), np.abs(np.arange(40) - 20) < 8
+    (near, good), (far, poor) = one(8, 5.0, 0.9), one(32, 6.0, 0.3)
+    counts, less = (assemble(*each, blank).confidence for each in ((near, good), (far, poor)))
+    both = assemble(np.fmax(near, far), good + poor, blank)
+    expected = (5 * counts + 6 * less) / (counts + less)
+    np.testing.assert_allclose(both.disparity_px[:, elsewhere], expected[:, elsewhere], atol=0.01)
+    np.testing.assert_allclose(both.confidence[:, elsewhere], (counts + less)[:, elsewhere], rtol=1e-4)
+    assert np.ptp(expected[15, elsewhere]) > 0.05
+
+
+def test_what_no_match_reaches_is_as_the_nearest_place_that_one_reaches():
+    """Behind an edge from black to white sums of weights are rounding, and their ratio is no disparity."""
+    picture = np.where(np.arange(40) < 20, 0, 255).astype(np.uint8) * np.ones((30, 1), np.uint8)
+    found, score = np.full(SHAPE, np.nan, np.float32), np.zeros(SHAPE, np.float32)
+    found[15, [2, 18]], score[15, [2, 18]] = (5, 6), 0.9
+    filled = assemble(found, score, picture)
+    beside = filled.disparity_px[:, 17:18]
+    assert np.ptp(filled.disparity_px[15, :20]) > 0.01
+    np.testing.assert_allclose(filled.disparity_px[:, 20:], np.broadcast_to(beside, (30, 20)), atol=0.02)
+    assert filled.confidence[:, 20:].max() < 1e-12
+
+
 def test_confidence_is_the_score_at_a_match_and_less_elsewhere():
     found, score = scattered(np.full(SHAPE, 7.0), every=10)
     confidence = assemble(found, score, np.zeros(SHAPE, np.uint8)).confidence

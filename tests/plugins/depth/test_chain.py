@@ -13,6 +13,7 @@ from tangible_core import threads
 from tangible_core.data import Views
 from tangible_core.testing.stereo_scenes import synthetic_pair
 from tangible_depth.asked import asked_span
+from tangible_depth.candidates import choose
 from tangible_depth.census import census
 from tangible_depth.confidence import confidence, flat_pixels
 from tangible_depth.dense import Dense, as_map, enlarged
@@ -115,6 +116,67 @@ def test_what_both_views_contradict_is_not_filled_in():
     disparity[3:6, 26:34] = UNKNOWN
     filled = fill(disparity, np.full(disparity.shape, 100, np.uint8))
     assert (filled[3:6, 26:34] == 64).all()
+
+
+def score(value, path, farthest, row_farthest, there):
+    """As the docstring of the candidates weighs it; disparities and `there` in sixteenths of a pixel."""
+    explained = there is not None and there > value + 24
+    contradicted = there is not None and there < value - 24
+    nearer_px = (value - farthest) / 16
+    return (
+        1.2 * (value <= row_farthest + 8)
+        - 2.0 * contradicted
+        + 1.0 * explained
+        - 0.2 * np.sqrt(path)
+        - 0.3 * nearer_px / 10
+    )
+
+
+def test_a_gap_takes_the_candidate_of_the_best_score():
+    """Behind which every weight stands: drawn at random, and nothing said where two are as good as alike."""
+    random = np.random.default_rng(6)
+    width, told = 60, 0
+    for _ in range(3000):
+        x = int(random.integers(20, 40))
+        values = random.choice([16, 32, 64, 70, 120, 200, 320], 4).astype(np.int16)
+        values[random.random(4) < 0.2] = UNKNOWN
+        paths = random.integers(0, 150, 4).astype(np.int32) * random.integers(0, 2, 4).astype(np.int32)
+        seen = random.choice([UNKNOWN, 16, 100, 200, 330], width + 2).astype(np.int16)
+        seen[0] = seen[-1] = 32767
+        chosen = choose(values[:, None].repeat(width, 1), paths[:, None].repeat(width, 1), x, seen)
+        known = values[values != UNKNOWN].astype(int)
+        if known.size == 0:
+            assert chosen == UNKNOWN
+            continue
+        row = values[:2][values[:2] != UNKNOWN].astype(int)
+        if np.ptp(known) <= 24:
+            assert chosen == (row if row.size else known).min()
+            continue
+        row_farthest = row.min() if row.size else 32767
+        scores = {}
+        for value, path in zip(values.tolist(), paths.tolist(), strict=True):
+            if value != UNKNOWN:
+                there = seen[min(max(x + 1 - (value + 8) // 16, 0), width + 1)]
+                found = score(value, path, known.min(), row_farthest, None if there == UNKNOWN else int(there))
+                scores[value] = max(found, scores.get(value, -np.inf))
+        best, *others = sorted(scores, key=scores.__getitem__, reverse=True)
+        if others and scores[best] - scores[others[0]] > 1e-3:
+            assert chosen == best
+            told += 1
+    assert told > 2000
+
+
+@pytest.mark.parametrize(("gap", "filled_in"), [(1, 64), (2, 64), (3, 0)])
+def test_a_short_gap_between_like_ends_is_closed_with_the_farther(gap, filled_in):
+    """Without asking what lies above, where the picture has no edge; a longer one is asked about."""
+    disparity = np.zeros((9, 40), np.int16)
+    disparity[4] = 80
+    disparity[4, :20] = 64
+    disparity[4, 20 : 20 + gap] = UNKNOWN
+    grey = np.full(disparity.shape, 100, np.uint8)
+    grey[4, 20 + gap :] = 200  # the right end lies behind an edge
+    grey[4, :20] = 0
+    assert (fill(disparity, grey)[4, 20 : 20 + gap] == filled_in).all()
 
 
 def test_a_surface_ends_where_the_picture_has_an_edge():

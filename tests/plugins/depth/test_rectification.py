@@ -1,8 +1,11 @@
+from contextlib import nullcontext
+
 import numpy as np
 import pytest
 
 from tangible_core.data import Calibration, DisparityMap, Views
 from tangible_core.errors import PictureError
+from tangible_depth import rectification
 from tangible_depth.alignment import aligning_homographies, epipole_roll
 from tangible_depth.fundamental import eight_point
 from tangible_depth.homographies import camera_matrix, rotation, transform
@@ -11,6 +14,14 @@ from tangible_depth.rectification import CannotRectify, check_homographies, rect
 from two_cameras import HEIGHT, WIDTH, Scene, roll_and_tilt, seen_points, some_wrong
 
 BLANK = np.zeros((HEIGHT, WIDTH), np.uint8)
+
+
+def shifted(before_px, after_px, monkeypatch):
+    """A pair whose rows lie this far apart, and homographies that leave them so far apart."""
+    left, right = seen_points(turn=(0, 0, 0), move_m=(-0.3, 0, 0))
+    pair = np.eye(3), np.array([[1, 0, 0], [0, 1, after_px - before_px], [0, 0, 1.0]])
+    monkeypatch.setattr(rectification, "aligning_homographies", lambda matches, shape, roll: pair)
+    return Matches(left, right + np.array([0, before_px]))
 
 
 def rectified_points(noise_px=0.3, **cameras):
@@ -86,6 +97,28 @@ class TestWhatIsSkippedAndWhy:
         rectified = rectify(Views(BLANK, BLANK), matches=matches)
         assert rectified.skipped
         assert "would not help" in rectified.why
+
+    @pytest.mark.parametrize(("after_px", "turned"), [(0.29, True), (0.31, False), (0.6, False)])
+    def test_turning_is_to_gain_a_fifth_of_a_pixel(self, after_px, turned, monkeypatch):
+        """From half a pixel."""
+        rectified = rectify(Views(BLANK, BLANK), matches=shifted(0.5, after_px, monkeypatch))
+        assert rectified.skipped != turned
+        assert f"offset 0.50 px, {'now' if turned else 'then'} {after_px:.2f}" in rectified.why
+
+    @pytest.mark.parametrize(("offset_px", "size", "turned"), [(0.34, 1, False), (0.36, 1, True), (0.36, 4, False)])
+    def test_a_third_of_a_pixel_is_none_and_more_in_large_pictures(self, offset_px, size, turned, monkeypatch):
+        views = Views(*[np.zeros((size * HEIGHT, size * WIDTH), np.uint8)] * 2)
+        rectified = rectify(views, matches=shifted(offset_px, 0.0, monkeypatch))
+        assert rectified.skipped != turned
+
+    @pytest.mark.parametrize(
+        ("share", "away_px", "said"), [(0.04, -2.1, True), (0.06, -2.1, False), (0.04, -1.9, False)]
+    )
+    def test_views_are_exchanged_where_nearly_all_disparities_are_below_minus_two(self, share, away_px, said, caplog):
+        left = np.random.default_rng(0).uniform(0, 700, (1000, 2))
+        disparity = np.where(np.arange(1000) < 1000 * share, 3.0, away_px)
+        rectify(Views(BLANK, BLANK), matches=Matches(left, left - np.column_stack([disparity, 0 * disparity])))
+        assert ("seem to be exchanged" in caplog.text) == said
 
     def test_another_exposure_is_no_reason_to_turn(self):
         scene = Scene()
@@ -187,6 +220,19 @@ class TestGuards:
         with pytest.raises(CannotRectify, match=words):
             check_homographies((np.eye(3), homography), (100, 200), np.zeros(5))
 
+    @pytest.mark.parametrize(
+        ("share", "offset_px", "refused"), [(0.04, 9.0, False), (0.06, 3.1, True), (0.06, 2.9, False)]
+    )
+    def test_one_match_in_twenty_may_lie_off_its_row(self, share, offset_px, refused):
+        offsets = np.where(np.arange(1000) < 1000 * share, offset_px, 0.0)
+        with pytest.raises(CannotRectify) if refused else nullcontext():
+            check_homographies((np.eye(3), np.eye(3)), (100, 200), offsets)
+
+    @pytest.mark.parametrize(("side", "refused"), [(1.7, False), (1.8, True), (0.6, False), (0.55, True)])
+    def test_an_area_changes_by_a_factor_of_three_at_most(self, side, refused):
+        with pytest.raises(CannotRectify, match="area") if refused else nullcontext():
+            check_homographies((np.diag([side, side, 1.0]), np.eye(3)), (100, 200), np.zeros(5))
+
     def test_rows_that_do_not_correspond_are_refused(self):
         with pytest.raises(CannotRectify, match="off its row"):
             check_homographies((np.eye(3), np.eye(3)), (100, 200), np.r_[np.zeros(90), np.full(10, 9.0)])
@@ -219,3 +265,13 @@ def test_rotations_are_rotations():
     assert rotation(0, 0, np.pi / 2) @ [1, 0, 0] == pytest.approx([0, 1, 0])
     assert rotation(0, np.pi / 2, 0) @ [0, 0, 1] == pytest.approx([1, 0, 0])
     assert rotation(np.pi / 2, 0, 0) @ [0, 1, 0] == pytest.approx([0, 0, 1])
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "start"), [(0.0, 20.0, -4), (10.0, 90.0, 0), (-3.0, 17.0, -7), (-20.0, 80.0, -30), (4.5, 9.0, 0)]
+)
+def test_the_search_starts_below_all_but_stray_disparities(low, high, start):
+    """A tenth of their range below, and 4 px at least, one in a hundred left out at each end; never above 0."""
+    disparity = np.linspace(low, high, 981)
+    stray = np.concatenate([np.full(10, -500.0), disparity, np.full(10, 900.0)])
+    assert rectification._search_start(stray) == start

@@ -27,6 +27,33 @@ class TestFriction:
         assert ratio[slip] == pytest.approx(0.8, abs=2e-3)
         assert np.allclose(ratio[slip + 1 :], 0.5, atol=2e-3)
 
+    @pytest.mark.parametrize(
+        "between",
+        [(0.003, 0.0, 0.1), (0.05, 0.0, 0.009), (np.nan, 0.0, 0.009), (0.003, np.inf, 0.009), None],
+        ids=["lifted", "beside", "lost", "no number", "leapt"],
+    )
+    def test_each_contact_begins_at_rest(self, between: tuple[float, float, float] | None):
+        """A proxy that slid is held up to the static friction again once the hand was elsewhere: on a slope within
+        that cone, but not within the dynamic one, it rests."""
+        known = ramp((0.65, 0.0), 0.03)
+        touch = Proxy(static_friction=0.8, dynamic_friction=0.5).touch(known.surface)
+        down = touch.path(np.array([known.at(x, 0.0, 0.001) for x in np.linspace(0.01, 0.003, 300).tolist()]))[-1]
+        normal = known.normal(0, 0)
+        assert np.linalg.norm(down - (down @ normal) * normal) == pytest.approx(0.5 * (down @ normal), rel=1e-3)
+        if between is not None:
+            at(touch, *between)
+        anew = known.at(-0.004, 0.003, 0.001)
+        assert at(touch, *anew) == pytest.approx((0, 0, K * 0.001), abs=1e-5)
+        assert at(touch, *anew) == pytest.approx((0, 0, K * 0.001), abs=1e-5)
+
+    def test_what_slid_and_came_to_rest_is_at_rest(self):
+        """Within the dynamic cone it sticks, and holds up to the static one again."""
+        touch = Proxy(static_friction=0.8, dynamic_friction=0.5).touch(LEVEL)
+        x = np.linspace(0, 0.003, 300)
+        touch.path(np.column_stack([x, 0 * x, np.full(300, 0.009)]))
+        assert at(touch, 0.0029, 0.0, 0.009).x == pytest.approx(-K * 0.0004, abs=1e-3)
+        assert at(touch, 0.0032, 0.0, 0.009).x == pytest.approx(-K * 0.0007, abs=1e-3)
+
     def test_it_sticks_again_when_the_hand_turns_back(self):
         touch = Proxy(static_friction=0.8, dynamic_friction=0.5).touch(LEVEL)
         there, back = np.linspace(0, 0.004, 400), np.linspace(0.004, 0.002, 400)
@@ -69,6 +96,13 @@ class TestFriction:
             assert last == pytest.approx([-friction * stiffness * 0.001, 0, stiffness * 0.001], abs=1e-3)
             off = Proxy(friction=False).touch(surface).path(path)[-1]
             assert off == pytest.approx([0, 0, stiffness * 0.001], abs=1e-6)
+
+    def test_without_friction_the_damping_of_materials_stays(self):
+        honey = Material("honey", 500.0, 4.0, 0.6, 0.5)
+        surface = HapticSurface.from_heights(np.full((8, 8), 0.01), 0.08, np.zeros((8, 8), np.int32), (honey,))
+        touch = Proxy(friction=False).touch(surface)
+        at(touch, 0.0, 0.0, 0.009)
+        assert at(touch, 0.001, 0.0, 0.009, (0.1, 0.0, -0.05)) == pytest.approx((0, 0, 0.5 + 0.2), abs=1e-5)
 
     def test_damping_acts_along_the_normal_and_never_pulls(self):
         known = ramp((0.5, 0.0), 0.03)

@@ -1,9 +1,12 @@
 """The proxy against exact nearest points, and its ways in and out."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from tangible_core.data import NO_FORCE, Force, HapticState, HapticSurface
+from tangible_core.compiled import CompiledTouch
+from tangible_core.data import NO_FORCE, Force, HapticState, HapticSurface, Material, Relief
 from tangible_core.interfaces import Touch
 from tangible_core.testing.reliefs import cliff, cone, waves
 from tangible_core.testing.scenes import KnownSurface, plane, ramp, sphere_cap
@@ -12,6 +15,8 @@ from tangible_render.proxy import Proxy
 RNG = np.random.default_rng(23)
 K = 800.0
 LEVEL = plane(0.01).surface
+GLUE = Proxy(static_friction=50.0, dynamic_friction=50.0)
+"""Holds the proxy where it first is, and so shows by its force where that is."""
 
 
 def at(touch: Touch, x: float, y: float, z: float, velocity=(0.0, 0.0, 0.0)) -> Force:
@@ -64,6 +69,33 @@ class TestAccuracy:
             force = np.array(at(Proxy().touch(known.surface), *known.at(x, y, 0.002)))
             assert np.allclose(force, K * (0.1 - np.linalg.norm(hand)) * out, rtol=1e-5, atol=1e-5)
 
+    @pytest.mark.parametrize("shape", [(40, 100), (100, 40)])
+    @pytest.mark.parametrize("extent_m", [(0.08, 0.03), (0.03, 0.08)])
+    def test_on_a_surface_that_is_not_square(self, shape: tuple[int, int], extent_m: tuple[float, float]):
+        """Up to its borders: on a plane the nearest point within them is known."""
+        width, length = extent_m
+        rows, columns = np.indices(shape) + 0.5
+        x, y = (columns / shape[1] - 0.5) * width, (0.5 - rows / shape[0]) * length
+        a, b, c = 0.4, -0.7, 0.05
+        surface = HapticSurface(Relief((c + a * x + b * y).astype(np.float32), extent_m))
+        clamped = 0
+        inside = RNG.uniform(-0.5, 0.5, (60, 2)) * extent_m
+        inside[20:, 0] = -width / 2 + RNG.uniform(0, 0.001, 40)
+        inside[40:, 1] = length / 2 - RNG.uniform(0, 0.001, 20)
+        for qx, qy in inside.tolist():
+            qz = c + a * qx + b * qy - 0.003
+            px, py = (np.array((qx, qy)) + np.array((a, b)) * -0.003 / (1 + a * a + b * b)).tolist()
+            if px < -width / 2:
+                px, clamped = -width / 2, clamped + 1
+                py = qy + b * (qz - c - a * px - b * qy) / (1 + b * b)
+            if py > length / 2:
+                py, clamped = length / 2, clamped + 1
+                px = max(qx + a * (qz - c - b * py - a * qx) / (1 + a * a), -width / 2)
+            path = np.tile((qx, qy, qz), (40, 1))  # it goes 0.25 mm a tick at most
+            force = Proxy().touch(surface).path(path)[-1]
+            assert np.allclose(force, K * np.array((px - qx, py - qy, c + a * px + b * py - qz)), rtol=0, atol=1e-4)
+        assert clamped > 20
+
     @pytest.mark.parametrize("depth_m", [0.0002, 0.0008])
     def test_on_waves_at_the_speed_of_a_hand(self, depth_m: float):
         known = waves()
@@ -97,6 +129,27 @@ class TestWays:
         force = touch.path(np.column_stack([x, np.zeros(50), np.full(50, 0.002)]))
         assert np.allclose(force[-1], [-K * 0.0005, 0, 0], atol=0.12) and abs(force[-1, 0]) > 0.25
 
+    @pytest.mark.parametrize("slope", [(0.0, 0.0), (0.5, 0.0), (-1.5, 0.8)])
+    def test_a_contact_starts_on_the_way_within_a_64th_of_where_it_crosses(self, slope: tuple[float, float]):
+        """On the side that the hand came from, so that nothing is stored that was not given."""
+        known, starts = ramp(slope, 0.1), []
+        for _ in range(100):
+            x, y, dx, dy, dz = RNG.uniform(-1, 1, 5) * (0.02, 0.02, 0.0028, 0.0028, 0.0028)
+            outside = np.array(known.at(x, y, -abs(dz) - 1e-6))
+            inside = np.array(known.at(x + dx, y + dy, 0.002))
+            if np.linalg.norm(inside - outside) > 0.0049:
+                continue
+            touch = GLUE.touch(known.surface)
+            assert at(touch, *outside) == NO_FORCE
+            way = (inside - outside)[:2]
+            proxy = inside[:2] + np.array(at(touch, *inside))[:2] / K
+            assert (proxy - outside[:2]) @ (-way[1], way[0]) == pytest.approx(0, abs=1e-9)
+            over = abs(dz) + 1e-6
+            crosses, starts_at = over / (over + 0.002), way @ (proxy - outside[:2]) / (way @ way)
+            starts.append(crosses - starts_at)
+        assert min(starts) >= -1e-4 and max(starts) <= 1 / 64 + 1e-4
+        assert len(starts) > 20 and max(starts) > 1 / 128  # it is searched for in halves
+
     def test_a_hand_that_is_put_down_deep_is_taken_straight_up(self):
         touch = Proxy().touch(LEVEL)
         assert at(touch, 0.03, 0.03, -0.01) == pytest.approx((0, 0, K * 0.02), rel=1e-5)
@@ -109,6 +162,24 @@ class TestWays:
         assert at(touch, 0.038, 0.004, 0.007) == pytest.approx((K * 0.002, 0, 0), abs=1e-9)
         assert at(touch, 0.038, 0.004, 0.0105) == NO_FORCE
         assert at(touch, 0.038, 0.004, 0.0095) == pytest.approx((0, 0, K * 0.0005), abs=1e-4)
+
+    def test_so_it_is_from_the_far_and_the_near_side(self):
+        """Of a block that is not square."""
+        touch = Proxy().touch(HapticSurface(Relief(np.full((64, 64), 0.01, np.float32), (0.08, 0.05))))
+        for side in (1, -1):
+            assert at(touch, 0.002, side * 0.026, 0.004) == NO_FORCE
+            assert at(touch, 0.003, side * 0.024, 0.004) == pytest.approx((0, side * K * 0.001, 0), abs=1e-9)
+            assert at(touch, 0.004, side * 0.023, 0.007) == pytest.approx((0, side * K * 0.002, 0), abs=1e-9)
+            assert at(touch, 0.004, side * 0.023, 0.0105) == NO_FORCE
+            assert at(touch, 0.004, side * 0.023, 0.0095) == pytest.approx((0, 0, K * 0.0005), abs=1e-4)
+
+    def test_a_hand_that_rises_over_the_rim_in_the_block_is_let_to_the_top(self):
+        """Not at once over to where it is: from the place at the rim on."""
+        touch = Proxy(static_friction=0.5, dynamic_friction=0.5).touch(ramp((1.0, 0.0), 0.05).surface)
+        assert at(touch, -0.041, 0.0, 0.005) == NO_FORCE
+        held = at(touch, -0.038, 0.0, 0.006)
+        assert held == pytest.approx((-K * 0.002, 0, 0), abs=1e-9)
+        assert at(touch, -0.038, 0.0, 0.0101).z > 0
 
     def test_a_wall_does_not_throw_the_hand_out_at_its_far_side(self):
         heights = np.zeros((256, 256))
@@ -127,11 +198,60 @@ class TestWays:
         assert np.linalg.norm(force, axis=1).max() < K * 0.0201
         assert force[-1] == pytest.approx([0, 0, K * 0.002], abs=1e-3)
 
+    def test_it_is_not_let_go_where_the_surface_above_is_farther(self):
+        """24 mm deep it is let go where it is left farther behind than that, not 20 mm."""
+        z, x = np.linspace(0.0099, -0.014, 30), np.append(np.linspace(0, 0.0238, 30), 0.0242)
+        path = np.vstack([np.column_stack([0 * z, 0 * z, z]), np.column_stack([x, 0 * x, np.full(31, -0.014)])])
+        force = GLUE.touch(LEVEL).path(path)
+        assert force[-2] == pytest.approx((-K * 0.0238, 0, K * 0.024), abs=1e-5)
+        assert force[-1] == pytest.approx((0, 0, K * 0.024), abs=1e-5)
+
+    @pytest.mark.parametrize("axis", range(3))
+    def test_a_hand_that_moves_5_mm_in_a_tick_is_new(self, axis: int):
+        for leap_m, held in ((0.0049, True), (0.0051, False)):
+            hand, touch = np.array((0.001, 0.001, 0.0)), GLUE.touch(LEVEL)
+            at(touch, 0.0, 0.0, 0.0)
+            assert at(touch, *hand) == pytest.approx((-K * 0.001, -K * 0.001, K * 0.01), abs=1e-5)
+            hand[axis] -= leap_m
+            x, y, z = hand if held else (0.0, 0.0, hand[2])
+            assert at(touch, *hand) == pytest.approx((-K * x, -K * y, K * (0.01 - z)), abs=1e-5)
+
+    def test_in_a_tick_it_goes_two_millimetres_at_most(self):
+        """Eight steps of a quarter: after a hand that moved by 4.5 mm it arrives in the third tick."""
+        touch = Proxy(damping_n_s_per_m=1e-300).touch(LEVEL)
+        at(touch, 0.0, 0.0, 0.009)
+        for behind_m in (0.0025, 0.0005, 0.0):
+            assert at(touch, 0.0027, 0.0036, 0.009) == pytest.approx(
+                (-K * behind_m * 0.6, -K * behind_m * 0.8, K * 0.001), abs=1e-6
+            )
+
+    def test_a_wall_between_level_grounds_is_not_leapt_over(self):
+        """The short cut on level ground is taken in the tile alone that the proxy is in."""
+        heights = np.full((256, 256), 0.004)
+        heights[:, 135:137] = 0.02
+        path = np.column_stack([np.linspace(-0.004, 0.012, 800), np.full(800, 0.001), np.full(800, 0.002)])
+        surface = HapticSurface.from_heights(heights)
+        general, quick = Proxy(damping_n_s_per_m=1e-300).touch(surface), Proxy().touch(surface)
+        found = quick.path(path)
+        assert np.allclose(general.path(path), found, rtol=0, atol=1e-6)
+        assert found[path[:, 0] > 0.005, 0].max() < -K * 0.003
+
     def test_so_is_one_at_the_side_of_the_block(self):
         x = np.linspace(0.041, -0.03, 1000)
         force = Proxy().touch(LEVEL).path(np.column_stack([x, np.zeros(1000), np.full(1000, 0.004)]))
         assert np.linalg.norm(force, axis=1).max() < K * 0.0201
         assert force[-1] == pytest.approx([0, 0, K * 0.006], abs=1e-6)
+
+    def test_where_nothing_is_touched_there_is_no_proxy(self):
+        for renderer in (Proxy(), Proxy(static_friction=0.5, dynamic_friction=0.5)):
+            touch = renderer.touch(LEVEL)
+            assert isinstance(touch, CompiledTouch)
+            at(touch, 0.01, 0.02, 0.009)
+            assert touch.memory[:3] == pytest.approx((0.01, 0.02, 0.01))
+            for elsewhere in ((0.01, 0.02, 0.011), (0.5, 0.02, 0.009), (np.nan, 0.02, 0.009)):
+                at(touch, *elsewhere)
+                assert np.isnan(touch.memory[2])
+                at(touch, 0.01, 0.02, 0.009)
 
     def test_a_lost_state_ends_the_contact(self):
         touch = Proxy(static_friction=5.0, dynamic_friction=5.0).touch(LEVEL)
@@ -139,3 +259,27 @@ class TestWays:
         assert at(touch, 0.001, 0.0, 0.009).x < -0.5
         assert at(touch, np.nan, 0.0, 0.009) == NO_FORCE
         assert at(touch, 0.002, 0.0, 0.009).x == pytest.approx(0, abs=1e-9)
+
+
+class TestMaterials:
+    def test_the_spring_is_that_of_where_the_proxy_is(self):
+        labels = np.zeros((64, 64), np.int32)
+        labels[:, 32:] = 1
+        hard, soft = (Material(name, k, 0.0, 50.0, 50.0) for name, k in (("hard", 1200.0), ("soft", 300.0)))
+        surface = HapticSurface.from_heights(np.full((64, 64), 0.01), 0.08, labels, (hard, soft))
+        touch = Proxy().touch(surface)
+        at(touch, -0.001, 0.0, 0.009)
+        assert at(touch, 0.001, 0.0, 0.009) == pytest.approx((-1200 * 0.002, 0, 1200 * 0.001), abs=1e-5)
+
+    def test_it_says_the_greatest_stiffness(self):
+        """By which the guard of a loop softens it."""
+        soft = Material("soft", 300.0, 0.0, 0.0, 0.0)
+        labels = np.arange(4096, dtype=np.int32).reshape(64, 64) % 3
+        for other in ({}, {"damping_n_s_per_m": 1.0}, {"roughness_m": 1e-4}):
+            materials = tuple(replace(soft, stiffness_n_per_m=k, **other) for k in (500.0, 1500.0, 900.0))
+            touch = Proxy().touch(HapticSurface.from_heights(np.full((64, 64), 0.01), 0.08, labels, materials))
+            assert isinstance(touch, CompiledTouch)
+            assert touch.stiffness_n_per_m == 1500.0
+        plain = Proxy(stiffness_n_per_m=700.0).touch(LEVEL)
+        assert isinstance(plain, CompiledTouch)
+        assert plain.stiffness_n_per_m == 700.0

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tangible_core.compiled import CompiledTouch
 from tangible_core.data import NO_FORCE, HapticState, HapticSurface, Material
 from tangible_core.testing.rough import rough_surfaces
 from tangible_core.testing.scenes import plane
@@ -57,6 +58,34 @@ class TestStress:
             size = np.linalg.norm(rest, axis=1)
             assert (np.diff(size) <= 1e-6).all()  # of newtons: the last step follows a Taylor series
             assert np.abs(rest[-1] - rest[-2]).max() < 1e-3
+
+    def test_where_it_comes_to_rest_the_hand_lies_along_the_normal(self, rough: HapticSurface):
+        """However rough the ground: no step of the search gets stuck before that."""
+        coefficients, *_, across, down = spline_surface(rough, "auto")
+        for x, y in RNG.uniform(-0.03, 0.03, (60, 2)):
+            hand = np.array([x, y, spline.height(coefficients, across, down, x, y) - 0.003])
+            pull = Proxy().touch(rough).path(np.tile(hand, (200, 1)))[-1] / K
+            height, slope_x, slope_y = spline.slope(coefficients, across, down, *(hand + pull)[:2])
+            assert hand[2] + pull[2] == pytest.approx(height, abs=1e-8)
+            normal = np.array([-slope_x, -slope_y, 1]) / np.sqrt(1 + slope_x**2 + slope_y**2)
+            assert np.linalg.norm(np.cross(pull, normal)) <= 1e-6 * np.linalg.norm(pull)
+
+    def test_each_tick_brings_the_proxy_nearer_than_it_was(self, rough: HapticSurface):
+        """Wherever the hand went meanwhile: what the hand puts in while it moves is all that there is."""
+        random = np.random.default_rng(4)
+        path = np.cumsum(random.normal(0, 3e-4, (4000, 3)) * [1, 1, 0.1], axis=0) + np.array([0, 0, -0.002])
+        path[:, :2] = (path[:, :2] + 0.03) % 0.06 - 0.03
+        touch = Proxy().touch(rough)
+        assert isinstance(touch, CompiledTouch)
+        before, stayed = np.full(3, np.nan), 0
+        for hand in path:
+            touch.force(HapticState(tuple(hand.tolist())))
+            proxy, moved = touch.memory[:3].copy(), np.linalg.norm(touch.memory[:2] - before[:2])
+            if moved <= 0.0021:  # and not let go, or new
+                stayed += 1
+                assert np.linalg.norm(proxy - hand) <= np.linalg.norm(before - hand) + 1e-9
+            before = proxy
+        assert stayed > 3000
 
 
 class TestWhatIsLeftOut:

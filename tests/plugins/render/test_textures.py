@@ -85,6 +85,16 @@ class TestHeights:
         parts = (force[1:] + force[:-1]) / 2 * np.diff(np.vstack([loop, loop[:1]]), axis=0)
         assert parts.sum() <= 1e-5 * np.abs(parts).sum()
 
+    def test_damping_is_of_the_speed_over_the_texture(self):
+        """The hand over the texture rises by v_z - t'.v."""
+        damped = replace(GRAINY, damping_n_s_per_m=3.0)
+        x, y, (vx, vy, vz) = 0.0123, -0.004, (0.2, -0.1, 0.05)
+        ((t, tx, ty),) = felt(np.array([[x, y, 0.009]]))
+        push = K * (0.001 + t) - 3.0 * (vz - tx * vx - ty * vy)
+        assert abs(tx * vx) > 0.01
+        force = Proxy().touch(level(damped)).force(HapticState((x, y, 0.009), (vx, vy, vz)))
+        assert force == pytest.approx((-tx * push, -ty * push, push), abs=1e-5)
+
     def test_a_hand_too_fast_for_a_texture_feels_none(self):
         path = np.column_stack([np.arange(40) * 5e-4, np.zeros(40), np.full(40, 0.009)])
         lines = replace(GRAINY, anisotropy=1.0, direction_deg=90.0)

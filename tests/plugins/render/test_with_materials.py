@@ -26,6 +26,7 @@ K = 600.0
 PLAIN = Material("bare", K, 0.0, 0.0, 0.0)
 STICKY = replace(PLAIN, name="sticky", static_friction=0.8, dynamic_friction=0.5)
 GRAINY = replace(PLAIN, name="grainy", roughness_m=1e-4)
+RUBBER = replace(library()["rubber"], stiffness_n_per_m=K, roughness_m=0.0, damping_n_s_per_m=0.0)
 MAPS = rough_surfaces()
 
 
@@ -78,24 +79,55 @@ class TestFriction:
         assert np.allclose(along, -0.5 * push, rtol=1e-3)
         assert np.allclose(force[:, 0], 0, atol=1e-6)
 
-    def test_lifting_ends_it(self):
-        touch = WithMaterials(law="penalty").touch(level(STICKY))
-        touch.path(stroke(5e-4))
-        assert touch.force(HapticState((5e-4, 0.0, 0.011))) == Force(0, 0, 0)
-        assert touch.force(HapticState((6e-4, 0.0, 0.009))) == pytest.approx((0, 0, 0.6))
+    @pytest.mark.parametrize("material", [STICKY, RUBBER], ids=lambda each: each.name)
+    @pytest.mark.parametrize("law", PUSHING + LATERAL)
+    @pytest.mark.parametrize(
+        "between",
+        [(0.003, 0.0, 0.011), (0.05, 0.0, 0.009), (np.nan, 0.0, 0.009), (0.003, 0.0052, 0.009)],
+        ids=["lifted", "beside", "lost", "leapt"],
+    )
+    def test_each_contact_is_the_first(self, law: str, material: Material, between: tuple[float, float, float]):
+        """Wherever the hand was, its first tick has no friction, and the next are those of a new touch."""
+        touch, alone = (WithMaterials(law=law).touch(level(each)) for each in (material, PLAIN))
+        again = stroke(0.002, ticks=40) + np.array((0.0025, between[1], 0))
+        fresh = WithMaterials(law=law).touch(level(material)).path(again)
+        touch.path(stroke(0.003, ticks=300))
+        touch.force(HapticState(between))
+        if between[1]:  # the leap itself begins the contact
+            assert touch.force(HapticState(between)) == alone.force(HapticState(between))
+            touch.force(HapticState((0.0, 0.0, 0.011)))
+        assert touch.force(HapticState(tuple(again[0]))) == alone.force(HapticState(tuple(again[0])))
+        assert np.allclose([touch.force(HapticState(tuple(at))) for at in again[1:]], fresh[1:], rtol=0, atol=1e-12)
 
 
 class TestTexture:
+    @pytest.mark.parametrize("smooth", [PLAIN, STICKY], ids=lambda each: each.name)
     @pytest.mark.parametrize("law", PUSHING)
-    def test_it_is_the_law_below_turned_by_the_texture(self, law: str):
+    def test_it_is_the_law_below_turned_by_the_texture(self, law: str, smooth: Material):
+        """Friction included: it goes along with the hand as the law sees it."""
         turn = np.linspace(0, 6, 6000)
         path = np.column_stack([0.03 * np.sin(3 * turn), 0.03 * np.cos(2 * turn), 0.003 + 0.002 * np.sin(9 * turn)])
         t, tx, ty = grain(path)
         surface = MAPS["waves"]
-        below = load_method("render", law)().touch(covered(surface, PLAIN)).path(path - t[:, None] * [0, 0, 1])
+        below = WithMaterials(law=law).touch(covered(surface, smooth)).path(path - t[:, None] * [0, 0, 1])
         expected = below - below[:, 2:] * np.column_stack([tx, ty, 0 * tx])
-        found = WithMaterials(law=law).touch(covered(surface, GRAINY)).path(path)
+        found = (
+            WithMaterials(law=law).touch(covered(surface, replace(smooth, roughness_m=1e-4, name="grainy"))).path(path)
+        )
         assert np.allclose(found, expected, rtol=0, atol=1e-9)
+
+    @pytest.mark.parametrize("law", [{"use": "penalty-gradient", "damping_n_s_per_m": 3.0}, "penalty-gradient"])
+    def test_damping_is_of_the_speed_over_the_texture(self, law: str | dict[str, object]):
+        """The law's own and the material's: both see the hand rise by v_z - t'.v."""
+        x, y, (vx, vy, vz) = 0.0123, -0.004, (0.2, -0.1, 0.05)
+        (t,), (tx,), (ty,) = grain(np.array([[x, y, 0.009]]))
+        grainy = GRAINY if isinstance(law, dict) else replace(GRAINY, damping_n_s_per_m=3.0)
+        touch = WithMaterials(law=law).touch(level(grainy))
+        push = K * (0.001 + t) - 3.0 * (vz - tx * vx - ty * vy)
+        assert abs(tx * vx) > 0.01
+        assert touch.force(HapticState((x, y, 0.009), (vx, vy, vz))) == pytest.approx(
+            (-tx * push, -ty * push, push), abs=1e-6
+        )
 
     def test_under_a_lateral_law_the_depth_is_the_push(self):
         path = stroke()
@@ -145,6 +177,24 @@ def test_what_materials_add_takes_energy_from_a_hand_at_rest_in_height(law: str,
     assert given.max() <= 1e-12 and given[-1] < -1e-4
 
 
+@pytest.mark.parametrize("law", PUSHING)
+@pytest.mark.parametrize(
+    "material", [STICKY, RUBBER, replace(RUBBER, static_friction=5.0)], ids=["plain", "slip", "grip"]
+)
+def test_pressing_and_easing_gains_nothing(law: str, material: Material):
+    """On level ground, where each of these laws has a potential that is convex: whatever the hand does in all three
+    dimensions, what it has been given up to any moment since it was in free air is less than nothing."""
+    random = np.random.default_rng(8)
+    steps = random.normal(0, 1, (20000, 3)) * random.choice([1e-5, 1e-4, 5e-4], (20000, 1)) * [1, 1, 2]
+    path = np.cumsum(steps, axis=0)
+    path[:, 2] = 0.008 + np.abs((path[:, 2] + 0.002) % 0.0088 - 0.0044)  # up and down, from free air to 2 mm deep
+    path[:, :2] = np.abs((path[:, :2] + 0.03) % 0.12 - 0.06) - 0.03
+    path[0, 2] = 0.012
+    force = WithMaterials(law=law).touch(level(material)).path(path)
+    given = np.cumsum(np.sum(force[1:] * np.diff(path, axis=0), axis=1))
+    assert given.max() <= 1e-12 and given[-1] < -0.01
+
+
 @pytest.mark.parametrize("law", PUSHING + LATERAL)
 def test_a_wild_hand_is_never_pushed_wildly(law: str):
     """Friction is within its cone, and the slopes of a texture turn a force by no more than they are steep."""
@@ -159,6 +209,24 @@ def test_a_wild_hand_is_never_pushed_wildly(law: str):
         assert np.isfinite(force).all()
         most = np.linalg.norm(alone, axis=1).max() + material.stiffness_n_per_m * 0.02
         assert np.linalg.norm(force, axis=1).max() <= 4 * most
+
+
+def test_it_says_the_greatest_stiffness():
+    """The law's, or that of the bristle, which is the stiffest material's; without friction there is no bristle."""
+    labels = np.arange(4096, dtype=np.int32).reshape(64, 64) % 2
+    soft, hard = (replace(STICKY, name=str(k), stiffness_n_per_m=k) for k in (300.0, 2000.0))
+    surface = HapticSurface.from_heights(np.full((64, 64), 0.01), 0.08, labels, (soft, hard))
+    for law, friction, expected in (
+        ("grey-level", True, 2000.0),
+        ("grey-level", False, 0.0),
+        ("penalty", False, 2000.0),
+    ):
+        touch = WithMaterials(law=law, friction=friction).touch(surface)
+        assert isinstance(touch, CompiledTouch)
+        assert touch.stiffness_n_per_m == expected
+    lateral = WithMaterials(law="tangible-mask").touch(surface)
+    assert isinstance(lateral, CompiledTouch)
+    assert lateral.stiffness_n_per_m == 2000.0
 
 
 class TestLeftOut:

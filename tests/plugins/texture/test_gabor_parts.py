@@ -7,6 +7,7 @@ from tangible_texture.discriminants import discriminant_axes, evidence, principa
 from tangible_texture.dividing import divided, members
 from tangible_texture.full_size import pixel_labels
 from tangible_texture.joining import joining, joining_costs
+from tangible_texture.neighbourhood import INSIDE_CELLS, smoothed
 from tangible_texture.patterns import COUNTERS, RADII, pattern_frequencies
 from tangible_texture.planes import mixed, products, scatter
 from tangible_texture.small_matrices import eigen, solved
@@ -87,6 +88,59 @@ def test_halves_of_one_group_cost_the_least_to_join(random: np.random.Generator)
     assert [each.clusters for each in steps] == [3, 2, 1]
     np.testing.assert_array_equal(steps[1].labels, labels)
     assert steps[-1].cost == np.inf
+
+
+def borders(labels: np.ndarray, count: int) -> np.ndarray:
+    """Pairs of neighbours of every two labels."""
+    found = np.zeros((count, count))
+    for one, other in ((labels[1:], labels[:-1]), (labels[:, 1:], labels[:, :-1])):
+        np.add.at(found, (one, other), 1)
+        np.add.at(found, (other, one), 1)
+    return found
+
+
+def test_what_joining_costs_is_as_it_is_written(random: np.random.Generator):
+    """D (m k / n)^1.25 exp(-t / 4), D the squared Mahalanobis distance, in scatters with a ridge of a twentieth."""
+    shape, count = (12, 30), 4
+    labels = random.integers(0, 3, shape).astype(np.int32)
+    labels[:, 20:] = 3
+    planes = random.standard_normal((5, labels.size)).astype(np.float32) + labels.ravel() * 0.3
+    planes = planes.astype(np.float32)
+    own = members(labels.ravel(), count)
+    weights = (own * (smoothed(own, shape, INSIDE_CELLS) ** 2 + 1e-3)).max(axis=0).astype(np.float64)
+    sizes = np.bincount(labels.ravel())
+    parts = [(planes[:, labels.ravel() == k].astype(np.float64), weights[labels.ravel() == k]) for k in range(count)]
+    means = [np.average(part, axis=1, weights=heavy) for part, heavy in parts]
+    scatter_of = [np.cov(part, aweights=heavy, ddof=0) for part, heavy in parts]
+    ridge = 0.05 * sum(size * np.trace(each) for size, each in zip(sizes, scatter_of, strict=True)) / sizes.sum() / 5
+    meet, costs = borders(labels, count), joining_costs(planes, labels.ravel(), shape)
+    assert np.isinf(costs[np.triu_indices(count)]).all()
+    for one in range(count):
+        for other in range(one):
+            step = means[one] - means[other]
+            within = (scatter_of[one] + scatter_of[other]) / 2 + ridge * np.eye(5)
+            size = sizes[one] * sizes[other] / (sizes[one] + sizes[other]) * count / sizes.sum()
+            touching = meet[one, other] / np.sqrt(min(sizes[one], sizes[other]))
+            expected = step @ np.linalg.solve(within, step) * size**1.25 * np.exp(-touching / 4)
+            assert costs[one, other] == pytest.approx(expected, rel=1e-3)
+    assert meet[1, 0] > 5 * meet[3, 0] > 0
+
+
+def test_of_two_pairs_alike_the_one_that_touches_is_joined():
+    """Two pairs of clusters as far apart, of which the cells of one lie mixed."""
+    rows, columns = np.indices((12, 16))
+    mixed_cells, apart = (rows + columns) % 2, columns % 8 // 4
+    labels = np.where(columns < 8, apart, 2 + mixed_cells).astype(np.int32)
+    random = np.random.default_rng(0)
+    noise = random.standard_normal((3, 96)).astype(np.float32)
+    planes = np.zeros((3, 192), np.float32)
+    for pair in (0, 1):
+        for label in (2 * pair, 2 * pair + 1):
+            inside = labels.ravel() == label
+            planes[:, inside] = noise[:, : inside.sum()] + np.float32([[label % 2], [40 * pair], [0]])
+    costs = joining_costs(planes, labels.ravel(), (12, 16))
+    assert np.unravel_index(costs.argmin(), costs.shape) == (3, 2)
+    assert costs[3, 2] < 0.1 * costs[1, 0]
 
 
 def test_patterns_of_a_flat_picture_are_all_bright():

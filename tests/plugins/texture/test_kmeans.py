@@ -74,6 +74,27 @@ def test_never_more_clusters_than_distinct_rows(distinct, clusters, start, scale
         assert found.cost == 0
 
 
+@pytest.mark.parametrize("empty", [0, 1, 2])
+def test_a_cluster_that_never_has_a_row_is_left_out(empty: int):
+    rows = np.array([[4], [4], [5], [5], [6], [20]], np.float32)
+    starts = np.insert(np.array([[3.5], [19.0]], np.float32), empty, 500, axis=0)
+    found = module._settle(rows, starts, 100)
+    assert found.labels.tolist() == [0, 0, 0, 0, 0, 1]
+    assert found.centres == pytest.approx(np.array([[4.8], [20.0]]))
+    assert found.cost == pytest.approx(2.8)
+
+
+def test_a_cluster_that_loses_all_its_rows_is_left_out():
+    """The second has the first two rows at the start, and its neighbours take them from it."""
+    rows = np.array([[0, 4], [9, 8], [8, 4], [1, 0], [4, 2], [9, 5], [2, 0]], np.float32)
+    starts = np.array([[6, 0], [6, 5], [7, 3]], np.float32)
+    assert np.square(rows[:, None] - starts).sum(axis=2).argmin(axis=1).tolist() == [1, 1, 2, 0, 0, 2, 0]
+    found = module._settle(rows, starts, 100)
+    assert found.labels.tolist() == [0, 1, 1, 0, 0, 1, 0]
+    assert found.centres == pytest.approx(np.array([[1.75, 1.5], [26 / 3, 17 / 3]]))
+    assert found.cost == pytest.approx(np.square(rows - found.centres[found.labels]).sum())
+
+
 def test_rows_that_only_rounding_keeps_apart_are_one():
     rows = (7 + 1e-6 * np.random.default_rng(0).random((100, 3))).astype(np.float32)
     assert len(kmeans(rows, 5).centres) == 1

@@ -7,6 +7,8 @@ The names below are fixed: other people's programs call them. Each is imported w
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from .provenance.watching import watch_numba
+
 if TYPE_CHECKING:
     from .data import Calibration as Calibration
     from .data import DeviceSpec as DeviceSpec
@@ -49,6 +51,8 @@ _ROOMS = {
 _HOME = {name: room for room, names in _ROOMS.items() for name in names}
 
 __all__ = sorted(_HOME)  # pyright: ignore[reportUnsupportedDunderAll]
+
+watch_numba()
 
 
 def __getattr__(name: str) -> Any:

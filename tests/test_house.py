@@ -50,6 +50,13 @@ def test_listing_is_light(words):
     assert not {name for name in imported if re.match(r"tangible_(depth|texture|render|devices)\.(?!commands)", name)}
 
 
+def test_nobody_is_told_to_delete_what_was_compiled():
+    """What a compiled kernel depends on is known: tangible_core/provenance."""
+    texts = [*ROOT.glob("*.md"), *ROOT.joinpath("docs").rglob("*.md")]
+    texts += [path for each in (ROOT / "tangible_core", ROOT / "plugins") for path in each.rglob("*.py")]
+    assert [path for path in texts if "__pycache__" in path.read_text()] == []
+
+
 @pytest.mark.parametrize("moment", MOMENTS)
 def test_every_hook_is_documented_and_tested(moment):
     assert len(getattr(hooks.Specs, moment).__doc__ or "") > 20

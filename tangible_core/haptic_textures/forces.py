@@ -1,7 +1,4 @@
-"""The force of a texture at a point, compiled. Imports numba: what uses this module imports it inside its verb.
-
-numba's cache does not see a change made in another file: after an edit of `table` or `heights`, remove `__pycache__`.
-"""
+"""The force of a texture at a point, compiled. Imports numba: what uses this module imports it inside its verb."""
 
 # ruff: noqa: ANN001, ANN201, ANN202 -- the types are in the signatures that numba compiles
 # pyright: basic

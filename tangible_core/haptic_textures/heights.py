@@ -4,8 +4,6 @@ Sampling. A wave felt at a velocity is a vibration of f.v hertz. Each wave is wh
 more, gone where it spans 3 or fewer, and follows a cubic between: nothing above a third of the servo's rate is ever
 asked of it. Campion & Hayward (World Haptics 2005): a texture needs a wavelength above 2 v T to be sampled at all, and
 5 to 10 samples a period to feel right.
-
-numba's cache does not see a change made in another file: after an edit of `table` or `waves`, remove `__pycache__`.
 """
 
 # ruff: noqa: ANN001, ANN201, ANN202 -- the types are in the signatures that numba compiles

@@ -1,8 +1,7 @@
 """The virtual coupling, compiled: the law pushes a small tool, and a spring and a damper pull the device towards it.
 
 Colgate, Stanley & Brown (1995), Adams & Hannaford (1999): the device then feels no more stiffness than the coupling's,
-whatever the law does. Imports numba. numba's cache does not see a change made in another file: after an edit here,
-remove `__pycache__` beside `guard.py`.
+whatever the law does. Imports numba.
 """
 
 # ruff: noqa: ANN001, ANN201, ANN202 -- the types are in the signatures that numba compiles

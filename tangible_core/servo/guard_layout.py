@@ -1,5 +1,4 @@
-"""Where each number stands in the two arrays of a guard. numba's cache does not see a change made here: after one,
-remove `__pycache__` beside `guard.py`."""
+"""Where each number stands in the two arrays of a guard."""
 
 MOST_DELAY = 8
 """Ticks of delay that are told apart."""

@@ -1,7 +1,6 @@
 """The passivity observer and controller (Hannaford & Ryu 2002), compiled; docs/safety.md says what holds them in.
 
-Imports numba. numba's cache does not see a change made in another file: after an edit here, remove `__pycache__` beside
-`guard.py`.
+Imports numba.
 """
 
 # ruff: noqa: ANN001, ANN201, ANN202 -- the types are those that numba infers

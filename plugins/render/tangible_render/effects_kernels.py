@@ -7,8 +7,7 @@ that gains no energy gains none through a texture. Friction and damping join G: 
 A touch remembers, in `memory`: first the state of the texture's own forces, then 0-2 where the hand was to the law, x
 NaN if nowhere; 3-4 its way along the surface; 5-7 the bristle of its friction, and 1 if that slides, 0 if it sticks, -1
 in free air.
-Imports numba: a method imports this module inside its verb. numba's cache does not see a change made in another file:
-after an edit of a kernel that is called here, remove `__pycache__`.
+Imports numba: a method imports this module inside its verb.
 """
 
 # ruff: noqa: ANN001, ANN201, ANN202 -- the types are in the signatures that numba compiles

@@ -1,8 +1,7 @@
 """The height of a C2 surface, its slope and its curvature at a point: a cubic B-spline, compiled.
 
 The coefficients are those of `coefficients.py`: two rows and columns more on each side than there are cells. Imports
-numba: a method imports this module inside its verb. numba's cache does not see a change made in another file: after an
-edit here, remove `__pycache__` beside the kernels that call it.
+numba: a method imports this module inside its verb.
 
 Source: Unser, Aldroubi & Eden, B-spline signal processing, IEEE Trans. Signal Processing 41 (1993).
 """

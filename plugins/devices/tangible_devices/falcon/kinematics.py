@@ -3,8 +3,7 @@
 Frame: metres, z along the device's axis out to the user (0.075 in, 0.175 out), x right, y up, right-handed. Angles are
 those of the three thighs, in radians. Source: Stamper, A three degree of freedom parallel manipulator with only
 translational degrees of freedom, PhD thesis, University of Maryland 1997; lengths: libnifalcon, FalconGeometry.h.
-Imports numba: a method imports this module inside its verb. numba's cache does not see a change made in another file:
-after an edit here, remove `__pycache__` beside the kernels that call it.
+Imports numba: a method imports this module inside its verb.
 """
 
 # ruff: noqa: ANN001, ANN201, ANN202 -- the types are in the signatures that numba compiles

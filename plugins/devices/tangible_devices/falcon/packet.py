@@ -2,9 +2,7 @@
 
 `<`, 14 bytes of 0x41 + value, `>`. Three signed 16-bit numbers as four nibbles each, the least significant one first;
 then what is to be lit or held, or what is pressed and homed; then one byte of unknown meaning.
-Source: libnifalcon, FalconFirmwareNovintSDK.cpp. Imports numba: a method imports this module inside its verb. numba's
-cache does not see a change made in another file: after an edit here, remove `__pycache__` beside the kernels that call
-it.
+Source: libnifalcon, FalconFirmwareNovintSDK.cpp. Imports numba: a method imports this module inside its verb.
 """
 
 # ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles

@@ -1,8 +1,7 @@
 """A Falcon's part in a tick of the servo: an answer becomes position and velocity, a force becomes a packet; compiled.
 
 Both kernels take the same arrays first, those of `Buffers`. Imports numba: a method imports this module inside its
-verb. numba's cache does not see a change made in another file: after an edit to one of the modules that this one
-imports, remove `__pycache__` here.
+verb.
 """
 
 # ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles

@@ -1,7 +1,6 @@
 """The moving parts of a simulated Falcon, held by a hand; compiled.
 
-Imports numba: a method imports this module inside its verb. numba's cache does not see a change made in another file:
-after an edit here, remove `__pycache__` beside the kernels that call it.
+Imports numba: a method imports this module inside its verb.
 """
 
 # ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles

@@ -1,0 +1,39 @@
+"""Packages that are made up, and a provenance that has seen nothing yet."""
+
+import sys
+import textwrap
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from tangible_core.provenance import closure, places, versions
+
+Write = Callable[..., Path]
+
+
+def forget() -> None:
+    """As in a new process."""
+    for module in (closure, places, versions):
+        for each in vars(module).values():
+            if hasattr(each, "cache_clear"):
+                each.cache_clear()
+
+
+@pytest.fixture
+def write(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Write]:
+    """`write("lib/site-packages", **{"acme/kernels.py": text})`: files below a folder that modules are found in."""
+
+    def write(folder: str, **files: str) -> Path:
+        for name, text in files.items():
+            path = tmp_path / folder / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(textwrap.dedent(text))
+        if str(tmp_path / folder) not in sys.path:
+            monkeypatch.syspath_prepend(tmp_path / folder)
+        forget()
+        return tmp_path / folder
+
+    forget()
+    yield write
+    forget()

@@ -1,0 +1,194 @@
+"""What some code depends on: whose edits change its digest, and whose do not."""
+
+import os
+import sys
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+
+from tangible_core.provenance import closure as closures
+from tangible_core.provenance.closure import closure, closure_of_function
+
+from .conftest import Write, forget
+
+INSTALLED = "lib/site-packages"
+DIST = "{0}-1.0.dist-info/METADATA"
+
+
+def metadata(name: str, version: str = "1.0") -> str:
+    return f"Metadata-Version: 2.1\nName: {name}\nVersion: {version}\n"
+
+
+def digest(module: str) -> str:
+    forget()
+    return closure(module).digest
+
+
+METHOD = {
+    "acme/__init__.py": "",
+    "acme/method.py": "def verb():\n    from .kernel import fast\n    import numpy\n",
+    "acme/kernel.py": "from acme import deep\nfrom tangible_core import Force\nfast = 1\n",
+    "acme/deep.py": "from . import method\nimport lent.all as lent\n",
+    "acme/neighbour.py": "",
+    "lent/all.py": "from tool import VALUE",
+    "tool.py": "VALUE = 1",
+}
+
+
+@pytest.mark.parametrize(
+    ("changed", "same"),
+    [
+        ("acme/neighbour.py", True),
+        ("acme/method.py", False),
+        ("acme/kernel.py", False),
+        ("acme/deep.py", False),
+        ("acme/__init__.py", False),
+        ("lent/all.py", False),
+        ("tool.py", False),
+    ],
+)
+@pytest.mark.parametrize("folder", ["work", INSTALLED])
+def test_code_counts_as_far_as_it_is_imported(write: Write, folder: str, changed: str, same: bool):
+    """One's own package wherever it lies; another's where somebody may work on it."""
+    site = write(folder, **METHOD)
+    before = digest("acme.method")
+    (site / changed).write_text((site / changed).read_text() + "\n")
+    of_others_and_installed = folder == INSTALLED and not changed.startswith("acme")
+    assert (digest("acme.method") == before) is (same or of_others_and_installed)
+
+
+def test_of_what_is_installed_the_version_counts(write: Write):
+    site = write(
+        INSTALLED,
+        **METHOD,
+        **{DIST.format("other"): metadata("other"), "other-1.0.dist-info/RECORD": "lent/all.py,,\n"},
+    )
+    assert closure("acme.method").versions["other"] == "1.0"
+    before = digest("acme.method")
+    (site / DIST.format("other")).write_text(metadata("other", "1.1"))
+    assert digest("acme.method") != before
+
+
+def test_the_source_of_another_s_plugin_counts_where_it_is_installed(write: Write):
+    site = write(
+        INSTALLED,
+        **METHOD,
+        **{
+            DIST.format("lent"): metadata("lent"),
+            "lent-1.0.dist-info/entry_points.txt": "[tangible.render]\na = lent.all:A",
+        },
+    )
+    before = digest("acme.method")
+    (site / "lent/all.py").write_text("")
+    assert digest("acme.method") != before
+
+
+def test_of_tangible_images_that_is_read_what_is_used(write: Write):
+    write(INSTALLED, **METHOD)
+    modules = closure("acme.method").modules
+    assert {"acme.kernel", "tangible_core", "tangible_core.data"} <= set(modules)
+    assert "tangible_core.engine" not in modules
+
+
+@pytest.mark.parametrize("package", ["", "def __getattr__(name): ...\n"])
+def test_a_package_that_hands_on_each_name_when_it_is_asked_for_is_not_read_for_the_others(write: Write, package: str):
+    write(
+        "work",
+        **{
+            "acme/__init__.py": "from .one import One\nfrom .two import Two as Both\nfrom .three import made\n"
+            f"{package}made = made()\ndef own(): pass\n",
+            "acme/one.py": "",
+            "acme/two.py": "",
+            "acme/three.py": "",
+            "first.py": "from acme import One",
+            "second.py": "from acme import Both",
+            "third.py": "from acme import made",
+            "fourth.py": "from acme import *",
+            "fifth.py": "import acme",
+            "sixth.py": "import acme.one",
+        },
+    )
+    of_all = ("acme", "acme.one", "acme.three", "acme.two")
+    for name, handed_on in {
+        "first": ("acme", "acme.one"),
+        "second": ("acme", "acme.two"),
+        "third": of_all,
+        "fourth": of_all,
+        "fifth": of_all,
+        "sixth": ("acme", "acme.one"),
+    }.items():
+        assert closure(name).modules == tuple(sorted((*(handed_on if package else of_all), name)))
+
+
+def test_only_versions_of_what_is_imported_count(write: Write):
+    write("work", **{"none.py": "", "plain.py": "import json, numpy", "deep.py": "import plain, kornia"})
+    assert set(closure("none").versions) == {"python"}
+    assert set(closure("plain").versions) == {"python", "numpy"}
+    assert set(closure("deep").versions) == {"python", "numpy", "kornia", "torch"}
+
+
+def test_a_version_is_part_of_the_digest(write: Write, monkeypatch: pytest.MonkeyPatch):
+    write("work", **{"plain.py": "import cv2"})
+    before = digest("plain")
+    forget()
+    monkeypatch.setattr(closures.versions, "_version", lambda name: "0.1")
+    assert closure("plain").digest != before
+
+
+def test_of_modules_alone_the_text_counts_and_not_what_they_import(write: Write):
+    site = write("work", **{"a.py": "", "b.py": "import c", "c.py": ""})
+    before = closure("a", alone=("b",)).digest
+    assert closure("a", alone=("b",)).modules == ("a", "b")
+    for name, same in {"c.py": True, "b.py": False}.items():
+        (site / name).write_text("import c\n")
+        forget()
+        assert (closure("a", alone=("b",)).digest == before) is same
+
+
+def test_a_compiled_module_counts_and_text_that_is_no_python_is_read_as_far_as_it_goes(write: Write):
+    site = write("work", **{"a.py": "import fast, torn", "fast.abi3.so": "1", "torn.py": "import ("})
+    assert closure("a").modules == ("a", "fast", "torn")
+    before = digest("a")
+    (site / "fast.abi3.so").write_text("2")
+    assert digest("a") != before
+
+
+def test_names_that_are_no_modules_cost_nothing():
+    assert closure("sys").modules == closure("nowhere.at.all").modules == ()
+
+
+def test_a_module_that_is_loaded_is_read_where_it_was_loaded_from(write: Write, tmp_path: Path):
+    write("first", **{"twice.py": "A = 1"})
+    import_module("twice")
+    before = digest("twice")
+    write("second", **{"twice.py": "A = 2"})
+    assert digest("twice") == before
+    del sys.modules["twice"]
+    assert digest("twice") != before
+
+
+def test_a_file_that_changed_since_the_process_began_gives_a_digest_that_no_other_process_has(
+    write: Write, monkeypatch: pytest.MonkeyPatch
+):
+    site = write("work", **{"a.py": "import b", "b.py": ""})
+    assert not closure("a").settled
+    forget()
+    monkeypatch.setattr(closures, "BEGUN_NS", (site / "b.py").stat().st_ctime_ns + 1)
+    settled = closure("a")
+    assert settled.settled
+    os.utime(site / "b.py", (0, 0))  # as an installer does with files of old
+    forget()
+    assert not closure("a").settled
+    before = closure("a").digest
+    forget()
+    monkeypatch.setattr(closures, "_OF_THIS_PROCESS", "another")
+    assert len({before, closure("a").digest, settled.digest}) == 3
+
+
+def test_of_a_function_that_is_in_no_file_it_is_not_known():
+    exec("def f(): pass", made := {"__name__": "made"})
+    assert closure_of_function(made["f"]) is None
+    found = closure_of_function(test_names_that_are_no_modules_cost_nothing)
+    assert found is not None
+    assert {"tangible_core.provenance.closure"} <= set(found.modules)

@@ -1,0 +1,142 @@
+"""Kernels of anyone's: what was compiled before is used if all of its sources are the same, and never else."""
+
+import os
+import subprocess
+import sys
+import textwrap
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+from tangible_core.provenance import numba_cache
+from tangible_core.provenance.numba_cache import KEPT, tell
+
+ACME = {
+    "__init__": "",
+    "kernels": """
+        import numba
+        from . import layout
+        from .helper import more
+
+        @numba.njit("float64(float64)", cache=True)
+        def law(x):
+            return more(x) * layout.GAIN
+        """,
+    "helper": """
+        from numba import njit
+
+        @njit(cache=True)
+        def more(x):
+            return x + 1.0
+        """,
+    "layout": "GAIN = 3.0\n",
+    "neighbour": "",
+}
+FELT = "import tangible_core; from acme.kernels import law; print(law(1.0), len(law.stats.cache_misses))"
+
+
+class Acme:
+    """A package that knows nothing of Tangible Images, and what another process feels of its law."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder / "acme"
+        self.users = folder / "users"
+        self.folder.mkdir()
+        for name, text in ACME.items():
+            self.edit(name, textwrap.dedent(text))
+
+    def edit(self, module: str, text: str) -> None:
+        (self.folder / f"{module}.py").write_text(text)
+
+    def felt(self, code: str = FELT) -> list[str]:
+        environment = {**os.environ, "NUMBA_CACHE_DIR": "", "XDG_CACHE_HOME": str(self.users)}
+        words = [sys.executable, "-c", code]
+        done = subprocess.run(
+            words, capture_output=True, text=True, check=True, env=environment, cwd=self.folder.parent
+        )
+        return done.stdout.split()
+
+
+@pytest.fixture
+def acme(tmp_path: Path) -> Acme:
+    return Acme(tmp_path)
+
+
+def test_what_a_kernel_imports_is_obeyed_and_what_it_does_not_import_costs_nothing(acme: Acme):
+    assert acme.felt() == ["6.0", "1"]
+    assert acme.felt() == ["6.0", "0"]
+    acme.edit("neighbour", "GAIN = 5.0")
+    assert acme.felt() == ["6.0", "0"]
+    acme.edit("layout", "GAIN = 4.0\n")
+    assert acme.felt() == ["8.0", "1"]
+    acme.edit("helper", ACME["helper"].replace("1.0", "2.0").replace("\n        ", "\n"))
+    assert acme.felt() == ["12.0", "1"]
+
+
+def test_what_was_before_an_edit_is_found_when_it_is_undone_as_far_as_it_is_kept(acme: Acme):
+    gains = [float(gain) for gain in range(3, 3 + KEPT)]
+    for gain in gains:
+        acme.edit("layout", f"GAIN = {gain}\n")
+        assert acme.felt() == [str(2 * gain), "1"]
+    acme.edit("layout", f"GAIN = {gains[0]}\n")
+    assert acme.felt() == [str(2 * gains[0]), "0"]
+    for name in ("100.0", "101.0"):
+        acme.edit("layout", f"GAIN = {name}\n")
+        acme.felt()
+    for suffix in ("nbi", "nbc"):
+        assert len(list((acme.folder / "__pycache__").glob(f"kernels.law-*.{suffix}"))) == KEPT
+
+
+def test_where_the_package_cannot_be_written_to_the_user_s_folder_is_told_too(acme: Acme):
+    (acme.folder / "__pycache__").write_text("no folder")
+    assert [acme.felt(), acme.felt()] == [["6.0", "1"], ["6.0", "0"]]
+    acme.edit("layout", "GAIN = 4.0\n")
+    assert acme.felt() == ["8.0", "1"]
+    assert list(acme.users.rglob("kernels.law-*.nbi"))
+
+
+def test_numba_may_be_imported_first(acme: Acme):
+    first = f"import numba; {FELT}"
+    assert [acme.felt(first), acme.felt()] == [["6.0", "1"], ["6.0", "0"]]
+    acme.edit("layout", "GAIN = 4.0\n")
+    assert acme.felt(first) == ["8.0", "1"]
+
+
+def test_what_an_old_process_compiles_after_an_edit_is_not_what_a_new_one_finds(acme: Acme):
+    """The constants that it has imported are those of before, and the text that it could look at is not."""
+    edited = "import tangible_core, time; from acme import layout; time.sleep(0.05)"
+    edit = "open('acme/layout.py', 'w').write('GAIN = 4.0')"
+    assert acme.felt(f"{edited}; {edit}; {FELT}") == ["6.0", "1"]
+    assert acme.felt() == ["8.0", "1"]
+
+
+def test_other_kinds_of_numba_s_caches_are_told_too(acme: Acme):
+    text = "import numba\nfrom . import layout\n@numba.{}(cache=True)\ndef law(x{}): {}\n"
+    call = "import numpy as np, tangible_core; from acme import kernels; y = np.zeros(1); print(kernels.law(y, y)[0])"
+    made = {
+        "vectorize('f8(f8, f8)', ": text.format("X", ", y", "return layout.GAIN"),
+        "guvectorize(['f8[:], f8[:], f8[:]'], '(n),(n)->(n)', ": text.format("X", ", y, z", "z[:] = layout.GAIN"),
+    }
+    for decorator, source in made.items():
+        acme.edit("kernels", source.replace("X(", decorator))
+        for gain in ("3.0", "4.0"):
+            acme.edit("layout", f"GAIN = {gain}\n")
+            assert acme.felt(call) == [gain]
+
+
+def test_a_numba_that_is_not_known_keeps_nothing_and_it_is_said(caplog: pytest.LogCaptureFixture, monkeypatch):
+    class Cache:
+        def __init__(self, py_func) -> None:
+            self.kept = True
+
+        def disable(self) -> None:
+            self.kept = False
+
+        def save_overload(self, sig, data) -> None: ...
+
+    found = SimpleNamespace(settled=True, digest="d")
+    monkeypatch.setattr(numba_cache, "closure_of_function", lambda function: found)
+    tell(SimpleNamespace(Cache=Cache))
+    assert not Cache(tell).kept
+    assert "this version of numba is not known" in caplog.text

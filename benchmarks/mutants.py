@@ -7,6 +7,7 @@ python -m benchmarks.mutants guard --jobs 2      # those of a list, or whose nam
 import argparse
 import os
 import shutil
+import signal
 import sys
 import tempfile
 from collections.abc import Generator, Iterable, Sequence
@@ -145,16 +146,16 @@ def _tried(folder: Path, number: int, mutant: Mutant, limit_s: float, programs: 
         return Result(mutant, Outcome.EXPLAINED, 0.0, mutant.equivalent)
     tree = Tree(folder / str(number))
     try:
-        # A kernel that was compiled without the fault may be called by one that is not in the changed file.
-        shutil.copytree(folder / "0" / "tree", tree.sources, ignore=shutil.ignore_patterns("*.nb?"))
+        shutil.copytree(folder / "0" / "tree", tree.sources)
         tree.make()
         tree.put_in(mutant)
         ended = tree.pytest(programs, mutant.tests, limit_s)
     finally:
         shutil.rmtree(folder / str(number), ignore_errors=True)
-    failed = [line for line in ended.said.splitlines() if line.startswith(("FAILED", "ERROR"))]
-    why = failed[-1] if failed else ended.said[-2000:]
-    return Result(mutant, _outcome(mutant, ended.code), perf_counter() - start, why)
+    outcome = _outcome(mutant, ended.code)
+    lines = ended.said.splitlines()[-40 if outcome is Outcome.BROKEN else -1 :]
+    why = next((line for line in ended.said.splitlines() if line.startswith(("FAILED", "ERROR"))), "\n".join(lines))
+    return Result(mutant, outcome, perf_counter() - start, why)
 
 
 def _outcome(mutant: Mutant, code: int | None) -> Outcome:
@@ -200,6 +201,8 @@ def main() -> None:
     parser.add_argument("words", nargs="*", help="names of lists, or parts of names of mutants; all")
     parser.add_argument("--jobs", type=int, default=_jobs(), help="so many at a time (%(default)s)")
     asked = parser.parse_args()
+    for each in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(each, signal.default_int_handler)
     try:
         results = complete(ROOT, asked.words, asked.jobs)
     except KeyboardInterrupt:

@@ -89,7 +89,7 @@ class Tree:
     def put_in(self, mutant: Mutant) -> None:
         """The fault, in a file of another time: what was compiled of it before is then not used."""
         path, text = self.sources / mutant.file, mutated(self.sources, mutant)
-        later_ns = path.stat().st_mtime_ns + 60_000_000_000
+        later_ns = path.stat().st_mtime_ns + 2_000_000_000
         path.write_text(text, encoding="utf-8")
         os.utime(path, ns=(later_ns, later_ns))
 

@@ -23,6 +23,8 @@ def larger(a, b):
 '''
 TEST = """
 import os
+import subprocess
+import sys
 from pathlib import Path
 from toy import larger
 
@@ -33,6 +35,10 @@ def test_none():
     if folder := os.environ.get("TOY_PIDS"):
         Path(folder, str(os.getpid())).touch()
     assert larger(None, 2) == 2
+
+def test_in_a_program_that_is_told_nothing():
+    code = "import sys, toy; sys.exit(toy.larger(1, 2) != 2)"
+    assert subprocess.run([sys.executable, "-c", code], env={}, cwd="/").returncode == 0
 
 def test_wrong():
     assert larger(1, 2) == 1
@@ -45,6 +51,7 @@ def entry(name: str, old: str, new: str, tests: str = "tests/test_toy.py::test_l
 
 
 KILLED = entry("the smaller one", "a > b", "a < b")
+ELSEWHERE = entry("least", "a > b", "b > a", "tests/test_toy.py::test_in_a_program_that_is_told_nothing")
 SURVIVES = entry("above", "a = 0", "a = 1")
 EQUIVALENT = entry("the second of two alike", "a > b", "a >= b", equivalent="they are alike")
 CONTRADICTED = entry("an explanation that is wrong", "a > b", "b > a", equivalent="so they say")
@@ -53,8 +60,9 @@ UNSEEN = entry("a comment", "Not the", "The", "", equivalent="nobody reads it")
 
 
 @pytest.fixture
-def tree(tmp_path: Path) -> Path:
+def tree(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A checkout: one module, its tests, and an empty folder of lists."""
+    monkeypatch.setenv("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "1")  # a quick start
     root = tmp_path / "toy"
     (root / "tests").mkdir(parents=True)
     (root / "benchmarks" / "mutations").mkdir(parents=True)
@@ -70,21 +78,23 @@ def listed(tree: Path, *entries: str) -> Path:
 
 
 def test_what_became_of_each(tree: Path):
-    listed(tree, KILLED, SURVIVES, EQUIVALENT, CONTRADICTED, HANGS, UNSEEN)
+    listed(tree, KILLED, SURVIVES, ELSEWHERE, EQUIVALENT, CONTRADICTED, HANGS, UNSEEN)
     before = {path: path.read_bytes() for path in tree.rglob("*") if path.is_file()}
     results = list(run(tree, mutants(tree), jobs=2, patience_s=1))
     assert {each.mutant.name: each.outcome for each in results} == {
         "the smaller one": Outcome.KILLED,
         "above": Outcome.SURVIVED,
+        "least": Outcome.KILLED,
         "the second of two alike": Outcome.EXPLAINED,
         "an explanation that is wrong": Outcome.CONTRADICTED,
         "for ever": Outcome.HUNG,
         "a comment": Outcome.EXPLAINED,
     }
-    (killed,) = (each for each in results if each.outcome is Outcome.KILLED)
-    assert "test_toy.py::test_larger" in killed.why
+    assert {"test_larger", "test_in_a_program_that_is_told_nothing"} == {
+        each.why.partition("::")[2].partition(" ")[0] for each in results if each.outcome is Outcome.KILLED
+    }
     text = "\n".join(rows(results))
-    assert "| `toys` | 6 | 2 | 1 | 2 | 2 |" in text
+    assert "| `toys` | 7 | 3 | 1 | 2 | 2 |" in text
     assert "toys.yaml:6: above: SURVIVED" in text
     assert {path: path.read_bytes() for path in tree.rglob("*") if path.is_file()} == before
 

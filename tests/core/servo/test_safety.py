@@ -31,6 +31,13 @@ class TestPipelineFile:
     def test_a_file_that_says_nothing_is_guarded(self):
         assert parse("").safety == Safety()
 
+    def test_what_is_guarded_unless_it_says_otherwise(self):
+        stated = Safety(
+            max_force_n=None, max_step_n=0.5, ramp_s=0.5, stale_s=0.02, stiffness_margin=0.8, delay_ticks=0,
+            friction_n=None, passivity="coupled", coupling=None,
+        )  # fmt: skip
+        assert Safety() == stated
+
     def test_what_it_says(self):
         text = "safety: {max_force_n: 2, coupling: {stiffness_n_per_m: 900, damping_n_s_per_m: 0.2}, passivity: off}\n"
         safety = parse(text).safety
@@ -38,8 +45,15 @@ class TestPipelineFile:
         assert safety == Safety(max_force_n=2, coupling=coupling, passivity="off")
 
     @pytest.mark.parametrize(
-        "wrong", ["max_force_n: 0", "max_step: 1", "delay_ticks: 9", "coupling: on", "ramp_s: .nan"]
-    )
+        "wrong",
+        [
+            "max_force_n: 0", "max_force_n: -1", "max_force_n: .inf", "max_step: 1", "max_step_n: 0", "max_step_n: 11",
+            "max_step_n: .nan", "ramp_s: .nan", "ramp_s: -1", "ramp_s: 61", "stale_s: 0.001", "stale_s: 1.1",
+            "stiffness_margin: 0", "stiffness_margin: 1.01", "delay_ticks: -1", "delay_ticks: 9", "friction_n: 0",
+            "passivity: on", "coupling: on", "coupling: {stiffness_n_per_m: 900, damping_n_s_per_m: -0.1}",
+            "coupling: {stiffness_n_per_m: 0, damping_n_s_per_m: 0}", "coupling: {stiffness_n_per_m: 900}",
+        ],
+    )  # fmt: skip
     def test_what_it_may_not_say(self, wrong: str):
         with pytest.raises(ConfigError, match="2:"):
             parse(f"safety: {{{wrong}}}\n")
@@ -92,6 +106,28 @@ class TestArrays:
         assert settings[guard_layout.COUPLING_DAMPING] == pytest.approx(1.5 / 4 / times)
         assert settings[guard_layout.COUPLING_LAW] == pytest.approx(law or held)
         assert settings[guard_layout.STIFFNESS] == pytest.approx(1 / (2 / held + 1 / law) if law else held / 2)
+
+    def test_a_faster_loop_does_not_make_a_device_stiffer_than_it_is(self):
+        settings, _ = Safety().arrays(FALCON, 6000.0)
+        assert softness(settings, 0.0005) == pytest.approx(0.5, rel=1e-12)
+
+    def test_an_automatic_coupling_on_coarse_encoders_is_half_of_what_they_allow(self):
+        coarse, _ = Safety(coupling="auto", friction_n=0.015).arrays(FALCON, 800.0)
+        assert coarse[guard_layout.COUPLING] == pytest.approx(0.8 * 2 * 0.015 / 3e-5 / 2)
+
+    @pytest.mark.parametrize(("law", "behind", "felt"), [(800.0, 800.0, 1 / (1 / 900 + 1 / 800)), (0.0, 2400.0, 900.0)])
+    def test_a_coupling_of_one_s_own(self, law: float, behind: float, felt: float):
+        """A law that says nothing may be as stiff as the device holds; the tool is heavy enough for that."""
+        coupling = Coupling(stiffness_n_per_m=900, damping_n_s_per_m=0.2)
+        settings, _ = Safety(coupling=coupling).arrays(FALCON, law)
+        names = [guard_layout.COUPLING, guard_layout.COUPLING_DAMPING, guard_layout.COUPLING_LAW]
+        assert settings[names].tolist() == pytest.approx([900, 0.2, behind])
+        assert settings[guard_layout.STIFFNESS] == pytest.approx(felt)
+
+    def test_the_tool_begins_where_the_device_is(self):
+        settings, memory = Safety(coupling="auto").arrays(FALCON, 800.0)
+        state = (0.05, -0.04, 0.03, 0.1, 0.2, 0.3)
+        assert guard.couple(settings, memory, 0.001, *state) == state
 
     @pytest.mark.parametrize(
         ("passivity", "brake", "credit"), [("off", 0, 0), ("coupled", 7.5, 1.2), ("strict", 7.5, 0)]

@@ -1,0 +1,215 @@
+"""Faults put into the code on purpose, one at a time: do the tests notice? Reasons in docs/decisions/0014-mutants.md.
+
+python -m benchmarks mutants                     # all; its score goes to RESULTS.md
+python -m benchmarks.mutants guard --jobs 2      # those of a list, or whose name has this in it; RESULTS.md stays
+"""
+
+import argparse
+import os
+import shutil
+import signal
+import sys
+import tempfile
+from collections.abc import Generator, Iterable, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor, as_completed
+from contextlib import closing
+from enum import StrEnum
+from itertools import groupby
+from pathlib import Path
+from time import perf_counter
+from typing import NamedTuple
+
+from .figures import MissedError, table
+from .mutants_lists import Mutant, StaleError, mutants
+from .mutants_tree import Programs, Tree, copy_of
+
+ROOT = Path(__file__).parents[1]
+PATIENCE_S = 30.0
+"""A mutant's tests may take so long, and three times what all tests of its list take without it; then they hang."""
+PASSED, INTERRUPTED = 0, 2
+"""What pytest ends with: 1 between them where a test fails, the last where a test file cannot be imported."""
+
+
+class Outcome(StrEnum):
+    """What became of a mutant."""
+
+    KILLED = "killed"
+    HUNG = "killed (hung)"
+    SURVIVED = "SURVIVED"
+    EXPLAINED = "explained"
+    CONTRADICTED = "KILLED, ALTHOUGH CALLED EQUIVALENT"
+    BROKEN = "BROKEN"
+
+
+BAD = (Outcome.SURVIVED, Outcome.CONTRADICTED, Outcome.BROKEN)
+
+
+class Result(NamedTuple):
+    """A mutant, what became of it, and the line of pytest that says it."""
+
+    mutant: Mutant
+    outcome: Outcome
+    seconds: float
+    why: str
+
+
+class UnreadyError(Exception):
+    """Nothing can be said of mutants: without any fault the tests fail, or are not those of the copy."""
+
+
+def section() -> str:
+    """The section of RESULTS.md, as Markdown. Raises: MissedError, with it, if a mutant was not noticed."""
+    start = perf_counter()
+    results = complete(ROOT, (), _jobs())
+    text = "\n".join([*rows(results), "", f"{_jobs()} at a time, {(perf_counter() - start) / 60:.0f} minutes in all."])
+    if any(each.outcome in BAD for each in results):
+        raise MissedError(text)
+    return text
+
+
+def rows(results: Iterable[Result]) -> list[str]:
+    """A table with a line a list, and a line each for what went wrong."""
+    found = sorted(results, key=lambda each: each.mutant.room)
+    by_room = {room: list(group) for room, group in groupby(found, lambda each: each.mutant.room)}
+    lines = [_row(f"`{room}`", group) for room, group in by_room.items()] + [_row("all", found)]
+    head = (
+        "A fault at a time is put into a copy of the code, and the tests that are named beside it are run. Lists and "
+    )
+    wrong = [f"- {each.mutant.place}: {each.mutant.name}: {each.outcome}" for each in found if each.outcome in BAD]
+    return [
+        f"{head}explanations: `benchmarks/mutations`.",
+        "",
+        *table(("room", "mutants", "killed", "of them hung", "explained", "not noticed", "seconds"), lines),
+        *(["", *wrong] if wrong else []),
+    ]
+
+
+def _row(name: str, results: Sequence[Result]) -> tuple[str, ...]:
+    counts = [
+        len(results),
+        _count(results, Outcome.KILLED, Outcome.HUNG),
+        _count(results, Outcome.HUNG),
+        _count(results, Outcome.EXPLAINED),
+        _count(results, *BAD),
+    ]
+    return name, *map(str, counts), f"{sum(each.seconds for each in results):.0f}"
+
+
+def _count(results: Iterable[Result], *outcomes: Outcome) -> int:
+    return sum(each.outcome in outcomes for each in results)
+
+
+def run(root: Path, chosen: Sequence[Mutant], jobs: int, patience_s: float = PATIENCE_S) -> Generator[Result]:
+    """The chosen mutants of a tree, as they are done.
+
+    Raises: UnreadyError if the tests do not pass without them.
+    """
+    programs = Programs()
+    with tempfile.TemporaryDirectory(prefix="mutants-", ignore_cleanup_errors=True) as folder:
+        pool = ThreadPoolExecutor(jobs)
+        try:
+            limits_s = pool.submit(_unharmed, root, Path(folder) / "0", chosen, programs).result()
+            futures: list[Future[Result]] = [
+                pool.submit(_tried, Path(folder), i, each, patience_s + 3 * limits_s[each.room], programs)
+                for i, each in enumerate(chosen, 1)
+            ]
+            for future in as_completed(futures):
+                yield future.result()
+        finally:  # Ctrl-C too, and a caller who wants no more
+            programs.stop()
+            pool.shutdown(cancel_futures=True)
+
+
+def _unharmed(root: Path, folder: Path, chosen: Sequence[Mutant], programs: Programs) -> dict[str, float]:
+    """Seconds that the tests of each list take in a copy without any fault; it is left with all compiled."""
+    tree = Tree(folder)
+    copy_of(root, tree.sources)
+    tree.make()
+    if not tree.owns(programs, [each.file for each in chosen]):
+        raise UnreadyError("what the tests import is not what was copied")
+    seconds: dict[str, float] = {}
+    for room in dict.fromkeys(each.room for each in chosen):
+        start = perf_counter()
+        tests = dict.fromkeys(test for each in chosen if each.room == room for test in each.tests)
+        if tests:
+            ended = tree.pytest(programs, list(tests), 3600)
+            if ended.code != PASSED:
+                raise UnreadyError(f"{room}: its tests fail without any fault:\n{ended.said[-4000:]}")
+        seconds[room] = perf_counter() - start
+        _say(f"{room}: its tests pass in {seconds[room]:.0f} s")
+    return seconds
+
+
+def _tried(folder: Path, number: int, mutant: Mutant, limit_s: float, programs: Programs) -> Result:
+    start = perf_counter()
+    if not mutant.tests:
+        return Result(mutant, Outcome.EXPLAINED, 0.0, mutant.equivalent)
+    tree = Tree(folder / str(number))
+    try:
+        shutil.copytree(folder / "0" / "tree", tree.sources)
+        tree.make()
+        tree.put_in(mutant)
+        ended = tree.pytest(programs, mutant.tests, limit_s)
+    finally:
+        shutil.rmtree(folder / str(number), ignore_errors=True)
+    outcome = _outcome(mutant, ended.code)
+    lines = ended.said.splitlines()[-40 if outcome is Outcome.BROKEN else -1 :]
+    why = next((line for line in ended.said.splitlines() if line.startswith(("FAILED", "ERROR"))), "\n".join(lines))
+    return Result(mutant, outcome, perf_counter() - start, why)
+
+
+def _outcome(mutant: Mutant, code: int | None) -> Outcome:
+    if code == PASSED:
+        return Outcome.EXPLAINED if mutant.equivalent else Outcome.SURVIVED
+    if code is not None and code > INTERRUPTED:
+        return Outcome.BROKEN
+    if mutant.equivalent:
+        return Outcome.CONTRADICTED
+    return Outcome.HUNG if code is None else Outcome.KILLED
+
+
+def complete(root: Path, words: Sequence[str], jobs: int) -> list[Result]:
+    """Those of the lists, or with names, that the words are of; each said as it is done."""
+    try:
+        known = mutants(root)
+        chosen = [each for each in known if not words or any(w == each.room or w in each.name for w in words)]
+        if not chosen:
+            sys.exit(f"no mutant is of {', '.join(words)}; lists are {', '.join(sorted({m.room for m in known}))}")
+        results: list[Result] = []
+        with closing(run(root, chosen, jobs)) as done:
+            for each in done:
+                results.append(each)
+                place = f"{each.mutant.room}: {each.mutant.name}"
+                _say(f"[{len(results)}/{len(chosen)}] {place}: {each.outcome} ({each.seconds:.0f} s) {each.why}")
+        return results
+    except (StaleError, UnreadyError) as error:
+        sys.exit(str(error))
+
+
+def _say(text: str) -> None:
+    print(f"  {text}", file=sys.stderr, flush=True)
+
+
+def _jobs() -> int:
+    """Tests of real time want a core beside their own."""
+    return max(1, (os.cpu_count() or 1) // 2)
+
+
+def main() -> None:
+    """The command line; exit 1 if a mutant was not noticed."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.mutants", description="Do the tests notice faults?")
+    parser.add_argument("words", nargs="*", help="names of lists, or parts of names of mutants; all")
+    parser.add_argument("--jobs", type=int, default=_jobs(), help="so many at a time (%(default)s)")
+    asked = parser.parse_args()
+    for each in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(each, signal.default_int_handler)
+    try:
+        results = complete(ROOT, asked.words, asked.jobs)
+    except KeyboardInterrupt:
+        sys.exit(130)
+    print("\n".join(rows(results)))
+    sys.exit(any(each.outcome in BAD for each in results))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,155 @@
+"""The runner of mutants on a tree of a few lines, and whether the lists fit the code as it is."""
+
+import os
+import signal
+import subprocess
+import sys
+import textwrap
+import time
+from pathlib import Path
+
+import pytest
+
+from benchmarks.mutants import Outcome, UnreadyError, rows, run
+from benchmarks.mutants_lists import StaleError, mutants
+
+ROOT = Path(__file__).parents[2]
+CODE = '''
+def larger(a, b):
+    """Not the smaller one."""
+    while a is None:
+        a = 0
+    return a if a > b else b
+'''
+TEST = """
+import os
+import subprocess
+import sys
+from pathlib import Path
+from toy import larger
+
+def test_larger():
+    assert larger(1, 2) == 2
+
+def test_none():
+    if folder := os.environ.get("TOY_PIDS"):
+        Path(folder, str(os.getpid())).touch()
+    assert larger(None, 2) == 2
+
+def test_in_a_program_that_is_told_nothing():
+    code = "import sys, toy; sys.exit(toy.larger(1, 2) != 2)"
+    assert subprocess.run([sys.executable, "-c", code], env={}, cwd="/").returncode == 0
+
+def test_wrong():
+    assert larger(1, 2) == 1
+"""
+
+
+def entry(name: str, old: str, new: str, tests: str = "tests/test_toy.py::test_larger", **more: str) -> str:
+    fields = {"name": name, "file": "toy.py", "old": old, "new": new, "tests": f"[{tests}]", **more}
+    return "- " + "\n  ".join(f"{key}: {value}" for key, value in fields.items()) + "\n"
+
+
+KILLED = entry("the smaller one", "a > b", "a < b")
+ELSEWHERE = entry("least", "a > b", "b > a", "tests/test_toy.py::test_in_a_program_that_is_told_nothing")
+SURVIVES = entry("above", "a = 0", "a = 1")
+EQUIVALENT = entry("the second of two alike", "a > b", "a >= b", equivalent="they are alike")
+CONTRADICTED = entry("an explanation that is wrong", "a > b", "b > a", equivalent="so they say")
+HANGS = entry("for ever", "a = 0", "a = None", "tests/test_toy.py::test_none")
+UNSEEN = entry("a comment", "Not the", "The", "", equivalent="nobody reads it")
+
+
+@pytest.fixture
+def tree(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A checkout: one module, its tests, and an empty folder of lists."""
+    monkeypatch.setenv("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "1")  # a quick start
+    root = tmp_path / "toy"
+    (root / "tests").mkdir(parents=True)
+    (root / "benchmarks" / "mutations").mkdir(parents=True)
+    (root / "toy.py").write_text(CODE)
+    (root / "tests" / "test_toy.py").write_text(TEST)
+    subprocess.run(["git", "init", "-q", root], check=True)
+    return root
+
+
+def listed(tree: Path, *entries: str) -> Path:
+    (tree / "benchmarks" / "mutations" / "toys.yaml").write_text("".join(entries))
+    return tree
+
+
+def test_what_became_of_each(tree: Path):
+    listed(tree, KILLED, SURVIVES, ELSEWHERE, EQUIVALENT, CONTRADICTED, HANGS, UNSEEN)
+    before = {path: path.read_bytes() for path in tree.rglob("*") if path.is_file()}
+    results = list(run(tree, mutants(tree), jobs=2, patience_s=1))
+    assert {each.mutant.name: each.outcome for each in results} == {
+        "the smaller one": Outcome.KILLED,
+        "above": Outcome.SURVIVED,
+        "least": Outcome.KILLED,
+        "the second of two alike": Outcome.EXPLAINED,
+        "an explanation that is wrong": Outcome.CONTRADICTED,
+        "for ever": Outcome.HUNG,
+        "a comment": Outcome.EXPLAINED,
+    }
+    assert {"test_larger", "test_in_a_program_that_is_told_nothing"} == {
+        each.why.partition("::")[2].partition(" ")[0] for each in results if each.outcome is Outcome.KILLED
+    }
+    text = "\n".join(rows(results))
+    assert "| `toys` | 7 | 3 | 1 | 2 | 2 |" in text
+    assert "toys.yaml:6: above: SURVIVED" in text
+    assert {path: path.read_bytes() for path in tree.rglob("*") if path.is_file()} == before
+
+
+def test_tests_that_fail_without_any_fault(tree: Path):
+    listed(tree, entry("the smaller one", "a > b", "a < b", "tests/test_toy.py::test_wrong"))
+    with pytest.raises(UnreadyError, match=r"toys: its tests fail without any fault:(.|\n)*test_wrong"):
+        next(run(tree, mutants(tree), jobs=1))
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        (entry("gone", "a <= b", "a < b"), "toys.yaml:6: gone: `old` stands 0 times in toy.py, not once"),
+        (entry("twice", "a", "b"), "`old` stands .* times in toy.py, not once"),
+        (entry("nothing", "a > b", "a > b"), "`new` is `old`"),
+        (entry("no code", "a > b", "a >"), "toy.py is not Python with it"),
+        (entry("no test", "a > b", "a < b", "tests/test_toy.py::test_smaller"), "there is no tests/.*::test_smaller"),
+        (entry("no tests", "a > b", "a < b", ""), "names no tests"),
+        (entry("a file", "a > b", "a < b").replace("toy.py\n", "joy.py\n"), "there is no joy.py"),
+        (entry("a word", "a > b", "a < b", sort="x"), "sort\n.*not permitted"),
+        (KILLED, "toys.yaml: the smaller one: stands twice"),
+        ("- [", "toys.yaml: "),
+        ("name: x\n", "toys.yaml: "),
+    ],
+)
+def test_a_list_that_does_not_fit(tree: Path, wrong: str, said: str):
+    with pytest.raises(StaleError, match=said):
+        mutants(listed(tree, KILLED if wrong.startswith("-") else "", wrong))
+
+
+def test_ctrl_c_leaves_nothing_behind(tree: Path, tmp_path: Path):
+    listed(tree, HANGS)
+    (tmp_path / "tmp").mkdir()
+    (tmp_path / "pids").mkdir()
+    code = """
+        import signal, sys
+        from pathlib import Path
+        from benchmarks.mutants import complete
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+        complete(Path(sys.argv[1]), (), 1)
+    """
+    environ = {**os.environ, "TMPDIR": str(tmp_path / "tmp"), "TOY_PIDS": str(tmp_path / "pids")}
+    program = subprocess.Popen([sys.executable, "-c", textwrap.dedent(code), str(tree)], env=environ, cwd=ROOT)
+    end = time.monotonic() + 60
+    while len(pids := [int(path.name) for path in (tmp_path / "pids").iterdir()]) < 2:  # one without the fault
+        assert time.monotonic() < end
+        time.sleep(0.05)
+    program.send_signal(signal.SIGINT)
+    assert program.wait(30) == -signal.SIGINT
+    for pid in pids:
+        with pytest.raises(ProcessLookupError):
+            os.kill(pid, 0)
+    assert not list((tmp_path / "tmp").iterdir())
+
+
+def test_every_list_fits_the_code_as_it_is():
+    assert mutants(ROOT)

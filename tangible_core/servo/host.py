@@ -152,6 +152,8 @@ class Servo:
             self._ring.header[STOP] = 1
         if self._ear is not None and self._ear.is_alive():
             self._hang_up()
+            self._ear.join(STOPPING_S)
+            self._kill("it did not end when asked to")
             self._ear.join()
         self._remove_sent()
         if self._ring is not None:
@@ -167,6 +169,11 @@ class Servo:
         if self._child is not None:
             with suppress(OSError):  # what was not sent is not missed
                 _pipe(self._child.stdin).close()
+
+    def _kill(self, why: str) -> None:
+        if self._child is not None and self._child.poll() is None:
+            log.warning("the force loop's process is killed: %s", why)
+            self._child.kill()
 
     def _pack(self, touch: Touch) -> str:
         self._sent.append(parcel.pack(touch))
@@ -221,7 +228,10 @@ class Servo:
         if hasattr(signal, "pthread_sigmask"):  # the process hears no Ctrl-C before it can choose to
             signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
         words = command(f"{__package__}.child")
-        self._child = child = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+        try:
+            self._child = child = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+        except OSError as error:
+            raise DeviceError(f"no process can be started for the force loop: {error.strerror or error}") from error
         with _pipe(child.stdout) as replies:
             if self.ring.header[STOP]:
                 self._hang_up()
@@ -230,10 +240,17 @@ class Servo:
             ended = self._last_words(replies)
             self.ring.header[STOP] = 1
             self._hang_up()
-            code = _reaped(child)
+            code = self._reaped(child)
         if ended is None:
             self._let_go()
         return ended or Ended(self._why or f"the force loop's process died (exit code {code})")
+
+    def _reaped(self, child: subprocess.Popen[bytes]) -> int:
+        """Exit code of a process that has said its last words; killed if it does not end."""
+        with suppress(subprocess.TimeoutExpired):
+            return child.wait(STOPPING_S)
+        self._kill("it did not end when asked to")
+        return child.wait()
 
     def _last_words(self, replies: IO[bytes]) -> Ended | None:
         """Pass the others on until there is this one, or the loop is gone without."""
@@ -256,7 +273,7 @@ class Servo:
             seen = int(header[COUNT])
             if looks * LOOK_EVERY_S >= (STOPPING_S if ending else standstill_s):
                 self._why = self._why or STOOD_STILL
-                self._started.kill()
+                self._kill(self._why)
                 return
 
     def _let_go(self) -> None:
@@ -281,13 +298,3 @@ def _open_and_close(device: HapticDevice, done: threading.Event) -> None:
 def _pipe(end: IO[bytes] | None) -> IO[bytes]:
     assert end is not None  # both are asked for
     return end
-
-
-def _reaped(child: subprocess.Popen[bytes]) -> int:
-    """Exit code of a process that is about to end; killed if it does not."""
-    try:
-        return child.wait(STOPPING_S)
-    except subprocess.TimeoutExpired:
-        log.warning("the force loop did not end when asked to; its process is killed")
-        child.kill()
-        return child.wait()

@@ -89,8 +89,8 @@ class Failing(HapticDevice):
     fault: Literal["unplugged", "bug", "nan", "hangs", "blocks", "exits", "none"] = "unplugged"
     """It stops answering; its driver raises; it says NaN once; it takes 50 ms; it never answers; its driver ends the
     program."""
-    opens: bool = True
-    """Whether it can be opened at all."""
+    opens: bool | None = True
+    """Whether it can be opened at all; None where that takes for ever."""
     record: str = ""
     """File that the force held is written to, whenever it changes: to see what is left behind."""
     simulated: bool = True
@@ -102,6 +102,8 @@ class Failing(HapticDevice):
 
     def open(self) -> Link:
         """Raises: DeviceError if it cannot be opened."""
+        if self.opens is None:
+            time.sleep(3600)
         if not self.opens:
             raise DeviceError("the failing device is in use by another program; close that")
         return FailingLink(self)

@@ -123,6 +123,32 @@ class TestInterruptedStart:
         assert said.rstrip().endswith("KeyboardInterrupt")
         until(lambda: not held(record) > 0)
 
+    def test_a_start_that_takes_for_ever_is_given_up(
+        self, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        monkeypatch.setattr(host, "COMPILING_S", 1.0)
+        monkeypatch.setattr(host, "STOPPING_S", 0.5)
+        servo = Servo(FaultyTouch(), Failing(opens=None), AT_ONCE)
+        with pytest.raises(DeviceError, match="has not answered for 1 s"):
+            servo.__enter__()
+        with pytest.raises(ProcessLookupError):
+            os.kill(servo.process_id, 0)
+        assert not servo.running
+        assert not left_behind()
+
+    def test_a_process_that_cannot_be_started(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        monkeypatch.setattr(host, "command", lambda _: ["/no/such/python"])
+        with pytest.raises(DeviceError, match="no process can be started"), Servo(proxy(), Circling()):
+            pytest.fail("it was begun")
+        assert not left_behind()
+
+    def test_what_was_not_started_says_so(self) -> None:
+        servo = Servo(proxy(), Circling())
+        with pytest.raises(DeviceError, match="with Servo"):
+            servo.report()
+        with pytest.raises(DeviceError, match="with Servo"):
+            servo.swap(proxy())
+
 
 HOST = """
 import signal, time, numpy as np

@@ -1,5 +1,6 @@
 """Devices for trying a force loop: one that is all kernels, and one that fails in the ways that devices do."""
 
+import os
 import sys
 import time
 from dataclasses import replace
@@ -89,8 +90,8 @@ class Failing(HapticDevice):
     fault: Literal["unplugged", "bug", "nan", "hangs", "blocks", "exits", "none"] = "unplugged"
     """It stops answering; its driver raises; it says NaN once; it takes 50 ms; it never answers; its driver ends the
     program."""
-    opens: bool | None = True
-    """Whether it can be opened at all; None where that takes for ever."""
+    opens: Literal["always", "once", "never", "late"] = "always"
+    """How often it can be opened: `once` if there is no record yet, and then it does not answer; `late` never does."""
     record: str = ""
     """File that the force held is written to, whenever it changes: to see what is left behind."""
     simulated: bool = True
@@ -102,9 +103,9 @@ class Failing(HapticDevice):
 
     def open(self) -> Link:
         """Raises: DeviceError if it cannot be opened."""
-        if self.opens is None:
+        if self.opens == "late" or (self.opens == "once" and os.path.exists(self.record)):  # noqa: PTH110
             time.sleep(3600)
-        if not self.opens:
+        if self.opens == "never":
             raise DeviceError("the failing device is in use by another program; close that")
         return FailingLink(self)
 

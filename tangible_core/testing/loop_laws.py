@@ -10,7 +10,7 @@ import numpy as np
 from ..data import NO_FORCE, Force, HapticState
 from ..interfaces import Touch
 
-Fault = Literal["none", "blocks", "exits", "odd error", "does not arrive"]
+Fault = Literal["none", "blocks", "exits", "odd error", "does not arrive", "begins slowly", "knows itself"]
 
 
 class OddError(Exception):
@@ -24,19 +24,25 @@ class OddError(Exception):
 class FaultyTouch(Touch):
     """1 N upwards below the height of 0, until a tick in which the law blocks, ends the program or raises.
 
-    One that "does not arrive" can be sent to another process, and not be made there.
+    One that "does not arrive" can be sent to another process, and not be made there. One that "begins slowly" takes
+    half a second when it is asked first, as what compiles itself does; one that "knows itself" is part of a circle.
     """
 
     def __init__(self, fault: Fault = "none", at: int = 100) -> None:
         self._fault: Fault = fault
         self._at = at
         self._ticks = 0
+        self._asked = False
+        self._itself = (self, np.ones(100_000)) if fault == "knows itself" else None
 
     def __reduce__(self) -> tuple[Any, ...]:
         return (_lost if self._fault == "does not arrive" else FaultyTouch), (self._fault, self._at)
 
     def force(self, state: HapticState) -> Force:
         """Raises: OddError, or SystemExit, where that is the fault."""
+        if self._fault == "begins slowly" and not self._asked:
+            time.sleep(0.5)
+        self._asked = True
         if state.position_m[2] >= 0:
             return NO_FORCE
         self._ticks += 1

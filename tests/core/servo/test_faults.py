@@ -123,12 +123,10 @@ class TestInterruptedStart:
         assert said.rstrip().endswith("KeyboardInterrupt")
         until(lambda: not held(record) > 0)
 
-    def test_a_start_that_takes_for_ever_is_given_up(
-        self, monkeypatch: pytest.MonkeyPatch
-    ) -> None:
+    def test_a_start_that_takes_for_ever_is_given_up(self, monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setattr(host, "COMPILING_S", 1.0)
         monkeypatch.setattr(host, "STOPPING_S", 0.5)
-        servo = Servo(FaultyTouch(), Failing(opens=None), AT_ONCE)
+        servo = Servo(FaultyTouch(), Failing(opens="late"), AT_ONCE)
         with pytest.raises(DeviceError, match="has not answered for 1 s"):
             servo.__enter__()
         with pytest.raises(ProcessLookupError):
@@ -199,6 +197,24 @@ class TestStandstill:
             until(lambda: not servo.running)
             assert servo.report().ticks == 5
             assert servo.report().stopped == "the time is over"
+
+    def test_a_law_that_compiles_itself_when_it_is_asked_first(self) -> None:
+        """That happens before the first tick, and is no standstill."""
+        with Servo(FaultyTouch("begins slowly"), Failing(fault="none"), AT_ONCE, seconds=0.2) as servo:
+            until(lambda: not servo.running)
+            assert servo.report().stopped == "the time is over"
+
+    def test_a_device_that_cannot_be_opened_once_more_is_told_of(
+        self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+    ) -> None:
+        monkeypatch.setattr(host, "STOPPING_S", 0.5)
+        record = tmp_path / "force"
+        device = Failing(fault="none", record=str(record), simulated=False, opens="once")
+        with Servo(FaultyTouch(), device, AT_ONCE) as servo:
+            until(lambda: held(record) > 0)
+            os.kill(servo.process_id, signal.SIGSTOP)
+            until(lambda: not servo.running)
+        assert "may still hold its last force; switch it off" in caplog.text
 
     def test_a_law_that_blocks_when_the_host_is_gone(self, tmp_path: Path) -> None:
         """Nobody watches then: the loop's own process lets go."""
@@ -290,6 +306,16 @@ class TestSwaps:
             assert abs(mappings) <= 10
             assert kibibytes <= 10_000
             assert servo.stop("enough").stopped == "enough"
+
+    def test_scenes_that_are_part_of_a_circle_are_collected(self) -> None:
+        """800 kB each."""
+        with Servo(FaultyTouch("knows itself"), Failing(fault="none"), AT_ONCE) as servo:
+            for _ in range(10):
+                servo.swap(FaultyTouch("knows itself"))
+            *_, first = usage(servo.process_id)
+            for _ in range(100):
+                servo.swap(FaultyTouch("knows itself"))
+            assert usage(servo.process_id)[-1] - first < 20_000
 
     @pytest.mark.nightly
     def test_five_thousand(self) -> None:

@@ -169,7 +169,7 @@ class TestNoForceIsLeft:
 
     def test_a_device_that_cannot_be_opened(self) -> None:
         before = set(shared_folder().glob(f"tangible-{os.getpid()}-*"))
-        with pytest.raises(DeviceError, match="in use by another program"), Servo(proxy(), Failing(opens=False)):
+        with pytest.raises(DeviceError, match="in use by another program"), Servo(proxy(), Failing(opens="never")):
             pytest.fail("it was opened")
         assert set(shared_folder().glob(f"tangible-{os.getpid()}-*")) == before
 

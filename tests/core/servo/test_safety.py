@@ -89,6 +89,14 @@ class TestArrays:
         assert softness(settings, 0.001) == pytest.approx(share, rel=1e-12)
         assert memory[guard_layout.SOFTNESS] == softness(settings, 0.001)
 
+    def test_a_quick_loop_is_no_stiffer_than_the_device(self):
+        """At 4 kHz its damping would hold 9600 N/m; its own word is 3000."""
+        settings, memory = Safety(ramp_s=0, passivity="off").arrays(FALCON, 5000.0)
+        assert softness(settings, 0.00025) == pytest.approx(3000 / 5000)
+        for _ in range(4000):
+            left = guard.guard(settings, memory, 0.00025, *[0.0] * 6, 0.0, 0.0, 0.1)
+        assert 0.1 * 2400 / 5000 < left[2] <= 0.1 * 3000 / 5000
+
     def test_an_automatic_coupling_is_one_that_the_device_holds(self):
         for delay in range(9):
             settings, _ = Safety(coupling="auto", delay_ticks=delay).arrays(FALCON, 800.0)

@@ -2,6 +2,7 @@
 
 import ast
 import re
+from collections.abc import Iterable
 from typing import NamedTuple
 
 _WORD = re.compile(rb"\bimport\b")
@@ -45,19 +46,19 @@ def _made(node: ast.AST) -> str | None:
 
 
 def _statements(source: bytes) -> list[ast.Import | ast.ImportFrom]:
-    """Parsed apart from the rest, which takes a tenth of the time; the whole text where `import` stands elsewhere."""
+    """Parsed apart from the rest, which takes a sixth of the time; the whole text where `import` stands elsewhere."""
     lines = _LINE.findall(source)
     text = b"\n".join(lines)
     if len(_WORD.findall(text)) == len(_WORD.findall(source)):
         try:
-            return _of(ast.parse(text))
+            return _of(ast.parse(text).body)
         except SyntaxError:  # prose that looks like an import
             pass
-    return _of(ast.parse(source))
+    return _of(ast.walk(ast.parse(source)))
 
 
-def _of(tree: ast.Module) -> list[ast.Import | ast.ImportFrom]:
-    return [node for node in ast.walk(tree) if isinstance(node, ast.Import | ast.ImportFrom)]
+def _of(nodes: Iterable[ast.AST]) -> list[ast.Import | ast.ImportFrom]:
+    return [node for node in nodes if isinstance(node, ast.Import | ast.ImportFrom)]
 
 
 def _each(node: ast.Import | ast.ImportFrom) -> list[Import]:

@@ -143,8 +143,10 @@ class TestEachAnswerIsItsOwn:
         one, other = (pipeline(folder, workspace=Workspace(**{"width_m": 0.03, **more})) for more in ({}, size))
         assert self.differ("relief", one, other)
 
-    def test_the_cameras(self, folder: Path):
-        pair = {"left": Path("left.npy"), "right": Path("right.npy"), "baseline_m": 0.1}
+    @pytest.mark.parametrize("brings", [{}, {"disparity": Path("disparity.npy")}], ids=["found", "brought"])
+    def test_the_cameras(self, folder: Path, brings: dict):
+        np.save(folder / "disparity.npy", np.full((20, 30), 4.0, np.float32))
+        pair = {"left": Path("left.npy"), "right": Path("right.npy"), "baseline_m": 0.1, **brings}
         one, other = (pipeline(folder, scene=SceneFiles(**pair, focal_px=each)) for each in (500.0, 600.0))
         assert self.differ("relief", one, other)
 

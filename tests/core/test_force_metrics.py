@@ -41,6 +41,14 @@ def test_a_force_of_another_size(factor: float, jnd: float):
     assert errors["noticed_percent"] == 100 * (jnd > 1 + 1e-9)
 
 
+def test_one_great_error_does_not_hide_what_is_felt_at_most_ticks():
+    """The median of 0, 1 and 10 just noticeable differences, and the share of ticks above one."""
+    truth = np.tile(UP, (3, 1))
+    errors = force_errors(truth * np.array([[1.0], [1.07], [1.7]]), truth)
+    assert errors["jnd"] == pytest.approx(1)
+    assert force_errors(truth * np.array([[1.0], [1.06], [1.7]]), truth)["noticed_percent"] == pytest.approx(100 / 3)
+
+
 def test_what_counts_where():
     """A force in free air counts for newtons, not for what is told apart; a tick of unknown truth for nothing."""
     truth = rows((0, 0, 1), (0, 0, 1), (0, 0, 0), (np.nan,) * 3, (0, 0, 0))
@@ -99,6 +107,13 @@ def test_what_pushes_aside_there_and_back_is_no_lag():
     hand = np.vstack([there, there[::-1]])
     nearest, aside = hand + 0.001 * UP, np.array((0.0003, 0.0, 0.0))
     assert proxy_lag(hand, nearest + aside, nearest) == pytest.approx(0, abs=1e-12)
+
+
+def test_motion_is_the_central_difference():
+    """A hand that turns a corner moves along its diagonal there."""
+    hand = rows((0, 0, 0), (1, 0, 0), (1, 1, 0))
+    nearest = hand + rows((0, 0, 0), (0, 0, 1), (0, 0, 0))
+    assert proxy_lag(hand, nearest - (0.5, 0, 0), nearest) == pytest.approx(0.5 / math.sqrt(2))
 
 
 def test_ticks_in_free_air_and_at_rest_have_no_lag():

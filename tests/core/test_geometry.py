@@ -143,8 +143,8 @@ def test_a_relative_disparity_has_no_depth_even_with_a_calibration():
 
 def test_what_lies_at_or_beyond_infinity_is_far_and_not_a_hole():
     camera = Calibration(focal_px=100, baseline_m=0.1)
-    relief = make_relief(disparity(*[[5, 0, -3, 10]] * 500), camera, 0.06, 0.02)
-    np.testing.assert_allclose(relief.height_m, [[0, 0, 0, 0.02]] * 500, atol=1e-8)
+    relief = make_relief(disparity(*[[5, 10, 0, -3, 10]] * 500), camera, 0.06, 0.02)
+    np.testing.assert_allclose(relief.height_m, [[0, 0.02, 0, 0, 0.02]] * 500, atol=1e-8)
 
 
 def test_wrong_matches_do_not_stretch_the_range():
@@ -182,6 +182,13 @@ def test_something_smaller_than_the_percentiles_still_stands_out_of_a_flat_wall(
     heights = make_relief(DisparityMap(values), None, 0.1, 0.02).height_m
     assert heights[50, 50] == np.float32(0.02)
     assert np.count_nonzero(heights) == 1
+
+
+@pytest.mark.parametrize("value", [1e-30, 7.3, 1e30])
+def test_values_that_only_rounding_tells_apart_are_one(value):
+    twice = np.float32([[value, np.nextafter(np.float32(value), np.float32(np.inf))]])
+    assert not make_relief(DisparityMap(twice), None, 0.1, 0.02).height_m.any()
+    assert not scale_heights(twice, 0.1, 0.02).height_m.any()
 
 
 @pytest.mark.parametrize("camera", [None, Calibration(100, 0.1)])
@@ -241,6 +248,11 @@ def test_a_height_map_runs_from_the_base_to_the_relief(dtype):
     relief = scale_heights(np.array([[10, 20], [30, 50]], dtype), 0.1, 0.02)
     np.testing.assert_allclose(relief.height_m, [[0, 0.005], [0.01, 0.02]], rtol=1e-6)
     assert relief.extent_m == (0.1, 0.1)
+
+
+def test_the_greatest_heights_there_are():
+    most = np.finfo(np.float64).max
+    assert scale_heights(np.array([[-most, 0, most]]), 0.1, 0.02).height_m == pytest.approx(np.array([[0, 0.01, 0.02]]))
 
 
 def test_a_height_map_in_yes_and_no():
@@ -348,6 +360,22 @@ def test_a_cliff_stays_a_cliff():
     assert resample(Relief(heights, (1, 1)), (2, 8)).height_m.tolist() == [[0, 0, 0, 0, 1, 1, 1, 1]] * 2
 
 
+@pytest.mark.parametrize(
+    ("heights", "halves"),
+    [
+        ([1, 2, 4], [1.625, 2.375]),  # the central difference
+        ([1, 2, 11], [1.5, 2.5]),  # and here no more than twice the lesser step
+        ([9, 2, 1], [2.5, 1.5]),
+        ([1, 2, 3], [1.75, 2.25]),
+        ([1, 2, 1.5], [2, 2]),  # a peak is level
+        ([2, 1, 1.5], [1, 1]),
+    ],
+)
+def test_no_facet_leaves_the_range_of_its_neighbours(heights, halves):
+    relief = Relief(np.float32([heights]), (1, 1))
+    assert resample(relief, (1, 6)).height_m[0, 2:4] == pytest.approx(halves)
+
+
 def test_a_smooth_surface_is_met_closely_from_half_its_grid():
     def bump(shape):
         columns, rows = np.meshgrid(np.arange(shape[1]), np.arange(shape[0]))
@@ -394,6 +422,11 @@ def test_under_a_pixel_it_is_smoothed_as_far_as_it_is_sampled(sigma_px, across):
         expected = 0.01 + 0.005 * (left if falls else 1) * turned
         np.testing.assert_allclose(smoothed[inside], expected[inside], atol=5e-6)
     assert left < 0.98
+
+
+def test_level_ground_stays_level_up_to_its_borders():
+    level = Relief(np.full((6, 9), 0.01, np.float32), (0.09, 0.06))
+    np.testing.assert_allclose(smooth(level, 0.02).height_m, 0.01, rtol=1e-5)
 
 
 def test_what_needs_no_smoothing_is_left_alone():

@@ -317,6 +317,14 @@ class TestByRules:
             "segment 3: rule 1, named -> sand",
         )
 
+    @pytest.mark.parametrize(
+        ("at", "label"), [([19.4, 19.4], 0), ([19.6, 19.4], 1), ([19.4, 19.6], 2), ([39, 39], 3), ([0, 39.4], 2)]
+    )
+    def test_a_point_lies_in_the_pixel_whose_centre_is_nearest(self, at: list[float], label: int):
+        """Centres are at whole numbers."""
+        found = assign(quarters()[0], None, "rules", library(), rules({"at": at, "material": "ice"}))
+        assert [each.name for each in found.materials].index("ice") == label
+
     def test_the_rest_is_by_name_or_by_roughness(self):
         given = rules({"segment": 1, "material": "glass"})
         found = assign(stripes(3), None, {1: "sand", 2: "wood"}, library(), given)

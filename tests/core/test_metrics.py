@@ -72,6 +72,14 @@ def test_a_thin_bar_hides_its_own_width_and_what_it_passes_stays_visible():
     assert hidden.tolist() == [0, 1, 30, 31, 32]
 
 
+def test_a_surface_that_the_right_view_stretches_has_no_gaps():
+    """A slanted one, whose columns lie 1.5 px apart there, hides all of the wall behind it."""
+    truth = np.full((1, 30), np.nan, np.float32)
+    truth[0, :14] = 0
+    truth[0, 20:] = 20 - 0.5 * np.arange(10)
+    assert np.flatnonzero(visible_pixels(truth)[0]).tolist() == list(range(20, 30))
+
+
 def test_either_sign_of_disparity():
     assert np.flatnonzero(~visible_pixels(np.full((1, 9), -2.0))[0]).tolist() == [7, 8]
 

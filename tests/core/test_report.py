@@ -2,15 +2,21 @@ import json
 import math
 import subprocess
 import sys
+from collections.abc import Callable
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 import matplotlib
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.colors import to_rgb
+from matplotlib.figure import Figure
+from matplotlib.quiver import Quiver
 from PIL import Image
 
 from tangible_core.data import (
@@ -33,6 +39,7 @@ from tangible_core.report.material_sheet import draw_material, spectra
 from tangible_core.report.panels import PANELS
 from tangible_core.report.panels.force import round_number, spread
 from tangible_core.report.sheet import DPI, WIDTH_IN, draw_figure
+from tangible_core.report.style import OKABE_ITO
 from tangible_core.session import Recording
 
 NAN = np.nan
@@ -253,8 +260,34 @@ HEADLINES = {
 
 
 def headlines(run: dict[str, object]) -> dict[str, str]:
-    _, *texts = [text.get_text() for text in draw_figure(run, "title", PANELS).texts]
+    return said(draw_figure(run, "title", PANELS))
+
+
+def said(figure: Figure) -> dict[str, str]:
+    _, *texts = [text.get_text() for text in figure.texts]
     return dict(zip(texts[::2], texts[1::2], strict=True))
+
+
+def images(axes: Axes) -> list[np.ma.MaskedArray]:
+    """What each picture on a panel is of."""
+    return [np.ma.masked_array(image.get_array()) for image in axes.images]
+
+
+@pytest.fixture
+def drawn(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., Figure]:
+    """Draw a sheet, and hand on what was put on it."""
+    figures: list[Figure] = []
+
+    def keep(*given: Any) -> Figure:
+        figures.append(draw_figure(*given))
+        return figures[-1]
+
+    def draw(**run: Any) -> Figure:
+        draw_sheet(tmp_path / "sheet.png", **run)
+        return figures[-1]
+
+    monkeypatch.setattr("tangible_core.report.sheet.draw_figure", keep)
+    return draw
 
 
 class TestSheet:
@@ -334,9 +367,15 @@ class TestSheet:
         with pytest.raises(PictureError, match="truth"):
             draw_sheet(tmp_path / "sheet.png", disparity=disparity, truth=np.zeros((3, 2), np.float32))
 
-    def test_nearness_has_no_error_in_px(self, tmp_path: Path) -> None:
-        disparity = DisparityMap(np.zeros((2, 2), np.float32), unit="relative")
-        draw_sheet(tmp_path / "sheet.png", disparity=disparity, truth=np.zeros((3, 2), np.float32))
+    def test_nearness_has_no_error_in_px(self, drawn: Callable[..., Figure]) -> None:
+        disparity = DisparityMap(np.float32([[0.0, 0.25], [0.5, 1.0]]), unit="relative")
+        figure = drawn(disparity=disparity, truth=np.zeros((3, 2), np.float32))
+        assert said(figure) == {"a": "Relative nearness"}
+        (axes,) = figure.axes
+        np.testing.assert_array_equal(images(axes)[0], disparity.disparity_px)
+        assert axes.images[0].get_clim() == pytest.approx(np.percentile([0, 0.25, 0.5, 1], (0.5, 99.5)))
+        assert [bar.get_ylabel() for bar in axes.child_axes] == ["nearness, 0 far to 1 near"]
+        assert axes.get_xlabel() == "known everywhere"
 
     @pytest.mark.parametrize(
         "run",
@@ -358,18 +397,71 @@ class TestSheet:
         with Image.open(tmp_path / "sheet.png") as sheet:
             assert min(sheet.size) > 100
 
-    @pytest.mark.parametrize("truth", [np.full(SHAPE, NAN, np.float32), np.full(SHAPE, 8.0, np.float32)])
-    def test_truth_nowhere_and_everywhere(self, tmp_path: Path, truth: np.ndarray) -> None:
-        draw_sheet(tmp_path / "sheet.png", disparity=DisparityMap(np.full(SHAPE, 8.0, np.float32)), truth=truth)
+    def test_truth_nowhere(self, drawn: Callable[..., Figure]) -> None:
+        found = DisparityMap(np.full(SHAPE, 8.0, np.float32))
+        figure = drawn(disparity=found, truth=np.full(SHAPE, NAN, np.float32))
+        assert said(figure) == {"a": "Disparity", "b": "Error: bad1 nan %, bad2 nan %"}
+        white, error = images(figure.axes[1])
+        assert not np.ma.getmaskarray(white).any() and (white == 1).all()
+        assert np.ma.getmaskarray(error).all()
 
-    def test_thousands_of_segments(self, tmp_path: Path) -> None:
+    def test_truth_everywhere(self, drawn: Callable[..., Figure]) -> None:
+        estimate = np.full(SHAPE, 8.0, np.float32)
+        estimate[:, :6], estimate[:, 6:9], estimate[:, 9:12] = 9.5, 18.0, NAN
+        figure = drawn(disparity=DisparityMap(estimate), truth=np.full(SHAPE, 8.0, np.float32))
+        assert said(figure) == {"a": "Disparity", "b": "Error: bad1 20.0 %, bad2 10.0 %"}
+        assert figure.axes[0].get_xlabel() == "hatched: unknown, 5.0 %"
+        white, error = images(figure.axes[1])
+        assert np.ma.getmaskarray(white).all()
+        assert np.array_equal(np.ma.getmaskarray(error), np.isnan(estimate))
+        np.testing.assert_array_equal(error.compressed(), np.abs(estimate - 8)[np.isfinite(estimate)])
+        assert figure.axes[1].images[1].get_clim() == (0, 4)
+
+    def test_thousands_of_segments(self, drawn: Callable[..., Figure]) -> None:
         labels = np.arange(2400, dtype=np.int32).reshape(SHAPE)
-        draw_sheet(tmp_path / "sheet.png", views=Views(np.zeros(SHAPE, np.uint8)), segments=SegmentMap(labels))
+        figure = drawn(views=Views(np.zeros(SHAPE, np.uint8)), segments=SegmentMap(labels))
+        assert said(figure) == {"a": "Input", "b": "Segments"}
+        axes = figure.axes[1]
+        assert axes.get_xlabel() == "2400 segments"
+        assert not axes.texts  # none of them is large enough for its name
+        legend = axes.get_legend()
+        assert legend is not None
+        assert [text.get_text() for text in legend.get_texts()] == [
+            *(f"segment {label}, 0 %" for label in range(9)),
+            "and 2391 more",
+        ]
+        (picture,) = images(axes)
+        assert picture.shape == (13 * ROWS, 13 * COLUMNS, 3)
+        for label in (0, 1, 7, 8, 2399):
+            row, column = divmod(label, COLUMNS)
+            tinted = 0.45 * np.array(to_rgb(OKABE_ITO[label % 8]))
+            np.testing.assert_allclose(picture[13 * row + 6, 13 * column + 6], tinted)
+        outlined = 0.2 * 0.45 * np.array(to_rgb(OKABE_ITO[61 % 8]))
+        np.testing.assert_allclose(picture[13, 13], outlined)
 
-    @pytest.mark.parametrize("count", [1, 2, 5000])
-    def test_recordings_of_any_length(self, tmp_path: Path, count: int) -> None:
-        surface = HapticSurface.from_heights(np.zeros((5, 5)))
-        draw_sheet(tmp_path / "sheet.png", surface=surface, recording=record(count))
+    @pytest.mark.parametrize(("count", "arrows", "contact"), [(1, 1, 100), (2, 1, 50), (5000, 150, 50)])
+    def test_recordings_of_any_length(
+        self, drawn: Callable[..., Figure], count: int, arrows: int, contact: int
+    ) -> None:
+        hand = record(count)
+        figure = drawn(surface=HapticSurface.from_heights(np.full((5, 5), 0.004)), recording=hand)
+        assert list(said(figure).values())[1:] == [
+            "Lateral force along the path",
+            f"Force and tip over time: peak 0.55 N, contact {contact} %",
+        ]
+        _, way, time = figure.axes
+        np.testing.assert_allclose(way.lines[0].get_xydata(), 1000 * hand.position_m[:, :2])
+        (quiver,) = [each for each in way.collections if isinstance(each, Quiver)]
+        assert len(quiver.U) == arrows
+        np.testing.assert_allclose(np.stack([quiver.U, quiver.V, quiver.get_array()]).T, [[0.1, -0.2, 0.5]] * arrows)
+        touched = 1000 * hand.position_m[hand.force_n.any(axis=1), :2]
+        assert np.isin(quiver.XY[:, 0], touched[:, 0]).all()
+        assert way.images[0].get_extent() == pytest.approx([-40, 40, -40, 40])
+        upper, lower = time.child_axes
+        (force,), (tip,) = upper.lines, lower.lines
+        np.testing.assert_allclose(force.get_xydata(), np.c_[hand.time_s, np.linalg.norm(hand.force_n, axis=1)])
+        np.testing.assert_allclose(tip.get_xydata(), np.c_[hand.time_s, 1000 * hand.position_m[:, 2]])
+        assert (upper.get_ylabel(), lower.get_ylabel(), lower.get_xlabel()) == ("force [N]", "height [mm]", "time [s]")
 
     def test_a_recording_of_nothing_is_left_out(self, tmp_path: Path) -> None:
         surface = HapticSurface.from_heights(np.zeros((5, 5)))

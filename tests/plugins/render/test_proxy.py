@@ -96,6 +96,19 @@ class TestAccuracy:
             assert np.allclose(force, K * np.array((px - qx, py - qy, c + a * px + b * py - qz)), rtol=0, atol=1e-4)
         assert clamped > 20
 
+    @pytest.mark.parametrize("shape", [(26, 256), (256, 26)])
+    def test_a_moving_hand_feels_what_one_at_rest_does(self, shape: tuple[int, int]):
+        """However long the cells are: the last step of a tick is small beside the shorter side of one."""
+        rows, columns = np.indices(shape) + 0.5
+        x, y = (columns / shape[1] - 0.5) * 0.08, (0.5 - rows / shape[0]) * 0.08
+        heights = 0.008 + 0.004 * np.sin(x * 2 * np.pi / 0.03) * np.cos(y * 2 * np.pi / 0.03)
+        surface = HapticSurface(Relief(heights.astype(np.float32), (0.08, 0.08)))
+        t = np.linspace(-0.03, 0.03, 1000)
+        path = np.column_stack([t, 0.8 * t[::-1], 0.0075 + 0.004 * np.sin(t * 210) * np.cos(0.8 * t * 210)])
+        still = Proxy().touch(surface).path(np.repeat(path, 6, axis=0))[5::6]
+        assert (still[:, 2] > 0).mean() > 0.5
+        assert np.linalg.norm(Proxy().touch(surface).path(path) - still, axis=1).max() <= K * 1e-8
+
     @pytest.mark.parametrize("depth_m", [0.0002, 0.0008])
     def test_on_waves_at_the_speed_of_a_hand(self, depth_m: float):
         known = waves()

@@ -3,8 +3,10 @@
 import logging
 import time
 from collections.abc import Callable, Generator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from pathlib import Path
+from typing import final
 
 import numpy as np
 
@@ -32,37 +34,46 @@ def feel(
 ) -> ServoReport:
     """Feel in real time, until the seconds are over, Ctrl-C, or what else ends a `Servo`; then the force is zero.
 
-    on_report: called ten times a second, and at the end. keep: given all ticks, as rows of `data.TICK_COLUMNS`. What
-    these raise ends the session, such as a full disk.
+    on_report: called ten times a second, and at the end. keep: given all ticks, as rows of `data.TICK_COLUMNS`, in a
+    thread of its own. What these raise ends the session, such as a full disk.
     Raises: ConfigError if seconds is not above 0 and finite, DeviceError if the device cannot be opened, and what a
     plugin raises.
     """
-    with Servo(touch, device, limits, seconds) as servo:
+    with Servo(touch, device, limits, seconds) as servo, ThreadPoolExecutor(1) as aside:
         on_start(servo)
-        kept, next_s = 0, time.monotonic()
+        keeper, next_s = _Keeper(servo, keep), time.monotonic()
         try:
             while servo.running:
                 time.sleep(LOOK_EVERY_S)
-                kept = _keep(servo, kept, keep)
+                aside.submit(keeper.look).result()
                 if time.monotonic() >= next_s:
                     next_s += REPORT_EVERY_S
                     on_report(servo.report())
             last = servo.stop()
         except KeyboardInterrupt:
             last = servo.stop(INTERRUPTED)
-        _keep(servo, kept, keep)
+        aside.submit(keeper.look).result()
         on_report(last)
     return last
 
 
-def _keep(servo: Servo, first: int, keep: Callable[[np.ndarray], None]) -> int:
-    """Hand on the ticks from this number on; the number of the next."""
-    rows, following = servo.ring.since(first)
-    if lost := following - first - len(rows):
-        log.warning("%d ticks were overwritten before they could be recorded; the machine is too busy", lost)
-    if len(rows):
-        keep(rows)
-    return following
+@final
+class _Keeper:
+    """Hands on each tick once. A look is made in a thread of its own, where no Ctrl-C ends it half done: nobody would
+    know which ticks are kept."""
+
+    def __init__(self, servo: Servo, keep: Callable[[np.ndarray], None]) -> None:
+        self._servo, self._keep = servo, keep
+        self._next = 0
+
+    def look(self) -> None:
+        """Hand on what came since the last look."""
+        rows, following = self._servo.ring.since(self._next)
+        if lost := following - self._next - len(rows):
+            log.warning("%d ticks were overwritten before they could be recorded; the machine is too busy", lost)
+        if len(rows):
+            self._keep(rows)
+        self._next = following
 
 
 @contextmanager

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tangible_core import cache
 from tangible_core.cache import Cache, read_record, write_record
 from tangible_core.data import (
     Calibration,
@@ -47,43 +48,52 @@ def test_any_program_can_read_an_entry(tmp_path: Path):
         assert np.array_equal(archive["relief.height_m"], HEIGHTS)
 
 
-def test_a_miss_is_none(tmp_path: Path):
+def test_a_miss_is_none(tmp_path: Path, caplog: pytest.LogCaptureFixture):
     assert Cache(tmp_path).get("nothing") is None
     assert "nothing" not in Cache(tmp_path / "no folder yet")
+    assert not caplog.text
+
+
+def test_the_folder_is_the_one_that_is_asked_for(cache_dir: Path):
+    Cache().put("k", RECORDS[1])
+    assert [each.name for each in cache_dir.iterdir()] == ["k.npz"]
 
 
 @pytest.mark.parametrize("damage", [lambda b: b[: len(b) // 2], lambda b: b"", lambda b: b"PK" + bytes(len(b))])
 def test_a_damaged_entry_is_said_and_deleted(tmp_path: Path, caplog: pytest.LogCaptureFixture, damage):
-    cache = Cache(tmp_path)
-    cache.put("k", RECORDS[1])
+    kept = Cache(tmp_path)
+    kept.put("k", RECORDS[1])
     path = tmp_path / "k.npz"
     path.write_bytes(damage(path.read_bytes()))
-    assert cache.get("k") is None
+    assert kept.get("k") is None
     assert "damaged" in caplog.text
     assert not path.exists()
 
 
 def test_one_flipped_bit_is_found(tmp_path: Path):
-    cache = Cache(tmp_path)
-    cache.put("k", SegmentMap(np.zeros((64, 64), np.int32)))
+    kept = Cache(tmp_path)
+    kept.put("k", SegmentMap(np.zeros((64, 64), np.int32)))
     path = tmp_path / "k.npz"
     content = bytearray(path.read_bytes())
     content[len(content) // 2] ^= 1
     path.write_bytes(content)
-    assert cache.get("k") is None
+    assert kept.get("k") is None
 
 
-def test_an_entry_of_another_program_is_not_trusted(tmp_path: Path):
-    np.savez(tmp_path / "k.npz", record=np.frombuffer(b'{"class": "Path", "fields": {}}', np.uint8))
+@pytest.mark.parametrize("tree", [b'{"class": "Path", "fields": {}}', b'["a", "list"]', b"{}"])
+def test_an_entry_of_another_program_is_not_trusted(tmp_path: Path, tree: bytes, caplog: pytest.LogCaptureFixture):
+    np.savez(tmp_path / "k.npz", record=np.frombuffer(tree, np.uint8))
     assert Cache(tmp_path).get("k") is None
+    assert "damaged" in caplog.text
+    assert "k" not in Cache(tmp_path)
 
 
 def test_the_entries_used_longest_ago_go_first(tmp_path: Path):
-    cache = Cache(tmp_path)
+    kept = Cache(tmp_path)
     for age, key in enumerate(("old", "older", "oldest")):
-        cache.put(key, RECORDS[1])
+        kept.put(key, RECORDS[1])
         os.utime(tmp_path / f"{key}.npz", (1e9 - age, 1e9 - age))
-    assert cache.get("oldest") is not None  # used now, so it stays
+    assert kept.get("oldest") is not None  # used now, so it stays
     size = (tmp_path / "old.npz").stat().st_size
     Cache(tmp_path, max_bytes=int(2.5 * size)).put("new", RECORDS[1])
     assert {path.stem for path in tmp_path.glob("*.npz")} == {"oldest", "new"}
@@ -99,6 +109,41 @@ def test_of_many_entries_exactly_those_used_last_stay(tmp_path: Path):
     size = next(tmp_path.iterdir()).stat().st_size
     Cache(tmp_path, max_bytes=6 * size).put("new", RECORDS[1])
     assert {path.stem for path in tmp_path.iterdir()} == {"new", *(f"{age * 5 % 12:x}{age}" for age in range(5))}
+
+
+def test_a_cache_that_is_just_full_keeps_all(tmp_path: Path):
+    Cache(tmp_path).put("a", RECORDS[1])
+    size = (tmp_path / "a.npz").stat().st_size
+    Cache(tmp_path, max_bytes=2 * size).put("b", RECORDS[1])
+    assert len(list(tmp_path.iterdir())) == 2
+
+
+@pytest.mark.parametrize("counted", [False, True])
+def test_entries_that_another_process_drops_meanwhile(
+    tmp_path: Path, counted: bool, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+):
+    def used(path: Path) -> tuple[float, int]:
+        found = real(path) if counted else None
+        path.unlink()
+        return found or real(path)
+
+    real = cache._used
+    Cache(tmp_path).put("old", RECORDS[1])
+    monkeypatch.setattr(cache, "_used", used)
+    Cache(tmp_path, max_bytes=0).put("new", RECORDS[1])
+    assert not caplog.text
+    assert not list(tmp_path.iterdir())
+
+
+def test_entries_that_cannot_be_dropped_cost_a_warning(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+):
+    def denied(_: Path) -> tuple[float, int]:
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(cache, "_used", denied)
+    Cache(tmp_path).put("k", RECORDS[1])
+    assert "Permission denied" in caplog.text
 
 
 def test_a_folder_that_cannot_be_written_costs_a_warning(tmp_path: Path, caplog: pytest.LogCaptureFixture):
@@ -121,6 +166,7 @@ USER = """
 import sys
 from pathlib import Path
 import numpy as np
+from tangible_core import cache
 from tangible_core.cache import Cache
 from tangible_core.data import SegmentMap
 

@@ -43,6 +43,8 @@ def test_a_file_is_not_there_before_the_block_ends(tmp_path):
         file.write(b"half")
         file.flush()
         assert not path.exists()
+        (part,) = tmp_path.iterdir()  # on the same disk, as only there a file gets its name at once
+        assert part.read_bytes() == b"half"
     assert path.read_bytes() == b"half"
 
 

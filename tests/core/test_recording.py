@@ -67,6 +67,13 @@ def test_csv_is_read_by_the_names_of_its_columns(tmp_path: Path):
     assert not (recording.late_s.any() or recording.flags.any() or recording.buttons.any())
 
 
+@pytest.mark.parametrize("name", ["time_s", "x_m", "vz_m_per_s", "fz_n"])
+def test_a_csv_without_a_column_that_each_recording_has(tmp_path: Path, name: str):
+    (tmp_path / "less.csv").write_text(",".join(each for each in TICK_COLUMNS if each != name) + "\n")
+    with pytest.raises(OutputError, match=f"names no {name}"):
+        Recording.load(tmp_path / "less.csv")
+
+
 def test_an_npz_of_before(tmp_path: Path):
     arrays = {name: getattr(some(), name) for name in ("time_s", "position_m", "velocity_m_per_s", "force_n")}
     np.savez(tmp_path / "old.npz", **arrays, stopped="", not_finite=2, limited=3)

@@ -15,7 +15,7 @@ from scipy.io import netcdf_file
 from full_disk import files_up_to
 from tangible_core.data import TICK_COLUMNS
 from tangible_core.errors import OutputError
-from tangible_core.session import About, Recording, Writer, netcdf, writer
+from tangible_core.session import About, Recording, Writer, netcdf, tick_file, writer
 
 ROWS = np.arange(16 * 50, dtype=float).reshape(50, 16)
 
@@ -56,6 +56,20 @@ def test_others_find_names_units_and_flags(tmp_path: Path):
         assert np.array_equal(file.variables["fz_n"][:], ROWS[:, 13])
 
 
+def test_what_is_said_of_a_recording_is_kept(tmp_path: Path):
+    about = About("mock", "proxy", "want: touch\n", "2026-01-02T03:04:05+00:00", "mine 1.0")
+    Writer(tmp_path / "stroke.nc", about).close()
+    assert Recording.load(tmp_path / "stroke.nc").about == about
+
+
+def test_each_variable_says_where_it_begins():
+    """scipy believes the first one, and then the sizes; other readers believe all. A variable ends with it."""
+    head = tick_file.header(About())
+    following = [head.index(netcdf.integer(len(name)) + name.encode()) for name in TICK_COLUMNS[1:]] + [len(head)]
+    begins = [int.from_bytes(head[at - 8 : at], "big") for at in following]
+    assert begins == [len(head) + tick_file.RECORD.fields[name][1] for name in TICK_COLUMNS]
+
+
 def test_a_tick_is_92_bytes_and_loses_little(tmp_path: Path):
     """What a law is given is exact, after ten days too; proxies are within 4 nm, forces within 0.3 uN."""
     rows = np.random.default_rng(0).uniform(-1, 1, (1000, 16)) * ([0.01, 1e-3] + [0.125] * 9 + [8] * 3 + [0, 0])
@@ -85,6 +99,8 @@ def test_why_it_ended(tmp_path: Path):
     writer.close("é" * 200)
     writer.close("again")
     assert Recording.load(path).stopped == "é" * 120
+    Writer(path).close("a" + "é" * 200)  # the last letter that would fit is half a one
+    assert Recording.load(path).stopped == "a" + "é" * 119
     with pytest.raises(OutputError, match="is closed"):
         writer.append(ROWS)
     with pytest.raises(ZeroDivisionError), Writer(path):
@@ -179,8 +195,9 @@ def test_a_full_disk_keeps_what_was_written(tmp_path: Path):
     assert recording.stopped.startswith("the recording ends early: ")
 
 
-def test_a_file_that_is_full(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(netcdf, "MOST_RECORDS", 120)
+@pytest.mark.parametrize("most", [100, 120])
+def test_a_file_that_is_full(tmp_path: Path, most: int, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(netcdf, "MOST_RECORDS", most)
     path = tmp_path / "stroke.nc"
     with Writer(path) as writer:
         writer.append(ROWS)

@@ -2,6 +2,7 @@
 
 import signal
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from tangible_core.data import ServoReport
 from tangible_core.errors import OutputError
 from tangible_core.interfaces import Touch
 from tangible_core.servo import OVER, Safety
-from tangible_core.session import INTERRUPTED, Recording, feel, figures, keeping
+from tangible_core.session import INTERRUPTED, Recording, feel, figures, keeping, live
 from tangible_core.session.tick_file import About
 from tangible_core.testing.loop_devices import Circling, Failing
 
@@ -31,9 +32,10 @@ def test_every_tick_is_kept_and_reports_come_ten_times_a_second(touch: Touch, tm
     kept = Recording.load(tmp_path / "hand.nc")
     assert (last.ticks, len(kept.rows), last.stopped, kept.stopped) == (1000, 1000, OVER, "")
     assert 5 <= len(reports) <= 15
+    assert reports[-1] == last
     assert figures(last)["peak_force_n"] == pytest.approx(kept.peak_force_n, rel=1e-6)
     assert figures(last)["work_j"] == pytest.approx(kept.work_j, abs=1e-9)
-    assert (figures(last)["ramping"], figures(last)["stale"]) == (500, 0)
+    assert 0 < figures(last)["ramping"] <= 500  # by the clock: late ticks are fewer
 
 
 @pytest.mark.parametrize("name", ["hand.npz", "hand.csv"])
@@ -42,6 +44,34 @@ def test_other_files_are_made_of_it_at_the_end(touch: Touch, tmp_path: Path, nam
         feel(touch, Circling(), 0.2, Safety(), lambda _: None, writer.append)
     assert len(Recording.load(tmp_path / name).rows) == 200
     assert [each.name for each in tmp_path.iterdir()] == [name]
+
+
+def test_what_grew_stays_where_no_other_file_could_be_made_of_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: object) -> None:
+        raise OutputError("no room; free some space")
+
+    monkeypatch.setattr(Recording, "save", full)
+    with pytest.raises(OutputError, match="no room"), keeping(tmp_path / "hand.csv", About()) as writer:
+        writer.append(np.ones((3, 16)))
+    assert len(Recording.load(tmp_path / "hand.csv.nc").rows) == 3
+
+
+def test_ticks_that_were_overwritten_are_told_and_the_others_kept(caplog: pytest.LogCaptureFixture) -> None:
+    """Of every five, a ring that is too small for so slow a host still has the last three."""
+    firsts: list[int] = []
+
+    def since(first: int) -> tuple[np.ndarray, int]:
+        firsts.append(first)
+        return np.zeros((3, 16)), first + 5
+
+    kept: list[np.ndarray] = []
+    keeper = live._Keeper(SimpleNamespace(ring=SimpleNamespace(since=since)), kept.append)
+    keeper.look()
+    keeper.look()
+    assert (firsts, len(kept)) == ([0, 5], 2)
+    assert caplog.text.count("2 ticks were overwritten before they could be recorded") == 2
 
 
 def test_a_full_disk_ends_it_with_no_force(touch: Touch, tmp_path: Path) -> None:
@@ -80,4 +110,5 @@ def test_ctrl_c(touch: Touch, tmp_path: Path) -> None:
     assert float(force.read_text()) == 0
     kept = Recording.load(tmp_path / "hand.nc")
     assert kept.stopped == INTERRUPTED
-    assert len(kept.rows) > 0
+    assert len(kept.rows) == last.ticks  # each once, those too that came between the last look and the end
+    assert (np.diff(kept.time_s) > 0).all()

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from . import hooks
+from . import hooks, standard_output
 from .cli_devices import devices_app
 from .cli_materials import materials_app
 from .cli_options import DONE, FAILED, INTERRUPTED, MISTAKE, Config, Json, NoCache, Out, Seconds, Sets
@@ -19,7 +19,9 @@ from .errors import ConfigError, TangibleError, exited
 from .registry import KIND_NAMES, default_registry
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
+
+    from typer.models import CommandInfo, TyperInfo
 
 app = typer.Typer(
     name="tangible",
@@ -179,14 +181,28 @@ def check(
         raise typer.Exit(FAILED)
 
 
+def _ours(typed: typer.Typer) -> Iterator[CommandInfo | TyperInfo]:
+    """Every command, and what is called before one."""
+    yield from typed.registered_commands
+    yield from filter(None, [typed.registered_callback])
+    for group in typed.registered_groups:
+        if group.typer_instance:
+            yield from _ours(group.typer_instance)
+
+
+for each in _ours(app):  # not those of others, added later: these write as they like
+    each.callback = each.callback and standard_output.kept()(each.callback)
+
+
 def main() -> None:
     """Entry point: one clear message for a user's mistake, and an exit code that says whose it is."""
     sys.exit(_guarded(lambda: _run_app()))
 
 
 def _run_app() -> int:
-    words = _take_log_options(sys.argv[1:])
-    hooks.tell(default_registry().plugins, "tangible_commands", app=app)
+    with standard_output.kept():
+        words = _take_log_options(sys.argv[1:])
+        hooks.tell(default_registry().plugins, "tangible_commands", app=app)
     try:
         code = app(words, standalone_mode=False, default_map=_no_help())
     except SystemExit as error:

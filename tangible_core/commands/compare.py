@@ -129,7 +129,6 @@ def _change(each: verdicts.Worse) -> tuple[str, str, str]:
 
 def _print_table(table: Table) -> None:
     """Numbers are never cut: a table of many is as wide as it must be, whatever the terminal."""
-    from rich.console import Console
     from rich.measure import Measurement
     from rich.table import Table as Drawn
     from rich.text import Text
@@ -142,7 +141,7 @@ def _print_table(table: Table) -> None:
             drawn.add_column(heading.replace(" ", "\n"), justify="right", vertical="bottom")
     for row in table.rows:
         drawn.add_row(*(Text(cell) for cell in row))
-    console = Console()
+    console = show.console()
     numbers = sum(heading not in WORDS for heading in table.headings)
     if numbers > 1:
         console.width = max(

@@ -1,6 +1,5 @@
 """`feel`: a pipeline's surface on its device, in real time."""
 
-import sys
 import time
 from collections.abc import Sequence
 from contextlib import nullcontext
@@ -49,7 +48,7 @@ def feel(config: Path, sets: Sequence[str], seconds: float, record: Path | None,
     if report.stopped == session.INTERRUPTED:
         raise KeyboardInterrupt
     if report.stopped != OVER:
-        sys.stdout.flush()
+        show.flush()
         raise session.failure(report.ticks, report.stopped)
 
 

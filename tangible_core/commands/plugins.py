@@ -3,6 +3,7 @@
 import json
 
 from ..registry import default_registry
+from ..standard_output import stream
 
 COLUMNS = ("kind", "name", "origin", "summary")
 
@@ -11,10 +12,10 @@ def plugins(as_json: bool) -> None:
     """One line a method, for eyes and for grep; without rich, whose import would double the time."""
     rows = [{column: getattr(each, column) for column in (*COLUMNS, "target")} for each in default_registry().listings]
     if as_json:
-        print(json.dumps(rows, indent=2, ensure_ascii=False))  # noqa: T201
+        print(json.dumps(rows, indent=2, ensure_ascii=False), file=stream())
         return
     shown = [{column: column for column in COLUMNS}, *rows]
     widths = [max(len(row[column]) for row in shown) for column in COLUMNS[:-1]]
     for row in shown:
         cells = (row[column].ljust(width) for column, width in zip(COLUMNS, widths, strict=False))
-        print(*cells, row["summary"], sep="  ")  # noqa: T201
+        print(*cells, row["summary"], sep="  ", file=stream())

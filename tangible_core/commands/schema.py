@@ -2,6 +2,7 @@
 
 from ..schema import json_schema, materials_schema
 from ..schema import markdown as as_markdown
+from ..standard_output import stream
 from .show import print_json
 
 
@@ -9,7 +10,7 @@ def schema(markdown: bool, installed: bool) -> None:
     """Print the schema of pipeline files as JSON, or as a page."""
     found = json_schema(distribution=None if installed else "tangible-images")
     if markdown:
-        print(as_markdown(found), end="")  # noqa: T201
+        print(as_markdown(found), end="", file=stream())
     else:
         print_json(found)
 

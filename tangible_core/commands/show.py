@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
@@ -9,6 +10,8 @@ from typing import TYPE_CHECKING, Any
 from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
+
+from ..standard_output import stream
 
 if TYPE_CHECKING:
     from ..data import Outcome
@@ -20,7 +23,21 @@ def print_json(value: Any) -> None:
     """JSON on standard output; NaN becomes null."""
     from ..report.figures import as_json
 
-    print(as_json(value))  # noqa: T201
+    print(as_json(value), file=stream())
+
+
+def console(**options: Any) -> Console:
+    """Of the program's own standard output, as wide as the terminal where that is one."""
+    own = stream()
+    if own is not None and own.isatty() and "COLUMNS" not in os.environ:
+        options["width"] = os.get_terminal_size(own.fileno()).columns or None
+    return Console(file=own, **options)
+
+
+def flush() -> None:
+    """Let the results come before what is said next on standard error."""
+    if (own := stream()) is not None:
+        own.flush()
 
 
 def table(headings: Sequence[str], rows: Iterable[Sequence[str]], title: str | None = None) -> None:
@@ -28,7 +45,7 @@ def table(headings: Sequence[str], rows: Iterable[Sequence[str]], title: str | N
     shown = Table(*headings, title=title, title_justify="left", box=None, pad_edge=False, header_style="bold")
     for row in rows:
         shown.add_row(*row)
-    Console().print(shown)
+    console().print(shown)
 
 
 def outcomes(found: Iterable[Outcome], title: str | None = None, ran: str = "ran") -> None:
@@ -53,12 +70,12 @@ def as_rows(found: Iterable[Outcome]) -> list[dict[str, Any]]:
 
 def say(text: str) -> None:
     """A line of text, with rich's marks."""
-    Console(highlight=False, soft_wrap=True).print(text)
+    console(highlight=False, soft_wrap=True).print(text)
 
 
 def plain(text: str) -> None:
     """A text as it stands, to be copied: no marks, no folding."""
-    Console(highlight=False, soft_wrap=True).print(text, markup=False)
+    console(highlight=False, soft_wrap=True).print(text, markup=False)
 
 
 def note(text: str) -> None:

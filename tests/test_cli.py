@@ -1,6 +1,7 @@
 """The command line as a user meets it: whole processes, what they print, and their exit codes."""
 
 import json
+import os
 import signal
 import subprocess
 import sys

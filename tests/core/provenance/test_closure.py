@@ -155,8 +155,14 @@ def test_of_modules_alone_the_text_counts_and_not_what_they_import(write: Write)
 
 
 def test_a_compiled_module_counts_and_text_that_is_no_python_is_read_as_far_as_it_goes(write: Write):
-    site = write("work", **{"a.py": "import fast, torn", "fast.abi3.so": "1", "torn.py": "import ("})
-    assert closure("a").modules == ("a", "fast", "torn")
+    site = write(
+        "work",
+        **{"a.py": "import fast, torn", "fast.abi3.so": "1", "torn.py": "import ("},
+    )
+    (site / "old").mkdir()
+    (site / "old" / "__init__.py").write_text("import fast\nprint 'as it was'")
+    (site / "a.py").write_text("import fast, torn\ntry:\n    from old import fast\nexcept SyntaxError: pass\n")
+    assert closure("a").modules == ("a", "fast", "old", "torn")
     before = digest("a")
     (site / "fast.abi3.so").write_text("2")
     assert digest("a") != before

@@ -51,6 +51,9 @@ def test_matches_count_by_their_scores():
     blank, elsewhere = np.zeros(SHAPE, np.uint8), np.abs(np.arange(40) - 20) < 8
     (near, good), (far, poor) = one(8, 5.0, 0.9), one(32, 6.0, 0.3)
     counts, less = (assemble(*each, blank).confidence for each in ((near, good), (far, poor)))
+    np.testing.assert_allclose(
+        assemble(near, good / 2, blank).confidence[:, elsewhere], counts[:, elsewhere] / 2, rtol=1e-5
+    )
     both = assemble(np.fmax(near, far), good + poor, blank)
     expected = (5 * counts + 6 * less) / (counts + less)
     np.testing.assert_allclose(both.disparity_px[:, elsewhere], expected[:, elsewhere], atol=0.01)

@@ -51,11 +51,24 @@ def test_matches_count_by_their_scores():
     blank, elsewhere = np.zeros(SHAPE, np.uint8), np.abs(np.arange(40) - 20) < 8
     (near, good), (far, poor) = one(8, 5.0, 0.9), one(32, 6.0, 0.3)
     counts, less = (assemble(*each, blank).confidence for each in ((near, good), (far, poor)))
+    np.testing.assert_allclose(
+        assemble(near, good / 2, blank).confidence[:, elsewhere], counts[:, elsewhere] / 2, rtol=1e-5
+    )
     both = assemble(np.fmax(near, far), good + poor, blank)
     expected = (5 * counts + 6 * less) / (counts + less)
     np.testing.assert_allclose(both.disparity_px[:, elsewhere], expected[:, elsewhere], atol=0.01)
     np.testing.assert_allclose(both.confidence[:, elsewhere], (counts + less)[:, elsewhere], rtol=1e-4)
     assert np.ptp(expected[15, elsewhere]) > 0.05
+
+
+@pytest.mark.parametrize(("grey", "least", "most"), [(1, 0.6, 0.95), (20, 0.005, 0.3), (200, 0.0, 1e-12)])
+def test_a_change_of_colour_counts_as_distance(grey, least, most):
+    """One of 8 % of white, as long a way as the reach: what is left of a match behind it, of what there is without."""
+    found, score = np.full(SHAPE, np.nan, np.float32), np.zeros(SHAPE, np.float32)
+    found[15, 10], score[15, 10] = 5, 0.9
+    edged = np.where(np.arange(40) < 20, 0, grey).astype(np.uint8) * np.ones((30, 1), np.uint8)
+    behind, plain = (assemble(found, score, each).confidence[15, 30] for each in (edged, 0 * edged))
+    assert least <= behind / plain <= most
 
 
 def test_what_no_match_reaches_is_as_the_nearest_place_that_one_reaches():

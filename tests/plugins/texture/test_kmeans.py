@@ -58,6 +58,7 @@ def test_more_restarts_cost_no_more():
     rows = np.random.default_rng(0).normal(size=(500, 3)).astype(np.float32)
     costs = [kmeans(rows, 8, restarts, seed=0).cost for restarts in (1, 3, 10)]
     assert costs == sorted(costs, reverse=True)
+    assert costs[2] < costs[0]
 
 
 @settings(max_examples=40)
@@ -96,8 +97,24 @@ def test_a_cluster_that_loses_all_its_rows_is_left_out():
 
 
 def test_rows_that_only_rounding_keeps_apart_are_one():
-    rows = (7 + 1e-6 * np.random.default_rng(0).random((100, 3))).astype(np.float32)
-    assert len(kmeans(rows, 5).centres) == 1
+    """Less than a hundred thousandth of the longest apart: here a ten thousandth is."""
+    away = np.random.default_rng(0).random((100, 3))
+    assert len(kmeans((7 + 3e-5 * away).astype(np.float32), 5).centres) == 1
+    assert len(kmeans((7 + 7e-4 * away).astype(np.float32), 5).centres) == 5
+
+
+@pytest.mark.parametrize("weighted", [True, False])
+def test_starts_are_drawn_by_squared_distance_or_all_alike(weighted: bool):
+    random = np.random.default_rng(5)
+    for _ in range(200):
+        rows = random.integers(-50, 50, (30, 2)).astype(np.float32) ** 3 / 100
+        uniform = random.random(3)
+        chosen = [int(uniform[0] * 30)]
+        for u in uniform[1:]:
+            away = np.square(rows[:, None].astype(np.float64) - rows[chosen]).sum(axis=2).min(axis=1)
+            weights = np.cumsum(away if weighted else away > 0)
+            chosen.append(int(np.searchsorted(weights, u * weights[-1], side="right")))
+        np.testing.assert_array_equal(module._start(rows, uniform, weighted, np.float32(0)), rows[chosen])
 
 
 @pytest.mark.parametrize("count", [2, 3, 5])

@@ -110,8 +110,8 @@ class Servo:
         Raises: DeviceError if the loop has ended, or the touch cannot be sent to its process; whatever a faulty plugin
         raises there. The scene before it is felt on, unless the loop has ended.
         """
-        self._tell(Swap(self._pack(touch), self._arrays(touch)[0]))
         try:
+            self._tell(Swap(self._pack(touch), self._arrays(touch)[0]))
             self._answer(Swapped)
         finally:
             self._remove_sent()

@@ -196,7 +196,14 @@ for each in _ours(app):  # not those of others, added later: these write as they
 
 def main() -> None:
     """Entry point: one clear message for a user's mistake, and an exit code that says whose it is."""
-    sys.exit(_guarded(lambda: _run_app()))
+    sys.exit(_guarded(lambda: _run_and_leave()))
+
+
+def _run_and_leave() -> int:
+    try:
+        return _run_app()
+    finally:
+        standard_output.leave()
 
 
 def _run_app() -> int:

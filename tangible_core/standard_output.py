@@ -3,7 +3,6 @@
 Not only `print`: a library in C writes to file 1, and so does a process that a plugin starts.
 """
 
-import atexit
 import io
 import os
 import sys
@@ -39,6 +38,13 @@ def kept() -> Generator[None]:
         undo.callback(_own.clear)
         yield
         _own[-1].flush()
+
+
+def leave() -> None:
+    """The program has said all: what libraries in C hold back, they write when the process ends, to standard error."""
+    if _is_file_1(sys.stdout):
+        sys.stdout.flush()
+        os.dup2(ERR, OUT)
 
 
 @final
@@ -86,7 +92,6 @@ def _aside(stdout: io.TextIOWrapper, undo: ExitStack) -> TextIO:
     undo.callback(stdout.reconfigure, line_buffering=by_lines)  # and what plugins wrote is flushed
     stdout.reconfigure(line_buffering=True)
     os.dup2(ERR, OUT)
-    atexit.register(_end, stdout)
     return own
 
 
@@ -114,10 +119,3 @@ def _fill() -> None:
 def _close(own: TextIO) -> None:
     with suppress(OutputError):  # said already, when it was flushed
         own.close()
-
-
-def _end(stdout: io.TextIOWrapper) -> None:
-    """What libraries in C have not written yet, they write when the process ends."""
-    with suppress(OSError, ValueError):
-        stdout.flush()
-    os.dup2(ERR, OUT)

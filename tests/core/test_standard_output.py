@@ -5,6 +5,7 @@ import io
 import json
 import os
 import pty
+import re
 import struct
 import subprocess
 import sys
@@ -88,6 +89,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     info.joinpath("entry_points.txt").write_text("[tangible.depth]\nnoisy = noisy:Noisy\n[tangible.hooks]\nn = noisy\n")
     site.joinpath("noisy.py").write_text(NOISY)
     monkeypatch.setenv("PYTHONPATH", str(site))
+    monkeypatch.delenv("PYTHONUNBUFFERED", raising=False)  # it is C's buffer too
     write_png(tmp_path / "left.png", np.random.default_rng(0).integers(0, 255, (16, 24), np.uint8))
     tmp_path.joinpath("p.yaml").write_text(PIPELINE)
     tmp_path.joinpath("c.yaml").write_text(COMPARE)
@@ -123,6 +125,12 @@ class TestPlugins:
             if line.split(" ")[0] in ("print", "write", "file", "C", "process")
         }
         assert said == {f"{way} {place}" for way in WAYS for place in where}
+
+    @pytest.mark.parametrize("words", [["plan", "none.yaml"], ["check", "depth", "nosy"], ["plugins", "--jsn"]])
+    def test_nothing_is_on_standard_output_after_a_mistake(self, folder: Path, words: list[str]) -> None:
+        done = tangible(folder, *words)
+        assert (done.returncode, done.stdout) == (2, "")
+        assert "C at import" in done.stderr
 
     def test_what_is_for_people_is_the_programs_alone_too(self, folder: Path) -> None:
         done = tangible(folder, "run", "p.yaml", "--no-cache")
@@ -180,10 +188,13 @@ class TestTheStreams:
 
     def test_a_terminal_keeps_its_colours_and_its_width(self, folder: Path) -> None:
         """132 columns, with standard input and error elsewhere."""
+        folder.joinpath("wide.yaml").write_text(PIPELINE.replace("noisy", "semi-global"))
         host, terminal = pty.openpty()
         fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack("HHHH", 50, 132, 0, 0))
         env = {name: value for name, value in quiet().items() if name not in ("COLUMNS", "NO_COLOR")}
-        done = tangible(folder, "materials", stdin=subprocess.DEVNULL, stdout=terminal, env={**env, "TERM": "xterm"})
+        done = tangible(
+            folder, "plan", "wide.yaml", stdin=subprocess.DEVNULL, stdout=terminal, env={**env, "TERM": "xterm"}
+        )
         os.close(terminal)
         shown = b""
         while more := read(host):
@@ -191,8 +202,8 @@ class TestTheStreams:
         os.close(host)
         assert done.returncode == 0, done.stderr
         assert b"\x1b[" in shown
-        widest = max(len(line) for line in shown.replace(b"\r", b"").split(b"\n"))
-        assert widest > 80
+        plain = re.sub(r"\x1b\[[0-9;]*m", "", shown.decode())
+        assert 80 < max(map(len, plain.splitlines())) <= 132
 
 
 def read(terminal: int) -> bytes:

@@ -92,8 +92,9 @@ class TestSoftening:
             hard = servo.ring.since(0)[0]
             servo.swap(plain(50.0))
             until(lambda: felt(servo) == pytest.approx((50 * 0.0005, False), rel=1e-6))
-        assert 0 < hard[:, FZ].max() <= 2401 * 0.0005
-        assert (hard[:, FLAGS].astype(int) & TickFlag.STIFFNESS_LIMITED).all()
+        felt_n, flags = hard[:, FZ], hard[:, FLAGS].astype(int)
+        assert 0 < felt_n.max() <= 2401 * 0.0005
+        assert (flags[felt_n > 0] & TickFlag.STIFFNESS_LIMITED).all()
 
     def test_one_that_says_it_is_taken_at_its_word(self) -> None:
         touch = spring(5000.0)
@@ -202,6 +203,19 @@ class TestFelt:
             return 0.0, 0.0, 700.0 * (height_m - z) * inside
 
         assert stiffness_of(Law(law), SPEC).n_per_m == pytest.approx(700, rel=1e-6)
+
+    def test_a_small_picture_is_felt_at_many_places(self) -> None:
+        """A quarter of them lie in the middle sixteenth."""
+        columns: set[tuple[float, float]] = set()
+
+        def law(x: float, y: float, z: float) -> tuple[float, float, float]:
+            inside = abs(x) < 0.01 and abs(y) < 0.01
+            if inside and z == SPEC.workspace_m[2]:
+                columns.add((x, y))
+            return 0.0, 0.0, float(inside and z < LEVEL_M)
+
+        list(slopes(Law(law), SPEC))
+        assert len(columns) == pytest.approx(PLACES / 4, abs=4)
 
     def test_one_stiff_quarter_is_found(self) -> None:
         law = Law(lambda x, y, z: (0.0, 0.0, (9000.0 if x > 0.01 and y > 0.01 else 500.0) * max(0.0, LEVEL_M - z)))

@@ -61,6 +61,16 @@ def test_matches_count_by_their_scores():
     assert np.ptp(expected[15, elsewhere]) > 0.05
 
 
+@pytest.mark.parametrize(("grey", "least", "most"), [(1, 0.6, 0.95), (20, 0.005, 0.3), (200, 0.0, 1e-12)])
+def test_a_change_of_colour_counts_as_distance(grey, least, most):
+    """One of 8 % of white, as long a way as the reach: what is left of a match behind it, of what there is without."""
+    found, score = np.full(SHAPE, np.nan, np.float32), np.zeros(SHAPE, np.float32)
+    found[15, 10], score[15, 10] = 5, 0.9
+    edged = np.where(np.arange(40) < 20, 0, grey).astype(np.uint8) * np.ones((30, 1), np.uint8)
+    behind, plain = (assemble(found, score, each).confidence[15, 30] for each in (edged, 0 * edged))
+    assert least <= behind / plain <= most
+
+
 def test_what_no_match_reaches_is_as_the_nearest_place_that_one_reaches():
     """Behind an edge from black to white sums of weights are rounding, and their ratio is no disparity."""
     picture = np.where(np.arange(40) < 20, 0, 255).astype(np.uint8) * np.ones((30, 1), np.uint8)

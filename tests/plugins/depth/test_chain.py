@@ -179,16 +179,16 @@ def test_a_short_gap_between_like_ends_is_closed_with_the_farther(gap, filled_in
     assert (fill(disparity, grey)[4, 20 : 20 + gap] == filled_in).all()
 
 
-@pytest.mark.parametrize(("left", "right", "near"), [(320, 64, [0, 1, 2]), (64, 320, [11])])
-def test_grey_steps_on_the_way_add_up(left, right, near):
-    """A gap of twelve columns over stripes of 60 levels: near its end alone the nearer one is believed in.
+@pytest.mark.parametrize(("left", "right", "levels", "near"), [(320, 64, 60, [0, 1, 2]), (64, 320, 120, [11])])
+def test_grey_steps_on_the_way_add_up(left, right, levels, near):
+    """A gap of twelve columns over stripes: beside it alone the nearer end is believed in.
 
     It lies 16 px before the other, -0.48, which is the farther of the row, 1.2; on the right both views contradict
-    it, too, -2. So the roots of both ways' steps are to differ by 8.4, or by 18.4.
+    it, too, -2, and explain the other, 1. So the roots of both ways' steps are to differ by 8.4, or by 23.4.
     """
     disparity = np.full((1, 90), right, np.int16)
     disparity[:, :40], disparity[:, 40:52] = left, UNKNOWN
-    grey = np.where(np.arange(90) % 2, 100, 160).astype(np.uint8)[None]
+    grey = np.where(np.arange(90) % 2, 100, 100 + levels).astype(np.uint8)[None]
     assert np.flatnonzero(fill(disparity, grey)[0, 40:52] == 320).tolist() == near
 
 

@@ -129,6 +129,13 @@ class TestWhatIsSkippedAndWhy:
         assert rectified.skipped
         assert "too few" in rectified.why
 
+    @pytest.mark.parametrize(("count", "told"), [(19, False), (20, True)])
+    def test_twenty_matches_tell(self, count, told, monkeypatch):
+        matches = shifted(0.5, 0.0, monkeypatch)
+        rectified = rectify(Views(BLANK, BLANK), matches=Matches(matches.left_px[:count], matches.right_px[:count]))
+        assert rectified.skipped != told
+        assert ("only 19 matches, too few to tell" in rectified.why) != told
+
     def test_a_skipped_map_comes_back_itself(self):
         found = DisparityMap(np.ones((HEIGHT, WIDTH), np.float32))
         assert with_rectification(Views(BLANK, BLANK), lambda views: found) is found

@@ -5,7 +5,10 @@ import pytest
 
 from tangible_core.data import Force, HapticState, HapticSurface, Material
 from tangible_core.interfaces import Touch
+from tangible_core.testing.reliefs import waves
 from tangible_core.testing.scenes import plane, ramp, sphere_cap
+from tangible_render import spline
+from tangible_render.coefficients import spline_surface
 from tangible_render.proxy import Proxy
 
 K = 800.0
@@ -103,6 +106,19 @@ class TestFriction:
         touch = Proxy(friction=False).touch(surface)
         at(touch, 0.0, 0.0, 0.009)
         assert at(touch, 0.001, 0.0, 0.009, (0.1, 0.0, -0.05)) == pytest.approx((0, 0, 0.5 + 0.2), abs=1e-5)
+
+    def test_damping_acts_along_the_normal_at_the_proxy(self):
+        """Where that is after the last step, under a slow hand the only one, and not where it was before."""
+        surface = waves().surface
+        coefficients, _, _, across, down = spline_surface(surface, "auto")
+        touch, without = Proxy(damping_n_s_per_m=4.0).touch(surface), Proxy().touch(surface)
+        worst = 0.0
+        for x in np.linspace(0.003, 0.0034, 200).tolist():
+            hand = x, 0.5 * x, waves().height_m(x, 0.5 * x) - 0.0008
+            damped = np.subtract(at(touch, *hand, (0.0, 0.0, -0.1)), at(without, *hand))
+            _, hx, hy = spline.slope(coefficients, across, down, *touch.memory[:2])
+            worst = max(worst, float(np.linalg.norm(np.cross(damped, (-hx, -hy, 1))) / np.linalg.norm(damped)))
+        assert worst < 1e-5
 
     def test_damping_acts_along_the_normal_and_never_pulls(self):
         known = ramp((0.5, 0.0), 0.03)

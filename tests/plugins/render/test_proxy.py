@@ -255,6 +255,17 @@ class TestWays:
         assert np.linalg.norm(force, axis=1).max() < K * 0.0201
         assert force[-1] == pytest.approx([0, 0, K * 0.006], abs=1e-6)
 
+    @pytest.mark.parametrize(
+        "other", [{}, {"damping_n_s_per_m": 1.0}, {"roughness_m": 1e-4}], ids=["spring", "damped", "textured"]
+    )
+    def test_a_force_that_is_no_number_is_none(self, other: dict[str, float]):
+        rock = replace(Material("rock", 1e308, 0.0, 0.0, 0.0), **other)
+        surface = HapticSurface.from_heights(np.full((8, 8), 0.01), 0.08, np.zeros((8, 8), np.int32), (rock,))
+        touch = Proxy().touch(surface)
+        assert at(touch, 0.0, 0.0, 0.009).z > 1e300
+        assert at(touch, 0.0, 0.0, -1000.0) == NO_FORCE
+        assert at(touch, 0.0, 0.0, 0.009).z > 1e300
+
     def test_where_nothing_is_touched_there_is_no_proxy(self):
         for renderer in (Proxy(), Proxy(static_friction=0.5, dynamic_friction=0.5)):
             touch = renderer.touch(LEVEL)

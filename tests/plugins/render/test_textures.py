@@ -174,6 +174,9 @@ class TestLeftOut:
         surface = HapticSurface.from_heights(np.full((4, 4), 0.01), 0.08, np.zeros((4, 4), np.int32), (RUBBER, GRAINY))
         alone = HapticSurface.from_heights(np.full((4, 4), 0.01), 0.08, np.zeros((4, 4), np.int32), (RUBBER,))
         assert touch(Proxy(texture=False), surface).tick is touch(Proxy(texture=False), alone).tick
+        smooth = replace(GRAINY, roughness_m=0.0)
+        plain = HapticSurface.from_heights(np.full((4, 4), 0.01), 0.08, np.zeros((4, 4), np.int32), (smooth, RUBBER))
+        assert touch(Proxy(), plain).tick is touch(Proxy(texture=False), plain).tick is proxy_kernels.spring_tick
 
     @pytest.mark.parametrize("material", [GRAINY, RUBBER], ids=lambda each: each.name)
     def test_travelling_changes_nothing(self, material: Material):

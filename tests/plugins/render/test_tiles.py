@@ -30,6 +30,23 @@ def test_every_place_lies_between_the_bounds_of_its_tile(shape: tuple[int, int])
         assert lowest - 1e-15 <= spline.height(coefficients, across, down, x, y) <= highest + 1e-15
 
 
+@pytest.mark.parametrize("turned", [False, True])
+@pytest.mark.parametrize("count", [40, 48])
+@pytest.mark.parametrize("sign", [1, -1])
+def test_each_coefficient_counts_for_every_tile_that_it_reaches(count: int, turned: bool, sign: int):
+    """One that is not 0 lifts the surface, or lowers it, wherever it has a weight."""
+    for line in range(count + 4):
+        lines = np.zeros((count + 4, 5), np.float32)
+        lines[line] = sign
+        coefficients = np.ascontiguousarray(lines.T if turned else lines)
+        bounds = tile_bounds(coefficients)
+        for place in np.linspace(-0.5, 0.5, 12 * count + 1).tolist():
+            at = (place, 0.0) if turned else (0.0, place)
+            across, down = (count, 1) if turned else (1, count)
+            highest, lowest = bounds[cell(*bounds.shape[:2], 1.0, 1.0, *at)]
+            assert lowest <= spline.height(coefficients, float(across), float(down), *at) <= highest
+
+
 def test_level_ground_has_equal_bounds_and_a_bump_has_not():
     heights = np.full((200, 200), 0.003, np.float32)
     heights[150, 150] = 0.004

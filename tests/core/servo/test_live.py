@@ -3,6 +3,7 @@
 import signal
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -65,7 +66,8 @@ def test_ticks_that_were_overwritten_are_told_and_the_others_kept(caplog: pytest
         return np.zeros((3, 16)), first + 5
 
     kept: list[np.ndarray] = []
-    keeper = live._Keeper(SimpleNamespace(ring=SimpleNamespace(since=since)), kept.append)
+    servo: Any = SimpleNamespace(ring=SimpleNamespace(since=since))
+    keeper = live._Keeper(servo, kept.append)
     keeper.look()
     keeper.look()
     assert (firsts, len(kept)) == ([0, 5], 2)

@@ -77,8 +77,8 @@ class Tree:
         return self._venv / "bin" / "python"
 
     def environ(self) -> dict[str, str]:
-        """Tests by chance take the same chances each time; all that they leave goes with the tree."""
-        ours = {"TMPDIR": str(self._temporary), "CI": "1"}
+        """Chance is the same each time, a test that hangs is ended, and what is left behind goes with the tree."""
+        ours = {"TMPDIR": str(self._temporary), "CI": "1", "PYTEST_TIMEOUT": "120"}
         return {k: v for k, v in os.environ.items() if k not in ("PYTHONPATH", "NUMBA_CACHE_DIR")} | ours
 
     def pytest(self, programs: "Programs", tests: Sequence[str], limit_s: float) -> Ended:

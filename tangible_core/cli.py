@@ -213,6 +213,8 @@ def _run_app() -> int:
     try:
         code = app(words, standalone_mode=False, default_map=_no_help())
     except SystemExit as error:
+        if isinstance(error.__context__, BrokenPipeError):  # typer's own answer to a reader that went away
+            raise error.__context__ from None
         raise exited(error) from error
     if code == INTERRUPTED:  # typer answers Ctrl-C itself, without a word
         raise KeyboardInterrupt

@@ -315,6 +315,12 @@ def test_a_reader_that_goes_away_is_no_error(folder: Path):
     assert done.stderr == ""
 
 
+@pytest.mark.parametrize("words", ["--help", "run --help", "plugins"])
+def test_nobody_reads_at_all(folder: Path, words: str):
+    done = subprocess.run(f"{TANGIBLE} {words} | head -c 0", shell=True, cwd=folder, capture_output=True, text=True)
+    assert done.stderr == ""
+
+
 def test_what_stands_in_brackets_is_shown(capsys: pytest.CaptureFixture[str]):
     """Rich takes [word] for a mark: an outcome's reason may be a list of options, or a path."""
     show.outcomes([Outcome("surface", "ran", "made from [seen/2]", "core")])

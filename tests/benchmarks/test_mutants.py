@@ -1,5 +1,6 @@
 """The runner of mutants on a tree of a few lines, and whether the lists fit the code as it is."""
 
+import fcntl
 import os
 import signal
 import subprocess
@@ -7,6 +8,7 @@ import sys
 import textwrap
 import time
 from pathlib import Path
+from typing import IO
 
 import pytest
 
@@ -31,10 +33,22 @@ from toy import larger
 def test_larger():
     assert larger(1, 2) == 2
 
+HOLDS = '''
+import fcntl, os, sys, time
+held = open(os.path.join(os.environ["TOY_HELD"], str(os.getpid())), "w")
+fcntl.flock(held, fcntl.LOCK_EX)
+'''
+
 def test_none():
-    if folder := os.environ.get("TOY_PIDS"):
-        Path(folder, str(os.getpid())).touch()
+    if "TOY_HELD" in os.environ:
+        exec(HOLDS, globals())
+        code = HOLDS + "print('held', flush=True); time.sleep(300)"
+        child = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE)
+        child.stdout.readline()
     assert larger(None, 2) == 2
+    if "TOY_HELD" in os.environ:
+        child.kill()
+        child.wait()
 
 def test_in_a_program_that_is_told_nothing():
     code = "import sys, toy; sys.exit(toy.larger(1, 2) != 2)"
@@ -127,9 +141,10 @@ def test_a_list_that_does_not_fit(tree: Path, wrong: str, said: str):
 
 
 def test_ctrl_c_leaves_nothing_behind(tree: Path, tmp_path: Path):
+    """A test holds a file, and so does a program that it started: once without the fault, once in its endless loop."""
     listed(tree, HANGS)
     (tmp_path / "tmp").mkdir()
-    (tmp_path / "pids").mkdir()
+    (tmp_path / "held").mkdir()
     code = """
         import signal, sys
         from pathlib import Path
@@ -137,18 +152,28 @@ def test_ctrl_c_leaves_nothing_behind(tree: Path, tmp_path: Path):
         signal.signal(signal.SIGINT, signal.default_int_handler)
         complete(Path(sys.argv[1]), (), 1)
     """
-    environ = {**os.environ, "TMPDIR": str(tmp_path / "tmp"), "TOY_PIDS": str(tmp_path / "pids")}
-    program = subprocess.Popen([sys.executable, "-c", textwrap.dedent(code), str(tree)], env=environ, cwd=ROOT)
+    environ = {**os.environ, "TMPDIR": str(tmp_path / "tmp"), "TOY_HELD": str(tmp_path / "held")}
     end = time.monotonic() + 60
-    while len(pids := [int(path.name) for path in (tmp_path / "pids").iterdir()]) < 2:  # one without the fault
-        assert time.monotonic() < end
-        time.sleep(0.05)
-    program.send_signal(signal.SIGINT)
-    assert program.wait(30) == -signal.SIGINT
-    for pid in pids:
-        with pytest.raises(ProcessLookupError):
-            os.kill(pid, 0)
+    with subprocess.Popen([sys.executable, "-c", textwrap.dedent(code), str(tree)], env=environ, cwd=ROOT) as program:
+        while len(files := list((tmp_path / "held").iterdir())) < 4 and time.monotonic() < end:
+            time.sleep(0.05)
+        program.send_signal(signal.SIGINT)
+    assert len(files) == 4
+    assert program.returncode == -signal.SIGINT
     assert not list((tmp_path / "tmp").iterdir())
+    for each in files:
+        with each.open() as file:
+            while not free(file):
+                assert time.monotonic() < end
+                time.sleep(0.05)
+
+
+def free(file: IO[str]) -> bool:
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    return True
 
 
 def test_every_list_fits_the_code_as_it_is():

@@ -54,6 +54,7 @@ def test_a_law_in_python_sees_velocities_and_buttons():
     again = replay(Viscous(), Recording(rows, "the cable is out"))
     held = (again.buttons & 2) > 0
     assert np.array_equal(again.force_n, -rows[:, 5:8] * held[:, None])
+    assert np.array_equal(again.flags, TickFlag.TOUCHING * held)  # not what was recorded
     assert np.isnan(again.proxy_m).all()
     assert again.stopped == "the cable is out"
 

@@ -13,6 +13,7 @@ from tangible_core.data import NO_FORCE, DeviceSpec, Force, HapticState, HapticS
 from tangible_core.errors import ConfigError, DeviceError
 from tangible_core.interfaces import HapticDevice, Link, Touch
 from tangible_core.servo import Safety
+from tangible_core.servo.safety import softness
 from tangible_core.session import INTERRUPTED, failure, limited, loop, run
 from tangible_devices.mock import Mock
 from tangible_render.penalty_gradient import PenaltyGradient
@@ -152,6 +153,24 @@ class TestRun:
         assert (recording.not_finite, recording.limited) == (2, 0)
         assert link.forces[2:6] == [PUSH, NO_FORCE, NO_FORCE, PUSH]
         assert "2 forces were not finite" in caplog.text
+
+    def test_the_force_is_the_one_that_the_device_applied(self):
+        class Weak(Scripted):
+            @property
+            def applied(self) -> Force:
+                return Force(*(part / 2 for part in self.held))
+
+        recording, _ = feel(lambda _: PUSH, 0.01, Weak())
+        assert recording.force_n.tolist() == [[0.0, 0.0, 1.0]] * 10
+
+    def test_a_law_that_is_too_stiff_for_the_device_is_softened(self):
+        level = HapticSurface.from_heights(np.zeros((8, 8)))
+        device = Mock(hand=None, path="circle", z_m=-0.001)
+        held = softness(FREE.arrays(device.spec(), 4000.0)[0], 0.001)
+        recording = run(Proxy(stiffness_n_per_m=4000).touch(level), device, 0.01, limits=FREE)
+        assert held < 1
+        assert (recording.flags & TickFlag.STIFFNESS_LIMITED).all()
+        assert recording.force_n[:, 2] == pytest.approx(held * 4000 * 0.001)
 
     @pytest.mark.parametrize("seconds", [0.0, -1.0, math.nan, math.inf])
     def test_seconds_that_make_no_sense(self, seconds: float):

@@ -24,7 +24,8 @@ def along(axis: int, size: float) -> tuple[float, float, float]:
 
 
 def tick(arrays, place: Sequence[float], velocity: Sequence[float], force: Sequence[float], period_s: float = 0.001):
-    fx, fy, fz, flags = guard(*arrays, period_s, *place, *velocity, *force)
+    settings, memory = arrays
+    fx, fy, fz, flags = guard(settings, memory, period_s, *place, *velocity, *force)
     return np.array([fx, fy, fz]), TickFlag(flags)
 
 

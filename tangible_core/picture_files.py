@@ -29,8 +29,12 @@ NonFinite = Literal["error", "mask"]
 MAX_LABELS = 4096
 """More than this in a label picture, and it is a photo."""
 
-MOST_SAMPLES = 16
-"""Values a pixel in a TIFF whose sizes are looked at; four are read."""
+TIFF = (b"II*\0", b"MM\0*", b"MM*\0", b"II\0*", b"MM\0+", b"II+\0")
+"""How one begins for Pillow; OpenCV knows the first two."""
+TAG_TYPES = {1: "B", 3: "H", 4: "I", 16: "Q"}
+"""Of a TIFF's whole numbers, as `struct` calls them."""
+MOST_TAGS, MOST_SAMPLES = 65_535, 16
+"""Of a TIFF and of a pixel in one that are looked at; four samples are read."""
 
 Shape = tuple[int, int, int]
 
@@ -160,10 +164,12 @@ def _too_large(path: Path, why: object) -> PictureError:
 def _decoded(path: Path, data: bytes, indices: bool) -> np.ndarray:
     from PIL import Image, UnidentifiedImageError
 
+    if data[:4] in TIFF:
+        check_size(*_tiff_size(data))  # Pillow does not look at tiles, which may be larger than the picture
     try:
         image = Image.open(BytesIO(data), formats=FORMATS)
     except UnidentifiedImageError:
-        if data[:4] not in (b"II*\0", b"MM\0*"):
+        if data[:4] not in TIFF[:2]:
             raise
         return _picture_by_opencv(path, data)
     with image:
@@ -214,10 +220,11 @@ def _upright(values: np.ndarray, orientation: int) -> np.ndarray:
 
 
 def _picture_by_opencv(path: Path, data: bytes) -> np.ndarray:
-    """A PNG or a TIFF. What OpenCV decodes is not limited, so its header is looked at here."""
+    """A PNG or a TIFF. What OpenCV decodes is not limited, so that headers are looked at before."""
     import cv2
 
-    check_size(*(_png_size(data) if data.startswith(b"\x89PNG") else _tiff_size(data)))
+    if data.startswith(b"\x89PNG"):
+        check_size(*_png_size(data))
     log_level = cv2.utils.logging.getLogLevel()
     cv2.utils.logging.setLogLevel(cv2.utils.logging.LOG_LEVEL_SILENT)  # what is wrong is said below, in one line
     try:
@@ -242,18 +249,24 @@ def _png_size(data: bytes) -> tuple[Shape, int]:
 def _tiff_size(data: bytes) -> tuple[Shape, int]:
     """Shape and bytes a value, by the tags of the first directory: the largest, where a tag is there twice.
 
-    Source: TIFF 6.0, section 2 and 15 (tiles, which are decoded whole).
+    Source: TIFF 6.0, section 2 and 15 (tiles, which are decoded whole); BigTIFF, whose numbers have 8 bytes.
     """
-    order = "<" if data[:2] == b"II" else ">"
-    (start,) = struct.unpack_from(f"{order}I", data, 4)
-    (count,) = struct.unpack_from(f"{order}H", data, start)
+    order, big = "<" if data[:2] == b"II" else ">", b"+" in data[2:4]
+    first, many, place = ("Q", "Q", "Q") if big else ("I", "H", "I")
+    (at,) = struct.unpack_from(order + first, data, 8 if big else 4)
+    (count,) = struct.unpack_from(order + many, data, at)
+    if count > MOST_TAGS:
+        raise ValueError(f"its directory has {count} tags")
+    at += struct.calcsize(many)
     said = {256: 1, 257: 1, 258: 1, 277: 1, 322: 1, 323: 1}
-    for at in range(start + 2, start + 2 + 12 * count, 12):
-        tag, kind, number = struct.unpack_from(f"{order}HHI", data, at)
+    for _ in range(count):
+        tag, kind, number = struct.unpack_from(f"{order}HH{place}", data, at)
+        at += struct.calcsize(f"{order}HH{place}")
         if tag in said:
-            code, size = {1: ("B", 1), 3: ("H", 2), 4: ("I", 4)}[kind]
-            number = min(number, MOST_SAMPLES)
-            place = at + 8 if number * size <= 4 else struct.unpack_from(f"{order}I", data, at + 8)[0]
-            said[tag] = max(said[tag], *struct.unpack_from(f"{order}{number}{code}", data, place))
+            values = f"{order}{min(number, MOST_SAMPLES)}{TAG_TYPES[kind]}"
+            short = struct.calcsize(values) <= struct.calcsize(place)
+            found = struct.unpack_from(values, data, at if short else struct.unpack_from(order + place, data, at)[0])
+            said[tag] = max(said[tag], *found)
+        at += struct.calcsize(place)
     rows, columns = max(said[257], said[323]), max(said[256], said[322])
     return (rows, columns, said[277]), -(-said[258] // 8)

@@ -289,6 +289,37 @@ def test_of_a_size_that_a_tiff_says_twice_the_largest_counts(tmp_path, tag, last
     assert "larger than 89 megapixels" in refusal(path)
 
 
+def test_tiles_that_pillow_would_decode_are_looked_at(tmp_path):
+    """One of 40,000 x 40,000 for a picture of 5 x 3, which is 1.6 GB from 1.6 MB."""
+    path = tiff(tmp_path / "a.tif", 5, 3, bits=8, sample_format=1, more=((322, 40_000), (323, 40_000)))
+    assert "larger than 89 megapixels" in refusal(path)
+
+
+@pytest.mark.parametrize(("order", "side"), [("<", 3), ("<", 9_500), (">", 9_500)])
+def test_a_tiff_of_eight_byte_places(tmp_path, order, side):
+    """Where all numbers have eight bytes. Pillow reads those of little-endian machines alone."""
+    tags = [
+        (256, side),
+        (257, side),
+        (258, 8),
+        (259, 1),
+        (262, 1),
+        (273, 232),
+        (277, 1),
+        (278, side),
+        (279, 9),
+        (339, 1),
+    ]
+    table = b"".join(struct.pack(f"{order}HHQQ", tag, 16, 1, value) for tag, value in tags)
+    mark = b"II" if order == "<" else b"MM"
+    data = mark + struct.pack(f"{order}HHHQQ", 43, 8, 0, 16, len(tags)) + table + bytes(8 + 9)
+    path = put(tmp_path, "a.tif", data)
+    if side == 3:
+        assert read_picture(path).tolist() == [[0] * 3] * 3
+    else:
+        assert "larger than 89 megapixels" in refusal(path)
+
+
 def test_the_bytes_of_a_pixel_count_too(tmp_path, monkeypatch):
     monkeypatch.setattr("cv2.imdecode", None)
     path = tiff(tmp_path / "a.tif", 30_000, 2_000, strip_rows=1, bits=64, samples=4)

@@ -7,7 +7,7 @@ One file an entry, `<key>.npz`: readable by numpy.load, checked by the archive's
 import json
 import logging
 import os
-import zipfile
+from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any, cast
@@ -15,13 +15,17 @@ from typing import Any, cast
 import numpy as np
 
 from . import data
+from .array_files import Archive
 from .data import Record
-from .errors import OutputError
+from .errors import OutputError, quoted, shown
 from .files import atomic_write
+from .reading import check_file
 
 log = logging.getLogger(__name__)
 
 DEFAULT_BYTES = 2 << 30
+KEPT = frozenset(name for name, each in vars(data).items() if is_dataclass(each))
+"""What an entry may be made of."""
 
 
 class Cache:
@@ -42,8 +46,8 @@ class Cache:
             os.utime(path)  # least recently used, not oldest, goes first
         except FileNotFoundError:  # or dropped by another process while it was read
             return None
-        except (OSError, ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile) as error:
-            log.warning("cache entry %s is damaged and is made again: %s", path, error)
+        except Exception as error:  # noqa: BLE001 - a damaged file can provoke any
+            log.warning("cache entry %s is damaged and is made again: %s", path, shown(str(error), 200))
             path.unlink(missing_ok=True)
             return None
         return record
@@ -92,9 +96,14 @@ def write_record(path: Path, record: Record) -> None:
 
 def read_record(path: Path) -> Record:
     """What `write_record` wrote. Raises: FileNotFoundError, or ValueError and its like when damaged."""
-    with path.open("rb") as file, np.load(file, allow_pickle=False) as archive:
-        tree = json.loads(bytes(archive["record"]))
-        return _unpack(tree, archive)
+    check_file(path)
+    with path.open("rb") as file:
+        archive = Archive(file)
+        arrays = archive.read(archive.names)
+    record = _unpack(json.loads(arrays.pop("record").tobytes()), arrays)
+    if not isinstance(record, Record):
+        raise ValueError(f"holds no record, but {quoted(record)}")
+    return record
 
 
 def _pack(value: Any, name: str, arrays: dict[str, np.ndarray]) -> Any:
@@ -110,18 +119,18 @@ def _pack(value: Any, name: str, arrays: dict[str, np.ndarray]) -> Any:
     return value
 
 
-def _unpack(tree: Any, archive: Any) -> Any:
+def _unpack(tree: Any, arrays: Mapping[str, np.ndarray]) -> Any:
     match tree:
         case {"array": name}:
-            return archive[name]
-        case {"class": name, "fields": parts} if isinstance(cls := getattr(data, name, None), type):
-            return cls(**{key: _unpack(part, archive) for key, part in parts.items()})
+            return arrays[name]
+        case {"class": str(name), "fields": parts} if name in KEPT:
+            return getattr(data, name)(**{key: _unpack(part, arrays) for key, part in parts.items()})
         case {"tuple": items}:
-            return tuple(_unpack(part, archive) for part in items)
+            return tuple(_unpack(part, arrays) for part in items)
         case None | bool() | int() | float() | str():
             return tree
         case _:
-            raise ValueError(f"unknown entry {tree!r:.80}")
+            raise ValueError(f"unknown entry {quoted(tree)}")
 
 
 def _used(path: Path) -> tuple[float, int]:

@@ -9,6 +9,7 @@ from pydantic import BaseModel, ValidationError
 
 from .errors import DeviceError
 from .files import write_text
+from .reading import MOST_TEXT_BYTES, read_bytes
 
 M = TypeVar("M", bound=BaseModel)
 
@@ -46,7 +47,7 @@ def load_calibration(device: str, serial: str, model: type[M]) -> M | None:
     """
     path = calibration_path(device, serial)
     try:
-        return model.model_validate_json(path.read_bytes())
+        return model.model_validate_json(read_bytes(path, MOST_TEXT_BYTES))
     except FileNotFoundError:
         return None
     except OSError as error:

@@ -15,7 +15,7 @@ from . import hooks, standard_output
 from .cli_devices import devices_app
 from .cli_materials import materials_app
 from .cli_options import DONE, FAILED, INTERRUPTED, MISTAKE, Config, Json, NoCache, Out, Seconds, Sets
-from .errors import ConfigError, TangibleError, exited
+from .errors import ConfigError, TangibleError, exited, quoted, shown
 from .registry import KIND_NAMES, default_registry
 
 if TYPE_CHECKING:
@@ -269,5 +269,7 @@ def _set_logging(levels: list[str]) -> None:
         name, _, level = text.rpartition("=")
         number = logging.getLevelNamesMapping().get(level.upper())
         if number is None:
-            raise ConfigError(f"--log-level {text}: no level is named {level!r}; use debug, info, warning or error")
+            raise ConfigError(
+                f"--log-level {shown(text)}: no level is named {quoted(level)}; use debug, info, warning or error"
+            )
         logging.getLogger(name or None).setLevel(number)

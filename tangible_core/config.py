@@ -7,7 +7,7 @@ from typing import Annotated, Any, Generic, Literal, TypeVar, cast
 
 from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag
 
-from .errors import ConfigError, MaterialError, TangibleError, did_you_mean
+from .errors import ConfigError, MaterialError, TangibleError, did_you_mean, quoted
 from .interfaces import DepthEstimator, ForceRenderer, HapticDevice, Method, Segmenter
 from .mapping import WorkspaceMapping, mapped
 from .material_rules import MaterialRule
@@ -174,7 +174,7 @@ def _want(source: Source) -> Any:
     want = source.tree.get("want", "surface")
     if want not in PRODUCTS:
         hint = did_you_mean(str(want), PRODUCTS)
-        source.complain(("want",), f"nothing makes {want!r}{hint}; a pipeline makes {', '.join(PRODUCTS)}")
+        source.complain(("want",), f"nothing makes {quoted(want)}{hint}; a pipeline makes {', '.join(PRODUCTS)}")
     return want
 
 

@@ -14,7 +14,7 @@ import numpy as np
 import xxhash
 from jaxtyping import Float32, Int32
 
-from .errors import GeometryError, MaterialError, PictureError, did_you_mean
+from .errors import GeometryError, MaterialError, PictureError, did_you_mean, quoted
 from .pictures import check_finite, check_picture
 
 Kind = Literal["depth", "texture", "render", "device"]
@@ -243,9 +243,9 @@ class Material:
     def __post_init__(self) -> None:
         for name, value in _items(self):
             if not isinstance(value, str) and not 0 <= value < np.inf:
-                raise MaterialError(f"material {self.name!r}: {name} is {value}; it must be >= 0 and finite")
+                raise MaterialError(f"material {quoted(self.name)}: {name} is {value}; it must be >= 0 and finite")
         if wrong := next(self._nonsense(), None):
-            raise MaterialError(f"material {self.name!r}: {wrong}")
+            raise MaterialError(f"material {quoted(self.name)}: {wrong}")
 
     def _nonsense(self) -> Iterator[str]:
         """What is wrong between the values, each a sentence."""
@@ -260,7 +260,7 @@ class Material:
             yield f"anisotropy {self.anisotropy} and irregularity {self.irregularity} are at most 1"
         if self.texture not in TEXTURES:
             hint = did_you_mean(self.texture, TEXTURES)
-            yield f"no texture model is named {self.texture!r}{hint}; there are {', '.join(TEXTURES)}"
+            yield f"no texture model is named {quoted(self.texture)}{hint}; there are {', '.join(TEXTURES)}"
         if self.texture == "smooth" and self.roughness_m > 0:
             yield f"texture is smooth and roughness_m {self.roughness_m:g}; make that 0, or the texture stochastic"
         if self.texture == "stick-slip" and self.dynamic_friction == 0:

@@ -2,12 +2,30 @@
 
 from collections.abc import Iterable
 from difflib import get_close_matches
+from reprlib import Repr
 from sys import stdlib_module_names
 from traceback import walk_tb
+from typing import Any
+
+MOST_QUOTED = 80
+"""Characters of a name or a value that a message quotes."""
+MOST_IN_LINE = 1000
+"""Characters of a line of a message, whatever stands in it."""
+MOST_LINES = 40
+"""Complaints that are printed; of the others, how many they are."""
 
 
 class TangibleError(Exception):
-    """Base of all errors raised on purpose: the message names the thing, the place and the cure."""
+    """Base of all errors raised on purpose: the message names the thing, the place and the cure.
+
+    Each argument is a complaint and one line of the message, whatever of a file or a name stands in it: see `shown`.
+    """
+
+    def __str__(self) -> str:
+        lines = [shown(str(each), MOST_IN_LINE) for each in self.args[:MOST_LINES]]
+        if more := len(self.args) - len(lines):
+            lines.append(f"and {more} more")
+        return "\n".join(lines)
 
 
 class ConfigError(TangibleError):
@@ -19,9 +37,8 @@ class UnknownMethod(TangibleError):
 
     def __init__(self, kind: str, name: str, known: Iterable[str]) -> None:
         names = sorted(set(known))
-        super().__init__(
-            f"no {kind} method is named {name!r}{did_you_mean(name, names)}; installed: {', '.join(names) or 'none'}"
-        )
+        hint, there = did_you_mean(name, names), ", ".join(names) or "none"
+        super().__init__(f"no {kind} method is named {quoted(name)}{hint}; installed: {there}")
 
 
 class BrokenMethod(TangibleError):
@@ -60,7 +77,54 @@ def exited(error: SystemExit) -> BrokenMethod:
     """What to say where a plugin called `sys.exit`: the program is not a plugin's to end, nor is its exit code."""
     modules = [str(frame.f_globals.get("__name__")) for frame, _ in walk_tb(error.__traceback__)]
     name = next((name for name in reversed(modules) if name.partition(".")[0] not in stdlib_module_names), "a plugin")
-    return BrokenMethod(f"{name} called sys.exit({error.code!r}); a plugin says what is wrong by raising an error")
+    return BrokenMethod(f"{name} called sys.exit({quoted(error.code)}); a plugin says what is wrong by raising an error")
+
+
+def shown(text: str, most: int = MOST_QUOTED) -> str:
+    """Somebody else's text as a message may hold it: one line, nothing that a terminal obeys, the middle of a long one
+    left out.
+
+    >>> shown("two\\nlines"), shown("x" * 1000, 20)
+    ('two\\\\nlines', 'xxxxxxx ... xxxxxxxx')
+    """
+    text = _without_middle(text, most)
+    if text.isprintable():
+        return text
+    return _without_middle("".join(each if each.isprintable() else repr(each)[1:-1] for each in text), most)
+
+
+def _without_middle(text: str, most: int) -> str:
+    kept = most - len(" ... ")
+    return text if len(text) <= most else f"{text[: kept // 2]} ... {text[-(kept - kept // 2) :]}"
+
+
+def quoted(value: Any) -> str:
+    """Somebody else's value as a message may quote it: its `repr`, cut where it is long or deep.
+
+    >>> quoted("ice"), quoted(list(range(10**6)))
+    ("'ice'", '[0, 1, 2, 3, 4, 5, ...]')
+    """
+    return shown(_REPR.repr(value))
+
+
+class _ShortRepr(Repr):
+    """By what a value is, not by the name of its class, so that a parser's own mappings are cut like any."""
+
+    def repr1(self, x: Any, level: int) -> str:
+        if isinstance(x, dict):
+            return self.repr_dict(x, level)  # pyright: ignore[reportUnknownArgumentType]
+        if isinstance(x, list):
+            return self.repr_list(x, level)  # pyright: ignore[reportUnknownArgumentType]
+        if isinstance(x, str):
+            return self.repr_str(x, level)
+        if isinstance(x, int) and x.bit_length() > 8 * MOST_QUOTED:  # Python writes no number of over 4,300 digits
+            return f"a number of {x.bit_length()} bits"
+        return super().repr1(x, level)
+
+
+_REPR = _ShortRepr()
+_REPR.maxstring = _REPR.maxother = _REPR.maxlong = MOST_QUOTED
+_REPR.maxlevel = 3
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
@@ -69,5 +133,5 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
     >>> did_you_mean("stifness", ["stiffness", "damping"])
     " (did you mean 'stiffness'?)"
     """
-    near = get_close_matches(word, list(known), n=1)
-    return f" (did you mean {near[0]!r}?)" if near else ""
+    near = get_close_matches(word, list(known), n=1) if len(word) <= MOST_QUOTED else []
+    return f" (did you mean {quoted(near[0])}?)" if near else ""

@@ -9,7 +9,7 @@ from typing import Annotated, Any, cast
 from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field, Tag
 
 from .data import Material, Texture
-from .errors import MaterialError, did_you_mean
+from .errors import MaterialError, did_you_mean, quoted, shown
 from .source import Source, Tree, parse_source, read_text
 
 VALUES = tuple(each.name for each in fields(Material) if each.name not in ("name", "source"))
@@ -19,7 +19,7 @@ REQUIRED = ("stiffness_n_per_m", "damping_n_s_per_m", "static_friction", "dynami
 def _explained(key: str) -> str:
     known = (*VALUES, "others")
     if key not in known:
-        raise ValueError(f"source of {key!r}, which is no value{did_you_mean(key, known)}")
+        raise ValueError(f"source of {quoted(key)}, which is no value{did_you_mean(key, known)}")
     return key
 
 
@@ -88,15 +88,17 @@ def parse_materials(text: str, path: Path, base: Mapping[str, Material]) -> Mapp
 def _material(source: Source, name: Any, block: Any, base: Mapping[str, Material]) -> Material | None:
     """The material of a block; None after a complaint."""
     if not isinstance(name, str):
-        return source.complain((name,), f"{name!r} is no name; write it in quotes")
+        return source.complain((name,), f"{quoted(name)} is no name; write it in quotes")
     if not isinstance(block, dict):
-        return source.complain((name,), f"{name}: a material is a mapping from keys to values, not {block!r}")
+        return source.complain(
+            (name,), f"{shown(name)}: a material is a mapping from keys to values, not {quoted(block)}"
+        )
     given = cast(Tree, block)
     whole = dict.fromkeys(REQUIRED, 1.0)  # so that each value is checked even where another is missing
     checked = source.model((name,), MaterialBlock, {**whole, **given})
     if missing := [key for key in REQUIRED if key not in given and name not in base]:
         are = "is" if len(missing) == 1 else "are"
-        return source.complain((name,), f"{name}: {', '.join(missing)} {are} missing{did_you_mean(name, base)}")
+        return source.complain((name,), f"{shown(name)}: {', '.join(missing)} {are} missing{did_you_mean(name, base)}")
     try:
         return checked and _merged(name, given, checked, base.get(name), source.path)
     except MaterialError as error:

@@ -63,7 +63,7 @@ def apply_rules(
         for label, why in fits.items():
             found.setdefault(label, (rule.material, f"segment {label}: rule {number}, {why} -> {rule.material}"))
     if complaints:
-        raise MaterialError("\n".join(complaints))
+        raise MaterialError(*complaints)
     return found
 
 

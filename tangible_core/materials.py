@@ -15,7 +15,7 @@ import numpy as np
 from jaxtyping import Float64
 
 from .data import Material, MaterialMap, SegmentMap
-from .errors import MaterialError, did_you_mean
+from .errors import MaterialError, did_you_mean, quoted
 from .material_files import parse_materials, read_materials
 from .material_rules import Chosen, MaterialRule, apply_rules
 from .pictures import to_grey
@@ -47,7 +47,7 @@ def find(name: str, library: Mapping[str, Material]) -> Material:
     """The material of this name. Raises: MaterialError with the names that are there."""
     if name not in library:
         raise MaterialError(
-            f"no material is named {name!r}{did_you_mean(str(name), library)}; there are {', '.join(library)}"
+            f"no material is named {quoted(name)}{did_you_mean(str(name), library)}; there are {', '.join(library)}"
         )
     return library[name]
 
@@ -120,13 +120,13 @@ def _by_name(count: int, names: Mapping[int, str], library: Mapping[str, Materia
     complaints: list[str] = []
     for label, name in names.items():
         if label not in range(count):
-            complaints.append(f"there is no segment {label!r}; the segments are 0 to {count - 1}")
+            complaints.append(f"there is no segment {quoted(label)}; the segments are 0 to {count - 1}")
         try:
             find(name, library)
         except MaterialError as error:
             complaints.append(f"segment {label}: {error}")
     if complaints:
-        raise MaterialError("\n".join(complaints))
+        raise MaterialError(*complaints)
     return {label: (name, f"segment {label}: named {name}") for label, name in names.items()}
 
 

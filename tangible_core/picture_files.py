@@ -1,17 +1,20 @@
 """Pictures, maps of numbers and label pictures in files. Whatever is wrong with a file is one PictureError."""
 
 import logging
+import struct
 import warnings
 from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from jaxtyping import Float32, Int32
 
-from .errors import PictureError, did_you_mean
+from . import array_files
+from .errors import PictureError, did_you_mean, shown
 from .files import atomic_write
 from .pictures import check_finite, check_picture, to_rgb8
+from .reading import TOO_MANY_PIXELS, TooLarge, check_size, read_bytes
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -25,6 +28,15 @@ NonFinite = Literal["error", "mask"]
 
 MAX_LABELS = 4096
 """More than this in a label picture, and it is a photo."""
+
+TIFF = (b"II*\0", b"MM\0*", b"MM*\0", b"II\0*", b"MM\0+", b"II+\0")
+"""How one begins for Pillow; OpenCV knows the first two."""
+TAG_TYPES = {1: "B", 3: "H", 4: "I", 16: "Q"}
+"""Of a TIFF's whole numbers, as `struct` calls them."""
+MOST_TAGS, MOST_SAMPLES = 65_535, 16
+"""Of a TIFF and of a pixel in one that are looked at; four samples are read."""
+
+Shape = tuple[int, int, int]
 
 _ORIENTATION, _BITS_PER_SAMPLE = 0x0112, 0x0102  # tags of EXIF and of TIFF
 
@@ -96,35 +108,30 @@ def _read(path: Path, indices: bool = False) -> np.ndarray:
 
 def _read_bytes(path: Path) -> bytes:
     try:
-        if path.is_file():
-            data = path.read_bytes()
-        elif path.exists():
-            raise PictureError(f"{path}: is no file but a folder or a device; name a picture file")
-        elif path.parent.is_dir():
-            near = did_you_mean(path.name, (each.name for each in path.parent.iterdir()))
-            raise PictureError(f"{path}: there is no such file{near}")
-        else:
-            raise PictureError(f"{path}: there is no folder {path.parent}; check the path")
-    except (OSError, ValueError) as error:
-        why = getattr(error, "strerror", None) or error
-        raise PictureError(f"{path}: cannot be read: {why}; check the path and its permissions") from error
+        data = read_bytes(path)
+    except (FileNotFoundError, NotADirectoryError) as error:
+        if not path.parent.is_dir():
+            raise PictureError(f"{path}: there is no folder {path.parent}; check the path") from error
+        near = did_you_mean(path.name, (each.name for each in path.parent.iterdir()))
+        raise PictureError(f"{path}: there is no such file{near}") from error
+    except OSError as error:
+        raise PictureError(
+            f"{path}: cannot be read: {error.strerror or error}; check the path and its permissions"
+        ) from error
     if not data:
         raise PictureError(f"{path}: the file is empty; copy or download it again")
     return data
 
 
 def _array(path: Path, data: bytes) -> np.ndarray:
-    from numpy.lib.npyio import NpzFile
-
     try:
-        held: Any = np.load(BytesIO(data), allow_pickle=False)
-        several = issubclass(type(held), NpzFile)
-        arrays: list[np.ndarray] = list(held.values()) if several else [held]
-    except Exception as error:  # a damaged file can provoke any
-        raise PictureError(f"{path}: cannot be read as an array: {error}; save it with numpy.save") from error
-    if len(arrays) != 1:
-        raise PictureError(f"{path}: holds {len(arrays)} arrays; save the one that is meant with numpy.save")
-    return arrays[0]
+        return array_files.read_array(BytesIO(data))
+    except TooLarge as error:
+        raise _too_large(path, error) from error
+    except ValueError as error:
+        raise PictureError(
+            f"{path}: cannot be read as an array: {error}; save the one that is meant with numpy.save"
+        ) from error
 
 
 def _picture(path: Path, data: bytes, indices: bool) -> np.ndarray:
@@ -135,23 +142,41 @@ def _picture(path: Path, data: bytes, indices: bool) -> np.ndarray:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of tags that it passes over
             warnings.simplefilter("error", Image.DecompressionBombWarning)
-            with Image.open(BytesIO(data), formats=FORMATS) as image:
-                image.load()
-                values = _picture_by_opencv(path, data) if _is_deep_colour(image, data) else _values(image, indices)
-                return np.ascontiguousarray(_upright(values, _orientation(image)))
+            return _decoded(path, data, indices)
     except UnidentifiedImageError as error:
-        if data[:4] in (b"II*\0", b"MM\0*"):
-            return _picture_by_opencv(path, data)
         raise PictureError(f"{path}: is no picture this program can read; use PNG, JPEG, TIFF, PFM or NPY") from error
-    except (Image.DecompressionBombError, Image.DecompressionBombWarning) as error:
-        limit = (Image.MAX_IMAGE_PIXELS or 0) // 1_000_000
-        raise PictureError(f"{path}: is larger than {limit} megapixels; make it smaller first") from error
+    except (Image.DecompressionBombError, Image.DecompressionBombWarning) as error:  # Pillow's limit is above ours
+        raise _too_large(path, TOO_MANY_PIXELS) from error
+    except TooLarge as error:
+        raise _too_large(path, error) from error
     except PictureError:
         raise
     except Exception as error:  # a damaged file can provoke any
         raise PictureError(
-            f"{path}: the picture is damaged or cut short: {error}; copy or download it again"
+            f"{path}: the picture is damaged or cut short: {shown(str(error))}; copy or download it again"
         ) from error
+
+
+def _too_large(path: Path, why: object) -> PictureError:
+    return PictureError(f"{path}: {why}; make it smaller first")
+
+
+def _decoded(path: Path, data: bytes, indices: bool) -> np.ndarray:
+    from PIL import Image, UnidentifiedImageError
+
+    if data[:4] in TIFF:
+        check_size(*_tiff_size(data))  # Pillow does not look at tiles, which may be larger than the picture
+    try:
+        image = Image.open(BytesIO(data), formats=FORMATS)
+    except UnidentifiedImageError:
+        if data[:4] not in TIFF[:2]:
+            raise
+        return _picture_by_opencv(path, data)
+    with image:
+        check_size((image.height, image.width, len(image.getbands())), 4)
+        image.load()
+        values = _picture_by_opencv(path, data) if _is_deep_colour(image, data) else _values(image, indices)
+        return np.ascontiguousarray(_upright(values, _orientation(image)))
 
 
 def _is_deep_colour(image: "Image", data: bytes) -> bool:
@@ -195,14 +220,53 @@ def _upright(values: np.ndarray, orientation: int) -> np.ndarray:
 
 
 def _picture_by_opencv(path: Path, data: bytes) -> np.ndarray:
+    """A PNG or a TIFF. What OpenCV decodes is not limited, so that headers are looked at before."""
     import cv2
 
+    if data.startswith(b"\x89PNG"):
+        check_size(*_png_size(data))
+    log_level = cv2.utils.logging.getLogLevel()
+    cv2.utils.logging.setLogLevel(cv2.utils.logging.LOG_LEVEL_SILENT)  # what is wrong is said below, in one line
     try:
         values: np.ndarray | None = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED)
     except cv2.error:
         values = None
+    finally:
+        cv2.utils.logging.setLogLevel(log_level)
     if values is None:
         raise PictureError(f"{path}: the picture is damaged or of a rare kind; save it again as PNG or TIFF")
     if values.ndim == 3:
         values = cv2.cvtColor(values, cv2.COLOR_BGRA2RGBA if values.shape[2] == 4 else cv2.COLOR_BGR2RGB)
     return values
+
+
+def _png_size(data: bytes) -> tuple[Shape, int]:
+    """Shape and bytes a value at most, by the first chunk."""
+    width, height = struct.unpack_from(">II", data, 16)
+    return (height, width, 4), 2
+
+
+def _tiff_size(data: bytes) -> tuple[Shape, int]:
+    """Shape and bytes a value, by the tags of the first directory: the largest, where a tag is there twice.
+
+    Source: TIFF 6.0, section 2 and 15 (tiles, which are decoded whole); BigTIFF, whose numbers have 8 bytes.
+    """
+    order, big = "<" if data[:2] == b"II" else ">", b"+" in data[2:4]
+    first, many, place = ("Q", "Q", "Q") if big else ("I", "H", "I")
+    (at,) = struct.unpack_from(order + first, data, 8 if big else 4)
+    (count,) = struct.unpack_from(order + many, data, at)
+    if count > MOST_TAGS:
+        raise ValueError(f"its directory has {count} tags")
+    at += struct.calcsize(many)
+    said = {256: 1, 257: 1, 258: 1, 277: 1, 322: 1, 323: 1}
+    for _ in range(count):
+        tag, kind, number = struct.unpack_from(f"{order}HH{place}", data, at)
+        at += struct.calcsize(f"{order}HH{place}")
+        if tag in said:
+            values = f"{order}{min(number, MOST_SAMPLES)}{TAG_TYPES[kind]}"
+            short = struct.calcsize(values) <= struct.calcsize(place)
+            found = struct.unpack_from(values, data, at if short else struct.unpack_from(order + place, data, at)[0])
+            said[tag] = max(said[tag], *found)
+        at += struct.calcsize(place)
+    rows, columns = max(said[257], said[323]), max(said[256], said[322])
+    return (rows, columns, said[277]), -(-said[258] // 8)

@@ -14,7 +14,7 @@ import numpy as np
 from . import geometry, materials, scaling
 from .config import Chosen, PipelineConfig
 from .data import DisparityMap, HapticSurface, Material, MaterialMap, Record, Relief, SegmentMap, Views, digest_of
-from .errors import ConfigError
+from .errors import BrokenMethod, ConfigError
 from .interfaces import Method, Skippable, Touch
 from .provenance.closure import closure
 from .provenance.places import HOME
@@ -65,8 +65,10 @@ def _disparity(config: PipelineConfig, scene: Scene) -> Rule:
 
     def make(inputs: Inputs) -> DisparityMap:
         views = _views(scene)
-        small = scaling.reduced(views, factor)
-        found = scaling.enlarged(_configured(config, "depth").method.estimate(small), views.shape)
+        small, chosen = scaling.reduced(views, factor), _configured(config, "depth")
+        made = chosen.method.estimate(small)
+        _check_shape("depth", chosen, "disparity", made.disparity_px.shape, small.shape)
+        found = scaling.enlarged(made, views.shape)
         if scene.known is None:
             return found
         known_px = np.where(scene.known, found.disparity_px, np.float32(np.nan))
@@ -96,8 +98,10 @@ def _segments(config: PipelineConfig, scene: Scene) -> Rule:
 
     def make(inputs: Inputs) -> SegmentMap:
         views = _views(scene)
-        small = scaling.reduced(Views(views.left), factor).left
-        found = scaling.enlarged_segments(_configured(config, "texture").method.segment(small), views.shape)
+        small, chosen = scaling.reduced(Views(views.left), factor), _configured(config, "texture")
+        made = chosen.method.segment(small.left)
+        _check_shape("texture", chosen, "labels", made.labels.shape, small.shape)
+        found = scaling.enlarged_segments(made, views.shape)
         return found if scene.known is None else SegmentMap(found.labels, found.confidence * scene.known)
 
     skip = _skip(config.texture, scene)
@@ -196,6 +200,19 @@ def _skip(chosen: Chosen[Any] | None, scene: Scene) -> str | None:
     if chosen is not None and isinstance(chosen.method, Skippable) and scene.views is not None:
         return chosen.method.skip(scene.views)
     return None
+
+
+def _check_shape(kind: str, chosen: Chosen[Any], what: str, found: tuple[int, ...], wanted: tuple[int, ...]) -> None:
+    """What a method makes is enlarged to the size of the pictures, so that a wrong size would pass unseen."""
+    if found != wanted:
+        raise BrokenMethod(
+            f"{kind} method {chosen.name} ({chosen.origin}) made {what} of {_size(found)} for a picture of "
+            f"{_size(wanted)}; `tangible check {kind} {chosen.name}` shows what it must keep"
+        )
+
+
+def _size(shape: tuple[int, ...]) -> str:
+    return " x ".join(map(str, reversed(shape)))
 
 
 def _configured(config: PipelineConfig, kind: str) -> Chosen[Any]:

@@ -10,7 +10,7 @@ from jaxtyping import Bool, Float32
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from .data import Calibration, DisparityMap, Record, SegmentMap, Views
-from .errors import ConfigError, PictureError, did_you_mean
+from .errors import ConfigError, PictureError, did_you_mean, quoted
 from .geometry import Holes, scale_heights
 from .picture_files import NonFinite, read_labels, read_map, read_picture
 from .pictures import fill_non_finite
@@ -141,7 +141,7 @@ def read_scene(scene: str | SceneFiles, folder: Path, width_m: float, relief_m: 
 def unknown_scene(name: str) -> str:
     """What to say of a name that is not builtin."""
     return (
-        f"no scene is named {name!r}{did_you_mean(name, BUILTINS)}; builtin are {', '.join(sorted(BUILTINS))}; "
+        f"no scene is named {quoted(name)}{did_you_mean(name, BUILTINS)}; builtin are {', '.join(sorted(BUILTINS))}; "
         "for files of your own write {photo: FILE}, {left: FILE, right: FILE} or {height: FILE}"
     )
 

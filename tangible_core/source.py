@@ -1,6 +1,7 @@
 """YAML that knows where everything stands: every complaint at once, each with file:line:column."""
 
 import re
+import warnings
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -9,9 +10,11 @@ from typing import Any, cast, get_args
 from pydantic import BaseModel, ValidationError
 from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap
-from ruamel.yaml.error import MarkedYAMLError, YAMLError
+from ruamel.yaml.error import YAMLError
 
-from .errors import ConfigError, did_you_mean
+from .errors import ConfigError, did_you_mean, quoted, shown
+from .reading import MOST_TEXT_BYTES, in_words, read_bytes
+from .yaml_bounds import MOST_DEPTH, MOST_DIGITS, BoundedConstructor, check_events
 
 Tree = dict[Any, Any]
 """The parser's own mapping: a dict that knows where its parts stand."""
@@ -32,16 +35,16 @@ class Source:
         """Apply `key.key=value`; a block with another `use` starts without the options of the method before."""
         keys, equals, value = text.partition("=")
         parts = tuple(keys.strip().split("."))
-        if not equals or not all(parts):
-            raise ConfigError(f"--set {text}: write key.key=value, such as render.stiffness_n_per_m=500")
+        if not equals or not all(parts) or len(parts) > MOST_DEPTH:
+            raise ConfigError(f"{_named(text)}: write key.key=value, such as render.stiffness_n_per_m=500")
         try:
             loaded = _load(value)
         except YAMLError as error:
-            raise ConfigError(f"--set {text}: {value!r} is no YAML value") from error
+            raise ConfigError(f"{_named(text)}: {quoted(value)} is no YAML value: {_problem(error)}") from error
         node: Any = self.tree
         for part in parts[:-1]:
             if isinstance(node.get(part), list):
-                raise ConfigError(f"--set {text}: {part} is a list; set the whole of it: {part}=[...]")
+                raise ConfigError(f"{_named(text)}: {part} is a list; set the whole of it: {part}=[...]")
             if not isinstance(node.get(part), dict):
                 node[part] = CommentedMap()
             node = node[part]
@@ -54,7 +57,7 @@ class Source:
         """file:line:column of the deepest part of the location that the file has."""
         for end in range(len(location), 0, -1):
             if text := self.overridden.get(tuple(str(part) for part in location[:end])):
-                return f"--set {text}"
+                return _named(text)
         node: Any = self.tree
         line, column = 0, 0
         for part in location:
@@ -73,22 +76,23 @@ class Source:
     def settle(self) -> None:
         """Raises: ConfigError with every complaint, one a line, if there are any."""
         if self.complaints:
-            raise ConfigError("\n".join(self.complaints))
+            raise ConfigError(*self.complaints)
 
     def check_keys(self, known: Iterable[str]) -> None:
         """Complain of every key of the file that is not known."""
         names = list(known)
         for key in self.tree:
             if key not in names:
-                self.complain((key,), f"unknown key {key!r}{did_you_mean(str(key), names)}; known: {', '.join(names)}")
+                hint = did_you_mean(str(key), names)
+                self.complain((key,), f"unknown key {quoted(key)}{hint}; known: {', '.join(names)}")
 
     def items(self, key: str) -> list[Any]:
         """A list of at least one under this key of the file; a complaint and an empty one otherwise."""
         block = self.tree.get(key)
         if isinstance(block, list) and block:
             return cast("list[Any]", block)
-        wrong = f"`{key}:` is a list of at least one, not {block!r}" if key in self.tree else f"`{key}:` is missing"
-        self.complain((key,), wrong)
+        wrong = f"is a list of at least one, not {quoted(block)}" if key in self.tree else "is missing"
+        self.complain((key,), f"`{key}:` {wrong}")
         return []
 
     def model(self, location: Location, model: type[BaseModel], block: Any) -> Any:
@@ -102,27 +106,27 @@ class Source:
 
     def _complain_of(self, location: Location, model: type[BaseModel], error: Mapping[str, Any]) -> None:
         where = (*location, *(part for part in error["loc"] if part != "[key]" and not str(part).startswith(":")))
-        shown = ".".join(str(part) for part in where)
+        name = shown(".".join(str(part) for part in where))
         if error["type"] == "extra_forbidden":
             options = list(_model_at(model, error["loc"][:-1]).model_fields)
             known = f"; known: {', '.join(options)}" if options else "; there are no options"
-            self.complain(where, f"{shown}: unknown option{did_you_mean(str(where[-1]), options)}{known}")
+            self.complain(where, f"{name}: unknown option{did_you_mean(str(where[-1]), options)}{known}")
         else:
-            given = "" if isinstance(error["input"], dict) else f", not {error['input']!r}"
+            given = "" if isinstance(error["input"], dict) else f", not {quoted(error['input'])}"
             if error["type"] == "literal_error":
                 given += did_you_mean(f"{error['input']}", re.findall(r"'([^']*)'", error["msg"]))
-            self.complain(where, f"{shown}: {error['msg'].removeprefix('Value error, ')}{given}")
+            self.complain(where, f"{name}: {error['msg'].removeprefix('Value error, ')}{given}")
 
 
 def read_text(path: Path) -> str:
     """A YAML file's text. Raises: ConfigError, with what is there when the file is not."""
     try:
-        return path.read_text(encoding="utf-8")
+        return read_bytes(path, MOST_TEXT_BYTES).decode()
     except FileNotFoundError as error:
         near = did_you_mean(path.name, (each.name for each in path.parent.glob("*.y*ml")))
         raise ConfigError(f"{path}: there is no such file{near}") from error
     except (OSError, UnicodeDecodeError) as error:
-        raise ConfigError(f"{path}: cannot be read as text: {error}") from error
+        raise ConfigError(f"{path}: cannot be read as text: {getattr(error, 'strerror', None) or error}") from error
 
 
 def parse_source(text: str, path: Path, what: str, overrides: Iterable[str] = ()) -> Source:
@@ -133,14 +137,8 @@ def parse_source(text: str, path: Path, what: str, overrides: Iterable[str] = ()
     """
     try:
         tree = _load(text)
-    except MarkedYAMLError as error:
-        mark: Any = cast(Any, error).problem_mark or cast(Any, error).context_mark
-        place = f"{path}:{mark.line + 1}:{mark.column + 1}" if mark else f"{path}"
-        problem = str(cast(Any, error).problem or cast(Any, error).context).strip().splitlines()[0]
-        cure = "; indent with spaces, not tabs" if "\\t" in problem else ""
-        raise ConfigError(f"{place}: {problem}{cure}") from error
     except YAMLError as error:
-        raise ConfigError(f"{path}: {str(error).splitlines()[0]}") from error
+        raise ConfigError(f"{_place(path, error)}: {_problem(error)}") from error
     if not isinstance(tree, dict):
         raise ConfigError(f"{path}:1:1: {what}")
     source = Source(path, cast(Tree, tree))
@@ -150,12 +148,39 @@ def parse_source(text: str, path: Path, what: str, overrides: Iterable[str] = ()
 
 
 def _load(text: str) -> Any:
-    return cast(Any, YAML(typ="rt")).load(text)  # of ruamel's loaders, the one that knows places
+    """What a text says. Raises: YAMLError."""
+    if len(text) > MOST_TEXT_BYTES:
+        raise YAMLError(f"it holds more than {in_words(MOST_TEXT_BYTES)}")
+    yaml: Any = YAML(typ="rt")  # of ruamel's loaders, the one that knows places
+    yaml.Constructor = BoundedConstructor
+    with warnings.catch_warnings(action="ignore"):  # of anchors that are there twice
+        check_events(cast(Any, YAML(typ="rt")).parse(text))
+        try:
+            return yaml.load(text)
+        except YAMLError:
+            raise
+        except Exception as error:  # its parser was not written for what is wrong on purpose
+            raise YAMLError(f"it cannot be understood: {error}") from error
+
+
+def _problem(error: YAMLError) -> str:
+    problem = getattr(error, "problem", None) or getattr(error, "context", None) or error
+    text = shown(str(problem).strip().splitlines()[0], 200)
+    return f"{text}; indent with spaces, not tabs" if "\\t" in text else text
+
+
+def _place(path: Path, error: YAMLError) -> str:
+    mark = getattr(error, "problem_mark", None) or getattr(error, "context_mark", None)
+    return f"{path}:{mark.line + 1}:{mark.column + 1}" if mark else f"{path}"
+
+
+def _named(override: str) -> str:
+    return f"--set {shown(override)}"
 
 
 def _key(text: str, node: Mapping[Any, Any]) -> Any:
     """Keys are words; labels of a material map are whole numbers."""
-    return int(text) if text.isdigit() and text not in node else text
+    return int(text) if text.isdecimal() and len(text) <= MOST_DIGITS and text not in node else text
 
 
 def _has(node: Any, part: Any) -> bool:

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from ..errors import ResultsError
+from ..errors import ResultsError, shown
 from .rows import Row
 from .summary import Cell, cells, median, spread
 from .task import Measure, load_task
@@ -77,9 +77,9 @@ def _common_baseline(before: Sequence[Row], after: Sequence[Row]) -> str | None:
     if baseline and baseline == after[-1].baseline:
         return baseline
     if before[-1].machine != after[-1].machine:
+        one, other = (shown(str(rows[-1].machine.get("processor"))) for rows in (before, after))
         raise ResultsError(
-            f"seconds on {before[-1].machine['processor']} and on {after[-1].machine['processor']} cannot be compared; "
-            "name the same `baseline:` in both, then ratios are"
+            f"seconds on {one} and on {other} cannot be compared; name the same `baseline:` in both, then ratios are"
         )
     return None
 

@@ -8,7 +8,7 @@ from typing import Annotated, Any, cast
 from pydantic import Field
 
 from ..config import Section
-from ..errors import TangibleError, did_you_mean
+from ..errors import TangibleError, did_you_mean, quoted
 from ..registry import Registry
 from ..source import Source, parse_source, read_text
 from .entries import Entry, read_methods
@@ -87,7 +87,7 @@ def parse_comparison(text: str, path: Path, registry: Registry, overrides: Itera
     baseline = _baseline(source, labels)
     out = source.tree.get("out", f"out/{path.stem}")
     if not isinstance(out, str):
-        source.complain(("out",), f"out: a folder is wanted, not {out!r}")
+        source.complain(("out",), f"out: a folder is wanted, not {quoted(out)}")
     source.settle()
     folder = path.parent if "out" in source.tree else Path()
     return Comparison(path, task, methods, scenes, damages, protocol, finishes, baseline, folder / out)
@@ -117,7 +117,7 @@ def _scenes(source: Source, task: Task) -> dict[str, SceneSpec]:
             continue
         for name, each in several.items():
             if name in found:
-                source.complain(place, f"two scenes are called {name!r}; name other folders")
+                source.complain(place, f"two scenes are called {quoted(name)}; name other folders")
             found[name] = each
     return found
 
@@ -133,19 +133,21 @@ def _damages(source: Source, task: Task) -> tuple[Damage, ...]:
             for kind, values in cast("dict[Any, Any]", block).items():
                 found += _strengths(source, ("perturb", index, kind), task, kind, values)
         else:
-            source.complain(("perturb", index), f"write none, or such as {{noise: [2, 5]}}, not {block!r}")
+            source.complain(("perturb", index), f"write none, or such as {{noise: [2, 5]}}, not {quoted(block)}")
     return tuple(dict.fromkeys(found))
 
 
 def _strengths(source: Source, place: Place, task: Task, kind: Any, values: Any) -> Iterable[Damage]:
     if kind not in task.perturbations:
         hint = did_you_mean(str(kind), task.perturbations)
-        source.complain(place, f"nothing perturbs by {kind!r}{hint}; known: none, {', '.join(task.perturbations)}")
+        source.complain(
+            place, f"nothing perturbs by {quoted(kind)}{hint}; known: none, {', '.join(task.perturbations)}"
+        )
         return
     known = task.perturbations[kind]
     for value in cast("list[Any]", values if isinstance(values, list) else [values]):
         if isinstance(value, bool) or not isinstance(value, int | float) or not known.allowed(float(value)):
-            source.complain(place, f"{kind}: {known.meaning}, not {value!r}")
+            source.complain(place, f"{kind}: {known.meaning}, not {quoted(value)}")
         else:
             yield Damage(kind, float(value))
 
@@ -166,4 +168,4 @@ def _baseline(source: Source, labels: list[str]) -> str | None:
 
 
 def _no_label(label: Any, labels: list[str]) -> str:
-    return f"no method here is called {label!r}{did_you_mean(str(label), labels)}; there are: {', '.join(labels)}"
+    return f"no method here is called {quoted(label)}{did_you_mean(str(label), labels)}; there are: {', '.join(labels)}"

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from ..errors import PictureError
+from ..errors import PictureError, quoted
 from ..metrics import visible_pixels
 from ..scene import Scene, SceneFiles, read_scene
 from ..testing.stereo_scenes import KnownPair, synthetic_pair
@@ -47,7 +47,7 @@ class DepthScene(SceneSpec):
         kind, _, rest = name.partition("/")
         if kind not in ("builtin", "synthetic"):
             raise ValueError(
-                f"no scene is named {name!r}; write builtin/motorcycle, synthetic/planes or {{folder: ...}}"
+                f"no scene is named {quoted(name)}; write builtin/motorcycle, synthetic/planes or {{folder: ...}}"
             )
         return {kind: rest}
 

@@ -8,7 +8,7 @@ from typing import Any, cast
 from pydantic import ValidationError
 
 from ..config import Chosen, choose
-from ..errors import ConfigError, did_you_mean
+from ..errors import ConfigError, did_you_mean, quoted
 from ..interfaces import Method
 from ..registry import Registry
 from ..source import Location, Source
@@ -51,7 +51,7 @@ def _entries(source: Source, place: Location, block: Any, task: Task, registry: 
     options: dict[str, Any] = dict(cast("dict[str, Any]", block)) if isinstance(block, dict) else {"use": block}
     label, given, sweep = options.pop("label", None), options.pop("given", []), options.pop("sweep", None)
     if label is not None and not isinstance(label, str):
-        source.complain((*place, "label"), f"a label is a word, not {label!r}")
+        source.complain((*place, "label"), f"a label is a word, not {quoted(label)}")
     grid = {} if sweep is None else _grid(source, (*place, "sweep"), sweep)
     if grid and choose(source, place, task.kind, {"use": options.get("use")}, registry) is None:
         return
@@ -79,7 +79,7 @@ def _can_be_given(source: Source, place: Location, given: Any, task: Task, metho
         if name not in options:
             hint = did_you_mean(str(name), options)
             source.complain(
-                place, f"given: no scene tells {name!r} to this method{hint}; it can be told: {_words(options)}"
+                place, f"given: no scene tells {quoted(name)} to this method{hint}; it can be told: {_words(options)}"
             )
     return isinstance(given, list) and options.issuperset(names)
 

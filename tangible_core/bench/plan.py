@@ -65,7 +65,7 @@ def _scenes(comparison: Comparison) -> dict[str, Known]:
         else:
             known[name] = Known(scene.digest(), {key: tell(scene) for key, tell in comparison.task.given.items()})
     if complaints:
-        raise ConfigError("\n".join(complaints))
+        raise ConfigError(*complaints)
     return known
 
 

@@ -9,7 +9,7 @@ from jaxtyping import Float64
 from pydantic import Field, model_validator
 
 from ..data import HapticSurface, Relief
-from ..errors import OutputError
+from ..errors import OutputError, quoted
 from ..geometry import scale_heights
 from ..picture_files import read_map
 from ..pictures import to_grey
@@ -59,7 +59,9 @@ class RenderScene(SceneSpec):
         """`analytic/NAME` or `builtin/NAME`."""
         kind, _, rest = name.partition("/")
         if kind not in ("analytic", "builtin"):
-            raise ValueError(f"no scene is named {name!r}; write analytic/sphere, builtin/coins or {{height: ...}}")
+            raise ValueError(
+                f"no scene is named {quoted(name)}; write analytic/sphere, builtin/coins or {{height: ...}}"
+            )
         return {kind: rest}
 
     def expand(self) -> "Mapping[str, RenderScene]":

@@ -4,15 +4,21 @@ import json
 import os
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field
+from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
-from ..errors import OutputError, ResultsError
+from pydantic import ConfigDict, TypeAdapter, ValidationError
+
+from ..errors import OutputError, ResultsError, shown
+from ..reading import read_bytes
 
 
 @dataclass(frozen=True)
 class Row:
     """What one process found out."""
+
+    __pydantic_config__: ClassVar = ConfigDict(extra="forbid", strict=True)  # for what is read
 
     key: str
     """Content hash of what was measured: the same key need not be measured again."""
@@ -52,10 +58,11 @@ def read_rows(path: Path) -> dict[str, Row]:
     Raises: ResultsError for a file that cannot be read, or a damaged line within it.
     """
     try:
-        *lines, torn = path.read_text(encoding="utf-8").split("\n")
+        *lines, torn = read_bytes(path).decode().split("\n")
     except (OSError, UnicodeDecodeError) as error:
+        why = getattr(error, "strerror", None) or error
         raise ResultsError(
-            f"{path}: cannot be read as results: {error}; name a .jsonl file of `tangible compare`"
+            f"{path}: cannot be read as results: {why}; name a .jsonl file of `tangible compare`"
         ) from error
     del torn  # a whole line ends with a newline
     rows = (_row(path, number, line) for number, line in enumerate(lines, 1) if line)
@@ -99,8 +106,14 @@ def _write(path: Path, work: Callable[[int], object]) -> None:
 
 def _row(path: Path, number: int, line: str) -> Row:
     try:
-        fields: dict[str, Any] = json.loads(line)
-        fields["finishes"] = tuple(fields["finishes"])
-        return Row(**fields)
-    except (ValueError, TypeError, KeyError) as error:
-        raise ResultsError(f"{path}:{number}: is no row of results: {error}; remove the line") from error
+        return _checker().validate_json(line)
+    except ValidationError as error:
+        first = error.errors(include_url=False, include_input=False)[0]
+        place = shown(".".join(map(str, first["loc"])))
+        why = f"{place}: {first['msg']}" if place else first["msg"]
+        raise ResultsError(f"{path}:{number}: is no row of results: {why}; remove the line") from error
+
+
+@cache
+def _checker() -> TypeAdapter[Row]:
+    return TypeAdapter(Row)

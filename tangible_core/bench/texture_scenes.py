@@ -6,7 +6,7 @@ from typing import Annotated, Any, Self
 
 from pydantic import Field, model_validator
 
-from ..errors import PictureError
+from ..errors import PictureError, quoted
 from ..picture_files import read_labels, read_picture
 from ..testing.texture_scenes import KnownSegments, folder_textures, smooth_scene, texture_mosaic
 from .task import SceneSpec
@@ -48,7 +48,7 @@ class TextureScene(SceneSpec):
         """`mosaic/SEGMENTS` or `smooth/SEGMENTS`."""
         kind, _, segments = name.partition("/")
         if kind not in ("mosaic", "smooth") or not segments.isdecimal():
-            raise ValueError(f"no scene is named {name!r}; write mosaic/4, smooth/14 or {{folder: ...}}")
+            raise ValueError(f"no scene is named {quoted(name)}; write mosaic/4, smooth/14 or {{folder: ...}}")
         return {kind: int(segments)}
 
     def expand(self) -> "Mapping[str, TextureScene]":

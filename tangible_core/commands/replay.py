@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from .. import session
+from ..errors import MOST_IN_LINE, shown
 from ..metrics.forces import force_errors
 from ..session import Recording
 from . import show
@@ -75,5 +76,5 @@ def _print(before: Recording, figures: dict[str, float], record: Path | None, as
         show.print_json({"recorded": said, "figures": figures, "file": record and str(record)})
         return
     if before.stopped:
-        show.note(f"the recording ended early: {before.stopped}")
+        show.note(f"the recording ended early: {shown(before.stopped, MOST_IN_LINE)}")
     show.table(("figure", "value", ""), [(name, f"{value:.6g}", MEANINGS[name]) for name, value in figures.items()])

@@ -134,7 +134,7 @@ class Recording(Record):
         """A recording that was saved, or written by a `Writer`; one that was cut off says so in `stopped`.
 
         It is all in memory then, half a gigabyte for an hour at 1 kHz.
-        Raises: OutputError if it cannot be read or is none.
+        Raises: OutputError if it cannot be read, is none, or holds more than `reading.MOST_BYTES`.
         """
         return cls(*recording_files.read(path))
 

@@ -1,22 +1,24 @@
 """Recordings on disk: .nc, .npz and .csv."""
 
-import zlib
 from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any, NamedTuple
-from zipfile import BadZipFile
 
 import numpy as np
 from jaxtyping import Float64
 
+from ..array_files import Archive
 from ..data import TICK_COLUMNS
-from ..errors import OutputError
+from ..errors import OutputError, shown
 from ..files import atomic_write
+from ..reading import check_file, read_bytes
 from . import tick_file
-from .tick_arrays import ARRAYS, UNKNOWN, joined, unknown
+from .tick_arrays import ARRAYS, NEEDED, UNKNOWN, joined, unknown
 from .tick_file import NOTHING_SAID, About
 
 SUFFIXES = (".nc", ".npz", ".csv")
+NPZ_NAMES = frozenset(("stopped", *ARRAYS, *(each.name for each in fields(About))))
+"""What is read of an .npz."""
 
 
 class Kept(NamedTuple):
@@ -52,11 +54,23 @@ def read(path: Path) -> Kept:
     """Raises: OutputError if it cannot be read or is no recording."""
     check_record_path(path)
     try:
-        return READERS[path.suffix](path)
+        check_file(path)
+        with np.errstate(all="ignore"):  # what no number is stays none
+            kept = READERS[path.suffix](path)
+        _check_bits(kept.rows)
     except OSError as error:
         raise OutputError(f"{path}: cannot be read: {error.strerror or error}") from error
-    except (ValueError, LookupError, TypeError, EOFError, BadZipFile, zlib.error, OutputError) as error:
-        raise OutputError(f"{path}: is no recording, or a damaged one ({error}); record it again") from error
+    except Exception as error:  # a damaged file can provoke any
+        why = shown(str(error), 200)
+        raise OutputError(f"{path}: is no recording, or a damaged one ({why}); record it again") from error
+    return kept
+
+
+def _check_bits(rows: Float64[np.ndarray, "n columns"]) -> None:
+    """Raises: ValueError if flags or buttons are none that a whole number of the format can hold."""
+    for name in ("flags", "buttons"):
+        if not (np.abs(rows[:, ARRAYS[name]]) < 2**31).all():
+            raise ValueError(f"its {name} do not all fit into 32 bits")
 
 
 def _from_nc(path: Path) -> Kept:
@@ -64,15 +78,18 @@ def _from_nc(path: Path) -> Kept:
 
 
 def _from_npz(path: Path) -> Kept:
-    with path.open("rb") as file, np.load(file, allow_pickle=False) as archive:
-        values: dict[str, Any] = dict(archive)
+    with path.open("rb") as file:
+        archive = Archive(file)
+        values: dict[str, Any] = archive.read([name for name in archive.names if name in NPZ_NAMES])
     about = About(**{each.name: str(values.get(each.name, "")) for each in fields(About)})
+    if missing := [name for name in (*NEEDED, "stopped") if name not in values]:
+        raise ValueError(f"it holds no {', '.join(missing)}")
     rows = joined({name: values[name] for name in ARRAYS if name in values})
     return Kept(rows, str(values["stopped"]), about)
 
 
 def _from_csv(path: Path) -> Kept:
-    header, *lines = path.read_text(encoding="utf-8-sig").splitlines()
+    header, *lines = read_bytes(path).decode("utf-8-sig").splitlines()
     names = header.split(",")
     if missing := [name for name in TICK_COLUMNS if name not in (*names, *UNKNOWN)]:
         raise ValueError(f"its first line names no {', '.join(missing)}")

@@ -37,6 +37,8 @@ def joined(arrays: Mapping[str, np.ndarray]) -> Float64[np.ndarray, "n columns"]
     rows = unknown(arrays["time_s"].size)
     for name in (*NEEDED, *(arrays.keys() - NEEDED)):
         part = rows[:, ARRAYS[name]]
+        if arrays[name].dtype.kind not in "biuf":
+            raise OutputError(f"{name} holds {arrays[name].dtype.name} and no numbers")
         if arrays[name].shape != part.shape:
             raise OutputError(f"{name} is {arrays[name].shape}; with these times it is {part.shape}")
         part[:] = arrays[name]

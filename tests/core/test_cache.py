@@ -1,3 +1,4 @@
+import json
 import os
 import subprocess
 import sys
@@ -6,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from hostile import npz_bomb
 from tangible_core import cache
 from tangible_core.cache import Cache, read_record, write_record
 from tangible_core.data import (
@@ -86,6 +88,47 @@ def test_an_entry_of_another_program_is_not_trusted(tmp_path: Path, tree: bytes,
     assert Cache(tmp_path).get("k") is None
     assert "damaged" in caplog.text
     assert "k" not in Cache(tmp_path)
+
+
+def entry(path: Path, tree: object, **arrays: np.ndarray) -> None:
+    text = tree if isinstance(tree, str) else json.dumps(tree)
+    np.savez(path, record=np.frombuffer(text.encode(), np.uint8), **arrays)
+
+
+ODD = {
+    "lists in lists": "[" * 100_000 + "]" * 100_000,
+    "a number of 5000 digits": "9" * 5000,
+    "no record": 7,
+    "a tuple": {"tuple": []},
+    "another class": {"class": "Record", "fields": {}},
+    "a class that is a list": {"class": [], "fields": {}},
+    "a tuple of the servo": {"class": "Force", "fields": {"x": 1.0, "y": 1.0, "z": 1.0}},
+    "a missing array": {"class": "DisparityMap", "fields": {"disparity_px": {"array": "x"}}},
+    "an unknown field": {"class": "SegmentMap", "fields": {"labels": {"array": "a"}, "more": 1}},
+    "a picture that is none": {"class": "Views", "fields": {"left": {"array": "b"}}},
+    "fields that are none": {"class": "Views", "fields": [1]},
+}
+
+
+@pytest.mark.parametrize("tree", ODD.values(), ids=ODD)
+def test_whatever_an_entry_holds_it_is_made_again(tmp_path: Path, tree: object, caplog: pytest.LogCaptureFixture):
+    entry(tmp_path / "k.npz", tree, a=np.zeros((2, 2), np.int32), b=np.full((2, 2), np.nan))
+    assert Cache(tmp_path).get("k") is None
+    assert "damaged" in caplog.text
+    assert len(caplog.text) < 1000
+    assert not (tmp_path / "k.npz").exists()
+
+
+def test_an_entry_that_becomes_something_large_is_not_unpacked(tmp_path: Path, caplog: pytest.LogCaptureFixture):
+    npz_bomb(tmp_path / "k.npz", record=(20_000, 20_000))
+    assert Cache(tmp_path).get("k") is None
+    assert "holds more than 1424 MB" in caplog.text
+
+
+@pytest.mark.timeout(20)
+def test_a_pipe_in_the_folder_is_not_waited_for(tmp_path: Path):
+    os.mkfifo(tmp_path / "k.npz")
+    assert Cache(tmp_path).get("k") is None
 
 
 def test_the_entries_used_longest_ago_go_first(tmp_path: Path):

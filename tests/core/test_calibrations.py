@@ -1,5 +1,6 @@
 """What is kept of one unit: where, whole, and never half understood."""
 
+import os
 from pathlib import Path
 
 import pytest
@@ -47,6 +48,29 @@ def test_one_that_cannot_be_read(config_dir: Path):
     calibration_path("arm", "F123").mkdir(parents=True)
     with pytest.raises(DeviceError, match="cannot be read"):
         load_calibration("arm", "F123", Measured)
+
+
+DEEP = '{"gain": ' + "[" * 10_000 + "]" * 10_000 + "}"
+
+
+@pytest.mark.parametrize("text", [DEEP, '{"gain": ' + "9" * 5000 + "}", '{"offset_deg": "' + "x\x1b" * 1000 + '"}'])
+def test_one_of_another_program_is_named_in_one_line(text: str):
+    calibration_path("arm", "F123").parent.mkdir(parents=True)
+    calibration_path("arm", "F123").write_text(text)
+    with pytest.raises(DeviceError, match=r"arm-F123\.json: ") as error:
+        load_calibration("arm", "F123", Measured)
+    assert str(error.value).isprintable()
+
+
+@pytest.mark.timeout(20)
+def test_a_pipe_or_a_device_is_not_waited_for():
+    path = calibration_path("arm", "F123")
+    path.parent.mkdir(parents=True)
+    os.mkfifo(path)
+    calibration_path("arm", "F124").symlink_to("/dev/zero")
+    for serial in ("F123", "F124"):
+        with pytest.raises(DeviceError, match=r"json: cannot be read: it is no file but a folder or a device; make"):
+            load_calibration("arm", serial, Measured)
 
 
 def test_a_place_that_cannot_be_written(config_dir: Path):

@@ -13,7 +13,7 @@ from tangible_core.cache import Cache
 from tangible_core.config import Chosen, MaterialChoice, PipelineConfig, Workspace
 from tangible_core.data import DisparityMap, HapticSurface, SegmentMap, Views
 from tangible_core.engine import Pipeline
-from tangible_core.errors import ConfigError, GeometryError, PictureError, UnknownMethod
+from tangible_core.errors import BrokenMethod, ConfigError, GeometryError, PictureError, UnknownMethod
 from tangible_core.interfaces import DepthEstimator, ForceRenderer, Segmenter, Skippable, Touch
 from tangible_core.notes import note
 from tangible_core.picture_files import write_png
@@ -59,6 +59,20 @@ class Says(Segmenter):
     def segment(self, picture: np.ndarray) -> SegmentMap:
         note(logging.getLogger("tests"), "skipped: everything")
         return SegmentMap(np.zeros(picture.shape[:2], np.int32))
+
+
+class Shrinks(Segmenter):
+    """Labels a part of the picture."""
+
+    def segment(self, picture: np.ndarray) -> SegmentMap:
+        return SegmentMap(np.zeros((picture.shape[0] // 2, picture.shape[1]), np.int32))
+
+
+class Grows(DepthEstimator):
+    """A disparity for a larger picture."""
+
+    def estimate(self, views: Views) -> DisparityMap:
+        return DisparityMap(np.zeros((views.shape[0], views.shape[1] + 3), np.float32))
 
 
 class Fails(Segmenter):
@@ -130,6 +144,22 @@ def test_everything_that_is_needed_is_made_once(folder: Path):
     assert said(pipe) == {"views": "given", **dict.fromkeys(made, "ran")}
     pipe.make("relief")
     assert ran == ["disparity", "segments", "touch"]
+
+
+@pytest.mark.parametrize(
+    ("parts", "says"),
+    [
+        ({"texture": chosen(Shrinks(), "halved")}, "texture method halved (tests 1.0) made labels of 30 x 10"),
+        ({"depth": chosen(Grows(), "more")}, "depth method more (tests 1.0) made disparity of 33 x 20"),
+    ],
+)
+def test_a_result_of_another_size_than_the_picture_is_not_stretched_over_it(folder: Path, parts: dict, says: str):
+    with pytest.raises(BrokenMethod) as error:
+        pipeline(folder, **parts).make("surface")
+    assert str(error.value).startswith(f"{says} for a picture of 30 x 20; ")
+    coarse = Workspace(width_m=0.03, finest_m=0.002)
+    with pytest.raises(BrokenMethod, match="for a picture of 15 x 10; `tangible check "):
+        pipeline(folder, workspace=coarse, **parts).make("surface")
 
 
 def test_what_nothing_asks_for_is_not_made(folder: Path):

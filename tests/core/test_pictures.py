@@ -2,6 +2,9 @@
 
 import io
 import os
+import struct
+import zipfile
+import zlib
 
 import numpy as np
 import pytest
@@ -9,7 +12,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image
 
-from tangible_core.errors import PictureError
+from hostile import SIDE, npy_header, npz_bomb, tiff
+from tangible_core.errors import PictureError, shown
 from tangible_core.picture_files import MAX_LABELS, read_labels, read_map, read_picture, write_png
 from tangible_core.pictures import check_picture, fill_non_finite, full_scale, to_grey, to_rgb8
 
@@ -190,8 +194,8 @@ def refusal(path, read=read_picture):
     with pytest.raises(PictureError) as caught:
         read(path)
     message = str(caught.value)
-    assert message.startswith(f"{path}: ")
-    assert "\n" not in message
+    assert message.startswith(shown(f"{path}: ", 1000))
+    assert message.isprintable()
     return message
 
 
@@ -219,10 +223,10 @@ def test_a_name_that_no_file_can_have_is_refused(tmp_path, name):
 def test_a_file_that_may_not_be_read_says_so(tmp_path, monkeypatch):
     path = put(tmp_path, "a.png", b"x")
 
-    def deny(self):
+    def deny(*_):
         raise PermissionError(13, "Permission denied")
 
-    monkeypatch.setattr(type(path), "read_bytes", deny)
+    monkeypatch.setattr(type(path), "open", deny)
     assert "Permission denied; check the path and its permissions" in refusal(path)
 
 
@@ -254,6 +258,129 @@ def test_a_picture_that_claims_to_be_huge_is_not_opened(tmp_path):
     for side in (12_000, 60_000):
         path = put(tmp_path, "a.pgm", f"P5 {side} {side} 255\n".encode())
         assert "larger than 89 megapixels; make it smaller first" in refusal(path)
+
+
+@pytest.mark.parametrize(
+    "layout",
+    [
+        {"bits": 64, "sample_format": 3},
+        {"bits": 32, "samples": 3, "sample_format": 3},
+        {"bits": 16, "samples": 3, "sample_format": 1},
+        {"bits": 8, "sample_format": 1},
+    ],
+)
+def test_whoever_decodes_a_tiff_its_size_is_looked_at_before(tmp_path, layout, monkeypatch):
+    """The first two are OpenCV's alone, which would decode them; of the third it decodes what Pillow has looked at."""
+    tiny = tiff(tmp_path / "tiny.tif", 5, 3, strip_rows=3, **layout)
+    assert read_picture(tiny).shape[:2] == (3, 5)
+    monkeypatch.setattr("cv2.imdecode", None)
+    for name, width, height in (("a.tif", SIDE, SIDE), ("b.tif", 8_900, 10_001)):
+        path = tiff(tmp_path / name, width, height, strip_rows=1, **layout)
+        assert "larger than 89 megapixels; make it smaller first" in refusal(path)
+
+
+@pytest.mark.parametrize("tag", [256, 257, 322, 323])
+@pytest.mark.parametrize("last", [False, True])
+def test_of_a_size_that_a_tiff_says_twice_the_largest_counts(tmp_path, tag, last, monkeypatch):
+    """Who decodes it may take the first or the last. Tags 322 and 323 are of tiles, which are decoded whole."""
+    monkeypatch.setattr("cv2.imdecode", None)
+    twice = ((tag, 90_000_000), (tag, 5))
+    path = tiff(tmp_path / "a.tif", 5, 3, strip_rows=3, more=twice[:: -1 if last else 1])
+    assert "larger than 89 megapixels" in refusal(path)
+
+
+def test_tiles_that_pillow_would_decode_are_looked_at(tmp_path):
+    """One of 40,000 x 40,000 for a picture of 5 x 3, which is 1.6 GB from 1.6 MB."""
+    path = tiff(tmp_path / "a.tif", 5, 3, bits=8, sample_format=1, more=((322, 40_000), (323, 40_000)))
+    assert "larger than 89 megapixels" in refusal(path)
+
+
+@pytest.mark.parametrize(("order", "side"), [("<", 3), ("<", 9_500), (">", 9_500)])
+def test_a_tiff_of_eight_byte_places(tmp_path, order, side):
+    """Where all numbers have eight bytes. Pillow reads those of little-endian machines alone."""
+    tags = [
+        (256, side),
+        (257, side),
+        (258, 8),
+        (259, 1),
+        (262, 1),
+        (273, 232),
+        (277, 1),
+        (278, side),
+        (279, 9),
+        (339, 1),
+    ]
+    table = b"".join(struct.pack(f"{order}HHQQ", tag, 16, 1, value) for tag, value in tags)
+    mark = b"II" if order == "<" else b"MM"
+    data = mark + struct.pack(f"{order}HHHQQ", 43, 8, 0, 16, len(tags)) + table + bytes(8 + 9)
+    path = put(tmp_path, "a.tif", data)
+    if side == 3:
+        assert read_picture(path).tolist() == [[0] * 3] * 3
+    else:
+        assert "larger than 89 megapixels" in refusal(path)
+
+
+def test_the_bytes_of_a_pixel_count_too(tmp_path, monkeypatch):
+    monkeypatch.setattr("cv2.imdecode", None)
+    path = tiff(tmp_path / "a.tif", 30_000, 2_000, strip_rows=1, bits=64, samples=4)
+    assert "holds more than 1424 MB; make it smaller first" in refusal(path)
+
+
+def test_a_deep_png_whose_two_headers_differ_is_not_decoded(tmp_path):
+    """By the first header it has 4e8 pixels, which OpenCV would make, by the second, which Pillow takes, 1."""
+
+    def chunk(name, data):
+        return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
+
+    def header(side):
+        return chunk(b"IHDR", struct.pack(">IIBBBBB", side, side, 16, 2, 0, 0, 0))
+
+    pixel = chunk(b"IDAT", zlib.compress(bytes(7))) + chunk(b"IEND", b"")
+    path = put(tmp_path, "a.png", b"\x89PNG\r\n\x1a\n" + header(20_000) + header(1) + pixel)
+    assert "larger than 89 megapixels" in refusal(path)
+
+
+def test_what_pillow_reads_is_held_to_the_same_limit(tmp_path):
+    """Pillow's own is a little above it."""
+    path = put(tmp_path, "a.pgm", b"P5 89200 1000 255\n")
+    assert "larger than 89 megapixels" in refusal(path)
+    assert "cut short" in refusal(put(tmp_path, "a.pgm", b"P5 89000 1000 255\n"))
+
+
+def test_nothing_is_said_beside_the_error(tmp_path, capfd):
+    whole = tiff(tmp_path / "a.tif", 50, 30).read_bytes()
+    assert "damaged" in refusal(put(tmp_path, "a.tif", whole[:-20]))
+    assert capfd.readouterr() == ("", "")
+
+
+@pytest.mark.timeout(20)
+@pytest.mark.parametrize("read", [read_picture, read_map, read_labels])
+@pytest.mark.parametrize("name", ["a.npy", "a.npz", "a.png"])
+def test_a_pipe_is_not_waited_for(tmp_path, read, name):
+    os.mkfifo(tmp_path / name)
+    assert "no file but a folder or a device" in refusal(tmp_path / name, read)
+
+
+@pytest.mark.parametrize("read", [read_picture, read_map, read_labels])
+def test_arrays_that_say_that_they_are_huge(tmp_path, read):
+    path = put(tmp_path, "a.npy", npy_header((10_000, 10_000)))
+    assert "larger than 89 megapixels; make it smaller first" in refusal(path, read)
+    path = npz_bomb(tmp_path / "a.npz", a=(13_000, 6_000, 4))
+    assert "holds more than 1424 MB; make it smaller first" in refusal(path, read)
+
+
+@pytest.mark.parametrize("read", [read_picture, read_map, read_labels])
+def test_an_archive_of_something_else(tmp_path, read):
+    with zipfile.ZipFile(tmp_path / "a.npz", "w") as archive:
+        archive.writestr("readme.txt", "hello")
+    assert "holds 0 arrays, and one is meant" in refusal(tmp_path / "a.npz", read)
+
+
+def test_an_array_under_the_other_name_is_an_array(tmp_path):
+    np.savez(tmp_path / "a.npz", COLOURS)
+    np.save(tmp_path / "b.npy", COLOURS)
+    swapped = (tmp_path / "a.npz").rename(tmp_path / "a.npy"), (tmp_path / "b.npy").rename(tmp_path / "b.npz")
+    assert all(np.array_equal(read_picture(path), COLOURS) for path in swapped)
 
 
 @given(st.data())

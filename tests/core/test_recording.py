@@ -1,12 +1,17 @@
 """What was felt, in memory and in its files."""
 
 import csv
+import os
+import tracemalloc
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
+from hostile import npz_bomb
 from tangible_core.data import TICK_COLUMNS, HapticSurface, TickFlag
 from tangible_core.errors import OutputError
 from tangible_core.session import About, Recording, check_record_path, run
@@ -117,6 +122,117 @@ def test_tables_that_are_none():
     parts = {"time_s": np.zeros(3), "position_m": np.zeros((3, 3)), "velocity_m_per_s": np.zeros((3, 3))}
     with pytest.raises(OutputError, match=r"force_n is \(1, 3\); with these times it is \(3, 3\)"):
         Recording.of(**parts, force_n=np.zeros((1, 3)))
+
+
+def refusal(path: Path) -> str:
+    with pytest.raises(OutputError) as error:
+        Recording.load(path)
+    message = str(error.value)
+    assert message.startswith(f"{path}: ")
+    assert message.isprintable()
+    assert len(message) < 500
+    return message
+
+
+def header(path: Path) -> str:
+    some(1).save(path)
+    return path.read_text().splitlines()[0]
+
+
+@pytest.mark.timeout(20)
+@pytest.mark.parametrize("suffix", [".nc", ".npz", ".csv"])
+def test_what_has_no_end_or_never_begins_is_no_recording(tmp_path: Path, suffix: str):
+    os.mkfifo(tmp_path / f"pipe{suffix}")
+    (tmp_path / f"zero{suffix}").symlink_to("/dev/zero")
+    for name in ("pipe", "zero"):
+        assert "cannot be read: it is no file but a folder or a device" in refusal(tmp_path / f"{name}{suffix}")
+
+
+@pytest.mark.parametrize("suffix", [".nc", ".npz", ".csv"])
+def test_a_recording_of_more_than_is_read(tmp_path: Path, suffix: str):
+    with (tmp_path / f"a{suffix}").open("wb") as file:
+        file.truncate(1_500_000_000)
+    assert "cannot be read: it holds more than 1424 MB" in refusal(tmp_path / f"a{suffix}")
+
+
+def test_a_bomb_is_not_unpacked(tmp_path: Path):
+    ticks = 12_000_000
+    shapes = {"time_s": (ticks,), "position_m": (ticks, 3), "velocity_m_per_s": (ticks, 3), "force_n": (ticks, 10)}
+    path = npz_bomb(tmp_path / "a.npz", **shapes)
+    tracemalloc.start()
+    try:
+        assert "holds more than 1424 MB" in refusal(path)
+        assert tracemalloc.get_traced_memory()[1] < 1e8
+    finally:
+        tracemalloc.stop()
+
+
+def test_an_odd_archive(tmp_path: Path):
+    some().save(tmp_path / "a.npz")
+    whole = (tmp_path / "a.npz").read_bytes()
+    entry = whole.find(b"PK\x01\x02")
+    for at, name in ((8, "encrypted"), (10, "compressed in a way")):
+        data = bytearray(whole)
+        while entry >= 0:
+            data[entry + at] |= 1
+            entry = data.find(b"PK\x01\x02", entry + 1)
+        entry = whole.find(b"PK\x01\x02")
+        (tmp_path / "a.npz").write_bytes(data)
+        assert name in refusal(tmp_path / "a.npz")
+
+
+def test_an_archive_that_misses_something_says_what(tmp_path: Path):
+    np.savez(tmp_path / "a.npz", time_s=np.zeros(3), stopped="")
+    assert "it holds no position_m, velocity_m_per_s, force_n" in refusal(tmp_path / "a.npz")
+    some().save(tmp_path / "a.npz")
+    with np.load(tmp_path / "a.npz") as held:
+        np.savez(tmp_path / "b.npz", **{name: held[name] for name in held if name != "stopped"})
+    assert "it holds no stopped" in refusal(tmp_path / "b.npz")
+
+
+@pytest.mark.parametrize("dtype", [complex, "U1", "M8[s]"])
+def test_ticks_are_numbers(tmp_path: Path, dtype: object):
+    some().save(tmp_path / "a.npz")
+    with np.load(tmp_path / "a.npz") as held:
+        np.savez(tmp_path / "b.npz", **{**held, "late_s": np.zeros(5, dtype)})
+    assert "late_s holds" in refusal(tmp_path / "b.npz")
+
+
+def test_what_else_is_in_an_archive_is_not_read(tmp_path: Path):
+    some().save(tmp_path / "a.npz")
+    with np.load(tmp_path / "a.npz") as held:
+        np.savez(tmp_path / "b.npz", **held, more=np.array([{}], object))
+    assert same(Recording.load(tmp_path / "b.npz"), some())
+
+
+@pytest.mark.parametrize("bits", ["nan", "inf", "1e300", "-3e9"])
+@pytest.mark.parametrize("place", [14, 15])
+def test_flags_and_buttons_are_bits(tmp_path: Path, bits: str, place: int):
+    row = ["0"] * 16
+    row[place] = bits
+    (tmp_path / "a.csv").write_text(f"{header(tmp_path / 'b.csv')}\n{','.join(row)}\n")
+    assert f"its {TICK_COLUMNS[place]} do not all fit into 32 bits" in refusal(tmp_path / "a.csv")
+
+
+def test_a_long_text_in_place_of_a_number_is_not_repeated(tmp_path: Path):
+    (tmp_path / "a.csv").write_text(header(tmp_path / "b.csv") + "\n" + "x\x1b" * 10**6 + ",0" * 15 + "\n")
+    assert "could not convert string to float" in refusal(tmp_path / "a.csv")
+
+
+@pytest.mark.parametrize("suffix", [".nc", ".npz", ".csv"])
+@given(data=st.data())
+def test_any_damage_is_one_error_or_a_recording(tmp_path_factory, suffix: str, data):
+    path = tmp_path_factory.mktemp("damaged") / f"a{suffix}"
+    some(about=ABOUT).save(path)
+    damaged = bytearray(path.read_bytes())
+    for place in data.draw(st.lists(st.integers(0, len(damaged) - 1), min_size=1, max_size=4)):
+        damaged[place] = data.draw(st.integers(0, 255))
+    path.write_bytes(damaged)
+    try:
+        assert Recording.load(path).flags.dtype == np.int64
+    except OutputError as error:
+        assert str(error).startswith(f"{path}: ")
+        assert str(error).isprintable()
 
 
 @pytest.mark.parametrize("name", ["stroke", "stroke.parquet", "stroke.npz.txt"])

@@ -1,6 +1,7 @@
 """The mock device: its paths, its hand, its clock, and what it does with bad files."""
 
 import math
+import os
 from itertools import pairwise
 from pathlib import Path
 
@@ -151,6 +152,19 @@ class TestCsv:
         for path in (tmp_path / "none.csv", tmp_path):
             with pytest.raises(DeviceError, match=r"cannot be read.*check csv_file"):
                 Mock(path="csv", csv_file=path).open()
+
+    @pytest.mark.timeout(20)
+    def test_a_pipe_or_a_device_is_not_waited_for(self, tmp_path: Path):
+        os.mkfifo(tmp_path / "pipe.csv")
+        for path in (tmp_path / "pipe.csv", Path("/dev/zero")):
+            with pytest.raises(DeviceError, match=r"no file but a folder or a device; check csv_file"):
+                Mock(path="csv", csv_file=path).open()
+
+    def test_a_long_text_in_place_of_a_number_is_not_repeated(self, tmp_path: Path):
+        path = written(tmp_path, "time_s,x_m,y_m,z_m\n0,0,0," + "x" * 100_000 + "\n")
+        with pytest.raises(DeviceError, match="write a finite number") as error:
+            Mock(path="csv", csv_file=path).open()
+        assert len(str(error.value)) < 400
 
 
 class TestHand:

@@ -1,6 +1,7 @@
 """Where a scripted hand wants to be: closed strokes walked at one speed, and recordings read from a CSV file."""
 
 import csv
+import io
 import math
 from bisect import bisect_right
 from collections.abc import Callable, Iterable
@@ -12,7 +13,8 @@ from typing import final
 import numpy as np
 from jaxtyping import Float64
 
-from tangible_core.errors import DeviceError, did_you_mean
+from tangible_core.errors import DeviceError, did_you_mean, quoted
+from tangible_core.reading import read_bytes
 
 Vector = tuple[float, float, float]
 Points = Float64[np.ndarray, "n 3"]
@@ -101,10 +103,9 @@ def read_csv(path: Path, period_s: float) -> Stroke:
     Raises: DeviceError naming the file, the line and what to put right.
     """
     try:
-        with path.open(newline="", encoding="utf-8-sig") as file:
-            lines = csv.DictReader(file)
-            _check_columns(path, lines.fieldnames or ())
-            rows = [(lines.line_num, _numbers(path, lines.line_num, row)) for row in lines]
+        lines = csv.DictReader(io.StringIO(read_bytes(path).decode("utf-8-sig"), newline=""))
+        _check_columns(path, lines.fieldnames or ())
+        rows = [(lines.line_num, _numbers(path, lines.line_num, row)) for row in lines]
     except OSError as error:
         raise DeviceError(f"{path}: cannot be read: {error.strerror}; check csv_file") from error
     except (UnicodeDecodeError, csv.Error) as error:
@@ -144,6 +145,6 @@ def _numbers(path: Path, line: int, row: dict[str, str | None]) -> list[float]:
         except ValueError:
             value = math.nan
         if not math.isfinite(value):
-            raise DeviceError(f"{path}:{line}: {column} is {text!r}; write a finite number")
+            raise DeviceError(f"{path}:{line}: {column} is {quoted(text)}; write a finite number")
         values.append(value)
     return values

@@ -4,6 +4,7 @@ import json
 import os
 import signal
 import time
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -188,6 +189,64 @@ def test_a_damaged_line_is_named(tmp_path: Path):
         read_rows(path)
     with pytest.raises(ResultsError, match="cannot be read as results"):
         read_rows(tmp_path / "missing.jsonl")
+
+
+ROW = Row("k", "depth", "m", "m", {}, "d 1", "s", "digest", "none", (), 0, {}, {"processor": "p"}, seconds=1.0)
+LINES = {
+    "lists in lists": "[" * 100_000 + "]" * 100_000,
+    "a number of 5000 digits": '{"key": ' + "9" * 5000 + "}",
+    "a list": "[1]",
+    "nothing": "null",
+    "a long key": '{"' + "x\\u001b" * 100_000 + '": 1}',
+}
+
+
+@pytest.mark.parametrize("line", LINES.values(), ids=LINES)
+def test_whatever_a_line_holds_it_is_named_in_one(tmp_path: Path, line: str):
+    path = tmp_path / "r.jsonl"
+    path.write_text(f"{line}\n")
+    with pytest.raises(ResultsError, match=r"r\.jsonl:1: is no row of results: .*; remove the line") as error:
+        read_rows(path)
+    assert str(error.value).isprintable()
+    assert len(str(error.value)) < 500
+
+
+@pytest.mark.parametrize(
+    ("field", "value"),
+    [
+        ("seconds", "fast"),
+        ("seconds", True),
+        ("machine", 3),
+        ("machine", {"processor": [1]}),
+        ("measures", {"bad1": "x"}),
+        ("finishes", 1),
+        ("finishes", [1]),
+        ("options", []),
+        ("repeat", 1.5),
+        ("more", 1),
+    ],
+)
+def test_a_field_that_is_not_what_it_should_be_is_named(tmp_path: Path, field: str, value: object):
+    path = tmp_path / "r.jsonl"
+    append(path, ROW)
+    path.write_text(json.dumps({**json.loads(path.read_text()), field: value}) + "\n")
+    with pytest.raises(ResultsError, match=rf"r\.jsonl:1: is no row of results: {field}"):
+        read_rows(path)
+
+
+def test_a_row_comes_back_as_it_was(tmp_path: Path):
+    row = replace(ROW, finishes=("fill",), options={"a": [1, None]}, measures={"bad1": 3, "x": None}, seconds=1)
+    append(tmp_path / "r.jsonl", row)
+    assert read_rows(tmp_path / "r.jsonl") == {"k": row}
+
+
+@pytest.mark.timeout(20)
+def test_a_pipe_or_a_device_holds_no_results(tmp_path: Path):
+    os.mkfifo(tmp_path / "pipe.jsonl")
+    (tmp_path / "zero.jsonl").symlink_to("/dev/zero")
+    for name in ("pipe.jsonl", "zero.jsonl"):
+        with pytest.raises(ResultsError, match=r"no file but a folder or a device; name a \.jsonl file"):
+            read_rows(tmp_path / name)
 
 
 def test_a_place_that_cannot_be_written(tmp_path: Path):

@@ -1,5 +1,6 @@
 """Firmware: what is refused before a byte is sent, and what a bad line costs."""
 
+import os
 from pathlib import Path
 
 import pytest
@@ -52,6 +53,12 @@ class TestImage:
     def test_a_file_that_is_not_there(self, tmp_path: Path):
         with pytest.raises(DeviceError, match=r"nothing\.bin: cannot be read"):
             read_image(tmp_path / "nothing.bin")
+
+    @pytest.mark.timeout(20)
+    def test_a_pipe_is_not_waited_for(self, tmp_path: Path):
+        os.mkfifo(tmp_path / "pipe.bin")
+        with pytest.raises(DeviceError, match=r"pipe\.bin: cannot be read: it is no file but a folder or a device"):
+            read_image(tmp_path / "pipe.bin")
 
 
 def load(line: Line, image: bytes | None = IMAGE) -> int:

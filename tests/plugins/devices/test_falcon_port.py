@@ -11,7 +11,7 @@ from tangible_core.errors import DeviceError
 from tangible_devices.falcon.port import attached, open_port, run_time, serial_of
 from tangible_devices.falcon.simulator.bus import Bus
 from tangible_devices.falcon.simulator.faults import Fault
-from tangible_devices.falcon.usb_errors import device_error
+from tangible_devices.falcon.usb_errors import UDEV_RULE, device_error
 
 LATENCY_1, BAUD, PURGES = (9, 1), (3, 0x0002), [(0, 1), (0, 2)]
 
@@ -100,6 +100,11 @@ def test_the_serial_number_is_read_and_the_device_left_alone():
 def test_every_error_has_its_words(number: int | None, word: str):
     said = str(device_error(USBError("what libusb says", -1, number), "the Falcon", "reading"))
     assert said.startswith("the Falcon, reading: ") and word in said and ";" in said
+
+
+def test_the_rule_that_gives_permission_is_a_line_of_its_own():
+    said = str(device_error(USBError("what libusb says", -1, errno.EACCES), "the Falcon", "reading"))
+    assert UDEV_RULE in [line.strip() for line in said.splitlines()]
 
 
 def test_the_wrong_driver_on_windows():

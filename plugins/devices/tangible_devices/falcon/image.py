@@ -9,6 +9,7 @@ import struct
 from pathlib import Path
 
 from tangible_core.errors import DeviceError
+from tangible_core.reading import check_file
 
 KEY = 0x08AA
 RESERVED_WORDS = 8
@@ -23,6 +24,7 @@ WHENCE = (
 def read_image(path: Path) -> bytes:
     """The whole file. Raises: DeviceError if it cannot be read, or is no such stream, whole to its last byte."""
     try:
+        check_file(path.expanduser())
         with path.expanduser().open("rb") as file:
             image = file.read(MOST_BYTES + 1)
     except OSError as error:

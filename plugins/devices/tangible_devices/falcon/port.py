@@ -12,7 +12,7 @@ import usb.util
 from tangible_core.errors import DeviceAbsent, DeviceError
 
 from .framing import STATUS, USB_PACKET
-from .usb_errors import NO_LIBUSB, NO_PERMISSION, device_error
+from .usb_errors import NO_LIBUSB, NO_PERMISSION, device_error, worded
 
 log = logging.getLogger(__name__)
 VENDOR, PRODUCT = 0x0403, 0xCB48
@@ -138,7 +138,7 @@ def serial_of(device: Any) -> str | None:
         try:
             return device.serial_number
         except ValueError as error:  # how pyusb says that no string at all can be read
-            raise DeviceError(f"{place_of(device)}, reading its serial number: {NO_PERMISSION}") from error
+            raise worded(place_of(device), "reading its serial number", NO_PERMISSION) from error
         finally:
             usb.util.dispose_resources(device)
 

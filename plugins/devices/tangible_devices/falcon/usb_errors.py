@@ -34,7 +34,12 @@ CAUSES = {
 def device_error(error: Exception, place: str, doing: str) -> DeviceError:
     """The DeviceError to raise for an error of pyusb: where, while doing what, why, and what to do."""
     if isinstance(error, NotImplementedError):
-        return DeviceError(f"{place}, {doing}: {NO_DRIVER}")
+        return worded(place, doing, NO_DRIVER)
     number = error.errno if isinstance(error, OSError) else None
     cause = CAUSES.get(number or 0, f"{error}; {REPLUG}")
-    return DeviceError(f"{place}, {doing}: {cause}")
+    return worded(place, doing, cause)
+
+
+def worded(place: str, doing: str, cause: str) -> DeviceError:
+    """The DeviceError of a cause, whose lines stay lines: one of them is to be copied."""
+    return DeviceError(*f"{place}, {doing}: {cause}".splitlines())

@@ -1,0 +1,65 @@
+"""How much a file may hold, looked at before it is read and before it is decoded: one limit for every reader."""
+
+import errno
+import math
+import stat
+from collections.abc import Sequence
+from pathlib import Path
+
+MOST_PIXELS = 89_000_000
+"""Of a picture or an array in a file. A method may take a hundred bytes for each of them."""
+MOST_BYTES = 16 * MOST_PIXELS
+"""Of all numbers in a file, once they are decoded, and of the file: four channels of 32 bits."""
+MOST_TEXT_BYTES = 250_000
+"""Of a file that somebody writes by hand; its parser takes longer than in proportion."""
+TOO_MANY_PIXELS = f"is larger than {MOST_PIXELS // 1_000_000} megapixels"
+
+_UNSAID = 1 << 16
+
+
+class TooLarge(ValueError):
+    """A file holds, or says that it holds, more than is read."""
+
+
+def check_size(shape: Sequence[int], itemsize: int) -> None:
+    """What a header says of an array, pixels first. Raises: TooLarge."""
+    if len(shape) > 1 and math.prod(shape[:2]) > MOST_PIXELS:
+        raise TooLarge(TOO_MANY_PIXELS)
+    check_bytes(math.prod(shape) * itemsize)
+
+
+def check_bytes(count: int) -> None:
+    """What several headers say together. Raises: TooLarge."""
+    if count > MOST_BYTES:
+        raise TooLarge(f"holds more than {in_words(MOST_BYTES)}")
+
+
+def check_file(path: Path, most: int = MOST_BYTES) -> None:
+    """Raises: OSError, its strerror in words, if there is none, it is a folder or a device, or holds more than that.
+
+    A device or a pipe may have no end, or keep its reader waiting.
+    """
+    try:
+        found = path.stat()
+    except ValueError as error:
+        raise OSError(errno.EINVAL, "no file can have this name") from error
+    if not stat.S_ISREG(found.st_mode):
+        raise OSError(errno.EINVAL, "it is no file but a folder or a device")
+    if found.st_size > most:
+        raise OSError(errno.EFBIG, f"it holds more than {in_words(most)}")
+
+
+def read_bytes(path: Path, most: int = MOST_BYTES) -> bytes:
+    """The whole of a file. Raises: OSError as `check_file`, or if it cannot be read."""
+    check_file(path, most)
+    with path.open("rb") as file:
+        return file.read(max(path.stat().st_size, _UNSAID))  # some of the system's files say 0, and have no end
+
+
+def in_words(count: int) -> str:
+    """A number of bytes.
+
+    >>> in_words(MOST_BYTES), in_words(MOST_TEXT_BYTES)
+    ('1424 MB', '0.25 MB')
+    """
+    return f"{count / 1e6:g} MB"

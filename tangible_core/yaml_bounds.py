@@ -1,0 +1,114 @@
+"""What a YAML text may hold: how deep, how much once its aliases are followed, and which numbers."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import Any, cast, final
+
+from ruamel.yaml.constructor import RoundTripConstructor
+from ruamel.yaml.error import MarkedYAMLError, YAMLError
+
+MOST_DEPTH = 20
+"""Of blocks in blocks; what is written for this program needs six."""
+MOST_NODES = 40_000
+"""Of keys, values and blocks, an alias counted as all that it stands for: a rule for each of 4,096 segments."""
+MOST_DIGITS = 64
+"""Of a number, with its sign, point and exponent."""
+
+_NUMBERS = ("tag:yaml.org,2002:int", "tag:yaml.org,2002:float")
+
+
+@dataclass
+class _Block:
+    """A mapping or a list that is not closed yet."""
+
+    anchor: str | None
+    is_mapping: bool
+    parts: int = 0
+    nodes: int = 1
+
+
+@final
+@dataclass
+class _Count:
+    """What there was so far."""
+
+    open: list[_Block] = field(default_factory=list[_Block])
+    nodes_of: dict[str, int] = field(default_factory=dict[str, int])
+    """Anchors that are closed, and what an alias to each stands for."""
+
+
+def check_events(events: Iterable[Any]) -> None:
+    """Look at what a parser finds, one after the other, before anything is made of it.
+
+    Raises: MarkedYAMLError with the place of what is too deep, too much, an alias inside of what it stands for, or a
+    block for a key, whose hash takes time that doubles with each level.
+    """
+    count = _Count()
+    for event in events:
+        kind = type(event).__name__
+        if kind in ("MappingStartEvent", "SequenceStartEvent"):
+            _open(count, event, kind == "MappingStartEvent")
+        elif kind in ("MappingEndEvent", "SequenceEndEvent"):
+            block = count.open.pop()
+            _add(count, event, block.nodes, block.anchor)
+        elif kind == "AliasEvent":
+            _alias(count, event)
+        elif kind == "ScalarEvent":
+            _add(count, event, 1, event.anchor)
+
+
+def _open(count: _Count, event: Any, is_mapping: bool) -> None:
+    if count.open and _is_key(count.open[-1]):
+        raise _refusal(event, "a key is one word or one number, no list and no mapping")
+    if len(count.open) >= MOST_DEPTH:
+        raise _refusal(event, f"there are more than {MOST_DEPTH} blocks within each other")
+    count.open.append(_Block(event.anchor, is_mapping))
+
+
+def _alias(count: _Count, event: Any) -> None:
+    if any(block.anchor == event.anchor for block in count.open):
+        raise _refusal(event, "an alias stands within what it stands for")
+    nodes = count.nodes_of.get(event.anchor, 1)  # of one that is not known, the parser complains
+    if nodes > 1 and count.open and _is_key(count.open[-1]):
+        raise _refusal(event, "a key is one word or one number, no list and no mapping")
+    _add(count, event, nodes, None)
+
+
+def _add(count: _Count, event: Any, nodes: int, anchor: str | None) -> None:
+    """A node that is whole: a part of what is open around it."""
+    if anchor is not None:
+        count.nodes_of[anchor] = nodes
+    if not count.open:
+        return
+    count.open[-1].parts += 1
+    count.open[-1].nodes += nodes
+    if sum(block.nodes for block in count.open) > MOST_NODES:
+        raise _refusal(event, f"there are more than {MOST_NODES} values, each alias counted as all that it stands for")
+
+
+def _is_key(block: _Block) -> bool:
+    return block.is_mapping and block.parts % 2 == 0
+
+
+def _refusal(event: Any, problem: str) -> MarkedYAMLError:
+    return MarkedYAMLError(None, None, problem, event.start_mark)
+
+
+@final
+class BoundedConstructor(RoundTripConstructor):
+    """Numbers of a bounded length; dates are text; whatever else cannot be made of a text says where it stands."""
+
+    def construct_non_recursive_object(self, node: Any, tag: str | None = None) -> Any:
+        """The value of a node."""
+        if node.tag in _NUMBERS and len(node.value) > MOST_DIGITS:
+            raise MarkedYAMLError(None, None, f"a number of over {MOST_DIGITS} digits", node.start_mark)
+        try:
+            return cast(Any, super()).construct_non_recursive_object(node, tag)
+        except YAMLError:
+            raise
+        except Exception as error:  # such as ValueError, for `!!int word`
+            raise MarkedYAMLError(None, None, f"it cannot be understood: {error}", node.start_mark) from error
+
+
+_bounded: Any = BoundedConstructor
+_bounded.add_constructor("tag:yaml.org,2002:timestamp", _bounded.construct_yaml_str)  # YAML 1.2 knows no dates

@@ -1,0 +1,80 @@
+"""What messages may hold of somebody else's text."""
+
+import pickle
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tangible_core.errors import (
+    MOST_IN_LINE,
+    MOST_LINES,
+    MOST_QUOTED,
+    ConfigError,
+    TangibleError,
+    UnknownMethod,
+    did_you_mean,
+    quoted,
+    shown,
+)
+
+
+@given(st.lists(st.text(st.characters(), max_size=2000), max_size=50))
+def test_whatever_stands_in_a_complaint_it_is_one_line_of_print(complaints: list[str]):
+    lines = str(TangibleError(*complaints)).split("\n")
+    assert all(line.isprintable() and len(line) <= MOST_IN_LINE for line in lines)
+    assert len(lines) == min(max(1, len(complaints)), MOST_LINES + (len(complaints) > MOST_LINES))
+
+
+def test_plain_complaints_stay_as_they_are():
+    assert str(ConfigError("a.yaml:1:1: wörong", "a.yaml:2:1: again")) == "a.yaml:1:1: wörong\na.yaml:2:1: again"
+
+
+def test_of_many_complaints_the_first_are_shown_and_the_rest_counted():
+    lines = str(ConfigError(*map(str, range(MOST_LINES + 7)))).splitlines()
+    assert lines == [*map(str, range(MOST_LINES)), "and 7 more"]
+
+
+def test_what_a_terminal_obeys_is_written_out():
+    assert str(TangibleError("a\x1b[31m\r\nb\u2028\u202e\udcff")) == r"a\x1b[31m\r\nb\u2028\u202e\udcff"
+
+
+def test_of_a_long_line_both_ends_are_kept():
+    line = str(TangibleError("the place: " + "x" * 10_000 + "; the cure"))
+    assert len(line) == MOST_IN_LINE
+    assert line.startswith("the place: xxx")
+    assert line.endswith("xxx; the cure")
+
+
+def test_what_is_escaped_is_no_longer_than_what_is_not():
+    assert len(shown("\U000e0001" * 70)) == MOST_QUOTED
+
+
+def test_an_error_says_the_same_in_another_process():
+    error = ConfigError("a\x1b", "b")
+    assert str(pickle.loads(pickle.dumps(error))) == str(error)
+
+
+LONG = ("x" * 10**6, 10**5000, -(10**5000), [[[[1] * 99] * 99] * 99] * 99, {"k": {"k": {"k": {"k": 1}}}}, b"x" * 999)
+
+
+@pytest.mark.parametrize("value", LONG, ids=lambda each: type(each).__name__)
+def test_a_value_is_quoted_in_few_words(value: object):
+    assert len(quoted(value)) <= MOST_QUOTED
+
+
+def test_a_parsers_own_values_are_quoted_as_what_they_are():
+    from ruamel.yaml import YAML
+
+    tree = YAML(typ="rt").load("{a: [1, 2.5, 'x', 0x1F], b: {c: yes}}")
+    assert quoted(tree) == "{'a': [1, 2.5, 'x', 31], 'b': {'c': 'yes'}}"
+    assert quoted(YAML(typ="rt").load(f"[{', '.join('x' * 500)}]")) == "['x', 'x', 'x', 'x', 'x', 'x', ...]"
+
+
+def test_a_long_word_is_near_to_none():
+    assert did_you_mean("x" * 1000, ["x" * 1000]) == ""
+    assert "'dep\\x1bth'" in did_you_mean("depth", ["dep\x1bth"])
+
+
+def test_a_method_of_a_long_name_is_unknown():
+    assert len(str(UnknownMethod("depth", "x" * 10_000, ["zncc"]))) < 200

@@ -79,6 +79,35 @@ class TestFriction:
         assert np.allclose(along, -0.5 * push, rtol=1e-3)
         assert np.allclose(force[:, 0], 0, atol=1e-6)
 
+    @pytest.mark.parametrize("way", [(0.0, 0.8, 0.6), (0.6, 0.0, 0.0), (0.0, 0.0, -1.0)], ids=["up", "across", "down"])
+    def test_what_sticks_is_stretched_by_the_way_along_the_surface(self, way: tuple[float, float, float]):
+        """On a slope of 3 in 4: of a way straight down, by what of it lies along."""
+        known = ramp((0.0, 0.75), 0.05)
+        touch = WithMaterials(law="penalty-gradient").touch(covered(known.surface, STICKY))
+        alone = load_method("render", "penalty-gradient")().touch(covered(known.surface, STICKY))
+        start, normal = np.array(known.at(0.0, 0.0, 0.001)), known.normal(0, 0)
+        touch.force(HapticState(tuple(start.tolist())))
+        end = HapticState(tuple((start + 2e-4 * np.array(way)).tolist()))
+        stretched = 2e-4 * (np.array(way) - (way @ normal) * normal)
+        assert np.subtract(touch.force(end), alone.force(end)) == pytest.approx(-K * stretched, abs=1e-6)
+
+    @pytest.mark.parametrize("material", [STICKY, RUBBER], ids=lambda each: each.name)
+    @pytest.mark.parametrize("law", PUSHING + LATERAL)
+    def test_no_direction_is_another(self, law: str, material: Material):
+        """On level ground, back and forth."""
+        path = np.vstack([stroke(0.008, ticks=500), stroke(0.008, ticks=300)[::-1]])
+        expected = WithMaterials(law=law).touch(level(material)).path(path)
+        for turn in (np.pi / 2, 2.5, -1.0):
+            turned = np.array([[np.cos(turn), np.sin(turn), 0], [-np.sin(turn), np.cos(turn), 0], [0, 0, 1]])
+            found = WithMaterials(law=law).touch(level(material)).path(path @ turned)
+            assert np.allclose(found, expected @ turned, rtol=0, atol=1e-6)
+
+    @pytest.mark.parametrize("law", PUSHING + LATERAL)
+    def test_beside_the_surface_there_is_none(self, law: str):
+        touch = WithMaterials(law=law).touch(level(STICKY))
+        assert not touch.path(stroke() + np.array((0.0401, 0, 0))).any()
+        assert not touch.path(stroke() + np.array((0, 0.0401, 0))).any()
+
     @pytest.mark.parametrize("material", [STICKY, RUBBER], ids=lambda each: each.name)
     @pytest.mark.parametrize("law", PUSHING + LATERAL)
     @pytest.mark.parametrize(

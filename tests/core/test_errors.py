@@ -68,6 +68,8 @@ def test_a_parsers_own_values_are_quoted_as_what_they_are():
 
     tree = YAML(typ="rt").load("{a: [1, 2.5, 'x', 0x1F], b: {c: yes}}")
     assert quoted(tree) == "{'a': [1, 2.5, 'x', 31], 'b': {'c': 'yes'}}"
+    many = YAML(typ="rt").load("".join(f"k{number}: 1\n" for number in range(9)))
+    assert quoted(many) == "{'k0': 1, 'k1': 1, 'k2': 1, 'k3': 1, ...}"
     assert quoted(YAML(typ="rt").load(f"[{', '.join('x' * 500)}]")) == "['x', 'x', 'x', 'x', 'x', 'x', ...]"
 
 

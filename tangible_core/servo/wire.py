@@ -68,7 +68,7 @@ def sendable(error: BaseException) -> Exception:
             return error
     except Exception:  # noqa: BLE001 - pickling runs the plugin's own code
         pass
-    return BrokenMethod("".join(traceback.format_exception_only(error)).strip())
+    return BrokenMethod(*"".join(traceback.format_exception_only(error)).splitlines())
 
 
 def send(file: IO[bytes], message: Any) -> None:

@@ -77,7 +77,9 @@ def exited(error: SystemExit) -> BrokenMethod:
     """What to say where a plugin called `sys.exit`: the program is not a plugin's to end, nor is its exit code."""
     modules = [str(frame.f_globals.get("__name__")) for frame, _ in walk_tb(error.__traceback__)]
     name = next((name for name in reversed(modules) if name.partition(".")[0] not in stdlib_module_names), "a plugin")
-    return BrokenMethod(f"{name} called sys.exit({quoted(error.code)}); a plugin says what is wrong by raising an error")
+    return BrokenMethod(
+        f"{name} called sys.exit({quoted(error.code)}); a plugin raises an error that says what is wrong"
+    )
 
 
 def shown(text: str, most: int = MOST_QUOTED) -> str:

@@ -6,10 +6,8 @@ import hashlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
-from importlib.metadata import version
-from inspect import getsourcefile
-from pathlib import Path
 from typing import Any
+from uuid import uuid4
 
 import numpy as np
 
@@ -18,6 +16,8 @@ from .config import Chosen, PipelineConfig
 from .data import DisparityMap, HapticSurface, Material, MaterialMap, Record, Relief, SegmentMap, Views, digest_of
 from .errors import ConfigError
 from .interfaces import Method, Skippable, Touch
+from .provenance.closure import closure
+from .provenance.places import HOME
 from .scene import Scene
 
 Inputs = Mapping[str, Any]
@@ -73,7 +73,7 @@ def _disparity(config: PipelineConfig, scene: Scene) -> Rule:
         return DisparityMap(known_px, found.confidence * scene.known, found.unit)
 
     name, key = _identity(config.depth)
-    key = f"{key} 1/{factor} {_known(scene)}"
+    key = f"{_core('scaling')} {key} 1/{factor} {_known(scene)}"
     return Rule("disparity", name, key, ("views",), make, _skip(config.depth, scene), note)
 
 
@@ -88,7 +88,7 @@ def _relief(config: PipelineConfig, scene: Scene) -> Rule:
         relief = geometry.make_relief(disparity, calibration, size.width_m, size.relief_m, size.holes)
         return geometry.smooth(relief, size.smooth_m)
 
-    return Rule("relief", "core", f"{_core()} {size!r}", ("views", "disparity"), make)
+    return Rule("relief", "core", f"{_core('geometry')} {size!r}", ("views", "disparity"), make)
 
 
 def _segments(config: PipelineConfig, scene: Scene) -> Rule:
@@ -106,7 +106,8 @@ def _segments(config: PipelineConfig, scene: Scene) -> Rule:
     elif scene.views is None:
         skip = "the scene has heights and no picture"
     name, key = _identity(config.texture)
-    return Rule("segments", name, f"{key} 1/{factor} {_known(scene)}", ("views",), make, skip, note)
+    key = f"{_core('scaling')} {key} 1/{factor} {_known(scene)}"
+    return Rule("segments", name, key, ("views",), make, skip, note)
 
 
 def _materials(config: PipelineConfig, scene: Scene, unsegmented: str | None) -> Rule:
@@ -117,7 +118,8 @@ def _materials(config: PipelineConfig, scene: Scene, unsegmented: str | None) ->
         picture = scene.views.left if scene.views else None
         return materials.assign(inputs["segments"], picture, choice.by, library, choice.rules, choice.default)
 
-    key = f"{_core()} {choice.model_dump_json(exclude={'library'})} {_library_digest(tuple(library.values()))}"
+    said = choice.model_dump(exclude={"library"})
+    key = f"{_core('materials')} {said} {_library_digest(tuple(library.values()))}"
     skip = f"there are no segments: {unsegmented}" if unsegmented else None
     return Rule("materials", "core", key, ("views", "segments"), make, skip)
 
@@ -132,7 +134,7 @@ def _surface(config: PipelineConfig, scene: Scene) -> Rule:
 
     with_materials = config.render is None or config.render.method.uses_materials
     needs = ("relief", "segments", "materials") if with_materials else ("relief",)
-    return Rule("surface", "core", _core(), needs, make)
+    return Rule("surface", "core", _core("data"), needs, make)
 
 
 def _touch(config: PipelineConfig, scene: Scene) -> Rule:
@@ -159,11 +161,10 @@ def _identity(chosen: Chosen[Any] | None) -> tuple[str, str]:
         return "", ""
     method: Method = chosen.method
     cls = type(method)
-    code = _code_digest(getsourcefile(cls) or "", in_package="." in cls.__module__)
-    return (
-        chosen.name,
-        f"{chosen.origin} {cls.__module__}:{cls.__qualname__} {code} v{cls.version} {method.model_dump_json()}",
-    )
+    code = closure(cls.__module__)
+    digest = code.digest if code.modules else uuid4().hex  # written at a prompt, where it may be written anew
+    options = method.model_dump()  # not as JSON, to which infinity and nothing are the same
+    return chosen.name, f"{chosen.origin} {cls.__module__}:{cls.__qualname__} {digest} v{cls.version} {options}"
 
 
 @cache
@@ -172,19 +173,9 @@ def _library_digest(materials: tuple[Material, ...]) -> str:
     return digest_of(materials)
 
 
-@cache
-def _core() -> str:
-    return f"tangible-images {version('tangible-images')} {_code_digest(__file__, in_package=True)}"
-
-
-@cache
-def _code_digest(path: str, in_package: bool) -> str:
-    """The method's file, and those beside it in its package: who writes a method need not clear the cache."""
-    files = sorted(Path(path).parent.glob("*.py")) if in_package else [Path(path)]
-    try:
-        return hashlib.sha256(b"".join(file.read_bytes() for file in files)).hexdigest()[:16]
-    except OSError:
-        return ""
+def _core(module: str) -> str:
+    """The code of the core's part: a module, this table, and what keeps a result."""
+    return closure(f"{HOME}.{module}", alone=(__name__, f"{HOME}.cache")).digest
 
 
 def _felt(config: PipelineConfig, scene: Scene) -> tuple[int, str]:

@@ -8,8 +8,10 @@ from ..config import Chosen
 from ..data import digest_of
 from ..errors import ConfigError, TangibleError
 from ..interfaces import Method
+from ..provenance.closure import closure
+from ..provenance.versions import versions
 from .config import Comparison, Damage, Entry
-from .identity import code_digest, machine, versions
+from .machine import machine
 from .rows import Row
 from .worker import Job
 
@@ -87,7 +89,7 @@ def _side_by_side(
 
 def _code(chosen: Chosen[Method]) -> str:
     cls = type(chosen.method)
-    return f"{cls.__module__}:{cls.__qualname__} v{cls.version} {code_digest(cls.__module__)}"
+    return f"{cls.__module__}:{cls.__qualname__} v{cls.version} {closure(cls.__module__).digest}"
 
 
 def _distribution(chosen: Chosen[Method]) -> str:

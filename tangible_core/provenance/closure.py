@@ -99,9 +99,8 @@ class _Walk:
 
     def _handed_on(self, found: Place, name: str) -> Iterator[Place]:
         """Where a module has a name from, if that is all; else the module itself."""
-        text = _text(found)
-        homes = [each for each in text.imports if each.bound == name]
-        if name in ("", "*") or not homes or not _hands_on(found) or name in text.bound:
+        homes = [each for each in _text(found).imports if each.bound == name]
+        if name in ("", "*") or not homes or not _hands_on(found) or name in _made(found):
             yield found
             return
         self.beside.add(found)
@@ -123,7 +122,7 @@ def _hands_on(package: Place) -> bool:
 
     So it is in Tangible Images, and so it is said by a package that imports each of its names when it is asked for.
     """
-    return package.is_package and (package.top == HOME or "__getattr__" in _text(package).bound)
+    return package.is_package and (package.top == HOME or "__getattr__" in _made(package))
 
 
 def _absolute(each: Import, here: Place) -> str:
@@ -138,9 +137,16 @@ def _absolute(each: Import, here: Place) -> str:
 class _Text(NamedTuple):
     content: bytes = b""
     imports: tuple[Import, ...] = ()
-    bound: frozenset[str] = frozenset()
-    """Of a package: the names that it makes itself."""
     settled: bool = False
+
+
+@cache
+def _made(package: Place) -> frozenset[str]:
+    """The names that a package's file makes itself."""
+    try:
+        return bound(_text(package).content)
+    except (SyntaxError, ValueError):  # it would not run either
+        return frozenset()
 
 
 @cache
@@ -155,7 +161,6 @@ def _text(here: Place) -> _Text:
     if not here.file.endswith(".py"):
         return _Text(content, settled=settled)
     try:
-        names = bound(content) if here.is_package else frozenset[str]()
-        return _Text(content, tuple(imports(content)), names, settled)
+        return _Text(content, tuple(imports(content)), settled)
     except (SyntaxError, ValueError):  # it would not run either
         return _Text(content, settled=settled)

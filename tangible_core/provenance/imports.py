@@ -2,6 +2,7 @@
 
 import ast
 import re
+from collections.abc import Iterable
 from typing import NamedTuple
 
 _WORD = re.compile(rb"\bimport\b")
@@ -9,6 +10,7 @@ _LINE = re.compile(
     rb"(?<!\\\n)(?<!\\\r\n)^[ \t]*((?:from|import)\b[^\n('\"\\]*(?:\([^)#]*\))?[^\n('\"\\]*)$", re.MULTILINE
 )
 """An import that has its lines to itself, and hides no other one behind a quote, a bracket or the end of a line."""
+_CALL = re.compile(rb"\b(?:import_module|__import__)\(\s*['\"](\.*)([\w.]+)['\"]")
 
 
 class Import(NamedTuple):
@@ -21,11 +23,12 @@ class Import(NamedTuple):
 
 
 def imports(source: bytes) -> list[Import]:
-    """Every import that stands in a text, inside functions and for type checkers too.
+    """Every import that stands in a text, inside functions and for type checkers too; not one by a computed name.
 
     Raises: SyntaxError, ValueError for a text that is no Python.
     """
-    return [found for node in _statements(source) for found in _each(node)]
+    called = [Import(name.decode(), level=len(dots)) for dots, name in _CALL.findall(source)]
+    return called + [found for node in _statements(source) for found in _each(node)]
 
 
 def bound(source: bytes) -> frozenset[str]:
@@ -43,19 +46,19 @@ def _made(node: ast.AST) -> str | None:
 
 
 def _statements(source: bytes) -> list[ast.Import | ast.ImportFrom]:
-    """Parsed apart from the rest, which takes a tenth of the time; the whole text where `import` stands elsewhere."""
+    """Parsed apart from the rest, which takes a sixth of the time; the whole text where `import` stands elsewhere."""
     lines = _LINE.findall(source)
     text = b"\n".join(lines)
     if len(_WORD.findall(text)) == len(_WORD.findall(source)):
         try:
-            return _of(ast.parse(text))
+            return _of(ast.parse(text).body)
         except SyntaxError:  # prose that looks like an import
             pass
-    return _of(ast.parse(source))
+    return _of(ast.walk(ast.parse(source)))
 
 
-def _of(tree: ast.Module) -> list[ast.Import | ast.ImportFrom]:
-    return [node for node in ast.walk(tree) if isinstance(node, ast.Import | ast.ImportFrom)]
+def _of(nodes: Iterable[ast.AST]) -> list[ast.Import | ast.ImportFrom]:
+    return [node for node in nodes if isinstance(node, ast.Import | ast.ImportFrom)]
 
 
 def _each(node: ast.Import | ast.ImportFrom) -> list[Import]:

@@ -38,8 +38,8 @@ def place(name: str) -> Place | None:
     """The module of this name: as it was imported, or else as it would be; None for a name that is no module."""
     module = sys.modules.get(name)
     file, package = (getattr(module, each, None) for each in ("__file__", "__package__"))
-    if isinstance(file, str) and isinstance(package, str):
-        return Place(name, file, package)
+    if isinstance(file, str):
+        return Place(name, file, package or "")
     spec = _spec(name)
     if spec is None or not spec.has_location or spec.origin is None:
         return None

@@ -5,9 +5,11 @@ import os
 import signal
 import time
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
+from tangible_core.bench import plan
 from tangible_core.bench.config import Comparison, parse_comparison
 from tangible_core.bench.plan import measurements
 from tangible_core.bench.rows import Row, append, mend, read_rows
@@ -147,6 +149,15 @@ def test_methods_take_turns(registry: Registry):
 def test_the_key_is_what_is_measured(registry: Registry, methods: str, more: str, same: bool):
     first = measurements(comparison(registry, "constant"))[0].row.key
     assert (measurements(comparison(registry, methods, more))[0].row.key == first) is same
+
+
+@pytest.mark.parametrize("part", ["closure", "versions", "machine"])
+def test_the_key_is_what_it_is_measured_with_too(registry: Registry, monkeypatch: pytest.MonkeyPatch, part: str):
+    """The code and all that it imports, the libraries, the machine."""
+    other = {"closure": SimpleNamespace(digest="other"), "versions": {"python": "3.99"}, "machine": {"cores": 1000}}
+    first = measurements(comparison(registry, "constant"))[0].row.key
+    monkeypatch.setattr(plan, part, lambda *_: other[part])
+    assert measurements(comparison(registry, "constant"))[0].row.key != first
 
 
 def test_the_same_is_not_measured_again(registry: Registry, tmp_path: Path):

@@ -4,10 +4,12 @@ import os
 import sys
 from importlib import import_module
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 
 from tangible_core.provenance import closure as closures
+from tangible_core.provenance import places
 from tangible_core.provenance.closure import closure, closure_of_function
 
 from .conftest import Write, forget
@@ -91,6 +93,12 @@ def test_of_tangible_images_that_is_read_what_is_used(write: Write):
     assert "tangible_core.engine" not in modules
 
 
+def test_tangible_images_is_read_where_it_is_installed(write: Write, monkeypatch: pytest.MonkeyPatch):
+    write(INSTALLED, **METHOD)
+    monkeypatch.setattr(places, "INSTALLED", {*places.INSTALLED, Path(places.__file__).parts[-4]})
+    assert "tangible_core.data" in closure("acme.method").modules
+
+
 @pytest.mark.parametrize("package", ["", "def __getattr__(name): ...\n"])
 def test_a_package_that_hands_on_each_name_when_it_is_asked_for_is_not_read_for_the_others(write: Write, package: str):
     write(
@@ -147,8 +155,14 @@ def test_of_modules_alone_the_text_counts_and_not_what_they_import(write: Write)
 
 
 def test_a_compiled_module_counts_and_text_that_is_no_python_is_read_as_far_as_it_goes(write: Write):
-    site = write("work", **{"a.py": "import fast, torn", "fast.abi3.so": "1", "torn.py": "import ("})
-    assert closure("a").modules == ("a", "fast", "torn")
+    site = write(
+        "work",
+        **{"a.py": "import fast, torn", "fast.abi3.so": "1", "torn.py": "import ("},
+    )
+    (site / "old").mkdir()
+    (site / "old" / "__init__.py").write_text("import fast\nprint 'as it was'")
+    (site / "a.py").write_text("import fast, torn\ntry:\n    from old import fast\nexcept SyntaxError: pass\n")
+    assert closure("a").modules == ("a", "fast", "old", "torn")
     before = digest("a")
     (site / "fast.abi3.so").write_text("2")
     assert digest("a") != before
@@ -166,6 +180,16 @@ def test_a_module_that_is_loaded_is_read_where_it_was_loaded_from(write: Write, 
     assert digest("twice") == before
     del sys.modules["twice"]
     assert digest("twice") != before
+
+
+def test_a_module_that_no_finder_finds_is_read_once_it_is_loaded(write: Write, monkeypatch: pytest.MonkeyPatch):
+    """As a script is, and a test."""
+    site = write("work", **{"helper.py": ""})
+    loaded = ModuleType("loaded_by_hand")
+    loaded.__file__ = str(site / "by_hand.py")
+    (site / "by_hand.py").write_text("import helper")
+    monkeypatch.setitem(sys.modules, "loaded_by_hand", loaded)
+    assert closure("loaded_by_hand").modules == ("helper", "loaded_by_hand")
 
 
 def test_a_file_that_changed_since_the_process_began_gives_a_digest_that_no_other_process_has(

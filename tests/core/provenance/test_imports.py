@@ -29,7 +29,9 @@ ROOT = Path(__file__).parents[3]
         ("'''where\nimport x'''; import a", [Import("a")]),
         ("try:\n    import a\r\nexcept ImportError: import b\r\n", [Import("a"), Import("b")]),
         ("'''To import it,\nimport it (or not'''\nimport a", [Import("a")]),
-        ("important = 1", []),
+        ("import_module('a.b'); __import__(\n\"c\")", [Import("a.b"), Import("c")]),
+        ("import_module('..a', __package__)", [Import("a", level=2)]),
+        ("important = 1; import_module(name)", []),
     ],
 )
 def test_every_way_of_writing_an_import_is_found(text: str, found: list[Import]):

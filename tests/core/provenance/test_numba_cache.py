@@ -84,6 +84,7 @@ def test_what_was_before_an_edit_is_found_when_it_is_undone_as_far_as_it_is_kept
     for name in ("100.0", "101.0"):
         acme.edit("layout", f"GAIN = {name}\n")
         acme.felt()
+    assert acme.felt() == ["202.0", "0"]
     for suffix in ("nbi", "nbc"):
         assert len(list((acme.folder / "__pycache__").glob(f"kernels.law-*.{suffix}"))) == KEPT
 
@@ -108,6 +109,7 @@ def test_what_an_old_process_compiles_after_an_edit_is_not_what_a_new_one_finds(
     edited = "import tangible_core, time; from acme import layout; time.sleep(0.05)"
     edit = "open('acme/layout.py', 'w').write('GAIN = 4.0')"
     assert acme.felt(f"{edited}; {edit}; {FELT}") == ["6.0", "1"]
+    assert not list((acme.folder / "__pycache__").glob("kernels.law-*"))
     assert acme.felt() == ["8.0", "1"]
 
 

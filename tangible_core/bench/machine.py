@@ -1,0 +1,25 @@
+"""The machine that a measurement is of."""
+
+import os
+import platform
+import re
+from functools import cache
+from pathlib import Path
+
+
+@cache
+def machine() -> dict[str, str | int]:
+    """Processor, how many of its cores this process may use, and system."""
+    return {"processor": _processor(), "cores": _cores(), "system": f"{platform.system()} {platform.machine()}"}
+
+
+def _cores() -> int:
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def _processor() -> str:
+    try:
+        found = re.search(r"model name\s*: (.+)", Path("/proc/cpuinfo").read_text(encoding="utf-8"))
+    except OSError:
+        found = None
+    return found[1] if found else platform.processor() or platform.machine()

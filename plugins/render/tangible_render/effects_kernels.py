@@ -93,7 +93,8 @@ def effects(table, label, bristle, memory, tx, ty, dx, dy, dz, vx, vy, vz, fx, f
         return (fx, fy, fz) if np.isfinite(fx + fy + fz) else (0.0, 0.0, 0.0)
     inverse = 1.0 / push
     nx, ny, nz = inverse * fx, inverse * fy, inverse * fz
-    # Two unit vectors across: Duff et al., Building an orthonormal basis, revisited, JCGT 6(1), 2017.
+    # Two unit vectors across: Duff et al., Building an orthonormal basis, revisited, JCGT 6(1), 2017. No law pushes
+    # straight down, where alone the sign is needed: without it nothing that can be felt is another.
     sign = math.copysign(1.0, nz)
     a = -1.0 / (sign + nz)
     ax, ay, az = 1.0 + sign * nx * nx * a, sign * nx * ny * a, -sign * nx

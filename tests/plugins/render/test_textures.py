@@ -100,6 +100,12 @@ class TestHeights:
         lines = replace(GRAINY, anisotropy=1.0, direction_deg=90.0)
         assert np.allclose(Proxy().touch(level(lines)).path(path)[1:], [0, 0, K * 0.001], atol=1e-6)
 
+    def test_the_first_tick_feels_it_whole_wherever_it_is(self):
+        """A hand that was nowhere did not come from the middle."""
+        low = covered(HapticSurface.from_heights(np.full((64, 64), 0.001)), GRAINY)
+        touch, state = Proxy().touch(low), HapticState((0.0012, 0.0016, 0.0005))
+        assert touch.force(state) == touch.force(state) != NO_FORCE
+
     def test_a_hand_that_comes_anew_feels_it_whole(self):
         touch, state = Proxy().touch(level(GRAINY)), HapticState((0.0102, 0.003, 0.009))
         first = touch.force(state)

@@ -189,10 +189,11 @@ class TestDamping:
     def test_a_lateral_law_has_none(self, law: str):
         state = HapticState((0.001, 0.002, 0.001), (0.1, 0.2, 0.3))
         surface = MAPS["waves"]
-        plain = load_method("render", law)().touch(surface).force(state)
-        assert (
-            WithMaterials(law=law).touch(covered(surface, replace(PLAIN, damping_n_s_per_m=4.0))).force(state) == plain
-        )
+        plain = load_method("render", law)().touch(surface)
+        oily = WithMaterials(law=law).touch(covered(surface, replace(PLAIN, damping_n_s_per_m=4.0)))
+        assert oily.force(state) == plain.force(state)
+        assert isinstance(oily, CompiledTouch) and isinstance(plain, CompiledTouch)
+        assert oily.tick is plain.tick  # and so nothing is wrapped around it
 
 
 @pytest.mark.parametrize("law", PUSHING + LATERAL)
@@ -253,6 +254,10 @@ def test_it_says_the_greatest_stiffness():
         touch = WithMaterials(law=law, friction=friction).touch(surface)
         assert isinstance(touch, CompiledTouch)
         assert touch.stiffness_n_per_m == expected
+    nowhere = replace(STICKY, name="nowhere", stiffness_n_per_m=9000.0)
+    more = WithMaterials(law="grey-level").touch(HapticSurface(surface.relief, labels, (soft, hard, nowhere)))
+    assert isinstance(more, CompiledTouch)
+    assert more.stiffness_n_per_m == 2000.0
     lateral = WithMaterials(law="tangible-mask").touch(surface)
     assert isinstance(lateral, CompiledTouch)
     assert lateral.stiffness_n_per_m == 2000.0

@@ -82,6 +82,7 @@ def test_columns_first_stay_columns_first():
         (zipped(), "0 arrays"),
         (zipped(a=np.zeros(2), b=np.ones(2)), "2 arrays"),
     ],
+    ids=map(str, range(99)),  # an archive holds the time at which it was made
 )
 def test_what_is_no_array_is_said(data: bytes, says: str):
     assert says in why(data)
@@ -120,6 +121,7 @@ def changed(at: int, directory_at: int, what: bytes) -> bytes:
         (changed(22, 24, struct.pack("<I", MOST_BYTES + 1)), "more than 1424 MB"),
         (changed(26, 28, b"\xff\xff"), ""),
     ],
+    ids=map(str, range(99)),  # an archive holds the time at which it was made
 )
 def test_an_odd_archive_is_said(data: bytes, says: str):
     assert says in why(data)

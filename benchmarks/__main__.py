@@ -33,21 +33,27 @@ def main(names: list[str]) -> None:
     """Measure the named sections, or all."""
     if unknown := set(names) - set(SECTIONS):
         sys.exit(f"no section {', '.join(sorted(unknown))}; there are {', '.join(SECTIONS)}")
-    sections, missed = _kept(), False
+    missed = False
     for name in names or SECTIONS:
         print(f"measuring {name} ...", file=sys.stderr)
         try:
             section = import_module(f"benchmarks.{name}").section()
         except MissedError as error:
             section, missed = str(error), True
-        sections[SECTIONS[name]] = f"{_machine()}\n\n{section}\n"
-    text = "\n".join(f"## {title}\n\n{sections[title]}" for title in SECTIONS.values() if title in sections)
-    RESULTS.write_text(f"{HEAD}\n{text}", encoding="utf-8")
+        keep(name, section)
     print(RESULTS)
     sys.exit(missed)
 
 
-def _kept() -> dict[str, str]:
+def keep(name: str, section: str) -> None:
+    """Write a section; the others stay."""
+    sections = kept() | {SECTIONS[name]: f"{_machine()}\n\n{section}\n"}
+    text = "\n".join(f"## {title}\n\n{sections[title]}" for title in SECTIONS.values() if title in sections)
+    RESULTS.write_text(f"{HEAD}\n{text}", encoding="utf-8")
+
+
+def kept() -> dict[str, str]:
+    """The sections that are there, by title."""
     text = RESULTS.read_text(encoding="utf-8") if RESULTS.exists() else ""
     parts = re.split(r"^## (.+)\n\n", text, flags=re.MULTILINE)
     return {title: body.rstrip("\n") + "\n" for title, body in zip(parts[1::2], parts[2::2], strict=True)}

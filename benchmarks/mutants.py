@@ -2,23 +2,27 @@
 
 python -m benchmarks mutants                     # all; its score goes to RESULTS.md
 python -m benchmarks.mutants guard --jobs 2      # those of a list, or whose name has this in it; RESULTS.md stays
+python -m benchmarks.mutants guard ring --keep   # these lists; their lines of RESULTS.md are written anew
 """
 
 import argparse
 import os
+import re
 import shutil
 import signal
 import sys
 import tempfile
-from collections.abc import Generator, Iterable, Sequence
+from collections.abc import Generator, Iterable, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, as_completed
 from contextlib import closing
+from datetime import date
 from enum import StrEnum
 from itertools import groupby
 from pathlib import Path
 from time import perf_counter
 from typing import NamedTuple
 
+from .__main__ import SECTIONS, keep, kept
 from .figures import MissedError, table
 from .mutants_lists import Mutant, StaleError, mutants
 from .mutants_tree import Programs, Tree, copy_of
@@ -59,19 +63,24 @@ class UnreadyError(Exception):
 
 def section() -> str:
     """The section of RESULTS.md, as Markdown. Raises: MissedError, with it, if a mutant was not noticed."""
-    start = perf_counter()
     results = complete(ROOT, (), _jobs())
-    text = "\n".join([*rows(results), "", f"{_jobs()} at a time, {(perf_counter() - start) / 60:.0f} minutes in all."])
+    text = "\n".join(rows(results))
     if any(each.outcome in BAD for each in results):
         raise MissedError(text)
     return text
 
 
-def rows(results: Iterable[Result]) -> list[str]:
-    """A table with a line a list, and a line each for what went wrong."""
+def rows(results: Iterable[Result], before: Mapping[str, tuple[str, ...]] | None = None) -> list[str]:
+    """A table with a line a list, and a line each for what went wrong.
+
+    before: lines of lists that were measured earlier; results of the same list take their place.
+    """
     found = sorted(results, key=lambda each: each.mutant.room)
     by_room = {room: list(group) for room, group in groupby(found, lambda each: each.mutant.room)}
-    lines = [_row(f"`{room}`", group) for room, group in by_room.items()] + [_row("all", found)]
+    measured = dict(before or {}) | {room: _row(group) for room, group in by_room.items()}
+    lines = [(f"`{room}`", *cells) for room, cells in sorted(measured.items())]
+    *sums, _ = zip(*measured.values(), strict=True)
+    lines.append(("all", *(str(sum(map(int, column))) for column in sums), ""))
     head = (
         "A fault at a time is put into a copy of the code, and the tests that are named beside it are run. Lists and "
     )
@@ -79,12 +88,19 @@ def rows(results: Iterable[Result]) -> list[str]:
     return [
         f"{head}explanations: `benchmarks/mutations`.",
         "",
-        *table(("room", "mutants", "killed", "of them hung", "explained", "not noticed", "seconds"), lines),
+        *table(("list", "mutants", "killed", "of them hung", "explained", "not noticed", "seconds", "run"), lines),
         *(["", *wrong] if wrong else []),
     ]
 
 
-def _row(name: str, results: Sequence[Result]) -> tuple[str, ...]:
+def before() -> dict[str, tuple[str, ...]]:
+    """The lines of lists that RESULTS.md has."""
+    text = kept().get(SECTIONS["mutants"], "")
+    found = re.findall(r"^\| `([\w-]+)` \| (.+) \|$", text, re.MULTILINE)
+    return {room: tuple(cells.split(" | ")) for room, cells in found}
+
+
+def _row(results: Sequence[Result]) -> tuple[str, ...]:
     counts = [
         len(results),
         _count(results, Outcome.KILLED, Outcome.HUNG),
@@ -92,7 +108,7 @@ def _row(name: str, results: Sequence[Result]) -> tuple[str, ...]:
         _count(results, Outcome.EXPLAINED),
         _count(results, *BAD),
     ]
-    return name, *map(str, counts), f"{sum(each.seconds for each in results):.0f}"
+    return *map(str, counts), f"{sum(each.seconds for each in results):.0f}", str(date.today())
 
 
 def _count(results: Iterable[Result], *outcomes: Outcome) -> int:
@@ -168,11 +184,15 @@ def _outcome(mutant: Mutant, code: int | None) -> Outcome:
     return Outcome.HUNG if code is None else Outcome.KILLED
 
 
-def complete(root: Path, words: Sequence[str], jobs: int) -> list[Result]:
-    """Those of the lists, or with names, that the words are of; each said as it is done."""
+def _is_of(mutant: Mutant, word: str, whole: bool) -> bool:
+    return word == mutant.room or (not whole and word in mutant.name)
+
+
+def complete(root: Path, words: Sequence[str], jobs: int, whole: bool = False) -> list[Result]:
+    """Those that the words are of: lists or, unless only whole ones are meant, names; each said as it is done."""
     try:
         known = mutants(root)
-        chosen = [each for each in known if not words or any(w == each.room or w in each.name for w in words)]
+        chosen = [each for each in known if not words or any(_is_of(each, word, whole) for word in words)]
         if not chosen:
             sys.exit(f"no mutant is of {', '.join(words)}; lists are {', '.join(sorted({m.room for m in known}))}")
         results: list[Result] = []
@@ -199,15 +219,21 @@ def main() -> None:
     """The command line; exit 1 if a mutant was not noticed."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.mutants", description="Do the tests notice faults?")
     parser.add_argument("words", nargs="*", help="names of lists, or parts of names of mutants; all")
+    parser.add_argument("--keep", action="store_true", help="write the lines of whole lists to RESULTS.md")
     parser.add_argument("--jobs", type=int, default=_jobs(), help="so many at a time (%(default)s)")
     asked = parser.parse_args()
+    if asked.keep and (parts := set(asked.words) - {each.room for each in mutants(ROOT)}):
+        parser.error(f"--keep is for whole lists, and {', '.join(sorted(parts))} is none")
     for each in (signal.SIGINT, signal.SIGTERM):
         signal.signal(each, signal.default_int_handler)
     try:
-        results = complete(ROOT, asked.words, asked.jobs)
+        results = complete(ROOT, asked.words, asked.jobs, asked.keep)
     except KeyboardInterrupt:
         sys.exit(130)
-    print("\n".join(rows(results)))
+    text = "\n".join(rows(results, before() if asked.keep else None))
+    print(text)
+    if asked.keep:
+        keep("mutants", text)
     sys.exit(any(each.outcome in BAD for each in results))
 
 

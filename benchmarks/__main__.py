@@ -18,6 +18,7 @@ SECTIONS = {
     "texture": "Texture",
     "render": "Force laws",
     "servo": "The force loop",
+    "servo_faults": "Faults around the force loop",
     "record": "Recordings",
     "devices": "Devices",
     "mutants": "Faults that the tests notice",

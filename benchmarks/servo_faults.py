@@ -3,7 +3,6 @@
 import os
 import signal
 import statistics
-import sys
 import tempfile
 import threading
 import time
@@ -14,11 +13,16 @@ from tangible_core.servo import Safety, Servo
 from tangible_core.testing.loop_devices import Circling, Failing
 from tangible_core.testing.loop_laws import FaultyTouch
 
-from .figures import Figure
+from .figures import Figure, judged
 from .servo_loops import touch
 
 RUNS, SWAPS = 20, 5000
 LIMITS = Safety(ramp_s=0, max_step_n=10)
+
+
+def section() -> str:
+    """The section of RESULTS.md, as Markdown."""
+    return "\n".join(["A Python law that pushes with 1 N at once; force as the device has it.", "", *judged(figures())])
 
 
 def figures() -> Iterator[Figure]:
@@ -120,7 +124,3 @@ def _usage(process: int) -> tuple[int, float]:
     of = Path(f"/proc/{process}")
     kibibytes = of.joinpath("status").read_text().partition("RssAnon:")[2].split()[0]
     return len(list(of.joinpath("fd").iterdir())), int(kibibytes) / 1000
-
-
-if __name__ == "__main__":
-    print(*figures(), sep="\n", file=sys.stderr)

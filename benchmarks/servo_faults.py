@@ -16,7 +16,7 @@ from tangible_core.testing.loop_laws import FaultyTouch
 from .figures import Figure, judged
 from .servo_loops import touch
 
-RUNS, SWAPS = 20, 5000
+RUNS, SWAPS = 10, 5000
 LIMITS = Safety(ramp_s=0, max_step_n=10)
 
 
@@ -29,7 +29,7 @@ def figures() -> Iterator[Figure]:
     """Each fault several times, the worst of them; then 5,000 scenes in one session."""
     with tempfile.TemporaryDirectory() as folder:
         record = Path(folder) / "force"
-        worst_s = max(_interrupted(record, run / RUNS) for run in range(RUNS))
+        worst_s = max(_interrupted(record, run / RUNS) for run in range(1, RUNS + 1))
         yield _figure("Ctrl-C while the loop starts, or within a second after", 0.05, worst_s)
         worst_s = max(_gone_s(record, FaultyTouch(), _sigterm) for _ in range(RUNS))
         yield _figure("SIGTERM to the loop's process", 0.05, worst_s)
@@ -56,8 +56,8 @@ def _interrupted(record: Path, share: float) -> float:
 
     timer = threading.Timer(2 * share, interrupt)
     signal.signal(signal.SIGINT, signal.default_int_handler)
-    timer.start()
     try:
+        timer.start()
         with Servo(FaultyTouch(), Failing(fault="none", record=str(record)), LIMITS):
             time.sleep(60)
     except KeyboardInterrupt:

@@ -28,6 +28,8 @@ class FaultyTouch(Touch):
     half a second when it is asked first, as what compiles itself does; one that "knows itself" is part of a circle.
     """
 
+    stiffness_n_per_m = 0.0
+
     def __init__(self, fault: Fault = "none", at: int = 100) -> None:
         self._fault: Fault = fault
         self._at = at

@@ -222,6 +222,8 @@ class TestStandstill:
         script = HOST.format(record=str(record), ready=str(tmp_path / "ready"), fault="blocks")
         program = subprocess.Popen([sys.executable, "-c", script], stderr=subprocess.DEVNULL)
         until(lambda: held(record) > 0)
+        program.send_signal(signal.SIGSTOP)  # nobody watches from now on, and the law blocks in its 100th tick
+        time.sleep(0.5)
         program.kill()
         program.wait()
         until(lambda: held(record) == 0)

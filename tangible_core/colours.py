@@ -7,6 +7,7 @@ import numpy as np
 from jaxtyping import Float, UInt8
 
 from .data import SegmentMap
+from .opencv import plain_opencv
 from .pictures import to_rgb8
 
 Colour = Literal["black", "grey", "white", "red", "orange", "brown", "yellow", "green", "blue", "purple", "pink"]
@@ -64,4 +65,5 @@ def _names() -> UInt8[np.ndarray, " n"]:
 
     steps = (np.arange(1 << _BITS, dtype=np.float32) + 0.5) / (1 << _BITS)
     cube = np.stack(np.meshgrid(steps, steps, steps, indexing="ij"), axis=-1).reshape(1, -1, 3)
-    return colour_names(cv2.cvtColor(cube, cv2.COLOR_RGB2LAB)[0])
+    with plain_opencv():
+        return colour_names(cv2.cvtColor(cube, cv2.COLOR_RGB2LAB)[0])

@@ -7,6 +7,7 @@ from jaxtyping import Float, Float32, Float64, Int, Shaped
 
 from .data import Calibration, DisparityMap, Relief
 from .errors import GeometryError
+from .opencv import plain_opencv
 
 Holes = Literal["fill", "cut"]
 """What becomes of unknown places: `fill` takes the farther neighbour in the row, `cut` goes down to the base plane."""
@@ -223,9 +224,10 @@ def smooth(relief: Relief, sigma_m: float) -> Relief:
         return relief
     import cv2
 
-    blurred = cv2.GaussianBlur(
-        relief.height_m, (0, 0), max(sigmas[0], 1e-3), sigmaY=max(sigmas[1], 1e-3), borderType=cv2.BORDER_REPLICATE
-    )
+    with plain_opencv():
+        blurred = cv2.GaussianBlur(
+            relief.height_m, (0, 0), max(sigmas[0], 1e-3), sigmaY=max(sigmas[1], 1e-3), borderType=cv2.BORDER_REPLICATE
+        )
     return Relief(np.maximum(blurred, 0), relief.extent_m)
 
 

@@ -18,6 +18,7 @@ from .data import Material, MaterialMap, SegmentMap
 from .errors import MaterialError, did_you_mean, quoted
 from .material_files import parse_materials, read_materials
 from .material_rules import Chosen, MaterialRule, apply_rules
+from .opencv import plain_opencv
 from .pictures import to_grey
 
 NEUTRAL = "plain"
@@ -112,7 +113,8 @@ def relative_roughness(segments: SegmentMap, picture: np.ndarray) -> Float64[np.
 def _local_mean(values: Float64[np.ndarray, "h w"], side: int) -> Float64[np.ndarray, "h w"]:
     import cv2
 
-    mean: Any = cv2.blur(values, (side, side), borderType=cv2.BORDER_REFLECT)
+    with plain_opencv():
+        mean: Any = cv2.blur(values, (side, side), borderType=cv2.BORDER_REFLECT)
     return mean
 
 

@@ -10,8 +10,8 @@ from jaxtyping import Bool, Float32, UInt8
 
 from .errors import PictureError
 
-LUMA = np.array([0.299, 0.587, 0.114], np.float32)
-"""ITU-R BT.601 weights of R, G, B."""
+RED, BLUE = np.float32(0.299), np.float32(0.114)
+"""ITU-R BT.601 weights of R and B; that of G is what is left of 1."""
 
 
 def check_picture(picture: np.ndarray, name: str = "picture") -> np.ndarray:
@@ -77,8 +77,22 @@ def to_grey(picture: np.ndarray) -> Float32[np.ndarray, "h w"]:
     values = _scaled(picture)
     if values.ndim == 2:
         return values
-    grey = values[..., :3] @ LUMA
-    return grey if values.shape[2] == 3 else 1 - values[..., 3] * (1 - grey)
+    grey = luma(values)
+    return grey if values.shape[2] == 3 else grey * values[..., 3] + (1 - values[..., 3])
+
+
+def luma(values: Float32[np.ndarray, "h w c"]) -> Float32[np.ndarray, "h w"]:
+    """Luma of red, green and blue, whatever lies behind them: exactly v where all three are v.
+
+    Element by element: a matrix product is added up in another order by every BLAS and processor.
+    """
+    red, green, blue = values[..., 0], values[..., 1], values[..., 2]
+    found, bluer = red - green, blue - green
+    found *= RED
+    found += green
+    bluer *= BLUE
+    found += bluer
+    return found
 
 
 def to_rgb8(picture: np.ndarray) -> UInt8[np.ndarray, "h w 3"]:
@@ -95,4 +109,7 @@ def to_rgb8(picture: np.ndarray) -> UInt8[np.ndarray, "h w 3"]:
 
 def _scaled(picture: np.ndarray) -> Float32[np.ndarray, "..."]:
     check_picture(picture)
-    return np.asarray(picture / full_scale(picture), np.float32)
+    white = full_scale(picture)
+    if picture.dtype.kind == "f":
+        return np.asarray(picture / white, np.float32)
+    return picture.astype(np.float32) / np.float32(white)

@@ -3,6 +3,7 @@
 import numpy as np
 
 from .data import DisparityMap, SegmentMap, Views
+from .opencv import plain_opencv
 
 
 def felt_factor(columns: int, width_m: float, finest_m: float) -> int:
@@ -39,7 +40,9 @@ def enlarged_segments(segments: SegmentMap, shape: tuple[int, int]) -> SegmentMa
     if segments.labels.shape == shape:
         return segments
     nearest = np.asarray(cv2.resize(segments.labels, shape[::-1], interpolation=cv2.INTER_NEAREST_EXACT), np.int32)
-    return SegmentMap(nearest, np.asarray(cv2.resize(segments.confidence, shape[::-1], interpolation=cv2.INTER_LINEAR)))
+    with plain_opencv():
+        confidence = np.asarray(cv2.resize(segments.confidence, shape[::-1], interpolation=cv2.INTER_LINEAR))
+    return SegmentMap(nearest, confidence)
 
 
 def _mean(picture: np.ndarray, rows: int, columns: int) -> np.ndarray:
@@ -49,7 +52,8 @@ def _mean(picture: np.ndarray, rows: int, columns: int) -> np.ndarray:
         picture = picture.astype(np.uint8) * np.uint8(255)
     elif picture.dtype.itemsize not in (1, 2, 4) or picture.dtype == np.float16:
         picture = picture.astype(np.float32)
-    return np.asarray(cv2.resize(picture, (columns, rows), interpolation=cv2.INTER_AREA))
+    with plain_opencv():
+        return np.asarray(cv2.resize(picture, (columns, rows), interpolation=cv2.INTER_AREA))
 
 
 def _resized(values: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
@@ -57,5 +61,6 @@ def _resized(values: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
     import cv2
 
     size = shape[1], shape[0]
-    linear = np.asarray(cv2.resize(values, size, interpolation=cv2.INTER_LINEAR))
+    with plain_opencv():
+        linear = np.asarray(cv2.resize(values, size, interpolation=cv2.INTER_LINEAR))
     return np.where(np.isnan(linear), np.asarray(cv2.resize(values, size, interpolation=cv2.INTER_NEAREST)), linear)

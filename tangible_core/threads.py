@@ -36,9 +36,9 @@ def in_blocks(length: int, work: Callable[[int, int], Any], at_least: int = 16) 
     run_all([lambda a=a, b=b: work(a, b) for a, b in pairwise(edges)])
 
 
-def in_turns(tasks: list[Any], work: Callable[[list[Any]], Any]) -> None:
-    """work(share) on interleaved shares of the tasks, one share a thread."""
-    parts = min(thread_count(), len(tasks))
+def in_turns(tasks: list[Any], work: Callable[[list[Any]], Any], most: int | None = None) -> None:
+    """work(share) on interleaved shares of the tasks, one share a thread, `most` threads at most."""
+    parts = min(thread_count(), len(tasks), len(tasks) if most is None else most)
     if parts:
         run_all([lambda t=t: work(tasks[t::parts]) for t in range(parts)])
 

@@ -3,6 +3,7 @@
 import numpy as np
 from jaxtyping import UInt8
 
+from ..opencv import plain_opencv
 from ..pictures import full_scale
 
 Bytes = UInt8[np.ndarray, "..."]
@@ -51,7 +52,8 @@ def blur(picture: np.ndarray, sigma_px: float) -> Bytes:
     """A Gaussian of this standard deviation, reflected at the borders."""
     import cv2
 
-    return rounded(cv2.GaussianBlur(grey_levels(picture), (0, 0), sigma_px, borderType=cv2.BORDER_REFLECT))
+    with plain_opencv():
+        return rounded(cv2.GaussianBlur(grey_levels(picture), (0, 0), sigma_px, borderType=cv2.BORDER_REFLECT))
 
 
 def shift_down(picture: np.ndarray, rows_px: float) -> Bytes:

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 from jaxtyping import Float64
 
+from ..opencv import plain_opencv
 from ..testing.texture_scenes import KnownSegments, in_order
 from .damage import grey_levels, rounded
 
@@ -53,9 +54,10 @@ def _sampled(scene: KnownSegments, places: Places, blur_px: float = 0.0) -> Know
     h, w = scene.labels.shape
     rows, columns = places + (np.reshape((h, w), (2, 1, 1)) - 1) / 2
     values = grey_levels(scene.picture).astype(np.float32)
-    if blur_px:
-        values = cv2.GaussianBlur(values, (0, 0), blur_px, borderType=cv2.BORDER_REFLECT)
     across, down = columns.astype(np.float32), rows.astype(np.float32)
-    picture = cv2.remap(values, across, down, cv2.INTER_CUBIC, borderMode=cv2.BORDER_REFLECT)
+    with plain_opencv():
+        if blur_px:
+            values = cv2.GaussianBlur(values, (0, 0), blur_px, borderType=cv2.BORDER_REFLECT)
+        picture = cv2.remap(values, across, down, cv2.INTER_CUBIC, borderMode=cv2.BORDER_REFLECT)
     nearest = (np.rint(rows).clip(0, h - 1).astype(np.int64), np.rint(columns).clip(0, w - 1).astype(np.int64))
     return KnownSegments(rounded(picture), in_order(scene.labels[nearest]))

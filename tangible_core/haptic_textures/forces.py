@@ -16,7 +16,7 @@ STATE = 7
 """Length of a contact's state: so many zeros, made anew for each contact point."""
 _TURNS = np.arange(1, 5)
 _SHAPE = np.sinc(_TURNS / 5) / _TURNS
-_REACH = float(np.max(_SHAPE @ np.sin(np.outer(_TURNS, np.linspace(0, math.pi, 1000)))))
+_REACH = float(np.max(np.einsum("n,ni->i", _SHAPE, np.sin(np.outer(_TURNS, np.linspace(0, math.pi, 1000))))))
 HARMONICS = tuple(float(each) / _REACH for each in _SHAPE)
 """Amplitudes of a sawtooth's, with Lanczos' factors, which keep the sum from overshooting; from -1 to 1 in all."""
 POINTS = types.Array(float64, 2, "C", readonly=True)

@@ -10,9 +10,14 @@ asked of it. Campion & Hayward (World Haptics 2005): a texture needs a wavelengt
 # pyright: basic
 
 import math
+from typing import Any
 
 import numpy as np
+from llvmlite import ir
 from numba import float64, int64, njit, types
+from numba.core import cgutils
+from numba.extending import intrinsic
+from numba.np.arrayobj import populate_array
 
 from ..compiling import KERNEL
 from .table import COUNT, HEAD
@@ -42,20 +47,49 @@ def series(terms, u):
     return low + u * u * u * u * (terms[4] + u * (terms[5] + u * (terms[6] + u * terms[7])))
 
 
-@njit(types.UniTuple(float64, 3)(ROW, *[float64] * 4), fastmath={"reassoc", "contract", "nsz"}, **KERNEL)
+operation: Any = intrinsic
+"""Called without the typing context that the function itself takes first, which type checkers cannot know."""
+
+
+@operation(prefer_literal=True)
+def _scratch(_context, count):
+    """An array of this many float64, on the stack: a kernel makes none otherwise. It must not be handed on."""
+
+    def emit(context, builder, signature, _arguments):
+        number = ir.DoubleType()
+        data = cgutils.alloca_once(builder, ir.ArrayType(number, count.literal_value))
+        made = context.make_array(signature.return_type)(context, builder)
+        sizes = (context.get_constant(types.intp, each) for each in (count.literal_value, 8, 8))
+        shape, stride, item = sizes
+        populate_array(made, builder.bitcast(data, number.as_pointer()), [shape], [stride], item, None)
+        return made._getvalue()
+
+    return types.Array(float64, 1, "C")(count), emit
+
+
+@njit(types.UniTuple(float64, 3)(ROW, *[float64] * 4), **KERNEL)
 def _sum_of_waves(row, x, y, step_x, step_y):
-    """Height and gradient, of which nothing is known where a number is not finite: sums are reordered to vectorise."""
-    height = slope_x = slope_y = 0.0
-    for i in range(int(row[COUNT])):  # from 0: an index that may be negative is checked, and nothing vectorised
+    """Height and gradient, of which nothing is known where a number is not finite.
+
+    First all waves, side by side, then their sums, one after the other: sums that a compiler may reorder have other
+    last bits with every width of a processor's vectors.
+    """
+    count = int(row[COUNT])
+    heights, slopes_x, slopes_y = _scratch(WAVES), _scratch(WAVES), _scratch(WAVES)
+    for i in range(count):  # from 0: an index that may be negative is checked, and nothing vectorised
         fx, fy = row[HEAD + i], row[HEAD + WAVES + i]
         turns = fx * x + fy * y + row[HEAD + 3 * WAVES + i]
         turns -= np.floor(turns + 0.5)
         sine, cosine = turns * series(SINE, turns * turns), series(COSINE, turns * turns)  # of half the angle
         amplitude = row[HEAD + 2 * WAVES + i] * kept(abs(fx * step_x + fy * step_y))
-        height += amplitude * (1.0 - 2.0 * sine * sine)
+        heights[i] = amplitude * (1.0 - 2.0 * sine * sine)
         slope = amplitude * sine * cosine
-        slope_x -= slope * fx
-        slope_y -= slope * fy
+        slopes_x[i], slopes_y[i] = slope * fx, slope * fy
+    height = slope_x = slope_y = 0.0
+    for i in range(count):
+        height += heights[i]
+        slope_x -= slopes_x[i]
+        slope_y -= slopes_y[i]
     return height, 4.0 * math.pi * slope_x, 4.0 * math.pi * slope_y
 
 

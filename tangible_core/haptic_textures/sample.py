@@ -26,6 +26,6 @@ def sample_tile(material: Material, width_m: float, pixels: int) -> Float32[np.n
     at_m = (np.arange(pixels) + 0.5) * pitch_m - width_m / 2
     across = 2 * np.pi * (np.outer(parts.fx, at_m) + parts.phase[:, None])
     away = 2 * np.pi * np.outer(at_m[::-1], parts.fy)
-    return ((amplitude_m * np.cos(away)) @ np.cos(across) - (amplitude_m * np.sin(away)) @ np.sin(across)).astype(
-        np.float32
-    )
+    even = np.einsum("ij,jk->ik", amplitude_m * np.cos(away), np.cos(across))
+    odd = np.einsum("ij,jk->ik", amplitude_m * np.sin(away), np.sin(across))
+    return (even - odd).astype(np.float32)

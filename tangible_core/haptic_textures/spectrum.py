@@ -1,7 +1,11 @@
 """Which wavelengths a texture has: the radial spectrum of a tile, the spectrum of a line."""
 
+from math import exp, log2
+
 import numpy as np
 from jaxtyping import Float, Float64
+
+from .waves import powers_of_two
 
 STEP_OCTAVES = 1 / 48
 BLUR_OCTAVES = 1 / 8
@@ -38,16 +42,20 @@ def _by_octave(values: Float64[np.ndarray, "..."], side_m: float) -> Spectrum:
     for _ in values.shape:
         window = np.multiply.outer(window, np.hanning(count + 2)[1:-1])
         radius2 = np.add.outer(radius2, turns2)
-    power = np.abs(np.fft.fftn((values - np.average(values, weights=window)) * window)) ** 2
-    edges = np.arange(1, np.log2(max(count / 2, 3)), STEP_OCTAVES)  # from two periods a side on, so that one is seen
-    octaves = 0.5 * np.log2(np.maximum(radius2, 1e-9))
-    binned = np.histogram(octaves, np.append(edges, edges[-1] + STEP_OCTAVES), weights=power)[0]
-    blurred = np.convolve(binned, _bell(), "same")
-    return side_m / 2 ** (edges + STEP_OCTAVES / 2), blurred / max(blurred.sum(), 1e-300)
+    spectrum = np.fft.fftn((values - np.average(values, weights=window)) * window)
+    power = np.square(spectrum.real) + np.square(spectrum.imag)
+    edges = np.arange(1, log2(max(count / 2, 3)), STEP_OCTAVES)  # from two periods a side on, so that one is seen
+    squared = powers_of_two(2 * np.append(edges, edges[-1] + STEP_OCTAVES))
+    # Not np.histogram: it sorts, and where values are equal every processor sorts in another order.
+    bins = np.searchsorted(squared, radius2.ravel(), "right") - 1
+    inside = (bins >= 0) & (bins < edges.size)
+    blurred = _blurred(np.bincount(bins[inside], power.ravel()[inside], edges.size))
+    return side_m / powers_of_two(edges + STEP_OCTAVES / 2), blurred / max(blurred.sum(), 1e-300)
 
 
-def _bell() -> Float64[np.ndarray, " m"]:
-    """A Gaussian of BLUR_OCTAVES over the bins."""
+def _blurred(power: Float64[np.ndarray, " bins"]) -> Float64[np.ndarray, " bins"]:
+    """By a Gaussian of BLUR_OCTAVES over the bins; np.convolve is a BLAS's."""
     reach = round(3 * BLUR_OCTAVES / STEP_OCTAVES)
-    bell = np.exp(-0.5 * (np.arange(-reach, reach + 1) * STEP_OCTAVES / BLUR_OCTAVES) ** 2)
-    return bell / bell.sum()
+    bell = np.array([exp(-0.5 * (at * STEP_OCTAVES / BLUR_OCTAVES) ** 2) for at in range(-reach, reach + 1)])
+    around = np.lib.stride_tricks.sliding_window_view(np.pad(power, reach), len(bell))
+    return np.einsum("ij,j->i", around, bell / bell.sum())

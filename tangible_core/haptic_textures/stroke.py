@@ -42,5 +42,6 @@ def stroke(
     textures, felt = compile_textures([material]), np.empty((len(way_m), 5))
     cast(Any, forces).along(textures, 0, np.zeros(forces.STATE), np.outer(way_m, along), period_s, normal_n, felt)
     friction_n = 0.0 if textures[0, STIFFNESS] else material.dynamic_friction * normal_n
-    force_n = felt[:, 3:] @ along - normal_n * felt[:, 1:3] @ along - friction_n * (way_m > 0)
+    lateral_n = felt[:, 3:] - normal_n * felt[:, 1:3]
+    force_n = lateral_n[:, 0] * along[0] + lateral_n[:, 1] * along[1] - friction_n * (way_m > 0)
     return Stroke(way_m, felt[:, 0], force_n)

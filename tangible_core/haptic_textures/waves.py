@@ -37,11 +37,16 @@ def waves(material: Material) -> Waves:
     the wavelength of the grain. The same name and seed give the same waves everywhere.
     """
     octaves, turned_deg, share, phase = _MAKE[material.texture](material, _random(material))
-    per_m = 2.0**octaves / material.grain_m
+    per_m = powers_of_two(octaves) / material.grain_m
     way = np.deg2rad(material.direction_deg + 90 + turned_deg)  # a wave runs across its lines
     made = Waves(per_m * np.cos(way), per_m * np.sin(way), material.roughness_m * np.sqrt(share), phase)
     kept = made.amplitude_m > 0
     return Waves(*(each[kept] for each in made))
+
+
+def powers_of_two(exponents: Float64[np.ndarray, " n"]) -> Float64[np.ndarray, " n"]:
+    """2^x one by one: NumPy's power of an array has other last bits where AVX-512 is."""
+    return np.array([2.0**each for each in exponents.tolist()])
 
 
 Spread = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]

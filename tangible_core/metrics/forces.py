@@ -1,5 +1,7 @@
 """How far forces along a path are from the true ones, how they step, and what work they do."""
 
+from math import atan2
+
 import numpy as np
 from jaxtyping import Bool, Float64
 
@@ -45,8 +47,9 @@ def force_errors(force_n: Vectors, truth_n: Vectors) -> dict[str, float]:
 
 def angles_deg(first: Vectors, second: Vectors) -> Float64[np.ndarray, "n"]:
     """Angles between vectors, 0..180 degrees; exact for small ones too, as an arc cosine is not."""
-    across = np.linalg.norm(np.cross(first, second), axis=1)
-    return np.degrees(np.arctan2(across, (first * second).sum(axis=1)))
+    across, along = np.linalg.norm(np.cross(first, second), axis=1), (first * second).sum(axis=1)
+    # One by one: NumPy's arc tangent of an array has other last bits where AVX-512 is.
+    return np.degrees(np.array(list(map(atan2, across.tolist(), along.tolist())), np.float64))
 
 
 def force_steps(force_n: Vectors) -> dict[str, float]:

@@ -3,6 +3,7 @@
 # pyright: reportMissingTypeStubs=false, reportUnknownVariableType=false
 
 from math import hypot
+from typing import Any
 
 import numpy as np
 from jaxtyping import Bool, Integer
@@ -87,10 +88,10 @@ def border_points(labels: Labels) -> Bool[np.ndarray, "r c"]:
 
 def _mean_distance(start: Bool[np.ndarray, "r c"], goal: Bool[np.ndarray, "r c"]) -> float:
     """Pixels from the points of one set to the nearest of the other, mean."""
-    import cv2
+    from scipy.spatial import KDTree  # exact, which OpenCV's transform of distances is not with every number of threads
 
-    halves = cv2.distanceTransform((~goal).astype(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
-    return float(halves[start].mean(dtype=np.float64)) / 2
+    nearest: Any = KDTree(np.argwhere(goal))
+    return float(nearest.query(np.argwhere(start))[0].mean()) / 2
 
 
 def _pairs(sizes: Counts | np.ndarray) -> int:

@@ -8,6 +8,7 @@ from jaxtyping import Float64
 
 from ..data import Relief
 from ..geometry import resample
+from ..opencv import plain_opencv
 
 FELT = ((3.2e-3, 29e-6), (10e-3, 130e-6))
 """Width of a Gaussian profile, and the height from which a bare hand tells it from a flat surface, metres."""
@@ -58,7 +59,8 @@ def feature_m(relief: Relief, width_m: float) -> float:
     )
 
     def blurred(share: float) -> Any:
-        return cv2.GaussianBlur(heights, (0, 0), share * across, sigmaY=share * along)
+        with plain_opencv():
+            return cv2.GaussianBlur(heights, (0, 0), share * across, sigmaY=share * along)
 
     rows, columns = relief.height_m.shape
     band: Float64[np.ndarray, "h w"] = blurred(FINE) - blurred(COARSE)

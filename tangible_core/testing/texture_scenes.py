@@ -10,6 +10,7 @@ from jaxtyping import Float64, Int32, UInt8
 
 from ..data import Record
 from ..errors import PictureError
+from ..opencv import plain_opencv
 from ..picture_files import read_picture
 from ..pictures import is_one_colour, to_grey
 from ..scene import read_scene
@@ -75,7 +76,8 @@ def smooth_scene(
     rows, columns = np.indices(shape, np.float64) / np.reshape(shape, (2, 1, 1))
     light = 25 * (columns * random.uniform(-1, 1) + rows * random.uniform(-1, 1))
     picture: np.ndarray = greys[labels] + light
-    smooth = cv2.GaussianBlur(picture, (0, 0), blur_px, borderType=cv2.BORDER_REFLECT)
+    with plain_opencv():
+        smooth = cv2.GaussianBlur(picture, (0, 0), blur_px, borderType=cv2.BORDER_REFLECT)
     return KnownSegments(_bytes(smooth + noise * random.standard_normal(shape)), labels)
 
 

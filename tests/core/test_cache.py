@@ -189,18 +189,6 @@ def test_entries_that_cannot_be_dropped_cost_a_warning(
     assert "Permission denied" in caplog.text
 
 
-def test_of_many_entries_exactly_those_used_last_stay(tmp_path: Path):
-    """In whatever order the folder lists them."""
-    kept = Cache(tmp_path)
-    ages = [7, 2, 9, 4, 0, 11, 5, 1, 10, 3, 8, 6]
-    for age in ages:
-        kept.put(f"{age * 5 % 12:x}{age}", RECORDS[1])
-        os.utime(tmp_path / f"{age * 5 % 12:x}{age}.npz", (1e9 - age, 1e9 - age))
-    size = next(tmp_path.iterdir()).stat().st_size
-    Cache(tmp_path, max_bytes=6 * size).put("new", RECORDS[1])
-    assert {path.stem for path in tmp_path.iterdir()} == {"new", *(f"{age * 5 % 12:x}{age}" for age in range(5))}
-
-
 def test_a_folder_that_cannot_be_written_costs_a_warning(tmp_path: Path, caplog: pytest.LogCaptureFixture):
     (tmp_path / "file").write_text("")
     Cache(tmp_path / "file" / "below").put("k", RECORDS[1])

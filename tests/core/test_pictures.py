@@ -86,6 +86,22 @@ def test_grey_is_luma_of_rec_601_whatever_the_type():
         np.testing.assert_allclose(to_grey(picture), grey, atol=1e-6)
 
 
+@pytest.mark.parametrize("dtype", [np.uint8, np.uint16, np.float32, np.float64])
+def test_three_channels_of_one_value_are_that_value_to_the_last_bit(dtype):
+    white = 1 if np.dtype(dtype).kind == "f" else np.iinfo(dtype).max
+    one = (np.random.default_rng(1).random((211, 127)) * white).astype(dtype)
+    for many in (np.dstack([one] * 3), np.dstack([one] * 3 + [np.full_like(one, white)])):
+        assert to_grey(many).tobytes() == to_grey(one).tobytes()
+        assert to_grey(many[::-1, ::3]).tobytes() == to_grey(one[::-1, ::3]).tobytes()  # a BLAS asks how rows lie
+
+
+def test_grey_is_what_its_formula_says_to_the_last_bit():
+    red, green, blue, opaque = np.moveaxis(np.random.default_rng(2).random((64, 63, 4), np.float32), 2, 0)
+    grey = green + np.float32(0.299) * (red - green) + np.float32(0.114) * (blue - green)
+    assert to_grey(np.dstack([red, green, blue])).tobytes() == grey.tobytes()
+    assert to_grey(np.dstack([red, green, blue, opaque])).tobytes() == (grey * opaque + (1 - opaque)).tobytes()
+
+
 def test_what_is_transparent_shows_white():
     picture = np.uint8([[[255, 0, 0, 0], [0, 0, 0, 255]]])
     np.testing.assert_allclose(to_grey(picture), [[1, 0]], atol=1e-6)

@@ -7,10 +7,13 @@ Source: the split into similarity and perspective is that of Loop & Zhang, Compu
 Stereo Vision, CVPR 1999; fitting to the matches that of Hartley, Theory and Practice of Projective Rectification, 1999.
 """
 
+from collections.abc import Callable
+from math import cos, exp, log1p, sin
+
 import numpy as np
 from jaxtyping import Float64
 
-from .epipolar import epipoles
+from .epipolar import epipoles, product
 from .homographies import transform
 from .matches import Matches
 
@@ -18,6 +21,12 @@ _PRIOR = np.array([0.5, 0.2, 0.5, 0.2, 0.2, 0.5, 0.5])
 """Standard deviations about the start: left roll and tilt along x; right roll, tilts along x and y, logarithm of scale,
 shift along y. Rolls in radians, lengths in half the longer side of the picture, tilts in one over that."""
 _NOISE_PX = 0.3
+_ROLL_LATTICE = 2.0**-10
+"""Where to start is rounded to this, in radians: its last bits are those of the processor's linear algebra."""
+_ROUNDS, _TRIES = 60, 12
+"""Steps of the fit, and how often one is tried anew."""
+_STEP, _STILL = 1e-5, 1e-7
+"""In standard deviations of _PRIOR: steps by which slopes are told, and one that is as good as none."""
 
 
 def aligning_homographies(
@@ -28,23 +37,50 @@ def aligning_homographies(
     The middle of each picture keeps its column: a disparity is the shift against the right picture turned about its
     middle. roll: where to start, radians, see `epipole_roll`.
     """
-    from scipy.optimize import least_squares
-
     start = np.zeros(7)
-    start[[0, 2]] = roll
+    start[[0, 2]] = np.rint(roll / _ROLL_LATTICE) * _ROLL_LATTICE
 
     def cost(values: np.ndarray) -> np.ndarray:
         left, right = (transform(h, points) for h, points in zip(_pair(values, shape), matches, strict=True))
         offset = (left[:, 1] - right[:, 1]) / _NOISE_PX
         # A Cauchy-like pull: what the robust estimate let through by chance may not bend the geometry.
-        return np.concatenate([np.sign(offset) * np.sqrt(np.log1p(offset**2)), (values - start) / _PRIOR])
+        pull = np.sqrt(np.array([log1p(each) for each in (offset * offset).tolist()]))
+        return np.concatenate([np.sign(offset) * pull, (values - start) / _PRIOR])
 
-    found = least_squares(cost, start, x_scale=_PRIOR * 0.1, max_nfev=200).x
+    found = _least_squares(cost, start, _PRIOR)
     left, right = _pair(found, shape)
     if abs(found[0]) > np.pi / 4 and _runs_backwards(left, right, matches):
         # Both turned over: what lies along the axes changes its sign.
         left, right = _pair(found * [1, -1, 1, -1, -1, 1, -1] + np.pi * np.array([1, 0, 1, 0, 0, 0, 0]), shape)
     return left, right
+
+
+def _least_squares(cost: Callable[[np.ndarray], np.ndarray], start: np.ndarray, scale: np.ndarray) -> np.ndarray:
+    """Numbers near `start` at which the sum of the squares of `cost` is least, after Levenberg and Marquardt.
+
+    scale: of each number. Sums in one order: LAPACK, which SciPy's fit is built on, has other last bits with every
+    processor and from run to run, and this fit is stopped by them.
+    Source: Nocedal & Wright, Numerical Optimization, 2nd ed., sec. 10.3.
+    """
+    from tangible_core.small_matrices import solved
+
+    values, found, damping = start, cost(start), 1e-3
+    for _ in range(_ROUNDS):
+        both = [cost(values + step) - cost(values - step) for step in np.diag(_STEP * scale)]
+        slopes = np.stack(both, axis=1) / (2 * _STEP)
+        normal, down = np.einsum("ni,nj->ij", slopes, slopes), np.einsum("ni,n->i", slopes, found)
+        for _ in range(_TRIES):
+            move = -solved(normal + damping * np.diag(np.diag(normal)), down[None])[0]
+            then = cost(values + scale * move)
+            if np.square(then).sum() < np.square(found).sum():
+                break
+            damping *= 10
+        else:
+            break
+        values, found, damping = values + scale * move, then, damping / 10
+        if np.abs(move).max() < _STILL:
+            break
+    return values
 
 
 def epipole_roll(fundamental: np.ndarray, shape: tuple[int, int]) -> float:
@@ -61,16 +97,15 @@ def _pair(values: np.ndarray, shape: tuple[int, int]) -> tuple[np.ndarray, np.nd
     half = max(shape) / 2
     to_unit = np.array([[1 / half, 0, (1 - columns) / (2 * half)], [0, 1 / half, (1 - rows) / (2 * half)], [0, 0, 1]])
     left = _similarity_and_tilt(left_roll, (left_tilt, 0.0), 1.0, 0.0)
-    right = _similarity_and_tilt(right_roll, (right_tilt_x, right_tilt_y), np.exp(log_scale), shift)
-    back = np.linalg.inv(to_unit)
-    return back @ left @ to_unit, back @ right @ to_unit
+    right = _similarity_and_tilt(right_roll, (right_tilt_x, right_tilt_y), exp(log_scale), shift)
+    back = np.array([[half, 0, (columns - 1) / 2], [0, half, (rows - 1) / 2], [0, 0, 1]])
+    return product(product(back, left), to_unit), product(product(back, right), to_unit)
 
 
 def _similarity_and_tilt(roll: float, tilt: tuple[float, float], scale: float, shift: float) -> np.ndarray:
     """Tilt is along the turned axes, so that it means the same whichever way the cameras stand."""
-    cos, sin = np.cos(roll), np.sin(roll)
-    turn = np.array([[scale * cos, -scale * sin, 0], [scale * sin, scale * cos, 0], [0, 0, 1]])
-    return np.array([[1, 0, 0], [0, 1, shift], [*tilt, 1]]) @ turn
+    turn = np.array([[scale * cos(roll), -scale * sin(roll), 0], [scale * sin(roll), scale * cos(roll), 0], [0, 0, 1]])
+    return product(np.array([[1, 0, 0], [0, 1, shift], [*tilt, 1]]), turn)
 
 
 def _runs_backwards(left: np.ndarray, right: np.ndarray, matches: Matches) -> bool:

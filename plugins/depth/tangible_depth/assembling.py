@@ -4,6 +4,7 @@ import numpy as np
 from jaxtyping import Float32
 
 from tangible_core.data import DisparityMap
+from tangible_core.opencv import plain_opencv
 from tangible_core.pictures import to_rgb8
 
 STRAY_PX = 2.0
@@ -46,10 +47,11 @@ def _weighted_mean(
 
     known = np.isfinite(values)
     weight = np.where(known, score, 0).astype(np.float32)
-    total, weight = (
-        cv2.ximgproc.dtFilter(guide, part, reach, 255 * step, mode=cv2.ximgproc.DTF_RF, numIters=3)
-        for part in (np.where(known, values, 0).astype(np.float32) * weight, weight)
-    )
+    with plain_opencv():
+        total, weight = (
+            cv2.ximgproc.dtFilter(guide, part, reach, 255 * step, mode=cv2.ximgproc.DTF_RF, numIters=3)
+            for part in (np.where(known, values, 0).astype(np.float32) * weight, weight)
+        )
     # Below this a float32 sum of decaying weights is rounding.
     reached = weight > 1e-12
     return np.where(reached, total / np.where(reached, weight, 1), np.float32(np.nan)), weight

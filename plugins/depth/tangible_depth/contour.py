@@ -8,6 +8,7 @@ from pydantic import Field
 
 from tangible_core.data import DisparityMap, Views
 from tangible_core.interfaces import DepthEstimator
+from tangible_core.opencv import plain_opencv
 from tangible_core.pictures import to_grey
 
 from .integration import gradient, integrate
@@ -42,7 +43,8 @@ class Contour(DepthEstimator):
 
         grey = to_grey(views.left)
         if self.smoothing_px > 0:
-            grey = cv2.GaussianBlur(grey, (0, 0), self.smoothing_px, borderType=cv2.BORDER_REFLECT)
+            with plain_opencv():
+                grey = cv2.GaussianBlur(grey, (0, 0), self.smoothing_px, borderType=cv2.BORDER_REFLECT)
         x, y = gradient(grey)
         steepness = np.hypot(x, y)
         kept = self._contours(steepness)

@@ -3,6 +3,8 @@
 import numpy as np
 from jaxtyping import Float32, Float64, UInt8
 
+from tangible_core.opencv import plain_opencv
+
 from .pairs import Pair
 
 Points = Float32[np.ndarray, "n 1 2"]
@@ -42,6 +44,7 @@ def corners_correspond(pair: Pair, realigns_px: float = 0.0) -> bool:
     return float(np.median(np.abs(offset - common))) <= tolerance
 
 
+@plain_opencv()
 def _vertical_offsets(pair: Pair, scale: float) -> Float64[np.ndarray, "n"] | None:
     """In pixels, of the corners that could be followed, none if over half got lost; None where there are no corners."""
     import cv2

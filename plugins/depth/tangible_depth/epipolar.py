@@ -13,6 +13,11 @@ def homogeneous(points_px: np.ndarray) -> Float64[np.ndarray, "n 3"]:
     return np.column_stack([np.asarray(points_px, np.float64), np.ones(len(points_px))])
 
 
+def product(one: np.ndarray, other: np.ndarray) -> Float64[np.ndarray, "n m"]:
+    """one (n, k) times other (k, m), added up in one order by every processor, as no BLAS does."""
+    return np.einsum("nk,km->nm", one, other)
+
+
 def lines_in_left(fundamental: np.ndarray, right_px: np.ndarray) -> Float64[np.ndarray, "n 3"]:
     """Epipolar lines a x + b y + c = 0 in the left picture, one a right point (n, 2), with a^2 + b^2 = 1.
 
@@ -20,12 +25,12 @@ def lines_in_left(fundamental: np.ndarray, right_px: np.ndarray) -> Float64[np.n
     no line: its row is NaN.
     Source: Hartley & Zisserman, Multiple View Geometry, 2nd ed., sec. 9.2.
     """
-    return _unit_normal(homogeneous(right_px) @ fundamental.T)
+    return _unit_normal(product(homogeneous(right_px), fundamental.T))
 
 
 def lines_in_right(fundamental: np.ndarray, left_px: np.ndarray) -> Float64[np.ndarray, "n 3"]:
     """Epipolar lines in the right picture, one a left point (n, 2); otherwise as `lines_in_left`."""
-    return _unit_normal(homogeneous(left_px) @ fundamental)
+    return _unit_normal(product(homogeneous(left_px), fundamental))
 
 
 def _unit_normal(lines: np.ndarray) -> Float64[np.ndarray, "n 3"]:
@@ -86,7 +91,7 @@ def symmetric_epipolar_distance(
 def _algebra(fundamental: np.ndarray, left_px: np.ndarray, right_px: np.ndarray) -> tuple[np.ndarray, ...]:
     """l^T F r, and the squared lengths of the two lines' normals."""
     left, right = homogeneous(left_px), homogeneous(right_px)
-    in_left, in_right = right @ fundamental.T, left @ fundamental
+    in_left, in_right = product(right, fundamental.T), product(left, fundamental)
     return (
         np.einsum("ni,ni->n", left, in_left),
         np.einsum("ni,ni->n", in_left[:, :2], in_left[:, :2]),

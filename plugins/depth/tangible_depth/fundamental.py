@@ -12,7 +12,7 @@ from jaxtyping import Bool, Float64
 
 from tangible_core.errors import GeometryError
 
-from .epipolar import homogeneous, sampson_distance
+from .epipolar import homogeneous, product, sampson_distance
 
 Degeneracy = Literal["not finite", "too few", "duplicate", "collinear", "homography", "outliers"]
 Fit = Callable[[np.ndarray, np.ndarray, np.ndarray | None], Float64[np.ndarray, "3 3"]]
@@ -72,7 +72,7 @@ def normalise(points_px: np.ndarray) -> tuple[Float64[np.ndarray, "n 3"], Float6
     spread = np.linalg.norm(points_px - centre, axis=1).mean()
     scale = np.sqrt(2) / spread
     transform = np.array([[scale, 0, -scale * centre[0]], [0, scale, -scale * centre[1]], [0, 0, 1.0]])
-    return homogeneous(points_px) @ transform.T, transform
+    return product(homogeneous(points_px), transform.T), transform
 
 
 def eight_point(
@@ -94,7 +94,7 @@ def eight_point(
     if singular[7] < 1e-9 * singular[0]:
         raise DegenerateMatches("homography", _NO_PARALLAX)
     u, s, vt = np.linalg.svd(basis[8].reshape(3, 3))
-    matrix = to_left.T @ (u * [s[0], s[1], 0]) @ vt @ to_right
+    matrix = product(product(product(to_left.T, u * [s[0], s[1], 0]), vt), to_right)
     return matrix / np.linalg.norm(matrix)
 
 
@@ -147,7 +147,7 @@ def on_homography(left_px: np.ndarray, right_px: np.ndarray, threshold_px: float
     matrix, _ = cv2.findHomography(right_px, left_px, cv2.USAC_MAGSAC, 2 * threshold_px)
     if matrix is None:
         return np.zeros(len(left_px), np.bool_)
-    moved = homogeneous(right_px) @ matrix.T
+    moved = product(homogeneous(right_px), matrix.T)
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.linalg.norm(moved[:, :2] / moved[:, 2:] - left_px, axis=1) <= 3 * threshold_px
 
@@ -201,7 +201,7 @@ def _refine(
 
 def pixel_weights(fundamental: np.ndarray, left_px: np.ndarray, right_px: np.ndarray) -> Float64[np.ndarray, "n"]:
     """Weights that turn the algebraic residual of `eight_point` into the Sampson distance (n,), largest 1."""
-    in_left = (homogeneous(right_px) @ fundamental.T)[:, :2]
-    in_right = (homogeneous(left_px) @ fundamental)[:, :2]
+    in_left = product(homogeneous(right_px), fundamental.T)[:, :2]
+    in_right = product(homogeneous(left_px), fundamental)[:, :2]
     weights = 1 / np.sqrt((in_left**2).sum(axis=1) + (in_right**2).sum(axis=1) + np.finfo(np.float64).tiny)
     return weights / weights.max()

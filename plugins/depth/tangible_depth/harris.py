@@ -5,8 +5,12 @@ R = det M - k (tr M)^2: above zero at a corner, below zero along an edge, near z
 Source: Harris & Stephens, A Combined Corner and Edge Detector, 1988.
 """
 
+from math import exp
+
 import numpy as np
 from jaxtyping import Float, Float64, Int64
+
+from tangible_core.opencv import plain_opencv
 
 
 def gaussian_window(sigma_px: float) -> Float64[np.ndarray, "n"]:
@@ -17,7 +21,7 @@ def gaussian_window(sigma_px: float) -> Float64[np.ndarray, "n"]:
     if not sigma_px > 0:
         raise ValueError(f"a window needs sigma_px > 0, not {sigma_px}")
     reach = int(np.ceil(3 * sigma_px))
-    weights = np.exp(-0.5 * (np.arange(-reach, reach + 1) / sigma_px) ** 2)
+    weights = np.array([exp(-0.5 * (at / sigma_px) ** 2) for at in range(-reach, reach + 1)])
     return weights / weights.sum()
 
 
@@ -33,12 +37,13 @@ def harris_response(
 
     weights = gaussian_window(1.0) if window is None else window
     slope, one = np.array([-1.0, 0.0, 1.0]), np.ones(1)
-    x = cv2.sepFilter2D(grey, -1, slope, one, borderType=cv2.BORDER_REFLECT_101)
-    y = cv2.sepFilter2D(grey, -1, one, slope, borderType=cv2.BORDER_REFLECT_101)
-    a, b, c = (
-        cv2.sepFilter2D(product, -1, weights, weights, borderType=cv2.BORDER_REFLECT_101)
-        for product in (x * x, y * y, x * y)
-    )
+    with plain_opencv():
+        x = cv2.sepFilter2D(grey, -1, slope, one, borderType=cv2.BORDER_REFLECT_101)
+        y = cv2.sepFilter2D(grey, -1, one, slope, borderType=cv2.BORDER_REFLECT_101)
+        a, b, c = (
+            cv2.sepFilter2D(product, -1, weights, weights, borderType=cv2.BORDER_REFLECT_101)
+            for product in (x * x, y * y, x * y)
+        )
     trace = a + b
     return a * b - c * c - k * trace * trace
 

@@ -6,13 +6,19 @@ Source: Hartley & Zisserman, Multiple View Geometry, 2nd ed., sec. 8.4.2.
 import numpy as np
 from jaxtyping import Float64
 
-from .epipolar import homogeneous
+from .epipolar import homogeneous, product
 
 
 def transform(homography: np.ndarray, points_px: np.ndarray) -> Float64[np.ndarray, "n 2"]:
     """Points (n, 2) mapped by a homography (3, 3)."""
-    moved = homogeneous(points_px) @ homography.T
+    moved = product(homogeneous(points_px), homography.T)
     return moved[:, :2] / moved[:, 2:]
+
+
+def inverse(matrix: np.ndarray) -> Float64[np.ndarray, "3 3"]:
+    """Of a matrix (3, 3), by its cofactors."""
+    cofactors = np.cross(np.roll(matrix, -1, axis=0), np.roll(matrix, -2, axis=0))
+    return cofactors.T / (matrix[0] * cofactors[0]).sum()
 
 
 def rotation(pitch: float, yaw: float, roll: float) -> Float64[np.ndarray, "3 3"]:
@@ -21,7 +27,7 @@ def rotation(pitch: float, yaw: float, roll: float) -> Float64[np.ndarray, "3 3"
     about_x = np.array([[1, 0, 0], [0, cx, -sx], [0, sx, cx]])
     about_y = np.array([[cy, 0, sy], [0, 1, 0], [-sy, 0, cy]])
     about_z = np.array([[cz, -sz, 0], [sz, cz, 0], [0, 0, 1.0]])
-    return about_z @ about_y @ about_x
+    return product(product(about_z, about_y), about_x)
 
 
 def camera_matrix(focal_px: float, shape: tuple[int, int]) -> Float64[np.ndarray, "3 3"]:

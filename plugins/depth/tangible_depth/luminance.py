@@ -8,6 +8,7 @@ from pydantic import Field
 
 from tangible_core.data import DisparityMap, Views
 from tangible_core.interfaces import DepthEstimator
+from tangible_core.opencv import plain_opencv
 from tangible_core.pictures import to_grey
 
 
@@ -29,7 +30,8 @@ class Luminance(DepthEstimator):
         """Relative disparity 0 (darkest) .. 1 (lightest), known everywhere with confidence 1."""
         grey = to_grey(views.left).astype(np.float64)
         if self.smoothing_px:
-            grey = _guided(grey, self.smoothing_px, self.edge_contrast)
+            with plain_opencv():
+                grey = _guided(grey, self.smoothing_px, self.edge_contrast)
         return DisparityMap(_stretched(grey), unit="relative")
 
 

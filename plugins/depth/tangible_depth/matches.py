@@ -8,12 +8,16 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float32, Float64, Int64, UInt8
 
+from tangible_core.opencv import plain_opencv
+
 MOST_PIXELS = 2_000_000
 """SIFT looks at pictures reduced to this: it needs about 300 bytes a pixel."""
 FLOW_PIXELS = 60_000
 """Optical flow finds its corners in pictures reduced to this."""
 FLAT = 1e-4
 """Length of a window less its mean, white being 1, below which it holds nothing but rounding."""
+STEPS = 2.0**11
+"""To the unit, of normalised windows that are compared all against all."""
 SMALLEST_SIDE = 16
 """Pictures narrower than this hold no window worth following."""
 
@@ -48,9 +52,10 @@ def sift_matches(left: Float32[np.ndarray, "h w"], right: Float32[np.ndarray, "h
     scale = min(1.0, (MOST_PIXELS / left.size) ** 0.5)
     detector = cv2.SIFT.create(4000)
     full = stretch8(left), stretch8(right)
-    (left_points, left_codes), (right_points, right_codes) = (
-        detector.detectAndCompute(_reduced(grey, scale), None) for grey in full
-    )
+    with plain_opencv():
+        (left_points, left_codes), (right_points, right_codes) = (
+            detector.detectAndCompute(_reduced(grey, scale), None) for grey in full
+        )
     if left_codes is None or right_codes is None or min(len(left_points), len(right_points)) < 2:
         return NO_MATCHES
     distance = _distances(left_codes, right_codes)
@@ -69,6 +74,7 @@ def _reduced(picture: UInt8[np.ndarray, "h w"], scale: float) -> UInt8[np.ndarra
 
 
 def _distances(left_codes: np.ndarray, right_codes: np.ndarray) -> Float32[np.ndarray, "n m"]:
+    # Codes are whole numbers under 256, whose products and sums are exact in whatever order they are added.
     squares = (left_codes**2).sum(axis=1)[:, None] + (right_codes**2).sum(axis=1) - 2 * left_codes @ right_codes.T
     return np.sqrt(np.maximum(squares, 0))
 
@@ -98,13 +104,22 @@ def corner_matches(
         return NO_MATCHES
     half = window_px // 2
     patches = normalised_windows(left, left_corners, half)
-    score = patches @ normalised_windows(right, right_corners, half).T
+    score = _correlations(patches, normalised_windows(right, right_corners, half))
     chosen = _mutual(score)
     chosen = chosen[score[chosen[:, 0], chosen[:, 1]] >= least_score]
     if not len(chosen):
         return NO_MATCHES
     refined = _refined(patches[chosen[:, 0]], right, right_corners[chosen[:, 1]], half)
     return Matches(left_corners[chosen[:, 0]].astype(np.float64), refined)
+
+
+def _correlations(left: Float32[np.ndarray, "n k"], right: Float32[np.ndarray, "m k"]) -> Float32[np.ndarray, "n m"]:
+    """Products of normalised windows, to a ten-thousandth.
+
+    The windows are rounded to whole numbers of 1 / STEPS, whose sums stay under 2^24: exact in any order.
+    """
+    whole, others = (np.rint(STEPS * each) for each in (left, right))
+    return whole @ others.T * np.float32(STEPS**-2)
 
 
 def inverse_lengths(grey: Float32[np.ndarray, "h w"], half: int) -> Float32[np.ndarray, "h w"]:
@@ -114,8 +129,9 @@ def inverse_lengths(grey: Float32[np.ndarray, "h w"], half: int) -> Float32[np.n
     side = (2 * half + 1, 2 * half + 1)
     # The difference of two large sums: in float32 it comes out negative in a quarter of the windows.
     exact = grey.astype(np.float64)
-    mean = cv2.boxFilter(exact, -1, side, borderType=cv2.BORDER_REPLICATE)
-    square = cv2.sqrBoxFilter(exact, cv2.CV_64F, side, borderType=cv2.BORDER_REPLICATE)
+    with plain_opencv():
+        mean = cv2.boxFilter(exact, -1, side, borderType=cv2.BORDER_REPLICATE)
+        square = cv2.sqrBoxFilter(exact, cv2.CV_64F, side, borderType=cv2.BORDER_REPLICATE)
     length = np.sqrt(np.maximum(square - mean**2, 0) * side[0] * side[1])
     return np.where(length > FLAT, 1 / np.maximum(length, FLAT), 0).astype(np.float32)
 
@@ -160,6 +176,7 @@ def parabola(before: np.ndarray, at: np.ndarray, after: np.ndarray) -> Float64[n
     return np.where(bend > 0, np.clip(0.5 * (after - before) / np.where(bend > 0, bend, 1), -0.5, 0.5), 0.0)
 
 
+@plain_opencv()
 def flow_matches(left: Float32[np.ndarray, "h w"], right: Float32[np.ndarray, "h w"], most: int = 150) -> Matches:
     """Strong corners followed into the right picture and back (pyramidal Lucas-Kanade): to a tenth of a pixel.
 

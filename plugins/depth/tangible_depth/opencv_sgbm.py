@@ -1,5 +1,6 @@
 """OpenCV's semi-global block matcher."""
 
+from math import floor, log2
 from typing import Annotated, Literal, Self
 
 import numpy as np
@@ -137,7 +138,7 @@ def _eight_bits(left: np.ndarray, right: np.ndarray) -> list[UInt8[np.ndarray, "
     """
     greys = [np.clip(to_grey(view), 0, 1) for view in (left, right)]
     peak = max(float(grey.max()) for grey in greys)
-    gain = 255 * 2.0 ** np.floor(-np.log2(peak)) if peak > 0 else 0.0
+    gain = 255 * 2.0 ** floor(-log2(peak)) if peak > 0 else 0.0
     return [np.rint(grey * np.float32(gain)).astype(np.uint8) for grey in greys]
 
 

@@ -1,5 +1,6 @@
 """A pair of views as the matchers want it: two grey pictures of 8 bits."""
 
+from math import floor, log2
 from typing import NamedTuple
 
 import numpy as np
@@ -45,7 +46,7 @@ def grey_pair(views: Views, method: str) -> Pair:
     greys = [to_grey(each) for each in pictures]
     low = min(0.0, *(float(each.min()) for each in greys))
     peak = max(float(each.max()) for each in greys) - low
-    gain = 255 * 2.0 ** np.floor(-np.log2(peak)) if peak > 0 else 0.0
+    gain = 255 * 2.0 ** floor(-log2(peak)) if peak > 0 else 0.0
     return Pair(*(np.rint((each - np.float32(low)) * np.float32(gain)).astype(np.uint8) for each in greys))
 
 

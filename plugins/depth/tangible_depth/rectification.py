@@ -16,6 +16,7 @@ from tangible_core.notes import note
 from tangible_core.pictures import to_grey
 
 from .alignment import aligning_homographies, epipole_roll
+from .epipolar import homogeneous, product
 from .fundamental import DegenerateMatches, Fit, eight_point, on_homography, robust_fundamental
 from .homographies import transform
 from .matches import Matches, flow_matches, sift_matches
@@ -144,7 +145,7 @@ def check_homographies(
     for side, homography in zip(("left", "right"), pair, strict=True):
         rows, columns = shape
         corners = np.array([[0, 0], [columns, 0], [columns, rows], [0, rows]], np.float64)
-        depth = np.column_stack([corners, np.ones(4)]) @ homography[2]
+        depth = product(homogeneous(corners), homography[2:].T)
         if depth.min() <= 0:
             raise CannotRectify(f"the {side} picture would reach infinity: the cameras look along their baseline")
         quad = transform(homography, corners)

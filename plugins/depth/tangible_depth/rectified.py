@@ -7,8 +7,10 @@ from jaxtyping import Float32, Float64
 
 from tangible_core.data import Calibration, DisparityMap, Record, Views
 from tangible_core.errors import PictureError
+from tangible_core.opencv import plain_opencv
 
-from .homographies import transform
+from .epipolar import product
+from .homographies import inverse, transform
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,21 +49,22 @@ class Rectified(Record):
         """Where each original left pixel is seen in the original right picture, by a map from `to_original`."""
         left = transform(self.left_homography, _pixels(self.original_shape))
         left[:, 0] -= disparity_px.ravel().astype(np.float64) - self.offset_px
-        return transform(np.linalg.inv(self.right_homography), left).reshape(*self.original_shape, 2)
+        return transform(inverse(self.right_homography), left).reshape(*self.original_shape, 2)
 
     def _sample(self, values: Float32[np.ndarray, "h w"], outside: float) -> Float32[np.ndarray, "rows columns"]:
         """The nearest value: an average across an edge of depth would be neither side's."""
         import cv2
 
         rows, columns = self.original_shape
-        return cv2.warpPerspective(
-            values,
-            self.left_homography,
-            (columns, rows),
-            flags=cv2.INTER_NEAREST | cv2.WARP_INVERSE_MAP,
-            borderMode=cv2.BORDER_CONSTANT,
-            borderValue=outside,
-        )
+        with plain_opencv():
+            return cv2.warpPerspective(
+                values,
+                self.left_homography,
+                (columns, rows),
+                flags=cv2.INTER_NEAREST | cv2.WARP_INVERSE_MAP,
+                borderMode=cv2.BORDER_CONSTANT,
+                borderValue=outside,
+            )
 
 
 def as_it_is(views: Views, why: str) -> Rectified:
@@ -95,7 +98,7 @@ def warped(
 
 
 def _moved(homography: np.ndarray, origin: np.ndarray) -> Float64[np.ndarray, "3 3"]:
-    return np.array([[1, 0, -origin[0]], [0, 1, -origin[1]], [0, 0, 1.0]]) @ homography
+    return product(np.array([[1, 0, -origin[0]], [0, 1, -origin[1]], [0, 0, 1.0]]), homography)
 
 
 def _warp(picture: np.ndarray, homography: np.ndarray, width: int, height: int) -> np.ndarray:
@@ -103,13 +106,14 @@ def _warp(picture: np.ndarray, homography: np.ndarray, width: int, height: int) 
 
     if picture.dtype not in (np.uint8, np.uint16, np.float32, np.float64):
         picture = picture.astype(np.float32)
-    warped = cv2.warpPerspective(
-        np.ascontiguousarray(picture),
-        homography,
-        (width, height),
-        flags=cv2.INTER_CUBIC,
-        borderMode=cv2.BORDER_REPLICATE,
-    )
+    with plain_opencv():
+        warped = cv2.warpPerspective(
+            np.ascontiguousarray(picture),
+            homography,
+            (width, height),
+            flags=cv2.INTER_CUBIC,
+            borderMode=cv2.BORDER_REPLICATE,
+        )
     return np.clip(warped, picture.min(), picture.max(), out=warped)
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from jaxtyping import Float32, Int16, Int64
 from numba import njit
 
+from tangible_core.opencv import plain_opencv
 from tangible_core.threads import in_blocks
 
 from .pairs import Pair
@@ -53,9 +54,10 @@ def realigned(pair: Pair, offset: float) -> Pair:
 
     whole = round(offset) if abs(offset - round(offset)) < 0.15 else offset
     move = np.array([[1, 0, 0], [0, 1, -whole]], np.float32)
-    moved = cv2.warpAffine(
-        pair.right, move, pair.right.shape[::-1], flags=cv2.INTER_CUBIC, borderMode=cv2.BORDER_REPLICATE
-    )
+    with plain_opencv():
+        moved = cv2.warpAffine(
+            pair.right, move, pair.right.shape[::-1], flags=cv2.INTER_CUBIC, borderMode=cv2.BORDER_REPLICATE
+        )
     return Pair(pair.left, moved)  # pyright: ignore[reportArgumentType]
 
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Int16, UInt8
 
-from tangible_core.threads import in_turns, thread_count
+from tangible_core.threads import in_turns
 
 from .costs import Prices
 from .lanes import Lanes
@@ -17,6 +17,8 @@ ROWS, WARM_ROWS = 128, 32
 """Rows of a strip, and rows that a path begins before it: what lies farther away hardly reaches in."""
 VOLUME_BYTES = 256 << 20
 """Bound on the cost volumes of all threads together."""
+AT_ONCE = 4
+"""Strips at work for which there is room in any case: more only where they are small."""
 MOST_LANES = 512
 
 
@@ -33,9 +35,12 @@ def blank(shape: tuple[int, int]) -> Swept:
 
 
 def strips(shape: tuple[int, int], span: Span) -> list[tuple[int, int]]:
-    """First and last + 1 row of each strip: ROWS high, or lower where the volumes would pass VOLUME_BYTES."""
+    """First and last + 1 row of each strip: ROWS high, or lower where AT_ONCE volumes would pass VOLUME_BYTES.
+
+    However many threads there are: at its seams a map would show where they lie.
+    """
     h, w = shape
-    rows = max(8, min(ROWS, VOLUME_BYTES // (thread_count() * w * span.lanes)))
+    rows = max(8, min(ROWS, VOLUME_BYTES // (AT_ONCE * w * span.lanes)))
     return [(y, min(y + rows, h)) for y in range(0, h, rows)]
 
 
@@ -62,4 +67,4 @@ def sweep(
         for rows in share:
             sweep_strip(lanes, *codes, grey, rows, warm, span, prices, np.float32(tolerance), total, *out)
 
-    in_turns(list(only), work)
+    in_turns(list(only), work, max(1, VOLUME_BYTES // max(1, highest * w * n)))

@@ -31,8 +31,10 @@ def match_by_correlation(pair: Pair, span: Span, window_px: int) -> Dense:
 
 def match_by_difference(pair: Pair, span: Span, window_px: int) -> Dense:
     """Sum of squared differences S; the confidence of a match is exp(-S / (pixels x SSD_SCALE))."""
+    from tangible_core.elementary import exponentials
+
     scale = np.float32(window_px**2 * SSD_SCALE)
-    return _match(pair, span, window_px, True, -1e29, lambda scores: np.exp(np.minimum(scores, 0) / scale))
+    return _match(pair, span, window_px, True, -1e29, lambda scores: exponentials(np.minimum(scores, 0) / scale))
 
 
 def _match(pair: Pair, span: Span, window_px: int, squared: bool | None, least: float, trust: Trust) -> Dense:

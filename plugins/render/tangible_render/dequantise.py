@@ -6,6 +6,8 @@ import numpy as np
 from jaxtyping import Float32
 from pydantic import Field
 
+from tangible_core.opencv import plain_opencv
+
 Filter = Literal["auto", "never"] | Annotated[float, Field(gt=0, le=64)]
 """What a renderer's option `dequantise` may be."""
 
@@ -64,5 +66,6 @@ def _gauss(values: Float32[np.ndarray, "h w"], sigma: float) -> Float32[np.ndarr
 
     reach = int(np.ceil(4 * sigma))
     continued = np.pad(values, reach, mode="reflect", reflect_type="odd")
-    blurred = cv2.GaussianBlur(continued, (2 * reach + 1, 2 * reach + 1), sigma)
+    with plain_opencv():
+        blurred = cv2.GaussianBlur(continued, (2 * reach + 1, 2 * reach + 1), sigma)
     return np.asarray(blurred[reach:-reach, reach:-reach], np.float32)

@@ -6,6 +6,7 @@ import numpy as np
 from jaxtyping import Float32
 from numba import njit
 
+from tangible_core.opencv import plain_opencv
 from tangible_core.threads import in_turns
 
 CELL_PX = 4
@@ -13,6 +14,7 @@ ENERGY_SIGMA_PX = 4.0
 RARE = 0.985
 """Quantile of a plane above which values are held down, to LEAST_RARE times its value: a scratch is no texture."""
 LEAST_RARE = 1.5
+LANES = 64
 STILL = 1e-6
 """Standard deviation under which a plane says nothing, features being of the order of 1."""
 
@@ -39,6 +41,7 @@ def averaged(
     rows, columns = (-(-side // step) for side in planes.shape[1:])
     found = np.empty((len(planes), rows, columns), np.float32)
 
+    @plain_opencv()
     def work(share: list[int]) -> None:
         for i in share:
             smooth = cv2.GaussianBlur(planes[i], (0, 0), sigma_cells, borderType=cv2.BORDER_REFLECT)
@@ -53,15 +56,27 @@ def standardise_roots(planes: Float32[np.ndarray, "d n"]) -> None:
     in_turns(list(range(len(planes))), lambda share: [_standardise(planes[i]) for i in share])
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@njit(cache=True, nogil=True)
 def _standardise(plane):
-    total, squares = 0.0, 0.0
     for i in range(plane.size):
-        plane[i] = np.sqrt(max(plane[i], np.float32(0)) + np.float32(1e-6))
-        total += plane[i]
-    mean = np.float32(total / plane.size)
+        plane[i] = np.sqrt((plane[i] if plane[i] > 0 else np.float32(0)) + np.float32(1e-6))
+    mean = np.float32(_total(plane) / plane.size)
     for i in range(plane.size):
         plane[i] -= mean
-        squares += plane[i] * plane[i]
-    deviation = np.sqrt(squares / plane.size)
+    deviation = np.sqrt(_total(plane * plane) / plane.size)
     plane *= np.float32(1 / deviation) if deviation > STILL else np.float32(0)
+
+
+@njit(cache=True, nogil=True)
+def _total(values):
+    """The sum, in lanes of a fixed number: no order depends on how many values the processor adds at once."""
+    lanes, whole = np.zeros(LANES), values.size // LANES * LANES
+    for i in range(0, whole, LANES):
+        for j in range(LANES):
+            lanes[j] += values[i + j]
+    total = 0.0
+    for j in range(LANES):
+        total += lanes[j]
+    for i in range(whole, values.size):
+        total += values[i]
+    return total

@@ -3,7 +3,7 @@
 import numpy as np
 from jaxtyping import Float32
 
-from tangible_core.pictures import LUMA, check_picture, full_scale
+from tangible_core.pictures import check_picture, full_scale, luma
 
 
 def channels(picture: np.ndarray, colour: bool) -> Float32[np.ndarray, "h w c"]:
@@ -20,7 +20,7 @@ def channels(picture: np.ndarray, colour: bool) -> Float32[np.ndarray, "h w c"]:
         opaque = _share(picture[..., 3:], white)
         values = values * opaque + (1 - opaque)
     if values.shape[2] == 3 and not colour:
-        values = (values @ LUMA)[..., None]
+        values = luma(values)[..., None]
     top = max(float(values.max()), -float(values.min()))
     return np.ascontiguousarray(values / top if top else values, np.float32)
 

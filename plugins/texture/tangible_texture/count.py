@@ -45,10 +45,12 @@ def choose_count(features: Float32[np.ndarray, "n d"], most: int, seed: int = 0)
 
 def _silhouette(rows: Float32[np.ndarray, "n d"], labels: np.ndarray) -> float:
     """Mean of (b - a) / max(a, b): a to the own cluster's rows, b to those of the nearest other one."""
+    from .planes import mixed
+
     squares = np.square(rows).sum(axis=1)
-    away = np.sqrt(np.maximum(squares[:, None] + squares - 2 * rows @ rows.T, 0))
+    away = np.sqrt(np.maximum(squares[:, None] + squares - 2 * mixed(rows, np.ascontiguousarray(rows.T)), 0))
     sizes = np.bincount(labels)
-    sums = away @ np.eye(len(sizes), dtype=np.float32)[labels]
+    sums = np.stack([away[:, labels == each].sum(axis=1) for each in range(len(sizes))], axis=1)
     each = np.arange(len(rows))
     own = sums[each, labels] / np.maximum(sizes[labels] - 1, 1)
     means = sums / sizes

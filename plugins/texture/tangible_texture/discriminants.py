@@ -28,7 +28,7 @@ def scatters(planes: Float32[np.ndarray, "d n"], weights: Float32[np.ndarray, "k
     counts = weights.sum(axis=1, dtype=np.float64) + 1e-3
     shares = counts / counts.sum()
     means = products(weights, planes) / counts[:, None]
-    centre = shares @ means
+    centre = np.einsum("k,kd->d", shares, means)
     total = scatter(planes, weights.sum(axis=0)) / counts.sum() - np.outer(centre, centre)
     between = np.einsum("kd,ke->de", shares[:, None] * (means - centre), means - centre)
     within = total - between
@@ -38,8 +38,9 @@ def scatters(planes: Float32[np.ndarray, "d n"], weights: Float32[np.ndarray, "k
 
 def evidence(planes: Float32[np.ndarray, "d n"], found: Scatters) -> Float32[np.ndarray, "k n"]:
     """How much each cell speaks for each class: log likelihoods of one Gaussian's width, but for what all share."""
+    from tangible_core.small_matrices import solved
+
     from .planes import mixed
-    from .small_matrices import solved
 
     towards = solved(found.within, found.means)
     heights = 0.5 * (found.means * towards).sum(axis=1)
@@ -48,9 +49,10 @@ def evidence(planes: Float32[np.ndarray, "d n"], found: Scatters) -> Float32[np.
 
 def discriminant_axes(found: Scatters, most: int) -> Float64[np.ndarray, "m d"]:
     """The directions in which classes differ most, `most` or as many as there are, scaled to unit scatter within."""
-    from .small_matrices import eigen, solved
+    from tangible_core.small_matrices import eigen, solved
 
-    apart = np.sqrt(found.shares)[:, None] * (found.means - found.shares @ found.means)
+    centre = np.einsum("k,kd->d", found.shares, found.means)
+    apart = np.sqrt(found.shares)[:, None] * (found.means - centre)
     towards = solved(found.within, apart)
     strengths, vectors = eigen(np.einsum("kd,jd->kj", apart, towards))
     kept = np.flatnonzero(strengths > 1e-9)[:most]
@@ -59,9 +61,10 @@ def discriminant_axes(found: Scatters, most: int) -> Float64[np.ndarray, "m d"]:
 
 def principal_axes(planes: Float32[np.ndarray, "d n"], most: int, power: float = 0.0) -> Float64[np.ndarray, "m d"]:
     """Leading principal axes of centred planes, each divided by its variance to this power; none for still planes."""
+    from tangible_core.small_matrices import eigen
+
     from .planes import scatter
-    from .small_matrices import eigen
 
     values, vectors = eigen(scatter(planes, np.ones(planes.shape[1], np.float32)) / planes.shape[1])
     kept = np.flatnonzero(values > 1e-6 * max(values[0], 1e-6))[:most]
-    return vectors[kept] * values[kept, None] ** -power
+    return vectors[kept] * np.array([value**-power for value in values[kept].tolist()])[:, None]

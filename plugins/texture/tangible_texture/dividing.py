@@ -29,8 +29,9 @@ def divided(planes: Float32[np.ndarray, "d n"], most: int) -> Int32[np.ndarray, 
 
 def _halved(planes: Float32[np.ndarray, "d n"]) -> tuple[float, np.ndarray]:
     """The sum of squared distances from the mean, and which columns lie above it along the longest axis."""
+    from tangible_core.small_matrices import eigen
+
     from .planes import mixed, scatter
-    from .small_matrices import eigen
 
     centred = planes - planes.mean(axis=1, keepdims=True)
     moments = scatter(centred, np.ones(planes.shape[1], np.float32))

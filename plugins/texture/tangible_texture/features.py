@@ -7,6 +7,7 @@ import numpy as np
 from jaxtyping import Float32
 
 from tangible_core.notes import note
+from tangible_core.opencv import plain_opencv
 from tangible_core.pictures import to_grey
 
 log = logging.getLogger(__name__)
@@ -115,7 +116,8 @@ def _tints(picture: np.ndarray, colour: bool | Literal["auto"]) -> list[Float32[
     red, green, blue = np.moveaxis(paint, 2, 0)
     rows, columns = (-(-side // CELL_PX) for side in red.shape)
     opponents = (1 + (red - green) / 2, 1 + (red + green) / 4 - blue / 2)
-    planes = np.stack([cv2.resize(each, (columns, rows), interpolation=cv2.INTER_AREA) for each in opponents])
+    with plain_opencv():
+        planes = np.stack([cv2.resize(each, (columns, rows), interpolation=cv2.INTER_AREA) for each in opponents])
     differ = float(np.sqrt(averaged(planes, MIDDLE_PX / CELL_PX).var(axis=(1, 2)).sum()))
     if colour == "auto" and differ < COLOURFUL:
         note(log, f"colour left out: windows differ in it by {differ:.3f} of white, under {COLOURFUL:g}")

@@ -6,6 +6,8 @@ import numpy as np
 from jaxtyping import Float32, Int32
 from numba import njit
 
+from tangible_core.elementary import exponential, logarithms
+from tangible_core.opencv import plain_opencv
 from tangible_core.threads import in_blocks
 
 from .discriminants import evidence, scatters
@@ -38,9 +40,10 @@ def enlarged(planes: Float32[np.ndarray, "k m"], shape: tuple[int, int], to: tup
     """Planes of cells, interpolated between the centres of a coarse grid: (k, n)."""
     import cv2
 
-    return np.stack(
-        [cv2.resize(each.reshape(shape), to[::-1], interpolation=cv2.INTER_LINEAR).ravel() for each in planes]
-    )
+    with plain_opencv():
+        return np.stack(
+            [cv2.resize(each.reshape(shape), to[::-1], interpolation=cv2.INTER_LINEAR).ravel() for each in planes]
+        )
 
 
 def pixel_labels(
@@ -51,7 +54,7 @@ def pixel_labels(
     Logarithms of memberships are interpolated between the centres of cells.
     """
     labels, confidence = np.empty(shape, np.int32), np.empty(shape, np.float32)
-    logs = np.log(np.maximum(memberships, np.float32(SURE)))
+    logs = logarithms(np.maximum(memberships, np.float32(SURE)))
     in_blocks(shape[0], lambda start, stop: _fill(logs, cell_px, start, stop, labels, confidence))
     return labels, confidence
 
@@ -77,7 +80,7 @@ def _fill(logs, cell_px, start, stop, labels, confidence):
                 elif value > second:
                     second = value
             labels[row, column] = at
-            confidence[row, column] = 1 - np.exp(second - best)
+            confidence[row, column] = np.float32(1) - exponential(second - best)
 
 
 @njit(cache=True, nogil=True)

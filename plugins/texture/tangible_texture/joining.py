@@ -2,17 +2,19 @@
 
 # ruff: noqa: ANN001, ANN202 -- numba takes the types from the call
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from math import exp
 from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Float32, Float64, Int32
 from numba import njit
 
+from tangible_core.small_matrices import factored, whitened
+
 from .dividing import members
 from .neighbourhood import INSIDE_CELLS, refitted, smoothed
-from .planes import dot
-from .small_matrices import factored, whitened
+from .planes import products, scatter
 
 SIZE_POWER = 1.25
 """How much the sizes of two clusters speak against joining them; 1 in Ward's method."""
@@ -66,11 +68,17 @@ def joining_costs(
     sizes = np.bincount(labels, minlength=count)
     means, scatter = _moments(np.ascontiguousarray(planes[:, order]), weights[order], np.cumsum(sizes) - sizes, sizes)
     ridge = RIDGE * np.einsum("k,kii->", sizes, scatter) / sizes.sum() / len(planes) + 1e-9
-    weighty = (sizes[:, None] * sizes / (sizes[:, None] + sizes) * count / labels.size) ** SIZE_POWER
+    joined = sizes[:, None] * sizes / (sizes[:, None] + sizes) * count / labels.size
     touching = _borders(labels.reshape(shape), count) / np.sqrt(np.minimum(sizes[:, None], sizes))
-    costs = _distances(means, scatter, ridge) * weighty * np.exp(-TOUCHING * touching)
+    costs = _distances(means, scatter, ridge) * _each(lambda size: size**SIZE_POWER, joined)
+    costs *= _each(lambda length: exp(-TOUCHING * length), touching)
     costs[np.triu_indices(count)] = np.inf
     return costs
+
+
+def _each(function: Callable[[float], float], values: Float64[np.ndarray, "k k"]) -> Float64[np.ndarray, "k k"]:
+    """Of one value after another: NumPy's powers of an array have other last bits where AVX-512 is."""
+    return np.array([list(map(function, row)) for row in values.tolist()])
 
 
 @njit(cache=True, nogil=True)
@@ -80,13 +88,9 @@ def _moments(planes, weights, starts, sizes):
     means, scatters = np.zeros((sizes.size, size)), np.zeros((sizes.size, size, size))
     for k in range(sizes.size):
         inside = slice(starts[k], starts[k] + sizes[k])
-        heavy = weights[inside]
-        for d in range(size):
-            weighted = planes[d, inside] * heavy
-            means[k, d] = weighted.sum() / heavy.sum()
-            for e in range(d + 1):
-                scatters[k, d, e] = dot(weighted, planes[e, inside]) / heavy.sum() - means[k, d] * means[k, e]
-                scatters[k, e, d] = scatters[k, d, e]
+        own, heavy = np.ascontiguousarray(planes[:, inside]), weights[inside]
+        means[k] = products(heavy.reshape(1, -1), own)[0] / heavy.sum()
+        scatters[k] = scatter(own, heavy) / heavy.sum() - np.outer(means[k], means[k])
     return means, scatters
 
 

@@ -12,6 +12,8 @@ from tangible_core.threads import in_turns
 
 SAME = 1e-5
 """Rows closer than this share of the longest row are one: less is what single precision leaves of sums."""
+SIDE_BY_SIDE = 64
+"""Rows whose distances are worked on together, as many at once as a processor can."""
 BLOCK = 4096
 """Rows that are summed together: the result does not depend on how many threads there are."""
 
@@ -96,7 +98,7 @@ def _start(rows, uniform, weighted, least):
     return centres
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@njit(cache=True, nogil=True)
 def _squared_distance(one, other):
     total = np.float32(0)
     for d in range(one.size):
@@ -105,22 +107,45 @@ def _squared_distance(one, other):
     return total
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@njit(cache=True, nogil=True)
 def _assign(rows, centres, labels, sums, counts):
     """Write each row's nearest centre, and the sums of the rows by centre; the cost, and how many labels changed."""
     sums[:] = 0
     counts[:] = 0
     cost, moved = 0.0, 0
-    for i in range(len(rows)):
-        best, at = _squared_distance(rows[i], centres[0]), 0
-        for k in range(1, len(centres)):
-            other = _squared_distance(rows[i], centres[k])
-            if other < best:
-                best, at = other, k
-        moved += labels[i] != at
-        labels[i] = at
-        cost += best
-        counts[at] += 1
-        for d in range(rows.shape[1]):
-            sums[at, d] += rows[i, d]
+    upright = np.zeros((rows.shape[1], SIDE_BY_SIDE), np.float32)
+    away = np.empty((len(centres), SIDE_BY_SIDE), np.float32)
+    for first in range(0, len(rows), SIDE_BY_SIDE):
+        part = rows[first : first + SIDE_BY_SIDE]
+        for d in range(part.shape[1]):
+            for i in range(len(part)):
+                upright[d, i] = part[i, d]
+        for k in range(len(centres)):
+            _squared_distances(upright, centres[k], away[k])
+        for i in range(len(part)):
+            at = 0
+            for k in range(1, len(centres)):
+                at = k if away[k, i] < away[at, i] else at
+            moved += labels[first + i] != at
+            labels[first + i] = at
+            cost += away[at, i]
+            counts[at] += 1
+            for d in range(part.shape[1]):
+                sums[at, d] += part[i, d]
     return cost, moved
+
+
+@njit(cache=True, nogil=True)
+def _squared_distances(columns, centre, away):
+    """As `_squared_distance`, of columns side by side: no order depends on how many a processor works on at once."""
+    away[:] = 0
+    for d in range(0, centre.size - 3, 4):  # four at a time: sums are written a fourth as often
+        p, q, r, s = columns[d], columns[d + 1], columns[d + 2], columns[d + 3]
+        a, b, c, e = centre[d], centre[d + 1], centre[d + 2], centre[d + 3]
+        for i in range(SIDE_BY_SIDE):
+            one, two, three, four = p[i] - a, q[i] - b, r[i] - c, s[i] - e
+            away[i] = away[i] + one * one + two * two + three * three + four * four
+    for d in range(centre.size // 4 * 4, centre.size):
+        for i in range(SIDE_BY_SIDE):
+            step = columns[d, i] - centre[d]
+            away[i] += step * step

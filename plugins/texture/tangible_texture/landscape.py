@@ -5,6 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float32, UInt8
 
+from tangible_core.opencv import plain_opencv
+
 from .slopes import slopes
 
 _LARGEST = 16000
@@ -29,7 +31,8 @@ def landscape(smooth: Float32[np.ndarray, "h w c"], most: float, noise: Float32[
     import cv2
 
     magnitude, across, down, own = slopes(smooth)
-    noise = np.minimum(own, 2 * cv2.resize(noise, own.shape[::-1], interpolation=cv2.INTER_LINEAR))
+    with plain_opencv():
+        noise = np.minimum(own, 2 * cv2.resize(noise, own.shape[::-1], interpolation=cv2.INTER_LINEAR))
     noise = np.maximum(noise, np.float32(magnitude.max() / most))
     return Landscape(*(slope / noise for slope in (magnitude, across, down)))
 

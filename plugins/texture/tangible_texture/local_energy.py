@@ -124,8 +124,7 @@ def mean_energies(spectrum: Spectrum, filters: Sequence[Gabor]) -> Float64[np.nd
 
     def work(share: list[int]) -> None:
         for i in share:
-            part = _cut(spectrum, filters[i], np.inf)
-            means[i] = np.vdot(part, part).real
+            means[i] = np.sum(power(_cut(spectrum, filters[i], np.inf)), dtype=np.float64)
 
     in_turns(list(range(len(filters))), work)
     return means

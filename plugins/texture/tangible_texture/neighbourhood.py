@@ -6,6 +6,9 @@ import numpy as np
 from jaxtyping import Float32, Int32
 from numba import njit
 
+from tangible_core.elementary import exponential
+from tangible_core.opencv import plain_opencv
+
 from .discriminants import evidence, scatters
 from .dividing import members
 
@@ -21,12 +24,13 @@ def smoothed(memberships: Float32[np.ndarray, "k n"], shape: tuple[int, int], si
     """Gaussian means of each class's memberships over the grid of cells."""
     import cv2
 
-    return np.stack(
-        [
-            cv2.GaussianBlur(each.reshape(shape), (0, 0), sigma, borderType=cv2.BORDER_REFLECT).ravel()
-            for each in memberships
-        ]
-    )
+    with plain_opencv():
+        return np.stack(
+            [
+                cv2.GaussianBlur(each.reshape(shape), (0, 0), sigma, borderType=cv2.BORDER_REFLECT).ravel()
+                for each in memberships
+            ]
+        )
 
 
 def settled(
@@ -63,7 +67,7 @@ def refitted(
     return np.unique(labels, return_inverse=True)[1].astype(np.int32)
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@njit(cache=True, nogil=True)
 def _softmax(evidence, around, pull):
     found = np.empty_like(evidence)
     classes, cells = evidence.shape
@@ -76,7 +80,7 @@ def _softmax(evidence, around, pull):
                 highest[i - start] = max(highest[i - start], found[k, i])
         for k in range(classes):
             for i in range(start, stop):
-                found[k, i] = np.exp(found[k, i] - highest[i - start])
+                found[k, i] = exponential(found[k, i] - highest[i - start])
                 total[i - start] += found[k, i]
         for k in range(classes):
             for i in range(start, stop):

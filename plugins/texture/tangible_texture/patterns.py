@@ -14,6 +14,7 @@ import numpy as np
 from jaxtyping import Float32, UInt64
 from numba import njit
 
+from tangible_core.opencv import plain_opencv
 from tangible_core.threads import in_blocks
 
 CELL_PX = 4
@@ -36,7 +37,8 @@ def pattern_frequencies(grey: Float32[np.ndarray, "h w"]) -> Float32[np.ndarray,
     shape = tuple(-(-side // CELL_PX) for side in grey.shape)
     found = np.empty((len(RADII), COUNTERS, *shape), np.float32)
     for planes, (radius, sigma) in zip(found, RADII, strict=True):
-        smooth = cv2.GaussianBlur(grey, (0, 0), sigma, borderType=cv2.BORDER_REFLECT_101) if sigma else grey
+        with plain_opencv():
+            smooth = cv2.GaussianBlur(grey, (0, 0), sigma, borderType=cv2.BORDER_REFLECT_101) if sigma else grey
         framed = np.pad(smooth, radius, mode="edge")
         in_blocks(
             shape[0], lambda a, b, f=framed, r=radius, p=planes: _count(f, r, a, b, grey.shape, _FIRST, _SECOND, p), 4

@@ -93,13 +93,15 @@ class Report(Segmenter, Skippable):
         self, grey: Float32[np.ndarray, "h w"], filters: "list[Gabor]", step_px: int
     ) -> Float32[np.ndarray, "rows columns filters"]:
         """Mean |tanh(alpha r)| every step_px pixels, as a share of the greatest: k-means does not mind the scale."""
+        from tangible_core.elementary import hyperbolic_tangents
+
         from .responses import even_responses
         from .smoothing import gaussian
 
         rows, columns = (-(-side // step_px) for side in grey.shape)
         features = np.empty((rows, columns, len(filters)), np.float32)
         for i, (gabor, response) in enumerate(zip(filters, even_responses(grey, filters), strict=True)):
-            bounded = np.abs(np.tanh(np.float32(255 * self.alpha) * response))
+            bounded = np.abs(hyperbolic_tangents(np.float32(255 * self.alpha) * response))
             sigma_px = min(self.window * gabor.sigma_px, self.widest_px)
             features[..., i] = gaussian(bounded[..., None], sigma_px)[::step_px, ::step_px, 0]
         return features / max(float(features.max()), np.finfo(np.float32).tiny)

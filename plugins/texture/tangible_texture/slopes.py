@@ -2,9 +2,13 @@
 
 # ruff: noqa: ANN001, ANN202 -- numba takes the types from the call
 
+from math import log, sqrt
+
 import numpy as np
 from jaxtyping import Float32
 from numba import njit
+
+from tangible_core.opencv import plain_opencv
 
 TILE_PX = 128
 """Side of the tiles in which noise is measured."""
@@ -12,7 +16,7 @@ TILE_PX = 128
 QUIET_SHARE = 0.25
 """In every tile at least this share of the pixels is taken to hold noise and no edge."""
 
-_QUIET_RATIO = np.float32(np.sqrt(-2 * np.log(1 - QUIET_SHARE)))
+_QUIET_RATIO = np.float32(sqrt(-2 * log(1 - QUIET_SHARE)))
 """That quantile of a Rayleigh distribution, which slopes of Gaussian noise follow, over its parameter."""
 
 _HALF = np.float32(0.5)
@@ -28,12 +32,10 @@ def slopes(smooth: Float32[np.ndarray, "h w c"]) -> tuple[Map, Map, Map, Map]:
     as does a steady shading.
     Returns: magnitude, across, down, noise.
     """
-    import cv2
-
     across, down = (
         each.reshape(smooth.shape) for each in _differences(smooth.reshape(len(smooth), -1), smooth.shape[2])
     )
-    magnitude = cv2.magnitude(across, down).reshape(smooth.shape)
+    magnitude = np.sqrt(across * across + down * down)
     noise = _noise(magnitude)
     if smooth.shape[2] == 1:
         return magnitude[..., 0], across[..., 0], down[..., 0], noise
@@ -85,7 +87,8 @@ def _noise(magnitude: Float32[np.ndarray, "h w c"]) -> Map:
     step = 4 if min(rows, columns) >= TILE_PX else 1
     strips = np.array_split(magnitude[::step, ::step], _tiles(rows), axis=0)
     levels = [[_quiet(tile) for tile in np.array_split(strip, _tiles(columns), axis=1)] for strip in strips]
-    return cv2.resize(np.array(levels, np.float32) / _QUIET_RATIO, (columns, rows), interpolation=cv2.INTER_LINEAR)
+    with plain_opencv():
+        return cv2.resize(np.array(levels, np.float32) / _QUIET_RATIO, (columns, rows), interpolation=cv2.INTER_LINEAR)
 
 
 def _tiles(length: int) -> int:

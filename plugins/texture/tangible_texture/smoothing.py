@@ -6,6 +6,8 @@ import numpy as np
 from jaxtyping import Float32
 from numba import njit
 
+from tangible_core.opencv import plain_opencv
+
 WIDER = 1.75
 """Regions are looked for at this many times the sigma at which their boundaries are drawn.
 
@@ -44,7 +46,8 @@ def gaussian(values: Float32[np.ndarray, "h w c"], sigma_px: float) -> Float32[n
     """Gaussian smoothing; outside of the picture is its mirror image."""
     import cv2
 
-    return cv2.GaussianBlur(values, (0, 0), sigma_px, borderType=cv2.BORDER_REFLECT).reshape(values.shape)
+    with plain_opencv():
+        return cv2.GaussianBlur(values, (0, 0), sigma_px, borderType=cv2.BORDER_REFLECT).reshape(values.shape)
 
 
 def two_scales(
@@ -63,6 +66,7 @@ def two_scales(
     near = gaussian(values, near_px)
     whole = cv2.copyMakeBorder(near, 0, -rows % step, 0, -columns % step, cv2.BORDER_REPLICATE)
     size = whole.shape[1] // step, whole.shape[0] // step
-    cells = cv2.resize(whole, size, interpolation=cv2.INTER_AREA).reshape(*size[::-1], -1)
+    with plain_opencv():
+        cells = cv2.resize(whole, size, interpolation=cv2.INTER_AREA).reshape(*size[::-1], -1)
     rest = wide_px**2 - near_px**2 - (step**2 - 1) / 12  # variances add up, that of a box of step pixels among them
     return near, gaussian(cells, rest**0.5 / step) if rest > 0 else cells, step

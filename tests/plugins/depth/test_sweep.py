@@ -1,9 +1,12 @@
 """The compiled sweep against semi-global matching written out plainly, to the last bit."""
 
+import os
+
 import numpy as np
 import pytest
 
 from stereo_scenes import step
+from tangible_core.threads import thread_count
 from tangible_depth import strips
 from tangible_depth.census import census
 from tangible_depth.costs import SHARP, jump_prices
@@ -118,8 +121,26 @@ def test_the_volumes_stay_within_their_bound(shape, span):
     highest = max(b - a for a, b in rows)
     assert [a for a, _ in rows] == [0, *[b for _, b in rows][:-1]]
     assert rows[-1][1] == shape[0]
-    volumes = strips.thread_count() * highest * shape[1] * span.lanes
+    volumes = strips.AT_ONCE * highest * shape[1] * span.lanes
     assert highest <= 8 or volumes <= strips.VOLUME_BYTES
+
+
+@pytest.mark.parametrize("processors", [1, 3, 64])
+def test_strips_are_the_same_with_any_number_of_threads(processors, monkeypatch):
+    expected = strips.strips((3000, 4500), Span(0, 511))
+    monkeypatch.setattr(os, "sched_getaffinity", lambda _: set(range(processors)), raising=False)
+    assert thread_count() == processors
+    assert strips.strips((3000, 4500), Span(0, 511)) == expected
+
+
+def test_no_more_threads_are_at_work_than_there_is_room_for(monkeypatch):
+    monkeypatch.setattr(strips, "VOLUME_BYTES", 3 * 16 * 64 * 32)
+    at_work = []
+    monkeypatch.setattr(strips, "in_turns", lambda tasks, work, most: at_work.append(most))
+    rows = [(y, y + 16) for y in range(0, 160, 16)]
+    codes = np.empty((160, 3, 64), np.uint8)
+    sweep((codes, codes), codes[:, 0], Span(0, 31), SHARP.prices, 1.0, rows, blank((160, 64)))
+    assert at_work == [3]
 
 
 def test_a_jump_is_cheaper_where_the_picture_steps():

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from tangible_core.small_matrices import eigen, solved
 from tangible_texture.discriminants import discriminant_axes, evidence, principal_axes, scatters
 from tangible_texture.dividing import divided, members
 from tangible_texture.full_size import pixel_labels
@@ -10,7 +11,6 @@ from tangible_texture.joining import joining, joining_costs
 from tangible_texture.neighbourhood import INSIDE_CELLS, smoothed
 from tangible_texture.patterns import COUNTERS, RADII, pattern_frequencies
 from tangible_texture.planes import mixed, products, scatter
-from tangible_texture.small_matrices import eigen, solved
 
 
 @pytest.fixture

@@ -1,12 +1,16 @@
 """Symmetric matrices of up to a hundred rows, in float64. Compiled by numba.
 
-LAPACK wakes threads for them, which cost more than they save: ten times, where other threads are at work.
+LAPACK wakes threads for them, which cost more than they save: ten times, where other threads are at work; and its last
+bits are those of the processor.
 """
 
 # ruff: noqa: ANN001, ANN201, ANN202 -- numba takes the types from the call
+# pyright: basic
 
 import numpy as np
 from numba import njit
+
+from . import compiling as compiling  # says so while the kernels are compiled
 
 SWEEPS = 30
 CLEAN = 1e-11

@@ -1,0 +1,192 @@
+"""What every method finds, written down: a program, run once a dispatch by `test_every_processor.py`.
+
+    python tests/every_processor.py FOLDER THREADS [PART ...]
+
+FOLDER/digests.json holds a digest of each result, by name; FOLDER/arrays.npz the results of torch's methods, which are
+compared within a tolerance. Pictures are files that come with scikit-image, and surface and path are whole numbers over
+powers of two: only what is measured can differ.
+"""
+
+import json
+import sys
+from collections.abc import Callable, Iterator
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tangible_core import load_method, threads
+from tangible_core.colours import segment_colours
+from tangible_core.data import HapticSurface, SegmentMap, Views, digest_of
+from tangible_core.geometry import make_relief, normals, resample, slopes, smooth
+from tangible_core.haptic_textures import compile_textures, radial_spectrum, sample_tile, stroke
+from tangible_core.materials import library, relative_roughness
+from tangible_core.metrics import disparity_errors, force_errors, force_steps, loop_works, proxy_lag, segment_errors
+from tangible_core.pictures import to_grey, to_rgb8
+from tangible_core.preflight.bumps import feature_m
+from tangible_core.registry import default_registry
+from tangible_core.scaling import enlarged, enlarged_segments, reduced
+from tangible_core.scene import Scene, read_scene
+
+Found = Iterator[tuple[str, Any]]
+SIZE = slice(90, 346), slice(200, 520)
+"""Of the motorcycle: the part that has most in it."""
+
+
+@cache
+def scene(name: str) -> Scene:
+    return read_scene(f"builtin/{name}", Path(), 0.08, 0.02)
+
+
+@cache
+def pair() -> Views:
+    views = scene("motorcycle").views
+    assert views is not None
+    assert views.right is not None
+    return Views(views.left[SIZE], views.right[SIZE], views.calibration)
+
+
+@cache
+def noisy_pair() -> Views:
+    """The same with noise, the right view darker and two rows lower: for all that pairs are put right by."""
+    assert pair().right is not None
+    noise = np.random.default_rng(0).integers(-12, 13, (2, *pair().left.shape))
+    views = pair().left, np.roll(pair().right, 2, axis=0).astype(int) * 7 // 8
+    return Views(*(np.clip(each + more, 0, 255).astype(np.uint8) for each, more in zip(views, noise, strict=True)))
+
+
+@cache
+def mosaic() -> np.ndarray:
+    """Four textures side by side and over each other, (h, w)."""
+    parts = [scene(name).views.left[:128, :144] for name in ("brick", "grass", "gravel", "coins")]
+    return np.block([parts[:2], parts[2:]])
+
+
+@cache
+def labels() -> np.ndarray:
+    """Of the mosaic."""
+    rows, columns = np.indices(mosaic().shape)
+    return (2 * (rows >= 128) + (columns >= 144)).astype(np.int32)
+
+
+@cache
+def surface(covered: bool = True) -> HapticSurface:
+    """Hills with a step in them, and materials of every kind of texture."""
+    rows, columns = np.indices((96, 128))
+    hills = (rows * (95 - rows) * columns * (127 - columns) // 4096) % 1500 + 300 * (columns > 80)
+    plain = HapticSurface.from_heights(hills / 2.0**17, 0.08)
+    some = tuple({each.texture: each for each in library().values()}.values())
+    return HapticSurface(plain.relief, (rows // 20 % len(some)).astype(np.int32), some) if covered else plain
+
+
+@cache
+def path() -> np.ndarray:
+    """A hand that goes to and fro, in and out of the surface: (n, 3) metres."""
+    tick = np.arange(6000)
+
+    def swing(period: int) -> np.ndarray:
+        return np.abs(tick % (2 * period) - period) / period - 0.5
+
+    return np.column_stack([0.078 * swing(701), 0.058 * swing(277), 0.006 + 0.016 * swing(1013)])
+
+
+def ours(kind: Any) -> Iterator[tuple[str, type[Any], dict[str, Any]]]:
+    """Name, class and options of every method that comes with this distribution."""
+    for each in default_registry().listings:
+        if each.kind == kind and each.distribution == "tangible-images":
+            cls: Any = load_method(kind, each.name)
+            yield each.name, cls, {"torch_device": "cpu"} if "torch_device" in cls.model_fields else {}
+
+
+def pictures() -> Found:
+    rgb = pair().left[:64, :65]
+    rgba = np.dstack([rgb, np.random.default_rng(1).integers(0, 256, (64, 65, 1), np.uint8)])
+    for name, picture in (("rgb", rgb), ("rgba", rgba), ("floats", rgb / 255.0)):
+        yield f"grey of {name}", to_grey(picture)
+        yield f"8 bits of {name}", to_rgb8(picture)
+    rows, columns = np.indices(pair().shape)
+    parts = SegmentMap((rows // 32 * 10 + columns // 32).astype(np.int32))
+    yield "names of colours", tuple(segment_colours(parts, pair().left))
+
+
+def depth() -> Found:
+    for name, cls, options in ours("depth"):
+        for of, views in (("pair", pair()), ("noisy pair", noisy_pair())):
+            found = cls(**options).estimate(views)
+            yield f"{name}: disparity of the {of}", found.disparity_px
+            yield f"{name}: confidence of the {of}", found.confidence
+
+
+def texture() -> Found:
+    for name, cls, options in ours("texture"):
+        for of, picture in (("mosaic", mosaic()), ("colour picture", pair().left)):
+            for segments in (4, "auto"):
+                found = cls(segments=segments, **options).segment(picture)
+                yield f"{name}: labels of the {of}, {segments}", found.labels
+                yield f"{name}: confidence of the {of}, {segments}", found.confidence
+
+
+def reliefs() -> Found:
+    found = load_method("depth", "semi-global")().estimate(pair())
+    relief = make_relief(found, pair().calibration, 0.08, 0.02)
+    yield "relief", relief
+    yield "relief, smoothed", smooth(relief, 0.001)
+    yield "relief, resampled", resample(relief, (101, 87))
+    yield "relief, slopes", slopes(relief)
+    yield "relief, normals", normals(relief)
+    yield "relief, features", feature_m(relief, 0.0032)
+    small = reduced(pair(), 3)
+    yield "views, reduced", small
+    yield "views of 16 bits, reduced", reduced(Views(pair().left.astype(np.uint16) * 257), 3)
+    yield "views of floats, reduced", reduced(Views(np.asarray(pair().left / 255, np.float32)), 3)
+    yield "disparity, enlarged", enlarged(load_method("depth", "semi-global")().estimate(small), pair().shape)
+    segments = SegmentMap(labels(), np.asarray(mosaic() / 255, np.float32))
+    yield "segments, enlarged", enlarged_segments(segments, (300, 331))
+    yield "relative roughness", relative_roughness(segments, mosaic())
+
+
+def render() -> Found:
+    for name, cls, options in ours("render"):
+        for of, felt in (("plain", surface(False)), ("covered", surface())):
+            yield f"{name}: forces on a {of} surface", cls(**options).touch(felt).path(path())
+
+
+def haptic_textures() -> Found:
+    yield "table of haptic textures", compile_textures(tuple(library().values()))
+    for name, material in library().items():
+        tile = sample_tile(material, 0.01, 64)
+        yield f"{name}: tile", tile
+        yield f"{name}: spectrum", radial_spectrum(tile, 0.01)
+        yield f"{name}: stroke", tuple(stroke(material, direction_deg=30.0))
+
+
+def metrics() -> Found:
+    truth = scene("motorcycle").truth
+    assert truth is not None
+    yield "metrics of disparity", tuple(disparity_errors(truth[SIZE] + np.float32(0.3), truth[SIZE]).items())
+    yield "metrics of segments", tuple(segment_errors(np.roll(labels(), 5, axis=1), labels()).items())
+    force, other = (load_method("render", law)().touch(surface()).path(path()) for law in ("proxy", "penalty-gradient"))
+    yield "metrics of forces", tuple({**force_errors(force, other), **force_steps(force)}.items())
+    yield "work of loops", loop_works(force, path(), ~force.any(axis=1))
+    yield "lag of a proxy", proxy_lag(path(), path() - force / 800, path())
+
+
+PARTS: dict[str, Callable[[], Found]] = {
+    each.__name__: each for each in (pictures, depth, texture, reliefs, render, haptic_textures, metrics)
+}
+
+
+def main(folder: str, thread_count: str, *wanted: str) -> None:
+    """Write down what all parts find, or those named."""
+    threads.thread_count = lambda: int(thread_count)
+    found = {name: result for part in wanted or PARTS for name, result in PARTS[part]()}
+    torch = {name for kind in ("depth", "texture") for name, _, options in ours(kind) if options}
+    arrays = {name: result for name, result in found.items() if name.split(":")[0] in torch}
+    np.savez(Path(folder, "arrays.npz"), **arrays)
+    digests = {name: digest_of(result) for name, result in found.items() if name not in arrays}
+    Path(folder, "digests.json").write_text(json.dumps(digests, indent=1))
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

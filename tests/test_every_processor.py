@@ -1,0 +1,135 @@
+"""Results do not depend on the processor, the BLAS or the number of threads.
+
+One machine stands for others: everything that chooses its code by the processor is told to choose otherwise, in a
+process of its own, and what every method finds there is compared with what it finds here. What a machine has not got
+cannot be left out there, and need not be.
+"""
+
+import ast
+import json
+import os
+import platform
+import subprocess
+import sys
+from contextlib import ExitStack
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy._core._multiarray_umath import __cpu_dispatch__, __cpu_features__
+
+PROGRAM = Path(__file__).with_name("every_processor.py")
+SIMPLEST_CORE = {"x86_64": "Prescott", "AMD64": "Prescott", "aarch64": "ARMV8", "arm64": "ARMV8"}
+THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OPENCV_FOR_THREADS_NUM")
+
+PLAIN = {
+    "NUMBA_CPU_NAME": "generic",
+    "NUMBA_CPU_FEATURES": "",
+    "NPY_DISABLE_CPU_FEATURES": ",".join(each for each in __cpu_dispatch__ if __cpu_features__.get(each)),
+    "OPENBLAS_CORETYPE": SIMPLEST_CORE.get(platform.machine(), ""),
+    "OPENCV_CPU_DISABLE": "SSSE3,SSE4.1,POPCNT,SSE4.2,AVX,FP16,AVX2,FMA3,AVX512-SKX",
+    "OPENCV_IPP": "disabled",
+    "ATEN_CPU_CAPABILITY": "default",
+    "MKL_ENABLE_INSTRUCTIONS": "SSE4_2",
+    "ONEDNN_MAX_CPU_ISA": "SSE41",
+    "GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX512F,-AVX2,-FMA,-FMA4",
+}
+"""Another processor: no vectors but the narrowest, and no fused multiplication and addition, from C's library up."""
+
+
+ROOT = Path(__file__).parents[1]
+FREE = {"fastmath"}
+"""Options that let a compiler reorder sums."""
+SUMMED_BY_A_BLAS = {"dot", "vdot", "inner", "matmul", "tensordot", "convolve", "correlate", "cov", "polyfit"}
+ORDERED_BY_THE_PROCESSOR = {"histogram"}
+"""Sorts, and values that are equal come in an order that differs."""
+MAY = {
+    "matches.py": "adds whole numbers that a float holds, exact in any order",
+    "picture_files.py": "adds whole numbers",
+    "torch_gabor.py": "is torch's, compared within a tolerance",
+    "calibration.py": "has one term",
+    "scripted_hand.py": "is a simulated hand, and no result",
+    "block.py": "draws",
+}
+"""Files with a matrix product, and why."""
+
+
+class Running:
+    """The program at work under a dispatch."""
+
+    def __init__(self, folder: Path, thread_count: int, environment: dict[str, str]) -> None:
+        folder.mkdir()
+        given = {**os.environ, **dict.fromkeys(THREADS, str(thread_count)), **environment}
+        self.folder = folder
+        self.process = subprocess.Popen(
+            [sys.executable, PROGRAM, folder, str(thread_count)],
+            env={name: value for name, value in given.items() if value or name == "NUMBA_CPU_FEATURES"},
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+
+    def __enter__(self) -> "Running":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.process.kill()
+        self.process.communicate()
+
+    def found(self) -> tuple[dict[str, str], dict[str, np.ndarray]]:
+        """Digests, and torch's arrays."""
+        _, errors = self.process.communicate()
+        assert self.process.returncode == 0, errors
+        with np.load(self.folder / "arrays.npz") as arrays:
+            return json.loads((self.folder / "digests.json").read_text()), dict(arrays)
+
+
+@pytest.mark.timeout(1200)  # the plain kernels are compiled, which a machine at work takes minutes for
+def test_results_are_the_same_on_every_processor_and_with_any_number_of_threads(tmp_path: Path):
+    with ExitStack() as running:
+        plain = running.enter_context(Running(tmp_path / "plain", 1, PLAIN))
+        digests, arrays = running.enter_context(Running(tmp_path / "here", 2, {})).found()
+        many = running.enter_context(Running(tmp_path / "threads", 7, {}))
+        others = {"seven threads": many.found(), "another processor": plain.found()}
+    for dispatch, (other_digests, other_arrays) in others.items():
+        assert len(digests) > 100
+        assert digests.keys() == other_digests.keys()
+        differing = [name for name in digests if digests[name] != other_digests[name]]
+        assert not differing, f"{dispatch}: {'; '.join(differing)}"
+        assert arrays.keys() == other_arrays.keys()
+        apart = [name for name in arrays if not nearly_equal(arrays[name], other_arrays[name])]
+        assert not apart, f"{dispatch}, beyond torch's tolerance: {'; '.join(apart)}"
+
+
+@pytest.mark.parametrize("folder", ["tangible_core", "plugins"])
+def test_no_sum_is_left_to_a_compiler_or_a_blas(folder: str):
+    complaints = [
+        f"{path.relative_to(ROOT)}:{node.lineno}: {what}"
+        for path in sorted(ROOT.joinpath(folder).rglob("*.py"))
+        if "testing" not in path.parts and path.name not in MAY
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if (what := left_to_others(node))
+    ]
+    assert not complaints, "\n".join(complaints)
+
+
+def left_to_others(node: ast.AST) -> str:
+    """What this piece of source leaves to whoever adds it up; empty for nothing."""
+    match node:
+        case ast.BinOp(op=ast.MatMult()):
+            return "@ is a BLAS product; use np.einsum"
+        case ast.keyword(arg=str(name)) if name in FREE:
+            return f"{name} lets the compiler reorder sums"
+        case ast.Attribute(value=ast.Name(id="np"), attr=name) if name in SUMMED_BY_A_BLAS:
+            return f"np.{name} is a BLAS's; use np.einsum"
+        case ast.Attribute(value=ast.Name(id="np"), attr=name) if name in ORDERED_BY_THE_PROCESSOR:
+            return f"np.{name} adds up in an order that differs; use np.bincount"
+    return ""
+
+
+def nearly_equal(first: np.ndarray, second: np.ndarray) -> bool:
+    """torch's convolutions are summed as the processor likes it: see docs/decisions/0013-every-processor.md."""
+    if first.dtype.kind == "i":
+        return bool(np.mean(first != second) <= 0.005)
+    known = np.isfinite(first)
+    return bool(np.array_equal(known, np.isfinite(second)) and np.mean(np.abs(first - second)[known] > 1 / 16) <= 0.005)

@@ -92,7 +92,7 @@ def test_without_a_file_it_goes_down_and_up_once():
     ("change", "complaint"),
     [
         (lambda table: table[:0], "has no whole tick"),
-        (lambda table: table * np.nan, "has no whole tick"),
+        (lambda table: np.where(np.arange(16) < 14, np.nan, table), "has no whole tick"),
         (lambda table: table[::-1], "goes back after 7."),
         (lambda table: table[[0, 1, 1]], "stands still"),
     ],

@@ -1,6 +1,7 @@
 """What goes wrong around a force loop: each fault ends with no force, in a time that is bounded, and is said."""
 
 import gc
+import io
 import os
 import random
 import signal
@@ -277,6 +278,15 @@ class TestWhatAPluginRaises:
         monkeypatch.setattr(host, "receive", deaf)
         with pytest.raises(EOFError, match="half a message"), Servo(proxy(), Circling()):
             pytest.fail("it was begun")
+
+
+@pytest.mark.parametrize("kept", [0, 4, 8, -1])
+def test_half_a_message_is_the_end(kept: int) -> None:
+    """As a process leaves it that was killed while it wrote."""
+    whole = io.BytesIO()
+    send(whole, Running("how"))
+    assert receive(io.BytesIO(whole.getvalue())) == Running("how")
+    assert receive(io.BytesIO(whole.getvalue()[:kept])) is None
 
 
 class TestSwaps:

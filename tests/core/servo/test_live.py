@@ -32,7 +32,7 @@ def test_every_tick_is_kept_and_reports_come_ten_times_a_second(touch: Touch, tm
         writer.close()
     kept = Recording.load(tmp_path / "hand.nc")
     assert (last.ticks, len(kept.rows), last.stopped, kept.stopped) == (1000, 1000, OVER, "")
-    assert 5 <= len(reports) <= 15
+    assert 5 <= len(reports) <= 15 * max(1, last.time_s)  # longer where a machine at work left ticks out
     assert figures(last)["peak_force_n"] == pytest.approx(kept.peak_force_n, rel=1e-6)
     assert figures(last)["work_j"] == pytest.approx(kept.work_j, abs=1e-9)
     assert 0 < figures(last)["ramping"] <= 500  # by the clock: late ticks are fewer

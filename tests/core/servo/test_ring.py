@@ -253,13 +253,20 @@ class TestFile:
             Ring.create(16).remove()
         assert theirs.exists()
 
-        def refused(path: Path, missing_ok: bool = False) -> None:
-            raise PermissionError(1, "not permitted", str(path))
+        (tmp_path / "tangible-999999994-x.ring").touch()
+        unlink, tried = Path.unlink, []
+
+        def first_refused(path: Path, missing_ok: bool = False) -> None:
+            tried.append(path)
+            if len(tried) == 1:
+                raise PermissionError(1, "not permitted", str(path))
+            unlink(path, missing_ok)
 
         with monkeypatch.context() as sticky:
-            sticky.setattr(Path, "unlink", refused)
+            sticky.setattr(Path, "unlink", first_refused)
             made = Ring.create(16)
-        assert theirs.exists()
+        assert len(tried) == 2
+        assert [path.exists() for path in tried] == [True, False]
         made.remove()
 
     def test_the_table_in_the_documentation_is_the_layout(self) -> None:

@@ -172,9 +172,14 @@ def complete(root: Path, words: Sequence[str], jobs: int) -> list[Result]:
     """Those of the lists, or with names, that the words are of; each said as it is done."""
     try:
         known = mutants(root)
-        chosen = [each for each in known if not words or any(w == each.room or w in each.name for w in words)]
+        rooms = sorted({each.room for each in known})
+        chosen = [
+            each
+            for each in known
+            if not words or any(each.room == word if word in rooms else word in each.name for word in words)
+        ]
         if not chosen:
-            sys.exit(f"no mutant is of {', '.join(words)}; lists are {', '.join(sorted({m.room for m in known}))}")
+            sys.exit(f"no mutant is of {', '.join(words)}; lists are {', '.join(rooms)}")
         results: list[Result] = []
         with closing(run(root, chosen, jobs)) as done:
             for each in done:

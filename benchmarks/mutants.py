@@ -184,17 +184,18 @@ def _outcome(mutant: Mutant, code: int | None) -> Outcome:
     return Outcome.HUNG if code is None else Outcome.KILLED
 
 
-def _is_of(mutant: Mutant, word: str, whole: bool) -> bool:
-    return word == mutant.room or (not whole and word in mutant.name)
-
-
-def complete(root: Path, words: Sequence[str], jobs: int, whole: bool = False) -> list[Result]:
-    """Those that the words are of: lists or, unless only whole ones are meant, names; each said as it is done."""
+def complete(root: Path, words: Sequence[str], jobs: int) -> list[Result]:
+    """Those of the lists, or with names, that the words are of; each said as it is done."""
     try:
         known = mutants(root)
-        chosen = [each for each in known if not words or any(_is_of(each, word, whole) for word in words)]
+        rooms = sorted({each.room for each in known})
+        chosen = [
+            each
+            for each in known
+            if not words or any(each.room == word if word in rooms else word in each.name for word in words)
+        ]
         if not chosen:
-            sys.exit(f"no mutant is of {', '.join(words)}; lists are {', '.join(sorted({m.room for m in known}))}")
+            sys.exit(f"no mutant is of {', '.join(words)}; lists are {', '.join(rooms)}")
         results: list[Result] = []
         with closing(run(root, chosen, jobs)) as done:
             for each in done:
@@ -227,7 +228,7 @@ def main() -> None:
     for each in (signal.SIGINT, signal.SIGTERM):
         signal.signal(each, signal.default_int_handler)
     try:
-        results = complete(ROOT, asked.words, asked.jobs, asked.keep)
+        results = complete(ROOT, asked.words, asked.jobs)
     except KeyboardInterrupt:
         sys.exit(130)
     text = "\n".join(rows(results, before() if asked.keep else None))

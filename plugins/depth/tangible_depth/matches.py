@@ -104,7 +104,7 @@ def corner_matches(
         return NO_MATCHES
     half = window_px // 2
     patches = normalised_windows(left, left_corners, half)
-    score = _correlations(patches, normalised_windows(right, right_corners, half))
+    score = correlations(patches, normalised_windows(right, right_corners, half))
     chosen = _mutual(score)
     chosen = chosen[score[chosen[:, 0], chosen[:, 1]] >= least_score]
     if not len(chosen):
@@ -113,7 +113,7 @@ def corner_matches(
     return Matches(left_corners[chosen[:, 0]].astype(np.float64), refined)
 
 
-def _correlations(left: Float32[np.ndarray, "n k"], right: Float32[np.ndarray, "m k"]) -> Float32[np.ndarray, "n m"]:
+def correlations(left: Float32[np.ndarray, "n k"], right: Float32[np.ndarray, "m k"]) -> Float32[np.ndarray, "n m"]:
     """Products of normalised windows, to a ten-thousandth.
 
     The windows are rounded to whole numbers of 1 / STEPS, whose sums stay under 2^24: exact in any order.

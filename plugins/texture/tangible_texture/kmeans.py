@@ -140,10 +140,10 @@ def _squared_distances(columns, centre, away):
     """As `_squared_distance`, of columns side by side: no order depends on how many a processor works on at once."""
     away[:] = 0
     for d in range(0, centre.size - 3, 4):  # four at a time: sums are written a fourth as often
-        p, q, r, s = columns[d], columns[d + 1], columns[d + 2], columns[d + 3]
-        a, b, c, e = centre[d], centre[d + 1], centre[d + 2], centre[d + 3]
+        p, q, r, s = centre[d], centre[d + 1], centre[d + 2], centre[d + 3]
         for i in range(SIDE_BY_SIDE):
-            one, two, three, four = p[i] - a, q[i] - b, r[i] - c, s[i] - e
+            one, two = columns[d, i] - p, columns[d + 1, i] - q
+            three, four = columns[d + 2, i] - r, columns[d + 3, i] - s
             away[i] = away[i] + one * one + two * two + three * three + four * four
     for d in range(centre.size // 4 * 4, centre.size):
         for i in range(SIDE_BY_SIDE):

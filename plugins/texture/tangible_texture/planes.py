@@ -10,10 +10,8 @@ from numba import njit
 
 BLOCK = 1024
 """Columns that are worked on while they are in the cache."""
-SUMMED = 128
-"""Columns that are summed in single precision; what they come to is summed in double."""
-EIGHT = 8
-"""Columns that are added at a time: sums are written an eighth as often."""
+SUMMED, LANES = 4096, 64
+"""Columns that are summed in single precision, in so many lanes side by side; their sums are added up in double."""
 
 
 @njit(cache=True, nogil=True)
@@ -43,11 +41,12 @@ def _add_four(weights, planes, out):
 @njit(cache=True, nogil=True)
 def products(one, other):
     """one (k, n) times the transpose of other (d, n): sums over the columns, float64 (k, d)."""
-    found = np.zeros((one.shape[0], other.shape[0]))
+    found, lanes = np.zeros((one.shape[0], other.shape[0])), np.empty(LANES, np.float32)
     for start in range(0, one.shape[1], SUMMED):
-        left, right = one[:, start : start + SUMMED], _upright(other[:, start : start + SUMMED])
         for k in range(one.shape[0]):
-            _add_rows(left[k], right, found[k])
+            left = one[k, start : start + SUMMED]
+            for d in range(other.shape[0]):
+                found[k, d] += _dot(left, other[d, start : start + SUMMED], lanes)
     return found
 
 
@@ -55,12 +54,13 @@ def products(one, other):
 def scatter(planes, weights):
     """Weighted second moments, sum of w z z' over the columns: float64 (d, d)."""
     size = planes.shape[0]
-    found = np.zeros((size, size))
+    found, lanes = np.zeros((size, size)), np.empty(LANES, np.float32)
     for start in range(0, planes.shape[1], SUMMED):
-        heavy, part = weights[start : start + SUMMED], planes[:, start : start + SUMMED]
-        upright = _upright(part)
+        heavy = weights[start : start + SUMMED]
         for d in range(size):
-            _add_rows(heavy * part[d], upright, found[d, : d + 1])
+            weighted = heavy * planes[d, start : start + SUMMED]
+            for e in range(d + 1):
+                found[d, e] += _dot(weighted, planes[e, start : start + SUMMED], lanes)
     for d in range(size):
         for e in range(d):
             found[e, d] = found[d, e]
@@ -68,34 +68,37 @@ def scatter(planes, weights):
 
 
 @njit(cache=True, nogil=True)
-def _upright(part):
-    """The columns as rows, filled up to a whole number of EIGHT with zeros."""
-    count = part.shape[1]
-    found = np.zeros((count + -count % EIGHT, part.shape[0]), np.float32)
-    for d in range(part.shape[0]):
-        for i in range(count):
-            found[i, d] = part[d, i]
-    return found
+def _dot(one, other, lanes):
+    """The sum of products of two rows of float32, in lanes of a fixed number.
 
-
-@njit(cache=True, nogil=True)
-def _add_rows(weights, rows, found):
-    """Add the weighted sum of rows, in single precision, to what was found: as many values as that has.
-
-    Every value is summed in the order of the rows, side by side with the others: no order depends on how many values
-    the processor works on at once.
+    So the order of its sums is that of the source, however many values the processor adds at once.
     """
-    size, count = found.size, rows.shape[0]
-    total, heavy = np.zeros(size, np.float32), np.zeros(count, np.float32)
-    for i in range(weights.size):
-        heavy[i] = weights[i]
-    for i in range(0, count, EIGHT):
-        a, b, c, d = heavy[i], heavy[i + 1], heavy[i + 2], heavy[i + 3]
-        e, f, g, h = heavy[i + 4], heavy[i + 5], heavy[i + 6], heavy[i + 7]
-        r, s, t, u, v, w, x, y = (rows[i], rows[i + 1], rows[i + 2], rows[i + 3], rows[i + 4], rows[i + 5],
-            rows[i + 6], rows[i + 7])  # fmt: skip
-        for j in range(size):
-            total[j] = (total[j] + a * r[j] + b * s[j] + c * t[j] + d * u[j] + e * v[j] + f * w[j] + g * x[j]
-                + h * y[j])  # fmt: skip
-    for j in range(size):
-        found[j] += total[j]
+    whole, more = one.size // (8 * LANES) * (8 * LANES), one.size // LANES * LANES
+    lanes[:] = 0
+    for start in range(0, whole, 8 * LANES):  # eight at a time: sums are written an eighth as often
+        for j in range(LANES):
+            i = start + j
+            lanes[j] = (
+                lanes[j]
+                + one[i] * other[i]
+                + one[i + LANES] * other[i + LANES]
+                + one[i + 2 * LANES] * other[i + 2 * LANES]
+                + one[i + 3 * LANES] * other[i + 3 * LANES]
+                + one[i + 4 * LANES] * other[i + 4 * LANES]
+                + one[i + 5 * LANES] * other[i + 5 * LANES]
+                + one[i + 6 * LANES] * other[i + 6 * LANES]
+                + one[i + 7 * LANES] * other[i + 7 * LANES]
+            )
+    for start in range(whole, more, LANES):
+        for j in range(LANES):
+            lanes[j] += one[start + j] * other[start + j]
+    for i in range(more, one.size):
+        lanes[i - more] += one[i] * other[i]
+    for j in range(LANES // 2):
+        lanes[j] += lanes[j + LANES // 2]
+    for j in range(LANES // 4):
+        lanes[j] += lanes[j + LANES // 4]
+    total = 0.0
+    for j in range(LANES // 4):
+        total += lanes[j]
+    return total

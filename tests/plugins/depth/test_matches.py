@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 
+from tangible_depth import matches
 from tangible_depth.harris import corners, harris_response
 from tangible_depth.matches import (
     Matches,
@@ -80,3 +81,15 @@ def test_inverse_lengths_are_those_of_the_windows():
 def test_a_dim_picture_is_stretched_and_a_flat_one_is_not():
     assert stretch8(np.array([[0.1, 0.2, 0.15]], np.float32)).tolist() == [[0, 255, 128]]
     assert stretch8(np.array([[0.3, 0.3]], np.float32)).tolist() == [[0, 0]]
+
+
+def test_the_order_of_a_sum_does_not_matter_to_a_score():
+    random = np.random.default_rng(0)
+    grey = random.random((60, 80), np.float32)
+    points = np.column_stack([random.integers(0, 80, 300), random.integers(0, 60, 300)])
+    windows = normalised_windows(grey, points, 5)
+    score = matches.correlations(windows, windows)
+    for _ in range(5):
+        order = random.permutation(windows.shape[1])
+        assert matches.correlations(windows[:, order], windows[:, order]).tobytes() == score.tobytes()
+    np.testing.assert_allclose(score, np.einsum("nk,mk->nm", windows, windows), atol=5e-4)

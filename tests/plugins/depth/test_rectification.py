@@ -5,7 +5,7 @@ import pytest
 
 from tangible_core.data import Calibration, DisparityMap, Views
 from tangible_core.errors import PictureError
-from tangible_depth import rectification
+from tangible_depth import alignment, rectification
 from tangible_depth.alignment import aligning_homographies, epipole_roll
 from tangible_depth.fundamental import eight_point
 from tangible_depth.homographies import camera_matrix, rotation, transform
@@ -50,6 +50,32 @@ def test_rows_correspond_whatever_way_the_cameras_look(turn, move):
     assert not rectified.skipped
     assert np.median(np.abs(shift[:, 1])) <= 0.15
     assert shift[:, 0].min() > -1  # the search may start at zero
+
+
+def test_the_fit_is_as_good_as_scipys(monkeypatch):
+    from scipy.optimize import least_squares
+
+    costs = []
+
+    def both(cost, start, scale):
+        found = fit(cost, start, scale)
+        theirs = least_squares(cost, start, x_scale=0.1 * scale, xtol=1e-12, ftol=1e-12, gtol=1e-12)
+        costs.append((np.square(cost(found)).sum(), np.square(theirs.fun).sum()))
+        return found
+
+    fit = alignment._least_squares
+    monkeypatch.setattr(alignment, "_least_squares", both)
+    for turn in ((0.02, -0.05, 0.01), (0, 0.175, 0), (0, 0, 0.35)):
+        matches = Matches(*some_wrong(*seen_points(noise_px=0.3, turn=turn, move_m=(-0.3, 0.02, 0.05)), 0.1))
+        aligning_homographies(matches, (HEIGHT, WIDTH))
+    assert len(costs) == 3
+    assert all(ours <= theirs * (1 + 1e-6) for ours, theirs in costs)
+
+
+def test_the_last_bits_of_where_the_fit_starts_do_not_matter():
+    matches = Matches(*seen_points(noise_px=0.3, turn=(0.02, -0.05, 0.01), move_m=(-0.3, 0.02, 0.05)))
+    one, other = (aligning_homographies(matches, (HEIGHT, WIDTH), roll) for roll in (0.0300, 0.0300 + 1e-12))
+    assert all(np.array_equal(*each) for each in zip(one, other, strict=True))
 
 
 def test_wrong_matches_do_not_bend_it():

@@ -39,7 +39,7 @@ def feel(
     Raises: ConfigError if seconds is not above 0 and finite, DeviceError if the device cannot be opened, and what a
     plugin raises.
     """
-    with Servo(touch, device, limits, seconds) as servo, ThreadPoolExecutor(1) as aside:
+    with ThreadPoolExecutor(1) as aside, Servo(touch, device, limits, seconds) as servo:  # the force goes first
         on_start(servo)
         keeper, next_s = _Keeper(servo, keep), time.monotonic()
         try:

@@ -23,10 +23,11 @@ shift along y. Rolls in radians, lengths in half the longer side of the picture,
 _NOISE_PX = 0.3
 _ROLL_LATTICE = 2.0**-10
 """Where to start is rounded to this, in radians: its last bits are those of the processor's linear algebra."""
-_ROUNDS, _TRIES = 60, 12
+_ROUNDS, _TRIES = 80, 15
 """Steps of the fit, and how often one is tried anew."""
-_STEP, _STILL = 1e-5, 1e-7
-"""In standard deviations of _PRIOR: steps by which slopes are told, and one that is as good as none."""
+_STEP, _STILL, _LEAST_GAIN = 1e-5, 1e-5, 0.05
+"""In standard deviations of _PRIOR: steps by which slopes are told, and one that is as good as none; and the share of
+what a step promises that it must bring."""
 
 
 def aligning_homographies(
@@ -64,20 +65,22 @@ def _least_squares(cost: Callable[[np.ndarray], np.ndarray], start: np.ndarray, 
     """
     from tangible_core.small_matrices import solved
 
-    values, found, damping = start, cost(start), 1e-3
+    values, found, damping = start, cost(start), 1e-2
     for _ in range(_ROUNDS):
         both = [cost(values + step) - cost(values - step) for step in np.diag(_STEP * scale)]
         slopes = np.stack(both, axis=1) / (2 * _STEP)
         normal, down = np.einsum("ni,nj->ij", slopes, slopes), np.einsum("ni,n->i", slopes, found)
         for _ in range(_TRIES):
-            move = -solved(normal + damping * np.diag(np.diag(normal)), down[None])[0]
+            move = -solved(normal + damping * np.trace(normal) / 7 * np.eye(7), down[None])[0]
             then = cost(values + scale * move)
-            if np.square(then).sum() < np.square(found).sum():
+            gain, expected = np.square(found).sum() - np.square(then).sum(), -(down * move).sum()
+            if gain > 0 and gain >= _LEAST_GAIN * expected:
                 break
-            damping *= 10
+            damping *= 4
         else:
             break
-        values, found, damping = values + scale * move, then, damping / 10
+        values, found = values + scale * move, then
+        damping = damping / 4 if gain > expected else damping if 2 * gain > expected else 2 * damping
         if np.abs(move).max() < _STILL:
             break
     return values

@@ -16,7 +16,7 @@ FLOW_PIXELS = 60_000
 """Optical flow finds its corners in pictures reduced to this."""
 FLAT = 1e-4
 """Length of a window less its mean, white being 1, below which it holds nothing but rounding."""
-STEPS = 2.0**11
+STEPS = 2.0**24
 """To the unit, of normalised windows that are compared all against all."""
 SMALLEST_SIDE = 16
 """Pictures narrower than this hold no window worth following."""
@@ -114,12 +114,12 @@ def corner_matches(
 
 
 def correlations(left: Float32[np.ndarray, "n k"], right: Float32[np.ndarray, "m k"]) -> Float32[np.ndarray, "n m"]:
-    """Products of normalised windows, to a ten-thousandth.
+    """Products of normalised windows.
 
-    The windows are rounded to whole numbers of 1 / STEPS, whose sums stay under 2^24: exact in any order.
+    The windows are rounded to whole numbers of 1 / STEPS, whose sums stay under 2^53: exact in any order.
     """
-    whole, others = (np.rint(STEPS * each) for each in (left, right))
-    return whole @ others.T * np.float32(STEPS**-2)
+    whole, others = (np.rint(STEPS * each.astype(np.float64)) for each in (left, right))
+    return (whole @ others.T * STEPS**-2).astype(np.float32)
 
 
 def inverse_lengths(grey: Float32[np.ndarray, "h w"], half: int) -> Float32[np.ndarray, "h w"]:

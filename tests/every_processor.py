@@ -28,6 +28,9 @@ from tangible_core.preflight.bumps import feature_m
 from tangible_core.registry import default_registry
 from tangible_core.scaling import enlarged, enlarged_segments, reduced
 from tangible_core.scene import Scene, read_scene
+from tangible_depth.harris import harris_response
+from tangible_depth.matches import flow_matches, inverse_lengths, sift_matches
+from tangible_depth.rectification import rectify
 
 Found = Iterator[tuple[str, Any]]
 SIZE = slice(90, 346), slice(200, 520)
@@ -111,6 +114,13 @@ def pictures() -> Found:
 
 
 def depth() -> Found:
+    left, right = to_grey(noisy_pair().left), to_grey(np.asarray(noisy_pair().right))
+    yield "corners, the response", harris_response(left)
+    yield "corners, lengths of windows", inverse_lengths(left, 4)
+    yield "matches by flow", tuple(flow_matches(left, right))
+    yield "matches by SIFT", tuple(sift_matches(left, right))
+    turned = rectify(noisy_pair())
+    yield "rectified", (turned.left_homography, turned.right_homography, turned.views)
     for name, cls, options in ours("depth"):
         for of, views in (("pair", pair()), ("noisy pair", noisy_pair())):
             found = cls(**options).estimate(views)

@@ -60,26 +60,25 @@ class Running:
     def __init__(self, folder: Path, thread_count: int, environment: dict[str, str]) -> None:
         folder.mkdir()
         given = {**os.environ, **dict.fromkeys(THREADS, str(thread_count)), **environment}
-        self.folder = folder
-        self.process = subprocess.Popen(
-            [sys.executable, PROGRAM, folder, str(thread_count)],
-            env={name: value for name, value in given.items() if value or name == "NUMBA_CPU_FEATURES"},
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.PIPE,
-            text=True,
-        )
+        self.folder, self.errors = folder, folder / "errors.txt"
+        with self.errors.open("w") as errors:
+            self.process = subprocess.Popen(
+                [sys.executable, "-P", PROGRAM, folder, str(thread_count)],
+                env={name: value for name, value in given.items() if value or name == "NUMBA_CPU_FEATURES"},
+                stdout=subprocess.DEVNULL,
+                stderr=errors,
+            )
 
     def __enter__(self) -> "Running":
         return self
 
     def __exit__(self, *_: object) -> None:
         self.process.kill()
-        self.process.communicate()
+        self.process.wait()
 
     def found(self) -> tuple[dict[str, str], dict[str, np.ndarray]]:
         """Digests, and torch's arrays."""
-        _, errors = self.process.communicate()
-        assert self.process.returncode == 0, errors
+        assert self.process.wait() == 0, self.errors.read_text()
         with np.load(self.folder / "arrays.npz") as arrays:
             return json.loads((self.folder / "digests.json").read_text()), dict(arrays)
 

@@ -113,13 +113,13 @@ def corner_matches(
     return Matches(left_corners[chosen[:, 0]].astype(np.float64), refined)
 
 
-def correlations(left: Float32[np.ndarray, "n k"], right: Float32[np.ndarray, "m k"]) -> Float32[np.ndarray, "n m"]:
+def correlations(left: Float32[np.ndarray, "n k"], right: Float32[np.ndarray, "m k"]) -> Float64[np.ndarray, "n m"]:
     """Products of normalised windows.
 
     The windows are rounded to whole numbers of 1 / STEPS, whose sums stay under 2^53: exact in any order.
     """
     whole, others = (np.rint(STEPS * each.astype(np.float64)) for each in (left, right))
-    return (whole @ others.T * STEPS**-2).astype(np.float32)
+    return whole @ others.T * STEPS**-2
 
 
 def inverse_lengths(grey: Float32[np.ndarray, "h w"], half: int) -> Float32[np.ndarray, "h w"]:

@@ -57,9 +57,10 @@ def _scale(values, gain, sign, part):
 @njit(cache=True, nogil=True)
 def power(grid):
     """|z|^2 of a contiguous array of complex numbers."""
-    out, parts = np.empty(grid.shape, np.float32), grid.view(np.float32)
-    for i in range(out.shape[0]):
-        for j in range(out.shape[1]):
+    rows, columns = grid.shape
+    out, parts = np.empty((rows, columns), np.float32), grid.view(np.float32)
+    for i in range(rows):
+        for j in range(columns):
             out[i, j] = parts[i, 2 * j] * parts[i, 2 * j] + parts[i, 2 * j + 1] * parts[i, 2 * j + 1]
     return out
 

@@ -21,8 +21,10 @@ _PRIOR = np.array([0.5, 0.2, 0.5, 0.2, 0.2, 0.5, 0.5])
 """Standard deviations about the start: left roll and tilt along x; right roll, tilts along x and y, logarithm of scale,
 shift along y. Rolls in radians, lengths in half the longer side of the picture, tilts in one over that."""
 _NOISE_PX = 0.3
-_ROLL_LATTICE = 2.0**-10
-"""Where to start is rounded to this, in radians: its last bits are those of the processor's linear algebra."""
+_START, _FOUND, _SINE = 2.0**-10, 2.0**-20, 2.0**-32
+"""What is rounded, and to what: the roll to start with, in radians, whose last bits are those of a processor's linear
+algebra; the seven numbers, to under a thousandth of a pixel; and sines and the like, whose last bits are those of the C
+library, which fuses operations where a processor can."""
 _ROUNDS, _TRIES = 80, 15
 """Steps of the fit, and how often one is tried anew."""
 _STEP, _STILL, _LEAST_GAIN = 1e-5, 1e-5, 0.05
@@ -39,7 +41,7 @@ def aligning_homographies(
     middle. roll: where to start, radians, see `epipole_roll`.
     """
     start = np.zeros(7)
-    start[[0, 2]] = np.rint(roll / _ROLL_LATTICE) * _ROLL_LATTICE
+    start[[0, 2]] = _rounded(roll, _START)
 
     def cost(values: np.ndarray) -> np.ndarray:
         left, right = (transform(h, points) for h, points in zip(_pair(values, shape), matches, strict=True))
@@ -48,7 +50,7 @@ def aligning_homographies(
         pull = np.sqrt(np.array([log1p(each) for each in (offset * offset).tolist()]))
         return np.concatenate([np.sign(offset) * pull, (values - start) / _PRIOR])
 
-    found = _least_squares(cost, start, _PRIOR)
+    found = np.array([_rounded(each, _FOUND) for each in _least_squares(cost, start, _PRIOR)])
     left, right = _pair(found, shape)
     if abs(found[0]) > np.pi / 4 and _runs_backwards(left, right, matches):
         # Both turned over: what lies along the axes changes its sign.
@@ -100,15 +102,20 @@ def _pair(values: np.ndarray, shape: tuple[int, int]) -> tuple[np.ndarray, np.nd
     half = max(shape) / 2
     to_unit = np.array([[1 / half, 0, (1 - columns) / (2 * half)], [0, 1 / half, (1 - rows) / (2 * half)], [0, 0, 1]])
     left = _similarity_and_tilt(left_roll, (left_tilt, 0.0), 1.0, 0.0)
-    right = _similarity_and_tilt(right_roll, (right_tilt_x, right_tilt_y), exp(log_scale), shift)
+    right = _similarity_and_tilt(right_roll, (right_tilt_x, right_tilt_y), _rounded(exp(log_scale), _SINE), shift)
     back = np.array([[half, 0, (columns - 1) / 2], [0, half, (rows - 1) / 2], [0, 0, 1]])
     return product(product(back, left), to_unit), product(product(back, right), to_unit)
 
 
 def _similarity_and_tilt(roll: float, tilt: tuple[float, float], scale: float, shift: float) -> np.ndarray:
     """Tilt is along the turned axes, so that it means the same whichever way the cameras stand."""
-    turn = np.array([[scale * cos(roll), -scale * sin(roll), 0], [scale * sin(roll), scale * cos(roll), 0], [0, 0, 1]])
+    across, down = (scale * _rounded(function(roll), _SINE) for function in (cos, sin))
+    turn = np.array([[across, -down, 0], [down, across, 0], [0, 0, 1]])
     return product(np.array([[1, 0, 0], [0, 1, shift], [*tilt, 1]]), turn)
+
+
+def _rounded(value: float, step: float) -> float:
+    return round(value / step) * step
 
 
 def _runs_backwards(left: np.ndarray, right: np.ndarray, matches: Matches) -> bool:

@@ -9,6 +9,8 @@ from importlib import import_module
 from importlib.metadata import version
 from pathlib import Path
 
+from tangible_core.bench.machine import machine
+
 from .figures import MissedError
 
 RESULTS = Path(__file__).with_name("RESULTS.md")
@@ -63,17 +65,9 @@ def kept() -> dict[str, str]:
 def _machine() -> str:
     versions = ", ".join(f"{name} {version(name)}" for name in VERSIONS)
     return (
-        f"{date.today()}, {_processor()}, {os.cpu_count()} cores, {platform.system()} {platform.machine()}, "
+        f"{date.today()}, {machine()['processor']}, {os.cpu_count()} cores, {platform.system()} {platform.machine()}, "
         f"Python {platform.python_version()}, {versions}."
     )
-
-
-def _processor() -> str:
-    try:
-        found = re.search(r"model name\s*: (.+)", Path("/proc/cpuinfo").read_text(encoding="utf-8"))
-    except OSError:
-        found = None
-    return found[1] if found else platform.processor() or "unknown processor"
 
 
 if __name__ == "__main__":

@@ -2,14 +2,15 @@
 
 import os
 import sys
-import textwrap
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from importlib import metadata
 from pathlib import Path
 
 import jaxtyping
 import pytest
 from hypothesis import settings
+
+from distributions import Points, distribution
 
 os.environ["MPLBACKEND"] = "Agg"
 
@@ -98,15 +99,8 @@ def install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Install
     for module in ("registry", "hooks"):
         monkeypatch.setattr(f"tangible_core.{module}.entry_points", lambda **of: _entry_points(site, **of))
 
-    def install(name: str, points: Mapping[str, Mapping[str, str]], version: str = "1.0", **modules: str) -> Path:
-        info = site / f"{name}-{version}.dist-info"
-        info.mkdir()
-        info.joinpath("METADATA").write_text(f"Metadata-Version: 2.1\nName: {name}\nVersion: {version}\n")
-        lines = [f"[{group}]\n" + "".join(f"{key} = {of[key]}\n" for key in of) for group, of in points.items()]
-        info.joinpath("entry_points.txt").write_text("\n".join(lines))
-        for module, source in modules.items():
-            site.joinpath(f"{module}.py").write_text(textwrap.dedent(source))
-        return site
+    def install(name: str, points: Points, version: str = "1.0", **modules: str) -> Path:
+        return distribution(site, name, points, version, **modules)
 
     yield install
     for name, module in list(sys.modules.items()):

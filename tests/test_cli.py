@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from ctrl_c import HEARING
+from distributions import distribution
 from tangible_core.commands import show
 from tangible_core.data import Outcome
 
@@ -376,13 +377,8 @@ class Faulty(ForceRenderer):
     ],
 )
 def test_a_plugin_neither_ends_the_program_nor_hangs_it(folder: Path, command: str, change: str, said: str):
-    site = folder / "site"
-    info = site / "acme-1.0.dist-info"
-    info.mkdir(parents=True)
-    site.joinpath("acme.py").write_text(ACME)
-    info.joinpath("METADATA").write_text("Metadata-Version: 2.1\nName: acme\nVersion: 1.0\n")
-    points = "[tangible.depth]\nquits = acme:Quits\n[tangible.render]\nfaulty = acme:Faulty\n"
-    info.joinpath("entry_points.txt").write_text(points)
+    points = {"tangible.depth": {"quits": "acme:Quits"}, "tangible.render": {"faulty": "acme:Faulty"}}
+    site = distribution(folder / "site", "acme", points, acme=ACME)
     words = [TANGIBLE, command, "p.yaml", "--set", change, "--seconds", "600", "--no-cache"]
     done = subprocess.run(
         words, cwd=folder, env={**os.environ, "PYTHONPATH": str(site)}, capture_output=True, text=True, timeout=240

@@ -11,6 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from distributions import distribution
+
 ROOT = Path(__file__).parents[1]
 EXAMPLE = ROOT / "examples" / "third_party"
 HERE = {sysconfig.get_path("purelib"), sysconfig.get_path("platlib")}
@@ -102,13 +104,9 @@ def test_a_misspelt_option_of_its_has_a_place_and_a_hint(environment, tmp_path):
 
 def test_a_broken_plugin_beside_it_harms_nobody(environment, tmp_path):
     """Installed as a folder of its own on the path: it cannot be imported, its hooks neither."""
-    info = tmp_path / "broken-1.0.dist-info"
-    info.mkdir()
-    info.joinpath("METADATA").write_text("Metadata-Version: 2.1\nName: broken\nVersion: 1.0\n")
-    info.joinpath("entry_points.txt").write_text(
-        "[tangible.depth]\nbroken = broken:Method\nacme-blocks = broken:Blocks\n[tangible.hooks]\nbroken = broken\n"
-    )
-    tmp_path.joinpath("broken.py").write_text("import a_module_that_is_not_there\n")
+    methods = {"broken": "broken:Method", "acme-blocks": "broken:Blocks"}
+    points = {"tangible.depth": methods, "tangible.hooks": {"broken": "broken"}}
+    distribution(tmp_path, "broken", points, broken="import a_module_that_is_not_there\n")
     there = {"PYTHONPATH": str(tmp_path)}
     listed = environment.run("plugins", "--json", cwd=tmp_path, **there)
     assert listed.returncode == 0, listed.stderr

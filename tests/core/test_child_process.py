@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from distributions import distribution
 from tangible_core import HapticSurface, load_method
 from tangible_core.bench.config import parse_comparison
 from tangible_core.bench.plan import measurements
@@ -113,14 +114,8 @@ def tangible(*words: str, cwd: Path, **variables: str) -> subprocess.CompletedPr
 
 def installed(folder: Path) -> Path:
     """A distribution `acme` with one law."""
-    info = folder / "acme-1.0.dist-info"
-    info.mkdir(parents=True)
-    info.joinpath("METADATA").write_text("Metadata-Version: 2.1\nName: acme\nVersion: 1.0\n")
-    info.joinpath("entry_points.txt").write_text(
-        "[tangible.render]\nacme = acme:Law\n[tangible.depth]\nacme = acme:Flat\n"
-    )
-    folder.joinpath("acme.py").write_text(ACME)
-    return folder
+    points = {"tangible.render": {"acme": "acme:Law"}, "tangible.depth": {"acme": "acme:Flat"}}
+    return distribution(folder, "acme", points, acme=ACME)
 
 
 class TestTheCurrentFolder:

@@ -15,6 +15,7 @@ from typing import Any
 
 import pytest
 
+from distributions import distribution
 from tangible_core.standard_output import kept, stream
 
 TANGIBLE = str(Path(sys.executable).with_name("tangible"))
@@ -82,12 +83,8 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
     from tangible_core.picture_files import write_png
 
-    site = tmp_path / "site"
-    info = site / "noisy-1.0.dist-info"
-    info.mkdir(parents=True)
-    info.joinpath("METADATA").write_text("Metadata-Version: 2.1\nName: noisy\nVersion: 1.0\n")
-    info.joinpath("entry_points.txt").write_text("[tangible.depth]\nnoisy = noisy:Noisy\n[tangible.hooks]\nn = noisy\n")
-    site.joinpath("noisy.py").write_text(NOISY)
+    points = {"tangible.depth": {"noisy": "noisy:Noisy"}, "tangible.hooks": {"n": "noisy"}}
+    site = distribution(tmp_path / "site", "noisy", points, noisy=NOISY)
     monkeypatch.setenv("PYTHONPATH", str(site))
     monkeypatch.delenv("PYTHONUNBUFFERED", raising=False)  # it is C's buffer too
     write_png(tmp_path / "left.png", np.random.default_rng(0).integers(0, 255, (16, 24), np.uint8))

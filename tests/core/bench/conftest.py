@@ -3,13 +3,13 @@
 import os
 import subprocess
 import sys
-import textwrap
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 
 from ctrl_c import HEARING
+from distributions import distribution
 from tangible_core.registry import Registry
 
 FAKES = """
@@ -125,13 +125,8 @@ NAMES = {
 @pytest.fixture
 def registry(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Registry:
     """What is installed, and the fakes; processes that are started find them too."""
-    site = tmp_path / "site"
-    info = site / "fakes-1.0.dist-info"
-    info.mkdir(parents=True)
-    info.joinpath("METADATA").write_text("Metadata-Version: 2.1\nName: fakes\nVersion: 1.0\n")
-    points = "\n".join(f"{name} = bench_fakes:{cls}" for name, cls in NAMES.items())
-    info.joinpath("entry_points.txt").write_text(f"[tangible.depth]\n{points}\n")
-    site.joinpath("bench_fakes.py").write_text(textwrap.dedent(FAKES))
+    points = {"tangible.depth": {name: f"bench_fakes:{cls}" for name, cls in NAMES.items()}}
+    site = distribution(tmp_path / "site", "fakes", points, bench_fakes=FAKES)
     monkeypatch.syspath_prepend(site)
     monkeypatch.setenv("PYTHONPATH", str(site), prepend=os.pathsep)
     monkeypatch.delitem(sys.modules, "bench_fakes", raising=False)

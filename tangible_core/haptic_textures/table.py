@@ -37,3 +37,8 @@ def compile_textures(materials: Sequence[Material]) -> Float64[np.ndarray, "n p"
             row[start : start + len(part)] = part
     table.flags.writeable = False
     return table
+
+
+def bristle_stiffness(table: Float64[np.ndarray, "n p"]) -> float:
+    """Of a friction that sticks, at most, N/m: k mu_s / mu_d, the level at which its bristle starts; 0 without one."""
+    return float(np.max(table[:, STIFFNESS] * (1 + table[:, SWING]), initial=0.0))

@@ -7,6 +7,7 @@ from pydantic import Field, model_validator
 
 from tangible_core.compiled import CompiledTouch
 from tangible_core.data import HapticSurface
+from tangible_core.haptic_textures.table import bristle_stiffness
 from tangible_core.interfaces import ForceRenderer, Touch
 
 from .coefficients import spline_surface
@@ -70,7 +71,8 @@ class Proxy(ForceRenderer):
         if self.texture and (felt := textured(surface, self.friction)):
             labels, table, textures, state = felt
             fixed = (*shape, labels, table, memory, textures, state)
-            return CompiledTouch(proxy_kernels.textured_tick, fixed, memory, float(table[:, 0].max()))
+            stiffness = max(float(table[:, 0].max()), bristle_stiffness(textures))
+            return CompiledTouch(proxy_kernels.textured_tick, fixed, memory, stiffness)
         labels, table = material_table(surface, self._plain())
         if not self.friction:
             table[:, 2:] = 0

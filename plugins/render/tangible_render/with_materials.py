@@ -8,6 +8,7 @@ from pydantic import AfterValidator, Field, ValidationError
 from tangible_core.compiled import CompiledTouch
 from tangible_core.data import HapticState, HapticSurface
 from tangible_core.errors import ConfigError, TangibleError
+from tangible_core.haptic_textures.table import bristle_stiffness
 from tangible_core.interfaces import ForceRenderer, Touch
 from tangible_core.materials import find, library
 
@@ -116,7 +117,7 @@ def _wrapped(law: CompiledTouch, surface: HapticSurface, labels: np.ndarray, tab
 
     bristle = float(table[:, effects_kernels.STIFFNESS].max())
     rest = (labels, *map(float, surface.extent_m), table, bristle, nowhere())
-    bristles = bristle * bool(table[:, effects_kernels.STATIC].any())
+    bristles = max(bristle * bool(table[:, effects_kernels.STATIC].any()), bristle_stiffness(table))
     stiffness = None if law.stiffness_n_per_m is None else max(law.stiffness_n_per_m, bristles)
     if not lateral:
         return CompiledTouch(effects_kernels.tick, (law.fixed, law.address(), *rest), law.memory, stiffness)

@@ -10,11 +10,13 @@ from tangible_core.compiled import CompiledTouch
 from tangible_core.data import NO_FORCE, HapticState, HapticSurface, Material
 from tangible_core.haptic_textures import compile_textures
 from tangible_core.haptic_textures.heights import texture_height
+from tangible_core.interfaces import ForceRenderer
 from tangible_core.materials import library
 from tangible_core.testing.rough import rough_surfaces
 from tangible_core.testing.scenes import ramp
 from tangible_render import proxy_kernels
 from tangible_render.proxy import Proxy
+from tangible_render.with_materials import WithMaterials
 
 K = 800.0
 MAPS = rough_surfaces()
@@ -44,6 +46,19 @@ def touch(renderer: Proxy, surface: HapticSurface) -> CompiledTouch:
     made = renderer.touch(surface)
     assert isinstance(made, CompiledTouch)
     return made
+
+
+@pytest.mark.parametrize("method", [Proxy(), WithMaterials(law="penalty-gradient")])
+@pytest.mark.parametrize(("friction", "ratio"), [(True, 2.0 / 1.6), (False, 1.0)])
+def test_the_stiffness_said_is_that_of_a_hand_that_sticks(method: ForceRenderer, friction: bool, ratio: float) -> None:
+    """Sideways a bristle is stiffer than its material by mu_s / mu_d; no steeper force than said is felt."""
+    sticky = replace(RUBBER, stiffness_n_per_m=K, static_friction=2.0, dynamic_friction=1.6)
+    law = method.model_copy(update={"friction": friction}).touch(level(sticky))
+    assert isinstance(law, CompiledTouch)
+    assert law.stiffness_n_per_m == pytest.approx(ratio * K, rel=1e-12)
+    aside_m = np.arange(20) * 1e-5
+    forces = law.path(np.column_stack([0.003 + aside_m, 0 * aside_m, 0 * aside_m + 0.009]))
+    assert np.ptp(forces[:, 0]) == pytest.approx(friction * ratio * K * np.ptp(aside_m), rel=1e-6)
 
 
 class TestHeights:

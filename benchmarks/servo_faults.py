@@ -52,7 +52,7 @@ def _interrupted(record: Path, share: float) -> float:
 
     def interrupt() -> None:
         sent_s.append(time.monotonic())
-        signal.raise_signal(signal.SIGINT)
+        signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGINT)  # wakes it, asleep as it may be
 
     timer = threading.Timer(2 * share, interrupt)
     signal.signal(signal.SIGINT, signal.default_int_handler)

@@ -10,7 +10,7 @@ import pytest
 
 from ctrl_c import HEARING
 from distributions import distribution
-from tangible_core.registry import Registry
+from tangible_core.plugins.registry import Registry
 
 FAKES = """
 import os, signal, time

@@ -16,10 +16,10 @@ import pytest
 
 from tangible_core.data import DisparityMap, Views
 from tangible_core.errors import PictureError, TangibleError
-from tangible_core.interfaces import DepthEstimator
-from tangible_core.registry import default_registry
-from tangible_core.testing.stereo_scenes import KnownPair, synthetic_pair
-from tangible_core.testing.surfaces import (
+from tangible_core.plugins.interfaces import DepthEstimator
+from tangible_core.plugins.registry import default_registry
+from tangible_core.synthetic.stereo_scenes import KnownPair, synthetic_pair
+from tangible_core.synthetic.surfaces import (
     Surface,
     everywhere,
     left_view,

@@ -14,11 +14,11 @@ import pytest
 from pydantic import ValidationError
 
 from tangible_core.data import SegmentMap
+from tangible_core.data.pictures import fill_non_finite
 from tangible_core.errors import PictureError
-from tangible_core.interfaces import Segmenter
-from tangible_core.pictures import fill_non_finite
-from tangible_core.registry import default_registry
-from tangible_core.testing.scenes import two_textures
+from tangible_core.plugins.interfaces import Segmenter
+from tangible_core.plugins.registry import default_registry
+from tangible_core.synthetic.scenes import two_textures
 from tangible_core.testing.variants import TINY, coarse_variants, exact_variants
 
 METHODS = [

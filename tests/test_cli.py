@@ -334,7 +334,7 @@ def test_what_stands_in_brackets_is_shown(capsys: pytest.CaptureFixture[str]):
 ACME = """\
 import sys
 import numpy as np
-from tangible_core.interfaces import DepthEstimator, ForceRenderer, Touch
+from tangible_core.plugins.interfaces import DepthEstimator, ForceRenderer, Touch
 from tangible_core.data import Force
 
 class Odd(Exception):

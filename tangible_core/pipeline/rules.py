@@ -16,9 +16,9 @@ from ..errors import BrokenMethod, ConfigError
 from ..materials import assignment
 from ..plugins.interfaces import Method, Skippable, Touch
 from ..provenance.closure import closure
-from ..provenance.places import HOME
 from ..scene import geometry, scaling
 from ..scene.scene import Scene
+from .cache import Cache
 from .config import Chosen, PipelineConfig
 
 Inputs = Mapping[str, Any]
@@ -76,7 +76,7 @@ def _disparity(config: PipelineConfig, scene: Scene) -> Rule:
         return DisparityMap(known_px, found.confidence * scene.known, found.unit)
 
     name, key = _identity(config.depth)
-    key = f"{_core('scaling')} {key} 1/{factor} {_known(scene)}"
+    key = f"{_core(scaling.__name__)} {key} 1/{factor} {_known(scene)}"
     return Rule("disparity", name, key, ("views",), make, _skip(config.depth, scene), note)
 
 
@@ -91,7 +91,7 @@ def _relief(config: PipelineConfig, scene: Scene) -> Rule:
         relief = geometry.make_relief(disparity, calibration, size.width_m, size.relief_m, size.holes)
         return geometry.smooth(relief, size.smooth_m)
 
-    return Rule("relief", "core", f"{_core('geometry')} {size!r}", ("views", "disparity"), make)
+    return Rule("relief", "core", f"{_core(geometry.__name__)} {size!r}", ("views", "disparity"), make)
 
 
 def _segments(config: PipelineConfig, scene: Scene) -> Rule:
@@ -111,7 +111,7 @@ def _segments(config: PipelineConfig, scene: Scene) -> Rule:
     elif scene.views is None:
         skip = "the scene has heights and no picture"
     name, key = _identity(config.texture)
-    key = f"{_core('scaling')} {key} 1/{factor} {_known(scene)}"
+    key = f"{_core(scaling.__name__)} {key} 1/{factor} {_known(scene)}"
     return Rule("segments", name, key, ("views",), make, skip, note)
 
 
@@ -124,7 +124,7 @@ def _materials(config: PipelineConfig, scene: Scene, unsegmented: str | None) ->
         return assignment.assign(inputs["segments"], picture, choice.by, library, choice.rules, choice.default)
 
     said = choice.model_dump(exclude={"library"})
-    key = f"{_core('materials')} {said} {_library_digest(tuple(library.values()))}"
+    key = f"{_core(assignment.__name__)} {said} {_library_digest(tuple(library.values()))}"
     skip = f"there are no segments: {unsegmented}" if unsegmented else None
     return Rule("materials", "core", key, ("views", "segments"), make, skip)
 
@@ -139,7 +139,7 @@ def _surface(config: PipelineConfig, scene: Scene) -> Rule:
 
     with_materials = config.render is None or config.render.method.uses_materials
     needs = ("relief", "segments", "materials") if with_materials else ("relief",)
-    return Rule("surface", "core", _core("data"), needs, make)
+    return Rule("surface", "core", _core(HapticSurface.__module__), needs, make)
 
 
 def _touch(config: PipelineConfig, scene: Scene) -> Rule:
@@ -175,12 +175,12 @@ def _identity(chosen: Chosen[Any] | None) -> tuple[str, str]:
 @cache
 def _library_digest(materials: tuple[Material, ...]) -> str:
     """Kept, as a library has hundreds of values and hardly ever changes within a process."""
-    return digest_of(assignment)
+    return digest_of(materials)
 
 
 def _core(module: str) -> str:
     """The code of the core's part: a module, this table, and what keeps a result."""
-    return closure(f"{HOME}.{module}", alone=(__name__, f"{HOME}.cache")).digest
+    return closure(module, alone=(__name__, Cache.__module__)).digest
 
 
 def _felt(config: PipelineConfig, scene: Scene) -> tuple[int, str]:

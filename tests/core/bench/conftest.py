@@ -20,7 +20,7 @@ import numpy as np
 from pydantic import Field
 from tangible_core.data import DisparityMap
 from tangible_core.errors import PictureError
-from tangible_core.interfaces import DepthEstimator
+from tangible_core.plugins.interfaces import DepthEstimator
 
 
 def flat(views, value_px):

@@ -22,7 +22,7 @@ from pydantic import BaseModel
 
 from tangible_core.data import DeviceSpec, Finding, Unit
 from tangible_core.errors import DeviceAbsent, DeviceError
-from tangible_core.interfaces import Adjustable, HapticDevice, Serviceable
+from tangible_core.plugins.interfaces import Adjustable, HapticDevice, Serviceable
 
 
 class Offsets(BaseModel):

@@ -56,7 +56,8 @@ def test_an_address_has_its_kernels_signature() -> None:
 
 
 LAW_AROUND_A_LAW = """
-from tangible_core import HapticSurface, kernels, load_method
+from tangible_core import HapticSurface, load_method
+from tangible_core.compiled import kernels
 import numpy as np
 touch = load_method("render", "with-materials")(law="penalty", material="sand").touch(
     HapticSurface.from_heights(np.full((8, 8), 0.01)))

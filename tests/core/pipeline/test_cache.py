@@ -209,8 +209,8 @@ USER = """
 import sys
 from pathlib import Path
 import numpy as np
-from tangible_core import cache
-from tangible_core.cache import Cache
+from tangible_core.pipeline import cache
+from tangible_core.pipeline.cache import Cache
 from tangible_core.data import SegmentMap
 
 cache, record = Cache(Path(sys.argv[1]), max_bytes=20_000), SegmentMap(np.zeros((20, 20), np.int32))

@@ -212,7 +212,7 @@ class TestCode:
             ("tangible_core.scene.scaling", {"disparity", "segments"}),
             ("tangible_core.scene.geometry", {"relief"}),
             ("tangible_core.materials.rules", {"materials"}),
-            ("tangible_core.data", set(KEPT)),
+            ("tangible_core.data.surface", set(KEPT)),
             ("tangible_core.pipeline.rules", set(KEPT)),
             ("tangible_core.pipeline.cache", set(KEPT)),
             ("tangible_core.pipeline.engine", set()),
@@ -279,7 +279,7 @@ class TestCode:
 
 
 PROMPT = """
-from tangible_core.interfaces import DepthEstimator
+from tangible_core.plugins.interfaces import DepthEstimator
 class Mine(DepthEstimator):
     def estimate(self, views): ...
 """

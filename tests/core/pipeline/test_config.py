@@ -12,7 +12,7 @@ from tangible_core.pipeline.config import load_config, parse_config
 from tangible_core.plugins.registry import default_registry
 from tangible_core.scene.scene import SceneFiles
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 PATH = Path("here/p.yaml")
 
 

@@ -8,7 +8,7 @@ from ruamel.yaml import YAML
 
 from tangible_core.pipeline.schema import json_schema, markdown, materials_schema
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 
 
 @pytest.fixture(scope="module")
@@ -76,7 +76,7 @@ def materials() -> Draft202012Validator:
 
 
 def test_the_shipped_library_is_one(materials: Draft202012Validator):
-    materials.validate(YAML(typ="safe").load(ROOT / "tangible_core/materials.yaml"))
+    materials.validate(YAML(typ="safe").load(ROOT / "tangible_core/materials/materials.yaml"))
 
 
 @pytest.mark.parametrize(

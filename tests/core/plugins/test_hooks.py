@@ -117,7 +117,7 @@ def test_hook_modules_come_by_entry_point(install):
         "acme",
         {"tangible.hooks": {"diary": "acme_diary"}},
         acme_diary="""
-            from tangible_core.hooks import hookimpl
+            from tangible_core.plugins.hooks import hookimpl
             @hookimpl
             def tangible_methods(kind):
                 return {kind: "acme:Mine"}
@@ -146,7 +146,7 @@ def test_an_observer_of_a_moment_that_does_not_exist_is_said(install, caplog):
         "acme",
         {"tangible.hooks": {"diary": "acme_diary"}},
         acme_diary="""
-            from tangible_core.hooks import hookimpl
+            from tangible_core.plugins.hooks import hookimpl
             @hookimpl
             def tangible_stage_finisched(outcome): ...
             """,
@@ -160,7 +160,7 @@ def test_an_observer_that_asks_for_what_is_not_told_is_left_out(install, caplog)
         "acme",
         {"tangible.hooks": {"diary": "acme_diary"}},
         acme_diary="""
-            from tangible_core.hooks import hookimpl
+            from tangible_core.plugins.hooks import hookimpl
             @hookimpl
             def tangible_stage_finished(outcome, mood): ...
             """,

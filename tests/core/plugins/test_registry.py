@@ -152,7 +152,7 @@ def test_a_plugin_that_is_slow_to_import_is_listed_without_waiting(install):
     install_mine(install)
     assert [each.summary for each in Registry().listings] == ["The same everywhere."] * 2
     code = (
-        f"import sys; sys.path.insert(0, {str(site)!r}); from tangible_core.registry import Registry; "
+        f"import sys; sys.path.insert(0, {str(site)!r}); from tangible_core.plugins.registry import Registry; "
         "names = Registry().names('depth'); assert 'heavy' in names, names; "
         "print([each.summary for each in Registry().listings if each.name == 'heavy'], 'heavy_library' in sys.modules)"
     )
@@ -176,7 +176,7 @@ def test_names_can_be_computed_by_a_hook(install):
         {"tangible.hooks": {"names": "acme_names"}},
         acme=MINE,
         acme_names="""
-            from tangible_core.hooks import hookimpl
+            from tangible_core.plugins.hooks import hookimpl
             @hookimpl
             def tangible_methods(kind):
                 return {"computed": "acme:Mine", "lost": "acme:Gone"} if kind == "depth" else {}
@@ -201,7 +201,7 @@ def test_a_hook_that_computes_nonsense_costs_only_its_own_names(install, answer)
         "odd",
         {"tangible.hooks": {"names": "odd_names"}},
         odd_names=f"""
-            from tangible_core.hooks import hookimpl
+            from tangible_core.plugins.hooks import hookimpl
             @hookimpl
             def tangible_methods(kind):
                 {answer}

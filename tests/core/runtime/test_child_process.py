@@ -38,8 +38,8 @@ ACME = '''
 import os, pathlib
 import numpy as np
 from tangible_core import DepthEstimator, DisparityMap, Force, ForceRenderer, HapticDevice
-from tangible_core.compiled import CompiledTouch
-from tangible_core.interfaces import Touch
+from tangible_core.compiled.touch import CompiledTouch
+from tangible_core.plugins.interfaces import Touch
 from tangible_core.testing.loop_devices import SPEC
 
 FELT = pathlib.Path(__file__).with_suffix(f".{os.getpid()}.felt")
@@ -193,7 +193,7 @@ class TestCommand:
     @pytest.mark.parametrize("flags", [[], ["-E"], ["-s"], ["-I"], ["-S"]])
     def test_what_python_was_told_to_leave_out_is_left_out(self, flags: list[str]) -> None:
         """A Python with these flags asks for the words, and here they are looked at."""
-        code = f"import sys; sys.path[:] = {sys.path!r}; from tangible_core.child_process import command; "
+        code = f"import sys; sys.path[:] = {sys.path!r}; from tangible_core.runtime.child_process import command; "
         code += "print(*command('x')[1:-2])"
         said = subprocess.run([sys.executable, *flags, "-c", code], capture_output=True, text=True, check=True)
         assert said.stdout.split()[0] == "-P"

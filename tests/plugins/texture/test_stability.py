@@ -254,7 +254,7 @@ def test_the_memory_that_is_stated_is_enough_for_four_megapixels(name: str, byte
     """Of grey, above the picture, and 16 MiB for what does not grow."""
     script = (
         "import numpy as np; from tangible_core.bench.memory import start_peak;"
-        "from tangible_core.registry import default_registry as installed;"
+        "from tangible_core.plugins.registry import default_registry as installed;"
         "squares = (np.indices((2000, 2000)) // 250).sum(axis=0) % 2 * 90;"
         "picture = (squares + np.random.default_rng(0).integers(60, 80, squares.shape)).astype(np.uint8); del squares;"
         f"method = installed().load('texture', '{name}')();"

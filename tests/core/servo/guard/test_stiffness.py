@@ -31,7 +31,7 @@ FLAGS, FZ = TICK_COLUMNS.index("flags"), TICK_COLUMNS.index("fz_n")
 LEVEL_M = 0.002
 PLAIN = """
 from tangible_core.data import Force
-from tangible_core.interfaces import Touch
+from tangible_core.plugins.interfaces import Touch
 
 class Plain(Touch):
     def __init__(self, k, height_m=0.002):

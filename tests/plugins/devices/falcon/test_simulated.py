@@ -54,7 +54,7 @@ def test_a_bad_file_is_refused_though_none_is_needed(tmp_path):
 
 
 def test_the_page_shows_what_the_program_takes(tmp_path: Path):
-    page = Path(__file__).parents[3].joinpath("docs/falcon.md").read_text(encoding="utf-8")
+    page = Path(__file__).parents[4].joinpath("docs/falcon.md").read_text(encoding="utf-8")
     assert UDEV_RULE in page and UDEV_FILE in page
     blocks = [textwrap.dedent(each) for each in re.findall(r"```yaml\n(.*?)```", page, re.DOTALL)]
     assert len(blocks) == 2

@@ -12,8 +12,8 @@ from tangible_core.bench.plan import measurements
 from tangible_core.bench.run import look, run
 from tangible_core.bench.summary import Cell, cells
 from tangible_core.bench.table import Results, tables
-from tangible_core.interfaces import DepthEstimator
-from tangible_core.registry import default_registry
+from tangible_core.plugins.interfaces import DepthEstimator
+from tangible_core.plugins.registry import default_registry
 from tangible_depth.opencv_sgbm import OpenCVSGBM
 from tangible_depth.semi_global import SemiGlobal
 from tangible_depth.zncc import Zncc

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from tangible_depth.epipolar import symmetric_epipolar_distance
-from tangible_depth.fundamental import eight_point
-from tangible_depth.homographies import camera_matrix, rotation
+from tangible_depth.rectify.epipolar import symmetric_epipolar_distance
+from tangible_depth.rectify.fundamental import eight_point
+from tangible_depth.rectify.homographies import camera_matrix, rotation
 
 from .figures import Figure
 

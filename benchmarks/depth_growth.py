@@ -7,9 +7,9 @@ from functools import partial
 import numpy as np
 
 from tangible_core.bench.memory import start_peak
-from tangible_depth import strips
-from tangible_depth.adaptive import PROBE_ROWS
+from tangible_depth.matching.adaptive import PROBE_ROWS
 from tangible_depth.semi_global import SemiGlobal
+from tangible_depth.sgm import strips
 
 from .depth_opencv import filled
 from .depth_pairs import Known, real

@@ -3,7 +3,7 @@
 import cv2
 import numpy as np
 
-from tangible_core.geometry import fill_rows
+from tangible_core.scene.geometry import fill_rows
 
 from .depth_pairs import Known
 

@@ -10,8 +10,8 @@ import numpy as np
 from tangible_core.bench.depth import range_px
 from tangible_core.bench.depth_scenes import DepthScene
 from tangible_core.data import Views
-from tangible_core.testing.stereo_scenes import SCENES, KnownPair
-from tangible_depth.pairs import Pair, grey_pair
+from tangible_core.synthetic.stereo_scenes import SCENES, KnownPair
+from tangible_depth.search.pairs import Pair, grey_pair
 
 FOLDER = "TANGIBLE_STEREO"
 """Environment variable: a folder whose sub-folders hold left.png, right.png and disparity.npz."""

@@ -4,8 +4,8 @@ from functools import partial
 
 import numpy as np
 
-from tangible_depth.asked import asked_span
-from tangible_depth.search_range import find_range
+from tangible_depth.search.asked import asked_span
+from tangible_depth.search.search_range import find_range
 from tangible_depth.semi_global import SemiGlobal
 
 from .depth_pairs import Known, real, synthetic

@@ -8,9 +8,9 @@ import numpy as np
 
 from tangible_core.data import DisparityMap, Views
 from tangible_core.metrics import disparity_errors
-from tangible_core.scaling import enlarged, felt_factor, reduced
+from tangible_core.scene.scaling import enlarged, felt_factor, reduced
 from tangible_depth.opencv_sgbm import OpenCVSGBM
-from tangible_depth.rectification import rectify
+from tangible_depth.rectify.rectification import rectify
 from tangible_depth.semi_global import SemiGlobal
 
 from .depth_pairs import Known, real

@@ -16,7 +16,7 @@ from time import perf_counter
 import cv2, numba, numpy
 from skimage.data import stereo_motorcycle
 from tangible_core import Views
-import tangible_depth.chain, tangible_depth.pairs, tangible_depth.scaled
+import tangible_depth.matching.chain, tangible_depth.search.pairs, tangible_depth.matching.scaled
 from tangible_depth.semi_global import SemiGlobal
 left, right, _ = stereo_motorcycle()
 class Ear(logging.Handler):

@@ -8,9 +8,9 @@ import numpy as np
 
 from tangible_core.data import Views
 from tangible_core.metrics import disparity_errors
-from tangible_depth.homographies import camera_matrix, rotation, transform
-from tangible_depth.rectification import rectify
-from tangible_depth.rectified import Rectified
+from tangible_depth.rectify.homographies import camera_matrix, rotation, transform
+from tangible_depth.rectify.rectification import rectify
+from tangible_depth.rectify.rectified import Rectified
 from tangible_depth.semi_global import SemiGlobal
 
 from .depth_pairs import Known, real, synthetic

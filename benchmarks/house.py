@@ -12,8 +12,8 @@ from pathlib import Path
 from time import perf_counter
 
 from tangible_core import load_pipeline
-from tangible_core.cache import Cache
 from tangible_core.data import Views
+from tangible_core.pipeline.cache import Cache
 
 ROOT = Path(__file__).parents[1]
 PRODUCTS = ("disparity", "segments", "materials", "surface", "touch")

@@ -12,7 +12,7 @@ from time import perf_counter
 import numpy as np
 
 from tangible_core.data import HapticSurface
-from tangible_core.interfaces import Touch
+from tangible_core.plugins.interfaces import Touch
 from tangible_core.servo import Safety
 from tangible_core.session import Recording, Writer, replay, run, undisturbed
 from tangible_devices.mock import Mock

@@ -7,12 +7,12 @@ from time import thread_time
 import numpy as np
 from numba import njit
 
+from tangible_core.compiled.kernels import step_velocity
 from tangible_core.data import DeviceSpec
-from tangible_core.kernels import step_velocity
-from tangible_core.servo.coupling import couple
-from tangible_core.servo.guard import guard
-from tangible_core.servo.safety import Safety
-from tangible_core.testing.rough import rough_surfaces
+from tangible_core.servo.guard.coupling import couple
+from tangible_core.servo.guard.guard import guard
+from tangible_core.servo.guard.safety import Safety
+from tangible_core.synthetic.rough import rough_surfaces
 from tangible_render.proxy import Proxy
 
 from .figures import Figure, table

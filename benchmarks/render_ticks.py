@@ -8,12 +8,12 @@ import numpy as np
 from numba import njit
 
 from tangible_core.data import HapticSurface, Material
-from tangible_core.interfaces import ForceRenderer
-from tangible_core.materials import library
-from tangible_core.registry import default_registry
-from tangible_render import mask_kernels
-from tangible_render.grey_levels import grey_levels
+from tangible_core.materials.assignment import library
+from tangible_core.plugins.interfaces import ForceRenderer
+from tangible_core.plugins.registry import default_registry
+from tangible_render import tangible_mask_kernels
 from tangible_render.proxy import Proxy
+from tangible_render.surface.grey_levels import grey_levels
 from tangible_render.tangible_mask import TangibleMask, summed_tables
 from tangible_render.with_materials import WithMaterials
 
@@ -80,7 +80,7 @@ def _by_sums(dark, rows, columns, half, out):  # noqa: ANN001, ANN202
 @njit(nogil=True)
 def _by_tables(tables, rows, columns, half, out):  # noqa: ANN001, ANN202
     for i in range(rows.size):
-        out[i, 0], out[i, 1] = mask_kernels.window(tables, rows[i], columns[i], half, half)
+        out[i, 0], out[i, 1] = tangible_mask_kernels.window(tables, rows[i], columns[i], half, half)
 
 
 def skips() -> list[str]:

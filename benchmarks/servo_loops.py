@@ -17,7 +17,7 @@ import numpy as np
 
 from tangible_core import HapticSurface, load_method
 from tangible_core.data import Spread
-from tangible_core.interfaces import HapticDevice, Touch
+from tangible_core.plugins.interfaces import HapticDevice, Touch
 from tangible_core.servo import Servo
 from tangible_core.testing.loop_devices import Circling
 

@@ -11,10 +11,10 @@ import numpy as np
 from numba import njit
 
 from tangible_core import HapticSurface, load_method
-from tangible_core.compiled import CompiledTouch
-from tangible_core.compiling import KERNEL
-from tangible_core.kernels import Address
-from tangible_core.materials import library
+from tangible_core.compiled.compiling import KERNEL
+from tangible_core.compiled.kernels import Address
+from tangible_core.compiled.touch import CompiledTouch
+from tangible_core.materials.assignment import library
 from tangible_core.servo import Ring, Safety, cycle
 from tangible_core.servo.loop import sections
 from tangible_core.servo.ring import PERIOD_NS

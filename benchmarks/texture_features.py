@@ -6,9 +6,9 @@ from math import ceil
 
 import numpy as np
 
-from tangible_core.pictures import to_grey
-from tangible_texture.gabor_bank import Gabor, bank, kernel, octaves
-from tangible_texture.local_energy import local_energy, smoothing_px
+from tangible_core.data.pictures import to_grey
+from tangible_texture.energies.gabor_bank import Gabor, bank, kernel, octaves
+from tangible_texture.energies.local_energy import local_energy, smoothing_px
 
 from .figures import Figure
 from .texture_scenes import some

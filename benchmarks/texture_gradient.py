@@ -9,7 +9,7 @@ from skimage.morphology import remove_small_objects
 from skimage.segmentation import watershed
 
 from tangible_core.metrics import segment_errors
-from tangible_core.registry import load_method
+from tangible_core.plugins.registry import load_method
 
 from .figures import Figure
 from .texture_scenes import smooth

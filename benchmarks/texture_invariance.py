@@ -7,7 +7,7 @@ import numpy as np
 
 from tangible_core.bench.damage import noise
 from tangible_core.metrics import segment_errors
-from tangible_core.registry import default_registry, load_method
+from tangible_core.plugins.registry import default_registry, load_method
 
 from .figures import Figure
 from .texture_accuracy import found

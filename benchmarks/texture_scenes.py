@@ -5,7 +5,7 @@ from functools import cache
 from pathlib import Path
 
 from tangible_core.bench.texture_scenes import TextureScene
-from tangible_core.testing.texture_scenes import KnownSegments, smooth_scene
+from tangible_core.synthetic.texture_scenes import KnownSegments, smooth_scene
 
 FOLDER = "TANGIBLE_TEXTURES"
 """Environment variable: a folder with pictures of one texture each, eight or more, that no method was tuned on."""

@@ -23,30 +23,30 @@ if TYPE_CHECKING:
     from .data import Relief as Relief
     from .data import SegmentMap as SegmentMap
     from .data import Views as Views
-    from .engine import load_pipeline as load_pipeline
     from .errors import TangibleError as TangibleError
-    from .hooks import hookimpl as hookimpl
-    from .interfaces import DepthEstimator as DepthEstimator
-    from .interfaces import ForceRenderer as ForceRenderer
-    from .interfaces import HapticDevice as HapticDevice
-    from .interfaces import Link as Link
-    from .interfaces import Segmenter as Segmenter
-    from .interfaces import Skippable as Skippable
-    from .interfaces import Touch as Touch
-    from .registry import load_method as load_method
+    from .pipeline.engine import load_pipeline as load_pipeline
+    from .plugins.hooks import hookimpl as hookimpl
+    from .plugins.interfaces import DepthEstimator as DepthEstimator
+    from .plugins.interfaces import ForceRenderer as ForceRenderer
+    from .plugins.interfaces import HapticDevice as HapticDevice
+    from .plugins.interfaces import Link as Link
+    from .plugins.interfaces import Segmenter as Segmenter
+    from .plugins.interfaces import Skippable as Skippable
+    from .plugins.interfaces import Touch as Touch
+    from .plugins.registry import load_method as load_method
 
 _ROOMS = {
     "data": (
         "Calibration", "DeviceSpec", "DisparityMap", "Force", "HapticState", "HapticSurface", "Material",
         "MaterialMap", "Outcome", "Plan", "Relief", "SegmentMap", "Views",
     ),
-    "engine": ("load_pipeline",),
+    "pipeline.engine": ("load_pipeline",),
     "errors": ("TangibleError",),
-    "hooks": ("hookimpl",),
-    "interfaces": (
+    "plugins.hooks": ("hookimpl",),
+    "plugins.interfaces": (
         "DepthEstimator", "ForceRenderer", "HapticDevice", "Link", "Segmenter", "Skippable", "Touch",
     ),
-    "registry": ("load_method",),
+    "plugins.registry": ("load_method",),
 }  # fmt: skip
 _HOME = {name: room for room, names in _ROOMS.items() for name in names}
 

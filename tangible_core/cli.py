@@ -11,12 +11,13 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from . import hooks, standard_output
 from .cli_devices import devices_app
 from .cli_materials import materials_app
 from .cli_options import DONE, FAILED, INTERRUPTED, MISTAKE, Config, Json, NoCache, Out, Seconds, Sets
 from .errors import ConfigError, TangibleError, exited, quoted, shown
-from .registry import KIND_NAMES, default_registry
+from .plugins import hooks
+from .plugins.registry import KIND_NAMES, default_registry
+from .runtime import standard_output
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

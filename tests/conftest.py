@@ -14,30 +14,21 @@ from distributions import Points, distribution
 
 os.environ["MPLBACKEND"] = "Agg"
 
-# Shapes and types of every call are checked in these rooms, from their first import on. Rooms of pydantic models stay
+# Shapes and types of every call are checked in these modules, from their first import on. Rooms of pydantic models stay
 # out, as those check themselves, and so does what numba compiles, as a checked function cannot be compiled.
 CHECKED = (
     "data",
-    "files",
-    "geometry",
-    "materials",
+    "files.writing",
+    "scene.geometry",
+    "scene.picture_files",
     "metrics",
-    "picture_files",
-    "pictures",
+    "materials.assignment",
+    "materials.colours",
     "testing.handle",
-    "testing.nearest",
-    "testing.reliefs",
-    "testing.rough",
-    "testing.scenes",
-    "testing.surfaces",
-    "testing.stereo_scenes",
-    "testing.strokes",
-    "testing.textures",
-    "testing.texture_scenes",
+    "testing.variants",
+    "synthetic",
     "bench.damage",
     "bench.turning",
-    "testing.variants",
-    "colours",
     "haptic_textures.waves",
     "haptic_textures.table",
     "haptic_textures.sample",
@@ -97,7 +88,7 @@ def install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Install
     site.mkdir()
     monkeypatch.syspath_prepend(site)
     for module in ("registry", "hooks"):
-        monkeypatch.setattr(f"tangible_core.{module}.entry_points", lambda **of: _entry_points(site, **of))
+        monkeypatch.setattr(f"tangible_core.plugins.{module}.entry_points", lambda **of: _entry_points(site, **of))
 
     def install(name: str, points: Points, version: str = "1.0", **modules: str) -> Path:
         return distribution(site, name, points, version, **modules)

@@ -16,21 +16,22 @@ from typing import Any
 
 import numpy as np
 
-from tangible_core import load_method, threads
-from tangible_core.colours import segment_colours
+from tangible_core import load_method
+from tangible_core.compiled import threads
 from tangible_core.data import HapticSurface, SegmentMap, Views, digest_of
-from tangible_core.geometry import make_relief, normals, resample, slopes, smooth
+from tangible_core.data.pictures import to_grey, to_rgb8
 from tangible_core.haptic_textures import compile_textures, radial_spectrum, sample_tile, stroke
-from tangible_core.materials import library, relative_roughness
+from tangible_core.materials.assignment import library, relative_roughness
+from tangible_core.materials.colours import segment_colours
 from tangible_core.metrics import disparity_errors, force_errors, force_steps, loop_works, proxy_lag, segment_errors
-from tangible_core.pictures import to_grey, to_rgb8
+from tangible_core.plugins.registry import default_registry
 from tangible_core.preflight.bumps import feature_m
-from tangible_core.registry import default_registry
-from tangible_core.scaling import enlarged, enlarged_segments, reduced
-from tangible_core.scene import Scene, read_scene
-from tangible_depth.harris import harris_response
-from tangible_depth.matches import flow_matches, inverse_lengths, sift_matches
-from tangible_depth.rectification import rectify
+from tangible_core.scene.geometry import make_relief, normals, resample, slopes, smooth
+from tangible_core.scene.scaling import enlarged, enlarged_segments, reduced
+from tangible_core.scene.scene import Scene, read_scene
+from tangible_depth.rectify.rectification import rectify
+from tangible_depth.sparse.harris import harris_response
+from tangible_depth.sparse.matches import flow_matches, inverse_lengths, sift_matches
 
 Found = Iterator[tuple[str, Any]]
 SIZE = slice(90, 346), slice(200, 520)

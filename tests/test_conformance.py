@@ -1,6 +1,6 @@
 """Every check of the conformance kit, over every method that is shipped."""
 
-from tangible_core.registry import default_registry
+from tangible_core.plugins.registry import default_registry
 from tangible_core.testing import conforms
 
 EXPECTED_FAILURES: dict[tuple[str, str], dict[str, str]] = {

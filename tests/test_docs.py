@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from tangible_core import hooks
 from tangible_core.data import TICK_COLUMNS
+from tangible_core.plugins import hooks
 
 ROOT = Path(__file__).parents[1]
 PAGES = sorted([*ROOT.glob("*.md"), *ROOT.joinpath("docs").rglob("*.md"), *ROOT.joinpath("examples").rglob("*.md")])
@@ -33,8 +33,8 @@ def test_the_plugin_page_names_every_moment(moment):
 
 
 def test_the_page_on_materials_shows_what_the_program_takes(tmp_path: Path):
-    from tangible_core.config import parse_config
-    from tangible_core.registry import default_registry
+    from tangible_core.pipeline.config import parse_config
+    from tangible_core.plugins.registry import default_registry
 
     blocks = re.findall(r"```yaml\n(.*?)```", ROOT.joinpath("docs/materials.md").read_text(encoding="utf-8"), re.DOTALL)
     library, *files = sorted(blocks, key=lambda block: "my-materials.yaml\n" not in block)
@@ -67,8 +67,8 @@ def test_the_page_on_the_force_loop_feels(capsys: pytest.CaptureFixture[str]):
 
 
 def test_the_page_on_devices_shows_what_the_program_takes():
-    from tangible_core.config import parse_config
-    from tangible_core.registry import default_registry
+    from tangible_core.pipeline.config import parse_config
+    from tangible_core.plugins.registry import default_registry
 
     page = ROOT.joinpath("docs/devices.md").read_text(encoding="utf-8")
     [text] = re.findall(r"```yaml\n(.*?)```", page, re.DOTALL)

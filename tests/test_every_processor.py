@@ -46,7 +46,7 @@ ORDERED_BY_THE_PROCESSOR = {"histogram"}
 MAY = {
     "matches.py": "adds whole numbers that a float holds, exact in any order",
     "picture_files.py": "adds whole numbers",
-    "torch_gabor.py": "is torch's, compared within a tolerance",
+    "kornia_gabor_kernels.py": "is torch's, compared within a tolerance",
     "calibration.py": "has one term",
     "scripted_hand.py": "is a simulated hand, and no result",
     "block.py": "draws",

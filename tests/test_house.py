@@ -12,9 +12,9 @@ from pathlib import Path
 import pytest
 
 import tangible_core
-from tangible_core import hooks
-from tangible_core.interfaces import KINDS, Adjustable, Serviceable, Skippable
-from tangible_core.registry import KIND_NAMES, default_registry
+from tangible_core.plugins import hooks
+from tangible_core.plugins.interfaces import KINDS, Adjustable, Serviceable, Skippable
+from tangible_core.plugins.registry import KIND_NAMES, default_registry
 from tangible_core.testing.checks_listing import HEAVY
 
 ROOT = Path(__file__).parents[1]
@@ -135,7 +135,7 @@ def test_type_checkers_see_the_same_fixed_names():
 
 
 def test_the_schema_in_configs_is_current():
-    from tangible_core.schema import json_schema
+    from tangible_core.pipeline.schema import json_schema
 
     assert ROOT.joinpath("configs/tangible.schema.json").read_text() == json.dumps(json_schema(), indent=2) + "\n", (
         "run: tangible schema > configs/tangible.schema.json"

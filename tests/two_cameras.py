@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from tangible_depth.homographies import camera_matrix, rotation, transform
+from tangible_depth.rectify.homographies import camera_matrix, rotation, transform
 
 WIDTH, HEIGHT = 1000, 750
 

@@ -7,10 +7,10 @@ from typing import Annotated, Any, cast
 
 from pydantic import Field
 
-from ..config import Section
 from ..errors import TangibleError, did_you_mean, quoted
-from ..registry import Registry
-from ..source import Source, parse_source, read_text
+from ..files.source import Source, parse_source, read_text
+from ..pipeline.config import Section
+from ..plugins.registry import Registry
 from .entries import Entry, read_methods
 from .task import TASKS, SceneSpec, Task, load_task
 

@@ -3,8 +3,8 @@
 import numpy as np
 from jaxtyping import UInt8
 
-from ..opencv import plain_opencv
-from ..pictures import full_scale
+from ..data.pictures import full_scale
+from ..runtime.opencv import plain_opencv
 
 Bytes = UInt8[np.ndarray, "..."]
 

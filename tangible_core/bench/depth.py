@@ -9,10 +9,10 @@ import numpy as np
 
 from ..data import DisparityMap, Views
 from ..errors import PictureError
-from ..geometry import fill_rows
-from ..interfaces import DepthEstimator
 from ..metrics import disparity_errors
-from ..testing.stereo_scenes import KnownPair
+from ..plugins.interfaces import DepthEstimator
+from ..scene.geometry import fill_rows
+from ..synthetic.stereo_scenes import KnownPair
 from . import damage
 from .depth_scenes import DepthScene
 from .task import Measure, Perturbation, Task

@@ -9,8 +9,8 @@ from pydantic import Field, model_validator
 
 from ..errors import PictureError, quoted
 from ..metrics import visible_pixels
-from ..scene import Scene, SceneFiles, read_scene
-from ..testing.stereo_scenes import KnownPair, synthetic_pair
+from ..scene.scene import Scene, SceneFiles, read_scene
+from ..synthetic.stereo_scenes import KnownPair, synthetic_pair
 from .task import SceneSpec
 
 TRUTHS = ("disparity.npz", "disparity.npy", "disparity.pfm", "disparity.png")

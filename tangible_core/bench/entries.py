@@ -7,11 +7,11 @@ from typing import Any, cast
 
 from pydantic import ValidationError
 
-from ..config import Chosen, choose
 from ..errors import ConfigError, did_you_mean, quoted
-from ..interfaces import Method
-from ..registry import Registry
-from ..source import Location, Source
+from ..files.source import Location, Source
+from ..pipeline.config import Chosen, choose
+from ..plugins.interfaces import Method
+from ..plugins.registry import Registry
 from .task import Task
 
 

@@ -4,13 +4,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
-from ..child_process import Place, place
-from ..config import Chosen
 from ..data import digest_of
 from ..errors import ConfigError, TangibleError
-from ..interfaces import Method
+from ..pipeline.config import Chosen
+from ..plugins.interfaces import Method
 from ..provenance.closure import closure
 from ..provenance.versions import versions
+from ..runtime.child_process import Place, place
 from .config import Comparison, Damage, Entry
 from .machine import machine
 from .rows import Row

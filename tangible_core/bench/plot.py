@@ -8,7 +8,7 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..files import atomic_write
+from ..files.writing import atomic_write
 from .labels import place_labels
 from .table import Results
 

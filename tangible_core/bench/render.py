@@ -8,10 +8,10 @@ from jaxtyping import Float64
 from pydantic import ValidationError
 
 from ..data import HapticSurface
-from ..interfaces import ForceRenderer, Touch
 from ..metrics import force_errors, force_steps, loop_works, proxy_lag, stiffness_limit
 from ..metrics.stability import Law
-from ..testing.strokes import KnownStroke
+from ..plugins.interfaces import ForceRenderer, Touch
+from ..synthetic.strokes import KnownStroke
 from .memory import held_bytes
 from .render_scenes import RenderScene
 from .task import Clock, Measure, Perturbation, Task

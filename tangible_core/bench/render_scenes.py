@@ -9,13 +9,13 @@ from jaxtyping import Float64
 from pydantic import Field, model_validator
 
 from ..data import HapticSurface, Relief
+from ..data.pictures import to_grey
 from ..errors import OutputError, quoted
-from ..geometry import scale_heights
-from ..picture_files import read_map
-from ..pictures import to_grey
-from ..scene import read_scene
+from ..scene.geometry import scale_heights
+from ..scene.picture_files import read_map
+from ..scene.scene import read_scene
 from ..session.recording import Recording
-from ..testing.strokes import PERIOD_S, KnownStroke, analytic_stroke, relief_stroke
+from ..synthetic.strokes import PERIOD_S, KnownStroke, analytic_stroke, relief_stroke
 from .task import SceneSpec
 
 Length = Annotated[float, Field(gt=0, allow_inf_nan=False)]

@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 
 from ..errors import OutputError, ResultsError, shown
-from ..reading import read_bytes
+from ..files.reading import read_bytes
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from pathlib import Path
 from signal import Signals
 from typing import IO, Any
 
-from ..child_process import command
+from ..runtime.child_process import command
 from .plan import Measurement
 from .rows import Row, append, mend, read_rows
 

@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 
 from ..data import SegmentMap
-from ..interfaces import Segmenter
 from ..metrics import segment_errors
-from ..testing.texture_scenes import KnownSegments
+from ..plugins.interfaces import Segmenter
+from ..synthetic.texture_scenes import KnownSegments
 from . import damage, turning
 from .task import Measure, Perturbation, Task
 from .texture_scenes import TextureScene

@@ -7,8 +7,8 @@ from typing import Annotated, Any, Self
 from pydantic import Field, model_validator
 
 from ..errors import PictureError, quoted
-from ..picture_files import read_labels, read_picture
-from ..testing.texture_scenes import KnownSegments, folder_textures, smooth_scene, texture_mosaic
+from ..scene.picture_files import read_labels, read_picture
+from ..synthetic.texture_scenes import KnownSegments, folder_textures, smooth_scene, texture_mosaic
 from .task import SceneSpec
 
 PICTURE, LABELS = "picture.png", "labels.png"

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 from jaxtyping import Float64
 
-from ..opencv import plain_opencv
-from ..testing.texture_scenes import KnownSegments, in_order
+from ..runtime.opencv import plain_opencv
+from ..synthetic.texture_scenes import KnownSegments, in_order
 from .damage import grey_levels, rounded
 
 Places = Float64[np.ndarray, "2 h w"]

@@ -17,9 +17,9 @@ from dataclasses import asdict, dataclass
 from time import perf_counter
 from typing import Any, NamedTuple
 
-from ..child_process import imported
 from ..data import Kind
-from ..registry import load_method
+from ..plugins.registry import load_method
+from ..runtime.child_process import imported
 from .memory import start_peak
 from .task import Task, load_task
 

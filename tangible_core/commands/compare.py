@@ -5,7 +5,6 @@ from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
-from .. import hooks
 from ..bench import against as verdicts
 from ..bench.config import Comparison, load_comparison
 from ..bench.plan import measurements
@@ -17,7 +16,8 @@ from ..bench.table import FRONT, Results, Table, tables
 from ..bench.task import TASKS, load_task
 from ..data import Outcome
 from ..errors import ResultsError
-from ..registry import default_registry
+from ..plugins import hooks
+from ..plugins.registry import default_registry
 from . import show
 
 ROWS, PLOT = "results.jsonl", "plot.png"

@@ -7,12 +7,12 @@ from typing import Any, cast
 
 from rich.markup import escape
 
-from ..calibrations import save_calibration
 from ..data import Finding, Unit
 from ..errors import ConfigError, DeviceError, TangibleError
-from ..interfaces import Adjustable, HapticDevice, Serviceable
-from ..registry import Listing, default_registry
-from ..source import parse_source
+from ..files.source import parse_source
+from ..plugins.interfaces import Adjustable, HapticDevice, Serviceable
+from ..plugins.registry import Listing, default_registry
+from ..scene.calibrations import save_calibration
 from . import show
 
 COLOURS = {"fine": "green", "failed": "red", "not asked": "dim"}

@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import Any
 
 from ..data import Material, Texture
-from ..material_files import VALUES, sources_of
-from ..materials import find, load_library
+from ..materials.assignment import find, load_library
+from ..materials.files import VALUES, sources_of
 from . import show
 
 STROKE_M_PER_S = 0.12

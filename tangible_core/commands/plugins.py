@@ -2,8 +2,8 @@
 
 import json
 
-from ..registry import default_registry
-from ..standard_output import stream
+from ..plugins.registry import default_registry
+from ..runtime.standard_output import stream
 
 COLUMNS = ("kind", "name", "origin", "summary")
 

@@ -11,15 +11,16 @@ from typing import Any
 
 from ruamel.yaml import YAML
 
-from .. import hooks, session
-from ..cache import Cache, write_record
-from ..config import Chosen, parse_config
+from .. import session
 from ..data import MaterialMap, Record, ServoReport
-from ..engine import Pipeline, load_pipeline
 from ..errors import ConfigError
-from ..files import write_text
-from ..interfaces import HapticDevice
-from ..registry import default_registry
+from ..files.writing import write_text
+from ..pipeline.cache import Cache, write_record
+from ..pipeline.config import Chosen, parse_config
+from ..pipeline.engine import Pipeline, load_pipeline
+from ..plugins import hooks
+from ..plugins.interfaces import HapticDevice
+from ..plugins.registry import default_registry
 from ..report import disparity_errors, draw_sheet, write_figures
 from ..session import Recording
 from . import show

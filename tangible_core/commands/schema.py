@@ -1,8 +1,8 @@
 """`schema`: what a pipeline file, or a file of materials, may say."""
 
-from ..schema import json_schema, materials_schema
-from ..schema import markdown as as_markdown
-from ..standard_output import stream
+from ..pipeline.schema import json_schema, materials_schema
+from ..pipeline.schema import markdown as as_markdown
+from ..runtime.standard_output import stream
 from .show import print_json
 
 

@@ -11,7 +11,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from ..standard_output import stream
+from ..runtime.standard_output import stream
 
 if TYPE_CHECKING:
     from ..data import Outcome

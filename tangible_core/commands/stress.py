@@ -9,7 +9,7 @@ import numpy as np
 
 from ..data import NO_FORCE
 from ..errors import ConfigError
-from ..interfaces import HapticDevice
+from ..plugins.interfaces import HapticDevice
 from . import show
 from .devices import make
 

@@ -8,7 +8,7 @@ import math
 import numpy as np
 from numba import float64, int64, njit, types, void
 
-from ..compiling import KERNEL
+from ..compiled.compiling import KERNEL
 from .heights import COSINE, ROW, SINE, TEXTURES, kept, series, texture_height
 from .table import DRAG, DYNAMIC, PER_M, STIFFNESS, SWING
 

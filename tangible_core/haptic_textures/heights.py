@@ -19,7 +19,7 @@ from numba.core import cgutils
 from numba.extending import intrinsic
 from numba.np.arrayobj import populate_array
 
-from ..compiling import KERNEL
+from ..compiled.compiling import KERNEL
 from .table import COUNT, HEAD
 from .waves import WAVES
 

@@ -5,9 +5,9 @@ from typing import Any, cast, final
 import numpy as np
 from pydantic import SerializeAsAny
 
-from ..compiled import CompiledLink, LinkKernels
+from ..compiled.touch import CompiledLink, LinkKernels
 from ..data import DeviceSpec, Force, HapticState
-from ..interfaces import HapticDevice, Link
+from ..plugins.interfaces import HapticDevice, Link
 from .options import WorkspaceMapping
 from .placement import Placement
 

@@ -7,9 +7,9 @@ from functools import cache
 
 from numba import float64, int64, njit, typeof, types, void
 
-from ..compiled import LinkKernels
-from ..compiling import KERNEL
-from ..kernels import Address
+from ..compiled.compiling import KERNEL
+from ..compiled.kernels import Address
+from ..compiled.touch import LinkKernels
 from .placement import Placement
 
 PLACEMENT = typeof(Placement())

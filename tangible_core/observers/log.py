@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 from typing import TYPE_CHECKING
 
-from ..hooks import hookimpl
+from ..plugins.hooks import hookimpl
 
 if TYPE_CHECKING:
     from ..data import Outcome, Plan, ServoReport

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING, Any
 
-from ..hooks import hookimpl
+from ..plugins.hooks import hookimpl
 
 if TYPE_CHECKING:
     from ..data import Outcome, ServoReport

@@ -7,8 +7,8 @@ import numpy as np
 from jaxtyping import Float64
 
 from ..data import Relief
-from ..geometry import resample
-from ..opencv import plain_opencv
+from ..runtime.opencv import plain_opencv
+from ..scene.geometry import resample
 
 FELT = ((3.2e-3, 29e-6), (10e-3, 130e-6))
 """Width of a Gaussian profile, and the height from which a bare hand tells it from a flat surface, metres."""

@@ -7,12 +7,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..config import Workspace
 from ..data import DeviceSpec, HapticSurface, Material
 from ..errors import ConfigError
-from ..interfaces import ForceRenderer
-from ..servo import guard_layout
-from ..servo.safety import (
+from ..pipeline.config import Workspace
+from ..plugins.interfaces import ForceRenderer
+from ..servo.guard import layout
+from ..servo.guard.safety import (
     NOMINAL_S,
     Safety,
     effective_damping_n_s_per_m,
@@ -128,7 +128,7 @@ class Flight:
     def coupling_m_per_n(self) -> float:
         """By how much the loop's virtual coupling gives way; 0 without one."""
         settings, _ = self.safety.arrays(self.spec, self.stiffness_n_per_m)
-        stiffness = float(settings[guard_layout.COUPLING])
+        stiffness = float(settings[layout.COUPLING])
         return 1 / stiffness if stiffness > 0 else 0.0
 
     def felt_n_per_m(self, stiffness_n_per_m: float) -> float:

@@ -7,8 +7,8 @@ import numpy as np
 from jaxtyping import Float64
 
 from ..data import HapticSurface, Record
-from ..geometry import picture_to_workspace
-from ..interfaces import Touch
+from ..plugins.interfaces import Touch
+from ..scene.geometry import picture_to_workspace
 
 PLACES = 64
 """A side of the grid; a surface of fewer cells is probed at each of them."""

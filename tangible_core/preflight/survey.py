@@ -5,13 +5,13 @@ import math
 import numpy as np
 from jaxtyping import Float64
 
-from ..config import PipelineConfig
 from ..data import HapticSurface
 from ..errors import ConfigError
-from ..geometry import workspace_to_picture
-from ..interfaces import Touch
-from ..scene import SceneFiles
-from ..servo.stiffness import stiffness_of
+from ..pipeline.config import PipelineConfig
+from ..plugins.interfaces import Touch
+from ..scene.geometry import workspace_to_picture
+from ..scene.scene import SceneFiles
+from ..servo.guard.stiffness import stiffness_of
 from .flight import Flight, Hand, Loop
 from .probes import Probes, probe
 from .timing import TICKS, measure_lateness, measure_ticks

@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import Float64
 
 from ..data import HapticState, Record
-from ..interfaces import Touch
+from ..plugins.interfaces import Touch
 from ..servo.priority import PRIORITY
 
 TICKS = 2000

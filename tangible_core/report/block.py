@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Float32, Float64, Int64
 
 from ..data import Relief
-from ..geometry import picture_to_workspace, resample, workspace_to_picture
+from ..scene.geometry import picture_to_workspace, resample, workspace_to_picture
 
 ELEVATION_DEG, AZIMUTH_DEG = 42.0, -68.0
 """Where the reader stands: near the user, a little to the right, so that the near and the right wall are seen."""

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ..files import write_text
+from ..files.writing import write_text
 
 
 def write_figures(path: Path, data: Mapping[str, Any]) -> None:

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..data import DisparityMap, HapticSurface, MaterialMap, Relief, SegmentMap, Views
 from ..errors import OutputError
-from ..files import atomic_write
+from ..files.writing import atomic_write
 from .layout import Cell, arrange
 
 if TYPE_CHECKING:

@@ -1,7 +1,7 @@
 """The force loop in its own process: a thousand ticks a second, and no force when anything goes wrong."""
 
+from .guard.safety import Safety
 from .host import OVER, Servo
 from .ring import Ring
-from .safety import Safety
 
 __all__ = ["OVER", "Ring", "Safety", "Servo"]

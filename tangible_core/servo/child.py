@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import IO, final
 
 from ..errors import DeviceError
-from ..interfaces import Link, Touch
+from ..plugins.interfaces import Link, Touch
 from . import loop, parcel, priority
 from .ring import STOP, SWAP, Ring
 from .wire import Ended, Refused, Running, Start, Swap, Swapped, receive, send, sendable

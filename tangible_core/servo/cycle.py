@@ -11,12 +11,12 @@ import math
 from numba import njit, types
 from numba.extending import intrinsic
 
-from ..compiling import KERNEL
+from ..compiled.compiling import KERNEL
 from ..data import TICK_COLUMNS, TickFlag
 from . import schedule
 from .clock import SECOND_NS, wait_ns
-from .coupling import couple
-from .guard import guard, wait
+from .guard.coupling import couple
+from .guard.guard import guard, wait
 from .ring import (
     COUNT,
     LEAD_NS,

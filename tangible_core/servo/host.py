@@ -12,15 +12,15 @@ from pathlib import Path
 from types import TracebackType
 from typing import IO, Any, Self, TypeVar, final
 
-from ..child_process import command
 from ..data import ServoReport
 from ..errors import ConfigError, DeviceError
-from ..interfaces import HapticDevice, Touch
+from ..plugins.interfaces import HapticDevice, Touch
+from ..runtime.child_process import command
 from . import parcel
+from .guard.safety import Safety
+from .guard.stiffness import stiffness_of
 from .reports import report
 from .ring import COUNT, LAST, PERIOD_NS, STOP, Ring
-from .safety import Safety
-from .stiffness import stiffness_of
 from .wire import Ended, Refused, Running, Start, Swap, Swapped, receive, send, sendable
 
 log = logging.getLogger(__name__)

@@ -6,10 +6,10 @@ from typing import Any, NamedTuple, cast
 
 import numpy as np
 
-from ..compiled import CompiledLink, CompiledTouch
+from ..compiled.touch import CompiledLink, CompiledTouch
 from ..data import TICK_COLUMNS, HapticState, TickFlag
-from ..interfaces import Link, Touch
-from .guarded import guarded
+from ..plugins.interfaces import Link, Touch
+from .guard.guarded import guarded
 from .ring import (
     COUNT,
     LEAD_NS,
@@ -94,7 +94,7 @@ def start_clock(header: np.ndarray, real_time: bool) -> None:
 
 def take_over(ring: Ring) -> None:
     """Go on with a new scene, whose force fades in."""
-    from . import guard
+    from .guard import guard
 
     cast(Any, guard).restart(ring.guard)
     ring.header[MARKS] |= int(TickFlag.SWAPPED)
@@ -102,7 +102,7 @@ def take_over(ring: Ring) -> None:
 
 
 def _kernels(link: CompiledLink, touch: CompiledTouch) -> tuple[Any, Any]:
-    from ..kernels import Address
+    from ..compiled.kernels import Address
 
     read, write, of_link = link.kernels()
     return (of_link, Address(read), Address(write)), (touch.fixed, touch.address(), touch.memory)

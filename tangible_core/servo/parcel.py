@@ -7,8 +7,8 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-from ..child_process import dumps
 from ..errors import DeviceError
+from ..runtime.child_process import dumps
 from .ring import ALIGN, PREFIX, shared_folder
 
 

@@ -7,7 +7,7 @@ from itertools import accumulate
 import numpy as np
 
 from ..data import TICK_COLUMNS, Force, HapticState, ServoReport, Spread
-from . import safety
+from .guard import safety
 from .ring import COUNT, LONGEST_S, MOST_LATE_S, OVERRUNS, PEAK_N, WORK_J, Ring
 
 AT = {name: column for column, name in enumerate(TICK_COLUMNS)}

@@ -9,9 +9,9 @@ from typing import IO, Any, NamedTuple
 
 import numpy as np
 
-from ..child_process import dumps
 from ..errors import BrokenMethod, exited
-from ..interfaces import HapticDevice
+from ..plugins.interfaces import HapticDevice
+from ..runtime.child_process import dumps
 
 
 class Start(NamedTuple):

@@ -11,7 +11,7 @@ from typing import final
 import numpy as np
 
 from ..data import ServoReport, TickFlag
-from ..interfaces import HapticDevice, Touch
+from ..plugins.interfaces import HapticDevice, Touch
 from ..servo import Safety, Servo
 from .recording import INTERRUPTED, Recording
 from .tick_file import About

@@ -10,10 +10,10 @@ import numpy as np
 
 from ..data import NO_FORCE, TICK_COLUMNS, Force, HapticState, ServoReport
 from ..errors import ConfigError, DeviceError
-from ..interfaces import HapticDevice, Link, Touch
+from ..plugins.interfaces import HapticDevice, Link, Touch
 from ..servo import Safety
-from ..servo.guarded import Guarded, guarded
-from ..servo.stiffness import stiffness_of
+from ..servo.guard.guarded import Guarded, guarded
+from ..servo.guard.stiffness import stiffness_of
 from .recording import INTERRUPTED, Recording
 from .replay import proxy_of
 

@@ -7,11 +7,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from jaxtyping import Float64
 
-from ..array_files import Archive
 from ..data import TICK_COLUMNS
 from ..errors import OutputError, shown
-from ..files import atomic_write
-from ..reading import check_file, read_bytes
+from ..files.arrays import Archive
+from ..files.reading import check_file, read_bytes
+from ..files.writing import atomic_write
 from . import tick_file
 from .tick_arrays import ARRAYS, NEEDED, UNKNOWN, joined, unknown
 from .tick_file import NOTHING_SAID, About

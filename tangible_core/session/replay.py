@@ -7,9 +7,9 @@ from typing import Any, cast
 
 import numpy as np
 
-from ..compiled import CompiledTouch
+from ..compiled.touch import CompiledTouch
 from ..data import HapticState, TickFlag
-from ..interfaces import Touch
+from ..plugins.interfaces import Touch
 from .recording import Recording
 from .tick_arrays import ARRAYS
 
@@ -23,7 +23,7 @@ def replay(touch: Touch, recording: Recording) -> Recording:
     """
     proxy_m, force_n = np.full((2, len(recording.rows), 3), np.nan)
     if isinstance(touch, CompiledTouch):
-        from .. import kernels
+        from ..compiled import kernels
 
         law = touch.address(), touch.fixed, touch.memory
         states = np.hstack([recording.position_m, recording.velocity_m_per_s])

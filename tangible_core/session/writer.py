@@ -10,7 +10,7 @@ from jaxtyping import Float64
 
 from ..data import TICK_COLUMNS
 from ..errors import OutputError
-from ..files import open_alone
+from ..files.writing import open_alone
 from . import netcdf, tick_file
 from .tick_file import NOTHING_SAID, About
 

@@ -6,9 +6,9 @@ import numpy as np
 
 from ..data import DisparityMap, Views
 from ..errors import PictureError, TangibleError
-from ..interfaces import DepthEstimator
+from ..plugins.interfaces import DepthEstimator
+from ..synthetic.scenes import wall
 from .checks import Check, demand, refuses
-from .scenes import wall
 from .variants import TINY, coarse_variants, exact_variants
 
 WALL_PX = 6.0

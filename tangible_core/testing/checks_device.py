@@ -6,7 +6,7 @@ import numpy as np
 
 from ..data import NO_FORCE, Force
 from ..errors import DeviceAbsent, DeviceError
-from ..interfaces import HapticDevice
+from ..plugins.interfaces import HapticDevice
 from .checks import Check, CheckFailure, demand, refuses
 
 

@@ -3,8 +3,8 @@
 import re
 import subprocess
 
-from ..child_process import python
-from ..registry import Listing
+from ..plugins.registry import Listing
+from ..runtime.child_process import python
 from .checks import Check, demand
 
 HEAVY = ("torch", "kornia", "cv2", "skimage", "numba", "usb", "scipy", "matplotlib")

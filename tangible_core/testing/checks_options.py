@@ -5,7 +5,7 @@ import pickle
 
 from pydantic import ValidationError
 
-from ..interfaces import Method
+from ..plugins.interfaces import Method
 from .checks import Check, CheckFailure, demand
 
 

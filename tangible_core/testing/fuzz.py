@@ -4,7 +4,7 @@ from typing import Any, NamedTuple, cast
 
 import numpy as np
 
-from ..compiled import CompiledTouch
+from ..compiled.touch import CompiledTouch
 from ..data import HapticSurface
 
 MARGIN_M = 0.002

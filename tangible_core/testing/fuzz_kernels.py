@@ -9,7 +9,7 @@ import math
 import numpy as np
 from numba import njit
 
-from ..compiling import KERNEL
+from ..compiled.compiling import KERNEL
 
 PERIOD_S = 0.001
 FASTEST_M = 0.0005

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple, cast
 import numpy as np
 from jaxtyping import Float64
 
-from ..compiled import CompiledTouch
+from ..compiled.touch import CompiledTouch
 
 Guard = tuple[np.ndarray, np.ndarray]
 """Settings and memory, as `Safety.arrays` gives them."""

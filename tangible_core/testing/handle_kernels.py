@@ -6,8 +6,8 @@
 import numpy as np
 from numba import float64, njit, types
 
-from .. import compiling as compiling
-from ..servo.guard import couple, guard
+from ..compiled import compiling as compiling
+from ..servo.guard.guard import couple, guard
 
 
 @njit(types.UniTuple(float64, 3)(float64, *[float64] * 6), cache=True, nogil=True, error_model="numpy")

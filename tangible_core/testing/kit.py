@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any, NamedTuple, cast
 
 from ..errors import DeviceAbsent, TangibleError, UnknownMethod, did_you_mean
-from ..interfaces import HapticDevice
-from ..registry import Registry, default_registry
+from ..plugins.interfaces import HapticDevice
+from ..plugins.registry import Registry, default_registry
 from . import checks_depth, checks_device, checks_listing, checks_options, checks_render, checks_texture, checks_touch
 from .checks import Check, CheckFailure
 

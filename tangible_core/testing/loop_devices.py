@@ -9,10 +9,10 @@ from typing import Annotated, Any, Literal, cast, final
 import numpy as np
 from pydantic import Field
 
-from ..compiled import CompiledLink, LinkKernels
+from ..compiled.touch import CompiledLink, LinkKernels
 from ..data import NO_FORCE, DeviceSpec, Force, HapticState
 from ..errors import DeviceError
-from ..interfaces import HapticDevice, Link
+from ..plugins.interfaces import HapticDevice, Link
 
 SPEC = DeviceSpec(8.0, 3000.0, 20.0, (0.1, 0.1, 0.1), 1e-6, simulated=True)
 

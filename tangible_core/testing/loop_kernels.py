@@ -5,7 +5,7 @@
 
 from numba import float64, int64, njit, void
 
-from ..compiling import KERNEL
+from ..compiled.compiling import KERNEL
 
 FIXED = (float64[:, ::1], float64, int64[::1], float64[::1])
 

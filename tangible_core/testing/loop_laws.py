@@ -8,7 +8,7 @@ from typing import Any, Literal, NoReturn, final
 import numpy as np
 
 from ..data import NO_FORCE, Force, HapticState
-from ..interfaces import Touch
+from ..plugins.interfaces import Touch
 
 Fault = Literal["none", "blocks", "exits", "odd error", "does not arrive", "begins slowly", "knows itself"]
 

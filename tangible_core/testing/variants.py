@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ..pictures import to_grey
+from ..data.pictures import to_grey
 
 TINY = ((1, 1), (1, 9), (9, 1), (2, 2), (17, 9))
 """Sizes (h, w) at which windows, pyramids and neighbours run out."""

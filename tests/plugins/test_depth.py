@@ -6,10 +6,10 @@ from hypothesis.extra import numpy as hnp
 from pydantic import ValidationError
 
 from tangible_core import TangibleError, Views
-from tangible_core.geometry import fill_rows
-from tangible_core.interfaces import Skippable
-from tangible_core.testing.scenes import wall
-from tangible_depth.left_right import left_right_confidence
+from tangible_core.plugins.interfaces import Skippable
+from tangible_core.scene.geometry import fill_rows
+from tangible_core.synthetic.scenes import wall
+from tangible_depth.dense.left_right import left_right_confidence
 from tangible_depth.luminance import Luminance
 from tangible_depth.opencv_sgbm import MODES, OpenCVSGBM
 

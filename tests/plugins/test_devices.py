@@ -13,7 +13,7 @@ from pydantic import ValidationError
 
 from tangible_core.data import NO_FORCE, Force, HapticState, HapticSurface
 from tangible_core.errors import DeviceError
-from tangible_core.interfaces import Link, Touch
+from tangible_core.plugins.interfaces import Link, Touch
 from tangible_devices.hand import MovingHand, VirtualHand, free_motion
 from tangible_devices.mock import Mock
 from tangible_render.penalty_gradient import PenaltyGradient

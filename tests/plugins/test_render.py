@@ -8,7 +8,7 @@ from pydantic import ValidationError
 
 from tangible_core.data import NO_FORCE, Force, HapticState, HapticSurface, Material, Relief
 from tangible_core.errors import GeometryError
-from tangible_core.interfaces import Touch
+from tangible_core.plugins.interfaces import Touch
 from tangible_render.force_shading import ForceShading
 from tangible_render.grey_level import GreyLevel
 from tangible_render.lateral_gradient import LateralGradient

@@ -11,17 +11,17 @@ from pydantic import ValidationError
 from label_maps import rand_index
 from tangible_core.data import Views
 from tangible_core.errors import PictureError
-from tangible_core.notes import collected
-from tangible_texture.basins import basins
-from tangible_texture.borders import Border, borders
-from tangible_texture.channels import channels
-from tangible_texture.gradient import MOST_SEGMENTS, Gradient
-from tangible_texture.landscape import Landscape
-from tangible_texture.merging import in_reading_order, merge
-from tangible_texture.refining import refined
-from tangible_texture.slopes import slopes
-from tangible_texture.smoothing import WIDER, gaussian, two_scales, without_specks
-from tangible_texture.watershed import watershed
+from tangible_core.plugins.notes import collected
+from tangible_texture.features.channels import channels
+from tangible_texture.gradient import Gradient
+from tangible_texture.regions.basins import MOST_SEGMENTS, basins
+from tangible_texture.regions.borders import Border, borders
+from tangible_texture.regions.landscape import Landscape
+from tangible_texture.regions.merging import in_reading_order, merge
+from tangible_texture.regions.refining import refined
+from tangible_texture.regions.watershed import watershed
+from tangible_texture.signal.slopes import slopes
+from tangible_texture.signal.smoothing import WIDER, gaussian, two_scales, without_specks
 
 
 def cells(seed: int, count: int = 10, size: int = 256) -> np.ndarray:
@@ -219,12 +219,12 @@ class TestWatershed:
         height = slopes(gaussian(channels(smooth_scene(0, noise=5)[0], colour=False), 2.0))[0]
         markers, _ = basins(height, [np.quantile(height, 0.6)], 100)
         whole = watershed(height, markers)
-        monkeypatch.setattr("tangible_texture.watershed.TILE_PX", 48)
+        monkeypatch.setattr("tangible_texture.regions.watershed.TILE_PX", 48)
         assert np.array_equal(watershed(height, markers), whole)
 
     def test_water_reaches_a_tile_without_a_marker(self, monkeypatch: pytest.MonkeyPatch):
-        monkeypatch.setattr("tangible_texture.watershed.TILE_PX", 8)
-        monkeypatch.setattr("tangible_texture.watershed.AROUND_PX", 2)
+        monkeypatch.setattr("tangible_texture.regions.watershed.TILE_PX", 8)
+        monkeypatch.setattr("tangible_texture.regions.watershed.AROUND_PX", 2)
         markers = np.full((4, 40), -1, np.int32)
         markers[0, 0] = 5
         assert np.all(watershed(np.ones((4, 40), np.float32), markers) == 5)

@@ -6,8 +6,8 @@ import numpy as np
 from pydantic import Field
 
 from tangible_core import DepthEstimator, DisparityMap, Views
+from tangible_core.data.pictures import to_grey
 from tangible_core.errors import PictureError
-from tangible_core.pictures import to_grey
 
 
 class Blocks(DepthEstimator):

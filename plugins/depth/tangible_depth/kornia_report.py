@@ -7,12 +7,11 @@ from jaxtyping import Float64, Int64
 from pydantic import Field
 
 from tangible_core.data import DisparityMap, Views
-from tangible_core.interfaces import DepthEstimator
-from tangible_core.torch_extra import TorchDevice, need, pick_device
+from tangible_core.plugins.interfaces import DepthEstimator
+from tangible_core.runtime.torch_extra import TorchDevice, need, pick_device
 
-from .feature_chain import Grey, Parts, Row, disparity_by_features
-from .fundamental import check_matches
-from .kornia_zncc import match_pair
+from .matching.feature_chain import Grey, Parts, Row, disparity_by_features
+from .rectify.fundamental import check_matches
 
 
 class KorniaReport(DepthEstimator):
@@ -51,6 +50,8 @@ class KorniaReport(DepthEstimator):
     def _match_rows(
         self, left: Grey, right: Grey, points: Int64[np.ndarray, "n 2"], low: int, high: int
     ) -> tuple[Row, Row]:
+        from .windows.torch_zncc import match_pair
+
         disparity, score = match_pair(left, right, low, high, self.window_px, self.torch_device, self.memory_mb)
         columns, rows = points.T
         return disparity[rows, columns], score[rows, columns]

@@ -3,18 +3,17 @@
 from typing import Annotated, Literal
 
 import numpy as np
-from jaxtyping import Float32
 from pydantic import Field
 
 from tangible_core.data import DisparityMap, Views
+from tangible_core.data.pictures import to_grey
 from tangible_core.errors import PictureError
-from tangible_core.interfaces import DepthEstimator
-from tangible_core.pictures import to_grey
-from tangible_core.torch_extra import TorchDevice, need, pick_device
+from tangible_core.plugins.interfaces import DepthEstimator
+from tangible_core.runtime.torch_extra import TorchDevice, need
 
-from .assembling import assemble, without_speckles
-from .corner_range import range_of_pair
-from .rectification import with_rectification
+from .rectify.rectification import with_rectification
+from .sparse.assembling import assemble, without_speckles
+from .sparse.corner_range import range_of_pair
 
 
 class KorniaZNCC(DepthEstimator):
@@ -47,6 +46,8 @@ class KorniaZNCC(DepthEstimator):
         return self._match(views) if self.rectify == "never" else with_rectification(views, self._match)
 
     def _match(self, views: Views) -> DisparityMap:
+        from .windows.torch_zncc import match_pair
+
         assert views.right is not None
         left, right = to_grey(views.left), to_grey(views.right)
         low, high = range_of_pair(left, right, self.max_disparity_px)
@@ -55,23 +56,3 @@ class KorniaZNCC(DepthEstimator):
         filled = assemble(disparity, score, views.left)
         known = np.isfinite(disparity)
         return DisparityMap(np.where(known, disparity, filled.disparity_px), np.where(known, score, filled.confidence))
-
-
-def match_pair(
-    left: Float32[np.ndarray, "h w"],
-    right: Float32[np.ndarray, "h w"],
-    low: int,
-    high: int,
-    window_px: int,
-    torch_device: TorchDevice,
-    memory_mb: int,
-) -> tuple[Float32[np.ndarray, "h w"], Float32[np.ndarray, "h w"]]:
-    """`torch_zncc.match` on arrays: disparity, NaN where unknown, and score in 0..1."""
-    import torch
-
-    from .torch_zncc import match
-
-    device = pick_device(torch_device)
-    first, second = (torch.from_numpy(np.ascontiguousarray(grey)).to(device)[None, None] for grey in (left, right))
-    disparity, score = match(first, second, low, high, window_px, memory_mb)
-    return disparity[0].float().cpu().numpy(), score[0].float().cpu().numpy()

@@ -8,12 +8,12 @@ from jaxtyping import Bool, Float32, UInt8
 from pydantic import Field, model_validator
 
 from tangible_core.data import DisparityMap, Views
+from tangible_core.data.pictures import to_grey
 from tangible_core.errors import PictureError
-from tangible_core.geometry import fill_rows
-from tangible_core.interfaces import DepthEstimator, Skippable
-from tangible_core.pictures import to_grey
+from tangible_core.plugins.interfaces import DepthEstimator, Skippable
+from tangible_core.scene.geometry import fill_rows
 
-from .left_right import left_right_confidence
+from .dense.left_right import left_right_confidence
 
 MODES = {"sgbm": 0, "hh": 1, "3way": 2, "hh4": 3}
 """OpenCV's numbers of its variants."""

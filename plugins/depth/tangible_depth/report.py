@@ -7,12 +7,12 @@ from jaxtyping import Int64
 from pydantic import Field
 
 from tangible_core.data import DisparityMap, Views
-from tangible_core.interfaces import DepthEstimator
+from tangible_core.plugins.interfaces import DepthEstimator
 
-from .feature_chain import Grey, Parts, Row, disparity_by_features
-from .fundamental import eight_point
-from .harris import gaussian_window, harris_response
-from .matches import inverse_lengths
+from .matching.feature_chain import Grey, Parts, Row, disparity_by_features
+from .rectify.fundamental import eight_point
+from .sparse.harris import gaussian_window, harris_response
+from .sparse.matches import inverse_lengths
 
 
 class Report(DepthEstimator):
@@ -45,7 +45,7 @@ class Report(DepthEstimator):
     def _match_rows(
         self, left: Grey, right: Grey, points: Int64[np.ndarray, "n 2"], low: int, high: int
     ) -> tuple[Row, Row]:
-        from .sparse_ncc import match_rows
+        from .sparse.sparse_ncc import match_rows
 
         half = self.window_px // 2
         left_padded, right_padded = (np.pad(grey, half, mode="edge") for grey in (left, right))

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from tangible_core.data import DisparityMap, Views
-from tangible_core.interfaces import DepthEstimator
+from tangible_core.plugins.interfaces import DepthEstimator
 
 
 class SemiGlobal(DepthEstimator):
@@ -50,9 +50,9 @@ class SemiGlobal(DepthEstimator):
         0.2; 0.1 where the value was filled or decided by a neighbour; 0 where nothing changes along the rows.
         Raises: PictureError if there is no right view or the range is empty.
         """
-        from .adaptive import MOST_OFFSET_PX
-        from .chain import Search, disparity_map
-        from .scaled import match_scaled
+        from .matching.adaptive import MOST_OFFSET_PX
+        from .matching.chain import Search, disparity_map
+        from .matching.scaled import Scaling, match_scaled
 
         search = Search(
             self.min_disparity_px,
@@ -62,4 +62,5 @@ class SemiGlobal(DepthEstimator):
             realigns_px=MOST_OFFSET_PX if self.realign_rows and self.resolution != "half" else 0.0,
             skip_identical=self.skip_identical,
         )
-        return disparity_map(views, "semi-global", search, lambda pair, span: match_scaled(pair, span, self))
+        options = Scaling(self.resolution, self.cost, self.check, self.realign_rows, self.skip_flat)
+        return disparity_map(views, "semi-global", search, lambda pair, span: match_scaled(pair, span, options))

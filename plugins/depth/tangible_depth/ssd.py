@@ -5,9 +5,9 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from tangible_core.data import DisparityMap, Views
-from tangible_core.interfaces import DepthEstimator
+from tangible_core.plugins.interfaces import DepthEstimator
 
-from .odd import WindowSide
+from .windows.odd import WindowSide
 
 
 class Ssd(DepthEstimator):
@@ -37,8 +37,8 @@ class Ssd(DepthEstimator):
         where the value was filled or decided by a neighbour; 0 where nothing changes along the rows.
         Raises: PictureError if there is no right view or the range is empty.
         """
-        from .chain import Search, disparity_map
-        from .windows import match_by_difference
+        from .matching.chain import Search, disparity_map
+        from .matching.window_matching import match_by_difference
 
         search = Search(self.min_disparity_px, self.max_disparity_px, self.rectify, self.fill)
         return disparity_map(views, "ssd", search, lambda pair, span: match_by_difference(pair, span, self.window_px))

@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from tangible_core.data import DeviceSpec, Force, HapticState
-from tangible_core.interfaces import HapticDevice, Link
+from tangible_core.plugins.interfaces import HapticDevice, Link
 
 from .hand import MovingHand, VirtualHand
 from .paths import DRAWN, Stroke, Vector, read_csv, walk

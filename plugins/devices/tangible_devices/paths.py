@@ -14,7 +14,7 @@ import numpy as np
 from jaxtyping import Float64
 
 from tangible_core.errors import DeviceError, did_you_mean, quoted
-from tangible_core.reading import read_bytes
+from tangible_core.files.reading import read_bytes
 
 Vector = tuple[float, float, float]
 Points = Float64[np.ndarray, "n 3"]

@@ -5,7 +5,7 @@ from typing import final
 
 from tangible_core.data import NO_FORCE, DeviceSpec, Force, HapticState
 from tangible_core.errors import DeviceError
-from tangible_core.interfaces import Link
+from tangible_core.plugins.interfaces import Link
 from tangible_core.session import limited
 
 LIKE_A_FALCON = DeviceSpec(

@@ -5,12 +5,12 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field
 
-from tangible_core.compiled import CompiledTouch
+from tangible_core.compiled.touch import CompiledTouch
 from tangible_core.data import HapticSurface
-from tangible_core.geometry import normals
-from tangible_core.interfaces import ForceRenderer, Touch
+from tangible_core.plugins.interfaces import ForceRenderer, Touch
+from tangible_core.scene.geometry import normals
 
-from .material_table import stiffness_table
+from .effects.material_table import stiffness_table
 
 
 class ForceShading(ForceRenderer):
@@ -28,10 +28,10 @@ class ForceShading(ForceRenderer):
 
     def touch(self, surface: HapticSurface) -> Touch:
         """A new touch on this surface; compiled on the first use on a machine, then loaded."""
-        from . import shading_kernels
+        from . import force_shading_kernels
 
         heights = np.ascontiguousarray(surface.height_m, np.float32)
         out = np.ascontiguousarray(np.moveaxis(normals(surface.relief), 2, 0))
         labels, stiffness = stiffness_table(surface, self.stiffness_n_per_m)
         fixed = (heights, out, labels, stiffness, *map(float, surface.extent_m))
-        return CompiledTouch(shading_kernels.tick, fixed, stiffness=float(stiffness.max()))
+        return CompiledTouch(force_shading_kernels.tick, fixed, stiffness=float(stiffness.max()))

@@ -5,11 +5,11 @@ from typing import Annotated, ClassVar
 import numpy as np
 from pydantic import Field
 
-from tangible_core.compiled import CompiledTouch
+from tangible_core.compiled.touch import CompiledTouch
 from tangible_core.data import HapticSurface
-from tangible_core.interfaces import ForceRenderer, Touch
+from tangible_core.plugins.interfaces import ForceRenderer, Touch
 
-from .grey_levels import grey_levels
+from .surface.grey_levels import grey_levels
 
 
 class GreyLevel(ForceRenderer):
@@ -31,8 +31,8 @@ class GreyLevel(ForceRenderer):
 
     def touch(self, surface: HapticSurface) -> Touch:
         """A new touch on this surface; compiled on the first use on a machine, then loaded."""
-        from . import grey_kernels
+        from . import grey_level_kernels
 
         heights = np.ascontiguousarray(surface.height_m, np.float32)
         fixed = (heights, grey_levels(heights), *map(float, surface.extent_m), self.force_at_white_n)
-        return CompiledTouch(grey_kernels.tick, fixed, stiffness=0.0)
+        return CompiledTouch(grey_level_kernels.tick, fixed, stiffness=0.0)

@@ -4,12 +4,12 @@ from typing import Annotated, ClassVar
 
 from pydantic import Field
 
-from tangible_core.compiled import CompiledTouch
+from tangible_core.compiled.touch import CompiledTouch
 from tangible_core.data import HapticSurface
-from tangible_core.interfaces import ForceRenderer, Touch
+from tangible_core.plugins.interfaces import ForceRenderer, Touch
 
-from .coefficients import spline_surface
-from .dequantise import Filter
+from .surface.coefficients import spline_surface
+from .surface.dequantise import Filter
 
 
 class LateralGradient(ForceRenderer):

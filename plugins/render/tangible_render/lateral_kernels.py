@@ -5,10 +5,10 @@
 import numpy as np
 from numba import float64, njit
 
-from tangible_core.compiling import KERNEL
+from tangible_core.compiled.compiling import KERNEL
 
-from .bilinear import HEIGHTS, NEWTONS, over
-from .spline import slope
+from .surface.bilinear import HEIGHTS, NEWTONS, over
+from .surface.spline import slope
 
 SURFACE = (HEIGHTS, *[float64] * 6)
 

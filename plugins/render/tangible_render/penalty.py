@@ -4,13 +4,13 @@ from typing import Annotated
 
 from pydantic import Field
 
-from tangible_core.compiled import CompiledTouch
+from tangible_core.compiled.touch import CompiledTouch
 from tangible_core.data import HapticSurface
-from tangible_core.interfaces import ForceRenderer, Touch
+from tangible_core.plugins.interfaces import ForceRenderer, Touch
 
-from .coefficients import spline_surface
-from .dequantise import Filter
-from .material_table import stiffness_table
+from .effects.material_table import stiffness_table
+from .surface.coefficients import spline_surface
+from .surface.dequantise import Filter
 
 
 class Penalty(ForceRenderer):
@@ -31,9 +31,9 @@ class Penalty(ForceRenderer):
 
     def touch(self, surface: HapticSurface) -> Touch:
         """A new touch on this surface; compiled on the first use on a machine, then loaded."""
-        from . import vertical_kernels
+        from . import penalty_kernels
 
         shape = spline_surface(surface, self.dequantise)
         labels, stiffness = stiffness_table(surface, self.stiffness_n_per_m)
         fixed = (*shape, labels, stiffness, self.damping_n_s_per_m)
-        return CompiledTouch(vertical_kernels.tick, fixed, stiffness=float(stiffness.max()))
+        return CompiledTouch(penalty_kernels.tick, fixed, stiffness=float(stiffness.max()))

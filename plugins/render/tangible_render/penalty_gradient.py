@@ -5,11 +5,11 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field
 
-from tangible_core.compiled import CompiledTouch
+from tangible_core.compiled.touch import CompiledTouch
 from tangible_core.data import HapticSurface
-from tangible_core.interfaces import ForceRenderer, Touch
+from tangible_core.plugins.interfaces import ForceRenderer, Touch
 
-from .material_table import stiffness_table
+from .effects.material_table import stiffness_table
 
 
 class PenaltyGradient(ForceRenderer):
@@ -32,9 +32,9 @@ class PenaltyGradient(ForceRenderer):
 
     def touch(self, surface: HapticSurface) -> Touch:
         """A new touch on this surface; compiled on the first use on a machine, then loaded."""
-        from . import penalty_kernels
+        from . import penalty_gradient_kernels
 
         labels, stiffness = stiffness_table(surface, self.stiffness_n_per_m)
         heights = np.ascontiguousarray(surface.height_m, np.float32)
         fixed = (heights, labels, stiffness, *map(float, surface.extent_m), self.damping_n_s_per_m)
-        return CompiledTouch(penalty_kernels.tick, fixed, stiffness=float(stiffness.max()))
+        return CompiledTouch(penalty_gradient_kernels.tick, fixed, stiffness=float(stiffness.max()))

@@ -1,31 +1,28 @@
-"""The law of `penalty-gradient`, compiled. Imports numba: the method imports this module inside `touch`."""
+"""The law of `penalty`, compiled. Imports numba: the method imports this module inside `touch`."""
 
 # ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
 
 import numpy as np
 from numba import float64, njit
 
-from tangible_core.compiling import KERNEL
+from tangible_core.compiled.compiling import KERNEL
 
-from .bilinear import HEIGHTS, LABELS, NEWTONS, TABLE, bilinear, cell, over
+from .surface.bilinear import HEIGHTS, LABELS, NEWTONS, TABLE, cell, over
+from .surface.spline import height
 
-SURFACE = (HEIGHTS, LABELS, TABLE, float64, float64, float64)
+SURFACE = (HEIGHTS, *[float64] * 4, LABELS, TABLE, float64)
 
 
 @njit(NEWTONS(*SURFACE, *[float64] * 6), **KERNEL)
-def tick(height_m, labels, stiffness_n_per_m, width_m, length_m, damping_n_s_per_m, x, y, z, vx, vy, vz):
-    """F = max(0, k d - b v.(-g, 1) / (1 + |g|^2)) (-g, 1), where d = h - z > 0; zero in free air."""
+def tick(
+    coefficients, width_m, length_m, across_per_m, down_per_m, labels, stiffness, damping_n_s_per_m, x, y, z, vx, vy, vz
+):
+    """F_z = max(0, k d - b v_z), where d = h - z > 0; zero in free air."""
     if not over(width_m, length_m, x, y):
         return 0.0, 0.0, 0.0
-    height, slope_x, slope_y = bilinear(height_m, width_m, length_m, x, y)
-    depth = height - z
+    depth = height(coefficients, across_per_m, down_per_m, x, y) - z
     if not depth > 0.0:
         return 0.0, 0.0, 0.0
     row, column = cell(labels.shape[0], labels.shape[1], width_m, length_m, x, y)
-    spring = stiffness_n_per_m[labels[row, column]] * depth
-    outward = (vz - slope_x * vx - slope_y * vy) / (1.0 + slope_x * slope_x + slope_y * slope_y)
-    push = max(spring - damping_n_s_per_m * outward, 0.0)
-    fx, fy = -slope_x * push, -slope_y * push
-    if not (np.isfinite(outward) and np.isfinite(fx) and np.isfinite(fy) and np.isfinite(push)):
-        return 0.0, 0.0, 0.0
-    return fx, fy, push
+    push = max(stiffness[labels[row, column]] * depth - damping_n_s_per_m * vz, 0.0)
+    return (0.0, 0.0, push) if np.isfinite(push) and np.isfinite(vx + vy + vz) else (0.0, 0.0, 0.0)

@@ -5,16 +5,16 @@ from typing import Annotated, Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from tangible_core.compiled import CompiledTouch
+from tangible_core.compiled.touch import CompiledTouch
 from tangible_core.data import HapticSurface
 from tangible_core.haptic_textures.table import bristle_stiffness
-from tangible_core.interfaces import ForceRenderer, Touch
+from tangible_core.plugins.interfaces import ForceRenderer, Touch
 
-from .coefficients import spline_surface
-from .dequantise import Filter
-from .effects import textured
-from .material_table import Row, material_table
-from .tiles import tile_bounds
+from .effects.material_table import Row, material_table
+from .effects.table import textured
+from .surface.coefficients import spline_surface
+from .surface.dequantise import Filter
+from .surface.tiles import tile_bounds
 
 
 class Proxy(ForceRenderer):
@@ -63,7 +63,8 @@ class Proxy(ForceRenderer):
 
         Compiled on the first use on a machine, then loaded.
         """
-        from . import contact, proxy_kernels
+        from . import proxy_kernels
+        from .contact import contact
 
         shape = spline_surface(surface, self.dequantise)
         shape = (*shape, tile_bounds(shape[0]))

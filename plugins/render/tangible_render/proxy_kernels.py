@@ -8,12 +8,12 @@ What a touch remembers is listed in `contact`.
 import numpy as np
 from numba import float32, float64, njit, types
 
-from tangible_core.compiling import KERNEL
+from tangible_core.compiled.compiling import KERNEL
 
-from .bilinear import HEIGHTS, LABELS, NEWTONS, cell
-from .closest import settle
-from .contact import BESIDE, approach
-from .effects_kernels import effects, texture
+from .contact.closest import settle
+from .contact.contact import BESIDE, approach
+from .effects.kernels import effects, texture
+from .surface.bilinear import HEIGHTS, LABELS, NEWTONS, cell
 
 SURFACE = (HEIGHTS, *[float64] * 4, types.Array(float32, 3, "C", readonly=True))
 MATERIALS = types.Array(float64, 2, "C", readonly=True)
@@ -59,7 +59,7 @@ def textured_tick(
     coefficients, width_m, length_m, across_per_m, down_per_m, tiles_m, labels, table, memory, textures, contact,
     x, y, z, vx, vy, vz,
 ):  # fmt: skip
-    """The same under the textures of the materials; see `effects_kernels` for their table and for `contact`."""
+    """The same under the textures of the materials; see `effects.kernels` for their table and for `contact`."""
     shape = coefficients, width_m, length_m, across_per_m, down_per_m
     label, t, tx, ty, dx, dy, dz = texture(labels, width_m, length_m, textures, contact, x, y, z)
     vz -= tx * vx + ty * vy

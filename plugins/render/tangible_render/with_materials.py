@@ -5,14 +5,14 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import AfterValidator, Field, ValidationError
 
-from tangible_core.compiled import CompiledTouch
+from tangible_core.compiled.touch import CompiledTouch
 from tangible_core.data import HapticState, HapticSurface
 from tangible_core.errors import ConfigError, TangibleError
 from tangible_core.haptic_textures.table import bristle_stiffness
-from tangible_core.interfaces import ForceRenderer, Touch
-from tangible_core.materials import find, library
+from tangible_core.materials.assignment import find, library
+from tangible_core.plugins.interfaces import ForceRenderer, Touch
 
-from .effects import ACTING, effects_table, nowhere
+from .effects.table import ACTING, effects_table, nowhere
 
 OWN = "friction"
 """A law with this option renders materials itself."""
@@ -20,7 +20,7 @@ OWN = "friction"
 
 def _law(law: str | dict[str, Any]) -> tuple[str, ForceRenderer]:
     """Name and method. Raises: ValueError if it has no name or brings materials itself, TangibleError if it is none."""
-    from tangible_core.registry import load_method
+    from tangible_core.plugins.registry import load_method
 
     options: dict[str, Any] = {"use": law} if isinstance(law, str) else dict(law)
     name = options.pop("use", None)
@@ -113,14 +113,14 @@ def _is_lateral(law: ForceRenderer) -> bool:
 
 
 def _wrapped(law: CompiledTouch, surface: HapticSurface, labels: np.ndarray, table: np.ndarray, lateral: bool) -> Touch:
-    from . import effects_kernels
+    from .effects import kernels
 
-    bristle = float(table[:, effects_kernels.STIFFNESS].max())
+    bristle = float(table[:, kernels.STIFFNESS].max())
     rest = (labels, *map(float, surface.extent_m), table, bristle, nowhere())
-    bristles = max(bristle * bool(table[:, effects_kernels.STATIC].any()), bristle_stiffness(table))
+    bristles = max(bristle * bool(table[:, kernels.STATIC].any()), bristle_stiffness(table))
     stiffness = None if law.stiffness_n_per_m is None else max(law.stiffness_n_per_m, bristles)
     if not lateral:
-        return CompiledTouch(effects_kernels.tick, (law.fixed, law.address(), *rest), law.memory, stiffness)
+        return CompiledTouch(kernels.tick, (law.fixed, law.address(), *rest), law.memory, stiffness)
     heights = np.ascontiguousarray(surface.height_m, np.float32)
     fixed = (law.fixed, law.address(), heights, *rest)
-    return CompiledTouch(effects_kernels.lateral_tick, fixed, law.memory, stiffness)
+    return CompiledTouch(kernels.lateral_tick, fixed, law.memory, stiffness)

@@ -6,10 +6,10 @@ import numpy as np
 from pydantic import Field
 
 from tangible_core.data import SegmentMap, Views
-from tangible_core.interfaces import Segmenter, Skippable
-from tangible_core.pictures import check_picture
+from tangible_core.data.pictures import check_picture
+from tangible_core.plugins.interfaces import Segmenter, Skippable
 
-from .skipping import nothing_to_divide, one_segment
+from .signal.skipping import nothing_to_divide, one_segment
 
 
 class Gabor(Segmenter, Skippable):
@@ -46,12 +46,12 @@ class Gabor(Segmenter, Skippable):
         Memory: 100 bytes a pixel and 4 MiB, measured up to 17 megapixels.
         Raises: PictureError as `check_picture`.
         """
-        from .cells import CELL_PX
-        from .classes import classes
-        from .features import Window, features
-        from .full_size import fine_memberships, pixel_labels
-        from .merging import in_reading_order
-        from .planes import mixed
+        from .clusters.classes import classes
+        from .clusters.full_size import fine_memberships, pixel_labels
+        from .clusters.planes import mixed
+        from .features.cells import CELL_PX
+        from .features.features import Window, features
+        from .regions.merging import in_reading_order
 
         if self.segments == 1:
             return one_segment(check_picture(picture).shape[:2])

@@ -8,24 +8,18 @@ from jaxtyping import Float32, Int32
 from pydantic import Field, model_validator
 
 from tangible_core.data import SegmentMap, Views
-from tangible_core.interfaces import Segmenter, Skippable
-from tangible_core.notes import note
+from tangible_core.plugins.interfaces import Segmenter, Skippable
+from tangible_core.plugins.notes import note
 
-from .skipping import nothing_to_divide, one_segment
+from .signal.skipping import nothing_to_divide, one_segment
 
 if TYPE_CHECKING:
-    from .landscape import Landscape
+    from .regions.landscape import Landscape
 
 log = logging.getLogger(__name__)
 
-MOST_SEGMENTS = 64
-"""What `segments: auto` stops at, far beyond what touch tells apart."""
-
 NOTHING = 1e-6
 """A slope, per pixel, that rounding can make of one colour when white is 1."""
-
-STEEPER = (1, 4, 16)
-"""Where nothing is flat, a part this many times as steep counts as flat."""
 
 
 class Gradient(Segmenter, Skippable):
@@ -81,12 +75,12 @@ class Gradient(Segmenter, Skippable):
 
         Raises: PictureError as `check_picture`.
         """
-        from .channels import channels
-        from .landscape import landscape
-        from .merging import in_reading_order
-        from .refining import refined
-        from .slopes import slopes
-        from .smoothing import two_scales, without_specks
+        from .features.channels import channels
+        from .regions.landscape import landscape
+        from .regions.merging import in_reading_order
+        from .regions.refining import refined
+        from .signal.slopes import slopes
+        from .signal.smoothing import two_scales, without_specks
 
         near, wide, step = two_scales(without_specks(channels(picture, self.colour)), self.sigma_px)
         magnitude, _, _, noise = slopes(near)
@@ -104,11 +98,11 @@ class Gradient(Segmenter, Skippable):
 
     def _regions(self, land: "Landscape", step: int) -> Int32[np.ndarray, "h w"] | None:
         """Labels of every step-th pixel; None where there is one region."""
-        from .basins import basins
-        from .borders import borders
-        from .landscape import canny_edges
-        from .merging import merge, weakest_border
-        from .watershed import watershed
+        from .regions.basins import MOST_SEGMENTS, STEEPER, basins
+        from .regions.borders import borders
+        from .regions.landscape import canny_edges
+        from .regions.merging import merge, weakest_border
+        from .regions.watershed import watershed
 
         smallest = max(4, min(self.smallest_px // step**2, land.steep.size // 16))
         markers, count = basins(land.steep, [self.flat * times for times in STEEPER], smallest)

@@ -8,13 +8,13 @@ from jaxtyping import Bool, Float32, Int32
 from pydantic import Field
 
 from tangible_core.data import SegmentMap, Views
-from tangible_core.interfaces import Segmenter, Skippable
-from tangible_core.notes import note
+from tangible_core.plugins.interfaces import Segmenter, Skippable
+from tangible_core.plugins.notes import note
 
-from .skipping import nothing_to_divide, one_segment
+from .signal.skipping import nothing_to_divide, one_segment
 
 if TYPE_CHECKING:
-    from .levels import Levels
+    from .clusters.levels import Levels
 
 BINS = 256
 """How many grey levels are told apart between the darkest and the brightest."""
@@ -65,11 +65,11 @@ class Histogram(Segmenter, Skippable):
 
         Raises: PictureError as `check_picture`.
         """
-        from .channels import channels
-        from .merging import in_reading_order
-        from .parts import without_small_parts
-        from .slopes import slopes
-        from .smoothing import gaussian, without_specks
+        from .features.channels import channels
+        from .regions.merging import in_reading_order
+        from .regions.parts import without_small_parts
+        from .signal.slopes import slopes
+        from .signal.smoothing import gaussian, without_specks
 
         values = without_specks(channels(picture, colour=False))
         sigma_px = min(self.sigma_px, values.size**0.5 / 16)
@@ -88,7 +88,7 @@ class Histogram(Segmenter, Skippable):
         self, grey: Float32[np.ndarray, "h w"], flat: Bool[np.ndarray, "h w"], most: int
     ) -> tuple[Int32[np.ndarray, "h w"], Float32[np.ndarray, "h w"]]:
         """Each pixel's class, dark to bright, and how sure it is; `most` is how many levels the picture has."""
-        from .levels import Levels
+        from .clusters.levels import Levels
 
         bins = _bins(grey)
         pixels = np.bincount(bins[flat], minlength=BINS)

@@ -7,16 +7,16 @@ from jaxtyping import Float32, Int32
 from pydantic import Field
 
 from tangible_core.data import SegmentMap, Views
-from tangible_core.interfaces import Segmenter, Skippable
-from tangible_core.pictures import to_grey
-from tangible_core.torch_extra import TorchDevice, need, pick_device
+from tangible_core.data.pictures import to_grey
+from tangible_core.plugins.interfaces import Segmenter, Skippable
+from tangible_core.runtime.torch_extra import TorchDevice, need, pick_device
 
-from .skipping import nothing_to_divide, one_segment
+from .signal.skipping import nothing_to_divide, one_segment
 
 if TYPE_CHECKING:
     from torch import Tensor
 
-    from .gabor_bank import Gabor
+    from .energies.gabor_bank import Gabor
 
 MORE = 3
 """So many clusters more are tried as long as seams are among those that were asked for."""
@@ -65,9 +65,9 @@ class KorniaGabor(Segmenter, Skippable):
         """
         need("torch")
         need("kornia")
-        from .filter_choice import needed_filters
-        from .gabor_bank import bank, octaves
-        from .noise_floor import is_flat
+        from .energies.filter_choice import needed_filters
+        from .energies.gabor_bank import bank, octaves
+        from .energies.noise_floor import is_flat
 
         grey = to_grey(picture)
         if is_flat(grey):
@@ -77,9 +77,9 @@ class KorniaGabor(Segmenter, Skippable):
         return self._segments(grey, needed_filters(grey, wanted, self.skip_weak, self.skip_octaves), most_px)
 
     def _segments(self, grey: Float32[np.ndarray, "h w"], filters: "list[Gabor]", most_px: float) -> SegmentMap:
-        from .labelling import enlarged, segments_of
-        from .noise_floor import is_one_texture
-        from .torch_gabor import energies, standardised_roots
+        from .clusters.labelling import enlarged, segments_of
+        from .energies.noise_floor import is_one_texture
+        from .kornia_gabor_kernels import energies, standardised_roots
 
         window_px = min(self.window_px, most_px)
         planes = energies(grey, filters, self.step_px, window_px, pick_device(self.torch_device))
@@ -95,9 +95,9 @@ class KorniaGabor(Segmenter, Skippable):
         self, rows: "Tensor", shape: tuple[int, ...], count: int, radius: int
     ) -> tuple[Int32[np.ndarray, "rows columns"], Float32[np.ndarray, "n"]]:
         """Labels and confidence of the cells; a few clusters more where seams were among those that were asked for."""
-        from .labelling import margins
-        from .seams import without_seams
-        from .torch_gabor import kmeans
+        from .clusters.labelling import margins
+        from .features.seams import without_seams
+        from .kornia_gabor_kernels import kmeans
 
         features, clusters = rows.cpu().numpy(), count
         most = count if self.segments == "auto" else count + MORE

@@ -8,11 +8,11 @@ from jaxtyping import Float32, Int32
 from pydantic import Field, model_validator
 
 from tangible_core.data import SegmentMap, Views
-from tangible_core.interfaces import Segmenter, Skippable
-from tangible_core.pictures import to_grey
-from tangible_core.torch_extra import TorchDevice, need, pick_device
+from tangible_core.data.pictures import to_grey
+from tangible_core.plugins.interfaces import Segmenter, Skippable
+from tangible_core.runtime.torch_extra import TorchDevice, need, pick_device
 
-from .skipping import nothing_to_divide, one_segment
+from .signal.skipping import nothing_to_divide, one_segment
 
 QUIET = 0.25
 """This share of the slopes is taken to be noise, and their largest to be that quantile of a Rayleigh distribution."""
@@ -61,9 +61,9 @@ class KorniaGradient(Segmenter, Skippable):
         """
         need("torch")
         need("kornia")
-        from .merging import in_reading_order
-        from .noise_floor import is_flat
-        from .watershed import watershed
+        from .energies.noise_floor import is_flat
+        from .regions.merging import in_reading_order
+        from .regions.watershed import watershed
 
         grey = to_grey(picture)
         if is_flat(grey):
@@ -95,8 +95,7 @@ class KorniaGradient(Segmenter, Skippable):
 
     def _markers(self, steep: Float32[np.ndarray, "h w"]) -> tuple[Int32[np.ndarray, "h w"], int]:
         """The basins under canny_low, or more where nothing is so flat; the largest, if too many; -1 elsewhere."""
-        from .basins import basins
-        from .gradient import MOST_SEGMENTS, STEEPER
+        from .regions.basins import MOST_SEGMENTS, STEEPER, basins
 
         levels = [self.canny_low * times for times in STEEPER]
         found, count = basins(steep, levels, max(4, min(self.smallest_px, steep.size // 16)))

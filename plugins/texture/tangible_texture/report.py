@@ -9,14 +9,14 @@ from jaxtyping import Float32
 from pydantic import Field
 
 from tangible_core.data import SegmentMap, Views
-from tangible_core.interfaces import Segmenter, Skippable
-from tangible_core.notes import note
-from tangible_core.pictures import to_grey
+from tangible_core.data.pictures import to_grey
+from tangible_core.plugins.interfaces import Segmenter, Skippable
+from tangible_core.plugins.notes import note
 
-from .skipping import nothing_to_divide, one_segment
+from .signal.skipping import nothing_to_divide, one_segment
 
 if TYPE_CHECKING:
-    from .gabor_bank import Gabor
+    from .energies.gabor_bank import Gabor
 
 log = logging.getLogger(__name__)
 
@@ -63,9 +63,9 @@ class Report(Segmenter, Skippable):
 
     def segment(self, picture: np.ndarray) -> SegmentMap:
         """Labels in the order of their first pixels. Raises: PictureError as `check_picture`."""
-        from .filter_choice import needed_filters
-        from .labelling import labelled
-        from .noise_floor import is_flat, is_one_texture
+        from .clusters.labelling import labelled
+        from .energies.filter_choice import needed_filters
+        from .energies.noise_floor import is_flat, is_one_texture
 
         grey = to_grey(picture)
         if is_flat(grey):
@@ -78,7 +78,7 @@ class Report(Segmenter, Skippable):
         return labelled(features, step_px, grey.shape, self.segments, self.seed, start="random")
 
     def _filters(self, width_px: int) -> "list[Gabor]":
-        from .gabor_bank import bank, octaves, printed
+        from .energies.gabor_bank import bank, octaves, printed
 
         wavelengths = printed(width_px) if self.frequencies == "printed" else octaves(self.longest_px)
         return bank(wavelengths, 6, self.bandwidth, self.gamma)
@@ -93,10 +93,10 @@ class Report(Segmenter, Skippable):
         self, grey: Float32[np.ndarray, "h w"], filters: "list[Gabor]", step_px: int
     ) -> Float32[np.ndarray, "rows columns filters"]:
         """Mean |tanh(alpha r)| every step_px pixels, as a share of the greatest: k-means does not mind the scale."""
-        from tangible_core.elementary import hyperbolic_tangents
+        from tangible_core.compiled.elementary import hyperbolic_tangents
 
-        from .responses import even_responses
-        from .smoothing import gaussian
+        from .energies.responses import even_responses
+        from .signal.smoothing import gaussian
 
         rows, columns = (-(-side // step_px) for side in grey.shape)
         features = np.empty((rows, columns, len(filters)), np.float32)

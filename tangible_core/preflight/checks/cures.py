@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable, Iterable
 
 from ...data import Material, Relief
-from ...geometry import smooth
+from ...scene.geometry import smooth
 from ..bumps import reduced
 from ..flight import Flight
 from ..verdict import over, under

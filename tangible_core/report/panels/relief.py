@@ -14,7 +14,7 @@ from matplotlib.patches import Polygon
 from matplotlib.ticker import MaxNLocator
 
 from ...data import Relief
-from ...geometry import normals
+from ...scene.geometry import normals
 from ..block import drawn_size, facets, framed, on_paper, points_of, seen
 from ..style import INK, VIRIDIS, colour_bar
 

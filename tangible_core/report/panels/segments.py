@@ -10,7 +10,7 @@ from matplotlib.patches import Patch
 from matplotlib.patheffects import withStroke
 
 from ...data import MaterialMap, SegmentMap, Views
-from ...pictures import to_grey
+from ...data.pictures import to_grey
 from ..style import INK, OKABE_ITO, bare, inches, thinned
 
 PALETTE = np.array([to_rgb(colour) for colour in OKABE_ITO])

@@ -5,7 +5,7 @@
 from matplotlib.axes import Axes
 
 from ...data import Views
-from ...pictures import to_rgb8
+from ...data.pictures import to_rgb8
 from ..style import bare, thinned
 
 

@@ -10,7 +10,7 @@ import pytest
 
 from ctrl_c import HEARING
 from distributions import distribution
-from tangible_core.registry import Registry
+from tangible_core.plugins.registry import Registry
 
 FAKES = """
 import os, signal, time
@@ -20,7 +20,7 @@ import numpy as np
 from pydantic import Field
 from tangible_core.data import DisparityMap
 from tangible_core.errors import PictureError
-from tangible_core.interfaces import DepthEstimator
+from tangible_core.plugins.interfaces import DepthEstimator
 
 
 def flat(views, value_px):

@@ -8,7 +8,7 @@ import pytest
 
 from tangible_core.bench.config import load_comparison
 from tangible_core.bench.rows import Row, append, read_rows
-from tangible_core.registry import default_registry
+from tangible_core.plugins.registry import default_registry
 
 ROOT = Path(__file__).parents[3]
 TEXT = """\

@@ -8,7 +8,7 @@ from PIL import Image
 
 from tangible_core.bench.config import Comparison, load_comparison, parse_comparison
 from tangible_core.errors import ConfigError
-from tangible_core.registry import Registry
+from tangible_core.plugins.registry import Registry
 
 PATH = Path("here/c.yaml")
 GOOD = "compare: depth\nmethods: [constant]\nscenes: [synthetic/steps]\n"

@@ -5,7 +5,7 @@ import pytest
 
 from tangible_core.bench import damage
 from tangible_core.bench.depth import PERTURBATIONS
-from tangible_core.testing.stereo_scenes import synthetic_pair
+from tangible_core.synthetic.stereo_scenes import synthetic_pair
 
 GREY = np.full((64, 64), 100, np.uint8)
 

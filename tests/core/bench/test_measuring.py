@@ -16,7 +16,7 @@ from tangible_core.bench.plan import measurements
 from tangible_core.bench.rows import Row, append, mend, read_rows
 from tangible_core.bench.run import look, run
 from tangible_core.errors import ConfigError, OutputError, ResultsError
-from tangible_core.registry import Registry
+from tangible_core.plugins.registry import Registry
 
 SCENE = "{synthetic: steps, width_px: 64, height_px: 32}"
 QUICK = "repeats: 1\nwarmups: 0\ncalls: 1\n"
@@ -50,7 +50,7 @@ def test_a_row_says_everything(registry: Registry, tmp_path: Path):
 
 def test_measures_are_those_of_the_truth(registry: Registry, tmp_path: Path):
     """A constant of 0 px is wrong by the truth itself."""
-    from tangible_core.testing.stereo_scenes import synthetic_pair
+    from tangible_core.synthetic.stereo_scenes import synthetic_pair
 
     (row,) = measured(registry, tmp_path / "r.jsonl", "{use: constant, value_px: 0}")
     pair = synthetic_pair("steps", 64, 32)

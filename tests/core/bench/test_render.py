@@ -17,10 +17,10 @@ from tangible_core.bench.summary import cells
 from tangible_core.bench.table import Results, tables
 from tangible_core.errors import ConfigError, OutputError
 from tangible_core.metrics import HANDLE
-from tangible_core.registry import Registry, load_method
+from tangible_core.plugins.registry import Registry, load_method
 from tangible_core.session import Recording
-from tangible_core.testing.scenes import ramp
-from tangible_core.testing.strokes import SURFACES, KnownStroke, analytic_stroke
+from tangible_core.synthetic.scenes import ramp
+from tangible_core.synthetic.strokes import SURFACES, KnownStroke, analytic_stroke
 
 CELLS = 64
 RISE = math.hypot(0.2, 0.1)

@@ -16,8 +16,8 @@ from tangible_core.bench.texture import PERTURBATIONS, TASK, measure
 from tangible_core.bench.texture_scenes import TextureScene
 from tangible_core.data import SegmentMap
 from tangible_core.errors import ConfigError, PictureError
-from tangible_core.registry import Registry
-from tangible_core.testing.texture_scenes import KnownSegments, smooth_scene, texture_mosaic
+from tangible_core.plugins.registry import Registry
+from tangible_core.synthetic.texture_scenes import KnownSegments, smooth_scene, texture_mosaic
 
 SCENE = smooth_scene(4, (40, 60), seed=1)
 TURNED = {"quarter": 1, "flip": 1, "rotate": 20, "scale": 0.5}

@@ -11,7 +11,6 @@ import pytest
 from flights import fly, half_slope, level, material, of, shape
 from tangible_core import HapticSurface
 from tangible_core.data import Relief
-from tangible_core.geometry import smooth
 from tangible_core.preflight import CHECKS, judge
 from tangible_core.preflight.bumps import threshold_m
 from tangible_core.preflight.checks.clipping import clipping, contact
@@ -24,7 +23,8 @@ from tangible_core.preflight.checks.textures import textures
 from tangible_core.preflight.checks.workspace import workspace
 from tangible_core.preflight.timing import Lateness, TickCost
 from tangible_core.preflight.verdict import Verdict, held
-from tangible_core.servo.safety import Safety
+from tangible_core.scene.geometry import smooth
+from tangible_core.servo.guard.safety import Safety
 
 
 def grades(verdicts: Any) -> list[str]:

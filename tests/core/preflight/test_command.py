@@ -121,11 +121,11 @@ def test_a_cure_stands_below_its_verdict_and_brackets_are_no_marks():
 def test_a_law_of_somebody_elses_without_a_word_on_its_stiffness(folder: Path, monkeypatch: pytest.MonkeyPatch):
     """It is felt."""
     from tangible_core import HapticSurface
-    from tangible_core.config import load_config
     from tangible_core.data import Force
-    from tangible_core.interfaces import Touch
+    from tangible_core.pipeline.config import load_config
+    from tangible_core.plugins.interfaces import Touch
+    from tangible_core.plugins.registry import default_registry
     from tangible_core.preflight import survey
-    from tangible_core.registry import default_registry
 
     class Spring(Touch):
         def force(self, state: HapticState) -> Force:

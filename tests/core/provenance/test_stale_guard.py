@@ -13,7 +13,7 @@ PUSHED_FOR_A_SECOND = """
 import tangible_core
 from tangible_core.data import DeviceSpec
 from tangible_core.servo import Safety
-from tangible_core.servo.guard import guard
+from tangible_core.servo.guard.guard import guard
 
 settings, memory = Safety(ramp_s=0, passivity="off").arrays(DeviceSpec(8.0, 3000.0, 1.5, (0.1, 0.1, 0.1), 3e-5), 0.0)
 left = [guard(settings, memory, 0.001, *[0.0] * 6, 0.0, 0.0, 300.0)[2] for _ in range(1000)]
@@ -37,10 +37,10 @@ def test_an_edit_of_the_layout_alone_is_obeyed_by_the_guard(tmp_path: Path):
         Path(tangible_core.__file__).parent, tmp_path / "tangible_core", ignore=shutil.ignore_patterns("__pycache__")
     )
     assert pushed(tmp_path) == (8.0, 1)
-    layout = tmp_path / "tangible_core" / "servo" / "guard_layout.py"
+    layout = tmp_path / "tangible_core" / "servo" / "guard" / "layout.py"
     names = layout.read_text()
     exchanged = {"MAX_FORCE_N": "MAX_STIFFNESS", "MAX_STIFFNESS": "MAX_FORCE_N"}
     layout.write_text("".join(exchanged.get(word, word) for word in re.split(r"\b", names)))
     assert pushed(tmp_path) == (8.0, 1)
-    (tmp_path / "tangible_core" / "engine.py").write_text("")
+    (tmp_path / "tangible_core" / "pipeline" / "engine.py").write_text("")
     assert pushed(tmp_path) == (8.0, 0)

@@ -20,7 +20,7 @@ import pytest
 
 from tangible_core import HapticSurface, load_method
 from tangible_core.errors import BrokenMethod, DeviceError
-from tangible_core.interfaces import Touch
+from tangible_core.plugins.interfaces import Touch
 from tangible_core.servo import Safety, Servo, host, priority
 from tangible_core.servo.child import Child
 from tangible_core.servo.parcel import pack

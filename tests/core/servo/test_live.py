@@ -14,7 +14,7 @@ from full_disk import files_up_to
 from tangible_core import HapticSurface, load_method
 from tangible_core.data import ServoReport
 from tangible_core.errors import OutputError
-from tangible_core.interfaces import Touch
+from tangible_core.plugins.interfaces import Touch
 from tangible_core.servo import OVER, Safety
 from tangible_core.session import INTERRUPTED, Recording, feel, figures, keeping, live
 from tangible_core.session.tick_file import About

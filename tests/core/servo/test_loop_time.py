@@ -8,9 +8,9 @@ import pytest
 from numba import float64, int32, int64, njit, types, uintp, void
 
 from tangible_core import HapticSurface, load_method
-from tangible_core.compiled import CompiledLink, LinkKernels
+from tangible_core.compiled.touch import CompiledLink, LinkKernels
 from tangible_core.data import TICK_COLUMNS, Force, HapticState, TickFlag
-from tangible_core.interfaces import Link, Touch
+from tangible_core.plugins.interfaces import Link, Touch
 from tangible_core.servo import Ring, Safety, clock, loop
 from tangible_core.servo.reports import report
 from tangible_core.servo.ring import LAST, LEAD_NS, PERIOD_NS

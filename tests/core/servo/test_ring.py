@@ -10,7 +10,7 @@ import pytest
 from tangible_core.data import TICK_COLUMNS, Force, HapticState, TickFlag
 from tangible_core.errors import DeviceError
 from tangible_core.servo import Ring, cycle, ring
-from tangible_core.servo.guard_layout import COUNTS
+from tangible_core.servo.guard.layout import COUNTS
 from tangible_core.servo.loop import sections
 from tangible_core.servo.reports import report, spread
 from tangible_core.servo.ring import (

@@ -14,7 +14,7 @@ from ctrl_c import HEARING
 from tangible_core import HapticSurface, load_method
 from tangible_core.data import TICK_COLUMNS, TickFlag
 from tangible_core.errors import ConfigError, DeviceError
-from tangible_core.interfaces import Touch
+from tangible_core.plugins.interfaces import Touch
 from tangible_core.servo import OVER, Safety, Servo
 from tangible_core.servo.ring import shared_folder
 from tangible_core.testing.loop_devices import Circling, Failing

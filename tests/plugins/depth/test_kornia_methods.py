@@ -5,12 +5,12 @@ import pytest
 
 from tangible_core.data import Views
 from tangible_core.errors import BrokenMethod, TangibleError
-from tangible_core.torch_extra import need, pick_device
-from tangible_depth.fundamental import DegenerateMatches, eight_point, robust_fundamental
-from tangible_depth.harris import harris_response
+from tangible_core.runtime.torch_extra import need, pick_device
 from tangible_depth.kornia_report import KorniaReport, kornia_eight_point, kornia_response
 from tangible_depth.kornia_zncc import KorniaZNCC
+from tangible_depth.rectify.fundamental import DegenerateMatches, eight_point, robust_fundamental
 from tangible_depth.report import Report
+from tangible_depth.sparse.harris import harris_response
 from two_cameras import Scene, roll_and_tilt, seen_points, some_wrong
 
 METHODS = [KorniaZNCC(), KorniaReport()]

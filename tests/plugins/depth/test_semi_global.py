@@ -11,7 +11,7 @@ import pytest
 from stereo_scenes import slanted, step
 from tangible_core.data import Views
 from tangible_core.errors import PictureError
-from tangible_core.notes import collected
+from tangible_core.plugins.notes import collected
 from tangible_depth.semi_global import SemiGlobal
 
 

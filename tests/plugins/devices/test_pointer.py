@@ -17,10 +17,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numba import njit
 
-from tangible_core.compiled import CompiledLink
+from tangible_core.compiled.kernels import Address
+from tangible_core.compiled.touch import CompiledLink
 from tangible_core.data import NO_FORCE, Force, HapticState
 from tangible_core.errors import ConfigError, DeviceError
-from tangible_core.kernels import Address
 from tangible_core.mapping import WorkspaceMapping, mapped
 from tangible_devices.pointer import PointerClient, channel, kernels
 from tangible_devices.pointer.channel import Channel, checksum, packed, unpacked

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 from tangible_core.data import Force, HapticState, HapticSurface, Material
-from tangible_core.interfaces import Touch
-from tangible_core.testing.reliefs import waves
-from tangible_core.testing.scenes import plane, ramp, sphere_cap
-from tangible_render import spline
-from tangible_render.coefficients import spline_surface
+from tangible_core.plugins.interfaces import Touch
+from tangible_core.synthetic.reliefs import waves
+from tangible_core.synthetic.scenes import plane, ramp, sphere_cap
 from tangible_render.proxy import Proxy
+from tangible_render.surface import spline
+from tangible_render.surface.coefficients import spline_surface
 
 K = 800.0
 LEVEL = plane(0.01).surface

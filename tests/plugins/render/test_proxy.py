@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tangible_core.compiled import CompiledTouch
+from tangible_core.compiled.touch import CompiledTouch
 from tangible_core.data import NO_FORCE, Force, HapticState, HapticSurface, Material, Relief
-from tangible_core.interfaces import Touch
-from tangible_core.testing.reliefs import cliff, cone, waves
-from tangible_core.testing.scenes import KnownSurface, plane, ramp, sphere_cap
+from tangible_core.plugins.interfaces import Touch
+from tangible_core.synthetic.reliefs import cliff, cone, waves
+from tangible_core.synthetic.scenes import KnownSurface, plane, ramp, sphere_cap
 from tangible_render.proxy import Proxy
 
 RNG = np.random.default_rng(23)

@@ -5,13 +5,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tangible_core.compiled import CompiledTouch
+from tangible_core.compiled.touch import CompiledTouch
 from tangible_core.data import NO_FORCE, HapticState, HapticSurface, Material
-from tangible_core.testing.rough import rough_surfaces
-from tangible_core.testing.scenes import plane
-from tangible_render import spline
-from tangible_render.coefficients import spline_surface
+from tangible_core.synthetic.rough import rough_surfaces
+from tangible_core.synthetic.scenes import plane
 from tangible_render.proxy import Proxy
+from tangible_render.surface import spline
+from tangible_render.surface.coefficients import spline_surface
 
 RNG = np.random.default_rng(23)
 K = 800.0

@@ -6,17 +6,17 @@ CI feels ten million ticks in all; `pytest -m nightly tests/plugins/render/test_
 import numpy as np
 import pytest
 
-from tangible_core.compiled import CompiledTouch
+from tangible_core.compiled.touch import CompiledTouch
 from tangible_core.data import HapticSurface
-from tangible_core.interfaces import ForceRenderer
-from tangible_core.materials import library
-from tangible_core.registry import load_method
+from tangible_core.materials.assignment import library
+from tangible_core.plugins.interfaces import ForceRenderer
+from tangible_core.plugins.registry import load_method
+from tangible_core.synthetic.rough import rough_surfaces
+from tangible_core.synthetic.scenes import sphere_cap
 from tangible_core.testing.fuzz import MARGIN_M, Worst, fuzz
-from tangible_core.testing.rough import rough_surfaces
-from tangible_core.testing.scenes import sphere_cap
-from tangible_render.coefficients import spline_coefficients
-from tangible_render.contact import LEAP_M, STRETCH_M
+from tangible_render.contact.contact import LEAP_M, STRETCH_M
 from tangible_render.proxy import Proxy
+from tangible_render.surface.coefficients import spline_coefficients
 from tangible_render.with_materials import WithMaterials
 
 K, FASTEST_M = 800.0, 5e-4

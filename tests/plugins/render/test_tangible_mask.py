@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tangible_core.data import NO_FORCE, HapticState, HapticSurface, Relief
-from tangible_render.grey_levels import grey_levels
+from tangible_render.surface.grey_levels import grey_levels
 from tangible_render.tangible_mask import TangibleMask
 
 RNG = np.random.default_rng(3)

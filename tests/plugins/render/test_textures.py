@@ -6,14 +6,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tangible_core.compiled import CompiledTouch
+from tangible_core.compiled.touch import CompiledTouch
 from tangible_core.data import NO_FORCE, HapticState, HapticSurface, Material
 from tangible_core.haptic_textures import compile_textures
 from tangible_core.haptic_textures.heights import texture_height
-from tangible_core.interfaces import ForceRenderer
-from tangible_core.materials import library
-from tangible_core.testing.rough import rough_surfaces
-from tangible_core.testing.scenes import ramp
+from tangible_core.materials.assignment import library
+from tangible_core.plugins.interfaces import ForceRenderer
+from tangible_core.synthetic.rough import rough_surfaces
+from tangible_core.synthetic.scenes import ramp
 from tangible_render import proxy_kernels
 from tangible_render.proxy import Proxy
 from tangible_render.with_materials import WithMaterials

@@ -7,17 +7,17 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from tangible_core.compiled import CompiledTouch
+from tangible_core.compiled.touch import CompiledTouch
 from tangible_core.data import Force, HapticState, HapticSurface, Material
 from tangible_core.errors import ConfigError
 from tangible_core.haptic_textures import compile_textures
 from tangible_core.haptic_textures.heights import texture_height
-from tangible_core.interfaces import ForceRenderer, Touch
-from tangible_core.materials import library
-from tangible_core.registry import load_method
-from tangible_core.testing.reliefs import waves
-from tangible_core.testing.rough import rough_surfaces
-from tangible_core.testing.scenes import ramp
+from tangible_core.materials.assignment import library
+from tangible_core.plugins.interfaces import ForceRenderer, Touch
+from tangible_core.plugins.registry import load_method
+from tangible_core.synthetic.reliefs import waves
+from tangible_core.synthetic.rough import rough_surfaces
+from tangible_core.synthetic.scenes import ramp
 from tangible_render.with_materials import WithMaterials
 
 PUSHING = ("penalty", "penalty-gradient", "force-shading", "grey-level")
@@ -336,7 +336,7 @@ class TestOptions:
 
         renderer = WithMaterials(law={"use": "grey-level"})
         renderer.law.pop("force_at_white_n")
-        monkeypatch.setattr("tangible_core.registry.load_method", lambda kind, name: Plugin)
+        monkeypatch.setattr("tangible_core.plugins.registry.load_method", lambda kind, name: Plugin)
         with pytest.raises(ConfigError, match="Plugin is not compiled"):
             renderer.touch(level(STICKY))
 

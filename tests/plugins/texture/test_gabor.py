@@ -8,10 +8,10 @@ from pydantic import ValidationError
 from label_maps import rand_index
 from tangible_core.data import Views
 from tangible_core.errors import PictureError
-from tangible_core.notes import collected
+from tangible_core.plugins.notes import collected
+from tangible_texture.energies.gabor_bank import Gabor as bank_filter
+from tangible_texture.energies.gabor_bank import kernel, sigma_of_bandwidth
 from tangible_texture.gabor import Gabor
-from tangible_texture.gabor_bank import Gabor as bank_filter
-from tangible_texture.gabor_bank import kernel, sigma_of_bandwidth
 
 EFFORTS = ["fast", "balanced"]
 
@@ -216,7 +216,7 @@ def test_options_out_of_range_are_refused(options: dict):
 
 def test_threads_do_not_change_a_label(monkeypatch: pytest.MonkeyPatch):
     whole = Gabor(segments=3).segment(PICTURE)
-    monkeypatch.setattr("tangible_core.threads.thread_count", lambda: 1)
+    monkeypatch.setattr("tangible_core.compiled.threads.thread_count", lambda: 1)
     alone = Gabor(segments=3).segment(PICTURE)
     np.testing.assert_array_equal(whole.labels, alone.labels)
     np.testing.assert_array_equal(whole.confidence, alone.confidence)

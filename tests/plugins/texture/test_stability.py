@@ -14,11 +14,11 @@ import pytest
 from pydantic import ValidationError
 
 from tangible_core.data import SegmentMap
+from tangible_core.data.pictures import fill_non_finite
 from tangible_core.errors import PictureError
-from tangible_core.interfaces import Segmenter
-from tangible_core.pictures import fill_non_finite
-from tangible_core.registry import default_registry
-from tangible_core.testing.scenes import two_textures
+from tangible_core.plugins.interfaces import Segmenter
+from tangible_core.plugins.registry import default_registry
+from tangible_core.synthetic.scenes import two_textures
 from tangible_core.testing.variants import TINY, coarse_variants, exact_variants
 
 METHODS = [
@@ -254,7 +254,7 @@ def test_the_memory_that_is_stated_is_enough_for_four_megapixels(name: str, byte
     """Of grey, above the picture, and 16 MiB for what does not grow."""
     script = (
         "import numpy as np; from tangible_core.bench.memory import start_peak;"
-        "from tangible_core.registry import default_registry as installed;"
+        "from tangible_core.plugins.registry import default_registry as installed;"
         "squares = (np.indices((2000, 2000)) // 250).sum(axis=0) % 2 * 90;"
         "picture = (squares + np.random.default_rng(0).integers(60, 80, squares.shape)).astype(np.uint8); del squares;"
         f"method = installed().load('texture', '{name}')();"

@@ -8,14 +8,14 @@ import pytest
 from label_maps import rand_index
 from tangible_core.data import Views
 from tangible_core.errors import TangibleError
-from tangible_core.notes import collected
-from tangible_texture.gabor_bank import bank, octaves
-from tangible_texture.kmeans import kmeans
+from tangible_core.plugins.notes import collected
+from tangible_texture.clusters.kmeans import kmeans
+from tangible_texture.energies.gabor_bank import bank, octaves
+from tangible_texture.energies.local_energy import energy_planes, padding, spectrum_of
+from tangible_texture.energies.responses import even_responses
 from tangible_texture.kornia_gabor import KorniaGabor
 from tangible_texture.kornia_gradient import KorniaGradient
-from tangible_texture.local_energy import energy_planes, padding, spectrum_of
 from tangible_texture.report import Report
-from tangible_texture.responses import even_responses
 
 METHODS = [Report(), KorniaGabor(), KorniaGradient()]
 NAMES = ["report", "kornia-gabor", "kornia-gradient"]
@@ -85,7 +85,7 @@ class TestKorniaGabor:
     def test_energies_are_those_of_the_fast_bank(self, step_px):
         import torch
 
-        from tangible_texture.torch_gabor import energies
+        from tangible_texture.kornia_gabor_kernels import energies
 
         grey = np.random.default_rng(0).random((90, 77)).astype(np.float32)
         filters = bank(octaves(12))
@@ -96,19 +96,19 @@ class TestKorniaGabor:
     def test_clusters_are_those_of_our_k_means(self):
         import torch
 
-        from tangible_texture import torch_gabor
+        from tangible_texture import kornia_gabor_kernels
 
         rng = np.random.default_rng(0)
         rows = (rng.normal(size=(5, 8))[rng.integers(0, 5, 2000)] * 8 + rng.normal(size=(2000, 8))).astype(np.float32)
         ours = kmeans(rows, 5, restarts=10)
-        theirs = torch_gabor.kmeans(torch.from_numpy(rows), 5, restarts=10)
+        theirs = kornia_gabor_kernels.kmeans(torch.from_numpy(rows), 5, restarts=10)
         assert theirs.cost == pytest.approx(ours.cost, rel=1e-4)
         assert rand_index(theirs.labels.numpy(), ours.labels) == 1
 
     def test_never_more_clusters_than_distinct_rows(self):
         import torch
 
-        from tangible_texture.torch_gabor import kmeans
+        from tangible_texture.kornia_gabor_kernels import kmeans
 
         assert len(kmeans(torch.zeros(9, 2), 4).centres) == 1
         assert len(kmeans(torch.eye(3).repeat(5, 1), 7, restarts=2).centres) == 3
@@ -116,7 +116,7 @@ class TestKorniaGabor:
     def test_labels_are_those_of_the_fast_bank_with_the_same_clustering(self):
         import torch
 
-        from tangible_texture.torch_gabor import standardised_roots
+        from tangible_texture.kornia_gabor_kernels import standardised_roots
 
         grey, _ = quarters(256)
         found = KorniaGabor(segments=4, drop_seams=False, skip_octaves=False).segment(grey)

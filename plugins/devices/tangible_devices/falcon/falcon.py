@@ -7,9 +7,9 @@ from typing import Annotated
 
 from pydantic import BaseModel, Field
 
-from tangible_core.calibrations import load_calibration
 from tangible_core.data import DeviceSpec, Finding, Unit
-from tangible_core.interfaces import Adjustable, HapticDevice, Link, Serviceable
+from tangible_core.plugins.interfaces import Adjustable, HapticDevice, Link, Serviceable
+from tangible_core.scene.calibrations import load_calibration
 
 from .calibration import Calibration
 from .image import read_image

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from tangible_core.data import DeviceSpec
-from tangible_core.interfaces import HapticDevice, Link
+from tangible_core.plugins.interfaces import HapticDevice, Link
 
 from ..hand import VirtualHand
 from ..paths import DRAWN, walk

@@ -7,7 +7,7 @@ Imports numba: a method imports this module inside its verb.
 
 from numba import int64, njit, void
 
-from tangible_core.compiling import KERNEL
+from tangible_core.compiled.compiling import KERNEL
 
 from .packet import BYTES, SIZE, START, is_packet
 

@@ -9,7 +9,7 @@ from typing import get_args
 
 from tangible_core.data import NO_FORCE, Force
 from tangible_core.errors import DeviceError
-from tangible_core.interfaces import Link
+from tangible_core.plugins.interfaces import Link
 
 from . import kinematics
 from .calibration import Axis, Calibration

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from tangible_core.calibrations import any_calibration
+from tangible_core.scene.calibrations import any_calibration
 
 from .firmware import running
 from .homing import home

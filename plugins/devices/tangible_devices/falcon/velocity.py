@@ -8,7 +8,7 @@ Imports numba: a method imports this module inside its verb.
 import numpy as np
 from numba import boolean, float64, int64, njit, types
 
-from tangible_core.compiling import KERNEL
+from tangible_core.compiled.compiling import KERNEL
 
 BAND_COUNTS = 1.0
 """A line may be so far from a sample: an encoder rounds."""

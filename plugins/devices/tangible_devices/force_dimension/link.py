@@ -7,7 +7,7 @@ from typing import Any, final
 
 from tangible_core.data import NO_FORCE, Force, HapticState
 from tangible_core.errors import DeviceError
-from tangible_core.interfaces import Link
+from tangible_core.plugins.interfaces import Link
 from tangible_core.session import limited
 
 from .library import OPENED, done

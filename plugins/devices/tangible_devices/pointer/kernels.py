@@ -6,7 +6,7 @@
 import numpy as np
 from numba import float64, int64, njit, uint64, void
 
-from tangible_core.compiling import KERNEL
+from tangible_core.compiled.compiling import KERNEL
 
 from .channel import CLIENT_OPEN, FACTOR, FORCE, FORCE_WORDS, SAMPLE, SAMPLE_WORDS, START, TRIES
 

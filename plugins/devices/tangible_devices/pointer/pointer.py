@@ -9,10 +9,10 @@ from typing import Annotated, Any, final
 import numpy as np
 from pydantic import Field
 
-from tangible_core.compiled import CompiledLink, LinkKernels
+from tangible_core.compiled.touch import CompiledLink, LinkKernels
 from tangible_core.data import NO_FORCE, DeviceSpec, Force, HapticState
 from tangible_core.errors import DeviceError
-from tangible_core.interfaces import HapticDevice, Link
+from tangible_core.plugins.interfaces import HapticDevice, Link
 from tangible_core.session import limited
 
 from ..simulated import LIKE_A_FALCON

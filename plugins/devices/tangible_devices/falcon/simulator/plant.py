@@ -9,7 +9,7 @@ import math
 
 from numba import float64, int64, njit, void
 
-from tangible_core.compiling import KERNEL
+from tangible_core.compiled.compiling import KERNEL
 
 from ..kinematics import CENTRE_M, force, inverse, jacobian
 

@@ -1,0 +1,1 @@
+"""From raw matches to a dense map: confidence, speckles, filling, edges."""

@@ -1,0 +1,102 @@
+"""Depth edges moved to where the picture has its edges.
+
+Windows and paths let a near surface grow over its neighbour by a pixel or two. Round every depth edge the two surfaces
+are put to the vote: the pixels of a small window, weighted by how much their grey value is like the pixel's own, decide
+which of the two it belongs to. This is the weighted median of Ma et al., Constant time weighted median filtering for
+stereo matching and beyond, ICCV 2013, cut down to two candidates and to the pixels where there is a choice.
+"""
+
+# ruff: noqa: ANN001, ANN202 -- numba finds the types of what it compiles; the docstrings say them
+
+import numpy as np
+from jaxtyping import Int16, UInt8
+from numba import int32, njit, uint16
+
+from ..simd.lane_reductions import total
+from ..simd.lanes import Lanes, add, load, maximum, minimum, multiply, splat, subtract
+
+MEDIAN_REACH = 2
+"""Rows and columns round a pixel of which `median` is."""
+NEARBY, VOTERS, STRIDE = 1, 4, 2
+"""Radius in which an edge is looked for; radius of the voting window, and distance of its voters, in pixels."""
+JUMP = 24
+"""Sixteenths of a pixel that make an edge."""
+GREY_REACH = 24
+"""Grey levels at which a vote has lost all its weight."""
+LANES = 16
+"""At least as many as a row of the voting window has pixels."""
+VOTING = np.array([k <= 2 * VOTERS and k % STRIDE == 0 for k in range(LANES)], np.uint16)
+ZERO_RANK = np.uint16(32768)
+"""Added to disparities, it makes them unsigned and keeps their order."""
+NO_GREY = 1000
+"""Beyond the picture: too far from any grey value to have a vote."""
+
+
+def median(disparity: Int16[np.ndarray, "h w"]) -> Int16[np.ndarray, "h w"]:
+    """5 x 5 median; beyond the picture its edge is repeated."""
+    import cv2
+
+    return cv2.medianBlur(disparity, 2 * MEDIAN_REACH + 1)  # pyright: ignore[reportReturnType]
+
+
+def sharpen_edges(disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "h w"]) -> Int16[np.ndarray, "h w"]:
+    """A dense map in sixteenths of a pixel, each pixel near a depth edge on the side that its grey value votes for.
+
+    A pixel that changes sides takes the weighted mean of its new side.
+    """
+    import cv2
+
+    window = np.ones((2 * NEARBY + 1, 2 * NEARBY + 1), np.uint8)
+    out = disparity.copy()
+    around = VOTERS, VOTERS, VOTERS, LANES
+    ranks = cv2.copyMakeBorder(disparity.view(np.uint16) + ZERO_RANK, *around, cv2.BORDER_REPLICATE)
+    greys = cv2.copyMakeBorder(grey.astype(np.uint16), *around, cv2.BORDER_CONSTANT, value=NO_GREY)
+    far, near = cv2.erode(disparity, window), cv2.dilate(disparity, window)
+    _vote(Lanes(LANES), VOTING, ranks, greys, disparity, grey, far, near, out)
+    return out
+
+
+@njit(nogil=True, boundscheck=False, cache=True)
+def _vote(lanes, voting, ranks, greys, disparity, grey, far, near, out):
+    h, w = disparity.shape
+    for y in range(h):
+        for x in range(w):
+            lowest, highest = int32(far[y, x]), int32(near[y, x])
+            if highest - lowest >= JUMP:
+                middle = np.int16((lowest + highest) >> 1)
+                front = _majority(lanes, voting, ranks, greys, y, x, middle)
+                if (disparity[y, x] > middle) != (front > 0) and front != 0:
+                    out[y, x] = _mean_of_side(disparity, grey, y, x, middle, front > 0)
+
+
+@njit(nogil=True, boundscheck=False)
+def _majority(lanes, voting, ranks, greys, y, x, middle):
+    """Votes for the front less votes for the back. A row of the window fits the lanes, some of which have no vote."""
+    own = splat(lanes, greys[y + VOTERS, x + VOTERS])
+    border, one = splat(lanes, uint16(middle + ZERO_RANK)), splat(lanes, uint16(1))
+    reach = splat(lanes, uint16(GREY_REACH))
+    voters = load(lanes, voting, 0)
+    front = every = splat(lanes, uint16(0))
+    for v in range(y, y + 2 * VOTERS + 1, STRIDE):
+        rank, shade = load(lanes, ranks[v], x), load(lanes, greys[v], x)
+        difference = subtract(maximum(shade, own), minimum(shade, own))
+        weight = multiply(subtract(reach, minimum(difference, reach)), voters)
+        every = add(every, weight)
+        front = add(front, multiply(weight, minimum(subtract(maximum(rank, border), border), one)))
+    return 2 * int32(total(front)) - int32(total(every))
+
+
+@njit(nogil=True, boundscheck=False)
+def _mean_of_side(disparity, grey, y, x, middle, front):
+    h, w = disparity.shape
+    own = int32(grey[y, x])
+    weights = total = int32(0)
+    for v in range(y - VOTERS, y + VOTERS + 1, STRIDE):
+        for u in range(x - VOTERS, x + VOTERS + 1, STRIDE):
+            if not (0 <= v < h and 0 <= u < w):
+                continue
+            if (disparity[v, u] > middle) == front:
+                weight = max(int32(GREY_REACH) - abs(int32(grey[v, u]) - own), int32(0))
+                weights += weight
+                total += weight * disparity[v, u]
+    return np.int16(total // weights)

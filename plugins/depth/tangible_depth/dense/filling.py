@@ -1,0 +1,150 @@
+"""Disparity where none was found: from the known pixels round a gap.
+
+The four nearest known neighbours (left, right, above, below) are the candidates for a pixel, each with the grey steps
+crossed on the way from it; `candidates` judges them.
+"""
+
+# ruff: noqa: ANN001, ANN202 -- numba finds the types of what it compiles; the docstrings say them
+
+import numpy as np
+from jaxtyping import Int16, UInt8
+from numba import int32, njit
+
+from tangible_core.compiled.threads import in_blocks
+
+from .candidates import ABOVE, BELOW, LEFT, RIGHT, alike, choose, seen_from_the_right
+from .span import UNKNOWN
+
+SHORT = 2
+"""Columns of a gap that is closed without asking, where both ends are alike."""
+
+
+def fill(disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "h w"]) -> Int16[np.ndarray, "h w"]:
+    """The map with every UNKNOWN pixel filled; known pixels keep their value, a map without any stays as it is.
+
+    disparity is in sixteenths of a pixel.
+    """
+    filled, left_over = _fill_once(disparity, grey)
+    if 0 < left_over < filled.size:  # some saw nothing along their row and column
+        filled, _ = _fill_once(filled, grey)
+    return filled
+
+
+def _fill_once(disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "h w"]) -> tuple[np.ndarray, int]:
+    """The map filled, and how many pixels could not be."""
+    out = np.empty_like(disparity)
+    left_over: list[int] = []
+    in_blocks(disparity.shape[0], lambda a, b: left_over.append(_fill_rows(disparity, grey, a, b, out)))
+    return out, sum(left_over)
+
+
+@njit(nogil=True, boundscheck=False, cache=True)
+def _fill_rows(disparity, grey, y0, y1, out):
+    """Rows y0..y1-1; how many of their pixels could not be filled."""
+    w = disparity.shape[1]
+    left_over = 0
+    sides, paths = np.empty((4, w), np.int16), np.empty((4, w), np.int32)
+    below, below_path = np.empty((y1 - y0, w), np.int16), np.empty((y1 - y0, w), np.int32)
+    seen, columns, edges = np.empty(w + 2, np.int16), np.empty(w, np.int32), np.empty(w + 1, np.int64)
+    _scan_up(disparity, grey, y0, y1, below, below_path)
+    _start_above(disparity, grey, y0, sides[ABOVE], paths[ABOVE])
+    for y in range(y0, y1):
+        if y > 0:
+            _carry(disparity[y - 1], grey[y - 1], grey[y], sides[ABOVE], paths[ABOVE])
+        _copy(below[y - y0], sides[BELOW])
+        _copy(below_path[y - y0], paths[BELOW])
+        _copy(disparity[y], out[y])
+        seen_from_the_right(disparity[y], columns, seen)
+        for gap in range(0, _edges_of_gaps(disparity[y], edges), 2):
+            start, stop = edges[gap], edges[gap + 1]
+            if stop - start <= SHORT and start > 0 and stop < w and alike(disparity[y, start - 1], disparity[y, stop]):
+                for x in range(start, stop):  # one of the many gaps between whole disparities
+                    out[y, x] = min(disparity[y, start - 1], disparity[y, stop])
+            else:
+                _scan_gap(disparity[y], grey[y], start, stop, sides, paths)
+                for x in range(start, stop):
+                    out[y, x] = choose(sides, paths, x, seen)
+                    left_over += out[y, x] == UNKNOWN
+    return left_over
+
+
+@njit(nogil=True, boundscheck=False)
+def _edges_of_gaps(row, edges):
+    """Each gap's first column and the one after its last; how many numbers that are. Without a branch to guess."""
+    count = 0
+    inside = False
+    for x in range(row.size):
+        edges[count] = x
+        count += (row[x] == UNKNOWN) != inside
+        inside = row[x] == UNKNOWN
+    edges[count] = row.size
+    return count + inside
+
+
+@njit(nogil=True, boundscheck=False)
+def _copy(row, out):
+    """As `out[:] = row`, which numba does column by column."""
+    for x in range(row.size):
+        out[x] = row[x]
+
+
+@njit(nogil=True, boundscheck=False)
+def _carry(row, grey, next_grey, carried, path):
+    """Step from one row to the next: what is known there starts afresh, the rest goes on with its path."""
+    for x in range(row.size):
+        known = row[x] != UNKNOWN
+        carried[x] = row[x] if known else carried[x]
+        path[x] = (int32(0) if known else path[x]) + abs(int32(grey[x]) - int32(next_grey[x]))
+
+
+@njit(nogil=True, boundscheck=False)
+def _scan_up(disparity, grey, y0, y1, below, path):
+    """The nearest known value below each pixel of rows y0..y1-1, and the grey steps on the way."""
+    h, w = disparity.shape
+    carried, steps = np.full(w, UNKNOWN, np.int16), np.zeros(w, np.int32)
+    last = min(_reach(disparity, y1, 1), h - 1)
+    for i in range(last - y0 + 1):
+        y = last - i
+        if y + 1 < h:
+            _carry(disparity[y + 1], grey[y + 1], grey[y], carried, steps)
+        if y < y1:
+            _copy(carried, below[y - y0])
+            _copy(steps, path[y - y0])
+
+
+@njit(nogil=True, boundscheck=False)
+def _start_above(disparity, grey, y0, carried, path):
+    """The state of a downward scan that has reached row y0 - 1."""
+    carried[:] = UNKNOWN
+    path[:] = 0
+    for y in range(max(_reach(disparity, y0 - 1, -1), 0), y0 - 1):
+        _carry(disparity[y], grey[y], grey[y + 1], carried, path)
+
+
+@njit(nogil=True, boundscheck=False)
+def _reach(disparity, y, step):
+    """The row at which, from row y on, every column has shown a known value; past the picture if some show none."""
+    missing = np.ones(disparity.shape[1], np.bool_)
+    while 0 <= y < disparity.shape[0]:
+        missing &= disparity[y] == UNKNOWN
+        if not missing.any():
+            break
+        y += step
+    return y
+
+
+@njit(nogil=True, boundscheck=False)
+def _scan_gap(row, grey, start, stop, sides, paths):
+    """What the known pixels at both ends of a gap offer to each pixel in it."""
+    w = row.size
+    left = row[start - 1] if start > 0 else UNKNOWN
+    path = int32(0)
+    for x in range(start, stop):
+        path += abs(int32(grey[x]) - int32(grey[max(x - 1, 0)]))
+        sides[LEFT, x], paths[LEFT, x] = left, path
+    right = row[stop] if stop < w else UNKNOWN
+    path = int32(0)
+    for i in range(stop - start):
+        x = stop - 1 - i
+        path += abs(int32(grey[x]) - int32(grey[min(x + 1, w - 1)]))
+        sides[RIGHT, x], paths[RIGHT, x] = right, path

@@ -1,0 +1,109 @@
+"""Small islands of disparity: wrong matches that no neighbour confirms.
+
+As OpenCV's `filterSpeckles`, but over runs of a row instead of pixels, and on all processors.
+"""
+
+# ruff: noqa: ANN001, ANN202 -- numba finds the types of what it compiles; the docstrings say them
+
+import numpy as np
+from jaxtyping import Int16
+from numba import int64, njit
+
+from tangible_core.compiled.threads import in_blocks
+
+from .span import UNKNOWN
+
+
+def remove_speckles(disparity: Int16[np.ndarray, "h w"], largest_px: int = 60, step: int = 16) -> int:
+    """Make islands UNKNOWN, in place, and return how many pixels that were.
+
+    An island is a region of at most `largest_px` pixels in which 4-neighbours differ by at most `step` sixteenths of a
+    pixel, and which no such step joins to anything else.
+    """
+    h, w = disparity.shape
+    start, stop, parent, size = (np.empty(h * w, np.int32) for _ in range(4))
+    begin, end = np.empty(h, np.int64), np.empty(h, np.int64)
+    first_rows: list[int] = []
+    erased: list[int] = []
+
+    def label(y0: int, y1: int) -> None:
+        first_rows.append(y0)
+        _label(disparity, step, y0, y1, start, stop, parent, size, begin, end)
+
+    in_blocks(h, label)
+    for y in sorted(first_rows)[1:]:
+        _join_rows(disparity, step, y, start, stop, parent, size, begin, end)
+    in_blocks(h, lambda a, b: erased.append(_erase(disparity, largest_px, a, b, start, stop, parent, size, begin, end)))
+    return sum(erased)
+
+
+@njit(nogil=True, boundscheck=False, cache=True)
+def _label(disparity, step, y0, y1, start, stop, parent, size, begin, end):
+    """Runs of rows y0..y1-1, numbered from y0 w and joined within these rows. Row y has begin[y]..end[y]-1."""
+    w = disparity.shape[1]
+    run = y0 * w
+    for y in range(y0, y1):
+        row = disparity[y]
+        begin[y] = run
+        x = 0
+        while x < w:
+            if row[x] == UNKNOWN:
+                x += 1
+                continue
+            start[run] = x
+            x += 1
+            while x < w and row[x] != UNKNOWN and abs(int64(row[x]) - int64(row[x - 1])) <= step:
+                x += 1
+            stop[run], parent[run], size[run] = x, run, x - start[run]
+            run += 1
+        end[y] = run
+        if y > y0:
+            _join_rows(disparity, step, y, start, stop, parent, size, begin, end)
+
+
+@njit(nogil=True, boundscheck=False, cache=True)
+def _join_rows(disparity, step, y, start, stop, parent, size, begin, end):
+    """Join the runs of row y with those of row y-1 that they touch."""
+    upper, lower = disparity[y - 1], disparity[y]
+    above = begin[y - 1]
+    for here in range(begin[y], end[y]):
+        while above < end[y - 1] and stop[above] <= start[here]:
+            above += 1
+        other = above
+        while other < end[y - 1] and start[other] < stop[here]:
+            for x in range(max(start[here], start[other]), min(stop[here], stop[other])):
+                if abs(int64(upper[x]) - int64(lower[x])) <= step:
+                    _unite(parent, size, here, other)
+                    break
+            other += 1
+
+
+@njit(nogil=True, boundscheck=False)
+def _root(parent, i):
+    while parent[i] != i:
+        parent[i] = parent[parent[i]]
+        i = parent[i]
+    return i
+
+
+@njit(nogil=True, boundscheck=False)
+def _unite(parent, size, i, j):
+    """One region of two, without a branch: whether they are one already, no processor can guess."""
+    i, j = _root(parent, i), _root(parent, j)
+    low, high = min(i, j), max(i, j)
+    united = size[low] + (size[high] if i != j else 0)
+    parent[high], size[low] = low, united
+
+
+@njit(nogil=True, boundscheck=False, cache=True)
+def _erase(disparity, largest, y0, y1, start, stop, parent, size, begin, end):
+    erased = 0
+    for y in range(y0, y1):
+        for run in range(begin[y], end[y]):
+            root = run
+            while parent[root] != root:  # no path is shortened here: other threads read too
+                root = parent[root]
+            if size[root] <= largest:
+                disparity[y, start[run] : stop[run]] = UNKNOWN
+                erased += stop[run] - start[run]
+    return erased

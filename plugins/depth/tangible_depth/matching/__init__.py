@@ -1,0 +1,1 @@
+"""The road of a whole matcher: what comes before and after the matching itself, dense or feature by feature."""

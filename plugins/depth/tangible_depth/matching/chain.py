@@ -1,0 +1,76 @@
+"""What all dense matchers do round their matching: the range, raw pairs, exchanged views, and the map in pixels."""
+
+import logging
+from collections.abc import Callable
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from tangible_core.data import DisparityMap, Views
+from tangible_core.plugins.notes import note
+
+from ..dense.confidence import flat_pixels
+from ..dense.refinement import Dense, as_map
+from ..dense.span import Span
+from ..rectify.rectification import with_rectification
+from ..search.asked import Auto, asked_span
+from ..search.bands import match_bands
+from ..search.pairs import Pair, grey_pair
+from ..search.raw_pairs import with_common_rows
+
+log = logging.getLogger(__name__)
+
+Matcher = Callable[[Pair, Span], Dense]
+Rectify = Literal["auto", "never"]
+
+
+class Search(NamedTuple):
+    """The options that all dense matchers have, and what a matcher does by itself."""
+
+    least: int | Auto
+    most: int | Auto
+    rectify: Rectify
+    fill: bool
+    realigns_px: float = 0.0
+    """The constant offset of rows that the matcher puts right."""
+    skip_identical: bool = False
+
+
+def disparity_map(views: Views, name: str, search: Search, match: Matcher) -> DisparityMap:
+    """Disparity of the left view by the method `name`, which matches along rows.
+
+    A pair whose rows do not correspond is rectified first, unless its calibration says that it is or `rectify` is
+    `never`. Raises: PictureError without a right view or for an empty range; CannotRectify as `rectify`.
+    """
+    pair = grey_pair(views, name)
+    if search.skip_identical and np.array_equal(*pair):
+        note(log, "skipped: matching, as both views are identical")
+        return nothing_moved(pair, search.fill)
+    span, bands = asked_span(pair, search.least, search.most)
+    if search.rectify == "auto" and views.calibration is None:
+        aligned = with_common_rows(pair, bands or match_bands(pair, span), search.realigns_px)
+        if aligned is None:
+            rectified = search._replace(rectify="never")
+            return with_rectification(views, lambda turned: disparity_map(turned, name, rectified, match))
+        pair = aligned
+    return _in_order(pair, span, search.fill, match)
+
+
+def _in_order(pair: Pair, span: Span, fill: bool, match: Matcher) -> DisparityMap:
+    """Match within `span`.
+
+    Where this is negative throughout, the views are exchanged: mirrored they are a pair in the right order, in which
+    what is hidden lies on the side where the matchers expect it.
+    """
+    if span.high > 0 or pair.width == 1:
+        return as_map(match(pair, span), pair.left, fill)
+    flipped = pair.mirrored()
+    found = as_map(match(flipped, Span(-span.high, -span.low)), flipped.left, fill)
+    return DisparityMap(-found.disparity_px[:, ::-1], found.confidence[:, ::-1])
+
+
+def nothing_moved(pair: Pair, fill: bool) -> DisparityMap:
+    """The map of two identical views: 0 everywhere, and nothing known where nothing changes along the rows."""
+    flat = flat_pixels(pair.left)
+    unknown = flat & (not fill or bool(flat.all()))
+    return DisparityMap(np.where(unknown, np.float32(np.nan), np.float32(0)), (~flat).astype(np.float32))

@@ -1,0 +1,79 @@
+"""The report's chain, feature by feature, with its parts open to exchange.
+
+features -> matches -> fundamental matrix -> rectification -> matches along rows -> sub-pixel -> check -> filling.
+"""
+
+import logging
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from jaxtyping import Float32, Int64
+
+from tangible_core.data import DisparityMap, Views
+from tangible_core.data.pictures import to_grey
+from tangible_core.errors import PictureError
+
+from ..rectify.fundamental import Fit
+from ..rectify.homographies import transform
+from ..rectify.rectification import rectify
+from ..rectify.rectified import Rectified
+from ..sparse.assembling import assemble
+from ..sparse.corner_range import MOST_CORNERS, MaxDisparity, range_of_shifts, within
+from ..sparse.harris import corners, least_response, row_edges
+from ..sparse.matches import Matches, corner_matches
+
+logger = logging.getLogger(__name__)
+
+Grey = Float32[np.ndarray, "h w"]
+Row = Float32[np.ndarray, "n"]
+
+
+class Parts(NamedTuple):
+    """What the chain leaves open: the Harris response, F from trusted matches, and the search along rows."""
+
+    response: Callable[[Grey], Grey]
+    fit: Fit
+    match_rows: Callable[[Grey, Grey, Int64[np.ndarray, "n 2"], int, int], tuple[Row, Row]]
+    """left, right, points (column, row), lowest and highest disparity -> disparity (NaN unknown), score in 0..1."""
+
+
+def disparity_by_features(
+    views: Views, parts: Parts, least_contrast: float, least_score: float, max_disparity_px: MaxDisparity
+) -> DisparityMap:
+    """Dense disparity from scattered matches of corners and edges, whatever way the cameras looked.
+
+    Raises: PictureError if there is only one view; CannotRectify as `rectify`.
+    """
+    if views.right is None:
+        raise PictureError("matching features needs two views; give a right one")
+    left, right = to_grey(views.left), to_grey(views.right)
+    least = least_response(least_contrast)
+    seen = [corners(parts.response(grey), least, MOST_CORNERS) for grey in (left, right)]
+    matches = corner_matches(left, right, seen[0], seen[1])
+    rectified = rectify(views, matches=matches, fit=parts.fit)
+    span = _range(matches, rectified, max_disparity_px)
+    return rectified.to_original(_match_features(rectified.views, parts, least, least_score, *span))
+
+
+def _match_features(views: Views, parts: Parts, least: float, least_score: float, low: int, high: int) -> DisparityMap:
+    assert views.right is not None
+    left, right = to_grey(views.left), to_grey(views.right)
+    response = parts.response(left)
+    points = np.unique(np.vstack([corners(response, least, left.size), row_edges(response, least)]), axis=0)
+    found, value = parts.match_rows(left, right, points, low, high)
+    kept = np.isfinite(found) & (value >= least_score)
+    logger.info("%d features, %d matched along rows over %d..%d px", len(points), np.count_nonzero(kept), low, high)
+    disparity, score = np.full(left.shape, np.nan, np.float32), np.zeros(left.shape, np.float32)
+    columns, rows = points[kept].T
+    disparity[rows, columns], score[rows, columns] = found[kept], value[kept]
+    return assemble(disparity, score, views.left)
+
+
+def _range(matches: Matches, rectified: Rectified, most: MaxDisparity) -> tuple[int, int]:
+    """Lowest and highest disparity to try in the rectified views."""
+    width = rectified.views.shape[1]
+    if most != "auto":
+        return within(-rectified.offset_px, most - rectified.offset_px, width)
+    left = transform(rectified.left_homography, matches.left_px)
+    return range_of_shifts(left - transform(rectified.right_homography, matches.right_px), width)

@@ -1,0 +1,1 @@
+"""Rectification: epipolar geometry, and turning two pictures so that rows correspond."""

@@ -1,0 +1,124 @@
+"""Homographies that align the rows of two uncalibrated pictures and distort them as little as may be.
+
+Each picture is turned in its plane and tilted; the right one is also scaled and moved along its columns. About the
+pictures' middles that is seven numbers, as many as a fundamental matrix has. Those that the matches hardly tell stay
+near zero; shift and stretch along the rows, of which the matches tell nothing, are left out.
+Source: the split into similarity and perspective is that of Loop & Zhang, Computing Rectifying Homographies for
+Stereo Vision, CVPR 1999; fitting to the matches that of Hartley, Theory and Practice of Projective Rectification, 1999.
+"""
+
+from collections.abc import Callable
+from math import cos, exp, log1p, sin
+
+import numpy as np
+from jaxtyping import Float64
+
+from ..sparse.matches import Matches
+from .epipolar import epipoles, product
+from .homographies import transform
+
+_PRIOR = np.array([0.5, 0.2, 0.5, 0.2, 0.2, 0.5, 0.5])
+"""Standard deviations about the start: left roll and tilt along x; right roll, tilts along x and y, logarithm of scale,
+shift along y. Rolls in radians, lengths in half the longer side of the picture, tilts in one over that."""
+_NOISE_PX = 0.3
+_START, _FOUND, _SINE = 2.0**-10, 2.0**-20, 2.0**-32
+"""What is rounded, and to what: the roll to start with, in radians, whose last bits are those of a processor's linear
+algebra; the seven numbers, to under a thousandth of a pixel; and sines and the like, whose last bits are those of the C
+library, which fuses operations where a processor can."""
+_ROUNDS, _TRIES = 80, 15
+"""Steps of the fit, and how often one is tried anew."""
+_STEP, _STILL, _LEAST_GAIN = 1e-5, 1e-5, 0.05
+"""In standard deviations of _PRIOR: steps by which slopes are told, and one that is as good as none; and the share of
+what a step promises that it must bring."""
+
+
+def aligning_homographies(
+    matches: Matches, shape: tuple[int, int], roll: float = 0.0
+) -> tuple[Float64[np.ndarray, "3 3"], Float64[np.ndarray, "3 3"]]:
+    """Homographies (left, right), each (3, 3), that bring trusted matches of two pictures (h, w) onto common rows.
+
+    The middle of each picture keeps its column: a disparity is the shift against the right picture turned about its
+    middle. roll: where to start, radians, see `epipole_roll`.
+    """
+    start = np.zeros(7)
+    start[[0, 2]] = _rounded(roll, _START)
+
+    def cost(values: np.ndarray) -> np.ndarray:
+        left, right = (transform(h, points) for h, points in zip(_pair(values, shape), matches, strict=True))
+        offset = (left[:, 1] - right[:, 1]) / _NOISE_PX
+        # A Cauchy-like pull: what the robust estimate let through by chance may not bend the geometry.
+        pull = np.sqrt(np.array([log1p(each) for each in (offset * offset).tolist()]))
+        return np.concatenate([np.sign(offset) * pull, (values - start) / _PRIOR])
+
+    found = np.array([_rounded(each, _FOUND) for each in _least_squares(cost, start, _PRIOR)])
+    left, right = _pair(found, shape)
+    if abs(found[0]) > np.pi / 4 and _runs_backwards(left, right, matches):
+        # Both turned over: what lies along the axes changes its sign.
+        left, right = _pair(found * [1, -1, 1, -1, -1, 1, -1] + np.pi * np.array([1, 0, 1, 0, 0, 0, 0]), shape)
+    return left, right
+
+
+def _least_squares(cost: Callable[[np.ndarray], np.ndarray], start: np.ndarray, scale: np.ndarray) -> np.ndarray:
+    """Numbers near `start` at which the sum of the squares of `cost` is least, after Levenberg and Marquardt.
+
+    scale: of each number. Sums in one order: LAPACK, which SciPy's fit is built on, has other last bits with every
+    processor and from run to run, and this fit is stopped by them.
+    Source: Nocedal & Wright, Numerical Optimization, 2nd ed., sec. 10.3.
+    """
+    from tangible_core.compiled.small_matrices import solved
+
+    values, found, damping = start, cost(start), 1e-2
+    for _ in range(_ROUNDS):
+        both = [cost(values + step) - cost(values - step) for step in np.diag(_STEP * scale)]
+        slopes = np.stack(both, axis=1) / (2 * _STEP)
+        normal, down = np.einsum("ni,nj->ij", slopes, slopes), np.einsum("ni,n->i", slopes, found)
+        for _ in range(_TRIES):
+            move = -solved(normal + damping * np.trace(normal) / 7 * np.eye(7), down[None])[0]
+            then = cost(values + scale * move)
+            gain, expected = np.square(found).sum() - np.square(then).sum(), -(down * move).sum()
+            if gain > 0 and gain >= _LEAST_GAIN * expected:
+                break
+            damping *= 4
+        else:
+            break
+        values, found = values + scale * move, then
+        damping = damping / 4 if gain > expected else damping if 2 * gain > expected else 2 * damping
+        if np.abs(move).max() < _STILL:
+            break
+    return values
+
+
+def epipole_roll(fundamental: np.ndarray, shape: tuple[int, int]) -> float:
+    """The turn that lays the line from the picture's middle to the left epipole along the rows."""
+    x, y, w = epipoles(fundamental)[0]
+    direction = np.array([x - w * (shape[1] - 1) / 2, y - w * (shape[0] - 1) / 2])
+    direction *= -1 if direction[0] < 0 else 1
+    return -float(np.arctan2(direction[1], direction[0]))
+
+
+def _pair(values: np.ndarray, shape: tuple[int, int]) -> tuple[np.ndarray, np.ndarray]:
+    left_roll, left_tilt, right_roll, right_tilt_x, right_tilt_y, log_scale, shift = values
+    rows, columns = shape
+    half = max(shape) / 2
+    to_unit = np.array([[1 / half, 0, (1 - columns) / (2 * half)], [0, 1 / half, (1 - rows) / (2 * half)], [0, 0, 1]])
+    left = _similarity_and_tilt(left_roll, (left_tilt, 0.0), 1.0, 0.0)
+    right = _similarity_and_tilt(right_roll, (right_tilt_x, right_tilt_y), _rounded(exp(log_scale), _SINE), shift)
+    back = np.array([[half, 0, (columns - 1) / 2], [0, half, (rows - 1) / 2], [0, 0, 1]])
+    return product(product(back, left), to_unit), product(product(back, right), to_unit)
+
+
+def _similarity_and_tilt(roll: float, tilt: tuple[float, float], scale: float, shift: float) -> np.ndarray:
+    """Tilt is along the turned axes, so that it means the same whichever way the cameras stand."""
+    across, down = (scale * _rounded(function(roll), _SINE) for function in (cos, sin))
+    turn = np.array([[across, -down, 0], [down, across, 0], [0, 0, 1]])
+    return product(np.array([[1, 0, 0], [0, 1, shift], [*tilt, 1]]), turn)
+
+
+def _rounded(value: float, step: float) -> float:
+    return round(value / step) * step
+
+
+def _runs_backwards(left: np.ndarray, right: np.ndarray, matches: Matches) -> bool:
+    """Whether near points shift to the wrong side, as when one camera stood above the other."""
+    shift = transform(left, matches.left_px)[:, 0] - transform(right, matches.right_px)[:, 0]
+    return float(np.median(shift)) < 0

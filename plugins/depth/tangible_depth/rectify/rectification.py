@@ -1,0 +1,166 @@
+"""Rectification: turning two pictures so that every match lies on its own row, where they do not lie so already.
+
+A method that searches along rows works on any pair through `with_rectification`; `calibrated` does the same for
+cameras that are known.
+"""
+
+import logging
+from collections.abc import Callable
+
+import numpy as np
+from jaxtyping import Bool, Float64
+
+from tangible_core.data import DisparityMap, Views
+from tangible_core.data.pictures import to_grey
+from tangible_core.errors import GeometryError, PictureError
+from tangible_core.plugins.notes import note
+
+from ..sparse.matches import Matches, flow_matches, sift_matches
+from .alignment import aligning_homographies, epipole_roll
+from .epipolar import homogeneous, product
+from .fundamental import DegenerateMatches, Fit, eight_point, on_homography, robust_fundamental
+from .homographies import transform
+from .rectified import Rectified, as_it_is, warped
+
+logger = logging.getLogger(__name__)
+
+FEWEST_TO_TELL = 20
+"""Matches below which nothing is said about a pair: it is taken as it is."""
+LEAST_GAIN_PX = 0.2
+"""Noise in the matches promises less than this; to turn the pictures for it would only blur them."""
+EXCHANGED_PX = -2.0
+"""Views are exchanged if all but one match in twenty are below this disparity: parallel cameras give none below 0."""
+
+
+class CannotRectify(GeometryError):
+    """A pair whose rows do not correspond and that cannot be turned so that they do."""
+
+    def __init__(self, message: str) -> None:
+        super().__init__(f"cannot rectify: {message}; to match the rows as they are, leave rectification out")
+
+
+def with_rectification(views: Views, estimate: Callable[[Views], DisparityMap]) -> DisparityMap:
+    """Disparity of the left view by a method that searches along rows, whatever way the cameras looked.
+
+    Raises: CannotRectify if the rows do not correspond and cannot be made to; and what `estimate` raises.
+    """
+    rectified = rectify(views)
+    return rectified.to_original(estimate(rectified.views))
+
+
+def rectify(
+    views: Views, tolerance_px: float = 0.35, matches: Matches | None = None, fit: Fit = eight_point
+) -> Rectified:
+    """A pair of unknown cameras turned so that its rows correspond.
+
+    Skipped, with the reason in `why`, if the views carry a calibration, if the median vertical offset of their
+    matches is within tolerance_px (in large pictures: within 1/8000 of the longer side) already, if turning would not
+    lessen it by LEAST_GAIN_PX, or if there are too few matches to tell.
+    matches: those to go by; found by optical flow and SIFT when left out. fit: makes F of trusted matches.
+    A flat scene, or a camera that only turned, is aligned as well, with a warning: the matches leave it open how.
+    Views in the wrong order are taken as they are, with a warning: their disparities are negative.
+    Raises: PictureError if there is only one view; CannotRectify if the rows do not correspond but no geometry, or
+    only one that distorts the pictures, explains the matches.
+    """
+    if views.right is None:
+        raise PictureError("rectification needs two views; give a right one")
+    if views.calibration is not None:
+        return _left_alone(views, "the views carry the calibration of a rectified pair")
+    left, right = to_grey(views.left), to_grey(views.right)
+    tolerance_px = max(tolerance_px, max(views.shape) / 8000)
+    if matches is None:
+        quick = flow_matches(left, right)
+        if len(quick.left_px) >= FEWEST_TO_TELL and (offset := _median_offset(quick)) <= tolerance_px:
+            _say_if_exchanged(quick.left_px[:, 0] - quick.right_px[:, 0])
+            return _left_alone(views, f"already rectified: median vertical offset {offset:.2f} px")
+        matches = sift_matches(left, right)
+    if len(matches.left_px) < FEWEST_TO_TELL:
+        return _left_alone(views, f"only {len(matches.left_px)} matches, too few to tell; taken as rectified")
+    if (before := _median_offset(matches)) <= tolerance_px:
+        _say_if_exchanged(matches.left_px[:, 0] - matches.right_px[:, 0])
+        return _left_alone(views, f"already rectified: median vertical offset {before:.2f} px")
+    return _turned(views, matches, before, fit)
+
+
+def _left_alone(views: Views, why: str) -> Rectified:
+    note(logger, f"not rectified: {why}")
+    return as_it_is(views, why)
+
+
+def _say_if_exchanged(disparity_px: Float64[np.ndarray, "n"]) -> None:
+    if np.percentile(disparity_px, 95) < EXCHANGED_PX:
+        note(logger, "every disparity is negative: the views seem to be exchanged (left is right)", logging.WARNING)
+
+
+def _median_offset(matches: Matches) -> float:
+    return float(np.median(np.abs(matches.vertical_px)))
+
+
+def _turned(views: Views, matches: Matches, before: float, fit: Fit) -> Rectified:
+    trusted, roll = _trusted(matches, views.shape, fit)
+    kept = Matches(matches.left_px[trusted], matches.right_px[trusted])
+    pair = aligning_homographies(kept, views.shape, roll)
+    turned = [transform(h, points) for h, points in zip(pair, kept, strict=True)]
+    offsets = np.abs(turned[1][:, 1] - turned[0][:, 1])
+    if (after := float(np.median(offsets))) > before - LEAST_GAIN_PX:
+        return _left_alone(views, f"turning would not help: median vertical offset {before:.2f} px, then {after:.2f}")
+    check_homographies(pair, views.shape, offsets)
+    disparity = turned[0][:, 0] - turned[1][:, 0]
+    _say_if_exchanged(disparity)
+    why = f"median vertical offset {before:.2f} px, now {after:.2f}"
+    note(logger, f"rectified: {why}")
+    return warped(views, pair, why, _search_start(disparity))
+
+
+def _trusted(matches: Matches, shape: tuple[int, int], fit: Fit) -> tuple[Bool[np.ndarray, "n"], float]:
+    """Which matches one geometry explains, and the roll that lays its epipole along the rows."""
+    threshold = max(1.0, max(shape) / 1500)
+    try:
+        found = robust_fundamental(*matches, threshold, fit)
+    except DegenerateMatches as error:
+        if error.reason != "homography":
+            raise CannotRectify(f"matches do not lie on their rows, and there is {error}") from error
+        # A flat scene leaves the epipole open: any that aligns the matches will do, and the nearest bends least.
+        logger.warning("rectifying without parallax: %s", error)
+        return on_homography(*matches, threshold), 0.0
+    return found.inliers, epipole_roll(found.matrix, shape)
+
+
+def _search_start(disparity_px: Float64[np.ndarray, "n"]) -> int:
+    """Zero, or a disparity below all but stray matches where the cameras look past each other and some are negative.
+
+    Never above zero: a far wall without detail has no match to speak for it.
+    """
+    low, high = np.percentile(disparity_px, [1, 99])
+    return min(0, int(np.floor(low - max(4.0, 0.1 * (high - low)))))
+
+
+def check_homographies(
+    pair: tuple[np.ndarray, np.ndarray], shape: tuple[int, int], offsets_px: np.ndarray, most_offset_px: float = 3.0
+) -> None:
+    """Raises: CannotRectify if a homography tears, mirrors, or resizes a picture (h, w), or rows do not correspond.
+
+    The area may change by a factor of three; the 95th percentile of the vertical offsets is most_offset_px at most.
+    """
+    for side, homography in zip(("left", "right"), pair, strict=True):
+        rows, columns = shape
+        corners = np.array([[0, 0], [columns, 0], [columns, rows], [0, rows]], np.float64)
+        depth = product(homogeneous(corners), homography[2:].T)
+        if depth.min() <= 0:
+            raise CannotRectify(f"the {side} picture would reach infinity: the cameras look along their baseline")
+        quad = transform(homography, corners)
+        turns = _cross(np.roll(quad, -1, axis=0) - quad, np.roll(quad, -2, axis=0) - np.roll(quad, -1, axis=0))
+        if turns.min() <= 0:
+            raise CannotRectify(f"the {side} picture's corners would change their order")
+        ratio = 0.5 * _cross(quad, np.roll(quad, -1, axis=0)).sum() / (rows * columns)
+        if not 1 / 3 <= ratio <= 3:
+            raise CannotRectify(f"the {side} picture would take {ratio:.2g} times its area; turn the cameras less")
+    if (worst := float(np.percentile(offsets_px, 95))) > most_offset_px:
+        raise CannotRectify(
+            f"one match in twenty would still lie over {worst:.1f} px off its row: "
+            "the camera went forwards, or a lens distorts"
+        )
+
+
+def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    return a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]

@@ -1,0 +1,122 @@
+"""A pair of pictures turned so that rows correspond, and the way back."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Float32, Float64
+
+from tangible_core.data import Calibration, DisparityMap, Record, Views
+from tangible_core.errors import PictureError
+from tangible_core.runtime.opencv import plain_opencv
+
+from .epipolar import product
+from .homographies import inverse, transform
+
+
+@dataclass(frozen=True, eq=False)
+class Rectified(Record):
+    """A pair whose matches lie on one row, how it came about, and the way back to the pictures as they were.
+
+    left_homography, right_homography: (3, 3), from a point of the original picture to its place in `views`.
+    offset_px: what to add to a disparity found in `views`; `rectify` moves the right view so that none is negative.
+    why: what was done or why nothing was, in words; `skipped` tells which.
+    """
+
+    views: Views
+    left_homography: Float64[np.ndarray, "3 3"]
+    right_homography: Float64[np.ndarray, "3 3"]
+    original_shape: tuple[int, int]
+    offset_px: float
+    skipped: bool
+    why: str
+    calibration: Calibration | None = None
+    """For the values that `to_original` gives, where the cameras are known."""
+
+    def to_original(self, found: DisparityMap) -> DisparityMap:
+        """A disparity map of `views` as one of the original left picture: same values plus offset_px, at their pixels.
+
+        Pixels of the original that the rectified view does not show are unknown.
+        """
+        if self.skipped:
+            return found
+        return DisparityMap(
+            self._sample(found.disparity_px, np.nan) + np.float32(self.offset_px),
+            self._sample(found.confidence, 0),
+            found.unit,
+        )
+
+    def right_px(self, disparity_px: Float32[np.ndarray, "h w"]) -> Float64[np.ndarray, "h w 2"]:
+        """Where each original left pixel is seen in the original right picture, by a map from `to_original`."""
+        left = transform(self.left_homography, _pixels(self.original_shape))
+        left[:, 0] -= disparity_px.ravel().astype(np.float64) - self.offset_px
+        return transform(inverse(self.right_homography), left).reshape(*self.original_shape, 2)
+
+    def _sample(self, values: Float32[np.ndarray, "h w"], outside: float) -> Float32[np.ndarray, "rows columns"]:
+        """The nearest value: an average across an edge of depth would be neither side's."""
+        import cv2
+
+        rows, columns = self.original_shape
+        with plain_opencv():
+            return cv2.warpPerspective(
+                values,
+                self.left_homography,
+                (columns, rows),
+                flags=cv2.INTER_NEAREST | cv2.WARP_INVERSE_MAP,
+                borderMode=cv2.BORDER_CONSTANT,
+                borderValue=outside,
+            )
+
+
+def as_it_is(views: Views, why: str) -> Rectified:
+    """A pair whose rows correspond already, or of which nobody can tell."""
+    return Rectified(views, np.eye(3), np.eye(3), views.shape, 0.0, True, why)
+
+
+def warped(
+    views: Views,
+    pair: tuple[np.ndarray, np.ndarray],
+    why: str,
+    start_px: int = 0,
+    calibration: Calibration | None = None,
+) -> Rectified:
+    """Both pictures on a canvas that holds the whole left one, the right one moved so that start_px becomes zero.
+
+    pair: homographies (left, right), each (3, 3), that bring matches onto common rows.
+    calibration: of the pair so turned, if it is known.
+    """
+    if views.right is None:
+        raise PictureError("rectification needs two views; give a right one")
+    rows, columns = views.shape
+    corners = np.array([[0, 0], [columns - 1, 0], [columns - 1, rows - 1], [0, rows - 1]], np.float64)
+    quad = transform(pair[0], corners)
+    origin, end = np.floor(quad.min(axis=0)), np.ceil(quad.max(axis=0))
+    width, height = (int(size) + 1 for size in end - origin)
+    left, right = _moved(pair[0], origin), _moved(pair[1], origin - [start_px, 0])
+    moved = calibration and replace(calibration, offset_px=calibration.offset_px + start_px)
+    turned = Views(_warp(views.left, left, width, height), _warp(views.right, right, width, height), moved)
+    return Rectified(turned, left, right, views.shape, float(start_px), False, why, calibration)
+
+
+def _moved(homography: np.ndarray, origin: np.ndarray) -> Float64[np.ndarray, "3 3"]:
+    return product(np.array([[1, 0, -origin[0]], [0, 1, -origin[1]], [0, 0, 1.0]]), homography)
+
+
+def _warp(picture: np.ndarray, homography: np.ndarray, width: int, height: int) -> np.ndarray:
+    import cv2
+
+    if picture.dtype not in (np.uint8, np.uint16, np.float32, np.float64):
+        picture = picture.astype(np.float32)
+    with plain_opencv():
+        warped = cv2.warpPerspective(
+            np.ascontiguousarray(picture),
+            homography,
+            (width, height),
+            flags=cv2.INTER_CUBIC,
+            borderMode=cv2.BORDER_REPLICATE,
+        )
+    return np.clip(warped, picture.min(), picture.max(), out=warped)
+
+
+def _pixels(shape: tuple[int, int]) -> Float64[np.ndarray, "n 2"]:
+    rows, columns = np.indices(shape, np.float64)
+    return np.column_stack([columns.ravel(), rows.ravel()])

@@ -1,0 +1,67 @@
+"""A pair of views as the matchers want it: two grey pictures of 8 bits."""
+
+from math import floor, log2
+from typing import NamedTuple
+
+import numpy as np
+from jaxtyping import UInt8
+
+from tangible_core.data import Views
+from tangible_core.data.pictures import to_grey
+from tangible_core.errors import PictureError
+
+
+class Pair(NamedTuple):
+    """Two grey pictures of one size, each contiguous in memory."""
+
+    left: UInt8[np.ndarray, "h w"]
+    right: UInt8[np.ndarray, "h w"]
+
+    @property
+    def width(self) -> int:
+        """Columns."""
+        return self.left.shape[1]
+
+    def shrunk(self, factor: int) -> "Pair":
+        """Every factor x factor pixels averaged into one; the last ones are completed by repeating the edge."""
+        return self if factor == 1 else Pair(*(_shrunk(each, factor) for each in self))
+
+    def mirrored(self) -> "Pair":
+        """Left and right exchanged in each picture; a disparity d becomes -d."""
+        return Pair(*(np.ascontiguousarray(each[:, ::-1]) for each in self))
+
+
+def grey_pair(views: Views, method: str) -> Pair:
+    """Both views in 8 bits of grey.
+
+    Values keep their meaning from type to type (colour by ITU-R BT.601). Where the views leave the upper half unused,
+    as 12 bits in a 16-bit file do, both are brightened by a power of two.
+    Raises: PictureError if there is no right view.
+    """
+    if views.right is None:
+        raise PictureError(f"{method} needs two views and the right one is missing; give both or use luminance")
+    pictures = (views.left, views.right)
+    if all(each.dtype == np.uint8 and (each.ndim == 2 or each.shape[2] == 3) for each in pictures):
+        return Pair(*(_grey8(each) for each in pictures))
+    greys = [to_grey(each) for each in pictures]
+    low = min(0.0, *(float(each.min()) for each in greys))
+    peak = max(float(each.max()) for each in greys) - low
+    gain = 255 * 2.0 ** floor(-log2(peak)) if peak > 0 else 0.0
+    return Pair(*(np.rint((each - np.float32(low)) * np.float32(gain)).astype(np.uint8) for each in greys))
+
+
+def _grey8(picture: np.ndarray) -> UInt8[np.ndarray, "h w"]:
+    if picture.ndim == 2:
+        return np.ascontiguousarray(picture)
+    import cv2
+
+    return cv2.cvtColor(np.ascontiguousarray(picture), cv2.COLOR_RGB2GRAY)  # pyright: ignore[reportReturnType]
+
+
+def _shrunk(grey: UInt8[np.ndarray, "h w"], factor: int) -> UInt8[np.ndarray, "h/factor w/factor"]:
+    import cv2
+
+    h, w = grey.shape
+    whole = cv2.copyMakeBorder(grey, 0, -h % factor, 0, -w % factor, cv2.BORDER_REPLICATE)
+    size = (whole.shape[1] // factor, whole.shape[0] // factor)
+    return cv2.resize(whole, size, interpolation=cv2.INTER_AREA)  # pyright: ignore[reportReturnType]

@@ -1,0 +1,62 @@
+"""Which disparities occur in a pair, found in a few bands of it."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..dense.span import UNKNOWN, Span
+from .bands import FINE_WIDTH, Bands, match_bands
+from .pairs import Pair
+
+FIRST_WIDTH, REACH = 80, 0.36
+"""Width of the first copy, and the largest disparity of either sign in widths of the picture."""
+THIN_REACH = 1 / 8
+"""Disparities, in widths of the picture, that the second copy tries at least: things too thin for the first stand out
+from what is behind them by less than this."""
+FRINGE = 0.0005
+"""Share of the matches left out at either end as errors."""
+NOISY = 0.6
+"""Share of matches that no neighbour confirms from which the first copy, which averages noise away, counts as well."""
+FIRST_MARGIN, MARGIN = 1, 2
+"""What is then added at either end, in pixels of the copy."""
+
+
+class Found(NamedTuple):
+    """The range of a pair, and the bands in which it was found."""
+
+    span: Span
+    bands: Bands
+    swapped: bool
+    """Whether every disparity is negative, which parallel cameras in the right order cannot give."""
+
+
+def reach_px(width: int) -> int:
+    """The largest disparity of either sign that a picture of this width is searched for."""
+    return round(REACH * width)
+
+
+def find_range(pair: Pair) -> Found | None:
+    """The disparities that occur, of either sign; None if nothing at all matches."""
+    width, reach = pair.width, reach_px(pair.width)
+    first = _look(pair, Span(-reach, reach), FIRST_WIDTH, FIRST_MARGIN)
+    if first is None:
+        return None
+    low, high = first.span
+    span = Span(low, max(high, low + round(THIN_REACH * width)))
+    fine = _look(pair, span, FINE_WIDTH, MARGIN)
+    if fine is None or fine.bands.loss < NOISY:
+        return fine or first
+    wider = Span(min(first.span.low, fine.span.low), max(first.span.high, fine.span.high))
+    return Found(wider, fine.bands, first.swapped and fine.swapped)
+
+
+def _look(pair: Pair, span: Span, width: int, margin: int) -> Found | None:
+    bands = match_bands(pair, span.within(pair.width), width)
+    factor = bands.factor
+    known = np.sort(bands.disparity[bands.disparity != UNKNOWN]).astype(np.float32) * (factor / 16)
+    if known.size == 0:
+        return None
+    fringe = int(FRINGE * known.size)
+    low, high = known[fringe], known[-1 - fringe]
+    span = Span(int(np.floor(low)) - margin * factor, int(np.ceil(high)) + margin * factor)
+    return Found(span, bands, bool(low < -2 and high <= 1))

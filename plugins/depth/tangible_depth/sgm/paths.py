@@ -1,0 +1,120 @@
+"""The paths of semi-global matching: what one row hands on to the next, and one pixel to its neighbours.
+
+Every cost, path and sum is a byte a lane; lane k stands for the disparity top - k.
+"""
+
+# ruff: noqa: ANN001, ANN201, ANN202, SIM108 -- numba finds the types of what it compiles; the docstrings say them
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import int64, njit, uint8
+
+from ..simd.lane_reductions import hamming, lowest
+from ..simd.lanes import load, maximum, minimum, saturating_add, shift_down, shift_up, splat, store, subtract, width
+
+
+class Limits(NamedTuple):
+    """Bounds on a row's costs: most and least by index of the shifted right row, 255 for lanes not asked for."""
+
+    most: np.ndarray
+    least: np.ndarray
+    barred: np.ndarray
+    free: tuple[int, int]
+    """Columns first..last - 1, at which no lane has a limit."""
+
+
+@njit(nogil=True, boundscheck=False)
+def limits_of(n, w, span, neutral):
+    """The limits of rows of w columns."""
+    columns = np.arange(w + n - 1) - span.high
+    beyond = (columns < 0) | (columns >= w)
+    most = np.where(beyond, uint8(0), uint8(255))
+    least = np.where(beyond, neutral, uint8(0))
+    count = span.high - span.low + 1
+    first = min(max(span.high, 0), w)
+    last = min(max(w + span.high - n + 1, first), w) if count == n else first
+    return Limits(most, least, np.where(np.arange(n) < count, uint8(0), uint8(255)), (first, last))
+
+
+@njit(inline="always")
+def _step(lanes, before, before_lowest, cost, move, jump):
+    """One step of a path: stay, move by one disparity or jump to any, then pay the pixel's own cost."""
+    wall = splat(lanes, uint8(255))
+    moved = saturating_add(minimum(shift_up(before, wall), shift_down(before, wall)), move)
+    jumped = splat(lanes, uint8(before_lowest + jump))
+    best = minimum(minimum(before, jumped), moved)
+    return saturating_add(cost, subtract(best, splat(lanes, before_lowest)))
+
+
+@njit(inline="always")
+def _limited_cost(lanes, left, codes, x, limits):
+    """Hamming distances; neutral where a disparity leads out of the right view, 255 where it is not asked for."""
+    cost = minimum(hamming(lanes, left, codes, x), load(lanes, limits.most, x))
+    return maximum(maximum(cost, load(lanes, limits.least, x)), load(lanes, limits.barred, 0))
+
+
+@njit(inline="always")
+def _grey_step(grey, x, others, z):
+    return abs(int64(grey[x]) - int64(others[z]))
+
+
+@njit(nogil=True, boundscheck=False)
+def _columns(lanes, left, codes, limits, columns, prices, grey, grey_before, path, path_lowest, costs):
+    """The path from the row before, in place; `costs` keeps this row's costs. No limits: None."""
+    n = width(lanes)
+    move, jumps = splat(lanes, prices.move), prices.jumps
+    for x in range(columns[0], columns[1]):
+        if limits is None:  # known to the compiler: the other branch is not there
+            cost = hamming(lanes, left, codes, x)
+        else:
+            cost = _limited_cost(lanes, left, codes, x, limits)
+        store(costs, x * n, cost)
+        jump = jumps[_grey_step(grey, x, grey_before, x)]
+        here = _step(lanes, load(lanes, path, x * n), path_lowest[x], cost, move, jump)
+        path_lowest[x] = lowest(here)
+        store(path, x * n, here)
+
+
+@njit(nogil=True, boundscheck=False)
+def vertical(lanes, left, codes, limits, prices, grey, grey_before, path, path_lowest, costs):
+    """`_columns` for all columns: the limits are looked up only where there are some."""
+    first, last = limits.free
+    rest = (prices, grey, grey_before, path, path_lowest, costs)
+    _columns(lanes, left, codes, limits, (0, first), *rest)
+    _columns(lanes, left, codes, None, (first, last), *rest)
+    _columns(lanes, left, codes, limits, (last, grey.size), *rest)
+
+
+@njit(nogil=True, boundscheck=False)
+def sideways(lanes, prices, grey, costs, path, total):
+    """Sums of the path from above and those from both ends of the row. Walking both at once hides their latency."""
+    n = width(lanes)
+    w = grey.size
+    east = west = splat(lanes, uint8(0))
+    east_lowest = west_lowest = uint8(0)
+    east, east_lowest, west, west_lowest = _half_way(
+        lanes, prices, grey, costs, path, total, (0, w // 2), east, east_lowest, west, west_lowest
+    )
+    if w % 2:
+        middle = (w // 2) * n
+        store(total, middle, load(lanes, path, middle))
+    _half_way(lanes, prices, grey, costs, total, total, (w // 2, w), east, east_lowest, west, west_lowest)
+
+
+@njit(inline="always")
+def _half_way(lanes, prices, grey, costs, so_far, total, steps, east, east_lowest, west, west_lowest):
+    n = width(lanes)
+    move, jumps = splat(lanes, prices.move), prices.jumps
+    w = grey.size
+    for x in range(steps[0], steps[1]):
+        z = w - 1 - x
+        east_jump = jumps[_grey_step(grey, x, grey, max(x - 1, 0))]
+        west_jump = jumps[_grey_step(grey, z, grey, min(z + 1, w - 1))]
+        east = _step(lanes, east, east_lowest, load(lanes, costs, x * n), move, east_jump)
+        west = _step(lanes, west, west_lowest, load(lanes, costs, z * n), move, west_jump)
+        east_lowest = lowest(east)
+        west_lowest = lowest(west)
+        store(total, x * n, saturating_add(load(lanes, so_far, x * n), east))
+        store(total, z * n, saturating_add(load(lanes, so_far, z * n), west))
+    return east, east_lowest, west, west_lowest

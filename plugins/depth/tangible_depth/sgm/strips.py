@@ -1,0 +1,70 @@
+"""A picture swept in strips: threads, memory, and where the seams lie."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from jaxtyping import Int16, UInt8
+
+from tangible_core.compiled.threads import in_turns
+
+from ..dense.span import UNKNOWN, Span
+from ..simd.lanes import Lanes
+from .aggregation import sweep_strip
+from .costs import Prices
+
+ROWS, WARM_ROWS = 128, 32
+"""Rows of a strip, and rows that a path begins before it: what lies farther away hardly reaches in."""
+VOLUME_BYTES = 256 << 20
+"""Bound on the cost volumes of all threads together."""
+AT_ONCE = 4
+"""Strips at work for which there is room in any case: more only where they are small."""
+MOST_LANES = 512
+
+
+class Swept(NamedTuple):
+    """Disparity in sixteenths of a pixel, UNKNOWN where none passed the left-right check, and the winner's cost."""
+
+    disparity: Int16[np.ndarray, "h w"]
+    sums: UInt8[np.ndarray, "h w"]
+
+
+def blank(shape: tuple[int, int]) -> Swept:
+    """A map in which nothing is known yet."""
+    return Swept(np.full(shape, UNKNOWN, np.int16), np.full(shape, 255, np.uint8))
+
+
+def strips(shape: tuple[int, int], span: Span) -> list[tuple[int, int]]:
+    """First and last + 1 row of each strip: ROWS high, or lower where AT_ONCE volumes would pass VOLUME_BYTES.
+
+    However many threads there are: at its seams a map would show where they lie.
+    """
+    h, w = shape
+    rows = max(8, min(ROWS, VOLUME_BYTES // (AT_ONCE * w * span.lanes)))
+    return [(y, min(y + rows, h)) for y in range(0, h, rows)]
+
+
+def sweep(
+    codes: tuple[UInt8[np.ndarray, "h planes w"], UInt8[np.ndarray, "h planes w"]],
+    grey: UInt8[np.ndarray, "h w"],
+    span: Span,
+    prices: Prices,
+    tolerance: float,
+    only: Sequence[tuple[int, int]],
+    out: Swept,
+    warm: int = WARM_ROWS,
+) -> None:
+    """Match the strips `only` and write them into `out`; their paths begin `warm` rows early.
+
+    Every strip is independent of the others, so the result does not depend on how many threads there are.
+    """
+    w, n = grey.shape[1], span.lanes
+    lanes = Lanes(n, codes[0].shape[1])
+    highest = max((y1 - y0 for y0, y1 in only), default=0)
+
+    def work(share: list[tuple[int, int]]) -> None:
+        total = np.empty((highest, w * n), np.uint8)
+        for rows in share:
+            sweep_strip(lanes, *codes, grey, rows, warm, span, prices, np.float32(tolerance), total, *out)
+
+    in_turns(list(only), work, max(1, VOLUME_BYTES // max(1, highest * w * n)))

@@ -1,0 +1,1 @@
+"""SIMD lanes inside numba."""

@@ -1,0 +1,1 @@
+"""Features: corners, their matches, and maps made of them."""

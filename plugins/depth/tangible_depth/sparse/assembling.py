@@ -1,0 +1,84 @@
+"""A dense map from scattered disparities: filled from neighbours, along rows and columns, within colour edges."""
+
+import numpy as np
+from jaxtyping import Float32
+
+from tangible_core.data import DisparityMap
+from tangible_core.data.pictures import to_rgb8
+from tangible_core.runtime.opencv import plain_opencv
+
+STRAY_PX = 2.0
+"""A match this far from what its neighbours agree on is left out."""
+
+
+def assemble(
+    disparity_px: Float32[np.ndarray, "h w"],
+    score: Float32[np.ndarray, "h w"],
+    picture: np.ndarray,
+    reach_px: float = 20.0,
+    colour_step: float = 0.08,
+) -> DisparityMap:
+    """Fill and smooth scattered matches; each pixel takes the mean of those near it, by score, distance and colour.
+
+    disparity_px: NaN where there is no match; score: 0..1, read where there is one; picture: (h, w[, 3|4]).
+    reach_px: how far a match counts; colour_step: how great a change of colour, as a share of white, counts as far.
+    Confidence is the score at a match and falls off, within colour edges, with the distance from the matches. All is
+    unknown if there is no match at all.
+    Source: normalised convolution by the domain transform of Gastal & Oliveira, SIGGRAPH 2011.
+    """
+    import cv2
+
+    guide = to_rgb8(picture)
+    mean, _ = _weighted_mean(disparity_px, score, guide, reach_px, colour_step)
+    with np.errstate(invalid="ignore"):
+        agreeing = np.where(np.abs(disparity_px - mean) <= STRAY_PX, disparity_px, np.float32(np.nan))
+    mean, weight = _weighted_mean(agreeing, score, guide, reach_px, colour_step)
+    if not np.isfinite(mean).any():
+        return DisparityMap(np.full_like(disparity_px, np.nan))
+    confidence = np.where(np.isfinite(agreeing), score, np.minimum(weight, 1))
+    return DisparityMap(cv2.medianBlur(fill_nearest(mean), 5), np.clip(confidence, 0, 1).astype(np.float32))
+
+
+def _weighted_mean(
+    values: Float32[np.ndarray, "h w"], score: Float32[np.ndarray, "h w"], guide: np.ndarray, reach: float, step: float
+) -> tuple[Float32[np.ndarray, "h w"], Float32[np.ndarray, "h w"]]:
+    """The mean of the known values round each pixel, NaN out of their reach, and the sum of their weights."""
+    import cv2
+
+    known = np.isfinite(values)
+    weight = np.where(known, score, 0).astype(np.float32)
+    with plain_opencv():
+        total, weight = (
+            cv2.ximgproc.dtFilter(guide, part, reach, 255 * step, mode=cv2.ximgproc.DTF_RF, numIters=3)
+            for part in (np.where(known, values, 0).astype(np.float32) * weight, weight)
+        )
+    # Below this a float32 sum of decaying weights is rounding.
+    reached = weight > 1e-12
+    return np.where(reached, total / np.where(reached, weight, 1), np.float32(np.nan)), weight
+
+
+def without_speckles(disparity_px: Float32[np.ndarray, "h w"], most_px: int = 60) -> Float32[np.ndarray, "h w"]:
+    """Unknown where at most most_px connected pixels of like disparity stand alone: a chance match, mostly."""
+    import cv2
+
+    lowest = -2048
+    sixteenths = np.where(np.isfinite(disparity_px), 16 * disparity_px, 16 * lowest)
+    raster = np.clip(np.rint(sixteenths), 16 * lowest, 32767).astype(np.int16)
+    cv2.filterSpeckles(raster, 16 * lowest, most_px, 16)
+    return np.where(raster > 16 * lowest, disparity_px, np.float32(np.nan))
+
+
+def fill_nearest(values: Float32[np.ndarray, "h w"]) -> Float32[np.ndarray, "h w"]:
+    """NaN replaced by the nearest known value; at least one must be known."""
+    import cv2
+
+    unknown = ~np.isfinite(values)
+    if not unknown.any():
+        return values
+    _, label = cv2.distanceTransformWithLabels(
+        unknown.astype(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_5, labelType=cv2.DIST_LABEL_PIXEL
+    )
+    label = np.asarray(label, np.intp)
+    nearest = np.zeros(int(label.max()) + 1, np.float32)
+    nearest[label[~unknown]] = values[~unknown]
+    return nearest[label]

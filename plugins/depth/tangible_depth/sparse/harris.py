@@ -1,0 +1,80 @@
+"""Harris corners and edges: where a picture has something to match.
+
+X = I * (-1, 0, 1), Y = I * (-1, 0, 1)^T; A = X^2 * w, B = Y^2 * w, C = XY * w; M = [[A, C], [C, B]];
+R = det M - k (tr M)^2: above zero at a corner, below zero along an edge, near zero where the picture is flat.
+Source: Harris & Stephens, A Combined Corner and Edge Detector, 1988.
+"""
+
+from math import exp
+
+import numpy as np
+from jaxtyping import Float, Float64, Int64
+
+from tangible_core.runtime.opencv import plain_opencv
+
+
+def gaussian_window(sigma_px: float) -> Float64[np.ndarray, "n"]:
+    """exp(-u^2 / (2 sigma^2)) out to three sigma, scaled to sum to one; w(u, v) is the product of two of them.
+
+    Raises: ValueError if sigma_px is not positive.
+    """
+    if not sigma_px > 0:
+        raise ValueError(f"a window needs sigma_px > 0, not {sigma_px}")
+    reach = int(np.ceil(3 * sigma_px))
+    weights = np.array([exp(-0.5 * (at / sigma_px) ** 2) for at in range(-reach, reach + 1)])
+    return weights / weights.sum()
+
+
+def harris_response(
+    grey: Float[np.ndarray, "h w"], window: np.ndarray | None = None, k: float = 0.04
+) -> Float[np.ndarray, "h w"]:
+    """R of every pixel, in the picture's own float type; borders are mirrored.
+
+    window: the weights w along one axis, an odd number of them; a Gaussian of sigma 1 px when left out. A picture
+    multiplied by c has its response multiplied by c^4.
+    """
+    import cv2
+
+    weights = gaussian_window(1.0) if window is None else window
+    slope, one = np.array([-1.0, 0.0, 1.0]), np.ones(1)
+    with plain_opencv():
+        x = cv2.sepFilter2D(grey, -1, slope, one, borderType=cv2.BORDER_REFLECT_101)
+        y = cv2.sepFilter2D(grey, -1, one, slope, borderType=cv2.BORDER_REFLECT_101)
+        a, b, c = (
+            cv2.sepFilter2D(product, -1, weights, weights, borderType=cv2.BORDER_REFLECT_101)
+            for product in (x * x, y * y, x * y)
+        )
+    trace = a + b
+    return a * b - c * c - k * trace * trace
+
+
+def corners(response: Float[np.ndarray, "h w"], least: float, most: int) -> Int64[np.ndarray, "n 2"]:
+    """Corners as (column, row), strongest first: R is over `least` and the largest of its 3 x 3 neighbourhood.
+
+    least: >= 0; most: how many at most, so that a busy picture costs no more than a plain one.
+    """
+    import cv2
+
+    peak = (response > least) & (response >= cv2.dilate(response, np.ones((3, 3), np.uint8)))
+    rows, columns = np.nonzero(peak)
+    order = np.argsort(-response[rows, columns], kind="stable")[:most]
+    return np.column_stack([columns[order], rows[order]])
+
+
+def row_edges(response: Float[np.ndarray, "h w"], least: float) -> Int64[np.ndarray, "n 2"]:
+    """Edges that cross their row, as (column, row) in reading order: R is under -least and lowest among its neighbours.
+
+    An edge along a row has no place on it, so a search along rows could not tell where it went.
+    """
+    beside = np.pad(response, ((0, 0), (1, 1)), constant_values=np.inf)
+    valley = (response < -least) & (response <= beside[:, :-2]) & (response < beside[:, 2:])
+    rows, columns = np.nonzero(valley)
+    return np.column_stack([columns, rows])
+
+
+def least_response(contrast: float, k: float = 0.04) -> float:
+    """The |R| of an edge whose slope is `contrast` grey levels a pixel, to tell features from noise.
+
+    A ramp of slope g has X = 2 g, hence R = -k (2 g)^4.
+    """
+    return k * (2 * contrast) ** 4

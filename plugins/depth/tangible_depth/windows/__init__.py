@@ -1,0 +1,1 @@
+"""Windows compared along a row: normalised correlation and squared differences."""

@@ -1,0 +1,161 @@
+"""Windows compared at every disparity: zero-mean normalised cross-correlation and sums of squared differences.
+
+Window sums are exact 32-bit integers that slide: down by the products of the row that comes in less those of the row
+that leaves, sideways by one column in and one out, for all disparities at once. No step depends on the window's size.
+Sums of products may wrap round; the covariance, which they are subtracted to, fits 32 bits for windows up to 19 x 19.
+
+Lane k stands for the disparity top - k, as in `sweep`: for pixel x the right view's column is x + k - top.
+"""
+
+# ruff: noqa: ANN001, ANN201, ANN202 -- numba finds the types of what it compiles; the docstrings say them
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import float32, int32, njit
+
+from ..dense.span import UNKNOWN
+from ..dense.subpixel import parabola
+from ..simd.lane_reductions import first_equal, first_lane, highest
+from ..simd.lanes import add, larger, load, multiply, shift_down, splat, store, subtract, to_float, widened, width
+
+OUT = np.float32(-1e30)
+"""Score of a window that leaves the picture, or holds nothing to compare."""
+
+
+class Windows(NamedTuple):
+    """Of each window of a row, by its centre: the sum, and the scale and offset that a score takes from it."""
+
+    total: np.ndarray
+    scale: np.ndarray
+    offset: np.ndarray
+
+
+@njit(nogil=True, boundscheck=False)
+def _add_products(lanes, left, right, sign, column):
+    """column[x] += sign left[x] right[x + k - top], `right` being shifted already."""
+    n = width(lanes)
+    for x in range(left.size):
+        product = multiply(splat(lanes, int32(sign * int32(left[x]))), widened(load(lanes, right, x)))
+        store(column, x * n, add(load(lanes, column, x * n), product))
+
+
+@njit(nogil=True, boundscheck=False)
+def _add_moments(row, sign, sums, squares):
+    for x in range(row.size):
+        value = int32(row[x])
+        sums[x] += sign * value
+        squares[x] += sign * value * value
+
+
+@njit(nogil=True, boundscheck=False, error_model="numpy")
+def _describe(squared, sums, squares, radius, least_variance, first, windows):
+    """The window centred on column x, from the sums of columns, goes to first + x; flat ones get no score at all."""
+    w = sums.size
+    area = (2 * radius + 1) ** 2
+    total = square = np.int64(0)
+    for x in range(-radius, w - radius):
+        total += sums[x + radius]
+        square += squares[x + radius]
+        if x < radius:
+            continue
+        if 0 <= first + x < windows.total.size:
+            spread = area * square - total * total
+            textured = spread > least_variance * area * area
+            windows.total[first + x] = total
+            windows.offset[first + x] = OUT if not textured else float32(0) if squared is None else -float32(square)
+            windows.scale[first + x] = 1 / np.sqrt(float32(spread)) if textured else 0
+        total -= sums[x - radius]
+        square -= squares[x - radius]
+
+
+@njit(nogil=True, boundscheck=False)
+def _decide(lanes, squared, column, left, right, radius, barred, scores, best, tops, right_tops):
+    """Scores of one row; the best lane and its score for each left pixel, the best score for each right pixel.
+
+    The score is the covariance over both deviations, -1..1, or if `squared` minus the sum of squared differences.
+    """
+    n = width(lanes)
+    w = best.size
+    area = splat(lanes, int32((2 * radius + 1) ** 2))
+    window = splat(lanes, int32(0))
+    for x in range(min(2 * radius, w)):
+        window = add(window, load(lanes, column, x * n))
+    seen = splat(lanes, OUT)
+    out = splat(lanes, OUT)
+    for x in range(radius, w - radius):
+        window = add(window, load(lanes, column, (x + radius) * n))
+        offset = add(load(lanes, right.offset, x), load(lanes, barred, 0))
+        if squared is None:
+            products = multiply(splat(lanes, left.total[x]), load(lanes, right.total, x))
+            covariance = to_float(subtract(multiply(area, window), products))
+            score = multiply(multiply(covariance, load(lanes, right.scale, x)), splat(lanes, left.scale[x]))
+        else:
+            score = add(to_float(add(window, window)), splat(lanes, left.offset[x]))
+        score = add(score, offset)
+        store(scores, x * n, score)
+        tops[x] = highest(score)
+        best[x] = first_equal(score, tops[x])
+        seen = larger(seen, score)
+        right_tops[x] = first_lane(seen)
+        seen = shift_down(seen, out)
+        window = subtract(window, load(lanes, column, (x - radius) * n))
+    for i in range(n - 1):
+        right_tops[w - radius + i] = first_lane(seen)
+        seen = shift_down(seen, out)
+
+
+@njit(nogil=True, boundscheck=False, error_model="numpy")
+def _accept(n, span, least, left, scores, best, tops, right_tops, radius, disparity):
+    """Disparities of pixels and right pixels that choose each other, moved by the parabola through three scores."""
+    disparity[:] = UNKNOWN
+    for x in range(radius, best.size - radius):
+        k, at = best[x], tops[x]
+        if left.offset[x] <= OUT or at <= least or at < right_tops[x + k]:
+            continue
+        move = float32(0)
+        if 0 < k < span.high - span.low:
+            before, after = scores[x * n + k - 1], scores[x * n + k + 1]
+            if before == at and after == at:
+                continue
+            if min(before, after) > OUT / 2:
+                move = parabola(before, at, after)
+        disparity[x] = np.int16(np.floor(16 * (float32(span.high - k) - move) + float32(0.5)))
+
+
+@njit(nogil=True, boundscheck=False, cache=True)
+def correlate_strip(lanes, squared, left, right, rows, radius, span, least, least_variance, disparity, tops):
+    """Disparities in sixteenths of a pixel (UNKNOWN where rejected) and scores of rows[0]..rows[1]-1.
+
+    Parameters: lanes, Lanes(n); squared, None for correlation, True for squared differences (None is known to the
+    compiler); left, right uint8 (h, w); radius of the window; span, the disparities to try, at most n; least, the score
+    that must be passed; least_variance, grey levels squared below which a window counts as flat.
+    Results: disparity int16 (h, w), tops float32 (h, w), the winner's score.
+    """
+    n = width(lanes)
+    h, w = left.shape
+    column = np.zeros(w * n, np.int32)
+    moments = np.zeros((4, w), np.int32)
+    shifted = np.zeros(w + n - 1, np.uint8)
+    on_left = Windows(np.zeros(w, np.int32), np.zeros(w, np.float32), np.full(w, OUT))
+    on_right = Windows(np.zeros(w + n - 1, np.int32), np.zeros(w + n - 1, np.float32), np.full(w + n - 1, OUT))
+    barred = np.where(np.arange(n) <= span.high - span.low, float32(0), OUT)
+    scores, best, right_tops = np.zeros(w * n, np.float32), np.zeros(w, np.int64), np.full(w + n, OUT)
+    for y in range(rows[0] - radius, rows[1] + radius):
+        for sign, entering in ((1, y), (-1, y - 2 * radius - 1)):
+            if entering < rows[0] - radius:
+                continue
+            row = min(max(entering, 0), h - 1)
+            for x in range(w):
+                if 0 <= x + span.high < shifted.size:
+                    shifted[x + span.high] = right[row, x]
+            _add_products(lanes, left[row], shifted, sign, column)
+            _add_moments(left[row], sign, moments[0], moments[1])
+            _add_moments(right[row], sign, moments[2], moments[3])
+        centre = y - radius
+        if centre < rows[0]:
+            continue
+        _describe(squared, moments[0], moments[1], radius, least_variance, 0, on_left)
+        _describe(squared, moments[2], moments[3], radius, least_variance, span.high, on_right)
+        _decide(lanes, squared, column, on_left, on_right, radius, barred, scores, best, tops[centre], right_tops)
+        _accept(n, span, least, on_left, scores, best, tops[centre], right_tops, radius, disparity[centre])

@@ -1,0 +1,176 @@
+"""Dense zero-mean normalised cross-correlation in torch: batched, differentiable, on a GPU when there is one.
+
+Pictures are tensors (b, 1, h, w), floating point with white at 1. This module imports torch; import it inside a verb.
+"""
+
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from functools import reduce
+from typing import NamedTuple
+
+import numpy as np
+import torch
+from jaxtyping import Float32
+from torch import Tensor
+from torch.nn.functional import pad
+
+from tangible_core.runtime.torch_extra import TorchDevice, pick_device
+
+FLAT_VARIANCE = 1e-7
+"""Of a window, white being 1: below it float32 leaves nothing but rounding."""
+OUTSIDE = -1.0
+"""Score where the right window's centre is out of the picture, or a window is flat: never the best."""
+SAME_SCORE = 1e-5
+"""Scores no farther apart than float32 rounds them."""
+
+
+class Best(NamedTuple):
+    """The best shift of each left pixel (b, h, w): pixels, NaN where there is none, and its score in 0..1."""
+
+    disparity_px: Tensor
+    score: Tensor
+
+
+def scores(left: Tensor, right: Tensor, low: int, high: int, window_px: int) -> Tensor:
+    """ZNCC of every left pixel with the right one d pixels to its left, for d = low..high: (b, high - low + 1, h, w).
+
+    In -1..1, OUTSIDE where there is no telling. Differentiable with respect to both pictures. Edges repeat outwards.
+    """
+    half = window_px // 2
+    middle = (left.mean(dim=(-2, -1), keepdim=True) + right.mean(dim=(-2, -1), keepdim=True)) / 2
+    edges = (half, half, half, half)
+    left, right = (pad(picture - middle, edges, mode="replicate") for picture in (left, right))
+    left_mean, left_variance = _statistics(left, window_px)
+    right_mean, right_variance = (_shifted(part, low, high, 0.0) for part in _statistics(right, window_px))
+    products = _mean(left * _shifted(right, low, high, 0.0), window_px)
+    told = (left_variance > FLAT_VARIANCE) & (right_variance > FLAT_VARIANCE)
+    spread = torch.where(told, left_variance * right_variance, 1.0).sqrt()
+    return torch.where(told, (products - left_mean * right_mean) / spread, OUTSIDE)
+
+
+def _statistics(padded: Tensor, window_px: int) -> tuple[Tensor, Tensor]:
+    mean = _mean(padded, window_px)
+    return mean, _mean(padded * padded, window_px) - mean * mean
+
+
+def _mean(padded: Tensor, window_px: int) -> Tensor:
+    """Mean over each whole window, along the rows and then along the columns.
+
+    Sums of slices: ten times as fast as torch's pooling here, and a GPU's convolution would round to 10 bits.
+    """
+    columns, rows = padded.shape[-1] - window_px + 1, padded.shape[-2] - window_px + 1
+    along = reduce(torch.add, (padded[..., i : i + columns] for i in range(window_px)))
+    return reduce(torch.add, (along[..., i : i + rows, :] for i in range(window_px))) / window_px**2
+
+
+def _shifted(values: Tensor, low: int, high: int, outside: float) -> Tensor:
+    """Copies of (b, 1, h, w) moved right by low..high: (b, high - low + 1, h, w), `outside` where they do not reach."""
+    width = values.shape[-1]
+    before, after = max(high, 0), max(-low, 0)
+    wide = pad(values, (before, after), value=outside)
+    return torch.cat([wide[..., before - d : before - d + width] for d in range(low, high + 1)], dim=1)
+
+
+def best_shifts(volume: Tensor, low: int) -> Best:
+    """The best of scores (b, n, h, w) of the disparities low, low + 1, ..., by the parabola through its neighbours.
+
+    Unknown unless the matched right pixel finds no better left one (left-right check) and the score is above 0, or
+    where both neighbours score the same, as in a picture that does not change along its rows: any shift would do.
+    """
+    count, width = volume.shape[1], volume.shape[-1]
+    value, at = volume.max(dim=1)
+    columns = torch.arange(width, device=volume.device)
+    seen_at = (columns - at - low).clamp(0, width - 1)
+    mutual = value >= _right_best(volume, low).gather(-1, seen_at)
+    before = volume.gather(1, (at - 1).clamp(0)[:, None])[:, 0]
+    after = volume.gather(1, (at + 1).clamp(max=count - 1)[:, None])[:, 0]
+    level = torch.minimum(before, after) >= value - SAME_SCORE if count > 1 else torch.zeros_like(mutual)
+    move = torch.where((at > 0) & (at < count - 1), _parabola(before, value, after), 0.0)
+    known = mutual & (value > 0) & ~level
+    return Best(torch.where(known, at + low + move, torch.nan), torch.where(known, value.clamp(0, 1), 0.0))
+
+
+def _right_best(volume: Tensor, low: int) -> Tensor:
+    """The best score of each right pixel (b, h, w): its scores lie on the volume's diagonals."""
+    width = volume.shape[-1]
+    best = torch.full_like(volume[:, 0], OUTSIDE)
+    for k, scores_at in enumerate(volume.unbind(dim=1)):
+        d = low + k
+        first, last = max(0, d), min(width, width + d)
+        if first < last:
+            part = best[..., first - d : last - d]
+            part.copy_(torch.maximum(part, scores_at[..., first:last]))
+    return best
+
+
+def _parabola(before: Tensor, value: Tensor, after: Tensor) -> Tensor:
+    bend = 2 * value - before - after
+    bent = (before > OUTSIDE) & (after > OUTSIDE) & (bend > 0)
+    return torch.where(bent, 0.5 * (after - before) / torch.where(bent, bend, 1.0), 0.0)
+
+
+def soft_argmax(volume: Tensor, low: int, sharpness: float = 30.0) -> Tensor:
+    """Mean disparity (b, h, w) under weights exp(sharpness x score): differentiable, unlike the best one.
+
+    Source: Kendall et al., End-to-End Learning of Geometry and Context for Deep Stereo Regression, ICCV 2017, sec. 3.4.
+    """
+    disparity = torch.arange(low, low + volume.shape[1], dtype=volume.dtype, device=volume.device)
+    return torch.einsum("bnhw,n->bhw", torch.softmax(sharpness * volume, dim=1), disparity)
+
+
+def match(left: Tensor, right: Tensor, low: int, high: int, window_px: int, memory_mb: int = 64) -> Best:
+    """The best shift of every pixel in low..high, in strips of rows so that the scores take about memory_mb.
+
+    A strip is at least a window high, whatever that takes. On a CPU small strips are the fastest: they stay in its
+    caches.
+    """
+
+    def one_strip(first: int, last: int, skip: int, rows: int) -> Best:
+        with torch.no_grad():
+            volume = scores(left[..., first:last, :], right[..., first:last, :], low, high, window_px)
+            return Best(*(part[..., skip : skip + rows, :] for part in best_shifts(volume, low)))
+
+    strips = list(_strips(left, high - low + 1, window_px // 2, memory_mb))
+    done = [one_strip(*strip) for strip in strips] if left.is_cuda else _on_all_cores(one_strip, strips)
+    return Best(*(torch.cat(parts, dim=-2) for parts in zip(*done, strict=True)))
+
+
+Strip = tuple[int, int, int, int]
+"""First and last row to read, how many of these only surround, how many are wanted."""
+
+
+def _on_all_cores(work: Callable[[int, int, int, int], Best], strips: list[Strip]) -> list[Best]:
+    """A strip a thread: torch's own threads wait for each other at every sum, and spin where a core is busy."""
+    threads = torch.get_num_threads()
+    try:
+        with ThreadPoolExecutor(threads, initializer=torch.set_num_threads, initargs=(1,)) as pool:
+            return list(pool.map(lambda strip: work(*strip), strips))
+    finally:
+        torch.set_num_threads(threads)
+
+
+def _strips(left: Tensor, count: int, half: int, memory_mb: int) -> Iterator[Strip]:
+    batch, _, height, width = left.shape
+    # Four volumes are alive at once in each thread: shifted pictures, their products, statistics and scores.
+    row_bytes = 4 * torch.get_num_threads() * batch * width * count * left.element_size()
+    rows = max(2 * half + 1, memory_mb * 2**20 // row_bytes - 2 * half)
+    for first in range(0, height, rows):
+        wanted = min(rows, height - first)
+        above = max(0, first - half)
+        yield above, min(height, first + wanted + half), first - above, wanted
+
+
+def match_pair(
+    left: Float32[np.ndarray, "h w"],
+    right: Float32[np.ndarray, "h w"],
+    low: int,
+    high: int,
+    window_px: int,
+    torch_device: TorchDevice,
+    memory_mb: int,
+) -> tuple[Float32[np.ndarray, "h w"], Float32[np.ndarray, "h w"]]:
+    """`match` on arrays: disparity, NaN where unknown, and score in 0..1."""
+    device = pick_device(torch_device)
+    first, second = (torch.from_numpy(np.ascontiguousarray(grey)).to(device)[None, None] for grey in (left, right))
+    disparity, score = match(first, second, low, high, window_px, memory_mb)
+    return disparity[0].float().cpu().numpy(), score[0].float().cpu().numpy()

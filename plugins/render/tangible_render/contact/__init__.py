@@ -1,0 +1,1 @@
+"""Where the proxy comes into contact, and where it rests."""

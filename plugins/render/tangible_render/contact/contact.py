@@ -1,0 +1,77 @@
+"""Whether the hand is in the surface, and where the proxy starts from when it comes in; compiled.
+
+A touch remembers, in `memory`: 0-2 the proxy, its z NaN while nothing is touched, 3-5 where the hand was, 6 whether the
+proxy slides, 7 the phase.
+Imports numba: a method imports this module inside its verb.
+"""
+
+# ruff: noqa: ANN001, ANN201, ANN202 -- the types are in the signatures that numba compiles
+
+import numpy as np
+from numba import njit
+
+from tangible_core.compiled.compiling import KERNEL
+
+from ..surface.bilinear import cell, over
+from ..surface.spline import height
+
+REMEMBERED = 8
+LOST, BESIDE, FREE, TOUCHING = 0.0, 1.0, 2.0, 3.0
+"""Nothing is known of the hand; it is beside the surface or came in under its rim; above it; the proxy is on top."""
+LEAP_M = 0.005
+"""No hand moves farther in a tick: one that did was put down elsewhere, and is taken as new."""
+STRETCH_M = 0.02
+"""A proxy left farther behind is let go if the surface right above is nearer: no desktop device holds such a force."""
+
+
+@njit(**KERNEL)
+def _entry(coefficients, across_per_m, down_per_m, from_x, from_y, from_z, x, y, z):
+    """Where the straight way of the hand came through the surface, within 1/64 of the way, on the side it came from."""
+    out, inside = 0.0, 1.0
+    for _ in range(6):
+        part = 0.5 * (out + inside)
+        at_x, at_y = from_x + part * (x - from_x), from_y + part * (y - from_y)
+        if from_z + part * (z - from_z) >= height(coefficients, across_per_m, down_per_m, at_x, at_y):
+            out = part
+        else:
+            inside = part
+    return from_x + out * (x - from_x), from_y + out * (y - from_y)
+
+
+@njit(inline="always", **KERNEL)
+def approach(coefficients, width_m, length_m, across_per_m, down_per_m, tiles_m, memory, x, y, z, speed):
+    """Whether the hand is in the surface; its phase, and where its proxy starts from this tick, go to the memory."""
+    phase, px, py, was_x, was_y, was_z = memory[7], memory[0], memory[1], memory[3], memory[4], memory[5]
+    memory[7], memory[2], memory[3], memory[4], memory[5] = LOST, np.nan, x, y, z
+    if not np.isfinite(x + y + z + speed):
+        return False
+    if not over(width_m, length_m, x, y):
+        memory[7] = BESIDE
+        memory[0] = min(max(x, -0.5 * width_m), 0.5 * width_m)
+        memory[1] = min(max(y, -0.5 * length_m), 0.5 * length_m)
+        return False
+    row, column = cell(tiles_m.shape[0], tiles_m.shape[1], width_m, length_m, x, y)
+    memory[7] = FREE
+    if z >= tiles_m[row, column, 0]:
+        return False
+    depth = height(coefficients, across_per_m, down_per_m, x, y) - z
+    if not depth > 0.0:
+        return False
+    memory[7] = TOUCHING
+    leap = (x - was_x) ** 2 + (y - was_y) ** 2 + (z - was_z) ** 2 > LEAP_M * LEAP_M
+    if phase == BESIDE:
+        if abs(px) >= 0.5 * width_m:
+            py = y
+        else:
+            px = x
+    stretch = (x - px) ** 2 + (y - py) ** 2
+    if phase == LOST or leap or (phase != FREE and stretch > max(STRETCH_M * STRETCH_M, depth * depth)):
+        px, py = x, y
+    elif phase == FREE:
+        px, py = _entry(coefficients, across_per_m, down_per_m, was_x, was_y, was_z, x, y, z)
+    elif phase == BESIDE and z < height(coefficients, across_per_m, down_per_m, px, py):
+        memory[7] = BESIDE
+    if phase != TOUCHING or leap:
+        memory[6] = 0.0
+    memory[0], memory[1] = px, py
+    return True

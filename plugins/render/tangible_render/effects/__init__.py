@@ -1,0 +1,1 @@
+"""What materials add to a law: textures, friction, damping."""

@@ -1,0 +1,77 @@
+"""Textures, friction and damping of a surface's materials, as kernels read them."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from jaxtyping import Float64, Int32
+
+from tangible_core.data import HapticSurface, Material
+from tangible_core.haptic_textures import compile_textures
+from tangible_core.haptic_textures.table import COUNT, DRAG, STIFFNESS
+
+Table = Float64[np.ndarray, "n p"]
+TEXTURED = [COUNT, DRAG, STIFFNESS]
+"""Columns of which a texture has at least one."""
+BESIDES = 4
+"""Columns after those of a texture: k, b, mu_s and mu_d, as in `material_table`."""
+ACTING = [*TEXTURED, -3, -2]
+"""Columns of which a material has at least one that adds something to a law; -3 is b, -2 mu_s."""
+
+
+def effects_table(
+    surface: HapticSurface, friction: bool = True, texture: bool = True, damping: bool = True
+) -> tuple[Int32[np.ndarray, "h w"], Table]:
+    """Labels, and a row for each: its texture's, then k, b, mu_s and mu_d; one cell of one row where all are alike.
+
+    What is left out is 0, and so are the rows of labels that nowhere occur. A texture that sticks and slips brings the
+    whole of its material's friction. The surface has materials.
+    """
+    assert surface.labels is not None and surface.materials is not None
+    rows = _rows(surface.materials, friction, texture, damping)
+    met = np.unique(surface.labels)
+    rows[np.setdiff1d(np.arange(len(rows)), met)] = 0
+    if (rows[met] == rows[met[0]]).all():
+        return np.zeros((1, 1), np.int32), rows[met[:1]]
+    return np.ascontiguousarray(surface.labels, np.int32), rows
+
+
+def textured(
+    surface: HapticSurface, friction: bool
+) -> tuple[Int32[np.ndarray, "h w"], Float64[np.ndarray, "n 4"], Table, Float64[np.ndarray, "m"]] | None:
+    """For a law that has friction and damping itself: labels, k, b, mu_s and mu_d of each, textures alone, memory.
+
+    None where no material of the surface has a texture.
+    """
+    if surface.labels is None or not surface.materials:
+        return None
+    labels, table = effects_table(surface, friction)
+    if not table[:, TEXTURED].any():
+        return None
+    own = table[:, -BESIDES:].copy()
+    table[:, 1 - BESIDES :] = 0
+    return labels, own, table, nowhere()
+
+
+def nowhere() -> Float64[np.ndarray, "m"]:
+    """The memory of a hand that was not there yet."""
+    from . import kernels
+
+    memory = np.zeros(kernels.REMEMBERED)
+    memory[kernels.WAS_X], memory[kernels.SLIDES] = np.nan, -1
+    return memory
+
+
+def _rows(materials: Sequence[Material], friction: bool, texture: bool, damping: bool) -> Table:
+    textures = texture * compile_textures(materials)
+    textures[:, STIFFNESS] *= friction
+    rubs = friction * (textures[:, STIFFNESS] == 0)
+    besides = [
+        (
+            each.stiffness_n_per_m,
+            damping * each.damping_n_s_per_m,
+            own * each.static_friction,
+            own * each.dynamic_friction,
+        )
+        for each, own in zip(materials, rubs, strict=True)
+    ]
+    return np.hstack([textures, np.reshape(besides, (-1, BESIDES))])

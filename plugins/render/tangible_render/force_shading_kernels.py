@@ -1,0 +1,33 @@
+"""The law of `force-shading`, compiled. Imports numba: the method imports this module inside `touch`."""
+
+# ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
+
+import math
+
+import numpy as np
+from numba import float32, float64, njit, types
+
+from tangible_core.compiled.compiling import KERNEL
+
+from .surface.bilinear import HEIGHTS, LABELS, NEWTONS, TABLE, bilinear, cell, over
+
+NORMALS = types.Array(float32, 3, "C", readonly=True)
+SURFACE = (HEIGHTS, NORMALS, LABELS, TABLE, float64, float64)
+
+
+@njit(NEWTONS(*SURFACE, *[float64] * 6), **KERNEL)
+def tick(height_m, normal, labels, stiffness_n_per_m, width_m, length_m, x, y, z, vx, vy, vz):
+    """F = k d / sqrt(1 + |g|^2) n, where d = h - z > 0 and n is the normal between the cells'; zero in free air."""
+    if not (over(width_m, length_m, x, y) and np.isfinite(vx + vy + vz)):
+        return 0.0, 0.0, 0.0
+    height, slope_x, slope_y = bilinear(height_m, width_m, length_m, x, y)
+    depth = height - z
+    if not depth > 0.0:
+        return 0.0, 0.0, 0.0
+    nx = bilinear(normal[0], width_m, length_m, x, y)[0]
+    ny = bilinear(normal[1], width_m, length_m, x, y)[0]
+    nz = bilinear(normal[2], width_m, length_m, x, y)[0]
+    row, column = cell(labels.shape[0], labels.shape[1], width_m, length_m, x, y)
+    facet = math.sqrt((1.0 + slope_x * slope_x + slope_y * slope_y) * (nx * nx + ny * ny + nz * nz))
+    push = stiffness_n_per_m[labels[row, column]] * depth / facet
+    return (push * nx, push * ny, push * nz) if np.isfinite(push) else (0.0, 0.0, 0.0)

@@ -1,0 +1,23 @@
+"""The law of `grey-level`, compiled. Imports numba: the method imports this module inside `touch`."""
+
+# ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
+
+import numpy as np
+from numba import float64, njit
+
+from tangible_core.compiled.compiling import KERNEL
+
+from .surface.bilinear import GREYS, HEIGHTS, NEWTONS, cell, over
+
+SURFACE = (HEIGHTS, GREYS, float64, float64, float64)
+
+
+@njit(NEWTONS(*SURFACE, *[float64] * 6), **KERNEL)
+def tick(height_m, grey, width_m, length_m, white_n, x, y, z, vx, vy, vz):
+    """F_z = white_n G / 255 under the surface of the cell that the tip is in; zero in free air."""
+    if not (over(width_m, length_m, x, y) and np.isfinite(z + vx + vy + vz)):
+        return 0.0, 0.0, 0.0
+    row, column = cell(height_m.shape[0], height_m.shape[1], width_m, length_m, x, y)
+    if z >= np.float64(height_m[row, column]):
+        return 0.0, 0.0, 0.0
+    return 0.0, 0.0, white_n * grey[row, column] / 255.0

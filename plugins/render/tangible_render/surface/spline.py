@@ -1,0 +1,102 @@
+"""The height of a C2 surface, its slope and its curvature at a point: a cubic B-spline, compiled.
+
+The coefficients are those of `coefficients.py`: two rows and columns more on each side than there are cells. Imports
+numba: a method imports this module inside its verb.
+
+Source: Unser, Aldroubi & Eden, B-spline signal processing, IEEE Trans. Signal Processing 41 (1993).
+"""
+
+# ruff: noqa: ANN001, ANN201, ANN202 -- the types are in the signatures that numba compiles
+
+from numba import njit
+
+from tangible_core.compiled.compiling import KERNEL
+
+
+@njit(**KERNEL)
+def height(coefficients, across_per_m, down_per_m, x, y):
+    """Height at a point over the extent. across_per_m, down_per_m: cells to the metre along x and against y."""
+    row, column, down, across = _place(coefficients, across_per_m, down_per_m, x, y)
+    return _dot(_rows(coefficients, row, column, _values(down)), _values(across))
+
+
+@njit(**KERNEL)
+def slope(coefficients, across_per_m, down_per_m, x, y):
+    """Height and gradient (h, dh/dx, dh/dy) at a point over the extent."""
+    row, column, down, across = _place(coefficients, across_per_m, down_per_m, x, y)
+    line, value = _rows(coefficients, row, column, _values(down)), _values(across)
+    rise = _dot(_rows(coefficients, row, column, _slopes(down)), value)
+    return _dot(line, value), _dot(line, _slopes(across)) * across_per_m, -rise * down_per_m
+
+
+@njit(**KERNEL)
+def bend(coefficients, across_per_m, down_per_m, x, y):
+    """Height, gradient and Hessian (h, h_x, h_y, h_xx, h_xy, h_yy) at a point over the extent."""
+    row, column, down, across = _place(coefficients, across_per_m, down_per_m, x, y)
+    line = _rows(coefficients, row, column, _values(down))
+    rise = _rows(coefficients, row, column, _slopes(down))
+    curve = _rows(coefficients, row, column, _bends(down))
+    value, tilt = _values(across), _slopes(across)
+    return (
+        _dot(line, value),
+        _dot(line, tilt) * across_per_m,
+        -_dot(rise, value) * down_per_m,
+        _dot(line, _bends(across)) * across_per_m * across_per_m,
+        -_dot(rise, tilt) * across_per_m * down_per_m,
+        _dot(curve, value) * down_per_m * down_per_m,
+    )
+
+
+@njit(**KERNEL)
+def _place(coefficients, across_per_m, down_per_m, x, y):
+    """First row and column of the 4 x 4 coefficients that a point depends on, and how far it is beyond the second."""
+    rows, columns = coefficients.shape
+    down, across = 0.5 * (rows - 1) - y * down_per_m, 0.5 * (columns - 1) + x * across_per_m
+    row, column = min(max(int(down), 1), rows - 3), min(max(int(across), 1), columns - 3)
+    return row - 1, column - 1, down - row, across - column
+
+
+@njit(**KERNEL)
+def _values(t):
+    """The four B-splines over an interval, at t in 0..1 of it."""
+    u = 1.0 - t
+    first, last = u * u * u / 6.0, t * t * t / 6.0
+    second = 2.0 / 3.0 - t * t * (1.0 - 0.5 * t)
+    return first, second, 1.0 - first - second - last, last
+
+
+@njit(**KERNEL)
+def _slopes(t):
+    u = 1.0 - t
+    return -0.5 * u * u, t * (1.5 * t - 2.0), u * (2.0 - 1.5 * u), 0.5 * t * t
+
+
+@njit(**KERNEL)
+def _bends(t):
+    return 1.0 - t, 3.0 * t - 2.0, 1.0 - 3.0 * t, t
+
+
+@njit(**KERNEL)
+def _rows(coefficients, row, column, weights):
+    """The four rows in one, weighted."""
+    return (
+        _column(coefficients, row, column, weights),
+        _column(coefficients, row, column + 1, weights),
+        _column(coefficients, row, column + 2, weights),
+        _column(coefficients, row, column + 3, weights),
+    )
+
+
+@njit(**KERNEL)
+def _column(coefficients, row, column, weights):
+    return (
+        weights[0] * coefficients[row, column]
+        + weights[1] * coefficients[row + 1, column]
+        + weights[2] * coefficients[row + 2, column]
+        + weights[3] * coefficients[row + 3, column]
+    )
+
+
+@njit(**KERNEL)
+def _dot(a, b):
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]

@@ -1,0 +1,70 @@
+"""Linear discriminants: which features tell classes apart, and for which class a cell speaks.
+
+Source: Fisher's discriminant for several classes (Rao, J. Royal Stat. Soc. B 10, 1948); the scatter within classes is
+shrunk towards a multiple of the identity and a share of the total scatter.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from jaxtyping import Float32, Float64
+
+SHRUNK = 0.05
+"""Of the mean variance within classes, and of the total scatter: added to the scatter within classes."""
+
+
+class Scatters(NamedTuple):
+    """Weighted means of classes, their shares, and scatter within them, shrunk, per unit of weight."""
+
+    means: Float64[np.ndarray, "k d"]
+    shares: Float64[np.ndarray, "k"]
+    within: Float64[np.ndarray, "d d"]
+
+
+def scatters(planes: Float32[np.ndarray, "d n"], weights: Float32[np.ndarray, "k n"]) -> Scatters:
+    """Of classes with these weights a cell, whose sum is what a cell counts."""
+    from .planes import products, scatter
+
+    counts = weights.sum(axis=1, dtype=np.float64) + 1e-3
+    shares = counts / counts.sum()
+    means = products(weights, planes) / counts[:, None]
+    centre = np.einsum("k,kd->d", shares, means)
+    total = scatter(planes, weights.sum(axis=0)) / counts.sum() - np.outer(centre, centre)
+    between = np.einsum("kd,ke->de", shares[:, None] * (means - centre), means - centre)
+    within = total - between
+    ridge = SHRUNK * max(np.trace(within) / len(within), 1e-6)
+    return Scatters(means, shares, within + SHRUNK * total + ridge * np.eye(len(within)))
+
+
+def evidence(planes: Float32[np.ndarray, "d n"], found: Scatters) -> Float32[np.ndarray, "k n"]:
+    """How much each cell speaks for each class: log likelihoods of one Gaussian's width, but for what all share."""
+    from tangible_core.compiled.small_matrices import solved
+
+    from .planes import mixed
+
+    towards = solved(found.within, found.means)
+    heights = 0.5 * (found.means * towards).sum(axis=1)
+    return mixed(towards, planes) - heights.astype(np.float32)[:, None]
+
+
+def discriminant_axes(found: Scatters, most: int) -> Float64[np.ndarray, "m d"]:
+    """The directions in which classes differ most, `most` or as many as there are, scaled to unit scatter within."""
+    from tangible_core.compiled.small_matrices import eigen, solved
+
+    centre = np.einsum("k,kd->d", found.shares, found.means)
+    apart = np.sqrt(found.shares)[:, None] * (found.means - centre)
+    towards = solved(found.within, apart)
+    strengths, vectors = eigen(np.einsum("kd,jd->kj", apart, towards))
+    kept = np.flatnonzero(strengths > 1e-9)[:most]
+    return np.einsum("ak,kd->ad", vectors[kept] / np.sqrt(strengths[kept])[:, None], towards)
+
+
+def principal_axes(planes: Float32[np.ndarray, "d n"], most: int, power: float = 0.0) -> Float64[np.ndarray, "m d"]:
+    """Leading principal axes of centred planes, each divided by its variance to this power; none for still planes."""
+    from tangible_core.compiled.small_matrices import eigen
+
+    from .planes import scatter
+
+    values, vectors = eigen(scatter(planes, np.ones(planes.shape[1], np.float32)) / planes.shape[1])
+    kept = np.flatnonzero(values > 1e-6 * max(values[0], 1e-6))[:most]
+    return vectors[kept] * np.array([value**-power for value in values[kept].tolist()])[:, None]

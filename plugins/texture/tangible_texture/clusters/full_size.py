@@ -1,0 +1,91 @@
+"""From classes of cells to labels of pixels: evidence in wide and narrow windows, neighbours, then interpolation."""
+
+# ruff: noqa: ANN001, ANN202 -- numba takes the types from the call
+
+import numpy as np
+from jaxtyping import Float32, Int32
+from numba import njit
+
+from tangible_core.compiled.elementary import exponential, logarithms
+from tangible_core.compiled.threads import in_blocks
+from tangible_core.runtime.opencv import plain_opencv
+
+from ..features.features import Window
+from .discriminants import evidence, scatters
+from .dividing import members
+from .neighbourhood import EVIDENCE, settled
+
+NARROW = 0.6
+"""The share of the evidence in narrow windows; the rest is that of the wide ones."""
+SURE = 1e-6
+"""The least membership: what is nearer to 0 is certain enough."""
+
+
+def fine_memberships(
+    wide: Window, labels: Int32[np.ndarray, "m"], narrow: Window
+) -> Float32[np.ndarray, "k rows columns"]:
+    """How much each narrow cell belongs to each class, from its neighbours and from windows of both widths.
+
+    labels: of the wide cells. Both windows have the same features.
+    """
+    own = members(labels, int(labels.max()) + 1)
+    towards = enlarged(evidence(wide.planes, scatters(wide.planes, own)), wide.shape, narrow.shape)
+    soft = enlarged(own, wide.shape, narrow.shape)
+    near = evidence(narrow.planes, scatters(narrow.planes, members(soft.argmax(axis=0), len(own))))
+    both = np.float32(EVIDENCE * NARROW) * near + np.float32(EVIDENCE * (1 - NARROW)) * towards
+    return settled(both, soft, narrow.shape, 2.0, 4).reshape(-1, *narrow.shape)
+
+
+def enlarged(planes: Float32[np.ndarray, "k m"], shape: tuple[int, int], to: tuple[int, int]) -> np.ndarray:
+    """Planes of cells, interpolated between the centres of a coarse grid: (k, n)."""
+    import cv2
+
+    with plain_opencv():
+        return np.stack(
+            [cv2.resize(each.reshape(shape), to[::-1], interpolation=cv2.INTER_LINEAR).ravel() for each in planes]
+        )
+
+
+def pixel_labels(
+    memberships: Float32[np.ndarray, "k rows columns"], cell_px: int, shape: tuple[int, int]
+) -> tuple[Int32[np.ndarray, "h w"], Float32[np.ndarray, "h w"]]:
+    """The strongest class of each pixel, and 1 - q / p: p and q are its membership and that of the next one.
+
+    Logarithms of memberships are interpolated between the centres of cells.
+    """
+    labels, confidence = np.empty(shape, np.int32), np.empty(shape, np.float32)
+    logs = logarithms(np.maximum(memberships, np.float32(SURE)))
+    in_blocks(shape[0], lambda start, stop: _fill(logs, cell_px, start, stop, labels, confidence))
+    return labels, confidence
+
+
+@njit(cache=True, nogil=True)
+def _fill(logs, cell_px, start, stop, labels, confidence):
+    classes, rows, columns = logs.shape
+    between = np.empty((columns, classes), np.float32)
+    for row in range(start, stop):
+        above, down = _place(row, cell_px, rows)
+        below = min(above + 1, rows - 1)
+        for k in range(classes):
+            for cell in range(columns):
+                between[cell, k] = logs[k, above, cell] + down * (logs[k, below, cell] - logs[k, above, cell])
+        for column in range(labels.shape[1]):
+            left, right = _place(column, cell_px, columns)
+            one, other = between[left], between[min(left + 1, columns - 1)]
+            best, second, at = np.float32(-np.inf), np.float32(-np.inf), 0
+            for k in range(classes):
+                value = one[k] + right * (other[k] - one[k])
+                if value > best:
+                    best, second, at = value, best, k
+                elif value > second:
+                    second = value
+            labels[row, column] = at
+            confidence[row, column] = np.float32(1) - exponential(second - best)
+
+
+@njit(cache=True, nogil=True)
+def _place(pixel, cell_px, cells):
+    """The cell whose centre is at or before a pixel, and how far from there to the next one the pixel is."""
+    at = min(max((pixel + np.float32(0.5)) / cell_px - np.float32(0.5), np.float32(0)), np.float32(cells - 1))
+    before = int(at)
+    return before, at - np.float32(before)

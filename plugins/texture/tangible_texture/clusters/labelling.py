@@ -1,0 +1,60 @@
+"""From features to a label map by k-means."""
+
+import logging
+from typing import Literal
+
+import numpy as np
+from jaxtyping import Float32, Int32
+
+from tangible_core.data import SegmentMap
+from tangible_core.plugins.notes import note
+
+from .count import choose_count
+from .kmeans import kmeans
+
+log = logging.getLogger(__name__)
+MOST_SEGMENTS = 8
+"""What `segments: auto` stops at."""
+
+
+def segments_of(rows: Float32[np.ndarray, "n d"], segments: int | Literal["auto"], seed: int) -> int:
+    """The number asked for, or a guess that is noted with what it is worth."""
+    if segments != "auto":
+        return segments
+    guess = choose_count(rows, MOST_SEGMENTS, seed)
+    note(log, f"segments: {guess.segments}, a guess worth {guess.confidence:.2f}: {guess.reason}")
+    return guess.segments
+
+
+def labelled(
+    features: Float32[np.ndarray, "rows columns d"],
+    step_px: int,
+    shape: tuple[int, int],
+    segments: int | Literal["auto"],
+    seed: int,
+    start: Literal["plus-plus", "random"] = "plus-plus",
+    restarts: int = 1,
+) -> SegmentMap:
+    """Cluster features given every step_px pixels, and give every pixel of (h, w) the label of its cell."""
+    rows = features.reshape(-1, features.shape[2])
+    found = kmeans(rows, segments_of(rows, segments, seed), restarts, seed, start)
+    return enlarged(found.labels.reshape(features.shape[:2]), margins(rows, found.centres), step_px, shape)
+
+
+def enlarged(
+    labels: Int32[np.ndarray, "rows columns"], trust: Float32[np.ndarray, "n"], step_px: int, shape: tuple[int, int]
+) -> SegmentMap:
+    """The segments of (h, w) pixels, from labels and confidence every step_px pixels, in the order of first pixels."""
+    from ..regions.merging import in_reading_order
+
+    cells = np.ix_(*(np.arange(side) // step_px for side in shape))
+    return SegmentMap(in_reading_order(labels.astype(np.int32))[cells], trust.reshape(labels.shape)[cells])
+
+
+def margins(rows: Float32[np.ndarray, "n d"], centres: Float32[np.ndarray, "k d"]) -> Float32[np.ndarray, "n"]:
+    """1 - a / b of each row, a and b being its distances from the nearest centre and the next one; 1 for one centre."""
+    if len(centres) == 1:
+        return np.ones(len(rows), np.float32)
+    away = np.stack([np.sqrt(np.square(rows - centre).sum(axis=1)) for centre in centres], axis=1)
+    near, next_near = np.partition(away, 1, axis=1)[:, :2].T
+    return 1 - near / np.maximum(next_near, np.finfo(np.float32).tiny)

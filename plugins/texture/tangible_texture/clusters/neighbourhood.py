@@ -1,0 +1,88 @@
+"""Cells and their neighbours: memberships that follow the evidence and what is round about."""
+
+# ruff: noqa: ANN001, ANN202 -- numba takes the types from the call
+
+import numpy as np
+from jaxtyping import Float32, Int32
+from numba import njit
+
+from tangible_core.compiled.elementary import exponential
+from tangible_core.runtime.opencv import plain_opencv
+
+from .discriminants import evidence, scatters
+from .dividing import members
+
+PULL = 4.0
+"""What the neighbours' mean membership weighs against evidence."""
+EVIDENCE = 0.5
+"""What evidence weighs: windows overlap, so that cells are not as many witnesses as they seem."""
+INSIDE_CELLS = 2.0
+"""Standard deviation of the window in which a cell's class must prevail for the cell to count in full."""
+
+
+def smoothed(memberships: Float32[np.ndarray, "k n"], shape: tuple[int, int], sigma: float) -> np.ndarray:
+    """Gaussian means of each class's memberships over the grid of cells."""
+    import cv2
+
+    with plain_opencv():
+        return np.stack(
+            [
+                cv2.GaussianBlur(each.reshape(shape), (0, 0), sigma, borderType=cv2.BORDER_REFLECT).ravel()
+                for each in memberships
+            ]
+        )
+
+
+def settled(
+    evidence: Float32[np.ndarray, "k n"],
+    memberships: Float32[np.ndarray, "k n"],
+    shape: tuple[int, int],
+    sigma: float,
+    rounds: int,
+) -> Float32[np.ndarray, "k n"]:
+    """Mean field: each cell's memberships follow its evidence and PULL times the mean of those around, in rounds.
+
+    Source: the mean-field approximation of a Potts model with Gaussian neighbourhoods (Krahenbuhl & Koltun,
+    Efficient inference in fully connected CRFs, NIPS 2011).
+    """
+    for _ in range(rounds):
+        memberships = _softmax(evidence, smoothed(memberships, shape, sigma), np.float32(PULL))
+    return memberships
+
+
+def refitted(
+    planes: Float32[np.ndarray, "d n"], labels: Int32[np.ndarray, "n"], shape: tuple[int, int], rounds: int, votes: int
+) -> Int32[np.ndarray, "n"]:
+    """Labels after rounds of fitting discriminants to cells well inside their classes, and settling with neighbours.
+
+    Classes may vanish; labels stay 0..k-1.
+    """
+    memberships = members(labels, int(labels.max()) + 1)
+    for _ in range(rounds):
+        fit = scatters(planes, memberships * smoothed(memberships, shape, INSIDE_CELLS) ** 2)
+        memberships = settled(EVIDENCE * evidence(planes, fit), memberships, shape, 1.5, votes)
+        before, labels = labels, memberships.argmax(axis=0)
+        if np.mean(before != labels) < 1e-3:
+            break
+    return np.unique(labels, return_inverse=True)[1].astype(np.int32)
+
+
+@njit(cache=True, nogil=True)
+def _softmax(evidence, around, pull):
+    found = np.empty_like(evidence)
+    classes, cells = evidence.shape
+    for start in range(0, cells, 1024):
+        stop = min(start + 1024, cells)
+        highest, total = np.full(stop - start, np.float32(-1e30)), np.zeros(stop - start, np.float32)
+        for k in range(classes):
+            for i in range(start, stop):
+                found[k, i] = evidence[k, i] + pull * around[k, i]
+                highest[i - start] = max(highest[i - start], found[k, i])
+        for k in range(classes):
+            for i in range(start, stop):
+                found[k, i] = exponential(found[k, i] - highest[i - start])
+                total[i - start] += found[k, i]
+        for k in range(classes):
+            for i in range(start, stop):
+                found[k, i] /= total[i - start]
+    return found

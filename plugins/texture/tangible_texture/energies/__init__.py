@@ -1,0 +1,1 @@
+"""Energies of Gabor filters, at every pixel."""

@@ -1,0 +1,1 @@
+"""What a picture's texture is like, in windows of several widths."""

@@ -1,0 +1,34 @@
+"""The channels of a picture in which boundaries are looked for."""
+
+import numpy as np
+from jaxtyping import Float32
+
+from tangible_core.data.pictures import check_picture, full_scale, luma
+
+
+def channels(picture: np.ndarray, colour: bool) -> Float32[np.ndarray, "h w c"]:
+    """Red, green and blue; or one channel of grey, where colour is not asked for or there is none.
+
+    Transparency lies over white. The largest magnitude is 1 whatever the picture's own scale is, so that what is
+    squared later neither overflows nor vanishes.
+    Raises: PictureError as `check_picture`.
+    """
+    white = full_scale(check_picture(picture))
+    paint = np.atleast_3d(picture)[..., :3]
+    values = _share(paint if _has_colour(paint) else paint[..., :1], white)
+    if picture.ndim == 3 and picture.shape[2] == 4:
+        opaque = _share(picture[..., 3:], white)
+        values = values * opaque + (1 - opaque)
+    if values.shape[2] == 3 and not colour:
+        values = luma(values)[..., None]
+    top = max(float(values.max()), -float(values.min()))
+    return np.ascontiguousarray(values / top if top else values, np.float32)
+
+
+def _has_colour(paint: np.ndarray) -> bool:
+    return any(np.any(paint[..., 0] != paint[..., other]) for other in range(1, paint.shape[2]))
+
+
+def _share(values: np.ndarray, white: float) -> Float32[np.ndarray, "h w c"]:
+    """Values as shares of white, divided in single precision at least, so that every type gives the same."""
+    return np.asarray((values if values.dtype.kind == "f" else values.astype(np.float32)) / white, np.float32)

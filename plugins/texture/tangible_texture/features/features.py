@@ -1,0 +1,126 @@
+"""What a picture's texture is like in windows of three widths."""
+
+import logging
+from typing import Literal, NamedTuple
+
+import numpy as np
+from jaxtyping import Float32
+
+from tangible_core.data.pictures import to_grey
+from tangible_core.plugins.notes import note
+from tangible_core.runtime.opencv import plain_opencv
+
+log = logging.getLogger(__name__)
+
+NARROW_PX, MIDDLE_PX, WIDE_PX = 5.0, 10.0, 18.0
+"""Standard deviations of the windows: along borders, in which classes are told apart, and to begin with."""
+LARGE_PX = 320
+"""Where the root of a picture's area is less, its windows are narrower in proportion, down to half as wide."""
+COLOURFUL = 0.02
+"""Windows that differ in colour by less than this share of white do so by chance, or by the light."""
+COLOUR_WEIGHT = 3.0
+"""What a plane of colour counts against one of ninety of texture."""
+
+
+class Window(NamedTuple):
+    """Features of mean 0 and deviation 1, one column a cell, in windows of one width; and the grid of cells."""
+
+    planes: Float32[np.ndarray, "d n"]
+    shape: tuple[int, int]
+
+
+class Features(NamedTuple):
+    """The same features in windows of three widths."""
+
+    wide: Window
+    middle: Window
+    narrow: Window
+
+
+def features(
+    picture: np.ndarray, lambda_max_px: float, least_energy: float, colour: bool | Literal["auto"]
+) -> Features | None:
+    """Features in windows of WIDE_PX, MIDDLE_PX and NARROW_PX, or less in a small picture; None where all are alike.
+
+    The narrow ones have a value every 4 pixels, the middle ones every 8 and the wide ones every 16; of small pictures
+    all of them every 4. Raises: PictureError as `check_picture`.
+    """
+    from ..energies.noise_floor import is_flat, is_one_texture
+    from .cells import CELL_PX, ENERGY_SIGMA_PX, averaged
+
+    grey = to_grey(picture)
+    if is_flat(grey):
+        note(log, "one segment: the picture is flat")
+        return None
+    texture, tints = _texture(grey, lambda_max_px, least_energy), _tints(picture, colour)
+    step = 2 if min(texture[0].shape[1:]) >= 32 else 1
+    narrow_px, middle_px, wide_px = _widths(grey.size)
+    narrow = averaged(np.concatenate(texture + tints), (narrow_px**2 - ENERGY_SIGMA_PX**2) ** 0.5 / CELL_PX)
+    middle = averaged(narrow, (middle_px**2 - narrow_px**2) ** 0.5 / CELL_PX, step)
+    if is_one_texture(np.sqrt(middle), middle_px / CELL_PX / step, grey):
+        note(log, "one segment: the texture is the same all over the picture")
+        return None
+    wide = averaged(middle, (wide_px**2 - middle_px**2) ** 0.5 / CELL_PX / step, step)
+    colours = sum(len(each) for each in tints)
+    return Features(_window(wide, colours), _window(middle, colours), _window(narrow, colours))
+
+
+def _widths(pixels: int) -> tuple[float, float, float]:
+    share = min(1.0, max(0.5, pixels**0.5 / LARGE_PX))
+    return min(NARROW_PX, 0.9 * MIDDLE_PX * share), MIDDLE_PX * share, WIDE_PX * share
+
+
+def _window(planes: Float32[np.ndarray, "d rows columns"], colours: int) -> Window:
+    """Standardised, in place; the last `colours` planes weigh more."""
+    from .cells import standardise_roots
+
+    rows, columns = planes.shape[1:]
+    flat = planes.reshape(len(planes), -1)
+    standardise_roots(flat)
+    flat[len(flat) - colours :] *= np.float32(COLOUR_WEIGHT)
+    return Window(flat, (rows, columns))
+
+
+def _texture(
+    grey: Float32[np.ndarray, "h w"], lambda_max_px: float, least_energy: float
+) -> list[Float32[np.ndarray, "d rows columns"]]:
+    """Energies and pattern frequencies, cell by cell."""
+    from ..energies.gabor_bank import bank, octaves
+    from ..energies.local_energy import energy_planes, mean_energies, padding, spectrum_of, standardised
+    from .cells import CELL_PX, ENERGY_SIGMA_PX, capped
+    from .patterns import pattern_frequencies
+
+    filters = bank(octaves(lambda_max_px))
+    spectrum = spectrum_of(grey, padding(filters, ENERGY_SIGMA_PX))
+    means = mean_energies(spectrum, filters)
+    kept = [each for each, mean in zip(filters, means, strict=True) if mean >= least_energy * means.sum()]
+    if len(kept) < len(filters):
+        note(log, f"{len(filters) - len(kept)} of {len(filters)} filters left out: they hold no energy to speak of")
+    energies = energy_planes(spectrum, kept, grey.shape, CELL_PX, ENERGY_SIGMA_PX)
+    return [capped(energies), pattern_frequencies(standardised(grey))]
+
+
+def _tints(picture: np.ndarray, colour: bool | Literal["auto"]) -> list[Float32[np.ndarray, "2 rows columns"]]:
+    """Red against green and both against blue, cell by cell, 0..2; nothing where colour is not used."""
+    import cv2
+
+    from .cells import CELL_PX, averaged
+    from .channels import channels
+
+    if colour is False:
+        return []
+    paint = channels(picture, colour=True)
+    if paint.shape[2] == 1:
+        note(log, "colour left out: there is none")
+        return []
+    red, green, blue = np.moveaxis(paint, 2, 0)
+    rows, columns = (-(-side // CELL_PX) for side in red.shape)
+    opponents = (1 + (red - green) / 2, 1 + (red + green) / 4 - blue / 2)
+    with plain_opencv():
+        planes = np.stack([cv2.resize(each, (columns, rows), interpolation=cv2.INTER_AREA) for each in opponents])
+    differ = float(np.sqrt(averaged(planes, MIDDLE_PX / CELL_PX).var(axis=(1, 2)).sum()))
+    if colour == "auto" and differ < COLOURFUL:
+        note(log, f"colour left out: windows differ in it by {differ:.3f} of white, under {COLOURFUL:g}")
+        return []
+    note(log, f"colour used: windows differ in it by {differ:.3f} of white")
+    return [planes]

@@ -1,0 +1,123 @@
+"""Local binary patterns, counted straight into cells of 4 x 4 pixels. Compiled by numba.
+
+A pixel's code says which of eight neighbours are as bright as it is. It adds one to one of 10 rotation-invariant
+classes (Ojala, Pietikainen & Maenpaa, IEEE TPAMI 24, 2002), and to some of 12 agreements that tell directions: both
+neighbours of an axis are alike, both are bright, those a quarter turn apart are alike. A cell holds 16 pixels, so that
+a counter fits 5 bits (6 for quarter turns, of which each pixel has two) and all of a pixel's are two additions.
+"""
+
+# ruff: noqa: ANN001, ANN202 -- numba takes the types from the call
+
+from collections.abc import Iterable, Iterator
+
+import numpy as np
+from jaxtyping import Float32, UInt64
+from numba import njit
+
+from tangible_core.compiled.threads import in_blocks
+from tangible_core.runtime.opencv import plain_opencv
+
+CELL_PX = 4
+CLASSES, AGREEMENTS = 10, 12
+COUNTERS = CLASSES + AGREEMENTS
+RADII = ((1, 0.0), (3, 0.0), (5, 1.5))
+"""How far the neighbours are, in px, and the standard deviation of the Gaussian that smooths before."""
+ALIKE = 1e-3
+"""A neighbour darker by less than this share of the picture's standard deviation is as bright: rounding is none."""
+
+
+def pattern_frequencies(grey: Float32[np.ndarray, "h w"]) -> Float32[np.ndarray, "counters rows columns"]:
+    """How often each class and agreement occurs in each cell, 0..1, for every radius of RADII in turn.
+
+    grey: of standard deviation 1. Cells lie as those of `local_energy` with step_px = 4; the last may be cut. A flip or
+    a quarter turn of the picture flips or turns the planes and exchanges some of them.
+    """
+    import cv2
+
+    shape = tuple(-(-side // CELL_PX) for side in grey.shape)
+    found = np.empty((len(RADII), COUNTERS, *shape), np.float32)
+    for planes, (radius, sigma) in zip(found, RADII, strict=True):
+        with plain_opencv():
+            smooth = cv2.GaussianBlur(grey, (0, 0), sigma, borderType=cv2.BORDER_REFLECT_101) if sigma else grey
+        framed = np.pad(smooth, radius, mode="edge")
+        in_blocks(
+            shape[0], lambda a, b, f=framed, r=radius, p=planes: _count(f, r, a, b, grey.shape, _FIRST, _SECOND, p), 4
+        )
+    return found.reshape(-1, *shape)
+
+
+def _pairs_of(code: int) -> Iterator[tuple[bool, ...]]:
+    bits = [bool(code >> i & 1) for i in range(8)]
+    axes = [(bits[i], bits[i + 4]) for i in range(4)]
+    quarters = [[bits[(i + j) % 8] == bits[(i + j + 2) % 8] for j in (0, 4)] for i in range(4)]
+    yield tuple(one == other for one, other in axes)
+    yield tuple(one and other for one, other in axes)
+    yield from zip(*quarters, strict=True)
+
+
+def _class_of(code: int) -> int:
+    """The number of bright neighbours, if they are in one piece; else 9."""
+    bits = [code >> i & 1 for i in range(8)]
+    return sum(bits) if sum(bits[i] != bits[i - 1] for i in range(8)) <= 2 else CLASSES - 1
+
+
+def _packed(flags: Iterable[bool], first_bit: int, width: int) -> int:
+    return sum(1 << (first_bit + width * i) for i, flag in enumerate(flags) if flag)
+
+
+def _agreements_of(code: int) -> int:
+    alike, bright, *quarters = _pairs_of(code)
+    return _packed(alike, 0, 5) + _packed(bright, 20, 5) + sum(_packed(each, 40, 6) for each in quarters)
+
+
+_FIRST: UInt64[np.ndarray, "256"] = np.array([1 << 5 * _class_of(code) for code in range(256)], np.uint64)
+_SECOND: UInt64[np.ndarray, "256"] = np.array([_agreements_of(code) for code in range(256)], np.uint64)
+
+
+@njit(cache=True, nogil=True)
+def _count(grey, radius, start, stop, shape, first_words, second_words, planes):
+    """Fill the rows of cells from start to stop; grey is framed by `radius` pixels."""
+    height, width = shape
+    codes = np.empty(width, np.uint8)
+    for cell_row in range(start, stop):
+        first, second = np.zeros(planes.shape[2], np.uint64), np.zeros(planes.shape[2], np.uint64)
+        end = min((cell_row + 1) * CELL_PX, height)
+        for row in range(cell_row * CELL_PX, end):
+            _codes(grey, row, radius, codes)
+            for column in range(width):
+                first[column // CELL_PX] += first_words[codes[column]]
+                second[column // CELL_PX] += second_words[codes[column]]
+        for cell in range(planes.shape[2]):
+            pixels = (end - cell_row * CELL_PX) * (min((cell + 1) * CELL_PX, width) - cell * CELL_PX)
+            _unpack(first[cell], second[cell], np.float32(1 / pixels), planes[:, cell_row, cell])
+
+
+@njit(cache=True, nogil=True)
+def _codes(grey, row, radius, codes):
+    """The codes of one row; neighbours are numbered against the clock, from the right."""
+    near = round(radius * 0.70710678)
+    up, down, above, below = grey[row], grey[row + 2 * radius], grey[row + radius - near], grey[row + radius + near]
+    own = grey[row + radius]
+    for column in range(codes.size):
+        at = column + radius
+        level = own[at] - np.float32(ALIKE)
+        codes[column] = (
+            (own[at + radius] >= level)
+            | ((above[at + near] >= level) << 1)
+            | ((up[at] >= level) << 2)
+            | ((above[at - near] >= level) << 3)
+            | ((own[at - radius] >= level) << 4)
+            | ((below[at - near] >= level) << 5)
+            | ((down[at] >= level) << 6)
+            | ((below[at + near] >= level) << 7)
+        )
+
+
+@njit(cache=True, nogil=True)
+def _unpack(first, second, share, counters):
+    for i in range(CLASSES):
+        counters[i] = np.float32((first >> np.uint64(5 * i)) & np.uint64(31)) * share
+    for i in range(8):
+        counters[CLASSES + i] = np.float32((second >> np.uint64(5 * i)) & np.uint64(31)) * share
+    for i in range(4):
+        counters[CLASSES + 8 + i] = np.float32((second >> np.uint64(40 + 6 * i)) & np.uint64(63)) * share / 2

@@ -1,0 +1,1 @@
+"""Smoothing, slopes, and whether there is anything in a picture to divide."""

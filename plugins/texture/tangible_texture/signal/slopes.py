@@ -1,0 +1,102 @@
+"""Slopes of a smoothed picture: how steep, which way, and how much of it is noise."""
+
+# ruff: noqa: ANN001, ANN202 -- numba takes the types from the call
+
+from math import log, sqrt
+
+import numpy as np
+from jaxtyping import Float32
+from numba import njit
+
+from tangible_core.runtime.opencv import plain_opencv
+
+TILE_PX = 128
+"""Side of the tiles in which noise is measured."""
+
+QUIET_SHARE = 0.25
+"""In every tile at least this share of the pixels is taken to hold noise and no edge."""
+
+_QUIET_RATIO = np.float32(sqrt(-2 * log(1 - QUIET_SHARE)))
+"""That quantile of a Rayleigh distribution, which slopes of Gaussian noise follow, over its parameter."""
+
+_HALF = np.float32(0.5)
+
+Map = Float32[np.ndarray, "h w"]
+
+
+def slopes(smooth: Float32[np.ndarray, "h w c"]) -> tuple[Map, Map, Map, Map]:
+    """Slopes per pixel, by central differences, in the channel where they are steepest, and the noise in them.
+
+    Noise is the parameter of its Rayleigh distribution, in the noisiest channel; it is measured in tiles, from the
+    flattest quarter of their pixels, and interpolated between the tiles. A texture that fills its tile counts as noise,
+    as does a steady shading.
+    Returns: magnitude, across, down, noise.
+    """
+    across, down = (
+        each.reshape(smooth.shape) for each in _differences(smooth.reshape(len(smooth), -1), smooth.shape[2])
+    )
+    magnitude = np.sqrt(across * across + down * down)
+    noise = _noise(magnitude)
+    if smooth.shape[2] == 1:
+        return magnitude[..., 0], across[..., 0], down[..., 0], noise
+    return *_steepest(magnitude, across, down), noise
+
+
+@njit(cache=True, nogil=True)
+def _differences(rows, channels):
+    """Central differences across and down; channels stand side by side in a row, and the border is repeated."""
+    across, down = np.empty_like(rows), np.empty_like(rows)
+    for row in range(len(rows)):
+        _halve(rows[min(row + 1, len(rows) - 1)], rows[max(row - 1, 0)], down[row])
+        here, there = rows[row], across[row]
+        if here.size == channels:
+            there[:] = 0
+            continue
+        _halve(here[2 * channels :], here[: -2 * channels], there[channels:-channels])
+        _halve(here[channels : 2 * channels], here[:channels], there[:channels])
+        _halve(here[-channels:], here[-2 * channels : -channels], there[-channels:])
+    return across, down
+
+
+@njit(cache=True, nogil=True)
+def _halve(right, left, found):
+    for at in range(len(found)):
+        found[at] = _HALF * (right[at] - left[at])
+
+
+@njit(cache=True, nogil=True)
+def _steepest(magnitude, across, down):
+    rows, columns, channels = magnitude.shape
+    found = np.empty((3, rows, columns), np.float32)
+    for row in range(rows):
+        for column in range(columns):
+            best = 0
+            for channel in range(1, channels):
+                if magnitude[row, column, channel] > magnitude[row, column, best]:
+                    best = channel
+            found[0, row, column] = magnitude[row, column, best]
+            found[1, row, column] = across[row, column, best]
+            found[2, row, column] = down[row, column, best]
+    return found[0], found[1], found[2]
+
+
+def _noise(magnitude: Float32[np.ndarray, "h w c"]) -> Map:
+    import cv2
+
+    rows, columns = magnitude.shape[:2]
+    step = 4 if min(rows, columns) >= TILE_PX else 1
+    strips = np.array_split(magnitude[::step, ::step], _tiles(rows), axis=0)
+    levels = [[_quiet(tile) for tile in np.array_split(strip, _tiles(columns), axis=1)] for strip in strips]
+    with plain_opencv():
+        return cv2.resize(np.array(levels, np.float32) / _QUIET_RATIO, (columns, rows), interpolation=cv2.INTER_LINEAR)
+
+
+def _tiles(length: int) -> int:
+    return max(1, round(length / TILE_PX))
+
+
+def _quiet(tile: Float32[np.ndarray, "h w c"]) -> np.float32:
+    """The quantile of the magnitudes, in the channel where it is highest."""
+    every = tile.reshape(-1, tile.shape[2])
+    at = int(QUIET_SHARE * len(every))
+    return np.partition(every, at, axis=0)[at].max()

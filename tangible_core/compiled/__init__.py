@@ -1,0 +1,1 @@
+"""Compilation: how kernels are compiled, called by address, and run on threads."""

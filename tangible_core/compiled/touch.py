@@ -1,0 +1,119 @@
+"""A touch and a link made of kernels: a servo's tick is then one compiled call that holds no lock of Python's."""
+
+from abc import abstractmethod
+from collections.abc import Callable
+from typing import Any, NamedTuple, cast, final
+
+import numpy as np
+from jaxtyping import Float64
+
+from ..data import Force, HapticState
+from ..errors import GeometryError
+from ..plugins.interfaces import Link, Touch
+from ..runtime.child_process import imported, place
+
+Tick = Callable[..., tuple[float, float, float]]
+
+
+@final
+class CompiledTouch(Touch):
+    """Forces from a kernel `tick(*fixed, x, y, z, vx, vy, vz) -> (fx, fy, fz)`, metres, metres per second, newtons.
+
+    The kernel is a module's function under `numba.njit` with one signature given, `nogil=True` and `cache=True`. What
+    a touch remembers from tick to tick is `memory`, one of the fixed arguments, which the kernel writes to; its first
+    three numbers are the proxy, with z NaN where nothing is touched. A touch without memory has no proxy.
+
+    Along a path the velocity is the step from the position before divided by the period: 0 at the first one.
+    """
+
+    def __init__(
+        self,
+        tick: Tick,
+        fixed: tuple[Any, ...],
+        memory: Float64[np.ndarray, "n"] | None = None,
+        stiffness: float | None = None,
+    ) -> None:
+        self.tick = tick
+        self.fixed = fixed
+        self.memory = np.full(3, np.nan) if memory is None else memory
+        self.stiffness_n_per_m = stiffness
+        self._address: Any = None
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        function = self.tick.py_func  # pyright: ignore[reportFunctionMemberAccess]
+        kernel = place(function.__module__, function.__qualname__)
+        return _revive, (*kernel, self.fixed, self.memory, self.stiffness_n_per_m)
+
+    def force(self, state: HapticState) -> Force:
+        """Newtons on the hand, always finite; zero in free air, and zero for a state that is not finite."""
+        return Force(*self.tick(*self.fixed, *state.position_m, *state.velocity_m_per_s))
+
+    def path(self, positions_m: Float64[np.ndarray, "n 3"], period_s: float = 0.001) -> Float64[np.ndarray, "n 3"]:
+        """Forces along positions one period apart.
+
+        Raises: GeometryError if the positions are not (n, 3), or the period is not above 0.
+        """
+        from . import kernels
+
+        positions, forces = path_arrays(positions_m, period_s)
+        cast(Any, kernels).along(self.fixed, self.address(), positions, float(period_s), forces)
+        return forces
+
+    def address(self) -> Any:
+        """The kernel as an argument of another one, which calls it with `*fixed` and a state."""
+        if self._address is None:  # kept, as finding it takes half a millisecond
+            from . import kernels
+
+            self._address = kernels.Address(self.tick, kernels.signature(self.tick, (*self.fixed, *[0.0] * 6)))
+        return self._address
+
+
+def _revive(
+    module: str, name: str, file: str, fixed: tuple[Any, ...], memory: np.ndarray, stiffness: float | None
+) -> CompiledTouch:
+    return CompiledTouch(imported(module, name, file), fixed, memory, stiffness)
+
+
+class LinkKernels(NamedTuple):
+    """What a compiled loop calls of a device; kernels as `CompiledTouch` takes them."""
+
+    read: Callable[..., int]
+    """`read(*fixed, state) -> int` writes a fresh state, float64 (7,): x, y, z, vx, vy, vz, buttons; 0 if none is."""
+    write: Callable[..., None]
+    """`write(*fixed, fx, fy, fz)` sets the force, whose magnitude the device allows."""
+    fixed: tuple[Any, ...]
+
+
+class CompiledLink(Link):
+    """A link that decodes positions and encodes forces by kernels, on buffers of its own."""
+
+    @abstractmethod
+    def kernels(self) -> LinkKernels:
+        """The same for as long as the link is open."""
+
+    @property
+    @abstractmethod
+    def exchanges(self) -> bool:
+        """Whether the buffers travel by `exchange`; if not, others fill and empty them, and a loop needs no Python."""
+
+    @abstractmethod
+    def exchange(self) -> None:
+        """Send what was written and fetch what is to be read; once a tick.
+
+        Raises: DeviceError if the device stopped answering or the link is closed.
+        """
+
+
+def path_arrays(
+    positions_m: np.ndarray, period_s: float
+) -> tuple[Float64[np.ndarray, "n 3"], Float64[np.ndarray, "n 3"]]:
+    """The positions as a kernel reads them, and an array for the forces.
+
+    Raises: GeometryError if the positions are not (n, 3), or the period is not above 0.
+    """
+    positions = np.ascontiguousarray(positions_m, np.float64)
+    if positions.ndim != 2 or positions.shape[1] != 3:
+        raise GeometryError(f"a path is (n, 3) positions in metres, not {positions.shape}")
+    if not 0 < period_s < np.inf:
+        raise GeometryError(f"a path's positions are period_s > 0 seconds apart, not {period_s}")
+    return positions, np.empty_like(positions)

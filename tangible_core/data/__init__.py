@@ -1,0 +1,37 @@
+"""What travels between stages: frozen records of read-only arrays, and the servo's tuples."""
+
+from .device import NO_FORCE, DeviceSpec, Finding, Force, HapticState, Unit
+from .outcome import Kind, Outcome, OutcomeKind, Plan
+from .records import Record, digest_of
+from .surface import TEXTURES, HapticSurface, Material, MaterialMap, Relief, Texture
+from .ticks import TICK_COLUMNS, ServoReport, Spread, TickFlag
+from .views import Calibration, DisparityMap, SegmentMap, Views
+
+__all__ = [
+    "Calibration",
+    "DeviceSpec",
+    "DisparityMap",
+    "Finding",
+    "Force",
+    "HapticState",
+    "HapticSurface",
+    "Kind",
+    "Material",
+    "MaterialMap",
+    "NO_FORCE",
+    "Outcome",
+    "OutcomeKind",
+    "Plan",
+    "Record",
+    "Relief",
+    "SegmentMap",
+    "ServoReport",
+    "Spread",
+    "TEXTURES",
+    "TICK_COLUMNS",
+    "Texture",
+    "TickFlag",
+    "Unit",
+    "Views",
+    "digest_of",
+]

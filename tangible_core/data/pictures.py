@@ -1,0 +1,130 @@
+"""Pictures as numpy arrays: what is accepted, and what is made of it (`picture_files` reads and writes them).
+
+A picture is (h, w), (h, w, 3) or (h, w, 4) RGB(A); uint8, uint16, bool, or floating point in 0..1.
+"""
+
+from typing import Any, cast
+
+import numpy as np
+from jaxtyping import Bool, Float32, UInt8
+
+from ..errors import PictureError
+
+RED, BLUE = np.float32(0.299), np.float32(0.114)
+"""ITU-R BT.601 weights of R and B; that of G is what is left of 1."""
+
+
+def check_picture(picture: np.ndarray, name: str = "picture") -> np.ndarray:
+    """The array itself, if it is a picture.
+
+    Raises: PictureError naming what is wrong: the shape, the type, an empty picture, or the first place that is
+    NaN or infinite.
+    """
+    if picture.ndim not in (2, 3) or (picture.ndim == 3 and picture.shape[2] not in (3, 4)):
+        raise PictureError(f"{name}: a picture is (h, w) or (h, w, 3|4), not {picture.shape}")
+    if picture.size == 0:
+        raise PictureError(f"{name}: the picture is empty, {picture.shape}")
+    if picture.dtype.kind not in "bf" and picture.dtype.str[1:] not in ("u1", "u2"):
+        raise PictureError(
+            f"{name}: a picture is uint8, uint16, bool or float (0..1), not {picture.dtype}; convert it first"
+        )
+    check_finite(picture, name)
+    return picture
+
+
+def is_one_colour(picture: np.ndarray) -> bool:
+    """Whether every pixel is the same; the first row settles it for most pictures."""
+    first = picture[:1, :1]
+    return bool(np.all(picture[:1] == first)) and bool(np.all(picture == first))
+
+
+def check_finite(values: np.ndarray, name: str) -> None:
+    """Raises: PictureError naming how many values are NaN or infinite, and where the first one is."""
+    if values.dtype.kind == "f" and not (finite := np.isfinite(values)).all():
+        row, column = np.argwhere(~finite)[0][:2]
+        raise PictureError(
+            f"{name}: {np.count_nonzero(~finite)} values are NaN or infinite, the first at row {row}, column {column}; "
+            "fill or cut them first"
+        )
+
+
+def fill_non_finite(picture: np.ndarray) -> tuple[np.ndarray, Bool[np.ndarray, "h w"]]:
+    """A picture whose NaN and infinite pixels are those of the nearest finite one, and where it is known: for a mask.
+
+    Raises: PictureError if nothing is finite.
+    """
+    from scipy import ndimage  # pyright: ignore[reportMissingTypeStubs]
+
+    known: np.ndarray = np.all(np.isfinite(np.atleast_3d(picture)), axis=2)
+    if not known.any():
+        raise PictureError(f"none of the {known.size} pixels is finite; bring a picture with some that are")
+    nearest = cast(Any, ndimage).distance_transform_edt(~known, return_distances=False, return_indices=True)
+    return picture[nearest[0], nearest[1]], known
+
+
+def full_scale(picture: np.ndarray) -> float:
+    """The value that stands for white: 255, 65535, 1, or the largest magnitude in a float picture that goes over 1."""
+    if picture.dtype.kind == "f":
+        return max(1.0, float(np.max(np.abs(picture))))
+    return 1.0 if picture.dtype == np.bool_ else float(np.iinfo(picture.dtype).max)
+
+
+def to_grey(picture: np.ndarray) -> Float32[np.ndarray, "h w"]:
+    """Luma in 0..1 (ITU-R BT.601), transparency over white.
+
+    Raises: PictureError as `check_picture`.
+    """
+    values = _scaled(picture)
+    if values.ndim == 2:
+        return values
+    grey = luma(values)
+    return grey if values.shape[2] == 3 else grey * values[..., 3] + (1 - values[..., 3])
+
+
+def luma(values: Float32[np.ndarray, "h w c"]) -> Float32[np.ndarray, "h w"]:
+    """Luma of red, green and blue, whatever lies behind them: exactly v where all three are v.
+
+    Element by element: a matrix product is added up in another order by every BLAS and processor.
+    """
+    red, green, blue = values[..., 0], values[..., 1], values[..., 2]
+    found, bluer = red - green, blue - green
+    found *= RED
+    found += green
+    bluer *= BLUE
+    found += bluer
+    return found
+
+
+def to_rgb8(picture: np.ndarray) -> UInt8[np.ndarray, "h w 3"]:
+    """Eight bits a channel, transparency over white, for drawing and for libraries that read nothing else."""
+    if picture.dtype == np.uint8 and picture.ndim == 3 and picture.shape[2] == 3:
+        return picture
+    values = _scaled(picture)
+    if values.ndim == 2:
+        values = np.repeat(values[..., None], 3, axis=2)
+    elif values.shape[2] == 4:
+        values = 1 - values[..., 3:] * (1 - values[..., :3])
+    return np.rint(np.clip(values, 0, 1) * 255).astype(np.uint8)
+
+
+def _scaled(picture: np.ndarray) -> Float32[np.ndarray, "..."]:
+    check_picture(picture)
+    white = full_scale(picture)
+    if picture.dtype.kind == "f":
+        return np.asarray(picture / white, np.float32)
+    return picture.astype(np.float32) / np.float32(white)
+
+
+def check_same_shape(name: str, values: np.ndarray, other: str, others: np.ndarray) -> None:
+    """Raises: PictureError if values are not (h, w) of at least one pixel, or not of the others' size."""
+    if values.ndim != 2 or values.size == 0:
+        raise PictureError(f"{name} is (h, w) with at least one pixel, not {values.shape}")
+    if values.shape != others.shape:
+        raise PictureError(
+            f"{name} is {size_in_words(values)} and {other} is {size_in_words(others)}; they are of one size"
+        )
+
+
+def size_in_words(picture: np.ndarray) -> str:
+    """Width x height, such as 640 x 480."""
+    return f"{picture.shape[1]} x {picture.shape[0]}"

@@ -1,0 +1,167 @@
+"""What can be touched: heights, materials and both together, in metres and newtons."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+import numpy as np
+from jaxtyping import Float32, Int32
+
+from ..errors import GeometryError, MaterialError, PictureError, did_you_mean, quoted
+from .pictures import check_finite, size_in_words
+from .records import Record, items_of
+
+Texture = Literal["smooth", "periodic", "stochastic", "stick-slip", "drag"]
+
+
+TEXTURES: tuple[Texture, ...] = get_args(Texture)
+"""The models of a material's fine texture."""
+
+
+@dataclass(frozen=True, eq=False)
+class Relief(Record):
+    """A surface's heights, free of pixels: float32 (h, w) metres >= 0 over extent_m = (width, length) metres.
+
+    Each height stands for one of h x w equal cells, at its centre.
+    Raises: GeometryError if a height is not finite or negative, or the extent is not positive.
+    """
+
+    height_m: Float32[np.ndarray, "h w"]
+    extent_m: tuple[float, float]
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.height_m.ndim != 2 or self.height_m.size == 0:
+            raise GeometryError(f"heights are (h, w) with at least one cell, not {self.height_m.shape}")
+        if not (0 < self.extent_m[0] < np.inf and 0 < self.extent_m[1] < np.inf):
+            raise GeometryError(f"a surface needs a positive width and length in metres, not {self.extent_m}")
+        try:
+            check_finite(self.height_m, "height_m")
+        except PictureError as error:
+            raise GeometryError(str(error)) from error
+        if float(self.height_m.min()) < 0:
+            raise GeometryError(
+                f"heights are >= 0 above the base plane, the lowest is {self.height_m.min():g} m; add it"
+            )
+
+    @property
+    def pitch_m(self) -> tuple[float, float]:
+        """Width and length of one cell."""
+        rows, columns = self.height_m.shape
+        return self.extent_m[0] / columns, self.extent_m[1] / rows
+
+
+@dataclass(frozen=True)
+class Material:
+    """How a segment feels. Every value with its unit; `source` says where they come from, or that they are a guess."""
+
+    name: str
+    stiffness_n_per_m: float
+    damping_n_s_per_m: float
+    static_friction: float
+    dynamic_friction: float
+    roughness_m: float = 0.0
+    """Amplitude of the fine texture; that of one wave of the same power, where it is made of many."""
+    grain_m: float = 0.001
+    """Wavelength of the fine texture."""
+    texture: Texture = "stochastic"
+    """Model of the fine texture (see `haptic_textures`)."""
+    direction_deg: float = 0.0
+    """Where the lines of the texture run: 0 along x, 90 along y."""
+    anisotropy: float = 0.0
+    """0 is alike in all directions (periodic: two crossed sets of lines), 1 is lines alone."""
+    irregularity: float = 0.0
+    """Share of a periodic texture's power that strays from strict repetition."""
+    drag_n_s_per_m: float = 0.0
+    """Lateral force against one metre per second, in contact."""
+    seed: int = 0
+    """Another seed is another specimen of the same material."""
+    source: str = ""
+
+    def __post_init__(self) -> None:
+        for name, value in items_of(self):
+            if not isinstance(value, str) and not 0 <= value < np.inf:
+                raise MaterialError(f"material {quoted(self.name)}: {name} is {value}; it must be >= 0 and finite")
+        if wrong := next(self._nonsense(), None):
+            raise MaterialError(f"material {quoted(self.name)}: {wrong}")
+
+    def _nonsense(self) -> Iterator[str]:
+        """What is wrong between the values, each a sentence."""
+        if self.stiffness_n_per_m == 0 or self.grain_m == 0:
+            yield "stiffness_n_per_m and grain_m must be above 0"
+        if self.dynamic_friction > self.static_friction:
+            yield (
+                f"dynamic_friction {self.dynamic_friction} is above static_friction {self.static_friction}; "
+                "things slide more easily than they start"
+            )
+        if self.anisotropy > 1 or self.irregularity > 1:
+            yield f"anisotropy {self.anisotropy} and irregularity {self.irregularity} are at most 1"
+        if self.texture not in TEXTURES:
+            hint = did_you_mean(self.texture, TEXTURES)
+            yield f"no texture model is named {quoted(self.texture)}{hint}; there are {', '.join(TEXTURES)}"
+        if self.texture == "smooth" and self.roughness_m > 0:
+            yield f"texture is smooth and roughness_m {self.roughness_m:g}; make that 0, or the texture stochastic"
+        if self.texture == "stick-slip" and self.dynamic_friction == 0:
+            yield "texture stick-slip needs a dynamic_friction above 0"
+        if self.texture == "drag" and self.drag_n_s_per_m == 0:
+            yield "texture drag needs a drag_n_s_per_m above 0"
+
+
+@dataclass(frozen=True, eq=False)
+class MaterialMap(Record):
+    """One material a segment, and why each was chosen."""
+
+    materials: tuple[Material, ...]
+    reasons: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class HapticSurface(Record):
+    """What a renderer touches: relief, and per label a material where the scene has them; metres and newtons.
+
+    Raises: GeometryError if labels and heights differ in size, MaterialError if a label has no material.
+    """
+
+    relief: Relief
+    labels: Int32[np.ndarray, "h w"] | None = None
+    materials: tuple[Material, ...] | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.labels is None:
+            return
+        if self.labels.shape != self.height_m.shape:
+            raise GeometryError(
+                f"labels are {size_in_words(self.labels)}, heights {size_in_words(self.height_m)}; they are of one size"
+            )
+        low, high = int(self.labels.min()), int(self.labels.max())
+        if low < 0 or (self.materials is not None and high >= len(self.materials)):
+            raise MaterialError(f"labels run from {low} to {high}; there are {len(self.materials or ())} materials")
+
+    @classmethod
+    def from_heights(
+        cls,
+        height_m: np.ndarray,
+        width_m: float = 0.08,
+        labels: Int32[np.ndarray, "h w"] | None = None,
+        materials: tuple[Material, ...] | None = None,
+    ) -> "HapticSurface":
+        """A surface of square cells from (h, w) heights in metres, width_m metres wide.
+
+        Raises: GeometryError as `Relief`, MaterialError as the class.
+        """
+        if height_m.ndim != 2 or height_m.size == 0:
+            raise GeometryError(f"heights are (h, w) with at least one cell, not {height_m.shape}")
+        rows, columns = height_m.shape
+        relief = Relief(np.ascontiguousarray(height_m, np.float32), (width_m, width_m * rows / columns))
+        return cls(relief, labels, materials)
+
+    @property
+    def height_m(self) -> Float32[np.ndarray, "h w"]:
+        """Heights above the base plane, metres."""
+        return self.relief.height_m
+
+    @property
+    def extent_m(self) -> tuple[float, float]:
+        """Width and length, metres."""
+        return self.relief.extent_m

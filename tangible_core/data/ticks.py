@@ -1,0 +1,77 @@
+"""What a force loop keeps of its ticks, and says of them."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import IntFlag
+from typing import NamedTuple
+
+from .device import Force, HapticState
+
+
+class TickFlag(IntFlag):
+    """What happened in one tick of a force loop; any number of them at once."""
+
+    TOUCHING = 1
+    """The law gave a force."""
+    FORCE_LIMITED = 2
+    """The force was over the greatest allowed, and scaled down."""
+    SLEW_LIMITED = 4
+    """The force changed by more than is allowed in a tick, and only went part of the way."""
+    STIFFNESS_LIMITED = 8
+    """The law is stiffer than this loop and device hold stably, and was softened."""
+    RAMPING = 16
+    """The force is fading in."""
+    NOT_FINITE = 32
+    """The law gave NaN or infinity, or the device did; the force was zero."""
+    DAMPED = 64
+    """The passivity controller took back energy that the loop had given away."""
+    STALE = 128
+    """The device had no fresh position for too long; the force was zero."""
+    OVERRUN = 256
+    """The tick began more than a period late."""
+    SWAPPED = 512
+    """The first tick on a new scene."""
+
+
+TICK_COLUMNS = (
+    *("time_s", "late_s"),
+    *("x_m", "y_m", "z_m"),
+    *("vx_m_per_s", "vy_m_per_s", "vz_m_per_s"),
+    *("proxy_x_m", "proxy_y_m", "proxy_z_m"),
+    *("fx_n", "fy_n", "fz_n"),
+    *("flags", "buttons"),
+)
+"""What is kept of a tick, each a float64: when it began and how late, the tip, the proxy (NaN where there is none), the
+force that the device was given, and the sum of its `TickFlag`s."""
+
+
+class Spread(NamedTuple):
+    """How a time scatters, in microseconds."""
+
+    p50: float
+    p99: float
+    p999: float
+    most: float
+
+
+@dataclass(frozen=True)
+class ServoReport:
+    """How a force loop is doing since it started."""
+
+    ticks: int
+    time_s: float
+    state: HapticState
+    force: Force
+    peak_force_n: float
+    work_j: float
+    """Work done by the device on the hand; above 0 the loop gave energy away."""
+    stopped: str = ""
+    """Why the loop ended; empty while it runs."""
+    period_us: Spread | None = None
+    """From one tick to the next; none where time is simulated."""
+    late_us: Spread | None = None
+    """From when a tick was due to when it began."""
+    overruns: int = 0
+    """Periods that had no tick."""
+    flagged: Mapping[str, int] = field(default_factory=dict[str, int])
+    """Ticks by the name of the `TickFlag` that they have, those that none has left out."""

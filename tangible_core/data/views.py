@@ -1,0 +1,104 @@
+"""Pictures of a scene, and what is found in them.
+
+Frame of pictures: (column, row) in pixels, pixel centres at whole numbers.
+"""
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+from jaxtyping import Float32, Int32
+
+from ..errors import GeometryError, PictureError
+from .pictures import check_picture, check_same_shape, size_in_words
+from .records import Record
+
+
+@dataclass(frozen=True, eq=False)
+class Calibration(Record):
+    """A rectified pair of cameras: Z = focal_px * baseline_m / (disparity_px + offset_px).
+
+    Raises: GeometryError if focal_px or baseline_m is not positive.
+    """
+
+    focal_px: float
+    baseline_m: float
+    offset_px: float = 0.0
+    """Difference of the principal points' columns, right minus left (Middlebury's `doffs`)."""
+
+    def __post_init__(self) -> None:
+        if not (0 < self.focal_px < np.inf and 0 < self.baseline_m < np.inf and np.isfinite(self.offset_px)):
+            raise GeometryError(
+                f"a calibration needs focal_px > 0 and baseline_m > 0, not {self.focal_px} px and {self.baseline_m} m"
+            )
+
+
+@dataclass(frozen=True, eq=False)
+class Views(Record):
+    """One picture of a scene, or two.
+
+    Raises: PictureError if a picture is not one, holds NaN or infinity, or the two differ in size.
+    """
+
+    left: np.ndarray
+    right: np.ndarray | None = None
+    calibration: Calibration | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        check_picture(self.left, "left view")
+        if self.right is not None:
+            check_picture(self.right, "right view")
+            if self.left.shape[:2] != self.right.shape[:2]:
+                raise PictureError(
+                    f"the left view is {size_in_words(self.left)} and the right one {size_in_words(self.right)}; "
+                    "a pair has one size"
+                )
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """(h, w) of the left view."""
+        return self.left.shape[:2]
+
+
+@dataclass(frozen=True, eq=False)
+class DisparityMap(Record):
+    """Shift of each left pixel against the right view, or relative nearness from one picture.
+
+    disparity_px: float32 (h, w), NaN where unknown; larger is nearer. A left pixel (row, x) matches (row, x - d).
+    confidence: float32 (h, w) in 0..1; when left out, 1 where the disparity is known and 0 elsewhere.
+    unit: "px" for stereo, "relative" (0 far .. 1 near) for one picture.
+    """
+
+    disparity_px: Float32[np.ndarray, "h w"]
+    confidence: Float32[np.ndarray, "h w"] = field(default_factory=lambda: np.empty((0, 0), np.float32))
+    unit: Literal["px", "relative"] = "px"
+
+    def __post_init__(self) -> None:
+        if self.confidence.size == 0:
+            object.__setattr__(self, "confidence", np.isfinite(self.disparity_px).astype(np.float32))
+        check_same_shape("disparity_px", self.disparity_px, "confidence", self.confidence)
+        super().__post_init__()
+
+
+@dataclass(frozen=True, eq=False)
+class SegmentMap(Record):
+    """Which texture segment each pixel belongs to.
+
+    labels: int32 (h, w), 0..n-1, each of them present.
+    confidence: float32 (h, w) in 0..1; when left out, 1 everywhere.
+    """
+
+    labels: Int32[np.ndarray, "h w"]
+    confidence: Float32[np.ndarray, "h w"] = field(default_factory=lambda: np.empty((0, 0), np.float32))
+
+    def __post_init__(self) -> None:
+        if self.confidence.size == 0:
+            object.__setattr__(self, "confidence", np.ones(self.labels.shape, np.float32))
+        check_same_shape("labels", self.labels, "confidence", self.confidence)
+        super().__post_init__()
+
+    @property
+    def count(self) -> int:
+        """Number of segments."""
+        return int(self.labels.max()) + 1

@@ -1,0 +1,110 @@
+"""Arrays in .npy and .npz files: nothing is decoded before its header was looked at, and nothing of it is run."""
+
+import math
+import warnings
+from collections.abc import Collection, Generator
+from contextlib import contextmanager
+from typing import IO, final
+from zipfile import ZIP_DEFLATED, ZIP_STORED, ZipFile
+
+import numpy as np
+
+from ..errors import shown
+from .reading import TooLarge, check_bytes, check_size
+
+_CHUNK = 1 << 20
+_ZIP = b"PK"
+
+
+@final
+class Archive:
+    """The arrays of an .npz file by name; what else it holds is passed over.
+
+    Raises: ValueError, in words, if the file is no such archive.
+    """
+
+    def __init__(self, file: IO[bytes]) -> None:
+        with _in_words():
+            self._zip = ZipFile(file)
+        members = self._zip.infolist()
+        self._members = {each.filename[:-4]: each for each in members if each.filename.endswith(".npy")}
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """What there is to `read`."""
+        return tuple(self._members)
+
+    def read(self, names: Collection[str]) -> dict[str, np.ndarray]:
+        """The arrays of these names.
+
+        Raises: TooLarge if they hold more than `MOST_BYTES` together; ValueError, in words, if one is not there, is
+        damaged, or holds no numbers or texts.
+        """
+        if missing := [name for name in names if name not in self._members]:
+            raise ValueError(f"it holds no {shown(', '.join(missing))}")
+        wanted = {name: self._members[name] for name in names}
+        check_bytes(sum(each.file_size for each in wanted.values()))
+        with _in_words():
+            for each in wanted.values():  # NumPy uses no other; of some, a few bytes decode to gigabytes at once
+                if each.compress_type not in (ZIP_STORED, ZIP_DEFLATED):
+                    raise ValueError("it is compressed in a way that NumPy does not know")
+            return {name: self._read(each.filename, each.file_size) for name, each in wanted.items()}
+
+    def _read(self, member: str, held: int) -> np.ndarray:
+        with self._zip.open(member) as file:
+            return _numbers(file, held)
+
+
+def read_array(file: IO[bytes]) -> np.ndarray:
+    """The array of an .npy file, or the only one of an .npz file, whatever the file is called.
+
+    Raises: TooLarge or ValueError, in words, if there is no such array.
+    """
+    zipped = file.read(len(_ZIP)) == _ZIP
+    held = file.seek(0, 2)
+    file.seek(0)
+    if not zipped:
+        with _in_words():
+            return _numbers(file, held)
+    archive = Archive(file)
+    if len(archive.names) != 1:
+        raise ValueError(f"it holds {len(archive.names)} arrays, and one is meant")
+    (array,) = archive.read(archive.names).values()
+    return array
+
+
+@contextmanager
+def _in_words() -> Generator[None]:
+    """A damaged file can provoke any error, and warnings of headers that are passed over."""
+    try:
+        with warnings.catch_warnings(action="ignore"):
+            yield
+    except TooLarge:
+        raise
+    except Exception as error:
+        raise ValueError(shown(str(error) or type(error).__name__, 200)) from error
+
+
+def _numbers(file: IO[bytes], held: int) -> np.ndarray:
+    """The array of an .npy file, or of a member of an archive, of so many bytes."""
+    version = np.lib.format.read_magic(file)
+    if version > (2, 0):
+        raise ValueError("its header is of a kind that is for records, not for numbers")
+    header = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
+    shape, by_columns, dtype = header(file)
+    if dtype.kind in "OV":
+        raise ValueError("it holds Python objects or records, not numbers")
+    if min(shape, default=0) < 0:
+        raise ValueError(f"its header says a shape of {shape}")
+    check_size(shape, dtype.itemsize)
+    wanted = math.prod(shape) * dtype.itemsize
+    if (follow := held - file.tell()) != wanted:
+        raise ValueError(f"its header says {wanted} bytes of numbers, and {follow} follow")
+    data = np.empty(wanted, np.uint8)
+    for start in range(0, wanted, _CHUNK):
+        part = data[start : start + _CHUNK]
+        read = file.read(len(part))
+        if len(read) != len(part):
+            raise ValueError("it is cut short")
+        part[:] = np.frombuffer(read, np.uint8)
+    return np.ndarray(shape, dtype, data, order="F" if by_columns else "C")

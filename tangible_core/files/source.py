@@ -1,0 +1,219 @@
+"""YAML that knows where everything stands: every complaint at once, each with file:line:column."""
+
+import re
+import warnings
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, cast, get_args
+
+from pydantic import BaseModel, ValidationError
+from ruamel.yaml import YAML
+from ruamel.yaml.comments import CommentedMap
+from ruamel.yaml.error import YAMLError
+
+from ..errors import ConfigError, did_you_mean, quoted, shown
+from .reading import MOST_TEXT_BYTES, in_words, read_bytes
+from .yaml_bounds import MOST_DEPTH, MOST_DIGITS, BoundedConstructor, check_events
+
+Tree = dict[Any, Any]
+"""The parser's own mapping: a dict that knows where its parts stand."""
+Location = tuple[Any, ...]
+"""Keys and indices from the top of the file."""
+
+
+@dataclass
+class Source:
+    """A parsed file while it is being checked, and the complaints so far."""
+
+    path: Path
+    tree: Tree
+    complaints: list[str] = field(default_factory=list[str])
+    overridden: dict[tuple[str, ...], str] = field(default_factory=dict[tuple[str, ...], str])
+
+    def override(self, text: str) -> None:
+        """Apply `key.key=value`; a block with another `use` starts without the options of the method before."""
+        keys, equals, value = text.partition("=")
+        parts = tuple(keys.strip().split("."))
+        if not equals or not all(parts) or len(parts) > MOST_DEPTH:
+            raise ConfigError(f"{_named(text)}: write key.key=value, such as render.stiffness_n_per_m=500")
+        try:
+            loaded = _load(value)
+        except YAMLError as error:
+            raise ConfigError(f"{_named(text)}: {quoted(value)} is no YAML value: {_problem(error)}") from error
+        node: Any = self.tree
+        for part in parts[:-1]:
+            if isinstance(node.get(part), list):
+                raise ConfigError(f"{_named(text)}: {part} is a list; set the whole of it: {part}=[...]")
+            if not isinstance(node.get(part), dict):
+                node[part] = CommentedMap()
+            node = node[part]
+        if parts[-1] == "use" and node.get("use") != loaded:
+            node.clear()
+        node[_key(parts[-1], node)] = loaded
+        self.overridden[parts] = text
+
+    def place(self, location: Location) -> str:
+        """file:line:column of the deepest part of the location that the file has."""
+        for end in range(len(location), 0, -1):
+            if text := self.overridden.get(tuple(str(part) for part in location[:end])):
+                return _named(text)
+        node: Any = self.tree
+        line, column = 0, 0
+        for part in location:
+            if not isinstance(node, dict | list) or not _has(node, part):
+                continue
+            marks = cast(Any, node).lc
+            if marks.data and part in marks.data:
+                line, column = marks.key(part) if isinstance(node, dict) else marks.item(part)
+            node = cast(Any, node)[part]
+        return f"{self.path}:{line + 1}:{column + 1}"
+
+    def complain(self, location: Location, text: str) -> None:
+        """Note a complaint with its place."""
+        self.complaints.append(f"{self.place(location)}: {text}")
+
+    def settle(self) -> None:
+        """Raises: ConfigError with every complaint, one a line, if there are any."""
+        if self.complaints:
+            raise ConfigError(*self.complaints)
+
+    def check_keys(self, known: Iterable[str]) -> None:
+        """Complain of every key of the file that is not known."""
+        names = list(known)
+        for key in self.tree:
+            if key not in names:
+                hint = did_you_mean(str(key), names)
+                self.complain((key,), f"unknown key {quoted(key)}{hint}; known: {', '.join(names)}")
+
+    def items(self, key: str) -> list[Any]:
+        """A list of at least one under this key of the file; a complaint and an empty one otherwise."""
+        block = self.tree.get(key)
+        if isinstance(block, list) and block:
+            return cast("list[Any]", block)
+        wrong = f"is a list of at least one, not {quoted(block)}" if key in self.tree else "is missing"
+        self.complain((key,), f"`{key}:` {wrong}")
+        return []
+
+    def model(self, location: Location, model: type[BaseModel], block: Any) -> Any:
+        """A block as a model, its files relative to this one; None after a complaint for each thing that is wrong."""
+        try:
+            return _relative_to(self.path.parent, model.model_validate(_plain(block)))
+        except ValidationError as error:
+            for each in error.errors():
+                self._complain_of(location, model, cast(Any, each))
+            return None
+
+    def _complain_of(self, location: Location, model: type[BaseModel], error: Mapping[str, Any]) -> None:
+        where = (*location, *(part for part in error["loc"] if part != "[key]" and not str(part).startswith(":")))
+        name = shown(".".join(str(part) for part in where))
+        if error["type"] == "extra_forbidden":
+            options = list(_model_at(model, error["loc"][:-1]).model_fields)
+            known = f"; known: {', '.join(options)}" if options else "; there are no options"
+            self.complain(where, f"{name}: unknown option{did_you_mean(str(where[-1]), options)}{known}")
+        else:
+            given = "" if isinstance(error["input"], dict) else f", not {quoted(error['input'])}"
+            if error["type"] == "literal_error":
+                given += did_you_mean(f"{error['input']}", re.findall(r"'([^']*)'", error["msg"]))
+            self.complain(where, f"{name}: {error['msg'].removeprefix('Value error, ')}{given}")
+
+
+def read_text(path: Path) -> str:
+    """A YAML file's text. Raises: ConfigError, with what is there when the file is not."""
+    try:
+        return read_bytes(path, MOST_TEXT_BYTES).decode()
+    except FileNotFoundError as error:
+        near = did_you_mean(path.name, (each.name for each in path.parent.glob("*.y*ml")))
+        raise ConfigError(f"{path}: there is no such file{near}") from error
+    except (OSError, UnicodeDecodeError) as error:
+        raise ConfigError(f"{path}: cannot be read as text: {getattr(error, 'strerror', None) or error}") from error
+
+
+def parse_source(text: str, path: Path, what: str, overrides: Iterable[str] = ()) -> Source:
+    """A YAML text whose parts know their places, for whoever checks it.
+
+    what: what the file is, for the complaint about one that is no mapping.
+    Raises: ConfigError if it is no YAML, or no mapping.
+    """
+    try:
+        tree = _load(text)
+    except YAMLError as error:
+        raise ConfigError(f"{_place(path, error)}: {_problem(error)}") from error
+    if not isinstance(tree, dict):
+        raise ConfigError(f"{path}:1:1: {what}")
+    source = Source(path, cast(Tree, tree))
+    for override in overrides:
+        source.override(override)
+    return source
+
+
+def _load(text: str) -> Any:
+    """What a text says. Raises: YAMLError."""
+    if len(text) > MOST_TEXT_BYTES:
+        raise YAMLError(f"it holds more than {in_words(MOST_TEXT_BYTES)}")
+    yaml: Any = YAML(typ="rt")  # of ruamel's loaders, the one that knows places
+    yaml.Constructor = BoundedConstructor
+    with warnings.catch_warnings(action="ignore"):  # of anchors that are there twice
+        check_events(cast(Any, YAML(typ="rt")).parse(text))
+        try:
+            return yaml.load(text)
+        except YAMLError:
+            raise
+        except Exception as error:  # its parser was not written for what is wrong on purpose
+            raise YAMLError(f"it cannot be understood: {error}") from error
+
+
+def _problem(error: YAMLError) -> str:
+    problem = getattr(error, "problem", None) or getattr(error, "context", None) or error
+    text = shown(str(problem).strip().splitlines()[0], 200)
+    return f"{text}; indent with spaces, not tabs" if "\\t" in text else text
+
+
+def _place(path: Path, error: YAMLError) -> str:
+    mark = getattr(error, "problem_mark", None) or getattr(error, "context_mark", None)
+    return f"{path}:{mark.line + 1}:{mark.column + 1}" if mark else f"{path}"
+
+
+def _named(override: str) -> str:
+    return f"--set {shown(override)}"
+
+
+def _key(text: str, node: Mapping[Any, Any]) -> Any:
+    """Keys are words; labels of a material map are whole numbers."""
+    return int(text) if text.isdecimal() and len(text) <= MOST_DIGITS and text not in node else text
+
+
+def _has(node: Any, part: Any) -> bool:
+    return part in node if isinstance(node, dict) else isinstance(part, int) and part < len(node)
+
+
+def _model_at(model: type[BaseModel], location: Iterable[Any]) -> type[BaseModel]:
+    """The innermost of a model's models on the way to a place in it."""
+    for part in location:
+        if isinstance(part, str) and part in model.model_fields:
+            model = next(_models_in(model.model_fields[part].annotation), model)
+    return model
+
+
+def _models_in(annotation: Any) -> Iterator[type[BaseModel]]:
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        yield annotation
+    for part in get_args(annotation):
+        yield from _models_in(part)
+
+
+def _relative_to(folder: Path, model: BaseModel) -> BaseModel:
+    paths = {name: value for name, value in model if isinstance(value, Path) and not value.is_absolute()}
+    return model.model_copy(update={name: (folder / value).absolute() for name, value in paths.items()})
+
+
+def _plain(node: Any) -> Any:
+    """Plain Python values for pydantic, without the parser's own types."""
+    if isinstance(node, dict):
+        return {key: _plain(value) for key, value in cast("dict[Any, Any]", node).items()}
+    if isinstance(node, list):
+        return [_plain(value) for value in cast("list[Any]", node)]
+    for kind in (bool, int, float, str):
+        if isinstance(node, kind):
+            return kind(node)
+    return node

@@ -1,0 +1,1 @@
+"""Materials: their library, and which segment gets which."""

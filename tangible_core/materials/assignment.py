@@ -1,0 +1,142 @@
+"""The library of materials, and which segment gets which.
+
+A photograph does not tell how things feel (over 100 photographed surfaces, what a picture predicts of friction and
+vibration explains next to nothing: R^2 is 0.07 and -0.06). So materials are assigned by name, by rules that a person
+writes, or by relative roughness, which is a convention: rougher to the eye becomes rougher to the hand.
+"""
+
+from collections.abc import Mapping, Sequence
+from functools import cache
+from importlib.resources import files
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from jaxtyping import Float64
+
+from ..data import Material, MaterialMap, SegmentMap
+from ..data.pictures import to_grey
+from ..errors import MaterialError, did_you_mean, quoted
+from ..runtime.opencv import plain_opencv
+from .files import parse_materials, read_materials
+from .rules import Chosen, MaterialRule, apply_rules
+
+NEUTRAL = "plain"
+"""The material of segments that no material is named for."""
+
+LADDER = ("ice", "metal", "paper", "leather", "wood", "cloth", "sand", "stone", "brick")
+"""From smooth to rough: what assigning by roughness chooses from."""
+
+
+def load_library(path: Path | None = None) -> Mapping[str, Material]:
+    """Materials by name: those that are shipped, and those of a YAML file of your own, which adds to them.
+
+    A name that is shipped needs only the values that change. Raises: ConfigError with every complaint, one a line,
+    each with file:line:column.
+    """
+    return library() if path is None else read_materials(path, library())
+
+
+@cache
+def library() -> Mapping[str, Material]:
+    """The materials that are shipped, by name."""
+    text = files("tangible_core.materials").joinpath("materials.yaml").read_text(encoding="utf-8")
+    return parse_materials(text, Path("materials.yaml"), {})
+
+
+def find(name: str, library: Mapping[str, Material]) -> Material:
+    """The material of this name. Raises: MaterialError with the names that are there."""
+    if name not in library:
+        raise MaterialError(
+            f"no material is named {quoted(name)}{did_you_mean(str(name), library)}; there are {', '.join(library)}"
+        )
+    return library[name]
+
+
+def assign(
+    segments: SegmentMap,
+    picture: np.ndarray | None,
+    by: Literal["roughness", "rules"] | Mapping[int, str],
+    library: Mapping[str, Material],
+    rules: Sequence[MaterialRule] = (),
+    default: str = NEUTRAL,
+) -> MaterialMap:
+    """One material a segment, and why.
+
+    rules: decide first, the first that fits (see `apply_rules`).
+    by: what decides where no rule fits. A map from label to material; `rules`, nothing; or `roughness`, which ranks
+    all the segments of this picture by `relative_roughness` and spreads them evenly over `LADDER`, the smoothest to
+    ice, the roughest to brick. Equally rough segments share a rank; one rank alone says nothing, and gives the default.
+    default: the material of what nothing decides.
+    Raises: MaterialError for a name, a label or a point that does not exist, or for `roughness` or a colour without a
+    picture of the segments' size; PictureError if the picture is none.
+    """
+    chosen = dict(apply_rules(rules, segments, picture))
+    if isinstance(by, Mapping):
+        chosen = {**_by_name(segments.count, by, library), **chosen}
+    elif by == "roughness" and len(chosen) < segments.count:
+        chosen = {**_by_roughness(_roughness(segments, picture), default), **chosen}
+    rest = ((default, f"segment {label}: not named -> {default}") for label in range(segments.count))
+    names, reasons = zip(*(chosen.get(label, each) for label, each in enumerate(rest)), strict=True)
+    return MaterialMap(tuple(find(name, library) for name in names), reasons)
+
+
+def _roughness(segments: SegmentMap, picture: np.ndarray | None) -> Float64[np.ndarray, "n"]:
+    if picture is None or picture.shape[:2] != segments.labels.shape:
+        given = "there is none" if picture is None else f"it is {picture.shape[:2]}"
+        raise MaterialError(
+            f"materials by roughness need the picture of the segments, {segments.labels.shape}, and {given}; "
+            "name the materials instead, such as {0: ice, 1: sand}"
+        )
+    return relative_roughness(segments, picture)
+
+
+def relative_roughness(segments: SegmentMap, picture: np.ndarray) -> Float64[np.ndarray, "n"]:
+    """How rough each segment looks within this picture; the same at any brightness and contrast.
+
+    The median over the segment of the local standard deviation of grey, which is taken after removing the local mean,
+    in a square window of 1/64 of the picture's shorter side (at least 3 pixels), as a share of the standard deviation
+    of the whole picture, to three decimals.
+    """
+    grey = to_grey(picture).astype(np.float64)
+    spread = float(grey.std())
+    if spread <= 1e-6 * float(np.abs(grey).max()):  # what rounding makes of one colour
+        return np.zeros(segments.count)
+    grey = (grey - grey.mean()) / spread
+    side = max(3, min(grey.shape) // 64 | 1)
+    local = np.sqrt(np.maximum(_local_mean(grey * grey, side) - _local_mean(grey, side) ** 2, 0))
+    order = np.argsort(segments.labels, axis=None, kind="stable")
+    ends = np.cumsum(np.bincount(segments.labels.ravel(), minlength=segments.count))
+    return np.round([np.median(part) if part.size else 0.0 for part in np.split(local.ravel()[order], ends[:-1])], 3)
+
+
+def _local_mean(values: Float64[np.ndarray, "h w"], side: int) -> Float64[np.ndarray, "h w"]:
+    import cv2
+
+    with plain_opencv():
+        mean: Any = cv2.blur(values, (side, side), borderType=cv2.BORDER_REFLECT)
+    return mean
+
+
+def _by_name(count: int, names: Mapping[int, str], library: Mapping[str, Material]) -> dict[int, Chosen]:
+    complaints: list[str] = []
+    for label, name in names.items():
+        if label not in range(count):
+            complaints.append(f"there is no segment {quoted(label)}; the segments are 0 to {count - 1}")
+        try:
+            find(name, library)
+        except MaterialError as error:
+            complaints.append(f"segment {label}: {error}")
+    if complaints:
+        raise MaterialError(*complaints)
+    return {label: (name, f"segment {label}: named {name}") for label, name in names.items()}
+
+
+def _by_roughness(roughness: Float64[np.ndarray, "n"], default: str) -> dict[int, Chosen]:
+    levels, ranks = np.unique(roughness, return_inverse=True)
+    last = len(levels) - 1
+    chosen: dict[int, Chosen] = {}
+    for label, (rank, value) in enumerate(zip(ranks, roughness, strict=True)):
+        name = LADDER[round(int(rank) * (len(LADDER) - 1) / last)] if last else default
+        chosen[label] = (name, f"segment {label}: roughness rank {rank + 1} of {last + 1} ({value:.3f}) -> {name}")
+    return chosen

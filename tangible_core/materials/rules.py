@@ -1,0 +1,89 @@
+"""Rules by which segments get their materials: a list, of which the first that fits wins."""
+
+import logging
+from collections.abc import Mapping, Sequence
+from typing import Annotated, Self
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+from ..data import SegmentMap
+from ..errors import MaterialError
+from .colours import Colour, segment_colours
+
+log = logging.getLogger(__name__)
+
+Place = Annotated[float, Field(ge=0, allow_inf_nan=False)]
+Chosen = tuple[str, str]
+"""The name of a material, and why it was chosen."""
+
+
+class MaterialRule(BaseModel):
+    """A material, and which segments it is for: one of `segment`, `at` and `colour`."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+
+    segment: Annotated[int, Field(ge=0)] | None = None
+    """The segment with this label, as the report's sheet counts them."""
+    at: tuple[Place, Place] | None = None
+    """The segment under this point of the left picture: [x, y] in pixels, from its upper left corner's pixel."""
+    colour: Colour | None = None
+    """Every segment of which more pixels have this colour than any other, by hue, chroma and lightness in CIELAB."""
+    material: str
+    """What it gets."""
+
+    @model_validator(mode="after")
+    def _one_way(self) -> Self:
+        given = [name for name in ("segment", "at", "colour") if getattr(self, name) is not None]
+        if len(given) != 1:
+            raise ValueError(
+                f"a rule says one of segment, at and colour; this one says {' and '.join(given) or 'none'}"
+            )
+        return self
+
+
+def apply_rules(
+    rules: Sequence[MaterialRule], segments: SegmentMap, picture: np.ndarray | None
+) -> Mapping[int, Chosen]:
+    """The segments that some rule is for. A rule that is for none is logged.
+
+    Raises: MaterialError, with every complaint, for a segment or a point that is not there, or a colour without a
+    picture of the segments' size.
+    """
+    found: dict[int, Chosen] = {}
+    complaints: list[str] = []
+    for number, rule in enumerate(rules, 1):
+        try:
+            fits = _fits(rule, segments, picture)
+        except MaterialError as error:
+            complaints.append(f"materials: rule {number}: {error}")
+            continue
+        if not fits:
+            log.warning("materials: rule %d: no segment is %s", number, rule.colour)
+        for label, why in fits.items():
+            found.setdefault(label, (rule.material, f"segment {label}: rule {number}, {why} -> {rule.material}"))
+    if complaints:
+        raise MaterialError(*complaints)
+    return found
+
+
+def _fits(rule: MaterialRule, segments: SegmentMap, picture: np.ndarray | None) -> dict[int, str]:
+    """Labels, and why the rule is for them."""
+    if rule.segment is not None:
+        if rule.segment >= segments.count:
+            raise MaterialError(f"there is no segment {rule.segment}; the segments are 0 to {segments.count - 1}")
+        return {rule.segment: "named"}
+    if rule.at is not None:
+        return {_label_at(*rule.at, segments): f"at [{rule.at[0]:g}, {rule.at[1]:g}]"}
+    if picture is None or picture.shape[:2] != segments.labels.shape:
+        raise MaterialError("a colour needs the picture of the segments, and there is none of their size")
+    named = enumerate(segment_colours(segments, picture))
+    return {label: f"{100 * share:.0f} % of it {name}" for label, (name, share) in named if name == rule.colour}
+
+
+def _label_at(x: float, y: float, segments: SegmentMap) -> int:
+    rows, columns = segments.labels.shape
+    row, column = round(y), round(x)
+    if row >= rows or column >= columns:
+        raise MaterialError(f"[{x:g}, {y:g}] lies outside the picture of {columns} x {rows} pixels")
+    return int(segments.labels[row, column])

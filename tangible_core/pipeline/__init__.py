@@ -1,0 +1,1 @@
+"""The pipeline: its configuration, the rules of its products, and the engine that makes them."""

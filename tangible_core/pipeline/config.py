@@ -1,0 +1,205 @@
+"""The pipeline file: what it may say, and what it says once it was checked."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Annotated, Any, Generic, Literal, TypeVar, cast
+
+from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag
+
+from ..errors import ConfigError, MaterialError, TangibleError, did_you_mean, quoted
+from ..files.source import Location, Source, parse_source, read_text
+from ..mapping import WorkspaceMapping, mapped
+from ..materials.assignment import NEUTRAL, find, load_library
+from ..materials.rules import MaterialRule
+from ..plugins.interfaces import DepthEstimator, ForceRenderer, HapticDevice, Method, Segmenter
+from ..plugins.registry import Registry
+from ..scene.scene import BUILTINS, SceneFiles, unknown_scene
+from ..servo.guard.safety import Safety
+
+M = TypeVar("M", bound=Method, covariant=True)
+
+Product = Literal["disparity", "relief", "segments", "materials", "surface", "touch"]
+PRODUCTS: tuple[Product, ...] = ("disparity", "relief", "segments", "materials", "surface", "touch")
+
+
+class Section(BaseModel):
+    """Base of the configuration's own blocks."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+
+
+class Workspace(Section):
+    """The size of what is felt."""
+
+    width_m: Annotated[float, Field(gt=0, le=10, allow_inf_nan=False)] = 0.08
+    """Width of the picture under the hand."""
+    relief_m: Annotated[float, Field(gt=0, le=1, allow_inf_nan=False)] = 0.02
+    """Height of the nearest point above the farthest."""
+    smooth_m: Annotated[float, Field(ge=0, le=0.1, allow_inf_nan=False)] = 0.0
+    """Standard deviation of a Gaussian that rounds an estimated relief; a finger feels matching noise as grit."""
+    finest_m: Annotated[float, Field(ge=0, le=0.1, allow_inf_nan=False)] = 3e-5
+    """Finer detail is not looked at: larger pictures are reduced first. A Falcon resolves 0.03 mm; 0 keeps all."""
+    holes: Literal["fill", "cut"] = "fill"
+    """Where the depth is unknown: `fill` from the background beside it, or `cut` down to the base plane."""
+
+
+class MaterialChoice(Section):
+    """Which material each segment gets."""
+
+    rules: tuple[MaterialRule, ...] = ()
+    """These decide first; of several that fit a segment, the first."""
+    by: Annotated[
+        Annotated[Literal["roughness", "rules"], Tag(":word")] | Annotated[dict[int, str], Tag(":labels")],
+        Discriminator(lambda value: ":labels" if isinstance(value, dict) else ":word"),
+    ] = "roughness"
+    """What no rule decides. `roughness`: the rougher a segment within this picture, the rougher its material. Or a map
+    from label to name; or `rules`, for nothing more than those."""
+    default: str = NEUTRAL
+    """The material of segments that nothing decides."""
+    library: Path | None = None
+    """A YAML file of materials of your own, added to those that are shipped."""
+
+
+@dataclass(frozen=True)
+class Chosen(Generic[M]):
+    """A method as the configuration names it."""
+
+    name: str
+    origin: str
+    method: M
+
+
+@dataclass(frozen=True)
+class PipelineConfig:
+    """A configuration that was checked."""
+
+    path: Path
+    scene: str | SceneFiles
+    want: Product = "surface"
+    depth: Chosen[DepthEstimator] | None = None
+    texture: Chosen[Segmenter] | None = None
+    materials: MaterialChoice = field(default_factory=MaterialChoice)
+    workspace: Workspace = field(default_factory=Workspace)
+    mapping: WorkspaceMapping = field(default_factory=WorkspaceMapping)
+    render: Chosen[ForceRenderer] | None = None
+    device: Chosen[HapticDevice] | None = None
+    safety: Safety = field(default_factory=Safety)
+
+    @property
+    def felt_device(self) -> HapticDevice | None:
+        """The device as the picture sees it, by the mapping; None where none is configured."""
+        return None if self.device is None else mapped(self.device.method, self.mapping)
+
+    def completed(self) -> dict[str, Any]:
+        """The configuration with every default filled in, as plain values."""
+        plain: dict[str, Any] = {
+            "scene": self.scene
+            if isinstance(self.scene, str)
+            else self.scene.model_dump(mode="json", exclude_none=True),
+            "want": self.want,
+            "workspace": self.workspace.model_dump(mode="json"),
+            "mapping": self.mapping.model_dump(mode="json", exclude_none=True),
+            "materials": self.materials.model_dump(mode="json", exclude_none=True),
+            "safety": self.safety.model_dump(mode="json", exclude_none=True),
+        }
+        for kind in STAGES:
+            if (chosen := getattr(self, kind)) is not None:
+                plain[kind] = {"use": chosen.name, **chosen.method.model_dump(mode="json")}
+        return plain
+
+
+STAGES = ("depth", "texture", "render", "device")
+SECTIONS: dict[str, type[BaseModel]] = {
+    "workspace": Workspace,
+    "mapping": WorkspaceMapping,
+    "materials": MaterialChoice,
+    "safety": Safety,
+}
+KEYS = ("scene", "want", *STAGES, *SECTIONS)
+
+
+def load_config(path: Path, registry: Registry, overrides: Iterable[str] = ()) -> PipelineConfig:
+    """Read and check a pipeline file.
+
+    overrides: `key.key=value` each, the value in YAML, as `--set` takes them; another method (`depth.use=...`)
+    starts with its own defaults.
+    Raises: ConfigError with every complaint, one a line.
+    """
+    return parse_config(read_text(path), path, registry, overrides)
+
+
+def parse_config(text: str, path: Path, registry: Registry, overrides: Iterable[str] = ()) -> PipelineConfig:
+    """`load_config` for a text; `path` is what complaints name and what relative files are relative to."""
+    source = parse_source(text, path, "a configuration is a mapping that starts with `scene:`", overrides)
+    source.check_keys(KEYS)
+    values: dict[str, Any] = {"scene": _scene(source), "want": _want(source), **_sections(source)}
+    for kind in STAGES:
+        if kind in source.tree:
+            values[kind] = choose(source, (kind,), kind, source.tree[kind], registry)
+    source.settle()
+    return PipelineConfig(path=path, **values)
+
+
+def choose(source: Source, location: Location, kind: str, block: Any, registry: Registry) -> Chosen[Any] | None:
+    """The method that a block names, with its options; None after a complaint."""
+    if isinstance(block, str):
+        block = {"use": block}
+    if not isinstance(block, dict) or not isinstance(cast(Any, block).get("use"), str):
+        known = ", ".join(registry.names(kind))
+        return source.complain(location, f"{kind} needs the name of a method, {{use: ...}}; installed: {known}")
+    options = dict(cast("dict[str, Any]", block))
+    name = options.pop("use")
+    try:
+        listing, cls = registry.find(kind, name), registry.load(kind, name)
+    except TangibleError as error:
+        return source.complain((*location, "use"), str(error))
+    method = source.model(location, cls, options)
+    return None if method is None else Chosen(name, listing.origin, method)
+
+
+def _scene(source: Source) -> Any:
+    if "scene" not in source.tree:
+        said = "`scene:` is missing; name a builtin (builtin/motorcycle) or files {left:, right:}"
+        return source.complain((), said)
+    block = source.tree["scene"]
+    if not isinstance(block, str):
+        return source.model(("scene",), SceneFiles, block)
+    if block not in BUILTINS:
+        source.complain(("scene",), unknown_scene(block))
+    return block
+
+
+def _want(source: Source) -> Any:
+    want = source.tree.get("want", "surface")
+    if want not in PRODUCTS:
+        hint = did_you_mean(str(want), PRODUCTS)
+        source.complain(("want",), f"nothing makes {quoted(want)}{hint}; a pipeline makes {', '.join(PRODUCTS)}")
+    return want
+
+
+def _sections(source: Source) -> dict[str, Any]:
+    blocks = {key: source.tree[key] for key in SECTIONS if key in source.tree}
+    labels = blocks.get("materials")
+    if isinstance(labels, dict) and any(isinstance(key, int) for key in cast("dict[Any, Any]", labels)):
+        blocks["materials"] = {"by": labels}
+    found = {key: source.model((key,), SECTIONS[key], block) for key, block in blocks.items()}
+    if found.get("materials") is not None:
+        _check_names(source, found["materials"])
+    return found
+
+
+def _check_names(source: Source, choice: MaterialChoice) -> None:
+    """Complain of materials that are not in the library; of one that cannot be read, whoever uses it complains."""
+    try:
+        library = load_library(choice.library)
+    except ConfigError:
+        return
+    named: list[tuple[Location, str]] = [(("default",), choice.default)]
+    named += [(("rules", number, "material"), rule.material) for number, rule in enumerate(choice.rules)]
+    named += [((label,), name) for label, name in (choice.by.items() if isinstance(choice.by, dict) else ())]
+    for place, name in named:
+        try:
+            find(name, library)
+        except MaterialError as error:
+            source.complain(("materials", *place), str(error))

@@ -1,0 +1,183 @@
+"""Pull: ask for a product, and only what it needs is made; each product says what became of it."""
+
+import logging
+from collections.abc import Iterable
+from functools import cached_property
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+from ..data import Outcome, Plan, Record
+from ..errors import UnknownMethod
+from ..plugins import hooks
+from ..plugins.notes import collected
+from ..plugins.registry import Registry, default_registry
+from ..scene.scene import Scene, read_scene
+from .cache import Cache
+from .config import PRODUCTS, PipelineConfig, load_config
+from .rules import Rule, given_key, made_key, rules
+
+log = logging.getLogger(__name__)
+
+
+class Pipeline:
+    """One scene, one configuration, and what was made of them so far."""
+
+    def __init__(self, config: PipelineConfig, registry: Registry, cache: Cache | None = None) -> None:
+        self.config = config
+        self.registry = registry
+        self.cache = cache
+        self._made: dict[str, Any] = {}
+        self._keys: dict[str, str] = {}
+        self._outcomes: dict[str, Outcome] = {}
+
+    @property
+    def outcomes(self) -> list[Outcome]:
+        """What became of each product, in the order of making; last those that nothing needed."""
+        unasked = [
+            Outcome(product, "skipped", "nothing that was asked for needs it", rule.method)
+            for product, rule in self._rules.items()
+            if product not in self._outcomes
+        ]
+        return [*self._outcomes.values(), *unasked]
+
+    @cached_property
+    def scene(self) -> Scene:
+        """The scene, read from its files. Raises: PictureError, GeometryError."""
+        start = perf_counter()
+        size = self.config.workspace
+        scene = read_scene(self.config.scene, self.config.path.parent, size.width_m, size.relief_m, size.holes)
+        for product, value in self._brought(scene).items():
+            self._made[product] = value
+            self._note(Outcome(product, "given", f"the scene {scene.name} brings it", "", perf_counter() - start))
+            start = perf_counter()
+        return scene
+
+    def plan(self, want: str | None = None) -> Plan:
+        """What asking for a product will do; nothing is run.
+
+        Raises: TangibleError for a scene that cannot be read; UnknownMethod for a product that nothing makes.
+        """
+        want = self._product(want)
+        plan = Plan(want, tuple(self._foresee(want, ASKED, {}).values()))
+        hooks.tell(self.registry.plugins, "tangible_plan_made", plan=plan)
+        return plan
+
+    def make(self, want: str | None = None) -> Any:
+        """The product, made from what it needs and no more; None if this scene does not need it.
+
+        Raises: TangibleError for what a user can put right; whatever a plugin raises.
+        """
+        return self._pull(self._product(want), ASKED)
+
+    def needed(self, want: str) -> set[str]:
+        """The product and everything that it is made from, by the rules."""
+        rule = self._rules.get(want)
+        return {want}.union(*(self.needed(name) for name in rule.needs)) if rule and not rule.skip else {want}
+
+    def key(self, product: str) -> str:
+        """What stands for the product's content: known before it is made."""
+        if product not in self._keys:
+            self._keys[product] = self._key(product)
+        return self._keys[product]
+
+    def _key(self, product: str) -> str:
+        rule = self._rules.get(product)
+        if rule is None:
+            value = self._brought(self.scene).get(product)
+            return "nothing" if value is None else given_key(value)
+        if rule.skip:
+            return "skipped"
+        return made_key(rule, {name: self.key(name) for name in rule.needs})
+
+    def _pull(self, product: str, why: str) -> Any:
+        if product not in self._made and product in self._rules:
+            self._made[product] = self._make(self._rules[product], why)
+        return self._made.get(product)
+
+    def _make(self, rule: Rule, why: str) -> Any:
+        if rule.skip:
+            self._note(Outcome(rule.product, "skipped", rule.skip, rule.method))
+            return None
+        if (found := self._from_cache(rule)) is not None:
+            return found
+        inputs = {name: self._pull(name, f"{rule.product} is made from it") for name in rule.needs}
+        hooks.tell(self.registry.plugins, "tangible_stage_started", product=rule.product, method=rule.method)
+        start = perf_counter()
+        try:
+            with collected() as notes:
+                value = rule.make(inputs)
+        except BaseException as error:
+            failure = f"{type(error).__name__}: {error}"
+            self._note(Outcome(rule.product, "failed", failure, rule.method, perf_counter() - start))
+            raise
+        seconds = perf_counter() - start
+        self._note(Outcome(rule.product, "ran", _with((rule.note, *notes), why), rule.method, seconds))
+        if self.cache is not None and rule.cached:
+            self.cache.put(self.key(rule.product), value)
+        return value
+
+    def _from_cache(self, rule: Rule) -> Record | None:
+        if self.cache is None or not rule.cached:
+            return None
+        start = perf_counter()
+        found = self.cache.get(self.key(rule.product))
+        if found is not None:
+            self._note(Outcome(rule.product, "cached", SAME, rule.method, perf_counter() - start))
+        return found
+
+    def _foresee(self, product: str, why: str, steps: dict[str, Outcome]) -> dict[str, Outcome]:
+        """Outcomes of a product and, before it, of what it needs."""
+        rule = self._rules.get(product)
+        if product in steps:
+            return steps
+        if rule is None:
+            if product in self._brought(self.scene):
+                steps[product] = Outcome(product, "given", f"the scene {self.scene.name} brings it")
+        elif rule.skip:
+            steps[product] = Outcome(product, "skipped", rule.skip, rule.method)
+        elif self.cache is not None and rule.cached and self.key(product) in self.cache:
+            steps[product] = Outcome(product, "cached", SAME, rule.method)
+        else:
+            for name in rule.needs:
+                self._foresee(name, f"{product} is made from it", steps)
+            steps[product] = Outcome(product, "ran", _with((rule.note,), why), rule.method)
+        return steps
+
+    @cached_property
+    def _rules(self) -> dict[str, Rule]:
+        return rules(self.config, self.scene)
+
+    @staticmethod
+    def _brought(scene: Scene) -> dict[str, Record]:
+        return {**({"views": scene.views} if scene.views else {}), **scene.given}
+
+    def _product(self, want: str | None) -> str:
+        product = want or self.config.want
+        if product not in PRODUCTS:
+            raise UnknownMethod("product", product, PRODUCTS)
+        return product
+
+    def _note(self, outcome: Outcome) -> None:
+        self._outcomes[outcome.product] = outcome
+        hooks.tell(self.registry.plugins, "tangible_stage_finished", outcome=outcome)
+
+
+def _with(notes: Iterable[str], why: str) -> str:
+    return "; ".join([why, *filter(None, notes)])
+
+
+ASKED = "asked for"
+SAME = "same method, options and inputs as before"
+
+
+def load_pipeline(
+    path: str | Path, overrides: Iterable[str] = (), registry: Registry | None = None, cache: Cache | None = None
+) -> Pipeline:
+    """A pipeline from a YAML file; nothing runs yet.
+
+    overrides: `key.key=value` each. cache: where results are kept between runs; the user's own by default.
+    Raises: ConfigError with every complaint, each with file:line:column.
+    """
+    registry = registry or default_registry()
+    return Pipeline(load_config(Path(path), registry, overrides), registry, cache or Cache())

@@ -1,0 +1,172 @@
+"""JSON Schema of a pipeline file, for completion in editors, and the same as a page to read."""
+
+from collections.abc import Iterable
+from typing import Any, cast
+
+from pydantic import BaseModel
+
+from ..errors import TangibleError
+from ..materials.assignment import library
+from ..materials.files import MaterialBlock
+from ..plugins.registry import Registry, default_registry
+from ..scene.scene import BUILTINS, SceneFiles
+from .config import PRODUCTS, SECTIONS, STAGES
+
+
+def json_schema(registry: Registry | None = None, distribution: str | None = "tangible-images") -> dict[str, Any]:
+    """One schema for the whole file.
+
+    distribution: only methods of this one, or of all that are installed when None. A broken plugin has no schema and
+    takes nobody down.
+    """
+    registry = registry or default_registry()
+    definitions: dict[str, Any] = {}
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "Tangible Images pipeline",
+        "type": "object",
+        "required": ["scene"],
+        "additionalProperties": False,
+        "properties": {
+            "scene": {"anyOf": [{"enum": sorted(BUILTINS)}, _schema(SceneFiles, definitions)]},
+            "want": {"enum": list(PRODUCTS), "default": "surface"},
+            "workspace": _schema(SECTIONS["workspace"], definitions),
+            "mapping": _schema(SECTIONS["mapping"], definitions),
+            "materials": _materials(definitions),
+            **{kind: _stage(kind, registry, distribution, definitions) for kind in STAGES},
+            "safety": _schema(SECTIONS["safety"], definitions),
+        },
+        "$defs": definitions,
+    }
+
+
+def materials_schema() -> dict[str, Any]:
+    """The schema of a file of materials: of those that are shipped, only what changes must be said."""
+    block = MaterialBlock.model_json_schema()
+    change = {name: part for name, part in block.items() if name != "required"}
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "Tangible Images materials",
+        "type": "object",
+        "properties": {name: {"$ref": "#/$defs/change"} for name in library()},
+        "additionalProperties": {"$ref": "#/$defs/material"},
+        "$defs": {"material": block, "change": change},
+    }
+
+
+def _materials(definitions: dict[str, Any]) -> dict[str, Any]:
+    by_label = {"type": "object", "patternProperties": {"^[0-9]+$": {"type": "string"}}, "additionalProperties": False}
+    return {"anyOf": [_schema(SECTIONS["materials"], definitions), by_label]}
+
+
+def _stage(kind: str, registry: Registry, distribution: str | None, definitions: dict[str, Any]) -> dict[str, Any]:
+    forms = [_method_form(name, cls, definitions) for name, cls in _methods(kind, registry, distribution)]
+    return {"anyOf": [{"enum": _stage_names(kind, registry, distribution)}, *forms]}
+
+
+def _method_form(name: str, cls: type[BaseModel], definitions: dict[str, Any]) -> dict[str, Any]:
+    form = _schema(cls, definitions)
+    form["properties"] = {"use": {"const": name}, **form.get("properties", {})}
+    form["required"] = ["use", *form.get("required", [])]
+    return form
+
+
+def _schema(model: type[BaseModel], definitions: dict[str, Any]) -> dict[str, Any]:
+    schema = model.model_json_schema(ref_template="#/$defs/{model}")
+    definitions.update(schema.pop("$defs", {}))
+    return schema
+
+
+def _stage_names(kind: str, registry: Registry, distribution: str | None) -> list[str]:
+    """Names of the kind's methods that load, of one distribution or of all."""
+    return [name for name, _ in _methods(kind, registry, distribution)]
+
+
+def _methods(kind: str, registry: Registry, distribution: str | None) -> Iterable[tuple[str, type[BaseModel]]]:
+    for name in registry.names(kind):
+        try:
+            if distribution in (None, registry.find(kind, name).distribution):
+                yield name, registry.load(kind, name)
+        except TangibleError:
+            continue
+
+
+def markdown(schema: dict[str, Any]) -> str:
+    """The schema as a reference page: every block, method and option."""
+    lines = ["# The pipeline file", "", PREFACE, ""]
+    properties, blocks = schema["properties"], schema["$defs"]
+    lines += ["## scene", "", f"A builtin name ({_names(properties['scene']['anyOf'][0]['enum'])}), or files:", ""]
+    lines += _table(properties["scene"]["anyOf"][1], blocks)
+    lines += ["## want", "", f"What to make: {_names(properties['want']['enum'])}.", ""]
+    lines += ["## workspace", "", *_table(properties["workspace"], blocks)]
+    lines += ["## mapping", "", *_table(properties["mapping"], blocks)]
+    lines += ["## materials", "", "A map from label to material (`{0: ice, 1: sand}`), or:", ""]
+    lines += _table(properties["materials"]["anyOf"][0], blocks)
+    for kind in STAGES:
+        lines += [f"## {kind}", ""]
+        for form in properties[kind]["anyOf"][1:]:
+            summary = form.get("description", "").split("\n")[0]
+            lines += [f"### {form['properties']['use']['const']}", "", summary, "", *_table(form, blocks)]
+    lines += ["## safety", "", "Between every law and every device ([why](safety.md)).", ""]
+    lines += _table(properties["safety"], blocks)
+    return "\n".join(lines).rstrip() + "\n"
+
+
+PREFACE = (
+    "Generated by `tangible schema --markdown` from the classes themselves; `tangible schema` prints the same as JSON "
+    "Schema, which editors use for completion: start a file with\n"
+    "`# yaml-language-server: $schema=tangible.schema.json`.\n\n"
+    "Relative paths are relative to the file itself."
+)
+
+
+def _names(values: Iterable[Any]) -> str:
+    return ", ".join(f"`{value}`" for value in values)
+
+
+def _table(form: dict[str, Any], blocks: dict[str, Any]) -> list[str]:
+    rows = [
+        f"| `{name}` | {_type(option)} | {_default(option)} | {_cell(option)} |"
+        for name, option in _options(form, blocks)
+    ]
+    return ["| key | values | default | meaning |", "|---|---|---|---|", *rows, ""] if rows else ["No options.", ""]
+
+
+def _options(form: dict[str, Any], blocks: dict[str, Any], prefix: str = "") -> Iterable[tuple[str, dict[str, Any]]]:
+    """Options by name, those of a block below it as `block.option`."""
+    for name, option in form.get("properties", {}).items():
+        if name == "use":
+            continue
+        inner = _inner(option)
+        yield f"{prefix}{name}", {**option, "default": None} if inner else option
+        for block in inner:
+            yield from _options(blocks[block], blocks, f"{prefix}{name}.")
+
+
+def _inner(option: dict[str, Any]) -> list[str]:
+    """The blocks that an option is, may be, or is a list of."""
+    forms = (option, *option.get("anyOf", ()), option.get("items", {}))
+    return [each["$ref"].split("/")[-1] for each in forms if "$ref" in each]
+
+
+def _cell(option: dict[str, Any]) -> str:
+    return " ".join(option.get("description", "").split()).replace("|", "\\|")
+
+
+def _default(option: dict[str, Any]) -> str:
+    default = option.get("default")
+    return "" if default is None else f"`{default}`"
+
+
+def _type(option: dict[str, Any]) -> str:
+    if forms := option.get("anyOf", option.get("oneOf")):
+        return " or ".join(_type(each) for each in cast("list[dict[str, Any]]", forms))
+    if "enum" in option:
+        return _names(option["enum"])
+    if "const" in option:
+        return f"`{option['const']}`"
+    bounds = [f"{sign} {option[word]}" for word, sign in BOUNDS.items() if word in option]
+    return " ".join([option.get("type", "block"), *bounds])
+
+
+BOUNDS = {"minimum": "≥", "exclusiveMinimum": ">", "maximum": "≤", "exclusiveMaximum": "<"}

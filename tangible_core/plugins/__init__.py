@@ -1,0 +1,1 @@
+"""What a plugin implements, how it is found, and who watches."""

@@ -1,0 +1,186 @@
+"""The interfaces: a method is its options, a frozen model with one verb.
+
+Methods are stateless; what keeps state is a session: `Touch` for a renderer, `Link` for a device.
+"""
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator
+from types import TracebackType
+from typing import ClassVar, Self, final
+
+import numpy as np
+from jaxtyping import Float64
+from pydantic import BaseModel, ConfigDict
+
+from ..data import (
+    NO_FORCE,
+    DeviceSpec,
+    DisparityMap,
+    Finding,
+    Force,
+    HapticState,
+    HapticSurface,
+    Kind,
+    SegmentMap,
+    Unit,
+    Views,
+)
+from ..errors import DeviceError
+
+
+class Method(BaseModel, ABC):
+    """A named way of doing one stage; its fields are its options, and each has a default."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+
+    version: ClassVar[int] = 1
+    """Raise it when results change: it is part of the cache key."""
+
+
+class DepthEstimator(Method):
+    """Makes a disparity map from one picture or two."""
+
+    @abstractmethod
+    def estimate(self, views: Views) -> DisparityMap:
+        """Disparity of the left view. Raises: TangibleError if these views do not allow it."""
+
+
+class Segmenter(Method):
+    """Divides a picture into parts of one texture each."""
+
+    @abstractmethod
+    def segment(self, picture: np.ndarray) -> SegmentMap:
+        """Labels of the picture's own size. Raises: PictureError if it is no picture or holds NaN or infinity."""
+
+
+class Touch(ABC):
+    """A renderer compiled for one surface; it may remember what it touched last, such as a proxy."""
+
+    stiffness_n_per_m: float | None = None
+    """The greatest by which its force grows with depth on level ground; 0 for a law that is no spring.
+
+    A law stiffer than the device holds is softened by this number. None says nothing: then a copy is felt all over
+    before the device is opened, and the steepest slope found counts, that of steep ground too.
+    """
+
+    @abstractmethod
+    def force(self, state: HapticState) -> Force:
+        """Newtons on the hand, always finite; zero in free air, and zero for a state that is not finite."""
+
+    @abstractmethod
+    def path(self, positions_m: Float64[np.ndarray, "n 3"], period_s: float = 0.001) -> Float64[np.ndarray, "n 3"]:
+        """Forces along positions one period apart, as `force` gives them one by one, state carried along.
+
+        The velocity at each position is the step to it over the period; 0 at the first, and where it is not finite.
+        """
+
+
+class ForceRenderer(Method):
+    """Turns positions into forces on a surface."""
+
+    uses_materials: ClassVar[bool] = True
+    """False for a law that feels heights alone: then no texture is segmented for it."""
+
+    @abstractmethod
+    def touch(self, surface: HapticSurface) -> Touch:
+        """A new touch on this surface, free of contact."""
+
+
+class Link(ABC):
+    """An open device. As a context manager it leaves zero force behind, whatever happens."""
+
+    @abstractmethod
+    def read(self) -> HapticState:
+        """Where the tip is now. Raises: DeviceError if the device stopped answering or the link is closed."""
+
+    @abstractmethod
+    def write(self, force: Force) -> None:
+        """Set the force on the hand; a force that is not finite becomes zero, one too strong is scaled down.
+
+        Raises: DeviceError if the device stopped answering or the link is closed.
+        """
+
+    @property
+    @abstractmethod
+    def applied(self) -> Force:
+        """The force the device holds now, as far as the driver knows."""
+
+    @abstractmethod
+    def close(self) -> None:
+        """Let go of the device; a second call does nothing."""
+
+    @final
+    def __enter__(self) -> Self:
+        return self
+
+    @final
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        try:
+            self.write(NO_FORCE)
+        except DeviceError:
+            if error is None:  # a device that died raised already
+                raise
+        finally:
+            self.close()
+
+
+class HapticDevice(Method):
+    """Something that has a position and gives a force."""
+
+    @abstractmethod
+    def spec(self) -> DeviceSpec:
+        """What the device can do; asks nothing of the hardware."""
+
+    @abstractmethod
+    def open(self) -> Link:
+        """Raises: DeviceError if it is not there, not permitted or in use."""
+
+
+class Skippable(ABC):
+    """For a depth or texture method that can tell that a scene does not need it."""
+
+    @abstractmethod
+    def skip(self, views: Views) -> str | None:
+        """A reason, in words, not to run on these views; None to run. Cheap: it is asked for every plan."""
+
+
+class Serviceable(ABC):
+    """For a device that can be looked for and examined without being opened for use."""
+
+    @abstractmethod
+    def connected(self) -> tuple[Unit, ...]:
+        """The units that are there now. Raises: DeviceError if they cannot be looked for."""
+
+    @abstractmethod
+    def examine(self) -> Iterator[Finding]:
+        """Everything that must be right before `open` succeeds, in the order in which to put it right."""
+
+
+class Adjustable(ABC):
+    """For a device that its user must set up by hand."""
+
+    @abstractmethod
+    def home(self, say: Callable[[str], None]) -> None:
+        """Guide the user until the device knows where it is; no force meanwhile.
+
+        Raises: DeviceError if it is not there, or was not homed in time.
+        """
+
+    @abstractmethod
+    def calibrate(self, ask: Callable[[str], str]) -> tuple[str, BaseModel]:
+        """Measure this unit with the user's help: its serial number, and what to keep for it.
+
+        `ask` shows a text and returns what the user answers. Raises: DeviceError as `open`, or if an answer or a
+        measurement makes no sense.
+        """
+
+
+KINDS: dict[Kind, type[Method]] = {
+    "depth": DepthEstimator,
+    "texture": Segmenter,
+    "render": ForceRenderer,
+    "device": HapticDevice,
+}
+"""What each kind of plugin must be."""

@@ -1,0 +1,172 @@
+"""Which methods are installed: names from metadata, classes on first use."""
+
+from __future__ import annotations
+
+import ast
+from dataclasses import dataclass
+from functools import cache, cached_property
+from importlib.metadata import Distribution, EntryPoint, entry_points
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, cast, overload
+
+from ..errors import BrokenMethod, UnknownMethod, did_you_mean
+from . import hooks
+
+if TYPE_CHECKING:
+    import pluggy
+
+    from ..data import Kind
+    from .interfaces import DepthEstimator, ForceRenderer, HapticDevice, Method, Segmenter
+
+KIND_NAMES = ("depth", "texture", "render", "device")
+
+
+@dataclass(frozen=True)
+class Listing:
+    """An installed method, as far as it is known without importing it."""
+
+    kind: str
+    name: str
+    target: str
+    origin: str
+    """The distribution and its version."""
+    point: EntryPoint
+
+    @property
+    def distribution(self) -> str:
+        """The distribution's name, to tell two methods of one name apart."""
+        return self.origin.split(" ")[0]
+
+    @cached_property
+    def summary(self) -> str:
+        """First line of the class's docstring, read from the source text."""
+        try:
+            return _docstring_line(self.point)
+        except (OSError, SyntaxError, ImportError, ValueError) as error:
+            return f"(cannot be read: {error})"
+
+
+class Registry:
+    """Listing reads metadata only; `load` is the one place that imports a plugin."""
+
+    def __init__(self, plugins: pluggy.PluginManager | None = None) -> None:
+        self.plugins = hooks.manager() if plugins is None else plugins
+
+    @cached_property
+    def listings(self) -> tuple[Listing, ...]:
+        """Every installed method, two of one name included, by kind and name."""
+        installed = entry_points()  # one walk over what is installed serves all kinds
+        found = [
+            Listing(kind, point.name, point.value, _origin(point.dist), point)
+            for kind in KIND_NAMES
+            for point in (*installed.select(group=f"tangible.{kind}"), *self._computed(kind))
+        ]
+        return tuple(sorted(found, key=lambda each: (KIND_NAMES.index(each.kind), each.name, each.origin)))
+
+    def names(self, kind: str) -> list[str]:
+        """Names to write after `use:`; `distribution/name` where two offer the same one."""
+        of_kind = [each for each in self.listings if each.kind == kind]
+        short = [each.name for each in of_kind]
+        return [each.name if short.count(each.name) == 1 else f"{each.distribution}/{each.name}" for each in of_kind]
+
+    def find(self, kind: str, name: str) -> Listing:
+        """The one listing of this name.
+
+        Raises: UnknownMethod if there is none, BrokenMethod if two distributions offer it and none is named.
+        """
+        if kind not in KIND_NAMES:
+            raise UnknownMethod("plugin", kind, KIND_NAMES)
+        distribution, _, short = name.rpartition("/")
+        found = [
+            each
+            for each in self.listings
+            if each.kind == kind and each.name == short and distribution in ("", each.distribution)
+        ]
+        if not found:
+            raise UnknownMethod(kind, name, self.names(kind))
+        if len(found) > 1:
+            raise BrokenMethod(
+                f"{kind} method {name!r} is offered by {' and '.join(each.origin for each in found)}; "
+                f"write {' or '.join(f'{each.distribution}/{short}' for each in found)}"
+            )
+        return found[0]
+
+    def load(self, kind: str, name: str) -> type[Method]:
+        """The class of a method.
+
+        Raises: UnknownMethod, BrokenMethod (it cannot be imported, or is no method of this kind).
+        """
+        from .interfaces import KINDS
+
+        each = self.find(kind, name)
+        try:
+            cls: Any = each.point.load()
+        except (Exception, SystemExit) as error:
+            raise BrokenMethod(
+                f"{kind} method {name!r} ({each.target}, from {each.origin}) cannot be loaded: "
+                f"{type(error).__name__}: {error}; repair or remove {each.distribution}"
+            ) from error
+        wanted = KINDS[each.kind]  # pyright: ignore[reportArgumentType]
+        if not (isinstance(cls, type) and issubclass(cls, wanted)):
+            raise BrokenMethod(f"{kind} method {name!r} ({each.target}, from {each.origin}) is no {wanted.__name__}")
+        if missing := sorted(cls.__abstractmethods__):
+            raise BrokenMethod(f"{kind} method {name!r} ({each.target}) does not implement {', '.join(missing)}")
+        return cls
+
+    def _computed(self, kind: str) -> list[EntryPoint]:
+        named: list[Any] = hooks.tell(self.plugins, "tangible_methods", kind=kind)
+        pairs = [pair for more in named if isinstance(more, dict) for pair in cast("dict[Any, Any]", more).items()]
+        return [EntryPoint(str(name), str(value), f"tangible.{kind}") for name, value in pairs]
+
+
+@cache
+def default_registry() -> Registry:
+    """The registry of what is installed here."""
+    return Registry()
+
+
+@overload
+def load_method(kind: Literal["depth"], name: str) -> type[DepthEstimator]: ...
+@overload
+def load_method(kind: Literal["texture"], name: str) -> type[Segmenter]: ...
+@overload
+def load_method(kind: Literal["render"], name: str) -> type[ForceRenderer]: ...
+@overload
+def load_method(kind: Literal["device"], name: str) -> type[HapticDevice]: ...
+@overload
+def load_method(kind: Kind, name: str) -> type[Method]: ...
+def load_method(kind: str, name: str) -> type[Any]:
+    """The class of an installed method; its fields are its options.
+
+    Raises: UnknownMethod, BrokenMethod.
+    """
+    return default_registry().load(kind, name)
+
+
+@cache
+def _origin(distribution: Distribution | None) -> str:
+    return f"{distribution.name} {distribution.version}" if distribution else "computed by a hook"
+
+
+def _docstring_line(point: EntryPoint) -> str:
+    """The class's docstring without running a line of the module: only the top package is looked up, not imported."""
+    found = EntryPoint.pattern.match(point.value)
+    if found is None or not found["attr"]:
+        raise ImportError(f"{point.value!r} is not package.module:Class")
+    tree = ast.parse(_source(*found["module"].split(".")).read_text(encoding="utf-8"))
+    classes = {node.name: node for node in tree.body if isinstance(node, ast.ClassDef)}
+    if found["attr"] not in classes:
+        raise ImportError(f"{found['module']} has no class {found['attr']}{did_you_mean(found['attr'], classes)}")
+    return (ast.get_docstring(classes[found["attr"]]) or "(no docstring)").splitlines()[0]
+
+
+def _source(top: str, *rest: str) -> Path:
+    """The file of a module."""
+    spec = find_spec(top)
+    if spec is None:
+        raise ImportError(f"there is no module {top}")
+    if not spec.submodule_search_locations:
+        return Path(spec.origin or "").joinpath(*rest)  # below a single file there is nothing: it cannot be read
+    module = Path(next(iter(spec.submodule_search_locations))).joinpath(*rest)
+    return module / "__init__.py" if module.is_dir() else module.with_suffix(".py")

@@ -1,0 +1,1 @@
+"""What surrounds our code: child processes, standard output, OpenCV, torch."""

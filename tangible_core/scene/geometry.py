@@ -1,0 +1,254 @@
+"""From disparity to a relief in metres, and between the picture's frame and the workspace (see `data` for both)."""
+
+from typing import Literal, TypeVar
+
+import numpy as np
+from jaxtyping import Float, Float32, Float64, Int, Shaped
+
+from ..data import Calibration, DisparityMap, Relief
+from ..errors import GeometryError
+from ..runtime.opencv import plain_opencv
+
+Holes = Literal["fill", "cut"]
+"""What becomes of unknown places: `fill` takes the farther neighbour in the row, `cut` goes down to the base plane."""
+
+RANGE_PERCENT = (0.5, 99.5)
+"""The part of a measured map that spans the relief; what lies beyond, mostly wrong matches, is clipped."""
+
+Coordinate = TypeVar("Coordinate", float, np.ndarray)
+
+
+def disparity_to_depth(
+    disparity_px: Float[np.ndarray, "h w"], focal_px: float, baseline_m: float, offset_px: float = 0.0
+) -> Float32[np.ndarray, "h w"]:
+    """Depth along the optical axis, Z = f B / (d + offset).
+
+    Parameters: disparity_px (h, w), NaN where unknown; focal_px > 0; baseline_m > 0; offset_px, the difference of the
+    principal points' columns, right minus left.
+    Returns: metres, (h, w), NaN where the disparity is unknown or d + offset is not positive.
+    Raises: GeometryError if focal_px or baseline_m is not positive.
+    Source: Hartley & Zisserman, Multiple View Geometry, 2nd ed., sec. 11.12.
+
+    >>> disparity_to_depth(np.float32([[10, 20, 0]]), focal_px=1000, baseline_m=0.1)
+    array([[10.,  5., nan]], dtype=float32)
+    """
+    camera = Calibration(focal_px, baseline_m, offset_px)
+    shift = disparity_px.astype(np.float64) + camera.offset_px
+    with np.errstate(over="ignore"):
+        return (camera.focal_px * camera.baseline_m / np.where(shift > 0, shift, np.nan)).astype(np.float32)
+
+
+def fill_rows(values: Float[np.ndarray, "h w"]) -> Float[np.ndarray, "h w"]:
+    """Holes (NaN) filled from the background: what is hidden in one view belongs to what lies behind.
+
+    Each hole takes the smaller, that is the farther, of its two known neighbours in the row, or the only one; a row
+    without any takes the nearest row that has some, the upper one of two.
+    Returns: (h, w) without NaN; the array itself if it has no hole.
+    Raises: GeometryError if nothing is known.
+    Source: Hirschmueller, PAMI 2008, sec. 2.5 (occlusions are filled from the lower disparity).
+
+    >>> fill_rows(np.float32([[1, np.nan, 3]]))
+    array([[1., 1., 3.]], dtype=float32)
+    """
+    unknown = np.isnan(values)
+    if unknown.all():
+        raise GeometryError("holes cannot be filled: every value is unknown (NaN); bring a map with some known values")
+    if not unknown.any():
+        return values
+    before, after = _neighbours(unknown)
+    walled = np.pad(values, ((0, 0), (0, 1)), constant_values=np.inf)  # both -1 and w mean the wall
+    filled = np.minimum(np.take_along_axis(walled, before, axis=1), np.take_along_axis(walled, after, axis=1))
+    empty: np.ndarray = np.all(unknown, axis=1)
+    return filled[_nearest(~empty)] if empty.any() else filled
+
+
+def _neighbours(unknown: Shaped[np.ndarray, "h w"]) -> tuple[Int[np.ndarray, "h w"], Int[np.ndarray, "h w"]]:
+    """Column of the last known value up to each place (-1: none), and of the first one from there (w: none)."""
+    width = unknown.shape[1]
+    columns = np.arange(width, dtype=np.int32)
+    before = np.maximum.accumulate(np.where(unknown, np.int32(-1), columns), axis=1)
+    after = np.minimum.accumulate(np.where(unknown, np.int32(width), columns)[:, ::-1], axis=1)[:, ::-1]
+    return before, after
+
+
+def _nearest(known: Shaped[np.ndarray, "n"]) -> Int[np.ndarray, "n"]:
+    """Index of the nearest known place, the lower one of two."""
+    places, index = np.flatnonzero(known), np.arange(known.size)
+    after = np.searchsorted(places, index)
+    low, high = places[np.maximum(after - 1, 0)], places[np.minimum(after, places.size - 1)]
+    return np.where(index - low <= high - index, low, high)
+
+
+def make_relief(
+    disparity: DisparityMap, calibration: Calibration | None, width_m: float, relief_m: float, holes: Holes = "fill"
+) -> Relief:
+    """The relief of a disparity map: the far end at 0, the near end at relief_m, pixels square.
+
+    With a calibration and a disparity in pixels, heights are linear in depth; otherwise in disparity. The range runs
+    between percentiles of what is known (RANGE_PERCENT); a constant map is flat at 0. A disparity at or beyond
+    infinity is far.
+    Raises: GeometryError if width_m or relief_m is not positive, or if no depth is known.
+    """
+    nearness = disparity.disparity_px
+    if calibration is not None and disparity.unit == "px":
+        depth = disparity_to_depth(nearness, calibration.focal_px, calibration.baseline_m, calibration.offset_px)
+        nearness = np.where(np.isnan(depth) & ~np.isnan(nearness), -np.inf, -depth)
+    if not np.isfinite(nearness).any():
+        raise GeometryError(
+            "no depth is known anywhere: all disparities are NaN or put everything at infinity; check that left and "
+            "right are not swapped, the range of disparities that is searched, and offset_px"
+        )
+    return _relief(nearness, width_m, relief_m, holes, RANGE_PERCENT)
+
+
+def scale_heights(heights: Shaped[np.ndarray, "h w"], width_m: float, relief_m: float, holes: Holes = "fill") -> Relief:
+    """The relief of a height map in any unit: its lowest place at 0, its highest at relief_m, pixels square.
+
+    Places that are NaN or infinite are holes.
+    Raises: GeometryError if width_m or relief_m is not positive, or if no height is known.
+    """
+    values = np.where(np.isfinite(heights), heights, np.nan)
+    if np.isnan(values).all():
+        raise GeometryError("the height map holds no height, only NaN or infinity; bring one with some known values")
+    return _relief(values, width_m, relief_m, holes, (0, 100))
+
+
+def flat_relief(shape: tuple[int, int], width_m: float) -> Relief:
+    """A relief of height 0 with (h, w) square cells. Raises: GeometryError if it is empty or width_m not positive."""
+    rows, columns = shape
+    return Relief(np.zeros(shape, np.float32), (width_m, width_m * rows / max(columns, 1)))
+
+
+def _relief(
+    values: Float[np.ndarray, "h w"], width_m: float, relief_m: float, holes: Holes, percent: tuple[float, float]
+) -> Relief:
+    if not (0 < width_m < np.inf and 0 < relief_m < np.inf):
+        raise GeometryError(f"width_m and relief_m are positive lengths in metres, not {width_m} and {relief_m}")
+    rows, columns = values.shape
+    whole = fill_rows(values) if holes == "fill" else values
+    heights = relief_m * _unit_range(whole, values[np.isfinite(values)], percent)
+    return Relief(np.nan_to_num(heights, nan=0.0).astype(np.float32), (width_m, width_m * rows / columns))
+
+
+def _unit_range(
+    values: Float[np.ndarray, "h w"], known: Float[np.ndarray, "n"], percent: tuple[float, float]
+) -> Float64[np.ndarray, "h w"]:
+    """Values clipped to percentiles of the known ones and mapped to 0..1; 0 where these do not differ."""
+    size = np.max(np.abs(known)) or 1.0  # divided out first: the largest floats have no difference
+    scaled, parts = values.astype(np.float64) / size, known.astype(np.float64) / size
+    low, high = np.percentile(parts, percent)
+    if not low < high:
+        low, high = parts.min(), parts.max()
+    if high - low <= 4 * np.finfo(values.dtype).eps * max(abs(low), abs(high)):
+        return np.zeros(values.shape)
+    with np.errstate(over="ignore"):
+        return np.clip((scaled - low) / (high - low), 0, 1)
+
+
+def picture_to_workspace(
+    column: Coordinate, row: Coordinate, shape: tuple[int, int], extent_m: tuple[float, float]
+) -> tuple[Coordinate, Coordinate]:
+    """Where a place of an (h, w) picture lies on a surface of this extent: (x_m, y_m).
+
+    Pixel centres are at whole numbers and each pixel is a cell of the surface, so the picture's left edge is column
+    -0.5. Row 0 is far from the user, at the largest y.
+
+    >>> picture_to_workspace(0.0, 0.0, (1, 2), (0.08, 0.04))
+    (-0.02, 0.0)
+    """
+    rows, columns = shape
+    return ((column + 0.5) / columns - 0.5) * extent_m[0], (0.5 - (row + 0.5) / rows) * extent_m[1]
+
+
+def workspace_to_picture(
+    x_m: Coordinate, y_m: Coordinate, shape: tuple[int, int], extent_m: tuple[float, float]
+) -> tuple[Coordinate, Coordinate]:
+    """The inverse of `picture_to_workspace`: (column, row), not rounded.
+
+    >>> workspace_to_picture(-0.02, 0.0, (1, 2), (0.08, 0.04))
+    (0.0, 0.0)
+    """
+    rows, columns = shape
+    return (x_m / extent_m[0] + 0.5) * columns - 0.5, (0.5 - y_m / extent_m[1]) * rows - 0.5
+
+
+def resample(relief: Relief, shape: tuple[int, int]) -> Relief:
+    """The same surface on another grid of (h, w) cells; extent and metres stay.
+
+    Each cell is taken as a tilted facet whose mean is its height, and each new height is the mean over its cell. So
+    the volume stays, a plane stays that plane, nothing overshoots between cells, and finer and back is the same.
+    Raises: GeometryError if the shape has no cell.
+    Source: van Leer, J. Comput. Phys. 32 (1979), the monotonised central slope.
+    """
+    if min(shape) < 1:
+        raise GeometryError(f"a relief has at least one cell, not {shape[0]} x {shape[1]}")
+    along = _resample_columns(relief.height_m.astype(np.float64).T, shape[0]).T
+    return Relief(_resample_columns(along, shape[1]).astype(np.float32), relief.extent_m)
+
+
+def _resample_columns(heights: Float64[np.ndarray, "h w"], count: int) -> Float64[np.ndarray, "h n"]:
+    """Means over `count` equal cells a row, as differences of the integral of the facets up to the new edges."""
+    width = heights.shape[1]
+    if width == count:
+        return heights
+    edges = np.arange(count + 1) * width / count
+    cell = np.minimum(edges.astype(np.int64), width - 1)
+    part = edges - cell
+    whole = np.pad(np.cumsum(heights, axis=1), ((0, 0), (1, 0)))
+    integral = whole[:, cell] + heights[:, cell] * part + _tilts(heights)[:, cell] * (part * (part - 1) / 2)
+    return np.maximum(np.diff(integral, axis=1) * (count / width), 0)
+
+
+def _tilts(heights: Float64[np.ndarray, "h w"]) -> Float64[np.ndarray, "h w"]:
+    """Rise across each cell: the central difference, held so that no facet leaves the range of its neighbours."""
+    if heights.shape[1] == 1:
+        return np.zeros_like(heights)
+    steps = np.diff(heights, axis=1)
+    steps = np.concatenate([steps[:, :1], steps, steps[:, -1:]], axis=1)
+    left, right = steps[:, :-1], steps[:, 1:]
+    bound = 2 * np.minimum(np.abs(left), np.abs(right))
+    tilt = np.where(left * right > 0, np.clip((left + right) / 2, -bound, bound), 0)
+    return np.clip(tilt, -2 * heights, 2 * heights)
+
+
+def smooth(relief: Relief, sigma_m: float) -> Relief:
+    """The relief rounded by a Gaussian of this standard deviation in metres, its borders extended constantly.
+
+    Noise of matching is rough where the thing itself is not, and a force law that follows slopes multiplies it.
+    Raises: GeometryError if sigma_m is negative or not finite.
+    """
+    if not 0 <= sigma_m < np.inf:
+        raise GeometryError(f"sigma_m is a length in metres, 0 or more, not {sigma_m}")
+    sigmas = sigma_m / relief.pitch_m[0], sigma_m / relief.pitch_m[1]
+    if max(sigmas) < 0.1:  # a pixel's own size hides it
+        return relief
+    import cv2
+
+    with plain_opencv():
+        blurred = cv2.GaussianBlur(
+            relief.height_m, (0, 0), max(sigmas[0], 1e-3), sigmaY=max(sigmas[1], 1e-3), borderType=cv2.BORDER_REPLICATE
+        )
+    return Relief(np.maximum(blurred, 0), relief.extent_m)
+
+
+def slopes(relief: Relief) -> tuple[Float32[np.ndarray, "h w"], Float32[np.ndarray, "h w"]]:
+    """Slopes dh/dx and dh/dy in the workspace frame, metres per metre: y runs away from the user, against the rows.
+
+    Central differences, one-sided at the border; 0 along an axis of one cell.
+    """
+    across, along = relief.pitch_m
+    heights = relief.height_m
+    return _difference(heights, across, 1), -_difference(heights, along, 0)
+
+
+def _difference(heights: Float32[np.ndarray, "h w"], pitch_m: float, axis: int) -> Float32[np.ndarray, "h w"]:
+    if heights.shape[axis] == 1:
+        return np.zeros_like(heights)
+    return np.gradient(heights, pitch_m, axis=axis).astype(np.float32)
+
+
+def normals(relief: Relief) -> Float32[np.ndarray, "h w 3"]:
+    """Unit normals (x, y, z) out of the surface, in the workspace frame."""
+    across, along = slopes(relief)
+    up = np.stack([-across, -along, np.ones_like(across)], axis=2)
+    return up / np.linalg.norm(up, axis=2, keepdims=True)

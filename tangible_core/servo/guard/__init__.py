@@ -1,0 +1,1 @@
+"""What stands between a law and a motor: limits, softening, passivity."""

@@ -1,0 +1,65 @@
+"""The virtual coupling, compiled: the law pushes a small tool, and a spring and a damper pull the device towards it.
+
+Colgate, Stanley & Brown (1995), Adams & Hannaford (1999): the device then feels no more stiffness than the coupling's,
+whatever the law does. Imports numba.
+"""
+
+# ruff: noqa: ANN001, ANN201, ANN202 -- the types are in the signatures that numba compiles
+# pyright: basic
+
+import numpy as np
+from numba import float64, njit, types
+
+from ...compiled.compiling import KERNEL
+from . import layout as at
+from .vectors import nought, shortened
+
+READ, WRITTEN = types.Array(float64, 1, "C", readonly=True), types.Array(float64, 1, "C")
+
+
+@njit(**KERNEL, inline="always")
+def _led(settings, memory, elapsed_s, place, velocity):
+    """The tool moved on by one period; False if that is not finite.
+
+    Backward Euler in the coupling, forward in the law: stable up to a law of stiffness + 2 damping / T + 4 mass / T^2,
+    so a mass of law T^2 / 2, a gram or two, leaves room for slopes, which are stiffer.
+    """
+    stiffness, damping = settings[at.COUPLING], settings[at.COUPLING_DAMPING]
+    mass = 0.5 * settings[at.COUPLING_LAW] * elapsed_s * elapsed_s
+    inertia = mass + elapsed_s * (damping + elapsed_s * stiffness)
+    for i in range(3):
+        pull = memory[at.TOOL + 6 + i] + stiffness * (place[i] - memory[at.TOOL + i]) + damping * velocity[i]
+        memory[at.TOOL + 3 + i] = (mass * memory[at.TOOL + 3 + i] + elapsed_s * pull) / inertia
+        memory[at.TOOL + i] += elapsed_s * memory[at.TOOL + 3 + i]
+    # A leash: what pulls harder than the greatest force need not be followed farther.
+    dx, dy, dz = memory[at.TOOL] - place[0], memory[at.TOOL + 1] - place[1], memory[at.TOOL + 2] - place[2]
+    dx, dy, dz, _ = shortened(dx, dy, dz, settings[at.MAX_FORCE_N] / stiffness)
+    memory[at.TOOL], memory[at.TOOL + 1], memory[at.TOOL + 2] = place[0] + dx, place[1] + dy, place[2] + dz
+    return nought(dx, dy, dz) + nought(memory[at.TOOL + 3], memory[at.TOOL + 4], memory[at.TOOL + 5]) == 0.0
+
+
+@njit(types.UniTuple(float64, 6)(READ, WRITTEN, *[float64] * 7), **KERNEL)
+def couple(settings, memory, period_s, x, y, z, vx, vy, vz):
+    """The state that the law is asked for: the tool's, or the device's own where there is no coupling.
+
+    period_s: as for `guard`, which comes after the law.
+    """
+    if settings[at.COUPLING] <= 0.0:
+        return x, y, z, vx, vy, vz
+    elapsed_s = memory[at.AGE_S] + period_s
+    if np.isnan(memory[at.TOOL]) or not _led(settings, memory, elapsed_s, (x, y, z), (vx, vy, vz)):
+        memory[at.TOOL], memory[at.TOOL + 1], memory[at.TOOL + 2] = x, y, z
+        memory[at.TOOL + 3], memory[at.TOOL + 4], memory[at.TOOL + 5] = vx, vy, vz
+    tool = memory[at.TOOL], memory[at.TOOL + 1], memory[at.TOOL + 2]
+    return *tool, memory[at.TOOL + 3], memory[at.TOOL + 4], memory[at.TOOL + 5]
+
+
+@njit(**KERNEL, inline="always")
+def pull(settings, memory, x, y, z, vx, vy, vz, fx, fy, fz):
+    """The tool's force on the device; the law's force on the tool is kept for the next `couple`."""
+    memory[at.TOOL + 6], memory[at.TOOL + 7], memory[at.TOOL + 8] = fx, fy, fz
+    stiffness, damping = settings[at.COUPLING], settings[at.COUPLING_DAMPING]
+    px = stiffness * (memory[at.TOOL] - x) + damping * (memory[at.TOOL + 3] - vx)
+    py = stiffness * (memory[at.TOOL + 1] - y) + damping * (memory[at.TOOL + 4] - vy)
+    pz = stiffness * (memory[at.TOOL + 2] - z) + damping * (memory[at.TOOL + 5] - vz)
+    return (px, py, pz) if nought(px, py, pz) == 0.0 else (0.0, 0.0, 0.0)

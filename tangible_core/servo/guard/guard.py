@@ -1,0 +1,160 @@
+"""What every tick passes between a law and a device, compiled; docs/safety.md says why. Imports numba.
+
+A tick is `couple`, then the law at the place that came out, then `guard`, whose force goes to the device. A tick
+without a fresh position is `wait` instead of all three. The arrays are those of `Safety.arrays`.
+"""
+
+# ruff: noqa: ANN001, ANN201, ANN202 -- the types are in the signatures that numba compiles
+# pyright: basic
+
+import numpy as np
+from numba import float64, int64, njit, types, void
+
+from ...compiled.compiling import KERNEL
+from ...data import TickFlag
+from . import layout as at
+from .coupling import READ, WRITTEN, pull
+from .coupling import couple as couple
+from .passivity import passive
+from .vectors import nought, shortened
+
+TOUCHING, FORCE_LIMITED, SLEW_LIMITED, STIFFNESS_LIMITED, RAMPING, NOT_FINITE, DAMPED, STALE = map(
+    int, [*TickFlag][: at.FLAGS]
+)
+SHORTEST_S = 1e-5
+"""A period below this counts as this."""
+REMEMBERED = 128
+"""Ticks over which the period is averaged."""
+SOFTER_IN_S, HARDER_IN_S = 0.05, 1.0
+"""How long the softening takes from none to all, and back: making a spring harder under the hand does work on it."""
+ENOUGH = 1.1
+"""Times the share that must be allowed before it rises."""
+
+NEWTONS_AND_FLAGS = types.Tuple((float64, float64, float64, int64))
+
+
+@njit(**KERNEL, inline="always")
+def _counted(memory, flags):
+    """The flags, each counted."""
+    memory[at.COUNTS] += flags & TOUCHING
+    if flags > TOUCHING:
+        for bit in range(1, at.FLAGS):
+            memory[at.COUNTS + bit] += (flags >> bit) & 1
+    return flags
+
+
+@njit(**KERNEL, inline="always")
+def _stopped(memory, flag):
+    """Zero at once, and nothing remembered that a fault may have touched; the force fades in again."""
+    for i in range(3 * (at.MOST_DELAY + 1)):
+        memory[at.HELD + i] = 0.0
+    memory[at.FORCE] = memory[at.FORCE + 1] = memory[at.FORCE + 2] = 0.0
+    _anew(memory)
+    return 0.0, 0.0, 0.0, _counted(memory, flag)
+
+
+@njit(**KERNEL, inline="always")
+def _anew(memory):
+    memory[at.PLACE] = memory[at.TOOL] = np.nan
+    memory[at.RAMP] = memory[at.ENERGY_J] = 0.0
+
+
+@njit(**KERNEL, inline="always")
+def _softness(settings, memory, elapsed_s):
+    """Share of the law's force that makes its stiffness one which is held stably at the measured period.
+
+    The period is E[T^2] / E[T]: what a spring gives away in one is K v^2 T^2 / 2, what damping takes b v^2 T. The share
+    moves slowly, and not up for less than a tenth: no stiffness jumps under the hand, nor follows a restless clock.
+    """
+    memory[at.MEAN_S] += (elapsed_s - memory[at.MEAN_S]) / REMEMBERED
+    memory[at.MEAN_S2] += (elapsed_s * elapsed_s - memory[at.MEAN_S2]) / REMEMBERED
+    held = settings[at.STIFFNESS_TIMES_PERIOD] * memory[at.MEAN_S] / memory[at.MEAN_S2]
+    held = min(held, settings[at.MAX_STIFFNESS])
+    wanted = held / settings[at.STIFFNESS] if settings[at.STIFFNESS] > held else 1.0
+    share = memory[at.SOFTNESS]
+    if wanted < share:
+        memory[at.SOFTNESS] = max(wanted, share - elapsed_s / SOFTER_IN_S)
+    elif wanted >= 1.0 or wanted > ENOUGH * share:
+        memory[at.SOFTNESS] = min(wanted, share + elapsed_s / HARDER_IN_S)
+    return memory[at.SOFTNESS]
+
+
+@njit(**KERNEL, inline="always")
+def _slewed(memory, step_n, fx, fy, fz):
+    """From the last force towards this one by at most a step, and whether that is short of it."""
+    wx, wy, wz = memory[at.FORCE], memory[at.FORCE + 1], memory[at.FORCE + 2]
+    dx, dy, dz, short = shortened(fx - wx, fy - wy, fz - wz, step_n)
+    return (wx + dx, wy + dy, wz + dz, True) if short else (fx, fy, fz, False)
+
+
+@njit(**KERNEL, inline="always")
+def _keep(settings, memory, fx, fy, fz):
+    """This force is the last one, and on its way."""
+    memory[at.FORCE], memory[at.FORCE + 1], memory[at.FORCE + 2] = fx, fy, fz
+    slot = at.HELD + 3 * int(memory[at.SLOT])
+    memory[slot], memory[slot + 1], memory[slot + 2] = fx, fy, fz
+    memory[at.SLOT] = 0.0 if memory[at.SLOT] >= settings[at.DELAY] else memory[at.SLOT] + 1.0
+
+
+@njit(**KERNEL, inline="always")
+def _safe(settings, memory, elapsed_s, touching, fx, fy, fz):
+    """Soft enough to be held stably, and not over the maximum; with flags."""
+    flags = 0
+    share = _softness(settings, memory, elapsed_s)
+    if share < 1.0 and touching:
+        fx, fy, fz, flags = share * fx, share * fy, share * fz, STIFFNESS_LIMITED
+    fx, fy, fz, over = shortened(fx, fy, fz, settings[at.MAX_FORCE_N])
+    return fx, fy, fz, flags | FORCE_LIMITED if over else flags
+
+
+@njit(**KERNEL, inline="always")
+def _gentle(settings, memory, elapsed_s, fx, fy, fz):
+    """Faded in, and at most a step from the last force; with flags."""
+    flags = 0
+    share = min(memory[at.RAMP] + elapsed_s * settings[at.RAMP_PER_S], 1.0)
+    memory[at.RAMP] = share
+    if share < 1.0:
+        fx, fy, fz, flags = share * fx, share * fy, share * fz, RAMPING
+    fx, fy, fz, short = _slewed(memory, settings[at.MAX_STEP_N] * min(1000.0 * elapsed_s, 1.0), fx, fy, fz)
+    return fx, fy, fz, flags | SLEW_LIMITED if short else flags
+
+
+@njit(NEWTONS_AND_FLAGS(READ, WRITTEN, *[float64] * 10), **KERNEL)
+def guard(settings, memory, period_s, x, y, z, vx, vy, vz, fx, fy, fz):
+    """What may leave of the law's force at a fresh position of the device, and the flags of this tick.
+
+    period_s: since the last `guard` or `wait`. Always finite, never over the maximum, and never more than a step from
+    the last force, except that a state that is not finite or came too late is zero force at once.
+    """
+    elapsed_s = memory[at.AGE_S] + period_s
+    memory[at.AGE_S] = 0.0
+    if nought(x, y, z) + nought(vx, vy, vz) + nought(fx, fy, fz) + 0.0 * elapsed_s != 0.0:
+        return _stopped(memory, NOT_FINITE)
+    if elapsed_s > settings[at.STALE_S]:
+        return _stopped(memory, STALE)
+    elapsed_s = max(elapsed_s, SHORTEST_S)
+    touching = fx != 0.0 or fy != 0.0 or fz != 0.0
+    if settings[at.COUPLING] > 0.0:
+        fx, fy, fz = pull(settings, memory, x, y, z, vx, vy, vz, fx, fy, fz)
+    fx, fy, fz, soft = _safe(settings, memory, elapsed_s, touching, fx, fy, fz)
+    braked = False
+    if settings[at.BRAKE] > 0.0:
+        fx, fy, fz, braked = passive(settings, memory, elapsed_s, touching, x, y, z, vx, vy, vz, fx, fy, fz)
+    fx, fy, fz, late = _gentle(settings, memory, elapsed_s, fx, fy, fz)
+    _keep(settings, memory, fx, fy, fz)
+    return fx, fy, fz, _counted(memory, touching * TOUCHING | soft | braked * DAMPED | late)
+
+
+@njit(NEWTONS_AND_FLAGS(READ, WRITTEN, float64), **KERNEL)
+def wait(settings, memory, period_s):
+    """A tick that found no fresh position: the last force, or zero from `stale_s` on or by a clock that is broken."""
+    memory[at.AGE_S] += period_s if period_s >= 0.0 else np.inf
+    if not memory[at.AGE_S] <= settings[at.STALE_S]:
+        return _stopped(memory, STALE)
+    return memory[at.FORCE], memory[at.FORCE + 1], memory[at.FORCE + 2], 0
+
+
+@njit(void(WRITTEN), **KERNEL)
+def restart(memory):
+    """For the first tick on another scene, or after homing: the force fades in again, from what it is."""
+    _anew(memory)

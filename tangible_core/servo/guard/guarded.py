@@ -1,0 +1,28 @@
+"""A law and its guard, for loops that are Python's."""
+
+from collections.abc import Callable
+from typing import Any, cast
+
+import numpy as np
+
+from ...data import Force, HapticState
+from ...plugins.interfaces import Touch
+
+Guarded = Callable[[HapticState, float], tuple[Force, int]]
+"""(state, seconds since the one before) -> the force that may leave, and the sum of its `TickFlag`s."""
+
+
+def guarded(touch: Touch, settings: np.ndarray, memory: np.ndarray) -> Guarded:
+    """What asks a law for its force and lets through what its guard, with the arrays of `Safety.arrays`, allows."""
+    from . import guard
+
+    couple, allow = cast(Any, guard).couple, cast(Any, guard).guard
+
+    def allowed(state: HapticState, period_s: float) -> tuple[Force, int]:
+        device = *state.position_m, *state.velocity_m_per_s
+        x, y, z, vx, vy, vz = couple(settings, memory, period_s, *device)
+        wanted = touch.force(HapticState((x, y, z), (vx, vy, vz), state.time_s, state.buttons))
+        fx, fy, fz, flags = allow(settings, memory, period_s, *device, *wanted)
+        return Force(fx, fy, fz), flags
+
+    return allowed

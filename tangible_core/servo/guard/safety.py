@@ -1,0 +1,138 @@
+"""What a force loop allows: the options, and the two arrays that `guard` is given."""
+
+from typing import Annotated, Literal
+
+import numpy as np
+from jaxtyping import Float64
+from pydantic import BaseModel, ConfigDict, Field
+
+from ...data import DeviceSpec, TickFlag
+from . import layout as at
+
+BRAKE_TIMES = 5
+"""The controller brakes by at most so many times the device's damping: more makes noise of the velocity felt, and a
+sampled brake of 30 times it is itself unstable."""
+NOMINAL_S = 0.001
+"""The period that a device's greatest stiffness is stated for, and that is assumed before one was measured."""
+DEBT_M = 0.001
+"""A loop owes at most what the greatest force does over this way: a law that gives by design is not braked for ever."""
+Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+
+
+class Coupling(BaseModel):
+    """A spring and a damper between the device and the tool that the law feels."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+
+    stiffness_n_per_m: Positive
+    """No law feels stiffer than this."""
+    damping_n_s_per_m: Annotated[float, Field(ge=0, allow_inf_nan=False)]
+    """Adds to what the device's own damping must outweigh."""
+
+
+class Safety(BaseModel):
+    """What no law may do to a hand; every limit that acted is counted and reported."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+
+    max_force_n: Positive | None = None
+    """Greatest force; null, or more than the device can give: the device's."""
+    max_step_n: Annotated[float, Field(gt=0, le=10, allow_inf_nan=False)] = 0.5
+    """Most that the force changes in a tick of 1 ms. A shorter tick has its share of that, a longer one no more."""
+    ramp_s: Annotated[float, Field(ge=0, le=60, allow_inf_nan=False)] = 0.5
+    """Force fades in for so long: after the start, a new scene, and every time that it was cut to zero."""
+    stale_s: Annotated[float, Field(ge=0.002, le=1, allow_inf_nan=False)] = 0.02
+    """The force is cut to zero when the device gave no fresh position for so long."""
+    stiffness_margin: Annotated[float, Field(gt=0, le=1, allow_inf_nan=False)] = 0.8
+    """Share of the stiffness limit that a law may use. What is left outweighs the law's own damping, whose delay also
+    gives energy away."""
+    delay_ticks: Annotated[int, Field(ge=0, le=at.MOST_DELAY)] = 0
+    """Whole ticks from reading a position to its force on the hand, beyond the tick itself."""
+    friction_n: Positive | None = None
+    """Coulomb friction of the handle, where it was measured: it bounds the stiffness that coarse encoders allow."""
+    passivity: Literal["off", "coupled", "strict"] = "coupled"
+    """`strict`: the loop gives back no more energy than it took in. `coupled`: what the device's own damping takes in
+    may be given as well, so that a spring held stably is left as it is."""
+    coupling: Coupling | Literal["auto"] | None = None
+    """Virtual coupling: null for none, for laws whose stiffness is known; `auto` for one that this device holds."""
+
+    def arrays(
+        self, spec: DeviceSpec, stiffness_n_per_m: float
+    ) -> tuple[Float64[np.ndarray, "settings"], Float64[np.ndarray, "memory"]]:
+        """What `guard` reads, and what it remembers: one memory for as long as a device is open.
+
+        For another scene take other settings, keep the memory and call `restart`.
+        stiffness_n_per_m: the law's, as `stiffness_of` has it; 0 for one that is no spring.
+        """
+        settings, memory = np.zeros(at.SETTINGS), np.zeros(at.MEMORY)
+        damping = effective_damping_n_s_per_m(spec)
+        settings[at.MAX_FORCE_N] = min(self.max_force_n or np.inf, spec.max_force_n)
+        settings[at.MAX_STEP_N] = self.max_step_n
+        settings[at.RAMP_PER_S] = 1 / max(self.ramp_s, 1e-9)
+        settings[at.STALE_S] = self.stale_s
+        settings[at.STIFFNESS_TIMES_PERIOD] = self.stiffness_margin * stiffness_limit_n_per_m(
+            damping, 1, self.delay_ticks
+        )
+        encoder = np.inf if self.friction_n is None else encoder_limit_n_per_m(self.friction_n, spec.resolution_m)
+        settings[at.MAX_STIFFNESS] = min(spec.max_stiffness_n_per_m, self.stiffness_margin * encoder)
+        settings[at.DELAY] = self.delay_ticks
+        settings[at.BRAKE] = 0 if self.passivity == "off" else BRAKE_TIMES * damping
+        settings[at.CREDIT] = self.stiffness_margin * damping if self.passivity == "coupled" else 0
+        settings[at.MOST_DEBT_J] = settings[at.MAX_FORCE_N] * DEBT_M
+        settings[at.STIFFNESS] = stiffness_n_per_m
+        if self.coupling is not None:
+            self._couple(settings, damping, stiffness_n_per_m)
+        memory[[at.PLACE, at.TOOL]] = np.nan
+        memory[[at.MEAN_S, at.MEAN_S2]] = NOMINAL_S, NOMINAL_S**2
+        memory[at.SOFTNESS] = softness(settings, NOMINAL_S)
+        return settings, memory
+
+    def _couple(self, settings: np.ndarray, damping_n_s_per_m: float, law_n_per_m: float) -> None:
+        """Half of the stiffness, and a quarter of the damping, that the device holds, where nothing else is said."""
+        most = min(settings[at.MAX_STIFFNESS], settings[at.STIFFNESS_TIMES_PERIOD] / NOMINAL_S)
+        if isinstance(self.coupling, Coupling):
+            stiffness, damping = self.coupling.stiffness_n_per_m, self.coupling.damping_n_s_per_m
+        else:
+            stiffness, damping = most / 2, damping_n_s_per_m / 4 / (1 + 2 * self.delay_ticks)
+        settings[[at.COUPLING, at.COUPLING_DAMPING]] = stiffness, damping
+        settings[at.COUPLING_LAW] = law_n_per_m or most
+        settings[at.STIFFNESS] = 1 / (1 / stiffness + (1 / law_n_per_m if law_n_per_m else 0))
+
+
+def softness(settings: Float64[np.ndarray, "settings"], period_s: float) -> float:
+    """The share of a law's force that leaves a guard at this period, 1 if the law is soft enough."""
+    held = min(settings[at.STIFFNESS_TIMES_PERIOD] / period_s, settings[at.MAX_STIFFNESS])
+    return float(held / settings[at.STIFFNESS]) if settings[at.STIFFNESS] > held else 1.0
+
+
+def counts(memory: Float64[np.ndarray, "memory"]) -> dict[TickFlag, int]:
+    """In how many ticks each flag of a guard was set, those that never were left out."""
+    ticks = {TickFlag(1 << bit): int(memory[at.COUNTS + bit]) for bit in range(at.FLAGS)}
+    return {flag: count for flag, count in ticks.items() if count}
+
+
+def stiffness_limit_n_per_m(damping_n_s_per_m: float, period_s: float, delay_ticks: int = 0) -> float:
+    """The stiffest sampled spring that a damped handle holds passively, K = 2 b / (T (1 + 2 d)).
+
+    From Re{(1 - e^-jwT) K e^-jwdT} (T / 2) / (1 - cos wT) < b at all frequencies, the worst of which is 0.
+    Source: Colgate & Schenkel, Passivity of a class of sampled-data systems, J. Robotic Systems 14, 1997, eq. 19.
+    """
+    return 2 * damping_n_s_per_m / (period_s * (1 + 2 * delay_ticks))
+
+
+def encoder_limit_n_per_m(friction_n: float, resolution_m: float) -> float:
+    """The stiffest spring whose steps, of K times the encoder's, Coulomb friction swallows, K = 2 f / Delta.
+
+    Source: Abbott & Okamura, Effects of position quantization and sampling rate on virtual-wall passivity, IEEE
+    Trans. Robotics 21(5), 2005.
+    """
+    return 2 * friction_n / resolution_m
+
+
+def effective_damping_n_s_per_m(spec: DeviceSpec) -> float:
+    """The device's damping, or less where its greatest stiffness at 1 kHz says so; that alone where none is stated.
+
+    Makers' tables give the damping that a device can display, which is far more than what is in its joints.
+    """
+    implied = spec.max_stiffness_n_per_m * NOMINAL_S / 2
+    return min(spec.damping_n_s_per_m or implied, implied)

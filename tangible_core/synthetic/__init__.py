@@ -1,0 +1,1 @@
+"""Scenes whose exact answer is known, for tests, benchmarks and comparisons."""

@@ -1,0 +1,205 @@
+"""`tangible devices`: every answer of a device as a user sees it, and whole processes for the exit codes."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tangible_core.commands import devices as command
+from tangible_core.commands import stress
+from tangible_core.errors import ConfigError, DeviceError
+from tangible_core.plugins.registry import Registry
+from tangible_core.scene.calibrations import calibration_path
+from tangible_devices.mock import Mock
+
+TANGIBLE = str(Path(sys.executable).with_name("tangible"))
+ARM = '''
+from typing import Literal
+
+from pydantic import BaseModel
+
+from tangible_core.data import DeviceSpec, Finding, Unit
+from tangible_core.errors import DeviceAbsent, DeviceError
+from tangible_core.plugins.interfaces import Adjustable, HapticDevice, Serviceable
+
+
+class Offsets(BaseModel):
+    offset_deg: float = 35.0
+
+
+class Arm(HapticDevice, Serviceable, Adjustable):
+    """An arm for tests."""
+
+    state: Literal["right", "wrong", "gone", "broken"] = "right"
+    """How it is."""
+
+    def spec(self):
+        return DeviceSpec(8.0, 3000.0, 20.0, (0.1, 0.1, 0.1), 1e-5)
+
+    def open(self):
+        raise DeviceAbsent("no arm; plug it in")
+
+    def connected(self):
+        if self.state == "broken":
+            raise DeviceError("the bus [usb] fails; plug it in again")
+        return () if self.state == "gone" else (Unit("Arm", "A1", "bus 1"), Unit("Arm", "A2", "bus 2", "is [busy]"))
+
+    def examine(self):
+        if self.state == "gone":
+            yield Finding("unit", "not asked", "none is plugged in")
+            return
+        yield Finding("library", "fine", "is there")
+        if self.state == "wrong":
+            yield Finding("permission", "failed", "there is none", 'SUBSYSTEM=="usb", MODE="0660" [copy this]')
+
+    def home(self, say):
+        say("pull the grip out")
+
+    def calibrate(self, ask):
+        return "A1", Offsets(offset_deg=float(ask("the angle?")))
+'''
+
+
+@pytest.fixture
+def registry(install, monkeypatch: pytest.MonkeyPatch) -> Registry:
+    install("arms", {"tangible.device": {"arm": "arm_module:Arm", "lost": "no_module:Lost"}}, arm_module=ARM)
+    registry = Registry()
+    monkeypatch.setattr(command, "default_registry", lambda: registry)
+    return registry
+
+
+def answer(monkeypatch: pytest.MonkeyPatch, *texts: str) -> None:
+    answers = iter(texts)
+
+    def read(prompt: str) -> str:
+        try:
+            return next(answers)
+        except StopIteration:
+            raise EOFError from None
+
+    monkeypatch.setattr("builtins.input", read)
+
+
+class TestList:
+    def test_what_is_installed_and_what_is_connected(self, registry: Registry, capsys: pytest.CaptureFixture[str]):
+        command.devices(as_json=True)
+        arm, lost = json.loads(capsys.readouterr().out)
+        assert (arm["name"], arm["origin"], arm["simulated"], arm["problem"]) == ("arm", "arms 1.0", False, "")
+        assert arm["units"][0] == {"name": "Arm", "serial": "A1", "place": "bus 1", "problem": ""}
+        assert lost["units"] == [] and "cannot be loaded" in lost["problem"]
+
+    def test_a_line_a_unit(self, registry: Registry, capsys: pytest.CaptureFixture[str]):
+        command.devices(as_json=False)
+        lines = capsys.readouterr().out.splitlines()
+        assert lines[1].split() == ["arm", "Arm", "A1", "bus", "1"]
+        assert lines[2].split() == ["arm", "Arm", "A2", "bus", "2", "is", "[busy]"]
+
+    def test_a_bus_that_fails_is_said(self, registry: Registry, capsys: pytest.CaptureFixture[str]):
+        row = command._row(registry.find("device", "arm"))
+        assert row["problem"] == ""
+        assert command._cells({**row, "units": [], "problem": "x; y"}) == [("-", "", "", "x; y")]
+
+
+class TestDoctor:
+    @pytest.mark.parametrize(
+        ("state", "named", "passed"),
+        [("right", True, True), ("wrong", True, False), ("gone", True, False), ("right", False, False)],
+    )
+    def test_its_verdict(self, registry: Registry, state: str, named: bool, passed: bool):
+        """A plugin that cannot be loaded has failed; and so has what is not there, where it is asked for."""
+        assert command.doctor("arm" if named else None, [f"state={state}"] if named else [], False) is passed
+
+    def test_the_cure_can_be_copied_as_it_stands(self, registry: Registry, capsys: pytest.CaptureFixture[str]):
+        command.doctor("arm", ["state=wrong"], False)
+        assert 'SUBSYSTEM=="usb", MODE="0660" [copy this]' in capsys.readouterr().out.splitlines()
+
+    def test_for_a_program(self, registry: Registry, capsys: pytest.CaptureFixture[str]):
+        command.doctor("arm", ["state=wrong"], True)
+        [_, permission] = json.loads(capsys.readouterr().out)["arm"]
+        assert permission["check"] == "permission"
+        assert permission["verdict"] == "failed"
+
+    def test_all_of_them(self, registry: Registry, capsys: pytest.CaptureFixture[str]):
+        command.doctor(None, [], True)
+        found = json.loads(capsys.readouterr().out)
+        assert list(found) == ["arm", "lost"]
+        assert found["lost"][0]["verdict"] == "failed"
+
+    def test_options_belong_to_one_device(self, registry: Registry):
+        with pytest.raises(ConfigError, match="name the device"):
+            command.doctor(None, ["state=wrong"], False)
+
+
+class TestSettingUp:
+    def test_homing_is_guided(self, registry: Registry, capsys: pytest.CaptureFixture[str]):
+        command.home("arm", [])
+        told = capsys.readouterr()
+        assert told.err == "pull the grip out\n"
+        assert told.out == "arm is homed\n"
+
+    def test_a_calibration_is_kept_by_serial_number(
+        self, registry: Registry, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    ):
+        answer(monkeypatch, " 34.5 ")
+        command.calibrate("arm", [])
+        path = calibration_path("arm", "A1")
+        assert json.loads(path.read_text()) == {"offset_deg": 34.5}
+        assert capsys.readouterr().out.splitlines()[-1] == f"saved in {path}"
+
+    def test_without_an_answer_nothing_is_saved(self, registry: Registry, monkeypatch: pytest.MonkeyPatch):
+        answer(monkeypatch)
+        with pytest.raises(ConfigError, match="nothing was saved"):
+            command.calibrate("arm", [])
+        assert not calibration_path("arm", "A1").exists()
+
+    def test_most_devices_need_neither(self):
+        for verb in (command.home, command.calibrate):
+            with pytest.raises(DeviceError, match="nothing to home"):
+                verb("mock", [])
+
+
+class TestStress:
+    def test_its_figures(self):
+        figures = stress.measured(Mock(), 0.05)
+        assert figures["cycles"] > 100
+        assert figures["rate_hz"] * 0.05 == pytest.approx(figures["cycles"], rel=0.5)
+        assert 0 < figures["p50_us"] <= figures["p99_us"] <= figures["p99_9_us"] <= figures["max_us"]
+
+    def test_no_force_is_written(self, monkeypatch: pytest.MonkeyPatch):
+        forces = []
+        real = Mock(path="press")
+        link = real.open()
+        write = link.write
+        monkeypatch.setattr(link, "write", lambda force: (forces.append(force), write(force)))
+        monkeypatch.setattr(Mock, "open", lambda self: link)
+        stress.measured(real, 0.01)
+        assert set(forces) == {(0.0, 0.0, 0.0)}
+
+    @pytest.mark.parametrize("seconds", [0, -1, float("nan"), 1e9])
+    def test_times_that_are_none(self, seconds: float):
+        with pytest.raises(ConfigError, match="--seconds"):
+            stress.stress("mock", [], seconds, False)
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "said"),
+    [
+        (["devices"], 0, "mock"),
+        (["devices", "--json"], 0, '"simulated": true'),
+        (["devices", "doctor", "mock"], 0, "needs nothing"),
+        (["devices", "doctor", "haply", "--set", "uri=ws://127.0.0.1:9"], 1, "not asked"),
+        (["devices", "doctor", "moc"], 2, "did you mean 'mock'?"),
+        (["devices", "stress", "mock", "--seconds", "0.05", "--json"], 0, '"p99_9_us"'),
+        (["devices", "stress", "mock", "--set", "pth=circle"], 2, "--set pth=circle: pth: unknown option"),
+        (["devices", "stress", "haply", "--set", "uri=ws://127.0.0.1:9"], 2, "start Haply Hub"),
+        (["devices", "home", "mock"], 2, "nothing to home"),
+        (["devices", "--json", "doctor"], 2, "write --json after 'doctor'"),
+    ],
+)
+def test_exit_codes(words: list[str], code: int, said: str):
+    ran = subprocess.run([TANGIBLE, *words], capture_output=True, text=True)
+    assert said in ran.stdout + ran.stderr
+    assert ran.returncode == code
+    assert "Traceback" not in ran.stderr

@@ -1,0 +1,29 @@
+"""Work shared among threads."""
+
+from threading import get_ident
+
+import pytest
+
+from tangible_core.compiled.threads import in_blocks, in_turns
+
+
+@pytest.mark.parametrize(("most", "shares"), [(None, 5), (3, 3), (1, 1), (9, 5)])
+def test_turns_cover_every_task_once_in_no_more_shares_than_asked_for(most, shares, monkeypatch):
+    monkeypatch.setattr("tangible_core.compiled.threads.thread_count", lambda: 5)
+    seen = []
+    in_turns(list(range(17)), seen.append, most)
+    assert len(seen) == shares
+    assert sorted(task for share in seen for task in share) == list(range(17))
+
+
+def test_no_task_is_no_work():
+    in_turns([], lambda share: pytest.fail("there is nothing to do"))
+
+
+@pytest.mark.parametrize("length", [0, 1, 15, 16, 100])
+def test_blocks_cover_a_range_once(length, monkeypatch):
+    monkeypatch.setattr("tangible_core.compiled.threads.thread_count", lambda: 3)
+    seen = []
+    in_blocks(length, lambda start, stop: seen.append((start, stop, get_ident())))
+    assert [place for start, stop, _ in sorted(seen) for place in range(start, stop)] == list(range(length))
+    assert all(stop - start >= 16 for start, stop, _ in seen if length >= 32)

@@ -1,0 +1,532 @@
+"""Pictures as arrays, and the files they come from."""
+
+import io
+import os
+import struct
+import zipfile
+import zlib
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from PIL import Image
+
+from hostile import SIDE, npy_header, npz_bomb, tiff
+from tangible_core.data.pictures import check_picture, fill_non_finite, full_scale, to_grey, to_rgb8
+from tangible_core.errors import PictureError, shown
+from tangible_core.scene.picture_files import MAX_LABELS, read_labels, read_map, read_picture, write_png
+
+NAN = np.nan
+COLOURS = np.random.default_rng(0).integers(0, 256, (6, 9, 3), dtype=np.uint8)
+
+
+def encoded(image, form, **options):
+    file = io.BytesIO()
+    image.save(file, form, **options)
+    return file.getvalue()
+
+
+def put(folder, name, data):
+    path = folder / name
+    path.write_bytes(data)
+    return path
+
+
+def saved(folder, name, array):
+    np.save(folder / name, array)
+    return folder / name
+
+
+def by_opencv(folder, name, array):
+    import cv2
+
+    return put(folder, name, cv2.imencode(f".{name.rsplit('.')[-1]}", array)[1].tobytes())
+
+
+# Arrays
+
+
+@pytest.mark.parametrize("dtype", [np.uint8, np.uint16, np.float16, np.float32, np.float64, np.bool_])
+@pytest.mark.parametrize("shape", [(1, 1), (3, 4), (3, 4, 3), (3, 4, 4)])
+def test_what_a_picture_is(dtype, shape):
+    picture = np.ones(shape, dtype)
+    assert check_picture(picture) is picture
+
+
+@pytest.mark.parametrize(
+    ("array", "complaint"),
+    [
+        (np.zeros((2, 2, 2), np.uint8), r"\(h, w\) or \(h, w, 3\|4\), not \(2, 2, 2\)"),
+        (np.zeros(3, np.uint8), r"not \(3,\)"),
+        (np.zeros((0, 4), np.uint8), "empty"),
+        (np.zeros((2, 2), np.int64), "not int64; convert it first"),
+        (np.zeros((2, 2), np.complex64), "not complex64"),
+        (np.array([[0, 1], [NAN, np.inf]]), "the view: 2 values are NaN or infinite, the first at row 1, column 0"),
+    ],
+)
+def test_what_is_no_picture_is_said(array, complaint):
+    with pytest.raises(PictureError, match=complaint):
+        check_picture(array, "the view")
+
+
+@pytest.mark.parametrize(
+    ("white", "scale"),
+    [(np.uint8(255), 255), (np.uint16(65535), 65535), (np.float32(0.5), 1), (np.float64(4), 4), (np.bool_(1), 1)],
+)
+def test_white_is_what_the_type_or_the_float_picture_holds(white, scale):
+    assert full_scale(np.full((2, 2), white)) == scale
+
+
+def test_grey_is_luma_of_rec_601_whatever_the_type():
+    grey = [[0.299, 0.587, 0.114]]
+    primaries = np.eye(3)[None]
+    for picture in (primaries, primaries.astype(bool), np.uint8(primaries * 255), np.uint16(primaries * 65535)):
+        assert to_grey(picture).dtype == np.float32
+        np.testing.assert_allclose(to_grey(picture), grey, atol=1e-6)
+
+
+@pytest.mark.parametrize("dtype", [np.uint8, np.uint16, np.float32, np.float64])
+def test_three_channels_of_one_value_are_that_value_to_the_last_bit(dtype):
+    white = 1 if np.dtype(dtype).kind == "f" else np.iinfo(dtype).max
+    one = (np.random.default_rng(1).random((211, 127)) * white).astype(dtype)
+    for many in (np.dstack([one] * 3), np.dstack([one] * 3 + [np.full_like(one, white)])):
+        assert to_grey(many).tobytes() == to_grey(one).tobytes()
+        assert to_grey(many[::-1, ::3]).tobytes() == to_grey(one[::-1, ::3]).tobytes()  # a BLAS asks how rows lie
+
+
+def test_grey_is_what_its_formula_says_to_the_last_bit():
+    red, green, blue, opaque = np.moveaxis(np.random.default_rng(2).random((64, 63, 4), np.float32), 2, 0)
+    grey = green + np.float32(0.299) * (red - green) + np.float32(0.114) * (blue - green)
+    assert to_grey(np.dstack([red, green, blue])).tobytes() == grey.tobytes()
+    assert to_grey(np.dstack([red, green, blue, opaque])).tobytes() == (grey * opaque + (1 - opaque)).tobytes()
+
+
+def test_what_is_transparent_shows_white():
+    picture = np.uint8([[[255, 0, 0, 0], [0, 0, 0, 255]]])
+    np.testing.assert_allclose(to_grey(picture), [[1, 0]], atol=1e-6)
+    assert to_rgb8(picture).tolist() == [[[255, 255, 255], [0, 0, 0]]]
+
+
+def test_eight_bits_of_any_picture():
+    assert to_rgb8(COLOURS) is COLOURS
+    assert to_rgb8(COLOURS.astype(np.uint16) * 257).tolist() == COLOURS.tolist()
+    assert to_rgb8(np.array([[True, False]])).tolist() == [[[255] * 3, [0] * 3]]
+    assert to_rgb8(np.float32([[-1, 0.5, 1]]))[..., 0].tolist() == [[0, 128, 255]]
+
+
+# Files that hold a picture
+
+
+@pytest.mark.parametrize("form", ["PNG", "TIFF", "BMP", "PPM", "GIF"])
+def test_pictures_without_loss_come_back_as_they_were(tmp_path, form):
+    flat = COLOURS // 64 * 64
+    path = put(tmp_path, "picture", encoded(Image.fromarray(flat), form))
+    np.testing.assert_array_equal(read_picture(path), flat)
+
+
+def test_a_png_comes_back_as_it_was_written(tmp_path):
+    write_png(tmp_path / "deep" / "a.png", COLOURS)
+    np.testing.assert_array_equal(read_picture(tmp_path / "deep" / "a.png"), COLOURS)
+
+
+def test_a_jpeg_is_read(tmp_path):
+    path = put(tmp_path, "a.jpg", encoded(Image.new("RGB", (9, 6), (200, 10, 30)), "JPEG"))
+    assert read_picture(path).shape == (6, 9, 3)
+
+
+def test_a_palette_becomes_colours_and_its_transparency_a_channel(tmp_path):
+    image = Image.fromarray(np.uint8([[0, 1]]), "L").convert("P")
+    image.putpalette([255, 0, 0, 0, 255, 0])
+    assert read_picture(put(tmp_path, "a.png", encoded(image, "PNG"))).tolist() == [[[255, 0, 0], [0, 255, 0]]]
+    clear = put(tmp_path, "b.png", encoded(image, "PNG", transparency=1))
+    assert read_picture(clear).tolist() == [[[255, 0, 0, 255], [0, 255, 0, 0]]]
+
+
+@pytest.mark.parametrize(("mode", "channels"), [("1", ()), ("L", ()), ("LA", (4,)), ("RGBA", (4,)), ("RGB", (3,))])
+def test_every_mode_becomes_grey_rgb_or_rgba(tmp_path, mode, channels):
+    picture = read_picture(put(tmp_path, "a.png", encoded(Image.new(mode, (5, 3), 1), "PNG")))
+    assert picture.shape == (3, 5, *channels)
+    assert picture.dtype == np.uint8
+
+
+def test_a_printers_jpeg_becomes_rgb(tmp_path):
+    path = put(tmp_path, "a.jpg", encoded(Image.new("CMYK", (5, 3)), "JPEG"))
+    assert read_picture(path).shape == (3, 5, 3)
+
+
+@pytest.mark.parametrize("name", ["a.png", "a.tif", "a.pgm"])
+def test_sixteen_bits_of_grey_are_kept(tmp_path, name):
+    deep = np.arange(54, dtype=np.uint16).reshape(6, 9) * 1200
+    picture = read_picture(by_opencv(tmp_path, name, deep))
+    assert picture.dtype == np.uint16
+    np.testing.assert_array_equal(picture, deep)
+
+
+@pytest.mark.parametrize("name", ["a.png", "a.tif"])
+@pytest.mark.parametrize("channels", [3, 4])
+def test_sixteen_bits_of_colour_are_kept(tmp_path, name, channels):
+    deep = np.random.default_rng(0).integers(0, 65536, (4, 5, channels), dtype=np.uint16)
+    swapped = deep[..., [2, 1, 0, 3][:channels]]
+    np.testing.assert_array_equal(read_picture(by_opencv(tmp_path, name, swapped)), deep)
+
+
+@pytest.mark.parametrize(
+    ("orientation", "upright"),
+    [
+        (1, [[1, 2, 3], [4, 5, 6]]),
+        (2, [[3, 2, 1], [6, 5, 4]]),
+        (3, [[6, 5, 4], [3, 2, 1]]),
+        (4, [[4, 5, 6], [1, 2, 3]]),
+        (5, [[1, 4], [2, 5], [3, 6]]),
+        (6, [[4, 1], [5, 2], [6, 3]]),
+        (7, [[6, 3], [5, 2], [4, 1]]),
+        (8, [[3, 6], [2, 5], [1, 4]]),
+        (99, [[1, 2, 3], [4, 5, 6]]),
+    ],
+)
+def test_a_picture_stands_as_its_exif_says(tmp_path, orientation, upright):
+    tags = Image.Exif()
+    tags[0x0112] = orientation
+    image = Image.fromarray(np.uint8([[1, 2, 3], [4, 5, 6]]))
+    path = put(tmp_path, "a.png", encoded(image, "PNG", exif=tags))
+    assert read_picture(path).tolist() == upright
+    assert read_picture(path).flags.c_contiguous
+
+
+def test_an_array_in_a_file_is_a_picture_too(tmp_path):
+    np.testing.assert_array_equal(read_picture(saved(tmp_path, "a.npy", COLOURS)), COLOURS)
+
+
+def test_an_array_that_is_no_picture_is_refused_with_its_file(tmp_path):
+    with pytest.raises(PictureError, match=r"a\.npy: .*not int64"):
+        read_picture(saved(tmp_path, "a.npy", np.zeros((2, 2), np.int64)))
+
+
+# Files that hold none
+
+
+def refusal(path, read=read_picture):
+    with pytest.raises(PictureError) as caught:
+        read(path)
+    message = str(caught.value)
+    assert message.startswith(shown(f"{path}: ", 1000))
+    assert message.isprintable()
+    return message
+
+
+@pytest.mark.parametrize("read", [read_picture, read_map, read_labels])
+@pytest.mark.parametrize("name", ["left.png", "left.npy"])
+def test_a_missing_file_names_its_neighbour(tmp_path, read, name):
+    put(tmp_path, name.replace("left", "lefft"), b"x")
+    assert f"no such file (did you mean 'lefft{name[4:]}'?)" in refusal(tmp_path / name, read)
+
+
+def test_a_missing_folder_is_named(tmp_path):
+    assert f"no folder {tmp_path / 'nowhere'}" in refusal(tmp_path / "nowhere" / "a.png")
+
+
+@pytest.mark.parametrize("place", [".", os.devnull])
+def test_a_folder_or_a_device_is_no_file(tmp_path, place):
+    assert "no file but a folder or a device" in refusal(tmp_path / place)
+
+
+@pytest.mark.parametrize("name", ["n" * 300, "a\0b"])
+def test_a_name_that_no_file_can_have_is_refused(tmp_path, name):
+    refusal(tmp_path / name)
+
+
+def test_a_file_that_may_not_be_read_says_so(tmp_path, monkeypatch):
+    path = put(tmp_path, "a.png", b"x")
+
+    def deny(*_):
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(type(path), "open", deny)
+    assert "Permission denied; check the path and its permissions" in refusal(path)
+
+
+@pytest.mark.parametrize("name", ["a.png", "a.npy", "a.npz"])
+def test_an_empty_file_says_so(tmp_path, name):
+    assert "the file is empty; copy or download it again" in refusal(put(tmp_path, name, b""))
+
+
+@pytest.mark.parametrize("data", [b"hello", b"%PDF-1.7 whatever", b"%!PS-Adobe-3.0 EPSF-3.0\n", b"\0" * 500])
+def test_what_is_no_picture_says_what_to_use(tmp_path, data):
+    assert "no picture this program can read; use PNG" in refusal(put(tmp_path, "a.png", data))
+
+
+@pytest.mark.parametrize(("form", "name"), [("PNG", "a.png"), ("JPEG", "a.jpg"), ("TIFF", "a.tif"), ("WEBP", "a.webp")])
+@pytest.mark.parametrize("share", [0.5, 0.95])
+def test_a_picture_cut_short_says_so(tmp_path, form, name, share):
+    noise = np.random.default_rng(0).integers(0, 256, (64, 64, 3), dtype=np.uint8)
+    data = encoded(Image.fromarray(noise), form)
+    assert "again" in refusal(put(tmp_path, name, data[: int(len(data) * share)]))
+
+
+def test_a_deep_picture_cut_short_says_so(tmp_path):
+    noise = np.random.default_rng(0).integers(0, 65536, (64, 64, 3), dtype=np.uint16)
+    data = by_opencv(tmp_path, "a.png", noise).read_bytes()
+    assert "damaged or cut short" in refusal(put(tmp_path, "a.png", data[: len(data) // 2]))
+
+
+def test_a_picture_that_claims_to_be_huge_is_not_opened(tmp_path):
+    for side in (12_000, 60_000):
+        path = put(tmp_path, "a.pgm", f"P5 {side} {side} 255\n".encode())
+        assert "larger than 89 megapixels; make it smaller first" in refusal(path)
+
+
+@pytest.mark.parametrize(
+    "layout",
+    [
+        {"bits": 64, "sample_format": 3},
+        {"bits": 32, "samples": 3, "sample_format": 3},
+        {"bits": 16, "samples": 3, "sample_format": 1},
+        {"bits": 8, "sample_format": 1},
+    ],
+)
+def test_whoever_decodes_a_tiff_its_size_is_looked_at_before(tmp_path, layout, monkeypatch):
+    """The first two are OpenCV's alone, which would decode them; of the third it decodes what Pillow has looked at."""
+    tiny = tiff(tmp_path / "tiny.tif", 5, 3, strip_rows=3, **layout)
+    assert read_picture(tiny).shape[:2] == (3, 5)
+    monkeypatch.setattr("cv2.imdecode", None)
+    for name, width, height in (("a.tif", SIDE, SIDE), ("b.tif", 8_900, 10_001)):
+        path = tiff(tmp_path / name, width, height, strip_rows=1, **layout)
+        assert "larger than 89 megapixels; make it smaller first" in refusal(path)
+
+
+@pytest.mark.parametrize("tag", [256, 257, 322, 323])
+@pytest.mark.parametrize("last", [False, True])
+def test_of_a_size_that_a_tiff_says_twice_the_largest_counts(tmp_path, tag, last, monkeypatch):
+    """Who decodes it may take the first or the last. Tags 322 and 323 are of tiles, which are decoded whole."""
+    monkeypatch.setattr("cv2.imdecode", None)
+    twice = ((tag, 90_000_000), (tag, 5))
+    path = tiff(tmp_path / "a.tif", 5, 3, strip_rows=3, more=twice[:: -1 if last else 1])
+    assert "larger than 89 megapixels" in refusal(path)
+
+
+def test_tiles_that_pillow_would_decode_are_looked_at(tmp_path):
+    """One of 40,000 x 40,000 for a picture of 5 x 3, which is 1.6 GB from 1.6 MB."""
+    path = tiff(tmp_path / "a.tif", 5, 3, bits=8, sample_format=1, more=((322, 40_000), (323, 40_000)))
+    assert "larger than 89 megapixels" in refusal(path)
+
+
+@pytest.mark.parametrize(("order", "side"), [("<", 3), ("<", 9_500), (">", 9_500)])
+def test_a_tiff_of_eight_byte_places(tmp_path, order, side):
+    """Where all numbers have eight bytes. Pillow reads those of little-endian machines alone."""
+    tags = [
+        (256, side),
+        (257, side),
+        (258, 8),
+        (259, 1),
+        (262, 1),
+        (273, 232),
+        (277, 1),
+        (278, side),
+        (279, 9),
+        (339, 1),
+    ]
+    table = b"".join(struct.pack(f"{order}HHQQ", tag, 16, 1, value) for tag, value in tags)
+    mark = b"II" if order == "<" else b"MM"
+    data = mark + struct.pack(f"{order}HHHQQ", 43, 8, 0, 16, len(tags)) + table + bytes(8 + 9)
+    path = put(tmp_path, "a.tif", data)
+    if side == 3:
+        assert read_picture(path).tolist() == [[0] * 3] * 3
+    else:
+        assert "larger than 89 megapixels" in refusal(path)
+
+
+def test_the_bytes_of_a_pixel_count_too(tmp_path, monkeypatch):
+    monkeypatch.setattr("cv2.imdecode", None)
+    path = tiff(tmp_path / "a.tif", 30_000, 2_000, strip_rows=1, bits=64, samples=4)
+    assert "holds more than 1424 MB; make it smaller first" in refusal(path)
+
+
+def test_a_deep_png_whose_two_headers_differ_is_not_decoded(tmp_path):
+    """By the first header it has 4e8 pixels, which OpenCV would make, by the second, which Pillow takes, 1."""
+
+    def chunk(name, data):
+        return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
+
+    def header(side):
+        return chunk(b"IHDR", struct.pack(">IIBBBBB", side, side, 16, 2, 0, 0, 0))
+
+    pixel = chunk(b"IDAT", zlib.compress(bytes(7))) + chunk(b"IEND", b"")
+    path = put(tmp_path, "a.png", b"\x89PNG\r\n\x1a\n" + header(20_000) + header(1) + pixel)
+    assert "larger than 89 megapixels" in refusal(path)
+
+
+def test_what_pillow_reads_is_held_to_the_same_limit(tmp_path):
+    """Pillow's own is a little above it."""
+    path = put(tmp_path, "a.pgm", b"P5 89200 1000 255\n")
+    assert "larger than 89 megapixels" in refusal(path)
+    assert "cut short" in refusal(put(tmp_path, "a.pgm", b"P5 89000 1000 255\n"))
+
+
+def test_nothing_is_said_beside_the_error(tmp_path, capfd):
+    whole = tiff(tmp_path / "a.tif", 50, 30).read_bytes()
+    assert "damaged" in refusal(put(tmp_path, "a.tif", whole[:-20]))
+    assert capfd.readouterr() == ("", "")
+
+
+@pytest.mark.timeout(20)
+@pytest.mark.parametrize("read", [read_picture, read_map, read_labels])
+@pytest.mark.parametrize("name", ["a.npy", "a.npz", "a.png"])
+def test_a_pipe_is_not_waited_for(tmp_path, read, name):
+    os.mkfifo(tmp_path / name)
+    assert "no file but a folder or a device" in refusal(tmp_path / name, read)
+
+
+@pytest.mark.parametrize("read", [read_picture, read_map, read_labels])
+def test_arrays_that_say_that_they_are_huge(tmp_path, read):
+    path = put(tmp_path, "a.npy", npy_header((10_000, 10_000)))
+    assert "larger than 89 megapixels; make it smaller first" in refusal(path, read)
+    path = npz_bomb(tmp_path / "a.npz", a=(13_000, 6_000, 4))
+    assert "holds more than 1424 MB; make it smaller first" in refusal(path, read)
+
+
+@pytest.mark.parametrize("read", [read_picture, read_map, read_labels])
+def test_an_archive_of_something_else(tmp_path, read):
+    with zipfile.ZipFile(tmp_path / "a.npz", "w") as archive:
+        archive.writestr("readme.txt", "hello")
+    assert "holds 0 arrays, and one is meant" in refusal(tmp_path / "a.npz", read)
+
+
+def test_an_array_under_the_other_name_is_an_array(tmp_path):
+    np.savez(tmp_path / "a.npz", COLOURS)
+    np.save(tmp_path / "b.npy", COLOURS)
+    swapped = (tmp_path / "a.npz").rename(tmp_path / "a.npy"), (tmp_path / "b.npy").rename(tmp_path / "b.npz")
+    assert all(np.array_equal(read_picture(path), COLOURS) for path in swapped)
+
+
+@given(st.data())
+def test_any_damage_is_one_error_or_a_picture(tmp_path_factory, data):
+    form, name = data.draw(st.sampled_from([("PNG", "a.png"), ("JPEG", "a.jpg"), ("GIF", "a.gif"), ("BMP", "a.bmp")]))
+    damaged = bytearray(encoded(Image.fromarray(COLOURS), form))
+    for place in data.draw(st.lists(st.integers(0, len(damaged) - 1), min_size=1, max_size=5)):
+        damaged[place] = data.draw(st.integers(0, 255))
+    path = put(tmp_path_factory.mktemp("damaged"), name, bytes(damaged))
+    for read in (read_picture, read_map, read_labels):
+        try:
+            assert read(path).ndim in (2, 3)
+        except PictureError as error:
+            assert str(path) in str(error)
+
+
+# Maps of numbers
+
+
+def test_a_map_keeps_its_numbers_and_its_holes(tmp_path):
+    values = np.array([[1.5, NAN], [np.inf, -np.inf]])
+    for name, save in (("a.npy", np.save), ("a.npz", np.savez)):
+        save(tmp_path / name, values)
+        np.testing.assert_array_equal(read_map(tmp_path / name), np.float32([[1.5, NAN], [NAN, NAN]]))
+
+
+@pytest.mark.parametrize("scale", ["-1", "-0.0039"])
+def test_a_pfm_is_taken_as_it_stands_bottom_row_first(tmp_path, scale):
+    rows = np.float32([[1, 2, 3], [4, 5, np.inf]])
+    path = put(tmp_path, "a.pfm", f"Pf\n3 2\n{scale}\n".encode() + rows[::-1].astype("<f4").tobytes())
+    np.testing.assert_array_equal(read_map(path), [[1, 2, 3], [4, 5, NAN]])
+
+
+@pytest.mark.parametrize("dtype", [np.uint8, np.uint16, np.int16, np.int32, np.float32, np.float64])
+def test_a_tiff_is_taken_as_it_stands(tmp_path, dtype):
+    values = np.array([[1, 2, 3], [4, 5, 200]], dtype)
+    np.testing.assert_array_equal(read_map(by_opencv(tmp_path, "a.tif", values)), values)
+
+
+def test_a_grey_picture_is_a_map_of_its_raw_values(tmp_path):
+    grey = np.repeat(np.arange(6, dtype=np.uint8).reshape(2, 3, 1), 3, axis=2)
+    assert read_map(put(tmp_path, "a.png", encoded(Image.fromarray(grey), "PNG"))).tolist() == [[0, 1, 2], [3, 4, 5]]
+
+
+def test_numbers_too_large_for_a_map_are_holes(tmp_path):
+    assert np.isnan(read_map(saved(tmp_path, "a.npy", np.array([[1e300]])))).all()
+
+
+def test_colours_are_no_map(tmp_path):
+    path = put(tmp_path, "a.png", encoded(Image.fromarray(COLOURS), "PNG"))
+    assert "a map is one number a pixel" in refusal(path, read_map)
+
+
+@pytest.mark.parametrize("values", [np.zeros((0, 3)), np.zeros(3), np.zeros((2, 2), complex), np.array([["a"]])])
+def test_an_array_that_is_no_map_is_refused(tmp_path, values):
+    assert "a map is one number a pixel" in refusal(saved(tmp_path, "a.npy", values), read_map)
+
+
+def test_an_array_that_runs_code_is_not_loaded(tmp_path):
+    path = tmp_path / "a.npy"
+    np.save(path, np.array([[object()]]), allow_pickle=True)
+    assert "cannot be read as an array" in refusal(path, read_map)
+
+
+def test_of_several_arrays_none_is_guessed(tmp_path):
+    np.savez(tmp_path / "a.npz", np.zeros((2, 2)), np.ones((2, 2)))
+    assert "holds 2 arrays" in refusal(tmp_path / "a.npz", read_map)
+
+
+def test_a_damaged_array_says_so(tmp_path):
+    data = saved(tmp_path, "a.npy", np.zeros((9, 9))).read_bytes()
+    assert "cannot be read as an array" in refusal(put(tmp_path, "a.npy", data[:300]), read_map)
+
+
+# Label pictures
+
+
+def test_labels_are_numbered_from_zero_in_the_order_of_their_values(tmp_path):
+    path = put(tmp_path, "a.png", encoded(Image.fromarray(np.uint8([[7, 7], [200, 30]])), "PNG"))
+    assert read_labels(path).dtype == np.int32
+    assert read_labels(path).tolist() == [[0, 0], [2, 1]]
+
+
+def test_labels_of_a_palette_are_its_indices_not_its_colours(tmp_path):
+    image = Image.fromarray(np.uint8([[0, 1, 2]]), "L").convert("P")
+    image.putpalette([255, 255, 255, 0, 0, 0, 128, 128, 128])
+    assert read_labels(put(tmp_path, "a.png", encoded(image, "PNG"))).tolist() == [[0, 1, 2]]
+
+
+def test_each_colour_is_a_label(tmp_path):
+    flat = np.uint8([[[255, 0, 0], [0, 255, 0]], [[0, 255, 0], [255, 0, 0]]])
+    labels = read_labels(put(tmp_path, "a.png", encoded(Image.fromarray(flat), "PNG")))
+    assert np.unique(labels).tolist() == [0, 1]
+    assert labels[0, 0] == labels[1, 1] != labels[0, 1] == labels[1, 0]
+
+
+def test_labels_of_an_array(tmp_path):
+    assert read_labels(saved(tmp_path, "a.npy", np.array([[-1, 5], [5, 9]]))).tolist() == [[0, 1], [1, 2]]
+
+
+def test_a_photo_is_no_label_picture(tmp_path):
+    photo = np.arange(MAX_LABELS + 1, dtype=np.int32)[None]
+    assert "give each segment one flat colour" in refusal(saved(tmp_path, "a.npy", photo), read_labels)
+
+
+@pytest.mark.parametrize("values", [np.zeros((2, 2, 5), np.uint8), np.zeros((0, 2)), np.array([[NAN, 1]])])
+def test_what_holds_no_labels_is_refused(tmp_path, values):
+    refusal(saved(tmp_path, "a.npy", values), read_labels)
+
+
+@pytest.mark.parametrize("channels", [(), (3,), (4,)])
+def test_what_is_not_finite_is_filled_from_the_nearest_pixel(channels):
+    picture = np.random.default_rng(0).random((6, 8, *channels))
+    expected = picture.copy()
+    picture[2, 3:] = np.nan
+    picture[5, 0] = [np.inf, -np.inf, 0.5, 1][: channels[0]] if channels else np.inf
+    filled, known = fill_non_finite(picture)
+    assert np.argwhere(~known).tolist() == [*([2, column] for column in range(3, 8)), [5, 0]]
+    assert np.array_equal(filled[known], expected[known])
+    assert np.array_equal(filled[2, 6:], expected[1, 6:])
+    assert np.array_equal(filled[5, 0], expected[4, 0])
+
+
+def test_a_picture_of_integers_is_known_everywhere():
+    picture = np.arange(6, dtype=np.uint8).reshape(2, 3)
+    filled, known = fill_non_finite(picture)
+    assert known.all()
+    assert np.array_equal(filled, picture)
+
+
+def test_nothing_finite_cannot_be_filled():
+    with pytest.raises(PictureError, match="none of the 6 pixels is finite"):
+        fill_non_finite(np.full((2, 3), np.nan))

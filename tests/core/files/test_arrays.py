@@ -1,0 +1,202 @@
+"""Arrays in files: those that NumPy writes, and those that nobody should."""
+
+import io
+import struct
+import tracemalloc
+import zipfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as arrays
+
+from hostile import npy_header, npz, npz_bomb
+from tangible_core.files.arrays import Archive, read_array
+from tangible_core.files.reading import MOST_BYTES, TooLarge
+
+ONE = npy_header((2, 3)) + np.arange(6.0).tobytes()
+
+
+def saved(array: object, **options) -> bytes:
+    file = io.BytesIO()
+    np.save(file, array, **options)
+    return file.getvalue()
+
+
+def zipped(**held: np.ndarray) -> bytes:
+    file = io.BytesIO()
+    np.savez_compressed(file, **held)
+    return file.getvalue()
+
+
+def why(data: bytes) -> str:
+    with pytest.raises(ValueError) as error:
+        read_array(io.BytesIO(data))
+    text = str(error.value)
+    assert text.isprintable()
+    assert len(text) <= 200
+    return text
+
+
+@given(
+    arrays.arrays(arrays.scalar_dtypes() | arrays.unicode_string_dtypes(), arrays.array_shapes(min_dims=0, min_side=0))
+)
+def test_what_numpy_writes_comes_back(array: np.ndarray):
+    for data in (saved(array), saved(np.asarray(array, order="F")), zipped(it=array)):
+        again = read_array(io.BytesIO(data))
+        assert (again.dtype, again.shape) == (array.dtype, array.shape)
+        assert again.tobytes() == array.tobytes()
+        assert again.flags.writeable
+
+
+def test_columns_first_stay_columns_first():
+    array = np.asfortranarray(np.arange(6).reshape(2, 3))
+    again = read_array(io.BytesIO(saved(array)))
+    assert again.flags.f_contiguous
+    assert again.tolist() == array.tolist()
+
+
+@pytest.mark.parametrize(
+    ("data", "says"),
+    [
+        (b"", "EOF"),
+        (b"hello", "magic string"),
+        (ONE[:50], "EOF"),
+        (ONE[:-1], "48 bytes of numbers, and 47 follow"),
+        (ONE + b"x", "48 bytes of numbers, and 49 follow"),
+        (npy_header((2, 3)), "and 0 follow"),
+        (npy_header((-1, 2)), "a shape of (-1, 2)"),
+        (npy_header((2, 2), "|O") + b"x" * 32, "Python objects or records"),
+        (saved(np.zeros(3, [("a", "f8"), ("b", "i4")])), "Python objects or records"),
+        (saved(np.array([{}], object), allow_pickle=True), "Python objects or records"),
+        (npy_header((1,), "<f8\x1b[31m"), r"\x1b"),
+        (npy_header("(" * 5000), ""),
+        (npy_header("(" + "9" * 5000 + ",)"), ""),
+        (npy_header("(1, 'a')"), "shape is not valid"),
+        (npy_header((1,)).replace(b"NUMPY\x02", b"NUMPY\x03"), "for records"),
+        (npy_header((1,)).replace(b"NUMPY\x02", b"NUMPY\x09"), "for records"),
+        (zipped(), "0 arrays"),
+        (zipped(a=np.zeros(2), b=np.ones(2)), "2 arrays"),
+    ],
+    ids=map(str, range(99)),  # an archive holds the time at which it was made
+)
+def test_what_is_no_array_is_said(data: bytes, says: str):
+    assert says in why(data)
+
+
+def archive(**members: bytes) -> bytearray:
+    file = io.BytesIO()
+    with zipfile.ZipFile(file, "w") as held:
+        for name, data in members.items():
+            held.writestr(name.replace("_", "."), data)
+    return bytearray(file.getvalue())
+
+
+def changed(at: int, directory_at: int, what: bytes) -> bytes:
+    """An archive of one array with a field of both its headers changed."""
+    data = archive(a_npy=ONE)
+    entry = data.rfind(b"PK\x01\x02")
+    data[at : at + len(what)] = what
+    data[entry + directory_at : entry + directory_at + len(what)] = what
+    return bytes(data)
+
+
+@pytest.mark.parametrize(
+    ("data", "says"),
+    [
+        (bytes(archive(readme_txt=b"hello")), "0 arrays"),
+        (bytes(archive(a_npy=ONE)[:100]), "not a zip file"),
+        (b"PK" + bytes(500), "not a zip file"),
+        (bytes(archive(a_npy=b"")), "EOF"),
+        (bytes(archive(a_npy=b"hello")), "magic string"),
+        (bytes(archive(a_npy=ONE + bytes(1000))), "and 1048 follow"),
+        (changed(6, 8, b"\x01\x00"), "encrypted"),
+        (changed(8, 10, b"\x63\x00"), "compressed in a way"),
+        (changed(14, 16, b"\x00\x00\x00\x00"), "Bad CRC-32"),
+        (changed(22, 24, struct.pack("<I", 1000)), "bytes of numbers"),
+        (changed(22, 24, struct.pack("<I", MOST_BYTES + 1)), "more than 1424 MB"),
+        (changed(26, 28, b"\xff\xff"), ""),
+    ],
+    ids=map(str, range(99)),  # an archive holds the time at which it was made
+)
+def test_an_odd_archive_is_said(data: bytes, says: str):
+    assert says in why(data)
+
+
+@pytest.mark.parametrize("method", [zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA])
+def test_ways_to_pack_that_unpack_at_once_are_not_tried(tmp_path: Path, method: int):
+    path = npz(tmp_path / "a.npz", method, a=npy_header((4, 1000)) + bytes(32_000))
+    assert "compressed in a way that NumPy does not know" in why(path.read_bytes())
+
+
+@contextmanager
+def refused_in_little_memory() -> Iterator[None]:
+    tracemalloc.start()
+    try:
+        with pytest.raises(ValueError):
+            yield
+        assert tracemalloc.get_traced_memory()[1] < 1e7
+    finally:
+        tracemalloc.stop()
+
+
+def test_a_bomb_is_not_unpacked(tmp_path: Path):
+    path = npz_bomb(tmp_path / "a.npz", a=(20_000, 20_000))
+    with path.open("rb") as file, refused_in_little_memory():
+        read_array(file)
+
+
+def test_a_member_of_more_than_its_header_says_is_not_unpacked(tmp_path: Path):
+    with zipfile.ZipFile(tmp_path / "a.npz", "w", zipfile.ZIP_DEFLATED) as held:
+        held.writestr("a.npy", npy_header((4, 4)) + bytes(50_000_000))
+    with (tmp_path / "a.npz").open("rb") as file, refused_in_little_memory():
+        read_array(file)
+
+
+def test_a_header_without_numbers_takes_no_memory():
+    with refused_in_little_memory():
+        read_array(io.BytesIO(npy_header((100_000_000,))))
+    assert "89 megapixels" in why(npy_header((10_000, 10_000)))
+
+
+def test_the_arrays_of_an_archive_by_name():
+    held = Archive(io.BytesIO(zipped(a=np.arange(3), b=np.array("text"))))
+    assert held.names == ("a", "b")
+    read = held.read(["b", "a"])
+    assert (read["a"].tolist(), str(read["b"])) == ([0, 1, 2], "text")
+    assert held.read([]) == {}
+    with pytest.raises(ValueError, match="it holds no c, d"):
+        held.read(["a", "c", "d"])
+
+
+def test_what_is_not_asked_for_is_not_unpacked(tmp_path: Path):
+    path = npz_bomb(tmp_path / "a.npz", a=(20_000, 20_000), b=(0,))
+    with path.open("rb") as file:
+        assert Archive(file).names == ("a", "b")
+
+
+def test_arrays_that_are_small_alone_are_too_large_together(tmp_path: Path):
+    path = npz_bomb(tmp_path / "a.npz", **{f"n{number}": (9_000_000,) for number in range(20)})
+    with path.open("rb") as file:
+        held = Archive(file)
+        with refused_in_little_memory():
+            held.read(held.names)
+        with pytest.raises(TooLarge):
+            held.read(held.names)
+
+
+@given(st.data())
+def test_any_damage_is_a_reason_or_an_array(data):
+    whole = bytearray(
+        data.draw(st.sampled_from([ONE, zipped(a=np.arange(6.0).reshape(2, 3)), bytes(archive(a_npy=ONE))]))
+    )
+    for place in data.draw(st.lists(st.integers(0, len(whole) - 1), min_size=1, max_size=4)):
+        whole[place] = data.draw(st.integers(0, 255))
+    try:
+        assert isinstance(read_array(io.BytesIO(bytes(whole))), np.ndarray)
+    except ValueError as error:
+        assert str(error).isprintable()

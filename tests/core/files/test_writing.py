@@ -1,0 +1,149 @@
+import errno
+import os
+import stat
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import pytest
+
+from tangible_core.errors import OutputError
+from tangible_core.files.writing import atomic_write, open_alone, write_text
+
+
+class FullDisk:
+    """A file on a disk that has no room left."""
+
+    def __init__(self, file):
+        self.file = file
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.file.close()
+
+    def write(self, data):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+
+def only(folder: Path) -> list[str]:
+    return sorted(path.name for path in folder.iterdir())
+
+
+def test_a_file_is_written_and_its_folders_are_made(tmp_path):
+    path = tmp_path / "a" / "b" / "c.txt"
+    write_text(path, "grün\n")
+    assert path.read_text(encoding="utf-8") == "grün\n"
+    assert only(path.parent) == ["c.txt"]
+
+
+def test_a_file_is_not_there_before_the_block_ends(tmp_path):
+    path = tmp_path / "c.bin"
+    with atomic_write(path) as file:
+        file.write(b"half")
+        file.flush()
+        assert not path.exists()
+        (part,) = tmp_path.iterdir()  # on the same disk, as only there a file gets its name at once
+        assert part.read_bytes() == b"half"
+    assert path.read_bytes() == b"half"
+
+
+def test_an_error_leaves_the_old_file_and_nothing_else(tmp_path):
+    path = tmp_path / "c.txt"
+    write_text(path, "old")
+    with pytest.raises(ZeroDivisionError), atomic_write(path) as file:
+        file.write(b"new")
+        raise ZeroDivisionError
+    assert path.read_text() == "old"
+    assert only(tmp_path) == ["c.txt"]
+
+
+def test_an_interrupt_leaves_nothing_half_written(tmp_path):
+    with pytest.raises(KeyboardInterrupt), atomic_write(tmp_path / "c.txt") as file:
+        file.write(b"new")
+        raise KeyboardInterrupt
+    assert only(tmp_path) == []
+
+
+def test_a_full_disk_is_one_clear_error_and_leaves_nothing(tmp_path, monkeypatch):
+    path = tmp_path / "c.txt"
+
+    real = os.fdopen
+    monkeypatch.setattr("tangible_core.files.writing.os.fdopen", lambda handle, mode: FullDisk(real(handle, mode)))
+    with pytest.raises(OutputError, match=rf"{path}: cannot be written: No space left on device; free some space"):
+        write_text(path, "new")
+    assert only(tmp_path) == []
+
+
+def test_a_disk_that_is_full_when_the_file_takes_its_name(tmp_path, monkeypatch):
+    def full(*_):
+        raise OSError(errno.EDQUOT, os.strerror(errno.EDQUOT))
+
+    monkeypatch.setattr(Path, "replace", full)
+    with pytest.raises(OutputError, match="quota"):
+        write_text(tmp_path / "c.txt", "new")
+    assert only(tmp_path) == []
+
+
+def test_a_folder_that_cannot_be_made(tmp_path):
+    write_text(tmp_path / "file", "no folder")
+    with pytest.raises(OutputError, match=r"file.c\.txt: cannot be written: .*choose another folder"):
+        write_text(tmp_path / "file" / "c.txt", "new")
+
+
+def test_a_folder_that_cannot_be_written(tmp_path, monkeypatch):
+    def denied(**_):
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
+
+    monkeypatch.setattr(
+        "tangible_core.files.writing.tempfile.mkstemp", denied
+    )  # root may write anywhere, so no chmod here
+    with pytest.raises(OutputError, match="Permission denied; choose another folder"):
+        write_text(tmp_path / "c.txt", "new")
+
+
+def test_a_name_that_is_taken_by_a_folder(tmp_path):
+    (tmp_path / "c.txt").mkdir()
+    with pytest.raises(OutputError, match=r"c\.txt: cannot be written"):
+        write_text(tmp_path / "c.txt", "new")
+    assert only(tmp_path) == ["c.txt"]
+
+
+def test_the_umask_decides_who_may_read(tmp_path):
+    before = os.umask(0o027)
+    try:
+        write_text(tmp_path / "c.txt", "new")
+        assert os.umask(0o027) == 0o027
+    finally:
+        os.umask(before)
+    assert stat.S_IMODE((tmp_path / "c.txt").stat().st_mode) == 0o640
+
+
+def test_writers_at_one_time_leave_one_whole_file(tmp_path):
+    path = tmp_path / "c.txt"
+    texts = [letter * 100_000 for letter in "abcdefgh"]
+    with ThreadPoolExecutor(8) as pool:
+        for each in [pool.submit(write_text, path, text) for text in texts * 5]:
+            each.result()
+    assert path.read_text() in texts
+    assert only(tmp_path) == ["c.txt"]
+
+
+def test_a_file_that_grows_is_held_by_one(tmp_path):
+    path = tmp_path / "a" / "b.bin"
+    write_text(path, "old")
+    with open_alone(path) as file:
+        assert path.read_bytes() == b""
+        file.write(b"new")
+        with pytest.raises(
+            OutputError, match=r"b\.bin: another program is writing to it; end that one or choose another"
+        ):
+            open_alone(path)
+        assert path.read_bytes() == b"new"
+    open_alone(path).close()
+    assert path.read_bytes() == b""
+
+
+def test_a_file_that_cannot_grow_there(tmp_path):
+    with pytest.raises(OutputError, match="cannot be written: Is a directory; choose another folder"):
+        open_alone(tmp_path)

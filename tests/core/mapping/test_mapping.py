@@ -1,0 +1,358 @@
+"""The picture under the hand: both ways exact, the clutch, the limits, and the same by compiled kernels."""
+
+import math
+from functools import partial
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numba import float64, int64, njit, void
+
+from tangible_core.compiled.kernels import Address
+from tangible_core.compiled.touch import CompiledLink, LinkKernels
+from tangible_core.data import NO_FORCE, DeviceSpec, Force, HapticState
+from tangible_core.mapping import MappedDevice, Placement, WorkspaceMapping, mapped
+from tangible_core.mapping.placement import turn
+from tangible_core.plugins.interfaces import HapticDevice, Link
+from tangible_core.testing import checks_device
+from tangible_devices.mock import Mock
+
+SPEC = Mock().spec()
+near = st.floats(-0.2, 0.2)
+points = st.tuples(near, near, near)
+placements = st.builds(
+    lambda scale, degrees, *offsets: Placement(scale, *turn(degrees), *offsets),
+    st.floats(1e-2, 1e2),
+    st.floats(-360, 360) | st.sampled_from([0.0, 90.0, -90.0, 180.0, 270.0]),
+    *[near] * 5,
+)
+ARRAY = float64[::1]
+
+
+@njit(int64(ARRAY, ARRAY), nogil=True)
+def read_buffer(buffer, state):
+    if buffer[7] == 0.0:
+        return 0
+    state[:] = buffer[:7]
+    return 1
+
+
+@njit(void(ARRAY, float64, float64, float64), nogil=True)
+def write_buffer(buffer, fx, fy, fz):
+    buffer[8], buffer[9], buffer[10] = fx, fy, fz
+
+
+class BufferLink(CompiledLink):
+    """What the test writes to the buffer is read, and the force is there to be looked at."""
+
+    def __init__(self, buffer: np.ndarray) -> None:
+        self.buffer = buffer
+        self.exchanged = 0
+
+    def read(self) -> HapticState:
+        return HapticState(tuple(self.buffer[:3]), tuple(self.buffer[3:6]), 0.0, int(self.buffer[6]))
+
+    def write(self, force: Force) -> None:
+        self.buffer[8:] = force
+
+    @property
+    def applied(self) -> Force:
+        return Force(*self.buffer[8:].tolist())
+
+    def close(self) -> None:
+        self.buffer[8:] = 0
+
+    def kernels(self) -> LinkKernels:
+        return LinkKernels(read_buffer, write_buffer, (self.buffer,))
+
+    @property
+    def exchanges(self) -> bool:
+        return True
+
+    def exchange(self) -> None:
+        self.exchanged += 1
+
+
+BUFFER = np.zeros(11)
+
+
+class BufferDevice(HapticDevice):
+    """One buffer for all."""
+
+    def spec(self) -> DeviceSpec:
+        return SPEC
+
+    def open(self) -> Link:
+        return BufferLink(BUFFER)
+
+
+@pytest.fixture
+def buffer() -> np.ndarray:
+    BUFFER[:] = 0
+    BUFFER[7] = 1
+    return BUFFER
+
+
+def opened(buffer: np.ndarray, **options: object) -> Link:
+    return mapped(BufferDevice(), WorkspaceMapping(**options)).open()
+
+
+def hold(buffer: np.ndarray, link: Link, x: float, y: float, z: float, buttons: int = 0) -> HapticState:
+    buffer[:7] = x, y, z, 0, 0, 0, buttons
+    return link.read()
+
+
+def push(link: Link, *force: float) -> Force:
+    link.write(Force(*force))
+    return link.applied
+
+
+class TestGeometry:
+    @given(placements, points)
+    def test_there_and_back_is_the_same_point(self, place: Placement, point: tuple[float, float, float]):
+        size = max(1.0, 1.0 / place.scale, place.scale)
+        assert place.to_hand(place.to_picture(point)) == pytest.approx(point, abs=1e-12 * size)
+        assert place.to_picture(place.to_hand(point)) == pytest.approx(point, abs=1e-12 * size)
+
+    @given(placements, points)
+    def test_the_kernel_is_the_formula(self, place: Placement, point: tuple[float, float, float]):
+        from tangible_core.mapping import kernels
+
+        state = np.array([*point, *point, 3.0])
+        kernels.place(place, np.zeros(kernels.MEMORY), state)
+        shown = place.to_picture(point)
+        still = np.subtract(shown, place.to_picture((0.0, 0.0, 0.0)))
+        size = max(1.0, 1.0 / place.scale)
+        assert state[:3] == pytest.approx(shown, abs=1e-12 * size)
+        assert state[3:6] == pytest.approx(still, abs=1e-12 * size)
+        assert state[6] == 3.0
+
+    @given(placements, points)
+    def test_forces_are_turned_and_keep_their_size(self, place: Placement, force: tuple[float, float, float]):
+        """The work at the hand is `scale` times that in the picture: never of another sign."""
+        from tangible_core.mapping import kernels
+
+        x, y, z = kernels.push(place, np.zeros(kernels.MEMORY), *force)
+        assert math.hypot(x, y, z) == pytest.approx(math.hypot(*force), abs=1e-15, rel=1e-12)
+        assert (*place.turned_back(x, y), z) == pytest.approx(force, abs=1e-12)
+        step = (0.01, -0.02, 0.005)
+        way = np.subtract(place.to_hand(step), place.to_hand((0.0, 0.0, 0.0)))
+        assert np.dot((x, y, z), way) == pytest.approx(place.scale * np.dot(force, step), abs=1e-12 * (1 + place.scale))
+
+    @pytest.mark.parametrize(
+        ("degrees", "seen"),
+        [(0.0, (0.03, 0.01)), (90.0, (0.01, -0.03)), (180.0, (-0.03, -0.01)), (-90.0, (-0.01, 0.03))],
+    )
+    def test_quarter_turns_are_exact(self, degrees: float, seen: tuple[float, float]):
+        """A picture turned by 90 degrees counter-clockwise: what is right of the hand was its bottom."""
+        place = WorkspaceMapping(rotation_deg=degrees).placement(SPEC.workspace_m)
+        assert place.to_picture((0.03, 0.01, 0.002)) == (*seen, 0.002)
+
+    def test_a_region_fills_the_workspace(self):
+        """A part of 20 x 10 mm, its left half at x = -10 mm, under a hand that moves 80 mm: four times as large."""
+        place = WorkspaceMapping(region_m=(0.01, -0.005, 0.02, 0.01)).placement((0.08, 0.08, 0.08))
+        assert place.scale == 4
+        assert place.to_picture((0.0, 0.0, 0.0)) == (0.01, -0.005, 0.0)
+        assert place.to_picture((-0.04, 0.02, 0.004)) == (0.0, 0.0, 0.001)
+
+    def test_a_turned_region_fills_it_too(self):
+        place = WorkspaceMapping(region_m=(0, 0, 0.02, 0.01), rotation_deg=90).placement((0.08, 0.16, 0.08))
+        assert place.scale == 8
+        assert place.to_hand((0.01, 0.005, 0.0)) == pytest.approx((-0.04, 0.08, 0.0), abs=1e-15)
+
+    def test_a_scale_beside_a_region_is_the_scale(self):
+        assert WorkspaceMapping(region_m=(0, 0, 0.02, 0.01), scale=2).placement(SPEC.workspace_m).scale == 2
+
+    def test_the_spec_is_in_the_picture_s_metres(self):
+        mapping = WorkspaceMapping(scale=2, rotation_deg=90)
+        spec = mapping.felt_spec(DeviceSpec(8.0, 3000.0, 20.0, (0.1, 0.06, 0.08), 2e-5, buttons=4))
+        assert spec == DeviceSpec(8.0, 6000.0, 40.0, (0.03, 0.05, 0.04), 1e-5, buttons=4)
+
+
+class TestClutch:
+    def test_the_picture_goes_with_the_hand_and_stays_there(self, buffer: np.ndarray):
+        link = opened(buffer, clutch_button=1, scale=2.0)
+        assert hold(buffer, link, 0.02, 0.0, 0.01).position_m == (0.01, 0.0, 0.005)
+        for x in (0.02, 0.01, -0.02):
+            assert hold(buffer, link, x, x - 0.02, 0.03, 2).position_m == pytest.approx((0.01, 0.0, 0.015))
+        assert hold(buffer, link, -0.02, -0.04, 0.01).position_m == pytest.approx((0.01, 0.0, 0.005))
+        assert hold(buffer, link, 0.0, -0.04, 0.01).position_m == pytest.approx((0.02, 0.0, 0.005))
+
+    def test_held_from_the_first_moment_on_it_stays_under_the_hand(self, buffer: np.ndarray):
+        link = opened(buffer, clutch_button=0)
+        assert hold(buffer, link, 0.02, 0.0, 0.01, 1).position_m == (0.02, 0.0, 0.01)
+
+    def test_another_button_is_no_clutch(self, buffer: np.ndarray):
+        link = opened(buffer, clutch_button=1)
+        hold(buffer, link, 0.0, 0.0, 0.0, 5)
+        assert hold(buffer, link, 0.01, 0.0, 0.0, 5).position_m == (0.01, 0.0, 0.0)
+        assert push(link, 0.0, 0.0, 1.0) == (0, 0, 1)
+
+    @pytest.mark.parametrize("part", [(1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)])
+    def test_any_part_of_a_force_is_one_that_the_law_holds_on_to(self, buffer: np.ndarray, part: tuple[float, ...]):
+        link = opened(buffer, clutch_button=0)
+        hold(buffer, link, 0.0, 0.0, -0.001, 1)
+        hold(buffer, link, 0.0, 0.0, -0.001)
+        assert push(link, *part) == NO_FORCE
+        assert push(link, *part) == NO_FORCE
+        assert push(link, *NO_FORCE) == NO_FORCE
+        assert push(link, *part) == part
+
+    def test_the_picture_does_not_move_under_the_law_while_it_goes_with_the_hand(self, buffer: np.ndarray):
+        link = opened(buffer, clutch_button=0, scale=2.0, rotation_deg=90.0)
+        for buttons, seen in ((0, (0.2, -0.1, 0.3)), (1, (0.0, 0.0, 0.3))):
+            buffer[:7] = 0.01, 0.02, 0.03, 0.2, 0.4, 0.6, buttons
+            assert link.read().velocity_m_per_s == pytest.approx(seen)
+
+    def test_there_is_no_force_until_the_law_has_let_go(self, buffer: np.ndarray):
+        link = opened(buffer, clutch_button=0)
+        hold(buffer, link, 0.0, 0.0, -0.001)
+        assert push(link, 0.0, 0.0, 1.0) == (0, 0, 1)
+        hold(buffer, link, 0.0, 0.0, -0.001, 1)
+        assert push(link, 0.0, 0.0, 1.0) == NO_FORCE
+        assert push(link, *NO_FORCE) == NO_FORCE
+        hold(buffer, link, 0.0, 0.0, -0.02)
+        assert push(link, 0.0, 0.0, 7.0) == NO_FORCE
+        hold(buffer, link, 0.0, 0.0, 0.01)
+        assert push(link, *NO_FORCE) == NO_FORCE
+        hold(buffer, link, 0.0, 0.0, -0.001)
+        assert push(link, 0.0, 0.0, 1.0) == (0, 0, 1)
+
+
+class TestLimits:
+    @pytest.mark.parametrize(
+        "place",
+        [
+            *[(0.031, 0, 0), (0, -0.021, 0), (0, 0, 0.011), (-0.031, 0, 0), (0, 0.021, 0), (0, 0, -0.011)],
+            *[(math.nan, 0, 0), (0, math.nan, 0), (0, 0, math.nan)],
+        ],
+    )
+    def test_outside_there_is_no_force(self, buffer: np.ndarray, place: tuple[float, float, float]):
+        link = opened(buffer, limits_m=(0.06, 0.04, 0.02))
+        hold(buffer, link, 0.03, -0.02, 0.01)
+        assert push(link, 1.0, 0.0, 0.0) == (1, 0, 0)
+        hold(buffer, link, *place)
+        assert push(link, 1.0, 0.0, 0.0) == NO_FORCE
+
+    def test_no_work_is_given_by_going_in_outside_and_out_inside(self, buffer: np.ndarray):
+        """Pressed in where there is no force, and moved to where there is: a spring of the law gives nothing back."""
+        link = opened(buffer, limits_m=(0.06, 0.06, 0.06))
+        work = 0.0
+        way = [(0.04, 0.0, z) for z in np.linspace(0.01, -0.01, 50)]
+        way += [(x, 0.0, -0.01) for x in np.linspace(0.04, 0.0, 50)] + [
+            (0.0, 0.0, z) for z in np.linspace(-0.01, 0.01, 50)
+        ]
+        last = way[0]
+        for place in way:
+            held = link.applied
+            work += float(np.dot(held, np.subtract(place, last)))
+            last = hold(buffer, link, *place).position_m
+            link.write(Force(0.0, 0.0, max(0.0, -800 * last[2])))
+        assert work <= 0
+
+
+class TestKernels:
+    def test_they_do_as_the_methods(self, buffer: np.ndarray):
+        options = {"scale": 3.0, "rotation_deg": 30.0, "offset_m": (0.01, 0.02, 0.03), "clutch_button": 0}
+        rng = np.random.default_rng(0)
+        told, called = opened(buffer, **options), opened(buffer, **options)
+        assert isinstance(called, CompiledLink)
+        kernels = called.kernels()
+        state = np.zeros(7)
+        for _ in range(50):
+            buffer[:6], buffer[6] = rng.uniform(-0.05, 0.05, 6), rng.integers(2)
+            force = rng.uniform(-3, 3, 3) * rng.integers(2)
+            seen = told.read()
+            assert kernels.read(*kernels.fixed, state) == 1
+            assert state == pytest.approx([*seen.position_m, *seen.velocity_m_per_s, seen.buttons], abs=1e-15)
+            told.write(Force(*force))
+            applied = buffer[8:].copy()
+            kernels.write(*kernels.fixed, *force)
+            assert np.array_equal(buffer[8:], applied)
+
+    def test_what_is_not_fresh_is_left_alone(self, buffer: np.ndarray):
+        kernels = opened(buffer, scale=2.0).kernels()
+        buffer[7] = 0
+        state = np.arange(7.0)
+        assert kernels.read(*kernels.fixed, state) == 0
+        assert np.array_equal(state, np.arange(7.0))
+
+    def test_a_compiled_loop_takes_them_by_their_addresses(self, buffer: np.ndarray):
+        @njit(nogil=True)
+        def loop(read, write, fixed, state):
+            for i in range(10):
+                read(*fixed, state)
+                write(*fixed, 0.0, 0.0, float(i))
+
+        kernels = opened(buffer, scale=2.0).kernels()
+        buffer[:3] = 0.02, 0.04, 0.06
+        state = np.zeros(7)
+        loop(Address(kernels.read), Address(kernels.write), kernels.fixed, state)
+        assert state[:3].tolist() == [0.01, 0.02, 0.03]
+        assert buffer[8:].tolist() == [0, 0, 9]
+
+    def test_exchanging_is_left_to_the_device(self, buffer: np.ndarray):
+        link = opened(buffer, scale=2.0)
+        assert isinstance(link, CompiledLink) and link.exchanges
+        link.exchange()
+        link.write(Force(1.0, 2.0, 3.0))
+        assert buffer[8:].tolist() == [1, 2, 3]
+        link.close()
+        assert link.applied == NO_FORCE
+
+
+class TestDevice:
+    @pytest.mark.parametrize(
+        "nothing",
+        [{}, {"scale": 1.0}, {"rotation_deg": 360.0}, {"rotation_deg": -360.0}, {"region_m": (0, 0, 0.08, 0.08)}],
+    )
+    def test_what_changes_nothing_is_not_wrapped(self, nothing: dict):
+        mock = Mock()
+        assert mapped(mock, WorkspaceMapping(**nothing)) is mock
+
+    @pytest.mark.parametrize("check", checks_device.CHECKS)
+    def test_a_mapped_device_is_a_device(self, check):
+        mapping = WorkspaceMapping(scale=2.5, rotation_deg=37.0, offset_m=(0.01, -0.01, 0.0), clutch_button=3)
+        check(MappedDevice(device=Mock(), mapping=mapping))
+
+    def test_its_limits_are_in_the_picture_s_metres(self):
+        mapping = WorkspaceMapping(scale=2.0)
+        spec = MappedDevice(device=Mock(), mapping=mapping).spec()
+        assert spec == mapping.felt_spec(SPEC) != SPEC
+
+    def test_it_goes_through_json_with_the_device_s_own_options(self):
+        device = MappedDevice(device=Mock(path="circle"), mapping=WorkspaceMapping(scale=2.0))
+        assert device.model_dump()["device"]["path"] == "circle"
+
+    def test_a_hand_feels_the_hill_where_it_lies(self):
+        """The same path over a picture of half the size, at half the scale, gives the same forces."""
+        from tangible_core import HapticSurface, load_method
+
+        heights = 0.005 + 0.004 * np.sin(np.linspace(0, 6, 64))[None, :] * np.cos(np.linspace(0, 5, 64))[:, None]
+        law = partial(load_method("render", "penalty"), dequantise="never")
+        whole = law(stiffness_n_per_m=500).touch(HapticSurface.from_heights(heights, width_m=0.08))
+        half = law(stiffness_n_per_m=1000).touch(HapticSurface.from_heights(heights / 2, width_m=0.04))
+        mock = Mock(hand=None, z_m=0.001)
+        with mock.open() as one, mapped(mock, WorkspaceMapping(scale=2.0)).open() as other:
+            for _ in range(2000):
+                assert half.force(other.read()) == pytest.approx(whole.force(one.read()), abs=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("options", "complaint"),
+    [
+        ({"scale": 0}, "scale"),
+        ({"scale": math.nan}, "scale"),
+        ({"rotation_deg": 1000}, "rotation_deg"),
+        ({"region_m": (0, 0, 0, 1)}, "region_m"),
+        ({"region_m": (0, 0, 1)}, "region_m"),
+        ({"offset_m": (math.inf, 0, 0)}, "offset_m"),
+        ({"clutch_button": -1}, "clutch_button"),
+        ({"limits_m": (1, 1, 0)}, "limits_m"),
+        ({"zoom": 2}, "zoom"),
+    ],
+)
+def test_options_that_make_no_sense(options: dict, complaint: str):
+    with pytest.raises(ValueError, match=complaint):
+        WorkspaceMapping(**options)

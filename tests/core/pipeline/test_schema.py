@@ -1,0 +1,114 @@
+import json
+from importlib import metadata
+from pathlib import Path
+
+import pytest
+from jsonschema import Draft202012Validator
+from ruamel.yaml import YAML
+
+from tangible_core.pipeline.schema import json_schema, markdown, materials_schema
+
+ROOT = Path(__file__).parents[3]
+
+
+@pytest.fixture(scope="module")
+def validator() -> Draft202012Validator:
+    schema = json_schema()
+    Draft202012Validator.check_schema(schema)
+    return Draft202012Validator(schema)
+
+
+@pytest.mark.parametrize(
+    "path",
+    sorted(set(ROOT.glob("configs/*.yaml")) - set(ROOT.glob("configs/compare-*.yaml"))),
+    ids=lambda path: path.name,
+)
+def test_it_accepts_the_sample_configurations(validator: Draft202012Validator, path: Path):
+    validator.validate(YAML(typ="safe").load(path))
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {},
+        {"scene": "builtin/nothing"},
+        {"scene": "builtin/brick", "depht": "luminance"},
+        {"scene": "builtin/brick", "depth": {"use": "luminance", "no": 1}},
+        {"scene": "builtin/brick", "render": {"use": "penalty-gradient", "stiffness_n_per_m": -1}},
+        {"scene": "builtin/brick", "materials": {"one": "ice"}},
+        {"scene": "builtin/brick", "materials": {"rules": [{"colour": "bleu", "material": "ice"}]}},
+        {"scene": "builtin/brick", "workspace": {"width_m": 0}},
+    ],
+)
+def test_it_refuses_what_the_program_refuses(validator: Draft202012Validator, wrong: dict):
+    assert not validator.is_valid(wrong)
+
+
+def test_every_shipped_method_is_in_it_and_on_the_page():
+    schema, page = json_schema(), markdown(json_schema())
+    for kind in ("depth", "texture", "render", "device"):
+        names = schema["properties"][kind]["anyOf"][0]["enum"]
+        shipped = metadata.distribution("tangible-images").entry_points.select(group=f"tangible.{kind}")
+        assert set(names) == {point.name for point in shipped}
+        assert all(f"### {name}\n" in page for name in names)
+
+
+def test_every_option_says_what_it_means():
+    schema = json_schema()
+    forms = [
+        form for kind in ("depth", "texture", "render", "device") for form in schema["properties"][kind]["anyOf"][1:]
+    ]
+    for form in forms:
+        for name, option in form["properties"].items():
+            assert name == "use" or option.get("description"), f"{form['title']}.{name}"
+
+
+def test_the_page_in_docs_is_current():
+    page = (ROOT / "docs" / "yaml.md").read_text(encoding="utf-8")
+    assert page == markdown(json_schema()), "run: tangible schema --markdown > docs/yaml.md"
+
+
+@pytest.fixture(scope="module")
+def materials() -> Draft202012Validator:
+    schema = materials_schema()
+    Draft202012Validator.check_schema(schema)
+    return Draft202012Validator(schema)
+
+
+def test_the_shipped_library_is_one(materials: Draft202012Validator):
+    materials.validate(YAML(typ="safe").load(ROOT / "tangible_core/materials/materials.yaml"))
+
+
+@pytest.mark.parametrize(
+    ("block", "right"),
+    [
+        ({"ice": {"grain_m": 0.002}}, True),
+        ({"ice": {"grain_m": 0}}, False),
+        ({"ice": {"texture": "rough"}}, False),
+        ({"ice": {"sorce": "guess"}}, False),
+        ({"felt": {"grain_m": 0.002}}, False),
+        (
+            {
+                "felt": dict.fromkeys(
+                    ("stiffness_n_per_m", "damping_n_s_per_m", "static_friction", "dynamic_friction"), 1
+                )
+            },
+            True,
+        ),
+    ],
+)
+def test_a_shipped_material_needs_what_changes_and_a_new_one_more(
+    materials: Draft202012Validator, block: dict, right: bool
+):
+    assert materials.is_valid(block) == right
+
+
+def test_the_schema_of_materials_in_configs_is_current():
+    text = (ROOT / "configs" / "materials.schema.json").read_text(encoding="utf-8")
+    said = "run: tangible schema --materials > configs/materials.schema.json"
+    assert text == json.dumps(materials_schema(), indent=2, ensure_ascii=False) + "\n", said
+
+
+def test_every_value_says_what_it_means():
+    for name, value in materials_schema()["$defs"]["material"]["properties"].items():
+        assert value.get("description"), name

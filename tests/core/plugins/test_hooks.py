@@ -1,0 +1,170 @@
+import logging
+
+import pluggy
+import pytest
+
+from tangible_core.data import NO_FORCE, HapticState, Outcome, Plan, ServoReport
+from tangible_core.plugins import hooks
+from tangible_core.plugins.hooks import hookimpl
+
+RAN = Outcome("relief", "ran", "asked for")
+FACTS = {
+    "tangible_methods": {"kind": "depth"},
+    "tangible_plan_made": {"plan": Plan("relief", (RAN,))},
+    "tangible_stage_started": {"product": "relief", "method": "core"},
+    "tangible_stage_finished": {"outcome": RAN},
+    "tangible_servo_report": {"report": ServoReport(1, 0.001, HapticState((0, 0, 0)), NO_FORCE, 1.0, 0.0)},
+    "tangible_commands": {"app": object()},
+}
+
+
+def manager(*observers) -> pluggy.PluginManager:
+    plugins = pluggy.PluginManager("tangible")
+    plugins.add_hookspecs(hooks.Specs)
+    for observer in observers:
+        plugins.register(observer, name=type(observer).__name__)
+    return plugins
+
+
+class Witness:
+    def __init__(self):
+        self.heard = []
+
+    @hookimpl
+    def tangible_methods(self, kind):
+        self.heard.append(("tangible_methods", {"kind": kind}))
+        return {"mine": "acme:Mine"}
+
+    @hookimpl
+    def tangible_plan_made(self, plan):
+        self.heard.append(("tangible_plan_made", {"plan": plan}))
+
+    @hookimpl
+    def tangible_stage_started(self, product, method):
+        self.heard.append(("tangible_stage_started", {"product": product, "method": method}))
+
+    @hookimpl
+    def tangible_stage_finished(self, outcome):
+        self.heard.append(("tangible_stage_finished", {"outcome": outcome}))
+
+    @hookimpl
+    def tangible_servo_report(self, report):
+        self.heard.append(("tangible_servo_report", {"report": report}))
+
+    @hookimpl
+    def tangible_commands(self, app):
+        self.heard.append(("tangible_commands", {"app": app}))
+
+
+class Failing:
+    @hookimpl
+    def tangible_stage_finished(self, outcome):
+        raise RuntimeError("I always fail")
+
+
+class Terse:
+    """Asks for less than the moment tells."""
+
+    def __init__(self):
+        self.heard = []
+
+    @hookimpl
+    def tangible_stage_started(self, product):
+        self.heard.append(product)
+
+
+@pytest.mark.parametrize("moment", FACTS)
+def test_every_moment_is_heard_with_its_facts(moment):
+    witness = Witness()
+    hooks.tell(manager(witness), moment, **FACTS[moment])
+    assert witness.heard == [(moment, FACTS[moment])]
+
+
+def test_every_moment_there_is_stands_above():
+    assert set(FACTS) == {name for name in vars(hooks.Specs) if name.startswith("tangible_")}
+
+
+@pytest.mark.parametrize("moment", FACTS)
+def test_a_moment_that_nobody_watches(moment):
+    assert hooks.tell(manager(), moment, **FACTS[moment]) == []
+
+
+def test_answers_come_back_and_silence_does_not():
+    assert hooks.tell(manager(Witness(), Failing()), "tangible_methods", kind="depth") == [{"mine": "acme:Mine"}]
+    assert hooks.tell(manager(Witness()), "tangible_stage_started", product="relief", method="core") == []
+
+
+@pytest.mark.parametrize("order", [(0, 1), (1, 0)])
+def test_an_observer_that_fails_harms_no_other(caplog, order):
+    witness = Witness()
+    both = (witness, Failing())
+    hooks.tell(manager(*(both[i] for i in order)), "tangible_stage_finished", outcome=RAN)
+    assert witness.heard == [("tangible_stage_finished", {"outcome": RAN})]
+    [record] = caplog.records
+    assert record.levelno == logging.WARNING
+    assert "observer Failing failed in tangible_stage_finished" in record.message
+    assert "I always fail" in str(record.exc_info[1])
+
+
+def test_an_observer_asks_for_what_it_needs():
+    terse = Terse()
+    hooks.tell(manager(terse), "tangible_stage_started", product="relief", method="core")
+    assert terse.heard == ["relief"]
+
+
+def test_hook_modules_come_by_entry_point(install):
+    install(
+        "acme",
+        {"tangible.hooks": {"diary": "acme_diary"}},
+        acme_diary="""
+            from tangible_core.plugins.hooks import hookimpl
+            @hookimpl
+            def tangible_methods(kind):
+                return {kind: "acme:Mine"}
+            """,
+    )
+    plugins = hooks.manager()
+    assert hooks.tell(plugins, "tangible_methods", kind="depth") == [{"depth": "acme:Mine"}]
+    assert plugins.has_plugin("acme/diary")
+
+
+def test_a_hook_module_that_cannot_be_imported_is_left_out_and_said(install, caplog):
+    install(
+        "broken",
+        {"tangible.hooks": {"broken": "broken_hooks", "gone": "no_such_module", "quits": "quits"}},
+        broken_hooks="1 / 0",
+        quits="raise SystemExit",
+    )
+    install("acme", {"tangible.hooks": {"diary": "acme_diary"}}, acme_diary="")
+    assert [name for name, _ in hooks.manager().list_name_plugin()] == ["acme/diary"]
+    assert {record.args[0] for record in caplog.records} == {"broken", "gone", "quits"}
+    assert all("left out" in record.message for record in caplog.records)
+
+
+def test_an_observer_of_a_moment_that_does_not_exist_is_said(install, caplog):
+    install(
+        "acme",
+        {"tangible.hooks": {"diary": "acme_diary"}},
+        acme_diary="""
+            from tangible_core.plugins.hooks import hookimpl
+            @hookimpl
+            def tangible_stage_finisched(outcome): ...
+            """,
+    )
+    assert hooks.tell(hooks.manager(), "tangible_stage_finished", outcome=RAN) == []
+    assert "hooks acme/diary watch tangible_stage_finisched, which is no moment (did you mean" in caplog.text
+
+
+def test_an_observer_that_asks_for_what_is_not_told_is_left_out(install, caplog):
+    install(
+        "acme",
+        {"tangible.hooks": {"diary": "acme_diary"}},
+        acme_diary="""
+            from tangible_core.plugins.hooks import hookimpl
+            @hookimpl
+            def tangible_stage_finished(outcome, mood): ...
+            """,
+    )
+    plugins = hooks.manager()
+    assert hooks.tell(plugins, "tangible_stage_finished", outcome=RAN) == []
+    assert "mood" in caplog.text

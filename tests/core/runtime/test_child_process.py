@@ -1,0 +1,307 @@
+"""Processes that are started run the code that this one runs: nothing of the current folder, no other file's class."""
+
+import importlib.util
+import json
+import os
+import pickle
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from distributions import distribution
+from tangible_core import HapticSurface, load_method
+from tangible_core.bench.config import parse_comparison
+from tangible_core.bench.plan import measurements
+from tangible_core.bench.run import look, run
+from tangible_core.errors import BrokenMethod
+from tangible_core.plugins.registry import Registry
+from tangible_core.runtime.child_process import command, dumps, python, search_path
+from tangible_core.servo import Servo
+
+TANGIBLE = str(Path(sys.executable).with_name("tangible"))
+TRAP = "import pathlib; pathlib.Path({marker!r}).write_text('I ran')\nraise SystemExit\n"
+FEEL = "scene: {height: level.npy}\nwant: touch\nworkspace: {width_m: 0.02, relief_m: 0.002}\n"
+COMPARE = """\
+compare: depth
+methods: [{}]
+scenes: [{{synthetic: steps, width_px: 64, height_px: 32}}]
+repeats: 1
+warmups: 0
+calls: 1
+"""
+SURFACE = HapticSurface.from_heights(np.full((8, 8), 0.002, np.float32))
+ACME = '''
+import os, pathlib
+import numpy as np
+from tangible_core import DepthEstimator, DisparityMap, Force, ForceRenderer, HapticDevice
+from tangible_core.compiled.touch import CompiledTouch
+from tangible_core.plugins.interfaces import Touch
+from tangible_core.testing.loop_devices import SPEC
+
+FELT = pathlib.Path(__file__).with_suffix(f".{os.getpid()}.felt")
+
+
+class Law(ForceRenderer):
+    """Leaves a file beside its own when it is felt."""
+
+    def touch(self, surface):
+        return LawTouch()
+
+
+class LawTouch(Touch):
+    def force(self, state):
+        FELT.touch()
+        return Force(0.0, 0.0, 0.0)
+
+    def path(self, positions_m, period_s=0.001):
+        return 0 * positions_m
+
+
+class Tip(HapticDevice):
+    """Is never opened."""
+
+    def spec(self):
+        return SPEC
+
+    def open(self):
+        FELT.touch()
+
+
+class Flat(DepthEstimator):
+    """Knows no depth."""
+
+    def estimate(self, views):
+        return DisparityMap(np.zeros(views.shape, np.float32))
+
+
+def tick(x, y, z, vx, vy, vz):
+    return 0.0, 0.0, 0.0
+
+
+tick.py_func = tick  # what of a kernel is asked for when it travels
+
+
+def kernel():
+    return CompiledTouch(tick, ())
+'''
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """The folder in which a user works."""
+    work = tmp_path / "work"
+    work.mkdir()
+    np.save(work / "level.npy", np.full((8, 8), 0.5))
+    return work
+
+
+def traps(folder: Path) -> Path:
+    """Put files with the names of modules into it, which say when they are run; where they say it."""
+    marker = folder / "ran.txt"
+    for name in ("numba", "numpy", "pickle", "importlib", "tangible_core"):
+        folder.joinpath(f"{name}.py").write_text(TRAP.format(marker=str(marker)))
+    return marker
+
+
+def tangible(*words: str, cwd: Path, **variables: str) -> subprocess.CompletedProcess[str]:
+    env = {**os.environ, **variables}
+    return subprocess.run([TANGIBLE, *words], cwd=cwd, env=env, capture_output=True, text=True, timeout=240)
+
+
+def installed(folder: Path) -> Path:
+    """A distribution `acme` with one law."""
+    points = {"tangible.render": {"acme": "acme:Law"}, "tangible.depth": {"acme": "acme:Flat"}}
+    return distribution(folder, "acme", points, acme=ACME)
+
+
+class TestTheCurrentFolder:
+    def test_feel_runs_nothing_of_it(self, folder: Path) -> None:
+        folder.joinpath("p.yaml").write_text(FEEL + "render: {use: proxy}\ndevice: {use: mock}\n")
+        marker = traps(folder)
+        done = tangible("feel", "p.yaml", "--seconds", "0.05", "--json", cwd=folder)
+        assert done.returncode == 0, done.stderr
+        assert json.loads(done.stdout)["figures"]["ticks"] == 50
+        assert not marker.exists()
+
+    def test_compare_runs_nothing_of_it(self, folder: Path) -> None:
+        folder.joinpath("c.yaml").write_text(COMPARE.format("zncc"))
+        marker = traps(folder)
+        done = tangible("compare", "c.yaml", "--json", cwd=folder)
+        assert done.returncode == 0, done.stderr
+        assert [each["error"] for each in json.loads(done.stdout)["cells"]] == [None]
+        assert not marker.exists()
+
+    def test_the_kit_runs_nothing_of_it(self, folder: Path) -> None:
+        marker = traps(folder)
+        done = tangible("check", "device", "mock", cwd=folder)
+        assert done.returncode == 0, done.stdout + done.stderr
+        assert not marker.exists()
+
+    def test_the_installed_plugin_is_felt_and_not_its_source(self, folder: Path, tmp_path: Path) -> None:
+        site = installed(tmp_path / "site")
+        folder.joinpath("acme.py").write_text(ACME)
+        folder.joinpath("p.yaml").write_text(FEEL + "render: {use: acme}\ndevice: {use: mock}\n")
+        done = tangible("feel", "p.yaml", "--seconds", "0.05", cwd=folder, PYTHONPATH=str(site))
+        assert done.returncode == 0, done.stderr
+        assert list(site.glob("*.felt"))
+        assert not list(folder.glob("*.felt"))
+
+
+class TestSearchPath:
+    @pytest.fixture(autouse=True)
+    def path(self, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+        monkeypatch.chdir(folder)
+        monkeypatch.setattr(sys, "path", ["", "lib", "/opt/lib"])
+
+    def test_relative_entries_are_made_absolute_and_the_empty_one_is_left_out(self, folder: Path) -> None:
+        assert search_path() == [str(folder / "lib"), "/opt/lib"]
+
+    @pytest.mark.parametrize("file", ["beside.py", "beside/__init__.py", "beside/inner.py"])
+    def test_the_empty_one_is_the_current_folder_for_who_imported_from_there(
+        self, folder: Path, file: str, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        folder.joinpath(file).parent.mkdir(exist_ok=True)
+        folder.joinpath(file).touch()
+        importlib.invalidate_caches()
+        monkeypatch.delitem(sys.modules, "beside", raising=False)
+        importlib.import_module("beside")
+        assert search_path() == [str(folder), str(folder / "lib"), "/opt/lib"]
+        monkeypatch.delitem(sys.modules, "beside")
+
+    def test_a_folder_that_is_gone(self, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+        monkeypatch.setattr(sys, "path", ["", "/opt/lib"])
+        folder.joinpath("level.npy").unlink()
+        folder.rmdir()
+        assert search_path() == ["/opt/lib"]
+
+
+class TestCommand:
+    def test_it_takes_the_path_over_before_anything_is_imported(
+        self, folder: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        path = [*map(str, map(Path.absolute, map(Path, sys.path))), str(folder / 'it\'s "mine" \udce4')]
+        monkeypatch.setattr(sys, "path", path)
+        said = subprocess.run(
+            python("import json; print(json.dumps([sys.path, sys.flags.safe_path]))"), capture_output=True, check=True
+        )
+        assert json.loads(said.stdout) == [path, True]
+
+    @pytest.mark.parametrize("flags", [[], ["-E"], ["-s"], ["-I"], ["-S"]])
+    def test_what_python_was_told_to_leave_out_is_left_out(self, flags: list[str]) -> None:
+        """A Python with these flags asks for the words, and here they are looked at."""
+        code = f"import sys; sys.path[:] = {sys.path!r}; from tangible_core.runtime.child_process import command; "
+        code += "print(*command('x')[1:-2])"
+        said = subprocess.run([sys.executable, *flags, "-c", code], capture_output=True, text=True, check=True)
+        assert said.stdout.split()[0] == "-P"
+        assert set(said.stdout.split()) >= {"-P", *flags}
+
+    def test_it_calls_main(self) -> None:
+        said = subprocess.run(command("this_is_missing"), capture_output=True, text=True)
+        assert "No module named 'this_is_missing'" in said.stderr
+
+
+class TestOrigins:
+    @pytest.fixture
+    def site(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+        """Where a child finds `acme`."""
+        site = installed(tmp_path / "site")
+        monkeypatch.syspath_prepend(site)
+        return site
+
+    @pytest.fixture
+    def elsewhere(self, site: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
+        """`acme`, as this program has it: of another folder."""
+        path = site.parent / "elsewhere" / "acme.py"
+        path.parent.mkdir()
+        path.write_text(ACME)
+        spec = importlib.util.spec_from_file_location("acme", path)
+        assert spec is not None and spec.loader is not None
+        module = importlib.util.module_from_spec(spec)
+        monkeypatch.setitem(sys.modules, "acme", module)
+        spec.loader.exec_module(module)
+        return module
+
+    def refused(self, name: str, site: Path, error: object) -> None:
+        other = site.parent / "elsewhere" / "acme.py"
+        assert str(error) == (
+            f"{name} of {other} cannot be had in the process that was started for it: there it is {site / 'acme.py'}; "
+            "have one acme only, where both find it"
+        )
+        assert not list(site.glob("*.felt"))
+
+    def test_a_law_of_another_file(self, site: Path, elsewhere: Any) -> None:
+        touch, device = elsewhere.Law().touch(SURFACE), load_method("device", "mock")()
+        with pytest.raises(BrokenMethod) as raised, Servo(touch, device):
+            pytest.fail("it was felt")
+        self.refused("LawTouch", site, raised.value)
+
+    def test_a_device_of_another_file(self, site: Path, elsewhere: Any) -> None:
+        with (
+            pytest.raises(BrokenMethod) as raised,
+            Servo(load_method("render", "proxy")().touch(SURFACE), elsewhere.Tip()),
+        ):
+            pytest.fail("it was opened")
+        self.refused("Tip", site, raised.value)
+
+    def test_a_method_of_another_file_is_not_compared(self, site: Path, elsewhere: Any, tmp_path: Path) -> None:
+        comparison = parse_comparison(COMPARE.format("acme"), Path("c.yaml"), Registry())
+        outlook = look(measurements(comparison), tmp_path / "r.jsonl")
+        [row] = run(outlook, tmp_path / "r.jsonl", 60, lambda *_: None, lambda *_: None).values()
+        assert row.error is not None and row.error.startswith("BrokenMethod: ")
+        self.refused("Flat", site, row.error.removeprefix("BrokenMethod: "))
+
+    def test_a_kernel_of_another_file(self, site: Path, elsewhere: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+        sent = dumps(elsewhere.kernel())
+        monkeypatch.delitem(sys.modules, "acme")
+        with pytest.raises(BrokenMethod) as raised:
+            pickle.loads(sent)
+        self.refused("tick", site, raised.value)
+        monkeypatch.delitem(sys.modules, "acme")
+
+    def test_the_same_file_by_another_path(self, site: Path, elsewhere: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+        other = site.parent / "elsewhere"
+        other.joinpath("acme.py").unlink()
+        other.joinpath("acme.py").symlink_to(site / "acme.py")
+        sent = dumps(elsewhere.Law())
+        monkeypatch.delitem(sys.modules, "acme")
+        assert type(pickle.loads(sent)).__name__ == "Law"
+        monkeypatch.delitem(sys.modules, "acme")
+
+    def test_what_is_not_there_at_all(self, site: Path, elsewhere: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+        sent = dumps(elsewhere.Law())
+        monkeypatch.delitem(sys.modules, "acme")
+        monkeypatch.setattr(sys, "path", [])
+        with pytest.raises(BrokenMethod, match="No module named 'acme'; have one acme only, where both find it"):
+            pickle.loads(sent)
+
+    def test_what_pickle_cannot_send_is_for_pickle_to_say(self) -> None:
+        class Local:
+            pass
+
+        for thing in (Local, Local(), lambda: None):
+            with pytest.raises((pickle.PicklingError, AttributeError), match=r"local|lambda|Local"):
+                dumps(thing)
+
+    @pytest.mark.parametrize("as_file", [True, False])
+    def test_a_law_of_a_notebook_or_a_script(self, as_file: bool, tmp_path: Path) -> None:
+        script = tmp_path / "script.py"
+        script.write_text(ACME.replace("__file__", "'felt'") + FEELS_ITS_OWN)
+        words = [str(script)] if as_file else ["-c", script.read_text()]
+        said = subprocess.run([sys.executable, *words], cwd=tmp_path, capture_output=True, text=True)
+        assert said.stdout.startswith("BrokenMethod LawTouch of "), said.stderr
+        assert "has to move to a module, a file of its own" in said.stdout
+
+
+FEELS_ITS_OWN = """
+from tangible_core import HapticSurface, load_method
+from tangible_core.servo import Servo
+try:
+    with Servo(Law().touch(None), load_method("device", "mock")()):
+        pass
+except Exception as error:
+    print(type(error).__name__, error)
+"""

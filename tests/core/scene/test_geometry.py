@@ -1,0 +1,467 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as hnp
+
+from tangible_core.data import Calibration, DisparityMap, Relief
+from tangible_core.errors import GeometryError
+from tangible_core.scene.geometry import (
+    disparity_to_depth,
+    fill_rows,
+    flat_relief,
+    make_relief,
+    normals,
+    picture_to_workspace,
+    resample,
+    scale_heights,
+    slopes,
+    smooth,
+    workspace_to_picture,
+)
+
+NAN = np.nan
+SIDES = st.integers(1, 12)
+SHAPES = st.tuples(SIDES, SIDES)
+
+
+def disparity(*rows, unit="px"):
+    return DisparityMap(np.array(rows, np.float32), unit=unit)
+
+
+def plane(shape, across, along, extent_m=(0.08, 0.06)):
+    """Heights of a plane at the centres of its cells, nowhere below 0 on the whole extent."""
+    columns, rows = np.meshgrid(np.arange(shape[1]), np.arange(shape[0]))
+    x, y = picture_to_workspace(columns, rows, shape, extent_m)
+    lowest = abs(across) * extent_m[0] / 2 + abs(along) * extent_m[1] / 2
+    return Relief((lowest + across * x + along * y).astype(np.float32), extent_m)
+
+
+# ---------------------------------------------------------------------------------------------------- depth
+
+
+def test_depth_is_focal_length_times_baseline_over_disparity():
+    found = disparity_to_depth(np.float32([[50, 25, 12.5]]), focal_px=1000, baseline_m=0.2)
+    assert found.dtype == np.float32
+    assert found.tolist() == [[4, 8, 16]]
+
+
+def test_depth_takes_the_offset_of_the_principal_points():
+    assert disparity_to_depth(np.float32([[50]]), 1000, 0.2, offset_px=50).tolist() == [[2]]
+
+
+def test_depth_is_unknown_where_the_disparity_is_or_is_not_positive():
+    assert np.isnan(disparity_to_depth(np.float32([[NAN, 0, -3]]), 1000, 0.2)).all()
+
+
+def test_depth_of_the_tiniest_disparity_is_infinite_without_a_warning():
+    assert disparity_to_depth(np.float32([[1e-45]]), 1000, 0.2)[0, 0] == np.inf
+
+
+@pytest.mark.parametrize(("focal_px", "baseline_m"), [(0, 1), (-1, 1), (1, 0), (1, -1), (NAN, 1), (np.inf, 1)])
+def test_depth_refuses_what_is_no_camera(focal_px, baseline_m):
+    with pytest.raises(GeometryError, match="focal_px > 0 and baseline_m > 0"):
+        disparity_to_depth(np.float32([[1]]), focal_px, baseline_m)
+
+
+# ---------------------------------------------------------------------------------------------------- holes
+
+
+def test_a_hole_takes_the_farther_of_its_neighbours():
+    assert fill_rows(np.float32([[5, NAN, NAN, 3, NAN, 7]])).tolist() == [[5, 3, 3, 3, 3, 7]]
+
+
+def test_a_hole_at_the_border_takes_its_only_neighbour():
+    assert fill_rows(np.float32([[NAN, 4, 5, NAN]])).tolist() == [[4, 4, 5, 5]]
+
+
+def test_an_empty_row_takes_the_nearest_row_the_upper_one_of_two():
+    rows = [[NAN], [1], [NAN], [2], [NAN], [NAN]]
+    assert fill_rows(np.float32(rows)).ravel().tolist() == [1, 1, 1, 2, 2, 2]
+
+
+def test_an_empty_row_is_filled_from_a_filled_one():
+    assert fill_rows(np.float32([[NAN, 2, NAN], [NAN, NAN, NAN]])).tolist() == [[2, 2, 2], [2, 2, 2]]
+
+
+def test_without_holes_the_array_itself_comes_back():
+    values = np.float32([[1, 2]])
+    assert fill_rows(values) is values
+
+
+def test_nothing_known_cannot_be_filled():
+    with pytest.raises(GeometryError, match="every value is unknown"):
+        fill_rows(np.full((2, 3), NAN, np.float32))
+
+
+@given(hnp.arrays(np.float32, SHAPES, elements=st.sampled_from([NAN, -1.0, 0.0, 2.0, -np.inf])))
+def test_filling_follows_its_rule_pixel_by_pixel(values):
+    if np.isnan(values).all():
+        return
+    before = values.copy()
+    filled = fill_rows(values)
+    np.testing.assert_array_equal(values, before)
+    for row, (old, new) in enumerate(zip(values, filled, strict=True)):
+        known = np.flatnonzero(~np.isnan(old))
+        if known.size == 0:
+            rows = np.flatnonzero(~np.isnan(values).all(axis=1))
+            np.testing.assert_array_equal(new, filled[rows[np.argmin(np.abs(rows - row))]])
+            continue
+        for column in range(old.size):
+            beside = [*known[known <= column][-1:], *known[known >= column][:1]]
+            assert new[column] == min(old[beside])
+
+
+# ---------------------------------------------------------------------------------------------------- relief
+
+
+def test_without_calibration_heights_are_linear_in_disparity():
+    relief = make_relief(disparity([0, 1, 2, 4]), None, width_m=0.08, relief_m=0.02)
+    assert relief.height_m.dtype == np.float32
+    np.testing.assert_allclose(relief.height_m, [[0, 0.005, 0.01, 0.02]], atol=4e-4)  # percentiles of four values
+    assert relief.extent_m == (0.08, 0.02)
+
+
+def test_with_calibration_heights_are_linear_in_depth():
+    camera = Calibration(focal_px=100, baseline_m=0.1)
+    relief = make_relief(disparity(*[[10, 5, 2.5]] * 500), camera, 0.06, 0.03)  # at 1, 2 and 4 m
+    np.testing.assert_allclose(relief.height_m, [[0.03, 0.02, 0]] * 500, atol=1e-7)
+
+
+def test_the_offset_of_the_principal_points_counts():
+    """Of a camera whose d + offset is 10, 5 and 2.5 px: at 1, 2 and 4 m."""
+    camera = Calibration(focal_px=100, baseline_m=0.1, offset_px=30)
+    relief = make_relief(disparity(*[[-20, -25, -27.5]] * 500), camera, 0.06, 0.03)
+    np.testing.assert_allclose(relief.height_m, [[0.03, 0.02, 0]] * 500, atol=1e-7)
+
+
+def test_a_relative_disparity_has_no_depth_even_with_a_calibration():
+    camera = Calibration(focal_px=100, baseline_m=0.1)
+    relief = make_relief(disparity(*[[0, 0.5, 1]] * 500, unit="relative"), camera, 0.06, 0.02)
+    np.testing.assert_allclose(relief.height_m, [[0, 0.01, 0.02]] * 500, atol=1e-8)
+
+
+def test_what_lies_at_or_beyond_infinity_is_far_and_not_a_hole():
+    camera = Calibration(focal_px=100, baseline_m=0.1)
+    relief = make_relief(disparity(*[[5, 10, 0, -3, 10]] * 500), camera, 0.06, 0.02)
+    np.testing.assert_allclose(relief.height_m, [[0, 0.02, 0, 0, 0.02]] * 500, atol=1e-8)
+
+
+def test_wrong_matches_do_not_stretch_the_range():
+    values = np.tile(np.linspace(10, 20, 100, dtype=np.float32), (100, 1))
+    clean = make_relief(DisparityMap(values), None, 0.1, 0.02).height_m
+    wrong = values.copy()
+    wrong[0, :5], wrong[1, :5] = 500, -500
+    spoilt = make_relief(DisparityMap(wrong), None, 0.1, 0.02).height_m
+    np.testing.assert_allclose(spoilt[2:], clean[2:], atol=1e-4)
+    assert spoilt[0, 0] == np.float32(0.02)
+    assert spoilt[1, 0] == 0
+
+
+def test_half_a_percent_at_each_end_is_clipped():
+    """Of 2001 equally spaced values the ten least are as low as the next, and the ten greatest as high."""
+    values = np.random.default_rng(3).permutation(2001).astype(np.float32)
+    heights = make_relief(DisparityMap(values[None]), None, 0.1, 0.0198).height_m[0]
+    np.testing.assert_allclose(heights, np.clip(values - 10, 0, 1980) * 1e-5, atol=1e-9)
+
+
+def test_holes_do_not_count_for_the_range():
+    """Nor what they are filled with: 2001 values in one row, and more rows of the least alone."""
+    values = np.full((3, 2001), NAN, np.float32)
+    values[0] = np.arange(2001)
+    values[1:, 0] = 0
+    for holes in ("fill", "cut"):
+        heights = make_relief(DisparityMap(values), None, 0.1, 0.0198, holes).height_m
+        np.testing.assert_allclose(heights[0], np.clip(values[0] - 10, 0, 1980) * 1e-5, rtol=2e-3, atol=2e-5)
+        assert not heights[1:].any()
+
+
+def test_something_smaller_than_the_percentiles_still_stands_out_of_a_flat_wall():
+    values = np.full((100, 100), 7, np.float32)
+    values[50, 50] = 9
+    heights = make_relief(DisparityMap(values), None, 0.1, 0.02).height_m
+    assert heights[50, 50] == np.float32(0.02)
+    assert np.count_nonzero(heights) == 1
+
+
+@pytest.mark.parametrize("value", [1e-30, 7.3, 1e30])
+def test_values_that_only_rounding_tells_apart_are_one(value):
+    twice = np.float32([[value, np.nextafter(np.float32(value), np.float32(np.inf))]])
+    assert not make_relief(DisparityMap(twice), None, 0.1, 0.02).height_m.any()
+    assert not scale_heights(twice, 0.1, 0.02).height_m.any()
+
+
+@pytest.mark.parametrize("camera", [None, Calibration(100, 0.1)])
+@pytest.mark.parametrize("shape", [(1, 1), (1, 5), (4, 3)])
+def test_a_constant_map_is_flat_at_zero(camera, shape):
+    relief = make_relief(DisparityMap(np.full(shape, 7.3, np.float32)), camera, 0.1, 0.02)
+    assert not relief.height_m.any()
+
+
+def test_holes_are_filled_from_the_background_or_cut_to_the_base():
+    found = disparity(*[[4, NAN, 2, 3, 3]] * 200)
+    filled = make_relief(found, None, 0.1, 0.02).height_m[0]
+    cut = make_relief(found, None, 0.1, 0.02, "cut").height_m[0]
+    np.testing.assert_allclose(filled, [0.02, 0, 0, 0.01, 0.01], atol=1e-8)
+    np.testing.assert_allclose(cut, [0.02, 0, 0, 0.01, 0.01], atol=1e-8)
+    raised = make_relief(disparity(*[[4, NAN, 3, 2]] * 200), None, 0.1, 0.02).height_m[0]
+    np.testing.assert_allclose(raised, [0.02, 0.01, 0.01, 0], atol=1e-8)
+
+
+@pytest.mark.parametrize("values", [[[NAN, NAN]], [[-np.inf, NAN]]])
+@pytest.mark.parametrize("holes", ["fill", "cut"])
+def test_no_known_depth_makes_no_relief(values, holes):
+    with pytest.raises(GeometryError, match="no depth is known anywhere"):
+        make_relief(disparity(*values), None, 0.1, 0.02, holes)
+
+
+def test_everything_at_infinity_makes_no_relief():
+    with pytest.raises(GeometryError, match="not swapped"):
+        make_relief(disparity([-3, -2]), Calibration(100, 0.1), 0.1, 0.02)
+
+
+@pytest.mark.parametrize(("width_m", "relief_m"), [(0, 1), (-1, 1), (1, 0), (1, -1), (NAN, 1), (1, np.inf)])
+def test_sizes_are_positive(width_m, relief_m):
+    with pytest.raises(GeometryError, match="positive lengths in metres"):
+        make_relief(disparity([1, 2]), None, width_m, relief_m)
+    with pytest.raises(GeometryError, match="positive lengths in metres"):
+        scale_heights(np.float32([[1, 2]]), width_m, relief_m)
+
+
+@given(hnp.arrays(np.float32, SHAPES), st.sampled_from(["fill", "cut"]), st.booleans())
+def test_any_disparities_give_heights_in_range_or_one_error(values, holes, calibrated):
+    camera = Calibration(1000, 0.1, 5) if calibrated else None
+    try:
+        relief = make_relief(DisparityMap(values, np.ones(values.shape, np.float32)), camera, 0.08, 0.02, holes)
+    except GeometryError:
+        return
+    assert relief.height_m.min() >= 0
+    assert relief.height_m.max() <= np.float32(0.02)
+    assert relief.extent_m == pytest.approx((0.08, 0.08 * values.shape[0] / values.shape[1]))
+
+
+# ---------------------------------------------------------------------------------------------------- height maps
+
+
+@pytest.mark.parametrize("dtype", [np.uint8, np.uint16, np.int32, np.float32, np.float64])
+def test_a_height_map_runs_from_the_base_to_the_relief(dtype):
+    relief = scale_heights(np.array([[10, 20], [30, 50]], dtype), 0.1, 0.02)
+    np.testing.assert_allclose(relief.height_m, [[0, 0.005], [0.01, 0.02]], rtol=1e-6)
+    assert relief.extent_m == (0.1, 0.1)
+
+
+def test_the_greatest_heights_there_are():
+    most = np.finfo(np.float64).max
+    assert scale_heights(np.array([[-most, 0, most]]), 0.1, 0.02).height_m == pytest.approx(np.array([[0, 0.01, 0.02]]))
+
+
+def test_a_height_map_in_yes_and_no():
+    assert scale_heights(np.array([[False, True]]), 0.1, 0.5).height_m.tolist() == [[0, 0.5]]
+
+
+def test_holes_of_a_height_map_follow_the_same_rule():
+    heights = np.array([[3, NAN, 2, np.inf, 1]])
+    assert scale_heights(heights, 0.1, 1.0).height_m.tolist() == [[1, 0.5, 0.5, 0, 0]]
+    assert scale_heights(heights, 0.1, 1.0, "cut").height_m.tolist() == [[1, 0, 0.5, 0, 0]]
+
+
+def test_peaks_of_a_height_map_are_not_clipped():
+    heights = np.zeros((100, 100))
+    heights[3, 4], heights[5, 6] = 1, 2
+    assert scale_heights(heights, 0.1, 0.02).height_m[3, 4] == np.float32(0.01)
+
+
+def test_a_height_map_without_a_height_is_refused():
+    with pytest.raises(GeometryError, match="holds no height"):
+        scale_heights(np.full((3, 3), NAN), 0.1, 0.02)
+
+
+@given(hnp.arrays(np.float64, SHAPES))
+def test_any_height_map_gives_heights_in_range_or_one_error(heights):
+    try:
+        relief = scale_heights(heights, 0.08, 0.02)
+    except GeometryError:
+        assert not np.isfinite(heights).any()
+        return
+    assert relief.height_m.min() == 0
+    assert relief.height_m.max() <= np.float32(0.02)
+
+
+def test_a_flat_relief_has_square_cells():
+    relief = flat_relief((2, 4), 0.08)
+    assert not relief.height_m.any()
+    assert relief.pitch_m == (0.02, 0.02)
+    with pytest.raises(GeometryError):
+        flat_relief((0, 0), 0.08)
+
+
+# ---------------------------------------------------------------------------------------------------- frames
+
+
+def test_the_pictures_corners_are_the_workspaces():
+    shape, extent = (30, 40), (0.08, 0.06)
+    assert picture_to_workspace(-0.5, -0.5, shape, extent) == pytest.approx((-0.04, 0.03))
+    assert picture_to_workspace(39.5, 29.5, shape, extent) == pytest.approx((0.04, -0.03))
+    assert picture_to_workspace(19.5, 14.5, shape, extent) == pytest.approx((0, 0))
+
+
+def test_row_zero_is_far_and_columns_run_to_the_right():
+    x, y = picture_to_workspace(np.array([0, 1]), np.array([0, 1]), (2, 2), (2.0, 2.0))
+    np.testing.assert_allclose(x, [-0.5, 0.5])
+    np.testing.assert_allclose(y, [0.5, -0.5])
+
+
+@given(st.floats(-100, 100), st.floats(-100, 100), SHAPES, st.tuples(st.floats(0.01, 1), st.floats(0.01, 1)))
+def test_there_and_back_is_the_same_place(column, row, shape, extent):
+    back = workspace_to_picture(*picture_to_workspace(column, row, shape, extent), shape, extent)
+    assert back == pytest.approx((column, row), abs=1e-9)
+
+
+# ---------------------------------------------------------------------------------------------------- resampling
+
+
+@given(SHAPES, SHAPES, st.floats(-2, 2), st.floats(-2, 2))
+def test_a_plane_stays_that_plane_on_any_grid(shape, other, across, along):
+    across, along = across * (shape[1] > 1), along * (shape[0] > 1)
+    again = resample(plane(shape, across, along), other)
+    wanted = plane(other, across, along)
+    assert again.extent_m == wanted.extent_m
+    np.testing.assert_allclose(again.height_m, wanted.height_m, rtol=1e-5, atol=1e-7)
+
+
+@given(hnp.arrays(np.float32, SHAPES, elements=st.floats(0, 100, width=32)), SHAPES)
+def test_resampling_keeps_the_volume_and_stays_above_the_base(heights, shape):
+    relief = Relief(heights, (0.1, 0.2))
+    again = resample(relief, shape)
+    assert again.height_m.shape == shape
+    assert again.height_m.mean(dtype=np.float64) == pytest.approx(heights.mean(dtype=np.float64), rel=1e-5, abs=1e-6)
+
+
+@given(hnp.arrays(np.float32, SHAPES, elements=st.floats(0, 100, width=32)), st.integers(1, 4), st.integers(1, 4))
+def test_finer_and_back_is_the_same(heights, down, across):
+    relief = Relief(heights, (0.1, 0.2))
+    finer = resample(relief, (heights.shape[0] * down, heights.shape[1] * across))
+    np.testing.assert_allclose(resample(finer, heights.shape).height_m, heights, rtol=1e-5, atol=2e-5)
+
+
+def test_its_own_shape_changes_nothing():
+    heights = np.random.default_rng(0).random((5, 7), np.float32) * np.float32(1e-30)
+    np.testing.assert_array_equal(resample(Relief(heights, (1, 1)), (5, 7)).height_m, heights)
+
+
+def test_coarser_cells_are_means_of_the_finer_ones():
+    heights = np.arange(16, dtype=np.float32).reshape(4, 4) ** 2
+    means = heights.reshape(2, 2, 2, 2).mean(axis=(1, 3))
+    np.testing.assert_allclose(resample(Relief(heights, (1, 1)), (2, 2)).height_m, means, rtol=1e-6)
+
+
+def test_a_cliff_stays_a_cliff():
+    heights = np.repeat(np.float32([[0, 0, 1, 1]]), 2, axis=0)
+    assert resample(Relief(heights, (1, 1)), (2, 8)).height_m.tolist() == [[0, 0, 0, 0, 1, 1, 1, 1]] * 2
+
+
+@pytest.mark.parametrize(
+    ("heights", "halves"),
+    [
+        ([1, 2, 4], [1.625, 2.375]),  # the central difference
+        ([1, 2, 11], [1.5, 2.5]),  # and here no more than twice the lesser step
+        ([9, 2, 1], [2.5, 1.5]),
+        ([1, 2, 3], [1.75, 2.25]),
+        ([1, 2, 1.5], [2, 2]),  # a peak is level
+        ([2, 1, 1.5], [1, 1]),
+    ],
+)
+def test_no_facet_leaves_the_range_of_its_neighbours(heights, halves):
+    relief = Relief(np.float32([heights]), (1, 1))
+    assert resample(relief, (1, 6)).height_m[0, 2:4] == pytest.approx(halves)
+
+
+def test_a_smooth_surface_is_met_closely_from_half_its_grid():
+    def bump(shape):
+        columns, rows = np.meshgrid(np.arange(shape[1]), np.arange(shape[0]))
+        x, y = picture_to_workspace(columns, rows, shape, (1.0, 1.0))
+        return np.exp(-8 * (x**2 + y**2)).astype(np.float32)
+
+    again = resample(Relief(bump((40, 40)), (1.0, 1.0)), (80, 80)).height_m
+    assert np.abs(again - bump((80, 80))).max() < 0.004
+
+
+@pytest.mark.parametrize("shape", [(0, 4), (4, 0), (-1, 2)])
+def test_a_grid_has_cells(shape):
+    with pytest.raises(GeometryError, match="at least one cell"):
+        resample(flat_relief((2, 2), 0.1), shape)
+
+
+# ---------------------------------------------------------------------------------------------------- smooth
+
+
+@pytest.mark.parametrize("shape", [(60, 80), (120, 160), (120, 80)])
+def test_a_wave_falls_by_what_the_gaussian_says_at_any_resolution(shape):
+    extent_m, sigma_m, wave_m = (0.08, 0.06), 0.001, 0.01
+    columns, rows = np.meshgrid(np.arange(shape[1]), np.arange(shape[0]))
+    x, y = picture_to_workspace(columns, rows, shape, extent_m)
+    wave = np.sin(2 * np.pi * x / wave_m) * np.cos(2 * np.pi * y / wave_m)
+    smoothed = smooth(Relief((0.01 + 0.005 * wave).astype(np.float32), extent_m), sigma_m).height_m
+    left = np.exp(-2 * (np.pi * sigma_m / wave_m) ** 2) ** 2  # once an axis
+    inside = np.s_[shape[0] // 10 : -shape[0] // 10, shape[1] // 10 : -shape[1] // 10]
+    np.testing.assert_allclose(smoothed[inside], (0.01 + 0.005 * left * wave)[inside], atol=2e-5)
+
+
+@pytest.mark.parametrize("sigma_px", [0.4, 0.6, 0.9])
+@pytest.mark.parametrize("across", [True, False])
+def test_under_a_pixel_it_is_smoothed_as_far_as_it_is_sampled(sigma_px, across):
+    """A wave of 8 cells falls by what the Gaussian's samples say; along cells twenty times as long, nothing happens."""
+    wave = np.cos(np.arange(64) * np.pi / 4) * np.ones((64, 1))
+    shape_m = (0.064, 1.28) if across else (1.28, 0.064)
+    steps = np.arange(-8, 9)
+    weights = np.exp(-(steps**2) / (2 * sigma_px**2))
+    left = weights @ np.cos(steps * np.pi / 4) / weights.sum()
+    for turned, falls in ((wave, across), (wave.T, not across)):
+        smoothed = smooth(Relief((0.01 + 0.005 * turned).astype(np.float32), shape_m), sigma_px * 0.001).height_m
+        inside = np.s_[8:-8, 8:-8]
+        expected = 0.01 + 0.005 * (left if falls else 1) * turned
+        np.testing.assert_allclose(smoothed[inside], expected[inside], atol=5e-6)
+    assert left < 0.98
+
+
+def test_level_ground_stays_level_up_to_its_borders():
+    level = Relief(np.full((6, 9), 0.01, np.float32), (0.09, 0.06))
+    np.testing.assert_allclose(smooth(level, 0.02).height_m, 0.01, rtol=1e-5)
+
+
+def test_what_needs_no_smoothing_is_left_alone():
+    relief = Relief(np.random.default_rng(0).random((5, 7), np.float32), (0.07, 0.05))
+    assert smooth(relief, 0.0) is relief
+    assert smooth(relief, 1e-5) is relief
+    flat = smooth(flat_relief((5, 7), 0.07), 0.01)
+    assert not flat.height_m.any()
+    assert smooth(flat_relief((1, 1), 0.07), 0.1).height_m.shape == (1, 1)
+
+
+@pytest.mark.parametrize("sigma_m", [-0.001, np.nan, np.inf])
+def test_a_smoothing_that_is_none(sigma_m):
+    with pytest.raises(GeometryError, match="sigma_m"):
+        smooth(flat_relief((2, 2), 0.1), sigma_m)
+
+
+# ---------------------------------------------------------------------------------------------------- slopes
+
+
+@given(SHAPES, st.floats(-2, 2), st.floats(-2, 2))
+def test_slopes_and_normals_of_a_plane_are_exact_in_the_workspace_frame(shape, across, along):
+    relief = plane(shape, across, along)
+    found = slopes(relief)
+    wanted = (across if shape[1] > 1 else 0, along if shape[0] > 1 else 0)
+    for got, want in zip(found, wanted, strict=True):
+        assert got.dtype == np.float32
+        np.testing.assert_allclose(got, np.full(shape, want), atol=1e-4)
+    up = np.array([-wanted[0], -wanted[1], 1]) / np.sqrt(1 + wanted[0] ** 2 + wanted[1] ** 2)
+    np.testing.assert_allclose(normals(relief), np.broadcast_to(up, (*shape, 3)), atol=1e-4)
+
+
+def test_a_surface_that_rises_away_from_the_user_has_a_positive_slope_in_y():
+    relief = Relief(np.float32([[1, 1], [0, 0]]), (1.0, 1.0))
+    across, along = slopes(relief)
+    assert not across.any()
+    assert (along == 2).all()
+    assert (normals(relief)[..., 1] < 0).all()

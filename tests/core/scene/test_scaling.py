@@ -1,0 +1,81 @@
+import numpy as np
+import pytest
+
+from tangible_core.data import Calibration, DisparityMap, SegmentMap, Views
+from tangible_core.scene.scaling import enlarged, enlarged_segments, felt_factor, reduced
+
+
+@pytest.mark.parametrize(
+    ("columns", "width_m", "finest_m", "factor"),
+    [(6000, 0.08, 3e-5, 2), (8000, 0.08, 3e-5, 3), (2666, 0.08, 3e-5, 1), (6000, 0.08, 0.0, 1), (1, 0.08, 0.1, 1)],
+)
+def test_a_pixel_stays_at_or_under_the_finest_detail(columns, width_m, finest_m, factor):
+    assert felt_factor(columns, width_m, finest_m) == factor
+    assert factor == 1 or factor * width_m / columns <= finest_m
+
+
+@pytest.mark.parametrize("dtype", [np.uint8, np.uint16, np.float32, np.float64, np.bool_])
+@pytest.mark.parametrize("channels", [(), (3,), (4,)])
+def test_reduced_pixels_are_means(dtype, channels):
+    rng = np.random.default_rng(0)
+    small = (
+        rng.random((4, 6, *channels)) if dtype in (np.float32, np.float64) else rng.integers(0, 2, (4, 6, *channels))
+    )
+    picture = np.repeat(np.repeat(small, 3, axis=0), 3, axis=1).astype(dtype)
+    half = reduced(Views(picture, picture, Calibration(1000.0, 0.1)), 3)
+    scale = 255 if dtype == np.bool_ else 1
+    np.testing.assert_allclose(half.left, small * scale, atol=1e-6)
+    assert half.right is not None
+    assert half.shape == (4, 6)
+
+
+def test_nothing_to_reduce_is_nothing_done():
+    views = Views(np.zeros((3, 4), np.uint8))
+    assert reduced(views, 1) is views
+    disparity = DisparityMap(np.zeros((3, 4), np.float32))
+    assert enlarged(disparity, (3, 4)) is disparity
+
+
+def test_a_plane_comes_back_in_the_pixels_of_the_pictures():
+    columns = np.arange(60, dtype=np.float32)
+    small = DisparityMap(np.tile(4 + 0.1 * columns, (20, 1)))
+    large = enlarged(small, (40, 120)).disparity_px
+    wanted = 2 * (4 + 0.1 * ((np.arange(120) + 0.5) / 2 - 0.5))  # pixel centres of both sizes
+    np.testing.assert_allclose(large[:, 2:-2], np.tile(wanted, (40, 1))[:, 2:-2], rtol=1e-5)
+
+
+def test_a_hole_stays_a_hole_and_takes_nothing_beside_it():
+    values = np.full((4, 6), 5.0, np.float32)
+    values[1, 2] = np.nan
+    large = enlarged(DisparityMap(values), (8, 12))
+    unknown = np.isnan(large.disparity_px)
+    assert unknown[2:4, 4:6].all()
+    assert unknown.sum() == 4
+    assert (large.disparity_px[~unknown] == 10).all()
+    assert large.confidence.shape == (8, 12)
+
+
+def test_what_is_relative_is_not_scaled():
+    assert enlarged(DisparityMap(np.full((2, 2), 0.5, np.float32), unit="relative"), (4, 4)).disparity_px.max() == 0.5
+
+
+def test_one_pixel():
+    assert reduced(Views(np.zeros((1, 1), np.uint8)), 3).shape == (1, 1)
+
+
+@pytest.mark.parametrize("shape", [(1, 1), (2, 9), (5, 7), (64, 33)])
+@pytest.mark.parametrize("factor", [1, 2, 3])
+def test_segments_come_back_with_every_label(shape, factor):
+    small = reduced(Views(np.zeros(shape, np.uint8)), factor).shape
+    labels = np.arange(small[0] * small[1], dtype=np.int32).reshape(small)
+    found = enlarged_segments(SegmentMap(labels, np.full(small, 0.25, np.float32)), shape)
+    assert found.labels.dtype == np.int32
+    assert np.array_equal(np.unique(found.labels), labels.ravel())
+    assert found.confidence.shape == shape
+    assert np.all(found.confidence == 0.25)
+
+
+def test_segments_stay_where_they_are():
+    labels = np.array([[0, 0, 1], [2, 1, 1]], np.int32)
+    whole = np.kron(labels, np.ones((4, 4), np.int32))
+    assert np.array_equal(enlarged_segments(SegmentMap(labels), whole.shape).labels, whole)

@@ -1,0 +1,229 @@
+import socket
+from pathlib import Path
+
+import numpy as np
+import pytest
+from pydantic import ValidationError
+
+from tangible_core.data import DisparityMap, Relief, SegmentMap
+from tangible_core.errors import ConfigError, GeometryError, PictureError
+from tangible_core.scene.picture_files import write_png
+from tangible_core.scene.scene import BUILTINS, SceneFiles, read_scene
+
+NAN = np.nan
+SIZE = {"width_m": 0.08, "relief_m": 0.02}
+PICTURE = np.random.default_rng(0).integers(0, 256, (4, 6, 3), dtype=np.uint8)
+
+
+@pytest.fixture
+def folder(tmp_path):
+    for name in ("left", "right", "photo"):
+        write_png(tmp_path / f"{name}.png", PICTURE)
+    write_png(tmp_path / "wide.png", np.zeros((4, 7), np.uint8))
+    for name, shape in (("map", (4, 6)), ("wide", (4, 7))):
+        np.save(tmp_path / f"{name}.npy", np.arange(np.prod(shape), dtype=np.float32).reshape(shape))
+    return tmp_path
+
+
+def complaint(**files):
+    with pytest.raises(ValidationError) as caught:
+        SceneFiles(**files)
+    assert caught.value.error_count() == 1
+    return caught.value.errors()[0]["msg"]
+
+
+# What a scene block may say
+
+
+@pytest.mark.parametrize(
+    ("files", "named"),
+    [
+        ({}, "nothing"),
+        ({"left": "a"}, "left"),
+        ({"right": "a"}, "right"),
+        ({"left": "a", "photo": "b"}, "left, photo"),
+        ({"left": "a", "right": "b", "height": "c"}, "left, right, height"),
+        ({"photo": "a", "height": "b"}, "photo, height"),
+        ({"disparity": "a"}, "disparity"),
+    ],
+)
+def test_a_scene_is_exactly_one_of_pair_photo_and_height(files, named):
+    assert complaint(**files).endswith(f"either left and right, or photo, or height; this one gives {named}")
+
+
+@pytest.mark.parametrize(
+    ("files", "message"),
+    [
+        ({"photo": "a", "focal_px": 3}, "focal_px needs baseline_m beside it"),
+        ({"photo": "a", "baseline_m": 3}, "baseline_m needs focal_px beside it"),
+        ({"photo": "a", "offset_px": 3}, "offset_px needs focal_px beside it"),
+        ({"photo": "a", "relief_m": 3}, "relief_m needs height beside it"),
+        ({"height": "a", "truth": "b"}, "height already says how high everything is; leave out truth"),
+        ({"height": "a", "disparity": "b"}, "leave out disparity"),
+        ({"photo": "a", "focal_px": 0, "baseline_m": 1}, "greater than 0"),
+        ({"photo": "a", "phot": "b"}, "Extra inputs are not permitted"),
+        ({"photo": 3}, "not a valid path"),
+    ],
+)
+def test_what_does_not_go_together_is_said(files, message):
+    assert message in complaint(**files)
+
+
+def test_every_key_is_described():
+    properties = SceneFiles.model_json_schema()["properties"]
+    assert all(each["description"] for each in properties.values())
+
+
+def test_the_block_survives_json():
+    files = BUILTINS["builtin/motorcycle"]
+    assert SceneFiles.model_validate_json(files.model_dump_json()) == files
+
+
+# Builtin scenes
+
+
+def test_the_motorcycle_is_a_calibrated_pair_with_its_truth():
+    scene = read_scene("builtin/motorcycle", Path("anywhere"), **SIZE)
+    assert scene.name == "builtin/motorcycle"
+    assert scene.views.left.shape == scene.views.right.shape == (500, 741, 3)
+    camera = scene.views.calibration
+    assert (camera.focal_px, camera.baseline_m, camera.offset_px) == (994.978, 0.193001, 31.086)
+    assert scene.truth.dtype == np.float32
+    assert scene.truth.shape == (500, 741)
+    assert np.isnan(scene.truth).mean() == pytest.approx(0.0735, abs=1e-4)
+    assert not np.isinf(scene.truth).any()
+    assert scene.given == {}
+
+
+def test_the_truth_belongs_to_the_left_view():
+    scene = read_scene("builtin/motorcycle", Path(), **SIZE)
+    rows, columns = np.nonzero(scene.truth > 0)
+    target = np.rint(columns - scene.truth[rows, columns]).astype(int)
+    inside = target >= 0
+    left = scene.views.left[rows, columns].astype(float)[inside]
+    assert np.median(np.abs(left - scene.views.right[rows[inside], target[inside]])) < 6
+    assert np.median(np.abs(left - scene.views.right[rows[inside], columns[inside]])) > 12
+
+
+@pytest.mark.parametrize("name", BUILTINS)
+def test_builtin_scenes_need_no_network(name, monkeypatch):
+    def refuse(*args, **options):
+        raise AssertionError("the network was used")
+
+    monkeypatch.setattr(socket.socket, "connect", refuse)
+    scene = read_scene(name, Path(), **SIZE)
+    assert scene.views.left.size > 10_000
+
+
+@pytest.mark.parametrize(
+    ("name", "hint"),
+    [
+        ("builtin/motorcicle", "(did you mean 'builtin/motorcycle'?)"),
+        ("a.png", "write {photo: FILE}"),
+        ("", "builtin/"),
+    ],
+)
+def test_an_unknown_name_says_what_there_is(name, hint):
+    with pytest.raises(ConfigError, match="no scene is named") as caught:
+        read_scene(name, Path(), **SIZE)
+    assert hint in str(caught.value)
+    assert "builtin/gravel" in str(caught.value)
+
+
+def test_without_scikit_image_it_is_named(monkeypatch):
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    with pytest.raises(PictureError, match="pip install scikit-image"):
+        read_scene("builtin/brick", Path(), **SIZE)
+
+
+# Scenes in files
+
+
+def test_paths_start_at_the_folder_unless_they_are_absolute(folder):
+    files = SceneFiles(left="left.png", right=folder / "right.png")
+    scene = read_scene(files, folder, **SIZE)
+    np.testing.assert_array_equal(scene.views.left, PICTURE)
+    np.testing.assert_array_equal(scene.views.right, PICTURE)
+    assert scene.name == "left.png"
+    assert scene.views.calibration is None
+    assert scene.truth is None
+
+
+def test_a_calibration_needs_no_offset(folder):
+    files = SceneFiles(left="left.png", right="right.png", focal_px=100, baseline_m=0.1)
+    camera = read_scene(files, folder, **SIZE).views.calibration
+    assert (camera.focal_px, camera.baseline_m, camera.offset_px) == (100, 0.1, 0)
+
+
+def test_a_photo_brings_what_it_is_given_with(folder):
+    write_png(folder / "labels.png", np.repeat(np.uint8([[0, 0, 0, 9, 9, 9]]), 4, axis=0))
+    files = SceneFiles(photo="photo.png", disparity="map.npy", segments="labels.png", truth="map.npy")
+    scene = read_scene(files, folder, **SIZE)
+    assert set(scene.given) == {"disparity", "segments"}
+    disparity, segments = scene.given["disparity"], scene.given["segments"]
+    assert isinstance(disparity, DisparityMap)
+    assert isinstance(segments, SegmentMap)
+    np.testing.assert_array_equal(disparity.disparity_px, np.load(folder / "map.npy"))
+    assert segments.labels[0].tolist() == [0, 0, 0, 1, 1, 1]
+    assert scene.views.right is None
+
+
+def test_the_truth_cannot_be_changed(folder):
+    scene = read_scene(SceneFiles(photo="photo.png", truth="map.npy"), folder, **SIZE)
+    with pytest.raises(ValueError, match="read-only"):
+        scene.truth[0, 0] = 1
+
+
+def test_a_height_map_brings_its_relief_and_no_views(folder):
+    scene = read_scene(SceneFiles(height="map.npy"), folder, **SIZE)
+    assert scene.views is None
+    relief = scene.given["relief"]
+    assert isinstance(relief, Relief)
+    np.testing.assert_allclose(relief.height_m, np.load(folder / "map.npy") / 23 * 0.02, rtol=1e-6)
+    assert relief.extent_m == pytest.approx((0.08, 0.08 * 4 / 6))
+
+
+def test_a_height_map_may_say_how_high_it_is(folder):
+    scene = read_scene(SceneFiles(height="map.npy", relief_m=0.005), folder, **SIZE)
+    assert scene.given["relief"].height_m.max() == np.float32(0.005)
+
+
+def test_holes_of_a_height_map_follow_the_rule_that_is_asked_for(folder):
+    np.save(folder / "holes.npy", [[2, NAN, 1, 0]])
+    files = SceneFiles(height="holes.npy")
+    filled, cut = (
+        read_scene(files, folder, width_m=0.08, relief_m=1, holes=holes).given["relief"].height_m.tolist()
+        for holes in ("fill", "cut")
+    )
+    assert (filled, cut) == ([[1, 0.5, 0.5, 0]], [[1, 0, 0.5, 0]])
+
+
+def test_a_height_map_of_nothing_is_refused(folder):
+    np.save(folder / "nothing.npy", np.full((3, 3), NAN))
+    with pytest.raises(GeometryError, match="holds no height"):
+        read_scene(SceneFiles(height="nothing.npy"), folder, **SIZE)
+
+
+@pytest.mark.parametrize(
+    ("files", "named"),
+    [
+        ({"left": "left.png", "right": "wide.png"}, ("wide.png (right) is 7 x 4", "left.png (left) is 6 x 4")),
+        (
+            {"photo": "photo.png", "disparity": "wide.npy"},
+            ("wide.npy (disparity) is 7 x 4", "photo.png (photo) is 6 x"),
+        ),
+        ({"photo": "photo.png", "segments": "wide.png"}, ("wide.png (segments)", "photo.png (photo)")),
+        ({"photo": "photo.png", "truth": "wide.npy"}, ("wide.npy (truth)", "photo.png (photo)")),
+        ({"height": "map.npy", "segments": "wide.png"}, ("wide.png (segments)", "map.npy (height)")),
+    ],
+)
+def test_two_sizes_are_named_with_their_files(folder, files, named):
+    with pytest.raises(PictureError, match="all files of a scene are of one size") as caught:
+        read_scene(SceneFiles(**files), folder, **SIZE)
+    assert all(each in str(caught.value) for each in named)
+
+
+@pytest.mark.parametrize("key", ["photo", "height"])
+def test_a_file_that_is_not_there_is_named(folder, key):
+    with pytest.raises(PictureError, match="there is no such file"):
+        read_scene(SceneFiles(**{key: "nothing.png"}), folder, **SIZE)

@@ -1,0 +1,287 @@
+"""How stiff a law is that does not say so: felt before the device is opened, so that the guard can soften it."""
+
+import importlib
+import math
+import sys
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tangible_core import HapticSurface, load_method
+from tangible_core.compiled.touch import CompiledTouch
+from tangible_core.data import NO_FORCE, TICK_COLUMNS, DeviceSpec, Force, HapticState, TickFlag
+from tangible_core.errors import BrokenMethod
+from tangible_core.plugins.interfaces import Touch
+from tangible_core.servo import Safety, Servo
+from tangible_core.servo.guard import stiffness
+from tangible_core.servo.guard.stiffness import DEPTHS_M, HALVINGS, LAYERS, PLACES, STEP_M, slopes, stiffness_of
+from tangible_core.session import run
+from tangible_core.synthetic.scenes import plane, ramp
+from tangible_core.testing.handle import wall
+from tangible_devices.mock import Mock
+
+SPEC = DeviceSpec(8.0, 3000.0, 20.0, (0.08, 0.08, 0.08), 1e-6)
+AT_ONCE = Safety(ramp_s=0, max_step_n=10, passivity="off")
+FLAGS, FZ = TICK_COLUMNS.index("flags"), TICK_COLUMNS.index("fz_n")
+LEVEL_M = 0.002
+PLAIN = """
+from tangible_core.data import Force
+from tangible_core.plugins.interfaces import Touch
+
+class Plain(Touch):
+    def __init__(self, k, height_m=0.002):
+        self.k, self.height_m = k, height_m
+
+    def force(self, state):
+        return Force(0.0, 0.0, self.k * max(0.0, self.height_m - state.position_m[2]))
+
+    def path(self, positions_m, period_s=0.001):
+        raise NotImplementedError
+"""
+
+
+class Law(Touch):
+    """A force of the position, and how often it was asked for."""
+
+    def __init__(self, law: Callable[[float, float, float], tuple[float, float, float]]) -> None:
+        self.law, self.asked = law, 0
+
+    def force(self, state: HapticState) -> Force:
+        self.asked += 1
+        return Force(*self.law(*state.position_m))
+
+    def path(self, positions_m, period_s=0.001):
+        raise NotImplementedError
+
+
+def level(push_n: Callable[[float], float], height_m: float = LEVEL_M) -> Law:
+    """Pushes straight up by a function of the depth under level ground."""
+    return Law(lambda x, y, z: (0.0, 0.0, push_n(height_m - z) if z < height_m else 0.0))
+
+
+def spring(k: float, height_m: float = LEVEL_M) -> Law:
+    return level(lambda depth: k * depth, height_m)
+
+
+@pytest.fixture
+def plain(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
+    """A law of somebody's, in plain Python, in a module that the loop's process finds too."""
+    tmp_path.joinpath("plain_law.py").write_text(PLAIN)
+    monkeypatch.syspath_prepend(tmp_path)
+    yield importlib.import_module("plain_law").Plain
+    del sys.modules["plain_law"]
+
+
+class TestSoftening:
+    """5,000 N/m, where the mock's own table says 3,000, and damping of 1.5 N s/m leaves 0.8 of 3,000."""
+
+    def test_a_session(self) -> None:
+        recording = run(spring(5000.0), Mock(hand=None, path="circle", z_m=0.0015), 0.2, limits=AT_ONCE)
+        assert recording.force_n[:, 2].max() == pytest.approx(2400 * 0.0005, rel=1e-6)
+        assert (recording.rows[:, FLAGS].astype(int) & TickFlag.STIFFNESS_LIMITED).all()
+
+    def test_the_force_loop_and_a_law_that_it_is_given_later(self, plain: Any) -> None:
+        device = Mock(hand=None, path="circle", z_m=0.0015)
+        with Servo(plain(5000.0), device, AT_ONCE) as servo:
+            assert servo.how.endswith("; Plain does not say its stiffness, 5000 N/m was felt")
+            until(lambda: servo.report().ticks > 100)
+            hard = servo.ring.since(0)[0]
+            servo.swap(plain(50.0))
+            until(lambda: felt(servo) == pytest.approx((50 * 0.0005, False), rel=1e-6))
+        felt_n, flags = hard[:, FZ], hard[:, FLAGS].astype(int)
+        assert 0 < felt_n.max() <= 2401 * 0.0005
+        assert (flags[felt_n > 0] & TickFlag.STIFFNESS_LIMITED).all()
+
+    def test_one_that_says_it_is_taken_at_its_word(self) -> None:
+        touch = spring(5000.0)
+        touch.stiffness_n_per_m = 1000.0
+        recording = run(touch, Mock(hand=None, path="circle", z_m=0.0015), 0.1, limits=AT_ONCE)
+        assert recording.force_n[:, 2].max() == pytest.approx(5000 * 0.0005, rel=1e-6)
+        assert touch.asked == len(recording.rows)
+
+
+def felt(servo: Servo) -> tuple[float, bool]:
+    """Force of the last tick, and whether it was softened."""
+    last = servo.ring.since(0)[0][-1]
+    return float(last[FZ]), bool(int(last[FLAGS]) & TickFlag.STIFFNESS_LIMITED)
+
+
+def until(condition: Callable[[], bool]) -> None:
+    end = time.monotonic() + 60
+    while not condition():
+        assert time.monotonic() < end, "it did not happen"
+        time.sleep(0.01)
+
+
+class TestWhatIsSaid:
+    @pytest.mark.parametrize("said", [0.0, 1234.5, np.float32(2.0), 3])
+    def test_it_counts_as_it_is(self, said: float) -> None:
+        touch = spring(5000.0)
+        touch.stiffness_n_per_m = said
+        assert stiffness_of(touch, SPEC) == (float(said), "")
+        assert touch.asked == 0
+
+    @pytest.mark.parametrize("said", [math.nan, math.inf, -1.0])
+    def test_what_is_no_stiffness(self, said: float) -> None:
+        touch = spring(5000.0)
+        touch.stiffness_n_per_m = said
+        with pytest.raises(BrokenMethod, match=r"^Law says a stiffness of .* N/m; say 0 or more, or None"):
+            stiffness_of(touch, SPEC)
+
+    @pytest.mark.parametrize("name", ["grey-level", "lateral-gradient", "tangible-mask"])
+    def test_laws_that_are_no_springs_say_so(self, name: str) -> None:
+        assert load_method("render", name)().touch(plane().surface).stiffness_n_per_m == 0
+
+    def test_a_compiled_law_that_says_nothing_is_felt(self) -> None:
+        said = wall(1500.0)
+        silent = CompiledTouch(said.tick, said.fixed)
+        assert silent.stiffness_n_per_m is None
+        assert stiffness_of(silent, SPEC).n_per_m == pytest.approx(1500, rel=1e-6)
+        assert stiffness_of(said, SPEC) == (1500.0, "")
+
+
+class TestFelt:
+    @pytest.mark.parametrize("k", [1.0, 800.0, 5000.0, 2e5])
+    def test_a_spring(self, k: float) -> None:
+        found = stiffness_of(spring(k), SPEC)
+        assert found.n_per_m == pytest.approx(k, rel=1e-6)
+        assert found.how == f"Law does not say its stiffness, {k:.4g} N/m was felt"
+
+    def test_steep_ground_counts(self) -> None:
+        """k (1 + g^2) along itself."""
+        slope = load_method("render", "penalty-gradient")(stiffness_n_per_m=500.0).touch(ramp((0.6, 0.8), 0.06).surface)
+        slope.stiffness_n_per_m = None
+        assert stiffness_of(slope, SPEC).n_per_m == pytest.approx(1000, rel=0.01)
+
+    def test_a_wall_is_felt_sideways(self) -> None:
+        """Pushed up softly, and held back along x and y by a spring that no depth tells of."""
+        law = Law(lambda x, y, z: (-3000.0 * x, 0.0, 2.0) if z < LEVEL_M else NO_FORCE)
+        assert stiffness_of(law, SPEC).n_per_m == pytest.approx(3000, rel=1e-6)
+
+    def test_one_that_stiffens_is_as_stiff_as_the_device_can_feel(self) -> None:
+        """F = c d^2 at the deepest place whose force is one that the device can give."""
+        c = 1e6
+        assert stiffness_of(level(lambda depth: c * depth**2), SPEC).n_per_m == pytest.approx(
+            2 * c * (DEPTHS_M[2] + STEP_M / 2), rel=0.02
+        )
+        weak = DeviceSpec(1.0, 3000.0, 20.0, SPEC.workspace_m, 1e-6)
+        assert stiffness_of(level(lambda depth: c * depth**2), weak).n_per_m == pytest.approx(
+            2 * c * (DEPTHS_M[1] + STEP_M / 2), rel=0.02
+        )
+
+    @pytest.mark.parametrize(
+        "law",
+        [
+            lambda x, y, z: NO_FORCE,
+            lambda x, y, z: (0.0, 0.0, 2.0 * (z < LEVEL_M)),
+            lambda x, y, z: (0.0, 0.0, (1.0 + (x // 0.001) % 2) * (z < LEVEL_M)),
+            lambda x, y, z: (0.0, 0.0, math.nan),
+        ],
+        ids=["none", "a step", "cells", "nan"],
+    )
+    def test_what_is_no_spring(self, law: Any) -> None:
+        assert stiffness_of(Law(law), SPEC).n_per_m == 0
+
+    def test_what_shakes_by_itself_is_no_spring(self) -> None:
+        class Shaking(Law):
+            def force(self, state: HapticState) -> Force:
+                x, y, z = super().force(state)
+                return Force(x, y, z * (1 + self.asked % 2))
+
+        shaking = Shaking(lambda x, y, z: (0.0, 0.0, 2.0 * (z < LEVEL_M)))
+        assert stiffness_of(shaking, SPEC).n_per_m == 0
+
+    @pytest.mark.parametrize("width_m", [0.004, 0.02, 0.3])
+    @pytest.mark.parametrize("height_m", [0.0, 0.0123, 0.2])
+    def test_pictures_of_any_size_are_found(self, width_m: float, height_m: float) -> None:
+        def law(x: float, y: float, z: float) -> tuple[float, float, float]:
+            inside = abs(x) < width_m / 2 and abs(y) < width_m / 2 and z < height_m
+            return 0.0, 0.0, 700.0 * (height_m - z) * inside
+
+        assert stiffness_of(Law(law), SPEC).n_per_m == pytest.approx(700, rel=1e-6)
+
+    def test_a_small_picture_is_felt_at_many_places(self) -> None:
+        """A quarter of them lie in the middle sixteenth."""
+        columns: set[tuple[float, float]] = set()
+
+        def law(x: float, y: float, z: float) -> tuple[float, float, float]:
+            inside = abs(x) < 0.01 and abs(y) < 0.01
+            if inside and z == SPEC.workspace_m[2]:
+                columns.add((x, y))
+            return 0.0, 0.0, float(inside and z < LEVEL_M)
+
+        list(slopes(Law(law), SPEC))
+        assert len(columns) == pytest.approx(PLACES / 4, abs=4)
+
+    def test_one_stiff_quarter_is_found(self) -> None:
+        law = Law(lambda x, y, z: (0.0, 0.0, (9000.0 if x > 0.01 and y > 0.01 else 500.0) * max(0.0, LEVEL_M - z)))
+        assert stiffness_of(law, SPEC).n_per_m == pytest.approx(9000, rel=1e-6)
+
+    def test_the_same_every_time_and_without_a_trace(self) -> None:
+        heights = np.random.default_rng(0).uniform(0, 0.002, (32, 32)).astype(np.float32)
+        touch = load_method("render", "proxy")(static_friction=0.4).touch(HapticSurface.from_heights(heights))
+        touch.stiffness_n_per_m = None
+        before = touch.path(np.full((3, 3), 0.001))
+        found = {stiffness_of(touch, SPEC) for _ in range(3)}
+        assert len(found) == 1
+        np.testing.assert_array_equal(touch.path(np.full((3, 3), 0.001)), before)
+        counted = spring(100.0)
+        stiffness_of(counted, SPEC)
+        assert counted.asked == 0
+
+    @pytest.mark.parametrize("height_m", [-1.0, 0.0, 0.004, 1.0])
+    def test_it_asks_no_more_than_it_says(self, height_m: float) -> None:
+        touch = spring(1000.0, height_m)
+        list(slopes(touch, SPEC))
+        assert touch.asked <= PLACES * (LAYERS + HALVINGS + 14 * len(DEPTHS_M))
+
+
+class TestTrouble:
+    @pytest.mark.parametrize("error", [ZeroDivisionError("at fault"), SystemExit(0), KeyboardInterrupt()])
+    def test_a_law_that_raises_is_left_to_the_loop(
+        self, error: BaseException, caplog: pytest.LogCaptureFixture
+    ) -> None:
+        touch = level(lambda depth: 900.0 * depth)
+
+        def law(x: float, y: float, z: float) -> tuple[float, float, float]:
+            if x > 0.01:
+                raise error
+            return 0.0, 0.0, 900.0 * max(0.0, LEVEL_M - z)
+
+        touch.law = law
+        found = stiffness_of(touch, SPEC)
+        assert found.n_per_m == pytest.approx(900, rel=1e-6)
+        assert found.how.endswith(f"900 N/m was felt; then it raised {type(error).__name__}: {error}")
+        assert found.how in caplog.text
+
+    def test_a_law_that_cannot_be_copied(self, caplog: pytest.LogCaptureFixture) -> None:
+        touch = spring(900.0)
+        touch.lock = threading.Lock()  # pyright: ignore[reportAttributeAccessIssue]
+        found = stiffness_of(touch, SPEC)
+        assert found.n_per_m == 0
+        assert "0 N/m was felt; then it raised TypeError: cannot pickle" in caplog.text
+
+    def test_a_law_that_does_not_answer_holds_nobody(
+        self, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+    ) -> None:
+        monkeypatch.setattr(stiffness, "MOST_S", 0.3)
+        ended = threading.Event()
+
+        def law(x: float, y: float, z: float) -> tuple[float, float, float]:
+            if x > 0.01:
+                ended.wait(60)
+            return 0.0, 0.0, 900.0 * max(0.0, LEVEL_M - z)
+
+        touch = spring(900.0)
+        touch.law = law
+        begun_s = time.monotonic()
+        found = stiffness_of(touch, SPEC)
+        ended.set()
+        assert time.monotonic() - begun_s < 20
+        assert found.n_per_m == pytest.approx(900, rel=1e-6)
+        assert found.how.endswith("900 N/m was felt; it took longer than 0.3 s")

@@ -1,0 +1,141 @@
+"""A simulated handle on springs: where it is stable by itself, that a guard keeps it so, and what energy it gets."""
+
+import numpy as np
+import pytest
+
+from tangible_core.data import DeviceSpec, HapticSurface
+from tangible_core.plugins.registry import load_method
+from tangible_core.servo.guard.safety import Safety, stiffness_limit_n_per_m
+from tangible_core.testing.handle import Handle, comes_to_rest, ride, stiffest_stable_n_per_m, wall
+
+DAMPING = 2.0
+SPEC = DeviceSpec(100.0, 1e7, DAMPING, (0.08, 0.08, 0.08), 1e-6)
+FALLING = np.array([0.0, 0.0, 0.002, 0.0, 0.0, -0.05])
+AT_ONCE = {"ramp_s": 0, "max_step_n": 10}
+"""The ramp and the slew limit left out, so that a law is what it says."""
+DELAYS = pytest.mark.parametrize("delay", [0, 1, 2])
+PERIODS = pytest.mark.parametrize("period_s", [0.00025, 0.001, 0.004])
+
+
+def handle(delay: int = 0, **more: float) -> Handle:
+    return Handle(mass_kg=more.pop("mass_kg", 0.1), damping_n_s_per_m=DAMPING, delay_ticks=delay, **more)
+
+
+def limit(delay: int, period_s: float = 0.001) -> float:
+    return stiffness_limit_n_per_m(DAMPING, period_s, delay)
+
+
+def exact_limit(held: Handle) -> float:
+    """Where an eigenvalue of the loop on a spring leaves the unit circle: place, speed and the forces on their way."""
+    rate, size = held.damping_n_s_per_m / held.mass_kg, 2 + held.delay_ticks
+    fading = (1 - np.exp(-rate * held.period_s)) / rate
+    loop = np.zeros((size, size))
+    loop[:2, :2] = [[1, fading], [0, 1 - rate * fading]]
+    push = np.array([held.period_s - fading, rate * fading]) / held.damping_n_s_per_m
+    low, high = 1.0, 1e6
+    while high > 1.0001 * low:
+        middle, each = np.sqrt(low * high), loop.copy()
+        each[2:, :] = np.eye(size)[1:-1]
+        if held.delay_ticks:
+            each[2, :] = [-middle] + [0] * (size - 1)
+            each[:2, -1] += push
+        else:
+            each[:2, 0] -= middle * push
+        stable = np.abs(np.linalg.eigvals(each)).max() < 1
+        low, high = (middle, high) if stable else (low, middle)
+    return low
+
+
+@DELAYS
+@PERIODS
+def test_the_simulated_limit_is_the_formula_s(delay: int, period_s: float):
+    held = handle(delay, mass_kg=0.5, period_s=period_s)
+    assert stiffest_stable_n_per_m(wall, held) == pytest.approx(limit(delay, period_s), rel=0.05)
+
+
+@DELAYS
+@pytest.mark.parametrize("mass_kg", [0.1, 0.5])
+def test_the_simulation_is_right(delay: int, mass_kg: float):
+    held = handle(delay, mass_kg=mass_kg, period_s=0.004)
+    assert stiffest_stable_n_per_m(wall, held) == pytest.approx(exact_limit(held), rel=0.01)
+
+
+def test_a_proxy_on_level_ground_has_the_limit_of_a_spring():
+    plane = HapticSurface.from_heights(np.zeros((16, 16)))
+    make = load_method("render", "proxy")
+    found = stiffest_stable_n_per_m(lambda stiffness: make(stiffness_n_per_m=stiffness).touch(plane), handle())
+    assert found == pytest.approx(limit(0), rel=0.05)
+
+
+@DELAYS
+@PERIODS
+@pytest.mark.parametrize("times", [1.5, 20.0])
+def test_a_law_that_says_how_stiff_it_is_rests(delay: int, period_s: float, times: float):
+    law, held = wall(times * limit(delay, period_s)), handle(delay, period_s=period_s)
+    assert not comes_to_rest(law, held, (0.0, 0.0, 0.0))
+    for safety in (Safety(delay_ticks=delay, passivity="off"), Safety(delay_ticks=delay)):
+        assert comes_to_rest(law, held, (0.0, 0.0, 0.0), safety.arrays(SPEC, law.stiffness_n_per_m))
+
+
+@DELAYS
+def test_behind_a_guard_no_law_is_too_stiff(delay: int):
+    safety = Safety(delay_ticks=delay)
+    found = stiffest_stable_n_per_m(wall, handle(delay), guard=lambda law: safety.arrays(SPEC, law.stiffness_n_per_m))
+    assert found > 9e5
+
+
+@DELAYS
+@pytest.mark.parametrize("jitter", [0.3, 0.9])
+def test_it_rests_by_a_clock_that_is_late_and_early(delay: int, jitter: float):
+    law, held = wall(3 * limit(delay)), handle(delay, jitter=jitter)
+    assert not comes_to_rest(law, held, (0.0, 0.0, 0.0))
+    arrays = Safety(delay_ticks=delay, passivity="off").arrays(SPEC, law.stiffness_n_per_m)
+    assert comes_to_rest(law, held, (0.0, 0.0, 0.0), arrays)
+
+
+@DELAYS
+def test_an_automatic_coupling_holds_any_law(delay: int):
+    law, held = wall(20 * limit(delay)), handle(delay)
+    arrays = Safety(delay_ticks=delay, coupling="auto", passivity="off").arrays(SPEC, law.stiffness_n_per_m)
+    assert comes_to_rest(law, held, (0.0, 0.0, 0.0), arrays)
+
+
+@DELAYS
+@pytest.mark.parametrize("times", [3.0, 10.0])
+def test_no_more_energy_than_the_handle_s_damping_takes(delay: int, times: float):
+    law, held = wall(times * limit(delay)), handle(delay)
+    bare = ride(law, held, FALLING, 3.0)
+    assert (bare.work_j - bare.lost_j).max() > 1e-4
+    safety = Safety(delay_ticks=delay, **AT_ONCE)
+    safe = ride(law, held, FALLING, 3.0, safety.arrays(SPEC, law.stiffness_n_per_m))
+    assert (safe.work_j - safe.lost_j).max() <= 0
+
+
+@DELAYS
+def test_strictly_no_energy_at_all_is_left_over(delay: int):
+    law, held = wall(3 * limit(delay)), handle(delay)
+    safety = Safety(delay_ticks=delay, passivity="strict", **AT_ONCE)
+    safe = ride(law, held, FALLING, 3.0, safety.arrays(SPEC, law.stiffness_n_per_m))
+    assert safe.work_j[-1] <= 0
+    assert safe.work_j.max() < ride(law, held, FALLING, 3.0).work_j.max() / 100
+
+
+@DELAYS
+@pytest.mark.parametrize("times", [1.5, 3.0, 5.0])
+@pytest.mark.parametrize("passivity", ["coupled", "strict"])
+@pytest.mark.parametrize("resolution_m", [0.0, 3e-5])
+def test_a_law_that_says_nothing_is_braked(delay: int, times: float, passivity: str, resolution_m: float):
+    law, held = wall(times * limit(delay)), handle(delay, resolution_m=resolution_m)
+    safety = Safety(delay_ticks=delay, passivity=passivity, **AT_ONCE)
+    bare, safe = (ride(law, held, FALLING, 4.0, guard) for guard in (None, safety.arrays(SPEC, 0.0)))
+    swing, left = (np.ptp(each.place_m[-500:, 2]) for each in (bare, safe))
+    assert left < swing / 5
+    assert safe.work_j[-1] < bare.work_j[-1] / 5
+
+
+@DELAYS
+def test_a_spring_within_the_limit_is_left_as_it_is(delay: int):
+    law, held = wall(0.79 * limit(delay)), handle(delay)
+    bare = ride(law, held, FALLING, 2.0)
+    safe = ride(law, held, FALLING, 2.0, Safety(delay_ticks=delay, **AT_ONCE).arrays(SPEC, law.stiffness_n_per_m))
+    np.testing.assert_array_equal(safe.force_n, bare.force_n)

@@ -1,0 +1,285 @@
+"""Every check of every family holds for a method that is right, and fails for one that is wrong in just its way."""
+
+from collections.abc import Callable
+from itertools import count
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tangible_core import (
+    DepthEstimator,
+    DeviceSpec,
+    DisparityMap,
+    Force,
+    ForceRenderer,
+    HapticDevice,
+    HapticState,
+    HapticSurface,
+    Link,
+    Segmenter,
+    SegmentMap,
+    Touch,
+    Views,
+)
+from tangible_core.data import NO_FORCE
+from tangible_core.data.pictures import to_grey
+from tangible_core.errors import DeviceAbsent, DeviceError, PictureError
+from tangible_core.testing import CheckFailure, checks_depth, checks_device, checks_render, checks_texture, checks_touch
+
+ticket = count()
+"""What a method must not have: a memory of its own."""
+
+
+def right_depth(views: Views) -> DisparityMap:
+    """Six pixels wherever there is any texture: what the kit's wall has."""
+    if views.right is None:
+        raise PictureError("a pair is needed")
+    known = np.ptp(to_grey(views.left)) > 0 or views.shape == (1, 1)
+    return DisparityMap(np.full(views.shape, 6.0 if known else np.nan, np.float32))
+
+
+class Depth(DepthEstimator):
+    twist: Callable[[Views], DisparityMap] = right_depth
+
+    def estimate(self, views: Views) -> DisparityMap:
+        return self.twist(views)
+
+
+def scribble(picture: np.ndarray) -> None:
+    picture.base[0, 0] = 0
+
+
+DEPTH: dict[str, Callable[[Views], Any]] = {
+    "map_is_well_formed": lambda views: DisparityMap(right_depth(views).disparity_px, np.full(views.shape, 1.5, "f4")),
+    "wall_is_found": lambda views: DisparityMap(right_depth(views).disparity_px + np.float32(0.6)),
+    "same_views_same_map": lambda views: DisparityMap(np.full(views.shape, next(ticket), np.float32)),
+    "views_are_not_written_to": lambda views: scribble(views.left) or right_depth(views),
+    "every_picture_type_is_taken": lambda views: DisparityMap(np.full(views.shape, views.left.max(), np.float32)),
+    "any_size_is_taken": lambda views: DisparityMap(right_depth(views).disparity_px[:8]),
+    "flat_pair_claims_nothing": lambda views: DisparityMap(np.zeros(views.shape, np.float32)),
+    "one_view_is_answered": lambda views: DisparityMap(np.zeros(views.shape, np.float32)),
+}
+
+
+def right_segments(picture: np.ndarray) -> SegmentMap:
+    grey = to_grey(picture)
+    if np.ptp(grey) < 0.2:
+        return SegmentMap(np.zeros(grey.shape, np.int32))
+    return SegmentMap((grey > (grey.min() + grey.max()) / 2).astype(np.int32))
+
+
+class Texture(Segmenter):
+    twist: Callable[[np.ndarray], SegmentMap] = right_segments
+
+    def segment(self, picture: np.ndarray) -> SegmentMap:
+        return self.twist(picture)
+
+
+def scribbled(picture: np.ndarray) -> SegmentMap:
+    found = right_segments(picture)
+    picture[0, 0] = 0
+    return found
+
+
+def shattered(picture: np.ndarray) -> SegmentMap:
+    return SegmentMap(np.arange(to_grey(picture).size, dtype=np.int32).reshape(picture.shape[:2]))
+
+
+TEXTURE: dict[str, Callable[[np.ndarray], SegmentMap]] = {
+    "labels_are_well_formed": lambda picture: SegmentMap(right_segments(picture).labels * 2),
+    "two_textures_are_told_apart": shattered,
+    "same_picture_same_labels": lambda picture: SegmentMap(np.full(picture.shape[:2], next(ticket), np.int32)),
+    "picture_is_not_written_to": scribbled,
+    "one_colour_is_one_segment": shattered,
+    "every_picture_type_is_segmented": lambda picture: right_segments(np.where(picture > 180, picture, 0)),
+    "any_size_is_segmented": lambda picture: SegmentMap(right_segments(picture).labels[:8]),
+    "what_is_no_picture_is_refused": lambda picture: right_segments(np.nan_to_num(picture)),
+}
+
+
+Law = Callable[[HapticSurface, HapticState], Force]
+
+
+def spring(surface: HapticSurface, state: HapticState) -> Force:
+    """k d (-g, 1) on the bilinear interpolant of the heights."""
+    if not all(abs(part) < 1 for part in state.position_m):
+        return NO_FORCE
+    x, y, z = state.position_m
+    height, across, along = bilinear(surface, x, y)
+    push = 500.0 * (height - z)
+    return Force(-across * push, -along * push, push) if push > 0 else NO_FORCE
+
+
+def bilinear(surface: HapticSurface, x: float, y: float) -> tuple[float, float, float]:
+    (width, length), (rows, columns) = surface.relief.pitch_m, surface.height_m.shape
+    row = np.clip(rows / 2 - y / length, 0, rows) + 0.5
+    column = np.clip(columns / 2 + x / width, 0, columns) + 0.5
+    i, j = min(int(row), rows), min(int(column), columns)
+    down, right = row - i, column - j
+    (a, b), (c, d) = np.pad(surface.height_m.astype(float), 1, "edge")[i : i + 2, j : j + 2]
+    far, near = a + right * (b - a), c + right * (d - c)
+    return far + down * (near - far), ((b - a) * (1 - down) + (d - c) * down) / width, (far - near) / length
+
+
+class LawTouch(Touch):
+    def __init__(self, surface: HapticSurface, render: "Render") -> None:
+        self.surface, self.law, self.gain_on_a_path = surface, render.law, render.gain_on_a_path
+        self.stiffness_n_per_m = render.said_n_per_m
+
+    def force(self, state: HapticState) -> Force:
+        return self.law(self.surface, state)
+
+    def path(self, positions_m: np.ndarray, period_s: float = 0.001) -> np.ndarray:
+        forces = [self.force(HapticState(tuple(each))) for each in positions_m.tolist()]
+        return np.array(forces).reshape(-1, 3) * self.gain_on_a_path
+
+
+class Render(ForceRenderer):
+    law: Law = spring
+    gain_on_a_path: float = 1.0
+    said_n_per_m: float | None = 500.0
+
+    def touch(self, surface: HapticSurface) -> Touch:
+        return LawTouch(surface, self)
+
+
+def changed(change: Callable[..., Force]) -> Render:
+    """The spring with its force in contact changed: `change(x, y, z, surface)`."""
+
+    def law(surface: HapticSurface, state: HapticState) -> Force:
+        force = spring(surface, state)
+        return force if force == NO_FORCE else change(*force, surface)
+
+    return Render(law=law)
+
+
+def mirrored(surface: HapticSurface, state: HapticState) -> Force:
+    x, y, z = state.position_m
+    force = spring(surface, HapticState((x, -y, z)))
+    return Force(force.x, -force.y, force.z)
+
+
+def unguarded(surface: HapticSurface, state: HapticState) -> Force:
+    return Force(0.0, 0.0, max(500.0 * (0.01 - state.position_m[2]), 0.0))
+
+
+def worn(surface: HapticSurface, state: HapticState) -> Force:
+    surface.height_m.base[0, 0] += 0.001
+    return spring(surface, state)
+
+
+last = [0.0]
+
+
+def haunted(surface: HapticSurface, state: HapticState) -> Force:
+    force = spring(surface, state)
+    last[0], before = force.z, last[0]
+    return Force(force.x, force.y, force.z + before)
+
+
+def bumpy(surface: HapticSurface, state: HapticState) -> Force:
+    return spring(surface, state) if surface.height_m[1:, 1:].any() else Force(0.0, 0.0, float("nan"))
+
+
+RENDER: dict[str, Render] = {
+    "free_air_is_free": Render(law=lambda surface, state: Force(0.0, 0.0, spring(surface, state).z + 0.01)),
+    "plane_pushes_straight_up": changed(lambda x, y, z, surface: Force(x + 0.1 * z, y, z)),
+    "surface_lies_where_it_is_drawn": Render(law=mirrored),
+    "slopes_push_downhill": changed(lambda x, y, z, surface: Force(-x, -y, z)),
+    "springs_are_exact": changed(lambda x, y, z, surface: Force(0.0, 0.0, z)),
+    "resampling_feels_the_same": changed(lambda x, y, z, surface: Force(x, y, z * surface.height_m.shape[0])),
+    "broken_state_gives_no_force": Render(law=lambda surface, state: Force(0.0, 0.0, 1.0)),
+    "path_is_force_by_force": Render(gain_on_a_path=1.1),
+    "same_path_same_forces": changed(lambda x, y, z, surface: Force(x, y, z * next(ticket))),
+    "touches_are_apart": Render(law=haunted),
+    "surface_is_not_written_to": Render(law=worn),
+    "forces_are_always_finite": Render(law=unguarded),
+    "any_surface_is_taken": Render(law=bumpy),
+    "materials_are_taken": changed(lambda x, y, z, surface: Force(x, y, -z if surface.materials else z)),
+    "stiffness_is_no_less_than_felt": Render(said_n_per_m=400.0),
+}
+
+
+class GadgetLink(Link):
+    def __init__(self, fault: str) -> None:
+        self.fault, self.held, self.ticks, self.closed = fault, NO_FORCE, 0, False
+
+    def read(self) -> HapticState:
+        if self.closed and self.fault != "close_is_final":
+            raise DeviceError("closed")
+        self.ticks += self.fault != "states_make_sense"
+        drift = 0.1 if self.fault == "velocity_is_that_of_the_positions" else 0.0
+        return HapticState((0.0, 0.0, 0.01), (drift, 0.0, 0.0), self.ticks / 1000)
+
+    def write(self, force: Force) -> None:
+        if self.closed:
+            raise DeviceError("closed")
+        if self.fault == "no_force_is_left_behind" and force == NO_FORCE:
+            return
+        if np.isfinite(force).all():
+            self.held = self.limited(force)
+        elif self.fault != "broken_force_is_none":
+            self.held = NO_FORCE
+
+    def limited(self, force: Force) -> Force:
+        if self.fault == "forces_are_limited":
+            return Force(*np.clip(force, -4.0, 4.0).tolist())
+        largest = max(map(abs, force))
+        ideal = np.array(force) / (largest or 1.0)
+        size = float(np.linalg.norm(ideal))
+        held = ideal * (min(largest, 8.0 / size) if size else 0.0)
+        return Force(*(held * (0.5 if self.fault == "force_is_applied" else 1.0)).tolist())
+
+    @property
+    def applied(self) -> Force:
+        return self.held
+
+    def close(self) -> None:
+        self.closed = True
+        if self.fault != "no_force_is_left_behind":
+            self.held = NO_FORCE
+
+
+class Gadget(HapticDevice):
+    fault: str = ""
+
+    def spec(self) -> DeviceSpec:
+        return DeviceSpec(0.0 if self.fault == "spec_makes_sense" else 8.0, 3000.0, 20.0, (0.08, 0.08, 0.08), 1e-4)
+
+    def open(self) -> Link:
+        if self.fault == "device_can_be_opened_again" and next(ticket) % 2:
+            raise DeviceError("in use")
+        if self.fault == "absence_is_said":
+            raise DeviceAbsent("gone")
+        return the_only_one if self.fault == "openers_do_not_share" else GadgetLink(self.fault)
+
+
+the_only_one = GadgetLink("openers_do_not_share")
+
+
+FAMILIES: list[tuple[Any, Any, dict[str, Any]]] = [
+    (checks_depth.CHECKS, Depth(), {name: Depth(twist=twist) for name, twist in DEPTH.items()}),
+    (checks_texture.CHECKS, Texture(), {name: Texture(twist=twist) for name, twist in TEXTURE.items()}),
+    ((*checks_render.CHECKS, *checks_touch.CHECKS), Render(), RENDER),
+    (checks_device.CHECKS, Gadget(), {check.__name__: Gadget(fault=check.__name__) for check in checks_device.CHECKS}),
+]
+RIGHT = [pytest.param(check, right, id=check.__name__) for checks, right, _ in FAMILIES for check in checks]
+WRONG = [
+    pytest.param(check, wrong.get(check.__name__), id=check.__name__)
+    for checks, _, wrong in FAMILIES
+    for check in checks
+    if check is not checks_depth.nan_is_refused  # no method can fail it: Views lets no NaN through
+]
+
+
+@pytest.mark.parametrize(("check", "method"), RIGHT)
+def test_a_method_that_is_right(check, method):
+    check(method)
+
+
+@pytest.mark.parametrize(("check", "method"), WRONG)
+@pytest.mark.usefixtures("unchecked_shapes")
+def test_a_method_that_is_wrong(check, method):
+    with pytest.raises((CheckFailure, DeviceError)):
+        check(method)

@@ -1,0 +1,324 @@
+"""The steps after matching, and those before it, one by one."""
+
+from collections import deque
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from stereo_scenes import slanted, step, texture
+from tangible_core.compiled import threads
+from tangible_core.data import Views
+from tangible_core.synthetic.stereo_scenes import synthetic_pair
+from tangible_depth.dense.candidates import choose
+from tangible_depth.dense.confidence import confidence, flat_pixels
+from tangible_depth.dense.edges import median, sharpen_edges
+from tangible_depth.dense.filling import fill
+from tangible_depth.dense.refinement import Dense, as_map, enlarged
+from tangible_depth.dense.span import UNKNOWN
+from tangible_depth.dense.speckles import remove_speckles
+from tangible_depth.dense.subpixel import equiangular, parabola
+from tangible_depth.search.asked import asked_span
+from tangible_depth.search.pairs import Pair, grey_pair
+from tangible_depth.search.row_offset import realigned, row_offset
+from tangible_depth.search.search_range import find_range
+from tangible_depth.sgm.census import census
+
+MAPS = arrays(
+    np.int16, st.tuples(st.integers(1, 40), st.integers(1, 12)), elements=st.sampled_from([-32768, 0, 16, 40, 48])
+)
+
+
+@given(st.floats(-0.5, 0.5), st.floats(0.1, 100), st.floats(-100, 100))
+def test_the_parabola_has_its_vertex_found(vertex, bend, level):
+    samples = [bend * (x - vertex) ** 2 + level for x in (-1, 0, 1)]
+    assert parabola(*samples) == pytest.approx(vertex, abs=1e-6)
+    assert parabola(*[-each for each in samples]) == pytest.approx(vertex, abs=1e-6)
+
+
+@given(st.floats(-0.5, 0.5), st.floats(0.1, 100), st.floats(-100, 100))
+def test_the_v_has_its_tip_found(tip, slope, level):
+    assert equiangular(*[slope * abs(x - tip) + level for x in (-1, 0, 1)]) == pytest.approx(tip, abs=1e-6)
+
+
+def test_three_equal_samples_give_no_offset():
+    assert parabola(2.0, 2.0, 2.0) == equiangular(2.0, 2.0, 2.0) == 0
+
+
+def test_census_of_a_ramp_is_its_darker_half():
+    grey = np.tile(np.arange(40, dtype=np.uint8), (9, 1))
+    bits = np.unpackbits(census(grey)[:, :, :40], axis=1).sum(axis=1)
+    assert (bits[:, 2:-2] == 10).all()  # the two columns to the left, five rows high
+    assert np.array_equal(census(grey), census(grey // 2 * 2 + grey % 2 * 2 // 2))
+
+
+def islands(disparity, step):
+    """Connected regions by plain flooding: a label for each pixel, -1 where unknown."""
+    label = np.full(disparity.shape, -1)
+    for seed in np.ndindex(disparity.shape):
+        if disparity[seed] == UNKNOWN or label[seed] >= 0:
+            continue
+        label[seed] = label.max() + 1
+        queue = deque([seed])
+        while queue:
+            y, x = queue.popleft()
+            for v, u in ((y - 1, x), (y + 1, x), (y, x - 1), (y, x + 1)):
+                inside = 0 <= v < disparity.shape[0] and 0 <= u < disparity.shape[1]
+                if not inside or label[v, u] >= 0 or disparity[v, u] == UNKNOWN:
+                    continue
+                if abs(int(disparity[v, u]) - int(disparity[y, x])) <= step:
+                    label[v, u] = label[y, x]
+                    queue.append((v, u))
+    return label
+
+
+@settings(max_examples=60)
+@given(MAPS, st.integers(0, 9))
+def test_speckles_are_the_small_islands(disparity, largest):
+    label = islands(disparity, 16)
+    small = [i for i in range(label.max() + 1) if (label == i).sum() <= largest]
+    expected = np.where(np.isin(label, small), UNKNOWN, disparity)
+    cleaned = disparity.copy()
+    assert remove_speckles(cleaned, largest, 16) == np.isin(label, small).sum()
+    assert np.array_equal(cleaned, expected)
+
+
+@settings(max_examples=40)
+@given(MAPS, st.integers(0, 255))
+def test_filling_keeps_what_is_known_and_leaves_nothing_unknown(disparity, seed):
+    grey = np.random.default_rng(seed).integers(0, 255, disparity.shape, np.uint8)
+    filled = fill(disparity, grey)
+    known = disparity != UNKNOWN
+    assert np.array_equal(filled[known], disparity[known])
+    assert (filled != UNKNOWN).all() or not known.any()
+    assert set(np.unique(filled)) <= set(np.unique(disparity))
+
+
+def test_filling_does_not_depend_on_the_number_of_threads(monkeypatch):
+    rng = np.random.default_rng(3)
+    disparity = np.where(rng.random((130, 70)) < 0.6, UNKNOWN, rng.integers(0, 900, (130, 70))).astype(np.int16)
+    disparity[40:80] = UNKNOWN
+    grey = rng.integers(0, 255, disparity.shape, np.uint8)
+    maps = []
+    for count in (1, 2, 7):
+        monkeypatch.setattr(threads, "thread_count", lambda count=count: count)
+        maps.append(fill(disparity, grey))
+    assert np.array_equal(maps[0], maps[1])
+    assert np.array_equal(maps[0], maps[2])
+
+
+def test_what_both_views_contradict_is_not_filled_in():
+    """A gap between two near bars, over a far wall that is seen through it from the right: it is wall."""
+    disparity = np.full((9, 60), 64, np.int16)
+    disparity[:, 20:26] = disparity[:, 34:40] = 320
+    disparity[3:6, 26:34] = UNKNOWN
+    filled = fill(disparity, np.full(disparity.shape, 100, np.uint8))
+    assert (filled[3:6, 26:34] == 64).all()
+
+
+def score(value, path, farthest, row_farthest, there):
+    """As the docstring of the candidates weighs it; disparities and `there` in sixteenths of a pixel."""
+    explained = there is not None and there > value + 24
+    contradicted = there is not None and there < value - 24
+    nearer_px = (value - farthest) / 16
+    return (
+        1.2 * (value <= row_farthest + 8)
+        - 2.0 * contradicted
+        + 1.0 * explained
+        - 0.2 * np.sqrt(path)
+        - 0.3 * nearer_px / 10
+    )
+
+
+def test_a_gap_takes_the_candidate_of_the_best_score():
+    """Behind which every weight stands: drawn at random, and nothing said where two are as good as alike."""
+    random = np.random.default_rng(6)
+    width, told = 60, 0
+    for _ in range(3000):
+        x = int(random.integers(20, 40))
+        values = random.choice([16, 32, 64, 70, 120, 200, 320], 4).astype(np.int16)
+        values[random.random(4) < 0.2] = UNKNOWN
+        paths = random.integers(0, 150, 4).astype(np.int32) * random.integers(0, 2, 4).astype(np.int32)
+        seen = random.choice([UNKNOWN, 16, 100, 200, 330], width + 2).astype(np.int16)
+        seen[0] = seen[-1] = 32767
+        chosen = choose(values[:, None].repeat(width, 1), paths[:, None].repeat(width, 1), x, seen)
+        known = values[values != UNKNOWN].astype(int)
+        if known.size == 0:
+            assert chosen == UNKNOWN
+            continue
+        row = values[:2][values[:2] != UNKNOWN].astype(int)
+        if np.ptp(known) <= 24:
+            assert chosen == (row if row.size else known).min()
+            continue
+        row_farthest = row.min() if row.size else 32767
+        scores = {}
+        for value, path in zip(values.tolist(), paths.tolist(), strict=True):
+            if value != UNKNOWN:
+                there = seen[min(max(x + 1 - (value + 8) // 16, 0), width + 1)]
+                found = score(value, path, known.min(), row_farthest, None if there == UNKNOWN else int(there))
+                scores[value] = max(found, scores.get(value, -np.inf))
+        best, *others = sorted(scores, key=scores.__getitem__, reverse=True)
+        if others and scores[best] - scores[others[0]] > 1e-3:
+            assert chosen == best
+            told += 1
+    assert told > 2000
+
+
+@pytest.mark.parametrize(("gap", "filled_in"), [(1, 64), (2, 64), (3, 0)])
+def test_a_short_gap_between_like_ends_is_closed_with_the_farther(gap, filled_in):
+    """Without asking what lies above, where the picture has no edge; a longer one is asked about."""
+    disparity = np.zeros((9, 40), np.int16)
+    disparity[4] = 80
+    disparity[4, :20] = 64
+    disparity[4, 20 : 20 + gap] = UNKNOWN
+    grey = np.full(disparity.shape, 100, np.uint8)
+    grey[4, 20 + gap :] = 200  # the right end lies behind an edge
+    grey[4, :20] = 0
+    assert (fill(disparity, grey)[4, 20 : 20 + gap] == filled_in).all()
+
+
+@pytest.mark.parametrize(("left", "right", "levels", "near"), [(320, 64, 60, [0, 1, 2]), (64, 320, 120, [11])])
+def test_grey_steps_on_the_way_add_up(left, right, levels, near):
+    """A gap of twelve columns over stripes: beside it alone the nearer end is believed in.
+
+    It lies 16 px before the other, -0.48, which is the farther of the row, 1.2; on the right both views contradict
+    it, too, -2, and explain the other, 1. So the roots of both ways' steps are to differ by 8.4, or by 23.4.
+    """
+    disparity = np.full((1, 90), right, np.int16)
+    disparity[:, :40], disparity[:, 40:52] = left, UNKNOWN
+    grey = np.where(np.arange(90) % 2, 100, 100 + levels).astype(np.uint8)[None]
+    assert np.flatnonzero(fill(disparity, grey)[0, 40:52] == 320).tolist() == near
+
+
+def test_a_surface_ends_where_the_picture_has_an_edge():
+    grey = np.full((30, 40), 60, np.uint8)
+    grey[:, 20:] = 200
+    fattened = np.where(np.indices(grey.shape)[1] >= 19, np.int16(320), np.int16(64))
+    sharp = sharpen_edges(fattened.astype(np.int16), grey)
+    assert np.array_equal(sharp, np.where(grey == 200, 320, 64))
+
+
+def test_without_a_depth_edge_nothing_is_voted_on():
+    disparity = np.tile(np.arange(0, 400, 10, dtype=np.int16), (20, 1))
+    assert np.array_equal(
+        sharpen_edges(disparity, np.random.default_rng(0).integers(0, 255, (20, 40), np.uint8)), disparity
+    )
+
+
+def test_the_median_is_that_of_25():
+    disparity = np.random.default_rng(0).integers(0, 900, (40, 30)).astype(np.int16)
+    windows = np.lib.stride_tricks.sliding_window_view(np.pad(disparity, 2, mode="edge"), (5, 5))
+    assert np.array_equal(median(disparity), np.median(windows, axis=(2, 3)).astype(np.int16))
+
+
+def test_confidence_is_read_from_the_table_where_the_match_stood():
+    matched = np.array([[160, 160, UNKNOWN, 160]], np.int16)
+    final = np.array([[160, 170, 160, 200]], np.int16)
+    table = 1 - np.arange(256) / 255
+    found = confidence(matched, final, np.array([[0, 51, 0, 0]], np.uint8), table)
+    assert np.allclose(found, [[1, 0.8, 0.1, 0.1]])
+
+
+def test_flat_pixels_have_one_grey_value_all_round():
+    grey = np.full((12, 12), 7, np.uint8)
+    grey[6, 6] = 8
+    assert np.array_equal(flat_pixels(grey), np.maximum(*np.abs(np.indices(grey.shape) - 6)) > 2)
+
+
+def test_pixels_are_flat_where_their_rows_do_not_change():
+    level = np.tile(np.arange(0, 240, 20, dtype=np.uint8)[:, None], (1, 12))
+    assert flat_pixels(level).all()
+    assert not flat_pixels(np.ascontiguousarray(level.T)).any()
+
+
+def test_a_plane_is_enlarged_exactly():
+    y, x = np.indices((20, 30))
+    small = (4 * x + 2 * y + 100).astype(np.int16)
+    large = enlarged(Dense(small, np.ones(small.shape, np.float32)), np.full((39, 60), 9, np.uint8))
+    rows, columns = np.indices((39, 60))
+    exact = 2 * (4 * (columns - 0.5) / 2 + 2 * (rows - 0.5) / 2 + 100)
+    assert np.abs(large.disparity - exact)[1:-1, 1:-1].max() <= 1
+    assert large.confidence.shape == (39, 60)
+
+
+def test_a_map_in_pixels_says_what_is_unknown():
+    grey = np.random.default_rng(0).integers(0, 255, (6, 6), np.uint8)
+    disparity = np.full((6, 6), 40, np.int16)
+    disparity[0] = UNKNOWN
+    trust = np.full((6, 6), 0.7, np.float32)
+    trust[1] = 0.1
+    filled, bare = (as_map(Dense(disparity, trust), grey, fill) for fill in (True, False))
+    assert np.isnan(filled.disparity_px[0]).all()
+    assert (filled.disparity_px[1:] == 2.5).all()
+    assert np.isnan(bare.disparity_px[:2]).all()
+    assert (bare.confidence[:2] == 0).all()
+
+
+@pytest.mark.parametrize("offset", [-7.0, 5.0, 21.0])
+def test_the_range_covers_what_occurs_and_little_more(offset):
+    views, truth = slanted(shape=(160, 320), down=0.05, offset=offset)
+    found = find_range(grey_pair(views, "test"))
+    assert found.span.low <= truth.min()
+    assert truth.max() <= found.span.high
+    assert found.span.high - found.span.low <= np.ptp(truth) + 16
+    assert found.swapped == bool(truth.max() < 0)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_thin_thing_before_a_wall_widens_the_range(seed):
+    pair = synthetic_pair("bars", 480, 360, seed)
+    span = asked_span(grey_pair(pair.views, "test"), "auto", "auto").span
+    assert np.mean((pair.truth_px >= span.low) & (pair.truth_px <= span.high)) >= 0.999
+    assert span.lanes == 64
+
+
+def test_a_pair_in_which_nothing_matches_has_no_range():
+    assert find_range(Pair(np.zeros((40, 60), np.uint8), np.zeros((40, 60), np.uint8))) is None
+
+
+@pytest.mark.parametrize("rows", [-1.0, 0.0, 0.5, 1.0])
+def test_an_offset_of_rows_is_measured_and_put_right(rows):
+    y, x = np.indices((160, 240), float)
+    pair = Pair(texture(x, y), texture(x + 5, y - rows))
+    at, disparity = np.arange(6, 160, 12), np.full((13, 240), 80, np.int16)
+    measured = row_offset(pair, at, disparity)
+    assert measured == pytest.approx(rows, abs=0.12)
+    again = realigned(pair, measured)
+    assert row_offset(again, at, disparity) == pytest.approx(0, abs=0.12)
+
+
+def test_an_offset_needs_votes():
+    pair = Pair(*np.full((2, 60, 60), 9, np.uint8))
+    assert row_offset(pair, np.arange(6, 60, 12), np.zeros((5, 60), np.int16)) == 0
+
+
+def test_bytes_keep_their_values_and_halves_are_brightened():
+    views, _, _ = step(shape=(20, 40), back=1, front=3, box=(4, 12, 10, 30))
+    assert np.array_equal(grey_pair(views, "test").left, views.left)
+    twelve_bits = Views(views.left.astype(np.uint16) * 16, views.right.astype(np.uint16) * 16)
+    assert np.abs(grey_pair(twelve_bits, "test").left.astype(int) - views.left).max() <= 1
+    assert np.array_equal(grey_pair(Views(views.left > 127, views.right > 127), "test").left, (views.left > 127) * 255)
+
+
+def test_a_failing_block_fails_the_whole(monkeypatch):
+    monkeypatch.setattr(threads, "thread_count", lambda: 4)
+
+    def work(start, stop):
+        if start > 0:
+            raise ValueError("no")
+
+    with pytest.raises(ValueError, match="no"):
+        threads.in_blocks(100, work)
+
+
+def test_the_blocks_cover_everything_once(monkeypatch):
+    monkeypatch.setattr(threads, "thread_count", lambda: 3)
+    seen = np.zeros(50, int)
+
+    def work(start, stop):
+        seen[start:stop] += 1
+
+    threads.in_blocks(50, work)
+    assert (seen == 1).all()

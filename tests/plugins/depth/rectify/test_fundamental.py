@@ -1,0 +1,125 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tangible_core.errors import GeometryError
+from tangible_depth.rectify.epipolar import sampson_distance, symmetric_epipolar_distance
+from tangible_depth.rectify.fundamental import DegenerateMatches, eight_point, normalise, robust_fundamental
+from two_cameras import seen_points, some_wrong
+
+
+def test_normalised_points_are_centred_with_a_mean_distance_of_root_two():
+    points, transform = normalise(seen_points()[0])
+    assert points[:, :2].mean(axis=0) == pytest.approx([0, 0], abs=1e-12)
+    assert np.linalg.norm(points[:, :2], axis=1).mean() == pytest.approx(np.sqrt(2))
+    assert points == pytest.approx(np.column_stack([seen_points()[0], np.ones(300)]) @ transform.T)
+
+
+@given(
+    turn=st.tuples(*[st.floats(-0.2, 0.2)] * 3),
+    move=st.tuples(st.floats(0.2, 1), st.floats(-0.3, 0.3), st.floats(-0.3, 0.3)),
+    count=st.integers(9, 60),
+)
+def test_exact_points_give_their_geometry_back(turn, move, count):
+    left, right = seen_points(turn, move, count)
+    matrix = eight_point(left, right)
+    assert np.linalg.norm(matrix) == pytest.approx(1)
+    assert np.linalg.svd(matrix, compute_uv=False)[2] < 1e-12
+    assert sampson_distance(matrix, left, right).max() < 1e-4
+
+
+def test_half_a_pixel_of_noise_at_6000_pixels_width_leaves_a_tenth():
+    errors = []
+    for seed in range(10):
+        true = seen_points(width=6000, seed=seed)
+        noisy = seen_points(width=6000, seed=seed, noise_px=0.5)
+        errors.append(np.median(symmetric_epipolar_distance(eight_point(*noisy), *true)) / np.sqrt(2))
+    assert np.median(errors) <= 0.1
+
+
+def test_a_weight_of_zero_leaves_a_match_out():
+    left, right = some_wrong(*seen_points(count=40), share=0.25)
+    weights = np.r_[np.zeros(10), np.ones(30)]
+    matrix = eight_point(left, right, weights)
+    assert sampson_distance(matrix, left[10:], right[10:]).max() < 1e-3
+
+
+@pytest.mark.parametrize("share", [0.0, 0.3, 0.6])
+def test_wrong_matches_are_told_from_right_ones(share):
+    noisy = seen_points(count=400, noise_px=0.3)
+    found = robust_fundamental(*some_wrong(*noisy, share), threshold_px=1.5)
+    wrong = round(share * 400)
+    assert found.inliers[wrong:].mean() > 0.97
+    assert found.inliers[:wrong].mean() < 0.1 if wrong else True
+    assert np.median(sampson_distance(found.matrix, *seen_points(count=400))) < 0.1
+
+
+def test_the_same_matches_give_the_same_matrix():
+    matches = some_wrong(*seen_points(noise_px=0.3), 0.4)
+    assert np.array_equal(robust_fundamental(*matches).matrix, robust_fundamental(*matches).matrix)
+
+
+def reason(call, *matches):
+    with pytest.raises(DegenerateMatches) as caught:
+        call(*matches)
+    return caught.value.reason
+
+
+@pytest.mark.parametrize("call", [eight_point, robust_fundamental])
+class TestEveryDegeneracyIsNamed:
+    def test_too_few(self, call):
+        assert reason(call, *seen_points(count=7)) == "too few"
+        assert reason(call, np.empty((0, 2)), np.empty((0, 2))) == "too few"
+
+    def test_duplicate(self, call):
+        left, right = seen_points(count=5)
+        assert reason(call, np.tile(left, (9, 1)), np.tile(right, (9, 1))) == "duplicate"
+        assert reason(call, np.ones((30, 2)), np.ones((30, 2))) == "duplicate"
+
+    def test_collinear(self, call):
+        along = np.linspace(0, 700, 40)
+        line = np.column_stack([along, 0.5 * along + 3])
+        assert reason(call, line, line + np.array([5, 1])) == "collinear"
+        assert reason(call, seen_points(count=40)[0], line) == "collinear"
+
+    def test_flat_scene(self, call):
+        assert reason(call, *seen_points(flat=True)) == "homography"
+
+    def test_a_camera_that_only_turned(self, call):
+        assert reason(call, *seen_points(move_m=(0, 0, 0))) == "homography"
+
+    @pytest.mark.parametrize("value", [np.nan, np.inf])
+    def test_not_finite(self, call, value):
+        left, right = seen_points()
+        right[7, 1] = value
+        assert reason(call, left, right) == "not finite"
+
+    def test_shapes(self, call):
+        with pytest.raises(GeometryError, match="two arrays"):
+            call(np.ones((9, 2)), np.ones((8, 2)))
+
+
+@pytest.mark.parametrize("share", [0.0, 0.3])
+@pytest.mark.parametrize("count", [30, 100, 500])
+def test_no_parallax_is_named_among_noise_and_wrong_matches(share, count):
+    flat = seen_points(count=count, flat=True, noise_px=0.3)
+    turned = seen_points(count=count, move_m=(0, 0, 0), noise_px=0.3)
+    assert reason(robust_fundamental, *some_wrong(*flat, share)) == "homography"
+    assert reason(robust_fundamental, *some_wrong(*turned, share)) == "homography"
+
+
+@pytest.mark.parametrize("count", [9, 30, 200, 1000])
+def test_chance_alone_is_no_geometry(count):
+    random = np.random.default_rng(count)
+    assert reason(robust_fundamental, *random.uniform(0, 700, (2, count, 2))) == "outliers"
+
+
+def test_a_dozen_good_matches_are_enough():
+    found = robust_fundamental(*seen_points(count=12, noise_px=0.1))
+    assert found.inliers.all()
+
+
+def test_a_rectified_pair_has_its_geometry():
+    matrix = robust_fundamental(*seen_points(turn=(0, 0, 0), move_m=(-0.3, 0, 0))).matrix
+    assert abs(matrix) == pytest.approx(np.array([[0, 0, 0], [0, 0, 1], [0, 1, 0]]) / np.sqrt(2), abs=1e-6)

@@ -1,0 +1,324 @@
+from contextlib import nullcontext
+
+import numpy as np
+import pytest
+
+from tangible_core.data import Calibration, DisparityMap, Views
+from tangible_core.errors import PictureError
+from tangible_depth.rectify import alignment, rectification
+from tangible_depth.rectify.alignment import aligning_homographies, epipole_roll
+from tangible_depth.rectify.fundamental import eight_point
+from tangible_depth.rectify.homographies import camera_matrix, rotation, transform
+from tangible_depth.rectify.rectification import CannotRectify, check_homographies, rectify, with_rectification
+from tangible_depth.sparse.matches import Matches
+from two_cameras import HEIGHT, WIDTH, Scene, roll_and_tilt, seen_points, some_wrong
+
+BLANK = np.zeros((HEIGHT, WIDTH), np.uint8)
+
+
+def shifted(before_px, after_px, monkeypatch):
+    """A pair whose rows lie this far apart, and homographies that leave them so far apart."""
+    left, right = seen_points(turn=(0, 0, 0), move_m=(-0.3, 0, 0))
+    pair = np.eye(3), np.array([[1, 0, 0], [0, 1, after_px - before_px], [0, 0, 1.0]])
+    monkeypatch.setattr(rectification, "aligning_homographies", lambda matches, shape, roll: pair)
+    return Matches(left, right + np.array([0, before_px]))
+
+
+def rectified_points(noise_px=0.3, **cameras):
+    """What becomes of exact points when the pair is rectified by noisy ones."""
+    rectified = rectify(Views(BLANK, BLANK), matches=Matches(*seen_points(noise_px=noise_px, **cameras)))
+    left, right = seen_points(**cameras)
+    shift = transform(rectified.left_homography, left) - transform(rectified.right_homography, right)
+    return rectified, shift
+
+
+@pytest.mark.parametrize(
+    ("turn", "move"),
+    [
+        ((0.02, -0.05, 0.01), (-0.3, 0.02, 0.05)),
+        ((0, 0, 0.35), (-0.3, -0.2, 0)),
+        ((0, 0.175, 0), (-0.9, 0, 0.1)),
+        ((0, 0.44, 0), (-2.2, 0, 0.5)),
+        ((0, 0, 0), (0, -0.3, 0)),
+        ((0, 0, 0), (0, 0.3, 0)),
+        ((0, 0, 1.57), (-0.3, 0, 0)),
+    ],
+    ids=["slight", "rolled", "toed in", "toed in more", "one below", "one above", "on its side"],
+)
+def test_rows_correspond_whatever_way_the_cameras_look(turn, move):
+    rectified, shift = rectified_points(turn=turn, move_m=move)
+    assert not rectified.skipped
+    assert np.median(np.abs(shift[:, 1])) <= 0.15
+    assert shift[:, 0].min() > -1  # the search may start at zero
+
+
+def test_the_fit_is_as_good_as_scipys(monkeypatch):
+    from scipy.optimize import least_squares
+
+    costs = []
+
+    def both(cost, start, scale):
+        found = fit(cost, start, scale)
+        theirs = least_squares(cost, start, x_scale=0.1 * scale, xtol=1e-12, ftol=1e-12, gtol=1e-12)
+        costs.append((np.square(cost(found)).sum(), np.square(theirs.fun).sum()))
+        return found
+
+    fit = alignment._least_squares
+    monkeypatch.setattr(alignment, "_least_squares", both)
+    for turn in ((0.02, -0.05, 0.01), (0, 0.175, 0), (0, 0, 0.35)):
+        matches = Matches(*some_wrong(*seen_points(noise_px=0.3, turn=turn, move_m=(-0.3, 0.02, 0.05)), 0.1))
+        aligning_homographies(matches, (HEIGHT, WIDTH))
+    assert len(costs) == 3
+    assert all(ours <= theirs * (1 + 1e-6) for ours, theirs in costs)
+
+
+def test_the_last_bits_of_where_the_fit_starts_do_not_matter(monkeypatch):
+    starts = []
+    fit = alignment._least_squares
+    monkeypatch.setattr(alignment, "_least_squares", lambda *asked: starts.append(asked[1]) or fit(*asked))
+    matches = Matches(*seen_points(noise_px=0.3, turn=(0.02, -0.05, 0.01), move_m=(-0.3, 0.02, 0.05)))
+    one, other = (aligning_homographies(matches, (HEIGHT, WIDTH), roll) for roll in (0.0300, 0.0300 + 1e-12))
+    assert all(np.array_equal(*each) for each in zip(one, other, strict=True))
+    assert np.array_equal(*starts)
+
+
+def test_the_last_bits_of_what_the_fit_finds_do_not_matter(monkeypatch):
+    matches = Matches(*seen_points(noise_px=0.3, turn=(0.02, -0.05, 0.01), move_m=(-0.3, 0.02, 0.05)))
+    expected = aligning_homographies(matches, (HEIGHT, WIDTH))
+    fit = alignment._least_squares
+    monkeypatch.setattr(alignment, "_least_squares", lambda *asked: fit(*asked) * (1 + 1e-12))
+    assert all(
+        np.array_equal(*each) for each in zip(aligning_homographies(matches, (HEIGHT, WIDTH)), expected, strict=True)
+    )
+
+
+def test_wrong_matches_do_not_bend_it():
+    matches = Matches(*some_wrong(*seen_points(noise_px=0.3), 0.3))
+    rectified = rectify(Views(BLANK, BLANK), matches=matches)
+    left, right = seen_points()
+    shift = transform(rectified.left_homography, left) - transform(rectified.right_homography, right)
+    assert np.median(np.abs(shift[:, 1])) <= 0.15
+
+
+@pytest.mark.parametrize("move", [(0, 0, -0.5), (-0.1, 0, -0.5)])
+def test_a_camera_that_went_forwards_is_refused(move):
+    with pytest.raises(CannotRectify, match=r"forwards|baseline|area|order"):
+        rectified_points(turn=(0, 0, 0), move_m=move)
+
+
+@pytest.mark.parametrize("cameras", [{"move_m": (0, 0, 0)}, {"flat": True}], ids=["only turned", "flat"])
+def test_without_parallax_the_matches_are_aligned_and_it_is_said(cameras, caplog):
+    _, shift = rectified_points(**cameras)
+    assert np.median(np.abs(shift[:, 1])) <= 0.15
+    assert "one homography explains the matches" in caplog.text
+
+
+def test_chance_matches_are_refused():
+    matches = Matches(*np.random.default_rng(0).uniform(0, 700, (2, 200, 2)))
+    with pytest.raises(CannotRectify, match="chance"):
+        rectify(Views(BLANK, BLANK), matches=matches)
+
+
+class TestWhatIsSkippedAndWhy:
+    def test_a_rectified_pair(self):
+        scene = Scene()
+        rectified = rectify(Views(scene.left(), scene.right()))
+        assert rectified.skipped
+        assert "already rectified" in rectified.why
+        assert rectified.views.left is not None
+
+    def test_a_calibrated_pair(self):
+        rectified = rectify(Views(BLANK, BLANK, Calibration(900.0, 0.1)))
+        assert rectified.skipped
+        assert "calibration" in rectified.why
+
+    def test_noise_that_no_turn_would_lessen(self):
+        matches = Matches(*seen_points(turn=(0, 0, 0), move_m=(-0.3, 0, 0), noise_px=0.5))
+        rectified = rectify(Views(BLANK, BLANK), matches=matches)
+        assert rectified.skipped
+        assert "would not help" in rectified.why
+
+    @pytest.mark.parametrize(("after_px", "turned"), [(0.29, True), (0.31, False), (0.6, False)])
+    def test_turning_is_to_gain_a_fifth_of_a_pixel(self, after_px, turned, monkeypatch):
+        """From half a pixel."""
+        rectified = rectify(Views(BLANK, BLANK), matches=shifted(0.5, after_px, monkeypatch))
+        assert rectified.skipped != turned
+        assert f"offset 0.50 px, {'now' if turned else 'then'} {after_px:.2f}" in rectified.why
+
+    @pytest.mark.parametrize(("offset_px", "size", "turned"), [(0.34, 1, False), (0.36, 1, True), (0.36, 4, False)])
+    def test_a_third_of_a_pixel_is_none_and_more_in_large_pictures(self, offset_px, size, turned, monkeypatch):
+        views = Views(*[np.zeros((size * HEIGHT, size * WIDTH), np.uint8)] * 2)
+        rectified = rectify(views, matches=shifted(offset_px, 0.0, monkeypatch))
+        assert rectified.skipped != turned
+
+    @pytest.mark.parametrize(
+        ("share", "away_px", "said"), [(0.04, -2.1, True), (0.06, -2.1, False), (0.04, -1.9, False)]
+    )
+    def test_views_are_exchanged_where_nearly_all_disparities_are_below_minus_two(self, share, away_px, said, caplog):
+        left = np.random.default_rng(0).uniform(0, 700, (1000, 2))
+        disparity = np.where(np.arange(1000) < 1000 * share, 3.0, away_px)
+        rectify(Views(BLANK, BLANK), matches=Matches(left, left - np.column_stack([disparity, 0 * disparity])))
+        assert ("seem to be exchanged" in caplog.text) == said
+
+    def test_another_exposure_is_no_reason_to_turn(self):
+        scene = Scene()
+        assert rectify(Views(scene.left(), 0.2 + 0.5 * scene.right() ** 1.4)).skipped
+
+    def test_too_little_to_tell(self):
+        rectified = rectify(Views(BLANK, BLANK))
+        assert rectified.skipped
+        assert "too few" in rectified.why
+
+    @pytest.mark.parametrize(("count", "told"), [(19, False), (20, True)])
+    def test_twenty_matches_tell(self, count, told, monkeypatch):
+        matches = shifted(0.5, 0.0, monkeypatch)
+        rectified = rectify(Views(BLANK, BLANK), matches=Matches(matches.left_px[:count], matches.right_px[:count]))
+        assert rectified.skipped != told
+        assert ("only 19 matches, too few to tell" in rectified.why) != told
+
+    def test_a_skipped_map_comes_back_itself(self):
+        found = DisparityMap(np.ones((HEIGHT, WIDTH), np.float32))
+        assert with_rectification(Views(BLANK, BLANK), lambda views: found) is found
+
+    def test_one_view_is_no_pair(self):
+        with pytest.raises(PictureError, match="two views"):
+            rectify(Views(BLANK))
+
+
+def warped_scene():
+    scene = Scene((240, 320), 8.0, 20.0)
+    warp = roll_and_tilt(scene.shape)
+    return scene, warp, Views(scene.left(), scene.right(warp))
+
+
+def true_map(scene, rectified):
+    """What a perfect method would find in the rectified views."""
+    rows, columns = rectified.views.shape
+    y, x = np.indices((rows, columns), np.float64)
+    original = transform(np.linalg.inv(rectified.left_homography), np.column_stack([x.ravel(), y.ravel()]))
+    column, row = np.rint(original).astype(int).T
+    inside = (column >= 0) & (column < scene.shape[1]) & (row >= 0) & (row < scene.shape[0])
+    disparity = np.full(rows * columns, np.nan)
+    disparity[inside] = scene.disparity_px()[row[inside], column[inside]]
+    return original, disparity.reshape(rows, columns).astype(np.float32)
+
+
+def test_a_rolled_and_tilted_picture_is_put_right():
+    scene, warp, views = warped_scene()
+    rectified = rectify(views)
+    assert not rectified.skipped
+    y, x = np.indices(scene.shape, np.float64)
+    left = np.column_stack([x.ravel(), y.ravel()])
+    right = transform(warp, left - np.column_stack([scene.disparity_px().ravel(), np.zeros(left.shape[0])]))
+    shift = transform(rectified.left_homography, left) - transform(rectified.right_homography, right)
+    assert np.median(np.abs(shift[:, 1])) <= 0.15
+    # A warp about the middle leaves disparities as they were.
+    assert np.median(np.abs(shift[:, 0] + rectified.offset_px - scene.disparity_px().ravel())) < 0.3
+
+
+def test_the_way_back_leads_to_the_original_pixels():
+    scene, warp, views = warped_scene()
+    rectified = rectify(views)
+    _, perfect = true_map(scene, rectified)
+    found = rectified.to_original(DisparityMap(perfect - np.float32(rectified.offset_px)))
+    known = np.isfinite(found.disparity_px)
+    assert found.disparity_px.shape == scene.shape
+    assert known.mean() > 0.95
+    assert np.mean(found.disparity_px[known] == scene.disparity_px()[known]) > 0.97
+    assert np.array_equal(found.confidence > 0, known)
+    y, x = np.indices(scene.shape, np.float64)
+    expected = transform(warp, np.column_stack([(x - scene.disparity_px()).ravel(), y.ravel()])).reshape(
+        *scene.shape, 2
+    )
+    error = np.linalg.norm(rectified.right_px(found.disparity_px) - expected, axis=2)
+    assert np.nanmedian(error) < 0.3
+
+
+@pytest.mark.parametrize("dtype", [np.bool_, np.uint8, np.uint16, np.float16, np.float32, np.float64])
+def test_pictures_of_any_kind_are_turned(dtype):
+    views = warped_scene()[2]
+    white = np.iinfo(dtype).max if np.issubdtype(dtype, np.integer) else 1
+    left, right = (
+        (grey > 0.5) if dtype == np.bool_ else (grey * white).astype(dtype) for grey in (views.left, views.right)
+    )
+    colour = Views(np.stack([left] * 4, axis=2), np.stack([right] * 4, axis=2))
+    matches = Matches(*seen_points(count=200, width=320, noise_px=0.1))
+    rectified = rectify(colour, matches=matches)
+    assert not rectified.skipped
+    assert rectified.views.left.shape[2] == 4
+    assert rectified.views.left.max() <= white
+    assert rectified.views.left.dtype == (dtype if dtype not in (np.bool_, np.float16) else np.float32)
+
+
+class TestGuards:
+    def test_the_same_pictures_pass(self):
+        check_homographies((np.eye(3), np.eye(3)), (100, 200), np.zeros(5))
+
+    @pytest.mark.parametrize(
+        ("homography", "words"),
+        [
+            (np.diag([2.0, 2.0, 1.0]), "times its area"),
+            (np.diag([0.5, 0.5, 1.0]), "times its area"),
+            (np.diag([-1.0, 1.0, 1.0]), "order"),
+            (np.array([[1, 0, 0], [0, 1, 0], [-0.01, 0, 1.0]]), "infinity"),
+        ],
+    )
+    def test_distortions_are_refused(self, homography, words):
+        with pytest.raises(CannotRectify, match=words):
+            check_homographies((np.eye(3), homography), (100, 200), np.zeros(5))
+
+    @pytest.mark.parametrize(
+        ("share", "offset_px", "refused"), [(0.04, 9.0, False), (0.06, 3.1, True), (0.06, 2.9, False)]
+    )
+    def test_one_match_in_twenty_may_lie_off_its_row(self, share, offset_px, refused):
+        offsets = np.where(np.arange(1000) < 1000 * share, offset_px, 0.0)
+        with pytest.raises(CannotRectify) if refused else nullcontext():
+            check_homographies((np.eye(3), np.eye(3)), (100, 200), offsets)
+
+    @pytest.mark.parametrize(("side", "refused"), [(1.7, False), (1.8, True), (0.6, False), (0.55, True)])
+    def test_an_area_changes_by_a_factor_of_three_at_most(self, side, refused):
+        with pytest.raises(CannotRectify, match="area") if refused else nullcontext():
+            check_homographies((np.diag([side, side, 1.0]), np.eye(3)), (100, 200), np.zeros(5))
+
+    def test_rows_that_do_not_correspond_are_refused(self):
+        with pytest.raises(CannotRectify, match="off its row"):
+            check_homographies((np.eye(3), np.eye(3)), (100, 200), np.r_[np.zeros(90), np.full(10, 9.0)])
+
+
+def test_exact_matches_are_aligned_exactly():
+    left, right = seen_points(turn=(0.01, 0.02, 0.03))
+    pair = aligning_homographies(Matches(left, right), (HEIGHT, WIDTH))
+    offset = transform(pair[0], left)[:, 1] - transform(pair[1], right)[:, 1]
+    assert np.abs(offset).max() < 0.02
+
+
+def test_the_epipole_gives_the_roll():
+    shape = (HEIGHT, WIDTH)
+    for move, roll in (((-0.3, 0, 0), 0), ((-0.3, -0.3, 0), -np.pi / 4), ((-0.3, 0.3, 0), np.pi / 4)):
+        matrix = eight_point(*seen_points(turn=(0, 0, 0), move_m=move))
+        assert epipole_roll(matrix, shape) == pytest.approx(roll, abs=1e-3)
+
+
+def test_the_middle_keeps_its_column():
+    left, right = seen_points(turn=(0.01, 0.02, 0.03))
+    middle = camera_matrix(1, (HEIGHT, WIDTH))[:2, 2][None]
+    for homography in aligning_homographies(Matches(left, right), (HEIGHT, WIDTH)):
+        assert transform(homography, middle)[0, 0] == pytest.approx(middle[0, 0])
+
+
+def test_rotations_are_rotations():
+    turn = rotation(0.1, -0.2, 0.3)
+    assert turn @ turn.T == pytest.approx(np.eye(3))
+    assert rotation(0, 0, np.pi / 2) @ [1, 0, 0] == pytest.approx([0, 1, 0])
+    assert rotation(0, np.pi / 2, 0) @ [0, 0, 1] == pytest.approx([1, 0, 0])
+    assert rotation(np.pi / 2, 0, 0) @ [0, 1, 0] == pytest.approx([0, 0, 1])
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "start"), [(0.0, 20.0, -4), (10.0, 90.0, 0), (-3.0, 17.0, -7), (-20.0, 80.0, -30), (4.5, 9.0, 0)]
+)
+def test_the_search_starts_below_all_but_stray_disparities(low, high, start):
+    """A tenth of their range below, and 4 px at least, one in a hundred left out at each end; never above 0."""
+    disparity = np.linspace(low, high, 981)
+    stray = np.concatenate([np.full(10, -500.0), disparity, np.full(10, 900.0)])
+    assert rectification._search_start(stray) == start

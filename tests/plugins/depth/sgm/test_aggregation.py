@@ -1,0 +1,157 @@
+"""The compiled sweep against semi-global matching written out plainly, to the last bit."""
+
+import os
+
+import numpy as np
+import pytest
+
+from stereo_scenes import step
+from tangible_core.compiled.threads import thread_count
+from tangible_depth.dense.span import UNKNOWN, Span
+from tangible_depth.sgm import strips
+from tangible_depth.sgm.census import census
+from tangible_depth.sgm.costs import SHARP, jump_prices
+from tangible_depth.sgm.strips import blank, sweep
+
+
+def plain_census(grey):
+    """Bits of the 5 x 5 window, in any order: whether a neighbour is darker."""
+    padded = np.pad(grey, 2, mode="edge")
+    h, w = grey.shape
+    around = [padded[dy : dy + h, dx : dx + w] for dy in range(5) for dx in range(5) if (dy, dx) != (2, 2)]
+    return np.stack([each < grey for each in around], axis=-1)
+
+
+def plain_costs(left, right, span, neutral):
+    """Differing bits by row, column and disparity low..high."""
+    a, b = plain_census(left), plain_census(right)
+    h, w = left.shape
+    costs = np.full((h, w, span.high - span.low + 1), neutral, int)
+    for i, d in enumerate(range(span.low, span.high + 1)):
+        for x in range(w):
+            if 0 <= x - d < w:
+                costs[:, x, i] = (a[:, x] != b[:, x - d]).sum(axis=-1)
+    return costs
+
+
+def plain_path(costs, steps, prices):
+    """Costs (n, ..., d) summed along the first axis, each kept relative to the minimum before it."""
+    before = np.zeros(costs.shape[1:], int)
+    out = []
+    for cost, step_here in zip(costs, steps, strict=True):
+        least = before.min(axis=-1, keepdims=True)
+        wall = np.full((*before.shape[:-1], 1), 255)
+        up = np.concatenate([wall, before[..., :-1]], axis=-1)
+        down = np.concatenate([before[..., 1:], wall], axis=-1)
+        jumped = least + prices.jumps.astype(int)[step_here][..., None]
+        best = np.minimum(np.minimum(before, jumped), np.minimum(up, down) + int(prices.move))
+        before = np.minimum(cost + best - least, 255)
+        out.append(before)
+    return np.stack(out)
+
+
+def plain_sums(left, right, span, prices):
+    costs = plain_costs(left, right, span, int(prices.neutral))
+    grey = left.astype(int)
+    total = np.zeros_like(costs)
+    for axis in (0, 1):
+        c, g = np.moveaxis(costs, axis, 0), np.moveaxis(grey, axis, 0)
+        steps = np.abs(np.diff(g, axis=0, prepend=g[:1]))
+        back = np.abs(np.diff(g[::-1], axis=0, prepend=g[-1:]))
+        total += np.moveaxis(plain_path(c, steps, prices) + plain_path(c[::-1], back, prices)[::-1], 0, axis)
+    return np.minimum(total, 255)
+
+
+def plain_disparity(sums, span, tolerance):
+    h, w, count = sums.shape
+    out = np.full((h, w), UNKNOWN, np.int16)
+    right_best = np.full((h, w), 255)
+    for i, d in enumerate(range(span.low, span.high + 1)):
+        for x in range(max(0, d), min(w, w + d)):
+            right_best[:, x - d] = np.minimum(right_best[:, x - d], sums[:, x, i])
+    for y, x in np.ndindex(h, w):
+        s = sums[y, x]
+        i = count - 1 - int(np.argmin(s[::-1]))  # of equals the largest disparity
+        d = span.low + i
+        if not 0 <= x - d < w or s[i] == 255 or s[i] > np.float32(tolerance) * np.float32(right_best[y, x - d]):
+            continue
+        offset = 0.0
+        if 0 < i < count - 1:
+            before, after = float(s[i + 1]), float(s[i - 1])  # lanes run downwards
+            if before == after == s[i]:
+                continue
+            offset = (before - after) / (2 * (max(before, after) - s[i]))
+        out[y, x] = np.floor(16 * (d - offset) + 0.5)
+    return out
+
+
+@pytest.mark.parametrize("span", [Span(0, 15), Span(0, 10), Span(-5, 6), Span(3, 20), Span(-9, -2)])
+@pytest.mark.parametrize("tolerance", [1.0, 1.08])
+def test_the_sweep_is_semi_global_matching(span, tolerance):
+    views, _, _ = step(shape=(22, 41), back=2, front=6, box=(5, 16, 14, 30))
+    left, right = np.asarray(views.left), np.asarray(views.right)
+    out = blank(left.shape)
+    rows = [(0, left.shape[0])]
+    sweep((census(left), census(right)), left, span, SHARP.prices, tolerance, rows, out)
+    sums = plain_sums(left, right, span, SHARP.prices)
+    assert np.array_equal(out.sums, sums.min(axis=-1))
+    assert np.array_equal(out.disparity, plain_disparity(sums, span, tolerance))
+
+
+def test_strips_are_independent_and_hardly_seen(monkeypatch):
+    views, _, _ = step(shape=(300, 160), box=(60, 240, 60, 120))
+    left, right = np.asarray(views.left), np.asarray(views.right)
+    codes = census(left), census(right)
+    maps = []
+    for rows in (300, 128):
+        monkeypatch.setattr(strips, "ROWS", rows)
+        out = blank(left.shape)
+        for each in strips.strips(left.shape, Span(0, 31)):
+            sweep(codes, left, Span(0, 31), SHARP.prices, 1.08, [each], out)
+        maps.append(out.disparity.astype(int))
+    near = [y for y in range(300) if min(abs(y - 128), abs(y - 256)) <= 8]
+    assert np.mean(np.abs(maps[0] - maps[1])[near] > 16) <= 0.005
+
+
+@pytest.mark.parametrize(
+    ("shape", "span"), [((4000, 6000), Span(0, 255)), ((500, 741), Span(0, 63)), ((9, 90000), Span(0, 511))]
+)
+def test_the_volumes_stay_within_their_bound(shape, span):
+    rows = strips.strips(shape, span)
+    highest = max(b - a for a, b in rows)
+    assert [a for a, _ in rows] == [0, *[b for _, b in rows][:-1]]
+    assert rows[-1][1] == shape[0]
+    volumes = strips.AT_ONCE * highest * shape[1] * span.lanes
+    assert highest <= 8 or volumes <= strips.VOLUME_BYTES
+
+
+@pytest.mark.parametrize("processors", [1, 3, 64])
+def test_strips_are_the_same_with_any_number_of_threads(processors, monkeypatch):
+    expected = strips.strips((3000, 4500), Span(0, 511))
+    monkeypatch.setattr(os, "sched_getaffinity", lambda _: set(range(processors)), raising=False)
+    assert thread_count() == processors
+    assert strips.strips((3000, 4500), Span(0, 511)) == expected
+
+
+def test_no_more_threads_are_at_work_than_there_is_room_for(monkeypatch):
+    monkeypatch.setattr(strips, "VOLUME_BYTES", 3 * 16 * 64 * 32)
+    at_work = []
+    monkeypatch.setattr(strips, "in_turns", lambda tasks, work, most: at_work.append(most))
+    rows = [(y, y + 16) for y in range(0, 160, 16)]
+    codes = np.empty((160, 3, 64), np.uint8)
+    sweep((codes, codes), codes[:, 0], Span(0, 31), SHARP.prices, 1.0, rows, blank((160, 64)))
+    assert at_work == [3]
+
+
+def test_a_jump_is_cheaper_where_the_picture_steps():
+    prices = jump_prices(50, 12, 1.5)
+    assert (prices[0], prices[10], prices[255]) == (50, 35, 12)
+
+
+def test_a_span_fits_lanes_and_pictures():
+    assert Span(0, 63).lanes == 64
+    assert Span(0, 64).lanes == 128
+    assert Span(-3, 3).lanes == 16
+    assert Span(-50, 500).within(100) == Span(-50, 99)
+    assert Span(500, 900).within(1) == Span(0, 0)
+    assert Span(-5, 5).shrunk(2) == Span(-3, 3)

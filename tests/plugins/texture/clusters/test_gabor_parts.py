@@ -1,0 +1,176 @@
+"""The parts of the segmenter by texture, against plain formulas."""
+
+import numpy as np
+import pytest
+
+from tangible_core.compiled.small_matrices import eigen, solved
+from tangible_texture.clusters.discriminants import discriminant_axes, evidence, principal_axes, scatters
+from tangible_texture.clusters.dividing import divided, members
+from tangible_texture.clusters.full_size import pixel_labels
+from tangible_texture.clusters.joining import joining, joining_costs
+from tangible_texture.clusters.neighbourhood import INSIDE_CELLS, smoothed
+from tangible_texture.clusters.planes import mixed, products, scatter
+from tangible_texture.features.patterns import COUNTERS, RADII, pattern_frequencies
+
+
+@pytest.fixture
+def random() -> np.random.Generator:
+    return np.random.default_rng(11)
+
+
+@pytest.mark.parametrize("size", [1, 2, 7, 40])
+def test_eigenvalues_and_solutions_are_those_of_lapack(random: np.random.Generator, size: int):
+    root = random.standard_normal((size, size + 3))
+    matrix = root @ root.T
+    values, vectors = eigen(matrix)
+    np.testing.assert_allclose(values, np.linalg.eigvalsh(matrix)[::-1], rtol=1e-8, atol=1e-10)
+    np.testing.assert_allclose(vectors @ matrix @ vectors.T, np.diag(values), atol=1e-8)
+    rows = random.standard_normal((3, size))
+    np.testing.assert_allclose(solved(matrix, rows), np.linalg.solve(matrix, rows.T).T, rtol=1e-6, atol=1e-8)
+
+
+def test_products_of_planes_are_those_of_matrices(random: np.random.Generator):
+    planes, others = (random.standard_normal((count, 2500)).astype(np.float32) for count in (7, 3))
+    weights = random.random(2500).astype(np.float32)
+    mix = random.standard_normal((4, 7))
+    np.testing.assert_allclose(mixed(mix, planes), mix @ planes, atol=1e-4)
+    np.testing.assert_allclose(products(others, planes), others.astype(float) @ planes.T, atol=1e-2)
+    np.testing.assert_allclose(scatter(planes, weights), (planes * weights) @ planes.T.astype(float), atol=1e-2)
+
+
+def two_groups(random: np.random.Generator, count: int = 400) -> tuple[np.ndarray, np.ndarray]:
+    labels = (np.arange(count) >= count // 2).astype(np.int32)
+    planes = random.standard_normal((5, count)).astype(np.float32)
+    planes[2] += 6 * labels
+    return planes - planes.mean(axis=1, keepdims=True), labels
+
+
+def test_discriminants_find_what_tells_groups_apart(random: np.random.Generator):
+    planes, labels = two_groups(random)
+    fit = scatters(planes, members(labels, 2))
+    axes = discriminant_axes(fit, 20)
+    assert axes.shape == (1, 5)
+    assert np.abs(axes[0]).argmax() == 2
+    np.testing.assert_allclose(axes @ fit.within @ axes.T, [[1]], rtol=1e-6)
+    assert np.mean(evidence(planes, fit).argmax(axis=0) == labels) > 0.99
+
+
+def test_principal_axes_half_whitened(random: np.random.Generator):
+    planes, _ = two_groups(random)
+    variances = mixed(principal_axes(planes, 3, 0.25), planes).var(axis=1)
+    values = np.sort(np.linalg.eigvalsh(np.cov(planes, bias=True)))[::-1][:3]
+    np.testing.assert_allclose(variances, np.sqrt(values), rtol=1e-4)
+
+
+def test_the_widest_group_is_halved_first_and_equal_cells_never(random: np.random.Generator):
+    planes, labels = two_groups(random)
+    found = divided(planes, 2)
+    assert np.mean((found == found[0]) == (labels == 0)) > 0.99
+    same = np.repeat(np.array([[-1.0, 1.0]], np.float32), 50, axis=1)
+    assert divided(same, 9).max() == 1
+
+
+def test_a_division_does_not_depend_on_the_order_of_cells(random: np.random.Generator):
+    planes, _ = two_groups(random)
+    order = random.permutation(planes.shape[1])
+    one, other = divided(planes, 6)[order], divided(np.ascontiguousarray(planes[:, order]), 6)
+    assert len(set(zip(one.tolist(), other.tolist(), strict=True))) == one.max() + 1
+
+
+def test_halves_of_one_group_cost_the_least_to_join(random: np.random.Generator):
+    planes, labels = two_groups(random)
+    shape = (20, 20)
+    thirds = labels * 2 + (np.arange(400) % 2) * (labels == 0)
+    thirds = thirds.astype(np.int32)
+    costs = joining_costs(planes, thirds, shape)
+    assert np.unravel_index(costs.argmin(), costs.shape) == (1, 0)
+    steps = list(joining(planes, thirds, shape, votes=0))
+    assert [each.clusters for each in steps] == [3, 2, 1]
+    np.testing.assert_array_equal(steps[1].labels, labels)
+    assert steps[-1].cost == np.inf
+
+
+def borders(labels: np.ndarray, count: int) -> np.ndarray:
+    """Pairs of neighbours of every two labels."""
+    found = np.zeros((count, count))
+    for one, other in ((labels[1:], labels[:-1]), (labels[:, 1:], labels[:, :-1])):
+        np.add.at(found, (one, other), 1)
+        np.add.at(found, (other, one), 1)
+    return found
+
+
+def test_what_joining_costs_is_as_it_is_written(random: np.random.Generator):
+    """D (m k / n)^1.25 exp(-t / 4), D the squared Mahalanobis distance, in scatters with a ridge of a twentieth."""
+    shape, count = (12, 30), 4
+    labels = random.integers(0, 3, shape).astype(np.int32)
+    labels[:, 20:] = 3
+    planes = random.standard_normal((5, labels.size)).astype(np.float32) + labels.ravel() * 0.3
+    planes = planes.astype(np.float32)
+    own = members(labels.ravel(), count)
+    weights = (own * (smoothed(own, shape, INSIDE_CELLS) ** 2 + 1e-3)).max(axis=0).astype(np.float64)
+    sizes = np.bincount(labels.ravel())
+    parts = [(planes[:, labels.ravel() == k].astype(np.float64), weights[labels.ravel() == k]) for k in range(count)]
+    means = [np.average(part, axis=1, weights=heavy) for part, heavy in parts]
+    scatter_of = [np.cov(part, aweights=heavy, ddof=0) for part, heavy in parts]
+    ridge = 0.05 * sum(size * np.trace(each) for size, each in zip(sizes, scatter_of, strict=True)) / sizes.sum() / 5
+    meet, costs = borders(labels, count), joining_costs(planes, labels.ravel(), shape)
+    assert np.isinf(costs[np.triu_indices(count)]).all()
+    for one in range(count):
+        for other in range(one):
+            step = means[one] - means[other]
+            within = (scatter_of[one] + scatter_of[other]) / 2 + ridge * np.eye(5)
+            size = sizes[one] * sizes[other] / (sizes[one] + sizes[other]) * count / sizes.sum()
+            touching = meet[one, other] / np.sqrt(min(sizes[one], sizes[other]))
+            expected = step @ np.linalg.solve(within, step) * size**1.25 * np.exp(-touching / 4)
+            assert costs[one, other] == pytest.approx(expected, rel=1e-3)
+    assert meet[1, 0] > 5 * meet[3, 0] > 0
+
+
+def test_of_two_pairs_alike_the_one_that_touches_is_joined():
+    """Two pairs of clusters as far apart, of which the cells of one lie mixed."""
+    rows, columns = np.indices((12, 16))
+    mixed_cells, apart = (rows + columns) % 2, columns % 8 // 4
+    labels = np.where(columns < 8, apart, 2 + mixed_cells).astype(np.int32)
+    random = np.random.default_rng(0)
+    noise = random.standard_normal((3, 96)).astype(np.float32)
+    planes = np.zeros((3, 192), np.float32)
+    for pair in (0, 1):
+        for label in (2 * pair, 2 * pair + 1):
+            inside = labels.ravel() == label
+            planes[:, inside] = noise[:, : inside.sum()] + np.float32([[label % 2], [40 * pair], [0]])
+    costs = joining_costs(planes, labels.ravel(), (12, 16))
+    assert np.unravel_index(costs.argmin(), costs.shape) == (3, 2)
+    assert costs[3, 2] < 0.1 * costs[1, 0]
+
+
+def test_patterns_of_a_flat_picture_are_all_bright():
+    found = pattern_frequencies(np.zeros((8, 12), np.float32)).reshape(len(RADII), COUNTERS, 2, 3)
+    expected = np.zeros(COUNTERS)
+    expected[[8, *range(10, COUNTERS)]] = 1
+    np.testing.assert_array_equal(found, np.broadcast_to(expected[:, None, None], found.shape))
+
+
+def test_frequencies_of_classes_sum_to_one_in_cut_cells_too(random: np.random.Generator):
+    found = pattern_frequencies(random.standard_normal((10, 7)).astype(np.float32)).reshape(3, COUNTERS, 3, 2)
+    np.testing.assert_allclose(found[:, :10].sum(axis=1), 1, rtol=1e-6)
+    assert found.min() >= 0
+    assert found.max() <= 1
+
+
+def test_a_flipped_picture_has_flipped_patterns(random: np.random.Generator):
+    """As sets of planes: a flip exchanges the counters of directions."""
+    picture = random.standard_normal((16, 24)).astype(np.float32)
+    one = pattern_frequencies(picture)[:, :, ::-1]
+    other = pattern_frequencies(np.ascontiguousarray(picture[:, ::-1]))
+    for radius in range(len(RADII)):
+        part = slice(radius * COUNTERS, (radius + 1) * COUNTERS)
+        sets = [sorted(map(tuple, planes[part].reshape(COUNTERS, -1).round(5).tolist())) for planes in (one, other)]
+        assert sets[0] == sets[1]
+
+
+def test_a_border_lies_between_the_centres_of_cells():
+    memberships = np.array([[[0.9, 0.1]], [[0.1, 0.9]]], np.float32)
+    labels, confidence = pixel_labels(memberships, 4, (2, 8))
+    np.testing.assert_array_equal(labels, [[0, 0, 0, 0, 1, 1, 1, 1]] * 2)
+    np.testing.assert_allclose(confidence[0], confidence[0, ::-1], rtol=1e-5)
+    assert confidence[0, 0] == pytest.approx(1 - 1 / 9)

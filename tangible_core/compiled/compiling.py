@@ -7,12 +7,21 @@ import logging
 from typing import Any
 
 from numba.core import event
+from numba.extending import register_jitable
 
 log = logging.getLogger(__name__)
 
-KERNEL: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy", "_nrt": False}
+KERNEL: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy", "_nrt": False, "no_cfunc_wrapper": True}
 """Options of a kernel that is given all its arrays and makes none: it counts no references to them, each of which is an
-atomic operation, twice an array and call."""
+atomic operation, twice an array and call. Nobody calls one by C's convention, so that no way in for it is compiled."""
+
+
+def inner(**options: Any) -> Any:
+    """Of a function that only kernels call: it is compiled with them, without what Python would call it through.
+
+    That is half of what a small kernel takes to compile. Called from Python, it runs as plain Python.
+    """
+    return register_jitable(**{**KERNEL, "cache": False, "no_cpython_wrapper": True, **options})
 
 
 class _CompileNotice(event.Listener):

@@ -40,7 +40,7 @@ def flat_pixels(grey: UInt8[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
     return cv2.erode(level, row.T).view(np.bool_)
 
 
-@njit(nogil=True, boundscheck=False, cache=True)
+@njit(nogil=True, boundscheck=False, cache=True, _nrt=False, no_cfunc_wrapper=True)
 def _judge(matched, final, quality, table, out):
     for y in range(final.shape[0]):
         for x in range(final.shape[1]):

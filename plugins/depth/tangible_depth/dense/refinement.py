@@ -98,7 +98,7 @@ def _with_margin(y0: int, y1: int, rows: int) -> tuple[slice, slice]:
     return slice(first, y1 + rows), slice(y0 - first, y1 - first)
 
 
-@njit(nogil=True, boundscheck=False, cache=True)
+@njit(nogil=True, boundscheck=False, cache=True, _nrt=False, no_cfunc_wrapper=True)
 def _to_pixels(flat, fill, disparity, confidence, disparity_px, trust):
     for y in range(disparity.shape[0]):
         for x in range(disparity.shape[1]):
@@ -108,7 +108,7 @@ def _to_pixels(flat, fill, disparity, confidence, disparity_px, trust):
             disparity_px[y, x] = np.float32(disparity[y, x]) * np.float32(1 / 16) if known else np.float32(np.nan)
 
 
-@njit(nogil=True, boundscheck=False, cache=True)
+@njit(nogil=True, boundscheck=False, cache=True, _nrt=False, no_cfunc_wrapper=True)
 def _enlarge(padded, trust, y0, out, out_trust):
     """Rows from y0 on; `padded` is the small map with its edge repeated once.
 

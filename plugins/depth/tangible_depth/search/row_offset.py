@@ -9,6 +9,7 @@ import numpy as np
 from jaxtyping import Float32, Int16, Int64
 from numba import njit
 
+from tangible_core.compiled.compiling import inner
 from tangible_core.compiled.threads import in_blocks
 from tangible_core.runtime.opencv import plain_opencv
 
@@ -37,7 +38,11 @@ def row_votes(
     points = points[: _edge_points(pair.left, rows, disparity, factor, points)]
     points = np.ascontiguousarray(points[:: 1 + len(points) // MOST_POINTS])
     votes = np.full(len(points), np.nan, np.float32)
-    in_blocks(len(points), lambda a, b: _offsets(*pair, points, REACH, factor, a, b, votes))
+
+    def block(first: int, last: int) -> None:
+        _offsets(*pair, points, factor, first, last, np.empty(2 * REACH + 1, np.float32), votes)
+
+    in_blocks(len(points), block)
     return votes
 
 
@@ -61,7 +66,7 @@ def realigned(pair: Pair, offset: float) -> Pair:
     return Pair(pair.left, moved)  # pyright: ignore[reportArgumentType]
 
 
-@njit(nogil=True, boundscheck=False, cache=True)
+@njit(nogil=True, boundscheck=False, cache=True, _nrt=False, no_cfunc_wrapper=True)
 def _edge_points(left, rows, disparity, factor, points):
     """Row, column and disparity of the strongest horizontal edge in each cell round the rows; returns how many."""
     h, w = left.shape
@@ -77,17 +82,18 @@ def _edge_points(left, rows, disparity, factor, points):
                     here = disparity[i, x // factor]
                     if edge > strongest and here != UNKNOWN:
                         strongest = edge
-                        points[count] = y, x, (np.int64(here) * factor + 8) >> 4
+                        points[count, 0], points[count, 1] = y, x
+                        points[count, 2] = (np.int64(here) * factor + 8) >> 4
             count += strongest > LEAST_EDGE
     return count
 
 
-@njit(nogil=True, boundscheck=False, cache=True, error_model="numpy")
-def _offsets(left, right, points, reach, slack, first, last, offsets):
-    """Sub-pixel row offset of the best correlation near each point; NaN where the match is poor."""
+@njit(nogil=True, boundscheck=False, cache=True, error_model="numpy", _nrt=False, no_cfunc_wrapper=True)
+def _offsets(left, right, points, slack, first, last, scores, offsets):
+    """Sub-pixel row offset of the best correlation near each point; NaN where the match is poor. scores: scratch."""
     h, w = left.shape
+    reach = scores.size >> 1
     edge = RADIUS + reach
-    scores = np.empty(2 * reach + 1, np.float32)
     for p in range(first, last):
         y, x, column = points[p, 0], points[p, 1], points[p, 1] - points[p, 2]
         if not (edge <= y < h - edge and RADIUS <= x < w - RADIUS):
@@ -98,14 +104,16 @@ def _offsets(left, right, points, reach, slack, first, last, offsets):
             scores[dy + reach] = -1
             for dx in range(-slack, slack + 1):
                 scores[dy + reach] = max(scores[dy + reach], _correlation(left, y, x, right, y + dy, column + dx))
-        best = np.argmax(scores)
+        best = 0
+        for i in range(1, scores.size):
+            best = i if scores[i] > scores[best] else best
         if 0 < best < 2 * reach and scores[best] >= LEAST_CORRELATION:
             before, at, after = scores[best - 1], scores[best], scores[best + 1]
             if 2 * at - before - after > LEAST_BEND:
                 offsets[p] = best - reach + parabola(before, at, after)
 
 
-@njit(nogil=True, boundscheck=False, error_model="numpy")
+@inner()
 def _correlation(left, y, x, right, v, u):
     """Zero-mean normalised cross-correlation of two windows; -1 if either is nearly flat."""
     a_sum = b_sum = aa = bb = ab = np.int32(0)

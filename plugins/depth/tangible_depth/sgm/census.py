@@ -52,7 +52,7 @@ def _coded(greys: Sequence[np.ndarray]) -> UInt8[np.ndarray, "h planes whole"]:
     return codes
 
 
-@njit(nogil=True, boundscheck=False, cache=True)
+@njit(nogil=True, boundscheck=False, cache=True, _nrt=False, no_cfunc_wrapper=True)
 def code_rows(padded, offsets, first_plane, y0, y1, codes):
     """Rows y0..y1-1, one neighbour after the other along a whole row: each inner loop is plain vector code."""
     w = codes.shape[2]

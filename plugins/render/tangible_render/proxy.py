@@ -61,8 +61,8 @@ class Proxy(ForceRenderer):
     def touch(self, surface: HapticSurface) -> Touch:
         """A new touch on this surface, without what it does not need: texture, friction, damping, several materials.
 
-        Compiled on the first use on a machine, then loaded: each of its kernels has a module of its own, so that only the
-        one that this surface needs is.
+        Compiled on the first use on a machine, then loaded: each kernel has a module of its own, so that only the one
+        that this surface needs is.
         """
         from .contact import contact
 

@@ -1,4 +1,4 @@
-"""The law of `proxy` on materials that have a texture, compiled. Imports numba: the method imports this module inside `touch`.
+"""The law of `proxy` on materials with a texture, compiled. Imports numba: imported by the method inside `touch`.
 
 What a touch remembers is listed in `contact`.
 """
@@ -22,7 +22,7 @@ def textured_tick(
     coefficients, width_m, length_m, across_per_m, down_per_m, tiles_m, labels, table, memory, textures, contact,
     x, y, z, vx, vy, vz,
 ):  # fmt: skip
-    """As `proxy_kernels.tick`, under the textures of the materials; see `effects.kernels` for their table and for `contact`."""
+    """As `proxy_kernels.tick`, under the textures of the materials; see `effects.kernels` for table and contact."""
     shape = coefficients, width_m, length_m, across_per_m, down_per_m
     label, t, tx, ty, dx, dy, dz = texture(labels, width_m, length_m, textures, contact, x, y, z)
     vz -= tx * vx + ty * vy

@@ -4,6 +4,7 @@
 # pyright: basic
 
 import numpy as np
+
 from ...compiled.compiling import inner
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from jaxtyping import Int16, UInt8
 from numba import int32, njit, uint16
 
-from tangible_core.compiled.compiling import inner
+from tangible_core.compiled.compiling import KERNEL, inner
 
 from ..simd.lane_reductions import total
 from ..simd.lanes import Lanes, add, load, maximum, minimum, multiply, splat, subtract
@@ -58,7 +58,7 @@ def sharpen_edges(disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "
     return out
 
 
-@njit(nogil=True, boundscheck=False, cache=True, _nrt=False, no_cfunc_wrapper=True)
+@njit(**KERNEL)
 def _vote(lanes, voting, ranks, greys, disparity, grey, far, near, out):
     h, w = disparity.shape
     for y in range(h):

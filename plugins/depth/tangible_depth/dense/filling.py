@@ -12,7 +12,7 @@ import numpy as np
 from jaxtyping import Bool, Int16, Int32, Int64, UInt8
 from numba import int32, njit
 
-from tangible_core.compiled.compiling import inner
+from tangible_core.compiled.compiling import KERNEL, inner
 from tangible_core.compiled.threads import in_blocks
 
 from .candidates import ABOVE, BELOW, LEFT, RIGHT, alike, choose, seen_from_the_right
@@ -71,7 +71,7 @@ def _scratch(rows: int, w: int) -> _Scratch:
     )
 
 
-@njit(nogil=True, boundscheck=False, cache=True, _nrt=False, no_cfunc_wrapper=True)
+@njit(**KERNEL)
 def _fill_rows(disparity, grey, y0, y1, scratch, out):
     """Rows y0..y1-1; how many of their pixels could not be filled."""
     w = disparity.shape[1]

@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Int16
 from numba import int64, njit
 
-from tangible_core.compiled.compiling import inner
+from tangible_core.compiled.compiling import KERNEL, inner
 from tangible_core.compiled.threads import in_blocks
 
 from .span import UNKNOWN
@@ -38,7 +38,7 @@ def remove_speckles(disparity: Int16[np.ndarray, "h w"], largest_px: int = 60, s
     return sum(erased)
 
 
-@njit(nogil=True, boundscheck=False, cache=True, _nrt=False, no_cfunc_wrapper=True)
+@njit(**KERNEL)
 def _label(disparity, step, y0, y1, start, stop, parent, size, begin, end):
     """Runs of rows y0..y1-1, numbered from y0 w and joined within these rows. Row y has begin[y]..end[y]-1."""
     w = disparity.shape[1]
@@ -62,7 +62,7 @@ def _label(disparity, step, y0, y1, start, stop, parent, size, begin, end):
             _join_rows(disparity, step, y, start, stop, parent, size, begin, end)
 
 
-@njit(nogil=True, boundscheck=False, cache=True, _nrt=False, no_cfunc_wrapper=True)
+@njit(**KERNEL)
 def _join_rows(disparity, step, y, start, stop, parent, size, begin, end):
     """Join the runs of row y with those of row y-1 that they touch."""
     upper, lower = disparity[y - 1], disparity[y]
@@ -96,7 +96,7 @@ def _unite(parent, size, i, j):
     parent[high], size[low] = low, united
 
 
-@njit(nogil=True, boundscheck=False, cache=True, _nrt=False, no_cfunc_wrapper=True)
+@njit(**KERNEL)
 def _erase(disparity, largest, y0, y1, start, stop, parent, size, begin, end):
     erased = 0
     for y in range(y0, y1):

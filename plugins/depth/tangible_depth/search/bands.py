@@ -11,6 +11,8 @@ import numpy as np
 from jaxtyping import Int16, Int64, UInt8
 from numba import njit
 
+from tangible_core.compiled.compiling import KERNEL
+
 from ..dense.confidence import flat_pixels
 from ..dense.span import UNKNOWN, Span
 from ..dense.speckles import remove_speckles
@@ -83,7 +85,7 @@ def _codes(bands: UInt8[np.ndarray, "bands 5 padded"]) -> UInt8[np.ndarray, "ban
     return codes
 
 
-@njit(nogil=True, boundscheck=False, cache=True, _nrt=False, no_cfunc_wrapper=True)
+@njit(**KERNEL)
 def _average(view, rows, factor, columns, total, bands):
     h, w = view.shape
     scale = np.float32(1 / (HIGH_PX * factor))

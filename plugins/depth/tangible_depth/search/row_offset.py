@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Float32, Int16, Int64
 from numba import njit
 
-from tangible_core.compiled.compiling import inner
+from tangible_core.compiled.compiling import KERNEL, inner
 from tangible_core.compiled.threads import in_blocks
 from tangible_core.runtime.opencv import plain_opencv
 
@@ -66,7 +66,7 @@ def realigned(pair: Pair, offset: float) -> Pair:
     return Pair(pair.left, moved)  # pyright: ignore[reportArgumentType]
 
 
-@njit(nogil=True, boundscheck=False, cache=True, _nrt=False, no_cfunc_wrapper=True)
+@njit(**KERNEL)
 def _edge_points(left, rows, disparity, factor, points):
     """Row, column and disparity of the strongest horizontal edge in each cell round the rows; returns how many."""
     h, w = left.shape
@@ -88,7 +88,7 @@ def _edge_points(left, rows, disparity, factor, points):
     return count
 
 
-@njit(nogil=True, boundscheck=False, cache=True, error_model="numpy", _nrt=False, no_cfunc_wrapper=True)
+@njit(**KERNEL)
 def _offsets(left, right, points, slack, first, last, scores, offsets):
     """Sub-pixel row offset of the best correlation near each point; NaN where the match is poor. scores: scratch."""
     h, w = left.shape

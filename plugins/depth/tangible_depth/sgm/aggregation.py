@@ -19,7 +19,7 @@ import numpy as np
 from jaxtyping import Int64, UInt8
 from numba import njit, uint8
 
-from tangible_core.compiled.compiling import inner
+from tangible_core.compiled.compiling import KERNEL, inner
 
 from ..dense.span import UNKNOWN
 from ..dense.subpixel import equiangular
@@ -113,7 +113,7 @@ def _shifted(row, w, top, codes):
             codes[plane, i] = row[plane, min(max(i - top, 0), w - 1)]
 
 
-@njit(nogil=True, boundscheck=False, cache=True, _nrt=False, no_cfunc_wrapper=True)
+@njit(**KERNEL)
 def sweep_strip(lanes, left, right, grey, rows, warm, span, limits, prices, tolerance, scratch, disparity, sums):
     """Disparities in sixteenths of a pixel (UNKNOWN where rejected) and sums of rows[0]..rows[1]-1.
 

@@ -34,7 +34,8 @@ def slopes(smooth: Float32[np.ndarray, "h w c"]) -> tuple[Map, Map, Map, Map]:
     Returns: magnitude, across, down, noise.
     """
     across, down = np.empty(smooth.shape, np.float32), np.empty(smooth.shape, np.float32)
-    _differences(*(each.reshape(len(smooth), -1) for each in (smooth, across, down)), smooth.shape[2])
+    rows, across_rows, down_rows = (each.reshape(len(smooth), -1) for each in (smooth, across, down))
+    _differences(rows, across_rows, down_rows, smooth.shape[2])
     magnitude = np.sqrt(across * across + down * down)
     noise = _noise(magnitude)
     if smooth.shape[2] == 1:

@@ -96,10 +96,11 @@ def execute(pipeline: Pipeline, out: Path, seconds: float) -> Results:
     write_text(out / "config.yaml", _as_yaml(pipeline))
     written = [out / "config.yaml"]
     pipeline.plan()
-    value = pipeline.make()
-    products = {name: pipeline.make(name) for name in SHOWN if _concerns(pipeline, name)}
-    products[pipeline.config.want] = value
-    recording = _feel(pipeline, value, seconds)
+    with session.rehearsal(pipeline) as pipeline.beside:
+        value = pipeline.make()
+        products = {name: pipeline.make(name) for name in SHOWN if _concerns(pipeline, name)}
+        products[pipeline.config.want] = value
+        recording = _feel(pipeline, value, seconds)
     for name, record in products.items():
         if isinstance(record, Record):
             write_record(out / f"{name}.npz", record)
@@ -123,6 +124,8 @@ def _feel(pipeline: Pipeline, value: Any, seconds: float) -> Recording | None:
     if pipeline.config.want != "touch" or device is None or not device.spec().simulated:
         return None
     said = about(pipeline).stamped()
+    if pipeline.beside is not None:
+        pipeline.beside.wait(session.FELT)
     recording = session.run(value, device, seconds, tell_of(pipeline), pipeline.config.safety)
     return replace(recording, about=said)
 

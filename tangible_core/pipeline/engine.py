@@ -7,6 +7,7 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
+from ..compiled.beside import Beside
 from ..data import Outcome, Plan, Record
 from ..errors import UnknownMethod
 from ..plugins import hooks
@@ -27,6 +28,10 @@ class Pipeline:
         self.config = config
         self.registry = registry
         self.cache = cache
+        self.beside: Beside | None = None
+        """What compiles meanwhile; a stage waits for what it compiles for it."""
+        self.begun: set[str] = set()
+        """Products that were begun to be made."""
         self._made: dict[str, Any] = {}
         self._keys: dict[str, str] = {}
         self._outcomes: dict[str, Outcome] = {}
@@ -103,6 +108,9 @@ class Pipeline:
             return found
         inputs = {name: self._pull(name, f"{rule.product} is made from it") for name in rule.needs}
         hooks.tell(self.registry.plugins, "tangible_stage_started", product=rule.product, method=rule.method)
+        self.begun.add(rule.product)
+        if self.beside is not None:
+            self.beside.wait(rule.product)
         start = perf_counter()
         try:
             with collected() as notes:

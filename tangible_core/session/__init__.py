@@ -4,11 +4,13 @@ from .live import feel, figures, keeping
 from .loop import limited, run
 from .recording import INTERRUPTED, Recording, failure
 from .recording_files import check_record_path
+from .rehearsal import FELT, rehearsal
 from .replay import replay, undisturbed
 from .tick_file import About
 from .writer import Writer
 
 __all__ = [
+    "FELT",
     "INTERRUPTED",
     "About",
     "Recording",
@@ -19,6 +21,7 @@ __all__ = [
     "figures",
     "keeping",
     "limited",
+    "rehearsal",
     "replay",
     "run",
     "undisturbed",

@@ -1,6 +1,6 @@
 """A picture swept in strips: threads, memory, and where the seams lie."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -62,7 +62,7 @@ def sweep(
     lanes = Lanes(n, codes[0].shape[1])
     highest = max((y1 - y0 for y0, y1 in only), default=0)
 
-    def work(share: list[tuple[int, int]]) -> None:
+    def work(share: Iterable[tuple[int, int]]) -> None:
         total = np.empty((highest, w * n), np.uint8)
         for rows in share:
             sweep_strip(lanes, *codes, grey, rows, warm, span, prices, np.float32(tolerance), total, *out)

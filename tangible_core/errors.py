@@ -69,6 +69,13 @@ class OutputError(TangibleError):
     """Results that cannot be written."""
 
 
+class Stopped(TangibleError):
+    """Work that was stopped from another thread."""
+
+    def __init__(self) -> None:
+        super().__init__("stopped by the program that asked for it; what was finished is kept")
+
+
 class ResultsError(TangibleError):
     """Files of measurements that are damaged, or that cannot be compared."""
 

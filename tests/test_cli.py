@@ -13,7 +13,7 @@ import pytest
 
 from ctrl_c import HEARING
 from distributions import distribution
-from tangible_core.commands import show
+from tangible_core.cli import show
 from tangible_core.data import Outcome
 
 TANGIBLE = str(Path(sys.executable).with_name("tangible"))

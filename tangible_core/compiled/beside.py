@@ -14,13 +14,25 @@ import threading
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from types import TracebackType
-from typing import IO, Any, Self, final
+from typing import IO, Any, NamedTuple, Self, final
 
 from ..runtime.child_process import command, dumps
+from ..runtime.stopping import check_stopped
 
 log = logging.getLogger(__name__)
-Work = tuple[Callable[..., Iterator[str]], tuple[Any, ...]]
-"""A function of a module, and its arguments; it says what is ready as it goes."""
+LOOK_EVERY_S = 0.1
+
+
+class Work(NamedTuple):
+    """What to do in the other process."""
+
+    names: frozenset[str]
+    """What can be waited for."""
+    function: Callable[..., Iterator[str]]
+    """Of a module; it gives each name when that is compiled."""
+    arguments: tuple[Any, ...]
+
+
 _waiting: "list[Beside]" = []
 
 
@@ -41,8 +53,10 @@ class Beside:
         """work: asked when it begins; None if there is nothing left to do."""
         self._work: Callable[[], Work | None] | None = work
         self._child: subprocess.Popen[bytes] | None = None
-        self._ready: set[str] = set()
-        self._lock = threading.Lock()
+        self._due: frozenset[str] = frozenset()
+        """What the process is still to compile."""
+        self._lock, self._heard = threading.Lock(), threading.Condition()
+        self._ear: threading.Thread | None = None
 
     def __enter__(self) -> Self:
         _waiting.append(self)
@@ -54,12 +68,15 @@ class Beside:
         _waiting.remove(self)
         with self._lock:
             self._work = None
-        if self._child is not None:
-            self._child.kill()
+            child = self._child
+        if child is not None:
+            child.kill()
+            child.wait()
+            if self._ear is not None:
+                self._ear.join()
             with suppress(OSError):  # what was not sent is not missed
-                _pipe(self._child.stdin).close()
-            self._child.wait()
-            _pipe(self._child.stdout).close()
+                _pipe(child.stdin).close()
+            _pipe(child.stdout).close()
 
     def begin(self) -> None:
         """Start the process, once, if there is work for it."""
@@ -70,32 +87,43 @@ class Beside:
             try:
                 if (work := make()) is None:
                     return
-                data = dumps(work)
+                data = dumps((work.function, work.arguments))
                 self._child = subprocess.Popen(
                     command(__name__), stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
                 )
             except Exception as error:  # noqa: BLE001 - whatever a method of others cannot do: it is no use, no more
                 log.debug("nothing is compiled in a process beside this one: %s", error)
                 return
-        threading.Thread(target=_send, args=(_pipe(self._child.stdin), data), daemon=True).start()
+            self._due = work.names
+            self._ear = threading.Thread(target=self._listen, args=(self._child, data), daemon=True)
+            self._ear.start()
 
     def wait(self, what: str) -> None:
-        """Until the process has compiled this; at once if it was not started or is gone."""
-        if self._child is None:
-            return
-        while what not in self._ready and (line := _pipe(self._child.stdout).readline()):
-            self._ready.add(line.decode().strip())
+        """Until the process has compiled this; at once if it was not started, is gone, or does not compile this.
+
+        Raises: Stopped if this work shall end.
+        """
+        with self._heard:
+            while what in self._due:
+                self._heard.wait(LOOK_EVERY_S)
+                check_stopped()
+
+    def _listen(self, child: "subprocess.Popen[bytes]", data: bytes) -> None:
+        with suppress(OSError, ValueError):  # it is gone
+            _pipe(child.stdin).write(data)
+            _pipe(child.stdin).flush()
+        for line in _pipe(child.stdout):
+            with self._heard:
+                self._due -= {line.decode(errors="replace").strip()}
+                self._heard.notify_all()
+        with self._heard:
+            self._due = frozenset()
+            self._heard.notify_all()
 
 
 def _pipe(pipe: IO[bytes] | None) -> IO[bytes]:
     assert pipe is not None
     return pipe
-
-
-def _send(file: IO[bytes], data: bytes) -> None:
-    with suppress(OSError, ValueError):  # it is gone
-        file.write(data)
-        file.flush()
 
 
 def main() -> None:

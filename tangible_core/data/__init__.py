@@ -1,7 +1,7 @@
 """What travels between stages: frozen records of read-only arrays, and the servo's tuples."""
 
 from .device import NO_FORCE, DeviceSpec, Finding, Force, HapticState, Unit
-from .outcome import Kind, Outcome, OutcomeKind, Plan
+from .outcome import Kind, Outcome, OutcomeKind, Outcomes, Plan
 from .records import Record, digest_of
 from .surface import TEXTURES, HapticSurface, Material, MaterialMap, Relief, Texture
 from .ticks import TICK_COLUMNS, ServoReport, Spread, TickFlag
@@ -21,6 +21,7 @@ __all__ = [
     "NO_FORCE",
     "Outcome",
     "OutcomeKind",
+    "Outcomes",
     "Plan",
     "Record",
     "Relief",

@@ -100,8 +100,7 @@ def draw_figure(run: Mapping[str, Any], title: str, panels: Sequence[Panel]) -> 
 
 def scene_aspect(run: Mapping[str, Any]) -> float:
     """Width over height of what the run shows, kept between 1:2 and 3:1 so that a strip still has a panel."""
-    name = next(name for name in SHAPES if name in run)
-    height, width = SHAPES[name](run[name])
+    height, width = next((SHAPES[name](run[name]) for name in SHAPES if name in run), (1.0, 1.0))
     return min(max(width / height, 0.5), 3.0)
 
 

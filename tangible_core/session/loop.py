@@ -4,6 +4,7 @@ import logging
 import math
 from array import array
 from collections.abc import Callable
+from threading import Event
 from typing import final
 
 import numpy as np
@@ -11,10 +12,11 @@ import numpy as np
 from ..data import NO_FORCE, TICK_COLUMNS, Force, HapticState, ServoReport
 from ..errors import ConfigError, DeviceError
 from ..plugins.interfaces import HapticDevice, Link, Touch
+from ..runtime.stopping import stop_asked, stoppable
 from ..servo import Safety
 from ..servo.guard.guarded import Guarded, guarded
 from ..servo.guard.stiffness import stiffness_of
-from .recording import INTERRUPTED, Recording
+from .recording import INTERRUPTED, STOPPED, Recording
 from .replay import proxy_of
 
 log = logging.getLogger(__name__)
@@ -25,36 +27,37 @@ FIRST_S = 0.001
 """The period that the first tick is taken to have."""
 
 
-def run(
+def run_simulated(
     touch: Touch,
     device: HapticDevice,
     seconds: float,
     on_report: Callable[[ServoReport], None] | None = None,
     limits: Safety | None = None,
+    stop: Event | None = None,
 ) -> Recording:
     """Feel for a while, in the device's own time: until its clock has gone on by so many seconds.
 
     The guard of these limits lets no force through that they forbid. `on_report` is called ten times a second of the
-    device's time, and at the end. Ctrl-C, a device that stops answering or whose clock stands still, and a full
-    recording (`MOST_TICKS`) end it early: the force is zero, what was felt so far is returned, and `Recording.stopped`
-    says why.
+    device's time, and at the end. Ctrl-C, `stop` set from another thread, a device that stops answering or whose clock
+    stands still, and a full recording (`MOST_TICKS`) end it early: the force is zero, what was felt so far is returned,
+    and `Recording.stopped` says why.
     Raises: ConfigError if seconds is not above 0 and finite, DeviceError if the device cannot be opened, and whatever
     a faulty touch or `on_report` raises, after the force was made zero.
     """
     if not 0 < seconds < math.inf:
-        raise ConfigError(f"seconds: is {seconds}; a session takes more than 0 seconds, and an end")
+        raise ConfigError(f"seconds: is {seconds}; it must be positive and finite")
     spec = device.spec()
     allowed = guarded(touch, *(limits or Safety()).arrays(spec, stiffness_of(touch, spec).n_per_m))
     tape = _Tape(touch, on_report or _ignore)
     link = device.open()
     try:
-        with link:
+        with stoppable(stop), link:
             _feel(allowed, link, seconds, tape)
     except DeviceError as error:  # also when the device is gone before its force could be made zero
         tape.stopped = tape.stopped or str(error)
     if tape.stopped:
         log.log(
-            logging.INFO if tape.stopped == INTERRUPTED else logging.WARNING,
+            logging.INFO if tape.stopped in (INTERRUPTED, STOPPED) else logging.WARNING,
             "stopped after %d ticks: %s",
             tape.ticks,
             tape.stopped,
@@ -98,6 +101,8 @@ def _feel(allowed: Guarded, link: Link, seconds: float, tape: "_Tape") -> None:
             # ticks come at 0, T, 2 T ...: round(seconds / T) of them, whatever the rounding of their stamps
             elif state.time_s - start_s >= seconds - period_s / 2:
                 return
+            elif stop_asked():
+                tape.stopped = STOPPED
             elif tape.ticks >= MOST_TICKS:
                 tape.stopped = f"the recording is full, {MOST_TICKS} ticks; feel for a shorter while"
     except KeyboardInterrupt:

@@ -20,6 +20,8 @@ Bits = Int64[np.ndarray, "n"]
 
 INTERRUPTED = "interrupted from the keyboard"
 """What a recording says that Ctrl-C ended."""
+STOPPED = "stopped by the program"
+"""What one says that another thread ended."""
 
 
 @dataclass(frozen=True, eq=False)

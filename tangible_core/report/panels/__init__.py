@@ -33,6 +33,6 @@ PANELS = (
     Panel(draw_segments, {"segments"}, {"views", "materials"}, right_in=1.4),
     Panel(draw_relief, {"relief"}, aspect=1.45, right_in=0.85),
     Panel(draw_force_map, {"relief", "recording"}, left_in=0.65, right_in=0.85, bottom_in=0.55),
-    Panel(draw_force_time, {"relief", "recording"}, aspect=4.5, left_in=0.65, bottom_in=0.55),
+    Panel(draw_force_time, {"recording"}, {"relief"}, aspect=4.5, left_in=0.65, bottom_in=0.55),
 )
 """In the order in which a picture becomes a force."""

@@ -304,7 +304,8 @@ class TestSheet:
             ("disparity", ["Disparity"]),
             ("segments", ["Segments"]),
             ("views relief", ["Input: left, inset right", "Relief and its normals"]),
-            ("truth views materials recording", ["Input: left, inset right"]),
+            ("truth views materials", ["Input: left, inset right"]),
+            ("recording", ["Force and tip over time: peak 0.55 N, contact 50 %"]),
         ],
     )
     def test_what_is_not_there_is_left_out(self, names: str, expected: list[str]) -> None:
@@ -353,7 +354,7 @@ class TestSheet:
 
     def test_nothing_to_draw(self, tmp_path: Path) -> None:
         with pytest.raises(OutputError, match="nothing to draw"):
-            draw_sheet(tmp_path / "sheet.png", title="demo", recording=record())
+            draw_sheet(tmp_path / "sheet.png", title="demo", truth=np.ones((4, 4), np.float32))
         assert not list(tmp_path.iterdir())
 
     def test_a_place_that_cannot_be_written(self, tmp_path: Path) -> None:

@@ -6,7 +6,7 @@ import pytest
 from tangible_core.data import Force, HapticState, HapticSurface, TickFlag
 from tangible_core.plugins.interfaces import Touch
 from tangible_core.servo import Safety
-from tangible_core.session import Recording, replay, run, undisturbed
+from tangible_core.session import Recording, replay, run_simulated, undisturbed
 from tangible_devices.mock import Mock
 from tangible_render.penalty import Penalty
 from tangible_render.proxy import Proxy
@@ -29,7 +29,7 @@ class Viscous(Touch):
 @pytest.fixture(scope="module")
 def felt() -> Recording:
     free = Safety(ramp_s=0, max_step_n=10, passivity="off")
-    return run(LAW.touch(SURFACE), Mock(speed_m_per_s=0.2, tremor_m=1e-4), 1.0, limits=free)
+    return run_simulated(LAW.touch(SURFACE), Mock(speed_m_per_s=0.2, tremor_m=1e-4), 1.0, limits=free)
 
 
 def test_through_its_own_law_a_recording_is_the_same(felt: Recording):

@@ -14,7 +14,7 @@ from tangible_core.errors import ConfigError, DeviceError
 from tangible_core.plugins.interfaces import HapticDevice, Link, Touch
 from tangible_core.servo import Safety
 from tangible_core.servo.guard.safety import softness
-from tangible_core.session import INTERRUPTED, failure, limited, loop, run
+from tangible_core.session import INTERRUPTED, failure, limited, loop, run_simulated
 from tangible_devices.mock import Mock
 from tangible_render.penalty_gradient import PenaltyGradient
 from tangible_render.proxy import Proxy
@@ -86,7 +86,7 @@ class Bench(HapticDevice):
 def feel(answer: Callable[[int], Force], seconds: float = 1.0, link: Scripted | None = None, on_report=None):
     link = link or Scripted()
     LINKS[:] = [link]
-    return run(Says(answer), Bench(), seconds, on_report, FREE), link
+    return run_simulated(Says(answer), Bench(), seconds, on_report, FREE), link
 
 
 def fails(error: BaseException, at: int) -> Callable[[int], Force]:
@@ -102,7 +102,7 @@ class TestRun:
     def test_what_is_recorded_is_what_was_felt(self):
         touch = PenaltyGradient().touch(HapticSurface.from_heights(np.random.default_rng(0).uniform(0, 0.004, (9, 9))))
         mock = Mock(hand=None, path="circle", z_m=0.001)
-        recording = run(touch, mock, 0.5, limits=FREE)
+        recording = run_simulated(touch, mock, 0.5, limits=FREE)
         with mock.open() as link:
             states = [link.read() for _ in range(500)]
         assert np.array_equal(recording.time_s, np.arange(500) * 0.001)
@@ -167,7 +167,7 @@ class TestRun:
         level = HapticSurface.from_heights(np.zeros((8, 8)))
         device = Mock(hand=None, path="circle", z_m=-0.001)
         held = softness(FREE.arrays(device.spec(), 4000.0)[0], 0.001)
-        recording = run(Proxy(stiffness_n_per_m=4000).touch(level), device, 0.01, limits=FREE)
+        recording = run_simulated(Proxy(stiffness_n_per_m=4000).touch(level), device, 0.01, limits=FREE)
         assert held < 1
         assert (recording.flags & TickFlag.STIFFNESS_LIMITED).all()
         assert recording.force_n[:, 2] == pytest.approx(held * 4000 * 0.001)
@@ -180,13 +180,15 @@ class TestRun:
     def test_a_device_that_cannot_be_opened(self):
         LINKS[:] = [DeviceError("it is in use; close the other program")]
         with pytest.raises(DeviceError, match="in use"):
-            run(Says(lambda _: PUSH), Bench(), 1.0)
+            run_simulated(Says(lambda _: PUSH), Bench(), 1.0)
 
 
 class TestRows:
     def test_proxy_flags_and_buttons(self):
         surface = HapticSurface.from_heights(np.full((8, 8), 1 / 128))
-        recording = run(Proxy().touch(surface), Mock(hand=None, path="press", z_m=1 / 128 - 0.02, lift_m=0.03), 0.6)
+        recording = run_simulated(
+            Proxy().touch(surface), Mock(hand=None, path="press", z_m=1 / 128 - 0.02, lift_m=0.03), 0.6
+        )
         touching = recording.force_n[:, 2] > 0
         assert 0 < np.mean(touching) < 1
         assert np.array_equal(touching, np.isfinite(recording.proxy_m).all(axis=1))

@@ -1,6 +1,6 @@
 """A picture swept in strips: threads, memory, and where the seams lie."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -64,7 +64,7 @@ def sweep(
     limits = limits_of(n, w, span, prices.neutral)
     highest = max((y1 - y0 for y0, y1 in only), default=0)
 
-    def work(share: list[tuple[int, int]]) -> None:
+    def work(share: Iterable[tuple[int, int]]) -> None:
         room = scratch(highest, w, n, lanes.planes)
         for rows in share:
             sweep_strip(lanes, *codes, grey, rows, warm, span, limits, prices, np.float32(tolerance), room, *out)

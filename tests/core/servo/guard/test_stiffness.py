@@ -20,7 +20,7 @@ from tangible_core.plugins.interfaces import Touch
 from tangible_core.servo import Safety, Servo
 from tangible_core.servo.guard import stiffness
 from tangible_core.servo.guard.stiffness import DEPTHS_M, HALVINGS, LAYERS, PLACES, STEP_M, slopes, stiffness_of
-from tangible_core.session import run
+from tangible_core.session import run_simulated
 from tangible_core.synthetic.scenes import plane, ramp
 from tangible_core.testing.handle import wall
 from tangible_devices.mock import Mock
@@ -81,7 +81,7 @@ class TestSoftening:
     """5,000 N/m, where the mock's own table says 3,000, and damping of 1.5 N s/m leaves 0.8 of 3,000."""
 
     def test_a_session(self) -> None:
-        recording = run(spring(5000.0), Mock(hand=None, path="circle", z_m=0.0015), 0.2, limits=AT_ONCE)
+        recording = run_simulated(spring(5000.0), Mock(hand=None, path="circle", z_m=0.0015), 0.2, limits=AT_ONCE)
         assert recording.force_n[:, 2].max() == pytest.approx(2400 * 0.0005, rel=1e-6)
         assert (recording.rows[:, FLAGS].astype(int) & TickFlag.STIFFNESS_LIMITED).all()
 
@@ -100,7 +100,7 @@ class TestSoftening:
     def test_one_that_says_it_is_taken_at_its_word(self) -> None:
         touch = spring(5000.0)
         touch.stiffness_n_per_m = 1000.0
-        recording = run(touch, Mock(hand=None, path="circle", z_m=0.0015), 0.1, limits=AT_ONCE)
+        recording = run_simulated(touch, Mock(hand=None, path="circle", z_m=0.0015), 0.1, limits=AT_ONCE)
         assert recording.force_n[:, 2].max() == pytest.approx(5000 * 0.0005, rel=1e-6)
         assert touch.asked == len(recording.rows)
 

@@ -1,14 +1,17 @@
-"""`materials`: the library, with units and sources, as tables and as pictures."""
+"""`tangible materials ...`: the library, with units and sources, as tables and as pictures."""
 
-from collections.abc import Sequence
-from dataclasses import asdict
+from __future__ import annotations
+
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Annotated, Any
 
-from ..data import Material, Texture
-from ..materials.assignment import find, load_library
-from ..materials.files import VALUES, sources_of
-from . import show
+import typer
+
+from ..errors import ConfigError
+from .options import Json
+
+if TYPE_CHECKING:
+    from ..data import Material, Texture
 
 STROKE_M_PER_S = 0.12
 """At which the sources measured vibration."""
@@ -20,13 +23,26 @@ MODELS: dict[Texture, str] = {
     "drag": "a force against the velocity, over noise of one octave round the grain where there is roughness",
 }
 UNITS = {"_n_s_per_m": "N s/m", "_n_per_m": "N/m", "_deg": "degrees", "_m": "m"}
+Library = Annotated[Path | None, typer.Option(help="YAML file of your own, added to the shipped materials.")]
+
+app = typer.Typer(name="materials")
 
 
-def materials(path: Path | None, as_json: bool) -> None:
-    """One line a material."""
-    library = load_library(path)
+@app.callback(invoke_without_command=True)
+def materials(context: typer.Context, library: Library = None, as_json: Json = False) -> None:
+    """List the materials; show or draw some."""
+    if context.invoked_subcommand is not None:
+        if library or as_json:
+            raise ConfigError(f"materials: write the options after {context.invoked_subcommand!r}")
+        return
+    from dataclasses import asdict
+
+    from ..materials.assignment import load_library
+    from . import show
+
+    known = load_library(library)
     if as_json:
-        show.print_json({name: asdict(material) for name, material in library.items()})
+        show.print_json({name: asdict(material) for name, material in known.items()})
         return
     rows = [
         (
@@ -39,18 +55,32 @@ def materials(path: Path | None, as_json: bool) -> None:
             f"{1e6 * each.roughness_m:g}",
             f"{1e3 * each.grain_m:g}",
         )
-        for each in library.values()
+        for each in known.values()
     ]
     headings = ("material", "N/m", "N s/m", "static", "dynamic friction", "texture", "roughness um", "grain mm")
     show.table(headings, rows)
     show.say("\n[bold]sources[/]")
-    for each in library.values():
+    for each in known.values():
         show.say(f"  {each.name}: {each.source}")
 
 
-def show_one(name: str, path: Path | None, as_json: bool) -> None:
-    """Each value of one material with its unit and its source, and what its texture is."""
-    material = find(name, load_library(path))
+@app.command("show")
+def show_one(
+    name: Annotated[str, typer.Argument(help="The material, as `tangible materials` lists it.", show_default=False)],
+    library: Library = None,
+    as_json: Json = False,
+) -> None:
+    """Say everything of one material.
+
+    Each value with its unit and its source, and what its texture is.
+    """
+    from dataclasses import asdict
+
+    from ..materials.assignment import find, load_library
+    from ..materials.files import VALUES, sources_of
+    from . import show
+
+    material = find(name, load_library(library))
     sources = sources_of(material)
     if as_json:
         show.print_json({**asdict(material), "sources": sources, "vibration_hz": _vibration_hz(material)})
@@ -62,12 +92,23 @@ def show_one(name: str, path: Path | None, as_json: bool) -> None:
         show.say(f"A stroke at {STROKE_M_PER_S:g} m/s vibrates with {hertz:.0f} Hz.")
 
 
-def draw(names: Sequence[str], out: Path, path: Path | None, as_json: bool) -> None:
-    """A picture a material, those named or all."""
-    from ..report.material_sheet import draw_material
+@app.command()
+def draw(
+    names: Annotated[list[str] | None, typer.Argument(help="The materials [default: all].", show_default=False)] = None,
+    out: Annotated[Path, typer.Option("--out", help="Folder for the pictures.")] = Path("out/materials"),
+    library: Library = None,
+    as_json: Json = False,
+) -> None:
+    """Draw materials, one picture each.
 
-    library = load_library(path)
-    chosen = [find(name, library) for name in names] or list(library.values())
+    The surface, its spectrum, and the force of a stroke.
+    """
+    from ..materials.assignment import find, load_library
+    from ..report.material_sheet import draw_material
+    from . import show
+
+    known = load_library(library)
+    chosen = [find(name, known) for name in names or ()] or list(known.values())
     files: list[Any] = []
     for material in chosen:
         draw_material(out / f"{material.name}.png", material)

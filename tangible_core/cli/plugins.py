@@ -1,15 +1,20 @@
 """`plugins`: what is installed, read from metadata and source text."""
 
-import json
-
-from ..plugins.registry import default_registry
-from ..runtime.standard_output import stream
+from .options import Json
 
 COLUMNS = ("kind", "name", "origin", "summary")
 
 
-def plugins(as_json: bool) -> None:
-    """One line a method, for eyes and for grep; without rich, whose import would double the time."""
+def plugins(as_json: Json = False) -> None:
+    """List the installed methods and devices.
+
+    One line each, for eyes and for grep; none of them is imported.
+    """
+    import json
+
+    from ..plugins.registry import default_registry
+    from ..runtime.standard_output import stream
+
     rows = [{column: getattr(each, column) for column in (*COLUMNS, "target")} for each in default_registry().listings]
     if as_json:
         print(json.dumps(rows, indent=2, ensure_ascii=False), file=stream())

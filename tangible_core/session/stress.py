@@ -1,35 +1,20 @@
-"""`devices stress`: how fast a device is read and written, and how evenly."""
+"""How fast a device is read and written, and how evenly."""
 
 import time
 from array import array
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from ..data import NO_FORCE
-from ..errors import ConfigError
 from ..plugins.interfaces import HapticDevice
-from . import show
-from .devices import make
 
 WARM_UP = 100
 """Cycles that are not counted."""
 MOST_CYCLES = 10_000_000
 
 
-def stress(name: str, sets: Sequence[str], seconds: float, as_json: bool) -> None:
-    """Read and write no force, as fast as the device allows."""
-    if not 0 < seconds <= 3600:
-        raise ConfigError(f"--seconds {seconds}: is above 0, and at most an hour")
-    figures = {"device": name, **measured(make(name, sets), seconds)}
-    if as_json:
-        show.print_json(figures)
-    else:
-        show.table(("figure", "value"), [(key, _text(value)) for key, value in figures.items()])
-
-
-def measured(device: HapticDevice, seconds: float) -> dict[str, Any]:
+def stressed(device: HapticDevice, seconds: float) -> dict[str, Any]:
     """Rate, and percentiles of the time of one read and one write. Raises: DeviceError as the device."""
     spent_ns = array("q")
     with device.open() as link:
@@ -54,7 +39,3 @@ def measured(device: HapticDevice, seconds: float) -> dict[str, Any]:
         "p99_9_us": p999,
         "max_us": float(spent_us.max()),
     }
-
-
-def _text(value: Any) -> str:
-    return f"{value:.1f}" if isinstance(value, float) else str(value)

@@ -1,48 +1,60 @@
 """`preflight`: what is to be known before a motor moves."""
 
-from collections.abc import Sequence
-from dataclasses import asdict
-from pathlib import Path
-from typing import Any
+from __future__ import annotations
 
-from rich.markup import escape
+from typing import TYPE_CHECKING, Annotated, Any
 
-from ..preflight import PERCENTILES, Flight, Hand, Loop, Verdict, judge, survey
-from . import show
+import typer
+
+from .options import FAILED, Config, Json, NoCache, Sets
 from .run import device_of, open_pipeline
+
+if TYPE_CHECKING:
+    from ..preflight import Flight, Verdict
 
 COLOURS = {"ok": "green", "warn": "yellow", "unsafe": "bold red"}
 PREFIXES = ((1.0, ""), (1e-3, "m"), (1e-6, "u"))
 
 
-def preflight(config: Path, sets: Sequence[str], hand: Hand, loop: Loop, as_json: bool, cached: bool) -> bool:
-    """Make the touch, feel it all over, time it and this machine, and say what is ok, and what is not and its cure.
+def preflight(
+    config: Config,
+    sets: Sets = None,
+    seconds: Annotated[float, typer.Option(help="How long to measure this machine's timing, s.")] = 2.0,
+    rate: Annotated[float, typer.Option(help="Rate of the force loop, Hz.")] = 1000.0,
+    speed: Annotated[float, typer.Option(help="Speed of the hand's stroke, m/s.")] = 0.12,
+    press: Annotated[float, typer.Option(help="Pressing force of the hand, N.")] = 3.0,
+    as_json: Json = False,
+    no_cache: NoCache = False,
+) -> None:
+    """Check, before a motor moves, what is safe.
 
-    Opens no device. Returns: whether no verdict is unsafe.
+    Says what is ok, what is not, and its cure. Opens no device. Exit 1 if something is unsafe.
     """
-    pipeline = open_pipeline(config, sets, cached)
-    device = device_of(pipeline)
-    touch = pipeline.make("touch")
-    flight = survey(pipeline.config, pipeline.make("surface"), touch, hand, loop)
+    from dataclasses import asdict
+
+    from ..preflight import Hand, Loop, judge
+    from . import show
+
+    hand, loop = Hand(speed, press), Loop(rate, seconds)
+    pipeline = open_pipeline(config, sets or [], not no_cache)
+    device, flight = device_of(pipeline), pipeline.flight(hand=hand, loop=loop)
     verdicts = judge(flight)
     if as_json:
-        show.print_json(
-            {
-                **{"scene": pipeline.scene.name, "device": device.name},
-                **_figures(flight),
-                "verdicts": [asdict(each) for each in verdicts],
-            }
-        )
+        said = {"scene": pipeline.scene.name, "device": device.name, **_figures(flight)}
+        show.print_json({**said, "verdicts": [asdict(each) for each in verdicts]})
     else:
         for verdict in verdicts:
             show.say(line(verdict))
         counts = {grade: sum(each.verdict == grade for each in verdicts) for grade in COLOURS}
         show.say(f"\n{pipeline.scene.name} on {device.name}: " + ", ".join(f"{n} {name}" for name, n in counts.items()))
-    return all(each.verdict != "unsafe" for each in verdicts)
+    if any(each.verdict == "unsafe" for each in verdicts):
+        raise typer.Exit(FAILED)
 
 
 def line(verdict: Verdict) -> str:
     """A verdict as text, its cure on a line of its own, with rich's marks."""
+    from rich.markup import escape
+
     found = quantity(verdict.value, verdict.unit)
     if verdict.relation:
         found += f" {verdict.relation} {quantity(verdict.bound, verdict.unit)}"
@@ -66,6 +78,10 @@ def quantity(value: float, unit: str) -> str:
 
 
 def _figures(flight: Flight) -> dict[str, Any]:
+    from dataclasses import asdict
+
+    from ..preflight import PERCENTILES
+
     late, cost = flight.lateness, flight.cost
     return {
         "spec": asdict(flight.spec),

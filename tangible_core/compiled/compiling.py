@@ -37,12 +37,14 @@ class _CompileNotice(event.Listener):
 
     def on_start(self, event: Any) -> None:
         package = event.data["dispatcher"].py_func.__module__.partition(".")[0]
-        if package.startswith("tangible_") and package not in self.said:
+        if not package.startswith("tangible_"):
+            return
+        kernels_are_compiled()
+        if package not in self.said:
             self.said.add(package)
             kind = package.removeprefix("tangible_")
             takes = f"about {SECONDS[kind]} s" if kind in SECONDS else "seconds"
             log.warning("compiling the %s kernels for this processor, %s; later runs find them on disk", kind, takes)
-            kernels_are_compiled()
 
     def on_end(self, event: Any) -> None:
         pass

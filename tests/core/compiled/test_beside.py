@@ -1,4 +1,4 @@
-"""What is compiled in a process beside this one: it begins with the first kernel, is waited for, and never outlives us."""
+"""What is compiled beside this process: it begins with the first kernel, is waited for, and never outlives us."""
 
 import os
 import signal

@@ -38,6 +38,8 @@ if TYPE_CHECKING:
     from .plugins.interfaces import Touch as Touch
     from .plugins.registry import load_method as load_method
     from .report.showing import show as show
+    from .scene.rig import Camera as Camera
+    from .scene.rig import StereoRig as StereoRig
     from .scene.scene import Scene as Scene
     from .scene.workspace import Workspace as Workspace
     from .session.recording import Recording as Recording
@@ -59,6 +61,7 @@ __all__, __getattr__ = lazily(  # pyright: ignore[reportUnsupportedDunderAll]
         ],
         "plugins.registry": ["load_method"],
         "report.showing": ["show"],
+        "scene.rig": ["Camera", "StereoRig"],
         "scene.scene": ["Scene"],
         "scene.workspace": ["Workspace"],
         "session.recording": ["Recording"],

@@ -1,6 +1,6 @@
 """What travels between stages: frozen records of read-only arrays, and the servo's tuples."""
 
-from .device import NO_FORCE, DeviceSpec, Finding, Force, HapticState, Unit
+from .device import NO_FORCE, DeviceSpec, Finding, Force, HapticState, Unit, limited
 from .outcome import Kind, Outcome, OutcomeKind, Plan
 from .records import Record, digest_of
 from .surface import TEXTURES, HapticSurface, Material, MaterialMap, Relief, Texture
@@ -34,4 +34,5 @@ __all__ = [
     "Unit",
     "Views",
     "digest_of",
+    "limited",
 ]

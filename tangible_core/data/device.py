@@ -4,6 +4,7 @@ Frame of the workspace: metres, right-handed, x right, y away from the user (the
 origin is the centre of the picture on the base plane.
 """
 
+import math
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
@@ -17,6 +18,22 @@ class Force(NamedTuple):
 
 
 NO_FORCE = Force(0.0, 0.0, 0.0)
+
+
+def limited(force: Force, most_n: float) -> Force:
+    """The force, scaled down to a magnitude of most_n where it is over it; zero where it is not finite.
+
+    >>> limited(Force(6.0, 0.0, 8.0), 5.0)
+    Force(x=3.0, y=0.0, z=4.0)
+    """
+    if math.hypot(*force) <= most_n:
+        return force
+    if not all(map(math.isfinite, force)):
+        return NO_FORCE
+    greatest = max(map(abs, force))  # divided by first, so that the magnitude cannot overflow
+    x, y, z = (part / greatest for part in force)
+    scale = most_n / math.hypot(x, y, z)
+    return Force(x * scale, y * scale, z * scale)
 
 
 class HapticState(NamedTuple):

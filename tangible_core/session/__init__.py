@@ -1,7 +1,7 @@
 """A session joins a touch and a device: the loop, and what it records."""
 
 from .live import feel, figures, keeping
-from .loop import limited, run
+from .loop import run
 from .recording import INTERRUPTED, Recording, failure
 from .recording_files import check_record_path
 from .replay import replay, undisturbed
@@ -18,7 +18,6 @@ __all__ = [
     "feel",
     "figures",
     "keeping",
-    "limited",
     "replay",
     "run",
     "undisturbed",

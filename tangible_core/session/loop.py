@@ -66,22 +66,6 @@ def run(
     return recording
 
 
-def limited(force: Force, most_n: float) -> Force:
-    """The force, scaled down to a magnitude of most_n where it is over it; zero where it is not finite.
-
-    >>> limited(Force(6.0, 0.0, 8.0), 5.0)
-    Force(x=3.0, y=0.0, z=4.0)
-    """
-    if math.hypot(*force) <= most_n:
-        return force
-    if not all(map(math.isfinite, force)):
-        return NO_FORCE
-    greatest = max(map(abs, force))  # divided by first, so that the magnitude cannot overflow
-    x, y, z = (part / greatest for part in force)
-    scale = most_n / math.hypot(x, y, z)
-    return Force(x * scale, y * scale, z * scale)
-
-
 def _feel(allowed: Guarded, link: Link, seconds: float, tape: "_Tape") -> None:
     """Tick until the time is over; a cause to end early is left in tape.stopped."""
     try:

@@ -47,21 +47,22 @@ class BufferLink(CompiledLink):
     """What the test writes to the buffer is read, and the force is there to be looked at."""
 
     def __init__(self, buffer: np.ndarray) -> None:
+        super().__init__("the buffer", 8.0)
         self.buffer = buffer
         self.exchanged = 0
 
-    def read(self) -> HapticState:
+    def _read(self) -> HapticState:
         return HapticState(tuple(self.buffer[:3]), tuple(self.buffer[3:6]), 0.0, int(self.buffer[6]))
 
-    def write(self, force: Force) -> None:
+    def _send(self, force: Force) -> None:
         self.buffer[8:] = force
 
     @property
     def applied(self) -> Force:
         return Force(*self.buffer[8:].tolist())
 
-    def close(self) -> None:
-        self.buffer[8:] = 0
+    def _release(self) -> None:
+        pass
 
     def kernels(self) -> LinkKernels:
         return LinkKernels(read_buffer, write_buffer, (self.buffer,))
@@ -70,7 +71,7 @@ class BufferLink(CompiledLink):
     def exchanges(self) -> bool:
         return True
 
-    def exchange(self) -> None:
+    def _exchange(self) -> None:
         self.exchanged += 1
 
 

@@ -49,7 +49,6 @@ class TestMessages:
             command({"x": 1.0, "y": -2.0, "z": 0.5}),
             command({"x": 1.0, "y": -2.0, "z": 0.5}),  # a read without a write between sends the force again
             command(ZERO),
-            command(ZERO),
         ]
 
     def test_the_centre_is_the_origin_and_the_axes_are_ours(self):

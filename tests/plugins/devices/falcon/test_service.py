@@ -116,6 +116,7 @@ class Grip(Link):
     """A grip that is where the last question put it, in the device's own axes; laden, a mass on the spring."""
 
     def __init__(self, places: list[tuple[float, float, float]]) -> None:
+        super().__init__("the grip", 8.0)
         self.places = iter(places)
         self.place = (0.0, 0.0, 0.0)
         self.weight_n = 0.0
@@ -133,14 +134,14 @@ class Grip(Link):
 
         return ask
 
-    def read(self) -> HapticState:
+    def _read(self) -> HapticState:
         up = self.strength * self.held.z - self.weight_n - 0.5  # and half a newton of its own
         self.rate = 0.9 * (self.rate + 0.001 * up / 0.2)
         x, y, z = self.place
         self.place = (x, y, z + 0.001 * self.rate) if self.held != NO_FORCE else self.place
         return HapticState(self.place, (0.0, 0.0, self.rate))
 
-    def write(self, force: Force) -> None:
+    def _send(self, force: Force) -> None:
         self.held = force
         self.forces.append(force.z)
 
@@ -148,8 +149,8 @@ class Grip(Link):
     def applied(self) -> Force:
         return self.held
 
-    def close(self) -> None:
-        self.held = NO_FORCE
+    def _release(self) -> None:
+        pass
 
 
 class TestMeasuring:

@@ -334,7 +334,7 @@ def test_what_stands_in_brackets_is_shown(capsys: pytest.CaptureFixture[str]):
 ACME = """\
 import sys
 import numpy as np
-from tangible_core.plugins.interfaces import DepthEstimator, ForceRenderer, Touch
+from tangible_core.plugins.interfaces import DepthEstimator, ForceRenderer, PlainTouch
 from tangible_core.data import Force
 
 class Odd(Exception):
@@ -346,7 +346,7 @@ class Quits(DepthEstimator):
     def estimate(self, views):
         sys.exit(0)
 
-class FaultyTouch(Touch):
+class FaultyTouch(PlainTouch):
     def __init__(self, fault):
         self.fault = fault
     def force(self, state):
@@ -355,8 +355,6 @@ class FaultyTouch(Touch):
         if state.position_m[2] < 0.5:
             raise Odd("a fault", "the law")
         return Force(0.0, 0.0, 0.0)
-    def path(self, positions_m, period_s=0.001):
-        return np.zeros_like(positions_m)
 
 class Faulty(ForceRenderer):
     '''Fails in its first tick.'''

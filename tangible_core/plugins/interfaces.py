@@ -55,6 +55,10 @@ class ForceRenderer(Method):
 
     uses_materials: ClassVar[bool] = True
     """False for a law that feels heights alone: then no texture is segmented for it."""
+    renders_materials: ClassVar[bool] = False
+    """True for a law that renders friction, damping and fine textures of materials by itself."""
+    is_lateral: ClassVar[bool] = False
+    """True for a law of lateral forces alone: the normal force is the table's, under the hand."""
 
     @abstractmethod
     def touch(self, surface: HapticSurface) -> Touch:

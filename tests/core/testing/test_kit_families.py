@@ -190,6 +190,7 @@ RENDER: dict[str, Render] = {
     "surface_lies_where_it_is_drawn": Render(law=mirrored),
     "slopes_push_downhill": changed(lambda x, y, z, surface: Force(-x, -y, z)),
     "springs_are_exact": changed(lambda x, y, z, surface: Force(0.0, 0.0, z)),
+    "what_it_says_of_itself_is_felt": Render(law=lambda surface, state: NO_FORCE),
     "resampling_feels_the_same": changed(lambda x, y, z, surface: Force(x, y, z * surface.height_m.shape[0])),
     "broken_state_gives_no_force": Render(law=lambda surface, state: Force(0.0, 0.0, 1.0)),
     "path_is_force_by_force": Render(gain_on_a_path=1.1),

@@ -8,6 +8,9 @@ import math
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
+Vector = tuple[float, float, float]
+"""Along x, y and z."""
+
 
 class Force(NamedTuple):
     """Newtons in the workspace frame, on the user's hand."""
@@ -39,8 +42,8 @@ def limited(force: Force, most_n: float) -> Force:
 class HapticState(NamedTuple):
     """Where the device's tip is: metres, metres per second and seconds, in the workspace frame."""
 
-    position_m: tuple[float, float, float]
-    velocity_m_per_s: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    position_m: Vector
+    velocity_m_per_s: Vector = (0.0, 0.0, 0.0)
     time_s: float = 0.0
     buttons: int = 0
     """One bit a button."""
@@ -54,7 +57,7 @@ class DeviceSpec:
     max_stiffness_n_per_m: float
     """At a servo rate of 1 kHz."""
     damping_n_s_per_m: float
-    workspace_m: tuple[float, float, float]
+    workspace_m: Vector
     """Size along x, y, z."""
     resolution_m: float
     axes: int = 3

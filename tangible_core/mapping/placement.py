@@ -7,7 +7,8 @@ picture that the hand finds at o. Forces are only turned, F_h = R F_s: a newton 
 import math
 from typing import NamedTuple
 
-Vector = tuple[float, float, float]
+from ..data import Vector
+
 QUARTERS = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))
 """Cosine and sine of the quarter turns, exactly."""
 

@@ -42,7 +42,7 @@ class PlainTouch(Touch):
     def path(self, positions_m: Float64[np.ndarray, "n 3"], period_s: float = 0.001) -> Float64[np.ndarray, "n 3"]:
         """Forces along positions one period apart, the first at time 0.
 
-        Raises: GeometryError if the positions are not (n, 3), or the period is not above 0 and finite.
+        Raises: GeometryError if the positions are not (n, 3), or the period is not positive and finite.
         """
         positions, forces = path_arrays(positions_m, period_s)
         with np.errstate(all="ignore"):
@@ -58,11 +58,11 @@ def path_arrays(
 ) -> tuple[Float64[np.ndarray, "n 3"], Float64[np.ndarray, "n 3"]]:
     """The positions as a kernel reads them, and an array for the forces.
 
-    Raises: GeometryError if the positions are not (n, 3), or the period is not above 0 and finite.
+    Raises: GeometryError if the positions are not (n, 3), or the period is not positive and finite.
     """
     positions = np.ascontiguousarray(positions_m, np.float64)
     if positions.ndim != 2 or positions.shape[1] != 3:
         raise GeometryError(f"a path is (n, 3) positions in metres, not {positions.shape}")
     if not 0 < period_s < np.inf:
-        raise GeometryError(f"a path's positions are period_s > 0 seconds apart, not {period_s}")
+        raise GeometryError(f"period_s: is {period_s}; it must be positive and finite")
     return positions, np.empty_like(positions)

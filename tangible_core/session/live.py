@@ -10,7 +10,7 @@ from typing import final
 
 import numpy as np
 
-from ..data import ServoReport, TickFlag
+from ..data import UNTOUCHED, ServoReport, TickFlag
 from ..plugins.interfaces import HapticDevice, Touch
 from ..servo import Safety, Servo
 from .recording import INTERRUPTED, Recording
@@ -36,7 +36,7 @@ def feel(
 
     on_report: called ten times a second, and at the end. keep: given all ticks, as rows of `data.TICK_COLUMNS`, in a
     thread of its own. What these raise ends the session, such as a full disk.
-    Raises: ConfigError if seconds is not above 0 and finite, DeviceError if the device cannot be opened, and what a
+    Raises: ConfigError if seconds is not positive and finite, DeviceError if the device cannot be opened, and what a
     plugin raises.
     """
     with ThreadPoolExecutor(1) as aside, Servo(touch, device, limits, seconds) as servo:  # the force goes first
@@ -111,6 +111,5 @@ def figures(report: ServoReport) -> dict[str, float]:
     }
 
 
-NO_LIMITS = TickFlag.TOUCHING | TickFlag.OVERRUN | TickFlag.SWAPPED
-LIMITS = [flag.name or "" for flag in TickFlag if not flag & NO_LIMITS]
+LIMITS = [flag.name or "" for flag in TickFlag if not flag & UNTOUCHED]
 """What safety does to a force, by the names of the flags."""

@@ -9,11 +9,12 @@ from typing import final
 import numpy as np
 
 from ..data import NO_FORCE, TICK_COLUMNS, Force, HapticState, ServoReport
-from ..errors import ConfigError, DeviceError
+from ..errors import DeviceError, check_positive
 from ..plugins.interfaces import HapticDevice, Link, Touch
 from ..servo import Safety
 from ..servo.guard.guarded import Guarded, guarded
 from ..servo.guard.stiffness import stiffness_of
+from ..servo.reports import so_far
 from .recording import INTERRUPTED, Recording
 from .replay import proxy_of
 
@@ -38,11 +39,10 @@ def run(
     device's time, and at the end. Ctrl-C, a device that stops answering or whose clock stands still, and a full
     recording (`MOST_TICKS`) end it early: the force is zero, what was felt so far is returned, and `Recording.stopped`
     says why.
-    Raises: ConfigError if seconds is not above 0 and finite, DeviceError if the device cannot be opened, and whatever
+    Raises: ConfigError if seconds is not positive and finite, DeviceError if the device cannot be opened, and whatever
     a faulty touch or `on_report` raises, after the force was made zero.
     """
-    if not 0 < seconds < math.inf:
-        raise ConfigError(f"seconds: is {seconds}; a session takes more than 0 seconds, and an end")
+    check_positive("seconds", seconds)
     spec = device.spec()
     allowed = guarded(touch, *(limits or Safety()).arrays(spec, stiffness_of(touch, spec).n_per_m))
     tape = _Tape(touch, on_report or _ignore)
@@ -122,17 +122,8 @@ class _Tape:
 
     def report(self, stopped: str) -> None:
         """Say how it goes."""
-        self._on_report(
-            ServoReport(
-                ticks=self.ticks,
-                time_s=self._state.time_s,
-                state=self._state,
-                force=self._force,
-                peak_force_n=self._peak_n,
-                work_j=self._work_j,
-                stopped=stopped,
-            )
-        )
+        last = np.array(self._numbers[-len(TICK_COLUMNS) :]).reshape(-1, len(TICK_COLUMNS))
+        self._on_report(so_far(last, self.ticks, self._peak_n, self._work_j, stopped))
 
     def recording(self) -> Recording:
         """All of it."""

@@ -56,9 +56,9 @@ def test_the_velocities_are_those_of_a_compiled_law():
     [
         (np.zeros((4, 2)), 0.001, "a path is"),
         (np.zeros(3), 0.001, "a path is"),
-        (np.zeros((4, 3)), 0.0, "apart, not 0.0"),
-        (np.zeros((4, 3)), math.nan, "apart, not nan"),
-        (np.zeros((4, 3)), math.inf, "apart, not inf"),
+        (np.zeros((4, 3)), 0.0, "period_s: is 0.0; it must be positive and finite"),
+        (np.zeros((4, 3)), math.nan, "period_s: is nan; it must"),
+        (np.zeros((4, 3)), math.inf, "period_s: is inf; it must"),
     ],
 )
 def test_what_is_no_path(positions: np.ndarray, period_s: float, says: str):

@@ -4,13 +4,11 @@ import time
 from contextlib import suppress
 from typing import final
 
-from tangible_core.data import NO_FORCE, Force, HapticState
+from tangible_core.data import NO_FORCE, Force, HapticState, Vector
 from tangible_core.errors import DeviceError
 from tangible_core.plugins.interfaces import Link
 
 from .service import Answer, Session
-
-Vector = tuple[float, float, float]
 
 
 @final

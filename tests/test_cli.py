@@ -43,7 +43,7 @@ def mistake(*words: object, cwd: Path) -> str:
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
     """A small pair: a textured wall, its right half 8 px nearer than its left one."""
-    from tangible_core.scene.picture_files import write_png
+    from pictures import write_png
 
     rng = np.random.default_rng(1)
     wall = rng.integers(0, 255, (64, 120), dtype=np.uint8)
@@ -201,7 +201,7 @@ def test_a_check_that_fails_ends_with_1(folder: Path):
     ],
 )
 def test_a_mistake_costs_one_clear_line(folder: Path, change: str, said: str):
-    from tangible_core.scene.picture_files import write_png
+    from pictures import write_png
 
     (folder / "cut.png").write_bytes((folder / "left.png").read_bytes()[:2000])
     write_png(folder / "wide.png", np.zeros((64, 97), np.uint8))
@@ -212,7 +212,7 @@ def test_a_mistake_costs_one_clear_line(folder: Path, change: str, said: str):
 
 
 def test_a_one_pixel_picture_is_felt(folder: Path):
-    from tangible_core.scene.picture_files import write_png
+    from pictures import write_png
 
     write_png(folder / "dot.png", np.zeros((1, 1), np.uint8))
     sets = [word for each in ("scene={photo: dot.png}", "depth={use: luminance}") for word in ("--set", each)]

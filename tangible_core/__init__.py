@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from .plugins.interfaces import ForceRenderer as ForceRenderer
     from .plugins.interfaces import HapticDevice as HapticDevice
     from .plugins.interfaces import Link as Link
+    from .plugins.interfaces import PlainTouch as PlainTouch
     from .plugins.interfaces import Segmenter as Segmenter
     from .plugins.interfaces import Skippable as Skippable
     from .plugins.interfaces import Touch as Touch
@@ -57,7 +58,7 @@ __all__, __getattr__ = lazily(  # pyright: ignore[reportUnsupportedDunderAll]
         "pipeline.runs": ["Run"],
         "plugins.hooks": ["hookimpl"],
         "plugins.interfaces": [
-            "DepthEstimator", "ForceRenderer", "HapticDevice", "Link", "Segmenter", "Skippable", "Touch",
+            "DepthEstimator", "ForceRenderer", "HapticDevice", "Link", "PlainTouch", "Segmenter", "Skippable", "Touch",
         ],
         "plugins.registry": ["load_method"],
         "report.showing": ["show"],

@@ -49,7 +49,7 @@ def sweep(
     grey: UInt8[np.ndarray, "h w"],
     span: Span,
     prices: Prices,
-    tolerance: float,
+    check_tolerance: float,
     only: Sequence[tuple[int, int]],
     out: Swept,
     warm: int = WARM_ROWS,
@@ -65,6 +65,6 @@ def sweep(
     def work(share: Iterable[tuple[int, int]]) -> None:
         total = np.empty((highest, w * n), np.uint8)
         for rows in share:
-            sweep_strip(lanes, *codes, grey, rows, warm, span, prices, np.float32(tolerance), total, *out)
+            sweep_strip(lanes, *codes, grey, rows, warm, span, prices, np.float32(check_tolerance), total, *out)
 
     in_turns(list(only), work, max(1, VOLUME_BYTES // max(1, highest * w * n)))

@@ -15,7 +15,7 @@ Imports numba: a method imports this module inside its verb.
 import math
 
 import numpy as np
-from numba import njit
+from numba import float64, njit
 
 from tangible_core.compiled.compiling import KERNEL
 from tangible_core.haptic_textures.forces import STATE, texture_force
@@ -25,7 +25,7 @@ from tangible_core.haptic_textures.table import STIFFNESS as STICKS
 from tangible_core.haptic_textures.waves import WAVES
 
 from ..contact.contact import LEAP_M
-from ..surface.bilinear import bilinear, cell, over
+from ..surface.bilinear import NEWTONS, bilinear, cell, over
 
 STIFFNESS, DAMPING, STATIC, DYNAMIC = range(HEAD + 4 * WAVES, HEAD + 4 * WAVES + 4)
 """Columns of a label's row, after those of its texture."""
@@ -56,6 +56,13 @@ def lateral_tick(fixed, law, height_m, labels, width_m, length_m, table, bristle
     along, aside = _rub(table, label, bristle, memory, dx, dy, vx, vy, push)
     fx, fy = fx + along - tx * push, fy + aside - ty * push
     return (fx, fy, fz) if np.isfinite(fx + fy + fz) else (0.0, 0.0, 0.0)
+
+
+@njit(NEWTONS(float64[::1], float64[::1], *[float64] * 6), **KERNEL)
+def told(asked, force_n, x, y, z, vx, vy, vz):
+    """In place of a law in Python: it writes down what it is asked, and answers what it was told."""
+    asked[0], asked[1], asked[2], asked[3], asked[4], asked[5] = x, y, z, vx, vy, vz
+    return force_n[0], force_n[1], force_n[2]
 
 
 @njit(inline="always", **KERNEL)

@@ -33,11 +33,14 @@ if TYPE_CHECKING:
     from .plugins.interfaces import ForceRenderer as ForceRenderer
     from .plugins.interfaces import HapticDevice as HapticDevice
     from .plugins.interfaces import Link as Link
+    from .plugins.interfaces import PlainTouch as PlainTouch
     from .plugins.interfaces import Segmenter as Segmenter
     from .plugins.interfaces import Skippable as Skippable
     from .plugins.interfaces import Touch as Touch
     from .plugins.registry import load_method as load_method
     from .report.showing import show as show
+    from .scene.rig import Camera as Camera
+    from .scene.rig import StereoRig as StereoRig
     from .scene.scene import Scene as Scene
     from .scene.workspace import Workspace as Workspace
     from .session.recording import Recording as Recording
@@ -55,10 +58,11 @@ __all__, __getattr__ = lazily(  # pyright: ignore[reportUnsupportedDunderAll]
         "pipeline.runs": ["Run"],
         "plugins.hooks": ["hookimpl"],
         "plugins.interfaces": [
-            "DepthEstimator", "ForceRenderer", "HapticDevice", "Link", "Segmenter", "Skippable", "Touch",
+            "DepthEstimator", "ForceRenderer", "HapticDevice", "Link", "PlainTouch", "Segmenter", "Skippable", "Touch",
         ],
         "plugins.registry": ["load_method"],
         "report.showing": ["show"],
+        "scene.rig": ["Camera", "StereoRig"],
         "scene.scene": ["Scene"],
         "scene.workspace": ["Workspace"],
         "session.recording": ["Recording"],

@@ -10,11 +10,10 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from jaxtyping import Float32, Int32
 
-from ..data.pictures import check_finite, check_picture, to_rgb8
+from ..data.pictures import check_finite, check_picture
 from ..errors import PictureError, did_you_mean, shown
 from ..files import arrays
 from ..files.reading import TOO_MANY_PIXELS, TooLarge, check_size, read_bytes
-from ..files.writing import atomic_write
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -100,14 +99,6 @@ def labels_of(values: np.ndarray, name: str) -> Int32[np.ndarray, "h w"]:
             "and save it without loss, as PNG"
         )
     return labels.reshape(values.shape).astype(np.int32)
-
-
-def write_png(path: Path, picture: np.ndarray) -> None:
-    """Write a picture as PNG, whole or not at all (see `atomic_write`)."""
-    from PIL import Image
-
-    with atomic_write(path) as file:
-        Image.fromarray(to_rgb8(picture)).save(file, format="PNG")
 
 
 def _read(path: Path, indices: bool = False) -> np.ndarray:

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
-from typing import Any, Self, cast
+from typing import Any, NamedTuple, Self, cast
 
 import numpy as np
 from jaxtyping import Bool, Float32
@@ -16,6 +16,8 @@ from ..data.pictures import fill_non_finite
 from ..errors import ConfigError, PictureError
 from .geometry import Holes, scale_heights
 from .picture_files import NonFinite, labels_of, map_of, picture_of, read_labels, read_map, read_picture
+from .rig import StereoRig, turned
+from .rig_files import read_rig
 from .scene_files import BUILTINS, SceneFiles, unknown_scene
 
 File = str | PathLike[str]
@@ -61,6 +63,7 @@ class Scene:
         segments: File | ArrayLike | None = None,
         truth: File | ArrayLike | None = None,
         calibration: Calibration | None = None,
+        rig: "StereoRig | File | None" = None,
         relief_m: float | None = None,
         non_finite: NonFinite = "error",
         name: str = "",
@@ -72,7 +75,7 @@ class Scene:
         """
         parts: dict[str, Any] = {
             "left": left, "right": right, "photo": photo, "height": height,
-            "disparity": disparity, "segments": segments, "truth": truth,
+            "disparity": disparity, "segments": segments, "truth": truth, "rig": rig,
         }  # fmt: skip
         parts = {part: value for part, value in parts.items() if value is not None}
         paths = {
@@ -86,11 +89,13 @@ class Scene:
         )  # fmt: skip
         if paths.keys() == parts.keys():
             return cls._read(name or str(paths[files.main]), files, Path(), files)
+        cameras = _rig(paths["rig"], files).cameras if "rig" in paths else rig
         held = {
             part: _read(part, paths[part], files) if part in paths else _converted(part, np.asarray(value), files)
             for part, value in sorted(parts.items(), key=lambda each: each[0] != files.main)
+            if part != "rig"
         }
-        return cls._made(name or "arrays", files, held, None)
+        return cls._made(name or "arrays", files, held, None, cast("StereoRig | None", cameras))
 
     @classmethod
     def builtin(cls, name: str) -> Self:
@@ -116,19 +121,32 @@ class Scene:
     @classmethod
     def _read(cls, name: str, files: SceneFiles, folder: Path, origin: "str | SceneFiles") -> Self:
         paths = {part: folder / path.expanduser() for part, path in files if isinstance(path, Path)}
+        rig = _rig(paths.pop("rig"), files) if "rig" in paths else None
         held = {part: _read(part, path, files) for part, path in paths.items()}
-        return cls._made(name, files.model_copy(update=paths), held, origin)
+        if rig is not None and rig.size not in (None, held[files.main].shape[1::-1]):
+            raise PictureError(
+                f"{paths[files.main]} is not {rig.size[0]} x {rig.size[1]}, the size that the rig was calibrated for"
+            )
+        return cls._made(name, files.model_copy(update=paths), held, origin, rig and rig.cameras)
 
     @classmethod
     def _made(
-        cls, name: str, files: SceneFiles, held: dict[str, np.ndarray], origin: "str | SceneFiles | None"
+        cls,
+        name: str,
+        files: SceneFiles,
+        held: dict[str, np.ndarray],
+        origin: "str | SceneFiles | None",
+        rig: StereoRig | None = None,
     ) -> Self:
         _check_sizes(files, held)
         masked = files.non_finite == "mask" and files.main in _PICTURES
         known = _fill(held, files.main) if masked else None
+        views = None if files.height else Views(held[files.main], held.get("right"), files.calibration)
+        if rig is not None and views is not None:
+            views, known = turned(views, rig)
         return cls(
             name=name,
-            views=None if files.height else Views(held[files.main], held.get("right"), files.calibration),
+            views=views,
             disparity=DisparityMap(held["disparity"]) if "disparity" in held else None,
             segments=SegmentMap(held["segments"]) if "segments" in held else None,
             height=_frozen(held.get("height")),
@@ -165,6 +183,17 @@ def _checked(
         raise ConfigError(
             *(f"{'.'.join(['scene', *map(str, each['loc'])])}: {each['msg']}" for each in error.errors())
         ) from error
+
+
+class _Rig(NamedTuple):
+    """Two cameras, and the size of the pictures that they were calibrated with, where it is known."""
+
+    cameras: StereoRig
+    size: tuple[int, int] | None
+
+
+def _rig(path: Path, files: SceneFiles) -> _Rig:
+    return _Rig(*read_rig(path, files.rig_unit_m or 1.0))
 
 
 def _read(part: str, path: Path, files: SceneFiles) -> np.ndarray:

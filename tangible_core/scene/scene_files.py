@@ -12,7 +12,10 @@ from .picture_files import NonFinite
 
 Length = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 
-_NEEDS = {"focal_px": "baseline_m", "baseline_m": "focal_px", "offset_px": "focal_px", "relief_m": "height"}
+_NEEDS = {
+    **{"focal_px": "baseline_m", "baseline_m": "focal_px", "offset_px": "focal_px"},
+    **{"relief_m": "height", "rig": "left", "rig_unit_m": "rig"},
+}
 _OF_VIEWS = ("disparity", "truth", "focal_px", "baseline_m", "offset_px")
 
 
@@ -41,6 +44,11 @@ class SceneFiles(BaseModel):
     """Distance between the cameras' centres."""
     offset_px: Annotated[float, Field(allow_inf_nan=False)] | None = None
     """Difference of the principal points' columns, right minus left (Middlebury's `doffs`); 0 when left out."""
+    rig: Path | None = None
+    """Calibration of the two cameras that took left and right (K, lens distortion, rotation, translation), in OpenCV's
+    YAML (M1, D1, M2, D2, R, T) or Kalibr's (cam0, cam1): the raw pair is rectified by it, and depth is metric."""
+    rig_unit_m: Length | None = None
+    """Metres that one unit of the rig's translation is; 1 when left out, 0.001 for a board measured in millimetres."""
     relief_m: Length | None = None
     """Height of the relief that a height map stands for; the workspace's when left out."""
 
@@ -58,6 +66,8 @@ class SceneFiles(BaseModel):
         for name, other in _NEEDS.items():
             if name in given and other not in given:
                 raise ValueError(f"{name} needs {other} beside it")
+        if idle := self.rig and [name for name in given if name in _OF_VIEWS or name == "segments"]:
+            raise ValueError(f"rig says what the cameras are, and turns the pictures; leave out {', '.join(idle)}")
         if idle := self.height and [name for name in given if name in _OF_VIEWS]:
             raise ValueError(f"height already says how high everything is; leave out {', '.join(idle)}")
         return self

@@ -1,7 +1,7 @@
 """A session joins a touch and a device: the loop, and what it records."""
 
 from .live import figures, keeping, run_in_real_time
-from .loop import limited, run_simulated
+from .loop import run_simulated
 from .recording import INTERRUPTED, STOPPED, Recording, failure
 from .recording_files import check_record_path
 from .replay import compared, replay, undisturbed
@@ -19,7 +19,6 @@ __all__ = [
     "failure",
     "figures",
     "keeping",
-    "limited",
     "replay",
     "run_in_real_time",
     "run_simulated",

@@ -11,7 +11,7 @@ from typing import Any, final
 
 import numpy as np
 
-from ..data import ServoReport, TickFlag
+from ..data import UNTOUCHED, ServoReport, TickFlag
 from ..plugins.interfaces import HapticDevice, Touch
 from ..runtime.stopping import stop_asked, stoppable
 from ..servo import Safety, Servo
@@ -40,7 +40,7 @@ def run_in_real_time(
     on_report: called ten times a second, and at the end. keep: given all ticks, as rows of `data.TICK_COLUMNS`, in a
     thread of its own. on_start: called once the loop runs. What these raise ends the session, such as a full disk.
     stop: set from another thread, it ends the session within a tenth of a second.
-    Raises: ConfigError if seconds is not above 0 and finite, DeviceError if the device cannot be opened, and what a
+    Raises: ConfigError if seconds is not positive and finite, DeviceError if the device cannot be opened, and what a
     plugin raises.
     """
     tell, limits = on_report or _ignored, limits or Safety()
@@ -125,6 +125,5 @@ def figures(report: ServoReport) -> dict[str, float]:
     }
 
 
-NO_LIMITS = TickFlag.TOUCHING | TickFlag.OVERRUN | TickFlag.SWAPPED
-LIMITS = [flag.name or "" for flag in TickFlag if not flag & NO_LIMITS]
+LIMITS = [flag.name or "" for flag in TickFlag if not flag & UNTOUCHED]
 """What safety does to a force, by the names of the flags."""

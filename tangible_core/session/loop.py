@@ -10,12 +10,13 @@ from typing import final
 import numpy as np
 
 from ..data import NO_FORCE, TICK_COLUMNS, Force, HapticState, ServoReport
-from ..errors import ConfigError, DeviceError
+from ..errors import DeviceError, check_positive
 from ..plugins.interfaces import HapticDevice, Link, Touch
 from ..runtime.stopping import stop_asked, stoppable
 from ..servo import Safety
 from ..servo.guard.guarded import Guarded, guarded
 from ..servo.guard.stiffness import stiffness_of
+from ..servo.reports import so_far
 from .recording import INTERRUPTED, STOPPED, Recording
 from .replay import proxy_of
 
@@ -41,11 +42,10 @@ def run_simulated(
     device's time, and at the end. Ctrl-C, `stop` set from another thread, a device that stops answering or whose clock
     stands still, and a full recording (`MOST_TICKS`) end it early: the force is zero, what was felt so far is returned,
     and `Recording.stopped` says why.
-    Raises: ConfigError if seconds is not above 0 and finite, DeviceError if the device cannot be opened, and whatever
+    Raises: ConfigError if seconds is not positive and finite, DeviceError if the device cannot be opened, and whatever
     a faulty touch or `on_report` raises, after the force was made zero.
     """
-    if not 0 < seconds < math.inf:
-        raise ConfigError(f"seconds: is {seconds}; it must be positive and finite")
+    check_positive("seconds", seconds)
     spec = device.spec()
     allowed = guarded(touch, *(limits or Safety()).arrays(spec, stiffness_of(touch, spec).n_per_m))
     tape = _Tape(touch, on_report or _ignore)
@@ -67,22 +67,6 @@ def run_simulated(
     if recording.not_finite:
         log.warning("%d forces were not finite and were made zero: the renderer is at fault", recording.not_finite)
     return recording
-
-
-def limited(force: Force, most_n: float) -> Force:
-    """The force, scaled down to a magnitude of most_n where it is over it; zero where it is not finite.
-
-    >>> limited(Force(6.0, 0.0, 8.0), 5.0)
-    Force(x=3.0, y=0.0, z=4.0)
-    """
-    if math.hypot(*force) <= most_n:
-        return force
-    if not all(map(math.isfinite, force)):
-        return NO_FORCE
-    greatest = max(map(abs, force))  # divided by first, so that the magnitude cannot overflow
-    x, y, z = (part / greatest for part in force)
-    scale = most_n / math.hypot(x, y, z)
-    return Force(x * scale, y * scale, z * scale)
 
 
 def _feel(allowed: Guarded, link: Link, seconds: float, tape: "_Tape") -> None:
@@ -143,17 +127,8 @@ class _Tape:
 
     def report(self, stopped: str) -> None:
         """Say how it goes."""
-        self._on_report(
-            ServoReport(
-                ticks=self.ticks,
-                time_s=self._state.time_s,
-                state=self._state,
-                force=self._force,
-                peak_force_n=self._peak_n,
-                work_j=self._work_j,
-                stopped=stopped,
-            )
-        )
+        last = np.array(self._numbers[-len(TICK_COLUMNS) :]).reshape(-1, len(TICK_COLUMNS))
+        self._on_report(so_far(last, self.ticks, self._peak_n, self._work_j, stopped))
 
     def recording(self) -> Recording:
         """All of it."""

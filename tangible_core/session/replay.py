@@ -8,7 +8,7 @@ from typing import Any, cast
 import numpy as np
 
 from ..compiled.touch import CompiledTouch
-from ..data import HapticState, TickFlag
+from ..data import UNTOUCHED, HapticState, TickFlag
 from ..metrics.forces import force_errors
 from ..plugins.interfaces import Touch
 from .recording import Recording
@@ -53,7 +53,7 @@ def proxy_of(touch: Touch) -> Callable[[], tuple[float, ...]]:
 
 def undisturbed(recording: Recording) -> np.ndarray:
     """Recorded forces, NaN at ticks whose force was not the law's own: limited, faded in, damped, none for a fault."""
-    changed = recording.flags & ~int(TickFlag.TOUCHING | TickFlag.OVERRUN | TickFlag.SWAPPED)
+    changed = recording.flags & ~int(UNTOUCHED)
     return np.where(changed[:, None] != 0, np.nan, recording.force_n)
 
 

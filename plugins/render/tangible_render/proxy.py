@@ -1,6 +1,6 @@
 """The proxy, or god-object: a point that stays on the surface, joined to the hand by a spring."""
 
-from typing import Annotated, Self
+from typing import Annotated, ClassVar, Self
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -33,6 +33,8 @@ class Proxy(ForceRenderer):
     Source: Zilles & Salisbury, A constraint-based god-object method, IROS 1995; Harwin & Melder, Improved haptic
     rendering for multi-finger manipulation using friction cone based god-objects, Eurohaptics 2002.
     """
+
+    renders_materials: ClassVar[bool] = True
 
     stiffness_n_per_m: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 800.0
     """Force for one metre between proxy and hand, where the surface has no materials."""

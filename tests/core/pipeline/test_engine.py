@@ -8,6 +8,7 @@ import numpy as np
 import pluggy
 import pytest
 
+from pictures import write_png
 from tangible_core.data import DisparityMap, HapticSurface, SegmentMap, Views
 from tangible_core.errors import BrokenMethod, ConfigError, GeometryError, PictureError, UnknownMethod
 from tangible_core.pipeline.cache import Cache
@@ -17,7 +18,6 @@ from tangible_core.plugins import hooks
 from tangible_core.plugins.interfaces import DepthEstimator, ForceRenderer, Segmenter, Skippable, Touch
 from tangible_core.plugins.notes import note
 from tangible_core.plugins.registry import Registry
-from tangible_core.scene.picture_files import write_png
 from tangible_core.scene.scene_files import SceneFiles
 from tangible_core.scene.workspace import Workspace
 

@@ -123,16 +123,13 @@ def test_a_law_of_somebody_elses_without_a_word_on_its_stiffness():
     """It is felt."""
     from tangible_core import HapticSurface
     from tangible_core.data import Force
-    from tangible_core.plugins.interfaces import Touch
+    from tangible_core.plugins.interfaces import PlainTouch
     from tangible_core.preflight import survey
     from tangible_render import Proxy
 
-    class Spring(Touch):
+    class Spring(PlainTouch):
         def force(self, state: HapticState) -> Force:
             return Force(0.0, 0.0, 350.0 * max(0.0, 0.01 - state.position_m[2]))
-
-        def path(self, positions_m, period_s=0.001):
-            return np.array([self.force(HapticState(tuple(each))) for each in positions_m])
 
     surface = HapticSurface.from_heights(np.full((4, 4), 0.01, np.float32))
     flight = survey(surface, Spring(), Proxy(), Mock(), loop=Loop(seconds=0.01))

@@ -81,7 +81,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A folder to work in, with a plugin installed that talks."""
     import numpy as np
 
-    from tangible_core.scene.picture_files import write_png
+    from pictures import write_png
 
     points = {"tangible.depth": {"noisy": "noisy:Noisy"}, "tangible.hooks": {"n": "noisy"}}
     site = distribution(tmp_path / "site", "noisy", points, noisy=NOISY)

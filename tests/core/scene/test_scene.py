@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
+from pictures import write_png
 from tangible_core.data import DisparityMap, Relief, SegmentMap
 from tangible_core.errors import ConfigError, GeometryError, PictureError
-from tangible_core.scene.picture_files import write_png
 from tangible_core.scene.scene import Scene
 from tangible_core.scene.scene_files import BUILTINS, SceneFiles
 

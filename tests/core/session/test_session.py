@@ -11,10 +11,10 @@ from hypothesis import strategies as st
 
 from tangible_core.data import NO_FORCE, DeviceSpec, Force, HapticState, HapticSurface, ServoReport, TickFlag
 from tangible_core.errors import ConfigError, DeviceError
-from tangible_core.plugins.interfaces import HapticDevice, Link, Touch
+from tangible_core.plugins.interfaces import HapticDevice, Link, PlainTouch
 from tangible_core.servo import Safety
 from tangible_core.servo.guard.safety import softness
-from tangible_core.session import INTERRUPTED, failure, limited, loop, run_simulated
+from tangible_core.session import INTERRUPTED, failure, loop, run_simulated
 from tangible_devices.mock import Mock
 from tangible_render.penalty_gradient import PenaltyGradient
 from tangible_render.proxy import Proxy
@@ -24,7 +24,7 @@ FREE = Safety(ramp_s=0, max_step_n=10, passivity="off")
 """Limits that let all through but what is too strong or not finite."""
 
 
-class Says(Touch):
+class Says(PlainTouch):
     """A touch that answers what a function of the tick says."""
 
     stiffness_n_per_m = 0.0
@@ -36,24 +36,22 @@ class Says(Touch):
         self.tick += 1
         return self.answer(self.tick)
 
-    def path(self, positions_m, period_s=0.001):
-        raise NotImplementedError
-
 
 class Scripted(Link):
     """A device that rises by a millimetre a tick, and fails or stands still where it is told to."""
 
     def __init__(self, fails_at: int | None = None, stamps: Callable[[int], float] = lambda tick: 5 + tick * 0.001):
+        super().__init__("the scripted device", 8.0)
         self.fails_at, self.stamps = fails_at, stamps
         self.tick, self.held, self.closed, self.forces = -1, NO_FORCE, 0, []
 
-    def read(self) -> HapticState:
+    def _read(self) -> HapticState:
         self.tick += 1
         if self.fails_at is not None and self.tick >= self.fails_at:
             raise DeviceError("the cable is out; put it in")
         return HapticState((0.0, 0.0, self.tick * 0.001), (0.0, 0.0, 1.0), self.stamps(self.tick))
 
-    def write(self, force: Force) -> None:
+    def _send(self, force: Force) -> None:
         if self.fails_at is not None and self.tick >= self.fails_at:
             raise DeviceError("nobody answers")
         self.held = force
@@ -63,7 +61,7 @@ class Scripted(Link):
     def applied(self) -> Force:
         return self.held
 
-    def close(self) -> None:
+    def _release(self) -> None:
         self.closed += 1
 
 
@@ -238,7 +236,7 @@ class TestEndings:
 
     def test_a_device_that_is_gone_at_the_end(self):
         class Gone(Scripted):
-            def write(self, force: Force) -> None:
+            def _send(self, force: Force) -> None:
                 if self.tick == 10:
                     raise DeviceError("gone; look for it")
 
@@ -265,20 +263,6 @@ class TestEndings:
         with pytest.raises(ZeroDivisionError):
             feel(fails(ZeroDivisionError(), 5), link=link)
         assert (link.held, link.closed) == (NO_FORCE, 1)
-
-
-@given(st.tuples(*[st.floats()] * 3), st.floats(1e-3, 1e3))
-def test_limited_forces_are_finite_within_the_limit_and_keep_their_direction(parts, most_n: float):
-    force = limited(Force(*parts), most_n)
-    if not all(map(math.isfinite, parts)):
-        assert force == NO_FORCE
-    elif math.hypot(*parts) <= most_n:
-        assert force == parts
-    else:
-        assert math.hypot(*force) == pytest.approx(most_n)
-        greatest = max(map(abs, parts))
-        unit = np.array(parts) / greatest
-        assert np.allclose(np.array(force) / most_n, unit / np.linalg.norm(unit), atol=1e-12)
 
 
 def test_logs_bear_the_rooms_name(caplog: pytest.LogCaptureFixture):

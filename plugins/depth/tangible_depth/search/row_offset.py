@@ -18,7 +18,7 @@ from ..dense.subpixel import parabola
 from .pairs import Pair
 
 CELL_PX, NEAR_PX, MOST_POINTS, LEAST_VOTES = 12, 1, 250, 20
-LEAST_OFFSET_PX = 0.3
+LEAST_ROW_OFFSET_PX = 0.3
 """Smaller offsets of rows are left alone."""
 LEAST_EDGE = 40
 """Sobel response over rows from which a pixel says something about its row."""
@@ -40,7 +40,7 @@ def row_votes(
     votes = np.full(len(points), np.nan, np.float32)
 
     def block(first: int, last: int) -> None:
-        _offsets(*pair, points, factor, first, last, np.empty(2 * REACH + 1, np.float32), votes)
+        _vote(*pair, points, factor, first, last, np.empty(2 * REACH + 1, np.float32), votes)
 
     in_blocks(len(points), block)
     return votes
@@ -53,12 +53,13 @@ def row_offset(pair: Pair, rows: Int64[np.ndarray, "n"], disparity: Int16[np.nda
     return float(np.median(agreed)) if agreed.size >= LEAST_VOTES else 0.0
 
 
-def realigned(pair: Pair, offset: float) -> Pair:
-    """The pair with its right view moved up by `offset` rows, so that rows correspond; cubic between rows."""
+def realigned(pair: Pair, row_offset_px: float) -> Pair:
+    """The pair with its right view moved up by `row_offset_px`, so that rows correspond; cubic between rows."""
     import cv2
 
-    whole = round(offset) if abs(offset - round(offset)) < 0.15 else offset
-    move = np.array([[1, 0, 0], [0, 1, -whole]], np.float32)
+    nearest = round(row_offset_px)
+    moved_px = nearest if abs(row_offset_px - nearest) < 0.15 else row_offset_px
+    move = np.array([[1, 0, 0], [0, 1, -moved_px]], np.float32)
     with plain_opencv():
         moved = cv2.warpAffine(
             pair.right, move, pair.right.shape[::-1], flags=cv2.INTER_CUBIC, borderMode=cv2.BORDER_REPLICATE
@@ -89,7 +90,7 @@ def _edge_points(left, rows, disparity, factor, points):
 
 
 @njit(**KERNEL)
-def _offsets(left, right, points, slack, first, last, scores, offsets):
+def _vote(left, right, points, slack, first, last, scores, votes):
     """Sub-pixel row offset of the best correlation near each point; NaN where the match is poor. scores: scratch."""
     h, w = left.shape
     reach = scores.size >> 1
@@ -110,7 +111,7 @@ def _offsets(left, right, points, slack, first, last, scores, offsets):
         if 0 < best < 2 * reach and scores[best] >= LEAST_CORRELATION:
             before, at, after = scores[best - 1], scores[best], scores[best + 1]
             if 2 * at - before - after > LEAST_BEND:
-                offsets[p] = best - reach + parabola(before, at, after)
+                votes[p] = best - reach + parabola(before, at, after)
 
 
 @inner()

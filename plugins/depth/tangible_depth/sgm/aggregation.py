@@ -85,7 +85,7 @@ def _decide(lanes, total, path, finals, best, sums, right_sums):
 
 
 @inner()
-def _accept(n, span, total, best, sums, right_sums, most, tolerance, disparity):
+def _accept(n, span, total, best, sums, right_sums, most, check_tolerance, disparity):
     """Disparities that pass the left-right check: no left pixel fits the right pixel better by more than a factor.
 
     A pixel whose neighbouring disparities fit as well as the best one says nothing and is not accepted. Written without
@@ -99,7 +99,7 @@ def _accept(n, span, total, best, sums, right_sums, most, tolerance, disparity):
         after = np.float32(total[x * n + min(k + 1, n - 1)])
         inner = (k > 0) & (k < count - 1)
         flat = inner & (before == at) & (after == at)
-        fits = (most[x + k] != 0) & (at < WORST) & (at <= tolerance * np.float32(right_sums[x + k]))
+        fits = (most[x + k] != 0) & (at < WORST) & (at <= check_tolerance * np.float32(right_sums[x + k]))
         offset = equiangular(before, at, after) if inner else np.float32(0)
         sixteenths = np.int16(np.floor(16 * (np.float32(span.high - k) - offset) + np.float32(0.5)))
         disparity[x] = sixteenths if fits & (not flat) else UNKNOWN
@@ -114,13 +114,13 @@ def _shifted(row, w, top, codes):
 
 
 @njit(**KERNEL)
-def sweep_strip(lanes, left, right, grey, rows, warm, span, limits, prices, tolerance, scratch, disparity, sums):
+def sweep_strip(lanes, left, right, grey, rows, warm, span, limits, prices, check_tolerance, scratch, disparity, sums):
     """Disparities in sixteenths of a pixel (UNKNOWN where rejected) and sums of rows[0]..rows[1]-1.
 
     Parameters: lanes, Lanes(n, planes); left, right uint8 (h, planes, >= w), codes of the two views; grey uint8 (h, w),
     the left view; warm, rows that a path begins early; span, the disparities to try, at most n; limits, those of rows
-    of w columns; prices, a `Prices`; tolerance of the left-right check, 1 being strict; scratch, for at least as many
-    rows. Results: disparity int16 (h, w), sums uint8 (h, w), the winner's cost over the four paths.
+    of w columns; prices, a `Prices`; check_tolerance of the left-right check, 1 being strict; scratch, for at least as
+    many rows. Results: disparity int16 (h, w), sums uint8 (h, w), the winner's cost over the four paths.
     """
     h, w = grey.shape
     y0, y1 = rows
@@ -141,4 +141,4 @@ def sweep_strip(lanes, left, right, grey, rows, warm, span, limits, prices, tole
         vertical(lanes, left[y], codes, limits, prices, grey[y], below, path, path_lowest, costs)
         if y < y1:
             _decide(lanes, total[y - y0], path, costs, best, sums[y], right_sums)
-            _accept(width(lanes), span, costs, best, sums[y], right_sums, limits.most, tolerance, disparity[y])
+            _accept(width(lanes), span, costs, best, sums[y], right_sums, limits.most, check_tolerance, disparity[y])

@@ -50,7 +50,7 @@ def sweep(
     grey: UInt8[np.ndarray, "h w"],
     span: Span,
     prices: Prices,
-    tolerance: float,
+    check_tolerance: float,
     only: Sequence[tuple[int, int]],
     out: Swept,
     warm: int = WARM_ROWS,
@@ -67,6 +67,6 @@ def sweep(
     def work(share: Iterable[tuple[int, int]]) -> None:
         room = scratch(highest, w, n, lanes.planes)
         for rows in share:
-            sweep_strip(lanes, *codes, grey, rows, warm, span, limits, prices, np.float32(tolerance), room, *out)
+            sweep_strip(lanes, *codes, grey, rows, warm, span, limits, prices, np.float32(check_tolerance), room, *out)
 
     in_turns(list(only), work, max(1, VOLUME_BYTES // max(1, highest * w * n)))

@@ -16,7 +16,7 @@ from tangible_core import HapticSurface, load_method
 from tangible_core.compiled.touch import CompiledTouch
 from tangible_core.data import NO_FORCE, TICK_COLUMNS, DeviceSpec, Force, HapticState, TickFlag
 from tangible_core.errors import BrokenMethod
-from tangible_core.plugins.interfaces import Touch
+from tangible_core.plugins.interfaces import PlainTouch
 from tangible_core.servo import Safety, Servo
 from tangible_core.servo.guard import stiffness
 from tangible_core.servo.guard.stiffness import DEPTHS_M, HALVINGS, LAYERS, PLACES, STEP_M, slopes, stiffness_of
@@ -31,21 +31,18 @@ FLAGS, FZ = TICK_COLUMNS.index("flags"), TICK_COLUMNS.index("fz_n")
 LEVEL_M = 0.002
 PLAIN = """
 from tangible_core.data import Force
-from tangible_core.plugins.interfaces import Touch
+from tangible_core.plugins.interfaces import PlainTouch
 
-class Plain(Touch):
+class Plain(PlainTouch):
     def __init__(self, k, height_m=0.002):
         self.k, self.height_m = k, height_m
 
     def force(self, state):
         return Force(0.0, 0.0, self.k * max(0.0, self.height_m - state.position_m[2]))
-
-    def path(self, positions_m, period_s=0.001):
-        raise NotImplementedError
 """
 
 
-class Law(Touch):
+class Law(PlainTouch):
     """A force of the position, and how often it was asked for."""
 
     def __init__(self, law: Callable[[float, float, float], tuple[float, float, float]]) -> None:
@@ -54,9 +51,6 @@ class Law(Touch):
     def force(self, state: HapticState) -> Force:
         self.asked += 1
         return Force(*self.law(*state.position_m))
-
-    def path(self, positions_m, period_s=0.001):
-        raise NotImplementedError
 
 
 def level(push_n: Callable[[float], float], height_m: float = LEVEL_M) -> Law:

@@ -1,30 +1,12 @@
 """Every panel of the sheet: one function each, which draws into its axes and returns its headline."""
 
-from collections.abc import Callable, Collection
-from typing import NamedTuple
-
+from ...plugins.panel import Panel as Panel
 from .disparity import draw_disparity, draw_disparity_error
 from .force import draw_force_map
 from .relief import draw_relief
 from .segments import draw_segments
 from .time import draw_force_time
 from .views import draw_views
-
-
-class Panel(NamedTuple):
-    """How a panel is drawn, what of a run it shows, and the room that it takes."""
-
-    draw: Callable[..., str]
-    needs: Collection[str]
-    """Without all of these it is left out."""
-    likes: Collection[str] = ()
-    """Given to it where the run has them."""
-    aspect: float = 0.0
-    """Width over height; 0 is the scene's own."""
-    left_in: float = 0.15
-    right_in: float = 0.15
-    bottom_in: float = 0.4
-
 
 PANELS = (
     Panel(draw_views, {"views"}),

@@ -111,7 +111,7 @@ def test_figures():
         "median_contact_force_n": 3.0,
         "peak_force_n": 5.0,
         "work_j": 7.0 + 2.0,
-        "limited": 1,
+        "force_limited": 1,
         "not_finite": 2,
     }
 

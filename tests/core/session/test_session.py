@@ -107,7 +107,7 @@ class TestRun:
         assert np.array_equal(recording.position_m, [state.position_m for state in states])
         assert np.array_equal(recording.velocity_m_per_s, [state.velocity_m_per_s for state in states])
         assert np.array_equal(recording.force_n, touch.path(recording.position_m))
-        assert (recording.stopped, recording.limited, recording.not_finite) == ("", 0, 0)
+        assert (recording.stopped, recording.force_limited, recording.not_finite) == ("", 0, 0)
 
     @pytest.mark.parametrize(("seconds", "ticks"), [(1.0, 1000), (0.3, 300), (0.0014, 1), (0.0016, 2), (1e-9, 1)])
     def test_ticks_are_the_seconds_in_periods(self, seconds: float, ticks: int):
@@ -141,14 +141,14 @@ class TestRun:
 
     def test_forces_over_the_maximum_are_scaled_down_and_counted(self):
         recording, _ = feel(lambda tick: Force(30.0, 0.0, 40.0) if tick % 2 else PUSH, 0.01)
-        assert recording.limited == 5
+        assert recording.force_limited == 5
         assert recording.force_n[1] == pytest.approx((4.8, 0, 6.4))
         assert recording.peak_force_n == pytest.approx(8.0)
 
     @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
     def test_forces_that_are_not_finite_are_made_zero_and_counted(self, bad: float, caplog: pytest.LogCaptureFixture):
         recording, link = feel(lambda tick: Force(0.0, bad, 1.0) if tick in (3, 4) else PUSH, 0.01)
-        assert (recording.not_finite, recording.limited) == (2, 0)
+        assert (recording.not_finite, recording.force_limited) == (2, 0)
         assert link.forces[2:6] == [PUSH, NO_FORCE, NO_FORCE, PUSH]
         assert "2 forces were not finite" in caplog.text
 

@@ -1,6 +1,7 @@
 """The documents say what the code says."""
 
 import re
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,25 @@ from tangible_core.plugins import hooks
 ROOT = Path(__file__).parents[1]
 PAGES = sorted([*ROOT.glob("*.md"), *ROOT.joinpath("docs").rglob("*.md"), *ROOT.joinpath("examples").rglob("*.md")])
 PLUGIN_PAGE = ROOT / "docs" / "write-a-plugin.md"
+
+
+HOUSES = {path.name: path for path in [ROOT / "tangible_core", *sorted(ROOT.glob("plugins/*/tangible_*"))]}
+
+
+@pytest.mark.parametrize("house", HOUSES)
+def test_the_architecture_page_names_every_room(house):
+    page = ROOT.joinpath("docs/architecture.md").read_text(encoding="utf-8")
+    [part] = re.findall(rf"^### {house}\n(.*?)(?=^##|\Z)", page, re.DOTALL | re.MULTILINE)
+    rooms = {path.parent.relative_to(HOUSES[house]).as_posix() for path in HOUSES[house].rglob("*/__init__.py")}
+    assert set(re.findall(r"^\| `(.+)/` \| \S", part, re.MULTILINE)) == rooms
+
+
+def test_the_architecture_page_draws_the_floors_as_they_are():
+    page = ROOT.joinpath("docs/architecture.md").read_text(encoding="utf-8")
+    contracts = tomllib.loads(ROOT.joinpath("pyproject.toml").read_text("utf-8"))["tool"]["importlinter"]["contracts"]
+    floors = [contract["layers"] for contract in contracts if contract["type"] == "layers"]
+    assert len(floors) == 5
+    assert not [layers for layers in floors if "```text\n" + "\n".join(layers) + "\n```" not in page]
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))

@@ -47,6 +47,24 @@ def test_the_plugin_page_shows_the_example_as_it_is(name):
     assert ROOT.joinpath("examples/third_party", name).read_text(encoding="utf-8").strip() in shown
 
 
+@pytest.mark.parametrize(
+    ("page", "name"),
+    [
+        ("write-a-force-law.md", "force_law/acme_cushion/cushion.py"),
+        ("write-a-force-law.md", "force_law/acme_cushion/compiled.py"),
+        ("write-a-force-law.md", "force_law/acme_cushion/kernels.py"),
+        ("write-a-force-law.md", "force_law/cushion.yaml"),
+        ("write-a-force-law.md", "force_law/tests/test_acme_cushion.py"),
+        ("write-a-device.md", "device/acme_handle/handle.py"),
+        ("write-a-device.md", "device/handle.yaml"),
+        ("write-a-device.md", "device/tests/test_acme_handle.py"),
+    ],
+)
+def test_the_pages_on_laws_and_devices_show_their_examples_as_they_are(page, name):
+    shown = ROOT.joinpath("docs", page).read_text(encoding="utf-8")
+    assert ROOT.joinpath("examples", name).read_text(encoding="utf-8").strip() in shown
+
+
 @pytest.mark.parametrize("moment", sorted(name for name in vars(hooks.Specs) if name.startswith("tangible_")))
 def test_the_plugin_page_names_every_moment(moment):
     assert f"`{moment}(" in PLUGIN_PAGE.read_text(encoding="utf-8")

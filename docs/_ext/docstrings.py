@@ -1,4 +1,4 @@
-"""Our docstrings for Sphinx: plain text, names in single backticks, paragraphs that begin with `Raises:` and the like."""
+"""Our docstrings for Sphinx: plain text, names in backticks, paragraphs that begin with `Raises:` and the like."""
 
 import re
 from typing import Any

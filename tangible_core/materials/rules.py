@@ -24,13 +24,13 @@ class MaterialRule(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     segment: Annotated[int, Field(ge=0)] | None = None
-    """The segment with this label, as the report's sheet counts them."""
+    """The segment with this label, as numbered in the report."""
     at: tuple[Place, Place] | None = None
-    """The segment under this point of the left picture: [x, y] in pixels, from its upper left corner's pixel."""
+    """The segment at this pixel of the left picture: [x, y], counted from the upper left corner."""
     colour: Colour | None = None
-    """Every segment of which more pixels have this colour than any other, by hue, chroma and lightness in CIELAB."""
+    """Every segment whose most frequent colour this is, by hue, chroma and lightness in CIELAB."""
     material: str
-    """What it gets."""
+    """Name of the material for these segments."""
 
     @model_validator(mode="after")
     def _one_way(self) -> Self:

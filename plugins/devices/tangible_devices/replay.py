@@ -22,7 +22,7 @@ class Replay(HapticDevice):
     """
 
     file: Path | None = None
-    """The recording, .nc, .npz or .csv; without one, a stroke of a second down to the base plane and up."""
+    """The recording: .nc, .npz or .csv. Without one, the hand moves down to the base plane and up within a second."""
 
     def spec(self) -> DeviceSpec:
         """A Novint Falcon's limits, as in CHAI3D's tables; positions are not rounded, which a picometre stands for."""

@@ -33,11 +33,11 @@ class TangibleMask(ForceRenderer):
     uses_materials: ClassVar[bool] = False
 
     mask_m: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 0.005
-    """Side of the square mask; it is rounded to an odd number of cells, at least 3."""
+    """Side of the square mask; rounded to an odd number of cells, at least 3."""
     mask_px: Annotated[int, Field(ge=3), AfterValidator(_odd)] | None = None
-    """Side in cells instead, an odd number; the force then depends on the resolution."""
+    """Side of the mask in cells instead, an odd number; the force then depends on the resolution."""
     force_at_edge_n: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 2.0
-    """Force where the tip is on a straight edge from black to white."""
+    """Force on a straight edge from black to white."""
 
     def touch(self, surface: HapticSurface) -> Touch:
         """A new touch on this surface; compiled on the first use on a machine, then loaded."""

@@ -44,7 +44,7 @@ def check_file(path: Path, most: int = MOST_BYTES) -> None:
     except ValueError as error:
         raise OSError(errno.EINVAL, "no file can have this name") from error
     if not stat.S_ISREG(found.st_mode):
-        raise OSError(errno.EINVAL, "it is no file but a folder or a device")
+        raise OSError(errno.EINVAL, "it is not a file but a folder or a device")
     if found.st_size > most:
         raise OSError(errno.EFBIG, f"it holds more than {in_words(most)}")
 

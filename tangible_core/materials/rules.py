@@ -37,7 +37,7 @@ class MaterialRule(BaseModel):
         given = [name for name in ("segment", "at", "colour") if getattr(self, name) is not None]
         if len(given) != 1:
             raise ValueError(
-                f"a rule says one of segment, at and colour; this one says {' and '.join(given) or 'none'}"
+                f"a rule takes one of segment, at and colour; this one has {' and '.join(given) or 'none'}"
             )
         return self
 
@@ -76,7 +76,7 @@ def _fits(rule: MaterialRule, segments: SegmentMap, picture: np.ndarray | None) 
     if rule.at is not None:
         return {_label_at(*rule.at, segments): f"at [{rule.at[0]:g}, {rule.at[1]:g}]"}
     if picture is None or picture.shape[:2] != segments.labels.shape:
-        raise MaterialError("a colour needs the picture of the segments, and there is none of their size")
+        raise MaterialError("a rule by colour needs the segmented picture, but there is none of that size")
     named = enumerate(segment_colours(segments, picture))
     return {label: f"{100 * share:.0f} % of it {name}" for label, (name, share) in named if name == rule.colour}
 

@@ -73,7 +73,7 @@ class SceneFiles(BaseModel):
             if name in given and other not in given:
                 raise ValueError(f"{name} needs {other} beside it")
         if idle := self.height and [name for name in given if name in _OF_VIEWS]:
-            raise ValueError(f"height already says how high everything is; leave out {', '.join(idle)}")
+            raise ValueError(f"height already gives all heights; leave out {', '.join(idle)}")
         return self
 
     @property
@@ -165,7 +165,7 @@ def _check_sizes(paths: Mapping[str, Path], held: Mapping[str, np.ndarray]) -> N
         if (its := held[other].shape[1::-1]) != size:
             raise PictureError(
                 f"{paths[other]} ({other}) is {its[0]} x {its[1]} and {paths[main]} ({main}) is {size[0]} x {size[1]}; "
-                "all files of a scene are of one size: resize or cut one of them"
+                "all files of a scene must be of one size; resize or crop one of them"
             )
 
 

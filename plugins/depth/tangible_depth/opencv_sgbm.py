@@ -79,7 +79,7 @@ class OpenCVSGBM(DepthEstimator, Skippable):
         """
         if views.right is None:
             raise PictureError(
-                "stereo needs two views, this scene has one; use a method for one picture, such as luminance"
+                "stereo needs two views, but this scene has one; use a method for a single picture, such as luminance"
             )
         left, right = _eight_bits(views.left, views.right)
         found = np.where(_has_texture(left, self.block_px), self._match(left, right), np.float32(np.nan))

@@ -58,10 +58,10 @@ def _load(file: Path) -> Recording:
         raise DeviceError(str(error)) from error
     rows = rows[np.isfinite(rows[:, [0, 2, 3, 4, 5, 6, 7, 15]]).all(axis=1)]
     if not len(rows):
-        raise DeviceError(f"{file}: has no whole tick; record it again")
+        raise DeviceError(f"{file}: has no complete tick; record it again")
     stands = np.flatnonzero(np.diff(rows[:, 0]) <= 0)
     if stands.size:
-        raise DeviceError(f"{file}: time stands still or goes back after {rows[stands[0], 0]} s; record it again")
+        raise DeviceError(f"{file}: time does not increase after {rows[stands[0], 0]} s; record it again")
     return Recording(rows)
 
 

@@ -55,7 +55,7 @@ class Proxy(ForceRenderer):
         if self.dynamic_friction > self.static_friction:
             raise ValueError(
                 f"dynamic_friction {self.dynamic_friction} is above static_friction {self.static_friction}; "
-                "things slide more easily than they start"
+                "sliding takes no more force than starting"
             )
         return self
 

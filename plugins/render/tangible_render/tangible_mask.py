@@ -14,7 +14,7 @@ from .surface.grey_levels import grey_levels
 
 def _odd(count: int) -> int:
     if count % 2 == 0:
-        raise ValueError("a mask has a middle: its side is an odd number of cells")
+        raise ValueError("the side of the mask must be an odd number of cells, so that it has a centre")
     return count
 
 

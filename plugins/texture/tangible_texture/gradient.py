@@ -61,8 +61,8 @@ class Gradient(Segmenter, Skippable):
     def _thresholds_in_order(self) -> Self:
         if not self.flat < self.canny_low <= self.canny_high:
             raise ValueError(
-                f"flat {self.flat:g} < canny_low {self.canny_low:g} <= canny_high {self.canny_high:g} does not hold; "
-                "what is flat is no edge, and an edge goes on at less than it begins with"
+                f"flat {self.flat:g} < canny_low {self.canny_low:g} <= canny_high {self.canny_high:g} must hold: "
+                "flat parts are no edges, and the lower threshold is not above the upper one"
             )
         return self
 

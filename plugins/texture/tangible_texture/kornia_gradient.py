@@ -47,7 +47,7 @@ class KorniaGradient(Segmenter, Skippable):
     @model_validator(mode="after")
     def _thresholds_in_order(self) -> Self:
         if self.canny_low > self.canny_high:
-            raise ValueError(f"canny_low {self.canny_low:g} is above canny_high {self.canny_high:g}; exchange them")
+            raise ValueError(f"canny_low {self.canny_low:g} is above canny_high {self.canny_high:g}; swap them")
         return self
 
     def skip(self, views: Views) -> str | None:

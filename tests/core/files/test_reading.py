@@ -22,7 +22,7 @@ def test_a_folder_a_pipe_and_a_device_are_no_files(tmp_path: Path, name: str):
     (tmp_path / "link").symlink_to("/dev/zero")
     with pytest.raises(OSError) as error:
         read_bytes(tmp_path / name)
-    assert error.value.strerror == "it is no file but a folder or a device"
+    assert error.value.strerror == "it is not a file but a folder or a device"
 
 
 def test_a_file_of_more_than_is_asked_for_is_not_read(tmp_path: Path):

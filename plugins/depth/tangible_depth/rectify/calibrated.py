@@ -32,12 +32,16 @@ class StereoRig(Record):
         super().__post_init__()
         for side, matrix in (("left", self.left_matrix), ("right", self.right_matrix)):
             if matrix.shape != (3, 3) or not np.isfinite(matrix).all() or min(matrix[0, 0], matrix[1, 1]) <= 0:
-                raise GeometryError(f"the {side} camera matrix is K, (3, 3), with positive focal lengths, not {matrix}")
+                raise GeometryError(
+                    f"the {side} camera matrix must be (3, 3) with positive focal lengths, not {matrix}"
+                )
         turn = self.rotation
         if turn.shape != (3, 3) or not _is_rotation(turn):
-            raise GeometryError(f"a rotation is orthogonal, (3, 3), of determinant 1, not {turn}")
+            raise GeometryError(f"a rotation must be an orthogonal (3, 3) matrix of determinant 1, not {turn}")
         if self.translation_m.shape != (3,) or not 0 < _length(self.translation_m) < np.inf:
-            raise GeometryError(f"the translation is three metres, not all zero, not {self.translation_m}")
+            raise GeometryError(
+                f"the translation must be three finite numbers in metres, not all zero, not {self.translation_m}"
+            )
 
 
 def rectify_calibrated(views: Views, rig: StereoRig) -> Rectified:

@@ -158,7 +158,7 @@ def check_homographies(
     if (worst := float(np.percentile(offsets_px, 95))) > most_offset_px:
         raise CannotRectify(
             f"one match in twenty would still lie over {worst:.1f} px off its row: "
-            "the camera went forwards, or a lens distorts"
+            "the camera moved forwards, or a lens distorts"
         )
 
 

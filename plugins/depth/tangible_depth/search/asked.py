@@ -31,7 +31,9 @@ def asked_span(pair: Pair, least: int | Auto, most: int | Auto) -> Asked:
         return _found(pair, least)
     low = 0 if least == "auto" else least
     if low >= most:
-        raise PictureError(f"no disparity is in {low}..{most - 1} px; raise max_disparity_px or lower min_disparity_px")
+        raise PictureError(
+            f"the search range {low}..{most - 1} px is empty; raise max_disparity_px or lower min_disparity_px"
+        )
     return Asked(Span(low, most - 1).within(pair.width), None)
 
 

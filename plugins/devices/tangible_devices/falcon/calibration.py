@@ -39,7 +39,7 @@ class Calibration(BaseModel):
     @model_validator(mode="after")
     def _agrees(self) -> Self:
         if {axis[-1] for axis in self.axes} != set("xyz"):
-            raise ValueError(f"axes {', '.join(self.axes)} name an axis twice; name x, y and z once each")
+            raise ValueError(f"axes {', '.join(self.axes)} name an axis twice; name each of x, y and z once")
         return self
 
     def arms(self) -> Float64[np.ndarray, "3 2"]:

@@ -61,7 +61,7 @@ def _start(port: Port, image: bytes | None, event_character: bool) -> str:
     if answers(port):
         return ""
     if image is None:
-        raise DeviceError(f"{port.place}: has no firmware since it was powered; give option firmware; {WHENCE}")
+        raise DeviceError(f"{port.place}: has no firmware since power-on; give the option firmware; {WHENCE}")
     try:
         load(port, image)
     except LoadFailed as error:

@@ -30,11 +30,11 @@ class Replay(HapticDevice):
 
     def open(self) -> Link:
         """From its start. Raises: DeviceError if the recording cannot be read, is empty, or its time stands still."""
-        return SimulatedLink("replay", Replayed(_stroke() if self.file is None else _load(self.file)).step)
+        return SimulatedLink("replay", Playback(_stroke() if self.file is None else _load(self.file)).step)
 
 
 @final
-class Replayed:
+class Playback:
     """A recording on its way."""
 
     def __init__(self, recording: Recording) -> None:

@@ -10,7 +10,7 @@ from zipfile import ZIP_DEFLATED, ZIP_STORED, ZipFile
 import numpy as np
 
 from ..errors import shown
-from .reading import TooLarge, check_bytes, check_size
+from .reading import TooLargeError, check_bytes, check_size
 
 _CHUNK = 1 << 20
 _ZIP = b"PK"
@@ -37,7 +37,7 @@ class Archive:
     def read(self, names: Collection[str]) -> dict[str, np.ndarray]:
         """The arrays of these names.
 
-        Raises: TooLarge if they hold more than `MOST_BYTES` together; ValueError, in words, if one is not there, is
+        Raises: TooLargeError if they hold more than `MOST_BYTES` together; ValueError, in words, if one is missing, is
         damaged, or holds no numbers or texts.
         """
         if missing := [name for name in names if name not in self._members]:
@@ -58,7 +58,7 @@ class Archive:
 def read_array(file: IO[bytes]) -> np.ndarray:
     """The array of an .npy file, or the only one of an .npz file, whatever the file is called.
 
-    Raises: TooLarge or ValueError, in words, if there is no such array.
+    Raises: TooLargeError or ValueError, in words, if there is no such array.
     """
     zipped = file.read(len(_ZIP)) == _ZIP
     held = file.seek(0, 2)
@@ -79,7 +79,7 @@ def _in_words() -> Generator[None]:
     try:
         with warnings.catch_warnings(action="ignore"):
             yield
-    except TooLarge:
+    except TooLargeError:
         raise
     except Exception as error:
         raise ValueError(shown(str(error) or type(error).__name__, 200)) from error

@@ -13,7 +13,7 @@ from jaxtyping import Float32, Int32
 from ..data.pictures import check_finite, check_picture, to_rgb8
 from ..errors import PictureError, did_you_mean, shown
 from ..files import arrays
-from ..files.reading import TOO_MANY_PIXELS, TooLarge, check_size, read_bytes
+from ..files.reading import TOO_MANY_PIXELS, TooLargeError, check_size, read_bytes
 from ..files.writing import atomic_write
 
 if TYPE_CHECKING:
@@ -130,7 +130,7 @@ def _read_bytes(path: Path) -> bytes:
 def _array(path: Path, data: bytes) -> np.ndarray:
     try:
         return arrays.read_array(BytesIO(data))
-    except TooLarge as error:
+    except TooLargeError as error:
         raise _too_large(path, error) from error
     except ValueError as error:
         raise PictureError(
@@ -153,7 +153,7 @@ def _picture(path: Path, data: bytes, indices: bool) -> np.ndarray:
         ) from error
     except (Image.DecompressionBombError, Image.DecompressionBombWarning) as error:  # Pillow's limit is above ours
         raise _too_large(path, TOO_MANY_PIXELS) from error
-    except TooLarge as error:
+    except TooLargeError as error:
         raise _too_large(path, error) from error
     except PictureError:
         raise

@@ -16,7 +16,7 @@ from hypothesis.extra import numpy as arrays
 
 from hostile import npy_header, npz, npz_bomb
 from tangible_core.files.arrays import Archive, read_array
-from tangible_core.files.reading import MOST_BYTES, TooLarge
+from tangible_core.files.reading import MOST_BYTES, TooLargeError
 
 ONE = npy_header((2, 3)) + np.arange(6.0).tobytes()
 
@@ -185,7 +185,7 @@ def test_arrays_that_are_small_alone_are_too_large_together(tmp_path: Path):
         held = Archive(file)
         with refused_in_little_memory():
             held.read(held.names)
-        with pytest.raises(TooLarge):
+        with pytest.raises(TooLargeError):
             held.read(held.names)
 
 

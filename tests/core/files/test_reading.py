@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tangible_core.files.reading import MOST_BYTES, MOST_PIXELS, TooLarge, check_file, check_size, read_bytes
+from tangible_core.files.reading import MOST_BYTES, MOST_PIXELS, TooLargeError, check_file, check_size, read_bytes
 
 
 def test_a_file_is_read_whole(tmp_path: Path):
@@ -71,7 +71,7 @@ SIDE = int(MOST_PIXELS**0.5)
     ],
 )
 def test_what_is_too_large(shape: tuple[int, ...], itemsize: int, why: str):
-    with pytest.raises(TooLarge, match=why):
+    with pytest.raises(TooLargeError, match=why):
         check_size(shape, itemsize)
 
 

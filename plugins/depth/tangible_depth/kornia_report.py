@@ -38,7 +38,8 @@ class KorniaReport(DepthEstimator):
     def estimate(self, views: Views) -> DisparityMap:
         """Dense disparity of the left view.
 
-        Raises: PictureError without a right view, BrokenMethod without torch or kornia, CannotRectify as `rectify`.
+        Raises: PictureError without a right view, BrokenMethod without torch or kornia, RectificationError as
+        `rectify`.
         """
         need("torch")
         need("kornia")

@@ -39,7 +39,7 @@ class KorniaZNCC(DepthEstimator):
     def estimate(self, views: Views) -> DisparityMap:
         """Dense disparity of the left view.
 
-        Raises: PictureError without a right view, BrokenMethod without torch, CannotRectify as `rectify`.
+        Raises: PictureError without a right view, BrokenMethod without torch, RectificationError as `rectify`.
         """
         need("torch")
         if views.right is None:

@@ -37,7 +37,10 @@ class Report(DepthEstimator):
     """Largest disparity searched, from 0; `auto` takes the range, of either sign, from matched corners."""
 
     def estimate(self, views: Views) -> DisparityMap:
-        """Dense disparity of the left view. Raises: PictureError without a right view, CannotRectify as `rectify`."""
+        """Dense disparity of the left view.
+
+        Raises: PictureError without a right view, RectificationError as `rectify`.
+        """
         window = gaussian_window(self.harris_sigma_px)
         parts = Parts(lambda grey: harris_response(grey, window), eight_point, self._match_rows)
         return disparity_by_features(views, parts, self.least_contrast, self.least_score, self.max_disparity_px)

@@ -12,7 +12,7 @@ from tangible_core.errors import GeometryError
 from .epipolar import product
 from .homographies import inverse
 from .rectification import check_homographies
-from .rectified import Rectified, warped
+from .rectified import RectifiedPair, warped
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,11 +44,11 @@ class StereoRig(Record):
             )
 
 
-def rectify_calibrated(views: Views, rig: StereoRig) -> Rectified:
+def rectify_calibrated(views: Views, rig: StereoRig) -> RectifiedPair:
     """A pair of known cameras turned so that its rows correspond; its calibration gives Z = f B / d exactly.
 
     The new axes are the baseline, and the mean viewing direction made square to it. Depth is along the new axis.
-    Raises: PictureError if there is only one view; CannotRectify if the cameras look along their baseline.
+    Raises: PictureError if there is only one view; RectificationError if the cameras look along their baseline.
     Source: Fusiello, Trucco & Verri, A compact algorithm for rectification of stereo pairs, 2000.
     """
     centre = -product(rig.rotation.T, rig.translation_m[:, None])[:, 0]

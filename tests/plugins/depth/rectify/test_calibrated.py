@@ -7,7 +7,7 @@ from tangible_core.data import DisparityMap, Views
 from tangible_core.errors import GeometryError, PictureError
 from tangible_depth.rectify.calibrated import StereoRig, rectify_calibrated
 from tangible_depth.rectify.homographies import camera_matrix, rotation, transform
-from tangible_depth.rectify.rectification import CannotRectify
+from tangible_depth.rectify.rectification import RectificationError
 
 SHAPE = (90, 120)
 BLANK = np.zeros(SHAPE, np.uint8)
@@ -52,7 +52,7 @@ def test_the_way_back_keeps_the_size():
 
 
 def test_cameras_one_behind_the_other_are_refused():
-    with pytest.raises(CannotRectify):
+    with pytest.raises(RectificationError):
         rectify_calibrated(Views(BLANK, BLANK), rig((0, 0, 0), (0.0, 0.0, -0.5)))
 
 

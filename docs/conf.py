@@ -12,7 +12,6 @@ version = release = version_of("tangible-images")
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.viewcode", "docstrings"]
 exclude_patterns = ["_build", "_ext"]
-nitpicky = True
 myst_heading_anchors = 4
 myst_enable_extensions = ["deflist"]
 

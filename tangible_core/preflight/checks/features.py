@@ -40,7 +40,5 @@ def features(flight: Flight) -> Iterator[Verdict]:
 def _nothing(flight: Flight) -> Verdict:
     """Of a relief without a feature of any width that is looked at."""
     height_m = float(flight.surface.height_m.max() - flight.surface.height_m.min())
-    cure = (
-        "only its materials can be felt: choose a scene with relief, or `workspace.width_m` for a larger one"
-    )
+    cure = "only its materials can be felt: choose a scene with relief, or `workspace.width_m` for a larger one"
     return Verdict("features", "the relief", "warn", height_m, "m", note="no feature 1 to 32 mm wide", cure=cure)

@@ -12,7 +12,7 @@ from tangible_depth.semi_global import SemiGlobal
 from tangible_depth.sgm import strips
 
 from .depth_opencv import filled
-from .depth_pairs import Known, real
+from .depth_pairs import KnownScene, real
 from .figures import Figure, table
 from .turns import Call, seconds
 
@@ -78,12 +78,12 @@ def _peak(call: Call) -> float:
     return growth() or 0
 
 
-def _tiled(count: int) -> Known:
+def _tiled(count: int) -> KnownScene:
     scene = real()["motorcycle"]
     grey = scene.grey._replace(
         left=np.tile(scene.grey.left, (count, count)), right=np.tile(scene.grey.right, (count, count))
     )
-    return Known(scene.pair, grey, DISPARITIES)
+    return KnownScene(scene.pair, grey, DISPARITIES)
 
 
 def _seams() -> Figure:
@@ -97,7 +97,7 @@ def _seams() -> Figure:
     )
 
 
-def _seam(scene: Known) -> float:
+def _seam(scene: KnownScene) -> float:
     """Percent of the pixels near borders, those of the trial among them, that one strip decides otherwise."""
     method = SemiGlobal(max_disparity_px=scene.disparities, cost="sharp")
     with_borders = method.estimate(scene.views).disparity_px

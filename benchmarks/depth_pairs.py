@@ -19,7 +19,7 @@ LARGE_PX = 300_000
 """Pixels from which times are promised."""
 
 
-class Known(NamedTuple):
+class KnownScene(NamedTuple):
     """A pair with its truth, its views in grey, and how many disparities a method that is told its range tries."""
 
     pair: KnownPair
@@ -37,9 +37,9 @@ class Known(NamedTuple):
         return self.grey.left.size >= LARGE_PX
 
 
-def known(pair: KnownPair) -> Known:
+def known(pair: KnownPair) -> KnownScene:
     """What a benchmark needs of a pair."""
-    return Known(pair, grey_pair(pair.views, "the benchmark"), range_px(pair))
+    return KnownScene(pair, grey_pair(pair.views, "the benchmark"), range_px(pair))
 
 
 def real_specs() -> dict[str, DepthScene]:
@@ -59,19 +59,19 @@ def synthetic_specs(width_px: int = 480, height_px: int = 360) -> dict[str, Dept
 
 
 @cache
-def real() -> dict[str, Known]:
+def real() -> dict[str, KnownScene]:
     """The photographs, opened."""
     return {name: known(spec.open()) for name, spec in real_specs().items()}
 
 
 @cache
-def synthetic() -> dict[str, Known]:
+def synthetic() -> dict[str, KnownScene]:
     """The analytic scenes, opened."""
     return {name: known(spec.open()) for name, spec in synthetic_specs().items()}
 
 
 @cache
-def large() -> dict[str, Known]:
+def large() -> dict[str, KnownScene]:
     """Those for which times are promised, one analytic scene among them."""
     planes = known(synthetic_specs(1024, 768)["planes"].open())
     return {name: each for name, each in real().items() if each.large} | {"planes 1024x768": planes}

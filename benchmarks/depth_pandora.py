@@ -12,7 +12,7 @@ import numpy as np
 from tangible_core.data import DisparityMap
 from tangible_depth.semi_global import SemiGlobal
 
-from .depth_pairs import Known, real
+from .depth_pairs import KnownScene, real
 from .figures import Figure
 from .turns import in_turns
 
@@ -51,7 +51,7 @@ def figures(rounds: int = 2) -> list[Figure]:
     return [Figure(what, bound, measured, ours["bad2"] < peer["bad2"] and share <= 1 / 50)]
 
 
-def pandora(scene: Known) -> Callable[[], np.ndarray]:
+def pandora(scene: KnownScene) -> Callable[[], np.ndarray]:
     """A call that gives pandora's disparity in pixels, NaN where it found none; reading the files is not in it.
 
     Raises: ImportError if pandora or its plugin is not installed.

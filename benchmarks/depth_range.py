@@ -8,7 +8,7 @@ from tangible_depth.search.asked import asked_span
 from tangible_depth.search.search_range import find_range
 from tangible_depth.semi_global import SemiGlobal
 
-from .depth_pairs import Known, real, synthetic
+from .depth_pairs import KnownScene, real, synthetic
 from .figures import Figure
 from .turns import in_turns
 
@@ -36,14 +36,14 @@ def figures() -> list[Figure]:
     ]
 
 
-def coverage(scene: Known) -> float:
+def coverage(scene: KnownScene) -> float:
     """Share of the true disparities within the range that is tried, in percent."""
     span, truth = asked_span(scene.grey, "auto", "auto").span, scene.pair.truth_px
     truth = truth[np.isfinite(truth)]
     return 100 * float(np.mean((truth >= span.low) & (truth <= span.high)))
 
 
-def cost(scene: Known) -> float:
+def cost(scene: KnownScene) -> float:
     """Time of finding the range over that of matching with the range given."""
     method = SemiGlobal(max_disparity_px=scene.disparities)
     return in_turns({"match": partial(method.estimate, scene.views), "range": partial(find_range, scene.grey)}, 9)[

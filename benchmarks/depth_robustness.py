@@ -10,7 +10,7 @@ from tangible_depth.opencv_sgbm import OpenCVSGBM
 from tangible_depth.semi_global import SemiGlobal
 
 from .depth_opencv import PEERS, filled
-from .depth_pairs import Known, known, large, real, synthetic
+from .depth_pairs import KnownScene, known, large, real, synthetic
 from .figures import Figure, table
 from .turns import in_turns
 
@@ -61,17 +61,17 @@ def measured() -> tuple[list[Figure], list[str]]:
     return [figure], table(headings, rows)
 
 
-def _damaged(scene: Known, kind: str, value: float) -> Known:
+def _damaged(scene: KnownScene, kind: str, value: float) -> KnownScene:
     damaged: KnownPair = PERTURBATIONS[kind].apply(scene.pair, value)
     return known(damaged)
 
 
-def _errors(scene: Known) -> tuple[float, ...]:
+def _errors(scene: KnownScene) -> tuple[float, ...]:
     """bad2 of ours, of 3WAY and of HH4."""
     return tuple(measure(fill(each.estimate(scene.pair.views)), scene.pair)["bad2"] for each in _methods(scene))
 
 
-def _methods(scene: Known) -> Iterator[DepthEstimator]:
+def _methods(scene: KnownScene) -> Iterator[DepthEstimator]:
     yield SemiGlobal()
     for name in ("3WAY", "HH4"):
         mode, block = PEERS[name]

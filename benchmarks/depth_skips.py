@@ -13,7 +13,7 @@ from tangible_depth.opencv_sgbm import OpenCVSGBM
 from tangible_depth.rectify.rectification import rectify
 from tangible_depth.semi_global import SemiGlobal
 
-from .depth_pairs import Known, real
+from .depth_pairs import KnownScene, real
 from .figures import table
 from .turns import in_turns
 
@@ -50,7 +50,7 @@ def _row(skip: Skip) -> tuple[str, ...]:
     )
 
 
-def skips(scene: Known) -> Iterator[Skip]:
+def skips(scene: KnownScene) -> Iterator[Skip]:
     """All of them; where the pair does need the thing, a pair that does not."""
     pair, views, told = scene.pair, scene.views, scene.disparities
 
@@ -123,7 +123,7 @@ def _rectified(views: Views, tolerance_px: float) -> DisparityMap:
     return turned.to_original(SemiGlobal().estimate(turned.views))
 
 
-def _half_flat(scene: Known) -> tuple[Views, np.ndarray]:
+def _half_flat(scene: KnownScene) -> tuple[Views, np.ndarray]:
     """The pair with grey paper over the lower half, of which nothing is known."""
     middle = scene.grey.left.shape[0] // 2
     left, right = (np.where(np.arange(len(each))[:, None] < middle, each, np.uint8(128)) for each in scene.grey)

@@ -10,10 +10,10 @@ from tangible_core.data import Views
 from tangible_core.metrics import disparity_errors
 from tangible_depth.rectify.homographies import camera_matrix, rotation, transform
 from tangible_depth.rectify.rectification import rectify
-from tangible_depth.rectify.rectified import Rectified
+from tangible_depth.rectify.rectified import RectifiedPair
 from tangible_depth.semi_global import SemiGlobal
 
-from .depth_pairs import Known, real, synthetic
+from .depth_pairs import KnownScene, real, synthetic
 from .figures import Figure
 
 ROLL_DEGREES, TILT = 2.0, (2e-5, -3e-5)
@@ -53,7 +53,7 @@ def figures() -> list[Figure]:
     ]
 
 
-def roll(scene: Known) -> Rolled:
+def roll(scene: KnownScene) -> Rolled:
     """The right view as a camera that rolled and tilted would show it."""
     h, w = scene.grey.right.shape
     middle = camera_matrix(1, (h, w))
@@ -68,13 +68,13 @@ def roll(scene: Known) -> Rolled:
     return Rolled(Views(scene.grey.left, right), homography, np.where(inside, scene.pair.truth_px, np.float32(np.nan)))
 
 
-def _matches(scene: Known) -> np.ndarray:
+def _matches(scene: KnownScene) -> np.ndarray:
     """Where the unrolled right view shows each left pixel, (n, 2); NaN without truth."""
     rows, columns = np.indices(scene.grey.left.shape, np.float64)
     return np.column_stack([(columns - scene.pair.truth_px).ravel(), rows.ravel()])
 
 
-def offset(scene: Known, rolled: Rolled, rectified: Rectified) -> float:
+def offset(scene: KnownScene, rolled: Rolled, rectified: RectifiedPair) -> float:
     """Median of |row in the right view - row in the left one| of the true matches, after rectification."""
     rows, columns = np.indices(scene.grey.left.shape, np.float64)
     left = transform(rectified.left_homography, np.column_stack([columns.ravel(), rows.ravel()]))
@@ -83,7 +83,7 @@ def offset(scene: Known, rolled: Rolled, rectified: Rectified) -> float:
     return float(np.median(np.abs(left[asked, 1] - right[asked, 1])))
 
 
-def loss(scene: Known, rolled: Rolled, rectified: Rectified) -> float:
+def loss(scene: KnownScene, rolled: Rolled, rectified: RectifiedPair) -> float:
     """bad2 of the rolled pair less that of the pair as it was, over the same pixels, in points.
 
     What is found is followed to its place in the rolled right picture and from there back to the unrolled one, so

@@ -1,6 +1,7 @@
 """The documents say what the code says."""
 
 import re
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,25 @@ from tangible_core.plugins import hooks
 ROOT = Path(__file__).parents[1]
 PAGES = sorted([*ROOT.glob("*.md"), *ROOT.joinpath("docs").rglob("*.md"), *ROOT.joinpath("examples").rglob("*.md")])
 PLUGIN_PAGE = ROOT / "docs" / "write-a-plugin.md"
+
+
+HOUSES = {path.name: path for path in [ROOT / "tangible_core", *sorted(ROOT.glob("plugins/*/tangible_*"))]}
+
+
+@pytest.mark.parametrize("house", HOUSES)
+def test_the_architecture_page_names_every_room(house):
+    page = ROOT.joinpath("docs/architecture.md").read_text(encoding="utf-8")
+    [part] = re.findall(rf"^### {house}\n(.*?)(?=^##|\Z)", page, re.DOTALL | re.MULTILINE)
+    rooms = {path.parent.relative_to(HOUSES[house]).as_posix() for path in HOUSES[house].rglob("*/__init__.py")}
+    assert set(re.findall(r"^\| `(.+)/` \| \S", part, re.MULTILINE)) == rooms
+
+
+def test_the_architecture_page_draws_the_floors_as_they_are():
+    page = ROOT.joinpath("docs/architecture.md").read_text(encoding="utf-8")
+    contracts = tomllib.loads(ROOT.joinpath("pyproject.toml").read_text("utf-8"))["tool"]["importlinter"]["contracts"]
+    floors = [contract["layers"] for contract in contracts if contract["type"] == "layers"]
+    assert len(floors) == 5
+    assert not [layers for layers in floors if "```text\n" + "\n".join(layers) + "\n```" not in page]
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
@@ -25,6 +45,24 @@ def test_links_lead_somewhere(page):
 def test_the_plugin_page_shows_the_example_as_it_is(name):
     shown = PLUGIN_PAGE.read_text(encoding="utf-8")
     assert ROOT.joinpath("examples/third_party", name).read_text(encoding="utf-8").strip() in shown
+
+
+@pytest.mark.parametrize(
+    ("page", "name"),
+    [
+        ("write-a-force-law.md", "force_law/acme_cushion/cushion.py"),
+        ("write-a-force-law.md", "force_law/acme_cushion/compiled.py"),
+        ("write-a-force-law.md", "force_law/acme_cushion/kernels.py"),
+        ("write-a-force-law.md", "force_law/cushion.yaml"),
+        ("write-a-force-law.md", "force_law/tests/test_acme_cushion.py"),
+        ("write-a-device.md", "device/acme_handle/handle.py"),
+        ("write-a-device.md", "device/handle.yaml"),
+        ("write-a-device.md", "device/tests/test_acme_handle.py"),
+    ],
+)
+def test_the_pages_on_laws_and_devices_show_their_examples_as_they_are(page, name):
+    shown = ROOT.joinpath("docs", page).read_text(encoding="utf-8")
+    assert ROOT.joinpath("examples", name).read_text(encoding="utf-8").strip() in shown
 
 
 @pytest.mark.parametrize("moment", sorted(name for name in vars(hooks.Specs) if name.startswith("tangible_")))

@@ -72,7 +72,7 @@ def test_yaml_that_ended_in_a_traceback_or_a_screen_of_text(folder: Path, name: 
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("scene=" + "[" * 3000, "blocks within each other"),
+        ("scene=" + "[" * 3000, "blocks are nested"),
         ("scene=" + "9" * 5000, "digits"),
         ("materials." + "9" * 5000 + "=ice", "unknown option"),
         ("materials.²=ice", "unknown option"),
@@ -123,7 +123,7 @@ def test_what_is_no_file(folder: Path, words: tuple[str, ...]):
     os.mkfifo(folder / "pipe.yaml")
     (folder / "zero.yaml").symlink_to("/dev/zero")
     for name in ("pipe.yaml", "zero.yaml"):
-        assert "no file but a folder or a device" in refused(*words, name, cwd=folder)
+        assert "not a file but a folder or a device" in refused(*words, name, cwd=folder)
 
 
 def test_a_name_that_a_terminal_would_obey(folder: Path):

@@ -14,7 +14,7 @@ import pytest
 from distributions import distribution
 
 ROOT = Path(__file__).parents[1]
-EXAMPLE = ROOT / "examples" / "third_party"
+EXAMPLE, LAW, DEVICE = (ROOT / "examples" / name for name in ("third_party", "force_law", "device"))
 HERE = {sysconfig.get_path("purelib"), sysconfig.get_path("platlib")}
 """Where the environment that runs the tests keeps what is installed."""
 
@@ -56,7 +56,8 @@ def environment(tmp_path_factory: pytest.TempPathFactory) -> Environment:
     folder = tmp_path_factory.mktemp("fresh")
     environment = Environment(folder / "venv")
     environment.install(build(ROOT, folder / "ours"))
-    environment.install(build(EXAMPLE, folder / "theirs"))
+    for example in (EXAMPLE, LAW, DEVICE):
+        environment.install(build(example, folder / example.name))
     return environment
 
 
@@ -76,10 +77,21 @@ def test_it_conforms(environment, tmp_path):
     assert "0 failed" in ran.stdout
 
 
-def test_its_own_tests_pass(environment, tmp_path):
-    command = [environment.python, "-m", "pytest", "-q", "-p", "no:cacheprovider", EXAMPLE / "tests"]
+@pytest.mark.parametrize("example", [EXAMPLE, LAW, DEVICE], ids=lambda example: example.name)
+def test_its_own_tests_pass(environment, tmp_path, example):
+    command = [environment.python, "-m", "pytest", "-q", "-p", "no:cacheprovider", example / "tests"]
     ran = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert ran.returncode == 0, ran.stdout + ran.stderr
+
+
+def test_a_law_and_a_device_work_together(environment, tmp_path):
+    """The example's surface is felt with the example's law on the example's device."""
+    law = ["--set", "render.use=acme-cushion-compiled"]
+    ran = environment.run("feel", DEVICE / "handle.yaml", *law, "--seconds", "0.5", cwd=tmp_path)
+    assert ran.returncode == 0, ran.stdout + ran.stderr
+    assert "acme-cushion-compiled" in ran.stdout
+    figures = dict(line.split() for line in ran.stdout.partition("figure ")[2].splitlines()[1:])
+    assert float(figures["peak_force_n"]) > 0
 
 
 def test_a_pipeline_uses_it_and_its_observer_hears(environment, tmp_path):
@@ -122,6 +134,7 @@ def test_a_broken_plugin_beside_it_harms_nobody(environment, tmp_path):
 
 
 def test_the_example_is_short():
-    lines = [line for path in EXAMPLE.rglob("*.py") for line in path.read_text().splitlines()]
-    assert len(lines) < 60
-    assert len(EXAMPLE.joinpath("README.md").read_text().splitlines()) <= 12
+    for example, most in ((EXAMPLE, 60), (LAW, 150), (DEVICE, 180)):
+        lines = [line for path in example.rglob("*.py") for line in path.read_text().splitlines()]
+        assert len(lines) < most
+        assert len(example.joinpath("README.md").read_text().splitlines()) <= 12

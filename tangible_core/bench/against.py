@@ -56,7 +56,7 @@ def compare(before: Sequence[Row], after: Sequence[Row]) -> Verdict:
     different machines.
     """
     if not before or not after:
-        raise ResultsError("a file without a single row cannot be compared; measure first")
+        raise ResultsError("a file without rows cannot be compared; measure first")
     kinds = {before[-1].compare, after[-1].compare}
     if len(kinds) > 1:
         raise ResultsError(f"one file compares {before[-1].compare}, the other {after[-1].compare}")
@@ -79,7 +79,7 @@ def _common_baseline(before: Sequence[Row], after: Sequence[Row]) -> str | None:
     if before[-1].machine != after[-1].machine:
         one, other = (shown(str(rows[-1].machine.get("processor"))) for rows in (before, after))
         raise ResultsError(
-            f"seconds on {one} and on {other} cannot be compared; name the same `baseline:` in both, then ratios are"
+            f"seconds on {one} and on {other} cannot be compared; name the same `baseline:` in both to compare ratios"
         )
     return None
 

@@ -32,7 +32,7 @@ def measure(found: DisparityMap, pair: KnownPair) -> dict[str, float]:
     Raises: PictureError if the disparity is relative: it has no unit to compare.
     """
     if found.unit != "px":
-        raise PictureError(f"the disparity is {found.unit}, not in px: it cannot be compared with the truth")
+        raise PictureError(f"the disparity is {found.unit}, not in px; it cannot be compared with the ground truth")
     everywhere = disparity_errors(found.disparity_px, pair.truth_px)
     both = disparity_errors(found.disparity_px, np.where(pair.visible, pair.truth_px, np.float32(np.nan)))
     return everywhere | {f"{name}{NOC}": value for name, value in both.items()}

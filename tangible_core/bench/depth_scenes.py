@@ -95,7 +95,7 @@ def _truth(folder: Path) -> Path:
 def _known(scene: Scene, name: str, zero_is_unknown: bool) -> KnownPair:
     if scene.views is None or scene.views.right is None or scene.truth is None:
         raise PictureError(
-            f"{name} is no pair with true disparity; compare on builtin/motorcycle, synthetic ones or a folder of pairs"
+            f"{name} is not a pair with true disparity; use builtin/motorcycle, a synthetic one or a folder of pairs"
         )
     truth_px = np.where(scene.truth == 0, np.float32(np.nan), scene.truth) if zero_is_unknown else scene.truth
     return KnownPair(scene.views, truth_px, visible_pixels(truth_px))

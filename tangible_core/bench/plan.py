@@ -46,7 +46,7 @@ def measurements(comparison: Comparison) -> list[Measurement]:
 
 
 @dataclass(frozen=True)
-class Known:
+class KnownScene:
     """What must be known of a scene before it is measured on."""
 
     digest: str
@@ -54,8 +54,8 @@ class Known:
     """Options that methods may be told."""
 
 
-def _scenes(comparison: Comparison) -> dict[str, Known]:
-    known: dict[str, Known] = {}
+def _scenes(comparison: Comparison) -> dict[str, KnownScene]:
+    known: dict[str, KnownScene] = {}
     complaints: list[str] = []
     for name, spec in comparison.scenes.items():
         try:
@@ -63,14 +63,14 @@ def _scenes(comparison: Comparison) -> dict[str, Known]:
         except TangibleError as error:
             complaints.append(f"{comparison.path}: scene {name}: {error}")
         else:
-            known[name] = Known(scene.digest(), {key: tell(scene) for key, tell in comparison.task.given.items()})
+            known[name] = KnownScene(scene.digest(), {key: tell(scene) for key, tell in comparison.task.given.items()})
     if complaints:
         raise ConfigError(*complaints)
     return known
 
 
 def _side_by_side(
-    comparison: Comparison, methods: Sequence[Entry], scene: str, known: Known, damage: Damage, repeat: int
+    comparison: Comparison, methods: Sequence[Entry], scene: str, known: KnownScene, damage: Damage, repeat: int
 ) -> Iterator[Measurement]:
     task, protocol = comparison.task, comparison.protocol
     for entry in methods:

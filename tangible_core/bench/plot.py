@@ -1,4 +1,4 @@
-"""Run time against error, one panel a measure, with the front of those that nobody beats in both."""
+"""Run time against error, one panel a measure, with the Pareto front."""
 # matplotlib keywords have no types.
 # pyright: reportUnknownMemberType=false
 
@@ -98,4 +98,4 @@ def _colour(index: int) -> str:
 def _title(results: Results) -> str:
     count = len(results.scenes)
     scenes = results.scenes[0] if count == 1 else f"mean of {count} scenes"
-    return f"{results.task.kind}: {scenes}; dashed: nobody is faster and better"
+    return f"{results.task.kind}: {scenes}; dashed: Pareto front"

@@ -23,7 +23,7 @@ DELAYS = (0, 1, 2)
 
 
 @dataclass(frozen=True, eq=False)
-class Felt:
+class PathForces:
     """The forces of a law along a way."""
 
     method: ForceRenderer
@@ -35,13 +35,13 @@ def prepare(method: ForceRenderer, scene: KnownStroke) -> tuple[ForceRenderer, T
     return method, method.touch(scene.surface)
 
 
-def feel(prepared: tuple[ForceRenderer, Touch], scene: KnownStroke) -> Felt:
+def feel(prepared: tuple[ForceRenderer, Touch], scene: KnownStroke) -> PathForces:
     """What is timed: all ticks in one call."""
     method, touch = prepared
-    return Felt(method, touch.path(scene.position_m, scene.period_s))
+    return PathForces(method, touch.path(scene.position_m, scene.period_s))
 
 
-def measure(felt: Felt, scene: KnownStroke) -> dict[str, float]:
+def measure(felt: PathForces, scene: KnownStroke) -> dict[str, float]:
     """All of MEASURES; against F = k (p - q), p the nearest point, k the law's own stiffness if it has that option."""
     stiffness = float(felt.method.model_dump().get(STIFFNESS, STIFFNESS_N_PER_M))
     truth_n = stiffness * (scene.nearest_m - scene.position_m)

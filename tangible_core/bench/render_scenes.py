@@ -51,7 +51,7 @@ class RenderScene(SceneSpec):
         idle = ("width_m", "relief_m") if self.analytic else ("cells",)
         idle += ("depth_m",) if self.recording else ()
         if told := [name for name in idle if getattr(self, name) != type(self).model_fields[name].default]:
-            raise ValueError(f"{' and '.join(told)} would change nothing here; leave it out")
+            raise ValueError(f"{' and '.join(told)} has no effect here; leave it out")
         return self
 
     @classmethod
@@ -101,6 +101,6 @@ def _recorded(file: Path) -> tuple[Float64[np.ndarray, "n 3"], float]:
     periods_s = np.diff(recording.time_s)
     if not (np.isfinite(recording.position_m).all() and periods_s.size and np.median(periods_s) > 0):
         raise OutputError(
-            f"{file}: no way of a hand: two finite positions or more, their times rising; record it again"
+            f"{file}: not a path of a hand: it needs two finite positions or more at increasing times; record it again"
         )
     return recording.position_m, float(np.median(periods_s))

@@ -111,7 +111,7 @@ def _row(path: Path, number: int, line: str) -> Row:
         first = error.errors(include_url=False, include_input=False)[0]
         place = shown(".".join(map(str, first["loc"])))
         why = f"{place}: {first['msg']}" if place else first["msg"]
-        raise ResultsError(f"{path}:{number}: is no row of results: {why}; remove the line") from error
+        raise ResultsError(f"{path}:{number}: is not a row of results: {why}; remove the line") from error
 
 
 @cache

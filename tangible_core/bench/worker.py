@@ -78,21 +78,21 @@ def _damaged(task: Task, job: Job) -> Any:
     return task.perturbations[job.perturb].apply(scene, job.value) if job.perturb in task.perturbations else scene
 
 
-class _Timed(NamedTuple):
+class _Timing(NamedTuple):
     piece_s: float
     whole_s: float
     """With what comes before the work."""
     result: Any
 
 
-def _timed(task: Task, method: Any, scene: Any) -> _Timed:
+def _timed(task: Task, method: Any, scene: Any) -> _Timing:
     gc.collect()
     start = perf_counter()
     prepared = task.prepare(method, scene)
     ready = perf_counter()
     result = task.work(prepared, scene)
     end = perf_counter()
-    return _Timed((end - ready) / task.clock.pieces(scene), end - start, result)
+    return _Timing((end - ready) / task.clock.pieces(scene), end - start, result)
 
 
 def main() -> None:

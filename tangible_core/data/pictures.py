@@ -57,7 +57,7 @@ def fill_non_finite(picture: np.ndarray) -> tuple[np.ndarray, Bool[np.ndarray, "
 
     known: np.ndarray = np.all(np.isfinite(np.atleast_3d(picture)), axis=2)
     if not known.any():
-        raise PictureError(f"none of the {known.size} pixels is finite; bring a picture with some that are")
+        raise PictureError(f"none of the {known.size} pixels is finite; use a picture with finite pixels")
     nearest = cast(Any, ndimage).distance_transform_edt(~known, return_distances=False, return_indices=True)
     return picture[nearest[0], nearest[1]], known
 
@@ -121,7 +121,7 @@ def check_same_shape(name: str, values: np.ndarray, other: str, others: np.ndarr
         raise PictureError(f"{name} is (h, w) with at least one pixel, not {values.shape}")
     if values.shape != others.shape:
         raise PictureError(
-            f"{name} is {size_in_words(values)} and {other} is {size_in_words(others)}; they are of one size"
+            f"{name} is {size_in_words(values)} and {other} is {size_in_words(others)}; they must be of one size"
         )
 
 

@@ -32,7 +32,7 @@ class Relief(Record):
     def __post_init__(self) -> None:
         super().__post_init__()
         if self.height_m.ndim != 2 or self.height_m.size == 0:
-            raise GeometryError(f"heights are (h, w) with at least one cell, not {self.height_m.shape}")
+            raise GeometryError(f"heights must be (h, w) with at least one cell, not {self.height_m.shape}")
         if not (0 < self.extent_m[0] < np.inf and 0 < self.extent_m[1] < np.inf):
             raise GeometryError(f"a surface needs a positive width and length in metres, not {self.extent_m}")
         try:
@@ -41,7 +41,7 @@ class Relief(Record):
             raise GeometryError(str(error)) from error
         if float(self.height_m.min()) < 0:
             raise GeometryError(
-                f"heights are >= 0 above the base plane, the lowest is {self.height_m.min():g} m; add it"
+                f"heights must be >= 0 above the base plane, but the lowest is {self.height_m.min():g} m; shift them up"
             )
 
     @property
@@ -92,7 +92,7 @@ class Material:
         if self.dynamic_friction > self.static_friction:
             yield (
                 f"dynamic_friction {self.dynamic_friction} is above static_friction {self.static_friction}; "
-                "things slide more easily than they start"
+                "sliding takes no more force than starting"
             )
         if self.anisotropy > 1 or self.irregularity > 1:
             yield f"anisotropy {self.anisotropy} and irregularity {self.irregularity} are at most 1"
@@ -132,7 +132,7 @@ class HapticSurface(Record):
             return
         if self.labels.shape != self.height_m.shape:
             raise GeometryError(
-                f"labels are {size_in_words(self.labels)}, heights {size_in_words(self.height_m)}; they are of one size"
+                f"labels are {size_in_words(self.labels)}, heights {size_in_words(self.height_m)}; resize one of them"
             )
         low, high = int(self.labels.min()), int(self.labels.max())
         if low < 0 or (self.materials is not None and high >= len(self.materials)):
@@ -151,7 +151,7 @@ class HapticSurface(Record):
         Raises: GeometryError as `Relief`, MaterialError as the class.
         """
         if height_m.ndim != 2 or height_m.size == 0:
-            raise GeometryError(f"heights are (h, w) with at least one cell, not {height_m.shape}")
+            raise GeometryError(f"heights must be (h, w) with at least one cell, not {height_m.shape}")
         rows, columns = height_m.shape
         relief = Relief(np.ascontiguousarray(height_m, np.float32), (width_m, width_m * rows / columns))
         return cls(relief, labels, materials)

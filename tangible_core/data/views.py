@@ -52,7 +52,7 @@ class Views(Record):
             if self.left.shape[:2] != self.right.shape[:2]:
                 raise PictureError(
                     f"the left view is {size_in_words(self.left)} and the right one {size_in_words(self.right)}; "
-                    "a pair has one size"
+                    "both views must be of one size"
                 )
 
     @property

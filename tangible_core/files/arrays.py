@@ -10,7 +10,7 @@ from zipfile import ZIP_DEFLATED, ZIP_STORED, ZipFile
 import numpy as np
 
 from ..errors import shown
-from .reading import TooLarge, check_bytes, check_size
+from .reading import TooLargeError, check_bytes, check_size
 
 _CHUNK = 1 << 20
 _ZIP = b"PK"
@@ -37,7 +37,7 @@ class Archive:
     def read(self, names: Collection[str]) -> dict[str, np.ndarray]:
         """The arrays of these names.
 
-        Raises: TooLarge if they hold more than `MOST_BYTES` together; ValueError, in words, if one is not there, is
+        Raises: TooLargeError if they hold more than `MOST_BYTES` together; ValueError, in words, if one is missing, is
         damaged, or holds no numbers or texts.
         """
         if missing := [name for name in names if name not in self._members]:
@@ -47,7 +47,7 @@ class Archive:
         with _in_words():
             for each in wanted.values():  # NumPy uses no other; of some, a few bytes decode to gigabytes at once
                 if each.compress_type not in (ZIP_STORED, ZIP_DEFLATED):
-                    raise ValueError("it is compressed in a way that NumPy does not know")
+                    raise ValueError("its compression is not one that NumPy uses")
             return {name: self._read(each.filename, each.file_size) for name, each in wanted.items()}
 
     def _read(self, member: str, held: int) -> np.ndarray:
@@ -58,7 +58,7 @@ class Archive:
 def read_array(file: IO[bytes]) -> np.ndarray:
     """The array of an .npy file, or the only one of an .npz file, whatever the file is called.
 
-    Raises: TooLarge or ValueError, in words, if there is no such array.
+    Raises: TooLargeError or ValueError, in words, if there is no such array.
     """
     zipped = file.read(len(_ZIP)) == _ZIP
     held = file.seek(0, 2)
@@ -68,7 +68,7 @@ def read_array(file: IO[bytes]) -> np.ndarray:
             return _numbers(file, held)
     archive = Archive(file)
     if len(archive.names) != 1:
-        raise ValueError(f"it holds {len(archive.names)} arrays, and one is meant")
+        raise ValueError(f"it holds {len(archive.names)} arrays instead of one")
     (array,) = archive.read(archive.names).values()
     return array
 
@@ -79,7 +79,7 @@ def _in_words() -> Generator[None]:
     try:
         with warnings.catch_warnings(action="ignore"):
             yield
-    except TooLarge:
+    except TooLargeError:
         raise
     except Exception as error:
         raise ValueError(shown(str(error) or type(error).__name__, 200)) from error
@@ -89,17 +89,17 @@ def _numbers(file: IO[bytes], held: int) -> np.ndarray:
     """The array of an .npy file, or of a member of an archive, of so many bytes."""
     version = np.lib.format.read_magic(file)
     if version > (2, 0):
-        raise ValueError("its header is of a kind that is for records, not for numbers")
+        raise ValueError("its header is for records, not for numbers")
     header = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
     shape, by_columns, dtype = header(file)
     if dtype.kind in "OV":
         raise ValueError("it holds Python objects or records, not numbers")
     if min(shape, default=0) < 0:
-        raise ValueError(f"its header says a shape of {shape}")
+        raise ValueError(f"its header states the shape {shape}")
     check_size(shape, dtype.itemsize)
     wanted = math.prod(shape) * dtype.itemsize
     if (follow := held - file.tell()) != wanted:
-        raise ValueError(f"its header says {wanted} bytes of numbers, and {follow} follow")
+        raise ValueError(f"its header says {wanted} bytes of numbers, but {follow} follow")
     data = np.empty(wanted, np.uint8)
     for start in range(0, wanted, _CHUNK):
         part = data[start : start + _CHUNK]

@@ -17,21 +17,21 @@ TOO_MANY_PIXELS = f"is larger than {MOST_PIXELS // 1_000_000} megapixels"
 _UNSAID = 1 << 16
 
 
-class TooLarge(ValueError):
+class TooLargeError(ValueError):
     """A file holds, or says that it holds, more than is read."""
 
 
 def check_size(shape: Sequence[int], itemsize: int) -> None:
-    """What a header says of an array, pixels first. Raises: TooLarge."""
+    """What a header says of an array, pixels first. Raises: TooLargeError."""
     if len(shape) > 1 and math.prod(shape[:2]) > MOST_PIXELS:
-        raise TooLarge(TOO_MANY_PIXELS)
+        raise TooLargeError(TOO_MANY_PIXELS)
     check_bytes(math.prod(shape) * itemsize)
 
 
 def check_bytes(count: int) -> None:
-    """What several headers say together. Raises: TooLarge."""
+    """What several headers say together. Raises: TooLargeError."""
     if count > MOST_BYTES:
-        raise TooLarge(f"holds more than {in_words(MOST_BYTES)}")
+        raise TooLargeError(f"holds more than {in_words(MOST_BYTES)}")
 
 
 def check_file(path: Path, most: int = MOST_BYTES) -> None:
@@ -44,7 +44,7 @@ def check_file(path: Path, most: int = MOST_BYTES) -> None:
     except ValueError as error:
         raise OSError(errno.EINVAL, "no file can have this name") from error
     if not stat.S_ISREG(found.st_mode):
-        raise OSError(errno.EINVAL, "it is no file but a folder or a device")
+        raise OSError(errno.EINVAL, "it is not a file but a folder or a device")
     if found.st_size > most:
         raise OSError(errno.EFBIG, f"it holds more than {in_words(most)}")
 

@@ -40,11 +40,11 @@ class Source:
         try:
             loaded = _load(value)
         except YAMLError as error:
-            raise ConfigError(f"{_named(text)}: {quoted(value)} is no YAML value: {_problem(error)}") from error
+            raise ConfigError(f"{_named(text)}: {quoted(value)} is not a YAML value: {_problem(error)}") from error
         node: Any = self.tree
         for part in parts[:-1]:
             if isinstance(node.get(part), list):
-                raise ConfigError(f"{_named(text)}: {part} is a list; set the whole of it: {part}=[...]")
+                raise ConfigError(f"{_named(text)}: {part} is a list; set it as a whole: {part}=[...]")
             if not isinstance(node.get(part), dict):
                 node[part] = CommentedMap()
             node = node[part]
@@ -160,7 +160,7 @@ def _load(text: str) -> Any:
         except YAMLError:
             raise
         except Exception as error:  # its parser was not written for what is wrong on purpose
-            raise YAMLError(f"it cannot be understood: {error}") from error
+            raise YAMLError(f"it cannot be parsed: {error}") from error
 
 
 def _problem(error: YAMLError) -> str:

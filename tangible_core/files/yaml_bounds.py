@@ -59,18 +59,18 @@ def check_events(events: Iterable[Any]) -> None:
 
 def _open(count: _Count, event: Any, is_mapping: bool) -> None:
     if count.open and _is_key(count.open[-1]):
-        raise _refusal(event, "a key is one word or one number, no list and no mapping")
+        raise _refusal(event, "a key must be a word or a number, not a list or a mapping")
     if len(count.open) >= MOST_DEPTH:
-        raise _refusal(event, f"there are more than {MOST_DEPTH} blocks within each other")
+        raise _refusal(event, f"more than {MOST_DEPTH} blocks are nested")
     count.open.append(_Block(event.anchor, is_mapping))
 
 
 def _alias(count: _Count, event: Any) -> None:
     if any(block.anchor == event.anchor for block in count.open):
-        raise _refusal(event, "an alias stands within what it stands for")
+        raise _refusal(event, "an alias refers to a block that contains it")
     nodes = count.nodes_of.get(event.anchor, 1)  # of one that is not known, the parser complains
     if nodes > 1 and count.open and _is_key(count.open[-1]):
-        raise _refusal(event, "a key is one word or one number, no list and no mapping")
+        raise _refusal(event, "a key must be a word or a number, not a list or a mapping")
     _add(count, event, nodes, None)
 
 
@@ -83,7 +83,7 @@ def _add(count: _Count, event: Any, nodes: int, anchor: str | None) -> None:
     count.open[-1].parts += 1
     count.open[-1].nodes += nodes
     if sum(block.nodes for block in count.open) > MOST_NODES:
-        raise _refusal(event, f"there are more than {MOST_NODES} values, each alias counted as all that it stands for")
+        raise _refusal(event, f"there are more than {MOST_NODES} values, aliases expanded")
 
 
 def _is_key(block: _Block) -> bool:
@@ -101,13 +101,13 @@ class BoundedConstructor(RoundTripConstructor):
     def construct_non_recursive_object(self, node: Any, tag: str | None = None) -> Any:
         """The value of a node."""
         if node.tag in _NUMBERS and len(node.value) > MOST_DIGITS:
-            raise MarkedYAMLError(None, None, f"a number of over {MOST_DIGITS} digits", node.start_mark)
+            raise MarkedYAMLError(None, None, f"a number of more than {MOST_DIGITS} digits", node.start_mark)
         try:
             return cast(Any, super()).construct_non_recursive_object(node, tag)
         except YAMLError:
             raise
         except Exception as error:  # such as ValueError, for `!!int word`
-            raise MarkedYAMLError(None, None, f"it cannot be understood: {error}", node.start_mark) from error
+            raise MarkedYAMLError(None, None, f"it cannot be parsed: {error}", node.start_mark) from error
 
 
 _bounded: Any = BoundedConstructor

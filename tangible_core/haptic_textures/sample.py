@@ -18,7 +18,9 @@ def sample_tile(material: Material, width_m: float, pixels: int) -> Float32[np.n
     Raises: MaterialError if width_m is not positive and finite, or pixels under 1.
     """
     if not (0 < width_m < np.inf and pixels >= 1):
-        raise MaterialError(f"a tile has a positive width and at least one pixel, not {width_m} m and {pixels} pixels")
+        raise MaterialError(
+            f"a tile needs a positive width and at least one pixel, not {width_m} m and {pixels} pixels"
+        )
     pitch_m = width_m / pixels
     parts = waves(material)
     fine = np.maximum(np.abs(parts.fx), np.abs(parts.fy)) * pitch_m > 1 / FINEST

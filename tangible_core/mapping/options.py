@@ -19,17 +19,18 @@ class WorkspaceMapping(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     scale: Annotated[float, Field(ge=1e-3, le=1e3)] | None = None
-    """Hand millimetres per picture millimetre. If left out 1, or what makes the region fill the device's workspace."""
+    """Hand movement per movement on the picture. By default 1, or, with `region_m`, what fits the region to the
+    device's workspace."""
     region_m: tuple[Metres, Metres, Size, Size] | None = None
     """The part of the picture to feel: x and y of its centre from the picture's centre, width, length."""
     rotation_deg: Annotated[float, Field(ge=-360, le=360)] = 0.0
-    """The picture is turned by this under the hand, counter-clockwise seen from above; quarter turns are exact."""
+    """Rotation of the picture under the hand, counter-clockwise seen from above; multiples of 90 are exact."""
     offset_m: tuple[Metres, Metres, Metres] = (0.0, 0.0, 0.0)
-    """Where the hand finds the centre of the picture, or of the region, on the base plane."""
+    """Position in the device's workspace of the centre of the picture, or of the region, on the base plane."""
     clutch_button: Annotated[int, Field(ge=0, le=31)] | None = None
-    """While this button (the first is 0) is held there is no force, and the picture goes sideways with the hand."""
+    """While this button (the first is 0) is held, there is no force, and the picture moves sideways with the hand."""
     limits_m: tuple[Size, Size, Size] | None = None
-    """Size along x, y, z of the box about the device's centre outside of which there is no force."""
+    """Size along x, y, z of a box about the device's centre; outside it there is no force."""
 
     def placement(self, workspace_m: Vector) -> Placement:
         """In numbers, for a device of this workspace."""

@@ -19,7 +19,7 @@ REQUIRED = ("stiffness_n_per_m", "damping_n_s_per_m", "static_friction", "dynami
 def _explained(key: str) -> str:
     known = (*VALUES, "others")
     if key not in known:
-        raise ValueError(f"source of {quoted(key)}, which is no value{did_you_mean(key, known)}")
+        raise ValueError(f"source of {quoted(key)}, which is not a property{did_you_mean(key, known)}")
     return key
 
 

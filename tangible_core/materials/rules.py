@@ -24,20 +24,20 @@ class MaterialRule(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     segment: Annotated[int, Field(ge=0)] | None = None
-    """The segment with this label, as the report's sheet counts them."""
+    """The segment with this label, as numbered in the report."""
     at: tuple[Place, Place] | None = None
-    """The segment under this point of the left picture: [x, y] in pixels, from its upper left corner's pixel."""
+    """The segment at this pixel of the left picture: [x, y], counted from the upper left corner."""
     colour: Colour | None = None
-    """Every segment of which more pixels have this colour than any other, by hue, chroma and lightness in CIELAB."""
+    """Every segment whose most frequent colour this is, by hue, chroma and lightness in CIELAB."""
     material: str
-    """What it gets."""
+    """Name of the material for these segments."""
 
     @model_validator(mode="after")
     def _one_way(self) -> Self:
         given = [name for name in ("segment", "at", "colour") if getattr(self, name) is not None]
         if len(given) != 1:
             raise ValueError(
-                f"a rule says one of segment, at and colour; this one says {' and '.join(given) or 'none'}"
+                f"a rule takes one of segment, at and colour; this one has {' and '.join(given) or 'none'}"
             )
         return self
 
@@ -76,7 +76,7 @@ def _fits(rule: MaterialRule, segments: SegmentMap, picture: np.ndarray | None) 
     if rule.at is not None:
         return {_label_at(*rule.at, segments): f"at [{rule.at[0]:g}, {rule.at[1]:g}]"}
     if picture is None or picture.shape[:2] != segments.labels.shape:
-        raise MaterialError("a colour needs the picture of the segments, and there is none of their size")
+        raise MaterialError("a rule by colour needs the segmented picture, but there is none of that size")
     named = enumerate(segment_colours(segments, picture))
     return {label: f"{100 * share:.0f} % of it {name}" for label, (name, share) in named if name == rule.colour}
 

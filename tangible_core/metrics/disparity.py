@@ -40,7 +40,7 @@ def absolute_error(
     """
     if disparity_px.shape != truth_px.shape:
         raise PictureError(
-            f"the disparity map is {disparity_px.shape} and its truth {truth_px.shape}; crop or scale one"
+            f"the disparity map is {disparity_px.shape} and its truth {truth_px.shape}; crop or scale one of them"
         )
     known = np.isfinite(disparity_px) & np.isfinite(truth_px)
     error_px = np.full(truth_px.shape, np.nan)

@@ -100,7 +100,7 @@ def loop_works(force_n: Vectors, position_m: Vectors, free: Bool[np.ndarray, "n"
 
 def _same_length(first: np.ndarray, second: np.ndarray) -> None:
     if len(first) != len(second):
-        raise GeometryError(f"one has {len(first)} ticks and the other {len(second)}; they belong to one path")
+        raise GeometryError(f"one has {len(first)} ticks and the other {len(second)}; they must be of one path")
 
 
 def _rms(values: np.ndarray) -> float:

@@ -23,7 +23,7 @@ def segment_errors(labels: Labels, truth: Labels) -> dict[str, float]:
     Raises: PictureError if the two differ in size, or hold nothing.
     """
     if labels.shape != truth.shape or labels.size == 0:
-        raise PictureError(f"the labels are {labels.shape} and the true ones {truth.shape}; crop or scale one")
+        raise PictureError(f"the labels are {labels.shape} and the true ones {truth.shape}; crop or scale one of them")
     counts = contingency(labels, truth)
     return {
         "ari": adjusted_rand_index(counts),

@@ -31,17 +31,17 @@ class MaterialChoice(Section):
     """Which material each segment gets."""
 
     rules: tuple[MaterialRule, ...] = ()
-    """These decide first; of several that fit a segment, the first."""
+    """Rules, which decide first; of several that fit a segment, the first one wins."""
     by: Annotated[
         Annotated[Literal["roughness", "rules"], Tag(":word")] | Annotated[dict[int, str], Tag(":labels")],
         Discriminator(lambda value: ":labels" if isinstance(value, dict) else ":word"),
     ] = "roughness"
-    """What no rule decides. `roughness`: the rougher a segment within this picture, the rougher its material. Or a map
-    from label to name; or `rules`, for nothing more than those."""
+    """How segments without a rule get a material. `roughness`: by rank, the roughest segment of the picture gets the
+    roughest material. A map: from label to material. `rules`: not at all, they get `default`."""
     default: str = NEUTRAL
-    """The material of segments that nothing decides."""
+    """Material of the segments that are left."""
     library: Path | None = None
-    """A YAML file of materials of your own, added to those that are shipped."""
+    """A YAML file with materials of your own, in addition to the built-in ones."""
 
 
 @dataclass(frozen=True)

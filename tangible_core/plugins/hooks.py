@@ -75,7 +75,7 @@ def _say_unknown_moments(plugins: pluggy.PluginManager) -> None:
         for each in plugins.get_hookcallers(plugin) or []:
             if each.name not in moments:
                 near = did_you_mean(each.name, moments)
-                log.warning("hooks %s watch %s, which is no moment%s", name, each.name, near)
+                log.warning("hooks %s watch %s, which is not a moment%s", name, each.name, near)
 
 
 def tell(plugins: pluggy.PluginManager, moment: str, **facts: Any) -> list[Any]:
@@ -85,5 +85,5 @@ def tell(plugins: pluggy.PluginManager, moment: str, **facts: Any) -> list[Any]:
         try:
             answers.append(each.function(*(facts[name] for name in each.argnames)))
         except Exception:
-            log.warning("observer %s failed in %s and is passed over", each.plugin_name, moment, exc_info=True)
+            log.warning("observer %s failed in %s and is ignored", each.plugin_name, moment, exc_info=True)
     return [answer for answer in answers if answer is not None]

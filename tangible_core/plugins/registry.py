@@ -109,7 +109,7 @@ class Registry:
             ) from error
         wanted = KINDS[each.kind]  # pyright: ignore[reportArgumentType]
         if not (isinstance(cls, type) and issubclass(cls, wanted)):
-            raise BrokenMethod(f"{kind} method {name!r} ({each.target}, from {each.origin}) is no {wanted.__name__}")
+            raise BrokenMethod(f"{kind} method {name!r} ({each.target}, from {each.origin}) is not a {wanted.__name__}")
         if missing := sorted(cls.__abstractmethods__):
             raise BrokenMethod(f"{kind} method {name!r} ({each.target}) does not implement {', '.join(missing)}")
         return cls

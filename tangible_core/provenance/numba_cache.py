@@ -38,7 +38,7 @@ def tell(caching: Any) -> None:
             self._cache_file = type(self._cache_file)(self.cache_path, name, self._impl.locator.get_source_stamp())
         except (AttributeError, TypeError) as error:
             self.disable()
-            log.warning("this version of numba is not known, so that kernels are compiled in every process: %s", error)
+            log.warning("this version of numba is unknown, so kernels are compiled in every process: %s", error)
 
     def save(self: Any, sig: Any, data: Any) -> None:
         saved(self, sig, data)

@@ -94,7 +94,7 @@ def draw_figure(run: Mapping[str, Any], title: str, panels: Sequence[Panel]) -> 
 
     panels = [panel for panel in panels if run.keys() >= set(panel.needs)]
     if not panels:
-        raise OutputError(f"{title}: there is nothing to draw; ask for a product that a picture can show")
+        raise OutputError(f"{title}: there is nothing to draw; ask for a product that can be drawn")
     boxes, width_in, height_in = arrange([_cell(panel, scene_aspect(run)) for panel in panels], WIDTH_IN)
     figure = Figure(figsize=(width_in, height_in + TITLE_IN), dpi=DPI, facecolor="white")
     figure.text(0.15 / width_in, 1 - 0.1 / (height_in + TITLE_IN), title, fontsize=13, weight="bold", va="top")

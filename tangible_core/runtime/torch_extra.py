@@ -29,5 +29,5 @@ def pick_device(wanted: TorchDevice) -> "torch.device":
     """Raises: BrokenMethod if torch is missing, or a GPU is asked for and there is none."""
     torch = need("torch")
     if wanted == "cuda" and not torch.cuda.is_available():
-        raise BrokenMethod("torch_device is 'cuda' and torch finds no such GPU here; use 'auto' or 'cpu'")
+        raise BrokenMethod("torch_device is 'cuda', but torch finds no such GPU here; use 'auto' or 'cpu'")
     return torch.device("cuda" if wanted != "cpu" and torch.cuda.is_available() else "cpu")

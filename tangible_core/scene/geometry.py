@@ -52,7 +52,7 @@ def fill_rows(values: Float[np.ndarray, "h w"]) -> Float[np.ndarray, "h w"]:
     """
     unknown = np.isnan(values)
     if unknown.all():
-        raise GeometryError("holes cannot be filled: every value is unknown (NaN); bring a map with some known values")
+        raise GeometryError("holes cannot be filled: every value is unknown (NaN); use a map with some known values")
     if not unknown.any():
         return values
     before, after = _neighbours(unknown)
@@ -95,8 +95,8 @@ def make_relief(
         nearness = np.where(np.isnan(depth) & ~np.isnan(nearness), -np.inf, -depth)
     if not np.isfinite(nearness).any():
         raise GeometryError(
-            "no depth is known anywhere: all disparities are NaN or put everything at infinity; check that left and "
-            "right are not swapped, the range of disparities that is searched, and offset_px"
+            "no depth is known anywhere: all disparities are NaN or mean infinity; check that left and "
+            "right are not swapped, the search range, and offset_px"
         )
     return _relief(nearness, width_m, relief_m, holes, RANGE_PERCENT)
 
@@ -109,7 +109,7 @@ def scale_heights(heights: Shaped[np.ndarray, "h w"], width_m: float, relief_m: 
     """
     values = np.where(np.isfinite(heights), heights, np.nan)
     if np.isnan(values).all():
-        raise GeometryError("the height map holds no height, only NaN or infinity; bring one with some known values")
+        raise GeometryError("the height map holds only NaN or infinity; use one with some known values")
     return _relief(values, width_m, relief_m, holes, (0, 100))
 
 
@@ -123,7 +123,7 @@ def _relief(
     values: Float[np.ndarray, "h w"], width_m: float, relief_m: float, holes: Holes, percent: tuple[float, float]
 ) -> Relief:
     if not (0 < width_m < np.inf and 0 < relief_m < np.inf):
-        raise GeometryError(f"width_m and relief_m are positive lengths in metres, not {width_m} and {relief_m}")
+        raise GeometryError(f"width_m and relief_m must be positive lengths in metres, not {width_m} and {relief_m}")
     rows, columns = values.shape
     whole = fill_rows(values) if holes == "fill" else values
     heights = relief_m * _unit_range(whole, values[np.isfinite(values)], percent)
@@ -218,7 +218,7 @@ def smooth(relief: Relief, sigma_m: float) -> Relief:
     Raises: GeometryError if sigma_m is negative or not finite.
     """
     if not 0 <= sigma_m < np.inf:
-        raise GeometryError(f"sigma_m is a length in metres, 0 or more, not {sigma_m}")
+        raise GeometryError(f"sigma_m must be a length in metres, 0 or more, not {sigma_m}")
     sigmas = sigma_m / relief.pitch_m[0], sigma_m / relief.pitch_m[1]
     if max(sigmas) < 0.1:  # a pixel's own size hides it
         return relief

@@ -13,7 +13,7 @@ from jaxtyping import Float32, Int32
 from ..data.pictures import check_finite, check_picture
 from ..errors import PictureError, did_you_mean, shown
 from ..files import arrays
-from ..files.reading import TOO_MANY_PIXELS, TooLarge, check_size, read_bytes
+from ..files.reading import TOO_MANY_PIXELS, TooLargeError, check_size, read_bytes
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -71,7 +71,9 @@ def map_of(values: np.ndarray, name: str) -> Float32[np.ndarray, "h w"]:
     if values.ndim == 3 and values.shape[2] in (3, 4) and not np.any(values[..., :3] != values[..., :1]):
         values = values[..., 0]
     if values.ndim != 2 or values.size == 0 or values.dtype.kind not in "buif":
-        raise PictureError(f"{name}: a map is one number a pixel, (h, w), not {values.shape} of {values.dtype}")
+        raise PictureError(
+            f"{name}: a map must have one number per pixel, (h, w), not {values.shape} of {values.dtype}"
+        )
     with np.errstate(over="ignore"):
         numbers = values.astype(np.float32)
     return np.where(np.isfinite(numbers), numbers, np.float32(np.nan))
@@ -90,13 +92,15 @@ def labels_of(values: np.ndarray, name: str) -> Int32[np.ndarray, "h w"]:
     if values.ndim == 3 and values.dtype.kind == "u" and values.shape[2] <= 4:
         values = values.astype(np.uint64) @ (1 << 16 * np.arange(values.shape[2], dtype=np.uint64))
     if values.ndim != 2 or values.size == 0 or values.dtype.kind not in "buif":
-        raise PictureError(f"{name}: a label picture has one label a pixel, not {values.shape} of {values.dtype}")
+        raise PictureError(
+            f"{name}: a label picture must have one label per pixel, not {values.shape} of {values.dtype}"
+        )
     check_finite(values, name)
     known, labels = np.unique(values, return_inverse=True)
     if known.size > MAX_LABELS:
         raise PictureError(
-            f"{name}: holds {known.size} labels, at most {MAX_LABELS} are sensible; give each segment one flat colour "
-            "and save it without loss, as PNG"
+            f"{name}: holds {known.size} labels, but at most {MAX_LABELS} are allowed; give each segment one flat "
+            "colour and save the picture losslessly, as PNG"
         )
     return labels.reshape(values.shape).astype(np.int32)
 
@@ -129,11 +133,11 @@ def _read_bytes(path: Path) -> bytes:
 def _array(path: Path, data: bytes) -> np.ndarray:
     try:
         return arrays.read_array(BytesIO(data))
-    except TooLarge as error:
+    except TooLargeError as error:
         raise _too_large(path, error) from error
     except ValueError as error:
         raise PictureError(
-            f"{path}: cannot be read as an array: {error}; save the one that is meant with numpy.save"
+            f"{path}: cannot be read as an array: {error}; save a single array with numpy.save"
         ) from error
 
 
@@ -147,10 +151,12 @@ def _picture(path: Path, data: bytes, indices: bool) -> np.ndarray:
             warnings.simplefilter("error", Image.DecompressionBombWarning)
             return _decoded(path, data, indices)
     except UnidentifiedImageError as error:
-        raise PictureError(f"{path}: is no picture this program can read; use PNG, JPEG, TIFF, PFM or NPY") from error
+        raise PictureError(
+            f"{path}: is not a picture that this program can read; use PNG, JPEG, TIFF, PFM or NPY"
+        ) from error
     except (Image.DecompressionBombError, Image.DecompressionBombWarning) as error:  # Pillow's limit is above ours
         raise _too_large(path, TOO_MANY_PIXELS) from error
-    except TooLarge as error:
+    except TooLargeError as error:
         raise _too_large(path, error) from error
     except PictureError:
         raise
@@ -237,7 +243,7 @@ def _picture_by_opencv(path: Path, data: bytes) -> np.ndarray:
     finally:
         cv2.utils.logging.setLogLevel(log_level)
     if values is None:
-        raise PictureError(f"{path}: the picture is damaged or of a rare kind; save it again as PNG or TIFF")
+        raise PictureError(f"{path}: the picture is damaged or of an unsupported kind; save it again as PNG or TIFF")
     if values.ndim == 3:
         values = cv2.cvtColor(values, cv2.COLOR_BGRA2RGBA if values.shape[2] == 4 else cv2.COLOR_BGR2RGB)
     return values

@@ -225,7 +225,7 @@ def _check_sizes(files: SceneFiles, held: Mapping[str, np.ndarray]) -> None:
         if (its := held[other].shape[1::-1]) != size:
             raise PictureError(
                 f"{getattr(files, other)} ({other}) is {its[0]} x {its[1]} and {getattr(files, main)} ({main}) is "
-                f"{size[0]} x {size[1]}; all parts of a scene are of one size: resize or cut one of them"
+                f"{size[0]} x {size[1]}; all parts of a scene must be of one size; resize or crop one of them"
             )
 
 

@@ -31,30 +31,32 @@ class SceneFiles(BaseModel):
     photo: Path | None = None
     """A single picture."""
     height: Path | None = None
-    """A height map in any unit, higher values stand out: a grey picture, .npy, .pfm or .tif. No depth is estimated."""
+    """A height map in any unit, larger values standing higher: a grey picture, .npy, .pfm or .tif. No depth is
+    estimated."""
     disparity: Path | None = None
-    """A ready disparity map of the left view or the photo, in pixels, NaN where unknown. No depth is estimated."""
+    """A disparity map of the left view or the photo, in pixels, NaN where unknown. No depth is estimated."""
     segments: Path | None = None
-    """A label picture, one flat colour or number a segment. No texture is segmented."""
+    """A label picture: one colour or number per segment. No texture is segmented."""
     truth: Path | None = None
-    """True disparity of the left view, in pixels, NaN or infinite where unknown; for errors only."""
+    """Ground-truth disparity of the left view, in pixels, NaN or infinite where unknown; used for error figures
+    only."""
     focal_px: Length | None = None
-    """Focal length of the rectified cameras; with baseline_m, the relief is true to depth."""
+    """Focal length of the rectified cameras, in pixels; with `baseline_m`, the relief is proportional to depth."""
     baseline_m: Length | None = None
-    """Distance between the cameras' centres."""
+    """Distance between the camera centres."""
     offset_px: Annotated[float, Field(allow_inf_nan=False)] | None = None
-    """Difference of the principal points' columns, right minus left (Middlebury's `doffs`); 0 when left out."""
+    """Column of the right camera's principal point minus that of the left (Middlebury's `doffs`); 0 if left out."""
     rig: Path | None = None
     """Calibration of the two cameras that took left and right (K, lens distortion, rotation, translation), in OpenCV's
     YAML (M1, D1, M2, D2, R, T) or Kalibr's (cam0, cam1): the raw pair is rectified by it, and depth is metric."""
     rig_unit_m: Length | None = None
     """Metres that one unit of the rig's translation is; 1 when left out, 0.001 for a board measured in millimetres."""
     relief_m: Length | None = None
-    """Height of the relief that a height map stands for; the workspace's when left out."""
+    """Height of the relief made from a height map; by default that of `workspace`."""
 
     non_finite: NonFinite = "error"
-    """NaN and infinity in a picture: an `error` that names the first place; or a `mask`: filled from the nearest pixel,
-    and unknown in what is found there: no disparity, and segments without confidence."""
+    """What to do with NaN and infinity in a picture. `error`: stop, and name the first such pixel. `mask`: fill from
+    the nearest pixel, and leave the disparity unknown and the segment's confidence 0 there."""
 
     @model_validator(mode="after")
     def _one_scene(self) -> Self:
@@ -69,7 +71,7 @@ class SceneFiles(BaseModel):
         if idle := self.rig and [name for name in given if name in _OF_VIEWS or name == "segments"]:
             raise ValueError(f"rig says what the cameras are, and turns the pictures; leave out {', '.join(idle)}")
         if idle := self.height and [name for name in given if name in _OF_VIEWS]:
-            raise ValueError(f"height already says how high everything is; leave out {', '.join(idle)}")
+            raise ValueError(f"height already gives all heights; leave out {', '.join(idle)}")
         return self
 
     @property

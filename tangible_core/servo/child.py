@@ -73,7 +73,7 @@ class Child:
         if failures:
             raise failures[0]
         if thread.is_alive():
-            raise DeviceError("the force loop is stuck in its law or its device and was left behind")
+            raise DeviceError("the force loop is stuck in its law or its device and was abandoned")
 
     def _tick(self, ring: Ring, failures: list[BaseException]) -> None:
         try:

@@ -23,7 +23,7 @@ SECOND_NS = 1_000_000_000
 
 
 @final
-class _Foreign(types.WrapperAddressProtocol):
+class _ForeignFunction(types.WrapperAddressProtocol):
     """A function of the C library."""
 
     def __init__(self, name: str, signature: Any) -> None:
@@ -39,8 +39,8 @@ class _Foreign(types.WrapperAddressProtocol):
 
 def clock() -> tuple[np.ndarray, Any, Any]:
     """What `now` and `wait` take: two words, and two functions of the C library that write and read them."""
-    read = _Foreign("clock_gettime", int32(int32, uintp))
-    sleep = _Foreign("clock_nanosleep", int32(int32, int32, uintp, uintp))
+    read = _ForeignFunction("clock_gettime", int32(int32, uintp))
+    sleep = _ForeignFunction("clock_nanosleep", int32(int32, int32, uintp, uintp))
     return np.zeros(2, np.int64), read, sleep
 
 

@@ -37,7 +37,7 @@ FLAGS = TICK_COLUMNS.index("flags")
 STATE = 7
 """Length of a device's state, as `LinkKernels` says."""
 OVERRUN = int(TickFlag.OVERRUN)
-begun, going = njit(**KERNEL)(schedule.begun), njit(**KERNEL)(schedule.going)
+begin_tick, going = njit(**KERNEL)(schedule.begin_tick), njit(**KERNEL)(schedule.going)
 AT, LATE = 0, 1
 NO_MORE = -1
 
@@ -112,7 +112,7 @@ def cycle(link, law, limits, state, row, time_s, late_s, period_s):
 def begin(clock, header):
     """Wait for the next tick; when it began and how late it was, nanoseconds."""
     at_ns = wait_ns(clock, header[NEXT_NS], header[LEAD_NS])
-    return at_ns, begun(header, at_ns)
+    return at_ns, begin_tick(header, at_ns)
 
 
 @njit(**KERNEL)

@@ -23,7 +23,7 @@ from .ring import (
     SWAP,
     Ring,
 )
-from .schedule import begun, going
+from .schedule import begin_tick, going
 
 SECOND_NS = 1_000_000_000
 Sections = tuple[np.ndarray, ...]
@@ -72,12 +72,12 @@ def prepare(link: Link, touch: Touch, ring: Ring, settings: np.ndarray) -> Loop:
         return Loop(lambda: kernels.run(ticking, *fixed, shared, state, row), "the whole loop is compiled")
     kernel = _begun(kernels.ticks, *fixed, shared, state, row)
 
-    def exchanged(at_ns: int, late_ns: int) -> None:
+    def exchange_then_tick(at_ns: int, late_ns: int) -> None:
         link.exchange()
         kernel.now[:] = at_ns, late_ns
         next(kernel.ticks)
 
-    return Loop(_timed(exchanged, kernel, shared[0]), "the tick is compiled, Python asks the device")
+    return Loop(_timed(exchange_then_tick, kernel, shared[0]), "the tick is compiled, Python asks the device")
 
 
 def sections(ring: Ring) -> Sections:
@@ -138,9 +138,9 @@ def _plain(
         state = link.read()
         force, flags = allowed(state, period_s)
         link.write(force)
-        begun = (at_ns - header[START_NS]) / SECOND_NS, late_ns / SECOND_NS
+        began = (at_ns - header[START_NS]) / SECOND_NS, late_ns / SECOND_NS
         felt = *state.position_m, *state.velocity_m_per_s, *proxy, *link.applied
-        row[:] = (*begun, *felt, flags, state.buttons)
+        row[:] = (*began, *felt, flags, state.buttons)
         kernel.now[:] = at_ns, late_ns
         next(kernel.ticks)
 
@@ -169,4 +169,4 @@ def _begin(header: np.ndarray) -> tuple[int, int]:
         at_ns = time.monotonic_ns()
     while at_ns < due_ns:
         at_ns = time.monotonic_ns()
-    return at_ns, int(begun(header, at_ns))
+    return at_ns, int(begin_tick(header, at_ns))

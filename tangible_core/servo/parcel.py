@@ -34,7 +34,7 @@ def pack(thing: Any) -> Path:
                 file.write(bytes(-file.tell() % ALIGN))
     except OSError as error:
         Path(name).unlink(missing_ok=True)
-        raise DeviceError(f"{folder}: no room to pass the scene on: {error.strerror or error}") from error
+        raise DeviceError(f"{folder}: no room to hand over the scene: {error.strerror or error}") from error
     return Path(name)
 
 

@@ -103,7 +103,7 @@ class Ring:
             raise DeviceError(f"{path}: no force loop runs there: {error}") from error
         magic, layout, slots = np.frombuffer(mapped, np.int64, 3).tolist() if len(mapped) >= 24 else (0, 0, 0)
         if magic != MAGIC or layout != LAYOUT or len(mapped) != _size(slots):
-            raise DeviceError(f"{path}: is no ring of layout {LAYOUT}; watch it with the version that wrote it")
+            raise DeviceError(f"{path}: is not a ring of layout {LAYOUT}; watch it with the version that wrote it")
         return cls(path, mapped, slots)
 
     def remove(self) -> None:

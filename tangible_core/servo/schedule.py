@@ -13,8 +13,8 @@ def going(header: np.ndarray) -> bool:
     return header[STOP] == 0 and header[SWAP] == 0 and header[COUNT] < header[LAST]
 
 
-def begun(header: np.ndarray, at_ns: int) -> int:
-    """Note that the tick that was due has begun; how late it is, nanoseconds.
+def begin_tick(header: np.ndarray, at_ns: int) -> int:
+    """Begin the tick that was due: count what was missed, and set when the next is due. Returns nanoseconds late.
 
     Periods that went by without a tick are counted and not made up for: the next tick is due in step with the first.
 

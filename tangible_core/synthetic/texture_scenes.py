@@ -52,7 +52,7 @@ def texture_mosaic(
     """
     known = builtin_textures() if textures is None else textures
     if len(known) < segments:
-        raise PictureError(f"a mosaic of {segments} needs as many textures, and there are {len(known)}; add some")
+        raise PictureError(f"a mosaic of {segments} needs as many textures, but there are {len(known)}; add some")
     random = np.random.default_rng(seed)
     chosen = random.choice(sorted(known), segments, replace=False)
     count = max(segments + 2, 8 * segments // 5)
@@ -126,7 +126,7 @@ def folder_textures(folder: Path) -> dict[str, Family]:
     """
     paths = sorted(path for path in folder.glob("*.*") if path.suffix.lower() in ENDINGS)
     if not paths:
-        raise PictureError(f"{folder}: holds no picture of a texture; put some there, such as bark.png")
+        raise PictureError(f"{folder}: holds no texture pictures; put some there, such as bark.png")
     return {path.stem: partial(_crop, _texture(read_picture(path), str(path))) for path in paths}
 
 
@@ -138,7 +138,7 @@ def _builtin_photograph(name: str) -> Float64[np.ndarray, "h w"]:
 
 def _texture(picture: np.ndarray, name: str) -> Float64[np.ndarray, "h w"]:
     if is_one_colour(picture):
-        raise PictureError(f"{name}: is one flat colour and no texture; take it out")
+        raise PictureError(f"{name}: is one flat colour, not a texture; remove it")
     return to_grey(picture).astype(np.float64)
 
 

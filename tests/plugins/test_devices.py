@@ -131,7 +131,7 @@ class TestCsv:
             ("", ":1:", "the first line names time_s,x_m,y_m,z_m"),
             ("time_s,x_m,y_m\n0,0,0\n", ":1:", "no column z_m"),
             ("time_s,x_m,y_m,z_mm\n0,0,0,0\n", ":1:", "did you mean 'z_mm'"),
-            ("time_s,x_m,y_m,z_m\n", ": has no rows", "write one row a moment"),
+            ("time_s,x_m,y_m,z_m\n", ": has no rows", "write one row per moment"),
             ("time_s,x_m,y_m,z_m\n0,0,0,0\n1,0,abc,0\n", ":3:", "y_m is 'abc'; write a finite number"),
             ("time_s,x_m,y_m,z_m\n0,0,0,nan\n", ":2:", "z_m is 'nan'"),
             ("time_s,x_m,y_m,z_m\n0,inf,0,0\n", ":2:", "x_m is 'inf'"),
@@ -157,7 +157,7 @@ class TestCsv:
     def test_a_pipe_or_a_device_is_not_waited_for(self, tmp_path: Path):
         os.mkfifo(tmp_path / "pipe.csv")
         for path in (tmp_path / "pipe.csv", Path("/dev/zero")):
-            with pytest.raises(DeviceError, match=r"no file but a folder or a device; check csv_file"):
+            with pytest.raises(DeviceError, match=r"not a file but a folder or a device; check csv_file"):
                 Mock(path="csv", csv_file=path).open()
 
     def test_a_long_text_in_place_of_a_number_is_not_repeated(self, tmp_path: Path):

@@ -91,10 +91,10 @@ def test_without_a_file_it_goes_down_and_up_once():
 @pytest.mark.parametrize(
     ("change", "complaint"),
     [
-        (lambda table: table[:0], "has no whole tick"),
-        (lambda table: np.where(np.arange(16) < 14, np.nan, table), "has no whole tick"),
-        (lambda table: table[::-1], "goes back after 7."),
-        (lambda table: table[[0, 1, 1]], "stands still"),
+        (lambda table: table[:0], "has no complete tick"),
+        (lambda table: np.where(np.arange(16) < 14, np.nan, table), "has no complete tick"),
+        (lambda table: table[::-1], "does not increase after 7."),
+        (lambda table: table[[0, 1, 1]], "does not increase after 7."),
     ],
 )
 def test_recordings_that_cannot_be_played(tmp_path: Path, change, complaint: str):

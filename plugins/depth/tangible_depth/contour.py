@@ -26,13 +26,15 @@ class Contour(DepthEstimator):
     """
 
     smoothing_px: Annotated[float, Field(ge=0, le=20)] = 1.0
-    """Width of the Gaussian that removes noise first; 0 for none."""
+    """Standard deviation of the Gaussian that removes noise first; 0 for none."""
     strong_edge: Annotated[float, Field(gt=0, le=1)] = 0.2
-    """Slope, as a share of the picture's steepest, that makes a contour."""
+    """Gradient, as a fraction of the picture's steepest, above which a contour starts."""
     weak_edge: Annotated[float, Field(ge=0, le=1)] = 0.05
-    """Slope, as a share of the picture's steepest, down to which a contour is followed; 0 keeps every slope."""
+    """Gradient, as a fraction of the picture's steepest, down to which a contour is followed; 0 keeps every
+    gradient."""
     least_contrast: Annotated[float, Field(gt=0, le=1)] = 0.004
-    """Slope, as a share of white a pixel, below which nothing is a contour: a flat picture stays flat."""
+    """Gradient, as a fraction of white per pixel, below which nothing is a contour, so that a flat picture stays
+    flat."""
 
     def estimate(self, views: Views) -> DisparityMap:
         """Relative nearness of the left view, 0 far to 1 near; all 0 where there is no contour. The right is not read.

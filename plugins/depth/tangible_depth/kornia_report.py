@@ -22,22 +22,24 @@ class KorniaReport(DepthEstimator):
     """
 
     window_px: Literal[5, 7, 9, 11, 13, 15, 17, 19, 21] = 9
-    """Side of the square window that is correlated."""
+    """Side of the square correlation window."""
     least_contrast: Annotated[float, Field(gt=0, le=1)] = 0.005
-    """Slope, as a share of white a pixel, below which an edge is no feature."""
+    """Gradient, as a fraction of white per pixel, below which an edge is not used as a feature."""
     least_score: Annotated[float, Field(ge=0, le=1)] = 0.7
-    """Correlation below which a match is left out."""
+    """Correlation below which a match is rejected."""
     max_disparity_px: Annotated[int, Field(ge=1)] | Literal["auto"] = "auto"
-    """Shifts from 0 to this are tried; `auto` takes the range from the matched corners, of either sign."""
+    """Largest disparity searched, from 0; `auto` takes the range, of either sign, from matched corners."""
     torch_device: TorchDevice = "auto"
-    """Where to compute; `auto` takes a GPU when there is one."""
+    """Device to compute on; `auto` uses a GPU if there is one."""
     memory_mb: Annotated[int, Field(ge=1)] = 64
-    """What the scores may take, done in strips of rows: little suits a CPU's caches, a GPU wants more."""
+    """Memory for the matching scores, which are computed in strips of rows: small values suit a CPU's caches, large
+    ones a GPU."""
 
     def estimate(self, views: Views) -> DisparityMap:
         """Dense disparity of the left view.
 
-        Raises: PictureError without a right view, BrokenMethod without torch or kornia, CannotRectify as `rectify`.
+        Raises: PictureError without a right view, BrokenMethod without torch or kornia, RectificationError as
+        `rectify`.
         """
         need("torch")
         need("kornia")

@@ -25,20 +25,21 @@ class KorniaZNCC(DepthEstimator):
     """
 
     window_px: Literal[3, 5, 7, 9, 11, 13, 15] = 7
-    """Side of the square window that is correlated."""
+    """Side of the square correlation window."""
     max_disparity_px: Annotated[int, Field(ge=1)] | Literal["auto"] = "auto"
-    """Shifts from 0 to this are tried; `auto` takes the range from matched corners, of either sign."""
+    """Largest disparity searched, from 0; `auto` takes the range, of either sign, from matched corners."""
     rectify: Literal["auto", "never"] = "auto"
-    """`auto` turns a pair whose rows do not correspond; `never` takes every pair as rectified."""
+    """`auto` rectifies a pair whose rows do not correspond; `never` takes every pair as rectified."""
     torch_device: TorchDevice = "auto"
-    """Where to compute; `auto` takes a GPU when there is one."""
+    """Device to compute on; `auto` uses a GPU if there is one."""
     memory_mb: Annotated[int, Field(ge=1)] = 64
-    """What the scores may take, done in strips of rows: little suits a CPU's caches, a GPU wants more."""
+    """Memory for the matching scores, which are computed in strips of rows: small values suit a CPU's caches, large
+    ones a GPU."""
 
     def estimate(self, views: Views) -> DisparityMap:
         """Dense disparity of the left view.
 
-        Raises: PictureError without a right view, BrokenMethod without torch, CannotRectify as `rectify`.
+        Raises: PictureError without a right view, BrokenMethod without torch, RectificationError as `rectify`.
         """
         need("torch")
         if views.right is None:

@@ -22,9 +22,9 @@ class Luminance(DepthEstimator):
     """
 
     smoothing_px: Annotated[int, Field(ge=0, le=1000)] = 2
-    """Radius of the windows that are averaged; 0 leaves the picture as it is."""
+    """Radius of the smoothing window; 0 leaves the picture as it is."""
     edge_contrast: Annotated[float, Field(gt=0, le=1)] = 0.05
-    """Standard deviation within a window, white being 1, from which on it is kept as an edge rather than smoothed."""
+    """Standard deviation within a window, white being 1, above which it counts as an edge and is not smoothed."""
 
     def estimate(self, views: Views) -> DisparityMap:
         """Relative disparity 0 (darkest) .. 1 (lightest), known everywhere with confidence 1."""

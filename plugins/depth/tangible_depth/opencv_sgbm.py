@@ -36,24 +36,25 @@ class OpenCVSGBM(DepthEstimator, Skippable):
     """
 
     mode: Literal["3way", "hh4", "sgbm", "hh"] = "3way"
-    """Along how many directions costs are summed: `3way` 3 and `sgbm` 5, in little memory; `hh4` 4 and `hh` 8, with 4
-    bytes a pixel and disparity."""
+    """Number of directions along which costs are aggregated: `3way` 3 and `sgbm` 5, in little memory; `hh4` 4 and `hh`
+    8, with 4 bytes per pixel and disparity."""
     block_px: Annotated[int, Field(ge=1, le=11)] = 5
-    """Side of the blocks that are compared; odd."""
+    """Side of the blocks that are matched; odd."""
     min_disparity_px: Annotated[int, Field(ge=-2016, le=2016)] = 0
-    """The farthest disparity that is tried; below 0 where the cameras converge."""
+    """Smallest disparity searched; negative where the cameras converge."""
     max_disparity_px: Annotated[int, Field(ge=-2016, le=2016)] = 64
-    """Disparities below this one are tried."""
+    """Disparities below this one are searched."""
     uniqueness_percent: Annotated[int, Field(ge=0, le=99)] = 10
-    """The best cost must beat every other one, its neighbours aside, by this much; otherwise unknown."""
+    """Margin by which the best cost must beat all others but its neighbours; otherwise the disparity is unknown."""
     speckle_size: Annotated[int, Field(ge=0)] = 100
-    """Patches of at most this many pixels are dropped; 0 keeps all."""
+    """Speckles of at most this many pixels are removed; 0 keeps all."""
     speckle_step_px: Annotated[int, Field(ge=1, le=16)] = 2
-    """Neighbours belong to one patch while they differ by no more than this."""
+    """Largest difference of disparity between neighbours within one speckle."""
     second_pass: bool = True
-    """Match from the right view too, for a graded confidence, in twice the time. Without, all that is known has 1."""
+    """Match from the right view too, for a graded confidence, in twice the time. Without it, every known disparity has
+    confidence 1."""
     fill: bool = False
-    """Fill what is unknown from the background in its row (`fill_rows`), at confidence 0."""
+    """Fill unknown disparities from the background in their row (`fill_rows`), with confidence 0."""
 
     @model_validator(mode="after")
     def _check_range(self) -> Self:
@@ -78,7 +79,7 @@ class OpenCVSGBM(DepthEstimator, Skippable):
         """
         if views.right is None:
             raise PictureError(
-                "stereo needs two views, this scene has one; use a method for one picture, such as luminance"
+                "stereo needs two views, but this scene has one; use a method for a single picture, such as luminance"
             )
         left, right = _eight_bits(views.left, views.right)
         found = np.where(_has_texture(left, self.block_px), self._match(left, right), np.float32(np.nan))

@@ -26,18 +26,21 @@ class Report(DepthEstimator):
     """
 
     window_px: Literal[5, 7, 9, 11, 13, 15, 17, 19, 21] = 9
-    """Side of the square window that is correlated."""
+    """Side of the square correlation window."""
     harris_sigma_px: Annotated[float, Field(gt=0, le=10)] = 1.0
-    """Width of the Gaussian over which the Harris response gathers gradients."""
+    """Standard deviation of the Gaussian that weights the gradients in the Harris response."""
     least_contrast: Annotated[float, Field(gt=0, le=1)] = 0.005
-    """Slope, as a share of white a pixel, below which an edge is no feature."""
+    """Gradient, as a fraction of white per pixel, below which an edge is not used as a feature."""
     least_score: Annotated[float, Field(ge=0, le=1)] = 0.7
-    """Correlation below which a match is left out."""
+    """Correlation below which a match is rejected."""
     max_disparity_px: Annotated[int, Field(ge=1)] | Literal["auto"] = "auto"
-    """Shifts from 0 to this are tried; `auto` takes the range from the matched corners, of either sign."""
+    """Largest disparity searched, from 0; `auto` takes the range, of either sign, from matched corners."""
 
     def estimate(self, views: Views) -> DisparityMap:
-        """Dense disparity of the left view. Raises: PictureError without a right view, CannotRectify as `rectify`."""
+        """Dense disparity of the left view.
+
+        Raises: PictureError without a right view, RectificationError as `rectify`.
+        """
         window = gaussian_window(self.harris_sigma_px)
         parts = Parts(lambda grey: harris_response(grey, window), eight_point, self._match_rows)
         return disparity_by_features(views, parts, self.least_contrast, self.least_score, self.max_disparity_px)

@@ -9,7 +9,7 @@ from tangible_core.plugins.interfaces import DepthEstimator
 
 
 class SemiGlobal(DepthEstimator):
-    """Census codes matched along four paths; exact at depth edges and safe against exposure and noise.
+    """Semi-global matching of census codes along four paths: precise at depth edges, robust to exposure and noise.
 
     What a pair does not need is left out and said: the search of disparities that do not occur, rows without texture,
     a second view that equals the first. A pair whose views are exchanged is matched as well: its disparities are
@@ -22,26 +22,29 @@ class SemiGlobal(DepthEstimator):
     """
 
     max_disparity_px: Annotated[int, Field(ge=1)] | Literal["auto"] = "auto"
-    """Disparities from the least to one less than this are tried; auto: found in a few bands of the pair."""
+    """Upper end of the search range, exclusive; auto: estimated from a few bands of the pair."""
     min_disparity_px: int | Literal["auto"] = "auto"
-    """The least disparity tried; auto: 0 if the largest is given, else found with the range, of either sign."""
+    """Lower end of the search range; auto: 0 if the upper end is given, otherwise estimated with it, of either sign."""
     resolution: Literal["full", "half", "auto"] = "auto"
-    """Size at which is matched. auto: full, as long as the range allows. half: a preview in a fraction of the time, in
-    which costs and rows are not tried: `cost` auto is sharp, and rows are taken as they are."""
+    """Resolution of the matching. auto: full, unless the search range is too large. half: a preview in a fraction of
+    the time, without tests for noise and for vertical offset: `cost` auto is sharp, and rows are taken as they are."""
     cost: Literal["auto", "sharp", "light", "heavy"] = "auto"
-    """What is compared: sharp for clean pictures, light and heavy for noise; auto: tried on a part of the picture."""
+    """Matching cost: sharp for clean pictures, light and heavy for light and heavy noise; auto: chosen by a test on
+    part of the picture."""
     rectify: Literal["auto", "never"] = "auto"
-    """auto: a pair whose rows do not correspond is rectified first; never: every pair is taken as rectified."""
+    """auto: rectify a pair whose rows do not correspond; never: take every pair as rectified."""
     check: Literal["soft", "strict"] = "soft"
-    """Left-right check. soft: a match within 8 % of the right pixel's best is kept; strict: only the best."""
+    """Left-right check. soft: keep a match whose cost is within 8 % of the right pixel's best; strict: keep mutual best
+    matches only."""
     fill: bool = True
-    """Whether pixels without a match take the disparity that both views and the picture's edges suggest, else NaN."""
+    """Fill pixels without a match with the disparity that both views and the picture's edges suggest; if false they are
+    NaN."""
     realign_rows: bool = True
-    """Whether a constant vertical offset between the views is measured and put right."""
+    """Measure and correct a constant vertical offset between the views."""
     skip_identical: bool = True
-    """Whether a second view that equals the first is known by looking: every disparity is 0."""
+    """Identical views: return 0 everywhere and skip the matching."""
     skip_flat: bool = True
-    """Whether strips in which nothing changes along the rows are filled instead of matched."""
+    """Strips without any change along their rows: fill them and skip the matching."""
 
     def estimate(self, views: Views) -> DisparityMap:
         """Disparity in pixels, float32 (h, w), and its confidence; a filled map is finite unless nothing matched.

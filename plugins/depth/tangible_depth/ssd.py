@@ -11,7 +11,7 @@ from .windows.odd import WindowSide
 
 
 class Ssd(DepthEstimator):
-    """Windows matched by squared differences, sub-pixel by a parabola, both views in agreement, filled.
+    """Window matching by squared differences, with sub-pixel refinement, left-right check and filling.
 
     The simplest measure, for pairs of equal exposure; `zncc` allows for different ones.
     Colour is reduced to grey.
@@ -20,15 +20,16 @@ class Ssd(DepthEstimator):
     """
 
     window_px: WindowSide = 7
-    """Side of the square window, odd."""
+    """Side of the square matching window; odd."""
     max_disparity_px: Annotated[int, Field(ge=1, le=512)] | Literal["auto"] = "auto"
-    """Disparities from the least to one less than this are tried; auto: found in a few bands of the pair."""
+    """Upper end of the search range, exclusive; auto: estimated from a few bands of the pair."""
     min_disparity_px: int | Literal["auto"] = "auto"
-    """The least disparity tried; auto: 0 if the largest is given, else found with the range, of either sign."""
+    """Lower end of the search range; auto: 0 if the upper end is given, otherwise estimated with it, of either sign."""
     rectify: Literal["auto", "never"] = "auto"
-    """auto: a pair whose rows do not correspond is rectified first; never: every pair is taken as rectified."""
+    """auto: rectify a pair whose rows do not correspond; never: take every pair as rectified."""
     fill: bool = True
-    """Whether pixels without a match take the disparity that both views and the picture's edges suggest, else NaN."""
+    """Fill pixels without a match with the disparity that both views and the picture's edges suggest; if false they are
+    NaN."""
 
     def estimate(self, views: Views) -> DisparityMap:
         """Disparity in pixels, float32 (h, w), and its confidence; a filled map is finite unless nothing matched.

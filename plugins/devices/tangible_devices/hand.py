@@ -18,13 +18,14 @@ class VirtualHand(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     mass_kg: Annotated[float, Field(ge=1e-3, le=100)] = 0.1
-    """Hand and handle together."""
+    """Mass of hand and handle together."""
     damping_n_s_per_m: Annotated[float, Field(ge=0, le=1e4)] = 6.0
-    """Of hand and handle, against their motion."""
+    """Damping of the motion of hand and handle."""
     stiffness_n_per_m: Annotated[float, Field(ge=0.1, le=1e6)] = 300.0
-    """Of the spring that pulls the hand to its target."""
+    """Stiffness of the spring that pulls the hand to its target."""
     press_n: Annotated[float, Field(ge=0, le=1000)] = 1.5
-    """The most it presses down, however far below the surface its target is; so it rides over hills and valleys."""
+    """Greatest pressing force, however far below the surface the target is, so that the hand rides over hills and
+    valleys."""
 
 
 @final

@@ -28,27 +28,27 @@ class Mock(HapticDevice):
     """
 
     path: Literal["raster", "circle", "spiral", "press", "csv"] = "raster"
-    """Way of the hand: over the surface, straight down and up, or as recorded in csv_file."""
+    """Path of the hand: over the surface, straight down and up, or as recorded in `csv_file`."""
     csv_file: Path | None = None
-    """Recorded path: columns time_s, x_m, y_m, z_m; played once, straight between rows, then held at its end."""
+    """Recorded path with columns time_s, x_m, y_m, z_m; played once, linear between rows, then held at its end."""
     size_m: tuple[Size, Size] = (0.06, 0.04)
-    """Width and length of raster, circle and spiral, centred."""
+    """Width and length of raster, circle and spiral, which are centred."""
     lines: Annotated[int, Field(ge=2, le=200)] = 8
-    """Lines of the raster, turns of the spiral."""
+    """Number of lines of the raster, or turns of the spiral."""
     z_m: Height = -0.005
-    """Height of the path over the base plane; below it, a hand presses everywhere. The lowest point of a press."""
+    """Height of the path above the base plane; below the surface, the hand presses. Of `press`, the lowest point."""
     lift_m: Height = 0.03
-    """Where a press comes from, and how high a virtual hand starts."""
+    """Height at which `press` and a virtual hand start."""
     speed_m_per_s: Annotated[float, Field(ge=1e-6, le=1000)] = 0.08
-    """Along the path; a lap is rounded up to whole periods, and then repeats exactly."""
+    """Speed along the path; a lap is rounded up to whole periods, and then repeats exactly."""
     hand: VirtualHand | None = VirtualHand()
-    """The hand on the handle; null puts the tip on the path exactly."""
+    """Virtual hand on the handle; null keeps the tip on the path exactly."""
     tremor_m: Annotated[float, Field(ge=0, le=1)] = 0.0
-    """Most that the path trembles along each axis, at 8 to 12 Hz as a hand does."""
+    """Greatest tremor along each axis, at 8 to 12 Hz as of a hand."""
     seed: Annotated[int, Field(ge=0)] = 0
-    """Of the tremor."""
+    """Seed of the tremor."""
     period_s: Annotated[float, Field(ge=1e-5, le=1)] = 0.001
-    """Time from one read to the next."""
+    """Time between reads."""
 
     @model_validator(mode="after")
     def _agrees(self) -> Self:

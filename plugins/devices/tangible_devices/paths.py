@@ -109,9 +109,9 @@ def read_csv(path: Path, period_s: float) -> Stroke:
     except OSError as error:
         raise DeviceError(f"{path}: cannot be read: {error.strerror}; check csv_file") from error
     except (UnicodeDecodeError, csv.Error) as error:
-        raise DeviceError(f"{path}: is no CSV text file ({error}); save it as CSV in UTF-8") from error
+        raise DeviceError(f"{path}: is not a CSV text file ({error}); save it as CSV in UTF-8") from error
     if not rows:
-        raise DeviceError(f"{path}: has no rows; write one row a moment: {','.join(COLUMNS)}")
+        raise DeviceError(f"{path}: has no rows; write one row per moment: {','.join(COLUMNS)}")
     for (_, before), (line, after) in pairwise(rows):
         if not after[0] > before[0]:
             raise DeviceError(f"{path}:{line}: time_s {after[0]:g} does not come after {before[0]:g}; sort the rows")

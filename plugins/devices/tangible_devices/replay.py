@@ -22,7 +22,7 @@ class Replay(HapticDevice):
     """
 
     file: Path | None = None
-    """The recording, .nc, .npz or .csv; without one, a stroke of a second down to the base plane and up."""
+    """The recording: .nc, .npz or .csv. Without one, the hand moves down to the base plane and up within a second."""
 
     def spec(self) -> DeviceSpec:
         """A Novint Falcon's limits, as in CHAI3D's tables; positions are not rounded, which a picometre stands for."""
@@ -30,11 +30,11 @@ class Replay(HapticDevice):
 
     def open(self) -> Link:
         """From its start. Raises: DeviceError if the recording cannot be read, is empty, or its time stands still."""
-        return SimulatedLink("replay", Replayed(_stroke() if self.file is None else _load(self.file)).step)
+        return SimulatedLink("replay", Playback(_stroke() if self.file is None else _load(self.file)).step)
 
 
 @final
-class Replayed:
+class Playback:
     """A recording on its way."""
 
     def __init__(self, recording: Recording) -> None:
@@ -58,10 +58,10 @@ def _load(file: Path) -> Recording:
         raise DeviceError(str(error)) from error
     rows = rows[np.isfinite(rows[:, [0, 2, 3, 4, 5, 6, 7, 15]]).all(axis=1)]
     if not len(rows):
-        raise DeviceError(f"{file}: has no whole tick; record it again")
+        raise DeviceError(f"{file}: has no complete tick; record it again")
     stands = np.flatnonzero(np.diff(rows[:, 0]) <= 0)
     if stands.size:
-        raise DeviceError(f"{file}: time stands still or goes back after {rows[stands[0], 0]} s; record it again")
+        raise DeviceError(f"{file}: time does not increase after {rows[stands[0], 0]} s; record it again")
     return Recording(rows)
 
 

@@ -14,7 +14,7 @@ from .effects.material_table import stiffness_table
 
 
 class ForceShading(ForceRenderer):
-    """A spring out of the facets of the bilinear surface, its direction interpolated: F = k d_n n.
+    """A spring along the interpolated normal of a faceted (bilinear) surface: F = k d_n n.
 
     d_n = d / sqrt(1 + |g|^2) is the depth under the facet, d the depth straight down and g the facet's gradient; n is
     the unit normal that is bilinear between those at the cells' centres (from central differences). So the direction
@@ -24,7 +24,7 @@ class ForceShading(ForceRenderer):
     """
 
     stiffness_n_per_m: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 800.0
-    """Force for a depth of one metre under the facet, where the cell under the tip has no material of its own."""
+    """Stiffness, where the cell under the tip has no material of its own."""
 
     def touch(self, surface: HapticSurface) -> Touch:
         """A new touch on this surface; compiled on the first use on a machine, then loaded."""

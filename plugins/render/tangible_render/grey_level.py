@@ -13,7 +13,7 @@ from .surface.grey_levels import grey_levels
 
 
 class GreyLevel(ForceRenderer):
-    """The baseline: on contact, pushed up as hard as the picture is bright: F_z = white G / 255.
+    """The baseline: on contact, a force straight up in proportion to brightness, F_z = white G / 255.
 
     G is the height in 256 steps, 0 on the base plane and 255 at the surface's highest point, of the cell that the tip
     is in. Its faults are what the other renderers put right: the force steps at the surface, however gently it is
@@ -27,7 +27,7 @@ class GreyLevel(ForceRenderer):
     uses_materials: ClassVar[bool] = False
 
     force_at_white_n: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 3.0
-    """Force on the highest point."""
+    """Force on the highest point of the surface."""
 
     def touch(self, surface: HapticSurface) -> Touch:
         """A new touch on this surface; compiled on the first use on a machine, then loaded."""

@@ -13,7 +13,7 @@ from .surface.dequantise import Filter
 
 
 class LateralGradient(ForceRenderer):
-    """F = -K grad h in the plane, on contact: downhill, as hard as it is steep and however deep; nothing along z.
+    """A lateral force in proportion to the slope, on contact, whatever the depth: F = -K grad h; none along z.
 
     K is the weight of a ball that rolls on the surface. The surface is a C2 spline; it ends at its extent: beyond it is
     free air. The force steps at the surface.
@@ -24,9 +24,10 @@ class LateralGradient(ForceRenderer):
     is_lateral: ClassVar[bool] = True
 
     force_per_slope_n: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 2.0
-    """K: force on a slope of one metre per metre."""
+    """Gain K: force on a slope of 1 m/m."""
     dequantise: Filter = "auto"
-    """Smooth heights of 17 to 256 values, such as 8 bits have, within half a step: auto, never, or a sigma in cells."""
+    """Smoothing of heights with 17 to 256 distinct values, such as 8-bit pictures have, by at most half a step: auto,
+    never, or a standard deviation in cells."""
 
     def touch(self, surface: HapticSurface) -> Touch:
         """A new touch on this surface; compiled on the first use on a machine, then loaded."""

@@ -13,7 +13,7 @@ from .surface.dequantise import Filter
 
 
 class LateralShape(ForceRenderer):
-    """F = -F_n grad h in the plane, with F_n = k d for a hand d under the surface; nothing along z.
+    """A lateral force in proportion to slope and pressing force: F = -F_n grad h with F_n = k d; none along z.
 
     What a frictionless slope does to a finger that pushes with F_n, less its lift: it is felt as the shape even on a
     flat table, which brings the force along z. k stands for how hard the hand pushes. The surface is a C2 spline; it
@@ -26,9 +26,10 @@ class LateralShape(ForceRenderer):
     is_lateral: ClassVar[bool] = True
 
     stiffness_n_per_m: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 800.0
-    """k: how hard the hand is taken to push, for a depth of one metre."""
+    """Stiffness k that turns depth into the pressing force F_n."""
     dequantise: Filter = "auto"
-    """Smooth heights of 17 to 256 values, such as 8 bits have, within half a step: auto, never, or a sigma in cells."""
+    """Smoothing of heights with 17 to 256 distinct values, such as 8-bit pictures have, by at most half a step: auto,
+    never, or a standard deviation in cells."""
 
     def touch(self, surface: HapticSurface) -> Touch:
         """A new touch on this surface; compiled on the first use on a machine, then loaded."""

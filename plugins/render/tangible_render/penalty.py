@@ -23,11 +23,12 @@ class Penalty(ForceRenderer):
     """
 
     stiffness_n_per_m: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 800.0
-    """Force for a depth of one metre, where the cell under the tip has no material of its own."""
+    """Stiffness, where the cell under the tip has no material of its own."""
     damping_n_s_per_m: Annotated[float, Field(ge=0, allow_inf_nan=False)] = 0.0
-    """Force against one metre per second along z, in contact."""
+    """Damping along z, in contact."""
     dequantise: Filter = "auto"
-    """Smooth heights of 17 to 256 values, such as 8 bits have, within half a step: auto, never, or a sigma in cells."""
+    """Smoothing of heights with 17 to 256 distinct values, such as 8-bit pictures have, by at most half a step: auto,
+    never, or a standard deviation in cells."""
 
     def touch(self, surface: HapticSurface) -> Touch:
         """A new touch on this surface; compiled on the first use on a machine, then loaded."""

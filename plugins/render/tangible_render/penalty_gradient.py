@@ -13,10 +13,10 @@ from .effects.material_table import stiffness_table
 
 
 class PenaltyGradient(ForceRenderer):
-    """A spring out of the surface, conservative: F = k d (-g, 1).
+    """A conservative spring along the surface's gradient: F = k d (-g, 1).
 
     d = h(x, y) - z is the depth under the surface, h the bilinear interpolant of the heights and g its exact
-    gradient, so that F = -grad U with U = k d^2 / 2: where the stiffness is one, no closed path over the surface gains
+    gradient, so that F = -grad U with U = k d^2 / 2: where the stiffness is uniform, no closed path over it gains
     or loses energy. Not normalised: on a slope the stiffness along the normal is k (1 + |g|^2). Damping acts along the
     normal, in contact only, and never pulls. No friction.
 
@@ -26,9 +26,9 @@ class PenaltyGradient(ForceRenderer):
     """
 
     stiffness_n_per_m: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 800.0
-    """Force for a depth of one metre on level ground, where the cell under the tip has no material of its own."""
+    """Stiffness on level ground, where the cell under the tip has no material of its own."""
     damping_n_s_per_m: Annotated[float, Field(ge=0, allow_inf_nan=False)] = 0.0
-    """Force against one metre per second along the normal, in contact."""
+    """Damping along the normal, in contact."""
 
     def touch(self, surface: HapticSurface) -> Touch:
         """A new touch on this surface; compiled on the first use on a machine, then loaded."""

@@ -18,7 +18,7 @@ from .surface.tiles import tile_bounds
 
 
 class Proxy(ForceRenderer):
-    """A spring to the surface's nearest point, followed from tick to tick: F = k (p - q).
+    """A spring to a proxy (god-object), which stays on the surface: F = k (p - q).
 
     The proxy p starts where the hand q comes through the surface, a C2 spline, and then minimises |p - q| downhill from
     where it was, so that a wall holds it back: unlike a penalty force it does not throw the hand out at the far side.
@@ -37,26 +37,27 @@ class Proxy(ForceRenderer):
     renders_materials: ClassVar[bool] = True
 
     stiffness_n_per_m: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 800.0
-    """Force for one metre between proxy and hand, where the surface has no materials."""
+    """Stiffness between proxy and hand, where the surface has no materials."""
     damping_n_s_per_m: Annotated[float, Field(ge=0, allow_inf_nan=False)] = 0.0
-    """Force against one metre per second along the normal, where the surface has no materials."""
+    """Damping along the normal, where the surface has no materials."""
     static_friction: Annotated[float, Field(ge=0, allow_inf_nan=False)] = 0.0
-    """Sideways over normal force at which a proxy at rest breaks away, where the surface has no materials."""
+    """Coefficient of static friction, where the surface has no materials."""
     dynamic_friction: Annotated[float, Field(ge=0, allow_inf_nan=False)] = 0.0
-    """Sideways over normal force while it slides, where the surface has no materials."""
+    """Coefficient of dynamic friction, where the surface has no materials."""
     friction: bool = True
-    """False leaves all friction out, that of materials too."""
+    """Render friction; if false, none at all, that of materials included."""
     texture: bool = True
-    """False leaves the fine textures of materials out, their drag and their own friction."""
+    """Render the fine textures of materials; if false, their drag and their own friction are left out too."""
     dequantise: Filter = "auto"
-    """Smooth heights of 17 to 256 values, such as 8 bits have, within half a step: auto, never, or a sigma in cells."""
+    """Smoothing of heights with 17 to 256 distinct values, such as 8-bit pictures have, by at most half a step: auto,
+    never, or a standard deviation in cells."""
 
     @model_validator(mode="after")
     def _slides_more_easily_than_it_starts(self) -> Self:
         if self.dynamic_friction > self.static_friction:
             raise ValueError(
                 f"dynamic_friction {self.dynamic_friction} is above static_friction {self.static_friction}; "
-                "things slide more easily than they start"
+                "sliding takes no more force than starting"
             )
         return self
 

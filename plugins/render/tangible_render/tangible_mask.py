@@ -14,7 +14,7 @@ from .surface.grey_levels import grey_levels
 
 def _odd(count: int) -> int:
     if count % 2 == 0:
-        raise ValueError("a mask has a middle: its side is an odd number of cells")
+        raise ValueError("the side of the mask must be an odd number of cells, so that it has a centre")
     return count
 
 
@@ -34,11 +34,11 @@ class TangibleMask(ForceRenderer):
     is_lateral: ClassVar[bool] = True
 
     mask_m: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 0.005
-    """Side of the square mask; it is rounded to an odd number of cells, at least 3."""
+    """Side of the square mask; rounded to an odd number of cells, at least 3."""
     mask_px: Annotated[int, Field(ge=3), AfterValidator(_odd)] | None = None
-    """Side in cells instead, an odd number; the force then depends on the resolution."""
+    """Side of the mask in cells instead, an odd number; the force then depends on the resolution."""
     force_at_edge_n: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 2.0
-    """Force where the tip is on a straight edge from black to white."""
+    """Force on a straight edge from black to white."""
 
     def touch(self, surface: HapticSurface) -> Touch:
         """A new touch on this surface; compiled on the first use on a machine, then loaded."""

@@ -66,15 +66,15 @@ class WithMaterials(ForceRenderer):
     renders_materials: ClassVar[bool] = True
 
     law: Annotated[str | dict[str, Any], AfterValidator(_checked), Field(validate_default=True)] = "penalty-gradient"
-    """The law's name, or {use: its name} and its options."""
+    """The force law: its name, or {use: its name} with its options."""
     friction: bool = True
-    """False leaves all friction out."""
+    """Render friction."""
     texture: bool = True
-    """False leaves the fine textures out, their drag and their own friction."""
+    """Render fine textures; if false, their drag and their own friction are left out too."""
     damping: bool = True
-    """False leaves out what the materials damp; the law keeps its own."""
+    """Render the damping of materials; the law keeps its own in either case."""
     material: Annotated[str, AfterValidator(_known)] | None = None
-    """A material that is shipped, for a surface that has none; without one such a surface feels as the law alone."""
+    """A built-in material for a surface that has none; without it such a surface feels like the law alone."""
 
     def touch(self, surface: HapticSurface) -> Touch:
         """A new touch on this surface; the law's own where the materials add nothing to it.

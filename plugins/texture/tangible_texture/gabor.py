@@ -13,7 +13,7 @@ from .signal.skipping import nothing_to_divide, one_segment
 
 
 class Gabor(Segmenter, Skippable):
-    """Regions of one texture each, whatever their brightness; k classes, which may lie in several places.
+    """Clusters of Gabor energies: one texture per segment, whatever its brightness, in one place or several.
 
     Local energy in a bank of Gabor filters, and how often local binary patterns occur, in cells of 4 x 4 pixels. Cells
     are divided finely and joined again, the two clusters first whose features differ least, whose border is long and of
@@ -26,15 +26,15 @@ class Gabor(Segmenter, Skippable):
     """
 
     segments: Annotated[int, Field(ge=1, le=64)] | Literal["auto"] = "auto"
-    """At most this many textures; `auto`: a guess, 8 at most, said with its reason and what it is worth."""
+    """Largest number of textures; `auto`: an estimate, at most 8, reported with its reason and reliability."""
     effort: Literal["fast", "balanced"] = "balanced"
-    """`fast` divides less finely, and lets cells settle with their neighbours at the end only."""
+    """`fast` uses coarser cells, and smooths labels between neighbouring cells only at the end."""
     colour: bool | Literal["auto"] = "auto"
-    """Two planes of colour beside the texture; `auto`: where windows of the picture differ in colour."""
+    """Add two colour channels to the texture features; `auto`: where windows of the picture differ in colour."""
     lambda_max_px: Annotated[float, Field(ge=2.8, le=512)] = 24.0
-    """Wavelengths of the filters are octaves from 2.8 pixels up to this."""
+    """Longest wavelength of the filters, which are octaves from 2.8 pixels."""
     least_energy: Annotated[float, Field(ge=0, lt=1)] = 1e-3
-    """Filters with less than this share of all filters' energy are left out; 0 keeps all of them."""
+    """Filters with less than this fraction of the total energy are dropped; 0 keeps all of them."""
 
     def skip(self, views: Views) -> str | None:
         """One flat colour is one segment, and so is any picture when no more is asked for."""

@@ -38,31 +38,31 @@ class Gradient(Segmenter, Skippable):
     """
 
     segments: Annotated[int, Field(ge=1)] | Literal["auto"] = "auto"
-    """At most this many: the least separated ones are merged; `auto`: as many as edges hold apart, 64 at most, and how
-    much of the weakest border is an edge is said."""
+    """Largest number of segments: the least separated ones are merged; `auto`: as many as edges hold apart, at most 64,
+    reported with the share of the weakest border that is an edge."""
     sigma_px: Annotated[float, Field(gt=0, le=100)] = 2.0
-    """Standard deviation of the Gaussian that smooths, at most 1/16 of the root of the picture's area.
-
-    A region narrower than about 8 of these can be lost: less for small things, more for weak edges in noise."""
+    """Standard deviation of the smoothing Gaussian, limited to 1/16 of the square root of the picture's area. A region
+    narrower than about 8 of these can be lost: less for small things, more for weak edges in noise."""
     smallest_px: Annotated[int, Field(ge=1)] = 100
-    """A segment begins with at least this many flat pixels; in a small picture, 1/16 of its area; never under 4."""
+    """Smallest flat area that starts a segment; limited to 1/16 of a small picture's area, and never under 4."""
     flat: Annotated[float, Field(gt=0, le=20)] = 1.4
-    """Flat is a slope up to this many times that of noise; in a part without any, 4 or 16 times as much will do."""
+    """Largest gradient that counts as flat, as a multiple of the noise; where there is no flat part, 4 or 16 times as
+    much."""
     canny_low: Annotated[float, Field(gt=0, le=20)] = 2.0
-    """An edge goes on while its slope is this many times that of noise."""
+    """Lower Canny threshold, as a multiple of the noise gradient: an edge continues above it."""
     canny_high: Annotated[float, Field(gt=0, le=20)] = 4.0
-    """An edge has this many times the slope of noise somewhere."""
+    """Upper Canny threshold, as a multiple of the noise gradient: an edge must exceed it somewhere."""
     contrast: Annotated[float, Field(ge=0.005, le=1)] = 0.02
-    """An edge has at least this share of the slope of the picture's strongest edge: the floor under the noise."""
+    """Lowest gradient of an edge, as a fraction of the picture's strongest: a lower bound for the noise."""
     colour: bool = True
-    """Look for edges in red, green and blue; else in grey, where two colours of one brightness are one."""
+    """Look for edges in red, green and blue; otherwise in grey, where two colours of equal brightness are one."""
 
     @model_validator(mode="after")
     def _thresholds_in_order(self) -> Self:
         if not self.flat < self.canny_low <= self.canny_high:
             raise ValueError(
-                f"flat {self.flat:g} < canny_low {self.canny_low:g} <= canny_high {self.canny_high:g} does not hold; "
-                "what is flat is no edge, and an edge goes on at less than it begins with"
+                f"flat {self.flat:g} < canny_low {self.canny_low:g} <= canny_high {self.canny_high:g} must hold: "
+                "flat parts are no edges, and the lower threshold is not above the upper one"
             )
         return self
 

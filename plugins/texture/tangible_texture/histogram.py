@@ -32,7 +32,7 @@ log = logging.getLogger(__name__)
 
 
 class Histogram(Segmenter, Skippable):
-    """Levels of grey: the thresholds that divide the histogram best; a segment may lie in many places.
+    """Grey levels, divided by the optimal thresholds of the histogram; a segment may lie in many places.
 
     Smooth the grey picture; divide the 256 grey levels of its flattest four fifths so that the variance within the
     classes is least (Otsu's criterion for several thresholds, its exact optimum). Edges make levels of their own, which
@@ -49,12 +49,13 @@ class Histogram(Segmenter, Skippable):
     """
 
     segments: Annotated[int, Field(ge=1)] | Literal["auto"] = "auto"
-    """At most this many; `auto`: as many as the histogram has clear humps, 16 at most."""
+    """Largest number of segments; `auto`: as many as the histogram has clear modes, at most 16."""
     sigma_px: Annotated[float, Field(ge=0, le=100)] = 2.0
-    """Standard deviation of the Gaussian that smooths, at most 1/16 of the root of the picture's area; 0 for none."""
+    """Standard deviation of the smoothing Gaussian, limited to 1/16 of the square root of the picture's area; 0 for
+    none."""
     smallest_px: Annotated[int, Field(ge=1)] = 50
-    """Connected parts of fewer flat pixels go to the segments beside them; in a small picture, 1/16 of its area; 1 to
-    leave every pixel in the class of its own grey."""
+    """Connected parts with fewer flat pixels are merged into their neighbours; limited to 1/16 of a small picture's
+    area. 1 leaves every pixel in the class of its own grey level."""
 
     def skip(self, views: Views) -> str | None:
         """One segment is asked for, or there is one flat colour."""

@@ -33,26 +33,26 @@ class KorniaGabor(Segmenter, Skippable):
     """
 
     segments: Annotated[int, Field(ge=1, le=64)] | Literal["auto"] = "auto"
-    """How many textures; fewer where there are not so many distinct features. auto: a guess, 8 at most."""
+    """Number of textures; fewer if there are fewer distinct features. auto: an estimate, at most 8."""
     longest_px: Annotated[float, Field(ge=3, le=512)] = 24.0
-    """The longest wavelength, of 2.83, 5.66, 11.3, ... px; at most 1/16 of the root of the picture's area."""
+    """Longest wavelength, of 2.83, 5.66, 11.3, ... px; limited to 1/16 of the square root of the picture's area."""
     window_px: Annotated[float, Field(ge=1, le=256)] = 12.0
-    """Standard deviation of the window over which energy is averaged: 0.35 wavelengths at least, and at most 1/16 of
-    the root of the picture's area."""
+    """Standard deviation of the window over which energy is averaged: at least 0.35 wavelengths, and limited to 1/16 of
+    the square root of the picture's area."""
     step_px: Annotated[int, Field(ge=1, le=64)] = 4
-    """Features are taken, and labels given, to squares of this side."""
+    """Side of the square cells that get one feature vector and one label each."""
     restarts: Annotated[int, Field(ge=1, le=100)] = 10
-    """Of these many runs of k-means the best one counts."""
+    """Number of runs of k-means; the best one counts."""
     seed: Annotated[int, Field(ge=0)] = 0
-    """Of the starts of k-means."""
+    """Seed of the starts of k-means."""
     drop_seams: bool = True
-    """Give strips narrower than two standard deviations of the window to each side to the segments beside them."""
+    """Merge strips narrower than two standard deviations of the window to each side into their neighbours."""
     skip_weak: bool = False
-    """Leave out the weakest filters as long as 95 % of the energy is kept."""
+    """Drop the weakest filters, keeping 95 % of the energy."""
     skip_octaves: bool = True
-    """Leave out wavelengths under which the picture has less than 0.01 % of its energy."""
+    """Drop the shortest wavelengths, below which the picture has less than 0.01 % of its energy."""
     torch_device: TorchDevice = "auto"
-    """Where to compute; `auto` takes a GPU when there is one."""
+    """Device to compute on; `auto` uses a GPU if there is one."""
 
     def skip(self, views: Views) -> str | None:
         """One flat colour is one segment, and so is any picture when no more is asked for."""

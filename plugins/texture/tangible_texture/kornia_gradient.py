@@ -30,24 +30,24 @@ class KorniaGradient(Segmenter, Skippable):
     """
 
     segments: Annotated[int, Field(ge=1)] | Literal["auto"] = "auto"
-    """At most this many, which the largest basins begin; `auto`: as many as edges close off, 64 at most."""
+    """Largest number of segments, seeded by the largest basins; `auto`: as many as edges close off, at most 64."""
     sigma_px: Annotated[float, Field(gt=0, le=100)] = 2.0
-    """Standard deviation of the Gaussian that smooths, at most 1/16 of the root of the picture's area."""
+    """Standard deviation of the smoothing Gaussian, limited to 1/16 of the square root of the picture's area."""
     smallest_px: Annotated[int, Field(ge=1)] = 200
-    """A segment begins with at least this many flat pixels; in a small picture, 1/16 of its area; never under 4."""
+    """Smallest flat area that starts a segment; limited to 1/16 of a small picture's area, and never under 4."""
     canny_low: Annotated[float, Field(gt=0, le=20)] = 2.0
-    """An edge goes on while its slope is this many times that of noise."""
+    """Lower Canny threshold, as a multiple of the noise gradient: an edge continues above it."""
     canny_high: Annotated[float, Field(gt=0, le=20)] = 4.0
-    """An edge has this many times the slope of noise somewhere."""
+    """Upper Canny threshold, as a multiple of the noise gradient: an edge must exceed it somewhere."""
     contrast: Annotated[float, Field(ge=0.005, le=1)] = 0.02
-    """An edge has at least this share of the slope of the picture's strongest edge: the floor under the noise."""
+    """Lowest gradient of an edge, as a fraction of the picture's strongest: a lower bound for the noise."""
     torch_device: TorchDevice = "auto"
-    """Where to compute; `auto` takes a GPU when there is one."""
+    """Device to compute on; `auto` uses a GPU if there is one."""
 
     @model_validator(mode="after")
     def _thresholds_in_order(self) -> Self:
         if self.canny_low > self.canny_high:
-            raise ValueError(f"canny_low {self.canny_low:g} is above canny_high {self.canny_high:g}; exchange them")
+            raise ValueError(f"canny_low {self.canny_low:g} is above canny_high {self.canny_high:g}; swap them")
         return self
 
     def skip(self, views: Views) -> str | None:

@@ -33,29 +33,30 @@ class Report(Segmenter, Skippable):
     """
 
     segments: Annotated[int, Field(ge=1, le=64)] | Literal["auto"] = "auto"
-    """How many textures; fewer where there are not so many distinct features. auto: a guess, 8 at most."""
+    """Number of textures; fewer if there are fewer distinct features. auto: an estimate, at most 8."""
     frequencies: Literal["printed", "octaves"] = "printed"
-    """printed: 0.25 -+ 2^(i - 0.5) / width cycles a pixel; octaves: sqrt(2)/4 and by halves down to longest_px."""
+    """Filter frequencies. printed: as in the report, 0.25 -+ 2^(i - 0.5) / width cycles per pixel; octaves: from
+    sqrt(2)/4, halving down to `longest_px`."""
     longest_px: Annotated[float, Field(ge=3, le=512)] = 24.0
-    """The longest wavelength of `octaves`, in pixels."""
+    """Longest wavelength of `octaves`, in pixels."""
     bandwidth: Annotated[float, Field(ge=0.2, le=3)] = 1.0
-    """Of each filter, in octaves at half its height."""
+    """Bandwidth of each filter, in octaves at half height."""
     gamma: Annotated[float, Field(ge=0.2, le=2)] = 0.8
-    """Width over height of the Gaussian; at 0.8 neighbouring orientations, 30 degrees apart, meet at half height."""
+    """Aspect ratio of the Gaussian; at 0.8, neighbouring orientations, 30 degrees apart, meet at half height."""
     alpha: Annotated[float, Field(gt=0, le=100)] = 0.25
-    """Slope of the non-linearity tanh(alpha r), r being the response in grey levels."""
+    """Slope of the non-linearity tanh(alpha r), where r is the response in grey levels."""
     window: Annotated[float, Field(gt=0, le=10)] = 3.0
-    """Standard deviation of the averaging window over that of the filter."""
+    """Standard deviation of the averaging window, as a multiple of the filter's."""
     widest_px: Annotated[float, Field(ge=1, le=256)] = 20.0
-    """The averaging window's standard deviation is at most this."""
+    """Largest standard deviation of the averaging window."""
     seed: Annotated[int, Field(ge=0)] = 0
-    """Of the random start of k-means."""
+    """Seed of the random start of k-means."""
     skip_weak: bool = False
-    """Leave out the weakest filters as long as 95 % of the energy is kept."""
+    """Drop the weakest filters, keeping 95 % of the energy."""
     skip_octaves: bool = False
-    """Leave out wavelengths under which the picture has less than 0.01 % of its energy."""
+    """Drop the shortest wavelengths, below which the picture has less than 0.01 % of its energy."""
     memory_mb: Annotated[int, Field(ge=16)] = 1024
-    """What the features may take; if every pixel's take more, every second or third one's are kept."""
+    """Memory for the features; where all pixels would exceed it, every second or third is used."""
 
     def skip(self, views: Views) -> str | None:
         """One flat colour is one segment, and so is any picture when no more is asked for."""

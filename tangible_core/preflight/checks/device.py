@@ -23,6 +23,6 @@ def friction(flight: Flight) -> Iterator[Verdict]:
     """Whether the handle's friction is known, which keeps the steps of its encoders from buzzing."""
     found = flight.safety.friction_n
     known = flight.spec.simulated or found is not None
-    cure = "" if known else "not known: measure the force at which the handle starts to move, `safety.friction_n: ...`"
+    cure = "" if known else "unknown: measure the force at which the handle starts to move, `safety.friction_n: ...`"
     source = "simulated" if flight.spec.simulated else "`safety.friction_n`" if known else ""
     yield Verdict("device", "friction", "ok" if known else "warn", found or 0.0, "N", source=source, cure=cure)

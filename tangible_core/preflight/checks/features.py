@@ -33,14 +33,12 @@ def features(flight: Flight) -> Iterator[Verdict]:
         larger = over(flight.relief_m * bound / found[width])
         yield held(
             *("features", f"{1e3 * width:g} mm wide", found[width], ">=", bound, "m", source),
-            cure=f"`{flight.relief_key}: {larger}`, or leave them out: they only cost",
+            cure=f"`{flight.relief_key}: {larger}`, or remove them: they take time and are not felt",
         )
 
 
 def _nothing(flight: Flight) -> Verdict:
     """Of a relief without a feature of any width that is looked at."""
     height_m = float(flight.surface.height_m.max() - flight.surface.height_m.min())
-    cure = (
-        "nothing but its materials is to be felt: choose a scene with relief, or `workspace.width_m` for a larger one"
-    )
+    cure = "only its materials can be felt: choose a scene with relief, or `workspace.width_m` for a larger one"
     return Verdict("features", "the relief", "warn", height_m, "m", note="no feature 1 to 32 mm wide", cure=cure)

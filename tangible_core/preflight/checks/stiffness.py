@@ -17,7 +17,7 @@ STEP = "Pang, Tan & Durlach 1991: a step of 7 % is felt"
 def law_stiffness(flight: Flight) -> Iterator[Verdict]:
     """The law's stiffness on level ground against each limit."""
     if flight.stiffness_n_per_m == 0:
-        yield Verdict("stiffness", "the law", "ok", 0.0, "N/m", note="no spring; see `contact`")
+        yield Verdict("stiffness", "the law", "ok", 0.0, "N/m", note="not a spring; see `contact`")
         return
     for ceiling in flight.ceilings:
         cure = soften(flight, ceiling.most_n_per_m)

@@ -41,14 +41,14 @@ def draw_surface(axes: Axes, relief: Relief) -> str:
     return f"Surface{drawn.note if relief.height_m.max() > FLAT_M else ', smooth'}"
 
 
-class _Stretched(NamedTuple):
+class _StretchedRelief(NamedTuple):
     """A relief as it is drawn, and what to say of its proportion."""
 
     relief: Relief
     note: str
 
 
-def _draw_heights(axes: Axes, relief: Relief) -> _Stretched:
+def _draw_heights(axes: Axes, relief: Relief) -> _StretchedRelief:
     stretch = _stretch(relief)
     heights = ScalarMappable(Normalize(0, 1000 * max(float(relief.height_m.max()), FLAT_M)), VIRIDIS)
     stretched = replace(relief, height_m=np.float32(stretch) * relief.height_m)
@@ -58,7 +58,7 @@ def _draw_heights(axes: Axes, relief: Relief) -> _Stretched:
     axes.set_aspect("equal", adjustable="datalim")
     axes.set_axis_off()
     colour_bar(axes, heights, "height [mm]")
-    return _Stretched(stretched, f", heights x {stretch}" if stretch > 1 else "")
+    return _StretchedRelief(stretched, f", heights x {stretch}" if stretch > 1 else "")
 
 
 def _stretch(relief: Relief) -> int:

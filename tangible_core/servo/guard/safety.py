@@ -25,9 +25,9 @@ class Coupling(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     stiffness_n_per_m: Positive
-    """No law feels stiffer than this."""
+    """Stiffness of the coupling: no law feels stiffer."""
     damping_n_s_per_m: Annotated[float, Field(ge=0, allow_inf_nan=False)]
-    """Adds to what the device's own damping must outweigh."""
+    """Damping of the coupling, which the device's own damping must exceed."""
 
 
 class Safety(BaseModel):
@@ -36,25 +36,26 @@ class Safety(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     max_force_n: Positive | None = None
-    """Greatest force; null, or more than the device can give: the device's."""
+    """Greatest force; the device's if null or larger than that."""
     max_step_n: Annotated[float, Field(gt=0, le=10, allow_inf_nan=False)] = 0.5
-    """Most that the force changes in a tick of 1 ms. A shorter tick has its share of that, a longer one no more."""
+    """Greatest change of force in a tick of 1 ms; in a shorter tick proportionally less, in a longer one no more."""
     ramp_s: Annotated[float, Field(ge=0, le=60, allow_inf_nan=False)] = 0.5
-    """Force fades in for so long: after the start, a new scene, and every time that it was cut to zero."""
+    """Time over which the force fades in: after the start, after a new scene, and whenever it was cut to zero."""
     stale_s: Annotated[float, Field(ge=0.002, le=1, allow_inf_nan=False)] = 0.02
-    """The force is cut to zero when the device gave no fresh position for so long."""
+    """Age of the last position at which the force is cut to zero."""
     stiffness_margin: Annotated[float, Field(gt=0, le=1, allow_inf_nan=False)] = 0.8
-    """Share of the stiffness limit that a law may use. What is left outweighs the law's own damping, whose delay also
-    gives energy away."""
+    """Fraction of the stiffness limit that a law may use. The rest compensates for the law's own damping, whose delay
+    adds energy too."""
     delay_ticks: Annotated[int, Field(ge=0, le=at.MOST_DELAY)] = 0
-    """Whole ticks from reading a position to its force on the hand, beyond the tick itself."""
+    """Delay, in whole ticks, from reading a position to its force on the hand, beyond the tick itself."""
     friction_n: Positive | None = None
-    """Coulomb friction of the handle, where it was measured: it bounds the stiffness that coarse encoders allow."""
+    """Coulomb friction of the handle, if it was measured: it limits the stiffness that coarse encoders allow."""
     passivity: Literal["off", "coupled", "strict"] = "coupled"
-    """`strict`: the loop gives back no more energy than it took in. `coupled`: what the device's own damping takes in
-    may be given as well, so that a spring held stably is left as it is."""
+    """Passivity control. `strict`: the loop gives back no more energy than it took in. `coupled`: nor more than that
+    plus what the device's own damping dissipates, so that a stable spring is not altered. `off`: none."""
     coupling: Coupling | Literal["auto"] | None = None
-    """Virtual coupling: null for none, for laws whose stiffness is known; `auto` for one that this device holds."""
+    """Virtual coupling between law and device: null for none, where the law's stiffness is known; `auto` for one that
+    the device holds stably."""
 
     def arrays(
         self, spec: DeviceSpec, stiffness_n_per_m: float

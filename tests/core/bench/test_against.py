@@ -89,7 +89,7 @@ def test_what_is_in_one_file_only_is_said():
 @pytest.mark.parametrize(
     ("after", "why"),
     [
-        ([], "without a single row"),
+        ([], "a file without rows"),
         (rows([1.0], compare="texture"), "compares depth, the other texture"),
         (rows([1.0], machine={"processor": "q"}), "seconds on p and on q"),
         (rows([1.0], "other"), "in common"),

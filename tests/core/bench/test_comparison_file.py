@@ -149,7 +149,7 @@ def test_one_mistake_one_line(registry: Registry, text: str, place: str, what: s
 def test_an_override(registry: Registry):
     assert parse(GOOD, registry, "repeats=2").protocol.repeats == 2
     assert list(parse(GOOD, registry, "scenes=[synthetic/bars]").scenes) == ["bars 480x360"]
-    with pytest.raises(ConfigError, match=r"methods is a list; set the whole of it: methods=\[...\]"):
+    with pytest.raises(ConfigError, match=r"methods is a list; set it as a whole: methods=\[...\]"):
         parse(GOOD, registry, "methods.0.value_px=3")
 
 

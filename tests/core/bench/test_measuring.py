@@ -185,7 +185,7 @@ def test_a_torn_last_line_is_passed_over_and_goes(registry: Registry, tmp_path: 
 def test_a_damaged_line_is_named(tmp_path: Path):
     path = tmp_path / "r.jsonl"
     path.write_text('{"key": 1}\n')
-    with pytest.raises(ResultsError, match=r"r\.jsonl:1: is no row of results"):
+    with pytest.raises(ResultsError, match=r"r\.jsonl:1: is not a row of results"):
         read_rows(path)
     with pytest.raises(ResultsError, match="cannot be read as results"):
         read_rows(tmp_path / "missing.jsonl")
@@ -205,7 +205,7 @@ LINES = {
 def test_whatever_a_line_holds_it_is_named_in_one(tmp_path: Path, line: str):
     path = tmp_path / "r.jsonl"
     path.write_text(f"{line}\n")
-    with pytest.raises(ResultsError, match=r"r\.jsonl:1: is no row of results: .*; remove the line") as error:
+    with pytest.raises(ResultsError, match=r"r\.jsonl:1: is not a row of results: .*; remove the line") as error:
         read_rows(path)
     assert str(error.value).isprintable()
     assert len(str(error.value)) < 500
@@ -230,7 +230,7 @@ def test_a_field_that_is_not_what_it_should_be_is_named(tmp_path: Path, field: s
     path = tmp_path / "r.jsonl"
     append(path, ROW)
     path.write_text(json.dumps({**json.loads(path.read_text()), field: value}) + "\n")
-    with pytest.raises(ResultsError, match=rf"r\.jsonl:1: is no row of results: {field}"):
+    with pytest.raises(ResultsError, match=rf"r\.jsonl:1: is not a row of results: {field}"):
         read_rows(path)
 
 
@@ -245,7 +245,7 @@ def test_a_pipe_or_a_device_holds_no_results(tmp_path: Path):
     os.mkfifo(tmp_path / "pipe.jsonl")
     (tmp_path / "zero.jsonl").symlink_to("/dev/zero")
     for name in ("pipe.jsonl", "zero.jsonl"):
-        with pytest.raises(ResultsError, match=r"no file but a folder or a device; name a \.jsonl file"):
+        with pytest.raises(ResultsError, match=r"not a file but a folder or a device; name a \.jsonl file"):
             read_rows(tmp_path / name)
 
 

@@ -190,8 +190,8 @@ def test_the_truth_of_a_builtin_pair_is_its_relief():
         ("sphere", "no scene is named 'sphere'; write analytic/sphere"),
         ("analytic/cube", "Input should be 'plane', 'ramp'"),
         ("{analytic: cone, builtin: coins}", "one of analytic, builtin and height; this one is analytic and builtin"),
-        ("{analytic: cone, relief_m: 0.02}", "relief_m would change nothing here; leave it out"),
-        ("{builtin: coins, cells: 64}", "cells would change nothing here; leave it out"),
+        ("{analytic: cone, relief_m: 0.02}", "relief_m has no effect here; leave it out"),
+        ("{builtin: coins, cells: 64}", "cells has no effect here; leave it out"),
     ],
 )
 def test_what_is_no_scene(registry: Registry, scene: str, what: str):

@@ -223,7 +223,7 @@ def test_a_missing_folder_is_named(tmp_path):
 
 @pytest.mark.parametrize("place", [".", os.devnull])
 def test_a_folder_or_a_device_is_no_file(tmp_path, place):
-    assert "no file but a folder or a device" in refusal(tmp_path / place)
+    assert "not a file but a folder or a device" in refusal(tmp_path / place)
 
 
 @pytest.mark.parametrize("name", ["n" * 300, "a\0b"])
@@ -248,7 +248,7 @@ def test_an_empty_file_says_so(tmp_path, name):
 
 @pytest.mark.parametrize("data", [b"hello", b"%PDF-1.7 whatever", b"%!PS-Adobe-3.0 EPSF-3.0\n", b"\0" * 500])
 def test_what_is_no_picture_says_what_to_use(tmp_path, data):
-    assert "no picture this program can read; use PNG" in refusal(put(tmp_path, "a.png", data))
+    assert "not a picture that this program can read; use PNG" in refusal(put(tmp_path, "a.png", data))
 
 
 @pytest.mark.parametrize(("form", "name"), [("PNG", "a.png"), ("JPEG", "a.jpg"), ("TIFF", "a.tif"), ("WEBP", "a.webp")])
@@ -369,7 +369,7 @@ def test_nothing_is_said_beside_the_error(tmp_path, capfd):
 @pytest.mark.parametrize("name", ["a.npy", "a.npz", "a.png"])
 def test_a_pipe_is_not_waited_for(tmp_path, read, name):
     os.mkfifo(tmp_path / name)
-    assert "no file but a folder or a device" in refusal(tmp_path / name, read)
+    assert "not a file but a folder or a device" in refusal(tmp_path / name, read)
 
 
 @pytest.mark.parametrize("read", [read_picture, read_map, read_labels])
@@ -384,7 +384,7 @@ def test_arrays_that_say_that_they_are_huge(tmp_path, read):
 def test_an_archive_of_something_else(tmp_path, read):
     with zipfile.ZipFile(tmp_path / "a.npz", "w") as archive:
         archive.writestr("readme.txt", "hello")
-    assert "holds 0 arrays, and one is meant" in refusal(tmp_path / "a.npz", read)
+    assert "holds 0 arrays instead of one" in refusal(tmp_path / "a.npz", read)
 
 
 def test_an_array_under_the_other_name_is_an_array(tmp_path):
@@ -442,12 +442,12 @@ def test_numbers_too_large_for_a_map_are_holes(tmp_path):
 
 def test_colours_are_no_map(tmp_path):
     path = put(tmp_path, "a.png", encoded(Image.fromarray(COLOURS), "PNG"))
-    assert "a map is one number a pixel" in refusal(path, read_map)
+    assert "a map must have one number per pixel" in refusal(path, read_map)
 
 
 @pytest.mark.parametrize("values", [np.zeros((0, 3)), np.zeros(3), np.zeros((2, 2), complex), np.array([["a"]])])
 def test_an_array_that_is_no_map_is_refused(tmp_path, values):
-    assert "a map is one number a pixel" in refusal(saved(tmp_path, "a.npy", values), read_map)
+    assert "a map must have one number per pixel" in refusal(saved(tmp_path, "a.npy", values), read_map)
 
 
 def test_an_array_that_runs_code_is_not_loaded(tmp_path):

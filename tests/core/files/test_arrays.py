@@ -16,7 +16,7 @@ from hypothesis.extra import numpy as arrays
 
 from hostile import npy_header, npz, npz_bomb
 from tangible_core.files.arrays import Archive, read_array
-from tangible_core.files.reading import MOST_BYTES, TooLarge
+from tangible_core.files.reading import MOST_BYTES, TooLargeError
 
 ONE = npy_header((2, 3)) + np.arange(6.0).tobytes()
 
@@ -66,10 +66,10 @@ def test_columns_first_stay_columns_first():
         (b"", "EOF"),
         (b"hello", "magic string"),
         (ONE[:50], "EOF"),
-        (ONE[:-1], "48 bytes of numbers, and 47 follow"),
-        (ONE + b"x", "48 bytes of numbers, and 49 follow"),
-        (npy_header((2, 3)), "and 0 follow"),
-        (npy_header((-1, 2)), "a shape of (-1, 2)"),
+        (ONE[:-1], "48 bytes of numbers, but 47 follow"),
+        (ONE + b"x", "48 bytes of numbers, but 49 follow"),
+        (npy_header((2, 3)), "but 0 follow"),
+        (npy_header((-1, 2)), "the shape (-1, 2)"),
         (npy_header((2, 2), "|O") + b"x" * 32, "Python objects or records"),
         (saved(np.zeros(3, [("a", "f8"), ("b", "i4")])), "Python objects or records"),
         (saved(np.array([{}], object), allow_pickle=True), "Python objects or records"),
@@ -113,9 +113,9 @@ def changed(at: int, directory_at: int, what: bytes) -> bytes:
         (b"PK" + bytes(500), "not a zip file"),
         (bytes(archive(a_npy=b"")), "EOF"),
         (bytes(archive(a_npy=b"hello")), "magic string"),
-        (bytes(archive(a_npy=ONE + bytes(1000))), "and 1048 follow"),
+        (bytes(archive(a_npy=ONE + bytes(1000))), "but 1048 follow"),
         (changed(6, 8, b"\x01\x00"), "encrypted"),
-        (changed(8, 10, b"\x63\x00"), "compressed in a way"),
+        (changed(8, 10, b"\x63\x00"), "its compression is not one"),
         (changed(14, 16, b"\x00\x00\x00\x00"), "Bad CRC-32"),
         (changed(22, 24, struct.pack("<I", 1000)), "bytes of numbers"),
         (changed(22, 24, struct.pack("<I", MOST_BYTES + 1)), "more than 1424 MB"),
@@ -130,7 +130,7 @@ def test_an_odd_archive_is_said(data: bytes, says: str):
 @pytest.mark.parametrize("method", [zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA])
 def test_ways_to_pack_that_unpack_at_once_are_not_tried(tmp_path: Path, method: int):
     path = npz(tmp_path / "a.npz", method, a=npy_header((4, 1000)) + bytes(32_000))
-    assert "compressed in a way that NumPy does not know" in why(path.read_bytes())
+    assert "its compression is not one that NumPy uses" in why(path.read_bytes())
 
 
 @contextmanager
@@ -185,7 +185,7 @@ def test_arrays_that_are_small_alone_are_too_large_together(tmp_path: Path):
         held = Archive(file)
         with refused_in_little_memory():
             held.read(held.names)
-        with pytest.raises(TooLarge):
+        with pytest.raises(TooLargeError):
             held.read(held.names)
 
 

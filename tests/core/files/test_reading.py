@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tangible_core.files.reading import MOST_BYTES, MOST_PIXELS, TooLarge, check_file, check_size, read_bytes
+from tangible_core.files.reading import MOST_BYTES, MOST_PIXELS, TooLargeError, check_file, check_size, read_bytes
 
 
 def test_a_file_is_read_whole(tmp_path: Path):
@@ -22,7 +22,7 @@ def test_a_folder_a_pipe_and_a_device_are_no_files(tmp_path: Path, name: str):
     (tmp_path / "link").symlink_to("/dev/zero")
     with pytest.raises(OSError) as error:
         read_bytes(tmp_path / name)
-    assert error.value.strerror == "it is no file but a folder or a device"
+    assert error.value.strerror == "it is not a file but a folder or a device"
 
 
 def test_a_file_of_more_than_is_asked_for_is_not_read(tmp_path: Path):
@@ -71,7 +71,7 @@ SIDE = int(MOST_PIXELS**0.5)
     ],
 )
 def test_what_is_too_large(shape: tuple[int, ...], itemsize: int, why: str):
-    with pytest.raises(TooLarge, match=why):
+    with pytest.raises(TooLargeError, match=why):
         check_size(shape, itemsize)
 
 

@@ -439,7 +439,7 @@ class TestTile:
 
     @pytest.mark.parametrize(("width_m", "pixels"), [(0.0, 8), (np.nan, 8), (np.inf, 8), (-1.0, 8), (0.01, 0)])
     def test_what_is_no_tile(self, width_m: float, pixels: int):
-        with pytest.raises(MaterialError, match="a tile has a positive width"):
+        with pytest.raises(MaterialError, match="a tile needs a positive width"):
             sample_tile(PLAIN, width_m, pixels)
 
 

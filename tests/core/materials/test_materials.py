@@ -124,7 +124,7 @@ class TestOwnFile:
         assert [each.split(": ", 1)[0] for each in found] == [f"mine.yaml:{place}" for place in places]
         assert "ice.damping_n_s_per_m: Input should be greater than or equal to 0, not -1" in found[0]
         assert "ice.stifness_n_per_m: unknown option (did you mean 'stiffness_n_per_m'?)" in found[1]
-        assert "which is no value (did you mean 'grain_m'?)" in found[5]
+        assert "which is not a property (did you mean 'grain_m'?)" in found[5]
         assert "dynamic_friction 0.9 is above static_friction 0.26" in found[9]
         missing = "stiffness_n_per_m, damping_n_s_per_m, static_friction, dynamic_friction are missing"
         assert found[11].endswith(f"glas: {missing} (did you mean 'glass'?)")
@@ -365,9 +365,9 @@ class TestByRules:
         first, second, third = str(error.value).splitlines()
         assert first == "materials: rule 1: there is no segment 4; the segments are 0 to 3"
         assert second == "materials: rule 2: [40, 3] lies outside the picture of 40 x 40 pixels"
-        assert third.startswith("materials: rule 3: a colour needs the picture of the segments")
+        assert third.startswith("materials: rule 3: a rule by colour needs the segmented picture")
 
     @pytest.mark.parametrize("rule", [{}, {"segment": 0, "colour": "red"}])
     def test_a_rule_says_one_thing(self, rule: dict):
-        with pytest.raises(ValueError, match="says one of segment, at and colour"):
+        with pytest.raises(ValueError, match="takes one of segment, at and colour"):
             MaterialRule.model_validate({**rule, "material": "ice"})

@@ -104,7 +104,7 @@ RULES = "scene: builtin/brick\nmaterials:\n  rules:\n    - "
         ),
         (f"{RULES}{{colour: blue, material: watr}}\n", "here/p.yaml:4:22", "did you mean 'water'?"),
         (f"{RULES}{{colour: blue}}\n", "here/p.yaml:4:7", "materials.rules.0.material: Field required"),
-        (f"{RULES}{{material: ice}}\n", "here/p.yaml:4:7", "says one of segment, at and colour; this one says none"),
+        (f"{RULES}{{material: ice}}\n", "here/p.yaml:4:7", "takes one of segment, at and colour; this one has none"),
         (f"{RULES}{{at: [-1, 2], material: ice}}\n", "here/p.yaml:4:13", "greater than or equal to 0, not -1"),
         (f"{RULES}{{at: 3, material: ice}}\n", "here/p.yaml:4:8", "tuple"),
         (f"{RULES}{{at: [.inf, 2], material: ice}}\n", "here/p.yaml:4:13", "finite"),

@@ -157,7 +157,7 @@ def test_an_observer_of_a_moment_that_does_not_exist_is_said(install, caplog):
             """,
     )
     assert hooks.tell(hooks.manager(), "tangible_stage_finished", outcome=RAN) == []
-    assert "hooks acme/diary watch tangible_stage_finisched, which is no moment (did you mean" in caplog.text
+    assert "hooks acme/diary watch tangible_stage_finisched, which is not a moment (did you mean" in caplog.text
 
 
 def test_an_observer_that_asks_for_what_is_not_told_is_left_out(install, caplog):

@@ -69,7 +69,7 @@ def test_a_pipe_or_a_device_is_not_waited_for():
     os.mkfifo(path)
     calibration_path("arm", "F124").symlink_to("/dev/zero")
     for serial in ("F123", "F124"):
-        with pytest.raises(DeviceError, match=r"json: cannot be read: it is no file but a folder or a device; make"):
+        with pytest.raises(DeviceError, match=r"json: cannot be read: it is not a file but a folder or a device; make"):
             load_calibration("arm", serial, Measured)
 
 

@@ -272,7 +272,7 @@ def test_peaks_of_a_height_map_are_not_clipped():
 
 
 def test_a_height_map_without_a_height_is_refused():
-    with pytest.raises(GeometryError, match="holds no height"):
+    with pytest.raises(GeometryError, match="holds only NaN or infinity"):
         scale_heights(np.full((3, 3), NAN), 0.1, 0.02)
 
 

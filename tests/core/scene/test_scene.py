@@ -59,7 +59,7 @@ def test_a_scene_is_exactly_one_of_pair_photo_and_height(files, named):
         ({"photo": "a", "baseline_m": 3}, "baseline_m needs focal_px beside it"),
         ({"photo": "a", "offset_px": 3}, "offset_px needs focal_px beside it"),
         ({"photo": "a", "relief_m": 3}, "relief_m needs height beside it"),
-        ({"height": "a", "truth": "b"}, "height already says how high everything is; leave out truth"),
+        ({"height": "a", "truth": "b"}, "height already gives all heights; leave out truth"),
         ({"height": "a", "disparity": "b"}, "leave out disparity"),
         ({"photo": "a", "focal_px": 0, "baseline_m": 1}, "greater than 0"),
         ({"photo": "a", "phot": "b"}, "Extra inputs are not permitted"),
@@ -201,7 +201,7 @@ def test_holes_of_a_height_map_follow_the_rule_that_is_asked_for(folder):
 
 def test_a_height_map_of_nothing_is_refused(folder):
     np.save(folder / "nothing.npy", np.full((3, 3), NAN))
-    with pytest.raises(GeometryError, match="holds no height"):
+    with pytest.raises(GeometryError, match="holds only NaN or infinity"):
         Scene.read(SceneFiles(height="nothing.npy"), folder).brings(**SIZE)
 
 
@@ -219,7 +219,7 @@ def test_a_height_map_of_nothing_is_refused(folder):
     ],
 )
 def test_two_sizes_are_named_with_their_files(folder, files, named):
-    with pytest.raises(PictureError, match="all parts of a scene are of one size") as caught:
+    with pytest.raises(PictureError, match="all parts of a scene must be of one size") as caught:
         Scene.read(SceneFiles(**files), folder)
     assert all(each in str(caught.value) for each in named)
 

@@ -189,7 +189,7 @@ class TestFile:
     @pytest.mark.parametrize("word", [IS_MAGIC, IS_LAYOUT, SLOTS])
     def test_a_ring_of_another_layout_is_refused(self, small: Ring, word: int) -> None:
         small.header[word] += 1
-        with pytest.raises(DeviceError, match="is no ring of layout"):
+        with pytest.raises(DeviceError, match="is not a ring of layout"):
             Ring.attach(small.path)
         small.header[word] -= 1
         Ring.attach(small.path)

@@ -7,7 +7,7 @@ from tangible_core.servo import cycle, schedule
 from tangible_core.servo.ring import LEAD_NS, NEXT_NS, OVERRUNS, PERIOD_NS, SPINS
 
 PERIOD, FIRST = 1_000_000, 5_000_000
-COMPILED = pytest.mark.parametrize("begun", [schedule.begun, cycle.begun], ids=["python", "compiled"])
+COMPILED = pytest.mark.parametrize("begin_tick", [schedule.begin_tick, cycle.begin_tick], ids=["python", "compiled"])
 
 
 def header(lead_ns: int = 0, spins: bool = False) -> np.ndarray:
@@ -21,13 +21,13 @@ def header(lead_ns: int = 0, spins: bool = False) -> np.ndarray:
 @pytest.mark.parametrize(
     ("late_ns", "missed"), [(0, 0), (999_999, 0), (1_000_000, 1), (3_500_000, 3), (1_000_000_000, 1000)]
 )
-def test_what_was_missed_is_counted_and_the_next_tick_is_in_step(begun, late_ns: int, missed: int):
+def test_what_was_missed_is_counted_and_the_next_tick_is_in_step(begin_tick, late_ns: int, missed: int):
     words = header()
-    assert begun(words, FIRST + late_ns) == late_ns
+    assert begin_tick(words, FIRST + late_ns) == late_ns
     assert words[OVERRUNS] == missed
     assert words[NEXT_NS] == FIRST + (missed + 1) * PERIOD
     assert words[NEXT_NS] > FIRST + late_ns, "nothing is made up for"
-    begun(words, words[NEXT_NS] + 2 * PERIOD)
+    begin_tick(words, words[NEXT_NS] + 2 * PERIOD)
     assert words[OVERRUNS] == missed + 2
 
 
@@ -44,15 +44,17 @@ def test_what_was_missed_is_counted_and_the_next_tick_is_in_step(begun, late_ns:
         (0, 0, 0),
     ],
 )
-def test_the_lead_grows_by_much_and_shrinks_by_a_thousandth_of_that(begun, late_ns: int, before_ns: int, after_ns: int):
+def test_the_lead_grows_by_much_and_shrinks_by_a_thousandth_of_that(
+    begin_tick, late_ns: int, before_ns: int, after_ns: int
+):
     words = header(before_ns, spins=True)
-    begun(words, FIRST + late_ns)
+    begin_tick(words, FIRST + late_ns)
     assert words[LEAD_NS] == after_ns
 
 
 @COMPILED
 @pytest.mark.parametrize("late_ns", [0, 50_000])
-def test_without_the_right_to_spin_there_is_no_lead(begun, late_ns: int):
+def test_without_the_right_to_spin_there_is_no_lead(begin_tick, late_ns: int):
     words = header()
-    begun(words, FIRST + late_ns)
+    begin_tick(words, FIRST + late_ns)
     assert words[LEAD_NS] == 0

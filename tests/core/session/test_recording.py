@@ -145,7 +145,7 @@ def test_what_has_no_end_or_never_begins_is_no_recording(tmp_path: Path, suffix:
     os.mkfifo(tmp_path / f"pipe{suffix}")
     (tmp_path / f"zero{suffix}").symlink_to("/dev/zero")
     for name in ("pipe", "zero"):
-        assert "cannot be read: it is no file but a folder or a device" in refusal(tmp_path / f"{name}{suffix}")
+        assert "cannot be read: it is not a file but a folder or a device" in refusal(tmp_path / f"{name}{suffix}")
 
 
 @pytest.mark.parametrize("suffix", [".nc", ".npz", ".csv"])

@@ -128,7 +128,7 @@ def test_a_picture_too_small_for_all_regions_has_fewer():
 
 
 def test_more_segments_than_textures():
-    with pytest.raises(PictureError, match="a mosaic of 13 needs as many textures, and there are 12; add some"):
+    with pytest.raises(PictureError, match="a mosaic of 13 needs as many textures, but there are 12; add some"):
         texture_mosaic(13, SHAPE, textures=FAMILIES)
 
 
@@ -158,8 +158,8 @@ def test_a_folder_of_textures(tmp_path: Path):
 
 
 def test_a_folder_without_textures(tmp_path: Path):
-    with pytest.raises(PictureError, match="holds no picture of a texture"):
+    with pytest.raises(PictureError, match="holds no texture pictures"):
         folder_textures(tmp_path)
     Image.fromarray(np.full((8, 8), 7, np.uint8)).save(tmp_path / "flat.png")
-    with pytest.raises(PictureError, match=r"flat\.png: is one flat colour and no texture"):
+    with pytest.raises(PictureError, match=r"flat\.png: is one flat colour, not a texture"):
         folder_textures(tmp_path)

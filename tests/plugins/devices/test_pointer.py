@@ -267,7 +267,7 @@ class TestNobody:
 
     @pytest.mark.parametrize("bad", [(np.nan, 0, 0), (0, np.inf, 0), (0, 0), (0, 0, 0, 0)])
     def test_a_client_sends_only_positions(self, link: CompiledLink, bad: tuple[float, ...]):
-        with PointerClient() as client, pytest.raises(DeviceError, match="three finite metres"):
+        with PointerClient() as client, pytest.raises(DeviceError, match="three finite numbers in metres"):
             client.send(bad, velocity_m_per_s=(0.0, 0.0, 0.0))
 
 

@@ -132,5 +132,5 @@ class TestFriction:
 
 
 def test_friction_that_grows_when_it_slides_is_refused():
-    with pytest.raises(ValueError, match="slide more easily"):
+    with pytest.raises(ValueError, match="sliding takes no more force"):
         Proxy(static_friction=0.2, dynamic_friction=0.3)

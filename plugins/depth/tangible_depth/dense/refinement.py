@@ -26,15 +26,15 @@ SAME_SURFACE = 16
 """Sixteenths of a pixel that two neighbours of a small map may differ by and still be blended when it is enlarged."""
 
 
-class Dense(NamedTuple):
+class DenseMatches(NamedTuple):
     """Disparity in sixteenths of a pixel, and its confidence."""
 
     disparity: Int16[np.ndarray, "h w"]
     confidence: Float32[np.ndarray, "h w"]
 
 
-def _empty(shape: tuple[int, int]) -> Dense:
-    return Dense(np.empty(shape, np.int16), np.empty(shape, np.float32))
+def _empty(shape: tuple[int, int]) -> DenseMatches:
+    return DenseMatches(np.empty(shape, np.int16), np.empty(shape, np.float32))
 
 
 def completed(
@@ -43,7 +43,7 @@ def completed(
     by_quality: Float[np.ndarray, "256"],
     grey: UInt8[np.ndarray, "h w"],
     sharpen: bool = True,
-) -> Dense:
+) -> DenseMatches:
     """Speckles removed (in `matched` itself), gaps filled, edges sharpened, and all of it judged (see `confidence`).
 
     A map without any match stays UNKNOWN. Not to `sharpen` is for a map that will be enlarged, and sharpened then.
@@ -64,7 +64,7 @@ def completed(
     return out
 
 
-def enlarged(small: Dense, grey: UInt8[np.ndarray, "h w"]) -> Dense:
+def enlarged(small: DenseMatches, grey: UInt8[np.ndarray, "h w"]) -> DenseMatches:
     """Twice the size: linear within a surface, and at its edges decided by the larger picture `grey`."""
     out = _empty(grey.shape)
     padded = np.pad(small.disparity, 1, mode="edge")
@@ -80,7 +80,7 @@ def enlarged(small: Dense, grey: UInt8[np.ndarray, "h w"]) -> Dense:
     return out
 
 
-def as_map(dense: Dense, grey: UInt8[np.ndarray, "h w"], fill: bool) -> DisparityMap:
+def as_map(dense: DenseMatches, grey: UInt8[np.ndarray, "h w"], fill: bool) -> DisparityMap:
     """In pixels; NaN where nothing is known and, unless `fill`, where a value comes from neighbours."""
     disparity_px, trust = np.empty(grey.shape, np.float32), np.empty(grey.shape, np.float32)
 

@@ -10,7 +10,7 @@ from tangible_core.data import DisparityMap, Views
 from tangible_core.plugins.notes import note
 
 from ..dense.confidence import flat_pixels
-from ..dense.refinement import Dense, as_map
+from ..dense.refinement import DenseMatches, as_map
 from ..dense.span import Span
 from ..rectify.rectification import with_rectification
 from ..search.asked import Auto, asked_span
@@ -20,7 +20,7 @@ from ..search.raw_pairs import with_common_rows
 
 log = logging.getLogger(__name__)
 
-Matcher = Callable[[Pair, Span], Dense]
+Matcher = Callable[[Pair, Span], DenseMatches]
 Rectify = Literal["auto", "never"]
 
 
@@ -40,7 +40,7 @@ def disparity_map(views: Views, name: str, search: Search, match: Matcher) -> Di
     """Disparity of the left view by the method `name`, which matches along rows.
 
     A pair whose rows do not correspond is rectified first, unless its calibration says that it is or `rectify` is
-    `never`. Raises: PictureError without a right view or for an empty range; CannotRectify as `rectify`.
+    `never`. Raises: PictureError without a right view or for an empty range; RectificationError as `rectify`.
     """
     pair = grey_pair(views, name)
     if search.skip_identical and np.array_equal(*pair):

@@ -17,7 +17,7 @@ from tangible_core.errors import PictureError
 from ..rectify.fundamental import Fit
 from ..rectify.homographies import transform
 from ..rectify.rectification import rectify
-from ..rectify.rectified import Rectified
+from ..rectify.rectified import RectifiedPair
 from ..sparse.assembling import assemble
 from ..sparse.corner_range import MOST_CORNERS, MaxDisparity, range_of_shifts, within
 from ..sparse.harris import corners, least_response, row_edges
@@ -43,7 +43,7 @@ def disparity_by_features(
 ) -> DisparityMap:
     """Dense disparity from scattered matches of corners and edges, whatever way the cameras looked.
 
-    Raises: PictureError if there is only one view; CannotRectify as `rectify`.
+    Raises: PictureError if there is only one view; RectificationError as `rectify`.
     """
     if views.right is None:
         raise PictureError("matching features needs two views; give a right one")
@@ -70,7 +70,7 @@ def _match_features(views: Views, parts: Parts, least: float, least_score: float
     return assemble(disparity, score, views.left)
 
 
-def _range(matches: Matches, rectified: Rectified, most: MaxDisparity) -> tuple[int, int]:
+def _range(matches: Matches, rectified: RectifiedPair, most: MaxDisparity) -> tuple[int, int]:
     """Lowest and highest disparity to try in the rectified views."""
     width = rectified.views.shape[1]
     if most != "auto":

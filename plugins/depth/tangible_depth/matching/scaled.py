@@ -9,7 +9,7 @@ from jaxtyping import UInt8
 from tangible_core.plugins.notes import note
 
 from ..dense.confidence import FLAT_REACH, LEAST_MATCHED
-from ..dense.refinement import Dense, completed, enlarged
+from ..dense.refinement import DenseMatches, completed, enlarged
 from ..dense.span import Span
 from ..search.pairs import Pair
 from ..sgm.costs import COSTS, SHARP
@@ -32,7 +32,7 @@ class Scaling(NamedTuple):
     skip_flat: bool
 
 
-def match_scaled(pair: Pair, span: Span, options: Scaling) -> Dense:
+def match_scaled(pair: Pair, span: Span, options: Scaling) -> DenseMatches:
     """A dense map of the pair's own size, whatever size was matched at."""
     factor = _factor(span, options)
     small = pair.shrunk(factor)
@@ -60,7 +60,7 @@ def _has_texture(grey: UInt8[np.ndarray, "h w"], y0: int, y1: int) -> bool:
     return not np.array_equal(rows[:, 1:], rows[:, :-1])
 
 
-def _match(pair: Pair, span: Span, options: Scaling) -> Dense:
+def _match(pair: Pair, span: Span, options: Scaling) -> DenseMatches:
     rows = strips(pair.left.shape, span)
     if options.skip_flat:
         textured = [each for each in rows if _has_texture(pair.left, *each)]

@@ -8,7 +8,7 @@ from jaxtyping import Float32
 from tangible_core.compiled.threads import in_blocks
 
 from ..dense.confidence import LEAST_MATCHED
-from ..dense.refinement import Dense, completed
+from ..dense.refinement import DenseMatches, completed
 from ..dense.span import Span
 from ..search.pairs import Pair
 from ..sgm.strips import blank
@@ -24,12 +24,12 @@ Trust = Callable[[Float32[np.ndarray, "rows w"]], Float32[np.ndarray, "rows w"]]
 """Confidence 0..1 from scores."""
 
 
-def match_by_correlation(pair: Pair, span: Span, window_px: int) -> Dense:
+def match_by_correlation(pair: Pair, span: Span, window_px: int) -> DenseMatches:
     """Zero-mean normalised cross-correlation; the confidence of a match is its correlation."""
     return _match(pair, span, window_px, None, 0.0, lambda scores: np.clip(scores, 0, 1))
 
 
-def match_by_difference(pair: Pair, span: Span, window_px: int) -> Dense:
+def match_by_difference(pair: Pair, span: Span, window_px: int) -> DenseMatches:
     """Sum of squared differences S; the confidence of a match is exp(-S / (pixels x SSD_SCALE))."""
     from tangible_core.compiled.elementary import exponentials
 
@@ -37,7 +37,7 @@ def match_by_difference(pair: Pair, span: Span, window_px: int) -> Dense:
     return _match(pair, span, window_px, True, -1e29, lambda scores: exponentials(np.minimum(scores, 0) / scale))
 
 
-def _match(pair: Pair, span: Span, window_px: int, squared: bool | None, least: float, trust: Trust) -> Dense:
+def _match(pair: Pair, span: Span, window_px: int, squared: bool | None, least: float, trust: Trust) -> DenseMatches:
     disparity, quality = blank(pair.left.shape)
     scores = np.full(pair.left.shape, -1e30, np.float32)
 

@@ -39,22 +39,24 @@ class Fundamental(NamedTuple):
 def check_matches(left_px: np.ndarray, right_px: np.ndarray) -> None:
     """Raises: DegenerateMatches ("not finite", "too few", "duplicate" or "collinear") if no F can come of these."""
     if left_px.shape != right_px.shape or left_px.ndim != 2 or left_px.shape[1] != 2:
-        raise GeometryError(f"matches are two arrays (n, 2) of one length, not {left_px.shape} and {right_px.shape}")
+        raise GeometryError(
+            f"matches must be two arrays (n, 2) of equal length, not {left_px.shape} and {right_px.shape}"
+        )
     pairs = np.hstack([left_px, right_px])
     if not np.isfinite(pairs).all():
         count = np.count_nonzero(~np.isfinite(pairs).all(axis=1))
         raise DegenerateMatches("not finite", f"{count} of {len(pairs)} matches are NaN or infinite; leave them out")
     if len(pairs) < FEWEST:
         raise DegenerateMatches(
-            "too few", f"{len(pairs)} matches where {FEWEST} are needed; take pictures with more detail"
+            "too few", f"{len(pairs)} matches, but {FEWEST} are needed; take pictures with more detail"
         )
     if (different := min(len(np.unique(points, axis=0)) for points in (left_px, right_px))) < FEWEST:
         raise DegenerateMatches(
-            "duplicate", f"{different} different points in {len(pairs)} matches, {FEWEST} are needed"
+            "duplicate", f"{different} different points in {len(pairs)} matches, but {FEWEST} are needed"
         )
     for side, points in (("left", left_px), ("right", right_px)):
         if _is_line(points):
-            raise DegenerateMatches("collinear", f"the {side} points lie on one line; add matches away from it")
+            raise DegenerateMatches("collinear", f"the {side} points are collinear; add matches off that line")
 
 
 def _is_line(points: np.ndarray) -> bool:
@@ -122,7 +124,9 @@ def robust_fundamental(
         raise DegenerateMatches("homography", _NO_PARALLAX)
     if first is None or _false_alarms(left_px, right_px, first.inliers, threshold_px) > 0:
         raise DegenerateMatches(
-            "outliers", f"no geometry explains more of the {len(left_px)} matches than chance; do both show one scene?"
+            "outliers",
+            f"no epipolar geometry explains more of the {len(left_px)} matches than chance would; "
+            "do both pictures show the same scene?",
         )
     if _parallax_false_alarms(left_px, right_px, first.inliers, flat, threshold_px) > 0:
         raise DegenerateMatches("homography", _NO_PARALLAX)

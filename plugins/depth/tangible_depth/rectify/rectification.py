@@ -20,7 +20,7 @@ from .alignment import aligning_homographies, epipole_roll
 from .epipolar import homogeneous, product
 from .fundamental import DegenerateMatches, Fit, eight_point, on_homography, robust_fundamental
 from .homographies import transform
-from .rectified import Rectified, as_it_is, warped
+from .rectified import RectifiedPair, as_it_is, warped
 
 logger = logging.getLogger(__name__)
 
@@ -32,7 +32,7 @@ EXCHANGED_PX = -2.0
 """Views are exchanged if all but one match in twenty are below this disparity: parallel cameras give none below 0."""
 
 
-class CannotRectify(GeometryError):
+class RectificationError(GeometryError):
     """A pair whose rows do not correspond and that cannot be turned so that they do."""
 
     def __init__(self, message: str) -> None:
@@ -42,7 +42,7 @@ class CannotRectify(GeometryError):
 def with_rectification(views: Views, estimate: Callable[[Views], DisparityMap]) -> DisparityMap:
     """Disparity of the left view by a method that searches along rows, whatever way the cameras looked.
 
-    Raises: CannotRectify if the rows do not correspond and cannot be made to; and what `estimate` raises.
+    Raises: RectificationError if the rows do not correspond and cannot be made to; and what `estimate` raises.
     """
     rectified = rectify(views)
     return rectified.to_original(estimate(rectified.views))
@@ -50,7 +50,7 @@ def with_rectification(views: Views, estimate: Callable[[Views], DisparityMap]) 
 
 def rectify(
     views: Views, tolerance_px: float = 0.35, matches: Matches | None = None, fit: Fit = eight_point
-) -> Rectified:
+) -> RectifiedPair:
     """A pair of unknown cameras turned so that its rows correspond.
 
     Skipped, with the reason in `why`, if the views carry a calibration, if the median vertical offset of their
@@ -59,7 +59,7 @@ def rectify(
     matches: those to go by; found by optical flow and SIFT when left out. fit: makes F of trusted matches.
     A flat scene, or a camera that only turned, is aligned as well, with a warning: the matches leave it open how.
     Views in the wrong order are taken as they are, with a warning: their disparities are negative.
-    Raises: PictureError if there is only one view; CannotRectify if the rows do not correspond but no geometry, or
+    Raises: PictureError if there is only one view; RectificationError if the rows do not correspond but no geometry, or
     only one that distorts the pictures, explains the matches.
     """
     if views.right is None:
@@ -82,7 +82,7 @@ def rectify(
     return _turned(views, matches, before, fit)
 
 
-def _left_alone(views: Views, why: str) -> Rectified:
+def _left_alone(views: Views, why: str) -> RectifiedPair:
     note(logger, f"not rectified: {why}")
     return as_it_is(views, why)
 
@@ -96,7 +96,7 @@ def _median_offset(matches: Matches) -> float:
     return float(np.median(np.abs(matches.row_offset_px)))
 
 
-def _turned(views: Views, matches: Matches, before: float, fit: Fit) -> Rectified:
+def _turned(views: Views, matches: Matches, before: float, fit: Fit) -> RectifiedPair:
     trusted, roll = _trusted(matches, views.shape, fit)
     kept = Matches(matches.left_px[trusted], matches.right_px[trusted])
     pair = aligning_homographies(kept, views.shape, roll)
@@ -119,7 +119,7 @@ def _trusted(matches: Matches, shape: tuple[int, int], fit: Fit) -> tuple[Bool[n
         found = robust_fundamental(*matches, threshold, fit)
     except DegenerateMatches as error:
         if error.reason != "homography":
-            raise CannotRectify(f"matches do not lie on their rows, and there is {error}") from error
+            raise RectificationError(f"matches do not lie on their rows, and there is {error}") from error
         # A flat scene leaves the epipole open: any that aligns the matches will do, and the nearest bends least.
         logger.warning("rectifying without parallax: %s", error)
         return on_homography(*matches, threshold), 0.0
@@ -138,7 +138,7 @@ def _search_start(disparity_px: Float64[np.ndarray, "n"]) -> int:
 def check_homographies(
     pair: tuple[np.ndarray, np.ndarray], shape: tuple[int, int], offsets_px: np.ndarray, most_offset_px: float = 3.0
 ) -> None:
-    """Raises: CannotRectify if a homography tears, mirrors, or resizes a picture (h, w), or rows do not correspond.
+    """Raises: RectificationError if a homography tears, mirrors or resizes a picture, or rows do not correspond.
 
     The area may change by a factor of three; the 95th percentile of the vertical offsets is most_offset_px at most.
     """
@@ -147,18 +147,18 @@ def check_homographies(
         corners = np.array([[0, 0], [columns, 0], [columns, rows], [0, rows]], np.float64)
         depth = product(homogeneous(corners), homography[2:].T)
         if depth.min() <= 0:
-            raise CannotRectify(f"the {side} picture would reach infinity: the cameras look along their baseline")
+            raise RectificationError(f"the {side} picture would reach infinity: the cameras look along their baseline")
         quad = transform(homography, corners)
         turns = _cross(np.roll(quad, -1, axis=0) - quad, np.roll(quad, -2, axis=0) - np.roll(quad, -1, axis=0))
         if turns.min() <= 0:
-            raise CannotRectify(f"the {side} picture's corners would change their order")
+            raise RectificationError(f"the {side} picture's corners would change their order")
         ratio = 0.5 * _cross(quad, np.roll(quad, -1, axis=0)).sum() / (rows * columns)
         if not 1 / 3 <= ratio <= 3:
-            raise CannotRectify(f"the {side} picture would take {ratio:.2g} times its area; turn the cameras less")
+            raise RectificationError(f"the {side} picture would take {ratio:.2g} times its area; turn the cameras less")
     if (worst := float(np.percentile(offsets_px, 95))) > most_offset_px:
-        raise CannotRectify(
+        raise RectificationError(
             f"one match in twenty would still lie over {worst:.1f} px off its row: "
-            "the camera went forwards, or a lens distorts"
+            "the camera moved forwards, or a lens distorts"
         )
 
 

@@ -14,7 +14,7 @@ from .homographies import inverse, transform
 
 
 @dataclass(frozen=True, eq=False)
-class Rectified(Record):
+class RectifiedPair(Record):
     """A pair whose matches lie on one row, how it came about, and the way back to the pictures as they were.
 
     left_homography, right_homography: (3, 3), from a point of the original picture to its place in `views`.
@@ -67,9 +67,9 @@ class Rectified(Record):
             )
 
 
-def as_it_is(views: Views, why: str) -> Rectified:
+def as_it_is(views: Views, why: str) -> RectifiedPair:
     """A pair whose rows correspond already, or of which nobody can tell."""
-    return Rectified(views, np.eye(3), np.eye(3), views.shape, 0.0, True, why)
+    return RectifiedPair(views, np.eye(3), np.eye(3), views.shape, 0.0, True, why)
 
 
 def warped(
@@ -78,7 +78,7 @@ def warped(
     why: str,
     start_px: int = 0,
     calibration: Calibration | None = None,
-) -> Rectified:
+) -> RectifiedPair:
     """Both pictures on a canvas that holds the whole left one, the right one moved so that start_px becomes zero.
 
     pair: homographies (left, right), each (3, 3), that bring matches onto common rows.
@@ -94,7 +94,7 @@ def warped(
     left, right = _moved(pair[0], origin), _moved(pair[1], origin - [start_px, 0])
     moved = calibration and replace(calibration, offset_px=calibration.offset_px + start_px)
     turned = Views(_warp(views.left, left, width, height), _warp(views.right, right, width, height), moved)
-    return Rectified(turned, left, right, views.shape, float(start_px), False, why, calibration)
+    return RectifiedPair(turned, left, right, views.shape, float(start_px), False, why, calibration)
 
 
 def _moved(homography: np.ndarray, origin: np.ndarray) -> Float64[np.ndarray, "3 3"]:

@@ -15,14 +15,14 @@ log = logging.getLogger(__name__)
 Auto = Literal["auto"]
 
 
-class Asked(NamedTuple):
+class SearchRange(NamedTuple):
     """The disparities to try, and what was matched to find them, if they were not told."""
 
     span: Span
     bands: Bands | None
 
 
-def asked_span(pair: Pair, least: int | Auto, most: int | Auto) -> Asked:
+def asked_span(pair: Pair, least: int | Auto, most: int | Auto) -> SearchRange:
     """least..most - 1 px. auto: found in a few bands of the pair, or a least of 0 where the most is given.
 
     Raises: PictureError if these are no disparities.
@@ -31,11 +31,13 @@ def asked_span(pair: Pair, least: int | Auto, most: int | Auto) -> Asked:
         return _found(pair, least)
     low = 0 if least == "auto" else least
     if low >= most:
-        raise PictureError(f"no disparity is in {low}..{most - 1} px; raise max_disparity_px or lower min_disparity_px")
-    return Asked(Span(low, most - 1).within(pair.width), None)
+        raise PictureError(
+            f"the search range {low}..{most - 1} px is empty; raise max_disparity_px or lower min_disparity_px"
+        )
+    return SearchRange(Span(low, most - 1).within(pair.width), None)
 
 
-def _found(pair: Pair, least: int | Auto) -> Asked:
+def _found(pair: Pair, least: int | Auto) -> SearchRange:
     found = find_range(pair)
     low, high = (0, reach_px(pair.width)) if found is None else found.span
     if found is not None and found.swapped:
@@ -46,4 +48,4 @@ def _found(pair: Pair, least: int | Auto) -> Asked:
     why = "beyond what is searched where nothing stands out" if found is None else "which do not occur"
     note(log, f"skipped: disparities outside {low}..{high} px, {why}")
     span = Span(low, high).filled() if high > 0 else Span(low, high)
-    return Asked(span.within(pair.width), found and found.bands)
+    return SearchRange(span.within(pair.width), found and found.bands)

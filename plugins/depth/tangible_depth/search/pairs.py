@@ -39,7 +39,7 @@ def grey_pair(views: Views, method: str) -> Pair:
     Raises: PictureError if there is no right view.
     """
     if views.right is None:
-        raise PictureError(f"{method} needs two views and the right one is missing; give both or use luminance")
+        raise PictureError(f"{method} needs two views, but the right one is missing; give both, or use luminance")
     pictures = (views.left, views.right)
     if all(each.dtype == np.uint8 and (each.ndim == 2 or each.shape[2] == 3) for each in pictures):
         return Pair(*(_grey8(each) for each in pictures))

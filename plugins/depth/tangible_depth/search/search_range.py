@@ -21,7 +21,7 @@ FIRST_MARGIN, MARGIN = 1, 2
 """What is then added at either end, in pixels of the copy."""
 
 
-class Found(NamedTuple):
+class RangeEstimate(NamedTuple):
     """The range of a pair, and the bands in which it was found."""
 
     span: Span
@@ -35,7 +35,7 @@ def reach_px(width: int) -> int:
     return round(REACH * width)
 
 
-def find_range(pair: Pair) -> Found | None:
+def find_range(pair: Pair) -> RangeEstimate | None:
     """The disparities that occur, of either sign; None if nothing at all matches."""
     width, reach = pair.width, reach_px(pair.width)
     first = _look(pair, Span(-reach, reach), FIRST_WIDTH, FIRST_MARGIN)
@@ -47,10 +47,10 @@ def find_range(pair: Pair) -> Found | None:
     if fine is None or fine.bands.loss < NOISY:
         return fine or first
     wider = Span(min(first.span.low, fine.span.low), max(first.span.high, fine.span.high))
-    return Found(wider, fine.bands, first.swapped and fine.swapped)
+    return RangeEstimate(wider, fine.bands, first.swapped and fine.swapped)
 
 
-def _look(pair: Pair, span: Span, width: int, margin: int) -> Found | None:
+def _look(pair: Pair, span: Span, width: int, margin: int) -> RangeEstimate | None:
     bands = match_bands(pair, span.within(pair.width), width)
     factor = bands.factor
     known = np.sort(bands.disparity[bands.disparity != UNKNOWN]).astype(np.float32) * (factor / 16)
@@ -59,4 +59,4 @@ def _look(pair: Pair, span: Span, width: int, margin: int) -> Found | None:
     fringe = int(FRINGE * known.size)
     low, high = known[fringe], known[-1 - fringe]
     span = Span(int(np.floor(low)) - margin * factor, int(np.ceil(high)) + margin * factor)
-    return Found(span, bands, bool(low < -2 and high <= 1))
+    return RangeEstimate(span, bands, bool(low < -2 and high <= 1))

@@ -7,7 +7,7 @@ from pydantic import AfterValidator, Field
 
 def _odd(value: int) -> int:
     if value % 2 == 0:
-        raise ValueError(f"a window round a pixel has an odd side, not {value}; take {value - 1} or {value + 1}")
+        raise ValueError(f"the side of a window must be odd, not {value}; take {value - 1} or {value + 1}")
     return value
 
 

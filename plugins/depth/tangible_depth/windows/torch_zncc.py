@@ -24,7 +24,7 @@ SAME_SCORE = 1e-5
 """Scores no farther apart than float32 rounds them."""
 
 
-class Best(NamedTuple):
+class BestMatches(NamedTuple):
     """The best shift of each left pixel (b, h, w): pixels, NaN where there is none, and its score in 0..1."""
 
     disparity_px: Tensor
@@ -71,7 +71,7 @@ def _shifted(values: Tensor, low: int, high: int, outside: float) -> Tensor:
     return torch.cat([wide[..., before - d : before - d + width] for d in range(low, high + 1)], dim=1)
 
 
-def best_shifts(volume: Tensor, low: int) -> Best:
+def best_shifts(volume: Tensor, low: int) -> BestMatches:
     """The best of scores (b, n, h, w) of the disparities low, low + 1, ..., by the parabola through its neighbours.
 
     Unknown unless the matched right pixel finds no better left one (left-right check) and the score is above 0, or
@@ -87,7 +87,7 @@ def best_shifts(volume: Tensor, low: int) -> Best:
     level = torch.minimum(before, after) >= value - SAME_SCORE if count > 1 else torch.zeros_like(mutual)
     move = torch.where((at > 0) & (at < count - 1), _parabola(before, value, after), 0.0)
     known = mutual & (value > 0) & ~level
-    return Best(torch.where(known, at + low + move, torch.nan), torch.where(known, value.clamp(0, 1), 0.0))
+    return BestMatches(torch.where(known, at + low + move, torch.nan), torch.where(known, value.clamp(0, 1), 0.0))
 
 
 def _right_best(volume: Tensor, low: int) -> Tensor:
@@ -109,28 +109,28 @@ def _parabola(before: Tensor, value: Tensor, after: Tensor) -> Tensor:
     return torch.where(bent, 0.5 * (after - before) / torch.where(bent, bend, 1.0), 0.0)
 
 
-def match(left: Tensor, right: Tensor, low: int, high: int, window_px: int, memory_mb: int = 64) -> Best:
+def match(left: Tensor, right: Tensor, low: int, high: int, window_px: int, memory_mb: int = 64) -> BestMatches:
     """The best shift of every pixel in low..high, in strips of rows so that the scores take about memory_mb.
 
     A strip is at least a window high, whatever that takes. On a CPU small strips are the fastest: they stay in its
     caches.
     """
 
-    def one_strip(first: int, last: int, skip: int, rows: int) -> Best:
+    def one_strip(first: int, last: int, skip: int, rows: int) -> BestMatches:
         with torch.no_grad():
             volume = scores(left[..., first:last, :], right[..., first:last, :], low, high, window_px)
-            return Best(*(part[..., skip : skip + rows, :] for part in best_shifts(volume, low)))
+            return BestMatches(*(part[..., skip : skip + rows, :] for part in best_shifts(volume, low)))
 
     strips = list(_strips(left, high - low + 1, window_px // 2, memory_mb))
     done = [one_strip(*strip) for strip in strips] if left.is_cuda else _on_all_cores(one_strip, strips)
-    return Best(*(torch.cat(parts, dim=-2) for parts in zip(*done, strict=True)))
+    return BestMatches(*(torch.cat(parts, dim=-2) for parts in zip(*done, strict=True)))
 
 
 Strip = tuple[int, int, int, int]
 """First and last row to read, how many of these only surround, how many are wanted."""
 
 
-def _on_all_cores(work: Callable[[int, int, int, int], Best], strips: list[Strip]) -> list[Best]:
+def _on_all_cores(work: Callable[[int, int, int, int], BestMatches], strips: list[Strip]) -> list[BestMatches]:
     """A strip a thread: torch's own threads wait for each other at every sum, and spin where a core is busy."""
     threads = torch.get_num_threads()
     try:

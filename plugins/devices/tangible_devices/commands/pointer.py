@@ -8,17 +8,17 @@ PATHS = "circle | raster | spiral | press"
 
 
 def pointer(
-    path: Annotated[str, typer.Option(help=f"{PATHS}; without one, type positions.")] = "",
-    channel: Annotated[str, typer.Option(help="Channel, as in the device's options.")] = "pointer",
-    seconds: Annotated[float, typer.Option(help="How long to follow the path, s.")] = 8.0,
+    path: Annotated[str, typer.Option(help=f"Path to follow: {PATHS}; without one, type positions.")] = "",
+    channel: Annotated[str, typer.Option(help="Channel, the same as the device's.")] = "pointer",
+    seconds: Annotated[float, typer.Option(help="Time on the path, s.")] = 8.0,
     height_mm: Annotated[float, typer.Option(help="Height of the path above the base plane, mm.")] = 5.0,
     speed_mm_per_s: Annotated[float, typer.Option(help="Speed along the path, mm/s.")] = 80.0,
-    wait: Annotated[float, typer.Option(help="How long to wait for the device, s.")] = 0.0,
-    as_json: Annotated[bool, typer.Option("--json", help="One JSON object a line.")] = False,
+    wait: Annotated[float, typer.Option(help="Time to wait for the device, s.")] = 0.0,
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object per line.")] = False,
 ) -> None:
-    """Move a `pointer` device from another terminal.
+    """Move a `pointer` device by hand and see the forces.
 
-    Shows the forces. Typed positions are lines of `x y z`, millimetres, and buttons as a fourth number if you like.
+    Typed positions are lines of `x y z` in millimetres, with the buttons as an optional fourth number.
     """
     from ..pointer.following import follow
 

@@ -26,20 +26,20 @@ class Calibration(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     encoder_offset_deg: tuple[Angle, Angle, Angle] = (35.0, 35.0, 35.0)
-    """Angles of the arms (top, right, left) where their encoders count 0; the source says: about 35."""
+    """Angles of the arms (top, right, left) at encoder count 0; about 35 according to the source."""
     counts_per_newton_metre: Annotated[float, Field(ge=100, le=100_000)] = 10_000.0
-    """Motor counts for a torque of 1 N m. Uncertain by a factor of two: found by trying, while traces of the original
-    driver suggest 5000, with which forces are half as strong."""
+    """Motor counts for a torque of 1 N m. Uncertain by a factor of two: the default was found by trial, while traces of
+    the original driver suggest 5000, with half the force."""
     motor_gain: tuple[Gain, Gain, Gain] = (1.0, 1.0, 1.0)
-    """Factor on each motor's torque (top, right, left), for motors that differ."""
+    """Gain of each motor (top, right, left), for motors that differ."""
     axes: tuple[Axis, Axis, Axis] = ("x", "-z", "y")
-    """The device's axes along the workspace's x (right), y (away from the user) and z (up); the device's own are taken
-    to be x right, y up, z out to the user, which no source says in words."""
+    """Which device axis is the workspace's x (right), y (away from the user) and z (up). The device's own axes are
+    assumed to be x right, y up, z towards the user; no source states them."""
 
     @model_validator(mode="after")
     def _agrees(self) -> Self:
         if {axis[-1] for axis in self.axes} != set("xyz"):
-            raise ValueError(f"axes {', '.join(self.axes)} name an axis twice; name x, y and z once each")
+            raise ValueError(f"axes {', '.join(self.axes)} name an axis twice; name each of x, y and z once")
         return self
 
     def arms(self) -> Float64[np.ndarray, "3 2"]:

@@ -23,25 +23,26 @@ class Falcon(HapticDevice, Serviceable, Adjustable):
     """
 
     firmware: Path | None = None
-    """Firmware image, sent if the device has none since it was powered; yours to supply, such as nvent_firmware.bin."""
+    """Firmware image, sent if the device has none since power-on; you must supply it, such as nvent_firmware.bin."""
     serial: str | None = None
-    """Serial number of the Falcon to open; null takes them by index."""
+    """Serial number of the Falcon to open; null selects by `index`."""
     index: Annotated[int, Field(ge=0)] = 0
-    """Which of several Falcons, in the order of the bus, where no serial is given."""
+    """Which of several Falcons, in bus order, if no serial number is given."""
     calibration: Calibration | None = None
-    """What differs from device to device, or is uncertain; null takes what `tangible devices calibrate falcon` kept for
-    this one, or else the figures that are published."""
+    """Figures that differ between devices or are uncertain; null uses what `tangible devices calibrate falcon` saved
+    for this device, or else the published figures."""
     home_within_s: Annotated[float, Field(gt=0, le=3600)] = 120.0
-    """Time to home it in."""
+    """Time allowed for homing."""
     leds: bool = True
-    """Red until it is homed, then green."""
+    """Light the LEDs: red until the device is homed, then green."""
     velocity_samples: Annotated[int, Field(ge=2, le=64)] = 16
-    """Longest window over which a velocity is taken; while the tip moves fast it is shorter by itself."""
+    """Longest window for velocity estimates; it shortens while the tip moves fast."""
     in_flight: Annotated[int, Field(ge=1, le=4)] = 2
-    """Packets on their way at once: 2 reach 1 kHz, as the USB chip holds an answer back for a millisecond; 1 waits for
-    each answer, for the shortest delay at a lower rate."""
+    """Packets in flight: 2 reach 1 kHz, as the USB chip delays an answer by up to a millisecond; 1 waits for each
+    answer, for the shortest delay at a lower rate."""
     event_character: bool = False
-    """Let the USB chip send an answer at once as it ends, instead of a millisecond later; not every chip may do so."""
+    """Let the USB chip send an answer as soon as it is complete, instead of a millisecond later; some chips may not
+    support it."""
 
     def spec(self) -> DeviceSpec:
         """A Falcon's limits, as in CHAI3D's table; the force that its motors can give in every direction."""

@@ -18,7 +18,7 @@ Height = Annotated[float, Field(ge=-0.03, le=0.03)]
 
 
 class FalconSimulated(HapticDevice):
-    """A Novint Falcon that is not there, byte by byte: the real driver loads its firmware, homes it and feels.
+    """A simulated Novint Falcon, byte by byte: the real driver loads its firmware, homes it and feels.
 
     Simulated are the USB chip, the boot loader, the packets, the homing, the mass and friction of the mechanics, and a
     hand that follows a path and yields to the force. Time is simulated too: it goes on as fast as it can be computed.
@@ -26,25 +26,25 @@ class FalconSimulated(HapticDevice):
     """
 
     driver: Falcon = Falcon()
-    """Options of the driver, as of device falcon; without firmware one is made up."""
+    """Options of the driver, as of `falcon`; without firmware, a made-up one is used."""
     path: Literal["raster", "circle", "spiral", "press"] = "raster"
-    """Way of the hand, over the surface or straight down and up."""
+    """Path of the hand, over the surface or straight down and up."""
     size_m: tuple[Size, Size] = (0.05, 0.035)
-    """Width and length of raster, circle and spiral, centred."""
+    """Width and length of raster, circle and spiral, which are centred."""
     lines: Annotated[int, Field(ge=2, le=200)] = 8
-    """Lines of the raster, turns of the spiral."""
+    """Number of lines of the raster, or turns of the spiral."""
     z_m: Height = -0.005
-    """Height of the path over the base plane; the lowest point of a press."""
+    """Height of the path above the base plane; of `press`, its lowest point."""
     lift_m: Height = 0.02
-    """Where the hand comes from."""
+    """Height at which the hand starts."""
     speed_m_per_s: Annotated[float, Field(ge=1e-4, le=1)] = 0.08
-    """Along the path."""
+    """Speed along the path."""
     hand: VirtualHand = VirtualHand()
-    """The hand on the grip; its mass adds to that of the mechanics."""
+    """The hand on the grip; its mass adds to the device's."""
     faults: tuple[Fault, ...] = ()
-    """What is to go wrong, and when."""
+    """Faults to inject, and when."""
     real_time: bool = False
-    """Run by the clock on the wall, to try what needs one."""
+    """Run in real time instead of simulated time."""
 
     def spec(self) -> DeviceSpec:
         """As of device falcon, but that no motor moves."""

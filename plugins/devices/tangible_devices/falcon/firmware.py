@@ -27,7 +27,7 @@ NULL = b"<AAAAAAAAAAAAAA>"
 """The packet of no torque, no light, no homing."""
 
 
-class LoadFailed(Exception):
+class LoadError(Exception):
     """An attempt to load that may be repeated."""
 
 
@@ -61,10 +61,10 @@ def _start(port: Port, image: bytes | None, event_character: bool) -> str:
     if answers(port):
         return ""
     if image is None:
-        raise DeviceError(f"{port.place}: has no firmware since it was powered; give option firmware; {WHENCE}")
+        raise DeviceError(f"{port.place}: has no firmware since power-on; give the option firmware; {WHENCE}")
     try:
         load(port, image)
-    except LoadFailed as error:
+    except LoadError as error:
         return str(error)
     ftdi.run_time(port, event_character)
     return "" if answers(port) else "the firmware does not answer"
@@ -83,7 +83,7 @@ def answers(port: Port) -> bool:
 
 
 def load(port: Port, image: bytes) -> None:
-    """One attempt. Raises: LoadFailed if the boot loader is not there or an echo differs, DeviceError if USB fails."""
+    """One attempt. Raises: LoadError if the boot loader is not there or an echo differs, DeviceError if USB fails."""
     _boot_mode(port)
     _greet(port)
     port.request(ftdi.MODEM, 0x0100)
@@ -114,7 +114,7 @@ def _greet(port: Port) -> None:
         heard = (heard + port.payload())[-USB_PACKET:]
         if READY in heard:
             return
-    raise LoadFailed("the boot loader does not answer")
+    raise LoadError("the boot loader does not answer")
 
 
 def _echoed(port: Port, sent: bytes) -> None:
@@ -124,4 +124,4 @@ def _echoed(port: Port, sent: bytes) -> None:
         more = port.payload()
         heard, quiet = heard + more, 0 if more else quiet + 1
     if heard != sent:
-        raise LoadFailed(f"{len(sent)} bytes came back as {len(heard)} others" if heard else "an echo did not come")
+        raise LoadError(f"{len(sent)} bytes came back as {len(heard)} others" if heard else "an echo did not come")

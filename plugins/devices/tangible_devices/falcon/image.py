@@ -28,9 +28,9 @@ def read_image(path: Path) -> bytes:
         with path.expanduser().open("rb") as file:
             image = file.read(MOST_BYTES + 1)
     except OSError as error:
-        raise DeviceError(f"{path}: cannot be read: {error.strerror}; give option firmware; {WHENCE}") from error
+        raise DeviceError(f"{path}: cannot be read: {error.strerror}; give the option firmware; {WHENCE}") from error
     if wrong := complaint(image):
-        raise DeviceError(f"{path}: is no firmware of a Falcon: {wrong}; {WHENCE}")
+        raise DeviceError(f"{path}: is not a Falcon firmware: {wrong}; {WHENCE}")
     return image
 
 

@@ -122,7 +122,7 @@ def _number(text: str) -> float:
     except ValueError:
         grams = math.nan
     if not 20 <= grams <= 500:
-        raise DeviceError(f"{text!r} is no weight of 20 to 500 g; calibrate again")
+        raise DeviceError(f"{text!r} is not a weight of 20 to 500 g; calibrate again")
     return grams
 
 

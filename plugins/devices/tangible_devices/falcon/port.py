@@ -152,16 +152,18 @@ def chosen(devices: list[Any], serial: str | None, index: int) -> tuple[Any, str
     """One of them, and how it is named. Raises: DeviceAbsent if there is none, DeviceError if not this one."""
     if not devices:
         raise DeviceAbsent(
-            "Novint Falcon: none is plugged in; plug in its USB cable and its power supply, "
+            "Novint Falcon: none is connected; plug in its USB cable and its power supply, "
             "or use device falcon-simulated"
         )
     if serial is not None:
         serials = [serial_of(device) for device in devices]
         if serial not in serials:
-            raise DeviceError(f"Novint Falcon: none has the serial {serial}; there are {', '.join(map(str, serials))}")
+            raise DeviceError(
+                f"Novint Falcon: none has the serial number {serial}; connected are {', '.join(map(str, serials))}"
+            )
         index = serials.index(serial)
     if index >= len(devices):
-        raise DeviceError(f"Novint Falcon: index {index} is asked for and {len(devices)} are plugged in; count from 0")
+        raise DeviceError(f"Novint Falcon: index {index} does not exist, {len(devices)} are connected; count from 0")
     return devices[index], place_of(devices[index])
 
 

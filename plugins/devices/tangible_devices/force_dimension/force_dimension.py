@@ -27,11 +27,11 @@ class ForceDimension(HapticDevice, Serviceable):
     """
 
     serial: Annotated[int, Field(ge=0, le=65535)] | None = None
-    """Serial number of the device to open; null takes them by index."""
+    """Serial number of the device to open; null selects by `index`."""
     index: Annotated[int, Field(ge=0, le=127)] = 0
-    """Which of several devices, as the library counts them, where no serial is given."""
+    """Which of several devices, in the library's order, if no serial number is given."""
     model: Model = "omega"
-    """What it is, for its limits, which must be known before it is opened."""
+    """Model of the device; its limits must be known before it is opened."""
 
     def spec(self) -> DeviceSpec:
         """The model's limits, as in CHAI3D's table; the resolution is a guess."""

@@ -32,7 +32,7 @@ def done(dhd: Any, result: int, doing: str, cure: str) -> int:
 
 
 @final
-class Opened:
+class OpenDevices:
     """The devices that this program has open: asked for again, the library would hand out the same one twice."""
 
     def __init__(self) -> None:
@@ -56,4 +56,4 @@ class Opened:
             self._numbers.discard(number)
 
 
-OPENED = Opened()
+OPENED = OpenDevices()

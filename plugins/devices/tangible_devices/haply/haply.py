@@ -21,15 +21,15 @@ class Haply(HapticDevice, Serviceable):
     """
 
     uri: Annotated[str, Field(pattern=r"^wss?://")] = "ws://localhost:10001"
-    """Where the service listens."""
+    """Address at which the service listens."""
     device_id: str | None = None
-    """Which Inverse3, as `tangible devices` lists them; null takes the first."""
+    """Which Inverse3, as `tangible devices` lists them; null selects the first."""
     centre_m: tuple[Metres, Metres, Metres] = (0.0, -0.14, 0.1)
-    """What becomes the origin, in the service's frame; a guess at a comfortable place, for you to adjust."""
+    """Position, in the service's frame, that becomes the origin; the default is a guess at a comfortable place."""
     max_force_n: Annotated[float, Field(gt=0, le=20)] = 5.0
-    """The greatest force that is sent; below what the arm can give for a moment, as motors warm up."""
+    """Greatest force that is sent; less than the arm's short-term peak, because motors heat up."""
     timeout_s: Annotated[float, Field(gt=0, le=60)] = 1.0
-    """A service that has not answered for so long is taken for gone."""
+    """Time without an answer after which the service counts as lost."""
 
     def spec(self) -> DeviceSpec:
         """Careful guesses, but for the force, which is the option's: the maker states no stiffness or damping."""

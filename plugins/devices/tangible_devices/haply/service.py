@@ -135,7 +135,7 @@ def _connected(until: ExitStack, uri: str, timeout_s: float) -> "ClientConnectio
     except (ConnectionRefusedError, TimeoutError) as error:
         raise DeviceAbsent(f"{uri}: no Haply service listens there ({error}); {START}") from error
     except (OSError, WebSocketException, EOFError) as error:
-        raise DeviceError(f"{uri}: is no Haply service ({error}); {START}") from error
+        raise DeviceError(f"{uri}: is not a Haply service ({error}); {START}") from error
 
 
 def _arm(told: Mapping[str, Any]) -> Arm:
@@ -166,8 +166,8 @@ def _told(uri: str) -> Generator[None]:
     try:
         yield
     except TimeoutError as error:
-        raise DeviceError(f"{uri}: the Haply service answers no more; restart it, open the device again") from error
+        raise DeviceError(f"{uri}: the Haply service no longer answers; restart it, open the device again") from error
     except ConnectionClosed as error:
-        raise DeviceError(f"{uri}: the Haply service hung up ({error}); open the device again") from error
+        raise DeviceError(f"{uri}: the Haply service closed the connection ({error}); open the device again") from error
     except (ValueError, KeyError, TypeError) as error:
-        raise DeviceError(f"{uri}: answers what makes no sense ({error!r}); is this the service 3.5?") from error
+        raise DeviceError(f"{uri}: sends invalid answers ({error!r}); is this the service 3.5?") from error

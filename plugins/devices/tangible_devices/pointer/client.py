@@ -64,7 +64,9 @@ class PointerClient:
         velocity = velocity_m_per_s or self._velocity(now, position_m)
         values = (*map(float, position_m), *map(float, velocity), float(buttons))
         if len(values) != SAMPLE_WORDS - 1 or not all(map(math.isfinite, values)):
-            raise DeviceError(f"a pointer is sent three finite metres, not {position_m}, at {velocity_m_per_s}")
+            raise DeviceError(
+                f"a pointer takes a position of three finite numbers in metres, not {position_m}, at {velocity_m_per_s}"
+            )
         self._last = now, position_m
         self._channel.put(SAMPLE, next(self._numbers), values)
         self._channel.set_flag(CLIENT_OPEN, True)

@@ -86,7 +86,7 @@ def parse(line: str) -> Step:
         x, y, z, *buttons = map(float, line.replace(",", " ").split())
         return (x / 1000, y / 1000, z / 1000), int(*buttons)
     except (ValueError, TypeError, OverflowError) as error:
-        raise DeviceError(f"{line!r} is no position; type x y z in millimetres, such as 10 -5 2.5") from error
+        raise DeviceError(f"{line!r} is not a position; type x y z in millimetres, such as 10 -5 2.5") from error
 
 
 def _enqueue(lines: Iterable[str], typed: "Queue[str | None]") -> None:

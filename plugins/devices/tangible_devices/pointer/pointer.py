@@ -30,9 +30,9 @@ class Pointer(HapticDevice):
     """
 
     channel: Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9-]{0,63}$")] = "pointer"
-    """Name of the shared memory; device and client use the same."""
+    """Name of the shared memory, the same for device and client."""
     stale_after_s: Annotated[float, Field(ge=0.002, le=10)] = 0.1
-    """A client that is silent for longer is not believed any more; a compiled loop counts this in ticks of 1 ms."""
+    """Silence after which the client's position is no longer used; a compiled loop counts it in ticks of 1 ms."""
 
     def spec(self) -> DeviceSpec:
         """A Novint Falcon's force, stiffness and damping; the workspace is whatever the client has."""

@@ -16,7 +16,7 @@ from tangible_depth.dense.candidates import choose
 from tangible_depth.dense.confidence import confidence, flat_pixels
 from tangible_depth.dense.edges import median, sharpen_edges
 from tangible_depth.dense.filling import fill
-from tangible_depth.dense.refinement import Dense, as_map, enlarged
+from tangible_depth.dense.refinement import DenseMatches, as_map, enlarged
 from tangible_depth.dense.span import UNKNOWN
 from tangible_depth.dense.speckles import remove_speckles
 from tangible_depth.dense.subpixel import equiangular, parabola
@@ -236,7 +236,7 @@ def test_pixels_are_flat_where_their_rows_do_not_change():
 def test_a_plane_is_enlarged_exactly():
     y, x = np.indices((20, 30))
     small = (4 * x + 2 * y + 100).astype(np.int16)
-    large = enlarged(Dense(small, np.ones(small.shape, np.float32)), np.full((39, 60), 9, np.uint8))
+    large = enlarged(DenseMatches(small, np.ones(small.shape, np.float32)), np.full((39, 60), 9, np.uint8))
     rows, columns = np.indices((39, 60))
     exact = 2 * (4 * (columns - 0.5) / 2 + 2 * (rows - 0.5) / 2 + 100)
     assert np.abs(large.disparity - exact)[1:-1, 1:-1].max() <= 1
@@ -249,7 +249,7 @@ def test_a_map_in_pixels_says_what_is_unknown():
     disparity[0] = UNKNOWN
     trust = np.full((6, 6), 0.7, np.float32)
     trust[1] = 0.1
-    filled, bare = (as_map(Dense(disparity, trust), grey, fill) for fill in (True, False))
+    filled, bare = (as_map(DenseMatches(disparity, trust), grey, fill) for fill in (True, False))
     assert np.isnan(filled.disparity_px[0]).all()
     assert (filled.disparity_px[1:] == 2.5).all()
     assert np.isnan(bare.disparity_px[:2]).all()

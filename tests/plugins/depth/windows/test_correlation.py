@@ -125,7 +125,7 @@ def test_small_and_flat_pairs_are_answered(name, shape):
 @pytest.mark.parametrize("name", ["zncc", "ssd"])
 def test_even_windows_and_single_views_are_refused(name):
     method = load_method("depth", name)
-    with pytest.raises(ValueError, match="odd side"):
+    with pytest.raises(ValueError, match="must be odd"):
         method(window_px=6)
     with pytest.raises(PictureError, match="two views"):
         method().estimate(Views(np.zeros((9, 9), np.uint8)))

@@ -57,7 +57,7 @@ class TestImage:
     @pytest.mark.timeout(20)
     def test_a_pipe_is_not_waited_for(self, tmp_path: Path):
         os.mkfifo(tmp_path / "pipe.bin")
-        with pytest.raises(DeviceError, match=r"pipe\.bin: cannot be read: it is no file but a folder or a device"):
+        with pytest.raises(DeviceError, match=r"pipe\.bin: cannot be read: it is not a file but a folder or a device"):
             read_image(tmp_path / "pipe.bin")
 
 
@@ -107,6 +107,6 @@ class TestLoad:
 
     def test_without_an_image_it_says_where_one_comes_from(self):
         line = Line()
-        with pytest.raises(DeviceError, match="give option firmware; it comes with Novint's driver"):
+        with pytest.raises(DeviceError, match="give the option firmware; it comes with Novint's driver"):
             load(line, None)
         assert line.resets == 0

@@ -264,11 +264,12 @@ class TestSeveral:
 
     def test_none_at_all(self):
         bus, clock = held_bus(())
-        with pytest.raises(DeviceAbsent, match="none is plugged in"):
+        with pytest.raises(DeviceAbsent, match="none is connected"):
             open_on(bus, clock)
 
     @pytest.mark.parametrize(
-        ("options", "why"), [({"serial": "C3"}, "there are A1, B2"), ({"index": 2}, "index 2 is asked for and 2 are")]
+        ("options", "why"),
+        [({"serial": "C3"}, "connected are A1, B2"), ({"index": 2}, "index 2 does not exist, 2 are")],
     )
     def test_not_this_one(self, options: dict, why: str):
         bus, clock = held_bus(("A1", "B2"))

@@ -208,7 +208,7 @@ class TestMeasuring:
     @pytest.mark.parametrize("grams", ["heavy", "5", "nan", "10000"])
     def test_weights_that_are_none(self, grams: str):
         grip = Grip([])
-        with pytest.raises(DeviceError, match="is no weight"):
+        with pytest.raises(DeviceError, match="is not a weight"):
             measuring.measure_strength(grip, grip.ask({"grams": grams}), 9000.0)
 
     def test_a_strength_beyond_belief(self):

@@ -49,7 +49,7 @@ def test_real_time_goes_by_the_clock():
 def test_a_bad_file_is_refused_though_none_is_needed(tmp_path):
     path = tmp_path / "firmware.bin"
     path.write_bytes(b"hello!")
-    with pytest.raises(DeviceError, match="is no firmware of a Falcon"):
+    with pytest.raises(DeviceError, match="is not a Falcon firmware"):
         FalconSimulated.model_validate({"driver": {"firmware": str(path)}}).open()
 
 

@@ -11,7 +11,7 @@ from usb.backend import IBackend
 from usb.core import USBError, USBTimeoutError
 
 from ..port import IN, OUT, PRODUCT, VENDOR
-from .chip import PACKET_BYTES, Chip, Stalled
+from .chip import PACKET_BYTES, Chip, StallError
 from .faults import ERRORS, Fault, Step
 
 # The methods of pyusb have no annotations.
@@ -167,7 +167,7 @@ class Bus(IBackend):
             raise failure("stall")
         try:
             dev_handle.unit.chip.control(bRequest, wValue)
-        except Stalled as error:
+        except StallError as error:
             raise failure("stall") from error
         return 0
 

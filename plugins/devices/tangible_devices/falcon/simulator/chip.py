@@ -14,7 +14,7 @@ PAYLOAD_BYTES = PACKET_BYTES - len(STATUS)
 Spoil = Callable[[int, bytes], bytes]
 
 
-class Stalled(Exception):
+class StallError(Exception):
     """A request that the chip does not know."""
 
 
@@ -44,7 +44,7 @@ class Chip:
         self._said = self._replies = 0
 
     def control(self, request: int, value: int) -> None:
-        """A vendor request. Raises: Stalled if the chip has no such request."""
+        """A vendor request. Raises: StallError if the chip has no such request."""
         if request == 0:
             if value != 2:  # purge what was received; 0 resets all
                 self._waiting.clear()
@@ -58,7 +58,7 @@ class Chip:
         elif request == 9:
             self._latency_s = value / 1000
         elif request not in (2, 4):
-            raise Stalled
+            raise StallError
 
     def write(self, data: bytes) -> None:
         """Bytes for the processor; its reply is ready after both ways on the wire, and the latency timer."""

@@ -22,11 +22,11 @@ class Fault(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     at: Step = "read"
-    """Which step: look for devices, open one, ask for its configuration, detach the system's driver, claim the
-    interface, a request to the chip, a write, a read."""
+    """Step that fails: looking for devices, opening one, asking for its configuration, detaching the system's driver,
+    claiming the interface, a request to the chip, a write, a read."""
     error: Literal["unplugged", "access-denied", "busy", "timeout", "stall", "overflow"] = "unplugged"
-    """How it fails."""
+    """Kind of failure."""
     after: Annotated[int, Field(ge=0)] = 0
-    """So many steps of this kind go well before."""
+    """Number of such steps that succeed first."""
     times: Annotated[int, Field(ge=1)] = 1
-    """How many in a row fail."""
+    """Number of such steps in a row that fail."""

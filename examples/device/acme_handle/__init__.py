@@ -1,0 +1,1 @@
+"""A haptic device for Tangible Images."""

@@ -1,0 +1,37 @@
+"""In place of the library that a maker delivers: millimetres and millinewtons, in a frame of its own.
+
+x to the right, y up, z towards the user. The handle moves on a circle of 20 mm, once a second, whatever pushes it.
+"""
+
+import math
+
+Triple = tuple[float, float, float]
+
+
+class Box:
+    """One box; nobody else can open it meanwhile. Raises: OSError if it is not there, or busy."""
+
+    there, busy = True, False
+
+    def __init__(self) -> None:
+        if not Box.there or Box.busy:
+            raise OSError("busy" if Box.there else "no box")
+        Box.busy, self._ms, self.held_mn = True, 0, (0.0, 0.0, 0.0)
+
+    def poll(self) -> tuple[int, Triple]:
+        """Milliseconds since it was opened, and where the handle is; a millisecond passes. Raises: OSError."""
+        if not Box.there:
+            raise OSError("no answer")
+        self._ms += 1
+        turn = 2 * math.pi * self._ms / 1000
+        return self._ms, (20 * math.cos(turn), 1.0, 20 * math.sin(turn))
+
+    def push(self, force_mn: Triple) -> None:
+        """Hold this force. Raises: OSError."""
+        if not Box.there:
+            raise OSError("no answer")
+        self.held_mn = force_mn
+
+    def shut(self) -> None:
+        """Motors off."""
+        Box.busy, self.held_mn = False, (0.0, 0.0, 0.0)

@@ -10,36 +10,12 @@ import jaxtyping
 import pytest
 from hypothesis import settings
 
+from checked_calls import check
 from distributions import Points, distribution
 
 os.environ["MPLBACKEND"] = "Agg"
 
-# Shapes and types of every call are checked in these modules, from their first import on. Rooms of pydantic models stay
-# out, as those check themselves, and so does what numba compiles, as a checked function cannot be compiled.
-CHECKED = (
-    "data",
-    "files.writing",
-    "scene.geometry",
-    "scene.picture_files",
-    "metrics",
-    "materials.assignment",
-    "materials.colours",
-    "testing.handle",
-    "testing.variants",
-    "synthetic",
-    "bench.damage",
-    "bench.turning",
-    "haptic_textures.waves",
-    "haptic_textures.table",
-    "haptic_textures.sample",
-    "haptic_textures.spectrum",
-    "haptic_textures.stroke",
-    "preflight.bumps",
-    "preflight.probes",
-    "preflight.timing",
-)
-BEARTYPE = "beartype.beartype(conf=beartype.BeartypeConf(is_pep484_tower=True))"  # an int is a float, as PEP 484 has it
-jaxtyping.install_import_hook([f"tangible_core.{room}" for room in CHECKED], BEARTYPE)
+check()
 
 settings.register_profile("default", deadline=None)
 settings.register_profile("ci", deadline=None, derandomize=True, print_blob=True)

@@ -61,6 +61,7 @@ class TestEveryRenderer:
         assert np.array_equal(renderer.touch(BUMPY).path(path, period_s=0.002), singly)
         assert np.count_nonzero(singly) > 50
 
+    @pytest.mark.usefixtures("unchecked_shapes")
     def test_paths_of_any_layout(self, renderer):
         def felt(path: np.ndarray) -> np.ndarray:
             return renderer.touch(BUMPY).path(path)
@@ -71,6 +72,7 @@ class TestEveryRenderer:
         assert np.array_equal(felt(path), felt(np.ascontiguousarray(path)))
         assert np.array_equal(felt(np.zeros((1, 3), int)), [at(renderer.touch(BUMPY), 0, 0, 0)])
 
+    @pytest.mark.usefixtures("unchecked_shapes")
     @pytest.mark.parametrize("shape", [(3,), (3, 2), (2, 3, 3)])
     def test_what_is_no_path(self, renderer, shape: tuple[int, ...]):
         with pytest.raises(GeometryError, match=r"\(n, 3\)"):

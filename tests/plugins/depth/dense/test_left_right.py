@@ -9,8 +9,6 @@ from tangible_depth.dense.left_right import left_right_confidence
 NAN = np.nan
 
 
-
-
 def test_views_that_agree_are_trusted_and_a_pixel_apart_no_more():
     left = np.float32([[0, 0, 2, 2, 2, 2]])
     right = np.float32([[2, 2.25, 3, 1.5, 0, 0]])

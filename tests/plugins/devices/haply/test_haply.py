@@ -140,6 +140,7 @@ class Told:
             raise DeviceError("the service hung up; open the device again")
 
 
+@pytest.mark.usefixtures("unchecked_shapes")
 class TestSteps:
     """A link and what it asks of its session, in order."""
 
@@ -264,6 +265,7 @@ class TestFaults:
             link.read()
         link.close()
 
+    @pytest.mark.usefixtures("unchecked_shapes")
     @pytest.mark.parametrize(
         "answer",
         [

@@ -40,7 +40,7 @@ class TestWatershed:
 
         picture, _ = smooth_scene(seed, noise=5)
         height = slopes(gaussian(channels(picture, colour=False), 2.0))[0]
-        markers, count = basins(height, [np.quantile(height, 0.6)], 100)
+        markers, count = basins(height, [float(np.quantile(height, 0.6))], 100)
         assert count > 5
         expected = reference(height, markers + 1, connectivity=1) - 1
         assert np.mean(watershed(height, markers) == expected) >= 0.99
@@ -57,7 +57,7 @@ class TestWatershed:
 
     def test_tiles_leave_no_seams(self, monkeypatch: pytest.MonkeyPatch):
         height = slopes(gaussian(channels(smooth_scene(0, noise=5)[0], colour=False), 2.0))[0]
-        markers, _ = basins(height, [np.quantile(height, 0.6)], 100)
+        markers, _ = basins(height, [float(np.quantile(height, 0.6))], 100)
         whole = watershed(height, markers)
         monkeypatch.setattr("tangible_texture.regions.watershed.TILE_PX", 48)
         assert np.array_equal(watershed(height, markers), whole)

@@ -50,6 +50,7 @@ MAY = {
     "calibration.py": "has one term",
     "scripted_hand.py": "is a simulated hand, and no result",
     "block.py": "draws",
+    "nearest.py": "knows the exact answer on a scene that is made up, and is compared with within a tolerance",
 }
 """Files with a matrix product, and why."""
 

@@ -4,71 +4,91 @@ import os
 import sys
 from collections.abc import Callable, Iterator
 from importlib import metadata
+from itertools import count
 from pathlib import Path
 
 import jaxtyping
 import pytest
 from hypothesis import settings
 
+from checked_calls import check
 from distributions import Points, distribution
 
 os.environ["MPLBACKEND"] = "Agg"
 
-# Shapes and types of every call are checked in these modules, from their first import on. Rooms of pydantic models stay
-# out, as those check themselves, and so does what numba compiles, as a checked function cannot be compiled.
-CHECKED = (
-    "data",
-    "files.writing",
-    "scene.geometry",
-    "scene.picture_files",
-    "metrics",
-    "materials.assignment",
-    "materials.colours",
-    "testing.handle",
-    "testing.variants",
-    "synthetic",
-    "bench.damage",
-    "bench.turning",
-    "haptic_textures.waves",
-    "haptic_textures.table",
-    "haptic_textures.sample",
-    "haptic_textures.spectrum",
-    "haptic_textures.stroke",
-    "preflight.bumps",
-    "preflight.probes",
-    "preflight.timing",
-)
-BEARTYPE = "beartype.beartype(conf=beartype.BeartypeConf(is_pep484_tower=True))"  # an int is a float, as PEP 484 has it
-jaxtyping.install_import_hook([f"tangible_core.{room}" for room in CHECKED], BEARTYPE)
+check()
 
 settings.register_profile("default", deadline=None)
 settings.register_profile("ci", deadline=None, derandomize=True, print_blob=True)
 settings.load_profile("ci" if os.environ.get("CI") else "default")
 
 Install = Callable[..., Path]
+STARTS_PROCESSES = {"subprocess", "Popen", "Servo", "Program"}
+"""A test module that has one of these names starts processes, and is none of the fast ones."""
+
+
+def pytest_xdist_auto_num_workers(config: pytest.Config) -> int | None:
+    """None beside this process where files are named: a debugger works, nothing is waited for. xdist decides else."""
+    return 0 if config.args_source is pytest.Config.ArgsSource.ARGS else None
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Beside others, compile what they do not."""
+    if "PYTEST_XDIST_WORKER" in os.environ:
+        from compiled_once import compile_once
+
+        compile_once()
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Mark as `fast` the first case of every test that is quick and starts no process."""
+    seen: set[str] = set()
+    for item in items:
+        name = item.nodeid.partition("[")[0]
+        names = vars(getattr(item, "module", item)).keys()
+        marks = {mark.name for mark in item.iter_markers()}
+        if name not in seen and not names & STARTS_PROCESSES and not marks & {"slow", "nightly"}:
+            item.add_marker("fast")
+        seen.add(name)
+
+
+@pytest.fixture(scope="session")
+def folders(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
+    """A new folder each, made without looking at all there are."""
+    parent = tmp_path_factory.mktemp("own")
+    return (parent / str(number) for number in count())
 
 
 @pytest.fixture(autouse=True)
-def cache_dir(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """An empty cache for each test: nothing is read from, or left in, the developer's own."""
-    folder = tmp_path_factory.mktemp("cache")
-    monkeypatch.setenv("TANGIBLE_CACHE_DIR", str(folder))
+def own_dir(folders: Iterator[Path]) -> Path:
+    """A folder for what a test would read from, and leave in, the developer's own."""
+    folder = next(folders)
+    folder.mkdir()
     return folder
 
 
 @pytest.fixture(autouse=True)
-def runtime_dir(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> Path:
+def cache_dir(own_dir: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """An empty cache for each test."""
+    return _told("TANGIBLE_CACHE_DIR", own_dir / "cache", monkeypatch)
+
+
+@pytest.fixture(autouse=True)
+def runtime_dir(own_dir: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """Shared memory of its own for each test: two at a time do not meet on one channel."""
-    folder = tmp_path_factory.mktemp("runtime")
-    monkeypatch.setenv("TANGIBLE_RUNTIME_DIR", str(folder))
-    return folder
+    return _told("TANGIBLE_RUNTIME_DIR", own_dir / "runtime", monkeypatch)
 
 
 @pytest.fixture(autouse=True)
-def config_dir(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> Path:
+def config_dir(own_dir: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """No calibration of a developer's own device is read or written."""
-    folder = tmp_path_factory.mktemp("config")
-    monkeypatch.setenv("TANGIBLE_CONFIG_DIR", str(folder))
+    return _told("TANGIBLE_CONFIG_DIR", own_dir / "config", monkeypatch)
+
+
+def _told(name: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    folder.mkdir()
+    monkeypatch.setenv(name, str(folder))
     return folder
 
 

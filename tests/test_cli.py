@@ -1,4 +1,4 @@
-"""The command line as a user meets it: whole processes, what they print, and their exit codes."""
+"""The command line as a user meets it: what it prints and its exit codes; whole processes where one is interrupted."""
 
 import json
 import os
@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from command_line import tangible
 from ctrl_c import HEARING
 from distributions import distribution
 from tangible_core.cli import show
@@ -26,10 +27,6 @@ texture: {use: gradient, segments: 2}
 render: {use: penalty-gradient}
 device: {use: mock}
 """
-
-
-def tangible(*words: object, cwd: Path) -> subprocess.CompletedProcess[str]:
-    return subprocess.run([TANGIBLE, *map(str, words)], cwd=cwd, capture_output=True, text=True, timeout=240)
 
 
 def mistake(*words: object, cwd: Path) -> str:
@@ -58,7 +55,8 @@ def folder(tmp_path: Path) -> Path:
 
 
 def test_run_makes_everything_and_says_so(folder: Path):
-    done = tangible("run", "p.yaml", "--seconds", 1, cwd=folder)
+    words = [TANGIBLE, "run", "p.yaml", "--seconds", "1"]
+    done = subprocess.run(words, cwd=folder, capture_output=True, text=True, timeout=240)
     assert done.returncode == 0, done.stderr
     for word in ("disparity", "opencv-sgbm", "ran", "bad2", "out/p/sheet.png"):
         assert word in done.stdout
@@ -275,12 +273,14 @@ def test_a_killed_recording_is_readable(folder: Path):
 
     words = [TANGIBLE, "feel", "p.yaml", "--seconds", "6000", "--record", "hand.nc", "--json"]
     process = subprocess.Popen(words, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    while not (folder / "hand.nc").exists() or (folder / "hand.nc").stat().st_size < 100_000:
-        time.sleep(0.05)
-        assert process.poll() is None
-    assert "another program is writing to it" in mistake("feel", "p.yaml", "--record", "hand.nc", cwd=folder)
-    process.kill()
-    process.wait()
+    try:
+        while not (folder / "hand.nc").exists() or (folder / "hand.nc").stat().st_size < 100_000:
+            time.sleep(0.05)
+            assert process.poll() is None
+        assert "another program is writing to it" in mistake("feel", "p.yaml", "--record", "hand.nc", cwd=folder)
+    finally:
+        process.kill()
+        process.wait()
     recording = Recording.load(folder / "hand.nc")
     assert len(recording.rows) > 1000
     assert recording.stopped.startswith("cut off")

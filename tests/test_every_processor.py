@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 from numpy._core._multiarray_umath import __cpu_dispatch__, __cpu_features__
 
-PROGRAM = Path(__file__).with_name("every_processor.py")
+PROGRAM = Path(__file__).parent / "helpers" / "every_processor.py"
 SIMPLEST_CORE = {"x86_64": "Prescott", "AMD64": "Prescott", "aarch64": "ARMV8", "arm64": "ARMV8"}
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OPENCV_FOR_THREADS_NUM")
 
@@ -50,6 +50,7 @@ MAY = {
     "calibration.py": "has one term",
     "scripted_hand.py": "is a simulated hand, and no result",
     "block.py": "draws",
+    "nearest.py": "knows the exact answer on a scene that is made up, and is compared with within a tolerance",
 }
 """Files with a matrix product, and why."""
 

@@ -7,11 +7,15 @@ import subprocess
 import sys
 import tomllib
 from importlib import import_module
+from importlib.util import find_spec, module_from_spec
 from pathlib import Path
 
+import jaxtyping
+import numpy as np
 import pytest
 
 import tangible_core
+from checked_calls import OURS, UNCHECKED, CheckingLoader
 from tangible_core.plugins import hooks
 from tangible_core.plugins.interfaces import KINDS, Adjustable, Serviceable, Skippable
 from tangible_core.plugins.registry import KIND_NAMES, default_registry
@@ -48,6 +52,51 @@ def test_listing_is_light(words):
     assert "tangible_core" in imported
     assert not imported & {*HEAVY, "pandas", "PIL"}
     assert not {name for name in imported if re.match(r"tangible_(depth|texture|render|devices)\.(?!commands)", name)}
+
+
+@pytest.mark.parametrize(
+    ("tests", "house"),
+    [("core", ROOT / "tangible_core"), *((f"plugins/{path.parent.name}", path) for path in PACKAGES.values())],
+)
+def test_folders_of_tests_mirror_rooms(tests: str, house: Path):
+    """A test lies in the folder of the room that it tests, and a room's in a room of this name."""
+    folder = ROOT / "tests" / tests
+    rooms = {
+        path.relative_to(house).with_suffix("") for path in house.rglob("*") if path.is_dir() or path.suffix == ".py"
+    }
+    folders = {path.parent.relative_to(folder) for path in folder.rglob("test_*.py")} - {Path()}
+    assert folders <= rooms
+    if tests == "core":  # a family's methods are tested beside its rooms; the core has rooms alone
+        assert {Path(path.stem.removeprefix("test_")) for path in folder.glob("test_*.py")} <= rooms
+
+
+def test_every_test_is_in_a_house_of_its_own():
+    there = {path.relative_to(ROOT / "tests").parts[0] for path in ROOT.joinpath("tests").rglob("test_*.py")}
+    assert {name for name in there if not name.endswith(".py")} == {"benchmarks", "core", "plugins"}
+    assert not list(ROOT.joinpath("tests/plugins").glob("test_*.py"))
+
+
+def test_every_call_is_checked_while_tests_run():
+    """But for modules that say why not; `find_spec` asks who would load one, and loads none."""
+    houses = {
+        each.rpartition("/")[2]: ROOT / each
+        for each in PROJECT["tool"]["hatch"]["build"]["targets"]["wheel"]["packages"]
+    }
+    assert set(houses) == set(OURS)
+    files = [path.relative_to(house.parent) for house in houses.values() for path in house.rglob("*.py")]
+    names = {".".join(path.with_suffix("").parts).removesuffix(".__init__") for path in files}
+    assert {name for name in names if not isinstance(find_spec(name).loader, CheckingLoader)} == UNCHECKED.keys()
+
+
+def test_a_wrong_call_is_noticed_in_a_family_and_beside_kernels():
+    """By a copy, of which nothing was called before: first calls alone are checked."""
+    spec = find_spec("tangible_texture.regions.basins")
+    copy = module_from_spec(spec)
+    spec.loader.exec_module(copy)
+    with pytest.raises(jaxtyping.TypeCheckError, match="Float32"):
+        copy.basins(np.zeros((2, 2)), [0.0], 1)
+    with pytest.raises(jaxtyping.TypeCheckError, match="smallest_px"):
+        copy.basins(np.zeros((2, 2), np.float32), [0.0], "one")
 
 
 def test_nobody_is_told_to_delete_what_was_compiled():

@@ -5,7 +5,7 @@ Source: Unidata, NetCDF Classic Format Specification; OGC 10-092r3.
 """
 
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -54,7 +54,7 @@ def _attributes(attributes: Attributes) -> bytes:
     return _list(ATTRIBUTE, [_text(name) + _value(value) for name, value in attributes.items()])
 
 
-def _value(value: str | np.ndarray[Any, Any]) -> bytes:
+def _value(value: str | np.ndarray) -> bytes:
     if isinstance(value, str):
         return integer(CHAR) + _text(value)
     return integer(TYPES[value.dtype.str]) + integer(value.size) + value.tobytes()

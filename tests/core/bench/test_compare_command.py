@@ -28,6 +28,7 @@ def test_the_sample_comparisons_are_right(path: Path):
     assert load_comparison(path, default_registry()).methods
 
 
+@pytest.mark.slow
 def test_measure_show_and_compare(tangible, tmp_path: Path):
     config, rows = tmp_path / "c.yaml", tmp_path / "out" / "results.jsonl"
     config.write_text(TEXT)

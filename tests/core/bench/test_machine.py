@@ -19,6 +19,7 @@ def test_a_peak_is_seen_after_it_has_passed_and_an_earlier_one_is_not():
     assert peak() == pytest.approx(20_000_000, rel=0.1)
 
 
+@pytest.mark.slow
 def test_bytes_that_are_held():
     assert held_bytes(lambda: np.ones(10_000)) == pytest.approx(80_000, rel=0.01)
     assert held_bytes(lambda: np.ones(10_000).sum()) < 1000

@@ -76,6 +76,7 @@ def test_an_option_that_a_method_cannot_be_told(registry: Registry, tmp_path: Pa
         wanted.methods[0].method_for({"max_disparity_px": 2000})
 
 
+@pytest.mark.slow
 def test_filling_is_done_to_the_methods_that_are_named(registry: Registry, tmp_path: Path):
     rows = measured(registry, tmp_path / "r.jsonl", "half, {use: half, label: filled}", QUICK + "fill: [filled]\n")
     assert [(row.method, row.measures["density"], row.finishes) for row in rows] == [
@@ -84,6 +85,7 @@ def test_filling_is_done_to_the_methods_that_are_named(registry: Registry, tmp_p
     ]
 
 
+@pytest.mark.slow
 def test_seconds_and_memory_are_the_methods_own(registry: Registry, tmp_path: Path):
     rows = measured(registry, tmp_path / "r.jsonl", "{use: constant, seconds: 0.1}, hungry")
     assert rows[0].seconds == pytest.approx(0.1, abs=0.09)
@@ -97,6 +99,7 @@ def test_what_a_method_prints_does_not_disturb(registry: Registry, tmp_path: Pat
     assert row.seconds != 1
 
 
+@pytest.mark.slow
 def test_a_method_that_fails_is_a_row_and_stops_nobody(registry: Registry, tmp_path: Path):
     methods = "raises, dies, {use: dies, label: leaves, how: exit}, relative, constant"
     rows = {row.method: row for row in measured(registry, tmp_path / "r.jsonl", methods)}
@@ -272,6 +275,7 @@ def lines(path: Path) -> int:
     return path.read_bytes().count(b"\n") if path.exists() else 0
 
 
+@pytest.mark.slow
 def test_killed_and_gone_on_with(tangible, tmp_path: Path):
     config = write_file(tmp_path, "{use: constant, seconds: 0.2}, half", "repeats: 2\nwarmups: 0\ncalls: 1\n")
     rows = tmp_path / "out" / "results.jsonl"
@@ -298,6 +302,7 @@ def lines_in(text: bytes) -> int:
 
 
 @pytest.mark.parametrize("end", [signal.SIGKILL, signal.SIGINT])
+@pytest.mark.slow
 def test_a_worker_does_not_outlive_the_comparison(tangible, tmp_path: Path, end: signal.Signals):
     pid_file = tmp_path / "pid"
     config = write_file(tmp_path, f"constant, {{use: sleeps, pid_file: {pid_file}}}", QUICK)

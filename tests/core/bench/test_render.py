@@ -42,6 +42,7 @@ def parse(text: str, registry: Registry) -> Comparison:
     return parse_comparison(text, Path("c.yaml"), registry)
 
 
+@pytest.mark.slow
 def test_a_vertical_spring_on_a_slope(strokes):
     """Off by tan(t), 1 / cos(t) too strong, and t aside; in at one height and out at another, k d dh given away."""
     found = measured("penalty", strokes["ramp"])
@@ -51,6 +52,7 @@ def test_a_vertical_spring_on_a_slope(strokes):
     assert found["energy_mj"] > 1
 
 
+@pytest.mark.slow
 def test_the_energy_of_one_loop_of_a_vertical_spring():
     """1 mm deep along a ramp of 0.2, 40 mm up: 800 N/m x 1 mm x 8 mm = 6.4 mJ; back down it is taken again."""
     known = ramp((0.2, 0.0), shape=(CELLS, CELLS))
@@ -66,11 +68,13 @@ def test_the_energy_of_one_loop_of_a_vertical_spring():
 
 
 @pytest.mark.parametrize("name", ["plane", "ramp", "sphere", "sine", "cone", "ridge"])
+@pytest.mark.slow
 def test_a_law_with_a_potential_gives_nothing_away(strokes, name: str):
     assert measured("penalty-gradient", strokes[name])["energy_mj"] == pytest.approx(0, abs=0.05)
 
 
 @pytest.mark.parametrize(("name", "percent"), [("plane", 1e-3), ("ramp", 1e-3), ("sphere", 1e-2), ("sine", 0.1)])
+@pytest.mark.slow
 def test_the_proxy_is_the_spring_to_the_nearest_point(strokes, name: str, percent: float):
     found = measured("proxy", strokes[name])
     assert found["error_percent"] < percent
@@ -80,6 +84,7 @@ def test_the_proxy_is_the_spring_to_the_nearest_point(strokes, name: str, percen
     assert found["energy_mj"] < 0.01
 
 
+@pytest.mark.slow
 def test_a_gradient_spring_is_too_stiff_on_a_slope(strokes):
     """By sqrt(1 + s^2) along the gradient's force and by as much again along the normal."""
     found = measured("penalty-gradient", strokes["ramp"])
@@ -88,6 +93,7 @@ def test_a_gradient_spring_is_too_stiff_on_a_slope(strokes):
     assert found["jnd"] == pytest.approx(RISE**2 / 0.07, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_the_step_of_the_grey_level(strokes):
     """All of its force at once where the surface is met; a spring of 800 N/m at 20 mm/s steps by 0.016 N."""
     assert measured("grey-level", strokes["plane"], force_at_white_n=2.0)["step_n"] == pytest.approx(2)
@@ -95,6 +101,7 @@ def test_the_step_of_the_grey_level(strokes):
     assert measured("penalty", strokes["plane"])["step_n"] <= 800 * fastest
 
 
+@pytest.mark.slow
 def test_friction_lags(strokes):
     """Sliding over a plane a depth d under it, the proxy is mu d behind."""
     circle = np.linspace(0, 2 * np.pi, 8001)
@@ -206,6 +213,7 @@ def recording(count: int = 50) -> Recording:
 
 
 @pytest.mark.parametrize("suffix", [".nc", ".npz", ".csv"])
+@pytest.mark.slow
 def test_a_way_that_was_recorded(tmp_path: Path, registry: Registry, suffix: str):
     recording().save(tmp_path / f"hand{suffix}")
     text = f"compare: render\nmethods: [proxy]\nscenes: [{{analytic: plane, recording: hand{suffix}}}]\n"
@@ -242,6 +250,7 @@ calls: 1
     return Results(TASK, cells(rows, None), None)
 
 
+@pytest.mark.slow
 def test_a_comparison_from_end_to_end(compared: Results):
     """On the coins nobody knows the truth, so that the error is that of the ramp alone."""
     (means,) = tables(compared)

@@ -156,6 +156,7 @@ def test_scaling_down_leaves_no_false_pattern():
     assert turning.scale(stripes, 0.45).picture.std() < 30
 
 
+@pytest.mark.slow
 def test_a_comparison_from_end_to_end(registry: Registry, tmp_path: Path):
     """Told the count, `gradient` finds a scene of two greys exactly, turned or not."""
     text = """\

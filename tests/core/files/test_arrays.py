@@ -190,6 +190,7 @@ def test_arrays_that_are_small_alone_are_too_large_together(tmp_path: Path):
 
 
 @given(st.data())
+@pytest.mark.slow
 def test_any_damage_is_a_reason_or_an_array(data):
     whole = bytearray(
         data.draw(st.sampled_from([ONE, zipped(a=np.arange(6.0).reshape(2, 3)), bytes(archive(a_npy=ONE))]))

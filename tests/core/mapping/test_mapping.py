@@ -34,7 +34,8 @@ ARRAY = float64[::1]
 def read_buffer(buffer, state):
     if buffer[7] == 0.0:
         return 0
-    state[:] = buffer[:7]
+    for i in range(7):  # as a slice, it takes a second to compile
+        state[i] = buffer[i]
     return 1
 
 

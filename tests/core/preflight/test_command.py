@@ -3,14 +3,13 @@
 import json
 import math
 import re
-import subprocess
-import sys
 from dataclasses import fields
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from command_line import tangible
 from tangible_core import load_pipeline
 from tangible_core.cli.preflight import line, preflight
 from tangible_core.data import HapticState
@@ -18,7 +17,6 @@ from tangible_core.errors import ConfigError
 from tangible_core.preflight import Hand, Loop, Verdict
 from tangible_devices.mock import Mock
 
-TANGIBLE = str(Path(sys.executable).with_name("tangible"))
 SAFE = """\
 scene: {height: hills.npy}
 want: surface
@@ -27,11 +25,6 @@ render: {use: proxy, stiffness_n_per_m: 700}
 device: {use: mock}
 """
 GRADES = {"ok", "warn", "unsafe"}
-
-
-def tangible(*words: object, cwd: Path) -> subprocess.CompletedProcess[str]:
-    whole = [TANGIBLE, "preflight", *map(str, words)]
-    return subprocess.run(whole, cwd=cwd, capture_output=True, text=True, timeout=240)
 
 
 @pytest.fixture
@@ -44,8 +37,9 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
+@pytest.mark.slow
 def test_a_line_a_verdict_and_0_where_nothing_is_unsafe(folder: Path):
-    done = tangible("p.yaml", "--seconds", 0.1, cwd=folder)
+    done = tangible("preflight", "p.yaml", "--seconds", 0.1, cwd=folder)
     assert done.returncode == 0, done.stdout + done.stderr
     *verdicts, _, summary = done.stdout.splitlines()
     assert {each.split()[0] for each in verdicts} <= GRADES | {"cure:"}
@@ -54,8 +48,9 @@ def test_a_line_a_verdict_and_0_where_nothing_is_unsafe(folder: Path):
     assert summary.endswith(" 0 unsafe")
 
 
+@pytest.mark.slow
 def test_1_where_something_is_and_json_says_all_of_it(folder: Path):
-    words = ("p.yaml", "--set", "render.stiffness_n_per_m=9000", "--seconds", 0.1, "--rate", 500, "--json")
+    words = ("preflight", "p.yaml", "--set", "render.stiffness_n_per_m=9000", "--seconds", 0.1, "--rate", 500, "--json")
     done = tangible(*words, cwd=folder)
     assert done.returncode == 1, done.stderr
     found = json.loads(done.stdout)
@@ -94,7 +89,7 @@ def test_what_must_be_configured(folder: Path, line: str, said: str):
 
 
 def test_a_mistake_costs_one_clear_line(folder: Path):
-    done = tangible("p.yaml", "--rate", 0, cwd=folder)
+    done = tangible("preflight", "p.yaml", "--rate", 0, cwd=folder)
     assert (done.returncode, done.stderr) == (2, "--rate: is 0; it is 1 to 100000 ticks a second\n")
 
 
@@ -119,6 +114,7 @@ def test_a_cure_stands_below_its_verdict_and_brackets_are_no_marks():
     ]
 
 
+@pytest.mark.slow
 def test_a_law_of_somebody_elses_without_a_word_on_its_stiffness():
     """It is felt."""
     from tangible_core import HapticSurface

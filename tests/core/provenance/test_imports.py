@@ -38,6 +38,7 @@ def test_every_way_of_writing_an_import_is_found(text: str, found: list[Import])
     assert [each for each in imports(text.encode()) if each.module != "x"] == found
 
 
+@pytest.mark.slow
 def test_the_short_way_finds_all_that_the_long_one_does():
     """Each module of Tangible Images, a hundred or so of which are read at the start of the loop."""
     for path in (file for folder in ("tangible_core", "plugins", "tests") for file in (ROOT / folder).rglob("*.py")):

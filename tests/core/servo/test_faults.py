@@ -397,7 +397,7 @@ def in_this_process(monkeypatch: pytest.MonkeyPatch):
 @pytest.mark.parametrize("device", [Circling(), Circling(exchanges=True)])
 def test_no_stop_is_lost_among_ten_thousand_swaps(device, in_this_process: None) -> None:
     """5,000 for each of two loops, in sessions that are ended in one of three ways at a random moment."""
-    rng, swaps, sessions = random.Random(0), 0, 0
+    rng, swaps, sessions, scene = random.Random(0), 0, 0, proxy()
     while swaps < 5000:
         session = Session(device)
         assert isinstance(session.heard(), Running)
@@ -406,7 +406,7 @@ def test_no_stop_is_lost_among_ten_thousand_swaps(device, in_this_process: None)
         timer.start()
         with suppress(OSError, ValueError):
             while not session.ring.header[STOP]:
-                send(session.commands, Swap(str(pack(proxy())), session.settings))
+                send(session.commands, Swap(str(pack(scene)), session.settings))
                 if not isinstance(session.heard(), Swapped):
                     break
                 swaps += 1

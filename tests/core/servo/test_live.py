@@ -26,6 +26,7 @@ def touch() -> Touch:
     return load_method("render", "proxy")().touch(HapticSurface.from_heights(np.full((16, 16), 0.002, np.float32)))
 
 
+@pytest.mark.slow
 def test_every_tick_is_kept_and_reports_come_ten_times_a_second(touch: Touch, tmp_path: Path) -> None:
     reports: list[ServoReport] = []
     began_s: list[float] = []
@@ -44,6 +45,7 @@ def test_every_tick_is_kept_and_reports_come_ten_times_a_second(touch: Touch, tm
 
 
 @pytest.mark.parametrize("name", ["hand.npz", "hand.csv"])
+@pytest.mark.slow
 def test_other_files_are_made_of_it_at_the_end(touch: Touch, tmp_path: Path, name: str) -> None:
     with keeping(tmp_path / name, About("circling", "proxy", "")) as writer:
         run_in_real_time(touch, Circling(), 0.2, Safety(), lambda _: None, writer.append)
@@ -63,6 +65,7 @@ def test_what_grew_stays_where_no_other_file_could_be_made_of_it(
     assert len(Recording.load(tmp_path / "hand.csv.nc").rows) == 3
 
 
+@pytest.mark.usefixtures("unchecked_shapes")
 def test_ticks_that_were_overwritten_are_told_and_the_others_kept(caplog: pytest.LogCaptureFixture) -> None:
     """Of every five, a ring that is too small for so slow a host still has the last three."""
     firsts: list[int] = []
@@ -80,6 +83,7 @@ def test_ticks_that_were_overwritten_are_told_and_the_others_kept(caplog: pytest
     assert caplog.text.count("2 ticks were overwritten before they could be recorded") == 2
 
 
+@pytest.mark.slow
 def test_a_full_disk_ends_it_with_no_force(touch: Touch, tmp_path: Path) -> None:
     force = tmp_path / "force"
     device = Failing(fault="none", record=str(force))
@@ -99,6 +103,7 @@ def test_a_full_disk_ends_it_with_no_force(touch: Touch, tmp_path: Path) -> None
     assert kept.stopped.startswith("the recording ends early")
 
 
+@pytest.mark.slow
 def test_ctrl_c(touch: Touch, tmp_path: Path) -> None:
     force = tmp_path / "force"
     reports: list[ServoReport] = []

@@ -109,6 +109,7 @@ def test_a_way_of_ones_own_and_what_lies_beside_the_surface():
     assert np.isnan(stroke.nearest_m[2:]).all()
 
 
+@pytest.mark.slow
 def test_over_the_relief_of_a_picture_nothing_is_known():
     surface = SURFACES["sine"].known((64, 32)).surface
     stroke = relief_stroke(surface)

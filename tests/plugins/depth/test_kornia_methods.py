@@ -26,6 +26,7 @@ def test_disparity_of_a_known_scene(method):
 
 
 @pytest.mark.parametrize("method", METHODS, ids=["zncc", "report"])
+@pytest.mark.slow
 def test_a_raw_pair_is_rectified_first(method):
     scene = Scene((240, 320), 8.0, 20.0)
     views = Views(scene.left(), scene.right(roll_and_tilt(scene.shape)))

@@ -107,6 +107,7 @@ class TestFriction:
         at(touch, 0.0, 0.0, 0.009)
         assert at(touch, 0.001, 0.0, 0.009, (0.1, 0.0, -0.05)) == pytest.approx((0, 0, 0.5 + 0.2), abs=1e-5)
 
+    @pytest.mark.slow
     def test_damping_acts_along_the_normal_at_the_proxy(self):
         """Where that is after the last step, under a slow hand the only one, and not where it was before."""
         surface = waves().surface

@@ -42,7 +42,7 @@ class Bands(NamedTuple):
     """
 
     rows: Int64[np.ndarray, "bands"]
-    disparity: Int16[np.ndarray, "bands w/factor"]
+    disparity: Int16[np.ndarray, "bands columns"]
     factor: int
     loss: float
 

@@ -1,7 +1,7 @@
 """A look at a few corners of a pair, followed into the right view: whether they lie on their rows."""
 
 import numpy as np
-from jaxtyping import Float32, Float64, UInt8
+from jaxtyping import Float, Float32, Float64, UInt8
 
 from tangible_core.runtime.opencv import plain_opencv
 
@@ -76,7 +76,7 @@ def _followed(
     return np.where(seen[..., None] > 0, found, np.float32(np.nan))
 
 
-def _sharpened(pair: Pair, start: Points, guess: Points) -> Points:
+def _sharpened(pair: Pair, start: Points, guess: Points) -> Float[np.ndarray, "inside 1 2"]:
     """Shifts (x, y) of points followed once more at full size: in patches set side by side, not in large pyramids."""
     import cv2
 

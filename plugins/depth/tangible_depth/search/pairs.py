@@ -58,7 +58,7 @@ def _grey8(picture: np.ndarray) -> UInt8[np.ndarray, "h w"]:
     return cv2.cvtColor(np.ascontiguousarray(picture), cv2.COLOR_RGB2GRAY)  # pyright: ignore[reportReturnType]
 
 
-def _shrunk(grey: UInt8[np.ndarray, "h w"], factor: int) -> UInt8[np.ndarray, "h/factor w/factor"]:
+def _shrunk(grey: UInt8[np.ndarray, "h w"], factor: int) -> UInt8[np.ndarray, "-(-h//{factor}) -(-w//{factor})"]:
     import cv2
 
     h, w = grey.shape

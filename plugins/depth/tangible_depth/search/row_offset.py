@@ -27,7 +27,7 @@ LEAST_CORRELATION, LEAST_BEND = 0.7, 0.02
 
 
 def row_votes(
-    pair: Pair, rows: Int64[np.ndarray, "n"], disparity: Int16[np.ndarray, "n w/factor"], factor: int = 1
+    pair: Pair, rows: Int64[np.ndarray, "n"], disparity: Int16[np.ndarray, "n columns"], factor: int = 1
 ) -> Float32[np.ndarray, "votes"]:
     """Row in the right view - row in the left view, in pixels, of up to MOST_POINTS horizontal edges on or near `rows`.
 

@@ -46,7 +46,7 @@ def strips(shape: tuple[int, int], span: Span) -> list[tuple[int, int]]:
 
 
 def sweep(
-    codes: tuple[UInt8[np.ndarray, "h planes w"], UInt8[np.ndarray, "h planes w"]],
+    codes: tuple[UInt8[np.ndarray, "h planes whole"], UInt8[np.ndarray, "h planes whole"]],
     grey: UInt8[np.ndarray, "h w"],
     span: Span,
     prices: Prices,

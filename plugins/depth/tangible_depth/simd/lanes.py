@@ -5,7 +5,7 @@ type: Python passes `Lanes(64)`, numba sees `LanesType(64)`, so that one module-
 and found again in numba's disk cache by the next process (intrinsics made inside a closure would not be).
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from llvmlite import ir
@@ -80,7 +80,7 @@ def emit_splat(b: Any, scalar: Any, count: int) -> Any:
     return b.shuffle_vector(first, blank, ir.Constant(ir.VectorType(INDEX, count), [0] * count))
 
 
-def emit_call(b: Any, name: str, result: Any, args: list[Any]) -> Any:
+def emit_call(b: Any, name: str, result: Any, args: Sequence[Any]) -> Any:
     """Machine code: a call of an LLVM intrinsic."""
     function = b.module.globals.get(name) or ir.Function(
         b.module, ir.FunctionType(result, [each.type for each in args]), name

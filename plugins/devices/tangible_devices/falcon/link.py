@@ -101,7 +101,7 @@ class FalconLink(CompiledLink):
     def homed(self) -> bool:
         """Whether all arms have found their zero, by the newest answer, and force has faded in since."""
         counts, held = self._counts, self._held
-        return bool(counts[tick.KNOWN]) and held[tick.NOW] - held[tick.SINCE] >= tick.RAMP_S
+        return bool(counts[tick.KNOWN] and held[tick.NOW] - held[tick.SINCE] >= tick.RAMP_S)
 
     @property
     def arms_homed(self) -> int:

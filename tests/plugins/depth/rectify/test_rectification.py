@@ -203,6 +203,7 @@ def true_map(scene, rectified):
     return original, disparity.reshape(rows, columns).astype(np.float32)
 
 
+@pytest.mark.slow
 def test_a_rolled_and_tilted_picture_is_put_right():
     scene, warp, views = warped_scene()
     rectified = rectify(views)
@@ -216,6 +217,7 @@ def test_a_rolled_and_tilted_picture_is_put_right():
     assert np.median(np.abs(shift[:, 0] + rectified.offset_px - scene.disparity_px().ravel())) < 0.3
 
 
+@pytest.mark.slow
 def test_the_way_back_leads_to_the_original_pixels():
     scene, warp, views = warped_scene()
     rectified = rectify(views)

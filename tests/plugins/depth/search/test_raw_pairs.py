@@ -64,6 +64,7 @@ def test_a_turned_camera_is_noticed(degrees: float, correspond: Look):
 
 
 @look
+@pytest.mark.slow
 def test_a_large_pair_is_looked_at_to_a_pixel(correspond: Look):
     scene = Scene((720, 1280), 20.0, 40.0)
     assert not correspond(grey_pair(rolled(0.5, scene), ""))
@@ -105,6 +106,7 @@ def share_right(found: np.ndarray, scene: Scene) -> float:
     return float(np.mean(np.abs(found - scene.disparity_px())[scene.visible()] <= 2))
 
 
+@pytest.mark.slow
 def test_a_raw_pair_is_matched_nearly_as_well_as_a_rectified_one():
     scene = Scene((240, 320), 8.0, 20.0)
     straight = Zncc().estimate(Views(scene.left(), scene.right())).disparity_px

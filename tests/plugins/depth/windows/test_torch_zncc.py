@@ -29,6 +29,7 @@ def test_what_is_out_of_the_picture_or_flat_has_no_score():
     assert (scores(flat, flat, 0, 3, 3) == OUTSIDE).all()
 
 
+@pytest.mark.slow
 def test_gradients_are_right():
     left, right = random_pair(1, 1, 4, 5)
     torch.autograd.gradcheck(

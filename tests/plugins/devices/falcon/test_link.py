@@ -54,6 +54,7 @@ class TestHoming:
             each.message for each in caplog.records if "pull its grip all the way out" in each.message
         ].__len__() == 1
 
+    @pytest.mark.slow
     def test_nobody_homes_it(self):
         bus, clock = held_bus()
         with pytest.raises(DeviceError, match=r"0 of 3 arms are homed after 0\.2 s; pull its grip"):

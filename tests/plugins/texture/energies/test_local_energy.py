@@ -74,12 +74,14 @@ def worst(found, expected):
 
 
 @pytest.mark.parametrize("name", ["noise", "photograph"])
+@pytest.mark.slow
 def test_every_filter_is_within_one_percent_of_the_full_bank(name):
     grey = np.random.default_rng(0).random((160, 200)).astype(np.float32) if name == "noise" else natural((180, 150))
     assert worst(local_energy(grey, OCTAVES), direct(grey, bank(OCTAVES), 4, 4.0)) < 0.01
 
 
 @pytest.mark.parametrize("name", ["gratings", "edge"])
+@pytest.mark.slow
 def test_filters_that_nearly_nothing_passes_are_within_a_thousandth_of_the_strongest(name):
     edge = np.repeat((np.arange(160) > 70).astype(np.float32)[None], 140, axis=0)
     grey = edge if name == "edge" else np.hstack([grating((150, 80), 5.0, 0.4), grating((150, 90), 11.0, 2.0)])
@@ -152,6 +154,7 @@ def test_what_is_not_finite_is_named(bad):
         local_energy(grey, OCTAVES)
 
 
+@pytest.mark.usefixtures("unchecked_shapes")
 def test_what_is_no_grey_picture_is_refused():
     for shape in ((0, 4), (4, 4, 3)):
         with pytest.raises(PictureError, match="grey is"):

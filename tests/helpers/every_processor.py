@@ -1,6 +1,6 @@
 """What every method finds, written down: a program, run once a dispatch by `test_every_processor.py`.
 
-    python tests/every_processor.py FOLDER THREADS [PART ...]
+    python tests/helpers/every_processor.py FOLDER THREADS [PART ...]
 
 FOLDER/digests.json holds a digest of each result, by name; FOLDER/arrays.npz the results of torch's methods, which are
 compared within a tolerance. Pictures are files that come with scikit-image, and surface and path are whole numbers over

@@ -29,7 +29,7 @@ def buffers(samples: int = 16) -> tick.Buffers:
     )
 
 
-@njit
+@njit(cache=True)
 def damaged(stream, size, kinds, damage, out):
     """Copy the stream with some bytes lost, gained or swapped; (size, how much of the damage was done)."""
     done, length = 0, 0
@@ -50,7 +50,7 @@ def damaged(stream, size, kinds, damage, out):
     return length, done
 
 
-@njit
+@njit(cache=True)
 def feed(data, size, begun, fixed, state, true, sent, found):
     """Data in IN transfers of random sizes; found: positions, those never sent, the worst of these in counts."""
     chunk = np.zeros(64, np.uint8)
@@ -69,7 +69,7 @@ def feed(data, size, begun, fixed, state, true, sent, found):
             found[2] = max(found[2], away)
 
 
-@njit
+@njit(cache=True)
 def fuzz(streams, kinds, damage, seed, fixed):
     """(positions taken, positions that were never sent, the worst of these in counts, streams not resumed in time).
 

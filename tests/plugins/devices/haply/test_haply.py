@@ -149,6 +149,7 @@ class Told:
             raise DeviceError("the service closed the connection; open the device again")
 
 
+@pytest.mark.usefixtures("unchecked_shapes")
 class TestSteps:
     """A link and what it asks of its session, in order."""
 
@@ -273,6 +274,7 @@ class TestFaults:
             link.read()
         link.close()
 
+    @pytest.mark.usefixtures("unchecked_shapes")
     @pytest.mark.parametrize(
         "answer",
         [

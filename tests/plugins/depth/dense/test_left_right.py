@@ -1,0 +1,29 @@
+"""The left-right check: what both views agree on is trusted."""
+
+import numpy as np
+from hypothesis import given
+from hypothesis.extra import numpy as hnp
+
+from tangible_depth.dense.left_right import left_right_confidence
+
+NAN = np.nan
+
+
+def test_views_that_agree_are_trusted_and_a_pixel_apart_no_more():
+    left = np.float32([[0, 0, 2, 2, 2, 2]])
+    right = np.float32([[2, 2.25, 3, 1.5, 0, 0]])
+    assert left_right_confidence(left, right).tolist() == [[0, 0, 1, 0.75, 0, 0.5]]
+
+
+def test_what_is_unknown_or_outside_is_not_trusted():
+    left = np.float32([[1, NAN, 3, -2, -1]])
+    right = np.float32([[1, 1, NAN, 1, -1]])
+    assert left_right_confidence(left, right).tolist() == [[0, 0, 0, 0, 0]]
+    assert left_right_confidence(np.float32([[0, 1]]), np.float32([[NAN, 1]])).tolist() == [[0, 0]]
+
+
+@given(hnp.arrays(np.float32, (3, 5)), hnp.arrays(np.float32, (3, 5)))
+def test_confidence_is_between_0_and_1_for_any_disparities(left, right):
+    confidence = left_right_confidence(left, right)
+    assert confidence.dtype == np.float32
+    assert ((confidence >= 0) & (confidence <= 1)).all()

@@ -1,0 +1,32 @@
+"""The channels that a picture is compared in."""
+
+import numpy as np
+import pytest
+
+from tangible_texture.features.channels import channels
+
+
+class TestChannels:
+    def test_grey_is_one_channel_however_it_comes(self):
+        grey = np.random.default_rng(0).integers(0, 256, (5, 7), np.uint8)
+        expected = channels(grey, colour=True)
+        assert expected.shape == (5, 7, 1)
+        assert expected.max() == 1
+        assert np.array_equal(channels(np.repeat(grey[..., None], 3, axis=2), colour=True), expected)
+
+    def test_types_agree_to_the_last_bit(self):
+        eight = np.random.default_rng(0).integers(0, 256, (5, 7, 3), np.uint8)
+        expected = channels(eight, colour=True)
+        assert expected.shape == (5, 7, 3)
+        opaque = np.dstack([eight, np.full((5, 7), 255, np.uint8)])
+        for same in (eight.astype(np.uint16) * 257, eight / 255, np.asarray(eight / 255, np.float32), opaque):
+            assert np.array_equal(channels(same, colour=True), expected)
+
+    @pytest.mark.parametrize("scale", [1e-20, 1e20, 1e300])
+    def test_scale_is_taken_out(self, scale: float):
+        picture = np.random.default_rng(0).random((5, 7, 3))
+        assert np.allclose(channels(picture * scale, colour=True), picture / picture.max(), rtol=1e-6)
+
+    def test_transparency_lies_over_white(self):
+        clear = np.array([[[0, 0, 0, 0], [0, 0, 255, 255]]], np.uint8)
+        assert channels(clear, colour=True).tolist() == [[[1, 1, 1], [0, 0, 1]]]

@@ -44,7 +44,7 @@ class Compared:
 
 def compare(
     comparison: Comparison,
-    against: Path | None = None,
+    earlier: Sequence[Row] | None = None,
     *,
     retry: bool = False,
     progress: Callable[[Step], None] | None = None,
@@ -53,12 +53,11 @@ def compare(
 ) -> Compared:
     """Measure what a comparison names, into `comparison.out`; rows that are there already are kept.
 
-    against: earlier results. retry: measure once more what failed before. progress: hears of every measurement as it
+    earlier: rows of an earlier comparison, to be held against. retry: measure once more what failed before. progress: hears of every measurement as it
     begins and ends. on_outlook: hears first what is known and what is to be measured. stop: set from another thread, it
     ends the measurement under way, which is lost; the others are kept.
     Raises: ConfigError, ResultsError, OutputError for files that are wrong or cannot be written; Stopped after `stop`.
     """
-    earlier = None if against is None else list(read_rows(against).values())
     path = comparison.out / ROWS
     outlook = look(measurements(comparison), path, retry)
     if on_outlook is not None:
@@ -80,9 +79,9 @@ def compare(
     return _summed(rows, path, earlier)
 
 
-def read_comparison(path: Path, against: Path | None = None) -> Compared:
+def read_comparison(path: Path, earlier: Sequence[Row] | None = None) -> Compared:
     """What was measured before, from its rows (.jsonl). Raises: ResultsError."""
-    return _summed(read_rows(path), path, None if against is None else list(read_rows(against).values()))
+    return _summed(read_rows(path), path, earlier)
 
 
 def _summed(rows: Mapping[str, Row], path: Path, earlier: Sequence[Row] | None) -> Compared:

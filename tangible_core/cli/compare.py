@@ -40,17 +40,19 @@ def compare(
     from ..bench.comparing import ROWS, read_comparison
     from ..bench.comparing import compare as measured
     from ..bench.config import load_comparison
+    from ..bench.rows import read_rows
     from ..plugins.registry import default_registry
     from . import show
 
+    earlier = None if against is None else list(read_rows(against).values())
     if config.suffix == ".jsonl":
-        found = read_comparison(config, against)
+        found = read_comparison(config, earlier)
     else:
         comparison = load_comparison(config, default_registry(), sets or [])
         comparison = replace(comparison, out=out or comparison.out)
         path = comparison.out / ROWS
         try:
-            found = measured(comparison, against, retry=retry, progress=_tell, on_outlook=lambda each: _say(each, path))
+            found = measured(comparison, earlier, retry=retry, progress=_tell, on_outlook=lambda each: _say(each, path))
         except KeyboardInterrupt:
             show.note(f"interrupted; what was measured is kept in {path}, and the same command goes on from there")
             raise

@@ -7,6 +7,7 @@ import pytest
 
 from tangible_core.bench.comparing import Compared, Step, compare, read_comparison
 from tangible_core.bench.config import parse_comparison
+from tangible_core.bench.rows import read_rows
 from tangible_core.errors import ResultsError, Stopped
 from tangible_core.plugins.registry import Registry
 
@@ -58,7 +59,7 @@ def test_a_long_measurement_is_ended(registry: Registry, tmp_path: Path):
 
 def test_what_was_measured_is_read_again(registry: Registry, tmp_path: Path):
     found = compared(registry, tmp_path)
-    again = read_comparison(tmp_path / "results.jsonl", against=tmp_path / "results.jsonl")
+    again = read_comparison(tmp_path / "results.jsonl", earlier=list(read_rows(tmp_path / "results.jsonl").values()))
     assert again.results.cells == found.results.cells
     assert again.verdict is not None and not again.verdict.worse
     (tmp_path / "empty.jsonl").touch()

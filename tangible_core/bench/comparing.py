@@ -53,9 +53,9 @@ def compare(
 ) -> Compared:
     """Measure what a comparison names, into `comparison.out`; rows that are there already are kept.
 
-    earlier: rows of an earlier comparison, to be held against. retry: measure once more what failed before. progress: hears of every measurement as it
-    begins and ends. on_outlook: hears first what is known and what is to be measured. stop: set from another thread, it
-    ends the measurement under way, which is lost; the others are kept.
+    earlier: rows of an earlier comparison, to be held against. retry: measure once more what failed before. progress:
+    hears of every measurement as it begins and ends. on_outlook: hears first what is known and what is to be measured.
+    stop: set from another thread, it ends the measurement under way, which is lost; the others are kept.
     Raises: ConfigError, ResultsError, OutputError for files that are wrong or cannot be written; Stopped after `stop`.
     """
     path = comparison.out / ROWS

@@ -18,7 +18,7 @@ READ, WRITTEN = types.Array(float64, 1, "C", readonly=True), types.Array(float64
 
 
 @inner(forceinline=True)
-def _led(settings, memory, elapsed_s, place, velocity):
+def _lead_tool(settings, memory, elapsed_s, place, velocity):
     """The tool moved on by one period; False if that is not finite.
 
     Backward Euler in the coupling, forward in the law: stable up to a law of stiffness + 2 damping / T + 4 mass / T^2,
@@ -47,7 +47,7 @@ def couple(settings, memory, period_s, x, y, z, vx, vy, vz):
     if settings[at.COUPLING] <= 0.0:
         return x, y, z, vx, vy, vz
     elapsed_s = memory[at.AGE_S] + period_s
-    if np.isnan(memory[at.TOOL]) or not _led(settings, memory, elapsed_s, (x, y, z), (vx, vy, vz)):
+    if np.isnan(memory[at.TOOL]) or not _lead_tool(settings, memory, elapsed_s, (x, y, z), (vx, vy, vz)):
         memory[at.TOOL], memory[at.TOOL + 1], memory[at.TOOL + 2] = x, y, z
         memory[at.TOOL + 3], memory[at.TOOL + 4], memory[at.TOOL + 5] = vx, vy, vz
     tool = memory[at.TOOL], memory[at.TOOL + 1], memory[at.TOOL + 2]

@@ -34,7 +34,7 @@ NEWTONS_AND_FLAGS = types.Tuple((float64, float64, float64, int64))
 
 
 @inner(forceinline=True)
-def _counted(memory, flags):
+def _count(memory, flags):
     """The flags, each counted."""
     memory[at.COUNTS] += flags & TOUCHING
     if flags > TOUCHING:
@@ -44,17 +44,17 @@ def _counted(memory, flags):
 
 
 @inner(forceinline=True)
-def _stopped(memory, flag):
+def _stop(memory, flag):
     """Zero at once, and nothing remembered that a fault may have touched; the force fades in again."""
     for i in range(3 * (at.MOST_DELAY + 1)):
         memory[at.HELD + i] = 0.0
     memory[at.FORCE] = memory[at.FORCE + 1] = memory[at.FORCE + 2] = 0.0
-    _anew(memory)
-    return 0.0, 0.0, 0.0, _counted(memory, flag)
+    _forget(memory)
+    return 0.0, 0.0, 0.0, _count(memory, flag)
 
 
 @inner(forceinline=True)
-def _anew(memory):
+def _forget(memory):
     memory[at.PLACE] = memory[at.TOOL] = np.nan
     memory[at.RAMP] = memory[at.ENERGY_J] = 0.0
 
@@ -129,9 +129,9 @@ def guard(settings, memory, period_s, x, y, z, vx, vy, vz, fx, fy, fz):
     elapsed_s = memory[at.AGE_S] + period_s
     memory[at.AGE_S] = 0.0
     if nought(x, y, z) + nought(vx, vy, vz) + nought(fx, fy, fz) + 0.0 * elapsed_s != 0.0:
-        return _stopped(memory, NOT_FINITE)
+        return _stop(memory, NOT_FINITE)
     if elapsed_s > settings[at.STALE_S]:
-        return _stopped(memory, STALE)
+        return _stop(memory, STALE)
     elapsed_s = max(elapsed_s, SHORTEST_S)
     touching = fx != 0.0 or fy != 0.0 or fz != 0.0
     if settings[at.COUPLING] > 0.0:
@@ -142,7 +142,7 @@ def guard(settings, memory, period_s, x, y, z, vx, vy, vz, fx, fy, fz):
         fx, fy, fz, braked = passive(settings, memory, elapsed_s, touching, x, y, z, vx, vy, vz, fx, fy, fz)
     fx, fy, fz, late = _gentle(settings, memory, elapsed_s, fx, fy, fz)
     _keep(settings, memory, fx, fy, fz)
-    return fx, fy, fz, _counted(memory, touching * TOUCHING | soft | braked * DAMPED | late)
+    return fx, fy, fz, _count(memory, touching * TOUCHING | soft | braked * DAMPED | late)
 
 
 @njit(NEWTONS_AND_FLAGS(READ, WRITTEN, float64), **KERNEL)
@@ -150,11 +150,11 @@ def wait(settings, memory, period_s):
     """A tick that found no fresh position: the last force, or zero from `stale_s` on or by a clock that is broken."""
     memory[at.AGE_S] += period_s if period_s >= 0.0 else np.inf
     if not memory[at.AGE_S] <= settings[at.STALE_S]:
-        return _stopped(memory, STALE)
+        return _stop(memory, STALE)
     return memory[at.FORCE], memory[at.FORCE + 1], memory[at.FORCE + 2], 0
 
 
 @njit(void(WRITTEN), **KERNEL)
 def restart(memory):
     """For the first tick on another scene, or after homing: the force fades in again, from what it is."""
-    _anew(memory)
+    _forget(memory)

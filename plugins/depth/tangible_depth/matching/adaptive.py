@@ -21,7 +21,7 @@ from ..search.pairs import Pair
 from ..search.row_offset import CELL_PX, LEAST_ROW_OFFSET_PX, realigned, row_offset
 from ..sgm.census import BITS
 from ..sgm.costs import HEAVY, LIGHT, SHARP, Cost
-from ..sgm.strips import Swept, blank, sweep
+from ..sgm.strips import StripMatches, blank, sweep
 
 log = logging.getLogger(__name__)
 DOUBT, LEAST_DIFFERING, NOISE = 0.06, 0.28, 0.20
@@ -35,7 +35,7 @@ Rows = Sequence[tuple[int, int]]
 
 def match(
     pair: Pair, span: Span, cost: Cost | None, check_tolerance: float, realign_rows: bool, rows: Rows
-) -> tuple[Swept, Cost]:
+) -> tuple[StripMatches, Cost]:
     """The strips `rows` matched, with the given cost or, if None, with the one that the pair calls for."""
     trial = _Trial(pair, span, cost or SHARP, check_tolerance)
     if cost and not realign_rows:
@@ -79,7 +79,7 @@ class _Trial:
     def __init__(self, pair: Pair, span: Span, cost: Cost, check_tolerance: float) -> None:
         self.pair, self.out = pair, blank(pair.left.shape)
         self._codes = cost.codes(pair.left), cost.codes(pair.right)
-        self._how = span, cost.prices, check_tolerance
+        self._how = span, cost.penalties, check_tolerance
 
     def sweep(self, rows: Rows) -> None:
         """Match these strips."""
@@ -88,7 +88,7 @@ class _Trial:
     def health(self, rows: Rows) -> _Health:
         """Match these rows and look at what was found; specks are erased."""
         self.sweep(rows)
-        parts = [Swept(*(each[a:b] for each in self.out)) for a, b in rows]
+        parts = [StripMatches(*(each[a:b] for each in self.out)) for a, b in rows]
         found = max(1, sum(np.count_nonzero(each.disparity != UNKNOWN) for each in parts))
         specks = sum(remove_speckles(each.disparity) for each in parts)
         bits = sum(int(np.sum(each.sums * (each.disparity != UNKNOWN), dtype=np.int64)) for each in parts)

@@ -61,7 +61,7 @@ def match_bands(pair: Pair, span: Span, width: int = FINE_WIDTH) -> Bands:
     out = blank(grey.shape)
     halves = [(0, COUNT // 2), (COUNT // 2, COUNT)]
     within = span.shrunk(factor).within(grey.shape[1])
-    sweep((_codes(left), _codes(right)), grey, within, SHARP.prices, STRICT, halves, out, WARM_BANDS)
+    sweep((_codes(left), _codes(right)), grey, within, SHARP.penalties, STRICT, halves, out, WARM_BANDS)
     found = np.count_nonzero(out.disparity != UNKNOWN)
     lost = remove_speckles(out.disparity, LARGEST_SPECK)
     flat = flat_pixels(left.reshape(COUNT * TALL, -1))[RADIUS::TALL, columns]

@@ -114,13 +114,15 @@ def _shifted(row, w, top, codes):
 
 
 @njit(**KERNEL)
-def sweep_strip(lanes, left, right, grey, rows, warm, span, limits, prices, check_tolerance, scratch, disparity, sums):
+def sweep_strip(
+    lanes, left, right, grey, rows, warm, span, limits, penalties, check_tolerance, scratch, disparity, sums
+):
     """Disparities in sixteenths of a pixel (UNKNOWN where rejected) and sums of rows[0]..rows[1]-1.
 
     Parameters: lanes, Lanes(n, planes); left, right uint8 (h, planes, >= w), codes of the two views; grey uint8 (h, w),
     the left view; warm, rows that a path begins early; span, the disparities to try, at most n; limits, those of rows
-    of w columns; prices, a `Prices`; check_tolerance of the left-right check, 1 being strict; scratch, for at least as
-    many rows. Results: disparity int16 (h, w), sums uint8 (h, w), the winner's cost over the four paths.
+    of w columns; penalties, a `Penalties`; check_tolerance of the left-right check, 1 being strict; scratch, for at
+    least as many rows. Results: disparity int16 (h, w), sums uint8 (h, w), the winner's cost over the four paths.
     """
     h, w = grey.shape
     y0, y1 = rows
@@ -129,16 +131,16 @@ def sweep_strip(lanes, left, right, grey, rows, warm, span, limits, prices, chec
     for y in range(max(0, y0 - warm), y1):
         _shifted(right[y], w, span.high, codes)
         above = grey[max(y - 1, 0)]
-        vertical(lanes, left[y], codes, limits, prices, grey[y], above, path, path_lowest, costs)
+        vertical(lanes, left[y], codes, limits, penalties, grey[y], above, path, path_lowest, costs)
         if y >= y0:
-            sideways(lanes, prices, grey[y], costs, path, total[y - y0])
+            sideways(lanes, penalties, grey[y], costs, path, total[y - y0])
     _begin(path, path_lowest)
     last = min(h, y1 + warm)
     for i in range(last - y0):
         y = last - 1 - i
         _shifted(right[y], w, span.high, codes)
         below = grey[min(y + 1, h - 1)]
-        vertical(lanes, left[y], codes, limits, prices, grey[y], below, path, path_lowest, costs)
+        vertical(lanes, left[y], codes, limits, penalties, grey[y], below, path, path_lowest, costs)
         if y < y1:
             _decide(lanes, total[y - y0], path, costs, best, sums[y], right_sums)
             _accept(width(lanes), span, costs, best, sums[y], right_sums, limits.most, check_tolerance, disparity[y])

@@ -1,4 +1,4 @@
-"""What a match costs: the codes that are compared, and the prices of moving and jumping between disparities."""
+"""What a match costs: the codes that are compared, and the penalties P1 and P2 of changes of disparity."""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -9,14 +9,14 @@ from jaxtyping import UInt8
 from .census import BITS, census, two_scale_census
 
 
-class Prices(NamedTuple):
+class Penalties(NamedTuple):
     """What a path pays, in differing bits."""
 
-    move: np.uint8
+    p1: np.uint8
     """For a change of one disparity."""
     neutral: np.uint8
     """For a disparity that leads out of the right view, where nothing can be compared."""
-    jumps: UInt8[np.ndarray, "256"]
+    p2_by_step: UInt8[np.ndarray, "256"]
     """For any other change, by the grey step it comes with: depth breaks where the picture does."""
 
 
@@ -27,28 +27,28 @@ class Cost(NamedTuple):
     bits: int
     """Of a code."""
     codes: Callable[[UInt8[np.ndarray, "h w"]], Any]
-    prices: Prices
+    penalties: Penalties
 
 
-def jump_prices(flat: int, edge: int, slope: float) -> UInt8[np.ndarray, "256"]:
+def p2_by_grey_step(flat: int, edge: int, slope: float) -> UInt8[np.ndarray, "256"]:
     """From `flat` where the picture is flat down to `edge`, `slope` bits cheaper for each grey level of the step."""
     return np.clip(flat - slope * np.arange(256), edge, flat).astype(np.uint8)
 
 
-SHARP = Cost("sharp", BITS, census, Prices(np.uint8(10), np.uint8(8), jump_prices(50, 12, 1.5)))
+SHARP = Cost("sharp", BITS, census, Penalties(np.uint8(10), np.uint8(8), p2_by_grey_step(50, 12, 1.5)))
 """Census of the picture as it is: the most exact on clean pictures."""
 LIGHT = Cost(
     "light",
     2 * BITS,
     lambda z: two_scale_census(z, 0.5, 1.5),
-    Prices(np.uint8(18), np.uint8(16), jump_prices(110, 28, 2.0)),
+    Penalties(np.uint8(18), np.uint8(16), p2_by_grey_step(110, 28, 2.0)),
 )
 """For light noise or compression."""
 HEAVY = Cost(
     "heavy",
     2 * BITS,
     lambda z: two_scale_census(z, 0.7, 2.0),
-    Prices(np.uint8(22), np.uint8(16), jump_prices(120, 40, 2.0)),
+    Penalties(np.uint8(22), np.uint8(16), p2_by_grey_step(120, 40, 2.0)),
 )
 """For heavy noise."""
 COSTS = {each.name: each for each in (SHARP, LIGHT, HEAVY)}

@@ -42,11 +42,11 @@ def limits_of(n: int, w: int, span: Span, neutral: np.uint8) -> Limits:
 
 
 @inner()
-def _step(lanes, before, before_lowest, cost, move, jump):
+def _step(lanes, before, before_lowest, cost, p1, p2):
     """One step of a path: stay, move by one disparity or jump to any, then pay the pixel's own cost."""
     wall = splat(lanes, uint8(255))
-    moved = saturating_add(minimum(shift_up(before, wall), shift_down(before, wall)), move)
-    jumped = splat(lanes, uint8(before_lowest + jump))
+    moved = saturating_add(minimum(shift_up(before, wall), shift_down(before, wall)), p1)
+    jumped = splat(lanes, uint8(before_lowest + p2))
     best = minimum(minimum(before, jumped), moved)
     return saturating_add(cost, subtract(best, splat(lanes, before_lowest)))
 
@@ -64,59 +64,59 @@ def _grey_step(grey, x, others, z):
 
 
 @inner()
-def _columns(lanes, left, codes, limits, columns, prices, grey, grey_before, path, path_lowest, costs):
+def _columns(lanes, left, codes, limits, columns, penalties, grey, grey_before, path, path_lowest, costs):
     """The path from the row before, in place; `costs` keeps this row's costs. No limits: None."""
     n = width(lanes)
-    move, jumps = splat(lanes, prices.move), prices.jumps
+    p1, p2_by_step = splat(lanes, penalties.p1), penalties.p2_by_step
     for x in range(columns[0], columns[1]):
         if limits is None:  # known to the compiler: the other branch is not there
             cost = hamming(lanes, left, codes, x)
         else:
             cost = _limited_cost(lanes, left, codes, x, limits)
         store(costs, x * n, cost)
-        jump = jumps[_grey_step(grey, x, grey_before, x)]
-        here = _step(lanes, load(lanes, path, x * n), path_lowest[x], cost, move, jump)
+        p2 = p2_by_step[_grey_step(grey, x, grey_before, x)]
+        here = _step(lanes, load(lanes, path, x * n), path_lowest[x], cost, p1, p2)
         path_lowest[x] = lowest(here)
         store(path, x * n, here)
 
 
 @inner()
-def vertical(lanes, left, codes, limits, prices, grey, grey_before, path, path_lowest, costs):
+def vertical(lanes, left, codes, limits, penalties, grey, grey_before, path, path_lowest, costs):
     """`_columns` for all columns: the limits are looked up only where there are some."""
     first, last = limits.free
-    rest = (prices, grey, grey_before, path, path_lowest, costs)
+    rest = (penalties, grey, grey_before, path, path_lowest, costs)
     _columns(lanes, left, codes, limits, (0, first), *rest)
     _columns(lanes, left, codes, None, (first, last), *rest)
     _columns(lanes, left, codes, limits, (last, grey.size), *rest)
 
 
 @inner()
-def sideways(lanes, prices, grey, costs, path, total):
+def sideways(lanes, penalties, grey, costs, path, total):
     """Sums of the path from above and those from both ends of the row. Walking both at once hides their latency."""
     n = width(lanes)
     w = grey.size
     east = west = splat(lanes, uint8(0))
     east_lowest = west_lowest = uint8(0)
     east, east_lowest, west, west_lowest = _half_way(
-        lanes, prices, grey, costs, path, total, (0, w // 2), east, east_lowest, west, west_lowest
+        lanes, penalties, grey, costs, path, total, (0, w // 2), east, east_lowest, west, west_lowest
     )
     if w % 2:
         middle = (w // 2) * n
         store(total, middle, load(lanes, path, middle))
-    _half_way(lanes, prices, grey, costs, total, total, (w // 2, w), east, east_lowest, west, west_lowest)
+    _half_way(lanes, penalties, grey, costs, total, total, (w // 2, w), east, east_lowest, west, west_lowest)
 
 
 @inner()
-def _half_way(lanes, prices, grey, costs, so_far, total, steps, east, east_lowest, west, west_lowest):
+def _half_way(lanes, penalties, grey, costs, so_far, total, steps, east, east_lowest, west, west_lowest):
     n = width(lanes)
-    move, jumps = splat(lanes, prices.move), prices.jumps
+    p1, p2_by_step = splat(lanes, penalties.p1), penalties.p2_by_step
     w = grey.size
     for x in range(steps[0], steps[1]):
         z = w - 1 - x
-        east_jump = jumps[_grey_step(grey, x, grey, max(x - 1, 0))]
-        west_jump = jumps[_grey_step(grey, z, grey, min(z + 1, w - 1))]
-        east = _step(lanes, east, east_lowest, load(lanes, costs, x * n), move, east_jump)
-        west = _step(lanes, west, west_lowest, load(lanes, costs, z * n), move, west_jump)
+        east_p2 = p2_by_step[_grey_step(grey, x, grey, max(x - 1, 0))]
+        west_p2 = p2_by_step[_grey_step(grey, z, grey, min(z + 1, w - 1))]
+        east = _step(lanes, east, east_lowest, load(lanes, costs, x * n), p1, east_p2)
+        west = _step(lanes, west, west_lowest, load(lanes, costs, z * n), p1, west_p2)
         east_lowest = lowest(east)
         west_lowest = lowest(west)
         store(total, x * n, saturating_add(load(lanes, so_far, x * n), east))

@@ -11,7 +11,7 @@ from tangible_core.compiled.threads import in_turns
 from ..dense.span import UNKNOWN, Span
 from ..simd.lanes import Lanes
 from .aggregation import scratch, sweep_strip
-from .costs import Prices
+from .costs import Penalties
 from .paths import limits_of
 
 ROWS, WARM_ROWS = 128, 32
@@ -23,16 +23,16 @@ AT_ONCE = 4
 MOST_LANES = 512
 
 
-class Swept(NamedTuple):
+class StripMatches(NamedTuple):
     """Disparity in sixteenths of a pixel, UNKNOWN where none passed the left-right check, and the winner's cost."""
 
     disparity: Int16[np.ndarray, "h w"]
     sums: UInt8[np.ndarray, "h w"]
 
 
-def blank(shape: tuple[int, int]) -> Swept:
+def blank(shape: tuple[int, int]) -> StripMatches:
     """A map in which nothing is known yet."""
-    return Swept(np.full(shape, UNKNOWN, np.int16), np.full(shape, 255, np.uint8))
+    return StripMatches(np.full(shape, UNKNOWN, np.int16), np.full(shape, 255, np.uint8))
 
 
 def strips(shape: tuple[int, int], span: Span) -> list[tuple[int, int]]:
@@ -49,10 +49,10 @@ def sweep(
     codes: tuple[UInt8[np.ndarray, "h planes whole"], UInt8[np.ndarray, "h planes whole"]],
     grey: UInt8[np.ndarray, "h w"],
     span: Span,
-    prices: Prices,
+    penalties: Penalties,
     check_tolerance: float,
     only: Sequence[tuple[int, int]],
-    out: Swept,
+    out: StripMatches,
     warm: int = WARM_ROWS,
 ) -> None:
     """Match the strips `only` and write them into `out`; their paths begin `warm` rows early.
@@ -61,12 +61,14 @@ def sweep(
     """
     w, n = grey.shape[1], span.lanes
     lanes = Lanes(n, codes[0].shape[1])
-    limits = limits_of(n, w, span, prices.neutral)
+    limits = limits_of(n, w, span, penalties.neutral)
     highest = max((y1 - y0 for y0, y1 in only), default=0)
 
     def work(share: Iterable[tuple[int, int]]) -> None:
         room = scratch(highest, w, n, lanes.planes)
         for rows in share:
-            sweep_strip(lanes, *codes, grey, rows, warm, span, limits, prices, np.float32(check_tolerance), room, *out)
+            sweep_strip(
+                lanes, *codes, grey, rows, warm, span, limits, penalties, np.float32(check_tolerance), room, *out
+            )
 
     in_turns(list(only), work, max(1, VOLUME_BYTES // max(1, highest * w * n)))

@@ -10,7 +10,7 @@ from tangible_core.compiled.threads import thread_count
 from tangible_depth.dense.span import UNKNOWN, Span
 from tangible_depth.sgm import strips
 from tangible_depth.sgm.census import census
-from tangible_depth.sgm.costs import SHARP, jump_prices
+from tangible_depth.sgm.costs import SHARP, p2_by_grey_step
 from tangible_depth.sgm.strips import blank, sweep
 
 
@@ -34,7 +34,7 @@ def plain_costs(left, right, span, neutral):
     return costs
 
 
-def plain_path(costs, steps, prices):
+def plain_path(costs, steps, penalties):
     """Costs (n, ..., d) summed along the first axis, each kept relative to the minimum before it."""
     before = np.zeros(costs.shape[1:], int)
     out = []
@@ -43,22 +43,22 @@ def plain_path(costs, steps, prices):
         wall = np.full((*before.shape[:-1], 1), 255)
         up = np.concatenate([wall, before[..., :-1]], axis=-1)
         down = np.concatenate([before[..., 1:], wall], axis=-1)
-        jumped = least + prices.jumps.astype(int)[step_here][..., None]
-        best = np.minimum(np.minimum(before, jumped), np.minimum(up, down) + int(prices.move))
+        jumped = least + penalties.p2_by_step.astype(int)[step_here][..., None]
+        best = np.minimum(np.minimum(before, jumped), np.minimum(up, down) + int(penalties.p1))
         before = np.minimum(cost + best - least, 255)
         out.append(before)
     return np.stack(out)
 
 
-def plain_sums(left, right, span, prices):
-    costs = plain_costs(left, right, span, int(prices.neutral))
+def plain_sums(left, right, span, penalties):
+    costs = plain_costs(left, right, span, int(penalties.neutral))
     grey = left.astype(int)
     total = np.zeros_like(costs)
     for axis in (0, 1):
         c, g = np.moveaxis(costs, axis, 0), np.moveaxis(grey, axis, 0)
         steps = np.abs(np.diff(g, axis=0, prepend=g[:1]))
         back = np.abs(np.diff(g[::-1], axis=0, prepend=g[-1:]))
-        total += np.moveaxis(plain_path(c, steps, prices) + plain_path(c[::-1], back, prices)[::-1], 0, axis)
+        total += np.moveaxis(plain_path(c, steps, penalties) + plain_path(c[::-1], back, penalties)[::-1], 0, axis)
     return np.minimum(total, 255)
 
 
@@ -92,8 +92,8 @@ def test_the_sweep_is_semi_global_matching(span, tolerance):
     left, right = np.asarray(views.left), np.asarray(views.right)
     out = blank(left.shape)
     rows = [(0, left.shape[0])]
-    sweep((census(left), census(right)), left, span, SHARP.prices, tolerance, rows, out)
-    sums = plain_sums(left, right, span, SHARP.prices)
+    sweep((census(left), census(right)), left, span, SHARP.penalties, tolerance, rows, out)
+    sums = plain_sums(left, right, span, SHARP.penalties)
     assert np.array_equal(out.sums, sums.min(axis=-1))
     assert np.array_equal(out.disparity, plain_disparity(sums, span, tolerance))
 
@@ -107,7 +107,7 @@ def test_strips_are_independent_and_hardly_seen(monkeypatch):
         monkeypatch.setattr(strips, "ROWS", rows)
         out = blank(left.shape)
         for each in strips.strips(left.shape, Span(0, 31)):
-            sweep(codes, left, Span(0, 31), SHARP.prices, 1.08, [each], out)
+            sweep(codes, left, Span(0, 31), SHARP.penalties, 1.08, [each], out)
         maps.append(out.disparity.astype(int))
     near = [y for y in range(300) if min(abs(y - 128), abs(y - 256)) <= 8]
     assert np.mean(np.abs(maps[0] - maps[1])[near] > 16) <= 0.005
@@ -139,13 +139,13 @@ def test_no_more_threads_are_at_work_than_there_is_room_for(monkeypatch):
     monkeypatch.setattr(strips, "in_turns", lambda tasks, work, most: at_work.append(most))
     rows = [(y, y + 16) for y in range(0, 160, 16)]
     codes = np.empty((160, 3, 64), np.uint8)
-    sweep((codes, codes), codes[:, 0], Span(0, 31), SHARP.prices, 1.0, rows, blank((160, 64)))
+    sweep((codes, codes), codes[:, 0], Span(0, 31), SHARP.penalties, 1.0, rows, blank((160, 64)))
     assert at_work == [3]
 
 
 def test_a_jump_is_cheaper_where_the_picture_steps():
-    prices = jump_prices(50, 12, 1.5)
-    assert (prices[0], prices[10], prices[255]) == (50, 35, 12)
+    penalties = p2_by_grey_step(50, 12, 1.5)
+    assert (penalties[0], penalties[10], penalties[255]) == (50, 35, 12)
 
 
 def test_a_span_fits_lanes_and_pictures():

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from tangible_depth.rectify.epipolar import symmetric_epipolar_distance
 from tangible_depth.rectify.fundamental import eight_point
 from tangible_depth.rectify.homographies import camera_matrix, rotation
 
 from .figures import Figure
+from .tests_path import two_cameras
 
 WIDTH_PX, HEIGHT_PX, NOISE_PX, POINTS, SCENES = 6000, 4500, 0.5, 300, 50
 
@@ -28,7 +28,7 @@ def _median(seed: int) -> float:
     random = np.random.default_rng(seed)
     true = _points(random)
     noisy = [each + random.normal(0, NOISE_PX, each.shape) for each in true]
-    return float(np.median(symmetric_epipolar_distance(eight_point(*noisy), *true))) / np.sqrt(2)
+    return float(np.median(two_cameras.symmetric_epipolar_distance(eight_point(*noisy), *true))) / np.sqrt(2)
 
 
 def _points(random: np.random.Generator) -> list[np.ndarray]:

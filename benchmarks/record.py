@@ -14,7 +14,7 @@ import numpy as np
 from tangible_core.data import HapticSurface
 from tangible_core.plugins.interfaces import Touch
 from tangible_core.servo import Safety
-from tangible_core.session import Recording, Writer, replay, run, undisturbed
+from tangible_core.session import Recording, Writer, replay, run_simulated, undisturbed
 from tangible_devices.mock import Mock
 from tangible_render.proxy import Proxy
 
@@ -66,7 +66,7 @@ def _touch() -> Touch:
 
 def _minute() -> Recording:
     free = Safety(ramp_s=0, max_step_n=10, passivity="off")  # forces as the law gives them
-    return run(_touch(), Mock(tremor_m=2e-4), 60.0, limits=free)
+    return run_simulated(_touch(), Mock(tremor_m=2e-4), 60.0, limits=free)
 
 
 def _writing(path: Path, minute: Recording) -> Iterator[Figure]:

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from tangible_core.bench.render import DELAYS, limits
 from tangible_core.metrics import HANDLE
 from tangible_core.plugins.interfaces import ForceRenderer
+from tangible_core.servo.guard.safety import stiffness_limit_n_per_m
 from tangible_core.synthetic.scenes import plane
 from tangible_render.force_shading import ForceShading
 from tangible_render.penalty import Penalty
@@ -20,7 +21,7 @@ def figures() -> Iterator[Figure]:
     """A row for each delay: the limits of all springs lie within the bound's 5 %."""
     found = [limits(each, plane().surface) for each in SPRINGS]
     for delay in DELAYS:
-        bound = HANDLE.bound_n_per_m(delay)
+        bound = stiffness_limit_n_per_m(HANDLE.damping_n_s_per_m, HANDLE.period_s, delay)
         limits_n_per_m = [each[f"limit{delay}"] for each in found]
         worst = max(abs(limit / bound - 1) for limit in limits_n_per_m)
         yield Figure(

@@ -21,9 +21,9 @@ def figures() -> Iterator[Figure]:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "long.nc"
         with Writer(path) as writer:
-            report = live.feel(touch(), Circling(), 60 * MINUTES, Safety(), _ignore, writer.append)
+            report = live.run_in_real_time(touch(), Circling(), 60 * MINUTES, Safety(), _ignore, writer.append)
         kept, size = len(Recording.load(path).rows), path.stat().st_size
-    alone = live.feel(touch(), Circling(), 60.0, Safety(), _ignore, lambda rows: None)
+    alone = live.run_in_real_time(touch(), Circling(), 60.0, Safety(), _ignore, lambda rows: None)
     assert report.late_us is not None and alone.late_us is not None
     said = (
         f"{report.ticks} ticks, {report.ticks - kept} not recorded, {report.overruns} periods without a tick; "

@@ -7,3 +7,4 @@ sys.path.append(str(Path(__file__).parents[1] / "tests" / "helpers"))
 
 import falcon_bus as falcon_bus
 import falcon_streams as falcon_streams
+import two_cameras as two_cameras

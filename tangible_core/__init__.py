@@ -4,12 +4,13 @@ The names below are fixed: other people's programs call them. Each is imported w
 `tangible --help` does not wait for numpy.
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+from .lazily import lazily
 from .provenance.watching import watch_numba
 
 if TYPE_CHECKING:
+    from .compiled.touch import CompiledTouch as CompiledTouch
     from .data import Calibration as Calibration
     from .data import DeviceSpec as DeviceSpec
     from .data import DisparityMap as DisparityMap
@@ -24,40 +25,48 @@ if TYPE_CHECKING:
     from .data import SegmentMap as SegmentMap
     from .data import Views as Views
     from .errors import TangibleError as TangibleError
-    from .pipeline.engine import load_pipeline as load_pipeline
+    from .pipeline.pipeline import Pipeline as Pipeline
+    from .pipeline.pipeline import load_pipeline as load_pipeline
+    from .pipeline.runs import Run as Run
     from .plugins.hooks import hookimpl as hookimpl
     from .plugins.interfaces import DepthEstimator as DepthEstimator
     from .plugins.interfaces import ForceRenderer as ForceRenderer
     from .plugins.interfaces import HapticDevice as HapticDevice
     from .plugins.interfaces import Link as Link
+    from .plugins.interfaces import PlainTouch as PlainTouch
     from .plugins.interfaces import Segmenter as Segmenter
     from .plugins.interfaces import Skippable as Skippable
     from .plugins.interfaces import Touch as Touch
     from .plugins.registry import load_method as load_method
+    from .report.showing import show as show
+    from .scene.rig import Camera as Camera
+    from .scene.rig import StereoRig as StereoRig
+    from .scene.scene import Scene as Scene
+    from .scene.workspace import Workspace as Workspace
+    from .session.recording import Recording as Recording
 
-_ROOMS = {
-    "data": (
-        "Calibration", "DeviceSpec", "DisparityMap", "Force", "HapticState", "HapticSurface", "Material",
-        "MaterialMap", "Outcome", "Plan", "Relief", "SegmentMap", "Views",
-    ),
-    "pipeline.engine": ("load_pipeline",),
-    "errors": ("TangibleError",),
-    "plugins.hooks": ("hookimpl",),
-    "plugins.interfaces": (
-        "DepthEstimator", "ForceRenderer", "HapticDevice", "Link", "Segmenter", "Skippable", "Touch",
-    ),
-    "plugins.registry": ("load_method",),
-}  # fmt: skip
-_HOME = {name: room for room, names in _ROOMS.items() for name in names}
-
-__all__ = sorted(_HOME)  # pyright: ignore[reportUnsupportedDunderAll]
+__all__, __getattr__ = lazily(  # pyright: ignore[reportUnsupportedDunderAll]
+    __name__,
+    {
+        "compiled.touch": ["CompiledTouch"],
+        "data": [
+            "Calibration", "DeviceSpec", "DisparityMap", "Force", "HapticState", "HapticSurface", "Material",
+            "MaterialMap", "Outcome", "Plan", "Relief", "SegmentMap", "Views",
+        ],
+        "errors": ["TangibleError"],
+        "pipeline.pipeline": ["Pipeline", "load_pipeline"],
+        "pipeline.runs": ["Run"],
+        "plugins.hooks": ["hookimpl"],
+        "plugins.interfaces": [
+            "DepthEstimator", "ForceRenderer", "HapticDevice", "Link", "PlainTouch", "Segmenter", "Skippable", "Touch",
+        ],
+        "plugins.registry": ["load_method"],
+        "report.showing": ["show"],
+        "scene.rig": ["Camera", "StereoRig"],
+        "scene.scene": ["Scene"],
+        "scene.workspace": ["Workspace"],
+        "session.recording": ["Recording"],
+    },
+)  # fmt: skip
 
 watch_numba()
-
-
-def __getattr__(name: str) -> Any:
-    if name not in _HOME:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    value = getattr(import_module(f".{_HOME[name]}", __name__), name)
-    globals()[name] = value
-    return value

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 from difflib import get_close_matches
+from math import inf
 from reprlib import Repr
 from sys import stdlib_module_names
 from traceback import walk_tb
@@ -69,8 +70,24 @@ class OutputError(TangibleError):
     """Results that cannot be written."""
 
 
+class Stopped(TangibleError):
+    """Work that was stopped from another thread."""
+
+    def __init__(self) -> None:
+        super().__init__("stopped by the program that asked for it; what was finished is kept")
+
+
 class ResultsError(TangibleError):
     """Files of measurements that are damaged, or that cannot be compared."""
+
+
+def check_positive(name: str, value: float) -> None:
+    """Raises: ConfigError for a number that is not positive and finite.
+
+    >>> check_positive("seconds", 0.5)
+    """
+    if not 0 < value < inf:
+        raise ConfigError(f"{name}: is {value}; it must be positive and finite")
 
 
 def exited(error: SystemExit) -> BrokenMethod:

@@ -14,7 +14,7 @@ import pytest
 from command_line import tangible
 from ctrl_c import HEARING
 from distributions import distribution
-from tangible_core.commands import show
+from tangible_core.cli import show
 from tangible_core.data import Outcome
 
 TANGIBLE = str(Path(sys.executable).with_name("tangible"))
@@ -40,7 +40,7 @@ def mistake(*words: object, cwd: Path) -> str:
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
     """A small pair: a textured wall, its right half 8 px nearer than its left one."""
-    from tangible_core.scene.picture_files import write_png
+    from pictures import write_png
 
     rng = np.random.default_rng(1)
     wall = rng.integers(0, 255, (64, 120), dtype=np.uint8)
@@ -199,7 +199,7 @@ def test_a_check_that_fails_ends_with_1(folder: Path):
     ],
 )
 def test_a_mistake_costs_one_clear_line(folder: Path, change: str, said: str):
-    from tangible_core.scene.picture_files import write_png
+    from pictures import write_png
 
     (folder / "cut.png").write_bytes((folder / "left.png").read_bytes()[:2000])
     write_png(folder / "wide.png", np.zeros((64, 97), np.uint8))
@@ -210,7 +210,7 @@ def test_a_mistake_costs_one_clear_line(folder: Path, change: str, said: str):
 
 
 def test_a_one_pixel_picture_is_felt(folder: Path):
-    from tangible_core.scene.picture_files import write_png
+    from pictures import write_png
 
     write_png(folder / "dot.png", np.zeros((1, 1), np.uint8))
     sets = [word for each in ("scene={photo: dot.png}", "depth={use: luminance}") for word in ("--set", each)]
@@ -334,7 +334,7 @@ def test_what_stands_in_brackets_is_shown(capsys: pytest.CaptureFixture[str]):
 ACME = """\
 import sys
 import numpy as np
-from tangible_core.plugins.interfaces import DepthEstimator, ForceRenderer, Touch
+from tangible_core.plugins.interfaces import DepthEstimator, ForceRenderer, PlainTouch
 from tangible_core.data import Force
 
 class Odd(Exception):
@@ -346,7 +346,7 @@ class Quits(DepthEstimator):
     def estimate(self, views):
         sys.exit(0)
 
-class FaultyTouch(Touch):
+class FaultyTouch(PlainTouch):
     def __init__(self, fault):
         self.fault = fault
     def force(self, state):
@@ -355,8 +355,6 @@ class FaultyTouch(Touch):
         if state.position_m[2] < 0.5:
             raise Odd("a fault", "the law")
         return Force(0.0, 0.0, 0.0)
-    def path(self, positions_m, period_s=0.001):
-        return np.zeros_like(positions_m)
 
 class Faulty(ForceRenderer):
     '''Fails in its first tick.'''

@@ -176,11 +176,21 @@ def test_every_fixed_name_resolves():
         tangible_core.Nothing  # noqa: B018
 
 
-def test_type_checkers_see_the_same_fixed_names():
-    tree = ast.parse(Path(tangible_core.__file__).read_text())
+@pytest.mark.parametrize("package", ["tangible_core", *(path.name for path in PACKAGES.values())])
+def test_type_checkers_see_the_same_names_as_programs(package):
+    module = import_module(package)
+    tree = ast.parse(Path(module.__file__).read_text())
     [guarded] = [node for node in tree.body if isinstance(node, ast.If)]
-    seen = {(node.module, alias.asname) for node in guarded.body for alias in node.names}
-    assert seen == {(home, name) for name, home in tangible_core._HOME.items()}
+    seen = {alias.asname: f"{package}.{node.module}" for node in guarded.body for alias in node.names}
+    assert sorted(seen) == module.__all__
+    for name, home in seen.items():
+        assert getattr(module, name) is getattr(import_module(home), name)
+
+
+@pytest.mark.parametrize("kind", ["depth", "texture", "render", "device"])
+def test_every_method_is_exported_by_its_family(kind):
+    targets = PROJECT["project"]["entry-points"][f"tangible.{kind}"].values()
+    assert all(getattr(import_module(each.split(".")[0]), each.split(":")[1]) for each in targets)
 
 
 def test_the_schema_in_configs_is_current():

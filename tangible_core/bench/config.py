@@ -9,8 +9,8 @@ from pydantic import Field
 
 from ..errors import TangibleError, did_you_mean, quoted
 from ..files.source import Source, parse_source, read_text
-from ..pipeline.config import Section
 from ..plugins.registry import Registry
+from ..scene.workspace import Section
 from .entries import Entry, read_methods
 from .task import TASKS, SceneSpec, Task, load_task
 

@@ -9,7 +9,8 @@ from pydantic import Field, model_validator
 
 from ..errors import PictureError, quoted
 from ..metrics import visible_pixels
-from ..scene.scene import Scene, SceneFiles, read_scene
+from ..scene.scene import Scene
+from ..scene.scene_files import SceneFiles
 from ..synthetic.stereo_scenes import KnownPair, synthetic_pair
 from .task import SceneSpec
 
@@ -69,9 +70,9 @@ class DepthScene(SceneSpec):
         if self.folder is not None:
             files = _files(self.folder)
             in_png = files.truth is not None and files.truth.suffix == ".png"  # which cannot hold NaN
-            return _known(read_scene(files, self.folder, 1, 1), str(self.folder), zero_is_unknown=in_png)
-        name = f"builtin/{self.builtin}"
-        return _known(read_scene(name, Path(), 1, 1), name, zero_is_unknown=False)
+            return _known(Scene.read(files, self.folder), str(self.folder), zero_is_unknown=in_png)
+        scene = Scene.builtin(self.builtin or "")
+        return _known(scene, scene.name, zero_is_unknown=False)
 
     def _name(self) -> str:
         if self.synthetic is None:

@@ -1,6 +1,5 @@
 """The machine that a measurement is of."""
 
-import os
 import platform
 import re
 from functools import cache
@@ -10,11 +9,9 @@ from pathlib import Path
 @cache
 def machine() -> dict[str, str | int]:
     """Processor, how many of its cores this process may use, and system."""
-    return {"processor": _processor(), "cores": _cores(), "system": f"{platform.system()} {platform.machine()}"}
+    from ..compiled.threads import thread_count
 
-
-def _cores() -> int:
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return {"processor": _processor(), "cores": thread_count(), "system": f"{platform.system()} {platform.machine()}"}
 
 
 def _processor() -> str:

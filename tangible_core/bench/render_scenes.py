@@ -13,7 +13,7 @@ from ..data.pictures import to_grey
 from ..errors import OutputError, quoted
 from ..scene.geometry import scale_heights
 from ..scene.picture_files import read_map
-from ..scene.scene import read_scene
+from ..scene.scene import Scene
 from ..session.recording import Recording
 from ..synthetic.strokes import PERIOD_S, KnownStroke, analytic_stroke, relief_stroke
 from .task import SceneSpec
@@ -81,7 +81,7 @@ class RenderScene(SceneSpec):
     def _relief(self) -> Relief:
         if self.height is not None:
             return scale_heights(read_map(self.height), self.width_m, self.relief_m)
-        scene = read_scene(f"builtin/{self.builtin}", Path(), self.width_m, self.relief_m)
+        scene = Scene.builtin(self.builtin or "")
         assert scene.views is not None  # no builtin scene is a height map
         heights = to_grey(scene.views.left) if scene.truth is None else scene.truth
         return scale_heights(heights, self.width_m, self.relief_m)

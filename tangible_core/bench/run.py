@@ -3,19 +3,25 @@
 import json
 import subprocess
 import tempfile
+import time
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from signal import Signals
+from threading import Event
 from typing import IO, Any
 
 from ..runtime.child_process import command
+from ..runtime.stopping import check_stopped, stoppable
 from .plan import Measurement
 from .rows import Row, append, mend, read_rows
 
 Tell = Callable[[int, Row], None]
 """Hears the number of a measurement, from 0, and its row: without a result before it, with one after it."""
+
+LOOK_EVERY_S = 0.1
+"""How often a wait for a measurement looks whether it shall end."""
 
 
 @dataclass(frozen=True)
@@ -39,19 +45,27 @@ def look(wanted: Sequence[Measurement], path: Path, retry: bool = False) -> Outl
     return Outlook(kept, tuple(each for each in wanted if each.row.key not in kept))
 
 
-def run(outlook: Outlook, path: Path, timeout_s: float, started: Tell, finished: Tell) -> dict[str, Row]:
+def run(
+    outlook: Outlook, path: Path, timeout_s: float, started: Tell, finished: Tell, stop: Event | None = None
+) -> dict[str, Row]:
     """Measure what is waiting, and add it to the file; returns all rows by key.
 
     A method that failed on a scene is not tried there again in later rounds. An interruption loses at most the
     measurement that is under way.
-    Raises: OutputError if the file cannot be written.
+    Raises: OutputError if the file cannot be written, Stopped after `stop` was set.
     """
+    with stoppable(stop):
+        return _run(outlook, path, timeout_s, started, finished)
+
+
+def _run(outlook: Outlook, path: Path, timeout_s: float, started: Tell, finished: Tell) -> dict[str, Row]:
     mend(path)
     rows = dict(outlook.kept)
     failed = {row.cell for row in rows.values() if row.error}
     for number, each in enumerate(outlook.waiting):
         if each.row.cell in failed:
             continue
+        check_stopped()
         started(number, each.row)
         row = replace(each.row, **_outcome(each, timeout_s))
         append(path, row)
@@ -80,9 +94,21 @@ def _ended(wanted: Measurement, timeout_s: float, said: IO[bytes], noise: IO[byt
             assert process.stdin is not None
             with suppress(BrokenPipeError):  # it died before it could listen: its exit code tells
                 process.stdin.write((json.dumps([wanted.place, asdict(wanted.job)]) + "\n").encode())
-            return process.wait(timeout_s)  # with its input left open: the end of that is the worker's own
+            return _waited(process, timeout_s)  # with its input left open: the end of that is the worker's own
         finally:
             process.kill()
+
+
+def _waited(process: subprocess.Popen[bytes], timeout_s: float) -> int:
+    """Exit code of a process. Raises: TimeoutExpired, or Stopped within a tenth of a second of being asked to stop."""
+    end_s = time.monotonic() + timeout_s
+    while True:
+        try:
+            return process.wait(min(LOOK_EVERY_S, max(0.0, end_s - time.monotonic())))
+        except subprocess.TimeoutExpired:
+            check_stopped()
+            if time.monotonic() >= end_s:
+                raise
 
 
 def _answer(text: str) -> dict[str, Any] | None:

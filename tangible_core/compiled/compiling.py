@@ -3,16 +3,30 @@
 A room of kernels imports this module.
 """
 
+import gc
 import logging
 from typing import Any
 
 from numba.core import event
+from numba.extending import register_jitable
+
+from .beside import kernels_are_compiled
 
 log = logging.getLogger(__name__)
+SECONDS = {"depth": 5, "texture": 2, "render": 2, "core": 1}
+"""What compiling a family's kernels takes about, on the machine of benchmarks/RESULTS.md."""
 
-KERNEL: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy", "_nrt": False}
+KERNEL: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy", "_nrt": False, "no_cfunc_wrapper": True}
 """Options of a kernel that is given all its arrays and makes none: it counts no references to them, each of which is an
-atomic operation, twice an array and call."""
+atomic operation, twice an array and call. Nobody calls one by C's convention, so that no way in for it is compiled."""
+
+
+def inner(**options: Any) -> Any:
+    """Of a function that only kernels call: it is compiled with them, without what Python would call it through.
+
+    That is half of what a small kernel takes to compile. Called from Python, it runs as plain Python.
+    """
+    return register_jitable(**{**KERNEL, "cache": False, "no_cpython_wrapper": True, **options})
 
 
 class _CompileNotice(event.Listener):
@@ -23,13 +37,40 @@ class _CompileNotice(event.Listener):
 
     def on_start(self, event: Any) -> None:
         package = event.data["dispatcher"].py_func.__module__.partition(".")[0]
-        if package.startswith("tangible_") and package not in self.said:
+        if not package.startswith("tangible_"):
+            return
+        kernels_are_compiled()
+        if package not in self.said:
             self.said.add(package)
             kind = package.removeprefix("tangible_")
-            log.warning("compiling the %s kernels for this processor; the next process finds them on disk", kind)
+            takes = f"about {SECONDS[kind]} s" if kind in SECONDS else "seconds"
+            log.warning("compiling the %s kernels for this processor, %s; later runs find them on disk", kind, takes)
 
     def on_end(self, event: Any) -> None:
         pass
 
 
-event.register("numba:compile", _CompileNotice())  # pyright: ignore[reportUnknownMemberType]
+class _Unswept(event.Listener):
+    """Holds Python's garbage collector off while a kernel is compiled, a fifteenth of the time of which it would take.
+
+    Within the lock that numba compiles under, so that there is one at a time.
+    """
+
+    def __init__(self) -> None:
+        self._within = 0
+        self._swept = False
+
+    def on_start(self, event: Any) -> None:
+        if not self._within:
+            self._swept = gc.isenabled()
+            gc.disable()
+        self._within += 1
+
+    def on_end(self, event: Any) -> None:
+        self._within -= 1
+        if not self._within and self._swept:
+            gc.enable()
+
+
+for _listener in (_CompileNotice(), _Unswept()):
+    event.register("numba:compile", _listener)  # pyright: ignore[reportUnknownMemberType]

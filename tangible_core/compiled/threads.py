@@ -4,13 +4,17 @@ No OpenMP: its idle threads spin and take the processor from whoever works.
 """
 
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from contextvars import copy_context
 from functools import cache
 from itertools import pairwise
-from typing import Any
+from typing import Any, TypeVar
 
+from ..runtime.stopping import check_stopped
 from . import compiling as compiling  # says so while the kernels are compiled
+
+T = TypeVar("T")
 
 
 def thread_count() -> int:
@@ -19,9 +23,13 @@ def thread_count() -> int:
 
 
 def run_all(jobs: Iterable[Callable[[], Any]]) -> None:
-    """Run every job and wait; the calling thread does the first. A job must not call `run_all` itself."""
+    """Run every job and wait; the calling thread does the first. A job must not call `run_all` itself.
+
+    Raises: Stopped before any job if the caller's work shall end; a job sees that as well as its caller does.
+    """
+    check_stopped()
     first, *rest = jobs
-    waiting = [_pool(os.getpid()).submit(each) for each in rest]
+    waiting = [_pool(os.getpid()).submit(copy_context().run, each) for each in rest]
     try:
         first()
     finally:
@@ -36,11 +44,20 @@ def in_blocks(length: int, work: Callable[[int, int], Any], at_least: int = 16) 
     run_all([lambda a=a, b=b: work(a, b) for a, b in pairwise(edges)])
 
 
-def in_turns(tasks: list[Any], work: Callable[[list[Any]], Any], most: int | None = None) -> None:
-    """work(share) on interleaved shares of the tasks, one share a thread, `most` threads at most."""
+def in_turns(tasks: list[T], work: Callable[[Iterable[T]], Any], most: int | None = None) -> None:
+    """work(share) on interleaved shares of the tasks, one share a thread, `most` threads at most.
+
+    Raises: Stopped between two tasks if the caller's work shall end.
+    """
     parts = min(thread_count(), len(tasks), len(tasks) if most is None else most)
     if parts:
-        run_all([lambda t=t: work(tasks[t::parts]) for t in range(parts)])
+        run_all([lambda t=t: work(_while_wanted(tasks[t::parts])) for t in range(parts)])
+
+
+def _while_wanted(tasks: Iterable[T]) -> Iterator[T]:
+    for each in tasks:
+        check_stopped()
+        yield each
 
 
 @cache

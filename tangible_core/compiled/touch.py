@@ -8,8 +8,8 @@ import numpy as np
 from jaxtyping import Float64
 
 from ..data import Force, HapticState
-from ..errors import GeometryError
-from ..plugins.interfaces import Link, Touch
+from ..plugins.link import Link
+from ..plugins.touch import Touch, path_arrays
 from ..runtime.child_process import imported, place
 
 Tick = Callable[..., tuple[float, float, float]]
@@ -97,23 +97,14 @@ class CompiledLink(Link):
         """Whether the buffers travel by `exchange`; if not, others fill and empty them, and a loop needs no Python."""
 
     @abstractmethod
+    def _exchange(self) -> None:
+        """As `exchange`, of a link that is open. Raises: DeviceError if the device stopped answering."""
+
+    @final
     def exchange(self) -> None:
         """Send what was written and fetch what is to be read; once a tick.
 
         Raises: DeviceError if the device stopped answering or the link is closed.
         """
-
-
-def path_arrays(
-    positions_m: np.ndarray, period_s: float
-) -> tuple[Float64[np.ndarray, "n 3"], Float64[np.ndarray, "n 3"]]:
-    """The positions as a kernel reads them, and an array for the forces.
-
-    Raises: GeometryError if the positions are not (n, 3), or the period is not above 0.
-    """
-    positions = np.ascontiguousarray(positions_m, np.float64)
-    if positions.ndim != 2 or positions.shape[1] != 3:
-        raise GeometryError(f"a path is (n, 3) positions in metres, not {positions.shape}")
-    if not 0 < period_s < np.inf:
-        raise GeometryError(f"a path's positions are period_s > 0 seconds apart, not {period_s}")
-    return positions, np.empty_like(positions)
+        self._check_open()
+        self._exchange()

@@ -1,10 +1,10 @@
 """What travels between stages: frozen records of read-only arrays, and the servo's tuples."""
 
-from .device import NO_FORCE, DeviceSpec, Finding, Force, HapticState, Unit
-from .outcome import Kind, Outcome, OutcomeKind, Plan
+from .device import NO_FORCE, DeviceSpec, Finding, Force, HapticState, Unit, Vector, limited
+from .outcome import Kind, Outcome, OutcomeKind, Outcomes, Plan
 from .records import Record, digest_of
 from .surface import TEXTURES, HapticSurface, Material, MaterialMap, Relief, Texture
-from .ticks import TICK_COLUMNS, ServoReport, Spread, TickFlag
+from .ticks import TICK_COLUMNS, UNTOUCHED, ServoReport, Spread, TickFlag
 from .views import Calibration, DisparityMap, SegmentMap, Views
 
 __all__ = [
@@ -21,6 +21,7 @@ __all__ = [
     "NO_FORCE",
     "Outcome",
     "OutcomeKind",
+    "Outcomes",
     "Plan",
     "Record",
     "Relief",
@@ -31,7 +32,10 @@ __all__ = [
     "TICK_COLUMNS",
     "Texture",
     "TickFlag",
+    "UNTOUCHED",
     "Unit",
+    "Vector",
     "Views",
     "digest_of",
+    "limited",
 ]

@@ -4,8 +4,12 @@ Frame of the workspace: metres, right-handed, x right, y away from the user (the
 origin is the centre of the picture on the base plane.
 """
 
+import math
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
+
+Vector = tuple[float, float, float]
+"""Along x, y and z."""
 
 
 class Force(NamedTuple):
@@ -19,11 +23,27 @@ class Force(NamedTuple):
 NO_FORCE = Force(0.0, 0.0, 0.0)
 
 
+def limited(force: Force, most_n: float) -> Force:
+    """The force, scaled down to a magnitude of most_n where it is over it; zero where it is not finite.
+
+    >>> limited(Force(6.0, 0.0, 8.0), 5.0)
+    Force(x=3.0, y=0.0, z=4.0)
+    """
+    if math.hypot(*force) <= most_n:
+        return force
+    if not all(map(math.isfinite, force)):
+        return NO_FORCE
+    greatest = max(map(abs, force))  # divided by first, so that the magnitude cannot overflow
+    x, y, z = (part / greatest for part in force)
+    scale = most_n / math.hypot(x, y, z)
+    return Force(x * scale, y * scale, z * scale)
+
+
 class HapticState(NamedTuple):
     """Where the device's tip is: metres, metres per second and seconds, in the workspace frame."""
 
-    position_m: tuple[float, float, float]
-    velocity_m_per_s: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    position_m: Vector
+    velocity_m_per_s: Vector = (0.0, 0.0, 0.0)
     time_s: float = 0.0
     buttons: int = 0
     """One bit a button."""
@@ -37,7 +57,7 @@ class DeviceSpec:
     max_stiffness_n_per_m: float
     """At a servo rate of 1 kHz."""
     damping_n_s_per_m: float
-    workspace_m: tuple[float, float, float]
+    workspace_m: Vector
     """Size along x, y, z."""
     resolution_m: float
     axes: int = 3

@@ -1,12 +1,15 @@
 """What a pipeline will do, and what became of its products."""
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from html import escape
 from typing import Literal
 
 Kind = Literal["depth", "texture", "render", "device"]
 
 
 OutcomeKind = Literal["given", "ran", "cached", "skipped", "failed"]
+HEADINGS = ("product", "method", "outcome", "why", "seconds")
 
 
 @dataclass(frozen=True)
@@ -19,10 +22,58 @@ class Outcome:
     method: str = ""
     seconds: float = 0.0
 
+    def row(self, ran: str = "ran") -> tuple[str, ...]:
+        """Texts under HEADINGS; ran: the word for one that ran, or is to."""
+        kind = ran if self.outcome == "ran" else self.outcome
+        return self.product, self.method, kind, self.why, f"{self.seconds:.3f}" if self.seconds else ""
 
-@dataclass(frozen=True)
+
+class Outcomes(list[Outcome]):
+    """Outcomes that show themselves as a table, in a terminal and in a notebook."""
+
+    def __repr__(self) -> str:
+        return text_table(HEADINGS, [each.row() for each in self])
+
+    def _repr_html_(self) -> str:
+        return html_table(HEADINGS, [each.row() for each in self])
+
+
+@dataclass(frozen=True, repr=False)
 class Plan:
-    """What asking for a product will do: one outcome a product, in order, nothing run."""
+    """What asking for a product will do: one outcome a product, in order, nothing run.
+
+    It shows itself as a table, in a terminal and in a notebook.
+    """
 
     want: str
     steps: tuple[Outcome, ...]
+
+    def __repr__(self) -> str:
+        return text_table(HEADINGS[:-1], self._rows())
+
+    def _repr_html_(self) -> str:
+        return html_table(HEADINGS[:-1], self._rows())
+
+    def _rows(self) -> list[Sequence[str]]:
+        return [each.row(ran="to run")[:-1] for each in self.steps]
+
+
+def text_table(headings: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """Columns of one width each, two spaces between them.
+
+    >>> print(text_table(("product", "why"), [("relief", "asked for")]))
+    product  why
+    relief   asked for
+    """
+    lines = [headings, *rows]
+    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
+    shown = ("  ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)) for line in lines)
+    return "\n".join(line.rstrip() for line in shown)
+
+
+def html_table(headings: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """A table for a notebook; what is in the cells is text."""
+    head = "".join(f"<th style='text-align:left'>{escape(each)}</th>" for each in headings)
+    lines = ("".join(f"<td style='text-align:left'>{escape(cell)}</td>" for cell in row) for row in rows)
+    body = "".join(f"<tr>{line}</tr>" for line in lines)
+    return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import fields, is_dataclass
+from importlib import import_module
 from typing import Any, cast
 
 import numpy as np
@@ -20,6 +21,11 @@ class Record:
                 view = cast(np.ndarray, value).view()
                 view.flags.writeable = False
                 object.__setattr__(self, name, view)
+
+    def _repr_html_(self) -> str:
+        """A small picture with units, for a notebook."""
+        home = __name__.partition(".")[0]
+        return import_module(f"{home}.report.html").as_html(self)  # what draws lies above what is drawn
 
     def digest(self) -> str:
         """XXH3-128 of the content, the same in every process; records of equal content have equal digests."""

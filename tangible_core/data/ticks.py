@@ -33,6 +33,9 @@ class TickFlag(IntFlag):
     """The first tick on a new scene."""
 
 
+UNTOUCHED = TickFlag.TOUCHING | TickFlag.OVERRUN | TickFlag.SWAPPED
+"""Flags that leave the law's force as it was. Each of the others names what changed it."""
+
 TICK_COLUMNS = (
     *("time_s", "late_s"),
     *("x_m", "y_m", "z_m"),

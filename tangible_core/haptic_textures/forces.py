@@ -6,10 +6,10 @@
 import math
 
 import numpy as np
-from numba import float64, int64, njit, types, void
+from numba import float64, int64, njit, types
 
-from ..compiled.compiling import KERNEL
-from .heights import COSINE, ROW, SINE, TEXTURES, kept, series, texture_height
+from ..compiled.compiling import KERNEL, inner
+from .heights import COSINE, SINE, TEXTURES, kept, series, texture_height
 from .table import DRAG, DYNAMIC, PER_M, STIFFNESS, SWING
 
 STATE = 7
@@ -19,12 +19,11 @@ _SHAPE = np.sinc(_TURNS / 5) / _TURNS
 _REACH = float(np.max(np.einsum("n,ni->i", _SHAPE, np.sin(np.outer(_TURNS, np.linspace(0, math.pi, 1000))))))
 HARMONICS = tuple(float(each) / _REACH for each in _SHAPE)
 """Amplitudes of a sawtooth's, with Lanczos' factors, which keep the sum from overshooting; from -1 to 1 in all."""
-POINTS = types.Array(float64, 2, "C", readonly=True)
 
 _X, _Y, _BRISTLE_X, _BRISTLE_Y, _PHASE, _LEVEL, _OWNER = range(STATE)
 
 
-@njit(float64(float64, float64), **KERNEL)
+@inner()
 def _sawtooth(phase, turns):
     """From -1 to 1 over a turn and back at once, in a few harmonics, each as far as it is sampled well enough."""
     half = phase - math.floor(phase + 0.5)
@@ -37,14 +36,14 @@ def _sawtooth(phase, turns):
     return total
 
 
-@njit(void(float64[::1], int64, float64, float64, float64), **KERNEL)
+@inner()
 def _attach(state, material, level, x, y):
     """A contact begins: the bristle stands upright, and friction is at its static level."""
     state[_X], state[_Y], state[_LEVEL], state[_OWNER] = x, y, level, material + 1.0
     state[_BRISTLE_X] = state[_BRISTLE_Y] = state[_PHASE] = 0.0
 
 
-@njit(void(ROW, float64[::1], float64, float64, float64), **KERNEL)
+@inner()
 def _stretch(row, state, x, y, normal_n):
     """Carry the bristle along, and let it slip where it is stretched too far.
 
@@ -98,7 +97,7 @@ def texture_force(textures, material, state, x, y, vx, vy, normal_n):
     return fx, fy
 
 
-@njit(void(TEXTURES, int64, float64[::1], POINTS, float64, float64, float64[:, ::1]), **KERNEL)
+@njit(**KERNEL)
 def along(textures, material, state, positions_m, period_s, normal_n, felt):
     """Height and lateral force, metres and newtons, at every position of a path, one period apart.
 
@@ -108,5 +107,5 @@ def along(textures, material, state, positions_m, period_s, normal_n, felt):
     for i in range(positions_m.shape[0]):
         x, y, before = positions_m[i, 0], positions_m[i, 1], positions_m[max(i - 1, 0)]
         vx, vy = (x - before[0]) / period_s, (y - before[1]) / period_s
-        felt[i, :3] = texture_height(textures, material, x, y, vx, vy, period_s)
-        felt[i, 3:] = texture_force(textures, material, state, x, y, vx, vy, normal_n)
+        felt[i, 0], felt[i, 1], felt[i, 2] = texture_height(textures, material, x, y, vx, vy, period_s)
+        felt[i, 3], felt[i, 4] = texture_force(textures, material, state, x, y, vx, vy, normal_n)

@@ -19,28 +19,27 @@ from numba.core import cgutils
 from numba.extending import intrinsic
 from numba.np.arrayobj import populate_array
 
-from ..compiled.compiling import KERNEL
+from ..compiled.compiling import KERNEL, inner
 from .table import COUNT, HEAD
 from .waves import WAVES
 
 WHOLE, GONE = 1 / 5, 1 / 3
 """Turns a tick, up to which a wave is whole, and from which it is gone."""
 TEXTURES = types.Array(float64, 2, "C", readonly=True)
-ROW = types.Array(float64, 1, "C", readonly=True)
 
 SINE = tuple((-1.0) ** n * math.pi ** (2 * n + 1) / math.factorial(2 * n + 1) for n in range(8))
 COSINE = tuple((-1.0) ** n * math.pi ** (2 * n) / math.factorial(2 * n) for n in range(8))
 """sin(pi t) = t series(SINE, t^2) and cos(pi t) = series(COSINE, t^2) for half a turn to either side, |t| <= 1/2."""
 
 
-@njit(float64(float64), inline="always", **KERNEL)
+@inner(forceinline=True)
 def kept(turns):
     """Share of a wave that is left where it makes this many turns a tick."""
     over = min(max((turns - WHOLE) / (GONE - WHOLE), 0.0), 1.0)
     return 1.0 - over * over * (3.0 - 2.0 * over)
 
 
-@njit(inline="always", **KERNEL)
+@inner(forceinline=True)
 def series(terms, u):
     """A polynomial of eight terms in u, in an order that a processor can work side by side."""
     low = terms[0] + u * (terms[1] + u * (terms[2] + u * terms[3]))
@@ -67,7 +66,7 @@ def _scratch(_context, count):
     return types.Array(float64, 1, "C")(count), emit
 
 
-@njit(types.UniTuple(float64, 3)(ROW, *[float64] * 4), **KERNEL)
+@inner()
 def _sum_of_waves(row, x, y, step_x, step_y):
     """Height and gradient, of which nothing is known where a number is not finite.
 

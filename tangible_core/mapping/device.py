@@ -1,5 +1,8 @@
 """A device whose hand's space is laid over the picture's."""
 
+import math
+from collections.abc import Callable
+from functools import partial
 from typing import Any, cast, final
 
 import numpy as np
@@ -10,6 +13,8 @@ from ..data import DeviceSpec, Force, HapticState
 from ..plugins.interfaces import HapticDevice, Link
 from .options import WorkspaceMapping
 from .placement import Placement
+
+NAME = "the mapped device"
 
 
 def mapped(device: HapticDevice, mapping: WorkspaceMapping) -> HapticDevice:
@@ -41,34 +46,26 @@ class MappedDevice(HapticDevice):
 
 @final
 class MappedLink(Link):
-    """A link in the metres of the picture; the clock stays the device's."""
+    """A link in the metres of the picture; the clock stays the device's, and its own link limits the force."""
 
     def __init__(self, link: Link, to: Placement) -> None:
-        from . import kernels
+        super().__init__(NAME, math.inf)
+        self._link, self._between = link, _Between(to)
 
-        self._link, self.to = link, to
-        self.kernels = cast(Any, kernels)
-        self.memory = np.zeros(kernels.MEMORY)
-
-    def read(self) -> HapticState:
+    def _read(self) -> HapticState:
         """Where in the picture the tip is now."""
-        state = self._link.read()
-        numbers = np.array([*state.position_m, *state.velocity_m_per_s, state.buttons], np.float64)
-        self.kernels.place(self.to, self.memory, numbers)
-        x, y, z, vx, vy, vz, _ = numbers.tolist()
-        return HapticState((x, y, z), (vx, vy, vz), state.time_s, state.buttons)
+        return self._between.placed(self._link.read())
 
-    def write(self, force: Force) -> None:
+    def _send(self, force: Force) -> None:
         """A force in the picture's directions."""
-        self._link.write(Force(*self.kernels.push(self.to, self.memory, *force)))
+        self._link.write(Force(*self._between.push(*force)))
 
     @property
     def applied(self) -> Force:
         """The force the device holds, in the picture's directions."""
-        held = self._link.applied
-        return Force(*self.to.turned_back(held.x, held.y), held.z)
+        return self._between.turned_back(self._link.applied)
 
-    def close(self) -> None:
+    def _release(self) -> None:
         """Let go of the device."""
         self._link.close()
 
@@ -78,24 +75,24 @@ class MappedCompiledLink(CompiledLink):
     """As `MappedLink`, for a device of kernels: they are called by kernels, and a loop still needs no Python."""
 
     def __init__(self, link: CompiledLink, to: Placement) -> None:
-        self._link = link
-        self._plain = MappedLink(link, to)
-        self._kernels: LinkKernels = self._plain.kernels.around(link.kernels(), to, self._plain.memory)
+        super().__init__(NAME, math.inf)
+        self._link, self._between = link, _Between(to)
+        self._kernels = self._between.around(link.kernels())
 
-    def read(self) -> HapticState:
+    def _read(self) -> HapticState:
         """Where in the picture the tip is now."""
-        return self._plain.read()
+        return self._between.placed(self._link.read())
 
-    def write(self, force: Force) -> None:
+    def _send(self, force: Force) -> None:
         """A force in the picture's directions."""
-        self._plain.write(force)
+        self._link.write(Force(*self._between.push(*force)))
 
     @property
     def applied(self) -> Force:
         """The force the device holds, in the picture's directions."""
-        return self._plain.applied
+        return self._between.turned_back(self._link.applied)
 
-    def close(self) -> None:
+    def _release(self) -> None:
         """Let go of the device."""
         self._link.close()
 
@@ -108,6 +105,32 @@ class MappedCompiledLink(CompiledLink):
         """As the device."""
         return self._link.exchanges
 
-    def exchange(self) -> None:
+    def _exchange(self) -> None:
         """As the device."""
         self._link.exchange()
+
+
+@final
+class _Between:
+    """What turns states and forces on their way, and remembers the clutch."""
+
+    def __init__(self, to: Placement) -> None:
+        from . import kernels
+
+        self._to, self._kernels = to, cast(Any, kernels)
+        self._memory = np.zeros(kernels.MEMORY)
+        self._place = partial(self._kernels.place, to, self._memory)
+        self.push: Callable[[float, float, float], tuple[float, float, float]]
+        self.push = partial(self._kernels.push, to, self._memory)
+
+    def placed(self, state: HapticState) -> HapticState:
+        numbers = np.array([*state.position_m, *state.velocity_m_per_s, state.buttons], np.float64)
+        self._place(numbers)
+        x, y, z, vx, vy, vz, _ = numbers.tolist()
+        return HapticState((x, y, z), (vx, vy, vz), state.time_s, state.buttons)
+
+    def turned_back(self, held: Force) -> Force:
+        return Force(*self._to.turned_back(held.x, held.y), held.z)
+
+    def around(self, kernels: LinkKernels) -> LinkKernels:
+        return self._kernels.around(kernels, self._to, self._memory)

@@ -6,8 +6,8 @@ from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from ..data import DeviceSpec
-from .placement import Placement, Vector, turn
+from ..data import DeviceSpec, Vector
+from .placement import Placement, turn
 
 Metres = Annotated[float, Field(ge=-10, le=10)]
 Size = Annotated[float, Field(gt=0, le=10)]

@@ -7,7 +7,6 @@ picture that the hand finds at o. Forces are only turned, F_h = R F_s: a newton 
 import math
 from typing import NamedTuple
 
-Vector = tuple[float, float, float]
 QUARTERS = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))
 """Cosine and sine of the quarter turns, exactly."""
 
@@ -31,22 +30,6 @@ class Placement(NamedTuple):
     """How far from its centre the device may give force."""
     clutch: float = 0.0
     """The bits of the button that moves the picture."""
-
-    def to_picture(self, hand_m: Vector) -> Vector:
-        """Where in the picture a point of the hand's space lies."""
-        x, y, z = hand_m
-        x, y = self.turned_back(x - self.offset_x_m, y - self.offset_y_m)
-        return self.centre_x_m + x / self.scale, self.centre_y_m + y / self.scale, (z - self.offset_z_m) / self.scale
-
-    def to_hand(self, picture_m: Vector) -> Vector:
-        """Where the hand finds a point of the picture."""
-        x, y, z = picture_m
-        x, y = self.turned(x - self.centre_x_m, y - self.centre_y_m)
-        return self.offset_x_m + self.scale * x, self.offset_y_m + self.scale * y, self.offset_z_m + self.scale * z
-
-    def turned(self, x: float, y: float) -> tuple[float, float]:
-        """A horizontal vector of the picture as the hand has it."""
-        return self.cos * x - self.sin * y, self.sin * x + self.cos * y
 
     def turned_back(self, x: float, y: float) -> tuple[float, float]:
         """A horizontal vector of the hand's space as the picture has it."""

@@ -23,14 +23,6 @@ class Handle(NamedTuple):
     damping_n_s_per_m: float = 2.0
     period_s: float = 0.001
 
-    def bound_n_per_m(self, delay_ticks: int) -> float:
-        """2 b / (T (1 + 2 d)): the stiffness below which a sampled wall stays stable.
-
-        Source: Colgate & Schenkel, Passivity of a class of sampled-data systems, J. Robotic Systems 14 (1997); with a
-        delay, Diolaiti et al., Stability of haptic rendering, IEEE Trans. Robotics 22 (2006).
-        """
-        return 2 * self.damping_n_s_per_m / (self.period_s * (1 + 2 * delay_ticks))
-
 
 HANDLE = Handle()
 

@@ -2,10 +2,12 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from io import StringIO
 from pathlib import Path
 from typing import Annotated, Any, Generic, Literal, TypeVar, cast
 
-from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag
+from pydantic import BaseModel, Discriminator, Tag
+from ruamel.yaml import YAML
 
 from ..errors import ConfigError, MaterialError, TangibleError, did_you_mean, quoted
 from ..files.source import Location, Source, parse_source, read_text
@@ -14,34 +16,15 @@ from ..materials.assignment import NEUTRAL, find, load_library
 from ..materials.rules import MaterialRule
 from ..plugins.interfaces import DepthEstimator, ForceRenderer, HapticDevice, Method, Segmenter
 from ..plugins.registry import Registry
-from ..scene.scene import BUILTINS, SceneFiles, unknown_scene
+from ..scene.scene import Scene
+from ..scene.scene_files import BUILTINS, SceneFiles, unknown_scene
+from ..scene.workspace import Section, Workspace
 from ..servo.guard.safety import Safety
 
 M = TypeVar("M", bound=Method, covariant=True)
 
 Product = Literal["disparity", "relief", "segments", "materials", "surface", "touch"]
 PRODUCTS: tuple[Product, ...] = ("disparity", "relief", "segments", "materials", "surface", "touch")
-
-
-class Section(BaseModel):
-    """Base of the configuration's own blocks."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
-
-
-class Workspace(Section):
-    """The size of what is felt."""
-
-    width_m: Annotated[float, Field(gt=0, le=10, allow_inf_nan=False)] = 0.08
-    """Width of the picture under the hand."""
-    relief_m: Annotated[float, Field(gt=0, le=1, allow_inf_nan=False)] = 0.02
-    """Height of the nearest point above the farthest."""
-    smooth_m: Annotated[float, Field(ge=0, le=0.1, allow_inf_nan=False)] = 0.0
-    """Standard deviation of a Gaussian that rounds an estimated relief; a finger feels matching noise as grit."""
-    finest_m: Annotated[float, Field(ge=0, le=0.1, allow_inf_nan=False)] = 3e-5
-    """Finer detail is not looked at: larger pictures are reduced first. A Falcon resolves 0.03 mm; 0 keeps all."""
-    holes: Literal["fill", "cut"] = "fill"
-    """Where the depth is unknown: `fill` from the background beside it, or `cut` down to the base plane."""
 
 
 class MaterialChoice(Section):
@@ -74,8 +57,9 @@ class Chosen(Generic[M]):
 class PipelineConfig:
     """A configuration that was checked."""
 
-    path: Path
-    scene: str | SceneFiles
+    scene: str | SceneFiles | Scene
+    path: Path | None = None
+    """The file that it stands in; None for one that was made in Python."""
     want: Product = "surface"
     depth: Chosen[DepthEstimator] | None = None
     texture: Chosen[Segmenter] | None = None
@@ -87,16 +71,31 @@ class PipelineConfig:
     safety: Safety = field(default_factory=Safety)
 
     @property
+    def folder(self) -> Path:
+        """What its relative files are relative to."""
+        return Path() if self.path is None else self.path.parent
+
+    def missing(self, kind: str) -> ConfigError:
+        """What to say where a method is needed and none is named."""
+        if self.path is None:
+            return ConfigError(f"the pipeline has no {kind}; give it one: Pipeline(scene, {kind}=...)")
+        return ConfigError(
+            f"{self.path}: `{kind}:` is missing; name a method, such as `{kind}: {{use: ...}}` "
+            "(`tangible plugins` lists them)"
+        )
+
+    @property
     def felt_device(self) -> HapticDevice | None:
         """The device as the picture sees it, by the mapping; None where none is configured."""
         return None if self.device is None else mapped(self.device.method, self.mapping)
 
     def completed(self) -> dict[str, Any]:
-        """The configuration with every default filled in, as plain values."""
+        """The configuration with every default filled in, as plain values.
+
+        Raises: ConfigError for what no file can say: a scene of arrays, a method that is not installed.
+        """
         plain: dict[str, Any] = {
-            "scene": self.scene
-            if isinstance(self.scene, str)
-            else self.scene.model_dump(mode="json", exclude_none=True),
+            "scene": self._scene_as_said(),
             "want": self.want,
             "workspace": self.workspace.model_dump(mode="json"),
             "mapping": self.mapping.model_dump(mode="json", exclude_none=True),
@@ -105,8 +104,29 @@ class PipelineConfig:
         }
         for kind in STAGES:
             if (chosen := getattr(self, kind)) is not None:
+                if not chosen.origin:
+                    raise ConfigError(
+                        f"{kind}: {chosen.name} is no installed plugin, and a file names its methods; install it with "
+                        f"an entry point tangible.{kind} (docs/write-a-plugin.md)"
+                    )
                 plain[kind] = {"use": chosen.name, **chosen.method.model_dump(mode="json")}
         return plain
+
+    def as_yaml(self) -> str:
+        """The completed configuration as a pipeline file. Raises: ConfigError as `completed`."""
+        yaml, text = YAML(typ="safe"), StringIO()
+        yaml.default_flow_style = False
+        yaml.sort_base_mapping_type_on_output = False  # pyright: ignore[reportAttributeAccessIssue]
+        yaml.dump(self.completed(), text)  # pyright: ignore[reportUnknownMemberType]
+        return text.getvalue()
+
+    def _scene_as_said(self) -> str | dict[str, Any]:
+        said = self.scene.files if isinstance(self.scene, Scene) else self.scene
+        if said is None:
+            raise ConfigError(
+                "scene: is made of arrays, and a file names files; save them, and make the scene of their paths"
+            )
+        return said if isinstance(said, str) else said.model_dump(mode="json", exclude_none=True)
 
 
 STAGES = ("depth", "texture", "render", "device")

@@ -1,57 +1,95 @@
 """Pull: ask for a product, and only what it needs is made; each product says what became of it."""
 
 import logging
-from collections.abc import Iterable
+from collections.abc import Callable, Generator, Iterable, Mapping
+from contextlib import contextmanager
 from functools import cached_property
-from pathlib import Path
+from threading import Event
 from time import perf_counter
-from typing import Any
+from typing import Any, NamedTuple
 
-from ..data import Outcome, Plan, Record
+from ..compiled.beside import Beside
+from ..data import Outcome, Outcomes, Plan, Record
 from ..errors import UnknownMethod
 from ..plugins import hooks
 from ..plugins.notes import collected
-from ..plugins.registry import Registry, default_registry
-from ..scene.scene import Scene, read_scene
+from ..plugins.registry import Registry
+from ..runtime.stopping import check_stopped, stoppable
+from ..scene.scene import Scene
 from .cache import Cache
-from .config import PRODUCTS, PipelineConfig, load_config
+from .config import PRODUCTS, PipelineConfig
 from .rules import Rule, given_key, made_key, rules
 
 log = logging.getLogger(__name__)
 
 
-class Pipeline:
+class Stage(NamedTuple):
+    """A product that is being made, or what became of it."""
+
+    product: str
+    method: str
+    outcome: Outcome | None = None
+    """None when it begins."""
+
+
+Progress = Callable[[Stage], None]
+"""Hears of every stage when it begins and when it ends, in the thread that makes it."""
+
+
+class Engine:
     """One scene, one configuration, and what was made of them so far."""
 
     def __init__(self, config: PipelineConfig, registry: Registry, cache: Cache | None = None) -> None:
         self.config = config
         self.registry = registry
         self.cache = cache
+        self.beside: Beside | None = None
+        """What compiles meanwhile; a stage waits for what it compiles for it."""
+        self.begun: set[str] = set()
+        """Products that were begun to be made."""
         self._made: dict[str, Any] = {}
         self._keys: dict[str, str] = {}
         self._outcomes: dict[str, Outcome] = {}
+        self._progress: Progress = _unheard
+
+    @contextmanager
+    def watched(self, progress: Progress | None = None, stop: Event | None = None) -> Generator[None]:
+        """What is made in this block is told to `progress`, and ends with `Stopped` soon after `stop` is set."""
+        before, self._progress = self._progress, progress or self._progress
+        try:
+            with stoppable(stop):
+                yield
+        finally:
+            self._progress = before
 
     @property
-    def outcomes(self) -> list[Outcome]:
+    def outcomes(self) -> Outcomes:
         """What became of each product, in the order of making; last those that nothing needed."""
         unasked = [
             Outcome(product, "skipped", "nothing that was asked for needs it", rule.method)
             for product, rule in self._rules.items()
             if product not in self._outcomes
         ]
-        return [*self._outcomes.values(), *unasked]
+        return Outcomes([*self._outcomes.values(), *unasked])
 
     @cached_property
     def scene(self) -> Scene:
         """The scene, read from its files. Raises: PictureError, GeometryError."""
-        start = perf_counter()
-        size = self.config.workspace
-        scene = read_scene(self.config.scene, self.config.path.parent, size.width_m, size.relief_m, size.holes)
-        for product, value in self._brought(scene).items():
-            self._made[product] = value
-            self._note(Outcome(product, "given", f"the scene {scene.name} brings it", "", perf_counter() - start))
+        if isinstance(self.config.scene, Scene):
+            return self.config.scene
+        return Scene.read(self.config.scene, self.config.folder)
+
+    @cached_property
+    def brought(self) -> Mapping[str, Record]:
+        """The products that the scene brings, by name."""
+        start, size = perf_counter(), self.config.workspace
+        found = self.scene.brings(size.width_m, size.relief_m, size.holes)
+        for product in found:
+            why = f"the scene {self.scene.name} brings it"
+            self._note(Outcome(product, "given", why, "", perf_counter() - start))
             start = perf_counter()
-        return scene
+        self._made |= found
+        return found
 
     def plan(self, want: str | None = None) -> Plan:
         """What asking for a product will do; nothing is run.
@@ -84,7 +122,7 @@ class Pipeline:
     def _key(self, product: str) -> str:
         rule = self._rules.get(product)
         if rule is None:
-            value = self._brought(self.scene).get(product)
+            value = self.brought.get(product)
             return "nothing" if value is None else given_key(value)
         if rule.skip:
             return "skipped"
@@ -102,7 +140,12 @@ class Pipeline:
         if (found := self._from_cache(rule)) is not None:
             return found
         inputs = {name: self._pull(name, f"{rule.product} is made from it") for name in rule.needs}
+        check_stopped()
+        self._progress(Stage(rule.product, rule.method))
         hooks.tell(self.registry.plugins, "tangible_stage_started", product=rule.product, method=rule.method)
+        self.begun.add(rule.product)
+        if self.beside is not None:
+            self.beside.wait(rule.product)
         start = perf_counter()
         try:
             with collected() as notes:
@@ -132,7 +175,7 @@ class Pipeline:
         if product in steps:
             return steps
         if rule is None:
-            if product in self._brought(self.scene):
+            if product in self.brought:
                 steps[product] = Outcome(product, "given", f"the scene {self.scene.name} brings it")
         elif rule.skip:
             steps[product] = Outcome(product, "skipped", rule.skip, rule.method)
@@ -146,11 +189,7 @@ class Pipeline:
 
     @cached_property
     def _rules(self) -> dict[str, Rule]:
-        return rules(self.config, self.scene)
-
-    @staticmethod
-    def _brought(scene: Scene) -> dict[str, Record]:
-        return {**({"views": scene.views} if scene.views else {}), **scene.given}
+        return rules(self.config, self.scene, self.brought)
 
     def _product(self, want: str | None) -> str:
         product = want or self.config.want
@@ -160,7 +199,12 @@ class Pipeline:
 
     def _note(self, outcome: Outcome) -> None:
         self._outcomes[outcome.product] = outcome
+        self._progress(Stage(outcome.product, outcome.method, outcome))
         hooks.tell(self.registry.plugins, "tangible_stage_finished", outcome=outcome)
+
+
+def _unheard(stage: Stage) -> None:
+    """Nobody listens."""
 
 
 def _with(notes: Iterable[str], why: str) -> str:
@@ -169,15 +213,3 @@ def _with(notes: Iterable[str], why: str) -> str:
 
 ASKED = "asked for"
 SAME = "same method, options and inputs as before"
-
-
-def load_pipeline(
-    path: str | Path, overrides: Iterable[str] = (), registry: Registry | None = None, cache: Cache | None = None
-) -> Pipeline:
-    """A pipeline from a YAML file; nothing runs yet.
-
-    overrides: `key.key=value` each. cache: where results are kept between runs; the user's own by default.
-    Raises: ConfigError with every complaint, each with file:line:column.
-    """
-    registry = registry or default_registry()
-    return Pipeline(load_config(Path(path), registry, overrides), registry, cache or Cache())

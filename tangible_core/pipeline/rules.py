@@ -16,6 +16,7 @@ from ..errors import BrokenMethod, ConfigError
 from ..materials import assignment
 from ..plugins.interfaces import Method, Skippable, Touch
 from ..provenance.closure import closure
+from ..provenance.source import source_digest
 from ..scene import geometry, scaling
 from ..scene.scene import Scene
 from .cache import Cache
@@ -43,13 +44,14 @@ class Rule:
     cached: bool = True
 
 
-def rules(config: PipelineConfig, scene: Scene) -> dict[str, Rule]:
+def rules(config: PipelineConfig, scene: Scene, brought: Mapping[str, Record]) -> dict[str, Rule]:
     """One rule a product, for this configuration and this scene.
 
-    Products that the scene brings have no rule. Raises: ConfigError for a material library that cannot be read.
+    brought: products that the scene brings, which have no rule.
+    Raises: ConfigError for a material library that cannot be read.
     """
     segments = _segments(config, scene)
-    unsegmented = None if "segments" in scene.given else segments.skip
+    unsegmented = None if "segments" in brought else segments.skip
     table = (
         _disparity(config, scene),
         _relief(config, scene),
@@ -58,7 +60,7 @@ def rules(config: PipelineConfig, scene: Scene) -> dict[str, Rule]:
         _surface(config, scene),
         _touch(config, scene),
     )
-    return {rule.product: rule for rule in table if rule.product not in scene.given}
+    return {rule.product: rule for rule in table if rule.product not in brought}
 
 
 def _disparity(config: PipelineConfig, scene: Scene) -> Rule:
@@ -167,7 +169,7 @@ def _identity(chosen: Chosen[Any] | None) -> tuple[str, str]:
     method: Method = chosen.method
     cls = type(method)
     code = closure(cls.__module__)
-    digest = code.digest if code.modules else uuid4().hex  # written at a prompt, where it may be written anew
+    digest = code.digest if code.modules else source_digest(cls) or uuid4().hex
     options = method.model_dump()  # not as JSON, to which infinity and nothing are the same
     return chosen.name, f"{chosen.origin} {cls.__module__}:{cls.__qualname__} {digest} v{cls.version} {options}"
 
@@ -219,10 +221,7 @@ def _size(shape: tuple[int, ...]) -> str:
 def _configured(config: PipelineConfig, kind: str) -> Chosen[Any]:
     chosen: Chosen[Any] | None = getattr(config, kind)
     if chosen is None:
-        raise ConfigError(
-            f"{config.path}: `{kind}:` is missing; name a method, such as `{kind}: {{use: ...}}` "
-            "(`tangible plugins` lists them)"
-        )
+        raise config.missing(kind)
     return chosen
 
 

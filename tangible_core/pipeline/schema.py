@@ -9,7 +9,7 @@ from ..errors import TangibleError
 from ..materials.assignment import library
 from ..materials.files import MaterialBlock
 from ..plugins.registry import Registry, default_registry
-from ..scene.scene import BUILTINS, SceneFiles
+from ..scene.scene_files import BUILTINS, SceneFiles
 from .config import PRODUCTS, SECTIONS, STAGES
 
 

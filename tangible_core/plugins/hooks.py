@@ -11,11 +11,12 @@ import pluggy
 from ..errors import did_you_mean
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from typer import Typer
 
     from ..data import Kind, Outcome, Plan, ServoReport
+    from .panel import Panel
 
 log = logging.getLogger(__name__)
 hookspec = pluggy.HookspecMarker("tangible")
@@ -44,6 +45,10 @@ class Specs:
     @hookspec
     def tangible_servo_report(self, report: ServoReport) -> None:
         """Ten times a second of the loop's time, from the host, never inside the loop."""
+
+    @hookspec
+    def tangible_panels(self) -> Sequence[Panel]:  # pyright: ignore[reportReturnType]
+        """Panels to add to a run's sheet, after those that are there; asked for whenever a sheet is drawn."""
 
     @hookspec
     def tangible_commands(self, app: Typer) -> None:

@@ -5,27 +5,24 @@ Methods are stateless; what keeps state is a session: `Touch` for a renderer, `L
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator
-from types import TracebackType
-from typing import ClassVar, Self, final
+from typing import ClassVar
 
 import numpy as np
-from jaxtyping import Float64
 from pydantic import BaseModel, ConfigDict
 
 from ..data import (
-    NO_FORCE,
     DeviceSpec,
     DisparityMap,
     Finding,
-    Force,
-    HapticState,
     HapticSurface,
     Kind,
     SegmentMap,
     Unit,
     Views,
 )
-from ..errors import DeviceError
+from .link import Link as Link
+from .touch import PlainTouch as PlainTouch
+from .touch import Touch as Touch
 
 
 class Method(BaseModel, ABC):
@@ -53,77 +50,19 @@ class Segmenter(Method):
         """Labels of the picture's own size. Raises: PictureError if it is no picture or holds NaN or infinity."""
 
 
-class Touch(ABC):
-    """A renderer compiled for one surface; it may remember what it touched last, such as a proxy."""
-
-    stiffness_n_per_m: float | None = None
-    """The greatest by which its force grows with depth on level ground; 0 for a law that is no spring.
-
-    A law stiffer than the device holds is softened by this number. None says nothing: then a copy is felt all over
-    before the device is opened, and the steepest slope found counts, that of steep ground too.
-    """
-
-    @abstractmethod
-    def force(self, state: HapticState) -> Force:
-        """Newtons on the hand, always finite; zero in free air, and zero for a state that is not finite."""
-
-    @abstractmethod
-    def path(self, positions_m: Float64[np.ndarray, "n 3"], period_s: float = 0.001) -> Float64[np.ndarray, "n 3"]:
-        """Forces along positions one period apart, as `force` gives them one by one, state carried along.
-
-        The velocity at each position is the step to it over the period; 0 at the first, and where it is not finite.
-        """
-
-
 class ForceRenderer(Method):
     """Turns positions into forces on a surface."""
 
     uses_materials: ClassVar[bool] = True
     """False for a law that feels heights alone: then no texture is segmented for it."""
+    renders_materials: ClassVar[bool] = False
+    """True for a law that renders friction, damping and fine textures of materials by itself."""
+    is_lateral: ClassVar[bool] = False
+    """True for a law of lateral forces alone: the normal force is the table's, under the hand."""
 
     @abstractmethod
     def touch(self, surface: HapticSurface) -> Touch:
         """A new touch on this surface, free of contact."""
-
-
-class Link(ABC):
-    """An open device. As a context manager it leaves zero force behind, whatever happens."""
-
-    @abstractmethod
-    def read(self) -> HapticState:
-        """Where the tip is now. Raises: DeviceError if the device stopped answering or the link is closed."""
-
-    @abstractmethod
-    def write(self, force: Force) -> None:
-        """Set the force on the hand; a force that is not finite becomes zero, one too strong is scaled down.
-
-        Raises: DeviceError if the device stopped answering or the link is closed.
-        """
-
-    @property
-    @abstractmethod
-    def applied(self) -> Force:
-        """The force the device holds now, as far as the driver knows."""
-
-    @abstractmethod
-    def close(self) -> None:
-        """Let go of the device; a second call does nothing."""
-
-    @final
-    def __enter__(self) -> Self:
-        return self
-
-    @final
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        try:
-            self.write(NO_FORCE)
-        except DeviceError:
-            if error is None:  # a device that died raised already
-                raise
-        finally:
-            self.close()
 
 
 class HapticDevice(Method):

@@ -9,8 +9,8 @@ import numpy as np
 
 from ..data import DeviceSpec, HapticSurface, Material
 from ..errors import ConfigError
-from ..pipeline.config import Workspace
 from ..plugins.interfaces import ForceRenderer
+from ..scene.workspace import Workspace
 from ..servo.guard import layout
 from ..servo.guard.safety import (
     NOMINAL_S,

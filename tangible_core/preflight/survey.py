@@ -6,42 +6,50 @@ import numpy as np
 from jaxtyping import Float64
 
 from ..data import HapticSurface
-from ..errors import ConfigError
-from ..pipeline.config import PipelineConfig
-from ..plugins.interfaces import Touch
+from ..plugins.interfaces import ForceRenderer, HapticDevice, Touch
 from ..scene.geometry import workspace_to_picture
-from ..scene.scene import SceneFiles
+from ..scene.workspace import Workspace
+from ..servo.guard.safety import Safety
 from ..servo.guard.stiffness import stiffness_of
 from .flight import Flight, Hand, Loop
 from .probes import Probes, probe
 from .timing import TICKS, measure_lateness, measure_ticks
 
 
-def survey(config: PipelineConfig, surface: HapticSurface, touch: Touch, hand: Hand, loop: Loop) -> Flight:
-    """What there is to know of this surface and its touch on the configured device, before that is opened.
+def survey(
+    surface: HapticSurface,
+    touch: Touch,
+    law: ForceRenderer,
+    device: HapticDevice,
+    *,
+    workspace: Workspace | None = None,
+    safety: Safety | None = None,
+    scene_relief_m: float | None = None,
+    smoothed: bool = True,
+    hand: Hand | None = None,
+    loop: Loop | None = None,
+) -> Flight:
+    """What there is to know of this surface and its touch under a law, on a device that is not opened for it.
 
+    scene_relief_m: height of the relief, where the scene says it and not the workspace. smoothed: whether
+    `workspace.smooth_m` rounds the relief; one that the scene brings stays as it is.
     Takes `loop.seconds`, in which this machine's lateness is measured, and a moment more.
-    Raises: ConfigError if no device or law is configured.
     """
-    device = config.felt_device
-    if device is None or config.render is None:
-        missing = "device" if device is None else "render"
-        raise ConfigError(f"{config.path}: `{missing}:` is missing; name one (`tangible plugins` lists them)")
+    workspace, safety = workspace or Workspace(), safety or Safety()
+    hand, loop = hand or Hand(), loop or Loop()
     period_s, spec = loop.period_s, device.spec()
     stiffness = stiffness_of(touch, spec).n_per_m
     probes = probe(touch, surface, hand.press_n, stiffness, spec.workspace_m[2], period_s)
-    scene = config.scene if isinstance(config.scene, SceneFiles) else None
-    own = scene is not None and scene.relief_m
     return Flight(
         surface=surface,
-        law=config.render.method,
+        law=law,
         stiffness_n_per_m=stiffness,
         spec=spec,
-        workspace=config.workspace,
-        relief_key="scene.relief_m" if own else "workspace.relief_m",
-        relief_m=own or config.workspace.relief_m,
-        smoothed=not (scene and scene.height),
-        safety=config.safety,
+        workspace=workspace,
+        relief_key="workspace.relief_m" if scene_relief_m is None else "scene.relief_m",
+        relief_m=scene_relief_m or workspace.relief_m,
+        smoothed=smoothed,
+        safety=safety,
         hand=hand,
         period_s=period_s,
         probes=probes,

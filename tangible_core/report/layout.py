@@ -1,7 +1,7 @@
 """Where panels stand on a sheet: rows of one height, each filling the width."""
 
 from collections.abc import Sequence
-from itertools import accumulate, combinations, pairwise
+from itertools import accumulate, pairwise
 from math import log
 from typing import NamedTuple
 
@@ -39,7 +39,7 @@ def arrange(cells: Sequence[Cell], width_in: float) -> tuple[list[Box], float, f
 
     Of all ways to break the cells into rows, the one whose rows are nearest to ROW_IN in height is taken.
     """
-    rows = min(_ways(cells), key=lambda rows: sum(len(row) * log(_height(row, width_in) / ROW_IN) ** 2 for row in rows))
+    rows = _rows(cells, width_in)
     boxes: list[Box] = []
     top_in = 0.0
     for row in rows:
@@ -51,10 +51,20 @@ def arrange(cells: Sequence[Cell], width_in: float) -> tuple[list[Box], float, f
     return boxes, used_in, top_in
 
 
-def _ways(cells: Sequence[Cell]) -> list[list[Sequence[Cell]]]:
-    inner = range(1, len(cells))
-    cuts = (cut for count in range(len(cells)) for cut in combinations(inner, count))
-    return [[cells[a:b] for a, b in pairwise((0, *cut, len(cells)))] for cut in cuts]
+def _rows(cells: Sequence[Cell], width_in: float) -> list[Sequence[Cell]]:
+    """The best rows of all cells are those of the first so many and one row more; of equally good ones the fewest."""
+    best: list[tuple[float, int, tuple[int, ...]]] = [(0.0, 0, ())]
+    for end in range(1, len(cells) + 1):
+        best.append(min(_with_row(best[start], start, cells[start:end], width_in) for start in range(end)))
+    return [cells[a:b] for a, b in pairwise((*best[-1][2], len(cells)))]
+
+
+def _with_row(
+    before: tuple[float, int, tuple[int, ...]], start: int, row: Sequence[Cell], width_in: float
+) -> tuple[float, int, tuple[int, ...]]:
+    """How far from ROW_IN all rows are with this one more, how many they are, and where each begins."""
+    far, count, starts = before
+    return far + len(row) * log(_height(row, width_in) / ROW_IN) ** 2, count + 1, (*starts, start)
 
 
 def _cell_width(cell: Cell, height_in: float) -> float:

@@ -4,8 +4,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from itertools import count, product
 from pathlib import Path
+from string import ascii_lowercase
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,9 +20,9 @@ from .layout import Cell, arrange
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from ..plugins.panel import Panel
     from ..session import Recording
     from .layout import Box
-    from .panels import Panel
 
 WIDTH_IN = 12.0
 TITLE_IN = 0.3
@@ -56,6 +58,7 @@ def draw_sheet(
     recording: shown together with the relief that it was felt on.
     Raises: OutputError if the place cannot be written, PictureError if truth and disparity differ in size.
     """
+    from .added import added_panels
     from .panels import PANELS
 
     given = {
@@ -65,9 +68,11 @@ def draw_sheet(
         "segments": segments,
         "materials": materials,
         "relief": relief if surface is None else surface.relief,
+        "surface": surface,
         "recording": recording if recording is not None and len(recording.time_s) else None,
     }
-    write_sheet(path, {name: value for name, value in given.items() if value is not None}, title, PANELS)
+    run = {name: value for name, value in given.items() if value is not None}
+    write_sheet(path, run, title, (*PANELS, *added_panels()))
 
 
 def write_sheet(path: Path, run: Mapping[str, Any], title: str, panels: Sequence[Panel]) -> None:
@@ -93,15 +98,20 @@ def draw_figure(run: Mapping[str, Any], title: str, panels: Sequence[Panel]) -> 
     boxes, width_in, height_in = arrange([_cell(panel, scene_aspect(run)) for panel in panels], WIDTH_IN)
     figure = Figure(figsize=(width_in, height_in + TITLE_IN), dpi=DPI, facecolor="white")
     figure.text(0.15 / width_in, 1 - 0.1 / (height_in + TITLE_IN), title, fontsize=13, weight="bold", va="top")
-    for letter, panel, box in zip("abcdefgh", panels, boxes, strict=False):
+    for letter, panel, box in zip(_letters(), panels, boxes, strict=False):
         _draw_panel(figure, panel, box, run, letter)
     return figure
 
 
+def _letters() -> Iterator[str]:
+    """a, b ... z, aa, ab ..."""
+    for size in count(1):
+        yield from map("".join, product(ascii_lowercase, repeat=size))
+
+
 def scene_aspect(run: Mapping[str, Any]) -> float:
     """Width over height of what the run shows, kept between 1:2 and 3:1 so that a strip still has a panel."""
-    name = next(name for name in SHAPES if name in run)
-    height, width = SHAPES[name](run[name])
+    height, width = next((SHAPES[name](run[name]) for name in SHAPES if name in run), (1.0, 1.0))
     return min(max(width / height, 0.5), 3.0)
 
 

@@ -10,11 +10,10 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from jaxtyping import Float32, Int32
 
-from ..data.pictures import check_finite, check_picture, to_rgb8
+from ..data.pictures import check_finite, check_picture
 from ..errors import PictureError, did_you_mean, shown
 from ..files import arrays
 from ..files.reading import TOO_MANY_PIXELS, TooLarge, check_size, read_bytes
-from ..files.writing import atomic_write
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -48,11 +47,15 @@ def read_picture(path: Path, non_finite: NonFinite = "error") -> np.ndarray:
     non_finite: what becomes of NaN and infinity: an error, or, for `mask`, nothing: they are in what is returned.
     Raises: PictureError if the file is missing, no picture, damaged, cut short or too large.
     """
-    picture = _read(path)
+    return picture_of(_read(path), str(path), non_finite)
+
+
+def picture_of(values: np.ndarray, name: str, non_finite: NonFinite = "error") -> np.ndarray:
+    """An array as `read_picture` returns it. Raises: PictureError if it is no picture, or holds NaN or infinity."""
     if non_finite == "error":
-        return check_picture(picture, str(path))
-    check_picture(np.nan_to_num(picture), str(path))
-    return picture
+        return check_picture(values, name)
+    check_picture(np.nan_to_num(values), name)
+    return values
 
 
 def read_map(path: Path) -> Float32[np.ndarray, "h w"]:
@@ -60,11 +63,15 @@ def read_map(path: Path) -> Float32[np.ndarray, "h w"]:
 
     Raises: PictureError as `read_picture`, or if there is more than one number a pixel.
     """
-    values = _read(path)
+    return map_of(_read(path), str(path))
+
+
+def map_of(values: np.ndarray, name: str) -> Float32[np.ndarray, "h w"]:
+    """An array as `read_map` returns it. Raises: PictureError if there is more than one number a pixel."""
     if values.ndim == 3 and values.shape[2] in (3, 4) and not np.any(values[..., :3] != values[..., :1]):
         values = values[..., 0]
     if values.ndim != 2 or values.size == 0 or values.dtype.kind not in "buif":
-        raise PictureError(f"{path}: a map is one number a pixel, (h, w), not {values.shape} of {values.dtype}")
+        raise PictureError(f"{name}: a map is one number a pixel, (h, w), not {values.shape} of {values.dtype}")
     with np.errstate(over="ignore"):
         numbers = values.astype(np.float32)
     return np.where(np.isfinite(numbers), numbers, np.float32(np.nan))
@@ -75,27 +82,23 @@ def read_labels(path: Path) -> Int32[np.ndarray, "h w"]:
 
     Raises: PictureError as `read_picture`, or if it holds too many labels to be a label picture.
     """
-    values = _read(path, indices=True)
+    return labels_of(_read(path, indices=True), str(path))
+
+
+def labels_of(values: np.ndarray, name: str) -> Int32[np.ndarray, "h w"]:
+    """An array as `read_labels` returns it. Raises: PictureError if it holds too many labels, or is no picture."""
     if values.ndim == 3 and values.dtype.kind == "u" and values.shape[2] <= 4:
         values = values.astype(np.uint64) @ (1 << 16 * np.arange(values.shape[2], dtype=np.uint64))
     if values.ndim != 2 or values.size == 0 or values.dtype.kind not in "buif":
-        raise PictureError(f"{path}: a label picture has one label a pixel, not {values.shape} of {values.dtype}")
-    check_finite(values, str(path))
+        raise PictureError(f"{name}: a label picture has one label a pixel, not {values.shape} of {values.dtype}")
+    check_finite(values, name)
     known, labels = np.unique(values, return_inverse=True)
     if known.size > MAX_LABELS:
         raise PictureError(
-            f"{path}: holds {known.size} labels, at most {MAX_LABELS} are sensible; give each segment one flat colour "
+            f"{name}: holds {known.size} labels, at most {MAX_LABELS} are sensible; give each segment one flat colour "
             "and save it without loss, as PNG"
         )
     return labels.reshape(values.shape).astype(np.int32)
-
-
-def write_png(path: Path, picture: np.ndarray) -> None:
-    """Write a picture as PNG, whole or not at all (see `atomic_write`)."""
-    from PIL import Image
-
-    with atomic_write(path) as file:
-        Image.fromarray(to_rgb8(picture)).save(file, format="PNG")
 
 
 def _read(path: Path, indices: bool = False) -> np.ndarray:

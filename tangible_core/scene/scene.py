@@ -1,149 +1,211 @@
-"""What there is to feel: a pair of views, a photo or a height map, from files or built in."""
+"""What there is to feel: a pair of views, a photo or a height map, from files, from arrays or built in."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from os import PathLike
 from pathlib import Path
-from typing import Annotated, Literal, Self
+from typing import Any, NamedTuple, Self, cast
 
 import numpy as np
 from jaxtyping import Bool, Float32
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from numpy.typing import ArrayLike
+from pydantic import ValidationError
 
 from ..data import Calibration, DisparityMap, Record, SegmentMap, Views
 from ..data.pictures import fill_non_finite
-from ..errors import ConfigError, PictureError, did_you_mean, quoted
+from ..errors import ConfigError, PictureError
 from .geometry import Holes, scale_heights
-from .picture_files import NonFinite, read_labels, read_map, read_picture
+from .picture_files import NonFinite, labels_of, map_of, picture_of, read_labels, read_map, read_picture
+from .rig import StereoRig, turned
+from .rig_files import read_rig
+from .scene_files import BUILTINS, SceneFiles, unknown_scene
 
-Length = Annotated[float, Field(gt=0, allow_inf_nan=False)]
-
-_NEEDS = {"focal_px": "baseline_m", "baseline_m": "focal_px", "offset_px": "focal_px", "relief_m": "height"}
-_OF_VIEWS = ("disparity", "truth", "focal_px", "baseline_m", "offset_px")
+File = str | PathLike[str]
 _PICTURES = {"left", "right", "photo"}
-_READERS = {
-    "height": read_map,
-    "disparity": read_map,
-    "segments": read_labels,
-    "truth": read_map,
-}
-
-
-class SceneFiles(BaseModel):
-    """A scene in files: a pair (left and right), one photo, or a height map. Relative paths start at the YAML file."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
-
-    left: Path | None = None
-    """Left view of a rectified pair."""
-    right: Path | None = None
-    """Right view of a rectified pair, of the same size."""
-    photo: Path | None = None
-    """A single picture."""
-    height: Path | None = None
-    """A height map in any unit, higher values stand out: a grey picture, .npy, .pfm or .tif. No depth is estimated."""
-    disparity: Path | None = None
-    """A ready disparity map of the left view or the photo, in pixels, NaN where unknown. No depth is estimated."""
-    segments: Path | None = None
-    """A label picture, one flat colour or number a segment. No texture is segmented."""
-    truth: Path | None = None
-    """True disparity of the left view, in pixels, NaN or infinite where unknown; for errors only."""
-    focal_px: Length | None = None
-    """Focal length of the rectified cameras; with baseline_m, the relief is true to depth."""
-    baseline_m: Length | None = None
-    """Distance between the cameras' centres."""
-    offset_px: Annotated[float, Field(allow_inf_nan=False)] | None = None
-    """Difference of the principal points' columns, right minus left (Middlebury's `doffs`); 0 when left out."""
-    relief_m: Length | None = None
-    """Height of the relief that a height map stands for; the workspace's when left out."""
-
-    non_finite: NonFinite = "error"
-    """NaN and infinity in a picture: an `error` that names the first place; or a `mask`: filled from the nearest pixel,
-    and unknown in what is found there: no disparity, and segments without confidence."""
-
-    @model_validator(mode="after")
-    def _one_scene(self) -> Self:
-        given = [name for name, value in self if isinstance(value, Path | float)]
-        kinds = [kind for kind in (("left", "right"), ("photo",), ("height",)) if set(kind) & set(given)]
-        if len(kinds) != 1 or not set(kinds[0]) <= set(given):
-            named = ", ".join(given) or "nothing"
-            raise ValueError(f"a scene is either left and right, or photo, or height; this one gives {named}")
-        for name, other in _NEEDS.items():
-            if name in given and other not in given:
-                raise ValueError(f"{name} needs {other} beside it")
-        if idle := self.height and [name for name in given if name in _OF_VIEWS]:
-            raise ValueError(f"height already says how high everything is; leave out {', '.join(idle)}")
-        return self
-
-    @property
-    def main(self) -> Literal["left", "photo", "height"]:
-        """The field that says what kind of scene this is, and whose size the others share."""
-        return "left" if self.left else "photo" if self.photo else "height"
-
-    @property
-    def calibration(self) -> Calibration | None:
-        """The cameras, where they are known."""
-        if self.focal_px is None or self.baseline_m is None:
-            return None
-        return Calibration(self.focal_px, self.baseline_m, self.offset_px or 0.0)
+_READERS = {"height": read_map, "disparity": read_map, "segments": read_labels, "truth": read_map}
+_CONVERTERS = {"height": map_of, "disparity": map_of, "segments": labels_of, "truth": map_of}
 
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """A scene that was read: what it shows, and the products that it brings, which then need not be made."""
+    """What it shows, and the products that it brings, which then need not be made. Made by `of` or `builtin`.
+
+    >>> Scene.of(height=np.zeros((4, 6)), relief_m=0.01).views is None
+    True
+    """
 
     name: str
-    views: Views | None
-    given: Mapping[str, Record]
-    """Ready products: "disparity", "relief" or "segments"."""
+    views: Views | None = None
+    disparity: DisparityMap | None = None
+    """A ready one: no depth is estimated."""
+    segments: SegmentMap | None = None
+    """Ready ones: no texture is segmented."""
+    height: Float32[np.ndarray, "h w"] | None = None
+    """Heights in any unit, NaN where unknown: no depth is estimated."""
+    relief_m: float | None = None
+    """Height of the relief that `height` becomes; the workspace's where it is None."""
     truth: Float32[np.ndarray, "h w"] | None = None
     """True disparity in pixels, NaN where unknown."""
     known: Bool[np.ndarray, "h w"] | None = None
     """Where the left view or the photo is; None for everywhere."""
+    files: str | SceneFiles | None = None
+    """The builtin name, or the files with absolute paths, that it was read from; None if any of it was an array."""
+
+    @classmethod
+    def of(
+        cls,
+        *,
+        left: File | ArrayLike | None = None,
+        right: File | ArrayLike | None = None,
+        photo: File | ArrayLike | None = None,
+        height: File | ArrayLike | None = None,
+        disparity: File | ArrayLike | None = None,
+        segments: File | ArrayLike | None = None,
+        truth: File | ArrayLike | None = None,
+        calibration: Calibration | None = None,
+        rig: "StereoRig | File | None" = None,
+        relief_m: float | None = None,
+        non_finite: NonFinite = "error",
+        name: str = "",
+    ) -> Self:
+        """A scene of files and arrays: left and right, or a photo, or heights; the meanings are those of `SceneFiles`.
+
+        Pictures are (h, w) or (h, w, 3|4), uint8, uint16, bool or float (white is 1). All are of one size.
+        Raises: ConfigError for parts that make no scene, PictureError for one that cannot be read or is no picture.
+        """
+        parts: dict[str, Any] = {
+            "left": left, "right": right, "photo": photo, "height": height,
+            "disparity": disparity, "segments": segments, "truth": truth, "rig": rig,
+        }  # fmt: skip
+        parts = {part: value for part, value in parts.items() if value is not None}
+        paths = {
+            part: Path(cast("str | PathLike[str]", value)).absolute()
+            for part, value in parts.items()
+            if isinstance(value, str | PathLike)
+        }
+        files = _checked(
+            paths | {part: Path(f"the array given as {part}") for part in parts.keys() - paths.keys()},
+            calibration, relief_m, non_finite,
+        )  # fmt: skip
+        if paths.keys() == parts.keys():
+            return cls._read(name or str(paths[files.main]), files, Path(), files)
+        cameras = _rig(paths["rig"], files).cameras if "rig" in paths else rig
+        held = {
+            part: _read(part, paths[part], files) if part in paths else _converted(part, np.asarray(value), files)
+            for part, value in sorted(parts.items(), key=lambda each: each[0] != files.main)
+            if part != "rig"
+        }
+        return cls._made(name or "arrays", files, held, None, cast("StereoRig | None", cameras))
+
+    @classmethod
+    def builtin(cls, name: str) -> Self:
+        """A scene that comes inside scikit-image: motorcycle, brick, coins, grass, gravel.
+
+        Raises: ConfigError for another name.
+        """
+        return cls.read(name if name.startswith("builtin/") else f"builtin/{name}", Path())
+
+    @classmethod
+    def read(cls, scene: "str | SceneFiles", folder: Path) -> Self:
+        """A builtin name, or files relative to `folder`.
+
+        Raises: ConfigError for a name that is not builtin; PictureError for a file that cannot be read, or two files
+        that differ in size.
+        """
+        if isinstance(scene, SceneFiles):
+            return cls._read(str(getattr(scene, scene.main)), scene, folder, scene)
+        if scene not in BUILTINS:
+            raise ConfigError(unknown_scene(scene))
+        return cls._read(scene, BUILTINS[scene], _scikit_image_data(), scene)
+
+    @classmethod
+    def _read(cls, name: str, files: SceneFiles, folder: Path, origin: "str | SceneFiles") -> Self:
+        paths = {part: folder / path.expanduser() for part, path in files if isinstance(path, Path)}
+        rig = _rig(paths.pop("rig"), files) if "rig" in paths else None
+        held = {part: _read(part, path, files) for part, path in paths.items()}
+        if rig is not None and rig.size not in (None, held[files.main].shape[1::-1]):
+            raise PictureError(
+                f"{paths[files.main]} is not {rig.size[0]} x {rig.size[1]}, the size that the rig was calibrated for"
+            )
+        return cls._made(name, files.model_copy(update=paths), held, origin, rig and rig.cameras)
+
+    @classmethod
+    def _made(
+        cls,
+        name: str,
+        files: SceneFiles,
+        held: dict[str, np.ndarray],
+        origin: "str | SceneFiles | None",
+        rig: StereoRig | None = None,
+    ) -> Self:
+        _check_sizes(files, held)
+        masked = files.non_finite == "mask" and files.main in _PICTURES
+        known = _fill(held, files.main) if masked else None
+        views = None if files.height else Views(held[files.main], held.get("right"), files.calibration)
+        if rig is not None and views is not None:
+            views, known = turned(views, rig)
+        return cls(
+            name=name,
+            views=views,
+            disparity=DisparityMap(held["disparity"]) if "disparity" in held else None,
+            segments=SegmentMap(held["segments"]) if "segments" in held else None,
+            height=_frozen(held.get("height")),
+            relief_m=files.relief_m,
+            truth=_frozen(held.get("truth")),
+            known=_frozen(known),
+            files=origin,
+        )
+
+    def brings(self, width_m: float, relief_m: float, holes: Holes = "fill") -> dict[str, Record]:
+        """The products that need not be made, by name; heights become a relief of this size.
+
+        relief_m: where the scene says none. holes: what becomes of unknown heights.
+        Raises: GeometryError for heights that are unknown everywhere.
+        """
+        relief = None
+        if self.height is not None:
+            relief = scale_heights(self.height, width_m, self.relief_m or relief_m, holes)
+        found = {"views": self.views, "relief": relief, "disparity": self.disparity, "segments": self.segments}
+        return {product: record for product, record in found.items() if record is not None}
 
 
-BUILTINS: Mapping[str, SceneFiles] = {
-    "builtin/motorcycle": SceneFiles(
-        left=Path("motorcycle_left.png"),
-        right=Path("motorcycle_right.png"),
-        truth=Path("motorcycle_disp.npz"),
-        focal_px=994.978,
-        baseline_m=0.193001,
-        offset_px=31.086,
-    ),
-    **{f"builtin/{name}": SceneFiles(photo=Path(f"{name}.png")) for name in ("brick", "coins", "grass", "gravel")},
-}
-"""Scenes whose files come inside scikit-image; nothing is ever downloaded. The motorcycle is Middlebury 2014
-(Scharstein et al., GCPR 2014) at a quarter of its size, with the calibration in `skimage.data.stereo_motorcycle`."""
+def _checked(
+    paths: Mapping[str, Path], calibration: Calibration | None, relief_m: float | None, non_finite: NonFinite
+) -> SceneFiles:
+    """The parts of a scene as files. Raises: ConfigError if they make none."""
+    cameras: dict[str, float] = {}
+    if calibration is not None:
+        cameras = {"focal_px": calibration.focal_px, "baseline_m": calibration.baseline_m}
+        cameras |= {"offset_px": calibration.offset_px} if calibration.offset_px else {}
+    try:
+        return SceneFiles.model_validate({**paths, **cameras, "relief_m": relief_m, "non_finite": non_finite})
+    except ValidationError as error:
+        raise ConfigError(
+            *(f"{'.'.join(['scene', *map(str, each['loc'])])}: {each['msg']}" for each in error.errors())
+        ) from error
 
 
-def read_scene(scene: str | SceneFiles, folder: Path, width_m: float, relief_m: float, holes: Holes = "fill") -> Scene:
-    """Read a scene: a builtin name, or files relative to `folder`.
+class _Rig(NamedTuple):
+    """Two cameras, and the size of the pictures that they were calibrated with, where it is known."""
 
-    width_m, relief_m, holes: size of the relief that a height map becomes, and what becomes of its holes.
-    Raises: ConfigError for a name that is not builtin; PictureError for a file that cannot be read, or two files
-    that differ in size; GeometryError for a height map without a height.
-    """
-    if isinstance(scene, SceneFiles):
-        name, files = str(getattr(scene, scene.main)), scene
-    elif scene in BUILTINS:
-        name, files, folder = scene, BUILTINS[scene], _scikit_image_data()
-    else:
-        raise ConfigError(unknown_scene(scene))
-    paths = {key: folder / path.expanduser() for key, path in files if isinstance(path, Path)}
-    held = {key: _READERS[key](path) for key, path in paths.items() if key not in _PICTURES}
-    held |= {key: read_picture(path, files.non_finite) for key, path in paths.items() if key in _PICTURES}
-    _check_sizes(paths, held)
-    known = _fill(held, files.main) if files.non_finite == "mask" and files.main in _PICTURES else None
-    given = _given(files, held, width_m, relief_m, holes)
-    return Scene(name, _views(files, held), given, _frozen(held.get("truth")), _frozen(known))
+    cameras: StereoRig
+    size: tuple[int, int] | None
 
 
-def unknown_scene(name: str) -> str:
-    """What to say of a name that is not builtin."""
-    return (
-        f"no scene is named {quoted(name)}{did_you_mean(name, BUILTINS)}; builtin are {', '.join(sorted(BUILTINS))}; "
-        "for files of your own write {photo: FILE}, {left: FILE, right: FILE} or {height: FILE}"
-    )
+def _rig(path: Path, files: SceneFiles) -> _Rig:
+    return _Rig(*read_rig(path, files.rig_unit_m or 1.0))
+
+
+def _read(part: str, path: Path, files: SceneFiles) -> np.ndarray:
+    return read_picture(path, files.non_finite) if part in _PICTURES else _READERS[part](path)
+
+
+def _converted(part: str, values: np.ndarray, files: SceneFiles) -> np.ndarray:
+    """A copy, as what it was given for."""
+    name = str(getattr(files, part))
+    if part in _PICTURES:
+        return picture_of(values.copy(), name, files.non_finite)
+    return _CONVERTERS[part](values.copy(), name)
 
 
 def _scikit_image_data() -> Path:
@@ -156,14 +218,14 @@ def _scikit_image_data() -> Path:
     return Path(spec.submodule_search_locations[0]) / "data"
 
 
-def _check_sizes(paths: Mapping[str, Path], held: Mapping[str, np.ndarray]) -> None:
-    main, *others = held
+def _check_sizes(files: SceneFiles, held: Mapping[str, np.ndarray]) -> None:
+    main = files.main
     size = held[main].shape[1::-1]
-    for other in others:
+    for other in held.keys() - {main}:
         if (its := held[other].shape[1::-1]) != size:
             raise PictureError(
-                f"{paths[other]} ({other}) is {its[0]} x {its[1]} and {paths[main]} ({main}) is {size[0]} x {size[1]}; "
-                "all files of a scene are of one size: resize or cut one of them"
+                f"{getattr(files, other)} ({other}) is {its[0]} x {its[1]} and {getattr(files, main)} ({main}) is "
+                f"{size[0]} x {size[1]}; all parts of a scene are of one size: resize or cut one of them"
             )
 
 
@@ -173,23 +235,6 @@ def _fill(held: dict[str, np.ndarray], main: str) -> np.ndarray | None:
     for name in held.keys() & _PICTURES:
         held[name], known[name] = fill_non_finite(held[name])
     return None if known[main].all() else known[main]
-
-
-def _views(files: SceneFiles, held: Mapping[str, np.ndarray]) -> Views | None:
-    return None if files.height else Views(held[files.main], held.get("right"), files.calibration)
-
-
-def _given(
-    files: SceneFiles, held: Mapping[str, np.ndarray], width_m: float, relief_m: float, holes: Holes
-) -> Mapping[str, Record]:
-    given: dict[str, Record] = {}
-    if "height" in held:
-        given["relief"] = scale_heights(held["height"], width_m, files.relief_m or relief_m, holes)
-    if "disparity" in held:
-        given["disparity"] = DisparityMap(held["disparity"])
-    if "segments" in held:
-        given["segments"] = SegmentMap(held["segments"])
-    return given
 
 
 def _frozen(values: np.ndarray | None) -> np.ndarray | None:

@@ -1,7 +1,6 @@
 """A force loop from outside: start it, watch it, give it another scene, stop it."""
 
 import logging
-import math
 import queue
 import signal
 import subprocess
@@ -13,7 +12,7 @@ from types import TracebackType
 from typing import IO, Any, Self, TypeVar, final
 
 from ..data import ServoReport
-from ..errors import ConfigError, DeviceError
+from ..errors import DeviceError, check_positive
 from ..plugins.interfaces import HapticDevice, Touch
 from ..runtime.child_process import command
 from . import parcel
@@ -56,11 +55,10 @@ class Servo:
     ) -> None:
         """seconds: when it ends by itself; never, if there are none.
 
-        Raises: ConfigError if seconds or the period is not above 0 and finite.
+        Raises: ConfigError if seconds or the period is not positive and finite.
         """
-        for name, value in (("seconds", 1.0 if seconds is None else seconds), ("period_s", period_s)):
-            if not 0 < value < math.inf:
-                raise ConfigError(f"{name}: is {value}; a session takes more than 0 seconds, and an end")
+        check_positive("seconds", 1.0 if seconds is None else seconds)
+        check_positive("period_s", period_s)
         self._touch, self._device, self._limits = touch, device, limits or Safety()
         self._period_s = period_s
         self._ticks = FOREVER if seconds is None else max(1, round(seconds / period_s))

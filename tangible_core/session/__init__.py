@@ -1,25 +1,26 @@
 """A session joins a touch and a device: the loop, and what it records."""
 
-from .live import feel, figures, keeping
-from .loop import limited, run
-from .recording import INTERRUPTED, Recording, failure
+from .live import figures, keeping, run_in_real_time
+from .loop import run_simulated
+from .recording import INTERRUPTED, STOPPED, Recording, failure
 from .recording_files import check_record_path
-from .replay import replay, undisturbed
+from .replay import compared, replay, undisturbed
 from .tick_file import About
 from .writer import Writer
 
 __all__ = [
     "INTERRUPTED",
+    "STOPPED",
     "About",
     "Recording",
     "Writer",
     "check_record_path",
+    "compared",
     "failure",
-    "feel",
     "figures",
     "keeping",
-    "limited",
     "replay",
-    "run",
+    "run_in_real_time",
+    "run_simulated",
     "undisturbed",
 ]

@@ -6,14 +6,16 @@ from collections.abc import Callable, Generator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from pathlib import Path
-from typing import final
+from threading import Event
+from typing import Any, final
 
 import numpy as np
 
-from ..data import ServoReport, TickFlag
+from ..data import UNTOUCHED, ServoReport, TickFlag
 from ..plugins.interfaces import HapticDevice, Touch
+from ..runtime.stopping import stop_asked, stoppable
 from ..servo import Safety, Servo
-from .recording import INTERRUPTED, Recording
+from .recording import INTERRUPTED, STOPPED, Recording
 from .tick_file import About
 from .writer import Writer
 
@@ -23,38 +25,50 @@ LOOK_EVERY_S = 0.05
 REPORT_EVERY_S = 0.1
 
 
-def feel(
+def run_in_real_time(
     touch: Touch,
     device: HapticDevice,
-    seconds: float | None,
-    limits: Safety,
-    on_report: Callable[[ServoReport], None],
-    keep: Callable[[np.ndarray], None],
-    on_start: Callable[[Servo], None] = lambda _: None,
+    seconds: float | None = None,
+    limits: Safety | None = None,
+    on_report: Callable[[ServoReport], None] | None = None,
+    keep: Callable[[np.ndarray], None] | None = None,
+    on_start: Callable[[Servo], None] | None = None,
+    stop: Event | None = None,
 ) -> ServoReport:
-    """Feel in real time, until the seconds are over, Ctrl-C, or what else ends a `Servo`; then the force is zero.
+    """Feel in real time, until time is over, Ctrl-C, `stop` or what else ends a `Servo`; then no force is left.
 
     on_report: called ten times a second, and at the end. keep: given all ticks, as rows of `data.TICK_COLUMNS`, in a
-    thread of its own. What these raise ends the session, such as a full disk.
-    Raises: ConfigError if seconds is not above 0 and finite, DeviceError if the device cannot be opened, and what a
+    thread of its own. on_start: called once the loop runs. What these raise ends the session, such as a full disk.
+    stop: set from another thread, it ends the session within a tenth of a second.
+    Raises: ConfigError if seconds is not positive and finite, DeviceError if the device cannot be opened, and what a
     plugin raises.
     """
-    with ThreadPoolExecutor(1) as aside, Servo(touch, device, limits, seconds) as servo:  # the force goes first
-        on_start(servo)
-        keeper, next_s = _Keeper(servo, keep), time.monotonic()
+    tell, limits = on_report or _ignored, limits or Safety()
+    with (
+        stoppable(stop),
+        ThreadPoolExecutor(1) as aside,
+        Servo(touch, device, limits, seconds) as servo,  # the force goes first
+    ):
+        (on_start or _ignored)(servo)
+        keeper, next_s, ended = _Keeper(servo, keep or _ignored), time.monotonic(), ""
         try:
-            while servo.running:
+            while servo.running and not ended:
                 time.sleep(LOOK_EVERY_S)
                 aside.submit(keeper.look).result()
                 if time.monotonic() >= next_s:
                     next_s += REPORT_EVERY_S
-                    on_report(servo.report())
-            last = servo.stop()
+                    tell(servo.report())
+                ended = STOPPED if stop_asked() else ""
+            last = servo.stop(ended)
         except KeyboardInterrupt:
             last = servo.stop(INTERRUPTED)
         aside.submit(keeper.look).result()
-        on_report(last)
+        tell(last)
     return last
+
+
+def _ignored(_: Any) -> None:
+    """Nobody listens."""
 
 
 @final
@@ -111,6 +125,5 @@ def figures(report: ServoReport) -> dict[str, float]:
     }
 
 
-NO_LIMITS = TickFlag.TOUCHING | TickFlag.OVERRUN | TickFlag.SWAPPED
-LIMITS = [flag.name or "" for flag in TickFlag if not flag & NO_LIMITS]
+LIMITS = [flag.name or "" for flag in TickFlag if not flag & UNTOUCHED]
 """What safety does to a force, by the names of the flags."""

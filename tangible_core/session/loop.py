@@ -4,17 +4,20 @@ import logging
 import math
 from array import array
 from collections.abc import Callable
+from threading import Event
 from typing import final
 
 import numpy as np
 
 from ..data import NO_FORCE, TICK_COLUMNS, Force, HapticState, ServoReport
-from ..errors import ConfigError, DeviceError
+from ..errors import DeviceError, check_positive
 from ..plugins.interfaces import HapticDevice, Link, Touch
+from ..runtime.stopping import stop_asked, stoppable
 from ..servo import Safety
 from ..servo.guard.guarded import Guarded, guarded
 from ..servo.guard.stiffness import stiffness_of
-from .recording import INTERRUPTED, Recording
+from ..servo.reports import so_far
+from .recording import INTERRUPTED, STOPPED, Recording
 from .replay import proxy_of
 
 log = logging.getLogger(__name__)
@@ -25,36 +28,36 @@ FIRST_S = 0.001
 """The period that the first tick is taken to have."""
 
 
-def run(
+def run_simulated(
     touch: Touch,
     device: HapticDevice,
     seconds: float,
     on_report: Callable[[ServoReport], None] | None = None,
     limits: Safety | None = None,
+    stop: Event | None = None,
 ) -> Recording:
     """Feel for a while, in the device's own time: until its clock has gone on by so many seconds.
 
     The guard of these limits lets no force through that they forbid. `on_report` is called ten times a second of the
-    device's time, and at the end. Ctrl-C, a device that stops answering or whose clock stands still, and a full
-    recording (`MOST_TICKS`) end it early: the force is zero, what was felt so far is returned, and `Recording.stopped`
-    says why.
-    Raises: ConfigError if seconds is not above 0 and finite, DeviceError if the device cannot be opened, and whatever
+    device's time, and at the end. Ctrl-C, `stop` set from another thread, a device that stops answering or whose clock
+    stands still, and a full recording (`MOST_TICKS`) end it early: the force is zero, what was felt so far is returned,
+    and `Recording.stopped` says why.
+    Raises: ConfigError if seconds is not positive and finite, DeviceError if the device cannot be opened, and whatever
     a faulty touch or `on_report` raises, after the force was made zero.
     """
-    if not 0 < seconds < math.inf:
-        raise ConfigError(f"seconds: is {seconds}; a session takes more than 0 seconds, and an end")
+    check_positive("seconds", seconds)
     spec = device.spec()
     allowed = guarded(touch, *(limits or Safety()).arrays(spec, stiffness_of(touch, spec).n_per_m))
     tape = _Tape(touch, on_report or _ignore)
     link = device.open()
     try:
-        with link:
+        with stoppable(stop), link:
             _feel(allowed, link, seconds, tape)
     except DeviceError as error:  # also when the device is gone before its force could be made zero
         tape.stopped = tape.stopped or str(error)
     if tape.stopped:
         log.log(
-            logging.INFO if tape.stopped == INTERRUPTED else logging.WARNING,
+            logging.INFO if tape.stopped in (INTERRUPTED, STOPPED) else logging.WARNING,
             "stopped after %d ticks: %s",
             tape.ticks,
             tape.stopped,
@@ -64,22 +67,6 @@ def run(
     if recording.not_finite:
         log.warning("%d forces were not finite and were made zero: the renderer is at fault", recording.not_finite)
     return recording
-
-
-def limited(force: Force, most_n: float) -> Force:
-    """The force, scaled down to a magnitude of most_n where it is over it; zero where it is not finite.
-
-    >>> limited(Force(6.0, 0.0, 8.0), 5.0)
-    Force(x=3.0, y=0.0, z=4.0)
-    """
-    if math.hypot(*force) <= most_n:
-        return force
-    if not all(map(math.isfinite, force)):
-        return NO_FORCE
-    greatest = max(map(abs, force))  # divided by first, so that the magnitude cannot overflow
-    x, y, z = (part / greatest for part in force)
-    scale = most_n / math.hypot(x, y, z)
-    return Force(x * scale, y * scale, z * scale)
 
 
 def _feel(allowed: Guarded, link: Link, seconds: float, tape: "_Tape") -> None:
@@ -98,6 +85,8 @@ def _feel(allowed: Guarded, link: Link, seconds: float, tape: "_Tape") -> None:
             # ticks come at 0, T, 2 T ...: round(seconds / T) of them, whatever the rounding of their stamps
             elif state.time_s - start_s >= seconds - period_s / 2:
                 return
+            elif stop_asked():
+                tape.stopped = STOPPED
             elif tape.ticks >= MOST_TICKS:
                 tape.stopped = f"the recording is full, {MOST_TICKS} ticks; feel for a shorter while"
     except KeyboardInterrupt:
@@ -138,17 +127,8 @@ class _Tape:
 
     def report(self, stopped: str) -> None:
         """Say how it goes."""
-        self._on_report(
-            ServoReport(
-                ticks=self.ticks,
-                time_s=self._state.time_s,
-                state=self._state,
-                force=self._force,
-                peak_force_n=self._peak_n,
-                work_j=self._work_j,
-                stopped=stopped,
-            )
-        )
+        last = np.array(self._numbers[-len(TICK_COLUMNS) :]).reshape(-1, len(TICK_COLUMNS))
+        self._on_report(so_far(last, self.ticks, self._peak_n, self._work_j, stopped))
 
     def recording(self) -> Recording:
         """All of it."""

@@ -20,6 +20,8 @@ Bits = Int64[np.ndarray, "n"]
 
 INTERRUPTED = "interrupted from the keyboard"
 """What a recording says that Ctrl-C ended."""
+STOPPED = "stopped by the program"
+"""What one says that another thread ended."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +90,7 @@ class Recording(Record):
         return self.rows[:, ARRAYS["buttons"]].astype(np.int64)
 
     @property
-    def limited(self) -> int:
+    def force_limited(self) -> int:
         """Ticks whose force was over the greatest allowed, and scaled down."""
         return int(np.count_nonzero(self.flags & TickFlag.FORCE_LIMITED))
 
@@ -118,7 +120,7 @@ class Recording(Record):
             "median_contact_force_n": float(np.median(touching_n)) if touching_n.size else 0.0,
             "peak_force_n": self.peak_force_n,
             "work_j": self.work_j,
-            "limited": self.limited,
+            "force_limited": self.force_limited,
             "not_finite": self.not_finite,
         }
 

@@ -8,7 +8,8 @@ from typing import Any, cast
 import numpy as np
 
 from ..compiled.touch import CompiledTouch
-from ..data import HapticState, TickFlag
+from ..data import UNTOUCHED, HapticState, TickFlag
+from ..metrics.forces import force_errors
 from ..plugins.interfaces import Touch
 from .recording import Recording
 from .tick_arrays import ARRAYS
@@ -52,5 +53,22 @@ def proxy_of(touch: Touch) -> Callable[[], tuple[float, ...]]:
 
 def undisturbed(recording: Recording) -> np.ndarray:
     """Recorded forces, NaN at ticks whose force was not the law's own: limited, faded in, damped, none for a fault."""
-    changed = recording.flags & ~int(TickFlag.TOUCHING | TickFlag.OVERRUN | TickFlag.SWAPPED)
+    changed = recording.flags & ~int(UNTOUCHED)
     return np.where(changed[:, None] != 0, np.nan, recording.force_n)
+
+
+def compared(before: Recording, after: Recording) -> dict[str, float]:
+    """How far replayed forces are from the recorded ones, in numbers, by name; both have the same states."""
+    truth_n = undisturbed(before)
+    then, now = before.figures(), after.figures()
+    worst_n = np.linalg.norm(after.force_n - truth_n, axis=1)
+    return {
+        "ticks": then["ticks"],
+        "compared": int(np.isfinite(worst_n).sum()),
+        **force_errors(after.force_n, truth_n),
+        "worst_error_n": float(np.nanmax(worst_n, initial=0.0)),
+        "recorded_peak_force_n": then["peak_force_n"],
+        "peak_force_n": now["peak_force_n"],
+        "recorded_contact_share": then["contact_share"],
+        "contact_share": now["contact_share"],
+    }

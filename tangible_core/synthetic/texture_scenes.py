@@ -13,7 +13,7 @@ from ..data.pictures import is_one_colour, to_grey
 from ..errors import PictureError
 from ..runtime.opencv import plain_opencv
 from ..scene.picture_files import read_picture
-from ..scene.scene import read_scene
+from ..scene.scene import Scene
 from .textures import FAMILIES, Family, Shape, smooth_noise, without_grey
 
 PHOTOGRAPHS = ("brick", "grass", "gravel")
@@ -131,7 +131,7 @@ def folder_textures(folder: Path) -> dict[str, Family]:
 
 
 def _builtin_photograph(name: str) -> Float64[np.ndarray, "h w"]:
-    views = read_scene(f"builtin/{name}", Path(), 1, 1).views
+    views = Scene.builtin(name).views
     assert views is not None  # builtin pictures are no height maps
     return _texture(views.left, name)
 

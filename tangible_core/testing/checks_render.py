@@ -40,6 +40,20 @@ def plane_pushes_straight_up(method: ForceRenderer) -> None:
         demand((np.diff(forces[:, 2]) >= -1e-6).all(), f"force falls with depth: {forces[:, 2].tolist()} N")
 
 
+def what_it_says_of_itself_is_felt(method: ForceRenderer) -> None:
+    """A law that says `is_lateral` never pushes along z, and one that does not pushes up from level ground.
+
+    `with-materials` goes by it. Of what is around another law nothing is demanded.
+    """
+    if type(method).renders_materials:
+        return
+    up = [_press(method, known, x, y, depth)[2] for _, known in _scenes() for x, y in PLACES_M for depth in DEPTHS_M]
+    if type(method).is_lateral:
+        demand(not np.any(up), f"it says `is_lateral`, and pushes along z with up to {np.abs(up).max():.3g} N")
+    else:
+        demand(np.any(up), "it gives no force along z; say `is_lateral: ClassVar[bool] = True`")
+
+
 def surface_lies_where_it_is_drawn(method: ForceRenderer) -> None:
     """A ramp is felt just under its true height, and not just over it: x is right, y far, z up, all in metres."""
     known = ramp()
@@ -117,6 +131,7 @@ def _stiffness(method: ForceRenderer) -> float | None:
 CHECKS: tuple[Check, ...] = (
     free_air_is_free,
     plane_pushes_straight_up,
+    what_it_says_of_itself_is_felt,
     surface_lies_where_it_is_drawn,
     slopes_push_downhill,
     springs_are_exact,

@@ -41,6 +41,7 @@ class CirclingLink(CompiledLink):
     """A tip on its way."""
 
     def __init__(self, options: Circling) -> None:
+        super().__init__("the circling device", SPEC.max_force_n)
         turn = np.linspace(0, 2 * np.pi, options.steps, endpoint=False)
         wheel = np.column_stack([np.cos(turn), np.sin(turn)]) * options.radius_m
         self._fixed = wheel, float(options.z_m), np.zeros(1, np.int64), np.zeros(3)
@@ -58,17 +59,17 @@ class CirclingLink(CompiledLink):
         """As the options say."""
         return self._exchanges
 
-    def exchange(self) -> None:
+    def _exchange(self) -> None:
         """There is no wire."""
 
-    def read(self) -> HapticState:
+    def _read(self) -> HapticState:
         """The next step."""
         state = np.zeros(7)
         self.kernels().read(*self._fixed, state)
         x, y, z = state[:3].tolist()
         return HapticState((x, y, z), time_s=time.monotonic())
 
-    def write(self, force: Force) -> None:
+    def _send(self, force: Force) -> None:
         """Hold this force."""
         self._fixed[3][:] = force
 
@@ -77,9 +78,8 @@ class CirclingLink(CompiledLink):
         """What was written last."""
         return Force(*self._fixed[3].tolist())
 
-    def close(self) -> None:
-        """Let go."""
-        self._fixed[3][:] = NO_FORCE
+    def _release(self) -> None:
+        """Nothing is held."""
 
 
 class Failing(HapticDevice):
@@ -115,12 +115,13 @@ class FailingLink(Link):
     """A device that is about to fail."""
 
     def __init__(self, options: Failing) -> None:
+        super().__init__("the failing device", SPEC.max_force_n)
         self._options = options
         self._reads = 0
         self._applied = NO_FORCE
         self._say()
 
-    def read(self) -> HapticState:
+    def _read(self) -> HapticState:
         """A millimetre under the base plane, all the time."""
         self._reads += 1
         z = -0.001
@@ -146,7 +147,7 @@ class FailingLink(Link):
                 pass
         return -0.001
 
-    def write(self, force: Force) -> None:
+    def _send(self, force: Force) -> None:
         """Hold this force."""
         if force != self._applied:
             self._applied = force
@@ -162,6 +163,5 @@ class FailingLink(Link):
         """What was written last."""
         return self._applied
 
-    def close(self) -> None:
-        """Let go."""
-        self.write(NO_FORCE)
+    def _release(self) -> None:
+        """Nothing is held."""

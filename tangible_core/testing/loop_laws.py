@@ -8,7 +8,7 @@ from typing import Any, Literal, NoReturn, final
 import numpy as np
 
 from ..data import NO_FORCE, Force, HapticState
-from ..plugins.interfaces import Touch
+from ..plugins.touch import PlainTouch
 
 Fault = Literal["none", "blocks", "exits", "odd error", "does not arrive", "begins slowly", "knows itself"]
 
@@ -21,7 +21,7 @@ class OddError(Exception):
 
 
 @final
-class FaultyTouch(Touch):
+class FaultyTouch(PlainTouch):
     """1 N upwards below the height of 0, until a tick in which the law blocks, ends the program or raises.
 
     One that "does not arrive" can be sent to another process, and not be made there. One that "begins slowly" takes
@@ -59,11 +59,6 @@ class FaultyTouch(Touch):
             sys.exit(3)
         if self._fault == "odd error":
             raise OddError("a fault", "the law")
-
-    def path(self, positions_m: np.ndarray, period_s: float = 0.001) -> np.ndarray:
-        """As `force` says, position by position."""
-        states = (HapticState((x, y, z)) for x, y, z in positions_m.tolist())
-        return np.array([self.force(state) for state in states]).reshape(-1, 3)
 
 
 def _lost(*_: object) -> NoReturn:

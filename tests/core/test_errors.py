@@ -13,6 +13,7 @@ from tangible_core.errors import (
     ConfigError,
     TangibleError,
     UnknownMethod,
+    check_positive,
     did_you_mean,
     quoted,
     shown,
@@ -80,3 +81,14 @@ def test_a_long_word_is_near_to_none():
 
 def test_a_method_of_a_long_name_is_unknown():
     assert len(str(UnknownMethod("depth", "x" * 10_000, ["zncc"]))) < 200
+
+
+@pytest.mark.parametrize("value", [0, -1.0, float("nan"), float("inf"), -float("inf")])
+def test_a_number_that_is_not_positive_and_finite(value: float):
+    with pytest.raises(ConfigError, match=f"^seconds: is {value}; it must be positive and finite$"):
+        check_positive("seconds", value)
+
+
+@pytest.mark.parametrize("value", [5e-324, 1, 1.7e308])
+def test_a_number_that_is(value: float):
+    check_positive("seconds", value)

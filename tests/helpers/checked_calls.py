@@ -25,16 +25,16 @@ from beartype import BeartypeConf, FrozenDict, beartype
 
 OURS = ("tangible_core", "tangible_depth", "tangible_texture", "tangible_render", "tangible_devices")
 UNCHECKED = {
-    "tangible_core.cli_devices": "typer's Context, as its documentation has it, is given another class's",
-    "tangible_core.cli_materials": "likewise",
+    "tangible_core.cli.devices": "typer's Context, as its documentation has it, is given another class's",
+    "tangible_core.cli.materials": "likewise",
     "tangible_core.provenance.watching": "Python calls it with what is no Sequence, though its stubs say so",
     "tangible_core.servo.schedule": "its functions are compiled into the loop, as they stand",
 }
 """Modules whose calls are not checked, and why."""
 CALLS = 10_000
 """So many of each function and process are checked: a simulated device's clock is asked ten million times."""
-COMPILED = {"njit", "intrinsic", "overload"}
-"""A decorator of numba's makes no function of Python's; nor does typing's `overload`."""
+COMPILED = {"njit", "inner", "intrinsic", "operation", "overload"}
+"""What these decorate is compiled, or never called, as by `overload` of typing."""
 _VERSION = hashlib.md5(Path(__file__).read_bytes()).hexdigest()
 _typed = beartype(
     conf=BeartypeConf(

@@ -14,7 +14,8 @@ from pathlib import Path
 from typing import Any
 from unittest.mock import patch
 
-from tangible_core import cli
+from tangible_core.cli import main
+from tangible_core.cli.app import app
 
 Done = subprocess.CompletedProcess[str]
 
@@ -25,7 +26,7 @@ def tangible(*words: object, cwd: Path) -> Done:
     out, errors = io.StringIO(), io.StringIO()
     with chdir(cwd), redirect_stdout(out), redirect_stderr(errors), patch.object(sys, "argv", arguments), as_at_first():
         try:
-            cli.main()
+            main()
         except SystemExit as ended:
             return subprocess.CompletedProcess(arguments, int(ended.code or 0), out.getvalue(), errors.getvalue())
     raise AssertionError("it ends with an exit code")
@@ -34,14 +35,14 @@ def tangible(*words: object, cwd: Path) -> Done:
 @contextmanager
 def as_at_first() -> Iterator[None]:
     """Logs and commands of a program that has just started, and afterwards those of before."""
-    root, commands = logging.getLogger(), list(cli.app.registered_commands)
+    root, commands = logging.getLogger(), list(app.registered_commands)
     loggers = [root, *(each for each in root.manager.loggerDict.values() if isinstance(each, logging.Logger))]
     levels = [each.level for each in loggers]
     with patch.object(root, "handlers", []):
         try:
             yield
         finally:
-            cli.app.registered_commands[:] = commands
+            app.registered_commands[:] = commands
             for logger, level in zip(loggers, levels, strict=True):
                 logger.setLevel(level)
 

@@ -28,7 +28,7 @@ from tangible_core.plugins.registry import default_registry
 from tangible_core.preflight.bumps import feature_m
 from tangible_core.scene.geometry import make_relief, normals, resample, slopes, smooth
 from tangible_core.scene.scaling import enlarged, enlarged_segments, reduced
-from tangible_core.scene.scene import Scene, read_scene
+from tangible_core.scene.scene import Scene
 from tangible_depth.rectify.rectification import rectify
 from tangible_depth.sparse.harris import harris_response
 from tangible_depth.sparse.matches import flow_matches, inverse_lengths, sift_matches
@@ -40,7 +40,7 @@ SIZE = slice(90, 346), slice(200, 520)
 
 @cache
 def scene(name: str) -> Scene:
-    return read_scene(f"builtin/{name}", Path(), 0.08, 0.02)
+    return Scene.builtin(name)
 
 
 @cache

@@ -85,4 +85,4 @@ def held_bus(serials: tuple[str, ...] = ("SIM0001",), faults: tuple[Fault, ...] 
 
 def open_on(bus: Bus, clock: SimulatedClock, **options: Any) -> FalconLink:
     """The driver on this bus."""
-    return open_falcon(Falcon(**options), synthetic_image(), bus, clock)
+    return open_falcon(Falcon(**options).settings(), synthetic_image(), bus, clock)

@@ -9,11 +9,11 @@ import numpy as np
 from tangible_core import HapticSurface, load_method
 from tangible_core.compiled.touch import CompiledTouch
 from tangible_core.data import DeviceSpec, Material
-from tangible_core.pipeline.config import Workspace
 from tangible_core.preflight.flight import Flight, Hand
 from tangible_core.preflight.probes import probe
 from tangible_core.preflight.timing import Lateness, TickCost
 from tangible_core.preflight.verdict import Verdict
+from tangible_core.scene.workspace import Workspace
 from tangible_core.servo.guard.safety import Safety
 
 SPEC = DeviceSpec(

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from tangible_depth.rectify.epipolar import homogeneous, lines_in_left
 from tangible_depth.rectify.homographies import camera_matrix, rotation, transform
 
 WIDTH, HEIGHT = 1000, 750
@@ -85,3 +86,13 @@ def roll_and_tilt(shape, degrees=2.0, tilt=(2e-5, -3e-5)):
     turned = rotation(0, 0, np.radians(degrees))
     turned[2, :2] = tilt
     return to_middle @ turned @ np.linalg.inv(to_middle)
+
+
+def symmetric_epipolar_distance(fundamental: np.ndarray, left_px: np.ndarray, right_px: np.ndarray) -> np.ndarray:
+    """Root of the summed squares of the two distances of each match's points from their lines, pixels.
+
+    Source: the root of Hartley & Zisserman, Multiple View Geometry, 2nd ed., eq. 11.10.
+    """
+    to_left = np.einsum("ni,ni->n", lines_in_left(fundamental, right_px), homogeneous(left_px))
+    to_right = np.einsum("ni,ni->n", lines_in_left(fundamental.T, left_px), homogeneous(right_px))
+    return np.hypot(to_left, to_right)

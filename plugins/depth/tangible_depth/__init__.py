@@ -1,1 +1,31 @@
-"""Depth estimators: one method per file, found by entry point."""
+"""Depth estimators: pictures to disparity. Each method is imported when it is first used."""
+
+from typing import TYPE_CHECKING
+
+from tangible_core.lazily import lazily
+
+if TYPE_CHECKING:
+    from .contour import Contour as Contour
+    from .kornia_report import KorniaReport as KorniaReport
+    from .kornia_zncc import KorniaZNCC as KorniaZNCC
+    from .luminance import Luminance as Luminance
+    from .opencv_sgbm import OpenCVSGBM as OpenCVSGBM
+    from .report import Report as Report
+    from .semi_global import SemiGlobal as SemiGlobal
+    from .ssd import Ssd as Ssd
+    from .zncc import Zncc as Zncc
+
+__all__, __getattr__ = lazily(  # pyright: ignore[reportUnsupportedDunderAll]
+    __name__,
+    {
+        "contour": ["Contour"],
+        "kornia_report": ["KorniaReport"],
+        "kornia_zncc": ["KorniaZNCC"],
+        "luminance": ["Luminance"],
+        "opencv_sgbm": ["OpenCVSGBM"],
+        "report": ["Report"],
+        "semi_global": ["SemiGlobal"],
+        "ssd": ["Ssd"],
+        "zncc": ["Zncc"],
+    },
+)

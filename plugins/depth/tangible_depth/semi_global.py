@@ -50,7 +50,7 @@ class SemiGlobal(DepthEstimator):
         0.2; 0.1 where the value was filled or decided by a neighbour; 0 where nothing changes along the rows.
         Raises: PictureError if there is no right view or the range is empty.
         """
-        from .matching.adaptive import MOST_OFFSET_PX
+        from .matching.adaptive import MOST_ROW_OFFSET_PX
         from .matching.chain import Search, disparity_map
         from .matching.scaled import Scaling, match_scaled
 
@@ -59,7 +59,7 @@ class SemiGlobal(DepthEstimator):
             self.max_disparity_px,
             self.rectify,
             self.fill,
-            realigns_px=MOST_OFFSET_PX if self.realign_rows and self.resolution != "half" else 0.0,
+            most_row_offset_px=MOST_ROW_OFFSET_PX if self.realign_rows and self.resolution != "half" else 0.0,
             skip_identical=self.skip_identical,
         )
         options = Scaling(self.resolution, self.cost, self.check, self.realign_rows, self.skip_flat)

@@ -6,9 +6,7 @@ from typing import Annotated, final
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from tangible_core.data import Force
-
-Vector = tuple[float, float, float]
+from tangible_core.data import Force, Vector
 
 
 class VirtualHand(BaseModel):

@@ -7,11 +7,11 @@ from typing import Annotated, Literal, Self, final
 import numpy as np
 from pydantic import Field, model_validator
 
-from tangible_core.data import DeviceSpec, Force, HapticState
+from tangible_core.data import DeviceSpec, Force, HapticState, Vector
 from tangible_core.plugins.interfaces import HapticDevice, Link
 
 from .hand import MovingHand, VirtualHand
-from .paths import DRAWN, Stroke, Vector, read_csv, walk
+from .paths import DRAWN, Stroke, read_csv, walk
 from .simulated import LIKE_A_FALCON, SimulatedLink
 
 Height = Annotated[float, Field(ge=-1, le=1)]

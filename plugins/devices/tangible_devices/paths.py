@@ -13,10 +13,10 @@ from typing import final
 import numpy as np
 from jaxtyping import Float64
 
+from tangible_core.data import Vector
 from tangible_core.errors import DeviceError, did_you_mean, quoted
 from tangible_core.files.reading import read_bytes
 
-Vector = tuple[float, float, float]
 Points = Float64[np.ndarray, "n 3"]
 COLUMNS = ("time_s", "x_m", "y_m", "z_m")
 """What a CSV file has, at least; others are passed over."""

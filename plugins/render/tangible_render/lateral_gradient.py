@@ -21,6 +21,7 @@ class LateralGradient(ForceRenderer):
     """
 
     uses_materials: ClassVar[bool] = False
+    is_lateral: ClassVar[bool] = True
 
     force_per_slope_n: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 2.0
     """K: force on a slope of one metre per metre."""

@@ -23,6 +23,7 @@ class LateralShape(ForceRenderer):
     """
 
     uses_materials: ClassVar[bool] = False
+    is_lateral: ClassVar[bool] = True
 
     stiffness_n_per_m: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 800.0
     """k: how hard the hand is taken to push, for a depth of one metre."""

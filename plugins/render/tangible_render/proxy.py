@@ -1,6 +1,6 @@
 """The proxy, or god-object: a point that stays on the surface, joined to the hand by a spring."""
 
-from typing import Annotated, Self
+from typing import Annotated, ClassVar, Self
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -34,6 +34,8 @@ class Proxy(ForceRenderer):
     rendering for multi-finger manipulation using friction cone based god-objects, Eurohaptics 2002.
     """
 
+    renders_materials: ClassVar[bool] = True
+
     stiffness_n_per_m: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 800.0
     """Force for one metre between proxy and hand, where the surface has no materials."""
     damping_n_s_per_m: Annotated[float, Field(ge=0, allow_inf_nan=False)] = 0.0
@@ -61,9 +63,9 @@ class Proxy(ForceRenderer):
     def touch(self, surface: HapticSurface) -> Touch:
         """A new touch on this surface, without what it does not need: texture, friction, damping, several materials.
 
-        Compiled on the first use on a machine, then loaded.
+        Compiled on the first use on a machine, then loaded: each kernel has a module of its own, so that only the one
+        that this surface needs is.
         """
-        from . import proxy_kernels
         from .contact import contact
 
         shape = spline_surface(surface, self.dequantise)
@@ -73,14 +75,20 @@ class Proxy(ForceRenderer):
             labels, table, textures, state = felt
             fixed = (*shape, labels, table, memory, textures, state)
             stiffness = max(float(table[:, 0].max()), bristle_stiffness(textures))
-            return CompiledTouch(proxy_kernels.textured_tick, fixed, memory, stiffness)
+            from .proxy_texture_kernels import textured_tick
+
+            return CompiledTouch(textured_tick, fixed, memory, stiffness)
         labels, table = material_table(surface, self._plain())
         if not self.friction:
             table[:, 2:] = 0
         if len(table) == 1 and not table[0, 1:].any():
             fixed = (*shape, float(table[0, 0]), memory)
-            return CompiledTouch(proxy_kernels.spring_tick, fixed, memory, float(table[0, 0]))
-        return CompiledTouch(proxy_kernels.tick, (*shape, labels, table, memory), memory, float(table[:, 0].max()))
+            from .proxy_spring_kernels import spring_tick
+
+            return CompiledTouch(spring_tick, fixed, memory, float(table[0, 0]))
+        from .proxy_kernels import tick
+
+        return CompiledTouch(tick, (*shape, labels, table, memory), memory, float(table[:, 0].max()))
 
     def _plain(self) -> Row:
         return self.stiffness_n_per_m, self.damping_n_s_per_m, self.static_friction, self.dynamic_friction

@@ -1,45 +1,16 @@
-"""The law of `proxy`, compiled. Imports numba: the method imports this module inside `touch`.
+"""The law of `proxy` on materials, compiled. Imports numba: the method imports this module inside `touch`.
 
 What a touch remembers is listed in `contact`.
 """
 
-# ruff: noqa: ANN001, ANN201, ANN202 -- the types are in the signatures that numba compiles
+# ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
 
-import numpy as np
-from numba import float32, float64, njit, types
+from numba import float64, njit
 
 from tangible_core.compiled.compiling import KERNEL
 
-from .contact.closest import settle
-from .contact.contact import BESIDE, approach
-from .effects.kernels import effects, texture
-from .surface.bilinear import HEIGHTS, LABELS, NEWTONS, cell
-
-SURFACE = (HEIGHTS, *[float64] * 4, types.Array(float32, 3, "C", readonly=True))
-MATERIALS = types.Array(float64, 2, "C", readonly=True)
-MEMORY = float64[::1]
-
-
-@njit(inline="always", **KERNEL)
-def _held(shape, tiles_m, labels, table, memory, x, y, z, vx, vy, vz):
-    """F = k (p - q) - b v_n n; see `tick`."""
-    coefficients, width_m, length_m, across_per_m, down_per_m = shape
-    if not approach(coefficients, width_m, length_m, across_per_m, down_per_m, tiles_m, memory, x, y, z, vx + vy + vz):
-        return 0.0, 0.0, 0.0
-    px, py, top, held, hx, hy = memory[0], memory[1], z, 0.0, 0.0, 0.0
-    row, column = cell(labels.shape[0], labels.shape[1], width_m, length_m, px, py)
-    label = labels[row, column]
-    stiffness, damping, static, dynamic = table[label, 0], table[label, 1], table[label, 2], table[label, 3]
-    if memory[7] != BESIDE:
-        px, py, top, hx, hy, memory[6] = settle(
-            coefficients, width_m, length_m, across_per_m, down_per_m, px, py, x, y, z, static, dynamic, memory[6]
-        )
-        square = 1.0 + hx * hx + hy * hy
-        spring = stiffness * (hx * (x - px) + hy * (y - py) + top - z) / square
-        held = min(damping * (vz - hx * vx - hy * vy) / square, max(spring, 0.0))
-    memory[0], memory[1], memory[2] = px, py, top
-    fx, fy, fz = stiffness * (px - x) + held * hx, stiffness * (py - y) + held * hy, stiffness * (top - z) - held
-    return (fx, fy, fz) if np.isfinite(fx + fy + fz) else (0.0, 0.0, 0.0)
+from .contact.held import MATERIALS, MEMORY, SURFACE, spring_and_damper
+from .surface.bilinear import LABELS, NEWTONS
 
 
 @njit(NEWTONS(*SURFACE, LABELS, MATERIALS, MEMORY, *[float64] * 6), **KERNEL)
@@ -48,46 +19,4 @@ def tick(
 ):
     """F = k (p - q) - b v_n n, the proxy p held by friction; the table has a row k, b, mu_s, mu_d for each label."""
     shape = coefficients, width_m, length_m, across_per_m, down_per_m
-    return _held(shape, tiles_m, labels, table, memory, x, y, z, vx, vy, vz)
-
-
-@njit(
-    NEWTONS(*SURFACE, LABELS, MATERIALS, MEMORY, MATERIALS, MEMORY, *[float64] * 6),
-    **KERNEL,
-)
-def textured_tick(
-    coefficients, width_m, length_m, across_per_m, down_per_m, tiles_m, labels, table, memory, textures, contact,
-    x, y, z, vx, vy, vz,
-):  # fmt: skip
-    """The same under the textures of the materials; see `effects.kernels` for their table and for `contact`."""
-    shape = coefficients, width_m, length_m, across_per_m, down_per_m
-    label, t, tx, ty, dx, dy, dz = texture(labels, width_m, length_m, textures, contact, x, y, z)
-    vz -= tx * vx + ty * vy
-    fx, fy, fz = _held(shape, tiles_m, labels, table, memory, x, y, z - t, vx, vy, vz)
-    return effects(textures, label, 1.0, contact, tx, ty, dx, dy, dz, vx, vy, vz, fx, fy, fz)
-
-
-@njit(NEWTONS(*SURFACE, float64, MEMORY, *[float64] * 6), **KERNEL)
-def spring_tick(
-    coefficients, width_m, length_m, across_per_m, down_per_m, tiles_m, stiffness, memory, x, y, z, vx, vy, vz
-):
-    """F = k (p - q): the same where all is one material that has neither friction nor damping.
-
-    In a level tile that the proxy is in already, it is right above the hand.
-    """
-    if not approach(coefficients, width_m, length_m, across_per_m, down_per_m, tiles_m, memory, x, y, z, vx + vy + vz):
-        return 0.0, 0.0, 0.0
-    px, py, top = memory[0], memory[1], z
-    row, column = cell(tiles_m.shape[0], tiles_m.shape[1], width_m, length_m, x, y)
-    highest, lowest = tiles_m[row, column, 0], tiles_m[row, column, 1]
-    if memory[7] == BESIDE:
-        pass
-    elif highest == lowest and (row, column) == cell(tiles_m.shape[0], tiles_m.shape[1], width_m, length_m, px, py):
-        px, py, top = x, y, np.float64(highest)
-    else:
-        px, py, top, _, _, _ = settle(
-            coefficients, width_m, length_m, across_per_m, down_per_m, px, py, x, y, z, 0.0, 0.0, 0.0
-        )
-    memory[0], memory[1], memory[2] = px, py, top
-    fx, fy, fz = stiffness * (px - x), stiffness * (py - y), stiffness * (top - z)
-    return (fx, fy, fz) if np.isfinite(fx + fy + fz) else (0.0, 0.0, 0.0)
+    return spring_and_damper(shape, tiles_m, labels, table, memory, x, y, z, vx, vy, vz)

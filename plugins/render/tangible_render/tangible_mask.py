@@ -31,6 +31,7 @@ class TangibleMask(ForceRenderer):
     """
 
     uses_materials: ClassVar[bool] = False
+    is_lateral: ClassVar[bool] = True
 
     mask_m: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 0.005
     """Side of the square mask; it is rounded to an odd number of cells, at least 3."""

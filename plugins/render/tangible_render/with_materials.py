@@ -1,25 +1,22 @@
 """Any law, and what the materials of a surface add to it."""
 
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar, final
 
 import numpy as np
 from pydantic import AfterValidator, Field, ValidationError
 
 from tangible_core.compiled.touch import CompiledTouch
-from tangible_core.data import HapticState, HapticSurface
-from tangible_core.errors import ConfigError, TangibleError
+from tangible_core.data import Force, HapticState, HapticSurface
+from tangible_core.errors import TangibleError
 from tangible_core.haptic_textures.table import bristle_stiffness
 from tangible_core.materials.assignment import find, library
-from tangible_core.plugins.interfaces import ForceRenderer, Touch
+from tangible_core.plugins.interfaces import ForceRenderer, PlainTouch, Touch
 
 from .effects.table import ACTING, effects_table, nowhere
 
-OWN = "friction"
-"""A law with this option renders materials itself."""
-
 
 def _law(law: str | dict[str, Any]) -> tuple[str, ForceRenderer]:
-    """Name and method. Raises: ValueError if it has no name or brings materials itself, TangibleError if it is none."""
+    """Name and method. Raises: ValueError if it has no name or has materials itself, TangibleError if it is none."""
     from tangible_core.plugins.registry import load_method
 
     options: dict[str, Any] = {"use": law} if isinstance(law, str) else dict(law)
@@ -27,8 +24,8 @@ def _law(law: str | dict[str, Any]) -> tuple[str, ForceRenderer]:
     if not isinstance(name, str):
         raise ValueError("a law has a name, {use: ...}")
     cls = load_method("render", name)
-    if OWN in cls.model_fields:
-        raise ValueError(f"{name} has friction of its own; use it as it is")
+    if cls.renders_materials:
+        raise ValueError(f"{name} renders materials itself; use it as it is")
     return name, cls(**options)
 
 
@@ -66,6 +63,8 @@ class WithMaterials(ForceRenderer):
     computational model of friction applied to haptic rendering, Experimental Robotics VI, 2000.
     """
 
+    renders_materials: ClassVar[bool] = True
+
     law: Annotated[str | dict[str, Any], AfterValidator(_checked), Field(validate_default=True)] = "penalty-gradient"
     """The law's name, or {use: its name} and its options."""
     friction: bool = True
@@ -80,24 +79,19 @@ class WithMaterials(ForceRenderer):
     def touch(self, surface: HapticSurface) -> Touch:
         """A new touch on this surface; the law's own where the materials add nothing to it.
 
-        Compiled on the first use of a law on a machine, then loaded.
-        Raises: ConfigError if the law's touch is not compiled.
+        Compiled on the first use of a law on a machine, then loaded. Around a law in plain Python it is Python's too.
         """
         _, law = _law(self.law)
         surface = self._covered(surface)
         touch = law.touch(surface)
         if surface.labels is None or not surface.materials:
             return touch
-        lateral = _is_lateral(law)
-        labels, table = effects_table(surface, self.friction, self.texture, self.damping and not lateral)
+        labels, table = effects_table(surface, self.friction, self.texture, self.damping and not law.is_lateral)
         if not table[:, ACTING].any():
             return touch
-        if not isinstance(touch, CompiledTouch):
-            raise ConfigError(
-                f"the law {type(law).__name__} is not compiled, and materials join compiled laws alone; "
-                "let its touch be a CompiledTouch, or leave `with-materials` out"
-            )
-        return _wrapped(touch, surface, labels, table, lateral)
+        if isinstance(touch, CompiledTouch):
+            return _around(touch, surface, labels, table, law.is_lateral)
+        return PlainWithMaterials(touch, _around(_told(touch), surface, labels, table, law.is_lateral))
 
     def _covered(self, surface: HapticSurface) -> HapticSurface:
         if self.material is None or (surface.labels is not None and surface.materials):
@@ -106,13 +100,38 @@ class WithMaterials(ForceRenderer):
         return HapticSurface(surface.relief, labels, (find(self.material, library()),))
 
 
-def _is_lateral(law: ForceRenderer) -> bool:
-    """Whether it leaves the push up from level ground to a table."""
-    level = law.touch(HapticSurface.from_heights(np.full((8, 8), 0.01)))
-    return level.force(HapticState((0.0, 0.0, 0.009))).z == 0
+@final
+class PlainWithMaterials(PlainTouch):
+    """Materials around a law in plain Python, by the kernel that has them around a compiled one.
+
+    Its law is `told`: the kernel is run once for what the law is asked, on a memory that is put back, and once more
+    with what the law said.
+    """
+
+    def __init__(self, law: Touch, felt: CompiledTouch) -> None:
+        self.stiffness_n_per_m = felt.stiffness_n_per_m
+        self._law, self._felt = law, felt
+
+    def force(self, state: HapticState) -> Force:
+        """The law's, and what the materials add to it."""
+        (asked, answer), memory = self._felt.fixed[0], self._felt.fixed[-1]
+        before = memory.copy()
+        self._felt.force(state)
+        memory[:] = before
+        x, y, z, vx, vy, vz = asked.tolist()
+        answer[:] = self._law.force(HapticState((x, y, z), (vx, vy, vz), state.time_s, state.buttons))
+        return self._felt.force(state)
 
 
-def _wrapped(law: CompiledTouch, surface: HapticSurface, labels: np.ndarray, table: np.ndarray, lateral: bool) -> Touch:
+def _told(law: Touch) -> CompiledTouch:
+    from .effects.told import told
+
+    return CompiledTouch(told, (np.zeros(6), np.zeros(3)), stiffness=law.stiffness_n_per_m)
+
+
+def _around(
+    law: CompiledTouch, surface: HapticSurface, labels: np.ndarray, table: np.ndarray, lateral: bool
+) -> CompiledTouch:
     from .effects import kernels
 
     bristle = float(table[:, kernels.STIFFNESS].max())

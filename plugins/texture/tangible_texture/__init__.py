@@ -1,1 +1,25 @@
-"""Texture segmenters: one method per file, found by entry point."""
+"""Texture segmenters: a picture to segments of one texture each. Each method is imported when it is first used."""
+
+from typing import TYPE_CHECKING
+
+from tangible_core.lazily import lazily
+
+if TYPE_CHECKING:
+    from .gabor import Gabor as Gabor
+    from .gradient import Gradient as Gradient
+    from .histogram import Histogram as Histogram
+    from .kornia_gabor import KorniaGabor as KorniaGabor
+    from .kornia_gradient import KorniaGradient as KorniaGradient
+    from .report import Report as Report
+
+__all__, __getattr__ = lazily(  # pyright: ignore[reportUnsupportedDunderAll]
+    __name__,
+    {
+        "gabor": ["Gabor"],
+        "gradient": ["Gradient"],
+        "histogram": ["Histogram"],
+        "kornia_gabor": ["KorniaGabor"],
+        "kornia_gradient": ["KorniaGradient"],
+        "report": ["Report"],
+    },
+)

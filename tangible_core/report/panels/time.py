@@ -17,8 +17,8 @@ INSTANTS = 2000
 """Contact is shaded in so many parts, more than a sheet has dots."""
 
 
-def draw_force_time(axes: Axes, relief: Relief, recording: Recording) -> str:
-    """Force magnitude over time and, below it, the tip over the surface; contact is shaded in both."""
+def draw_force_time(axes: Axes, recording: Recording, relief: Relief | None = None) -> str:
+    """Force magnitude over time and, below it, the tip, over the surface where that is known; contact is shaded."""
     axes.set_axis_off()
     upper, lower = axes.inset_axes((0, 0.54, 1, 0.46)), axes.inset_axes((0, 0, 1, 0.46))
     lower.sharex(upper)
@@ -35,9 +35,10 @@ def draw_force_time(axes: Axes, relief: Relief, recording: Recording) -> str:
     return f"Force and tip over time: peak {force_n.max():.2f} N, contact {contact:.0f} %"
 
 
-def _draw_tip(axes: Axes, relief: Relief, recording: Recording) -> None:
-    ground_mm = 1000 * heights_under(relief, recording.position_m)
-    axes.fill_between(recording.time_s, ground_mm, color=GROUND, linewidth=0, zorder=0.5, label="surface")
+def _draw_tip(axes: Axes, relief: Relief | None, recording: Recording) -> None:
+    if relief is not None:
+        ground_mm = 1000 * heights_under(relief, recording.position_m)
+        axes.fill_between(recording.time_s, ground_mm, color=GROUND, linewidth=0, zorder=0.5, label="surface")
     tip_mm = 1000 * recording.position_m[:, 2]
     axes.plot(recording.time_s, tip_mm, color=TIP, linewidth=0.9, label="tip")
     axes.set(xlabel="time [s]", ylabel="height [mm]", ylim=(min(0.0, float(tip_mm.min())), None))

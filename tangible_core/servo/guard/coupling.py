@@ -10,14 +10,14 @@ whatever the law does. Imports numba.
 import numpy as np
 from numba import float64, njit, types
 
-from ...compiled.compiling import KERNEL
+from ...compiled.compiling import KERNEL, inner
 from . import layout as at
 from .vectors import nought, shortened
 
 READ, WRITTEN = types.Array(float64, 1, "C", readonly=True), types.Array(float64, 1, "C")
 
 
-@njit(**KERNEL, inline="always")
+@inner(forceinline=True)
 def _led(settings, memory, elapsed_s, place, velocity):
     """The tool moved on by one period; False if that is not finite.
 
@@ -54,7 +54,7 @@ def couple(settings, memory, period_s, x, y, z, vx, vy, vz):
     return *tool, memory[at.TOOL + 3], memory[at.TOOL + 4], memory[at.TOOL + 5]
 
 
-@njit(**KERNEL, inline="always")
+@inner(forceinline=True)
 def pull(settings, memory, x, y, z, vx, vy, vz, fx, fy, fz):
     """The tool's force on the device; the law's force on the tool is kept for the next `couple`."""
     memory[at.TOOL + 6], memory[at.TOOL + 7], memory[at.TOOL + 8] = fx, fy, fz

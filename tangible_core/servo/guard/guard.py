@@ -10,7 +10,7 @@ without a fresh position is `wait` instead of all three. The arrays are those of
 import numpy as np
 from numba import float64, int64, njit, types, void
 
-from ...compiled.compiling import KERNEL
+from ...compiled.compiling import KERNEL, inner
 from ...data import TickFlag
 from . import layout as at
 from .coupling import READ, WRITTEN, pull
@@ -33,7 +33,7 @@ ENOUGH = 1.1
 NEWTONS_AND_FLAGS = types.Tuple((float64, float64, float64, int64))
 
 
-@njit(**KERNEL, inline="always")
+@inner(forceinline=True)
 def _counted(memory, flags):
     """The flags, each counted."""
     memory[at.COUNTS] += flags & TOUCHING
@@ -43,7 +43,7 @@ def _counted(memory, flags):
     return flags
 
 
-@njit(**KERNEL, inline="always")
+@inner(forceinline=True)
 def _stopped(memory, flag):
     """Zero at once, and nothing remembered that a fault may have touched; the force fades in again."""
     for i in range(3 * (at.MOST_DELAY + 1)):
@@ -53,13 +53,13 @@ def _stopped(memory, flag):
     return 0.0, 0.0, 0.0, _counted(memory, flag)
 
 
-@njit(**KERNEL, inline="always")
+@inner(forceinline=True)
 def _anew(memory):
     memory[at.PLACE] = memory[at.TOOL] = np.nan
     memory[at.RAMP] = memory[at.ENERGY_J] = 0.0
 
 
-@njit(**KERNEL, inline="always")
+@inner(forceinline=True)
 def _softness(settings, memory, elapsed_s):
     """Share of the law's force that makes its stiffness one which is held stably at the measured period.
 
@@ -79,7 +79,7 @@ def _softness(settings, memory, elapsed_s):
     return memory[at.SOFTNESS]
 
 
-@njit(**KERNEL, inline="always")
+@inner(forceinline=True)
 def _slewed(memory, step_n, fx, fy, fz):
     """From the last force towards this one by at most a step, and whether that is short of it."""
     wx, wy, wz = memory[at.FORCE], memory[at.FORCE + 1], memory[at.FORCE + 2]
@@ -87,7 +87,7 @@ def _slewed(memory, step_n, fx, fy, fz):
     return (wx + dx, wy + dy, wz + dz, True) if short else (fx, fy, fz, False)
 
 
-@njit(**KERNEL, inline="always")
+@inner(forceinline=True)
 def _keep(settings, memory, fx, fy, fz):
     """This force is the last one, and on its way."""
     memory[at.FORCE], memory[at.FORCE + 1], memory[at.FORCE + 2] = fx, fy, fz
@@ -96,7 +96,7 @@ def _keep(settings, memory, fx, fy, fz):
     memory[at.SLOT] = 0.0 if memory[at.SLOT] >= settings[at.DELAY] else memory[at.SLOT] + 1.0
 
 
-@njit(**KERNEL, inline="always")
+@inner(forceinline=True)
 def _safe(settings, memory, elapsed_s, touching, fx, fy, fz):
     """Soft enough to be held stably, and not over the maximum; with flags."""
     flags = 0
@@ -107,7 +107,7 @@ def _safe(settings, memory, elapsed_s, touching, fx, fy, fz):
     return fx, fy, fz, flags | FORCE_LIMITED if over else flags
 
 
-@njit(**KERNEL, inline="always")
+@inner(forceinline=True)
 def _gentle(settings, memory, elapsed_s, fx, fy, fz):
     """Faded in, and at most a step from the last force; with flags."""
     flags = 0

@@ -6,9 +6,7 @@ Imports numba.
 # ruff: noqa: ANN001, ANN201, ANN202 -- the types are those that numba infers
 # pyright: basic
 
-from numba import njit
-
-from ...compiled.compiling import KERNEL
+from ...compiled.compiling import inner
 from . import layout as at
 from .vectors import shortened
 
@@ -16,7 +14,7 @@ FASTEST_M_PER_S, SLOWEST_M_PER_S = 10.0, 1e-5
 """No hand is faster: a greater step is a fault of the sensor, and no work. A slower one is the sensor's noise."""
 
 
-@njit(**KERNEL, inline="always")
+@inner(forceinline=True)
 def _observe(settings, memory, elapsed_s, x, y, z):
     """The passivity observer: the force held over the way to here did F.dx on the hand, exactly."""
     slot = at.HELD + 3 * int(memory[at.SLOT])
@@ -30,7 +28,7 @@ def _observe(settings, memory, elapsed_s, x, y, z):
     memory[at.PLACE], memory[at.PLACE + 1], memory[at.PLACE + 2] = x, y, z
 
 
-@njit(**KERNEL, inline="always")
+@inner(forceinline=True)
 def _brake(settings, memory, elapsed_s, vx, vy, vz, fx, fy, fz):
     """The passivity controller's damping: alpha = -E / (T v^2) where E, with this tick foreseen, is below 0."""
     v2 = vx * vx + vy * vy + vz * vz
@@ -40,7 +38,7 @@ def _brake(settings, memory, elapsed_s, vx, vy, vz, fx, fy, fz):
     return min(owed / (elapsed_s * v2), settings[at.BRAKE]) if owed > 0.0 else 0.0
 
 
-@njit(**KERNEL, inline="always")
+@inner(forceinline=True)
 def passive(settings, memory, elapsed_s, touching, x, y, z, vx, vy, vz, fx, fy, fz):
     """The force, braked where the loop would give away more than it took in, and whether it was."""
     _observe(settings, memory, elapsed_s, x, y, z)

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from copy import deepcopy
 from typing import NamedTuple
 
-from ...data import DeviceSpec, Force, HapticState
+from ...data import DeviceSpec, Force, HapticState, Vector
 from ...errors import BrokenMethod
 from ...plugins.interfaces import Touch
 
@@ -29,7 +29,6 @@ GOLDEN = (0.7548776662466927, 0.5698402909980532)
 
 Source: Roberts, The unreasonable effectiveness of quasirandom sequences, 2018.
 """
-Point = tuple[float, float, float]
 
 
 class Stiffness(NamedTuple):
@@ -120,7 +119,7 @@ def _surface(touch: Touch, x: float, y: float, top_m: float) -> float | None:
     return pressed
 
 
-def _steepest(touch: Touch, place: Point) -> tuple[Force, float]:
+def _steepest(touch: Touch, place: Vector) -> tuple[Force, float]:
     """The force at a place, and the most by which it changes for a way along it, or across it in two directions.
 
     Of two steps the one with less counts: a force that jumps, as where one cell or material ends, is no spring. Nor is
@@ -138,7 +137,7 @@ def _steepest(touch: Touch, place: Point) -> tuple[Force, float]:
     return force, steepest
 
 
-def _ways(against: Point) -> tuple[Point, Point, Point]:
+def _ways(against: Vector) -> tuple[Vector, Vector, Vector]:
     """A direction, and two at right angles to it and to each other."""
     x, y, z = against
     flat = math.hypot(x, y)
@@ -146,9 +145,9 @@ def _ways(against: Point) -> tuple[Point, Point, Point]:
     return against, aside, (y * aside[2] - z * aside[1], z * aside[0] - x * aside[2], x * aside[1] - y * aside[0])
 
 
-def _gone(place: Point, way: Point, far_m: float) -> Point:
+def _gone(place: Vector, way: Vector, far_m: float) -> Vector:
     return place[0] + far_m * way[0], place[1] + far_m * way[1], place[2] + far_m * way[2]
 
 
-def _felt(touch: Touch, place: Point) -> Force:
+def _felt(touch: Touch, place: Vector) -> Force:
     return Force(*map(float, touch.force(HapticState(place))))

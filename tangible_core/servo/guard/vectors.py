@@ -4,18 +4,17 @@
 # pyright: basic
 
 import numpy as np
-from numba import njit
 
-from ...compiled.compiling import KERNEL
+from ...compiled.compiling import inner
 
 
-@njit(**KERNEL, inline="always")
+@inner(forceinline=True)
 def nought(x, y, z):
     """0.0, and NaN if one of them is not finite; no sum of these overflows."""
     return 0.0 * x + 0.0 * y + 0.0 * z
 
 
-@njit(**KERNEL, inline="always")
+@inner(forceinline=True)
 def shortened(x, y, z, most):
     """The vector in its direction, of at most this length, and whether it was over it; NaN where it is not finite."""
     if x * x + y * y + z * z <= most * most:

@@ -18,6 +18,7 @@ from tangible_core.bench.table import Results, tables
 from tangible_core.errors import ConfigError, OutputError
 from tangible_core.metrics import HANDLE
 from tangible_core.plugins.registry import Registry, load_method
+from tangible_core.servo.guard.safety import stiffness_limit_n_per_m
 from tangible_core.session import Recording
 from tangible_core.synthetic.scenes import ramp
 from tangible_core.synthetic.strokes import SURFACES, KnownStroke, analytic_stroke
@@ -117,9 +118,9 @@ def test_friction_lags(strokes):
 def test_stiffness_limits_of_springs(strokes, name: str):
     method = load_method("render", name)()
     found = limits(method, strokes["plane"].surface)
-    assert [found[f"limit{delay}"] / HANDLE.bound_n_per_m(delay) for delay in (0, 1, 2)] == pytest.approx(
-        [1] * 3, rel=0.05
-    )
+    for delay in (0, 1, 2):
+        bound = stiffness_limit_n_per_m(HANDLE.damping_n_s_per_m, HANDLE.period_s, delay)
+        assert found[f"limit{delay}"] == pytest.approx(bound, rel=0.05)
 
 
 @pytest.mark.parametrize(("name", "scene"), [("grey-level", "plane"), ("lateral-shape", "plane"), ("penalty", "ramp")])

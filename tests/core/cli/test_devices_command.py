@@ -1,18 +1,23 @@
 """`tangible devices`: every answer of a device as a user sees it, and the exit codes."""
 
 import json
+from contextlib import nullcontext
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
+import typer
 
 from command_line import tangible
-from tangible_core.commands import devices as command
-from tangible_core.commands import stress
+from tangible_core.cli import devices as command
 from tangible_core.errors import ConfigError, DeviceError
 from tangible_core.plugins.registry import Registry
 from tangible_core.scene.calibrations import calibration_path
+from tangible_core.session.stress import stressed
 from tangible_devices.mock import Mock
 
+ALONE = SimpleNamespace(invoked_subcommand=None)
+"""A context without a command after the group."""
 ARM = '''
 from typing import Literal
 
@@ -64,7 +69,7 @@ class Arm(HapticDevice, Serviceable, Adjustable):
 def registry(install, monkeypatch: pytest.MonkeyPatch) -> Registry:
     install("arms", {"tangible.device": {"arm": "arm_module:Arm", "lost": "no_module:Lost"}}, arm_module=ARM)
     registry = Registry()
-    monkeypatch.setattr(command, "default_registry", lambda: registry)
+    monkeypatch.setattr("tangible_core.plugins.registry.default_registry", lambda: registry)
     return registry
 
 
@@ -82,14 +87,14 @@ def answer(monkeypatch: pytest.MonkeyPatch, *texts: str) -> None:
 
 class TestList:
     def test_what_is_installed_and_what_is_connected(self, registry: Registry, capsys: pytest.CaptureFixture[str]):
-        command.devices(as_json=True)
+        command.devices(ALONE, as_json=True)
         arm, lost = json.loads(capsys.readouterr().out)
         assert (arm["name"], arm["origin"], arm["simulated"], arm["problem"]) == ("arm", "arms 1.0", False, "")
         assert arm["units"][0] == {"name": "Arm", "serial": "A1", "place": "bus 1", "problem": ""}
         assert lost["units"] == [] and "cannot be loaded" in lost["problem"]
 
     def test_a_line_a_unit(self, registry: Registry, capsys: pytest.CaptureFixture[str]):
-        command.devices(as_json=False)
+        command.devices(ALONE)
         lines = capsys.readouterr().out.splitlines()
         assert lines[1].split() == ["arm", "Arm", "A1", "bus", "1"]
         assert lines[2].split() == ["arm", "Arm", "A2", "bus", "2", "is", "[busy]"]
@@ -107,27 +112,31 @@ class TestDoctor:
     )
     def test_its_verdict(self, registry: Registry, state: str, named: bool, passed: bool):
         """A plugin that cannot be loaded has failed; and so has what is not there, where it is asked for."""
-        assert command.doctor("arm" if named else None, [f"state={state}"] if named else [], False) is passed
+        with nullcontext() if passed else pytest.raises(typer.Exit):
+            command.doctor("arm" if named else None, [f"state={state}"] if named else [])
 
     def test_the_cure_can_be_copied_as_it_stands(self, registry: Registry, capsys: pytest.CaptureFixture[str]):
-        command.doctor("arm", ["state=wrong"], False)
+        with pytest.raises(typer.Exit):
+            command.doctor("arm", ["state=wrong"])
         assert 'SUBSYSTEM=="usb", MODE="0660" [copy this]' in capsys.readouterr().out.splitlines()
 
     def test_for_a_program(self, registry: Registry, capsys: pytest.CaptureFixture[str]):
-        command.doctor("arm", ["state=wrong"], True)
+        with pytest.raises(typer.Exit):
+            command.doctor("arm", ["state=wrong"], as_json=True)
         [_, permission] = json.loads(capsys.readouterr().out)["arm"]
         assert permission["check"] == "permission"
         assert permission["verdict"] == "failed"
 
     def test_all_of_them(self, registry: Registry, capsys: pytest.CaptureFixture[str]):
-        command.doctor(None, [], True)
+        with pytest.raises(typer.Exit):
+            command.doctor(as_json=True)
         found = json.loads(capsys.readouterr().out)
         assert list(found) == ["arm", "lost"]
         assert found["lost"][0]["verdict"] == "failed"
 
     def test_options_belong_to_one_device(self, registry: Registry):
         with pytest.raises(ConfigError, match="name the device"):
-            command.doctor(None, ["state=wrong"], False)
+            command.doctor(None, ["state=wrong"])
 
 
 class TestSettingUp:
@@ -160,7 +169,7 @@ class TestSettingUp:
 
 class TestStress:
     def test_its_figures(self):
-        figures = stress.measured(Mock(), 0.05)
+        figures = stressed(Mock(), 0.05)
         assert figures["cycles"] > 100
         assert figures["rate_hz"] * 0.05 == pytest.approx(figures["cycles"], rel=0.5)
         assert 0 < figures["p50_us"] <= figures["p99_us"] <= figures["p99_9_us"] <= figures["max_us"]
@@ -172,13 +181,13 @@ class TestStress:
         write = link.write
         monkeypatch.setattr(link, "write", lambda force: (forces.append(force), write(force)))
         monkeypatch.setattr(Mock, "open", lambda self: link)
-        stress.measured(real, 0.01)
+        stressed(real, 0.01)
         assert set(forces) == {(0.0, 0.0, 0.0)}
 
     @pytest.mark.parametrize("seconds", [0, -1, float("nan"), 1e9])
     def test_times_that_are_none(self, seconds: float):
         with pytest.raises(ConfigError, match="--seconds"):
-            stress.stress("mock", [], seconds, False)
+            command.stress("mock", seconds=seconds)
 
 
 @pytest.mark.parametrize(

@@ -19,6 +19,6 @@ def test_compiling_is_said_once_a_family_and_other_kernels_are_not_ours(caplog):
             notice.on_start(event)
             notice.on_end(event)
     assert [record.message for record in caplog.records] == [
-        "compiling the render kernels for this processor; the next process finds them on disk",
-        "compiling the depth kernels for this processor; the next process finds them on disk",
+        "compiling the render kernels for this processor, about 2 s; later runs find them on disk",
+        "compiling the depth kernels for this processor, about 5 s; later runs find them on disk",
     ]

@@ -15,7 +15,7 @@ from PIL import Image
 from hostile import SIDE, npy_header, npz_bomb, tiff
 from tangible_core.data.pictures import check_picture, fill_non_finite, full_scale, to_grey, to_rgb8
 from tangible_core.errors import PictureError, shown
-from tangible_core.scene.picture_files import MAX_LABELS, read_labels, read_map, read_picture, write_png
+from tangible_core.scene.picture_files import MAX_LABELS, read_labels, read_map, read_picture
 
 NAN = np.nan
 COLOURS = np.random.default_rng(0).integers(0, 256, (6, 9, 3), dtype=np.uint8)
@@ -123,11 +123,6 @@ def test_pictures_without_loss_come_back_as_they_were(tmp_path, form):
     flat = COLOURS // 64 * 64
     path = put(tmp_path, "picture", encoded(Image.fromarray(flat), form))
     np.testing.assert_array_equal(read_picture(path), flat)
-
-
-def test_a_png_comes_back_as_it_was_written(tmp_path):
-    write_png(tmp_path / "deep" / "a.png", COLOURS)
-    np.testing.assert_array_equal(read_picture(tmp_path / "deep" / "a.png"), COLOURS)
 
 
 def test_a_jpeg_is_read(tmp_path):

@@ -8,6 +8,7 @@ import pytest
 from tangible_core.data import NO_FORCE, Force, HapticState
 from tangible_core.metrics import HANDLE, Handle, stiffness_limit
 from tangible_core.metrics.stability import Law
+from tangible_core.servo.guard.safety import stiffness_limit_n_per_m
 
 GROUND_M = 0.01
 
@@ -18,6 +19,10 @@ def spring(stiffness: float, damping: float = 0.0) -> Law:
         return Force(0.0, 0.0, stiffness * depth - damping * state.velocity_m_per_s[2]) if depth > 0 else NO_FORCE
 
     return law
+
+
+def bound(delay_ticks: int) -> float:
+    return stiffness_limit_n_per_m(HANDLE.damping_n_s_per_m, HANDLE.period_s, delay_ticks)
 
 
 def exact_limit(handle: Handle, delay: int, damping: float = 0.0) -> float:
@@ -49,7 +54,7 @@ def exact_limit(handle: Handle, delay: int, damping: float = 0.0) -> float:
 @pytest.mark.parametrize("delay", [0, 1, 2])
 def test_the_bound_of_the_literature_holds(delay: int):
     """K < 2 b / (T (1 + 2 d)), within 5 %."""
-    assert stiffness_limit(spring, GROUND_M, delay) == pytest.approx(HANDLE.bound_n_per_m(delay), rel=0.05)
+    assert stiffness_limit(spring, GROUND_M, delay) == pytest.approx(bound(delay), rel=0.05)
 
 
 @pytest.mark.parametrize("delay", [0, 1, 2, 5])
@@ -61,11 +66,7 @@ def test_the_limit_is_where_the_eigenvalues_leave_the_circle(delay: int, handle:
 def test_damping_of_the_law_counts():
     found = stiffness_limit(lambda stiffness: spring(stiffness, 2.0), GROUND_M, 0)
     assert found == pytest.approx(exact_limit(HANDLE, 0, 2.0), rel=0.005)
-    assert found > 1.5 * HANDLE.bound_n_per_m(0)
-
-
-def test_bounds():
-    assert [HANDLE.bound_n_per_m(delay) for delay in (0, 1, 2)] == pytest.approx([4000, 4000 / 3, 800])
+    assert found > 1.5 * bound(0)
 
 
 @pytest.mark.parametrize(

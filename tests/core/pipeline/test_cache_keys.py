@@ -10,13 +10,14 @@ from tangible_core import load_method
 from tangible_core.data import DisparityMap, SegmentMap, Views
 from tangible_core.materials.rules import MaterialRule
 from tangible_core.pipeline.cache import Cache
-from tangible_core.pipeline.config import PRODUCTS, Chosen, MaterialChoice, PipelineConfig, Workspace
-from tangible_core.pipeline.engine import Pipeline
+from tangible_core.pipeline.config import PRODUCTS, Chosen, MaterialChoice, PipelineConfig
+from tangible_core.pipeline.engine import Engine
 from tangible_core.plugins.interfaces import DepthEstimator, Segmenter
 from tangible_core.plugins.registry import default_registry
 from tangible_core.provenance import closure as closures
 from tangible_core.provenance import places, versions
-from tangible_core.scene.scene import SceneFiles
+from tangible_core.scene.scene_files import SceneFiles
+from tangible_core.scene.workspace import Workspace
 
 KEPT = tuple(product for product in PRODUCTS if product != "touch")
 
@@ -56,7 +57,7 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def pipeline(folder: Path, **parts) -> Pipeline:
+def pipeline(folder: Path, **parts) -> Engine:
     pair = SceneFiles(left=Path("left.npy"), right=Path("right.npy"))
     made = {
         "scene": pair,
@@ -66,7 +67,7 @@ def pipeline(folder: Path, **parts) -> Pipeline:
         "workspace": Workspace(width_m=0.03),
     }
     config = PipelineConfig(path=folder / "p.yaml", **(made | parts))
-    return Pipeline(config, default_registry(), Cache(folder / "cache"))
+    return Engine(config, default_registry(), Cache(folder / "cache"))
 
 
 def keys(folder: Path, **parts) -> dict[str, str]:
@@ -90,7 +91,7 @@ def _forgotten():
 class TestEachAnswerIsItsOwn:
     """Two that differ in one thing, by what the engine says and by what it gives."""
 
-    def differ(self, product: str, one: Pipeline, other: Pipeline) -> bool:
+    def differ(self, product: str, one: Engine, other: Engine) -> bool:
         one.make(product)
         assert outcome(one, product) == "ran"
         other.make(product)
@@ -165,7 +166,7 @@ class TestEachAnswerIsItsOwn:
         assert self.differ("materials", one, pipeline(folder, materials=MaterialChoice(**choice)))
 
     def test_what_a_library_says(self, folder: Path):
-        def mine(stiffness: int) -> Pipeline:
+        def mine(stiffness: int) -> Engine:
             (folder / "mine.yaml").write_text(FELT.format(stiffness))
             return pipeline(folder, materials=MaterialChoice(by={0: "felt", 1: "felt"}, library=folder / "mine.yaml"))
 
@@ -176,7 +177,7 @@ class TestEachAnswerIsItsOwn:
         assert other.make("materials").materials[0].stiffness_n_per_m == 300
 
 
-def outcome(pipe: Pipeline, product: str) -> str:
+def outcome(pipe: Engine, product: str) -> str:
     return {each.product: each.outcome for each in pipe.outcomes}[product]
 
 

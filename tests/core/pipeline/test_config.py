@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from tangible_core.errors import ConfigError
 from tangible_core.pipeline.config import load_config, parse_config
 from tangible_core.plugins.registry import default_registry
-from tangible_core.scene.scene import SceneFiles
+from tangible_core.scene.scene_files import SceneFiles
 
 ROOT = Path(__file__).parents[3]
 PATH = Path("here/p.yaml")

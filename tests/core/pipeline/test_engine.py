@@ -8,17 +8,18 @@ import numpy as np
 import pluggy
 import pytest
 
+from pictures import write_png
 from tangible_core.data import DisparityMap, HapticSurface, SegmentMap, Views
 from tangible_core.errors import BrokenMethod, ConfigError, GeometryError, PictureError, UnknownMethod
 from tangible_core.pipeline.cache import Cache
-from tangible_core.pipeline.config import Chosen, MaterialChoice, PipelineConfig, Workspace
-from tangible_core.pipeline.engine import Pipeline
+from tangible_core.pipeline.config import Chosen, MaterialChoice, PipelineConfig
+from tangible_core.pipeline.engine import Engine
 from tangible_core.plugins import hooks
 from tangible_core.plugins.interfaces import DepthEstimator, ForceRenderer, Segmenter, Skippable, Touch
 from tangible_core.plugins.notes import note
 from tangible_core.plugins.registry import Registry
-from tangible_core.scene.picture_files import write_png
-from tangible_core.scene.scene import SceneFiles
+from tangible_core.scene.scene_files import SceneFiles
+from tangible_core.scene.workspace import Workspace
 
 ran: list[str] = []
 
@@ -117,7 +118,7 @@ def chosen(method, name: str = ""):
     return Chosen(name or type(method).__name__.lower(), "tests 1.0", method)
 
 
-def pipeline(folder: Path, cached: bool = True, plugins: pluggy.PluginManager | None = None, **parts) -> Pipeline:
+def pipeline(folder: Path, cached: bool = True, plugins: pluggy.PluginManager | None = None, **parts) -> Engine:
     parts = {
         "scene": SceneFiles(left=Path("left.png"), right=Path("right.png")),
         "want": "touch",
@@ -128,10 +129,10 @@ def pipeline(folder: Path, cached: bool = True, plugins: pluggy.PluginManager | 
     } | parts
     plugins = plugins or hooks.manager()
     config = PipelineConfig(path=folder / "p.yaml", **parts)
-    return Pipeline(config, Registry(plugins), Cache(folder / "cache") if cached else None)
+    return Engine(config, Registry(plugins), Cache(folder / "cache") if cached else None)
 
 
-def said(pipe: Pipeline) -> dict[str, str]:
+def said(pipe: Engine) -> dict[str, str]:
     return {each.product: each.outcome for each in pipe.outcomes}
 
 
@@ -354,7 +355,7 @@ def test_what_is_not_finite_is_an_error_or_a_mask_as_asked_for(folder: Path):
     picture[3, 5] = np.nan
     np.save(folder / "torn.npy", picture)
 
-    def scene(photo: str, non_finite: str = "mask") -> Pipeline:
+    def scene(photo: str, non_finite: str = "mask") -> Engine:
         return pipeline(folder, scene=SceneFiles(photo=Path(photo), non_finite=non_finite))
 
     with pytest.raises(PictureError, match=r"torn\.npy.*the first at row 3, column 5"):

@@ -14,6 +14,7 @@ FACTS = {
     "tangible_stage_started": {"product": "relief", "method": "core"},
     "tangible_stage_finished": {"outcome": RAN},
     "tangible_servo_report": {"report": ServoReport(1, 0.001, HapticState((0, 0, 0)), NO_FORCE, 1.0, 0.0)},
+    "tangible_panels": {},
     "tangible_commands": {"app": object()},
 }
 
@@ -50,6 +51,10 @@ class Witness:
     @hookimpl
     def tangible_servo_report(self, report):
         self.heard.append(("tangible_servo_report", {"report": report}))
+
+    @hookimpl
+    def tangible_panels(self):
+        self.heard.append(("tangible_panels", {}))
 
     @hookimpl
     def tangible_commands(self, app):

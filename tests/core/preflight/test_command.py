@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from command_line import tangible
-from tangible_core.commands.preflight import line, preflight
+from tangible_core import load_pipeline
+from tangible_core.cli.preflight import line, preflight
 from tangible_core.data import HapticState
 from tangible_core.errors import ConfigError
 from tangible_core.preflight import Hand, Loop, Verdict
@@ -36,7 +37,6 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-@pytest.mark.slow
 def test_a_line_a_verdict_and_0_where_nothing_is_unsafe(folder: Path):
     done = tangible("preflight", "p.yaml", "--seconds", 0.1, cwd=folder)
     assert done.returncode == 0, done.stdout + done.stderr
@@ -47,7 +47,6 @@ def test_a_line_a_verdict_and_0_where_nothing_is_unsafe(folder: Path):
     assert summary.endswith(" 0 unsafe")
 
 
-@pytest.mark.slow
 def test_1_where_something_is_and_json_says_all_of_it(folder: Path):
     words = ("preflight", "p.yaml", "--set", "render.stiffness_n_per_m=9000", "--seconds", 0.1, "--rate", 500, "--json")
     done = tangible(*words, cwd=folder)
@@ -71,20 +70,20 @@ def test_1_where_something_is_and_json_says_all_of_it(folder: Path):
 
 @pytest.mark.parametrize("sets", ["render.use=grey-level", "render.use=tangible-mask", "scene.height=dot.npy"])
 def test_any_law_and_one_pixel(folder: Path, sets: str):
-    assert preflight(folder / "p.yaml", [sets], Hand(), Loop(seconds=0.01), as_json=True, cached=False)
+    preflight(folder / "p.yaml", [sets], seconds=0.01, as_json=True, no_cache=True)
 
 
 @pytest.mark.parametrize(
     ("line", "said"),
     [
-        ("device: {use: mock}", "p.yaml: `device:` is missing; add one, such as `device: {use: mock}`"),
+        ("device: {use: mock}", "p.yaml: `device:` is missing; name a method"),
         ("render: {use: proxy, stiffness_n_per_m: 700}", "p.yaml: `render:` is missing; name a method"),
     ],
 )
 def test_what_must_be_configured(folder: Path, line: str, said: str):
     (folder / "p.yaml").write_text(SAFE.replace(line, ""))
     with pytest.raises(ConfigError, match=re.escape(said)):
-        preflight(folder / "p.yaml", (), Hand(), Loop(seconds=0.01), as_json=False, cached=False)
+        preflight(folder / "p.yaml", seconds=0.01, no_cache=True)
 
 
 def test_a_mistake_costs_one_clear_line(folder: Path):
@@ -102,7 +101,7 @@ def test_numbers_that_make_no_sense(value: float):
 
 def test_the_device_is_never_opened(folder: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(Mock, "open", lambda self: pytest.fail("opened"))
-    assert preflight(folder / "p.yaml", (), Hand(), Loop(seconds=0.01), as_json=True, cached=False)
+    preflight(folder / "p.yaml", seconds=0.01, as_json=True, no_cache=True)
 
 
 def test_a_cure_stands_below_its_verdict_and_brackets_are_no_marks():
@@ -113,29 +112,26 @@ def test_a_cure_stands_below_its_verdict_and_brackets_are_no_marks():
     ]
 
 
-@pytest.mark.slow
-def test_a_law_of_somebody_elses_without_a_word_on_its_stiffness(folder: Path, monkeypatch: pytest.MonkeyPatch):
+def test_a_law_of_somebody_elses_without_a_word_on_its_stiffness():
     """It is felt."""
     from tangible_core import HapticSurface
     from tangible_core.data import Force
-    from tangible_core.pipeline.config import load_config
-    from tangible_core.plugins.interfaces import Touch
-    from tangible_core.plugins.registry import default_registry
+    from tangible_core.plugins.interfaces import PlainTouch
     from tangible_core.preflight import survey
+    from tangible_render import Proxy
 
-    class Spring(Touch):
+    class Spring(PlainTouch):
         def force(self, state: HapticState) -> Force:
             return Force(0.0, 0.0, 350.0 * max(0.0, 0.01 - state.position_m[2]))
 
-        def path(self, positions_m, period_s=0.001):
-            return np.array([self.force(HapticState(tuple(each))) for each in positions_m])
-
     surface = HapticSurface.from_heights(np.full((4, 4), 0.01, np.float32))
-    config = load_config(folder / "p.yaml", default_registry())
-    flight = survey(config, surface, Spring(), Hand(), Loop(seconds=0.01))
+    flight = survey(surface, Spring(), Proxy(), Mock(), loop=Loop(seconds=0.01))
     assert flight.stiffness_n_per_m == pytest.approx(350)
-    assert flight.relief_key == "workspace.relief_m"
-    assert not flight.smoothed
-    own = load_config(folder / "p.yaml", default_registry(), ["scene.relief_m=0.003"])
-    flight = survey(own, surface, Spring(), Hand(), Loop(seconds=0.01))
-    assert (flight.relief_key, flight.relief_m) == ("scene.relief_m", 0.003)
+    assert (flight.relief_key, flight.relief_m) == ("workspace.relief_m", 0.02)
+
+
+def test_where_the_height_of_a_relief_is_said(folder: Path):
+    flight = load_pipeline(folder / "p.yaml").flight(loop=Loop(seconds=0.01))
+    assert (flight.relief_key, flight.relief_m, flight.smoothed) == ("workspace.relief_m", 0.004, False)
+    own = load_pipeline(folder / "p.yaml", ["scene.relief_m=0.003"]).flight(loop=Loop(seconds=0.01))
+    assert (own.relief_key, own.relief_m) == ("scene.relief_m", 0.003)

@@ -3,7 +3,8 @@ import math
 import subprocess
 import sys
 from collections.abc import Callable
-from itertools import pairwise
+from itertools import combinations, pairwise
+from math import log
 from pathlib import Path
 from typing import Any
 
@@ -33,8 +34,12 @@ from tangible_core.data import (
 from tangible_core.errors import OutputError, PictureError
 from tangible_core.haptic_textures import peak_wavelength_m
 from tangible_core.materials.assignment import library
+from tangible_core.plugins import hooks
+from tangible_core.plugins.hooks import hookimpl
+from tangible_core.plugins.panel import Panel
+from tangible_core.plugins.registry import Registry
 from tangible_core.report import block, disparity_errors, draw_sheet, write_figures
-from tangible_core.report.layout import ROW_IN, TALLEST_IN, Cell, arrange
+from tangible_core.report.layout import ROW_IN, TALLEST_IN, Cell, _height, arrange
 from tangible_core.report.material_sheet import draw_material, spectra
 from tangible_core.report.panels import PANELS
 from tangible_core.report.panels.force import round_number, spread
@@ -173,6 +178,23 @@ class TestLayout:
         assert width_in <= WIDTH_IN + 1e-6
         assert [(box.top_in, box.left_in) for box in boxes] == sorted((box.top_in, box.left_in) for box in boxes)
 
+    @given(st.lists(st.floats(0.5, 5.0), min_size=1, max_size=7))
+    def test_no_other_rows_are_nearer_to_the_wanted_height(self, aspects: list[float]) -> None:
+        cells = [Cell(aspect, 0.2, 0.8, 0.5, 0.4, 2.9) for aspect in aspects]
+        inner = range(1, len(cells))
+        cuts = [(0, *cut, len(cells)) for count in range(len(cells)) for cut in combinations(inner, count)]
+        ways = [[cells[a:b] for a, b in pairwise(cut)] for cut in cuts]
+        least = min(ways, key=lambda rows: sum(len(row) * log(_height(row, 12.0) / ROW_IN) ** 2 for row in rows))
+        boxes, _, _ = arrange(cells, 12.0)
+        assert [sum(box.top_in == top for box in boxes) for top in sorted({box.top_in for box in boxes})] == [
+            len(row) for row in least
+        ]
+
+    def test_many_cells_are_arranged_at_once(self) -> None:
+        """Not by trying all ways, of which 40 cells have half a million millions."""
+        boxes, _, _ = arrange([Cell(1.5, 0.1, 0.5, 0.3, 0.4)] * 40, WIDTH_IN)
+        assert len(boxes) == 40
+
     def test_rows_come_near_to_the_wanted_height(self) -> None:
         boxes, _, _ = arrange([Cell(1.5, 0.1, 0.5, 0.3, 0.4)] * 6, WIDTH_IN)
         assert len({box.top_in for box in boxes}) == 2
@@ -290,6 +312,81 @@ def drawn(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., Figu
     return draw
 
 
+def histogram(axes: Axes, relief: Relief, recording: Recording | None = None) -> str:
+    """A plugin's panel."""
+    axes.hist(relief.height_m.ravel())
+    return f"Heights, {'felt' if recording else 'unfelt'}"
+
+
+def raises(axes: Axes, **_: Any) -> str:
+    axes.plot([0, 1])
+    raise ZeroDivisionError("no\nheights")
+
+
+class Adds:
+    """A hook module that adds panels."""
+
+    def __init__(self, *panels: Any) -> None:
+        self.panels = panels
+
+    @hookimpl
+    def tangible_panels(self) -> tuple[Any, ...]:
+        return self.panels
+
+
+@pytest.fixture
+def adding(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
+    """Installs hook modules that add panels, one each."""
+
+    def add(*panels: Any) -> None:
+        plugins = hooks.manager()
+        for number, panel in enumerate(panels):
+            plugins.register(Adds(panel), name=f"acme/{number}")
+        monkeypatch.setattr("tangible_core.report.added.default_registry", lambda: Registry(plugins))
+
+    return add
+
+
+class TestAddedPanels:
+    """Panels of plugins, by the moment `tangible_panels`."""
+
+    def test_one_stands_after_the_others_with_what_it_needs_and_likes(self, adding: Any, drawn: Any) -> None:
+        adding(Panel(histogram, {"relief"}, {"recording"}, aspect=1.5))
+        run = whole_run()
+        assert said(drawn(**run))["h"] == "Heights, felt"
+        assert said(drawn(relief=run["relief"]))["b"] == "Heights, unfelt"
+
+    def test_without_what_it_needs_it_is_left_out(self, adding: Any, drawn: Any) -> None:
+        adding(Panel(histogram, {"relief"}))
+        assert len(said(drawn(views=whole_run()["views"]))) == 1
+
+    def test_it_may_be_the_only_one(self, adding: Any, drawn: Any) -> None:
+        adding(Panel(lambda axes, recording: "Ticks", {"recording"}))
+        assert "Ticks" in said(drawn(recording=record())).values()
+
+    def test_there_may_be_any_number(self, adding: Any, drawn: Any) -> None:
+        adding(*[Panel(histogram, {"relief"}, aspect=1.5)] * 30)
+        found = said(drawn(relief=whole_run()["relief"]))
+        assert list(found) == [*"abcdefghijklmnopqrstuvwxyz", "aa", "ab", "ac", "ad", "ae"]
+
+    def test_one_that_fails_says_so_and_the_others_are_drawn(
+        self, adding: Any, drawn: Any, caplog: pytest.LogCaptureFixture
+    ) -> None:
+        adding(Panel(raises, {"relief"}), Panel(histogram, {"relief"}))
+        figure = drawn(relief=whole_run()["relief"])
+        assert list(said(figure).values())[1:] == ["Not drawn, ZeroDivisionError: no\\nheights", "Heights, unfelt"]
+        assert not figure.axes[-2].lines
+        assert "could not be drawn" in caplog.text
+
+    @pytest.mark.parametrize("junk", [(histogram, {"relief"}), "panel", 3])
+    def test_what_is_no_panel_is_left_out(
+        self, junk: Any, adding: Any, drawn: Any, caplog: pytest.LogCaptureFixture
+    ) -> None:
+        adding(junk, Panel(histogram, {"relief"}))
+        assert len(said(drawn(relief=whole_run()["relief"]))) == 2
+        assert "is no Panel; it is left out" in caplog.text
+
+
 class TestSheet:
     def test_every_panel_of_a_whole_run(self) -> None:
         found = headlines(whole_run())
@@ -304,7 +401,8 @@ class TestSheet:
             ("disparity", ["Disparity"]),
             ("segments", ["Segments"]),
             ("views relief", ["Input: left, inset right", "Relief and its normals"]),
-            ("truth views materials recording", ["Input: left, inset right"]),
+            ("truth views materials", ["Input: left, inset right"]),
+            ("recording", ["Force and tip over time: peak 0.55 N, contact 50 %"]),
         ],
     )
     def test_what_is_not_there_is_left_out(self, names: str, expected: list[str]) -> None:
@@ -353,7 +451,7 @@ class TestSheet:
 
     def test_nothing_to_draw(self, tmp_path: Path) -> None:
         with pytest.raises(OutputError, match="nothing to draw"):
-            draw_sheet(tmp_path / "sheet.png", title="demo", recording=record())
+            draw_sheet(tmp_path / "sheet.png", title="demo", truth=np.ones((4, 4), np.float32))
         assert not list(tmp_path.iterdir())
 
     def test_a_place_that_cannot_be_written(self, tmp_path: Path) -> None:

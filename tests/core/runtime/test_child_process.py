@@ -39,7 +39,7 @@ import os, pathlib
 import numpy as np
 from tangible_core import DepthEstimator, DisparityMap, Force, ForceRenderer, HapticDevice
 from tangible_core.compiled.touch import CompiledTouch
-from tangible_core.plugins.interfaces import Touch
+from tangible_core.plugins.interfaces import PlainTouch
 from tangible_core.testing.loop_devices import SPEC
 
 FELT = pathlib.Path(__file__).with_suffix(f".{os.getpid()}.felt")
@@ -52,13 +52,10 @@ class Law(ForceRenderer):
         return LawTouch()
 
 
-class LawTouch(Touch):
+class LawTouch(PlainTouch):
     def force(self, state):
         FELT.touch()
         return Force(0.0, 0.0, 0.0)
-
-    def path(self, positions_m, period_s=0.001):
-        return 0 * positions_m
 
 
 class Tip(HapticDevice):

@@ -5,10 +5,11 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
+from pictures import write_png
 from tangible_core.data import DisparityMap, Relief, SegmentMap
 from tangible_core.errors import ConfigError, GeometryError, PictureError
-from tangible_core.scene.picture_files import write_png
-from tangible_core.scene.scene import BUILTINS, SceneFiles, read_scene
+from tangible_core.scene.scene import Scene
+from tangible_core.scene.scene_files import BUILTINS, SceneFiles
 
 NAN = np.nan
 SIZE = {"width_m": 0.08, "relief_m": 0.02}
@@ -83,7 +84,7 @@ def test_the_block_survives_json():
 
 
 def test_the_motorcycle_is_a_calibrated_pair_with_its_truth():
-    scene = read_scene("builtin/motorcycle", Path("anywhere"), **SIZE)
+    scene = Scene.read("builtin/motorcycle", Path("anywhere"))
     assert scene.name == "builtin/motorcycle"
     assert scene.views.left.shape == scene.views.right.shape == (500, 741, 3)
     camera = scene.views.calibration
@@ -92,11 +93,11 @@ def test_the_motorcycle_is_a_calibrated_pair_with_its_truth():
     assert scene.truth.shape == (500, 741)
     assert np.isnan(scene.truth).mean() == pytest.approx(0.0735, abs=1e-4)
     assert not np.isinf(scene.truth).any()
-    assert scene.given == {}
+    assert scene.disparity is None and scene.segments is None
 
 
 def test_the_truth_belongs_to_the_left_view():
-    scene = read_scene("builtin/motorcycle", Path(), **SIZE)
+    scene = Scene.read("builtin/motorcycle", Path())
     rows, columns = np.nonzero(scene.truth > 0)
     target = np.rint(columns - scene.truth[rows, columns]).astype(int)
     inside = target >= 0
@@ -111,7 +112,7 @@ def test_builtin_scenes_need_no_network(name, monkeypatch):
         raise AssertionError("the network was used")
 
     monkeypatch.setattr(socket.socket, "connect", refuse)
-    scene = read_scene(name, Path(), **SIZE)
+    scene = Scene.read(name, Path())
     assert scene.views.left.size > 10_000
 
 
@@ -125,7 +126,7 @@ def test_builtin_scenes_need_no_network(name, monkeypatch):
 )
 def test_an_unknown_name_says_what_there_is(name, hint):
     with pytest.raises(ConfigError, match="no scene is named") as caught:
-        read_scene(name, Path(), **SIZE)
+        Scene.read(name, Path())
     assert hint in str(caught.value)
     assert "builtin/gravel" in str(caught.value)
 
@@ -133,7 +134,7 @@ def test_an_unknown_name_says_what_there_is(name, hint):
 def test_without_scikit_image_it_is_named(monkeypatch):
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
     with pytest.raises(PictureError, match="pip install scikit-image"):
-        read_scene("builtin/brick", Path(), **SIZE)
+        Scene.read("builtin/brick", Path())
 
 
 # Scenes in files
@@ -141,7 +142,7 @@ def test_without_scikit_image_it_is_named(monkeypatch):
 
 def test_paths_start_at_the_folder_unless_they_are_absolute(folder):
     files = SceneFiles(left="left.png", right=folder / "right.png")
-    scene = read_scene(files, folder, **SIZE)
+    scene = Scene.read(files, folder)
     np.testing.assert_array_equal(scene.views.left, PICTURE)
     np.testing.assert_array_equal(scene.views.right, PICTURE)
     assert scene.name == "left.png"
@@ -151,16 +152,16 @@ def test_paths_start_at_the_folder_unless_they_are_absolute(folder):
 
 def test_a_calibration_needs_no_offset(folder):
     files = SceneFiles(left="left.png", right="right.png", focal_px=100, baseline_m=0.1)
-    camera = read_scene(files, folder, **SIZE).views.calibration
+    camera = Scene.read(files, folder).views.calibration
     assert (camera.focal_px, camera.baseline_m, camera.offset_px) == (100, 0.1, 0)
 
 
 def test_a_photo_brings_what_it_is_given_with(folder):
     write_png(folder / "labels.png", np.repeat(np.uint8([[0, 0, 0, 9, 9, 9]]), 4, axis=0))
     files = SceneFiles(photo="photo.png", disparity="map.npy", segments="labels.png", truth="map.npy")
-    scene = read_scene(files, folder, **SIZE)
-    assert set(scene.given) == {"disparity", "segments"}
-    disparity, segments = scene.given["disparity"], scene.given["segments"]
+    scene = Scene.read(files, folder)
+    assert set(scene.brings(**SIZE)) == {"views", "disparity", "segments"}
+    disparity, segments = scene.disparity, scene.segments
     assert isinstance(disparity, DisparityMap)
     assert isinstance(segments, SegmentMap)
     np.testing.assert_array_equal(disparity.disparity_px, np.load(folder / "map.npy"))
@@ -169,30 +170,30 @@ def test_a_photo_brings_what_it_is_given_with(folder):
 
 
 def test_the_truth_cannot_be_changed(folder):
-    scene = read_scene(SceneFiles(photo="photo.png", truth="map.npy"), folder, **SIZE)
+    scene = Scene.read(SceneFiles(photo="photo.png", truth="map.npy"), folder)
     with pytest.raises(ValueError, match="read-only"):
         scene.truth[0, 0] = 1
 
 
 def test_a_height_map_brings_its_relief_and_no_views(folder):
-    scene = read_scene(SceneFiles(height="map.npy"), folder, **SIZE)
+    scene = Scene.read(SceneFiles(height="map.npy"), folder)
     assert scene.views is None
-    relief = scene.given["relief"]
+    relief = scene.brings(**SIZE)["relief"]
     assert isinstance(relief, Relief)
     np.testing.assert_allclose(relief.height_m, np.load(folder / "map.npy") / 23 * 0.02, rtol=1e-6)
     assert relief.extent_m == pytest.approx((0.08, 0.08 * 4 / 6))
 
 
 def test_a_height_map_may_say_how_high_it_is(folder):
-    scene = read_scene(SceneFiles(height="map.npy", relief_m=0.005), folder, **SIZE)
-    assert scene.given["relief"].height_m.max() == np.float32(0.005)
+    scene = Scene.read(SceneFiles(height="map.npy", relief_m=0.005), folder)
+    assert scene.brings(**SIZE)["relief"].height_m.max() == np.float32(0.005)
 
 
 def test_holes_of_a_height_map_follow_the_rule_that_is_asked_for(folder):
     np.save(folder / "holes.npy", [[2, NAN, 1, 0]])
     files = SceneFiles(height="holes.npy")
     filled, cut = (
-        read_scene(files, folder, width_m=0.08, relief_m=1, holes=holes).given["relief"].height_m.tolist()
+        Scene.read(files, folder).brings(width_m=0.08, relief_m=1, holes=holes)["relief"].height_m.tolist()
         for holes in ("fill", "cut")
     )
     assert (filled, cut) == ([[1, 0.5, 0.5, 0]], [[1, 0, 0.5, 0]])
@@ -201,7 +202,7 @@ def test_holes_of_a_height_map_follow_the_rule_that_is_asked_for(folder):
 def test_a_height_map_of_nothing_is_refused(folder):
     np.save(folder / "nothing.npy", np.full((3, 3), NAN))
     with pytest.raises(GeometryError, match="holds no height"):
-        read_scene(SceneFiles(height="nothing.npy"), folder, **SIZE)
+        Scene.read(SceneFiles(height="nothing.npy"), folder).brings(**SIZE)
 
 
 @pytest.mark.parametrize(
@@ -218,12 +219,12 @@ def test_a_height_map_of_nothing_is_refused(folder):
     ],
 )
 def test_two_sizes_are_named_with_their_files(folder, files, named):
-    with pytest.raises(PictureError, match="all files of a scene are of one size") as caught:
-        read_scene(SceneFiles(**files), folder, **SIZE)
+    with pytest.raises(PictureError, match="all parts of a scene are of one size") as caught:
+        Scene.read(SceneFiles(**files), folder)
     assert all(each in str(caught.value) for each in named)
 
 
 @pytest.mark.parametrize("key", ["photo", "height"])
 def test_a_file_that_is_not_there_is_named(folder, key):
     with pytest.raises(PictureError, match="there is no such file"):
-        read_scene(SceneFiles(**{key: "nothing.png"}), folder, **SIZE)
+        Scene.read(SceneFiles(**{key: "nothing.png"}), folder)

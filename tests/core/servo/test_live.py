@@ -16,7 +16,7 @@ from tangible_core.data import ServoReport
 from tangible_core.errors import OutputError
 from tangible_core.plugins.interfaces import Touch
 from tangible_core.servo import OVER, Safety
-from tangible_core.session import INTERRUPTED, Recording, feel, figures, keeping, live
+from tangible_core.session import INTERRUPTED, Recording, figures, keeping, live, run_in_real_time
 from tangible_core.session.tick_file import About
 from tangible_core.testing.loop_devices import Circling, Failing
 
@@ -31,7 +31,7 @@ def test_every_tick_is_kept_and_reports_come_ten_times_a_second(touch: Touch, tm
     reports: list[ServoReport] = []
     began_s: list[float] = []
     with keeping(tmp_path / "hand.nc", About("circling", "proxy", "")) as writer:
-        last = feel(
+        last = run_in_real_time(
             touch, Circling(), 1.0, Safety(), reports.append, writer.append, lambda _: began_s.append(time.monotonic())
         )
         took_s = time.monotonic() - began_s[0]
@@ -48,7 +48,7 @@ def test_every_tick_is_kept_and_reports_come_ten_times_a_second(touch: Touch, tm
 @pytest.mark.slow
 def test_other_files_are_made_of_it_at_the_end(touch: Touch, tmp_path: Path, name: str) -> None:
     with keeping(tmp_path / name, About("circling", "proxy", "")) as writer:
-        feel(touch, Circling(), 0.2, Safety(), lambda _: None, writer.append)
+        run_in_real_time(touch, Circling(), 0.2, Safety(), lambda _: None, writer.append)
     assert len(Recording.load(tmp_path / name).rows) == 200
     assert [each.name for each in tmp_path.iterdir()] == [name]
 
@@ -96,7 +96,7 @@ def test_a_full_disk_ends_it_with_no_force(touch: Touch, tmp_path: Path) -> None
             with files_up_to(20_000):
                 writer.append(rows)
 
-        feel(touch, device, 5.0, Safety(ramp_s=0), lambda _: None, keep)
+        run_in_real_time(touch, device, 5.0, Safety(ramp_s=0), lambda _: None, keep)
     assert float(force.read_text()) == 0
     kept = Recording.load(tmp_path / "hand.nc")
     assert len(kept.rows) > 50
@@ -116,7 +116,9 @@ def test_ctrl_c(touch: Touch, tmp_path: Path) -> None:
                 signal.raise_signal(signal.SIGINT)
 
         with hearing():
-            last = feel(touch, Failing(fault="none", record=str(force)), None, Safety(), reports.append, keep)
+            last = run_in_real_time(
+                touch, Failing(fault="none", record=str(force)), None, Safety(), reports.append, keep
+            )
         writer.close(last.stopped)
     assert last.stopped == INTERRUPTED
     assert reports == [last]  # it ended before the first one was due

@@ -48,19 +48,20 @@ class Sinking(CompiledLink):
     """A device of kernels, which exchanges or not."""
 
     def __init__(self, exchanges: bool, first_waiting: int = 0, fresh_again: int = 0) -> None:
+        super().__init__("the sinking device", 8.0)
         self.fixed = np.array([0, first_waiting, fresh_again]), np.zeros(3)
         self._exchanges = exchanges
 
     def kernels(self) -> LinkKernels:
         return LinkKernels(read, write, self.fixed)
 
-    def read(self) -> HapticState:
+    def _read(self) -> HapticState:
         state = np.zeros(7)
         read(*self.fixed, state)
         x, y, z, vx, vy, vz, buttons = state.tolist()
         return HapticState((x, y, z), (vx, vy, vz), 0.0, int(buttons))
 
-    def write(self, force: Force) -> None:
+    def _send(self, force: Force) -> None:
         write(*self.fixed, *force)
 
     @property
@@ -71,30 +72,31 @@ class Sinking(CompiledLink):
     def exchanges(self) -> bool:
         return self._exchanges
 
-    def exchange(self) -> None:
+    def _exchange(self) -> None:
         pass
 
-    def close(self) -> None:
-        self.write(Force(0.0, 0.0, 0.0))
+    def _release(self) -> None:
+        pass
 
 
 class Plain(Link):
     """The same without its kernels."""
 
     def __init__(self, link: Sinking) -> None:
+        super().__init__("the plain device", 8.0)
         self._link = link
 
-    def read(self) -> HapticState:
+    def _read(self) -> HapticState:
         return self._link.read()
 
-    def write(self, force: Force) -> None:
+    def _send(self, force: Force) -> None:
         self._link.write(force)
 
     @property
     def applied(self) -> Force:
         return self._link.applied
 
-    def close(self) -> None:
+    def _release(self) -> None:
         self._link.close()
 
 

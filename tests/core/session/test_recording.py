@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from hostile import npz_bomb
 from tangible_core.data import TICK_COLUMNS, HapticSurface, TickFlag
 from tangible_core.errors import OutputError
-from tangible_core.session import About, Recording, check_record_path, run
+from tangible_core.session import About, Recording, check_record_path, run_simulated
 from tangible_devices.mock import Mock
 from tangible_render.penalty_gradient import PenaltyGradient
 
@@ -90,9 +90,9 @@ def test_an_npz_of_before(tmp_path: Path):
 
 def test_a_mock_plays_a_csv_again(tmp_path: Path):
     touch = PenaltyGradient().touch(HapticSurface.from_heights(np.full((3, 3), 0.01)))
-    first = run(touch, Mock(speed_m_per_s=0.2), 0.3)
+    first = run_simulated(touch, Mock(speed_m_per_s=0.2), 0.3)
     first.save(tmp_path / "stroke.csv")
-    again = run(touch, Mock(path="csv", csv_file=tmp_path / "stroke.csv", hand=None), 0.3)
+    again = run_simulated(touch, Mock(path="csv", csv_file=tmp_path / "stroke.csv", hand=None), 0.3)
     assert np.allclose(again.position_m, first.position_m, rtol=0, atol=1e-15)
     assert np.allclose(again.force_n, first.force_n, rtol=0, atol=1e-11)
 
@@ -111,7 +111,7 @@ def test_figures():
         "median_contact_force_n": 3.0,
         "peak_force_n": 5.0,
         "work_j": 7.0 + 2.0,
-        "limited": 1,
+        "force_limited": 1,
         "not_finite": 2,
     }
 

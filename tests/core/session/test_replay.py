@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from tangible_core.data import Force, HapticState, HapticSurface, TickFlag
-from tangible_core.plugins.interfaces import Touch
+from tangible_core.plugins.interfaces import PlainTouch
 from tangible_core.servo import Safety
-from tangible_core.session import Recording, replay, run, undisturbed
+from tangible_core.session import Recording, replay, run_simulated, undisturbed
 from tangible_devices.mock import Mock
 from tangible_render.penalty import Penalty
 from tangible_render.proxy import Proxy
@@ -15,21 +15,18 @@ SURFACE = HapticSurface.from_heights(np.random.default_rng(0).uniform(0.004, 0.0
 LAW = Proxy(damping_n_s_per_m=3.0, static_friction=0.5, dynamic_friction=0.3)
 
 
-class Viscous(Touch):
+class Viscous(PlainTouch):
     """A law in Python: against the velocity, while a button is held."""
 
     def force(self, state: HapticState) -> Force:
         vx, vy, vz = state.velocity_m_per_s
         return Force(-vx, -vy, -vz) if state.buttons & 2 else Force(0.0, 0.0, 0.0)
 
-    def path(self, positions_m, period_s=0.001):
-        raise NotImplementedError
-
 
 @pytest.fixture(scope="module")
 def felt() -> Recording:
     free = Safety(ramp_s=0, max_step_n=10, passivity="off")
-    return run(LAW.touch(SURFACE), Mock(speed_m_per_s=0.2, tremor_m=1e-4), 1.0, limits=free)
+    return run_simulated(LAW.touch(SURFACE), Mock(speed_m_per_s=0.2, tremor_m=1e-4), 1.0, limits=free)
 
 
 def test_through_its_own_law_a_recording_is_the_same(felt: Recording):

@@ -11,10 +11,10 @@ from hypothesis import strategies as st
 
 from tangible_core.data import NO_FORCE, DeviceSpec, Force, HapticState, HapticSurface, ServoReport, TickFlag
 from tangible_core.errors import ConfigError, DeviceError
-from tangible_core.plugins.interfaces import HapticDevice, Link, Touch
+from tangible_core.plugins.interfaces import HapticDevice, Link, PlainTouch
 from tangible_core.servo import Safety
 from tangible_core.servo.guard.safety import softness
-from tangible_core.session import INTERRUPTED, failure, limited, loop, run
+from tangible_core.session import INTERRUPTED, failure, loop, run_simulated
 from tangible_devices.mock import Mock
 from tangible_render.penalty_gradient import PenaltyGradient
 from tangible_render.proxy import Proxy
@@ -24,7 +24,7 @@ FREE = Safety(ramp_s=0, max_step_n=10, passivity="off")
 """Limits that let all through but what is too strong or not finite."""
 
 
-class Says(Touch):
+class Says(PlainTouch):
     """A touch that answers what a function of the tick says."""
 
     stiffness_n_per_m = 0.0
@@ -36,24 +36,22 @@ class Says(Touch):
         self.tick += 1
         return self.answer(self.tick)
 
-    def path(self, positions_m, period_s=0.001):
-        raise NotImplementedError
-
 
 class Scripted(Link):
     """A device that rises by a millimetre a tick, and fails or stands still where it is told to."""
 
     def __init__(self, fails_at: int | None = None, stamps: Callable[[int], float] = lambda tick: 5 + tick * 0.001):
+        super().__init__("the scripted device", 8.0)
         self.fails_at, self.stamps = fails_at, stamps
         self.tick, self.held, self.closed, self.forces = -1, NO_FORCE, 0, []
 
-    def read(self) -> HapticState:
+    def _read(self) -> HapticState:
         self.tick += 1
         if self.fails_at is not None and self.tick >= self.fails_at:
             raise DeviceError("the cable is out; put it in")
         return HapticState((0.0, 0.0, self.tick * 0.001), (0.0, 0.0, 1.0), self.stamps(self.tick))
 
-    def write(self, force: Force) -> None:
+    def _send(self, force: Force) -> None:
         if self.fails_at is not None and self.tick >= self.fails_at:
             raise DeviceError("nobody answers")
         self.held = force
@@ -63,7 +61,7 @@ class Scripted(Link):
     def applied(self) -> Force:
         return self.held
 
-    def close(self) -> None:
+    def _release(self) -> None:
         self.closed += 1
 
 
@@ -86,7 +84,7 @@ class Bench(HapticDevice):
 def feel(answer: Callable[[int], Force], seconds: float = 1.0, link: Scripted | None = None, on_report=None):
     link = link or Scripted()
     LINKS[:] = [link]
-    return run(Says(answer), Bench(), seconds, on_report, FREE), link
+    return run_simulated(Says(answer), Bench(), seconds, on_report, FREE), link
 
 
 def fails(error: BaseException, at: int) -> Callable[[int], Force]:
@@ -102,14 +100,14 @@ class TestRun:
     def test_what_is_recorded_is_what_was_felt(self):
         touch = PenaltyGradient().touch(HapticSurface.from_heights(np.random.default_rng(0).uniform(0, 0.004, (9, 9))))
         mock = Mock(hand=None, path="circle", z_m=0.001)
-        recording = run(touch, mock, 0.5, limits=FREE)
+        recording = run_simulated(touch, mock, 0.5, limits=FREE)
         with mock.open() as link:
             states = [link.read() for _ in range(500)]
         assert np.array_equal(recording.time_s, np.arange(500) * 0.001)
         assert np.array_equal(recording.position_m, [state.position_m for state in states])
         assert np.array_equal(recording.velocity_m_per_s, [state.velocity_m_per_s for state in states])
         assert np.array_equal(recording.force_n, touch.path(recording.position_m))
-        assert (recording.stopped, recording.limited, recording.not_finite) == ("", 0, 0)
+        assert (recording.stopped, recording.force_limited, recording.not_finite) == ("", 0, 0)
 
     @pytest.mark.parametrize(("seconds", "ticks"), [(1.0, 1000), (0.3, 300), (0.0014, 1), (0.0016, 2), (1e-9, 1)])
     def test_ticks_are_the_seconds_in_periods(self, seconds: float, ticks: int):
@@ -143,14 +141,14 @@ class TestRun:
 
     def test_forces_over_the_maximum_are_scaled_down_and_counted(self):
         recording, _ = feel(lambda tick: Force(30.0, 0.0, 40.0) if tick % 2 else PUSH, 0.01)
-        assert recording.limited == 5
+        assert recording.force_limited == 5
         assert recording.force_n[1] == pytest.approx((4.8, 0, 6.4))
         assert recording.peak_force_n == pytest.approx(8.0)
 
     @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
     def test_forces_that_are_not_finite_are_made_zero_and_counted(self, bad: float, caplog: pytest.LogCaptureFixture):
         recording, link = feel(lambda tick: Force(0.0, bad, 1.0) if tick in (3, 4) else PUSH, 0.01)
-        assert (recording.not_finite, recording.limited) == (2, 0)
+        assert (recording.not_finite, recording.force_limited) == (2, 0)
         assert link.forces[2:6] == [PUSH, NO_FORCE, NO_FORCE, PUSH]
         assert "2 forces were not finite" in caplog.text
 
@@ -167,7 +165,7 @@ class TestRun:
         level = HapticSurface.from_heights(np.zeros((8, 8)))
         device = Mock(hand=None, path="circle", z_m=-0.001)
         held = softness(FREE.arrays(device.spec(), 4000.0)[0], 0.001)
-        recording = run(Proxy(stiffness_n_per_m=4000).touch(level), device, 0.01, limits=FREE)
+        recording = run_simulated(Proxy(stiffness_n_per_m=4000).touch(level), device, 0.01, limits=FREE)
         assert held < 1
         assert (recording.flags & TickFlag.STIFFNESS_LIMITED).all()
         assert recording.force_n[:, 2] == pytest.approx(held * 4000 * 0.001)
@@ -180,13 +178,15 @@ class TestRun:
     def test_a_device_that_cannot_be_opened(self):
         LINKS[:] = [DeviceError("it is in use; close the other program")]
         with pytest.raises(DeviceError, match="in use"):
-            run(Says(lambda _: PUSH), Bench(), 1.0)
+            run_simulated(Says(lambda _: PUSH), Bench(), 1.0)
 
 
 class TestRows:
     def test_proxy_flags_and_buttons(self):
         surface = HapticSurface.from_heights(np.full((8, 8), 1 / 128))
-        recording = run(Proxy().touch(surface), Mock(hand=None, path="press", z_m=1 / 128 - 0.02, lift_m=0.03), 0.6)
+        recording = run_simulated(
+            Proxy().touch(surface), Mock(hand=None, path="press", z_m=1 / 128 - 0.02, lift_m=0.03), 0.6
+        )
         touching = recording.force_n[:, 2] > 0
         assert 0 < np.mean(touching) < 1
         assert np.array_equal(touching, np.isfinite(recording.proxy_m).all(axis=1))
@@ -236,7 +236,7 @@ class TestEndings:
 
     def test_a_device_that_is_gone_at_the_end(self):
         class Gone(Scripted):
-            def write(self, force: Force) -> None:
+            def _send(self, force: Force) -> None:
                 if self.tick == 10:
                     raise DeviceError("gone; look for it")
 
@@ -263,20 +263,6 @@ class TestEndings:
         with pytest.raises(ZeroDivisionError):
             feel(fails(ZeroDivisionError(), 5), link=link)
         assert (link.held, link.closed) == (NO_FORCE, 1)
-
-
-@given(st.tuples(*[st.floats()] * 3), st.floats(1e-3, 1e3))
-def test_limited_forces_are_finite_within_the_limit_and_keep_their_direction(parts, most_n: float):
-    force = limited(Force(*parts), most_n)
-    if not all(map(math.isfinite, parts)):
-        assert force == NO_FORCE
-    elif math.hypot(*parts) <= most_n:
-        assert force == parts
-    else:
-        assert math.hypot(*force) == pytest.approx(most_n)
-        greatest = max(map(abs, parts))
-        unit = np.array(parts) / greatest
-        assert np.allclose(np.array(force) / most_n, unit / np.linalg.norm(unit), atol=1e-12)
 
 
 def test_logs_bear_the_rooms_name(caplog: pytest.LogCaptureFixture):

@@ -123,6 +123,8 @@ def bilinear(surface: HapticSurface, x: float, y: float) -> tuple[float, float, 
 
 
 class LawTouch(Touch):
+    """Not a `PlainTouch`, whose path cannot be wrong."""
+
     def __init__(self, surface: HapticSurface, render: "Render") -> None:
         self.surface, self.law, self.gain_on_a_path = surface, render.law, render.gain_on_a_path
         self.stiffness_n_per_m = render.said_n_per_m
@@ -188,6 +190,7 @@ RENDER: dict[str, Render] = {
     "surface_lies_where_it_is_drawn": Render(law=mirrored),
     "slopes_push_downhill": changed(lambda x, y, z, surface: Force(-x, -y, z)),
     "springs_are_exact": changed(lambda x, y, z, surface: Force(0.0, 0.0, z)),
+    "what_it_says_of_itself_is_felt": Render(law=lambda surface, state: NO_FORCE),
     "resampling_feels_the_same": changed(lambda x, y, z, surface: Force(x, y, z * surface.height_m.shape[0])),
     "broken_state_gives_no_force": Render(law=lambda surface, state: Force(0.0, 0.0, 1.0)),
     "path_is_force_by_force": Render(gain_on_a_path=1.1),
@@ -203,42 +206,26 @@ RENDER: dict[str, Render] = {
 
 class GadgetLink(Link):
     def __init__(self, fault: str) -> None:
-        self.fault, self.held, self.ticks, self.closed = fault, NO_FORCE, 0, False
+        super().__init__("the gadget", 2.0 if fault == "forces_are_limited" else 8.0)
+        self.fault, self.held, self.ticks = fault, NO_FORCE, 0
 
-    def read(self) -> HapticState:
-        if self.closed and self.fault != "close_is_final":
-            raise DeviceError("closed")
+    def _read(self) -> HapticState:
         self.ticks += self.fault != "states_make_sense"
         drift = 0.1 if self.fault == "velocity_is_that_of_the_positions" else 0.0
         return HapticState((0.0, 0.0, 0.01), (drift, 0.0, 0.0), self.ticks / 1000)
 
-    def write(self, force: Force) -> None:
-        if self.closed:
-            raise DeviceError("closed")
-        if self.fault == "no_force_is_left_behind" and force == NO_FORCE:
+    def _send(self, force: Force) -> None:
+        if force == NO_FORCE and self.fault in ("no_force_is_left_behind", "broken_force_is_none"):
             return
-        if np.isfinite(force).all():
-            self.held = self.limited(force)
-        elif self.fault != "broken_force_is_none":
-            self.held = NO_FORCE
-
-    def limited(self, force: Force) -> Force:
-        if self.fault == "forces_are_limited":
-            return Force(*np.clip(force, -4.0, 4.0).tolist())
-        largest = max(map(abs, force))
-        ideal = np.array(force) / (largest or 1.0)
-        size = float(np.linalg.norm(ideal))
-        held = ideal * (min(largest, 8.0 / size) if size else 0.0)
-        return Force(*(held * (0.5 if self.fault == "force_is_applied" else 1.0)).tolist())
+        self.held = Force(0.5 * force.x, 0.5 * force.y, 0.5 * force.z) if self.fault == "force_is_applied" else force
 
     @property
     def applied(self) -> Force:
         return self.held
 
-    def close(self) -> None:
-        self.closed = True
-        if self.fault != "no_force_is_left_behind":
-            self.held = NO_FORCE
+    def _release(self) -> None:
+        if self.fault == "close_is_final":
+            self.held = Force(0.0, 0.0, 1.0)
 
 
 class Gadget(HapticDevice):

@@ -7,7 +7,7 @@ import pytest
 
 from tangible_core.data import NO_FORCE, Force, HapticSurface
 from tangible_core.errors import DeviceError
-from tangible_core.session import Recording, run
+from tangible_core.session import Recording, run_simulated
 from tangible_devices.mock import Mock
 from tangible_devices.replay import Replay
 from tangible_render.penalty_gradient import PenaltyGradient
@@ -74,9 +74,9 @@ def test_what_is_not_finite_is_passed_over(tmp_path: Path):
 
 def test_what_was_felt_is_felt_again(tmp_path: Path):
     touch = PenaltyGradient().touch(HapticSurface.from_heights(np.random.default_rng(0).uniform(0, 0.004, (9, 9))))
-    first = run(touch, Mock(speed_m_per_s=0.2), 0.5)
+    first = run_simulated(touch, Mock(speed_m_per_s=0.2), 0.5)
     first.save(tmp_path / "hand.npz")
-    again = run(touch, Replay(file=tmp_path / "hand.npz"), 0.5)
+    again = run_simulated(touch, Replay(file=tmp_path / "hand.npz"), 0.5)
     assert np.array_equal(again.rows, first.rows, equal_nan=True)
 
 

@@ -1,19 +1,21 @@
 """Materials around any law: friction, texture and damping are exact, passive, and no law is changed without them."""
 
+import pickle
+from copy import deepcopy
 from dataclasses import replace
 from itertools import pairwise
+from typing import ClassVar
 
 import numpy as np
 import pytest
-from pydantic import ValidationError
+from pydantic import Field, ValidationError
 
 from tangible_core.compiled.touch import CompiledTouch
 from tangible_core.data import Force, HapticState, HapticSurface, Material
-from tangible_core.errors import ConfigError
 from tangible_core.haptic_textures import compile_textures
 from tangible_core.haptic_textures.heights import texture_height
 from tangible_core.materials.assignment import library
-from tangible_core.plugins.interfaces import ForceRenderer, Touch
+from tangible_core.plugins.interfaces import ForceRenderer, PlainTouch, Touch
 from tangible_core.plugins.registry import load_method
 from tangible_core.synthetic.reliefs import waves
 from tangible_core.synthetic.rough import rough_surfaces
@@ -310,8 +312,8 @@ class TestOptions:
             ({"use": "penalty", "stifness_n_per_m": 1}, "stifness_n_per_m"),
             ({"use": "penalty", "stiffness_n_per_m": -1}, "greater than 0"),
             ({"stiffness_n_per_m": 1}, "a law has a name"),
-            ("proxy", "friction of its own"),
-            ("with-materials", "friction of its own"),
+            ("proxy", "proxy renders materials itself"),
+            ("with-materials", "with-materials renders materials itself"),
         ],
     )
     def test_a_law_that_is_none(self, law: object, said: str):
@@ -322,23 +324,150 @@ class TestOptions:
         with pytest.raises(ValidationError, match="did you mean 'sand'"):
             WithMaterials(material="sandy")
 
-    def test_a_law_in_python_cannot_have_materials_around_it(self, monkeypatch: pytest.MonkeyPatch):
-        class Slow(Touch):
+
+class Named(ForceRenderer):
+    """The law of `penalty`, or another that is shipped, with an option called friction that is no material's."""
+
+    friction: float = 0.25
+    """How hard its author finds physics."""
+
+    law: str = "penalty"
+    options: dict[str, float] = Field(default_factory=dict)
+
+    def touch(self, surface: HapticSurface) -> Touch:
+        return load_method("render", self.law)(**self.options).touch(surface)
+
+
+class Unnamed(ForceRenderer):
+    """Renders materials, by whatever its options are called."""
+
+    renders_materials: ClassVar[bool] = True
+    stickiness: float = 0.5
+
+    def touch(self, surface: HapticSurface) -> Touch:
+        return load_method("render", "proxy")().touch(surface)
+
+
+class Told(PlainTouch):
+    """Another law, as if it were Python's; it keeps what it was asked."""
+
+    def __init__(self, law: Touch) -> None:
+        self.law, self.asked = law, []
+        self.stiffness_n_per_m = law.stiffness_n_per_m
+
+    def force(self, state: HapticState) -> Force:
+        self.asked.append(state)
+        return self.law.force(state)
+
+
+class InPython(Named):
+    def touch(self, surface: HapticSurface) -> Touch:
+        return Told(super().touch(surface))
+
+
+class Sideways(InPython):
+    is_lateral: ClassVar[bool] = True
+    law: str = "lateral-shape"
+
+
+class Drawn(ForceRenderer):
+    """Says that it is lateral, and gives no force at all: what is felt is the materials' alone."""
+
+    is_lateral: ClassVar[bool] = True
+
+    def touch(self, surface: HapticSurface) -> Touch:
+        class Nothing(PlainTouch):
+            stiffness_n_per_m = 0.0
+
             def force(self, state: HapticState) -> Force:
-                return Force(0, 0, 1)
+                return Force(0.0, 0.0, 0.0)
 
-            def path(self, positions_m, period_s=0.001):
-                return np.zeros_like(positions_m)
+        return Nothing()
 
-        class Plugin(ForceRenderer):
-            def touch(self, surface: HapticSurface) -> Touch:
-                return Slow()
 
-        renderer = WithMaterials(law={"use": "grey-level"})
-        renderer.law.pop("force_at_white_n")
-        monkeypatch.setattr("tangible_core.plugins.registry.load_method", lambda kind, name: Plugin)
-        with pytest.raises(ConfigError, match="Plugin is not compiled"):
-            renderer.touch(level(STICKY))
+class Undrawn(Drawn):
+    is_lateral: ClassVar[bool] = False
+
+
+MADE_UP = {"named": Named, "unnamed": Unnamed, "in-python": InPython, "sideways": Sideways}
+MADE_UP |= {"drawn": Drawn, "undrawn": Undrawn}
+DAMPED = {"damping_n_s_per_m": 2.0}
+
+
+@pytest.fixture
+def made_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    """These laws, installed."""
+    monkeypatch.setattr(
+        "tangible_core.plugins.registry.load_method",
+        lambda kind, name: MADE_UP[name] if name in MADE_UP else load_method(kind, name),
+    )
+
+
+@pytest.mark.usefixtures("made_up")
+class TestFacts:
+    """What a law says of itself counts, not what its options are called or what it gives on level ground."""
+
+    def test_an_option_called_friction_is_no_material(self):
+        surface = level(STICKY)
+        found = WithMaterials(law="named").touch(surface).path(stroke())
+        assert np.array_equal(found, WithMaterials(law="penalty").touch(surface).path(stroke()))
+
+    def test_a_law_that_renders_materials_by_another_name_is_refused(self):
+        with pytest.raises(ValidationError, match="unnamed renders materials itself; use it as it is"):
+            WithMaterials(law="unnamed")
+
+    def test_a_law_that_says_it_is_lateral_leaves_the_push_to_the_table(self):
+        """Friction of a push of k d under a law that says so, and none under one that only gives no force."""
+        lateral = WithMaterials(law="drawn").touch(level(STICKY)).path(stroke())
+        assert lateral[-1] == pytest.approx((-0.5 * K * 0.001, 0, 0), rel=1e-5)
+        assert not WithMaterials(law="undrawn").touch(level(STICKY)).path(stroke()).any()
+
+    @pytest.mark.parametrize("law", [*PUSHING, *LATERAL])
+    def test_the_laws_that_are_shipped(self, law: str):
+        cls = load_method("render", law)
+        assert issubclass(cls, ForceRenderer)
+        assert (cls.is_lateral, cls.renders_materials) == (law in LATERAL, False)
+
+
+@pytest.mark.usefixtures("made_up")
+class TestPlainLaw:
+    """Around a law in plain Python, to the last bit what is felt around the same law compiled."""
+
+    @pytest.mark.parametrize(
+        ("plain", "compiled"),
+        [
+            *[({"use": "in-python", "law": law}, law) for law in PUSHING],
+            ({"use": "in-python", "options": DAMPED}, {"use": "penalty", **DAMPED}),
+            ("sideways", "lateral-shape"),
+        ],
+    )
+    @pytest.mark.parametrize("material", [STICKY, GRAINY, RUBBER, replace(STICKY, damping_n_s_per_m=3.0)])
+    def test_it_feels_the_same(self, plain: str | dict, compiled: str | dict, material: Material):
+        surface = covered(waves().surface, material)
+        path = stroke(0.03, 0.0, 400) + [0, 0, 1] * np.linspace(0.012, 0.0, 400)[:, None]
+        path[200] = np.nan
+        told, known = (WithMaterials(law=law).touch(surface) for law in (plain, compiled))
+        assert not isinstance(told, CompiledTouch) and isinstance(known, CompiledTouch)
+        assert told.stiffness_n_per_m == known.stiffness_n_per_m
+        expected = known.path(path)
+        assert expected[150:].any()
+        assert told.path(path).tobytes() == expected.tobytes()
+
+    def test_the_law_is_asked_once_a_tick_with_the_time_and_the_buttons(self):
+        touch = WithMaterials(law="in-python").touch(level(GRAINY))
+        touch.force(HapticState((0.001, 0.002, 0.009), (0.1, 0.2, 0.3), 7.0, 5))
+        (asked,) = touch._law.asked  # pyright: ignore[reportAttributeAccessIssue]
+        assert asked.position_m[:2] == (0.001, 0.002) and asked.position_m[2] != 0.009
+        assert (asked.time_s, asked.buttons) == (7.0, 5)
+
+    @pytest.mark.parametrize("copy", [deepcopy, lambda touch: pickle.loads(pickle.dumps(touch))])
+    def test_a_copy_feels_by_itself(self, copy):
+        """As one is asked for the law's stiffness, and one is felt in the loop's process."""
+        first = WithMaterials(law="in-python").touch(level(STICKY))
+        path = stroke(ticks=50)
+        first.path(path[:20])
+        second = copy(first)
+        assert second.path(path[20:]).tobytes() == first.path(path[20:]).tobytes()
 
 
 def test_friction_of_two_materials_is_one_bristle():

@@ -15,7 +15,9 @@ Source of the idea of filling from the farther side: Hirschmueller 2008, sec. 2.
 # ruff: noqa: ANN001, ANN201, ANN202 -- numba finds the types of what it compiles; the docstrings say them
 
 import numpy as np
-from numba import int32, njit, uint32
+from numba import int32, uint32
+
+from tangible_core.compiled.compiling import inner
 
 from .span import UNKNOWN
 
@@ -27,19 +29,20 @@ LEFT, RIGHT, ABOVE, BELOW = range(4)
 NEVER = np.int32(32767)
 
 
-@njit(inline="always")
+@inner()
 def alike(a, b):
     """Whether two known disparities may be of one surface."""
     return abs(int32(a) - int32(b)) <= ALIKE
 
 
-@njit(nogil=True, boundscheck=False)
+@inner()
 def seen_from_the_right(row, columns, seen):
     """The nearest disparity known to be seen at each column x of the right view: at x + 1, UNKNOWN where none is.
 
     Both ends stand for all columns beyond the picture, where something nearer than anything is seen. columns: scratch.
     """
-    seen[:] = UNKNOWN
+    for x in range(seen.size):
+        seen[x] = UNKNOWN
     seen[0] = seen[-1] = NEVER
     for x in range(row.size):
         columns[x] = _column(int32(x), int32(row[x]), int32(seen.size - 1))
@@ -48,13 +51,13 @@ def seen_from_the_right(row, columns, seen):
         seen[column] = max(seen[column], row[x])
 
 
-@njit(inline="always")
+@inner()
 def _column(x, value, last):
     """Where in `seen` a pixel of this disparity is."""
     return min(max(x + int32(1) - ((value + int32(8)) >> int32(4)), int32(0)), last)
 
 
-@njit(nogil=True, boundscheck=False)
+@inner()
 def choose(sides, paths, x, seen):
     """The candidate of the highest score; UNKNOWN if there is none."""
     left, right, above, below = sides[LEFT, x], sides[RIGHT, x], sides[ABOVE, x], sides[BELOW, x]
@@ -73,12 +76,12 @@ def choose(sides, paths, x, seen):
     return best
 
 
-@njit(inline="always")
+@inner()
 def _or_never(value):
     return NEVER if value == UNKNOWN else int32(value)
 
 
-@njit(inline="always")
+@inner()
 def _score(value, path, farthest, row_farthest, x, seen):
     """Without branches: what a pixel's candidates are like, no processor can guess."""
     there = int32(seen[_column(x, value, seen.size - 1)])

@@ -6,6 +6,8 @@ import numpy as np
 from jaxtyping import Bool, Float, Float32, Int16, UInt8
 from numba import int32, njit
 
+from tangible_core.compiled.compiling import KERNEL
+
 from .span import UNKNOWN
 
 AGREEMENT = 16
@@ -40,7 +42,7 @@ def flat_pixels(grey: UInt8[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
     return cv2.erode(level, row.T).view(np.bool_)
 
 
-@njit(nogil=True, boundscheck=False, cache=True)
+@njit(**KERNEL)
 def _judge(matched, final, quality, table, out):
     for y in range(final.shape[0]):
         for x in range(final.shape[1]):

@@ -12,6 +12,8 @@ import numpy as np
 from jaxtyping import Int16, UInt8
 from numba import int32, njit, uint16
 
+from tangible_core.compiled.compiling import KERNEL, inner
+
 from ..simd.lane_reductions import total
 from ..simd.lanes import Lanes, add, load, maximum, minimum, multiply, splat, subtract
 
@@ -56,7 +58,7 @@ def sharpen_edges(disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "
     return out
 
 
-@njit(nogil=True, boundscheck=False, cache=True)
+@njit(**KERNEL)
 def _vote(lanes, voting, ranks, greys, disparity, grey, far, near, out):
     h, w = disparity.shape
     for y in range(h):
@@ -69,7 +71,7 @@ def _vote(lanes, voting, ranks, greys, disparity, grey, far, near, out):
                     out[y, x] = _mean_of_side(disparity, grey, y, x, middle, front > 0)
 
 
-@njit(nogil=True, boundscheck=False)
+@inner()
 def _majority(lanes, voting, ranks, greys, y, x, middle):
     """Votes for the front less votes for the back. A row of the window fits the lanes, some of which have no vote."""
     own = splat(lanes, greys[y + VOTERS, x + VOTERS])
@@ -86,7 +88,7 @@ def _majority(lanes, voting, ranks, greys, y, x, middle):
     return 2 * int32(total(front)) - int32(total(every))
 
 
-@njit(nogil=True, boundscheck=False)
+@inner(error_model="python")
 def _mean_of_side(disparity, grey, y, x, middle, front):
     h, w = disparity.shape
     own = int32(grey[y, x])

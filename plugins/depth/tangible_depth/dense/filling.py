@@ -6,10 +6,13 @@ crossed on the way from it; `candidates` judges them.
 
 # ruff: noqa: ANN001, ANN202 -- numba finds the types of what it compiles; the docstrings say them
 
+from typing import NamedTuple
+
 import numpy as np
-from jaxtyping import Int16, UInt8
+from jaxtyping import Bool, Int16, Int32, Int64, UInt8
 from numba import int32, njit
 
+from tangible_core.compiled.compiling import KERNEL, inner
 from tangible_core.compiled.threads import in_blocks
 
 from .candidates import ABOVE, BELOW, LEFT, RIGHT, alike, choose, seen_from_the_right
@@ -34,20 +37,48 @@ def _fill_once(disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "h w
     """The map filled, and how many pixels could not be."""
     out = np.empty_like(disparity)
     left_over: list[int] = []
-    in_blocks(disparity.shape[0], lambda a, b: left_over.append(_fill_rows(disparity, grey, a, b, out)))
+
+    def block(y0: int, y1: int) -> None:
+        left_over.append(_fill_rows(disparity, grey, y0, y1, _scratch(y1 - y0, disparity.shape[1]), out))
+
+    in_blocks(disparity.shape[0], block)
     return out, sum(left_over)
 
 
-@njit(nogil=True, boundscheck=False, cache=True)
-def _fill_rows(disparity, grey, y0, y1, out):
+class _Scratch(NamedTuple):
+    """What filling some rows writes on."""
+
+    sides: Int16[np.ndarray, "4 w"]
+    paths: Int32[np.ndarray, "4 w"]
+    below: Int16[np.ndarray, "rows w"]
+    below_path: Int32[np.ndarray, "rows w"]
+    seen: Int16[np.ndarray, "w+2"]
+    columns: Int32[np.ndarray, "w"]
+    edges: Int64[np.ndarray, "w+1"]
+    missing: Bool[np.ndarray, "w"]
+
+
+def _scratch(rows: int, w: int) -> _Scratch:
+    return _Scratch(
+        np.empty((4, w), np.int16),
+        np.empty((4, w), np.int32),
+        np.empty((rows, w), np.int16),
+        np.empty((rows, w), np.int32),
+        np.empty(w + 2, np.int16),
+        np.empty(w, np.int32),
+        np.empty(w + 1, np.int64),
+        np.empty(w, np.bool_),
+    )
+
+
+@njit(**KERNEL)
+def _fill_rows(disparity, grey, y0, y1, scratch, out):
     """Rows y0..y1-1; how many of their pixels could not be filled."""
     w = disparity.shape[1]
     left_over = 0
-    sides, paths = np.empty((4, w), np.int16), np.empty((4, w), np.int32)
-    below, below_path = np.empty((y1 - y0, w), np.int16), np.empty((y1 - y0, w), np.int32)
-    seen, columns, edges = np.empty(w + 2, np.int16), np.empty(w, np.int32), np.empty(w + 1, np.int64)
-    _scan_up(disparity, grey, y0, y1, below, below_path)
-    _start_above(disparity, grey, y0, sides[ABOVE], paths[ABOVE])
+    sides, paths, below, below_path, seen, columns, edges, missing = scratch
+    _scan_up(disparity, grey, y0, y1, below, below_path, sides[ABOVE], paths[ABOVE], missing)
+    _start_above(disparity, grey, y0, sides[ABOVE], paths[ABOVE], missing)
     for y in range(y0, y1):
         if y > 0:
             _carry(disparity[y - 1], grey[y - 1], grey[y], sides[ABOVE], paths[ABOVE])
@@ -68,7 +99,7 @@ def _fill_rows(disparity, grey, y0, y1, out):
     return left_over
 
 
-@njit(nogil=True, boundscheck=False)
+@inner()
 def _edges_of_gaps(row, edges):
     """Each gap's first column and the one after its last; how many numbers that are. Without a branch to guess."""
     count = 0
@@ -81,14 +112,14 @@ def _edges_of_gaps(row, edges):
     return count + inside
 
 
-@njit(nogil=True, boundscheck=False)
+@inner()
 def _copy(row, out):
     """As `out[:] = row`, which numba does column by column."""
     for x in range(row.size):
         out[x] = row[x]
 
 
-@njit(nogil=True, boundscheck=False)
+@inner()
 def _carry(row, grey, next_grey, carried, path):
     """Step from one row to the next: what is known there starts afresh, the rest goes on with its path."""
     for x in range(row.size):
@@ -97,12 +128,20 @@ def _carry(row, grey, next_grey, carried, path):
         path[x] = (int32(0) if known else path[x]) + abs(int32(grey[x]) - int32(next_grey[x]))
 
 
-@njit(nogil=True, boundscheck=False)
-def _scan_up(disparity, grey, y0, y1, below, path):
+@inner()
+def _start(carried, path):
+    """Nothing known so far."""
+    for x in range(carried.size):
+        carried[x] = UNKNOWN
+        path[x] = 0
+
+
+@inner()
+def _scan_up(disparity, grey, y0, y1, below, path, carried, steps, missing):
     """The nearest known value below each pixel of rows y0..y1-1, and the grey steps on the way."""
-    h, w = disparity.shape
-    carried, steps = np.full(w, UNKNOWN, np.int16), np.zeros(w, np.int32)
-    last = min(_reach(disparity, y1, 1), h - 1)
+    h = disparity.shape[0]
+    _start(carried, steps)
+    last = min(_reach(disparity, y1, 1, missing), h - 1)
     for i in range(last - y0 + 1):
         y = last - i
         if y + 1 < h:
@@ -112,28 +151,31 @@ def _scan_up(disparity, grey, y0, y1, below, path):
             _copy(steps, path[y - y0])
 
 
-@njit(nogil=True, boundscheck=False)
-def _start_above(disparity, grey, y0, carried, path):
+@inner()
+def _start_above(disparity, grey, y0, carried, path, missing):
     """The state of a downward scan that has reached row y0 - 1."""
-    carried[:] = UNKNOWN
-    path[:] = 0
-    for y in range(max(_reach(disparity, y0 - 1, -1), 0), y0 - 1):
+    _start(carried, path)
+    for y in range(max(_reach(disparity, y0 - 1, -1, missing), 0), y0 - 1):
         _carry(disparity[y], grey[y], grey[y + 1], carried, path)
 
 
-@njit(nogil=True, boundscheck=False)
-def _reach(disparity, y, step):
+@inner()
+def _reach(disparity, y, step, missing):
     """The row at which, from row y on, every column has shown a known value; past the picture if some show none."""
-    missing = np.ones(disparity.shape[1], np.bool_)
+    for x in range(missing.size):
+        missing[x] = True
     while 0 <= y < disparity.shape[0]:
-        missing &= disparity[y] == UNKNOWN
-        if not missing.any():
+        count = 0
+        for x in range(missing.size):
+            missing[x] &= disparity[y, x] == UNKNOWN
+            count += missing[x]
+        if count == 0:
             break
         y += step
     return y
 
 
-@njit(nogil=True, boundscheck=False)
+@inner()
 def _scan_gap(row, grey, start, stop, sides, paths):
     """What the known pixels at both ends of a gap offer to each pixel in it."""
     w = row.size

@@ -12,6 +12,7 @@ import numpy as np
 from jaxtyping import Float, Float32, Int16, UInt8
 from numba import int32, njit
 
+from tangible_core.compiled.compiling import KERNEL, inner
 from tangible_core.compiled.threads import in_blocks
 from tangible_core.data import DisparityMap
 
@@ -98,7 +99,7 @@ def _with_margin(y0: int, y1: int, rows: int) -> tuple[slice, slice]:
     return slice(first, y1 + rows), slice(y0 - first, y1 - first)
 
 
-@njit(nogil=True, boundscheck=False, cache=True)
+@njit(**KERNEL)
 def _to_pixels(flat, fill, disparity, confidence, disparity_px, trust):
     for y in range(disparity.shape[0]):
         for x in range(disparity.shape[1]):
@@ -108,7 +109,7 @@ def _to_pixels(flat, fill, disparity, confidence, disparity_px, trust):
             disparity_px[y, x] = np.float32(disparity[y, x]) * np.float32(1 / 16) if known else np.float32(np.nan)
 
 
-@njit(nogil=True, boundscheck=False, cache=True)
+@njit(**KERNEL)
 def _enlarge(padded, trust, y0, out, out_trust):
     """Rows from y0 on; `padded` is the small map with its edge repeated once.
 
@@ -125,7 +126,7 @@ def _enlarge(padded, trust, y0, out, out_trust):
                 out_trust[i, 2 * x + odd] = trust[y >> 1, x]
 
 
-@njit(inline="always")
+@inner()
 def _step(own, other):
     """To a neighbour on the same surface; 0 to any other."""
     step = int32(other) - own

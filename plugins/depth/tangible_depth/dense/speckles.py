@@ -9,6 +9,7 @@ import numpy as np
 from jaxtyping import Int16
 from numba import int64, njit
 
+from tangible_core.compiled.compiling import KERNEL, inner
 from tangible_core.compiled.threads import in_blocks
 
 from .span import UNKNOWN
@@ -37,7 +38,7 @@ def remove_speckles(disparity: Int16[np.ndarray, "h w"], largest_px: int = 60, s
     return sum(erased)
 
 
-@njit(nogil=True, boundscheck=False, cache=True)
+@njit(**KERNEL)
 def _label(disparity, step, y0, y1, start, stop, parent, size, begin, end):
     """Runs of rows y0..y1-1, numbered from y0 w and joined within these rows. Row y has begin[y]..end[y]-1."""
     w = disparity.shape[1]
@@ -61,7 +62,7 @@ def _label(disparity, step, y0, y1, start, stop, parent, size, begin, end):
             _join_rows(disparity, step, y, start, stop, parent, size, begin, end)
 
 
-@njit(nogil=True, boundscheck=False, cache=True)
+@njit(**KERNEL)
 def _join_rows(disparity, step, y, start, stop, parent, size, begin, end):
     """Join the runs of row y with those of row y-1 that they touch."""
     upper, lower = disparity[y - 1], disparity[y]
@@ -78,7 +79,7 @@ def _join_rows(disparity, step, y, start, stop, parent, size, begin, end):
             other += 1
 
 
-@njit(nogil=True, boundscheck=False)
+@inner()
 def _root(parent, i):
     while parent[i] != i:
         parent[i] = parent[parent[i]]
@@ -86,7 +87,7 @@ def _root(parent, i):
     return i
 
 
-@njit(nogil=True, boundscheck=False)
+@inner()
 def _unite(parent, size, i, j):
     """One region of two, without a branch: whether they are one already, no processor can guess."""
     i, j = _root(parent, i), _root(parent, j)
@@ -95,7 +96,7 @@ def _unite(parent, size, i, j):
     parent[high], size[low] = low, united
 
 
-@njit(nogil=True, boundscheck=False, cache=True)
+@njit(**KERNEL)
 def _erase(disparity, largest, y0, y1, start, stop, parent, size, begin, end):
     erased = 0
     for y in range(y0, y1):
@@ -104,6 +105,7 @@ def _erase(disparity, largest, y0, y1, start, stop, parent, size, begin, end):
             while parent[root] != root:  # no path is shortened here: other threads read too
                 root = parent[root]
             if size[root] <= largest:
-                disparity[y, start[run] : stop[run]] = UNKNOWN
+                for x in range(start[run], stop[run]):
+                    disparity[y, x] = UNKNOWN
                 erased += stop[run] - start[run]
     return erased

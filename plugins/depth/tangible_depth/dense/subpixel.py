@@ -2,10 +2,10 @@
 
 from typing import Any
 
-from numba import njit
+from tangible_core.compiled.compiling import inner
 
 
-@njit(inline="always")
+@inner()
 def parabola(before: Any, at: Any, after: Any) -> Any:
     """Vertex of the parabola through three equally spaced samples, (a - c) / (2 (a - 2 b + c)).
 
@@ -15,7 +15,7 @@ def parabola(before: Any, at: Any, after: Any) -> Any:
     return (before - after) / (bend + bend) if bend != 0 else bend
 
 
-@njit(inline="always")
+@inner()
 def equiangular(before: Any, at: Any, after: Any) -> Any:
     """Tip of the symmetric V through three equally spaced costs; 0 if they are equal.
 

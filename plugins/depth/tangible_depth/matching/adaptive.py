@@ -18,7 +18,7 @@ from ..dense.span import UNKNOWN, Span
 from ..dense.speckles import remove_speckles
 from ..search.bands import match_bands
 from ..search.pairs import Pair
-from ..search.row_offset import CELL_PX, LEAST_OFFSET_PX, realigned, row_offset
+from ..search.row_offset import CELL_PX, LEAST_ROW_OFFSET_PX, realigned, row_offset
 from ..sgm.census import BITS
 from ..sgm.costs import HEAVY, LIGHT, SHARP, Cost
 from ..sgm.strips import Swept, blank, sweep
@@ -26,32 +26,34 @@ from ..sgm.strips import Swept, blank, sweep
 log = logging.getLogger(__name__)
 DOUBT, LEAST_DIFFERING, NOISE = 0.06, 0.28, 0.20
 """Loss, or share of differing bits, from which the light cost is taken; loss from which the heavy one is."""
-MOST_OFFSET_PX = 1.0
+MOST_ROW_OFFSET_PX = 1.0
 """Offsets of rows up to here are found and put right on the way."""
 PROBE_ROWS = 64
 """Rows of a strip that are tried before the rest."""
 Rows = Sequence[tuple[int, int]]
 
 
-def match(pair: Pair, span: Span, cost: Cost | None, tolerance: float, realign: bool, rows: Rows) -> tuple[Swept, Cost]:
+def match(
+    pair: Pair, span: Span, cost: Cost | None, check_tolerance: float, realign_rows: bool, rows: Rows
+) -> tuple[Swept, Cost]:
     """The strips `rows` matched, with the given cost or, if None, with the one that the pair calls for."""
-    trial = _Trial(pair, span, cost or SHARP, tolerance)
-    if cost and not realign:
+    trial = _Trial(pair, span, cost or SHARP, check_tolerance)
+    if cost and not realign_rows:
         trial.sweep(rows)
         return trial.out, cost
     probes, rest = _probes(rows)
     health = trial.health(probes)
-    offset = _offset(trial, probes, span, health) if realign else 0.0
-    if abs(offset) > LEAST_OFFSET_PX:
-        note(log, f"rows realigned by {offset:.2f} px")
-        trial = _Trial(realigned(pair, offset), span, cost or SHARP, tolerance)
+    row_offset_px = _row_offset(trial, probes, span, health) if realign_rows else 0.0
+    if abs(row_offset_px) > LEAST_ROW_OFFSET_PX:
+        note(log, f"rows realigned by {row_offset_px:.2f} px")
+        trial = _Trial(realigned(pair, row_offset_px), span, cost or SHARP, check_tolerance)
         health = trial.health(probes)
     if cost is None and (cost := _called_for(health)) is not SHARP:
         note(
             log,
             f"cost {cost.name}: {health.loss:.0%} of the matches stand alone, {health.differing:.0%} of bits differ",
         )
-        trial, rest = _Trial(trial.pair, span, cost, tolerance), rows
+        trial, rest = _Trial(trial.pair, span, cost, check_tolerance), rows
     trial.sweep(rest)
     return trial.out, cost
 
@@ -74,10 +76,10 @@ def _called_for(health: _Health) -> Cost:
 class _Trial:
     """One pair, coded once, and what has been matched of it."""
 
-    def __init__(self, pair: Pair, span: Span, cost: Cost, tolerance: float) -> None:
+    def __init__(self, pair: Pair, span: Span, cost: Cost, check_tolerance: float) -> None:
         self.pair, self.out = pair, blank(pair.left.shape)
         self._codes = cost.codes(pair.left), cost.codes(pair.right)
-        self._how = span, cost.prices, tolerance
+        self._how = span, cost.prices, check_tolerance
 
     def sweep(self, rows: Rows) -> None:
         """Match these strips."""
@@ -102,7 +104,7 @@ def _probes(rows: Rows) -> tuple[Rows, Rows]:
     return probes, [(a, b) for a, b in rest if a < b]
 
 
-def _offset(trial: _Trial, probes: Rows, span: Span, health: _Health) -> float:
+def _row_offset(trial: _Trial, probes: Rows, span: Span, health: _Health) -> float:
     if health.loss >= NOISE:  # the matches themselves are suspect: bands average the noise away
         bands = match_bands(trial.pair, span)
         return row_offset(trial.pair, bands.rows, bands.disparity, bands.factor)

@@ -31,7 +31,7 @@ class Search(NamedTuple):
     most: int | Auto
     rectify: Rectify
     fill: bool
-    realigns_px: float = 0.0
+    most_row_offset_px: float = 0.0
     """The constant offset of rows that the matcher puts right."""
     skip_identical: bool = False
 
@@ -48,7 +48,7 @@ def disparity_map(views: Views, name: str, search: Search, match: Matcher) -> Di
         return nothing_moved(pair, search.fill)
     span, bands = asked_span(pair, search.least, search.most)
     if search.rectify == "auto" and views.calibration is None:
-        aligned = with_common_rows(pair, bands or match_bands(pair, span), search.realigns_px)
+        aligned = with_common_rows(pair, bands or match_bands(pair, span), search.most_row_offset_px)
         if aligned is None:
             rectified = search._replace(rectify="never")
             return with_rectification(views, lambda turned: disparity_map(turned, name, rectified, match))

@@ -17,7 +17,7 @@ from ..sgm.strips import MOST_LANES, strips
 from .adaptive import match
 
 log = logging.getLogger(__name__)
-TOLERANCE = {"soft": 1.08, "strict": 1.0}
+CHECK_TOLERANCE = {"soft": 1.08, "strict": 1.0}
 MOST_AT_FULL_SIZE = 256
 """Disparities up to which `auto` works at full size: beyond, a coarser map costs little and saves much."""
 
@@ -69,7 +69,7 @@ def _match(pair: Pair, span: Span, options: Scaling) -> Dense:
         rows = textured
     preview = options.resolution == "half"
     cost = SHARP if preview and options.cost == "auto" else COSTS.get(options.cost)
-    realign = options.realign_rows and not preview
-    swept, cost = match(pair, span, cost, TOLERANCE[options.check], realign, rows)
+    realign_rows = options.realign_rows and not preview
+    swept, cost = match(pair, span, cost, CHECK_TOLERANCE[options.check], realign_rows, rows)
     by_sum = np.maximum(1 - np.arange(256) / (4 * cost.bits), LEAST_MATCHED)
     return completed(swept.disparity, swept.sums, by_sum, pair.left, sharpen=not preview)

@@ -28,11 +28,6 @@ def lines_in_left(fundamental: np.ndarray, right_px: np.ndarray) -> Float64[np.n
     return _unit_normal(product(homogeneous(right_px), fundamental.T))
 
 
-def lines_in_right(fundamental: np.ndarray, left_px: np.ndarray) -> Float64[np.ndarray, "n 3"]:
-    """Epipolar lines in the right picture, one a left point (n, 2); otherwise as `lines_in_left`."""
-    return _unit_normal(product(homogeneous(left_px), fundamental))
-
-
 def _unit_normal(lines: np.ndarray) -> Float64[np.ndarray, "n 3"]:
     length = np.hypot(lines[:, 0], lines[:, 1])
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -72,28 +67,8 @@ def sampson_distance(fundamental: np.ndarray, left_px: np.ndarray, right_px: np.
     |l^T F r| / sqrt((F r)_1^2 + (F r)_2^2 + (F^T l)_1^2 + (F^T l)_2^2).
     Source: the root of Hartley & Zisserman, 2nd ed., eq. 11.9.
     """
-    value, in_left, in_right = _algebra(fundamental, left_px, right_px)
-    return np.abs(value) / np.sqrt(np.maximum(in_left + in_right, np.finfo(np.float64).tiny))
-
-
-def symmetric_epipolar_distance(
-    fundamental: np.ndarray, left_px: np.ndarray, right_px: np.ndarray
-) -> Float64[np.ndarray, "n"]:
-    """Root of the summed squares of the two distances of each match's points from their lines, pixels.
-
-    Source: the root of Hartley & Zisserman, 2nd ed., eq. 11.10.
-    """
-    value, in_left, in_right = _algebra(fundamental, left_px, right_px)
-    tiny = np.finfo(np.float64).tiny
-    return np.abs(value) * np.sqrt(1 / np.maximum(in_left, tiny) + 1 / np.maximum(in_right, tiny))
-
-
-def _algebra(fundamental: np.ndarray, left_px: np.ndarray, right_px: np.ndarray) -> tuple[np.ndarray, ...]:
-    """l^T F r, and the squared lengths of the two lines' normals."""
     left, right = homogeneous(left_px), homogeneous(right_px)
     in_left, in_right = product(right, fundamental.T), product(left, fundamental)
-    return (
-        np.einsum("ni,ni->n", left, in_left),
-        np.einsum("ni,ni->n", in_left[:, :2], in_left[:, :2]),
-        np.einsum("ni,ni->n", in_right[:, :2], in_right[:, :2]),
-    )
+    value = np.einsum("ni,ni->n", left, in_left)
+    normals = [np.einsum("ni,ni->n", each[:, :2], each[:, :2]) for each in (in_left, in_right)]
+    return np.abs(value) / np.sqrt(np.maximum(normals[0] + normals[1], np.finfo(np.float64).tiny))

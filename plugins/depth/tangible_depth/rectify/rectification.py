@@ -93,7 +93,7 @@ def _say_if_exchanged(disparity_px: Float64[np.ndarray, "n"]) -> None:
 
 
 def _median_offset(matches: Matches) -> float:
-    return float(np.median(np.abs(matches.vertical_px)))
+    return float(np.median(np.abs(matches.row_offset_px)))
 
 
 def _turned(views: Views, matches: Matches, before: float, fit: Fit) -> Rectified:

@@ -11,6 +11,8 @@ import numpy as np
 from jaxtyping import Int16, Int64, UInt8
 from numba import njit
 
+from tangible_core.compiled.compiling import KERNEL
+
 from ..dense.confidence import flat_pixels
 from ..dense.span import UNKNOWN, Span
 from ..dense.speckles import remove_speckles
@@ -71,7 +73,7 @@ def _averaged(view: UInt8[np.ndarray, "h w"], rows: np.ndarray, factor: int) -> 
     """The bands round some rows, each value a mean of HIGH_PX x factor pixels; beyond the picture its edge repeats."""
     columns = -(-view.shape[1] // factor)
     bands = np.empty((COUNT, TALL, columns + 2 * RADIUS + -columns % BLOCK), np.uint8)
-    _average(view, rows, factor, columns, bands)
+    _average(view, rows, factor, columns, np.empty(columns * factor, np.int32), bands)
     return bands
 
 
@@ -83,25 +85,31 @@ def _codes(bands: UInt8[np.ndarray, "bands 5 padded"]) -> UInt8[np.ndarray, "ban
     return codes
 
 
-@njit(nogil=True, boundscheck=False, cache=True)
-def _average(view, rows, factor, columns, bands):
+@njit(**KERNEL)
+def _average(view, rows, factor, columns, total, bands):
     h, w = view.shape
-    total = np.empty(columns * factor, np.int32)
     scale = np.float32(1 / (HIGH_PX * factor))
     for band in range(rows.size):
         for j in range(TALL):
-            total[:] = 0
+            for x in range(total.size):
+                total[x] = 0
             first = rows[band] + (j - RADIUS) * HIGH_PX - HIGH_PX // 2
             for y in range(first, first + HIGH_PX):
                 line = view[min(max(y, 0), h - 1)]
                 for x in range(w):
                     total[x] += line[x]
-            total[w:] = total[w - 1]
-            means = bands[band, j]
+            for x in range(w, total.size):
+                total[x] = total[w - 1]
             if factor > 1:
                 for x in range(columns):
-                    total[x] = total[x * factor : (x + 1) * factor].sum()
+                    whole = np.int32(0)
+                    for i in range(x * factor, (x + 1) * factor):
+                        whole += total[i]
+                    total[x] = whole
+            means = bands[band, j]
             for x in range(columns):
                 means[RADIUS + x] = np.uint8(total[x] * scale + np.float32(0.5))
-            means[:RADIUS] = means[RADIUS]
-            means[RADIUS + columns :] = means[RADIUS + columns - 1]
+            for x in range(RADIUS):
+                means[x] = means[RADIUS]
+            for x in range(RADIUS + columns, means.size):
+                means[x] = means[RADIUS + columns - 1]

@@ -23,10 +23,10 @@ TOLERANCE_PX = 0.5
 """Median vertical offset up to which rows correspond; in large pictures 1/4000 of the longer side."""
 
 
-def corners_correspond(pair: Pair, realigns_px: float = 0.0) -> bool:
+def corners_correspond(pair: Pair, most_row_offset_px: float = 0.0) -> bool:
     """Whether a few corners, followed into the right view, lie on their rows: half of them within TOLERANCE_PX.
 
-    realigns_px: how far they may all lie off together, up or down.
+    most_row_offset_px: how far they may all lie off together, up or down.
     True where there are too few corners to tell. False where there are some and over half of them get lost, as when a
     camera was turned far: a longer look is due then.
     """
@@ -34,18 +34,17 @@ def corners_correspond(pair: Pair, realigns_px: float = 0.0) -> bool:
     scale = min(1.0, LOOK_PX / longer)
     if min(pair.left.shape) * scale < PATCH_PX / 2:
         return True
-    offset = _vertical_offsets(pair, scale)
-    if offset is None:
+    row_offsets_px = _row_offsets(pair, scale)
+    if row_offsets_px is None:
         return True
-    if len(offset) < FEWEST:
+    if len(row_offsets_px) < FEWEST:
         return False
-    common = float(np.clip(np.median(offset), -realigns_px, realigns_px))
-    tolerance = max(TOLERANCE_PX, longer / 4000)
-    return float(np.median(np.abs(offset - common))) <= tolerance
+    put_right_px = float(np.clip(np.median(row_offsets_px), -most_row_offset_px, most_row_offset_px))
+    return float(np.median(np.abs(row_offsets_px - put_right_px))) <= max(TOLERANCE_PX, longer / 4000)
 
 
 @plain_opencv()
-def _vertical_offsets(pair: Pair, scale: float) -> Float64[np.ndarray, "n"] | None:
+def _row_offsets(pair: Pair, scale: float) -> Float64[np.ndarray, "n"] | None:
     """In pixels, of the corners that could be followed, none if over half got lost; None where there are no corners."""
     import cv2
 
@@ -61,8 +60,8 @@ def _vertical_offsets(pair: Pair, scale: float) -> Float64[np.ndarray, "n"] | No
     if np.count_nonzero(kept) < len(start) / 2:
         return np.empty(0)
     start, there = ((each[kept] + 0.5) / scale - 0.5 for each in (start, there))
-    offset = (there - start if scale >= FINE_ENOUGH else _sharpened(pair, start, there))[:, 0, 1]
-    return offset[np.isfinite(offset)].astype(np.float64)
+    row_offsets_px = (there - start if scale >= FINE_ENOUGH else _sharpened(pair, start, there))[:, 0, 1]
+    return row_offsets_px[np.isfinite(row_offsets_px)].astype(np.float64)
 
 
 def _followed(

@@ -9,7 +9,7 @@ from tangible_core.plugins.notes import note
 from .bands import Bands
 from .corner_look import corners_correspond
 from .pairs import Pair
-from .row_offset import LEAST_OFFSET_PX, LEAST_VOTES, realigned, row_votes
+from .row_offset import LEAST_ROW_OFFSET_PX, LEAST_VOTES, realigned, row_votes
 
 log = logging.getLogger(__name__)
 
@@ -18,22 +18,22 @@ LEAST_AGREED, MOST_SPREAD_PX = 0.45, 0.3
 pairs reach 0.21 px; a roll of 0.3 degrees has 0.47 px and more."""
 
 
-def with_common_rows(pair: Pair, bands: Bands, realigns_px: float) -> Pair | None:
+def with_common_rows(pair: Pair, bands: Bands, most_row_offset_px: float) -> Pair | None:
     """The pair, realigned where its rows miss each other by a constant; None where they do not correspond otherwise.
 
-    bands: what was matched of the pair. realigns_px: the constant that the method puts right by itself; 0: put right
-    here.
+    bands: what was matched of the pair. most_row_offset_px: the constant that the method puts right by itself; 0: it is
+    put right here.
     """
-    common = common_offset(pair, bands)
-    if common is None:
-        return pair if corners_correspond(pair, realigns_px) else None
-    if realigns_px > 0 or abs(common) <= LEAST_OFFSET_PX:
+    row_offset_px = common_row_offset(pair, bands)
+    if row_offset_px is None:
+        return pair if corners_correspond(pair, most_row_offset_px) else None
+    if most_row_offset_px > 0 or abs(row_offset_px) <= LEAST_ROW_OFFSET_PX:
         return pair
-    note(log, f"rows realigned by {common:.2f} px")
-    return realigned(pair, common)
+    note(log, f"rows realigned by {row_offset_px:.2f} px")
+    return realigned(pair, row_offset_px)
 
 
-def common_offset(pair: Pair, bands: Bands) -> float | None:
+def common_row_offset(pair: Pair, bands: Bands) -> float | None:
     """By how many pixels, 1.5 at most, the rows in the right view lie below those of the left one; None if they differ.
 
     Most horizontal edges that were matched must find their like, and half of these within MOST_SPREAD_PX.
@@ -42,5 +42,5 @@ def common_offset(pair: Pair, bands: Bands) -> float | None:
     agreed = votes[np.isfinite(votes)]
     if agreed.size < max(LEAST_VOTES, LEAST_AGREED * votes.size):
         return None
-    common = float(np.median(agreed))
-    return common if np.median(np.abs(agreed - common)) <= MOST_SPREAD_PX else None
+    row_offset_px = float(np.median(agreed))
+    return row_offset_px if np.median(np.abs(agreed - row_offset_px)) <= MOST_SPREAD_PX else None

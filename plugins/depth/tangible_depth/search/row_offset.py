@@ -9,6 +9,7 @@ import numpy as np
 from jaxtyping import Float32, Int16, Int64
 from numba import njit
 
+from tangible_core.compiled.compiling import KERNEL, inner
 from tangible_core.compiled.threads import in_blocks
 from tangible_core.runtime.opencv import plain_opencv
 
@@ -17,7 +18,7 @@ from ..dense.subpixel import parabola
 from .pairs import Pair
 
 CELL_PX, NEAR_PX, MOST_POINTS, LEAST_VOTES = 12, 1, 250, 20
-LEAST_OFFSET_PX = 0.3
+LEAST_ROW_OFFSET_PX = 0.3
 """Smaller offsets of rows are left alone."""
 LEAST_EDGE = 40
 """Sobel response over rows from which a pixel says something about its row."""
@@ -37,7 +38,11 @@ def row_votes(
     points = points[: _edge_points(pair.left, rows, disparity, factor, points)]
     points = np.ascontiguousarray(points[:: 1 + len(points) // MOST_POINTS])
     votes = np.full(len(points), np.nan, np.float32)
-    in_blocks(len(points), lambda a, b: _offsets(*pair, points, REACH, factor, a, b, votes))
+
+    def block(first: int, last: int) -> None:
+        _vote(*pair, points, factor, first, last, np.empty(2 * REACH + 1, np.float32), votes)
+
+    in_blocks(len(points), block)
     return votes
 
 
@@ -48,12 +53,13 @@ def row_offset(pair: Pair, rows: Int64[np.ndarray, "n"], disparity: Int16[np.nda
     return float(np.median(agreed)) if agreed.size >= LEAST_VOTES else 0.0
 
 
-def realigned(pair: Pair, offset: float) -> Pair:
-    """The pair with its right view moved up by `offset` rows, so that rows correspond; cubic between rows."""
+def realigned(pair: Pair, row_offset_px: float) -> Pair:
+    """The pair with its right view moved up by `row_offset_px`, so that rows correspond; cubic between rows."""
     import cv2
 
-    whole = round(offset) if abs(offset - round(offset)) < 0.15 else offset
-    move = np.array([[1, 0, 0], [0, 1, -whole]], np.float32)
+    nearest = round(row_offset_px)
+    moved_px = nearest if abs(row_offset_px - nearest) < 0.15 else row_offset_px
+    move = np.array([[1, 0, 0], [0, 1, -moved_px]], np.float32)
     with plain_opencv():
         moved = cv2.warpAffine(
             pair.right, move, pair.right.shape[::-1], flags=cv2.INTER_CUBIC, borderMode=cv2.BORDER_REPLICATE
@@ -61,7 +67,7 @@ def realigned(pair: Pair, offset: float) -> Pair:
     return Pair(pair.left, moved)  # pyright: ignore[reportArgumentType]
 
 
-@njit(nogil=True, boundscheck=False, cache=True)
+@njit(**KERNEL)
 def _edge_points(left, rows, disparity, factor, points):
     """Row, column and disparity of the strongest horizontal edge in each cell round the rows; returns how many."""
     h, w = left.shape
@@ -77,17 +83,18 @@ def _edge_points(left, rows, disparity, factor, points):
                     here = disparity[i, x // factor]
                     if edge > strongest and here != UNKNOWN:
                         strongest = edge
-                        points[count] = y, x, (np.int64(here) * factor + 8) >> 4
+                        points[count, 0], points[count, 1] = y, x
+                        points[count, 2] = (np.int64(here) * factor + 8) >> 4
             count += strongest > LEAST_EDGE
     return count
 
 
-@njit(nogil=True, boundscheck=False, cache=True, error_model="numpy")
-def _offsets(left, right, points, reach, slack, first, last, offsets):
-    """Sub-pixel row offset of the best correlation near each point; NaN where the match is poor."""
+@njit(**KERNEL)
+def _vote(left, right, points, slack, first, last, scores, votes):
+    """Sub-pixel row offset of the best correlation near each point; NaN where the match is poor. scores: scratch."""
     h, w = left.shape
+    reach = scores.size >> 1
     edge = RADIUS + reach
-    scores = np.empty(2 * reach + 1, np.float32)
     for p in range(first, last):
         y, x, column = points[p, 0], points[p, 1], points[p, 1] - points[p, 2]
         if not (edge <= y < h - edge and RADIUS <= x < w - RADIUS):
@@ -98,14 +105,16 @@ def _offsets(left, right, points, reach, slack, first, last, offsets):
             scores[dy + reach] = -1
             for dx in range(-slack, slack + 1):
                 scores[dy + reach] = max(scores[dy + reach], _correlation(left, y, x, right, y + dy, column + dx))
-        best = np.argmax(scores)
+        best = 0
+        for i in range(1, scores.size):
+            best = i if scores[i] > scores[best] else best
         if 0 < best < 2 * reach and scores[best] >= LEAST_CORRELATION:
             before, at, after = scores[best - 1], scores[best], scores[best + 1]
             if 2 * at - before - after > LEAST_BEND:
-                offsets[p] = best - reach + parabola(before, at, after)
+                votes[p] = best - reach + parabola(before, at, after)
 
 
-@njit(nogil=True, boundscheck=False, error_model="numpy")
+@inner()
 def _correlation(left, y, x, right, v, u):
     """Zero-mean normalised cross-correlation of two windows; -1 if either is nearly flat."""
     a_sum = b_sum = aa = bb = ab = np.int32(0)

@@ -13,19 +13,58 @@ codes[x], a row of w + n - 1 codes of which codes[i] is the right view's column 
 
 # ruff: noqa: ANN001, ANN201, ANN202 -- numba finds the types of what it compiles; the docstrings say them
 
+from typing import NamedTuple
+
 import numpy as np
+from jaxtyping import Int64, UInt8
 from numba import njit, uint8
+
+from tangible_core.compiled.compiling import KERNEL, inner
 
 from ..dense.span import UNKNOWN
 from ..dense.subpixel import equiangular
 from ..simd.lane_reductions import first_equal, first_lane, lowest
 from ..simd.lanes import load, minimum, saturating_add, shift_down, splat, store, width
-from .paths import limits_of, sideways, vertical
+from .paths import sideways, vertical
 
 WORST = np.uint8(255)
 
 
-@njit(nogil=True, boundscheck=False)
+class Scratch(NamedTuple):
+    """What one sweep at a time writes on."""
+
+    total: UInt8[np.ndarray, "rows w*n"]
+    path: UInt8[np.ndarray, "w*n"]
+    path_lowest: UInt8[np.ndarray, "w"]
+    costs: UInt8[np.ndarray, "w*n"]
+    codes: UInt8[np.ndarray, "planes w+n-1"]
+    best: Int64[np.ndarray, "w"]
+    right_sums: UInt8[np.ndarray, "w+n"]
+
+
+def scratch(rows: int, w: int, n: int, planes: int) -> Scratch:
+    """For strips of at most so many rows of w columns and n lanes, and codes of so many planes."""
+    return Scratch(
+        np.empty((rows, w * n), np.uint8),
+        np.empty(w * n, np.uint8),
+        np.empty(w, np.uint8),
+        np.empty(w * n, np.uint8),
+        np.empty((planes, w + n - 1), np.uint8),
+        np.empty(w, np.int64),
+        np.empty(w + n, np.uint8),
+    )
+
+
+@inner()
+def _begin(path, path_lowest):
+    """A path that nothing has been paid for."""
+    for i in range(path.size):
+        path[i] = 0
+    for i in range(path_lowest.size):
+        path_lowest[i] = 0
+
+
+@inner()
 def _decide(lanes, total, path, finals, best, sums, right_sums):
     """Add the last path; the best lane and its sum for each left pixel, the best sum for each right pixel."""
     n = width(lanes)
@@ -45,8 +84,8 @@ def _decide(lanes, total, path, finals, best, sums, right_sums):
         seen = shift_down(seen, wall)
 
 
-@njit(nogil=True, boundscheck=False, error_model="numpy")
-def _accept(n, span, total, best, sums, right_sums, most, tolerance, disparity):
+@inner()
+def _accept(n, span, total, best, sums, right_sums, most, check_tolerance, disparity):
     """Disparities that pass the left-right check: no left pixel fits the right pixel better by more than a factor.
 
     A pixel whose neighbouring disparities fit as well as the best one says nothing and is not accepted. Written without
@@ -60,13 +99,13 @@ def _accept(n, span, total, best, sums, right_sums, most, tolerance, disparity):
         after = np.float32(total[x * n + min(k + 1, n - 1)])
         inner = (k > 0) & (k < count - 1)
         flat = inner & (before == at) & (after == at)
-        fits = (most[x + k] != 0) & (at < WORST) & (at <= tolerance * np.float32(right_sums[x + k]))
+        fits = (most[x + k] != 0) & (at < WORST) & (at <= check_tolerance * np.float32(right_sums[x + k]))
         offset = equiangular(before, at, after) if inner else np.float32(0)
         sixteenths = np.int16(np.floor(16 * (np.float32(span.high - k) - offset) + np.float32(0.5)))
         disparity[x] = sixteenths if fits & (not flat) else UNKNOWN
 
 
-@njit(nogil=True, boundscheck=False)
+@inner()
 def _shifted(row, w, top, codes):
     """The right view's codes as the lanes want them; beyond the picture its edge is repeated."""
     for plane in range(row.shape[0]):
@@ -74,31 +113,26 @@ def _shifted(row, w, top, codes):
             codes[plane, i] = row[plane, min(max(i - top, 0), w - 1)]
 
 
-@njit(nogil=True, boundscheck=False, cache=True)
-def sweep_strip(lanes, left, right, grey, rows, warm, span, prices, tolerance, total, disparity, sums):
+@njit(**KERNEL)
+def sweep_strip(lanes, left, right, grey, rows, warm, span, limits, prices, check_tolerance, scratch, disparity, sums):
     """Disparities in sixteenths of a pixel (UNKNOWN where rejected) and sums of rows[0]..rows[1]-1.
 
     Parameters: lanes, Lanes(n, planes); left, right uint8 (h, planes, >= w), codes of the two views; grey uint8 (h, w),
-    the left view; warm, rows that a path begins early; span, the disparities to try, at most n; prices, a `Prices`;
-    tolerance of the left-right check, 1 being strict; total, scratch of at least (rows, w n) bytes.
-    Results: disparity int16 (h, w), sums uint8 (h, w), the winner's cost over the four paths.
+    the left view; warm, rows that a path begins early; span, the disparities to try, at most n; limits, those of rows
+    of w columns; prices, a `Prices`; check_tolerance of the left-right check, 1 being strict; scratch, for at least as
+    many rows. Results: disparity int16 (h, w), sums uint8 (h, w), the winner's cost over the four paths.
     """
-    n = width(lanes)
     h, w = grey.shape
     y0, y1 = rows
-    limits = limits_of(n, w, span, prices.neutral)
-    path, path_lowest = np.zeros(w * n, np.uint8), np.zeros(w, np.uint8)
-    costs = np.empty(w * n, np.uint8)
-    codes = np.empty((right.shape[1], w + n - 1), np.uint8)
-    best, right_sums = np.empty(w, np.int64), np.empty(w + n, np.uint8)
+    total, path, path_lowest, costs, codes, best, right_sums = scratch
+    _begin(path, path_lowest)
     for y in range(max(0, y0 - warm), y1):
         _shifted(right[y], w, span.high, codes)
         above = grey[max(y - 1, 0)]
         vertical(lanes, left[y], codes, limits, prices, grey[y], above, path, path_lowest, costs)
         if y >= y0:
             sideways(lanes, prices, grey[y], costs, path, total[y - y0])
-    path[:] = 0
-    path_lowest[:] = 0
+    _begin(path, path_lowest)
     last = min(h, y1 + warm)
     for i in range(last - y0):
         y = last - 1 - i
@@ -107,4 +141,4 @@ def sweep_strip(lanes, left, right, grey, rows, warm, span, prices, tolerance, t
         vertical(lanes, left[y], codes, limits, prices, grey[y], below, path, path_lowest, costs)
         if y < y1:
             _decide(lanes, total[y - y0], path, costs, best, sums[y], right_sums)
-            _accept(n, span, costs, best, sums[y], right_sums, limits.most, tolerance, disparity[y])
+            _accept(width(lanes), span, costs, best, sums[y], right_sums, limits.most, check_tolerance, disparity[y])

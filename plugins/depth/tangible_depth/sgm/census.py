@@ -12,6 +12,7 @@ import numpy as np
 from jaxtyping import UInt8
 from numba import njit
 
+from tangible_core.compiled.compiling import KERNEL
 from tangible_core.compiled.threads import in_blocks
 
 RADIUS = 2
@@ -52,7 +53,7 @@ def _coded(greys: Sequence[np.ndarray]) -> UInt8[np.ndarray, "h planes whole"]:
     return codes
 
 
-@njit(nogil=True, boundscheck=False, cache=True)
+@njit(**KERNEL)
 def code_rows(padded, offsets, first_plane, y0, y1, codes):
     """Rows y0..y1-1, one neighbour after the other along a whole row: each inner loop is plain vector code."""
     w = codes.shape[2]

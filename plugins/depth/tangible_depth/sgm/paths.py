@@ -8,8 +8,11 @@ Every cost, path and sum is a byte a lane; lane k stands for the disparity top -
 from typing import NamedTuple
 
 import numpy as np
-from numba import int64, njit, uint8
+from numba import int64, uint8
 
+from tangible_core.compiled.compiling import inner
+
+from ..dense.span import Span
 from ..simd.lane_reductions import hamming, lowest
 from ..simd.lanes import load, maximum, minimum, saturating_add, shift_down, shift_up, splat, store, subtract, width
 
@@ -24,20 +27,21 @@ class Limits(NamedTuple):
     """Columns first..last - 1, at which no lane has a limit."""
 
 
-@njit(nogil=True, boundscheck=False)
-def limits_of(n, w, span, neutral):
+def limits_of(n: int, w: int, span: Span, neutral: np.uint8) -> Limits:
     """The limits of rows of w columns."""
     columns = np.arange(w + n - 1) - span.high
     beyond = (columns < 0) | (columns >= w)
-    most = np.where(beyond, uint8(0), uint8(255))
-    least = np.where(beyond, neutral, uint8(0))
-    count = span.high - span.low + 1
     first = min(max(span.high, 0), w)
-    last = min(max(w + span.high - n + 1, first), w) if count == n else first
-    return Limits(most, least, np.where(np.arange(n) < count, uint8(0), uint8(255)), (first, last))
+    last = min(max(w + span.high - n + 1, first), w) if span.size == n else first
+    return Limits(
+        np.where(beyond, np.uint8(0), np.uint8(255)),
+        np.where(beyond, neutral, np.uint8(0)),
+        np.where(np.arange(n) < span.size, np.uint8(0), np.uint8(255)),
+        (first, last),
+    )
 
 
-@njit(inline="always")
+@inner()
 def _step(lanes, before, before_lowest, cost, move, jump):
     """One step of a path: stay, move by one disparity or jump to any, then pay the pixel's own cost."""
     wall = splat(lanes, uint8(255))
@@ -47,19 +51,19 @@ def _step(lanes, before, before_lowest, cost, move, jump):
     return saturating_add(cost, subtract(best, splat(lanes, before_lowest)))
 
 
-@njit(inline="always")
+@inner()
 def _limited_cost(lanes, left, codes, x, limits):
     """Hamming distances; neutral where a disparity leads out of the right view, 255 where it is not asked for."""
     cost = minimum(hamming(lanes, left, codes, x), load(lanes, limits.most, x))
     return maximum(maximum(cost, load(lanes, limits.least, x)), load(lanes, limits.barred, 0))
 
 
-@njit(inline="always")
+@inner()
 def _grey_step(grey, x, others, z):
     return abs(int64(grey[x]) - int64(others[z]))
 
 
-@njit(nogil=True, boundscheck=False)
+@inner()
 def _columns(lanes, left, codes, limits, columns, prices, grey, grey_before, path, path_lowest, costs):
     """The path from the row before, in place; `costs` keeps this row's costs. No limits: None."""
     n = width(lanes)
@@ -76,7 +80,7 @@ def _columns(lanes, left, codes, limits, columns, prices, grey, grey_before, pat
         store(path, x * n, here)
 
 
-@njit(nogil=True, boundscheck=False)
+@inner()
 def vertical(lanes, left, codes, limits, prices, grey, grey_before, path, path_lowest, costs):
     """`_columns` for all columns: the limits are looked up only where there are some."""
     first, last = limits.free
@@ -86,7 +90,7 @@ def vertical(lanes, left, codes, limits, prices, grey, grey_before, path, path_l
     _columns(lanes, left, codes, limits, (last, grey.size), *rest)
 
 
-@njit(nogil=True, boundscheck=False)
+@inner()
 def sideways(lanes, prices, grey, costs, path, total):
     """Sums of the path from above and those from both ends of the row. Walking both at once hides their latency."""
     n = width(lanes)
@@ -102,7 +106,7 @@ def sideways(lanes, prices, grey, costs, path, total):
     _half_way(lanes, prices, grey, costs, total, total, (w // 2, w), east, east_lowest, west, west_lowest)
 
 
-@njit(inline="always")
+@inner()
 def _half_way(lanes, prices, grey, costs, so_far, total, steps, east, east_lowest, west, west_lowest):
     n = width(lanes)
     move, jumps = splat(lanes, prices.move), prices.jumps

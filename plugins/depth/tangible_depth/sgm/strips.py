@@ -1,6 +1,6 @@
 """A picture swept in strips: threads, memory, and where the seams lie."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -10,8 +10,9 @@ from tangible_core.compiled.threads import in_turns
 
 from ..dense.span import UNKNOWN, Span
 from ..simd.lanes import Lanes
-from .aggregation import sweep_strip
+from .aggregation import scratch, sweep_strip
 from .costs import Prices
+from .paths import limits_of
 
 ROWS, WARM_ROWS = 128, 32
 """Rows of a strip, and rows that a path begins before it: what lies farther away hardly reaches in."""
@@ -49,7 +50,7 @@ def sweep(
     grey: UInt8[np.ndarray, "h w"],
     span: Span,
     prices: Prices,
-    tolerance: float,
+    check_tolerance: float,
     only: Sequence[tuple[int, int]],
     out: Swept,
     warm: int = WARM_ROWS,
@@ -60,11 +61,12 @@ def sweep(
     """
     w, n = grey.shape[1], span.lanes
     lanes = Lanes(n, codes[0].shape[1])
+    limits = limits_of(n, w, span, prices.neutral)
     highest = max((y1 - y0 for y0, y1 in only), default=0)
 
-    def work(share: list[tuple[int, int]]) -> None:
-        total = np.empty((highest, w * n), np.uint8)
+    def work(share: Iterable[tuple[int, int]]) -> None:
+        room = scratch(highest, w, n, lanes.planes)
         for rows in share:
-            sweep_strip(lanes, *codes, grey, rows, warm, span, prices, np.float32(tolerance), total, *out)
+            sweep_strip(lanes, *codes, grey, rows, warm, span, limits, prices, np.float32(check_tolerance), room, *out)
 
     in_turns(list(only), work, max(1, VOLUME_BYTES // max(1, highest * w * n)))

@@ -29,7 +29,7 @@ class Matches(NamedTuple):
     right_px: Float64[np.ndarray, "n 2"]
 
     @property
-    def vertical_px(self) -> Float64[np.ndarray, "n"]:
+    def row_offset_px(self) -> Float64[np.ndarray, "n"]:
         """How far each right point lies below its left one; all zero in a rectified pair."""
         return self.right_px[:, 1] - self.left_px[:, 1]
 

@@ -109,15 +109,6 @@ def _parabola(before: Tensor, value: Tensor, after: Tensor) -> Tensor:
     return torch.where(bent, 0.5 * (after - before) / torch.where(bent, bend, 1.0), 0.0)
 
 
-def soft_argmax(volume: Tensor, low: int, sharpness: float = 30.0) -> Tensor:
-    """Mean disparity (b, h, w) under weights exp(sharpness x score): differentiable, unlike the best one.
-
-    Source: Kendall et al., End-to-End Learning of Geometry and Context for Deep Stereo Regression, ICCV 2017, sec. 3.4.
-    """
-    disparity = torch.arange(low, low + volume.shape[1], dtype=volume.dtype, device=volume.device)
-    return torch.einsum("bnhw,n->bhw", torch.softmax(sharpness * volume, dim=1), disparity)
-
-
 def match(left: Tensor, right: Tensor, low: int, high: int, window_px: int, memory_mb: int = 64) -> Best:
     """The best shift of every pixel in low..high, in strips of rows so that the scores take about memory_mb.
 

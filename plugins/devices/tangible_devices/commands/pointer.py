@@ -9,16 +9,16 @@ PATHS = "circle | raster | spiral | press"
 
 def pointer(
     path: Annotated[str, typer.Option(help=f"{PATHS}; without one, type positions.")] = "",
-    channel: Annotated[str, typer.Option(help="As the device's.")] = "pointer",
-    seconds: Annotated[float, typer.Option(help="How long to follow the path.")] = 8.0,
-    height_mm: Annotated[float, typer.Option(help="Of the path over the base plane.")] = 5.0,
-    speed_mm_per_s: Annotated[float, typer.Option(help="Along the path.")] = 80.0,
-    wait: Annotated[float, typer.Option(help="Seconds to wait for the device.")] = 0.0,
+    channel: Annotated[str, typer.Option(help="Channel, as in the device's options.")] = "pointer",
+    seconds: Annotated[float, typer.Option(help="How long to follow the path, s.")] = 8.0,
+    height_mm: Annotated[float, typer.Option(help="Height of the path above the base plane, mm.")] = 5.0,
+    speed_mm_per_s: Annotated[float, typer.Option(help="Speed along the path, mm/s.")] = 80.0,
+    wait: Annotated[float, typer.Option(help="How long to wait for the device, s.")] = 0.0,
     as_json: Annotated[bool, typer.Option("--json", help="One JSON object a line.")] = False,
 ) -> None:
-    """Move a `pointer` device from another terminal, and see the forces.
+    """Move a `pointer` device from another terminal.
 
-    Typed positions are lines of `x y z`, millimetres, and buttons as a fourth number if you like.
+    Shows the forces. Typed positions are lines of `x y z`, millimetres, and buttons as a fourth number if you like.
     """
     from ..pointer.following import follow
 

@@ -9,10 +9,10 @@ from pydantic import BaseModel, Field
 
 from tangible_core.data import DeviceSpec, Finding, Unit
 from tangible_core.plugins.interfaces import Adjustable, HapticDevice, Link, Serviceable
-from tangible_core.scene.calibrations import load_calibration
 
 from .calibration import Calibration
 from .image import read_image
+from .settings import Settings
 
 
 class Falcon(HapticDevice, Serviceable, Adjustable):
@@ -45,7 +45,7 @@ class Falcon(HapticDevice, Serviceable, Adjustable):
 
     def spec(self) -> DeviceSpec:
         """A Falcon's limits, as in CHAI3D's table; the force that its motors can give in every direction."""
-        return self.calibrated(self.serial or "").spec()
+        return self.settings().calibrated(self.serial or "").spec()
 
     def open(self) -> Link:
         """Find it, load its firmware if it has none, and have it homed; blocks until that is done.
@@ -54,15 +54,15 @@ class Falcon(HapticDevice, Serviceable, Adjustable):
         """
         from .opening import open_falcon
 
-        return open_falcon(self, self.image(), None, time.perf_counter)
+        return open_falcon(self.settings(), self.image(), None, time.perf_counter)
 
     def image(self) -> bytes | None:
         """The firmware, read and checked as a whole; None if no file is given. Raises: DeviceError."""
         return None if self.firmware is None else read_image(self.firmware)
 
-    def calibrated(self, serial: str) -> Calibration:
-        """The option, or what was kept for this serial number, or the defaults. Raises: DeviceError if damaged."""
-        return self.calibration or load_calibration("falcon", serial, Calibration) or Calibration()
+    def settings(self) -> Settings:
+        """All but the firmware."""
+        return Settings(**{name: value for name, value in self if name != "firmware"})
 
     def connected(self) -> tuple[Unit, ...]:
         """Every Falcon on the bus. Raises: DeviceAbsent without libusb, DeviceError if it fails."""
@@ -74,7 +74,7 @@ class Falcon(HapticDevice, Serviceable, Adjustable):
         """libusb, the firmware's file, then each Falcon: permission, driver, firmware, rate."""
         from .service import findings
 
-        return findings(self, None, time.perf_counter)
+        return findings(self.settings(), self.firmware, None, time.perf_counter)
 
     def home(self, say: Callable[[str], None]) -> None:
         """Open it, which has it homed, and close it, by which it forgets that again: a try. Raises: as `open`."""
@@ -87,4 +87,4 @@ class Falcon(HapticDevice, Serviceable, Adjustable):
         """Measure its axes, its arms' zero and its motors' strength. Raises: DeviceError as `open`, or if it fails."""
         from .service import calibrated
 
-        return calibrated(self, ask, None, time.perf_counter)
+        return calibrated(self.settings(), self.image(), ask, None, time.perf_counter)

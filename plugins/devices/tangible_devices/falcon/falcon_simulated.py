@@ -65,4 +65,4 @@ class FalconSimulated(HapticDevice):
         points = DRAWN[self.path](self.size_m, self.lines, self.z_m, self.lift_m)
         unit = simulated_falcon(clock, walk(points, self.speed_m_per_s, 0.001), self.lift_m, self.hand)
         image = self.driver.image() or synthetic_image()
-        return open_falcon(self.driver, image, Bus([unit], self.faults), clock)
+        return open_falcon(self.driver.settings(), image, Bus([unit], self.faults), clock)

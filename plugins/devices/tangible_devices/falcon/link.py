@@ -11,7 +11,6 @@ import numpy as np
 from tangible_core.compiled.touch import CompiledLink, LinkKernels
 from tangible_core.data import NO_FORCE, Force, HapticState
 from tangible_core.errors import DeviceError
-from tangible_core.session import limited
 
 from . import tick
 from .firmware import NULL
@@ -61,9 +60,9 @@ class FalconLink(CompiledLink):
         in_flight: int = 2,
         leds: bool = True,
     ) -> None:
+        super().__init__(port.place, max_force_n)
         self._port = port
         self._clock = clock
-        self._max_force_n = max_force_n
         self._in_flight = in_flight
         self._sent, self._received = array("B", NULL), array("B", bytes(READ_BYTES))
         self._chunk, self._begun = np.frombuffer(self._received, np.uint8), np.zeros(SIZE, np.uint8)
@@ -82,7 +81,6 @@ class FalconLink(CompiledLink):
         self._pending = self._lost = self._silences = 0
         self._started_s = clock()
         self._sent_s = self._started_s - 1.0
-        self._closed = ""
         tick.write(*self._buffers, 0.0, 0.0, 0.0)
 
     def kernels(self) -> LinkKernels:
@@ -121,29 +119,24 @@ class FalconLink(CompiledLink):
         """Take in the newest answer; whether it is a new one, and gives a position."""
         return bool(tick.read(*self._buffers, self._state))
 
-    def read(self) -> HapticState:
+    def _read(self) -> HapticState:
         """The newest position, of an answer that was not read before; a packet is sent for one if need be.
 
-        Raises: DeviceError if the device stopped answering, lost its homing, or the link is closed.
+        Raises: DeviceError if the device stopped answering or lost its homing.
         """
-        self._check_open()
         for _ in range(PATIENCE):
             if self.look():
                 x, y, z, vx, vy, vz, buttons = self._state.tolist()
                 return HapticState((x, y, z), (vx, vy, vz), float(self._held[tick.NOW]), int(buttons))
-            self.exchange()
+            self._exchange()
         raise self._given_up(
             DeviceError(f"{self._port.place}: lost its homing or sends no sense; open it again, and home it")
         )
 
-    def write(self, force: Force) -> None:
-        """Send a force at once and fetch the answer; none if it is not finite, scaled down if it is too strong.
-
-        Raises: DeviceError if the device stopped answering or the link is closed.
-        """
-        self._check_open()
-        tick.write(*self._buffers, *limited(force, self._max_force_n))
-        self.exchange()
+    def _send(self, force: Force) -> None:
+        """Send a force at once and fetch the answer. Raises: DeviceError if the device stopped answering."""
+        tick.write(*self._buffers, *force)
+        self._exchange()
 
     @property
     def applied(self) -> Force:
@@ -151,9 +144,8 @@ class FalconLink(CompiledLink):
         x, y, z = self._held[tick.APPLIED : tick.APPLIED + 3].tolist()
         return Force(x, y, z)
 
-    def exchange(self) -> None:
+    def _exchange(self) -> None:
         """Send the packet, and wait while as many are on their way as may be."""
-        self._check_open()
         try:
             while self._clock() - self._sent_s < FRAME_S:
                 self._fetch()
@@ -164,16 +156,14 @@ class FalconLink(CompiledLink):
         except DeviceError as error:
             raise self._given_up(error) from error
 
-    def close(self) -> None:
-        """Send null packets and let go; a second call does nothing."""
-        if self._closed:
-            return
+    def _release(self) -> None:
+        """Send null packets and let go."""
         health = self.health()
         try:
             self._say_goodbye()
         except DeviceError as error:
             log.warning("its force could not be made zero, turn off its power: %s", error)
-        self._let_go("is closed")
+        self._let_go()
         log.info("%s: %s", self._port.place, health)
 
     def _receive(self) -> None:
@@ -214,15 +204,11 @@ class FalconLink(CompiledLink):
         """The error, after the motors were told to stop, as far as they still listen, and the port was given back."""
         with suppress(DeviceError):
             self._port.write(array("B", NULL))
-        self._let_go(f"was closed after an error: {error}")
+        self._let_go()
+        self._end(f"was closed after an error: {error}")
         return error
 
-    def _let_go(self, reason: str) -> None:
-        self._closed = reason
+    def _let_go(self) -> None:
         self._held[tick.APPLIED : tick.APPLIED + 3] = NO_FORCE
         self._counts[tick.KNOWN] = 0
         self._port.close()
-
-    def _check_open(self) -> None:
-        if self._closed:
-            raise DeviceError(f"{self._port.place} {self._closed}; open it again")

@@ -7,7 +7,7 @@ import math
 from collections.abc import Callable, Sequence
 from typing import get_args
 
-from tangible_core.data import NO_FORCE, Force
+from tangible_core.data import NO_FORCE, Force, Vector
 from tangible_core.errors import DeviceError
 from tangible_core.plugins.interfaces import Link
 
@@ -15,7 +15,6 @@ from . import kinematics
 from .calibration import Axis, Calibration
 
 Ask = Callable[[str], str]
-Vector = tuple[float, float, float]
 DIRECTIONS = ("to the right", "away from you", "up")
 LEAST_M = 0.010
 """Shorter moves do not tell an axis."""

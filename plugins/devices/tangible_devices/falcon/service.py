@@ -1,24 +1,22 @@
 """What is connected, and what keeps it from working, in the order in which to put it right. Imports pyusb and numba."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from contextlib import closing
-from typing import TYPE_CHECKING, Any
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
 
 from tangible_core.data import Finding, Unit
 from tangible_core.errors import DeviceAbsent, DeviceError
 
 from .calibration import Calibration
 from .firmware import answers
-from .image import WHENCE
+from .image import WHENCE, read_image
 from .link import FalconLink
 from .measuring import measure
 from .opening import open_falcon
 from .port import INTERFACE, Port, attached, chosen, place_of, run_time, serial_of
-
-if TYPE_CHECKING:
-    from .falcon import Falcon
+from .settings import Settings
 
 ENOUGH_HZ = 900.0
 PACKETS = 500
@@ -34,7 +32,7 @@ def units(backend: Any) -> tuple[Unit, ...]:
     return tuple(_unit(device) for device in attached(backend))
 
 
-def findings(options: Falcon, backend: Any, clock: Callable[[], float]) -> Iterator[Finding]:
+def findings(settings: Settings, firmware: Path | None, backend: Any, clock: Callable[[], float]) -> Iterator[Finding]:
     """libusb, the firmware's file, then each Falcon: permission, driver, firmware, rate. No force is given."""
     try:
         devices = attached(backend)
@@ -42,26 +40,26 @@ def findings(options: Falcon, backend: Any, clock: Callable[[], float]) -> Itera
         yield _failed("libusb", error, "not asked" if isinstance(error, DeviceAbsent) else "failed")
         return
     yield Finding("libusb", "fine", "is there")
-    yield _file(options)
+    yield _file(firmware)
     if not devices:
         yield Finding("device", "not asked", "none is plugged in; it needs its USB cable and its power supply")
     for device in devices:
-        yield from _of_one(device, options, clock)
+        yield from _of_one(device, settings, firmware, clock)
 
 
 def calibrated(
-    options: Falcon, ask: Callable[[str], str], backend: Any, clock: Callable[[], float]
+    settings: Settings, image: bytes | None, ask: Callable[[str], str], backend: Any, clock: Callable[[], float]
 ) -> tuple[str, Calibration]:
-    """The serial number of the Falcon that the options choose, and what was measured of it."""
-    serial = serial_of(chosen(attached(backend), options.serial, options.index)[0]) or ""
+    """The serial number of the Falcon that the settings choose, and what was measured of it."""
+    serial = serial_of(chosen(attached(backend), settings.serial, settings.index)[0]) or ""
 
     def opened(calibration: Calibration) -> FalconLink:
-        return open_falcon(options.model_copy(update={"calibration": calibration}), options.image(), backend, clock)
+        return open_falcon(replace(settings, calibration=calibration), image, backend, clock)
 
-    return serial, measure(opened, ask, options.calibrated(serial))
+    return serial, measure(opened, ask, settings.calibrated(serial))
 
 
-def _of_one(device: Any, options: Falcon, clock: Callable[[], float]) -> Iterator[Finding]:
+def _of_one(device: Any, settings: Settings, firmware: Path | None, clock: Callable[[], float]) -> Iterator[Finding]:
     place = f"bus {device.bus}, address {device.address}"
     try:
         serial = serial_of(device)
@@ -69,13 +67,13 @@ def _of_one(device: Any, options: Falcon, clock: Callable[[], float]) -> Iterato
         yield Finding(f"{place}: driver", "fine", _driver(device))
         with closing(Port(device, place_of(device))) as port:
             port.claim()
-            run_time(port, options.event_character)
+            run_time(port, settings.event_character)
             yield Finding(f"{place}: in use", "fine", "by nobody else")
             if not answers(port):
-                yield _without_firmware(place, options)
+                yield _without_firmware(place, firmware)
                 return
             yield Finding(f"{place}: firmware", "fine", "answers")
-            yield _rate(place, port, options, clock)
+            yield _rate(place, port, settings, clock)
     except DeviceError as error:
         yield _failed(place, error)
 
@@ -88,11 +86,11 @@ def _unit(device: Any) -> Unit:
         return Unit("Novint Falcon", "", place, f"{str(error).splitlines()[0]} (tangible devices doctor falcon)")
 
 
-def _file(options: Falcon) -> Finding:
-    if options.firmware is None:
+def _file(firmware: Path | None) -> Finding:
+    if firmware is None:
         return Finding("firmware file", "fine", "none is given; one is needed after each time the device was powered")
     try:
-        return Finding("firmware file", "fine", f"{options.firmware}: {len(options.image() or b'')} bytes, whole")
+        return Finding("firmware file", "fine", f"{firmware}: {len(read_image(firmware))} bytes, whole")
     except DeviceError as error:
         return _failed("firmware file", error)
 
@@ -108,17 +106,17 @@ def _driver(device: Any) -> str:
     return "no other driver has it"
 
 
-def _without_firmware(place: str, options: Falcon) -> Finding:
-    if options.firmware is not None:
+def _without_firmware(place: str, firmware: Path | None) -> Finding:
+    if firmware is not None:
         return Finding(f"{place}: firmware", "fine", "has none yet; the file is sent when it is opened")
     says = "has none since it was powered, and no file is given"
     return Finding(f"{place}: firmware", "failed", says, f"--set firmware=FILE, or option firmware; {WHENCE}")
 
 
-def _rate(place: str, port: Port, options: Falcon, clock: Callable[[], float]) -> Finding:
+def _rate(place: str, port: Port, settings: Settings, clock: Callable[[], float]) -> Finding:
     calibration = Calibration()
     link = FalconLink(
-        port, calibration.arms(), calibration.frame(), 0.0, clock, in_flight=options.in_flight, leds=options.leds
+        port, calibration.arms(), calibration.frame(), 0.0, clock, in_flight=settings.in_flight, leds=settings.leds
     )
     for _ in range(PACKETS):
         link.exchange()

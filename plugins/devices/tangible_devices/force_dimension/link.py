@@ -2,13 +2,11 @@
 
 import math
 import time
-from contextlib import suppress
 from typing import Any, final
 
 from tangible_core.data import NO_FORCE, Force, HapticState
 from tangible_core.errors import DeviceError
 from tangible_core.plugins.interfaces import Link
-from tangible_core.session import limited
 
 from .library import OPENED, done
 
@@ -20,11 +18,10 @@ class ForceDimensionLink(Link):
     """The library's x is towards the user, its y right and its z up: (x, y, z) of ours is its (y, -x, z)."""
 
     def __init__(self, dhd: Any, number: int, max_force_n: float) -> None:
+        super().__init__("this Force Dimension device", max_force_n)
         self._dhd = dhd
         self._number = number
-        self._max_force_n = max_force_n
         self._applied = NO_FORCE
-        self._open = True
         try:
             done(dhd, dhd.enableForce(True, number), "enabling its force", REPLUG)
             self._send(NO_FORCE)
@@ -32,9 +29,8 @@ class ForceDimensionLink(Link):
             self.close()
             raise
 
-    def read(self) -> HapticState:
-        """Where the tip is now. Raises: DeviceError if the device stopped answering or the link is closed."""
-        self._check_open()
+    def _read(self) -> HapticState:
+        """Where the tip is now. Raises: DeviceError if the device stopped answering."""
         position, velocity = [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]
         done(self._dhd, self._dhd.getPosition(position, self._number), "reading its position", REPLUG)
         if self._dhd.getLinearVelocity(velocity, self._number) < 0:
@@ -45,32 +41,18 @@ class ForceDimensionLink(Link):
         buttons = self._dhd.getButtonMask(self._number) & 0xFFFFFFFF
         return HapticState((y, -x, z), (vy, -vx, vz), time.perf_counter(), buttons)
 
-    def write(self, force: Force) -> None:
-        """Set the force; zero if not finite, scaled down to the model's greatest. Raises: DeviceError as `read`."""
-        self._check_open()
-        self._send(limited(force, self._max_force_n))
+    def _send(self, force: Force) -> None:
+        """Set the force. Raises: DeviceError as `_read`."""
+        self._applied = NO_FORCE
+        done(self._dhd, self._dhd.setForce([-force.y, force.x, force.z], self._number), "setting its force", REPLUG)
+        self._applied = force
 
     @property
     def applied(self) -> Force:
         """The force that was set last."""
         return self._applied
 
-    def close(self) -> None:
-        """No force, and let go; a second call does nothing."""
-        if not self._open:
-            return
-        with suppress(DeviceError):
-            self._send(NO_FORCE)
-        self._open = False
-        self._applied = NO_FORCE
+    def _release(self) -> None:
+        """Let go of it."""
         self._dhd.close(self._number)
         OPENED.give_back(self._number)
-
-    def _send(self, force: Force) -> None:
-        self._applied = NO_FORCE
-        done(self._dhd, self._dhd.setForce([-force.y, force.x, force.z], self._number), "setting its force", REPLUG)
-        self._applied = force
-
-    def _check_open(self) -> None:
-        if not self._open:
-            raise DeviceError("this Force Dimension device is closed; open it again")

@@ -4,14 +4,11 @@ import time
 from contextlib import suppress
 from typing import final
 
-from tangible_core.data import NO_FORCE, Force, HapticState
+from tangible_core.data import NO_FORCE, Force, HapticState, Vector
 from tangible_core.errors import DeviceError
 from tangible_core.plugins.interfaces import Link
-from tangible_core.session import limited
 
 from .service import Answer, Session
-
-Vector = tuple[float, float, float]
 
 
 @final
@@ -19,59 +16,49 @@ class HaplyLink(Link):
     """A message is answered while the force for the next one is computed: a tick waits for one answer, no longer."""
 
     def __init__(self, session: Session, device_id: str, centre_m: Vector, max_force_n: float) -> None:
+        super().__init__("this Haply device", max_force_n)
         self._session = session
         self._device_id = device_id
         self._centre_m = centre_m
-        self._max_force_n = max_force_n
         self._applied = NO_FORCE
         self._before: tuple[float, Vector] | None = None
-        self._closed = False
+        self._answers = True
 
-    def read(self) -> HapticState:
+    def _read(self) -> HapticState:
         """The answer to the last force, or to the same force sent again.
 
-        Raises: DeviceError if the service or the arm is gone, or the link is closed.
+        Raises: DeviceError if the service or the arm is gone.
         """
-        self._check_open()
         try:
             if not self._session.waits:
                 self._session.send(self._device_id, self._applied)
             answer = self._session.newest(self._device_id)
         except DeviceError:
-            self._applied = NO_FORCE  # commands lapse when none are sent
+            self._applied, self._answers = NO_FORCE, False  # commands lapse when none are sent
             raise
         return self._state(time.perf_counter(), answer)
 
-    def write(self, force: Force) -> None:
-        """Send a force; zero if it is not finite, scaled down to the greatest allowed.
-
-        Raises: DeviceError as `read`.
-        """
-        self._check_open()
-        force = limited(force, self._max_force_n)
+    def _send(self, force: Force) -> None:
+        """Send a force. Raises: DeviceError as `_read`."""
         try:
             if self._session.waits:
                 self._session.newest(self._device_id)
             self._session.send(self._device_id, force)
         except DeviceError:
-            self._applied = NO_FORCE
+            self._applied, self._answers = NO_FORCE, False
             raise
-        self._applied = force
+        self._applied, self._answers = force, True
 
     @property
     def applied(self) -> Force:
         """The force sent last; none once the service is gone, as its commands lapse."""
         return self._applied
 
-    def close(self) -> None:
-        """Send no force, and disconnect; a second call does nothing."""
-        if self._closed:
-            return
-        with suppress(DeviceError):
-            self.write(NO_FORCE)
-            self._session.newest(self._device_id)  # so that it has arrived
-        self._closed = True
-        self._applied = NO_FORCE
+    def _release(self) -> None:
+        """Disconnect, once the last force has arrived."""
+        if self._answers:
+            with suppress(DeviceError):
+                self._session.newest(self._device_id)
         self._session.close()
 
     def _state(self, now_s: float, answer: Answer) -> HapticState:
@@ -85,7 +72,3 @@ class HaplyLink(Link):
         then_s, (x, y, z) = self._before or (now_s, position_m)
         span = now_s - then_s or 1.0
         return (position_m[0] - x) / span, (position_m[1] - y) / span, (position_m[2] - z) / span
-
-    def _check_open(self) -> None:
-        if self._closed:
-            raise DeviceError("this Haply device is closed; open it again")

@@ -11,9 +11,8 @@ from typing import Any, Self, final
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.server import ServerConnection, serve
 
-from tangible_core.data import NO_FORCE, Force
+from tangible_core.data import NO_FORCE, Force, Vector
 
-Vector = tuple[float, float, float]
 Motion = Callable[[float], tuple[Vector, Vector]]
 """Position and velocity at a time in seconds."""
 

@@ -6,7 +6,7 @@ from itertools import count
 from types import TracebackType
 from typing import Self, final
 
-from tangible_core.data import NO_FORCE, Force
+from tangible_core.data import NO_FORCE, Force, Vector
 from tangible_core.errors import DeviceAbsent, DeviceError
 
 from .channel import (
@@ -22,7 +22,6 @@ from .channel import (
     device_is_open,
 )
 
-Vector = tuple[float, float, float]
 SILENT_S = 0.5
 """A device that has shown no force for longer is taken for dead."""
 

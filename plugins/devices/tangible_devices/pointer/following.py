@@ -9,10 +9,10 @@ from itertools import count
 from queue import Empty, Queue
 from threading import Thread
 
-from tangible_core.data import Force
-from tangible_core.errors import ConfigError, DeviceError, did_you_mean
+from tangible_core.data import Force, Vector
+from tangible_core.errors import ConfigError, DeviceError, check_positive, did_you_mean
 
-from ..paths import DRAWN, Vector, walk
+from ..paths import DRAWN, walk
 from .client import PointerClient
 
 PERIOD_S = 0.005
@@ -31,8 +31,10 @@ def follow(
     """
     if path and path not in DRAWN:
         raise ConfigError(f"--path {path}: there is no such path{did_you_mean(path, DRAWN)}; {', '.join(DRAWN)}")
-    if not (0 < speed_m_per_s < math.inf and math.isfinite(height_m) and 0 < seconds < math.inf):
-        raise ConfigError("--seconds and --speed-mm-per-s are above 0 and finite, --height-mm is finite")
+    check_positive("--seconds", seconds)
+    check_positive("--speed-mm-per-s", 1000 * speed_m_per_s)
+    if not math.isfinite(height_m):
+        raise ConfigError(f"--height-mm: is {1000 * height_m}; it must be finite")
     steps = _drawn(path, seconds, height_m, speed_m_per_s) if path else _typed(sys.stdin)
     with PointerClient(channel, wait_s) as client:
         if not as_json:

@@ -11,9 +11,7 @@ from pydantic import Field
 
 from tangible_core.compiled.touch import CompiledLink, LinkKernels
 from tangible_core.data import NO_FORCE, DeviceSpec, Force, HapticState
-from tangible_core.errors import DeviceError
 from tangible_core.plugins.interfaces import HapticDevice, Link
-from tangible_core.session import limited
 
 from ..simulated import LIKE_A_FALCON
 from .channel import DEVICE_OPEN, FORCE, FORCE_WORDS, MAGIC, MARK, SAMPLE, SAMPLE_WORDS, Channel
@@ -52,6 +50,7 @@ class PointerLink(CompiledLink):
     """A pointer in use."""
 
     def __init__(self, kernels: ModuleType, channel: Channel, stale_after_s: float, max_force_n: float) -> None:
+        super().__init__("the pointer device", max_force_n)
         channel.set_flag(DEVICE_OPEN, False)  # a device that was killed has left it set
         self._code: Any = kernels
         self._channel = channel
@@ -60,23 +59,20 @@ class PointerLink(CompiledLink):
         self._kept = np.zeros(kernels.KEPT_WORDS, np.uint64)
         self._numbers = self._kept.view(np.float64)
         self._stale_after_s = stale_after_s
-        self._max_force_n = max_force_n
         self._last = self._words[SAMPLE]  # what lies there from before is nobody's
         self._kept[kernels.LAST] = self._last
         self._kept[kernels.AGE] = self._kept[kernels.OLDEST] = round(stale_after_s * 1000)
         self._heard_s, self._read_s = -math.inf, 0.0
         self._sample = HapticState(HIGH_M)
-        self._open = True
-        self._show(NO_FORCE)
+        self._send(NO_FORCE)
         self._words[MAGIC] = np.frombuffer(MARK, np.uint64)[0]
         self._words[DEVICE_OPEN] = 1
 
-    def read(self) -> HapticState:
+    def _read(self) -> HapticState:
         """Where the client is; high above where there is none.
 
         Waits until half a millisecond after the read before, so that a loop without a clock of its own does not spin.
         """
-        self._check_open()
         time.sleep(max(0.0, self._read_s + PACE_S - time.monotonic()))
         now = self._read_s = time.monotonic()
         found = self._code.fetch(self._words, self._kept)
@@ -88,23 +84,19 @@ class PointerLink(CompiledLink):
             return HapticState(HIGH_M, time_s=now)
         return self._sample._replace(time_s=now)
 
-    def write(self, force: Force) -> None:
-        """Show this force until the next write; zero if not finite, scaled down to the device's maximum."""
-        self._check_open()
-        self._show(limited(force, self._max_force_n))
+    def _send(self, force: Force) -> None:
+        """Show this force until the next one."""
+        self._code.write(self._words, self._kept, self._numbers, *force)
 
     @property
     def applied(self) -> Force:
         """The force that the client is shown."""
         return Force(*self._held.tolist())
 
-    def close(self) -> None:
-        """Show no force, and leave the channel to another device."""
-        if self._open:
-            self._open = False
-            self._show(NO_FORCE)
-            self._words[DEVICE_OPEN] = 0
-            self._channel.close()
+    def _release(self) -> None:
+        """Leave the channel to another device."""
+        self._words[DEVICE_OPEN] = 0
+        self._channel.close()
 
     def kernels(self) -> LinkKernels:
         """Read and write on the shared memory itself."""
@@ -115,13 +107,5 @@ class PointerLink(CompiledLink):
         """No: the client fills and empties the memory."""
         return False
 
-    def exchange(self) -> None:
-        """Nothing has to travel. Raises: DeviceError if the link is closed."""
-        self._check_open()
-
-    def _show(self, force: Force) -> None:
-        self._code.write(self._words, self._kept, self._numbers, *force)
-
-    def _check_open(self) -> None:
-        if not self._open:
-            raise DeviceError("the pointer device is closed; open it again")
+    def _exchange(self) -> None:
+        """Nothing has to travel."""

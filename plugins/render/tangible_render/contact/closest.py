@@ -9,9 +9,7 @@ its verb.
 
 import math
 
-from numba import njit
-
-from tangible_core.compiled.compiling import KERNEL
+from tangible_core.compiled.compiling import inner
 
 from ..surface.spline import bend
 
@@ -27,7 +25,7 @@ STEEP = 0.1
 """Newton's matrix is used where its determinant is over this part of the one without curvature (Gauss-Newton)."""
 
 
-@njit(inline="always", **KERNEL)
+@inner(forceinline=True)
 def settle(
     coefficients,
     width_m,
@@ -74,7 +72,7 @@ def settle(
     return px, py, bent[0], bent[1], bent[2], slides
 
 
-@njit(**KERNEL)
+@inner()
 def _parts(bent, dx, dy, dz):
     """Lengths of the way from proxy to hand along the surface and along its normal."""
     _, hx, hy, _, _, _ = bent
@@ -83,7 +81,7 @@ def _parts(bent, dx, dy, dz):
     return math.sqrt(max(dx * dx + dy * dy + dz * dz - square, 0.0)), math.sqrt(square)
 
 
-@njit(**KERNEL)
+@inner()
 def _step(half, px, py, away, bent, share):
     """This share of Newton's step, or of Gauss and Newton's, within the borders; (step_x, step_y, whether Newton's)."""
     (dx, dy, dz), (_, hx, hy, hxx, hxy, hyy) = away, bent
@@ -111,7 +109,7 @@ def _step(half, px, py, away, bent, share):
     return sx, sy, newton
 
 
-@njit(**KERNEL)
+@inner()
 def _accept(coefficients, across_per_m, down_per_m, px, py, sx, sy, x, y, z, away):
     """The step, shortened until it brings the proxy nearer to the hand; what the surface is there; whether it does."""
     before = _square(*away)
@@ -124,12 +122,12 @@ def _accept(coefficients, across_per_m, down_per_m, px, py, sx, sy, x, y, z, awa
     return sx, sy, there, _square(x - px - sx, y - py - sy, z - there[0]) < before
 
 
-@njit(**KERNEL)
+@inner()
 def _square(dx, dy, dz):
     return dx * dx + dy * dy + dz * dz
 
 
-@njit(**KERNEL)
+@inner()
 def _taylor(bent, sx, sy):
     """Height and slopes a small step away."""
     h, hx, hy, hxx, hxy, hyy = bent

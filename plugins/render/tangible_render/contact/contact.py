@@ -8,9 +8,8 @@ Imports numba: a method imports this module inside its verb.
 # ruff: noqa: ANN001, ANN201, ANN202 -- the types are in the signatures that numba compiles
 
 import numpy as np
-from numba import njit
 
-from tangible_core.compiled.compiling import KERNEL
+from tangible_core.compiled.compiling import inner
 
 from ..surface.bilinear import cell, over
 from ..surface.spline import height
@@ -24,7 +23,7 @@ STRETCH_M = 0.02
 """A proxy left farther behind is let go if the surface right above is nearer: no desktop device holds such a force."""
 
 
-@njit(**KERNEL)
+@inner()
 def _entry(coefficients, across_per_m, down_per_m, from_x, from_y, from_z, x, y, z):
     """Where the straight way of the hand came through the surface, within 1/64 of the way, on the side it came from."""
     out, inside = 0.0, 1.0
@@ -38,7 +37,7 @@ def _entry(coefficients, across_per_m, down_per_m, from_x, from_y, from_z, x, y,
     return from_x + out * (x - from_x), from_y + out * (y - from_y)
 
 
-@njit(inline="always", **KERNEL)
+@inner(forceinline=True)
 def approach(coefficients, width_m, length_m, across_per_m, down_per_m, tiles_m, memory, x, y, z, speed):
     """Whether the hand is in the surface; its phase, and where its proxy starts from this tick, go to the memory."""
     phase, px, py, was_x, was_y, was_z = memory[7], memory[0], memory[1], memory[3], memory[4], memory[5]

@@ -17,7 +17,7 @@ import math
 import numpy as np
 from numba import njit
 
-from tangible_core.compiled.compiling import KERNEL
+from tangible_core.compiled.compiling import KERNEL, inner
 from tangible_core.haptic_textures.forces import STATE, texture_force
 from tangible_core.haptic_textures.heights import texture_height
 from tangible_core.haptic_textures.table import COUNT, DRAG, HEAD
@@ -58,7 +58,7 @@ def lateral_tick(fixed, law, height_m, labels, width_m, length_m, table, bristle
     return (fx, fy, fz) if np.isfinite(fx + fy + fz) else (0.0, 0.0, 0.0)
 
 
-@njit(inline="always", **KERNEL)
+@inner(forceinline=True)
 def texture(labels, width_m, length_m, table, memory, x, y, z):
     """(label, t, t_x, t_y, dx, dy, dz): the label under the hand or nearest to it, its texture, the hand's step.
 
@@ -82,7 +82,7 @@ def texture(labels, width_m, length_m, table, memory, x, y, z):
     return label, t, tx, ty, dx, dy, dz
 
 
-@njit(inline="always", **KERNEL)
+@inner(forceinline=True)
 def effects(table, label, bristle, memory, tx, ty, dx, dy, dz, vx, vy, vz, fx, fy, fz):
     """A law's force with friction, the texture's own forces and damping, as it is felt through the texture."""
     push = math.sqrt(fx * fx + fy * fy + fz * fz)
@@ -109,12 +109,16 @@ def effects(table, label, bristle, memory, tx, ty, dx, dy, dz, vx, vy, vz, fx, f
     return (fx, fy, fz) if np.isfinite(fx + fy + fz) else (0.0, 0.0, 0.0)
 
 
-@njit(inline="always", **KERNEL)
+@inner(forceinline=True)
 def _let_go(memory):
-    memory[:WAS_X], memory[WAY_X:], memory[SLIDES] = 0.0, 0.0, -1.0
+    for i in range(WAS_X):
+        memory[i] = 0.0
+    for i in range(WAY_X, memory.size):
+        memory[i] = 0.0
+    memory[SLIDES] = -1.0
 
 
-@njit(inline="always", **KERNEL)
+@inner(forceinline=True)
 def _rub(table, label, bristle, memory, dx, dy, vx, vy, push):
     """Lateral newtons after a step (dx, dy) along the surface at (vx, vy) m/s: friction, and the texture's own.
 

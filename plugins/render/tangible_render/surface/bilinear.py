@@ -9,7 +9,7 @@ its centre. Imports numba: a method imports this module inside its verb.
 import numpy as np
 from numba import float64, int32, njit, types, uint8
 
-from tangible_core.compiled.compiling import KERNEL
+from tangible_core.compiled.compiling import KERNEL, inner
 
 HEIGHTS = types.Array(types.float32, 2, "C", readonly=True)
 LABELS = types.Array(int32, 2, "C", readonly=True)
@@ -53,7 +53,7 @@ def bilinear(height_m, width_m, length_m, x, y):
     )
 
 
-@njit(**KERNEL)
+@inner()
 def _between(place, count):
     """The two centres a place lies between, and how far it is from the first to the second."""
     last = count - 1

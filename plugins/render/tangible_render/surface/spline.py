@@ -10,7 +10,7 @@ Source: Unser, Aldroubi & Eden, B-spline signal processing, IEEE Trans. Signal P
 
 from numba import njit
 
-from tangible_core.compiled.compiling import KERNEL
+from tangible_core.compiled.compiling import KERNEL, inner
 
 
 @njit(**KERNEL)
@@ -47,7 +47,7 @@ def bend(coefficients, across_per_m, down_per_m, x, y):
     )
 
 
-@njit(**KERNEL)
+@inner()
 def _place(coefficients, across_per_m, down_per_m, x, y):
     """First row and column of the 4 x 4 coefficients that a point depends on, and how far it is beyond the second."""
     rows, columns = coefficients.shape
@@ -56,7 +56,7 @@ def _place(coefficients, across_per_m, down_per_m, x, y):
     return row - 1, column - 1, down - row, across - column
 
 
-@njit(**KERNEL)
+@inner()
 def _values(t):
     """The four B-splines over an interval, at t in 0..1 of it."""
     u = 1.0 - t
@@ -65,18 +65,18 @@ def _values(t):
     return first, second, 1.0 - first - second - last, last
 
 
-@njit(**KERNEL)
+@inner()
 def _slopes(t):
     u = 1.0 - t
     return -0.5 * u * u, t * (1.5 * t - 2.0), u * (2.0 - 1.5 * u), 0.5 * t * t
 
 
-@njit(**KERNEL)
+@inner()
 def _bends(t):
     return 1.0 - t, 3.0 * t - 2.0, 1.0 - 3.0 * t, t
 
 
-@njit(**KERNEL)
+@inner()
 def _rows(coefficients, row, column, weights):
     """The four rows in one, weighted."""
     return (
@@ -87,7 +87,7 @@ def _rows(coefficients, row, column, weights):
     )
 
 
-@njit(**KERNEL)
+@inner()
 def _column(coefficients, row, column, weights):
     return (
         weights[0] * coefficients[row, column]
@@ -97,6 +97,6 @@ def _column(coefficients, row, column, weights):
     )
 
 
-@njit(**KERNEL)
+@inner()
 def _dot(a, b):
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]

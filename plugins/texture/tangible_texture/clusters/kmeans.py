@@ -2,6 +2,7 @@
 
 # ruff: noqa: ANN001, ANN202 -- numba takes the types from the call
 
+from collections.abc import Iterable
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -57,7 +58,7 @@ def _settle(rows: Float32[np.ndarray, "n d"], centres: Float32[np.ndarray, "k d"
     counts = np.empty((len(blocks), len(centres)), np.int64)
     costs, moved = np.empty(len(blocks)), np.empty(len(blocks), np.int64)
 
-    def work(share: list[int]) -> None:
+    def work(share: Iterable[int]) -> None:
         for i in share:
             costs[i], moved[i] = _assign(rows[blocks[i]], centres, labels[blocks[i]], sums[i], counts[i])
 

@@ -4,7 +4,7 @@ A filter passes a small part of the spectrum. That part is cut out and transform
 needs; that moves it to frequency 0, which leaves the magnitude as it was. Smoothing and sampling are one table an axis.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from functools import lru_cache
 from math import ceil, cos, hypot, pi, sin
 from typing import Any, NamedTuple
@@ -103,7 +103,7 @@ def energy_planes(
     cells = tuple(-(-side // step_px) for side in shape)
     planes = np.empty((len(filters), *cells), np.float32)
 
-    def work(share: list[int]) -> None:
+    def work(share: Iterable[int]) -> None:
         for i in share:
             wide_px = smoothing_px(filters[i], sigma_px)
             grid = _response(spectrum, filters[i], wide_px)
@@ -122,7 +122,7 @@ def mean_energies(spectrum: Spectrum, filters: Sequence[Gabor]) -> Float64[np.nd
     """The mean of |z|^2 over the whole picture, each filter: from the spectrum alone (Parseval), before any inverse."""
     means = np.empty(len(filters))
 
-    def work(share: list[int]) -> None:
+    def work(share: Iterable[int]) -> None:
         for i in share:
             means[i] = np.sum(power(_cut(spectrum, filters[i], np.inf)), dtype=np.float64)
 

@@ -2,6 +2,8 @@
 
 # ruff: noqa: ANN001, ANN202 -- numba takes the types from the call
 
+from collections.abc import Iterable
+
 import numpy as np
 from jaxtyping import Float32
 from numba import njit
@@ -22,7 +24,7 @@ STILL = 1e-6
 def capped(planes: Float32[np.ndarray, "d h w"]) -> Float32[np.ndarray, "d h w"]:
     """Rare huge values held down, in place."""
 
-    def work(share: list[int]) -> None:
+    def work(share: Iterable[int]) -> None:
         for i in share:
             at = int(RARE * (planes[i].size - 1))
             highest = LEAST_RARE * np.partition(planes[i], at, axis=None)[at]
@@ -42,7 +44,7 @@ def averaged(
     found = np.empty((len(planes), rows, columns), np.float32)
 
     @plain_opencv()
-    def work(share: list[int]) -> None:
+    def work(share: Iterable[int]) -> None:
         for i in share:
             smooth = cv2.GaussianBlur(planes[i], (0, 0), sigma_cells, borderType=cv2.BORDER_REFLECT)
             found[i] = cv2.resize(smooth, (columns, rows), interpolation=cv2.INTER_AREA) if step > 1 else smooth

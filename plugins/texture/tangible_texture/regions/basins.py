@@ -8,6 +8,8 @@ import numpy as np
 from jaxtyping import Float32, Int32
 from numba import njit
 
+from tangible_core.compiled.compiling import KERNEL, inner
+
 from .watershed import UNSEEN
 
 MOST_SEGMENTS = 64
@@ -33,16 +35,20 @@ def basins(
     count = 0
     for level in levels:
         size, parts = cv2.connectedComponents((height <= level).view(np.uint8), connectivity=4)
-        count = _add(found, parts, size, smallest_px, count)
+        owners, areas = np.full(size, UNSEEN, np.int32), np.zeros(size, np.int32)
+        count = _add(found, parts, owners, areas, smallest_px, count)
     return found, count
 
 
-@njit(cache=True, nogil=True)
-def _add(found, parts, size, smallest_px, count):
-    """Give every part with one basin in it to that basin, every large one without to a new one, from `count` on."""
-    names, areas = _owners(found, parts, size)
+@njit(**KERNEL)
+def _add(found, parts, names, areas, smallest_px, count):
+    """Give every part with one basin in it to that basin, every large one without to a new one, from `count` on.
+
+    names, areas: scratch, -1 and 0 for each part.
+    """
+    _own(found, parts, names, areas)
     names[0] = _SEVERAL  # what is too high
-    for part in range(1, size):
+    for part in range(1, names.size):
         if names[part] == UNSEEN and areas[part] >= smallest_px:
             names[part] = count
             count += 1
@@ -52,14 +58,12 @@ def _add(found, parts, size, smallest_px, count):
     return count
 
 
-@njit(cache=True, nogil=True)
-def _owners(found, parts, size):
+@inner()
+def _own(found, parts, owners, areas):
     """The basin in each part, -1 if there is none, -2 if there are several; and the areas of the parts."""
-    owners, areas = np.full(size, UNSEEN, np.int32), np.zeros(size, np.int32)
     for row in range(found.shape[0]):
         for column in range(found.shape[1]):
             part, basin = parts[row, column], found[row, column]
             areas[part] += 1
             if basin >= 0 and owners[part] != basin:
                 owners[part] = basin if owners[part] == UNSEEN else _SEVERAL
-    return owners, areas

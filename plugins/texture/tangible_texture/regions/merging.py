@@ -1,12 +1,14 @@
 """Merging of neighbouring regions, the least separated first."""
 
-# ruff: noqa: ANN001, ANN201 -- numba takes the types from the call
+# ruff: noqa: ANN001, ANN202 -- numba takes the types from the call
 
 import heapq
 
 import numpy as np
 from jaxtyping import Int32
 from numba import njit
+
+from tangible_core.compiled.compiling import KERNEL
 
 from .borders import Border
 
@@ -88,11 +90,15 @@ class _Graph:
         return region
 
 
-@njit(cache=True, nogil=True)
-def in_reading_order(labels):
-    """Labels 0..n-1 in the order of their first pixels, row by row. Parameters: labels >= 0, int32 (h, w)."""
-    order = np.full(labels.max() + 1, -1, np.int32)
+def in_reading_order(labels: Int32[np.ndarray, "h w"]) -> Int32[np.ndarray, "h w"]:
+    """Labels 0..n-1 in the order of their first pixels, row by row. Parameters: labels >= 0."""
     found = np.empty_like(labels)
+    _rename(labels, np.full(int(labels.max()) + 1, -1, np.int32), found)
+    return found
+
+
+@njit(**KERNEL)
+def _rename(labels, order, found):
     count = 0
     for row in range(labels.shape[0]):
         for column in range(labels.shape[1]):
@@ -101,4 +107,3 @@ def in_reading_order(labels):
                 order[label] = count
                 count += 1
             found[row, column] = order[label]
-    return found

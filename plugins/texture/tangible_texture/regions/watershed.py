@@ -6,6 +6,8 @@ import numpy as np
 from jaxtyping import Float32, Int32
 from numba import njit
 
+from tangible_core.compiled.compiling import KERNEL, inner
+
 LEVELS = 1024
 """How many heights are told apart; low ones, at which most waters meet, more finely than high ones."""
 
@@ -55,19 +57,24 @@ def _flood_tile(found: Labels, row: int, column: int, height: Heights, markers: 
     found[row : row + TILE_PX, column : column + TILE_PX] = inner
 
 
-@njit(cache=True, nogil=True)
-def _flood(height, markers, scale):
+def _flood(height: Heights, markers: Labels, scale: np.float32) -> Labels:
+    rows, columns = height.shape
+    cells, found = np.empty(((rows + 2) * (columns + 2), 3), np.int32), np.empty_like(markers)
+    _pour(height, markers, scale, cells, np.full(LEVELS, _LAST, np.int32), np.empty(LEVELS, np.int32), found)
+    return found
+
+
+@njit(**KERNEL)
+def _pour(height, markers, scale, cells, first, last, found):
     rows, columns = height.shape
     width = columns + 2
-    cells = _framed(height, markers, scale)
-    first = np.full(LEVELS, _LAST, np.int32)
-    last = np.empty(LEVELS, np.int32)
+    _frame(height, markers, scale, cells)
     neighbours = (-width, -1, 1, width)
     for pixel in range(len(cells)):
         if cells[pixel, _LABEL] == UNSEEN:
             for step in neighbours:
                 if cells[pixel + step, _LABEL] >= 0 and cells[pixel + step, _NEXT] == _UNQUEUED:
-                    _append(pixel + step, cells[pixel + step, _LEVEL], cells, first, last)
+                    _append(pixel + step, np.int64(cells[pixel + step, _LEVEL]), cells, first, last)
     for level in range(LEVELS):
         pixel = first[level]
         while pixel != _LAST:
@@ -75,18 +82,19 @@ def _flood(height, markers, scale):
                 beside = pixel + step
                 if cells[beside, _LABEL] == UNSEEN:
                     cells[beside, _LABEL] = cells[pixel, _LABEL]
-                    _append(beside, max(level, cells[beside, _LEVEL]), cells, first, last)
+                    _append(beside, max(level, np.int64(cells[beside, _LEVEL])), cells, first, last)
             pixel = cells[pixel, _NEXT]
-    return cells.reshape(rows + 2, width, 3)[1:-1, 1:-1, _LABEL].copy()
+    for row in range(rows):
+        for column in range(columns):
+            found[row, column] = cells[(row + 1) * width + column + 1, _LABEL]
 
 
-@njit(cache=True, nogil=True)
-def _framed(height, markers, scale):
+@inner()
+def _frame(height, markers, scale, cells):
     """The pixels in a frame one pixel wide that counts as outside."""
     rows, columns = height.shape
-    cells = np.empty(((rows + 2) * (columns + 2), 3), np.int32)
-    cells[: columns + 2, _LABEL] = _OUTSIDE
-    cells[-columns - 2 :, _LABEL] = _OUTSIDE
+    for column in range(columns + 2):
+        cells[column, _LABEL] = cells[(rows + 1) * (columns + 2) + column, _LABEL] = _OUTSIDE
     for row in range(rows):
         at = (row + 1) * (columns + 2)
         cells[at, _LABEL] = _OUTSIDE
@@ -95,10 +103,9 @@ def _framed(height, markers, scale):
             at += 1
             cells[at, _LABEL], cells[at, _NEXT] = markers[row, column], _UNQUEUED
             cells[at, _LEVEL] = np.int32(np.sqrt(height[row, column]) * scale)
-    return cells
 
 
-@njit(cache=True, nogil=True)
+@inner()
 def _append(pixel, level, cells, first, last):
     cells[pixel, _NEXT] = _LAST
     if first[level] == _LAST:

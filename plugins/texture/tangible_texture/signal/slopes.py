@@ -8,6 +8,7 @@ import numpy as np
 from jaxtyping import Float32
 from numba import njit
 
+from tangible_core.compiled.compiling import KERNEL, inner
 from tangible_core.runtime.opencv import plain_opencv
 
 TILE_PX = 128
@@ -32,42 +33,42 @@ def slopes(smooth: Float32[np.ndarray, "h w c"]) -> tuple[Map, Map, Map, Map]:
     as does a steady shading.
     Returns: magnitude, across, down, noise.
     """
-    across, down = (
-        each.reshape(smooth.shape) for each in _differences(smooth.reshape(len(smooth), -1), smooth.shape[2])
-    )
+    across, down = np.empty(smooth.shape, np.float32), np.empty(smooth.shape, np.float32)
+    rows, across_rows, down_rows = (each.reshape(len(smooth), -1) for each in (smooth, across, down))
+    _differences(rows, across_rows, down_rows, smooth.shape[2])
     magnitude = np.sqrt(across * across + down * down)
     noise = _noise(magnitude)
     if smooth.shape[2] == 1:
         return magnitude[..., 0], across[..., 0], down[..., 0], noise
-    return *_steepest(magnitude, across, down), noise
+    found = np.empty((3, *magnitude.shape[:2]), np.float32)
+    _steepest(magnitude, across, down, found)
+    return found[0], found[1], found[2], noise
 
 
-@njit(cache=True, nogil=True)
-def _differences(rows, channels):
+@njit(**KERNEL)
+def _differences(rows, across, down, channels):
     """Central differences across and down; channels stand side by side in a row, and the border is repeated."""
-    across, down = np.empty_like(rows), np.empty_like(rows)
     for row in range(len(rows)):
         _halve(rows[min(row + 1, len(rows) - 1)], rows[max(row - 1, 0)], down[row])
         here, there = rows[row], across[row]
         if here.size == channels:
-            there[:] = 0
+            for at in range(channels):
+                there[at] = 0
             continue
         _halve(here[2 * channels :], here[: -2 * channels], there[channels:-channels])
         _halve(here[channels : 2 * channels], here[:channels], there[:channels])
         _halve(here[-channels:], here[-2 * channels : -channels], there[-channels:])
-    return across, down
 
 
-@njit(cache=True, nogil=True)
+@inner()
 def _halve(right, left, found):
     for at in range(len(found)):
         found[at] = _HALF * (right[at] - left[at])
 
 
-@njit(cache=True, nogil=True)
-def _steepest(magnitude, across, down):
+@njit(**KERNEL)
+def _steepest(magnitude, across, down, found):
     rows, columns, channels = magnitude.shape
-    found = np.empty((3, rows, columns), np.float32)
     for row in range(rows):
         for column in range(columns):
             best = 0
@@ -77,7 +78,6 @@ def _steepest(magnitude, across, down):
             found[0, row, column] = magnitude[row, column, best]
             found[1, row, column] = across[row, column, best]
             found[2, row, column] = down[row, column, best]
-    return found[0], found[1], found[2]
 
 
 def _noise(magnitude: Float32[np.ndarray, "h w c"]) -> Map:

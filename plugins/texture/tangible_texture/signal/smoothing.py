@@ -6,6 +6,7 @@ import numpy as np
 from jaxtyping import Float32
 from numba import njit
 
+from tangible_core.compiled.compiling import KERNEL
 from tangible_core.runtime.opencv import plain_opencv
 
 WIDER = 1.75
@@ -28,18 +29,18 @@ def without_specks(values: Float32[np.ndarray, "h w c"]) -> Float32[np.ndarray, 
         return values
     around = np.array([[1, 1, 1], [1, 0, 1], [1, 1, 1]], np.uint8)
     lowest, highest = (each(values, around).reshape(values.shape) for each in (cv2.erode, cv2.dilate))
-    return _calm(values.ravel(), lowest.ravel(), highest.ravel()).reshape(values.shape)
+    calm = np.empty(values.size, values.dtype)
+    _calm(values.ravel(), lowest.ravel(), highest.ravel(), calm)
+    return calm.reshape(values.shape)
 
 
-@njit(cache=True, nogil=True)
-def _calm(values, lowest, highest):
+@njit(**KERNEL)
+def _calm(values, lowest, highest, calm):
     """A value that is further outside of lowest..highest than these are apart becomes the nearer of them."""
-    calm = np.empty_like(values)
     for at in range(values.size):
         value, low, high = values[at], lowest[at], highest[at]
         spread = high - low
         calm[at] = high if value - high > spread else low if low - value > spread else value
-    return calm
 
 
 def gaussian(values: Float32[np.ndarray, "h w c"], sigma_px: float) -> Float32[np.ndarray, "h w c"]:

@@ -8,7 +8,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from tangible_core.data import DeviceSpec, Force, HapticState, TickFlag
-from tangible_core.plugins.interfaces import Touch
+from tangible_core.plugins.interfaces import PlainTouch
 from tangible_core.servo.guard.guard import couple, guard, restart, wait
 from tangible_core.servo.guard.guarded import guarded
 from tangible_core.servo.guard.layout import ENERGY_J, MOST_DELAY
@@ -437,13 +437,10 @@ class TestCoupling:
     def test_in_python_the_law_is_asked_where_the_tool_is(self):
         asked: list[HapticState] = []
 
-        class Asked(Touch):
+        class Asked(PlainTouch):
             def force(self, state: HapticState) -> Force:
                 asked.append(state)
                 return Force(0.0, 0.0, 1.0)
-
-            def path(self, positions_m, period_s=0.001):
-                raise NotImplementedError
 
         (settings, memory), (_, twin) = (Safety(coupling="auto", **BARE).arrays(SPEC, 0.0) for _ in range(2))
         allowed = guarded(Asked(), settings, memory)

@@ -16,11 +16,11 @@ from tangible_core import HapticSurface, load_method
 from tangible_core.compiled.touch import CompiledTouch
 from tangible_core.data import NO_FORCE, TICK_COLUMNS, DeviceSpec, Force, HapticState, TickFlag
 from tangible_core.errors import BrokenMethod
-from tangible_core.plugins.interfaces import Touch
+from tangible_core.plugins.interfaces import PlainTouch
 from tangible_core.servo import Safety, Servo
 from tangible_core.servo.guard import stiffness
 from tangible_core.servo.guard.stiffness import DEPTHS_M, HALVINGS, LAYERS, PLACES, STEP_M, slopes, stiffness_of
-from tangible_core.session import run
+from tangible_core.session import run_simulated
 from tangible_core.synthetic.scenes import plane, ramp
 from tangible_core.testing.handle import wall
 from tangible_devices.mock import Mock
@@ -31,21 +31,18 @@ FLAGS, FZ = TICK_COLUMNS.index("flags"), TICK_COLUMNS.index("fz_n")
 LEVEL_M = 0.002
 PLAIN = """
 from tangible_core.data import Force
-from tangible_core.plugins.interfaces import Touch
+from tangible_core.plugins.interfaces import PlainTouch
 
-class Plain(Touch):
+class Plain(PlainTouch):
     def __init__(self, k, height_m=0.002):
         self.k, self.height_m = k, height_m
 
     def force(self, state):
         return Force(0.0, 0.0, self.k * max(0.0, self.height_m - state.position_m[2]))
-
-    def path(self, positions_m, period_s=0.001):
-        raise NotImplementedError
 """
 
 
-class Law(Touch):
+class Law(PlainTouch):
     """A force of the position, and how often it was asked for."""
 
     def __init__(self, law: Callable[[float, float, float], tuple[float, float, float]]) -> None:
@@ -54,9 +51,6 @@ class Law(Touch):
     def force(self, state: HapticState) -> Force:
         self.asked += 1
         return Force(*self.law(*state.position_m))
-
-    def path(self, positions_m, period_s=0.001):
-        raise NotImplementedError
 
 
 def level(push_n: Callable[[float], float], height_m: float = LEVEL_M) -> Law:
@@ -81,7 +75,7 @@ class TestSoftening:
     """5,000 N/m, where the mock's own table says 3,000, and damping of 1.5 N s/m leaves 0.8 of 3,000."""
 
     def test_a_session(self) -> None:
-        recording = run(spring(5000.0), Mock(hand=None, path="circle", z_m=0.0015), 0.2, limits=AT_ONCE)
+        recording = run_simulated(spring(5000.0), Mock(hand=None, path="circle", z_m=0.0015), 0.2, limits=AT_ONCE)
         assert recording.force_n[:, 2].max() == pytest.approx(2400 * 0.0005, rel=1e-6)
         assert (recording.rows[:, FLAGS].astype(int) & TickFlag.STIFFNESS_LIMITED).all()
 
@@ -100,7 +94,7 @@ class TestSoftening:
     def test_one_that_says_it_is_taken_at_its_word(self) -> None:
         touch = spring(5000.0)
         touch.stiffness_n_per_m = 1000.0
-        recording = run(touch, Mock(hand=None, path="circle", z_m=0.0015), 0.1, limits=AT_ONCE)
+        recording = run_simulated(touch, Mock(hand=None, path="circle", z_m=0.0015), 0.1, limits=AT_ONCE)
         assert recording.force_n[:, 2].max() == pytest.approx(5000 * 0.0005, rel=1e-6)
         assert touch.asked == len(recording.rows)
 

@@ -4,9 +4,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tangible_core.errors import GeometryError
-from tangible_depth.rectify.epipolar import sampson_distance, symmetric_epipolar_distance
+from tangible_depth.rectify.epipolar import sampson_distance
 from tangible_depth.rectify.fundamental import DegenerateMatches, eight_point, normalise, robust_fundamental
-from two_cameras import seen_points, some_wrong
+from two_cameras import seen_points, some_wrong, symmetric_epipolar_distance
 
 
 def test_normalised_points_are_centred_with_a_mean_distance_of_root_two():

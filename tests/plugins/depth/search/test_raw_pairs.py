@@ -12,7 +12,7 @@ from tangible_depth.dense.span import Span
 from tangible_depth.search.bands import match_bands
 from tangible_depth.search.corner_look import corners_correspond
 from tangible_depth.search.pairs import Pair, grey_pair
-from tangible_depth.search.raw_pairs import common_offset
+from tangible_depth.search.raw_pairs import common_row_offset
 from tangible_depth.search.search_range import find_range
 from tangible_depth.zncc import Zncc
 from two_cameras import Scene, roll_and_tilt
@@ -32,7 +32,7 @@ Look = Callable[..., bool]
 
 def offset(pair: Pair) -> float | None:
     found = find_range(pair)
-    return common_offset(pair, found.bands if found else match_bands(pair, Span(0, 15)))
+    return common_row_offset(pair, found.bands if found else match_bands(pair, Span(0, 15)))
 
 
 def bands_correspond(pair: Pair) -> bool:
@@ -74,8 +74,8 @@ def test_a_large_pair_is_looked_at_to_a_pixel(correspond: Look):
 def test_a_common_offset_is_left_to_who_puts_it_right():
     views = synthetic_pair("planes", 320, 240).views
     assert not corners_correspond(grey_pair(shifted(views, 1), ""))
-    assert corners_correspond(grey_pair(shifted(views, 1), ""), realigns_px=1)
-    assert not corners_correspond(grey_pair(shifted(views, 3), ""), realigns_px=1)
+    assert corners_correspond(grey_pair(shifted(views, 1), ""), most_row_offset_px=1)
+    assert not corners_correspond(grey_pair(shifted(views, 3), ""), most_row_offset_px=1)
 
 
 @pytest.mark.parametrize("scene", SCENES)

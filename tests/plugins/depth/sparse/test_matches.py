@@ -48,7 +48,7 @@ def test_large_pictures_are_matched_reduced_and_measured_in_full(monkeypatch):
 
 
 def test_vertical_offset_is_down():
-    assert Matches(np.array([[1.0, 2]]), np.array([[5.0, 6]])).vertical_px == [4]
+    assert Matches(np.array([[1.0, 2]]), np.array([[5.0, 6]])).row_offset_px == [4]
 
 
 @pytest.mark.parametrize("peak", [-0.5, -0.2, 0.0, 0.4])

@@ -153,6 +153,8 @@ class TestForce:
                 for _ in range(1000):
                     link.exchange()
         assert tuple(link.applied) == NO_FORCE
+        with pytest.raises(DeviceError, match={"closed": "is closed; open", "failed": "was closed after"}[ended]):
+            link.exchange()
         _, write, fixed = link.kernels()
         write(*fixed, *PUSH)
         assert tuple(link.applied) == NO_FORCE

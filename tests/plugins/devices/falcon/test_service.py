@@ -25,7 +25,8 @@ def examined(*faults: Fault, loaded: bool = True, **options: object) -> list[Fin
     if loaded:
         open_on(bus, clock).close()
     bus.faults.extend(faults)
-    found = list(findings(Falcon(**options), bus, clock))
+    falcon = Falcon(**options)
+    found = list(findings(falcon.settings(), falcon.firmware, bus, clock))
     assert all(unit.claimed_by is None and unit.kernel_driver for unit in bus.units)
     return found
 
@@ -91,11 +92,15 @@ class TestDoctor:
 
     def test_nothing_is_plugged_in(self):
         bus, clock = held_bus(())
-        assert [each.verdict for each in findings(Falcon(), bus, clock)] == ["fine", "fine", "not asked"]
+        assert [each.verdict for each in findings(Falcon().settings(), None, bus, clock)] == [
+            "fine",
+            "fine",
+            "not asked",
+        ]
 
     def test_a_bus_that_fails(self):
         bus, clock = held_bus(faults=(Fault(at="look", error="access-denied"),))
-        [found] = findings(Falcon(), bus, clock)
+        [found] = findings(Falcon().settings(), None, bus, clock)
         assert found.verdict == "failed"
 
 
@@ -116,6 +121,7 @@ class Grip(Link):
     """A grip that is where the last question put it, in the device's own axes; laden, a mass on the spring."""
 
     def __init__(self, places: list[tuple[float, float, float]]) -> None:
+        super().__init__("the grip", 8.0)
         self.places = iter(places)
         self.place = (0.0, 0.0, 0.0)
         self.weight_n = 0.0
@@ -133,14 +139,14 @@ class Grip(Link):
 
         return ask
 
-    def read(self) -> HapticState:
+    def _read(self) -> HapticState:
         up = self.strength * self.held.z - self.weight_n - 0.5  # and half a newton of its own
         self.rate = 0.9 * (self.rate + 0.001 * up / 0.2)
         x, y, z = self.place
         self.place = (x, y, z + 0.001 * self.rate) if self.held != NO_FORCE else self.place
         return HapticState(self.place, (0.0, 0.0, self.rate))
 
-    def write(self, force: Force) -> None:
+    def _send(self, force: Force) -> None:
         self.held = force
         self.forces.append(force.z)
 
@@ -148,8 +154,8 @@ class Grip(Link):
     def applied(self) -> Force:
         return self.held
 
-    def close(self) -> None:
-        self.held = NO_FORCE
+    def _release(self) -> None:
+        pass
 
 
 class TestMeasuring:
@@ -227,7 +233,7 @@ class TestKept:
     def test_the_option_comes_first(self):
         save_calibration("falcon", "A1", Calibration(counts_per_newton_metre=20_000.0))
         own = Calibration()
-        assert Falcon(serial="A1", calibration=own).calibrated("A1") == own
+        assert Falcon(serial="A1", calibration=own).settings().calibrated("A1") == own
 
     def test_a_damaged_one_stops_the_opening_and_leaves_the_device_alone(self):
         save_calibration("falcon", "SIM0001", Calibration()).write_text("{")
@@ -239,12 +245,12 @@ class TestKept:
     def test_calibrating_needs_a_device(self):
         bus, clock = held_bus(())
         with pytest.raises(DeviceAbsent, match="plug in"):
-            calibrated(Falcon(), input, bus, clock)
+            calibrated(Falcon().settings(), None, input, bus, clock)
 
     def test_a_hand_that_does_not_move_the_grip_calibrates_nothing(self, tmp_path: Path):
         image = tmp_path / "image.bin"
         image.write_bytes(synthetic_image())
         bus, clock = held_bus()
         with pytest.raises(DeviceError, match=r"did not move|went along one axis"):
-            calibrated(Falcon(firmware=image), lambda _: "", bus, clock)
+            calibrated(Falcon().settings(), Falcon(firmware=image).image(), lambda _: "", bus, clock)
         assert bus.units[0].claimed_by is None

@@ -12,7 +12,7 @@ from tangible_core import HapticSurface, load_method
 from tangible_core.errors import DeviceError
 from tangible_core.pipeline.config import parse_config
 from tangible_core.plugins.registry import default_registry
-from tangible_core.session import run
+from tangible_core.session import run_simulated
 from tangible_devices.falcon.falcon_simulated import FalconSimulated
 from tangible_devices.falcon.usb_errors import UDEV_FILE, UDEV_RULE
 
@@ -20,7 +20,7 @@ FLAT = HapticSurface.from_heights(np.full((8, 8), 0.002))
 
 
 def test_a_surface_is_felt():
-    recording = run(load_method("render", "penalty")().touch(FLAT), FalconSimulated(path="press"), 2.0)
+    recording = run_simulated(load_method("render", "penalty")().touch(FLAT), FalconSimulated(path="press"), 2.0)
     assert not recording.stopped
     assert 1.0 < recording.force_n[:, 2].max() < 6.0
     assert recording.position_m[:, 2].min() > -0.004, "the surface holds the hand up, whose path goes to -0.005"
@@ -28,13 +28,13 @@ def test_a_surface_is_felt():
 
 def test_it_is_the_same_every_time():
     touch = load_method("render", "penalty")()
-    first, second = (run(touch.touch(FLAT), FalconSimulated(), 0.3) for _ in range(2))
+    first, second = (run_simulated(touch.touch(FLAT), FalconSimulated(), 0.3) for _ in range(2))
     assert (first.position_m == second.position_m).all()
 
 
 def test_what_is_to_go_wrong_does():
     device = FalconSimulated.model_validate({"faults": [{"at": "read", "error": "unplugged", "after": 3000}]})
-    recording = run(load_method("render", "penalty")().touch(FLAT), device, 10.0)
+    recording = run_simulated(load_method("render", "penalty")().touch(FLAT), device, 10.0)
     assert "was unplugged" in recording.stopped
     with pytest.raises(DeviceError, match="TAG"):
         FalconSimulated.model_validate({"faults": [{"at": "claim", "error": "access-denied"}]}).open()

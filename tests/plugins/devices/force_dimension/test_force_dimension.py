@@ -135,7 +135,7 @@ class TestAxes:
         with ForceDimension().open() as link:
             link.write(Force(1.0, 2.0, 3.0))
             assert dhd.enabled
-        assert dhd.forces == [(0, 0, 0), (-2, 1, 3), (0, 0, 0), (0, 0, 0)]
+        assert dhd.forces == [(0, 0, 0), (-2, 1, 3), (0, 0, 0)]
 
     def test_a_velocity_that_is_not_known_yet_is_none(self, dhd: Library):
         dhd.velocity = None

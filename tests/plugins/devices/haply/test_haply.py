@@ -49,8 +49,17 @@ class TestMessages:
             command({"x": 1.0, "y": -2.0, "z": 0.5}),
             command({"x": 1.0, "y": -2.0, "z": 0.5}),  # a read without a write between sends the force again
             command(ZERO),
-            command(ZERO),
         ]
+
+    def test_it_disconnects_once_the_last_zero_was_answered(
+        self, service: MockService, monkeypatch: pytest.MonkeyPatch
+    ):
+        waited: list[bool] = []
+        close = Session.close
+        monkeypatch.setattr(Session, "close", lambda session: (waited.append(not session.waits), close(session)))
+        with Haply(uri=service.uri).open() as link:
+            link.write(Force(1.0, -2.0, 0.5))
+        assert waited == [True]
 
     def test_the_centre_is_the_origin_and_the_axes_are_ours(self):
         with MockService(motion=lambda _: ((0.01, -0.12, 0.13), (0.1, 0.2, 0.3))) as service:

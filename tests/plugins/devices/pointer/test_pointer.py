@@ -178,6 +178,8 @@ class TestNobody:
     def test_a_device_that_is_closed_shows_no_force(self, link: CompiledLink):
         link.write(Force(0.0, 0.0, 1.0))
         link.close()
+        with pytest.raises(DeviceError, match="the pointer device is closed"):
+            link.exchange()
         shown = Channel("pointer", "client")
         assert shown.take(channel.FORCE, channel.FORCE_WORDS)[1] == (0, 0, 0)
         assert not shown.flag(channel.DEVICE_OPEN)

@@ -1,0 +1,42 @@
+"""The spring and the damper between a hand and its proxy; compiled.
+
+Imports numba: a method imports this module inside its verb.
+"""
+
+# ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
+
+import numpy as np
+from numba import float32, float64, types
+
+from tangible_core.compiled.compiling import inner
+
+from ..surface.bilinear import HEIGHTS, cell
+from .closest import settle
+from .contact import BESIDE, approach
+
+SURFACE = (HEIGHTS, *[float64] * 4, types.Array(float32, 3, "C", readonly=True))
+MATERIALS = types.Array(float64, 2, "C", readonly=True)
+MEMORY = float64[::1]
+"""Types of what a kernel of `proxy` is given."""
+
+
+@inner(forceinline=True)
+def spring_and_damper(shape, tiles_m, labels, table, memory, x, y, z, vx, vy, vz):
+    """F = k (p - q) - b v_n n; the proxy p is held by friction."""
+    coefficients, width_m, length_m, across_per_m, down_per_m = shape
+    if not approach(coefficients, width_m, length_m, across_per_m, down_per_m, tiles_m, memory, x, y, z, vx + vy + vz):
+        return 0.0, 0.0, 0.0
+    px, py, top, held, hx, hy = memory[0], memory[1], z, 0.0, 0.0, 0.0
+    row, column = cell(labels.shape[0], labels.shape[1], width_m, length_m, px, py)
+    label = labels[row, column]
+    stiffness, damping, static, dynamic = table[label, 0], table[label, 1], table[label, 2], table[label, 3]
+    if memory[7] != BESIDE:
+        px, py, top, hx, hy, memory[6] = settle(
+            coefficients, width_m, length_m, across_per_m, down_per_m, px, py, x, y, z, static, dynamic, memory[6]
+        )
+        square = 1.0 + hx * hx + hy * hy
+        spring = stiffness * (hx * (x - px) + hy * (y - py) + top - z) / square
+        held = min(damping * (vz - hx * vx - hy * vy) / square, max(spring, 0.0))
+    memory[0], memory[1], memory[2] = px, py, top
+    fx, fy, fz = stiffness * (px - x) + held * hx, stiffness * (py - y) + held * hy, stiffness * (top - z) - held
+    return (fx, fy, fz) if np.isfinite(fx + fy + fz) else (0.0, 0.0, 0.0)

@@ -1,0 +1,19 @@
+"""What stands for a law in Python where a kernel calls a law; compiled, and apart, as hardly anybody needs it.
+
+Imports numba: a method imports this module inside its verb.
+"""
+
+# ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
+
+from numba import float64, njit
+
+from tangible_core.compiled.compiling import KERNEL
+
+from ..surface.bilinear import NEWTONS
+
+
+@njit(NEWTONS(float64[::1], float64[::1], *[float64] * 6), **KERNEL)
+def told(asked, force_n, x, y, z, vx, vy, vz):
+    """In place of a law in Python: it writes down what it is asked, and answers what it was told."""
+    asked[0], asked[1], asked[2], asked[3], asked[4], asked[5] = x, y, z, vx, vy, vz
+    return force_n[0], force_n[1], force_n[2]

@@ -1,0 +1,171 @@
+"""`compare`: measure what a comparison file names, show it, and say what got worse."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from .options import FAILED, Json, Sets
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from ..bench import against as verdicts
+    from ..bench.comparing import Step
+    from ..bench.run import Outlook
+    from ..bench.table import Results, Table
+
+
+def compare(
+    config: Annotated[
+        Path, typer.Argument(help="Comparison file (YAML), or results (.jsonl) to show again.", show_default=False)
+    ],
+    sets: Sets = None,
+    out: Annotated[Path | None, typer.Option("--out", help="Folder for results [default: as the file says].")] = None,
+    against: Annotated[
+        Path | None, typer.Option(help="Earlier results (.jsonl); exit 1 if something got worse.")
+    ] = None,
+    detail: Annotated[bool, typer.Option("--detail", help="A table for each scene, with every measure.")] = False,
+    retry: Annotated[bool, typer.Option("--retry", help="Measure again what failed before.")] = False,
+    as_json: Json = False,
+) -> None:
+    """Compare methods by time, memory and error.
+
+    All methods are measured on the same scenes. What was interrupted goes on where it stopped.
+    """
+    from dataclasses import replace
+
+    from ..bench.comparing import ROWS, read_comparison
+    from ..bench.comparing import compare as measured
+    from ..bench.config import load_comparison
+    from ..plugins.registry import default_registry
+    from . import show
+
+    if config.suffix == ".jsonl":
+        found = read_comparison(config, against)
+    else:
+        comparison = load_comparison(config, default_registry(), sets or [])
+        comparison = replace(comparison, out=out or comparison.out)
+        path = comparison.out / ROWS
+        try:
+            found = measured(comparison, against, retry=retry, progress=_tell, on_outlook=lambda each: _say(each, path))
+        except KeyboardInterrupt:
+            show.note(f"interrupted; what was measured is kept in {path}, and the same command goes on from there")
+            raise
+    if as_json:
+        show.print_json(_document(found.results, found.files, found.verdict))
+    else:
+        _print(found.results, found.files, found.verdict, detail)
+    if found.verdict is not None and found.verdict.worse:
+        raise typer.Exit(FAILED)
+
+
+def _say(outlook: Outlook, path: Path) -> None:
+    from . import show
+
+    if outlook.kept:
+        wanted = len(outlook.kept) + len(outlook.waiting)
+        failed = sum(row.error is not None for row in outlook.kept.values())
+        again = f", {failed} of them failed: --retry measures these once more" if failed else ""
+        show.note(f"{len(outlook.kept)} of {wanted} measurements are in {path} already and are kept{again}")
+
+
+def _tell(step: Step) -> None:
+    """A measurement is a stage like any other: whoever watches stages sees it, and --quiet hides it."""
+    from ..data import Outcome
+    from ..plugins import hooks
+    from ..plugins.registry import default_registry
+
+    plugins, row = default_registry().plugins, step.row
+    name = f"{row.scene}, {row.perturb}, round {row.repeat + 1} ({step.number + 1} of {step.of})"
+    if not step.done:
+        hooks.tell(plugins, "tangible_stage_started", product=name, method=row.method)
+        return
+    kind, why = ("failed", row.error) if row.error else ("ran", "measured")
+    outcome = Outcome(name, kind, why or "", row.method, row.seconds or 0.0)
+    hooks.tell(plugins, "tangible_stage_finished", outcome=outcome)
+
+
+def _document(results: Results, files: Sequence[Path], verdict: verdicts.Verdict | None) -> dict[str, Any]:
+    from dataclasses import asdict
+
+    return {
+        "compare": results.task.kind,
+        "baseline": results.baseline,
+        "scenes": results.scenes,
+        "methods": [asdict(line) for perturb in results.perturbs for line in results.means(perturb)],
+        "front": [results.means()[index].method for index in results.on_front(results.means(), results.judged)],
+        "cells": [asdict(cell) for cell in results.cells.values()],
+        "files": [str(path) for path in files],
+        **({} if verdict is None else {"against": asdict(verdict)}),
+    }
+
+
+def _print(results: Results, files: Sequence[Path], verdict: verdicts.Verdict | None, detail: bool) -> None:
+    from ..bench.table import FRONT, tables
+    from . import show
+
+    for table in tables(results, detail):
+        _print_table(table)
+    unit = results.task.clock.unit
+    show.say(f"{FRONT} Pareto-optimal: no other method is both faster and better")
+    show.say(f"{unit}: median of the rounds; peak MB: on top of the scene")
+    if results.baseline:
+        show.say(f"time / baseline: against {results.baseline} in the same round, median; over scenes, geometric mean")
+    if verdict is not None:
+        _print_verdict(verdict)
+    for path in files:
+        show.plain(f"written: {path}")
+
+
+def _print_verdict(verdict: verdicts.Verdict) -> None:
+    from ..bench.table import Table
+    from . import show
+
+    rows = [(each.method, f"{each.scene}, {each.perturb}", each.what, *_change(each)) for each in verdict.worse]
+    if rows:
+        _print_table(Table("worse than before", ("method", "where", "what", "before", "now", "allowed"), tuple(rows)))
+    show.say(f"{verdict.compared} cells compared, {verdict.time}; {len(rows)} figures got worse beyond the noise")
+    if verdict.missing:
+        show.say(f"not in both: {len(verdict.missing)} cells, such as {verdict.missing[0]}")
+
+
+def _change(each: verdicts.Worse) -> tuple[str, str, str]:
+    if each.why:
+        return "a result", each.why, ""
+    return f"{each.before:.5g}", f"{each.after:.5g}", f"+- {each.allowed:.2g}"
+
+
+def _print_table(table: Table) -> None:
+    """Numbers are never cut: a table of many is as wide as it must be, whatever the terminal."""
+    from rich.measure import Measurement
+    from rich.table import Table as Drawn
+    from rich.text import Text
+
+    from ..bench.table import FRONT
+    from . import show
+
+    words = {*WORDS, FRONT}
+    drawn = Drawn(title=table.title, title_justify="left", box=None, pad_edge=False, header_style="bold")
+    for heading in table.headings:
+        if heading in words:
+            drawn.add_column(heading, overflow="fold", vertical="bottom")
+        else:
+            drawn.add_column(heading.replace(" ", "\n"), justify="right", vertical="bottom")
+    for row in table.rows:
+        drawn.add_row(*(Text(cell) for cell in row))
+    console = show.console()
+    numbers = sum(heading not in words for heading in table.headings)
+    if numbers > 1:
+        console.width = max(
+            console.width, Measurement.get(console, console.options.update(max_width=WIDEST), drawn).maximum
+        )
+    console.print(drawn, "")
+
+
+WIDEST = 1000
+
+WORDS = {"method", "where", "what", "why"}
+"""Headings of columns that hold text, beside that of the front."""

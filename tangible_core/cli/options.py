@@ -1,0 +1,16 @@
+"""Options that several commands have, and the exit codes."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+DONE, FAILED, MISTAKE, INTERRUPTED = 0, 1, 2, 130
+
+Config = Annotated[Path, typer.Argument(help="Pipeline file (YAML).", show_default=False)]
+Sets = Annotated[
+    list[str] | None, typer.Option("--set", metavar="KEY.KEY=VALUE", help="Set one value of the file; repeatable.")
+]
+Json = Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")]
+NoCache = Annotated[bool, typer.Option("--no-cache", help="Neither read nor write the cache of results.")]
+Record = Annotated[Path | None, typer.Option(help="Save every tick to this file (.nc, .npz or .csv).")]

@@ -1,0 +1,397 @@
+"""The pipeline: one scene, its methods, and all that can be done with them. Files are one way to say it."""
+
+import math
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
+from os import PathLike
+from pathlib import Path
+from threading import Event
+from typing import Any, Literal, Self, TypeVar, cast, final, overload
+
+import numpy as np
+from pydantic import BaseModel, ValidationError
+
+from ..data import (
+    TICK_COLUMNS,
+    DisparityMap,
+    HapticSurface,
+    MaterialMap,
+    Outcomes,
+    Plan,
+    Relief,
+    SegmentMap,
+    ServoReport,
+    Views,
+)
+from ..errors import ConfigError, quoted
+from ..files.writing import write_text
+from ..mapping import WorkspaceMapping, mapped
+from ..plugins import hooks
+from ..plugins.interfaces import KINDS, DepthEstimator, ForceRenderer, HapticDevice, Method, Segmenter, Touch
+from ..plugins.registry import Registry, default_registry
+from ..preflight import Flight, Hand, Loop, Verdict, judge, survey
+from ..scene.scene import Scene
+from ..scene.workspace import Workspace
+from ..servo import OVER, Safety, Servo
+from ..session import About, Recording, check_record_path, keeping, replay, run_in_real_time, run_simulated
+from .cache import Cache
+from .config import Chosen, MaterialChoice, PipelineConfig, Product, load_config
+from .engine import Engine, Progress
+from .runs import Run, about, make_run
+
+M = TypeVar("M", bound=Method)
+S = TypeVar("S", bound=BaseModel)
+Materials = MaterialChoice | Mapping[Any, Any] | str
+"""As in YAML: a rule's name, a map from label to material, or a block of options."""
+
+
+@final
+class Pipeline:
+    """A scene, its methods, and what was made of them so far.
+
+    A product is made when it is first asked for, with what it needs and no more; it is None where this scene does not
+    need it, and `outcomes` says why. What was made before, with the same methods and inputs, comes from the cache.
+
+    >>> import numpy as np
+    >>> pipeline = Pipeline(Scene.of(height=np.eye(8)), workspace=Workspace(width_m=0.04), cached=False)
+    >>> pipeline.surface.extent_m
+    (0.04, 0.04)
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        *,
+        depth: DepthEstimator | None = None,
+        texture: Segmenter | None = None,
+        materials: Materials | None = None,
+        workspace: Workspace | Mapping[str, Any] | None = None,
+        mapping: WorkspaceMapping | Mapping[str, Any] | None = None,
+        render: ForceRenderer | None = None,
+        device: HapticDevice | None = None,
+        safety: Safety | Mapping[str, Any] | None = None,
+        cached: bool = True,
+    ) -> None:
+        """Methods are objects, of installed plugins or of classes of one's own; blocks may be mappings, as in YAML.
+
+        cached: False neither reads nor writes the user's cache.
+        Raises: ConfigError for a block that says nonsense.
+        """
+        registry = default_registry()
+        config = PipelineConfig(
+            scene=scene,
+            want="surface" if render is None else "touch",
+            depth=_chosen("depth", depth, registry),
+            texture=_chosen("texture", texture, registry),
+            materials=_block("materials", MaterialChoice, _as_in_yaml(materials)),
+            workspace=_block("workspace", Workspace, workspace),
+            mapping=_block("mapping", WorkspaceMapping, mapping),
+            render=_chosen("render", render, registry),
+            device=_chosen("device", device, registry),
+            safety=_block("safety", Safety, safety),
+        )
+        self.engine = Engine(config, registry, Cache() if cached else None)
+
+    @classmethod
+    def from_yaml(
+        cls,
+        path: str | PathLike[str],
+        overrides: Iterable[str] = (),
+        registry: Registry | None = None,
+        cache: Cache | None = None,
+    ) -> Self:
+        """A pipeline from a YAML file; nothing runs yet.
+
+        overrides: `key.key=value` each. cache: where results are kept between runs; the user's own by default.
+        Raises: ConfigError with every complaint, each with file:line:column.
+        """
+        registry = registry or default_registry()
+        return cls.of(load_config(Path(path), registry, overrides), registry, cache or Cache())
+
+    @classmethod
+    def of(cls, config: PipelineConfig, registry: Registry, cache: Cache | None) -> Self:
+        """A pipeline from a configuration that was checked."""
+        made = cls.__new__(cls)
+        made.engine = Engine(config, registry, cache)
+        return made
+
+    def to_yaml(self, path: str | PathLike[str]) -> None:
+        """Write it as a pipeline file, every default filled in, paths absolute; `from_yaml` makes the same of it.
+
+        Raises: ConfigError for what no file can say: a scene of arrays, a method of no installed plugin; OutputError.
+        """
+        write_text(Path(path), self.config.as_yaml())
+
+    @property
+    def config(self) -> PipelineConfig:
+        """What it is made of."""
+        return self.engine.config
+
+    @property
+    def scene(self) -> Scene:
+        """The scene; read from its files when first asked for. Raises: PictureError."""
+        return self.engine.scene
+
+    @property
+    def outcomes(self) -> Outcomes:
+        """What became of each product, and why, in the order of making; last those that nothing needed."""
+        return self.engine.outcomes
+
+    def plan(self, want: Product | None = None) -> Plan:
+        """What making a product (the farthest that has a method) would do, as a table; nothing runs.
+
+        Raises: TangibleError for a scene that cannot be read; UnknownMethod for a product that nothing makes.
+        """
+        return self.engine.plan(want)
+
+    @overload
+    def make(
+        self, want: Literal["disparity"], progress: Progress | None = None, stop: Event | None = None
+    ) -> DisparityMap | None: ...
+    @overload
+    def make(self, want: Literal["relief"], progress: Progress | None = None, stop: Event | None = None) -> Relief: ...
+    @overload
+    def make(
+        self, want: Literal["segments"], progress: Progress | None = None, stop: Event | None = None
+    ) -> SegmentMap | None: ...
+    @overload
+    def make(
+        self, want: Literal["materials"], progress: Progress | None = None, stop: Event | None = None
+    ) -> MaterialMap | None: ...
+    @overload
+    def make(
+        self, want: Literal["surface"], progress: Progress | None = None, stop: Event | None = None
+    ) -> HapticSurface: ...
+    @overload
+    def make(self, want: Literal["touch"], progress: Progress | None = None, stop: Event | None = None) -> Touch: ...
+    @overload
+    def make(self, want: str | None = None, progress: Progress | None = None, stop: Event | None = None) -> Any: ...
+    def make(self, want: str | None = None, progress: Progress | None = None, stop: Event | None = None) -> Any:
+        """A product, made from what it needs and no more; None if this scene does not need it.
+
+        progress: hears of every stage as it begins and ends. stop: set from another thread, it ends the work.
+        Raises: TangibleError for what a user can put right, Stopped after `stop`, and whatever a plugin raises.
+        """
+        with self.engine.watched(progress, stop):
+            return self.engine.make(want)
+
+    @property
+    def views(self) -> Views | None:
+        """The pictures; None for a scene of heights."""
+        return self.scene.views
+
+    @property
+    def disparity(self) -> DisparityMap | None:
+        """Disparity of the left view, or relative nearness of a photo."""
+        return self.make("disparity")
+
+    @property
+    def relief(self) -> Relief:
+        """Heights in metres."""
+        return self.make("relief")
+
+    @property
+    def segments(self) -> SegmentMap | None:
+        """Which texture segment each pixel belongs to."""
+        return self.make("segments")
+
+    @property
+    def materials(self) -> MaterialMap | None:
+        """One material a segment, and why each was chosen."""
+        return self.make("materials")
+
+    @property
+    def surface(self) -> HapticSurface:
+        """What is touched: heights, and materials where the law uses them."""
+        return self.make("surface")
+
+    @property
+    def touch(self) -> Touch:
+        """The law on this surface."""
+        return self.make("touch")
+
+    def run(
+        self,
+        out: str | PathLike[str],
+        want: Product | None = None,
+        seconds: float = 8.0,
+        progress: Progress | None = None,
+        stop: Event | None = None,
+    ) -> Run:
+        """Make what is wanted, and write products, figures and a sheet into a folder.
+
+        A touch is felt for so many seconds of a simulated device's own time; a real device is never moved by it.
+        progress, stop: as `make`.
+        Raises: OutputError if the folder cannot be written; TangibleError as `make`.
+        """
+        with self.engine.watched(progress, stop):
+            return make_run(self.engine, Path(out), want or self.config.want, seconds, self._tell)
+
+    def feel(
+        self,
+        device: HapticDevice | None = None,
+        seconds: float | None = 8.0,
+        *,
+        in_real_time: bool = True,
+        record: str | PathLike[str] | None = None,
+        keep: Callable[[np.ndarray], None] | None = None,
+        on_report: Callable[[ServoReport], None] | None = None,
+        on_start: Callable[[Servo], None] | None = None,
+        stop: Event | None = None,
+    ) -> Recording:
+        """Feel the surface on a device, this or the configured one, and return what was felt.
+
+        Ctrl-C, `stop` set from another thread, and a device that fails end it: the force is zero, and the recording
+        says why. In real time the force loop runs in a process of its own.
+        seconds: None goes on until something ends it; in real time alone. in_real_time: False goes by the clock of the
+        device, for simulated ones. record: a file (.nc, .npz, .csv) that keeps every tick while it is felt. keep: given
+        all ticks instead, as rows of `TICK_COLUMNS`; the recording that is returned is then empty. on_report: called
+        ten times a second, and at the end. on_start: called once a loop in real time runs.
+        Raises: ConfigError if there is no device or law, DeviceError if it cannot be opened, OutputError for the file.
+        """
+        file = None if record is None else Path(record)
+        if file is not None:
+            check_record_path(file)
+        felt, said, touch = self._device(device), self._about(device), self.touch
+        tell = _both(self._tell, on_report)
+        if not in_real_time:
+            found = run_simulated(touch, felt, math.inf if seconds is None else seconds, tell, self.config.safety, stop)
+            found = replace(found, about=said.stamped())
+            if file is not None:
+                found.save(file)
+            return found
+
+        def run(rows: Callable[[np.ndarray], None]) -> str:
+            report = run_in_real_time(touch, felt, seconds, self.config.safety, tell, rows, on_start, stop)
+            return "" if report.stopped == OVER else report.stopped
+
+        if file is not None:
+            with keeping(file, said) as writer:
+                writer.close(run(writer.append))
+            return Recording.load(file)
+        rows = [np.empty((0, len(TICK_COLUMNS)))]
+        stopped = run(keep or rows.append)
+        return Recording(np.concatenate(rows), stopped, said.stamped())
+
+    def replay(self, recording: Recording) -> Recording:
+        """What this pipeline's law gives for each recorded state: forces of its own, which nothing limits.
+
+        `session.compared` says how far they are from those that were recorded. Raises: as `make`.
+        """
+        touch = self.touch
+        said = replace(self._about(None), device=f"replay of {recording.about.device or 'a recording'}")
+        return replace(replay(touch, recording), about=said.stamped())
+
+    def preflight(
+        self, device: HapticDevice | None = None, hand: Hand | None = None, loop: Loop | None = None
+    ) -> tuple[Verdict, ...]:
+        """What is safe and what will be felt on a device, this or the configured one; no device is opened.
+
+        Raises: ConfigError if there is no device or law; TangibleError as `make`.
+        """
+        return tuple(judge(self.flight(device, hand, loop)))
+
+    def flight(self, device: HapticDevice | None = None, hand: Hand | None = None, loop: Loop | None = None) -> Flight:
+        """What the checks of `preflight` know. Raises: as `preflight`."""
+        felt, law = self._device(device), self.config.render
+        if law is None:
+            raise self.config.missing("render")
+        return survey(
+            self.surface,
+            self.touch,
+            law.method,
+            felt,
+            workspace=self.config.workspace,
+            safety=self.config.safety,
+            scene_relief_m=self.scene.relief_m,
+            smoothed=self.scene.height is None,
+            hand=hand,
+            loop=loop,
+        )
+
+    def _repr_html_(self) -> str:
+        return self.plan()._repr_html_()  # pyright: ignore[reportPrivateUsage] - the name is the notebook's
+
+    def _device(self, device: HapticDevice | None) -> HapticDevice:
+        """The device as the picture sees it, by the mapping. Raises: ConfigError if there is none."""
+        felt = self.config.felt_device if device is None else mapped(device, self.config.mapping)
+        if felt is None:
+            raise self.config.missing("device")
+        return felt
+
+    def _about(self, device: HapticDevice | None) -> About:
+        said = about(self.engine)
+        return said if device is None else replace(said, device=_chosen("device", device, self.engine.registry).name)
+
+    def _tell(self, report: ServoReport) -> None:
+        hooks.tell(self.engine.registry.plugins, "tangible_servo_report", report=report)
+
+
+def load_pipeline(
+    path: str | PathLike[str],
+    overrides: Iterable[str] = (),
+    registry: Registry | None = None,
+    cache: Cache | None = None,
+) -> Pipeline:
+    """`Pipeline.from_yaml`: a pipeline from a YAML file; nothing runs yet.
+
+    Raises: ConfigError with every complaint, each with file:line:column.
+    """
+    return Pipeline.from_yaml(path, overrides, registry, cache)
+
+
+@overload
+def _chosen(kind: str, method: None, registry: Registry) -> None: ...
+@overload
+def _chosen(kind: str, method: M, registry: Registry) -> Chosen[M]: ...
+def _chosen(kind: str, method: M | None, registry: Registry) -> Chosen[M] | None:
+    """A method with the name that a file gives it; one of no installed plugin has its class's, and no origin.
+
+    Raises: ConfigError if it is no method of this kind.
+    """
+    if method is None:
+        return None
+    wanted, cls = KINDS[cast(Any, kind)], type(method)
+    if not isinstance(method, wanted):
+        raise ConfigError(f"{kind}: takes a {wanted.__name__}, such as an object of one, not {quoted(method)}")
+    target = f"{cls.__module__}:{cls.__qualname__}"
+    for each in registry.listings:
+        if (each.kind, each.target) == (kind, target):
+            alone = each.name in registry.names(kind)
+            return Chosen(each.name if alone else f"{each.distribution}/{each.name}", each.origin, method)
+    return Chosen(cls.__qualname__, "", method)
+
+
+def _block(name: str, model: type[S], value: S | Mapping[str, Any] | None) -> S:
+    """A block of the configuration. Raises: ConfigError with every complaint."""
+    if isinstance(value, model):
+        return value
+    try:
+        return model.model_validate(dict(cast("Mapping[str, Any]", value)) if value else {})
+    except (ValidationError, TypeError, ValueError) as error:
+        if not isinstance(error, ValidationError):
+            raise ConfigError(
+                f"{name}: takes a {model.__name__} or a mapping of its options, not {quoted(value)}"
+            ) from error
+        parts = ((".".join(map(str, (name, *each["loc"]))), each["msg"]) for each in error.errors())
+        raise ConfigError(*(f"{where}: {what.removeprefix('Value error, ')}" for where, what in parts)) from error
+
+
+def _as_in_yaml(materials: Materials | None) -> MaterialChoice | Mapping[str, Any] | None:
+    """A word or a map of labels stands for `by`."""
+    if isinstance(materials, str) or (
+        isinstance(materials, Mapping) and any(isinstance(key, int) for key in materials)
+    ):
+        return {"by": materials}
+    return materials
+
+
+def _both(
+    one: Callable[[ServoReport], None], other: Callable[[ServoReport], None] | None
+) -> Callable[[ServoReport], None]:
+    def tell(report: ServoReport) -> None:
+        one(report)
+        if other is not None:
+            other(report)
+
+    return tell

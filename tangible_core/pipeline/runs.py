@@ -1,0 +1,148 @@
+"""A run: what a pipeline wants, made and kept in a folder with its figures and its sheet."""
+
+import platform
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass, replace
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from ..data import DisparityMap, MaterialMap, Outcomes, Record, ServoReport
+from ..errors import ConfigError
+from ..files.writing import write_text
+from ..plugins.interfaces import Touch
+from ..report import disparity_errors, draw_sheet, write_figures
+from ..report.html import png_html
+from ..session import About, Recording, run_simulated
+from .cache import write_record
+from .engine import Engine
+from .rehearsal import FELT, rehearsal
+
+SHOWN = ("disparity", "segments", "materials", "surface")
+"""Products that the report draws, beside what is wanted."""
+SHEET = "sheet.png"
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """What a run made, and where it lies."""
+
+    scene: str
+    products: Mapping[str, Any]
+    """By name: those that the report shows and the one that was wanted; None where one was skipped."""
+    recording: Recording | None
+    """What was felt, where a touch was wanted and the device is simulated."""
+    figures: Mapping[str, Any]
+    """Errors against the truth, materials and why, forces: what of it there is."""
+    outcomes: Outcomes
+    versions: Mapping[str, str]
+    files: tuple[Path, ...]
+
+    @property
+    def sheet(self) -> Path:
+        """The picture of all of it."""
+        return next(path for path in self.files if path.name == SHEET)
+
+    def _repr_html_(self) -> str:
+        return png_html(self.sheet.read_bytes(), f"{self.scene}: the sheet of this run")
+
+    def document(self) -> dict[str, Any]:
+        """Everything but the products, as plain values."""
+        return {
+            "scene": self.scene,
+            "versions": self.versions,
+            "outcomes": [asdict(each) for each in self.outcomes],
+            "figures": self.figures,
+        }
+
+
+def make_run(
+    engine: Engine, out: Path, want: str, seconds: float, on_report: Callable[[ServoReport], None] | None = None
+) -> Run:
+    """Make what is wanted, and write the results and their report into a folder.
+
+    The completed configuration is written first: a folder that cannot be written stops the run before it starts. A
+    touch is felt for so many seconds of a simulated device's own time; a real device is not moved.
+    Raises: OutputError if the folder cannot be written; TangibleError as `Engine.make` and `run_simulated`.
+    """
+    files = [*_configuration(engine, out)]
+    engine.plan(want)
+    with rehearsal(engine, want) as engine.beside:
+        value = engine.make(want)
+        products = {name: engine.make(name) for name in SHOWN if name in engine.needed(want)}
+        products[want] = value
+        recording = _felt(engine, value, seconds, on_report) if want == "touch" else None
+    for name, record in products.items():
+        if isinstance(record, Record):
+            write_record(out / f"{name}.npz", record)
+            files.append(out / f"{name}.npz")
+    if recording is not None:
+        recording.save(out / "recording.npz")
+        files.append(out / "recording.npz")
+    figures = _figures(engine, products, recording)
+    _draw(engine, products, recording, out / SHEET)
+    files += [out / SHEET, out / "outcomes.json"]
+    run = Run(engine.scene.name, products, recording, figures, engine.outcomes, _versions(), tuple(files))
+    write_figures(out / "outcomes.json", run.document())
+    return run
+
+
+def _configuration(engine: Engine, out: Path) -> list[Path]:
+    """The file of the completed configuration; nothing but a test of the folder where no file can say it."""
+    try:
+        text = engine.config.as_yaml()
+    except ConfigError as error:
+        write_text(out / "config.txt", f"{error}\n")
+        return [out / "config.txt"]
+    write_text(out / "config.yaml", text)
+    return [out / "config.yaml"]
+
+
+def about(engine: Engine) -> About:
+    """What a recording says of the pipeline that was felt."""
+    used = {kind: getattr(engine.config, kind) for kind in ("device", "render")}
+    names = {kind: chosen.name if chosen else "" for kind, chosen in used.items()}
+    try:
+        text = engine.config.as_yaml()
+    except ConfigError as error:
+        text = f"# {error}"
+    return About(names["device"], names["render"], text)
+
+
+def _felt(
+    engine: Engine, touch: Touch, seconds: float, on_report: Callable[[ServoReport], None] | None
+) -> Recording | None:
+    device = engine.config.felt_device
+    if device is None or not device.spec().simulated:
+        return None
+    said = about(engine).stamped()
+    if engine.beside is not None:
+        engine.beside.wait(FELT)
+    recording = run_simulated(touch, device, seconds, on_report, engine.config.safety)
+    return replace(recording, about=said)
+
+
+def _draw(engine: Engine, products: Mapping[str, Any], recording: Recording | None, path: Path) -> None:
+    scene = engine.scene
+    draw_sheet(path, views=scene.views, truth=scene.truth, recording=recording, title=scene.name,
+               **{name: products.get(name) for name in (*SHOWN, "relief")})  # fmt: skip
+
+
+def _figures(engine: Engine, products: Mapping[str, Any], recording: Recording | None) -> dict[str, Any]:
+    figures: dict[str, Any] = {}
+    truth, disparity = engine.scene.truth, products.get("disparity")
+    if truth is not None and isinstance(disparity, DisparityMap):
+        figures["disparity"] = disparity_errors(disparity.disparity_px, truth)
+    if isinstance(chosen := products.get("materials"), MaterialMap):
+        figures["materials"] = {
+            label: {"name": material.name, "why": why}
+            for label, (material, why) in enumerate(zip(chosen.materials, chosen.reasons, strict=True))
+        }
+    if recording is not None:
+        figures["force"] = recording.figures()
+    return figures
+
+
+def _versions() -> dict[str, str]:
+    named = {name: version(name) for name in ("tangible-images", "numpy", "opencv-contrib-python-headless")}
+    return named | {"python": platform.python_version(), "platform": platform.platform()}

@@ -1,0 +1,109 @@
+"""An open device: what a driver does, and around it, once for all drivers, what keeps the hand safe."""
+
+import logging
+import math
+from abc import ABC, abstractmethod
+from types import TracebackType
+from typing import Self, final
+
+from ..data import NO_FORCE, Force, HapticState, limited
+from ..errors import DeviceError
+
+log = logging.getLogger(__name__)
+
+
+class Link(ABC):
+    """An open device. As a context manager it leaves zero force behind, whatever happens.
+
+    A driver is `_read`, `_send`, `_release` and `applied`. What it cannot forget stands around them: a force that is
+    not finite is sent as zero, one over the greatest is scaled down, a link that is closed refuses in one sentence,
+    and one that is being closed sends zero force before the device is let go of.
+    """
+
+    # Mangled, so that no driver's own field of such a name takes their place.
+
+    def __init__(self, name: str, max_force_n: float) -> None:
+        """name: as messages call it, such as "the mock device". max_force_n: the greatest force that is sent."""
+        self.__name, self.__max_force_n = name, max_force_n
+        self.__closed = ""
+
+    @abstractmethod
+    def _read(self) -> HapticState:
+        """Where the tip is now. Raises: DeviceError if the device stopped answering."""
+
+    @abstractmethod
+    def _send(self, force: Force) -> None:
+        """Set this force, which is finite and no greater than the device's. Raises: DeviceError as `_read`."""
+
+    @abstractmethod
+    def _release(self) -> None:
+        """Let go of the device, to which zero force was sent before, if it listened; called once."""
+
+    @property
+    @abstractmethod
+    def applied(self) -> Force:
+        """The force the device holds now, as far as the driver knows."""
+
+    @final
+    def read(self) -> HapticState:
+        """Where the tip is now. Raises: DeviceError if the device stopped answering or the link is closed."""
+        if self.__closed:
+            raise self.__refusal()
+        return self._read()
+
+    @final
+    def write(self, force: Force) -> None:
+        """Set the force on the hand; a force that is not finite becomes zero, one too strong is scaled down.
+
+        Raises: DeviceError if the device stopped answering or the link is closed.
+        """
+        if self.__closed:
+            raise self.__refusal()
+        most_n = self.__max_force_n
+        self._send(force if math.hypot(*force) <= most_n else limited(force, most_n))
+
+    @final
+    def close(self) -> None:
+        """Let go of the device, with no force left; a second call does nothing."""
+        try:
+            self.__let_go()
+        except DeviceError as error:
+            log.warning("%s: its force could not be made zero, turn off its power: %s", self.__name, error)
+
+    @final
+    def __enter__(self) -> Self:
+        return self
+
+    @final
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        try:
+            self.__let_go()
+        except DeviceError:
+            if error is None:  # a device that died raised already
+                raise
+
+    @final
+    def _check_open(self) -> None:
+        """For what else a driver can be asked. Raises: DeviceError if the link is closed."""
+        if self.__closed:
+            raise self.__refusal()
+
+    @final
+    def _end(self, why: str) -> None:
+        """For a driver that let go by itself: closed from now on. why: such as "was closed after an error"."""
+        self.__closed = self.__closed or why
+
+    def __let_go(self) -> None:
+        if self.__closed:
+            return
+        try:
+            self._send(NO_FORCE)
+        finally:
+            if not self.__closed:  # else the driver did so itself
+                self.__closed = "is closed"
+                self._release()
+
+    def __refusal(self) -> DeviceError:
+        return DeviceError(f"{self.__name} {self.__closed}; open it again")

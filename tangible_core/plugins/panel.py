@@ -1,0 +1,21 @@
+"""A panel of a run's sheet."""
+
+from collections.abc import Callable, Collection
+from typing import NamedTuple
+
+
+class Panel(NamedTuple):
+    """How a panel is drawn, what of a run it shows, and the room that it takes."""
+
+    draw: Callable[..., str]
+    """Called with matplotlib's axes and, by name, what it needs and likes; draws into them and returns a headline."""
+    needs: Collection[str]
+    """Of views, truth, disparity, segments, materials, relief, surface, recording; without all of these it is left
+    out."""
+    likes: Collection[str] = ()
+    """Given to it where the run has them."""
+    aspect: float = 0.0
+    """Width over height; 0 is the scene's own."""
+    left_in: float = 0.15
+    right_in: float = 0.15
+    bottom_in: float = 0.4

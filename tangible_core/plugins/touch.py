@@ -1,0 +1,68 @@
+"""A force law at work on one surface."""
+
+from abc import ABC, abstractmethod
+from typing import final
+
+import numpy as np
+from jaxtyping import Float64
+
+from ..data import Force, HapticState
+from ..errors import GeometryError
+
+
+class Touch(ABC):
+    """A renderer compiled for one surface; it may remember what it touched last, such as a proxy.
+
+    A law in plain Python is a `PlainTouch`, one of kernels a `CompiledTouch`: both know the way along a path.
+    """
+
+    stiffness_n_per_m: float | None = None
+    """The greatest by which its force grows with depth on level ground; 0 for a law that is no spring.
+
+    A law stiffer than the device holds is softened by this number. None says nothing: then a copy is felt all over
+    before the device is opened, and the steepest slope found counts, that of steep ground too.
+    """
+
+    @abstractmethod
+    def force(self, state: HapticState) -> Force:
+        """Newtons on the hand, always finite; zero in free air, and zero for a state that is not finite."""
+
+    @abstractmethod
+    def path(self, positions_m: Float64[np.ndarray, "n 3"], period_s: float = 0.001) -> Float64[np.ndarray, "n 3"]:
+        """Forces along positions one period apart, as `force` gives them one by one, state carried along.
+
+        The velocity at each position is the step to it over the period; 0 at the first, and where it is not finite.
+        """
+
+
+class PlainTouch(Touch):
+    """A law in plain Python, which is `force` alone."""
+
+    @final
+    def path(self, positions_m: Float64[np.ndarray, "n 3"], period_s: float = 0.001) -> Float64[np.ndarray, "n 3"]:
+        """Forces along positions one period apart, the first at time 0.
+
+        Raises: GeometryError if the positions are not (n, 3), or the period is not positive and finite.
+        """
+        positions, forces = path_arrays(positions_m, period_s)
+        with np.errstate(all="ignore"):
+            velocities = np.diff(positions, axis=0, prepend=positions[:1]) / period_s
+        velocities[~np.isfinite(velocities).all(axis=1)] = 0.0
+        for i, ((x, y, z), (vx, vy, vz)) in enumerate(zip(positions.tolist(), velocities.tolist(), strict=True)):
+            forces[i] = self.force(HapticState((x, y, z), (vx, vy, vz), i * period_s))
+        return forces
+
+
+def path_arrays(
+    positions_m: np.ndarray, period_s: float
+) -> tuple[Float64[np.ndarray, "n 3"], Float64[np.ndarray, "n 3"]]:
+    """The positions as a kernel reads them, and an array for the forces.
+
+    Raises: GeometryError if the positions are not (n, 3), or the period is not positive and finite.
+    """
+    positions = np.ascontiguousarray(positions_m, np.float64)
+    if positions.ndim != 2 or positions.shape[1] != 3:
+        raise GeometryError(f"a path is (n, 3) positions in metres, not {positions.shape}")
+    if not 0 < period_s < np.inf:
+        raise GeometryError(f"period_s: is {period_s}; it must be positive and finite")
+    return positions, np.empty_like(positions)

@@ -1,0 +1,179 @@
+"""A pair taken by two known cameras: turned so that its rows correspond; depth then comes out in metres."""
+
+from dataclasses import dataclass
+from math import sqrt
+from typing import Any, Literal, NamedTuple
+
+import numpy as np
+from jaxtyping import Bool, Float64
+
+from ..data import Calibration, Record, Views
+from ..errors import GeometryError, PictureError, quoted
+from ..runtime.opencv import plain_opencv
+
+Distortion = Literal["radial-tangential", "equidistant"]
+COEFFICIENTS: dict[Distortion, tuple[int, ...]] = {
+    "radial-tangential": (0, 4, 5, 8, 12, 14),
+    "equidistant": (0, 4),
+}
+"""How many of them a model of the lens may have."""
+GROWTH = 2.0
+"""The turned picture is at most so many times as wide and as high as it was."""
+
+
+@dataclass(frozen=True, eq=False)
+class Camera(Record):
+    """One camera: K in pixels, (3, 3), and the distortion of its lens.
+
+    distortion: OpenCV's k1, k2, p1, p2[, k3 ...] (radial-tangential), or k1 to k4 of a fisheye (equidistant).
+    Raises: GeometryError if these are no camera's.
+    """
+
+    matrix: Float64[np.ndarray, "3 3"]
+    distortion: Float64[np.ndarray, "n"]
+    model: Distortion = "radial-tangential"
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        matrix = self.matrix
+        if matrix.shape != (3, 3) or not np.isfinite(matrix).all() or min(matrix[0, 0], matrix[1, 1]) <= 0:
+            raise GeometryError(f"a camera matrix is K, (3, 3), with positive focal lengths, not {quoted(matrix)}")
+        known = COEFFICIENTS[self.model]
+        if self.distortion.ndim != 1 or self.distortion.size not in known or not np.isfinite(self.distortion).all():
+            raise GeometryError(
+                f"a {self.model} lens has {' or '.join(map(str, known))} finite coefficients, not "
+                f"{quoted(self.distortion)}"
+            )
+
+
+@dataclass(frozen=True, eq=False)
+class StereoRig(Record):
+    """Two cameras: a point X_left in metres is X_right = rotation X_left + translation_m.
+
+    Raises: GeometryError if the rotation is none, or the right camera does not stand to the right of the left one.
+    """
+
+    left: Camera
+    right: Camera
+    rotation: Float64[np.ndarray, "3 3"]
+    translation_m: Float64[np.ndarray, "3"]
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.rotation.shape != (3, 3) or not _is_rotation(self.rotation):
+            raise GeometryError(f"a rotation is orthogonal, (3, 3), of determinant 1, not {quoted(self.rotation)}")
+        if self.translation_m.shape != (3,) or not 0 < _length(self.translation_m) < np.inf:
+            raise GeometryError(f"a translation is three metres, not all zero, not {quoted(self.translation_m)}")
+        x, y, z = self.centre_m
+        if not x > max(abs(y), abs(z)):
+            raise GeometryError(
+                f"the right camera stands at ({x:.3g}, {y:.3g}, {z:.3g}) m of the left one (right, down, ahead), and "
+                "not to its right; exchange left and right, or check the translation"
+            )
+
+    @property
+    def centre_m(self) -> tuple[float, float, float]:
+        """Where the right camera stands, seen from the left one."""
+        x, y, z = (-np.einsum("ji,j->i", self.rotation, self.translation_m)).tolist()
+        return x, y, z
+
+
+class Turned(NamedTuple):
+    """A pair whose rows correspond."""
+
+    views: Views
+    """With the calibration that gives Z = f B / d."""
+    known: Bool[np.ndarray, "h w"]
+    """Where the turned left picture shows anything."""
+
+
+def turned(views: Views, rig: StereoRig) -> Turned:
+    """A raw pair free of distortion, its rows along the baseline, on a canvas that holds the left picture.
+
+    The new axes are the baseline, and the mean viewing direction made square to it. Depth is along the new axis.
+    Raises: PictureError if there is only one view; GeometryError if the cameras look so that no canvas holds a picture.
+    Source: Fusiello, Trucco & Verri, A compact algorithm for rectification of stereo pairs, 2000; OpenCV's
+    initUndistortRectifyMap for the lenses.
+    """
+    if views.right is None:
+        raise PictureError("a stereo rig takes two views; give a right one")
+    axes = _axes(np.array(rig.centre_m), looking=rig.rotation[2] + [0, 0, 1])
+    focal = float((rig.left.matrix[1, 1] + rig.right.matrix[1, 1]) / 2)
+    camera = np.array([[focal, 0, rig.left.matrix[0, 2]], [0, focal, rig.left.matrix[1, 2]], [0, 0, 1.0]])
+    size = _canvas(rig.left, axes, camera, views.shape)
+    left, known = _warped(views.left, rig.left, axes, camera, size)
+    right, _ = _warped(views.right, rig.right, np.einsum("ij,kj->ik", axes, rig.rotation), camera, size)
+    return Turned(Views(left, right, Calibration(focal, _length(np.array(rig.centre_m)))), known)
+
+
+def _axes(baseline: np.ndarray, looking: np.ndarray) -> Float64[np.ndarray, "3 3"]:
+    """Rows: unit vectors along the baseline, square to it and the view, and the new viewing direction."""
+    x = baseline / _length(baseline)
+    y = np.cross(looking, x)
+    y /= max(_length(y), np.finfo(np.float64).tiny)
+    return np.stack([x, y, np.cross(x, y)])
+
+
+def _canvas(lens: Camera, axes: np.ndarray, camera: np.ndarray, shape: tuple[int, int]) -> tuple[int, int]:
+    """Width and height that hold the turned left picture; its camera's centre is moved accordingly.
+
+    Raises: GeometryError if the picture is turned behind the camera.
+    """
+    rows, columns = shape
+    across, down = np.linspace(0, columns - 1, 33), np.linspace(0, rows - 1, 33)
+    border = [np.column_stack([across, np.full(33, y)]) for y in (0, rows - 1)]
+    border += [np.column_stack([np.full(33, x), down]) for x in (0, columns - 1)]
+    seen = undistorted(np.vstack(border), lens, axes, camera)
+    if not np.isfinite(seen).all():
+        raise GeometryError("the cameras look along their baseline or apart; such a pair cannot be turned to one row")
+    seen = np.round(seen, 6)  # so that no last bit decides on a row more
+    low, high = np.floor(seen.min(axis=0)), np.ceil(seen.max(axis=0))
+    middle, most = (low + high) / 2, GROWTH * np.array([columns, rows])
+    low, high = np.maximum(low, np.floor(middle - most / 2)), np.minimum(high, np.ceil(middle + most / 2))
+    camera[:2, 2] -= low
+    width, height = (int(each) + 1 for each in high - low)
+    return width, height
+
+
+def undistorted(
+    points_px: Float64[np.ndarray, "n 2"], lens: Camera, axes: np.ndarray, camera: np.ndarray
+) -> Float64[np.ndarray, "n 2"]:
+    """Where points of a raw picture are seen by the camera without distortion, its axes turned; NaN behind it."""
+    import cv2
+
+    undo: Any = cv2.fisheye.undistortPoints if lens.model == "equidistant" else cv2.undistortPoints
+    flat = undo(points_px[:, None], lens.matrix, _coefficients(lens))[:, 0]
+    rays = np.einsum("nj,ij->ni", np.column_stack([flat, np.ones(len(flat))]), axes)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ahead = np.where(rays[:, 2:] > 1e-6, rays[:, :2] / rays[:, 2:], np.nan)
+    return ahead * camera[[0, 1], [0, 1]] + camera[:2, 2]
+
+
+def _warped(
+    picture: np.ndarray, lens: Camera, axes: np.ndarray, camera: np.ndarray, size: tuple[int, int]
+) -> tuple[np.ndarray, Bool[np.ndarray, "h w"]]:
+    import cv2
+
+    find: Any = cv2.fisheye.initUndistortRectifyMap if lens.model == "equidistant" else cv2.initUndistortRectifyMap
+    if picture.dtype.name not in ("uint8", "uint16", "float32", "float64"):
+        picture = picture.astype(np.float32)
+    with plain_opencv():
+        columns, rows = find(lens.matrix, _coefficients(lens), axes, camera, size, cv2.CV_32FC1)
+        raw = np.ascontiguousarray(picture)
+        found = cv2.remap(raw, columns, rows, cv2.INTER_CUBIC, borderMode=cv2.BORDER_REPLICATE)
+    height, width = picture.shape[:2]
+    inside = (columns > -0.5) & (columns < width - 0.5) & (rows > -0.5) & (rows < height - 0.5)
+    return np.clip(found, picture.min(), picture.max(), out=found), inside
+
+
+def _coefficients(lens: Camera) -> np.ndarray:
+    return lens.distortion if lens.distortion.size else np.zeros(4)
+
+
+def _is_rotation(turn: np.ndarray) -> bool:
+    straight = np.allclose(np.einsum("ik,jk->ij", turn, turn), np.eye(3), atol=1e-6)
+    return bool(straight and np.sum(np.cross(turn[0], turn[1]) * turn[2]) > 0)
+
+
+def _length(vector: np.ndarray) -> float:
+    return sqrt(np.square(vector).sum())

@@ -1,0 +1,108 @@
+"""A scene in files: which files, and what is known of the cameras."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Annotated, Literal, Self
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+from ..data import Calibration
+from ..errors import did_you_mean, quoted
+from .picture_files import NonFinite
+
+Length = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+
+_NEEDS = {
+    **{"focal_px": "baseline_m", "baseline_m": "focal_px", "offset_px": "focal_px"},
+    **{"relief_m": "height", "rig": "left", "rig_unit_m": "rig"},
+}
+_OF_VIEWS = ("disparity", "truth", "focal_px", "baseline_m", "offset_px")
+
+
+class SceneFiles(BaseModel):
+    """A scene in files: a pair (left and right), one photo, or a height map. Relative paths start at the YAML file."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+
+    left: Path | None = None
+    """Left view of a rectified pair."""
+    right: Path | None = None
+    """Right view of a rectified pair, of the same size."""
+    photo: Path | None = None
+    """A single picture."""
+    height: Path | None = None
+    """A height map in any unit, higher values stand out: a grey picture, .npy, .pfm or .tif. No depth is estimated."""
+    disparity: Path | None = None
+    """A ready disparity map of the left view or the photo, in pixels, NaN where unknown. No depth is estimated."""
+    segments: Path | None = None
+    """A label picture, one flat colour or number a segment. No texture is segmented."""
+    truth: Path | None = None
+    """True disparity of the left view, in pixels, NaN or infinite where unknown; for errors only."""
+    focal_px: Length | None = None
+    """Focal length of the rectified cameras; with baseline_m, the relief is true to depth."""
+    baseline_m: Length | None = None
+    """Distance between the cameras' centres."""
+    offset_px: Annotated[float, Field(allow_inf_nan=False)] | None = None
+    """Difference of the principal points' columns, right minus left (Middlebury's `doffs`); 0 when left out."""
+    rig: Path | None = None
+    """Calibration of the two cameras that took left and right (K, lens distortion, rotation, translation), in OpenCV's
+    YAML (M1, D1, M2, D2, R, T) or Kalibr's (cam0, cam1): the raw pair is rectified by it, and depth is metric."""
+    rig_unit_m: Length | None = None
+    """Metres that one unit of the rig's translation is; 1 when left out, 0.001 for a board measured in millimetres."""
+    relief_m: Length | None = None
+    """Height of the relief that a height map stands for; the workspace's when left out."""
+
+    non_finite: NonFinite = "error"
+    """NaN and infinity in a picture: an `error` that names the first place; or a `mask`: filled from the nearest pixel,
+    and unknown in what is found there: no disparity, and segments without confidence."""
+
+    @model_validator(mode="after")
+    def _one_scene(self) -> Self:
+        given = [name for name, value in self if isinstance(value, Path | float)]
+        kinds = [kind for kind in (("left", "right"), ("photo",), ("height",)) if set(kind) & set(given)]
+        if len(kinds) != 1 or not set(kinds[0]) <= set(given):
+            named = ", ".join(given) or "nothing"
+            raise ValueError(f"a scene is either left and right, or photo, or height; this one gives {named}")
+        for name, other in _NEEDS.items():
+            if name in given and other not in given:
+                raise ValueError(f"{name} needs {other} beside it")
+        if idle := self.rig and [name for name in given if name in _OF_VIEWS or name == "segments"]:
+            raise ValueError(f"rig says what the cameras are, and turns the pictures; leave out {', '.join(idle)}")
+        if idle := self.height and [name for name in given if name in _OF_VIEWS]:
+            raise ValueError(f"height already says how high everything is; leave out {', '.join(idle)}")
+        return self
+
+    @property
+    def main(self) -> Literal["left", "photo", "height"]:
+        """The field that says what kind of scene this is, and whose size the others share."""
+        return "left" if self.left else "photo" if self.photo else "height"
+
+    @property
+    def calibration(self) -> Calibration | None:
+        """The cameras, where they are known."""
+        if self.focal_px is None or self.baseline_m is None:
+            return None
+        return Calibration(self.focal_px, self.baseline_m, self.offset_px or 0.0)
+
+
+BUILTINS: Mapping[str, SceneFiles] = {
+    "builtin/motorcycle": SceneFiles(
+        left=Path("motorcycle_left.png"),
+        right=Path("motorcycle_right.png"),
+        truth=Path("motorcycle_disp.npz"),
+        focal_px=994.978,
+        baseline_m=0.193001,
+        offset_px=31.086,
+    ),
+    **{f"builtin/{name}": SceneFiles(photo=Path(f"{name}.png")) for name in ("brick", "coins", "grass", "gravel")},
+}
+"""Scenes whose files come inside scikit-image; nothing is ever downloaded. The motorcycle is Middlebury 2014
+(Scharstein et al., GCPR 2014) at a quarter of its size, with the calibration in `skimage.data.stereo_motorcycle`."""
+
+
+def unknown_scene(name: str) -> str:
+    """What to say of a name that is not builtin."""
+    return (
+        f"no scene is named {quoted(name)}{did_you_mean(name, BUILTINS)}; builtin are {', '.join(sorted(BUILTINS))}; "
+        "for files of your own write {photo: FILE}, {left: FILE, right: FILE} or {height: FILE}"
+    )

@@ -1,0 +1,285 @@
+"""Raw pairs of known cameras: points of space that two lenses saw lie on one row, at the disparity of their depth."""
+
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tangible_core.data import Views
+from tangible_core.errors import ConfigError, GeometryError, PictureError
+from tangible_core.scene.rig import Camera, StereoRig, turned, undistorted
+from tangible_core.scene.rig_files import read_rig
+from tangible_core.scene.scene import Scene
+
+SHAPE = 90, 120
+BLANK = np.zeros(SHAPE, np.uint8)
+RADIAL = (-0.2, 0.05, 0.001, -0.002)
+FISHEYE = (0.02, -0.01, 0.003, -0.001)
+LENSES = {
+    "none": ((), "radial-tangential"),
+    "radial": (RADIAL, "radial-tangential"),
+    "fisheye": (FISHEYE, "equidistant"),
+}
+
+
+def turn_of(*radians: float) -> np.ndarray:
+    return cv2.Rodrigues(np.array(radians, float))[0]
+
+
+def rig(turn=(0.02, -0.05, 0.01), move=(-0.1, 0.01, 0.005), lens: str = "none") -> StereoRig:
+    coefficients, model = LENSES[lens]
+    left, right = (
+        Camera(np.array([[focal, 0, 60.0], [0, focal + 3, 44.0], [0, 0, 1]]), np.array(coefficients, float), model)
+        for focal in (110.0, 115.0)
+    )
+    return StereoRig(left, right, turn_of(*turn), np.array(move))
+
+
+def seen(points_m: np.ndarray, camera: Camera) -> np.ndarray:
+    """Where a camera sees points of its own frame, by OpenCV's projection."""
+    coefficients = camera.distortion if camera.distortion.size else np.zeros(4)
+    project = cv2.fisheye.projectPoints if camera.model == "equidistant" else cv2.projectPoints
+    if camera.model == "equidistant":
+        found = project(points_m[None], np.zeros(3), np.zeros(3), camera.matrix, coefficients)[0]
+    else:
+        found = project(points_m, np.zeros(3), np.zeros(3), camera.matrix, coefficients)[0]
+    return found.reshape(-1, 2)
+
+
+def axes_of(cameras: StereoRig) -> np.ndarray:
+    x = np.array(cameras.centre_m) / np.linalg.norm(cameras.centre_m)
+    y = np.cross(cameras.rotation[2] + [0, 0, 1], x)
+    y /= np.linalg.norm(y)
+    return np.stack([x, y, np.cross(x, y)])
+
+
+@pytest.mark.parametrize("lens", LENSES)
+@given(
+    turn=st.tuples(*[st.floats(-0.08, 0.08)] * 3),
+    move=st.tuples(st.floats(-0.3, -0.05), st.floats(-0.03, 0.03), st.floats(-0.03, 0.03)),
+)
+def test_rows_and_depth_are_exact(lens, turn, move):
+    cameras = rig(turn, move, lens)
+    calibration = turned(Views(BLANK, BLANK), cameras).views.calibration
+    assert calibration is not None
+    points = np.random.default_rng(0).uniform([-0.3, -0.25, 1], [0.3, 0.25, 3], (50, 3))
+    axes, camera = axes_of(cameras), np.diag([calibration.focal_px, calibration.focal_px, 1.0])
+    left = undistorted(seen(points, cameras.left), cameras.left, axes, camera)
+    theirs = points @ cameras.rotation.T + cameras.translation_m
+    right = undistorted(seen(theirs, cameras.right), cameras.right, axes @ cameras.rotation.T, camera)
+    assert left[:, 1] == pytest.approx(right[:, 1], abs=1e-3)
+    disparity = (left - right)[:, 0]
+    assert calibration.focal_px * calibration.baseline_m / disparity == pytest.approx(points @ axes[2], rel=1e-3)
+    assert calibration.baseline_m == pytest.approx(np.linalg.norm(move))
+
+
+@pytest.mark.parametrize("lens", LENSES)
+def test_pictures_go_where_their_points_go(lens: str):
+    """Bright dots of a scene at one depth are found on one row in both turned pictures."""
+    cameras = rig(lens=lens)
+    dots = np.array([[x, y, 1.5] for x in (-0.4, 0.0, 0.4) for y in (-0.25, 0.25)])
+    views = []
+    for points, camera in ((dots, cameras.left), (dots @ cameras.rotation.T + cameras.translation_m, cameras.right)):
+        picture = np.zeros(SHAPE, np.float32)
+        columns, rows = np.meshgrid(np.arange(SHAPE[1]), np.arange(SHAPE[0]))
+        for x, y in seen(points, camera):
+            picture += np.exp(-((columns - x) ** 2 + (rows - y) ** 2) / 8).astype(np.float32)
+        views.append(np.clip(picture, 0, 1))
+    found = turned(Views(*views), cameras)
+    assert found.known.shape == found.views.shape and found.known.mean() > 0.5
+    assert found.views.right is not None and found.views.right.shape == found.views.shape
+    rows_lit = [np.sort(peaks(each)[:, 0]) for each in (found.views.left, found.views.right)]
+    np.testing.assert_allclose(*rows_lit, atol=0.3)
+
+
+def peaks(picture: np.ndarray) -> np.ndarray:
+    """Rows and columns of the six brightest blobs, to a fraction of a pixel."""
+    rest, found = picture.copy(), []
+    for _ in range(6):
+        row, column = np.unravel_index(np.argmax(rest), rest.shape)
+        rows, columns = np.s_[max(0, row - 5) : row + 6], np.s_[max(0, column - 5) : column + 6]
+        part = rest[rows, columns]
+        inner = np.indices(part.shape).reshape(2, -1)
+        found.append((inner * part.ravel()).sum(axis=1) / part.sum() + [rows.start, columns.start])
+        rest[rows, columns] = 0
+    return np.array(found)
+
+
+@pytest.mark.parametrize("dtype", [np.uint8, np.uint16, bool, np.float32])
+@pytest.mark.parametrize("channels", [(), (3,), (4,)])
+def test_any_picture(dtype, channels):
+    picture = (np.random.default_rng(0).random((*SHAPE, *channels)) > 0.5).astype(dtype)
+    found = turned(Views(picture, picture), rig(lens="radial")).views
+    assert found.left.shape[2:] == channels
+    assert found.left.max() <= picture.max()
+
+
+def test_one_view_is_no_pair():
+    with pytest.raises(PictureError, match="two views"):
+        turned(Views(BLANK), rig())
+
+
+@pytest.mark.parametrize("move", [(0.1, 0, 0), (0.0, 0.0, -0.5), (-0.01, 0.2, 0.0)])
+def test_a_right_camera_that_stands_elsewhere(move):
+    with pytest.raises(GeometryError, match="exchange left and right, or check the translation"):
+        rig((0, 0, 0), move)
+
+
+@pytest.mark.parametrize(
+    ("part", "value", "words"),
+    [
+        ("rotation", np.diag([1.0, 1, -1]), "determinant"),
+        ("rotation", 2 * np.eye(3), "orthogonal"),
+        ("translation_m", np.zeros(3), "metres"),
+        ("translation_m", np.array([np.inf, 0, 0]), "metres"),
+    ],
+)
+def test_what_is_no_rig_is_refused(part, value, words):
+    good = rig()
+    parts = {name: getattr(good, name) for name in ("left", "right", "rotation", "translation_m")}
+    with pytest.raises(GeometryError, match=words):
+        StereoRig(**{**parts, part: value})
+
+
+@pytest.mark.parametrize(
+    ("matrix", "distortion", "words"),
+    [
+        (np.zeros((3, 3)), np.zeros(0), "focal"),
+        (np.full((3, 3), np.nan), np.zeros(0), "focal"),
+        (np.eye(3), np.zeros(3), "coefficients"),
+        (np.eye(3), np.full(4, np.nan), "coefficients"),
+    ],
+)
+def test_what_is_no_camera_is_refused(matrix, distortion, words):
+    with pytest.raises(GeometryError, match=words):
+        Camera(matrix, distortion)
+
+
+KALIBR = """\
+cam0:
+  camera_model: pinhole
+  intrinsics: [110.0, 113.0, 60.0, 44.0]
+  distortion_model: {model}
+  distortion_coeffs: {coefficients}
+  resolution: [120, 90]
+cam1:
+  T_cn_cnm1:
+  - [1.0, 0.0, 0.0, -0.1]
+  - [0.0, 1.0, 0.0, 0.01]
+  - [0.0, 0.0, 1.0, 0.005]
+  - [0.0, 0.0, 0.0, 1.0]
+  camera_model: pinhole
+  intrinsics: [115.0, 118.0, 60.0, 44.0]
+  distortion_model: {model}
+  distortion_coeffs: {coefficients}
+  resolution: [120, 90]
+"""
+
+
+def write_opencv(path: Path, cameras: StereoRig, unit_m: float = 1.0) -> None:
+    """As cv2.FileStorage writes it."""
+    storage = cv2.FileStorage(str(path), cv2.FILE_STORAGE_WRITE)
+    for name, value in {
+        "M1": cameras.left.matrix, "D1": cameras.left.distortion[None], "M2": cameras.right.matrix,
+        "D2": cameras.right.distortion[None], "R": cameras.rotation, "T": cameras.translation_m[:, None] / unit_m,
+    }.items():  # fmt: skip
+        storage.write(name, value)
+    storage.release()
+
+
+class TestFiles:
+    @pytest.mark.parametrize("unit_m", [1.0, 0.001])
+    def test_opencv(self, tmp_path: Path, unit_m: float):
+        cameras = rig(lens="radial")
+        write_opencv(tmp_path / "rig.yml", cameras, unit_m)
+        found, size = read_rig(tmp_path / "rig.yml", unit_m)
+        assert size is None
+        for side in ("left", "right"):
+            np.testing.assert_array_equal(getattr(found, side).matrix, getattr(cameras, side).matrix)
+            np.testing.assert_array_equal(getattr(found, side).distortion, getattr(cameras, side).distortion)
+        np.testing.assert_allclose(found.rotation, cameras.rotation, atol=1e-15)
+        np.testing.assert_allclose(found.translation_m, cameras.translation_m, atol=1e-12)
+
+    @pytest.mark.parametrize("model", ["radtan", "equidistant"])
+    def test_kalibr(self, tmp_path: Path, model: str):
+        (tmp_path / "camchain.yaml").write_text(KALIBR.format(model=model, coefficients=list(FISHEYE)))
+        found, size = read_rig(tmp_path / "camchain.yaml")
+        assert size == (120, 90)
+        assert found.left.model == ("equidistant" if model == "equidistant" else "radial-tangential")
+        assert found.left.matrix[1].tolist() == [0, 113, 44]
+        assert found.translation_m.tolist() == [-0.1, 0.01, 0.005]
+
+    @pytest.mark.parametrize(
+        ("text", "said"),
+        [
+            ("M1: 3\n", "rig.yml: has no left matrix (M1, K1"),
+            ("a: [1\n", "rig.yml:2:1"),
+            ("- 1\n", "rig.yml:1:1: a calibration of two cameras is a mapping"),
+            (
+                "M1: !!opencv-matrix {rows: 3, cols: 3, data: [1, 2]}\n",
+                "3 rows and 3 cols are not 2 numbers",
+            ),
+            ("cam0: 5\ncam1: {}\n", "cam0 is a camera with camera_model pinhole, not 5"),
+            ("cam0: {camera_model: omni}\ncam1: {}\n", "cam0 is a camera with camera_model pinhole"),
+            (KALIBR.format(model="fov", coefficients=[]), "distortion_model: 'fov' is not one of radtan"),
+            (KALIBR.format(model="radtan", coefficients=["x"]), "distortion_coeffs is made of numbers"),
+            (KALIBR.format(model="radtan", coefficients=[1]), "rig.yml: a radial-tangential lens has 0 or 4"),
+            (KALIBR.format(model="none", coefficients=[]).replace("110.0, ", ""), "is [fu, fv, pu, pv]"),
+            (KALIBR.format(model="none", coefficients=[]).replace("T_cn_cnm1", "T"), "is the 4 x 4 pose of cam1"),
+        ],
+    )
+    def test_what_is_none(self, tmp_path: Path, text: str, said: str):
+        (tmp_path / "rig.yml").write_text(text)
+        with pytest.raises((ConfigError, GeometryError)) as caught:
+            read_rig(tmp_path / "rig.yml")
+        assert said in str(caught.value)
+
+
+class TestScene:
+    @pytest.fixture
+    def folder(self, tmp_path: Path) -> Path:
+        for name in ("left", "right"):
+            np.save(tmp_path / f"{name}.npy", np.random.default_rng(0).random(SHAPE).astype(np.float32))
+        write_opencv(tmp_path / "rig.yml", rig(lens="radial"))
+        return tmp_path
+
+    def test_files_and_arrays_are_the_same(self, folder: Path):
+        left, right = (np.load(folder / f"{name}.npy") for name in ("left", "right"))
+        of_files = Scene.of(left=folder / "left.npy", right=folder / "right.npy", rig=folder / "rig.yml")
+        of_arrays = Scene.of(left=left, right=right, rig=rig(lens="radial"))
+        assert of_files.views is not None and of_arrays.views is not None
+        np.testing.assert_allclose(of_files.views.left, of_arrays.views.left, atol=1e-6)
+        assert of_files.views.calibration is not None
+        assert of_files.views.calibration.baseline_m == pytest.approx(np.linalg.norm((-0.1, 0.01, 0.005)))
+        assert of_files.known is not None and not of_files.known.all()
+
+    def test_in_a_pipeline_file(self, folder: Path):
+        from tangible_core import load_pipeline
+
+        (folder / "p.yaml").write_text("scene: {left: left.npy, right: right.npy, rig: rig.yml, rig_unit_m: 0.5}\n")
+        views = load_pipeline(folder / "p.yaml").views
+        assert views is not None and views.calibration is not None
+        assert views.calibration.baseline_m == pytest.approx(np.linalg.norm((-0.05, 0.005, 0.0025)))
+
+    def test_pictures_of_another_size(self, folder: Path):
+        (folder / "rig.yml").write_text(KALIBR.format(model="none", coefficients=[]).replace("[120, 90]", "[752, 480]"))
+        with pytest.raises(PictureError, match=r"left\.npy is not 752 x 480"):
+            Scene.of(left=folder / "left.npy", right=folder / "right.npy", rig=folder / "rig.yml")
+
+    @pytest.mark.parametrize(
+        ("more", "said"),
+        [
+            ({"truth": np.ones(SHAPE)}, "rig says what the cameras are.*leave out truth"),
+            ({"segments": np.ones(SHAPE, int)}, "leave out segments"),
+        ],
+    )
+    def test_what_does_not_go_with_it(self, folder: Path, more: dict, said: str):
+        with pytest.raises(ConfigError, match=said):
+            Scene.of(left=BLANK, right=BLANK, rig=folder / "rig.yml", **more)
+
+    def test_a_rig_needs_a_pair(self, folder: Path):
+        with pytest.raises(ConfigError, match="rig needs left beside it"):
+            Scene.of(photo=BLANK, rig=folder / "rig.yml")

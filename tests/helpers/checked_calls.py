@@ -33,8 +33,8 @@ UNCHECKED = {
 """Modules whose calls are not checked, and why."""
 CALLS = 10_000
 """So many of each function and process are checked: a simulated device's clock is asked ten million times."""
-COMPILED = {"njit", "inner", "intrinsic", "overload"}
-"""A decorator of numba's makes no function of Python's; nor does typing's `overload`."""
+COMPILED = {"njit", "inner", "intrinsic", "operation", "overload"}
+"""What these decorate is compiled, or never called, as by `overload` of typing."""
 _VERSION = hashlib.md5(Path(__file__).read_bytes()).hexdigest()
 _typed = beartype(
     conf=BeartypeConf(

@@ -87,8 +87,10 @@ def test_filling_is_done_to_the_methods_that_are_named(registry: Registry, tmp_p
 
 @pytest.mark.slow
 def test_seconds_and_memory_are_the_methods_own(registry: Registry, tmp_path: Path):
+    begun = time.perf_counter()
     rows = measured(registry, tmp_path / "r.jsonl", "{use: constant, seconds: 0.1}, hungry")
-    assert rows[0].seconds == pytest.approx(0.1, abs=0.09)
+    took = time.perf_counter() - begun
+    assert 0.1 <= rows[0].seconds < took / 3  # whose half is the start of its process, on a machine at work too
     assert rows[0].peak_memory_bytes < 2**20
     assert rows[1].peak_memory_bytes == pytest.approx(64_000_000, rel=0.05)
 

@@ -187,11 +187,13 @@ class TestMethods:
         with pytest.raises(ConfigError, match="the pipeline has no device"):
             pipeline.feel()
 
+    @pytest.mark.usefixtures("unchecked_shapes")
     @pytest.mark.parametrize("wrong", ["semi-global", SemiGlobal, Gabor()])
     def test_what_is_no_method(self, wrong: object):
         with pytest.raises(ConfigError, match="depth: takes a DepthEstimator"):
             Pipeline(Scene.builtin("coins"), depth=wrong)  # pyright: ignore[reportArgumentType]
 
+    @pytest.mark.usefixtures("unchecked_shapes")
     @pytest.mark.parametrize(
         ("block", "said"),
         [

@@ -51,6 +51,7 @@ def test_the_velocities_are_those_of_a_compiled_law():
     assert [state.velocity_m_per_s for state in tape.asked] == [step_velocity(path, 0.0007, i) for i in range(200)]
 
 
+@pytest.mark.usefixtures("unchecked_shapes")
 @pytest.mark.parametrize(
     ("positions", "period_s", "says"),
     [

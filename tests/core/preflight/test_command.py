@@ -37,7 +37,6 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-@pytest.mark.slow
 def test_a_line_a_verdict_and_0_where_nothing_is_unsafe(folder: Path):
     done = tangible("preflight", "p.yaml", "--seconds", 0.1, cwd=folder)
     assert done.returncode == 0, done.stdout + done.stderr
@@ -48,7 +47,6 @@ def test_a_line_a_verdict_and_0_where_nothing_is_unsafe(folder: Path):
     assert summary.endswith(" 0 unsafe")
 
 
-@pytest.mark.slow
 def test_1_where_something_is_and_json_says_all_of_it(folder: Path):
     words = ("preflight", "p.yaml", "--set", "render.stiffness_n_per_m=9000", "--seconds", 0.1, "--rate", 500, "--json")
     done = tangible(*words, cwd=folder)

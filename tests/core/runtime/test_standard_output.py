@@ -176,8 +176,10 @@ class TestTheStreams:
         assert done.stdout.startswith("no depth method is named 'nosy'")
 
     def test_encoding_and_its_errors_are_those_of_standard_output(self, folder: Path) -> None:
-        code = "from tangible_core.runtime.standard_output import kept, stream\n"
-        code += "with kept(): print('\\u03bc', file=stream())"
+        code = (
+            "from tangible_core.runtime.standard_output import kept, stream\n"
+            "with kept(): print('\\u03bc', file=stream())"
+        )
         env = {**quiet(), "PYTHONIOENCODING": "ascii:backslashreplace"}
         assert (
             subprocess.run([sys.executable, "-c", code], capture_output=True, env=env, check=True).stdout

@@ -186,7 +186,7 @@ def test_a_check_that_fails_ends_with_1(folder: Path):
         ("scene.left=p.yaml", "p.yaml"),
         ("scene.left=cut.png", "cut.png"),
         ("scene.left=wide.png", "one size"),
-        ("scene={height: nan.npy}", "no height"),
+        ("scene={height: nan.npy}", "holds only NaN or infinity"),
         ("scene=builtin/motorcycles", "did you mean 'builtin/motorcycle'?"),
         ("device.path=spirals", "device.path"),
         ("workspace.width_m=0", "workspace.width_m"),

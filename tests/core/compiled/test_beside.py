@@ -158,7 +158,7 @@ def test_ctrl_c_while_it_is_waited_for_leaves_no_process():
 
 @pytest.mark.parametrize("how", [signal.SIGTERM, signal.SIGKILL])
 def test_it_ends_with_the_process_that_started_it(how: signal.Signals):
-    paths = [str(Path(__file__).parent), str(Path(__file__).parents[2])]
+    paths = [str(Path(__file__).parent), str(Path(__file__).parents[2] / "helpers")]
     code = PROGRAM.format(paths=paths, then="threading.Event().wait()")
     with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True) as program:
         assert program.stdout is not None

@@ -157,7 +157,7 @@ class TestScene:
         assert scene.known is not None and not scene.known[0, 0] and scene.known.sum() == 15
 
     def test_sizes_that_differ(self):
-        with pytest.raises(PictureError, match="all parts of a scene are of one size"):
+        with pytest.raises(PictureError, match="all parts of a scene must be of one size"):
             Scene.of(left=np.zeros((4, 4)), right=np.zeros((4, 5)))
 
 

@@ -8,11 +8,11 @@ from tangible_core import load_pipeline
 from tangible_core.preflight import Loop
 
 ROOT = Path(__file__).parents[3]
-FOLDERS = "configs", "tangible_core", "examples"
+FOLDERS = "configs", "tangible_core"
 
 
 def felt() -> list[Path]:
-    """Those with a law and a device."""
+    """Those with a law and a device; examples name devices that are installed with them."""
     files = [path for folder in FOLDERS for path in sorted((ROOT / folder).rglob("*.yaml"))]
     texts = {path: path.read_text(encoding="utf-8").splitlines() for path in files}
     keys = {path: {line.partition(":")[0] for line in lines} for path, lines in texts.items()}

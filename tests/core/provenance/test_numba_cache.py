@@ -141,4 +141,4 @@ def test_a_numba_that_is_not_known_keeps_nothing_and_it_is_said(caplog: pytest.L
     monkeypatch.setattr(numba_cache, "closure_of_function", lambda function: found)
     tell(SimpleNamespace(Cache=Cache))
     assert not Cache(tell).kept
-    assert "this version of numba is not known" in caplog.text
+    assert "this version of numba is unknown" in caplog.text

@@ -297,7 +297,7 @@ class TestReport:
         small.header[OVERRUNS], small.guard[COUNTS + 2] = 3, 8
         found = report(small)
         assert found.time_s == 100
-        assert found.state == HapticState((102, 103, 104), (105, 106, 107), 100)
+        assert found.state == HapticState((102, 103, 104), (105, 106, 107), 100, 115)
         assert found.force == Force(111, 112, 113)
         assert (found.overruns, found.flagged) == (3, {"SLEW_LIMITED": 8})
         assert found.late_us == pytest.approx((7, 7, 7, 7))

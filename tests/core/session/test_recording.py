@@ -171,7 +171,7 @@ def test_an_odd_archive(tmp_path: Path):
     some().save(tmp_path / "a.npz")
     whole = (tmp_path / "a.npz").read_bytes()
     entry = whole.find(b"PK\x01\x02")
-    for at, name in ((8, "encrypted"), (10, "compressed in a way")):
+    for at, name in ((8, "encrypted"), (10, "compression is not one")):
         data = bytearray(whole)
         while entry >= 0:
             data[entry + at] |= 1

@@ -225,7 +225,7 @@ def test_a_pair_is_asked_for():
 
 
 def test_an_empty_range_is_refused():
-    with pytest.raises(PictureError, match=r"no disparity is in 8\.\.4"):
+    with pytest.raises(PictureError, match=r"the search range 8\.\.4 px is empty"):
         SemiGlobal(min_disparity_px=8, max_disparity_px=5).estimate(slanted()[0])
 
 

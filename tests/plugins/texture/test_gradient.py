@@ -205,7 +205,7 @@ class TestGradient:
             Gradient(**options)
 
     def test_thresholds_out_of_order_are_explained(self):
-        with pytest.raises(ValidationError, match=r"flat 1\.4 < canny_low 5 <= canny_high 4 does not hold"):
+        with pytest.raises(ValidationError, match=r"flat 1\.4 < canny_low 5 <= canny_high 4 must hold"):
             Gradient(canny_low=5)
 
     def test_it_travels(self):

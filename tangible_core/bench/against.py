@@ -17,7 +17,7 @@ MEMORY_FLOOR_BYTES = 2**20
 
 
 @dataclass(frozen=True)
-class Worse:
+class Regression:
     """A figure of one cell that got worse."""
 
     method: str
@@ -41,7 +41,7 @@ class Verdict:
     """Cells that only one of them holds, or whose scene has other content now."""
     time: str
     """How times were compared."""
-    worse: tuple[Worse, ...]
+    worse: tuple[Regression, ...]
 
 
 def compare(before: Sequence[Row], after: Sequence[Row]) -> Verdict:
@@ -84,9 +84,9 @@ def _common_baseline(before: Sequence[Row], after: Sequence[Row]) -> str | None:
     return None
 
 
-def _worse(old: Cell, new: Cell, measures: Mapping[str, Measure], by_ratio: bool) -> Iterator[Worse]:
+def _worse(old: Cell, new: Cell, measures: Mapping[str, Measure], by_ratio: bool) -> Iterator[Regression]:
     if new.error and not old.error:
-        yield Worse(*new.key, "fails", math.nan, math.nan, 0.0, new.error)
+        yield Regression(*new.key, "fails", math.nan, math.nan, 0.0, new.error)
     if old.error or new.error:
         return
     times = (old.ratios, new.ratios) if by_ratio else (old.seconds, new.seconds)
@@ -99,15 +99,17 @@ def _worse(old: Cell, new: Cell, measures: Mapping[str, Measure], by_ratio: bool
 
 def _noisy(
     cell: Cell, what: str, old: Sequence[float], new: Sequence[float], share: float, least: float
-) -> Iterable[Worse]:
+) -> Iterable[Regression]:
     before, after = median(old), median(new)
     allowed = max(SPREADS * math.hypot(spread(old), spread(new)), share * before, least)
-    return [Worse(*cell.key, what, before, after, allowed)] if after - before > allowed else []
+    return [Regression(*cell.key, what, before, after, allowed)] if after - before > allowed else []
 
 
-def _exact(cell: Cell, measure: Measure, before: float, after: float) -> Iterable[Worse]:
+def _exact(cell: Cell, measure: Measure, before: float, after: float) -> Iterable[Regression]:
     rise = after - before if measure.best == "low" else before - after
     lost = math.isnan(after) and not math.isnan(before)
     return (
-        [Worse(*cell.key, measure.title, before, after, measure.tolerance)] if lost or rise > measure.tolerance else []
+        [Regression(*cell.key, measure.title, before, after, measure.tolerance)]
+        if lost or rise > measure.tolerance
+        else []
     )

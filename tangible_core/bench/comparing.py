@@ -32,7 +32,7 @@ class Step(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Compared:
+class ComparisonOutcome:
     """What was found out, and where it lies."""
 
     results: Results
@@ -50,7 +50,7 @@ def compare(
     progress: Callable[[Step], None] | None = None,
     on_outlook: Callable[[Outlook], None] | None = None,
     stop: Event | None = None,
-) -> Compared:
+) -> ComparisonOutcome:
     """Measure what a comparison names, into `comparison.out`; rows that are there already are kept.
 
     earlier: rows of an earlier comparison, to be held against. retry: measure once more what failed before. progress:
@@ -79,17 +79,17 @@ def compare(
     return _summed(rows, path, earlier)
 
 
-def read_comparison(path: Path, earlier: Sequence[Row] | None = None) -> Compared:
+def read_comparison(path: Path, earlier: Sequence[Row] | None = None) -> ComparisonOutcome:
     """What was measured before, from its rows (.jsonl). Raises: ResultsError."""
     return _summed(read_rows(path), path, earlier)
 
 
-def _summed(rows: Mapping[str, Row], path: Path, earlier: Sequence[Row] | None) -> Compared:
+def _summed(rows: Mapping[str, Row], path: Path, earlier: Sequence[Row] | None) -> ComparisonOutcome:
     found = list(rows.values())
     results = _results(found, path)
     plot = path.with_name(PLOT)
     files = (path, plot) if draw_plot(plot, results) else (path,)
-    return Compared(results, files, None if earlier is None else verdicts.compare(earlier, found))
+    return ComparisonOutcome(results, files, None if earlier is None else verdicts.compare(earlier, found))
 
 
 def _results(rows: Sequence[Row], path: Path) -> Results:

@@ -9,7 +9,7 @@ from pydantic import ValidationError
 
 from ..errors import ConfigError, did_you_mean, quoted
 from ..files.source import Location, Source
-from ..pipeline.config import Chosen, choose
+from ..pipeline.config import NamedMethod, choose
 from ..plugins.interfaces import Method
 from ..plugins.registry import Registry
 from .task import Task
@@ -20,7 +20,7 @@ class Entry:
     """A method with its options, under the name that tables give it."""
 
     label: str
-    chosen: Chosen[Method]
+    chosen: NamedMethod[Method]
     given: tuple[str, ...] = ()
     """Options that it is told for each scene, from what is known of that."""
 

@@ -6,7 +6,7 @@ from typing import Any
 
 from ..data import digest_of
 from ..errors import ConfigError, TangibleError
-from ..pipeline.config import Chosen
+from ..pipeline.config import NamedMethod
 from ..plugins.interfaces import Method
 from ..provenance.closure import closure
 from ..provenance.versions import versions
@@ -91,10 +91,10 @@ def _side_by_side(
         yield Measurement(job, row, place(cls.__module__, cls.__qualname__))
 
 
-def _code(chosen: Chosen[Method]) -> str:
+def _code(chosen: NamedMethod[Method]) -> str:
     cls = type(chosen.method)
     return f"{cls.__module__}:{cls.__qualname__} v{cls.version} {closure(cls.__module__).digest}"
 
 
-def _distribution(chosen: Chosen[Method]) -> str:
+def _distribution(chosen: NamedMethod[Method]) -> str:
     return chosen.origin.partition(" ")[0]

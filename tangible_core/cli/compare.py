@@ -134,7 +134,7 @@ def _print_verdict(verdict: verdicts.Verdict) -> None:
         show.say(f"not in both: {len(verdict.missing)} cells, such as {verdict.missing[0]}")
 
 
-def _change(each: verdicts.Worse) -> tuple[str, str, str]:
+def _change(each: verdicts.Regression) -> tuple[str, str, str]:
     if each.why:
         return "a result", each.why, ""
     return f"{each.before:.5g}", f"{each.after:.5g}", f"+- {each.allowed:.2g}"

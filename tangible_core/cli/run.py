@@ -12,7 +12,7 @@ from .options import Config, Json, NoCache, Sets
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from ..pipeline.config import Chosen
+    from ..pipeline.config import NamedMethod
     from ..pipeline.pipeline import Pipeline
     from ..pipeline.runs import Run
     from ..plugins.interfaces import HapticDevice
@@ -91,7 +91,7 @@ def open_pipeline(config: Path, sets: Sequence[str], cached: bool) -> Pipeline:
     return pipeline
 
 
-def device_of(pipeline: Pipeline) -> Chosen[HapticDevice]:
+def device_of(pipeline: Pipeline) -> NamedMethod[HapticDevice]:
     """The configured device with its name. Raises: ConfigError if there is none."""
     from dataclasses import replace
 

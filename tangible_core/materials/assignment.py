@@ -19,7 +19,7 @@ from ..data.pictures import to_grey
 from ..errors import MaterialError, did_you_mean, quoted
 from ..runtime.opencv import plain_opencv
 from .files import parse_materials, read_materials
-from .rules import Chosen, MaterialRule, apply_rules
+from .rules import Choice, MaterialRule, apply_rules
 
 NEUTRAL = "plain"
 """The material of segments that no material is named for."""
@@ -118,7 +118,7 @@ def _local_mean(values: Float64[np.ndarray, "h w"], side: int) -> Float64[np.nda
     return mean
 
 
-def _by_name(count: int, names: Mapping[int, str], library: Mapping[str, Material]) -> dict[int, Chosen]:
+def _by_name(count: int, names: Mapping[int, str], library: Mapping[str, Material]) -> dict[int, Choice]:
     complaints: list[str] = []
     for label, name in names.items():
         if label not in range(count):
@@ -132,10 +132,10 @@ def _by_name(count: int, names: Mapping[int, str], library: Mapping[str, Materia
     return {label: (name, f"segment {label}: named {name}") for label, name in names.items()}
 
 
-def _by_roughness(roughness: Float64[np.ndarray, "n"], default: str) -> dict[int, Chosen]:
+def _by_roughness(roughness: Float64[np.ndarray, "n"], default: str) -> dict[int, Choice]:
     levels, ranks = np.unique(roughness, return_inverse=True)
     last = len(levels) - 1
-    chosen: dict[int, Chosen] = {}
+    chosen: dict[int, Choice] = {}
     for label, (rank, value) in enumerate(zip(ranks, roughness, strict=True)):
         name = LADDER[round(int(rank) * (len(LADDER) - 1) / last)] if last else default
         chosen[label] = (name, f"segment {label}: roughness rank {rank + 1} of {last + 1} ({value:.3f}) -> {name}")

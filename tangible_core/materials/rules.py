@@ -14,7 +14,7 @@ from .colours import Colour, segment_colours
 log = logging.getLogger(__name__)
 
 Place = Annotated[float, Field(ge=0, allow_inf_nan=False)]
-Chosen = tuple[str, str]
+Choice = tuple[str, str]
 """The name of a material, and why it was chosen."""
 
 
@@ -44,13 +44,13 @@ class MaterialRule(BaseModel):
 
 def apply_rules(
     rules: Sequence[MaterialRule], segments: SegmentMap, picture: np.ndarray | None
-) -> Mapping[int, Chosen]:
+) -> Mapping[int, Choice]:
     """The segments that some rule is for. A rule that is for none is logged.
 
     Raises: MaterialError, with every complaint, for a segment or a point that is not there, or a colour without a
     picture of the segments' size.
     """
-    found: dict[int, Chosen] = {}
+    found: dict[int, Choice] = {}
     complaints: list[str] = []
     for number, rule in enumerate(rules, 1):
         try:

@@ -45,7 +45,7 @@ class MaterialChoice(Section):
 
 
 @dataclass(frozen=True)
-class Chosen(Generic[M]):
+class NamedMethod(Generic[M]):
     """A method as the configuration names it."""
 
     name: str
@@ -61,13 +61,13 @@ class PipelineConfig:
     path: Path | None = None
     """The file that it stands in; None for one that was made in Python."""
     want: Product = "surface"
-    depth: Chosen[DepthEstimator] | None = None
-    texture: Chosen[Segmenter] | None = None
+    depth: NamedMethod[DepthEstimator] | None = None
+    texture: NamedMethod[Segmenter] | None = None
     materials: MaterialChoice = field(default_factory=MaterialChoice)
     workspace: Workspace = field(default_factory=Workspace)
     mapping: WorkspaceMapping = field(default_factory=WorkspaceMapping)
-    render: Chosen[ForceRenderer] | None = None
-    device: Chosen[HapticDevice] | None = None
+    render: NamedMethod[ForceRenderer] | None = None
+    device: NamedMethod[HapticDevice] | None = None
     safety: Safety = field(default_factory=Safety)
 
     @property
@@ -161,7 +161,7 @@ def parse_config(text: str, path: Path, registry: Registry, overrides: Iterable[
     return PipelineConfig(path=path, **values)
 
 
-def choose(source: Source, location: Location, kind: str, block: Any, registry: Registry) -> Chosen[Any] | None:
+def choose(source: Source, location: Location, kind: str, block: Any, registry: Registry) -> NamedMethod[Any] | None:
     """The method that a block names, with its options; None after a complaint."""
     if isinstance(block, str):
         block = {"use": block}
@@ -175,7 +175,7 @@ def choose(source: Source, location: Location, kind: str, block: Any, registry: 
     except TangibleError as error:
         return source.complain((*location, "use"), str(error))
     method = source.model(location, cls, options)
-    return None if method is None else Chosen(name, listing.origin, method)
+    return None if method is None else NamedMethod(name, listing.origin, method)
 
 
 def _scene(source: Source) -> Any:

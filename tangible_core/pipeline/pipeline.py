@@ -35,7 +35,7 @@ from ..scene.workspace import Workspace
 from ..servo import OVER, Safety, Servo
 from ..session import About, Recording, check_record_path, keeping, replay, run_in_real_time, run_simulated
 from .cache import Cache
-from .config import Chosen, MaterialChoice, PipelineConfig, Product, load_config
+from .config import MaterialChoice, NamedMethod, PipelineConfig, Product, load_config
 from .engine import Engine, Progress
 from .runs import Run, about, make_run
 
@@ -343,8 +343,8 @@ def load_pipeline(
 @overload
 def _chosen(kind: str, method: None, registry: Registry) -> None: ...
 @overload
-def _chosen(kind: str, method: M, registry: Registry) -> Chosen[M]: ...
-def _chosen(kind: str, method: M | None, registry: Registry) -> Chosen[M] | None:
+def _chosen(kind: str, method: M, registry: Registry) -> NamedMethod[M]: ...
+def _chosen(kind: str, method: M | None, registry: Registry) -> NamedMethod[M] | None:
     """A method with the name that a file gives it; one of no installed plugin has its class's, and no origin.
 
     Raises: ConfigError if it is no method of this kind.
@@ -358,8 +358,8 @@ def _chosen(kind: str, method: M | None, registry: Registry) -> Chosen[M] | None
     for each in registry.listings:
         if (each.kind, each.target) == (kind, target):
             alone = each.name in registry.names(kind)
-            return Chosen(each.name if alone else f"{each.distribution}/{each.name}", each.origin, method)
-    return Chosen(cls.__qualname__, "", method)
+            return NamedMethod(each.name if alone else f"{each.distribution}/{each.name}", each.origin, method)
+    return NamedMethod(cls.__qualname__, "", method)
 
 
 def _block(name: str, model: type[S], value: S | Mapping[str, Any] | None) -> S:

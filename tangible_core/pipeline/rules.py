@@ -20,7 +20,7 @@ from ..provenance.source import source_digest
 from ..scene import geometry, scaling
 from ..scene.scene import Scene
 from .cache import Cache
-from .config import Chosen, PipelineConfig
+from .config import NamedMethod, PipelineConfig
 
 Inputs = Mapping[str, Any]
 """Products by name; None where one was skipped."""
@@ -162,7 +162,7 @@ def made_key(rule: Rule, inputs: Mapping[str, str]) -> str:
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()
 
 
-def _identity(chosen: Chosen[Any] | None) -> tuple[str, str]:
+def _identity(chosen: NamedMethod[Any] | None) -> tuple[str, str]:
     """A method's name, and everything its results depend on: where it comes from, its code, version and options."""
     if chosen is None:
         return "", ""
@@ -199,13 +199,15 @@ def _known(scene: Scene) -> str:
     return "" if scene.known is None else f"known {digest_of(scene.known)}"
 
 
-def _skip(chosen: Chosen[Any] | None, scene: Scene) -> str | None:
+def _skip(chosen: NamedMethod[Any] | None, scene: Scene) -> str | None:
     if chosen is not None and isinstance(chosen.method, Skippable) and scene.views is not None:
         return chosen.method.skip(scene.views)
     return None
 
 
-def _check_shape(kind: str, chosen: Chosen[Any], what: str, found: tuple[int, ...], wanted: tuple[int, ...]) -> None:
+def _check_shape(
+    kind: str, chosen: NamedMethod[Any], what: str, found: tuple[int, ...], wanted: tuple[int, ...]
+) -> None:
     """What a method makes is enlarged to the size of the pictures, so that a wrong size would pass unseen."""
     if found != wanted:
         raise BrokenMethod(
@@ -218,8 +220,8 @@ def _size(shape: tuple[int, ...]) -> str:
     return " x ".join(map(str, reversed(shape)))
 
 
-def _configured(config: PipelineConfig, kind: str) -> Chosen[Any]:
-    chosen: Chosen[Any] | None = getattr(config, kind)
+def _configured(config: PipelineConfig, kind: str) -> NamedMethod[Any]:
+    chosen: NamedMethod[Any] | None = getattr(config, kind)
     if chosen is None:
         raise config.missing(kind)
     return chosen

@@ -78,7 +78,7 @@ class StereoRig(Record):
         return x, y, z
 
 
-class Turned(NamedTuple):
+class RectifiedViews(NamedTuple):
     """A pair whose rows correspond."""
 
     views: Views
@@ -87,7 +87,7 @@ class Turned(NamedTuple):
     """Where the turned left picture shows anything."""
 
 
-def turned(views: Views, rig: StereoRig) -> Turned:
+def turned(views: Views, rig: StereoRig) -> RectifiedViews:
     """A raw pair free of distortion, its rows along the baseline, on a canvas that holds the left picture.
 
     The new axes are the baseline, and the mean viewing direction made square to it. Depth is along the new axis.
@@ -103,7 +103,7 @@ def turned(views: Views, rig: StereoRig) -> Turned:
     size = _canvas(rig.left, axes, camera, views.shape)
     left, known = _warped(views.left, rig.left, axes, camera, size)
     right, _ = _warped(views.right, rig.right, np.einsum("ij,kj->ik", axes, rig.rotation), camera, size)
-    return Turned(Views(left, right, Calibration(focal, _length(np.array(rig.centre_m)))), known)
+    return RectifiedViews(Views(left, right, Calibration(focal, _length(np.array(rig.centre_m)))), known)
 
 
 def _axes(baseline: np.ndarray, looking: np.ndarray) -> Float64[np.ndarray, "3 3"]:

@@ -16,7 +16,7 @@ from ..errors import DeviceError
 from ..plugins.interfaces import Link, Touch
 from . import loop, parcel, priority
 from .ring import STOP, SWAP, Ring
-from .wire import Ended, Refused, Running, Start, Swap, Swapped, receive, send, sendable
+from .wire import End, Refusal, Start, StartReply, Swap, SwapReply, receive, send, sendable
 
 TERMINATED = "the process was asked to end"
 PAUSED = "the program was paused from the keyboard"
@@ -45,9 +45,9 @@ class Child:
                 self._feel(start)
         except BaseException as error:  # noqa: BLE001 - whatever a plugin raises is for the host to say
             said = sendable(error)
-            self._reply(Ended(str(said) if isinstance(said, DeviceError) else "", said))
+            self._reply(End(str(said) if isinstance(said, DeviceError) else "", said))
         else:
-            self._reply(Ended(self._stopped))
+            self._reply(End(self._stopped))
 
     def _feel(self, start: Start) -> None:
         self._ring = ring = Ring.attach(Path(start.ring))
@@ -79,7 +79,7 @@ class Child:
         try:
             real_time, granted = priority.ask()
             loop.start_clock(ring.header, real_time)
-            self._reply(Running(f"{granted}; {self._next.how}"))
+            self._reply(StartReply(f"{granted}; {self._next.how}"))
             self._next.run()
             while ring.header[SWAP] and not ring.header[STOP]:
                 loop.take_over(ring)
@@ -101,14 +101,14 @@ class Child:
         try:
             self._next = loop.prepare(link, parcel.unpack(Path(message.scene)), ring, message.settings)
         except BaseException as error:  # noqa: BLE001 - the scene that is felt stays
-            self._reply(Refused(sendable(error)))
+            self._reply(Refusal(sendable(error)))
             return
         self._taken.clear()
         ring.header[SWAP] = 1
         if not ring.header[STOP]:  # looked at after clearing: the loop sets both when it ends, in this order
             self._taken.wait()
         if not ring.header[STOP]:
-            self._reply(Swapped())
+            self._reply(SwapReply())
 
     def stop(self, why: str = "") -> None:
         """End the loop with the next tick."""

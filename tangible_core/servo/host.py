@@ -20,7 +20,7 @@ from .guard.safety import Safety
 from .guard.stiffness import stiffness_of
 from .reports import report
 from .ring import COUNT, LAST, PERIOD_NS, STOP, Ring
-from .wire import Ended, Refused, Running, Start, Swap, Swapped, receive, send, sendable
+from .wire import End, Refusal, Start, StartReply, Swap, SwapReply, receive, send, sendable
 
 log = logging.getLogger(__name__)
 COMPILING_S = 300.0
@@ -68,7 +68,7 @@ class Servo:
         self._ear: threading.Thread | None = None
         self._sent: list[Path] = []
         self._why = ""
-        self._ended: Ended | None = None
+        self._ended: End | None = None
         self._heard = threading.Event()
         self.how = ""
         """What the operating system granted, which loop runs, and how stiff the law is if it does not say so."""
@@ -86,7 +86,7 @@ class Servo:
             start = Start(str(self.ring.path), self._pack(self._touch), self._device, settings)
             self._ear = threading.Thread(target=self._hear, args=(start,), daemon=True)
             self._ear.start()
-            self.how = "; ".join(filter(None, (self._answer(Running).how, self._felt.how)))
+            self.how = "; ".join(filter(None, (self._answer(StartReply).how, self._felt.how)))
             threading.Thread(target=self._watch, daemon=True).start()
             self.start_s = time.monotonic() - begun_s
             return self
@@ -110,7 +110,7 @@ class Servo:
         """
         try:
             self._tell(Swap(self._pack(touch), self._arrays(touch)[0]))
-            self._answer(Swapped)
+            self._answer(SwapReply)
         finally:
             self._remove_sent()
 
@@ -201,14 +201,14 @@ class Servo:
             raise DeviceError(
                 f"the force loop has not answered for {COMPILING_S:g} s; look at what the device prints"
             ) from None
-        if isinstance(message, Refused):
+        if isinstance(message, Refusal):
             raise message.error
         if not isinstance(message, kind):
             raise self._failure()
         return message
 
     def _failure(self) -> Exception:
-        ended = self._ended or Ended(OVER)
+        ended = self._ended or End(OVER)
         return ended.error or DeviceError(f"the force loop has ended: {ended.stopped or OVER}")
 
     def _hear(self, start: Start) -> None:
@@ -216,13 +216,13 @@ class Servo:
         try:
             ended = self._live(start)
         except Exception as error:  # noqa: BLE001 - whoever waits for an answer is to get it
-            ended = Ended("", sendable(error))
+            ended = End("", sendable(error))
         self.ring.header[STOP] = 1
         self._ended = ended
         self._replies.put(ended)
         self._heard.set()
 
-    def _live(self, start: Start) -> Ended:
+    def _live(self, start: Start) -> End:
         if hasattr(signal, "pthread_sigmask"):  # the process hears no Ctrl-C before it can choose to
             signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
         words = command(f"{__package__}.child")
@@ -241,7 +241,7 @@ class Servo:
             code = self._reaped(child)
         if ended is None:
             self._let_go()
-        return ended or Ended(self._why or f"the force loop's process died (exit code {code})")
+        return ended or End(self._why or f"the force loop's process died (exit code {code})")
 
     def _reaped(self, child: subprocess.Popen[bytes]) -> int:
         """Exit code of a process that has said its last words; killed if it does not end."""
@@ -250,15 +250,15 @@ class Servo:
         self._kill("it did not end when asked to")
         return child.wait()
 
-    def _last_words(self, replies: IO[bytes]) -> Ended | None:
+    def _last_words(self, replies: IO[bytes]) -> End | None:
         """Pass the others on until there is this one, or the loop is gone without."""
         try:
             while (message := receive(replies)) is not None:
-                if isinstance(message, Ended):
-                    return Ended(message.stopped or self._why, message.error)
+                if isinstance(message, End):
+                    return End(message.stopped or self._why, message.error)
                 self._replies.put(message)
         except Exception as error:  # noqa: BLE001 - what a plugin raised may not be told from here
-            return Ended("", sendable(error))
+            return End("", sendable(error))
         return None
 
     def _watch(self) -> None:

@@ -33,24 +33,24 @@ class Swap(NamedTuple):
     settings: np.ndarray
 
 
-class Running(NamedTuple):
+class StartReply(NamedTuple):
     """The device is open, everything is compiled, the first tick is due."""
 
     how: str
     """What the operating system granted, and who ticks."""
 
 
-class Swapped(NamedTuple):
+class SwapReply(NamedTuple):
     """The scene sent last is felt."""
 
 
-class Refused(NamedTuple):
+class Refusal(NamedTuple):
     """The scene sent last cannot be felt; the one before it still is."""
 
     error: Exception
 
 
-class Ended(NamedTuple):
+class End(NamedTuple):
     """The loop is over and the device has no force."""
 
     stopped: str

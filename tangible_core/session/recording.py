@@ -10,7 +10,7 @@ from jaxtyping import Float64, Int64
 from ..data import TICK_COLUMNS, Record, TickFlag
 from ..errors import DeviceError, OutputError
 from . import recording_files
-from .recording_files import Kept
+from .recording_files import RecordingContents
 from .tick_arrays import ARRAYS, joined
 from .tick_file import NOTHING_SAID, About
 
@@ -129,7 +129,7 @@ class Recording(Record):
 
         Raises: OutputError for another suffix, or if the place cannot be written.
         """
-        recording_files.write(path, Kept(self.rows, self.stopped, self.about))
+        recording_files.write(path, RecordingContents(self.rows, self.stopped, self.about))
 
     @classmethod
     def load(cls, path: Path) -> Self:

@@ -21,7 +21,7 @@ NPZ_NAMES = frozenset(("stopped", *ARRAYS, *(each.name for each in fields(About)
 """What is read of an .npz."""
 
 
-class Kept(NamedTuple):
+class RecordingContents(NamedTuple):
     """What a file holds: rows of `TICK_COLUMNS`, why the recording ended, and what it is of."""
 
     rows: Float64[np.ndarray, "n columns"]
@@ -35,7 +35,7 @@ def check_record_path(path: Path) -> None:
         raise OutputError(f"{path}: a recording is written as .nc, .npz or .csv; change the end of the name")
 
 
-def write(path: Path, kept: Kept) -> None:
+def write(path: Path, kept: RecordingContents) -> None:
     """Write it whole or not at all. Raises: OutputError for another suffix, or if the place cannot be written."""
     check_record_path(path)
     with atomic_write(path) as file:
@@ -50,7 +50,7 @@ def write(path: Path, kept: Kept) -> None:
             np.savetxt(file, kept.rows, "%.17g", ",", header=",".join(TICK_COLUMNS), comments="")
 
 
-def read(path: Path) -> Kept:
+def read(path: Path) -> RecordingContents:
     """Raises: OutputError if it cannot be read or is no recording."""
     check_record_path(path)
     try:
@@ -73,11 +73,11 @@ def _check_bits(rows: Float64[np.ndarray, "n columns"]) -> None:
             raise ValueError(f"its {name} do not all fit into 32 bits")
 
 
-def _from_nc(path: Path) -> Kept:
-    return Kept(*tick_file.read(path))
+def _from_nc(path: Path) -> RecordingContents:
+    return RecordingContents(*tick_file.read(path))
 
 
-def _from_npz(path: Path) -> Kept:
+def _from_npz(path: Path) -> RecordingContents:
     with path.open("rb") as file:
         archive = Archive(file)
         values: dict[str, Any] = archive.read([name for name in archive.names if name in NPZ_NAMES])
@@ -85,10 +85,10 @@ def _from_npz(path: Path) -> Kept:
     if missing := [name for name in (*NEEDED, "stopped") if name not in values]:
         raise ValueError(f"it holds no {', '.join(missing)}")
     rows = joined({name: values[name] for name in ARRAYS if name in values})
-    return Kept(rows, str(values["stopped"]), about)
+    return RecordingContents(rows, str(values["stopped"]), about)
 
 
-def _from_csv(path: Path) -> Kept:
+def _from_csv(path: Path) -> RecordingContents:
     header, *lines = read_bytes(path).decode("utf-8-sig").splitlines()
     names = header.split(",")
     if missing := [name for name in TICK_COLUMNS if name not in (*names, *UNKNOWN)]:
@@ -98,7 +98,7 @@ def _from_csv(path: Path) -> Kept:
     for name, values in zip(names, table.T, strict=True):
         if name in TICK_COLUMNS:
             rows[:, TICK_COLUMNS.index(name)] = values
-    return Kept(rows)
+    return RecordingContents(rows)
 
 
 READERS = {".nc": _from_nc, ".npz": _from_npz, ".csv": _from_csv}

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from tangible_core.bench.comparing import Compared, Step, compare, read_comparison
+from tangible_core.bench.comparing import ComparisonOutcome, Step, compare, read_comparison
 from tangible_core.bench.config import parse_comparison
 from tangible_core.bench.rows import read_rows
 from tangible_core.errors import ResultsError, Stopped
@@ -22,7 +22,7 @@ out: {out}
 """
 
 
-def compared(registry: Registry, out: Path, methods: str = "constant", **how) -> Compared:
+def compared(registry: Registry, out: Path, methods: str = "constant", **how) -> ComparisonOutcome:
     text = FILE.format(methods=methods, out=out)
     return compare(parse_comparison(text, Path("c.yaml"), registry), **how)
 

@@ -10,7 +10,7 @@ from tangible_core import load_method
 from tangible_core.data import DisparityMap, SegmentMap, Views
 from tangible_core.materials.rules import MaterialRule
 from tangible_core.pipeline.cache import Cache
-from tangible_core.pipeline.config import PRODUCTS, Chosen, MaterialChoice, PipelineConfig
+from tangible_core.pipeline.config import PRODUCTS, MaterialChoice, NamedMethod, PipelineConfig
 from tangible_core.pipeline.engine import Engine
 from tangible_core.plugins.interfaces import DepthEstimator, Segmenter
 from tangible_core.plugins.registry import default_registry
@@ -62,8 +62,8 @@ def pipeline(folder: Path, **parts) -> Engine:
     made = {
         "scene": pair,
         "want": "surface",
-        "depth": Chosen("ramp", "tests 1.0", Ramp()),
-        "texture": Chosen("halves", "tests 1.0", Halves()),
+        "depth": NamedMethod("ramp", "tests 1.0", Ramp()),
+        "texture": NamedMethod("halves", "tests 1.0", Halves()),
         "workspace": Workspace(width_m=0.03),
     }
     config = PipelineConfig(path=folder / "p.yaml", **(made | parts))
@@ -132,7 +132,7 @@ class TestEachAnswerIsItsOwn:
         assert outcome(other, product) == "ran"
 
     def test_an_option_without_bound_and_one_that_is_not_given(self, folder: Path):
-        one, other = (pipeline(folder, depth=Chosen("ramp", "t 1", Ramp(most_px=each))) for each in (None, np.inf))
+        one, other = (pipeline(folder, depth=NamedMethod("ramp", "t 1", Ramp(most_px=each))) for each in (None, np.inf))
         assert self.differ("disparity", one, other)
 
     @pytest.mark.parametrize(
@@ -199,10 +199,10 @@ def other_version(monkeypatch: pytest.MonkeyPatch, distribution: str) -> None:
     monkeypatch.setattr(versions, "_version", lambda name: "0.1" if name == distribution else read(name))
 
 
-def real(depth: str = "semi-global", texture: str = "gabor") -> dict[str, Chosen]:
+def real(depth: str = "semi-global", texture: str = "gabor") -> dict[str, NamedMethod]:
     return {
-        "depth": Chosen(depth, "tests 1.0", load_method("depth", depth)()),
-        "texture": Chosen(texture, "tests 1.0", load_method("texture", texture)()),
+        "depth": NamedMethod(depth, "tests 1.0", load_method("depth", depth)()),
+        "texture": NamedMethod(texture, "tests 1.0", load_method("texture", texture)()),
     }
 
 
@@ -266,7 +266,7 @@ class TestCode:
         )
         (folder / "acme_helper.py").write_text("SLOPE = 1")
         monkeypatch.syspath_prepend(folder)
-        chosen = Chosen("mine", "acme 1.0", import_module("acme_depth").Mine())
+        chosen = NamedMethod("mine", "acme 1.0", import_module("acme_depth").Mine())
         before = keys(folder, depth=chosen)
         (folder / "acme_helper.py").write_text("SLOPE = 2")
         forget()
@@ -275,7 +275,7 @@ class TestCode:
     def test_a_method_written_at_a_prompt_is_never_answered_by_one_of_before(self, folder: Path):
         made = {"__name__": "__prompt__"}
         exec(PROMPT, made)
-        chosen = Chosen("mine", "prompt", made["Mine"]())
+        chosen = NamedMethod("mine", "prompt", made["Mine"]())
         assert keys(folder, depth=chosen)["disparity"] != keys(folder, depth=chosen)["disparity"]
 
 

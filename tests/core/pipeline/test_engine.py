@@ -12,7 +12,7 @@ from pictures import write_png
 from tangible_core.data import DisparityMap, HapticSurface, SegmentMap, Views
 from tangible_core.errors import BrokenMethod, ConfigError, GeometryError, PictureError, UnknownMethod
 from tangible_core.pipeline.cache import Cache
-from tangible_core.pipeline.config import Chosen, MaterialChoice, PipelineConfig
+from tangible_core.pipeline.config import MaterialChoice, NamedMethod, PipelineConfig
 from tangible_core.pipeline.engine import Engine
 from tangible_core.plugins import hooks
 from tangible_core.plugins.interfaces import DepthEstimator, ForceRenderer, Segmenter, Skippable, Touch
@@ -115,7 +115,7 @@ def folder(tmp_path: Path) -> Path:
 
 
 def chosen(method, name: str = ""):
-    return Chosen(name or type(method).__name__.lower(), "tests 1.0", method)
+    return NamedMethod(name or type(method).__name__.lower(), "tests 1.0", method)
 
 
 def pipeline(folder: Path, cached: bool = True, plugins: pluggy.PluginManager | None = None, **parts) -> Engine:
@@ -194,7 +194,7 @@ def test_a_second_run_takes_the_surface_from_the_cache_and_runs_no_stage(folder:
     "change",
     [
         {"depth": chosen(Ramp(slope=2.0))},
-        {"depth": Chosen("ramp", "tests 1.1", Ramp())},
+        {"depth": NamedMethod("ramp", "tests 1.1", Ramp())},
         {"scene": SceneFiles(left=Path("right.png"), right=Path("left.png"))},
     ],
     ids=["an option", "another version of its distribution", "another scene"],

@@ -25,7 +25,7 @@ from tangible_core.servo import Safety, Servo, host, priority
 from tangible_core.servo.child import Child
 from tangible_core.servo.parcel import pack
 from tangible_core.servo.ring import COUNT, LAST, PERIOD_NS, STOP, Ring, shared_folder
-from tangible_core.servo.wire import Running, Start, Swap, Swapped, receive, send
+from tangible_core.servo.wire import Start, StartReply, Swap, SwapReply, receive, send
 from tangible_core.testing.loop_devices import Circling, Failing
 from tangible_core.testing.loop_laws import FaultyTouch
 
@@ -284,8 +284,8 @@ class TestWhatAPluginRaises:
 def test_half_a_message_is_the_end(kept: int) -> None:
     """As a process leaves it that was killed while it wrote."""
     whole = io.BytesIO()
-    send(whole, Running("how"))
-    assert receive(io.BytesIO(whole.getvalue())) == Running("how")
+    send(whole, StartReply("how"))
+    assert receive(io.BytesIO(whole.getvalue())) == StartReply("how")
     assert receive(io.BytesIO(whole.getvalue()[:kept])) is None
 
 
@@ -400,14 +400,14 @@ def test_no_stop_is_lost_among_ten_thousand_swaps(device, in_this_process: None)
     rng, swaps, sessions, scene = random.Random(0), 0, 0, proxy()
     while swaps < 5000:
         session = Session(device)
-        assert isinstance(session.heard(), Running)
+        assert isinstance(session.heard(), StartReply)
         end, wait_s = ENDS[sessions % 3], rng.uniform(0, 0.25)
         timer = threading.Timer(wait_s, end, [session])
         timer.start()
         with suppress(OSError, ValueError):
             while not session.ring.header[STOP]:
                 send(session.commands, Swap(str(pack(scene)), session.settings))
-                if not isinstance(session.heard(), Swapped):
+                if not isinstance(session.heard(), SwapReply):
                     break
                 swaps += 1
         timer.join()

@@ -23,6 +23,7 @@ SECTIONS = {
     "servo_faults": "Faults around the force loop",
     "record": "Recordings",
     "devices": "Devices",
+    "tests": "The test run",
     "mutants": "Faults that the tests notice",
 }
 VERSIONS = ("tangible-images", "numpy", "opencv-contrib-python-headless", "scikit-image", "numba", "pydantic", "typer")

@@ -107,12 +107,13 @@ ODD = {
     "an unknown field": {"class": "SegmentMap", "fields": {"labels": {"array": "a"}, "more": 1}},
     "a picture that is none": {"class": "Views", "fields": {"left": {"array": "b"}}},
     "fields that are none": {"class": "Views", "fields": [1]},
+    "a part that nobody knows": {"class": "Views", "fields": {"left": {"array": "a"}, "calibration": {"camera": 1}}},
 }
 
 
 @pytest.mark.parametrize("tree", ODD.values(), ids=ODD)
 def test_whatever_an_entry_holds_it_is_made_again(tmp_path: Path, tree: object, caplog: pytest.LogCaptureFixture):
-    entry(tmp_path / "k.npz", tree, a=np.zeros((2, 2), np.int32), b=np.full((2, 2), np.nan))
+    entry(tmp_path / "k.npz", tree, a=np.zeros((2, 2), np.uint8), b=np.full((2, 2), np.nan))
     assert Cache(tmp_path).get("k") is None
     assert "damaged" in caplog.text
     assert len(caplog.text) < 1000

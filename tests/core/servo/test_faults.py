@@ -21,10 +21,10 @@ import pytest
 from tangible_core import HapticSurface, load_method
 from tangible_core.errors import BrokenMethod, DeviceError
 from tangible_core.plugins.interfaces import Touch
-from tangible_core.servo import Safety, Servo, host, priority
+from tangible_core.servo import Safety, Servo, host, loop, priority
 from tangible_core.servo.child import Child
 from tangible_core.servo.parcel import pack
-from tangible_core.servo.ring import COUNT, LAST, PERIOD_NS, STOP, Ring, shared_folder
+from tangible_core.servo.ring import COUNT, LAST, PERIOD_NS, STOP, SWAP, Ring, shared_folder
 from tangible_core.servo.wire import Start, StartReply, Swap, SwapReply, receive, send
 from tangible_core.testing.loop_devices import Circling, Failing
 from tangible_core.testing.loop_laws import FaultyTouch
@@ -392,6 +392,16 @@ def in_this_process(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(priority, "ask", lambda: (False, "nothing asked"))
     yield
     gc.unfreeze()
+
+
+def test_a_scene_that_is_taken_over_leaves_the_word_to_stop() -> None:
+    """At the moment that ten thousand swaps seldom meet: the word came after the loop last looked at it."""
+    ring = Ring.create(64)
+    ring.header[STOP], ring.header[SWAP] = 1, 1
+    loop.take_over(ring)
+    found = int(ring.header[STOP]), int(ring.header[SWAP])
+    ring.remove()
+    assert found == (1, 0)
 
 
 @pytest.mark.parametrize("device", [Circling(), Circling(exchanges=True)])

@@ -111,6 +111,7 @@ ODD = {
 }
 
 
+@pytest.mark.usefixtures("unchecked_shapes")
 @pytest.mark.parametrize("tree", ODD.values(), ids=ODD)
 def test_whatever_an_entry_holds_it_is_made_again(tmp_path: Path, tree: object, caplog: pytest.LogCaptureFixture):
     entry(tmp_path / "k.npz", tree, a=np.zeros((2, 2), np.uint8), b=np.full((2, 2), np.nan))

@@ -58,7 +58,7 @@ def overhead_rows(runs: int = 7) -> list[str]:
         views: Views = pipeline.scene.views  # reading the scene is not the engine's
         start = perf_counter()
         records = [(product, pipeline.make(product)) for product in PRODUCTS]
-        keys = [pipeline.key(product) for product, _ in records]
+        keys = [pipeline.engine.key(product) for product, _ in records]
         total = perf_counter() - start
         ran = sum(each.seconds for each in pipeline.outcomes if each.outcome == "ran")
         stages.append(ran)

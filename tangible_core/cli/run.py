@@ -87,7 +87,7 @@ def open_pipeline(config: Path, sets: Sequence[str], cached: bool) -> Pipeline:
 
     pipeline = load_pipeline(config, sets)
     if not cached:
-        pipeline.engine.cache = None
+        pipeline.cache = None
     return pipeline
 
 

@@ -128,6 +128,15 @@ class Pipeline:
         return self.engine.config
 
     @property
+    def cache(self) -> Cache | None:
+        """Where results are kept between runs; None keeps none."""
+        return self.engine.cache
+
+    @cache.setter
+    def cache(self, cache: Cache | None) -> None:
+        self.engine.cache = cache
+
+    @property
     def scene(self) -> Scene:
         """The scene; read from its files when first asked for. Raises: PictureError."""
         return self.engine.scene

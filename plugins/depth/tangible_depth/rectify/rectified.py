@@ -1,11 +1,11 @@
 """A pair of pictures turned so that rows correspond, and the way back."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float32, Float64
 
-from tangible_core.data import Calibration, DisparityMap, Record, Views
+from tangible_core.data import DisparityMap, Record, Views
 from tangible_core.errors import PictureError
 from tangible_core.runtime.opencv import plain_opencv
 
@@ -29,8 +29,6 @@ class RectifiedPair(Record):
     offset_px: float
     skipped: bool
     why: str
-    calibration: Calibration | None = None
-    """For the values that `to_original` gives, where the cameras are known."""
 
     def to_original(self, found: DisparityMap) -> DisparityMap:
         """A disparity map of `views` as one of the original left picture: same values plus offset_px, at their pixels.
@@ -77,12 +75,10 @@ def warped(
     pair: tuple[np.ndarray, np.ndarray],
     why: str,
     start_px: int = 0,
-    calibration: Calibration | None = None,
 ) -> RectifiedPair:
     """Both pictures on a canvas that holds the whole left one, the right one moved so that start_px becomes zero.
 
     pair: homographies (left, right), each (3, 3), that bring matches onto common rows.
-    calibration: of the pair so turned, if it is known.
     """
     if views.right is None:
         raise PictureError("rectification needs two views; give a right one")
@@ -92,9 +88,8 @@ def warped(
     origin, end = np.floor(quad.min(axis=0)), np.ceil(quad.max(axis=0))
     width, height = (int(size) + 1 for size in end - origin)
     left, right = _moved(pair[0], origin), _moved(pair[1], origin - [start_px, 0])
-    moved = calibration and replace(calibration, offset_px=calibration.offset_px + start_px)
-    turned = Views(_warp(views.left, left, width, height), _warp(views.right, right, width, height), moved)
-    return RectifiedPair(turned, left, right, views.shape, float(start_px), False, why, calibration)
+    turned = Views(_warp(views.left, left, width, height), _warp(views.right, right, width, height))
+    return RectifiedPair(turned, left, right, views.shape, float(start_px), False, why)
 
 
 def _moved(homography: np.ndarray, origin: np.ndarray) -> Float64[np.ndarray, "3 3"]:

@@ -1,5 +1,6 @@
 """What every test stands on: checked shapes, repeatable hypothesis, a cache and plugins of its own."""
 
+import gc
 import os
 import sys
 from collections.abc import Callable, Iterator
@@ -15,6 +16,8 @@ from checked_calls import check
 from distributions import Points, distribution
 
 os.environ["MPLBACKEND"] = "Agg"
+if "PYTEST_XDIST_WORKER" in os.environ:
+    os.environ.setdefault("OMP_NUM_THREADS", "1")  # torch's threads spin, and take the processor from the other workers
 
 check()
 
@@ -38,6 +41,11 @@ def pytest_configure(config: pytest.Config) -> None:
         from compiled_once import compile_once
 
         compile_once()
+
+
+def pytest_collection_finish() -> None:
+    """What is imported by now stays: the garbage collector need not look at it again and again."""
+    gc.freeze()
 
 
 @pytest.hookimpl(tryfirst=True)

@@ -60,7 +60,7 @@ class Running:
 
     def __init__(self, folder: Path, thread_count: int, environment: dict[str, str]) -> None:
         folder.mkdir()
-        given = {**os.environ, **dict.fromkeys(THREADS, str(thread_count)), **environment}
+        given = {**os.environ, **dict.fromkeys(THREADS, str(thread_count)), "OMP_WAIT_POLICY": "passive", **environment}
         self.folder, self.errors = folder, folder / "errors.txt"
         with self.errors.open("w") as errors:
             self.process = subprocess.Popen(

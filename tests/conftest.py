@@ -2,6 +2,7 @@
 
 import os
 import sys
+import tempfile
 from collections.abc import Callable, Iterator
 from importlib import metadata
 from itertools import count
@@ -13,6 +14,7 @@ from hypothesis import settings
 
 from checked_calls import check
 from distributions import Points, distribution
+from tangible_core.servo.ring import shared_folder
 
 os.environ["MPLBACKEND"] = "Agg"
 
@@ -66,6 +68,20 @@ def own_dir(folders: Iterator[Path]) -> Path:
     folder = next(folders)
     folder.mkdir()
     return folder
+
+
+@pytest.fixture(scope="session", autouse=True)
+def shared_dir() -> Iterator[None]:
+    """Memory of its own for the force loops of these tests: what one run sweeps away is never another's."""
+    if "TANGIBLE_SHARED_DIR" in os.environ:
+        yield
+        return
+    with (
+        tempfile.TemporaryDirectory(prefix="tests-", dir=shared_folder()) as own,
+        pytest.MonkeyPatch.context() as patch,
+    ):
+        patch.setenv("TANGIBLE_SHARED_DIR", own)
+        yield
 
 
 @pytest.fixture(autouse=True)

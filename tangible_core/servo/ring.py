@@ -127,7 +127,9 @@ class Ring:
 
 
 def shared_folder() -> Path:
-    """Where files are memory alone, if there is such a place: writing one to a disk would stop the loop."""
+    """$TANGIBLE_SHARED_DIR, or where files are memory alone, if there is such a place: a disk would stop the loop."""
+    if named := os.environ.get("TANGIBLE_SHARED_DIR"):
+        return Path(named)
     memory = Path("/dev/shm")
     return memory if sys.platform == "linux" and os.access(memory, os.W_OK) else Path(tempfile.gettempdir())
 

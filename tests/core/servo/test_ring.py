@@ -9,7 +9,7 @@ import pytest
 
 from tangible_core.data import TICK_COLUMNS, Force, HapticState, TickFlag
 from tangible_core.errors import DeviceError
-from tangible_core.servo import Ring, cycle, ring
+from tangible_core.servo import Ring, cycle, parcel, ring
 from tangible_core.servo.guard.layout import COUNTS
 from tangible_core.servo.loop import sections
 from tangible_core.servo.reports import report, spread
@@ -214,6 +214,13 @@ class TestFile:
         monkeypatch.setattr(ring, "shared_folder", lambda: tmp_path / "missing")
         with pytest.raises(DeviceError, match="no room"):
             Ring.create()
+
+    def test_a_folder_of_ones_own(self, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+        """For two runs of tests side by side, one of which sweeps away what it should not."""
+        monkeypatch.setenv("TANGIBLE_SHARED_DIR", str(tmp_path))
+        made = Ring.create(16).path, parcel.pack([1])
+        assert {path.parent for path in made} == {tmp_path}
+        assert set(tmp_path.iterdir()) == set(made)
 
     def test_what_killed_processes_left_is_swept_away(self) -> None:
         dead = shared_folder() / "tangible-999999999-x.ring"

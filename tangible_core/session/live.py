@@ -111,7 +111,8 @@ def figures(report: ServoReport) -> dict[str, float]:
     return {
         "ticks": report.ticks,
         "seconds": report.time_s,
-        "contact_share": report.flagged.get("TOUCHING", 0) / max(1, report.ticks),
+        "contact_share": report.contact_share or 0.0,
+        "median_contact_force_n": report.median_contact_force_n or 0.0,
         "peak_force_n": report.peak_force_n,
         "work_j": report.work_j,
         **{

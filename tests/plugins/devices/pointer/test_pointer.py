@@ -466,6 +466,18 @@ class TestKilled:
         client.close()
 
 
+@pytest.mark.parametrize(
+    ("channel", "words"), [("pointer", "`tangible pointer`"), ("b", "`tangible pointer --channel b`")]
+)
+def test_whether_somebody_moves_it(channel: str, words: str):
+    device = Pointer(channel=channel)
+    with device.open():
+        assert words in (device.unattended() or "")
+        with PointerClient(channel):
+            assert device.unattended() is None
+        assert words in (device.unattended() or "")
+
+
 class TestCommand:
     def test_typed_positions_are_felt(self, link: CompiledLink):
         """A spring of 1 N/mm under z = 0, in this process; the hand in another."""

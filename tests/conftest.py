@@ -14,7 +14,6 @@ from hypothesis import settings
 
 from checked_calls import check
 from distributions import Points, distribution
-from tangible_core.servo.ring import shared_folder
 
 os.environ["MPLBACKEND"] = "Agg"
 
@@ -76,6 +75,8 @@ def shared_dir() -> Iterator[None]:
     if "TANGIBLE_SHARED_DIR" in os.environ:
         yield
         return
+    from tangible_core.servo.ring import shared_folder  # after `check`
+
     with (
         tempfile.TemporaryDirectory(prefix="tests-", dir=shared_folder()) as own,
         pytest.MonkeyPatch.context() as patch,

@@ -37,6 +37,7 @@ from ..session import About, Recording, Turn, check_record_path, keeping, replay
 from .cache import Cache
 from .config import MaterialChoice, NamedMethod, PipelineConfig, Product, load_config
 from .engine import Engine, Progress
+from .rehearsal import rehearsal
 from .runs import Run, about, make_run
 
 M = TypeVar("M", bound=Method)
@@ -183,7 +184,8 @@ class Pipeline:
         progress: hears of every stage as it begins and ends. stop: set from another thread, it ends the work.
         Raises: TangibleError for what a user can put right, Stopped after `stop`, and whatever a plugin raises.
         """
-        with self.engine.watched(progress, stop):
+        watched, beside = self.engine.watched(progress, stop), rehearsal(self.engine, want or self.config.want)
+        with watched, beside as self.engine.beside:
             return self.engine.make(want)
 
     @property

@@ -14,13 +14,15 @@ import sys
 import tempfile
 from collections.abc import Generator, Iterable, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, as_completed
-from contextlib import closing
+from contextlib import closing, contextmanager
 from datetime import date
 from enum import StrEnum
 from itertools import groupby
 from pathlib import Path
 from time import perf_counter
 from typing import NamedTuple
+
+from tangible_core.servo.ring import shared_folder
 
 from .__main__ import SECTIONS, keep, kept
 from .figures import MissedError, table
@@ -121,12 +123,12 @@ def run(root: Path, chosen: Sequence[Mutant], jobs: int, patience_s: float = PAT
     Raises: UnreadyError if the tests do not pass without them.
     """
     programs = Programs()
-    with tempfile.TemporaryDirectory(prefix="mutants-", ignore_cleanup_errors=True) as folder:
+    with _folder(None) as folder, _folder(shared_folder()) as shared:
         pool = ThreadPoolExecutor(jobs)
         try:
-            limits_s = pool.submit(_unharmed, root, Path(folder) / "0", chosen, programs).result()
+            limits_s = pool.submit(_unharmed, root, folder / "0", shared / "0", chosen, programs).result()
             futures: list[Future[Result]] = [
-                pool.submit(_tried, Path(folder), i, each, patience_s + 3 * limits_s[each.room], programs)
+                pool.submit(_tried, folder, shared, i, each, patience_s + 3 * limits_s[each.room], programs)
                 for i, each in enumerate(chosen, 1)
             ]
             for future in as_completed(futures):
@@ -136,9 +138,16 @@ def run(root: Path, chosen: Sequence[Mutant], jobs: int, patience_s: float = PAT
             pool.shutdown(cancel_futures=True)
 
 
-def _unharmed(root: Path, folder: Path, chosen: Sequence[Mutant], programs: Programs) -> dict[str, float]:
+@contextmanager
+def _folder(parent: Path | None) -> Generator[Path]:
+    """A new folder there, or among temporary ones, that goes with all in it."""
+    with tempfile.TemporaryDirectory(prefix="mutants-", dir=parent, ignore_cleanup_errors=True) as folder:
+        yield Path(folder)
+
+
+def _unharmed(root: Path, folder: Path, shared: Path, chosen: Sequence[Mutant], programs: Programs) -> dict[str, float]:
     """Seconds that the tests of each list take in a copy without any fault; it is left with all compiled."""
-    tree = Tree(folder)
+    tree = Tree(folder, shared)
     copy_of(root, tree.sources)
     tree.make()
     if not tree.owns(programs, [each.file for each in chosen]):
@@ -156,18 +165,19 @@ def _unharmed(root: Path, folder: Path, chosen: Sequence[Mutant], programs: Prog
     return seconds
 
 
-def _tried(folder: Path, number: int, mutant: Mutant, limit_s: float, programs: Programs) -> Result:
+def _tried(folder: Path, shared: Path, number: int, mutant: Mutant, limit_s: float, programs: Programs) -> Result:
     start = perf_counter()
     if not mutant.tests:
         return Result(mutant, Outcome.EXPLAINED, 0.0, mutant.equivalent)
-    tree = Tree(folder / str(number))
+    tree = Tree(folder / str(number), shared / str(number))
     try:
         shutil.copytree(folder / "0" / "tree", tree.sources)
         tree.make()
         tree.put_in(mutant)
         ended = tree.pytest(programs, mutant.tests, limit_s)
     finally:
-        shutil.rmtree(folder / str(number), ignore_errors=True)
+        for each in (folder, shared):
+            shutil.rmtree(each / str(number), ignore_errors=True)
     outcome = _outcome(mutant, ended.code)
     lines = ended.said.splitlines()[-40 if outcome is Outcome.BROKEN else -1 :]
     why = next((line for line in ended.said.splitlines() if line.startswith(("FAILED", "ERROR"))), "\n".join(lines))

@@ -46,12 +46,15 @@ class Tree:
     `PYTHONPATH` would not do: a test may start a program with an environment of its own.
     """
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, shared: Path) -> None:
+        """shared: where its force loops have their memory; a mutant may take away whatever lies there."""
         self.sources, self._venv, self._temporary = folder / "tree", folder / "venv", folder / "tmp"
+        self._shared = shared
 
     def make(self) -> None:
         """The environment round the sources, which are there: their folders first, then what is installed here."""
         self._temporary.mkdir()
+        self._shared.mkdir()
         venv.create(self._venv, symlinks=True)
         (site,) = self._venv.glob("lib/python*/site-packages")
         installed = [each for each in sys.path if Path(each).name in ("site-packages", "dist-packages")]
@@ -78,7 +81,8 @@ class Tree:
 
     def environ(self) -> dict[str, str]:
         """Chance is the same each time, a test that hangs is ended, and what is left behind goes with the tree."""
-        ours = {"TMPDIR": str(self._temporary), "CI": "1", "PYTEST_TIMEOUT": "120"}
+        places = {"TMPDIR": str(self._temporary), "TANGIBLE_SHARED_DIR": str(self._shared)}
+        ours = {**places, "CI": "1", "PYTEST_TIMEOUT": "120"}
         return {k: v for k, v in os.environ.items() if k not in ("PYTHONPATH", "NUMBA_CACHE_DIR")} | ours
 
     def pytest(self, programs: "Programs", tests: Sequence[str], limit_s: float) -> Ended:

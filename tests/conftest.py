@@ -3,6 +3,7 @@
 import gc
 import os
 import sys
+import tempfile
 from collections.abc import Callable, Iterator
 from importlib import metadata
 from itertools import count
@@ -74,6 +75,22 @@ def own_dir(folders: Iterator[Path]) -> Path:
     folder = next(folders)
     folder.mkdir()
     return folder
+
+
+@pytest.fixture(scope="session", autouse=True)
+def shared_dir() -> Iterator[None]:
+    """Memory of its own for the force loops of these tests: what one run sweeps away is never another's."""
+    if "TANGIBLE_SHARED_DIR" in os.environ:
+        yield
+        return
+    from tangible_core.servo.ring import shared_folder  # after `check`
+
+    with (
+        tempfile.TemporaryDirectory(prefix="tests-", dir=shared_folder()) as own,
+        pytest.MonkeyPatch.context() as patch,
+    ):
+        patch.setenv("TANGIBLE_SHARED_DIR", own)
+        yield
 
 
 @pytest.fixture(autouse=True)

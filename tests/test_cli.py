@@ -233,7 +233,7 @@ def test_a_wrong_call_is_the_users_mistake(folder: Path, words: tuple[str, ...])
     mistake(*words, cwd=folder)
 
 
-@pytest.mark.parametrize("seconds", ["0", "-1", "nan", "inf"])
+@pytest.mark.parametrize("seconds", ["0", "-1", "nan", "-inf"])
 def test_a_time_that_is_none(folder: Path, seconds: str):
     assert "seconds" in mistake("feel", "p.yaml", "--seconds", seconds, cwd=folder)
 

@@ -52,7 +52,7 @@ def measure(felt: PathForces, scene: KnownStroke) -> dict[str, float]:
         **force_errors(felt.force_n, truth_n),
         "lag_mm": 1e3 * proxy_lag(scene.position_m, proxy_m, scene.nearest_m),
         **force_steps(felt.force_n),
-        "energy_mj": 1e3 * float(works.max()) if works.size else float("nan"),
+        "loop_work_j": float(works.max()) if works.size else float("nan"),
         **limits(felt.method, scene.surface),
         "held_kb": held_bytes(lambda: felt.method.touch(scene.surface)) / 1e3,
     }
@@ -110,14 +110,14 @@ MEASURES = {
     "lag_mm": Measure("lag mm", 4, tolerance=5e-5),
     "step_n": Measure("step N", 3, tolerance=5e-4),
     "step_p99_n": Measure("step p99 N", 4, tolerance=5e-5),
-    "energy_mj": Measure("energy mJ", 4, tolerance=5e-5),
+    "loop_work_j": Measure("loop work J", 7, tolerance=5e-8),
     **{f"limit{delay}": Measure(f"K max d={delay} N/m", 0, "high", 0.5) for delay in DELAYS},
     "held_kb": Measure("held kB", 0, tolerance=1.0),
 }
 
 TASK = Task(
     kind="render",
-    version=1,
+    version=2,
     scene=RenderScene,
     work=feel,
     measure=measure,

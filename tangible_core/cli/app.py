@@ -13,7 +13,7 @@ import typer
 from ..errors import ConfigError, TangibleError, exited, quoted, shown
 from ..plugins import hooks
 from ..plugins.registry import default_registry
-from ..runtime import standard_output
+from ..runtime import ending, standard_output
 from . import check, compare, devices, feel, materials, plugins, preflight, replay, run, schema
 from .options import DONE, INTERRUPTED, MISTAKE
 
@@ -21,6 +21,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from typer.models import CommandInfo, TyperInfo
+
+ENDED_BY = 128
+"""With the number of a signal: the exit code of a program that one has ended, as shells have it."""
 
 app = typer.Typer(
     name="tangible",
@@ -58,7 +61,10 @@ for each in _ours(app):  # not those of others, added later: these write as they
 
 def main() -> None:
     """Entry point: one clear message for a user's mistake, and an exit code that says whose it is."""
-    sys.exit(_guarded(lambda: _run_and_leave()))
+    with ending.as_ctrl_c():
+        code = _guarded(_run_and_leave)
+        asked = ending.asked_by()
+    sys.exit(code if asked is None else ENDED_BY + asked)
 
 
 def _run_and_leave() -> int:
@@ -111,7 +117,8 @@ def _guarded(work: Callable[[], int]) -> int:
         typer.echo(str(error), err=True)
         return MISTAKE
     except (KeyboardInterrupt, typer.Abort):
-        typer.echo("interrupted; what was finished is kept", err=True)
+        asked = ending.asked_by()
+        typer.echo(f"{f'ended by {asked.name}' if asked else 'interrupted'}; what was finished is kept", err=True)
         return INTERRUPTED
     except BrokenPipeError:  # the reader went away: `tangible plugins | head`
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

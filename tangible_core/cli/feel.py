@@ -1,47 +1,77 @@
-"""`feel`: a pipeline's surface on its device, in real time."""
+"""`feel`: a pipeline's surface on its device, in real time; or those of several, in turn."""
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from .options import Config, Json, NoCache, Record, Sets
+from .options import Json, NoCache, Record, Sets
 from .run import device_of, open_pipeline
 
 if TYPE_CHECKING:
     from ..data import ServoReport
+    from ..plugins.interfaces import HapticDevice
     from ..servo import Servo
+
+SECONDS = 8.0
+ALONE_S = 1.5
+"""A hand has so long to come before it is said that there is none."""
 
 
 def feel(
-    config: Config,
+    configs: Annotated[list[Path], typer.Argument(metavar="CONFIG", help="Pipeline files (YAML).", show_default=False)],
     sets: Sets = None,
-    seconds: Annotated[float, typer.Option(help="How long, s.")] = 8.0,
+    seconds: Annotated[
+        float | None, typer.Option(help="How long, s; inf: without end.  [default: 8; of several files, one round]")
+    ] = None,
+    each: Annotated[float, typer.Option(help="How long each of several files, s.")] = 60.0,
+    wait: Annotated[bool, typer.Option("--wait", help="Wait for a device that is not there, or goes.")] = False,
     record: Record = None,
     as_json: Json = False,
     no_cache: NoCache = False,
 ) -> None:
-    """Feel the surface on the configured device, in real time."""
+    """Feel the surface on the configured device, in real time.
+
+    Several files are felt in turn, each with the device of the first; none may have another one.
+    """
+    import math
     import time
     from dataclasses import asdict
 
     from .. import session
-    from ..servo import OVER
+    from ..errors import check_positive
+    from ..servo import OVER, TERMINATED
     from . import show
 
-    pipeline = open_pipeline(config, sets or [], not no_cache)
+    check_positive("--each", each)
+    pipeline, *then = (open_pipeline(config, sets or [], not no_cache) for config in configs)
     device = device_of(pipeline)
+    until_s = (each * len(configs) if then else SECONDS) if seconds is None else seconds
     loop: dict[str, Any] = {}
     reports: list[ServoReport] = []
 
     def started(servo: Servo) -> None:
-        loop.update(how=servo.how, start_s=servo.start_s, first_tick_unix_s=time.time())
+        loop.setdefault("how", servo.how)
+        loop.setdefault("start_s", servo.start_s)
+        loop.setdefault("first_tick_unix_s", time.time())
 
     def heard(report: ServoReport) -> None:
+        if reports and reports[0].time_s < ALONE_S <= report.time_s:
+            _say_if_alone(pipeline.config.device and pipeline.config.device.method)
         reports[:] = [report]
 
-    pipeline.feel(None, seconds, record=record, keep=None if record else _forget, on_report=heard, on_start=started)
+    pipeline.feel(
+        seconds=None if until_s == math.inf else until_s,
+        record=record,
+        keep=_forget,
+        on_report=heard,
+        on_start=started,
+        then=then,
+        each_s=each,
+        on_wait=show.note if wait else None,
+    )
     (report,) = reports
     felt = session.figures(report)
     if as_json:
@@ -50,9 +80,10 @@ def feel(
         show.print_json({"outcomes": outcomes, "loop": loop, "figures": figures, "file": record and str(record)})
     else:
         show.outcomes(pipeline.outcomes)
-        show.say(f"\n{loop['how']}; the first tick came {loop['start_s']:.2f} s after the loop was asked for\n")
+        if loop:
+            show.say(f"\n{loop['how']}; the first tick came {loop['start_s']:.2f} s after the loop was asked for\n")
         show.table(("figure", "value"), [(name, _text(value)) for name, value in felt.items()])
-    if report.stopped == session.INTERRUPTED:
+    if report.stopped in (session.INTERRUPTED, TERMINATED):
         raise KeyboardInterrupt
     if report.stopped != OVER:
         show.flush()
@@ -60,7 +91,15 @@ def feel(
 
 
 def _forget(rows: Any) -> None:
-    """Nobody records."""
+    """A recording is on disk; none is kept in memory."""
+
+
+def _say_if_alone(device: HapticDevice | None) -> None:
+    from ..plugins.interfaces import Attended
+    from . import show
+
+    if isinstance(device, Attended) and (why := device.unattended()):
+        show.note(why)
 
 
 def _text(value: Any) -> str:

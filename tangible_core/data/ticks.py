@@ -78,3 +78,7 @@ class ServoReport:
     """Periods that had no tick."""
     flagged: Mapping[str, int] = field(default_factory=dict[str, int])
     """Ticks by the name of the `TickFlag` that they have, those that none has left out."""
+    contact_share: float | None = None
+    """Share of the ticks in which the device was given a force; none where time is simulated: see the recording."""
+    median_contact_force_n: float | None = None
+    """Of that force, within half a millinewton; 0 where there was none."""

@@ -1,7 +1,7 @@
 """The pipeline: one scene, its methods, and all that can be done with them. Files are one way to say it."""
 
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from os import PathLike
 from pathlib import Path
@@ -33,14 +33,17 @@ from ..preflight import Flight, Hand, Loop, Verdict, judge, survey
 from ..scene.scene import Scene
 from ..scene.workspace import Workspace
 from ..servo import OVER, Safety, Servo
-from ..session import About, Recording, check_record_path, keeping, replay, run_in_real_time, run_simulated
+from ..session import About, Recording, Turn, check_record_path, keeping, replay, run_in_turn, run_simulated
 from .cache import Cache
 from .config import MaterialChoice, NamedMethod, PipelineConfig, Product, load_config
 from .engine import Engine, Progress
+from .rehearsal import rehearsal
 from .runs import Run, about, make_run
 
 M = TypeVar("M", bound=Method)
 S = TypeVar("S", bound=BaseModel)
+T = TypeVar("T")
+NO_ROWS = np.empty((0, len(TICK_COLUMNS)))
 Materials = MaterialChoice | Mapping[Any, Any] | str
 """As in YAML: a rule's name, a map from label to material, or a block of options."""
 
@@ -181,7 +184,8 @@ class Pipeline:
         progress: hears of every stage as it begins and ends. stop: set from another thread, it ends the work.
         Raises: TangibleError for what a user can put right, Stopped after `stop`, and whatever a plugin raises.
         """
-        with self.engine.watched(progress, stop):
+        watched, beside = self.engine.watched(progress, stop), rehearsal(self.engine, want or self.config.want)
+        with watched, beside as self.engine.beside:
             return self.engine.make(want)
 
     @property
@@ -247,6 +251,9 @@ class Pipeline:
         on_report: Callable[[ServoReport], None] | None = None,
         on_start: Callable[[Servo], None] | None = None,
         stop: Event | None = None,
+        then: "Sequence[Pipeline]" = (),
+        each_s: float = 60.0,
+        on_wait: Callable[[str], None] | None = None,
     ) -> Recording:
         """Feel the surface on a device, this or the configured one, and return what was felt.
 
@@ -254,13 +261,16 @@ class Pipeline:
         says why. In real time the force loop runs in a process of its own.
         seconds: None goes on until something ends it; in real time alone. in_real_time: False goes by the clock of the
         device, for simulated ones. record: a file (.nc, .npz, .csv) that keeps every tick while it is felt. keep: given
-        all ticks instead, as rows of `TICK_COLUMNS`; the recording that is returned is then empty. on_report: called
-        ten times a second, and at the end. on_start: called once a loop in real time runs.
-        Raises: ConfigError if there is no device or law, DeviceError if it cannot be opened, OutputError for the file.
+        all ticks, as rows of `TICK_COLUMNS`; the recording that is returned is then empty, and a session may be
+        as long as the disk has room. on_report: called ten times a second, and at the end. on_start: called once a loop
+        in real time runs. then: what is felt after this, each for each_s, and then this again. on_wait: waits for a
+        device that is not there or goes, and is told so in words (`session.run_in_turn`); both in real time alone.
+        Raises: ConfigError if there is no device or law, or others of `then` have another device; DeviceError if it
+        cannot be opened; OutputError for the file.
         """
         file = None if record is None else Path(record)
         if file is not None:
-            check_record_path(file)
+            check_record_path(file, seconds is None)
         felt, said, touch = self._device(device), self._about(device), self.touch
         tell = _both(self._tell, on_report)
         if not in_real_time:
@@ -270,15 +280,22 @@ class Pipeline:
                 found.save(file)
             return found
 
+        turns = [Turn(touch, self.config.safety), *(each._turn(self, device) for each in then)]
+        each_s = each_s if then else math.inf
+        said = replace(said, configuration="---\n".join(each._about(None).configuration for each in (self, *then)))
+
         def run(rows: Callable[[np.ndarray], None]) -> str:
-            report = run_in_real_time(touch, felt, seconds, self.config.safety, tell, rows, on_start, stop)
+            report = run_in_turn(
+                turns, felt, seconds, each_s, on_report=tell, keep=rows, on_start=on_start, on_wait=on_wait, stop=stop
+            )
             return "" if report.stopped == OVER else report.stopped
 
         if file is not None:
             with keeping(file, said) as writer:
-                writer.close(run(writer.append))
-            return Recording.load(file)
-        rows = [np.empty((0, len(TICK_COLUMNS)))]
+                stopped = run(_both(writer.append, keep))
+                writer.close(stopped)
+            return Recording.load(file) if keep is None else Recording(NO_ROWS, stopped, said.stamped())
+        rows = [NO_ROWS]
         stopped = run(keep or rows.append)
         return Recording(np.concatenate(rows), stopped, said.stamped())
 
@@ -327,6 +344,18 @@ class Pipeline:
         if felt is None:
             raise self.config.missing("device")
         return felt
+
+    def _turn(self, first: "Pipeline", device: HapticDevice | None) -> Turn:
+        """This one, felt on the device of a first one. Raises: ConfigError if that is another than its own."""
+        ours, theirs = self.config, first.config
+        own = device is None and ours.device is not None
+        if ours.mapping != theirs.mapping or (own and ours.felt_device != theirs.felt_device):
+            here, before = (each.config.path or each.scene.name for each in (self, first))
+            raise ConfigError(
+                f"{here}: has another `device:` or `mapping:` than {before}, which is felt before it; give both the "
+                "same, or leave `device:` out of all but the first"
+            )
+        return Turn(self.touch, ours.safety)
 
     def _about(self, device: HapticDevice | None) -> About:
         said = about(self.engine)
@@ -395,12 +424,10 @@ def _as_in_yaml(materials: Materials | None) -> MaterialChoice | Mapping[str, An
     return materials
 
 
-def _both(
-    one: Callable[[ServoReport], None], other: Callable[[ServoReport], None] | None
-) -> Callable[[ServoReport], None]:
-    def tell(report: ServoReport) -> None:
-        one(report)
+def _both(one: Callable[[T], None], other: Callable[[T], None] | None) -> Callable[[T], None]:
+    def tell(heard: T) -> None:
+        one(heard)
         if other is not None:
-            other(report)
+            other(heard)
 
     return tell

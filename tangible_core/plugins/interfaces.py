@@ -97,6 +97,14 @@ class Serviceable(ABC):
         """Everything that must be right before `open` succeeds, in the order in which to put it right."""
 
 
+class Attended(ABC):
+    """For a device whose hand is another program."""
+
+    @abstractmethod
+    def unattended(self) -> str | None:
+        """In one line that nobody moves it now, and what to do; None if somebody does. Asked while it is open."""
+
+
 class Adjustable(ABC):
     """For a device that its user must set up by hand."""
 

@@ -3,5 +3,6 @@
 from .guard.safety import Safety
 from .host import OVER, Servo
 from .ring import Ring
+from .wire import TERMINATED
 
-__all__ = ["OVER", "Ring", "Safety", "Servo"]
+__all__ = ["OVER", "TERMINATED", "Ring", "Safety", "Servo"]

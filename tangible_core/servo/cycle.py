@@ -29,6 +29,7 @@ from .ring import (
     PREVIOUS_NS,
     START_NS,
     STOP,
+    STRONGEST_MN,
     WIDEST_US,
     WORK_J,
 )
@@ -57,12 +58,14 @@ def _store(context, array, index, value):
 
 
 @njit(**KERNEL)
-def publish(header, sums, late, period, stamps, ticks, row, at_ns, late_ns):
+def publish(header, sums, late, period, contact, stamps, ticks, row, at_ns, late_ns):
     """Put a tick's row into the ring, and into the sums."""
     count = header[COUNT]
     slot = count % stamps.shape[0]
     force_n = math.sqrt(row[11] * row[11] + row[12] * row[12] + row[13] * row[13])
     sums[PEAK_N] = max(sums[PEAK_N], force_n)
+    if force_n > 0:
+        contact[int(min(1000 * force_n, STRONGEST_MN - 1.0))] += 1
     late[min(max(late_ns, 0) // 1000, WIDEST_US - 1)] += 1
     sums[MOST_LATE_S] = max(sums[MOST_LATE_S], late_ns / SECOND_NS)
     if count > 0:
@@ -118,11 +121,11 @@ def begin(clock, header):
 @njit(**KERNEL)
 def finish(shared, row, at_ns, late_ns):
     """Add what the loop knows to a tick's flags, and put the tick into the ring and into the sums."""
-    header, sums, late, period, stamps, ticks = shared
+    header, sums, late, period, contact, stamps, ticks = shared
     flags = int(row[FLAGS]) | header[MARKS]
     header[MARKS] = 0
     row[FLAGS] = flags | (OVERRUN if late_ns >= header[PERIOD_NS] else 0)
-    publish(header, sums, late, period, stamps, ticks, row, at_ns, late_ns)
+    publish(header, sums, late, period, contact, stamps, ticks, row, at_ns, late_ns)
 
 
 @njit(**KERNEL)

@@ -102,12 +102,14 @@ class Servo:
         finally:
             self.ring.header[STOP] = 1  # whatever interrupted that
 
-    def swap(self, touch: Touch) -> None:
+    def swap(self, touch: Touch, limits: Safety | None = None) -> None:
         """Feel another scene from one tick to the next; the force fades in. Returns when it is felt.
 
+        limits: from then on; without any, those of before.
         Raises: DeviceError if the loop has ended, or the touch cannot be sent to its process; whatever a faulty plugin
         raises there. The scene before it is felt on, unless the loop has ended.
         """
+        self._limits = limits or self._limits
         try:
             self._tell(Swap(self._pack(touch), self._arrays(touch)[0]))
             self._answer(SwapReply)
@@ -130,6 +132,12 @@ class Servo:
     def running(self) -> bool:
         """Whether ticks go on."""
         return self._ended is None
+
+    @property
+    def lost(self) -> bool:
+        """Whether the loop ended, or did not begin, because of its device: that was not there, or does not answer."""
+        ended = self._ended
+        return ended is not None and (isinstance(ended.error, DeviceError) or ended.stopped == STOOD_STILL)
 
     def report(self) -> ServoReport:
         """How the loop is doing, or how it was."""

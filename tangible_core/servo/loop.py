@@ -27,7 +27,7 @@ from .schedule import begin_tick, going
 
 SECOND_NS = 1_000_000_000
 Sections = tuple[np.ndarray, ...]
-"""Of a ring, as the kernels take them: header, sums, late, period, stamps, ticks."""
+"""Of a ring, as the kernels take them: header, sums, late, period, contact, stamps, ticks."""
 Timed = Callable[[int, int], None]
 """(at_ns, late_ns): one tick, which began then and so late."""
 FAR = HapticState((0.0, 0.0, 1.0))
@@ -82,7 +82,7 @@ def prepare(link: Link, touch: Touch, ring: Ring, settings: np.ndarray) -> Loop:
 
 def sections(ring: Ring) -> Sections:
     """What the kernels write to."""
-    return ring.header, ring.sums, ring.late, ring.period, ring.stamps, ring.ticks
+    return ring.header, ring.sums, ring.late, ring.period, ring.contact, ring.stamps, ring.ticks
 
 
 def start_clock(header: np.ndarray, real_time: bool) -> None:

@@ -2,29 +2,93 @@
 
 import math
 from bisect import bisect_left
+from collections import Counter
 from dataclasses import replace
 from itertools import accumulate
+from typing import NamedTuple, Self
 
 import numpy as np
-from jaxtyping import Float64
+from jaxtyping import Float64, Int64
 
 from ..data import TICK_COLUMNS, Force, HapticState, ServoReport, Spread, Vector
 from .guard import safety
 from .ring import COUNT, LONGEST_S, MOST_LATE_S, OVERRUNS, PEAK_N, WORK_J, Ring
 
 AT = {name: column for column, name in enumerate(TICK_COLUMNS)}
+Counts = Int64[np.ndarray, "n"]
+"""A histogram of a ring."""
 
 
-def report(ring: Ring, stopped: str = "") -> ServoReport:
-    """How the loop that writes to this ring is doing."""
-    rows, count = ring.since(int(ring.header[COUNT]) - 1)
+class Counted(NamedTuple):
+    """What a loop has counted, or several that followed each other in one session."""
+
+    ticks: int
+    overruns: int
+    peak_force_n: float
+    work_j: float
+    most_late_s: float
+    longest_s: float
+    late: Counts
+    period: Counts
+    contact: Counts
+    flagged: Counter[str]
+
+    @classmethod
+    def of(cls, ring: Ring) -> Self:
+        """By the loop that writes to this ring, until now."""
+        return cls(
+            ticks=int(ring.header[COUNT]),
+            overruns=int(ring.header[OVERRUNS]),
+            peak_force_n=float(ring.sums[PEAK_N]),
+            work_j=float(ring.sums[WORK_J]),
+            most_late_s=float(ring.sums[MOST_LATE_S]),
+            longest_s=float(ring.sums[LONGEST_S]),
+            late=ring.late.copy(),
+            period=ring.period.copy(),
+            contact=ring.contact.copy(),
+            flagged=Counter({flag.name or "": count for flag, count in safety.counts(ring.guard).items()}),
+        )
+
+    def then(self, later: Self) -> Self:
+        """Both."""
+        return self._replace(
+            ticks=self.ticks + later.ticks,
+            overruns=self.overruns + later.overruns,
+            peak_force_n=max(self.peak_force_n, later.peak_force_n),
+            work_j=self.work_j + later.work_j,
+            most_late_s=max(self.most_late_s, later.most_late_s),
+            longest_s=max(self.longest_s, later.longest_s),
+            late=self.late + later.late,
+            period=self.period + later.period,
+            contact=self.contact + later.contact,
+            flagged=self.flagged + later.flagged,
+        )
+
+
+def report(ring: Ring, stopped: str = "", before: Counted | None = None, since_s: float = 0.0) -> ServoReport:
+    """How the loop that writes to this ring is doing.
+
+    before: what loops before it counted in the same session, which began since_s before this one's clock.
+    """
+    rows, _ = ring.since(int(ring.header[COUNT]) - 1)
+    rows[:, AT["time_s"]] += since_s
+    counted = Counted.of(ring)
+    found = counted if before is None else before.then(counted)
+    touching = int(found.contact.sum())
     return replace(
-        so_far(rows, count, float(ring.sums[PEAK_N]), float(ring.sums[WORK_J]), stopped),
-        period_us=spread(ring.period, float(ring.sums[LONGEST_S])),
-        late_us=spread(ring.late, float(ring.sums[MOST_LATE_S])),
-        overruns=int(ring.header[OVERRUNS]),
-        flagged={flag.name or "": count for flag, count in safety.counts(ring.guard).items()},
+        so_far(rows, found.ticks, found.peak_force_n, found.work_j, stopped),
+        period_us=spread(found.period, found.longest_s),
+        late_us=spread(found.late, found.most_late_s),
+        overruns=found.overruns,
+        flagged=dict(found.flagged),
+        contact_share=min(1.0, touching / max(1, found.ticks)),
+        median_contact_force_n=_median_n(found.contact, touching),
     )
+
+
+def _median_n(contact: Counts, touching: int) -> float:
+    """The middle of the millinewton that half of the ticks with a force are in or under."""
+    return (int(np.searchsorted(np.cumsum(contact), touching / 2)) + 0.5) / 1000 if touching else 0.0
 
 
 def so_far(

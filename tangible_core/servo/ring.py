@@ -9,6 +9,7 @@ All numbers are in the machine's own byte order, one section after the other, ea
 | guard | float64 (128,) | what the guard remembers and has counted (`guard`) |
 | late | int64 (4096,) | ticks that began so many microseconds late; the last for all that were later |
 | period | int64 (4096,) | ticks that came so many microseconds after the one before |
+| contact | int64 (32768,) | ticks with a force, by whole millinewtons of it; the last for all that were stronger |
 | stamps | int64 (n,) | number of the tick that lies in each slot, -1 while it is written |
 | ticks | float64 (n, 16) | `data.TICK_COLUMNS`; tick k lies in slot k modulo n |
 
@@ -32,7 +33,7 @@ from jaxtyping import Float64
 from ..data import TICK_COLUMNS
 from ..errors import DeviceError
 
-MAGIC, LAYOUT = 0x54414E47_49424C45, 2
+MAGIC, LAYOUT = 0x54414E47_49424C45, 3
 """The word that begins every ring, and the version of this layout."""
 (
     IS_MAGIC,
@@ -58,6 +59,7 @@ wait for a tick awake; flags for the next tick; 1 when another scene is ready to
 PEAK_N, WORK_J, MOST_LATE_S, LONGEST_S = range(4)
 """Where the sums stand: greatest force; work done on the hand; the latest tick; the longest period."""
 WIDEST_US = 4096
+STRONGEST_MN = 32768
 ALIGN = 64
 
 
@@ -75,7 +77,7 @@ class Ring:
             arrays[name] = np.frombuffer(file, kind, int(np.prod(shape)), at).reshape(shape)
             at += _padded(arrays[name].nbytes)
         self.header, self.sums, self.guard = arrays["header"], arrays["sums"], arrays["guard"]
-        self.late, self.period = arrays["late"], arrays["period"]
+        self.late, self.period, self.contact = arrays["late"], arrays["period"], arrays["contact"]
         self.stamps, self.ticks = arrays["stamps"], arrays["ticks"]
 
     @classmethod
@@ -127,7 +129,9 @@ class Ring:
 
 
 def shared_folder() -> Path:
-    """Where files are memory alone, if there is such a place: writing one to a disk would stop the loop."""
+    """$TANGIBLE_SHARED_DIR, or where files are memory alone, if there is such a place: a disk would stop the loop."""
+    if named := os.environ.get("TANGIBLE_SHARED_DIR"):
+        return Path(named)
     memory = Path("/dev/shm")
     return memory if sys.platform == "linux" and os.access(memory, os.W_OK) else Path(tempfile.gettempdir())
 
@@ -144,6 +148,7 @@ def _sections(slots: int) -> dict[str, tuple[type, tuple[int, ...]]]:
         "guard": (np.float64, (128,)),
         "late": (np.int64, (WIDEST_US,)),
         "period": (np.int64, (WIDEST_US,)),
+        "contact": (np.int64, (STRONGEST_MN,)),
         "stamps": (np.int64, (slots,)),
         "ticks": (np.float64, (slots, len(TICK_COLUMNS))),
     }

@@ -1,5 +1,6 @@
 """A session joins a touch and a device: the loop, and what it records."""
 
+from .in_turn import Turn, run_in_turn
 from .live import figures, keeping, run_in_real_time
 from .loop import run_simulated
 from .recording import INTERRUPTED, STOPPED, Recording, failure
@@ -13,6 +14,7 @@ __all__ = [
     "STOPPED",
     "About",
     "Recording",
+    "Turn",
     "Writer",
     "check_record_path",
     "compared",
@@ -21,6 +23,7 @@ __all__ = [
     "keeping",
     "replay",
     "run_in_real_time",
+    "run_in_turn",
     "run_simulated",
     "undisturbed",
 ]

@@ -43,14 +43,26 @@ def run_in_real_time(
     Raises: ConfigError if seconds is not positive and finite, DeviceError if the device cannot be opened, and what a
     plugin raises.
     """
-    tell, limits = on_report or _ignored, limits or Safety()
-    with (
-        stoppable(stop),
-        ThreadPoolExecutor(1) as aside,
-        Servo(touch, device, limits, seconds) as servo,  # the force goes first
-    ):
-        (on_start or _ignored)(servo)
-        keeper, next_s, ended = _Keeper(servo, keep or _ignored), time.monotonic(), ""
+    with stoppable(stop):
+        servo = Servo(touch, device, limits, seconds)
+        return attended(servo, on_report or ignored, keep or ignored, on_start or ignored)
+
+
+def attended(
+    servo: Servo,
+    tell: Callable[[ServoReport], None],
+    keep: Callable[[np.ndarray], None],
+    on_start: Callable[[Servo], None],
+    look: Callable[[], str] = str,
+) -> ServoReport:
+    """Start this loop, watch over it until something ends it, and leave no force.
+
+    look: called twenty times a second, for what else there is to do; says why the loop shall end, if it shall.
+    Raises: as `run_in_real_time`.
+    """
+    with ThreadPoolExecutor(1) as aside, servo:  # the force goes first
+        on_start(servo)
+        keeper, next_s, ended = _Keeper(servo, keep), time.monotonic(), ""
         try:
             while servo.running and not ended:
                 time.sleep(LOOK_EVERY_S)
@@ -58,7 +70,7 @@ def run_in_real_time(
                 if time.monotonic() >= next_s:
                     next_s += REPORT_EVERY_S
                     tell(servo.report())
-                ended = STOPPED if stop_asked() else ""
+                ended = STOPPED if stop_asked() else look()
             last = servo.stop(ended)
         except KeyboardInterrupt:
             last = servo.stop(INTERRUPTED)
@@ -67,7 +79,7 @@ def run_in_real_time(
     return last
 
 
-def _ignored(_: Any) -> None:
+def ignored(_: Any) -> None:
     """Nobody listens."""
 
 
@@ -111,7 +123,8 @@ def figures(report: ServoReport) -> dict[str, float]:
     return {
         "ticks": report.ticks,
         "seconds": report.time_s,
-        "contact_share": report.flagged.get("TOUCHING", 0) / max(1, report.ticks),
+        "contact_share": report.contact_share or 0.0,
+        "median_contact_force_n": report.median_contact_force_n or 0.0,
         "peak_force_n": report.peak_force_n,
         "work_j": report.work_j,
         **{

@@ -29,10 +29,15 @@ class RecordingContents(NamedTuple):
     about: About = NOTHING_SAID
 
 
-def check_record_path(path: Path) -> None:
-    """Raises: OutputError if a recording cannot have this name; ask before there is something to lose."""
+def check_record_path(path: Path, endless: bool = False) -> None:
+    """Raises: OutputError if a recording (or one without end) cannot have this name; ask before there is one."""
     if path.suffix not in SUFFIXES:
         raise OutputError(f"{path}: a recording is written as .nc, .npz or .csv; change the end of the name")
+    if endless and path.suffix != ".nc":
+        raise OutputError(
+            f"{path}: is made at the end, of all that was felt; a session without end is recorded as .nc, which grows: "
+            "change the end of the name"
+        )
 
 
 def write(path: Path, kept: RecordingContents) -> None:

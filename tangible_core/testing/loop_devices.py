@@ -4,6 +4,7 @@ import os
 import sys
 import time
 from dataclasses import replace
+from pathlib import Path
 from typing import Annotated, Any, Literal, cast, final
 
 import numpy as np
@@ -90,8 +91,9 @@ class Failing(HapticDevice):
     fault: Literal["unplugged", "bug", "nan", "hangs", "blocks", "exits", "none"] = "unplugged"
     """It stops answering; its driver raises; it says NaN once; it takes 50 ms; it never answers; its driver ends the
     program."""
-    opens: Literal["always", "once", "never", "late"] = "always"
-    """How often it can be opened: `once` if there is no record yet, and then it does not answer; `late` never does."""
+    opens: Literal["always", "once", "second", "never", "late"] = "always"
+    """How often it can be opened: `once` if there is no record yet, and then it does not answer; `second` only if there
+    is one, which is there from then on; `late` never answers."""
     record: str = ""
     """File that the force held is written to, whenever it changes: to see what is left behind."""
     simulated: bool = True
@@ -105,7 +107,8 @@ class Failing(HapticDevice):
         """Raises: DeviceError if it cannot be opened."""
         if self.opens == "late" or (self.opens == "once" and os.path.exists(self.record)):  # noqa: PTH110
             time.sleep(3600)
-        if self.opens == "never":
+        if self.opens == "never" or (self.opens == "second" and not os.path.exists(self.record)):  # noqa: PTH110
+            Path(self.record).touch() if self.record else None
             raise DeviceError("the failing device is in use by another program; close that")
         return FailingLink(self)
 

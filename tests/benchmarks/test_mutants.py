@@ -31,6 +31,9 @@ from pathlib import Path
 from toy import larger
 
 def test_larger():
+    shared = Path(os.environ["TANGIBLE_SHARED_DIR"])
+    assert not list(shared.iterdir())
+    (shared / "left by this one").touch()
     assert larger(1, 2) == 2
 
 HOLDS = '''
@@ -143,8 +146,9 @@ def test_a_list_that_does_not_fit(tree: Path, wrong: str, said: str):
 def test_ctrl_c_leaves_nothing_behind(tree: Path, tmp_path: Path):
     """A test holds a file, and so does a program that it started: once without the fault, once in its endless loop."""
     listed(tree, HANGS)
-    (tmp_path / "tmp").mkdir()
-    (tmp_path / "held").mkdir()
+    folders = {"TMPDIR": "tmp", "TANGIBLE_SHARED_DIR": "shared", "TOY_HELD": "held"}
+    for each in folders.values():
+        (tmp_path / each).mkdir()
     code = """
         import signal, sys
         from pathlib import Path
@@ -152,7 +156,7 @@ def test_ctrl_c_leaves_nothing_behind(tree: Path, tmp_path: Path):
         signal.signal(signal.SIGINT, signal.default_int_handler)
         complete(Path(sys.argv[1]), (), 1)
     """
-    environ = {**os.environ, "TMPDIR": str(tmp_path / "tmp"), "TOY_HELD": str(tmp_path / "held")}
+    environ = os.environ | {name: str(tmp_path / each) for name, each in folders.items()}
     end = time.monotonic() + 60
     with subprocess.Popen([sys.executable, "-c", textwrap.dedent(code), str(tree)], env=environ, cwd=ROOT) as program:
         while len(files := list((tmp_path / "held").iterdir())) < 4 and time.monotonic() < end:
@@ -160,7 +164,7 @@ def test_ctrl_c_leaves_nothing_behind(tree: Path, tmp_path: Path):
         program.send_signal(signal.SIGINT)
     assert len(files) == 4
     assert program.returncode == -signal.SIGINT
-    assert not list((tmp_path / "tmp").iterdir())
+    assert not [*(tmp_path / "tmp").iterdir(), *(tmp_path / "shared").iterdir()]
     for each in files:
         with each.open() as file:
             while not free(file):

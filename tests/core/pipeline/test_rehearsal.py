@@ -143,3 +143,10 @@ def test_a_run_that_compiles_nothing_starts_no_process(tmp_path: Path):
     made.run(tmp_path / "second", seconds=0.1)
     assert made.engine.beside is not None
     assert made.engine.beside._child is None
+
+
+def test_what_is_made_without_a_run_has_a_process_beside_it_too(monkeypatch: pytest.MonkeyPatch):
+    asked: list[str] = []
+    monkeypatch.setattr(rehearsal, "_work", lambda _, want: asked.append(want))
+    assert pipeline(depth=Loud()).touch is not None
+    assert asked == ["touch"]

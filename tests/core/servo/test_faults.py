@@ -180,6 +180,7 @@ class TestStandstill:
             until(lambda: held(record) > 0)
             until(lambda: not servo.running)
             assert servo.report().stopped == host.STOOD_STILL
+            assert servo.lost
             assert held(record) == 0
             assert servo.report().ticks == 99
 

@@ -40,6 +40,9 @@ def test_every_tick_is_kept_and_reports_come_ten_times_a_second(touch: Touch, tm
     assert (last.ticks, len(kept.rows), last.stopped, kept.stopped) == (1000, 1000, OVER, "")
     assert 5 <= len(reports) <= took_s / 0.1 + 2
     assert figures(last)["peak_force_n"] == pytest.approx(kept.peak_force_n, rel=1e-6)
+    assert figures(last)["contact_share"] == kept.figures()["contact_share"]
+    middle_n = kept.figures()["median_contact_force_n"]
+    assert figures(last)["median_contact_force_n"] == pytest.approx(middle_n, abs=1e-3) != 0
     assert figures(last)["work_j"] == pytest.approx(kept.work_j, abs=1e-9)
     assert 0 < figures(last)["ramping"] <= 500  # by the clock: late ticks are fewer
 

@@ -9,10 +9,10 @@ import pytest
 
 from tangible_core.data import TICK_COLUMNS, Force, HapticState, TickFlag
 from tangible_core.errors import DeviceError
-from tangible_core.servo import Ring, cycle, ring
+from tangible_core.servo import Ring, cycle, parcel, ring
 from tangible_core.servo.guard.layout import COUNTS
 from tangible_core.servo.loop import sections
-from tangible_core.servo.reports import report, spread
+from tangible_core.servo.reports import Counted, report, spread
 from tangible_core.servo.ring import (
     COUNT,
     IS_LAYOUT,
@@ -25,6 +25,7 @@ from tangible_core.servo.ring import (
     WIDEST_US,
     shared_folder,
 )
+from tangible_core.session import Recording, figures
 
 
 @pytest.fixture
@@ -175,7 +176,7 @@ class TestFile:
         """By the documented layout alone, as a reader in another language finds them."""
         put(small, 0, 7)
         data = small.path.read_bytes()
-        at = 8 * (64 + 64 + 128 + 4096 + 4096)
+        at = 8 * (64 + 64 + 128 + 4096 + 4096 + 32768)
         assert np.frombuffer(data, np.int64, 2, at).tolist() == [0, 1]
         ticks = np.frombuffer(data, np.float64, 16 * len(TICK_COLUMNS), at + 16 * 8).reshape(16, -1)
         assert ticks[1, 0] == 7
@@ -201,7 +202,7 @@ class TestFile:
             data = odd.path.read_bytes()
         finally:
             odd.remove()
-        at = 8 * (64 + 64 + 128 + 4096 + 4096)
+        at = 8 * (64 + 64 + 128 + 4096 + 4096 + 32768)
         assert np.frombuffer(data, np.int64, 5, at).tolist() == [5, 6, 2, 3, 4]
         assert np.frombuffer(data, np.float64, 1, at + 64)[0] == 5
         assert len(data) % 64 == 0
@@ -214,6 +215,13 @@ class TestFile:
         monkeypatch.setattr(ring, "shared_folder", lambda: tmp_path / "missing")
         with pytest.raises(DeviceError, match="no room"):
             Ring.create()
+
+    def test_a_folder_of_ones_own(self, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+        """For two runs of tests side by side, one of which sweeps away what it should not."""
+        monkeypatch.setenv("TANGIBLE_SHARED_DIR", str(tmp_path))
+        made = Ring.create(16).path, parcel.pack([1])
+        assert {path.parent for path in made} == {tmp_path}
+        assert set(tmp_path.iterdir()) == set(made)
 
     def test_what_killed_processes_left_is_swept_away(self) -> None:
         dead = shared_folder() / "tangible-999999999-x.ring"
@@ -312,6 +320,29 @@ class TestReport:
         assert found.peak_force_n == 3
         assert found.late_us is not None and found.late_us.most == pytest.approx(50)
         assert found.period_us is not None and found.period_us.most == pytest.approx(5000)
+
+    def test_contact_is_what_it_is_in_a_recording(self, small: Ring) -> None:
+        """Ticks with a force, whatever the law gave before its force was limited."""
+        for force_n in (0.0, 2.0004, 5.0, 5.0, 1e9):
+            row = np.zeros(len(TICK_COLUMNS))
+            row[11], row[cycle.FLAGS] = force_n, TickFlag.TOUCHING
+            cycle.finish(sections(small), row, 0, 0)
+        small.guard[COUNTS] = 5
+        live, kept = figures(report(small)), Recording(small.since(0)[0]).figures()
+        assert live["contact_share"] == kept["contact_share"] == 0.8
+        assert live["median_contact_force_n"] == pytest.approx(kept["median_contact_force_n"], abs=1e-3)
+        assert np.flatnonzero(small.contact).tolist() == [2000, 5000, len(small.contact) - 1]
+
+    def test_loops_of_one_session_are_counted_together(self, small: Ring) -> None:
+        put(small, *range(20))
+        small.guard[COUNTS + 2] = 8
+        small.header[OVERRUNS] = 3
+        one = report(small)
+        both = report(small, "over", Counted.of(small), 100.0)
+        assert (both.ticks, both.overruns, both.flagged) == (40, 6, {"SLEW_LIMITED": 16})
+        assert (both.time_s, both.work_j) == (one.time_s + 100, 2 * one.work_j)
+        same = ("peak_force_n", "period_us", "late_us", "contact_share", "median_contact_force_n")
+        assert [getattr(both, each) for each in same] == [getattr(one, each) for each in same]
 
     def test_quantiles(self) -> None:
         counts = np.zeros(100, np.int64)

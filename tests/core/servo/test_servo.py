@@ -94,7 +94,7 @@ class TestSwap:
         high = HapticSurface.from_heights(np.full((48, 64), 0.003, np.float32))
         with Servo(proxy(stiffness_n_per_m=100.0), device, AT_ONCE) as servo:
             until(lambda: servo.report().ticks > 100)
-            servo.swap(proxy(high, stiffness_n_per_m=100.0))
+            servo.swap(proxy(high, stiffness_n_per_m=100.0), AT_ONCE.model_copy(update={"max_force_n": 0.05}))
             there = servo.report().ticks
             until(lambda: servo.report().ticks > there + 100)
             servo.stop()
@@ -102,6 +102,8 @@ class TestSwap:
         (swapped,) = np.flatnonzero(rows[:, FLAGS].astype(int) & TickFlag.SWAPPED)
         assert np.nanmax(rows[:swapped, 10]) == pytest.approx(0.002, abs=1e-6)
         assert np.nanmin(rows[swapped + 5 :, 10]) == pytest.approx(0.003, abs=1e-6)
+        assert rows[swapped - 1, 13] > 0.1
+        assert rows[swapped:, 13].max() == pytest.approx(0.05)
 
     @pytest.mark.parametrize("device", [Circling(z_m=0.0), Circling(z_m=0.0, exchanges=True), Failing(fault="none")])
     def test_another_scene_fades_in(self, device) -> None:
@@ -173,11 +175,12 @@ class TestNoForceIsLeft:
             pytest.fail("it was opened")
         assert set(shared_folder().glob(f"tangible-{os.getpid()}-*")) == before
 
-    def test_sigterm(self, tmp_path: Path) -> None:
+    @pytest.mark.parametrize("asked_by", [signal.SIGTERM, signal.SIGHUP])
+    def test_a_loop_that_is_asked_to_end(self, tmp_path: Path, asked_by: signal.Signals) -> None:
         record = tmp_path / "force"
         with Servo(proxy(), Failing(fault="none", record=str(record)), AT_ONCE) as servo:
             until(lambda: held(record) > 0)
-            os.kill(servo.process_id, signal.SIGTERM)
+            os.kill(servo.process_id, asked_by)
             until(lambda: not servo.running)
             assert "asked to end" in servo.report().stopped
         assert held(record) == 0

@@ -1,5 +1,6 @@
 """`tangible pointer`: move a pointer device from the command line, and see the forces."""
 
+import sys
 from typing import Annotated
 
 import typer
@@ -18,9 +19,13 @@ def pointer(
 ) -> None:
     """Move a `pointer` device by hand and see the forces.
 
-    Typed positions are lines of `x y z` in millimetres, with the buttons as an optional fourth number.
+    Typed positions are lines of `x y z` in millimetres, with the buttons as an optional fourth number. A
+    line that is no position is told, and the next one may be typed.
     """
     from ..pointer.following import follow
 
-    for line in follow(path, channel, seconds, height_mm / 1000, speed_mm_per_s / 1000, wait, as_json):
+    def complain(text: str) -> None:
+        print(text, file=sys.stderr, flush=True)  # noqa: T201
+
+    for line in follow(path, channel, seconds, height_mm / 1000, speed_mm_per_s / 1000, wait, as_json, complain):
         print(line, flush=True)  # noqa: T201

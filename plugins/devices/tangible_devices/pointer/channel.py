@@ -126,7 +126,16 @@ def device_is_open(name: str) -> bool:
     path = channel_path(name)
     if not path.exists() or path.read_bytes()[DEVICE_OPEN * 8 :][:8] in (b"", bytes(8)):
         return False
-    lock = Lock(path.with_suffix(".device"))
+    return _lives(path, "device")
+
+
+def client_is_there(name: str) -> bool:
+    """Whether somebody has the client's place on this channel, and lives."""
+    return _lives(channel_path(name), "client")
+
+
+def _lives(path: Path, side: str) -> bool:
+    lock = Lock(path.with_suffix(f".{side}"))
     try:
         return not lock.take()
     finally:

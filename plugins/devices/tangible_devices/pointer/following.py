@@ -1,16 +1,17 @@
 """A hand for a pointer device: along a drawn path, or by typed positions."""
 
+import io
 import json
 import math
 import sys
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from itertools import count
 from queue import Empty, Queue
 from threading import Thread
 
 from tangible_core.data import Force, Vector
-from tangible_core.errors import ConfigError, DeviceError, check_positive, did_you_mean
+from tangible_core.errors import ConfigError, DeviceError, check_positive, did_you_mean, quoted
 
 from ..paths import DRAWN, walk
 from .client import PointerClient
@@ -18,16 +19,25 @@ from .client import PointerClient
 PERIOD_S = 0.005
 SHOWN_EVERY = 20
 """Sends between two lines of forces: ten lines a second."""
+MOST_BUTTONS = 1 << 31
+"""A sum of the bits of 31 buttons is less."""
 Step = tuple[Vector, int]
 
 
 def follow(
-    path: str, channel: str, seconds: float, height_m: float, speed_m_per_s: float, wait_s: float, as_json: bool
+    path: str,
+    channel: str,
+    seconds: float,
+    height_m: float,
+    speed_m_per_s: float,
+    wait_s: float,
+    as_json: bool,
+    complain: Callable[[str], None],
 ) -> Iterator[str]:
     """Lines to print, position and force, while the pointer is moved; the first is the heading.
 
-    Raises: ConfigError for a path or a number that is none, DeviceError as `PointerClient`, and for a typed line that
-    is no position.
+    complain: told what is wrong with a typed line; the pointer stays where it was.
+    Raises: ConfigError for a path or a number that is none, DeviceError as `PointerClient`.
     """
     if path and path not in DRAWN:
         raise ConfigError(f"--path {path}: there is no such path{did_you_mean(path, DRAWN)}; {', '.join(DRAWN)}")
@@ -35,7 +45,7 @@ def follow(
     check_positive("--speed-mm-per-s", 1000 * speed_m_per_s)
     if not math.isfinite(height_m):
         raise ConfigError(f"--height-mm: is {1000 * height_m}; it must be finite")
-    steps = _drawn(path, seconds, height_m, speed_m_per_s) if path else _typed(sys.stdin)
+    steps = _drawn(path, seconds, height_m, speed_m_per_s) if path else _typed(sys.stdin, complain)
     with PointerClient(channel, wait_s) as client:
         if not as_json:
             yield "".join(f"{name:>10}" for name in ("x mm", "y mm", "z mm", "fx N", "fy N", "fz N"))
@@ -64,14 +74,19 @@ def _drawn(path: str, seconds: float, height_m: float, speed_m_per_s: float) -> 
         yield (stroke.at(round(passed / PERIOD_S)), 0), number % SHOWN_EVERY == 0
 
 
-def _typed(lines: Iterable[str]) -> Iterator[tuple[Step, bool]]:
+def _typed(lines: Iterable[str], complain: Callable[[str], None]) -> Iterator[tuple[Step, bool]]:
     """Each typed position for a while, the last one on and on: the device must see that somebody is there."""
+    if isinstance(lines, io.TextIOWrapper):
+        lines.reconfigure(errors="replace")  # what is no text is no position, and no end
     typed: Queue[str | None] = Queue()
     Thread(target=_enqueue, args=(lines, typed), daemon=True).start()
     step: Step = ((0.0, 0.0, 1.0), 0)
     while (line := _next(typed)) is not None:
-        if line:
-            step = parse(line)
+        try:
+            step = parse(line) if line else step
+        except DeviceError as error:
+            complain(str(error))
+            line = ""
         for sent in range(1, SHOWN_EVERY + 1):
             yield step, bool(line) and sent == SHOWN_EVERY
 
@@ -83,10 +98,14 @@ def parse(line: str) -> Step:
     ((0.01, -0.005, 0.0025), 1)
     """
     try:
-        x, y, z, *buttons = map(float, line.replace(",", " ").split())
-        return (x / 1000, y / 1000, z / 1000), int(*buttons)
-    except (ValueError, TypeError, OverflowError) as error:
-        raise DeviceError(f"{line!r} is not a position; type x y z in millimetres, such as 10 -5 2.5") from error
+        x, y, z, *rest = line.replace(",", " ").split()
+        buttons = int(*rest)
+        position_m = float(x) / 1000, float(y) / 1000, float(z) / 1000
+        if not all(map(math.isfinite, position_m)) or not 0 <= buttons < MOST_BUTTONS:
+            raise ValueError
+        return position_m, buttons
+    except (ValueError, TypeError) as error:
+        raise DeviceError(f"{quoted(line)} is not a position; type x y z in millimetres, such as 10 -5 2.5") from error
 
 
 def _enqueue(lines: Iterable[str], typed: "Queue[str | None]") -> None:

@@ -11,17 +11,17 @@ from pydantic import Field
 
 from tangible_core.compiled.touch import CompiledLink, LinkKernels
 from tangible_core.data import NO_FORCE, DeviceSpec, Force, HapticState
-from tangible_core.plugins.interfaces import HapticDevice, Link
+from tangible_core.plugins.interfaces import Attended, HapticDevice, Link
 
 from ..simulated import LIKE_A_FALCON
-from .channel import DEVICE_OPEN, FORCE, FORCE_WORDS, MAGIC, MARK, SAMPLE, SAMPLE_WORDS, Channel
+from .channel import DEVICE_OPEN, FORCE, FORCE_WORDS, MAGIC, MARK, SAMPLE, SAMPLE_WORDS, Channel, client_is_there
 
 HIGH_M = (0.0, 0.0, 1.0)
 """Where the tip is without a client: above every surface."""
 PACE_S = 0.0005
 
 
-class Pointer(HapticDevice):
+class Pointer(HapticDevice, Attended):
     """Moved by another program through shared memory, which is shown the forces: no motor, real time.
 
     A program that moves it is a `PointerClient`; `tangible pointer` is one. Without one, and when it falls silent, the
@@ -37,6 +37,13 @@ class Pointer(HapticDevice):
     def spec(self) -> DeviceSpec:
         """A Novint Falcon's force, stiffness and damping; the workspace is whatever the client has."""
         return replace(LIKE_A_FALCON, workspace_m=(1.0, 1.0, 1.0), buttons=31)
+
+    def unattended(self) -> str | None:
+        """Whether nobody moves it."""
+        if client_is_there(self.channel):
+            return None
+        channel = "" if self.channel == "pointer" else f" --channel {self.channel}"
+        return f"nobody moves the pointer, so nothing is felt; start `tangible pointer{channel}` in another terminal"
 
     def open(self) -> Link:
         """Raises: DeviceError if this channel has a device already, or its file cannot be made."""

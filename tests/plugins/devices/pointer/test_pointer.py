@@ -466,6 +466,18 @@ class TestKilled:
         client.close()
 
 
+@pytest.mark.parametrize(
+    ("channel", "words"), [("pointer", "`tangible pointer`"), ("b", "`tangible pointer --channel b`")]
+)
+def test_whether_somebody_moves_it(channel: str, words: str):
+    device = Pointer(channel=channel)
+    with device.open():
+        assert words in (device.unattended() or "")
+        with PointerClient(channel):
+            assert device.unattended() is None
+        assert words in (device.unattended() or "")
+
+
 class TestCommand:
     def test_typed_positions_are_felt(self, link: CompiledLink):
         """A spring of 1 N/mm under z = 0, in this process; the hand in another."""
@@ -480,7 +492,7 @@ class TestCommand:
         thread.start()
         try:
             ran = subprocess.run(
-                [TANGIBLE, "pointer", "--json"], input="0 0 1\n\n10 -5 -2.5\n", capture_output=True, text=True
+                [TANGIBLE, "pointer", "--json"], input=b"0 0 1\n\n10 -5\n\xff\n10 -5 -2.5\n", capture_output=True
             )
         finally:
             stop.set()
@@ -489,10 +501,12 @@ class TestCommand:
             {"position_m": [0.0, 0.0, 0.001], "force_n": [0.0, 0.0, 0.0]},
             {"position_m": [0.01, -0.005, -0.0025], "force_n": [0.0, 0.0, 2.5]},
         ]
-        assert ran.returncode == 0, ran.stderr
+        complaints = ran.stderr.decode().splitlines()
+        assert ["'10 -5' is not a position; type x y z in millimetres" in each for each in complaints] == [True, False]
+        assert ran.returncode == 0, complaints
 
     def test_a_path_is_followed_for_its_time(self, link: CompiledLink):
-        heading, *lines = follow("circle", "pointer", 0.5, 0.002, 0.08, 0.0, as_json=False)
+        heading, *lines = follow("circle", "pointer", 0.5, 0.002, 0.08, 0.0, False, pytest.fail)
         assert heading.split() == ["x", "mm", "y", "mm", "z", "mm", "fx", "N", "fy", "N", "fz", "N"]
         assert 2 <= len(lines) <= 5
         assert {line.split()[2] for line in lines} == {"2.000"}
@@ -507,9 +521,9 @@ class TestCommand:
     )
     def test_options_that_make_no_sense(self, path: str, seconds: float, speed: float):
         with pytest.raises(ConfigError):
-            next(follow(path, "pointer", seconds, 0.0, speed, 0.0, as_json=False))
+            next(follow(path, "pointer", seconds, 0.0, speed, 0.0, False, pytest.fail))
 
-    @pytest.mark.parametrize("line", ["1 2", "1 2 3 4 5", "a b c", "1 2 3 inf"])
+    @pytest.mark.parametrize("line", ["1 2", "1 2 3 4 5", "a b c", "1 2 3 inf", "nan 2 3", "1 2 3 -1", "1 2 3 0.5"])
     def test_lines_that_are_no_position(self, line: str):
         with pytest.raises(DeviceError, match="type x y z in millimetres"):
             parse(line)

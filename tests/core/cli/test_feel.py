@@ -1,0 +1,96 @@
+"""`tangible feel` as it stands in an exhibition: several files in turn, without end, until it is asked to end."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from unittest.mock import patch
+
+import numpy as np
+import pytest
+
+from command_line import tangible
+from tangible_core.data import TickFlag
+from tangible_core.session import INTERRUPTED, Recording
+
+FILE = """
+scene: {{height: {height}.npy, relief_m: 0.004}}
+want: touch
+render: {{use: proxy}}
+device: {{use: {device}}}
+"""
+TANGIBLE = str(Path(sys.executable).with_name("tangible"))
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    for name in "ab":
+        np.save(tmp_path / f"{name}.npy", np.tile(np.arange(16.0), (16, 1)))
+        (tmp_path / f"{name}.yaml").write_text(FILE.format(height=name, device="mock"))
+    (tmp_path / "c.yaml").write_text(FILE.format(height="b", device="pointer"))
+    return tmp_path
+
+
+@pytest.mark.slow
+def test_files_in_turn_and_a_recording_that_is_never_in_memory(folder: Path):
+    words = ("a.yaml", "b.yaml", "--each", 1, "--record", "hand.nc", "--json")
+    with patch.object(Recording, "load", pytest.fail):
+        done = tangible("feel", *words, cwd=folder)
+    assert done.returncode == 0, done.stderr
+    kept = Recording.load(folder / "hand.nc")
+    assert len(kept.rows) == json.loads(done.stdout)["figures"]["ticks"] == 2000
+    (second,) = np.flatnonzero(kept.flags & TickFlag.SWAPPED)
+    assert kept.time_s[second] >= 1
+    one, two = kept.about.configuration.split("---\n")
+    assert ("a.npy" in one, "b.npy" in two) == (True, True)
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("a.yaml", "c.yaml"), "c.yaml: has another `device:` or `mapping:` than a.yaml"),
+        (("a.yaml", "b.yaml", "--set", "scene.height=none.npy"), "none.npy"),
+        (("a.yaml", "--each", 0), "--each: is 0"),
+        (("a.yaml", "--seconds", "inf", "--record", "hand.npz"), "recorded as .nc"),
+    ],
+)
+def test_what_cannot_be_felt_in_turn(folder: Path, words: tuple[object, ...], said: str):
+    done = tangible("feel", *words, cwd=folder)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert said in done.stderr
+    assert not list(folder.glob("hand*"))
+
+
+@pytest.mark.slow
+def test_a_pointer_that_nobody_moves_says_so_once(folder: Path):
+    done = tangible("feel", "c.yaml", "--seconds", 2, cwd=folder)
+    assert done.returncode == 0, done.stderr
+    assert done.stderr.count("start `tangible pointer` in another terminal") == 1
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("asked_by", "group"), [(signal.SIGTERM, False), (signal.SIGHUP, True)])
+def test_it_goes_on_until_it_is_asked_to_end(folder: Path, asked_by: signal.Signals, group: bool):
+    """The program alone, as `kill` does, and with its loop's process, as systemd and a closed terminal do."""
+    words = [TANGIBLE, "feel", "a.yaml", "b.yaml", "--each", "0.2", "--seconds", "inf", "--wait", "--record", "hand.nc"]
+    program = subprocess.Popen(
+        words, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True
+    )
+    grown, end = folder / "hand.nc", time.monotonic() + 60
+    try:
+        while not grown.exists() or grown.stat().st_size < 50_000:
+            assert program.poll() is None and time.monotonic() < end
+            time.sleep(0.05)
+        (os.killpg if group else os.kill)(program.pid, asked_by)
+        out, errors = program.communicate(timeout=60)
+    finally:
+        program.kill()
+    assert program.returncode == 128 + asked_by, errors
+    assert "Traceback" not in errors
+    assert "contact_share" in out
+    kept = Recording.load(grown)
+    assert kept.stopped in (INTERRUPTED, "the process was asked to end")
+    assert (len(kept.rows) > 500, (np.diff(kept.time_s) > 0).all()) == (True, True)

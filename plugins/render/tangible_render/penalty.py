@@ -1,6 +1,6 @@
 """Penalty force straight up: the plainest spring."""
 
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 from pydantic import Field
 
@@ -21,6 +21,8 @@ class Penalty(ForceRenderer):
     and never pulls. The surface is a C2 spline; it ends at its extent: beyond it is free air.
     Source: Massie & Salisbury, The PHANToM haptic interface, ASME Winter Annual Meeting 1994.
     """
+
+    version: ClassVar[int] = 2
 
     stiffness_n_per_m: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 800.0
     """Stiffness, where the cell under the tip has no material of its own."""

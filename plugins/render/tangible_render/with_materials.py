@@ -63,6 +63,7 @@ class WithMaterials(ForceRenderer):
     computational model of friction applied to haptic rendering, Experimental Robotics VI, 2000.
     """
 
+    version: ClassVar[int] = 2
     renders_materials: ClassVar[bool] = True
 
     law: Annotated[str | dict[str, Any], AfterValidator(_checked), Field(validate_default=True)] = "penalty-gradient"

@@ -1,11 +1,12 @@
-"""Heights as the coefficients of a C2 surface: a cubic B-spline through every cell's centre."""
+"""Heights as the coefficients of a C2 surface: a cubic B-spline through the cells' centres, but beside jumps."""
 
 import numpy as np
-from jaxtyping import Float32
+from jaxtyping import Bool, Float32, Float64
 
 from tangible_core.data import HapticSurface
 
 from .dequantise import Filter, dequantise
+from .jumps import ease, jumps
 
 BORDER = 2
 """Rows and columns of coefficients beyond the heights on each side, which the outermost half cell needs."""
@@ -18,14 +19,32 @@ def spline_coefficients(height_m: Float32[np.ndarray, "h w"]) -> Float32[np.ndar
 
     Beyond the outermost centres the heights go on as their odd reflection, 2 h(0) - h(-x): a plane stays that plane
     up to the border of the extent, and the curvature across the outermost centres is 0 (a natural spline).
+
+    At jumps, where it would swing over by a tenth of a step and more, the spline leaves the heights: it goes from one
+    side to the other without a groove at the foot or a lip at the top, and on level beyond the border.
     Source: Unser, Aldroubi & Eden, B-spline signal processing, IEEE Trans. Signal Processing 41 (1993).
     """
-    from scipy.ndimage import spline_filter
+    from scipy.ndimage import spline_filter1d
 
-    continued = np.pad(height_m.astype(np.float64), _RUN_IN, mode="reflect", reflect_type="odd")
+    at = jumps(height_m)
+    values = _continued(height_m, at)
+    near = np.pad(np.pad(at, BORDER, mode="edge"), _RUN_IN - BORDER)
     kept = slice(_RUN_IN - BORDER, BORDER - _RUN_IN)
+    ease(values, near)
+    values = spline_filter1d(values, order=3, axis=0, mode="mirror")
+    ease(values.T, near.T)
+    values = spline_filter1d(values, order=3, axis=1, mode="mirror")
     with np.errstate(over="ignore"):
-        return np.ascontiguousarray(spline_filter(continued, order=3, mode="mirror")[kept, kept], np.float32)
+        return np.ascontiguousarray(values[kept, kept], np.float32)
+
+
+def _continued(height_m: Float32[np.ndarray, "h w"], at: Bool[np.ndarray, "h w"]) -> Float64[np.ndarray, "h64 w64"]:
+    """The heights, and beyond each border their odd reflection, or level ground where they jump at the border."""
+    heights = height_m.astype(np.float64)
+    values = np.pad(heights, _RUN_IN, mode="reflect", reflect_type="odd")
+    if at.any():
+        np.copyto(values, np.pad(heights, _RUN_IN, mode="edge"), where=np.pad(at, _RUN_IN, mode="edge"))
+    return values
 
 
 def spline_surface(

@@ -12,7 +12,7 @@ from tangible_render.surface import spline
 from tangible_render.surface.coefficients import spline_coefficients, spline_surface
 
 RNG = np.random.default_rng(11)
-HEIGHTS = RNG.uniform(0, 0.01, (9, 14)).astype(np.float32)
+HEIGHTS = (0.005 + 0.005 * np.sin(0.6 * np.arange(9)[:, None]) * np.cos(0.7 * np.arange(14) + 0.4)).astype(np.float32)
 EXTENT = (0.07, 0.03)  # cells that are not square
 
 

@@ -1,0 +1,119 @@
+"""The C2 surface beside steps, lines and borders: no groove, no lip; and waves as they were, bit by bit."""
+
+import numpy as np
+import pytest
+from scipy.ndimage import spline_filter
+
+from tangible_core.data import HapticSurface, Relief
+from tangible_render.proxy import Proxy
+from tangible_render.surface import spline
+from tangible_render.surface.coefficients import spline_coefficients, spline_surface
+from tangible_render.surface.jumps import jumps
+
+K, DEPTH_M, WIDTH_M = 800.0, 0.001, 0.08
+SIZES = [(64, 64), (256, 256), (48, 1024), (24, 4096)]
+DEGREES = (0, 90, 180, 10, 45, 77)
+
+
+def step(shape: tuple[int, int], degrees: float, high_m: float = 0.01, blur_cells: float = 0.0) -> HapticSurface:
+    """Ground that steps down past the centre, towards this direction; blurred as a camera blurs an edge."""
+    row, column = np.indices(shape) + 0.5
+    x, y = column - shape[1] / 2, shape[0] / 2 - row
+    over = 0.1 - np.cos(np.radians(degrees)) * x - np.sin(np.radians(degrees)) * y
+    heights = np.clip(over / blur_cells + 0.5, 0, 1) if blur_cells else over > 0
+    extent_m = (WIDTH_M, WIDTH_M * shape[0] / shape[1])
+    return HapticSurface(Relief((high_m * heights).astype(np.float32), extent_m))
+
+
+def read(surface: HapticSurface, places: np.ndarray) -> np.ndarray:
+    coefficients, _, _, across, down = spline_surface(surface, "never")
+    return np.array([spline.height(coefficients, across, down, x, y) for x, y in places.tolist()])
+
+
+@pytest.mark.parametrize("shape", SIZES)
+class TestSteps:
+    def test_no_groove_at_the_foot_and_no_lip_at_the_top(self, shape: tuple[int, int]):
+        """Up to the borders, of edges as sharp as can be and blurred ones, which were off by a fifth of the step."""
+        random = np.random.default_rng(5)
+        for degrees in DEGREES if shape[0] > 50 else (0, 180):
+            for high_m, blur_cells in ((0.02, 0.0), (0.0005, 0.0), (0.01, 1.0), (0.01, 2.0)):
+                surface = step(shape, degrees, high_m, blur_cells)
+                places = random.uniform(-0.5, 0.5, (1500, 2)) * surface.extent_m
+                places[:1000, 0] *= min(8 / shape[1], 1) if degrees in (0, 180) else 1
+                found = read(surface, places) / high_m
+                assert found.min() >= -0.01 and found.max() <= 1.01
+                assert found.min() < 0.001 and found.max() > 0.999
+
+    def test_the_foot_of_a_cliff_does_not_hold_the_hand(self, shape: tuple[int, int]):
+        """Down along the wall, then away over the level ground: the exact force two cells from the wall and farther."""
+        for angle in DEGREES if shape[0] > 50 else (0, 180):
+            away = np.array([np.cos(np.radians(angle)), np.sin(np.radians(angle))])
+            pitch_m = WIDTH_M / shape[1]
+            along = np.append(np.full(1500, 0.5 * pitch_m), np.linspace(0.5 * pitch_m, 0.012, 2000))
+            z = np.append(np.linspace(0.012, -DEPTH_M, 1500), np.full(2000, -DEPTH_M))
+            path = np.column_stack([along[:, None] * away, z])
+            force = Proxy(stiffness_n_per_m=K).touch(step(shape, angle)).path(path)
+            free = (along > 2.5 * pitch_m) & (np.arange(3500) > 1500)
+            assert free.any()
+            assert np.abs(force[free] - [0, 0, K * DEPTH_M]).max() <= 1e-4
+            assert np.abs(force).max() <= 8.01 + K * DEPTH_M
+
+    def test_the_top_of_a_cliff_is_level_up_to_its_edge(self, shape: tuple[int, int]):
+        pitch_m = WIDTH_M / shape[1]
+        x = np.linspace(-0.012, -2.5 * pitch_m, 1500)
+        path = np.column_stack([x, 0 * x, np.full(1500, 0.01 - DEPTH_M)])
+        force = Proxy(stiffness_n_per_m=K).touch(step(shape, 0)).path(path)
+        assert np.abs(force - [0, 0, K * DEPTH_M]).max() <= 1e-4
+
+
+def waves(seed: int, shortest_cells: float) -> np.ndarray:
+    random, (row, column) = np.random.default_rng(seed), np.indices((96, 120))
+    number = random.normal(0, 1, (5, 2))
+    number *= 2 * np.pi / shortest_cells / np.abs(number).max()
+    turned, high = random.uniform(0, 7, 5), 10 ** random.uniform(-3, 0, 5)
+    sum_of = sum(a * np.sin(u * column + v * row + p) for (u, v), p, a in zip(number, turned, high, strict=True))
+    return np.asarray(sum_of - np.min(sum_of), np.float32)
+
+
+def test_waves_are_interpolated_bit_by_bit_as_without_jumps():
+    for seed in range(40):
+        heights = waves(seed, (8, 12, 40, 3000)[seed % 4])
+        continued = np.pad(heights.astype(np.float64), 32, mode="reflect", reflect_type="odd")
+        exact = spline_filter(continued, order=3, mode="mirror")[30:-30, 30:-30].astype(np.float32)
+        assert not jumps(heights).any()
+        assert (spline_coefficients(heights) == exact).all()
+
+
+def test_beyond_the_reach_of_a_jump_waves_are_as_without_it():
+    heights = waves(3, 12)
+    stepped = heights.copy()
+    stepped[:, 60:] += 2 * heights.max()
+    found, exact = spline_coefficients(stepped)[:, :40], spline_coefficients(heights)[:, :40]
+    assert np.abs(found - exact).max() <= 1e-6 * np.abs(exact).max()
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_a_line_of_one_cell_keeps_its_height(turned: bool):
+    heights = np.zeros((40, 40), np.float32)
+    heights[:, 20] = 0.002
+    surface = HapticSurface.from_heights(heights.T if turned else heights, WIDTH_M)
+    x = (np.arange(20 * 64) / 64 - 10) * WIDTH_M / 40
+    across = np.column_stack([0 * x, -x] if turned else [x, 0 * x])
+    found = read(surface, across)
+    assert found.max() == pytest.approx(0.002, rel=1e-6) and found.min() >= -1e-9
+
+
+@pytest.mark.parametrize("where", range(1, 5))
+def test_ground_goes_on_level_beyond_a_border_that_it_jumps_at(where: int):
+    """It went on up, by half of the step at the very border."""
+    heights = np.zeros((30, 40), np.float32)
+    heights[:, -where:] = 0.01
+    x = np.linspace(0.3, 0.5, 400) * WIDTH_M
+    found = read(HapticSurface.from_heights(heights, WIDTH_M), np.column_stack([x, 0 * x]))
+    assert found.max() <= 0.0101 and found.min() >= -0.0001
+
+
+def test_a_picture_turned_by_a_quarter_has_the_same_surface():
+    heights = step((64, 64), 33, blur_cells=1.0).height_m
+    turned = np.ascontiguousarray(heights.T)
+    assert np.abs(spline_coefficients(turned).T - spline_coefficients(heights))[4:-4, 4:-4].max() <= 1e-4 * 0.01

@@ -60,6 +60,7 @@ def assign(
     library: Mapping[str, Material],
     rules: Sequence[MaterialRule] = (),
     default: str = NEUTRAL,
+    shape: tuple[int, int] | None = None,
 ) -> MaterialMap:
     """One material a segment, and why.
 
@@ -68,10 +69,11 @@ def assign(
     all the segments of this picture by `relative_roughness` and spreads them evenly over `LADDER`, the smoothest to
     ice, the roughest to brick. Equally rough segments share a rank; one rank alone says nothing, and gives the default.
     default: the material of what nothing decides.
+    shape: see `apply_rules`.
     Raises: MaterialError for a name, a label or a point that does not exist, or for `roughness` or a colour without a
     picture of the segments' size; PictureError if the picture is none.
     """
-    chosen = dict(apply_rules(rules, segments, picture))
+    chosen = dict(apply_rules(rules, segments, picture, shape))
     if isinstance(by, Mapping):
         chosen = {**_by_name(segments.count, by, library), **chosen}
     elif by == "roughness" and len(chosen) < segments.count:

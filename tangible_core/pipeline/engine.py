@@ -48,6 +48,7 @@ class Engine:
         self.begun: set[str] = set()
         """Products that were begun to be made."""
         self._made: dict[str, Any] = {}
+        self._whole: dict[str, Any] = {}
         self._keys: dict[str, str] = {}
         self._outcomes: dict[str, Outcome] = {}
         self._progress: Progress = _unheard
@@ -83,7 +84,7 @@ class Engine:
     def brought(self) -> Mapping[str, Record]:
         """The products that the scene brings, by name."""
         start, size = perf_counter(), self.config.workspace
-        found = self.scene.brings(size.width_m, size.relief_m, size.holes)
+        found = self.scene.brings(size.width_m, size.relief_m, size.holes, size.finest_m)
         for product in found:
             why = f"the scene {self.scene.name} brings it"
             self._note(Outcome(product, "given", why, "", perf_counter() - start))
@@ -104,9 +105,20 @@ class Engine:
     def make(self, want: str | None = None) -> Any:
         """The product, made from what it needs and no more; None if this scene does not need it.
 
+        Disparity and segments are told for every pixel of the pictures, even where they were made smaller (`felt`).
         Raises: TangibleError for what a user can put right; whatever a plugin raises.
         """
-        return self._pull(self._product(want), ASKED)
+        product = self._product(want)
+        found, rule = self._pull(product, ASKED), self._rules.get(product)
+        if found is None or rule is None or rule.whole is None:
+            return found
+        if product not in self._whole:
+            self._whole[product] = rule.whole(found)
+        return self._whole[product]
+
+    def felt(self, product: str) -> Any:
+        """The product as `make` gives it, but as finely as it is felt; that of a scene is as the scene brings it."""
+        return self._pull(product, ASKED)
 
     def needed(self, want: str) -> set[str]:
         """The product and everything that it is made from, by the rules."""

@@ -18,6 +18,7 @@ from .geometry import Holes, scale_heights
 from .picture_files import NonFinite, labels_of, map_of, picture_of, read_labels, read_map, read_picture
 from .rig import StereoRig, turned
 from .rig_files import read_rig
+from .scaling import felt_factor, reduced_map, reduced_shape
 from .scene_files import BUILTINS, SceneFiles, unknown_scene
 
 File = str | PathLike[str]
@@ -156,15 +157,28 @@ class Scene:
             files=origin,
         )
 
-    def brings(self, width_m: float, relief_m: float, holes: Holes = "fill") -> dict[str, Record]:
+    @property
+    def shape(self) -> tuple[int, int]:
+        """(h, w) of the pictures, or of the heights. Raises: PictureError if it has neither."""
+        if self.views is not None:
+            return self.views.shape
+        if self.height is None:
+            raise PictureError(f"the scene {self.name} has neither a picture nor heights")
+        rows, columns = self.height.shape
+        return rows, columns
+
+    def brings(self, width_m: float, relief_m: float, holes: Holes = "fill", finest_m: float = 0) -> dict[str, Record]:
         """The products that need not be made, by name; heights become a relief of this size.
 
-        relief_m: where the scene says none. holes: what becomes of unknown heights.
+        relief_m: where the scene says none. holes: what becomes of unknown heights. finest_m: heights on a finer grid
+        are reduced to it; 0 keeps them all.
         Raises: GeometryError for heights that are unknown everywhere.
         """
         relief = None
         if self.height is not None:
-            relief = scale_heights(self.height, width_m, self.relief_m or relief_m, holes)
+            factor = felt_factor(self.height.shape[1], width_m, finest_m)
+            height = reduced_map(self.height, reduced_shape(self.shape, factor))
+            relief = scale_heights(height, width_m, self.relief_m or relief_m, holes)
         found = {"views": self.views, "relief": relief, "disparity": self.disparity, "segments": self.segments}
         return {product: record for product, record in found.items() if record is not None}
 

@@ -86,8 +86,7 @@ class Engine:
         start, size = perf_counter(), self.config.workspace
         found = self.scene.brings(size.width_m, size.relief_m, size.holes, size.finest_m)
         for product in found:
-            why = f"the scene {self.scene.name} brings it"
-            self._note(Outcome(product, "given", why, "", perf_counter() - start))
+            self._note(Outcome(product, "given", self._bringing(product), "", perf_counter() - start))
             start = perf_counter()
         self._made |= found
         return found
@@ -188,7 +187,7 @@ class Engine:
             return steps
         if rule is None:
             if product in self.brought:
-                steps[product] = Outcome(product, "given", f"the scene {self.scene.name} brings it")
+                steps[product] = Outcome(product, "given", self._bringing(product))
         elif rule.skip:
             steps[product] = Outcome(product, "skipped", rule.skip, rule.method)
         elif self.cache is not None and rule.cached and self.key(product) in self.cache:
@@ -198,6 +197,11 @@ class Engine:
                 self._foresee(name, f"{product} is made from it", steps)
             steps[product] = Outcome(product, "ran", _with((rule.note,), why), rule.method)
         return steps
+
+    def _bringing(self, product: str) -> str:
+        """Why it is given; with the pictures or the heights, what was noticed in their files."""
+        source = "relief" if self.scene.views is None else "views"
+        return _with(self.scene.notes if product == source else (), f"the scene {self.scene.name} brings it")
 
     @cached_property
     def _rules(self) -> dict[str, Rule]:

@@ -6,7 +6,7 @@ from typing import final
 import numpy as np
 from jaxtyping import Bool
 
-from ..data import DisparityMap, SegmentMap, Views
+from ..data import DisparityMap, Relief, SegmentMap, Views
 from ..data.records import digest_of
 from ..scene import scaling
 from ..scene.scene import Scene
@@ -28,7 +28,9 @@ class FeltScene:
     @property
     def key(self) -> str:
         """What products depend on."""
-        return f"1/{self.factor} {'' if self.scene.known is None else f'known {digest_of(self.scene.known)}'}"
+        known = "" if self.scene.known is None else f"known {digest_of(self.scene.known)}"
+        shown = "" if self.scene.shown is None else f"shown {digest_of(self.scene.shown)}"
+        return f"1/{self.factor} {known} {shown}"
 
     @cached_property
     def views(self) -> Views | None:
@@ -39,6 +41,12 @@ class FeltScene:
     def known(self) -> Bool[np.ndarray, "h w"] | None:
         """Where the pictures are; None for everywhere."""
         return None if self.scene.known is None else scaling.reduced_mask(self.scene.known, self.shape)
+
+    @cached_property
+    def shown(self) -> Bool[np.ndarray, "h w"] | None:
+        """Where the pictures are opaque; None for everywhere."""
+        shown = None if self.scene.shown is None else scaling.reduced_mask(self.scene.shown, self.shape)
+        return None if shown is None or shown.all() else shown
 
     def whole_disparity(self, found: DisparityMap) -> DisparityMap:
         """One that was found on this grid, for every pixel of the pictures."""
@@ -59,6 +67,20 @@ def known_disparity(found: DisparityMap, known: Bool[np.ndarray, "h w"] | None) 
 def known_segments(found: SegmentMap, known: Bool[np.ndarray, "h w"] | None) -> SegmentMap:
     """Of confidence 0 where the pictures are unknown."""
     return found if known is None else SegmentMap(found.labels, found.confidence * known)
+
+
+def grounded(relief: Relief, shown: Bool[np.ndarray, "h w"] | None) -> Relief:
+    """Flat, and at the bottom, where the picture is transparent."""
+    return relief if shown is None else Relief(np.where(shown, relief.height_m, np.float32(0)), relief.extent_m)
+
+
+def with_ground(found: SegmentMap, shown: Bool[np.ndarray, "h w"] | None) -> SegmentMap:
+    """What is transparent becomes a segment of its own, the last one."""
+    if shown is None:
+        return found
+    kept = np.unique(found.labels[shown])
+    labels = np.where(shown, np.searchsorted(kept, found.labels), kept.size)
+    return SegmentMap(labels.astype(np.int32), found.confidence)
 
 
 def _note(factor: float, finest_m: float) -> str:

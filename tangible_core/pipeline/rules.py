@@ -60,7 +60,7 @@ def rules(config: PipelineConfig, scene: Scene, brought: Mapping[str, Record]) -
         _disparity(config, grid),
         _relief(config, grid),
         segments,
-        _materials(config, grid, unsegmented),
+        _materials(config, grid, unsegmented, "segments" not in brought),
         _surface(config, grid),
         _touch(config),
     )
@@ -90,7 +90,7 @@ def _relief(config: PipelineConfig, grid: FeltScene) -> Rule:
             return geometry.flat_relief(_views(grid).shape, size.width_m)
         disparity = scaling.reduced_disparity(disparity, grid.shape)
         relief = geometry.make_relief(disparity, calibration, size.width_m, size.relief_m, size.holes)
-        return geometry.smooth(relief, size.smooth_m)
+        return felt.grounded(geometry.smooth(relief, size.smooth_m), grid.shown)
 
     key = f"{_core(geometry.__name__)} {size!r}{_reduction(grid)}"
     return Rule("relief", "core", key, ("views", "disparity"), make)
@@ -101,7 +101,7 @@ def _segments(config: PipelineConfig, grid: FeltScene) -> Rule:
         views, chosen = _views(grid), _configured(config, "texture")
         made = chosen.method.segment(views.left)
         _check_shape("texture", chosen, "labels", made.labels.shape, views.shape)
-        return felt.known_segments(made, grid.known)
+        return felt.with_ground(felt.known_segments(made, grid.known), grid.shown)
 
     skip = _skip(config.texture, grid.scene)
     if config.texture is None:
@@ -113,14 +113,17 @@ def _segments(config: PipelineConfig, grid: FeltScene) -> Rule:
     return Rule("segments", name, key, ("views",), make, grid.whole_segments, skip, grid.note)
 
 
-def _materials(config: PipelineConfig, grid: FeltScene, unsegmented: str | None) -> Rule:
+def _materials(config: PipelineConfig, grid: FeltScene, unsegmented: str | None, found: bool) -> Rule:
     choice = config.materials
     library = assignment.load_library(choice.library)
 
     def make(inputs: Inputs) -> MaterialMap:
         picture = grid.views.left if grid.views else None
         segments = scaling.reduced_segments(inputs["segments"], grid.shape)
-        return assignment.assign(segments, picture, choice.by, library, choice.rules, choice.default, grid.scene.shape)
+        ground = segments.count - 1 if found and grid.shown is not None else None
+        return assignment.assign(
+            segments, picture, choice.by, library, choice.rules, choice.default, grid.scene.shape, ground
+        )
 
     said = choice.model_dump(exclude={"library"})
     key = f"{_core(assignment.__name__)} {said} {_library_digest(tuple(library.values()))}{_reduction(grid)}"
@@ -185,7 +188,8 @@ def _core(module: str) -> str:
 
 def _reduction(grid: FeltScene) -> str:
     """What else a product depends on that is made of products of the pictures' size, where that is not felt."""
-    return "" if grid.factor == 1 else f" {_core(scaling.__name__)} 1/{grid.factor}"
+    plain = grid.factor == 1 and grid.scene.shown is None
+    return "" if plain else f" {_core(scaling.__name__)} {grid.key}"
 
 
 def _skip(chosen: NamedMethod[Any] | None, scene: Scene) -> str | None:

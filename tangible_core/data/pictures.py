@@ -53,13 +53,28 @@ def fill_non_finite(picture: np.ndarray) -> tuple[np.ndarray, Bool[np.ndarray, "
 
     Raises: PictureError if nothing is finite.
     """
-    from scipy import ndimage  # pyright: ignore[reportMissingTypeStubs]
-
     known: np.ndarray = np.all(np.isfinite(np.atleast_3d(picture)), axis=2)
     if not known.any():
         raise PictureError(f"none of the {known.size} pixels is finite; use a picture with finite pixels")
+    return filled(picture, known), known
+
+
+def filled(picture: np.ndarray, known: Bool[np.ndarray, "h w"]) -> np.ndarray:
+    """A picture in which each unknown pixel is the nearest known one; at least one is known."""
+    from scipy import ndimage  # pyright: ignore[reportMissingTypeStubs]
+
     nearest = cast(Any, ndimage).distance_transform_edt(~known, return_distances=False, return_indices=True)
-    return picture[nearest[0], nearest[1]], known
+    return picture[nearest[0], nearest[1]]
+
+
+def opaque(picture: np.ndarray) -> Bool[np.ndarray, "h w"]:
+    """Where a picture shows something: at least half of it, where its fourth channel says how much."""
+    if picture.ndim == 2 or picture.shape[2] == 3:
+        return np.ones(picture.shape[:2], np.bool_)
+    alpha = picture[..., 3]
+    if alpha.dtype.kind == "u":
+        return alpha > np.iinfo(alpha.dtype).max // 2
+    return alpha if alpha.dtype == np.bool_ else alpha >= 0.5
 
 
 def full_scale(picture: np.ndarray) -> float:

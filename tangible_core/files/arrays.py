@@ -2,7 +2,8 @@
 
 import math
 import warnings
-from collections.abc import Collection, Generator
+import zlib
+from collections.abc import Collection, Generator, Mapping
 from contextlib import contextmanager
 from typing import IO, final
 from zipfile import ZIP_DEFLATED, ZIP_STORED, ZipFile
@@ -14,6 +15,10 @@ from .reading import TooLargeError, check_bytes, check_size
 
 _CHUNK = 1 << 20
 _ZIP = b"PK"
+_SAMPLES, _SAMPLE = 8, 1 << 14
+"""How many parts of an array are compressed to see whether it is worth it, and their bytes."""
+_WORTH = 0.6
+"""Share of its size to which an array must shrink."""
 
 
 @final
@@ -53,6 +58,28 @@ class Archive:
     def _read(self, member: str, held: int) -> np.ndarray:
         with self._zip.open(member) as file:
             return _numbers(file, held)
+
+
+def write_arrays(file: IO[bytes], arrays: Mapping[str, np.ndarray]) -> None:
+    """An .npz file of these arrays; those that become much smaller by it are compressed.
+
+    Labels and constants do, by far; heights hardly, and would take several times as long to write and to read.
+    """
+    with ZipFile(file, "w", compresslevel=1) as archive:
+        for name, array in arrays.items():
+            archive.compression = ZIP_DEFLATED if _is_compressible(array) else ZIP_STORED
+            with archive.open(f"{name}.npy", "w", force_zip64=True) as part:
+                np.lib.format.write_array(part, np.asanyarray(array), allow_pickle=False)
+
+
+def _is_compressible(array: np.ndarray) -> bool:
+    """By a few samples: whole arrays take as long to try as to write. A small one is not worth it."""
+    if array.nbytes < _SAMPLES * _SAMPLE:
+        return False
+    flat = np.ascontiguousarray(array).reshape(-1).view(np.uint8)
+    starts = np.linspace(0, max(0, flat.size - _SAMPLE), _SAMPLES).astype(int)
+    samples = [flat[start : start + _SAMPLE].tobytes() for start in dict.fromkeys(starts.tolist())]
+    return sum(len(zlib.compress(each, 1)) for each in samples) <= _WORTH * sum(map(len, samples))
 
 
 def read_array(file: IO[bytes]) -> np.ndarray:

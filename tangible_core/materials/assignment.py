@@ -60,6 +60,8 @@ def assign(
     library: Mapping[str, Material],
     rules: Sequence[MaterialRule] = (),
     default: str = NEUTRAL,
+    shape: tuple[int, int] | None = None,
+    ground: int | None = None,
 ) -> MaterialMap:
     """One material a segment, and why.
 
@@ -68,14 +70,18 @@ def assign(
     all the segments of this picture by `relative_roughness` and spreads them evenly over `LADDER`, the smoothest to
     ice, the roughest to brick. Equally rough segments share a rank; one rank alone says nothing, and gives the default.
     default: the material of what nothing decides.
+    shape: see `apply_rules`.
+    ground: the last label, where the picture is transparent: it gets the default, and has no roughness.
     Raises: MaterialError for a name, a label or a point that does not exist, or for `roughness` or a colour without a
     picture of the segments' size; PictureError if the picture is none.
     """
-    chosen = dict(apply_rules(rules, segments, picture))
+    chosen = dict(apply_rules(rules, segments, picture, shape))
     if isinstance(by, Mapping):
         chosen = {**_by_name(segments.count, by, library), **chosen}
     elif by == "roughness" and len(chosen) < segments.count:
-        chosen = {**_by_roughness(_roughness(segments, picture), default), **chosen}
+        chosen = {**_by_roughness(_roughness(segments, picture)[:ground], default), **chosen}
+    if ground is not None:
+        chosen.setdefault(ground, (default, f"segment {ground}: transparent in the picture -> {default}"))
     rest = ((default, f"segment {label}: not named -> {default}") for label in range(segments.count))
     names, reasons = zip(*(chosen.get(label, each) for label, each in enumerate(rest)), strict=True)
     return MaterialMap(tuple(find(name, library) for name in names), reasons)

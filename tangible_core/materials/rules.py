@@ -43,10 +43,14 @@ class MaterialRule(BaseModel):
 
 
 def apply_rules(
-    rules: Sequence[MaterialRule], segments: SegmentMap, picture: np.ndarray | None
+    rules: Sequence[MaterialRule],
+    segments: SegmentMap,
+    picture: np.ndarray | None,
+    shape: tuple[int, int] | None = None,
 ) -> Mapping[int, Choice]:
     """The segments that some rule is for. A rule that is for none is logged.
 
+    shape: (h, w) of the picture in whose pixels points are given, where segments and picture are a reduced one's.
     Raises: MaterialError, with every complaint, for a segment or a point that is not there, or a colour without a
     picture of the segments' size.
     """
@@ -54,7 +58,7 @@ def apply_rules(
     complaints: list[str] = []
     for number, rule in enumerate(rules, 1):
         try:
-            fits = _fits(rule, segments, picture)
+            fits = _fits(rule, segments, picture, shape or segments.labels.shape)
         except MaterialError as error:
             complaints.append(f"materials: rule {number}: {error}")
             continue
@@ -67,23 +71,26 @@ def apply_rules(
     return found
 
 
-def _fits(rule: MaterialRule, segments: SegmentMap, picture: np.ndarray | None) -> dict[int, str]:
+def _fits(
+    rule: MaterialRule, segments: SegmentMap, picture: np.ndarray | None, shape: tuple[int, ...]
+) -> dict[int, str]:
     """Labels, and why the rule is for them."""
     if rule.segment is not None:
         if rule.segment >= segments.count:
             raise MaterialError(f"there is no segment {rule.segment}; the segments are 0 to {segments.count - 1}")
         return {rule.segment: "named"}
     if rule.at is not None:
-        return {_label_at(*rule.at, segments): f"at [{rule.at[0]:g}, {rule.at[1]:g}]"}
+        return {_label_at(*rule.at, segments, shape): f"at [{rule.at[0]:g}, {rule.at[1]:g}]"}
     if picture is None or picture.shape[:2] != segments.labels.shape:
         raise MaterialError("a rule by colour needs the segmented picture, but there is none of that size")
     named = enumerate(segment_colours(segments, picture))
     return {label: f"{100 * share:.0f} % of it {name}" for label, (name, share) in named if name == rule.colour}
 
 
-def _label_at(x: float, y: float, segments: SegmentMap) -> int:
-    rows, columns = segments.labels.shape
+def _label_at(x: float, y: float, segments: SegmentMap, shape: tuple[int, ...]) -> int:
+    rows, columns = shape
     row, column = round(y), round(x)
     if row >= rows or column >= columns:
         raise MaterialError(f"[{x:g}, {y:g}] lies outside the picture of {columns} x {rows} pixels")
-    return int(segments.labels[row, column])
+    inner = segments.labels.shape
+    return int(segments.labels[row * inner[0] // rows, column * inner[1] // columns])

@@ -17,7 +17,7 @@ import numpy as np
 from .. import data
 from ..data import Record
 from ..errors import OutputError, quoted, shown
-from ..files.arrays import Archive
+from ..files.arrays import Archive, write_arrays
 from ..files.reading import check_file
 from ..files.writing import atomic_write
 
@@ -84,14 +84,14 @@ def default_folder() -> Path:
 
 
 def write_record(path: Path, record: Record) -> None:
-    """A record as an uncompressed .npz: its arrays by name, and the rest in `record` as JSON.
+    """A record as an .npz: its arrays by name, and the rest in `record` as JSON.
 
     Raises: OutputError if the place cannot be written.
     """
     arrays: dict[str, np.ndarray] = {}
     tree = json.dumps(_pack(record, "", arrays))
     with atomic_write(path) as file:
-        np.savez(file, allow_pickle=False, record=np.frombuffer(tree.encode(), np.uint8), **cast(Any, arrays))
+        write_arrays(file, {"record": np.frombuffer(tree.encode(), np.uint8), **arrays})
 
 
 def read_record(path: Path) -> Record:

@@ -48,6 +48,7 @@ class Engine:
         self.begun: set[str] = set()
         """Products that were begun to be made."""
         self._made: dict[str, Any] = {}
+        self._whole: dict[str, Any] = {}
         self._keys: dict[str, str] = {}
         self._outcomes: dict[str, Outcome] = {}
         self._progress: Progress = _unheard
@@ -83,10 +84,9 @@ class Engine:
     def brought(self) -> Mapping[str, Record]:
         """The products that the scene brings, by name."""
         start, size = perf_counter(), self.config.workspace
-        found = self.scene.brings(size.width_m, size.relief_m, size.holes)
+        found = self.scene.brings(size.width_m, size.relief_m, size.holes, size.finest_m)
         for product in found:
-            why = f"the scene {self.scene.name} brings it"
-            self._note(Outcome(product, "given", why, "", perf_counter() - start))
+            self._note(Outcome(product, "given", self._bringing(product), "", perf_counter() - start))
             start = perf_counter()
         self._made |= found
         return found
@@ -104,9 +104,20 @@ class Engine:
     def make(self, want: str | None = None) -> Any:
         """The product, made from what it needs and no more; None if this scene does not need it.
 
+        Disparity and segments are told for every pixel of the pictures, even where they were made smaller (`felt`).
         Raises: TangibleError for what a user can put right; whatever a plugin raises.
         """
-        return self._pull(self._product(want), ASKED)
+        product = self._product(want)
+        found, rule = self._pull(product, ASKED), self._rules.get(product)
+        if found is None or rule is None or rule.whole is None:
+            return found
+        if product not in self._whole:
+            self._whole[product] = rule.whole(found)
+        return self._whole[product]
+
+    def felt(self, product: str) -> Any:
+        """The product as `make` gives it, but as finely as it is felt; that of a scene is as the scene brings it."""
+        return self._pull(product, ASKED)
 
     def needed(self, want: str) -> set[str]:
         """The product and everything that it is made from, by the rules."""
@@ -176,7 +187,7 @@ class Engine:
             return steps
         if rule is None:
             if product in self.brought:
-                steps[product] = Outcome(product, "given", f"the scene {self.scene.name} brings it")
+                steps[product] = Outcome(product, "given", self._bringing(product))
         elif rule.skip:
             steps[product] = Outcome(product, "skipped", rule.skip, rule.method)
         elif self.cache is not None and rule.cached and self.key(product) in self.cache:
@@ -186,6 +197,11 @@ class Engine:
                 self._foresee(name, f"{product} is made from it", steps)
             steps[product] = Outcome(product, "ran", _with((rule.note,), why), rule.method)
         return steps
+
+    def _bringing(self, product: str) -> str:
+        """Why it is given; with the pictures or the heights, what was noticed in their files."""
+        source = "relief" if self.scene.views is None else "views"
+        return _with(self.scene.notes if product == source else (), f"the scene {self.scene.name} brings it")
 
     @cached_property
     def _rules(self) -> dict[str, Rule]:

@@ -9,8 +9,6 @@ from functools import cache
 from typing import Any
 from uuid import uuid4
 
-import numpy as np
-
 from ..data import DisparityMap, HapticSurface, Material, MaterialMap, Record, Relief, SegmentMap, Views, digest_of
 from ..errors import BrokenMethod, ConfigError
 from ..materials import assignment
@@ -19,8 +17,10 @@ from ..provenance.closure import closure
 from ..provenance.source import source_digest
 from ..scene import geometry, scaling
 from ..scene.scene import Scene
+from . import felt
 from .cache import Cache
 from .config import NamedMethod, PipelineConfig
+from .felt import FeltScene
 
 Inputs = Mapping[str, Any]
 """Products by name; None where one was skipped."""
@@ -37,6 +37,9 @@ class Rule:
     """What the result depends on beside its inputs."""
     needs: tuple[str, ...]
     make: Callable[[Inputs], Any]
+    """On the grid that is felt."""
+    whole: Callable[[Any], Any] | None = None
+    """What was made, for every pixel of the pictures; None for what is not said by pixels."""
     skip: str | None = None
     """Why this scene does not need it."""
     note: str = ""
@@ -50,101 +53,99 @@ def rules(config: PipelineConfig, scene: Scene, brought: Mapping[str, Record]) -
     brought: products that the scene brings, which have no rule.
     Raises: ConfigError for a material library that cannot be read.
     """
-    segments = _segments(config, scene)
+    grid = FeltScene(scene, config.workspace)
+    segments = _segments(config, grid)
     unsegmented = None if "segments" in brought else segments.skip
     table = (
-        _disparity(config, scene),
-        _relief(config, scene),
+        _disparity(config, grid),
+        _relief(config, grid),
         segments,
-        _materials(config, scene, unsegmented),
-        _surface(config, scene),
-        _touch(config, scene),
+        _materials(config, grid, unsegmented, "segments" not in brought),
+        _surface(config, grid),
+        _touch(config),
     )
     return {rule.product: rule for rule in table if rule.product not in brought}
 
 
-def _disparity(config: PipelineConfig, scene: Scene) -> Rule:
-    factor, note = _felt(config, scene)
-
+def _disparity(config: PipelineConfig, grid: FeltScene) -> Rule:
     def make(inputs: Inputs) -> DisparityMap:
-        views = _views(scene)
-        small, chosen = scaling.reduced(views, factor), _configured(config, "depth")
-        made = chosen.method.estimate(small)
-        _check_shape("depth", chosen, "disparity", made.disparity_px.shape, small.shape)
-        found = scaling.enlarged(made, views.shape)
-        if scene.known is None:
-            return found
-        known_px = np.where(scene.known, found.disparity_px, np.float32(np.nan))
-        return DisparityMap(known_px, found.confidence * scene.known, found.unit)
+        views, chosen = _views(grid), _configured(config, "depth")
+        made = chosen.method.estimate(views)
+        _check_shape("depth", chosen, "disparity", made.disparity_px.shape, views.shape)
+        return felt.known_disparity(scaling.in_pixels_of(made, grid.scene.shape[1]), grid.known)
 
     name, key = _identity(config.depth)
-    key = f"{_core(scaling.__name__)} {key} 1/{factor} {_known(scene)}"
-    return Rule("disparity", name, key, ("views",), make, _skip(config.depth, scene), note)
+    key = f"{_core(scaling.__name__)} {key} {grid.key}"
+    skip = _skip(config.depth, grid.scene)
+    return Rule("disparity", name, key, ("views",), make, grid.whole_disparity, skip, grid.note)
 
 
-def _relief(config: PipelineConfig, scene: Scene) -> Rule:
-    size = config.workspace
+def _relief(config: PipelineConfig, grid: FeltScene) -> Rule:
+    size, scene = config.workspace, grid.scene
 
     def make(inputs: Inputs) -> Relief:
         disparity: DisparityMap | None = inputs["disparity"]
         calibration = scene.views.calibration if scene.views else None
         if disparity is None:
-            return geometry.flat_relief(_views(scene).shape, size.width_m)
+            return geometry.flat_relief(_views(grid).shape, size.width_m)
+        disparity = scaling.reduced_disparity(disparity, grid.shape)
         relief = geometry.make_relief(disparity, calibration, size.width_m, size.relief_m, size.holes)
-        return geometry.smooth(relief, size.smooth_m)
+        return felt.grounded(geometry.smooth(relief, size.smooth_m), grid.shown)
 
-    return Rule("relief", "core", f"{_core(geometry.__name__)} {size!r}", ("views", "disparity"), make)
+    key = f"{_core(geometry.__name__)} {size!r}{_reduction(grid)}"
+    return Rule("relief", "core", key, ("views", "disparity"), make)
 
 
-def _segments(config: PipelineConfig, scene: Scene) -> Rule:
-    factor, note = _felt(config, scene)
-
+def _segments(config: PipelineConfig, grid: FeltScene) -> Rule:
     def make(inputs: Inputs) -> SegmentMap:
-        views = _views(scene)
-        small, chosen = scaling.reduced(Views(views.left), factor), _configured(config, "texture")
-        made = chosen.method.segment(small.left)
-        _check_shape("texture", chosen, "labels", made.labels.shape, small.shape)
-        found = scaling.enlarged_segments(made, views.shape)
-        return found if scene.known is None else SegmentMap(found.labels, found.confidence * scene.known)
+        views, chosen = _views(grid), _configured(config, "texture")
+        made = chosen.method.segment(views.left)
+        _check_shape("texture", chosen, "labels", made.labels.shape, views.shape)
+        return felt.with_ground(felt.known_segments(made, grid.known), grid.shown)
 
-    skip = _skip(config.texture, scene)
+    skip = _skip(config.texture, grid.scene)
     if config.texture is None:
         skip = "no `texture:` is configured; the whole surface is one material"
-    elif scene.views is None:
+    elif grid.scene.views is None:
         skip = "the scene has heights and no picture"
     name, key = _identity(config.texture)
-    key = f"{_core(scaling.__name__)} {key} 1/{factor} {_known(scene)}"
-    return Rule("segments", name, key, ("views",), make, skip, note)
+    key = f"{_core(scaling.__name__)} {key} {grid.key}"
+    return Rule("segments", name, key, ("views",), make, grid.whole_segments, skip, grid.note)
 
 
-def _materials(config: PipelineConfig, scene: Scene, unsegmented: str | None) -> Rule:
+def _materials(config: PipelineConfig, grid: FeltScene, unsegmented: str | None, found: bool) -> Rule:
     choice = config.materials
     library = assignment.load_library(choice.library)
 
     def make(inputs: Inputs) -> MaterialMap:
-        picture = scene.views.left if scene.views else None
-        return assignment.assign(inputs["segments"], picture, choice.by, library, choice.rules, choice.default)
+        picture = grid.views.left if grid.views else None
+        segments = scaling.reduced_segments(inputs["segments"], grid.shape)
+        ground = segments.count - 1 if found and grid.shown is not None else None
+        return assignment.assign(
+            segments, picture, choice.by, library, choice.rules, choice.default, grid.scene.shape, ground
+        )
 
     said = choice.model_dump(exclude={"library"})
-    key = f"{_core(assignment.__name__)} {said} {_library_digest(tuple(library.values()))}"
+    key = f"{_core(assignment.__name__)} {said} {_library_digest(tuple(library.values()))}{_reduction(grid)}"
     skip = f"there are no segments: {unsegmented}" if unsegmented else None
-    return Rule("materials", "core", key, ("views", "segments"), make, skip)
+    return Rule("materials", "core", key, ("views", "segments"), make, skip=skip)
 
 
-def _surface(config: PipelineConfig, scene: Scene) -> Rule:
+def _surface(config: PipelineConfig, grid: FeltScene) -> Rule:
     def make(inputs: Inputs) -> HapticSurface:
         segments: SegmentMap | None = inputs.get("segments")
         chosen: MaterialMap | None = inputs.get("materials")
         if segments is None or chosen is None:
             return HapticSurface(inputs["relief"])
-        return HapticSurface(inputs["relief"], segments.labels, chosen.materials)
+        labels = scaling.reduced_segments(segments, grid.shape).labels
+        return HapticSurface(inputs["relief"], labels, chosen.materials)
 
     with_materials = config.render is None or config.render.method.uses_materials
     needs = ("relief", "segments", "materials") if with_materials else ("relief",)
-    return Rule("surface", "core", _core(HapticSurface.__module__), needs, make)
+    return Rule("surface", "core", f"{_core(HapticSurface.__module__)}{_reduction(grid)}", needs, make)
 
 
-def _touch(config: PipelineConfig, scene: Scene) -> Rule:
+def _touch(config: PipelineConfig) -> Rule:
     def make(inputs: Inputs) -> Touch:
         return _configured(config, "render").method.touch(inputs["surface"])
 
@@ -182,21 +183,13 @@ def _library_digest(materials: tuple[Material, ...]) -> str:
 
 def _core(module: str) -> str:
     """The code of the core's part: a module, this table, and what keeps a result."""
-    return closure(module, alone=(__name__, Cache.__module__)).digest
+    return closure(module, alone=(__name__, felt.__name__, Cache.__module__)).digest
 
 
-def _felt(config: PipelineConfig, scene: Scene) -> tuple[int, str]:
-    """By how much the pictures are reduced, as nothing finer is felt; and the words for it."""
-    size = config.workspace
-    factor = scaling.felt_factor(scene.views.shape[1], size.width_m, size.finest_m) if scene.views else 1
-    if factor == 1:
-        return factor, ""
-    what = f"at 1/{factor} of the size, as finer than {1e3 * size.finest_m:g} mm is not felt"
-    return factor, f"{what} (`workspace: {{finest_m: 0}}` keeps everything)"
-
-
-def _known(scene: Scene) -> str:
-    return "" if scene.known is None else f"known {digest_of(scene.known)}"
+def _reduction(grid: FeltScene) -> str:
+    """What else a product depends on that is made of products of the pictures' size, where that is not felt."""
+    plain = grid.factor == 1 and grid.scene.shown is None
+    return "" if plain else f" {_core(scaling.__name__)} {grid.key}"
 
 
 def _skip(chosen: NamedMethod[Any] | None, scene: Scene) -> str | None:
@@ -227,7 +220,7 @@ def _configured(config: PipelineConfig, kind: str) -> NamedMethod[Any]:
     return chosen
 
 
-def _views(scene: Scene) -> Views:
-    if scene.views is None:
-        raise ConfigError(f"the scene {scene.name} has no picture; give one with `photo:` or `left:` and `right:`")
-    return scene.views
+def _views(grid: FeltScene) -> Views:
+    if grid.views is None:
+        raise ConfigError(f"the scene {grid.scene.name} has no picture; give one with `photo:` or `left:` and `right:`")
+    return grid.views

@@ -68,8 +68,8 @@ def make_run(
     files = [*_configuration(engine, out)]
     engine.plan(want)
     with rehearsal(engine, want) as engine.beside:
-        value = engine.make(want)
-        products = {name: engine.make(name) for name in SHOWN if name in engine.needed(want)}
+        value = engine.felt(want)
+        products = {name: engine.felt(name) for name in SHOWN if name in engine.needed(want)}
         products[want] = value
         recording = _felt(engine, value, seconds, on_report) if want == "touch" else None
     for name, record in products.items():
@@ -123,15 +123,17 @@ def _felt(
 
 
 def _draw(engine: Engine, products: Mapping[str, Any], recording: Recording | None, path: Path) -> None:
-    scene = engine.scene
-    draw_sheet(path, views=scene.views, truth=scene.truth, recording=recording, title=scene.name,
-               **{name: products.get(name) for name in (*SHOWN, "relief")})  # fmt: skip
+    scene, shown = engine.scene, {name: products.get(name) for name in (*SHOWN, "relief")}
+    if scene.truth is not None and shown["disparity"] is not None:
+        shown["disparity"] = engine.make("disparity")  # pixel by pixel beside its truth
+    draw_sheet(path, views=scene.views, truth=scene.truth, recording=recording, title=scene.name, **shown)
 
 
 def _figures(engine: Engine, products: Mapping[str, Any], recording: Recording | None) -> dict[str, Any]:
     figures: dict[str, Any] = {}
-    truth, disparity = engine.scene.truth, products.get("disparity")
-    if truth is not None and isinstance(disparity, DisparityMap):
+    truth = engine.scene.truth
+    if truth is not None and isinstance(products.get("disparity"), DisparityMap):
+        disparity = engine.make("disparity")
         figures["disparity"] = disparity_errors(disparity.disparity_px, truth)
     if isinstance(chosen := products.get("materials"), MaterialMap):
         figures["materials"] = {

@@ -3,17 +3,21 @@
 import logging
 import struct
 import warnings
+from collections.abc import Callable, Generator
+from contextlib import contextmanager
 from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, TypeVar
 
 import numpy as np
 from jaxtyping import Float32, Int32
 
-from ..data.pictures import check_finite, check_picture
+from ..data.pictures import check_finite, check_picture, opaque
 from ..errors import PictureError, did_you_mean, shown
 from ..files import arrays
 from ..files.reading import TOO_MANY_PIXELS, TooLargeError, check_size, read_bytes
+from .frames import Say, count_pictures, unsaid
+from .tiff_tags import TIFF, Shape, stated_nodata, tiff_size
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -24,30 +28,23 @@ FORMATS = ("PNG", "JPEG", "TIFF", "BMP", "GIF", "WEBP", "PPM", "JPEG2000")
 """What Pillow may read. Some that it also knows run other programs (EPS) or cannot be told from noise (TGA)."""
 
 NonFinite = Literal["error", "mask"]
+T = TypeVar("T")
 
 MAX_LABELS = 4096
 """More than this in a label picture, and it is a photo."""
 
-TIFF = (b"II*\0", b"MM\0*", b"MM*\0", b"II\0*", b"MM\0+", b"II+\0")
-"""How one begins for Pillow; OpenCV knows the first two."""
-TAG_TYPES = {1: "B", 3: "H", 4: "I", 16: "Q"}
-"""Of a TIFF's whole numbers, as `struct` calls them."""
-MOST_TAGS, MOST_SAMPLES = 65_535, 16
-"""Of a TIFF and of a pixel in one that are looked at; four samples are read."""
-
-Shape = tuple[int, int, int]
-
 _ORIENTATION, _BITS_PER_SAMPLE = 0x0112, 0x0102  # tags of EXIF and of TIFF
 
 
-def read_picture(path: Path, non_finite: NonFinite = "error") -> np.ndarray:
+def read_picture(path: Path, non_finite: NonFinite = "error", say: Say = unsaid) -> np.ndarray:
     """A picture file as (h, w[, 3|4]) RGB(A), upright as its EXIF orientation says: uint8, uint16, or what it holds.
 
     A palette becomes colours, transparency a fourth channel. `.npy` and `.npz` files hold the array itself.
     non_finite: what becomes of NaN and infinity: an error, or, for `mask`, nothing: they are in what is returned.
+    say: hears of more pictures in the file, of which the first is taken.
     Raises: PictureError if the file is missing, no picture, damaged, cut short or too large.
     """
-    return picture_of(_read(path), str(path), non_finite)
+    return picture_of(_read(path, say), str(path), non_finite)
 
 
 def picture_of(values: np.ndarray, name: str, non_finite: NonFinite = "error") -> np.ndarray:
@@ -58,16 +55,26 @@ def picture_of(values: np.ndarray, name: str, non_finite: NonFinite = "error") -
     return values
 
 
-def read_map(path: Path) -> Float32[np.ndarray, "h w"]:
+def read_map(path: Path, say: Say = unsaid) -> Float32[np.ndarray, "h w"]:
     """A map of numbers (.npy, .npz, .pfm, .tif, or any grey picture as its raw values); infinities become NaN.
 
+    So does what is transparent, and what a GeoTIFF states to be no data (GDAL's tag).
     Raises: PictureError as `read_picture`, or if there is more than one number a pixel.
     """
-    return map_of(_read(path), str(path))
+    data = bytes_of(path)
+    found = map_of(values_of(path, data, say), str(path))
+    nodata = stated_nodata(data) if data[:4] in TIFF else None
+    if nodata is None:
+        return found
+    known = without(found, nodata)
+    if missing := np.count_nonzero(np.isnan(known)) - np.count_nonzero(np.isnan(found)):
+        say(f"{100 * missing / known.size:.1f} % of {path.name} is {nodata:g}, which it states to be no data")
+    return known
 
 
 def map_of(values: np.ndarray, name: str) -> Float32[np.ndarray, "h w"]:
     """An array as `read_map` returns it. Raises: PictureError if there is more than one number a pixel."""
+    shown = opaque(values) if values.ndim == 3 and values.shape[2] == 4 else None
     if values.ndim == 3 and values.shape[2] in (3, 4) and not np.any(values[..., :3] != values[..., :1]):
         values = values[..., 0]
     if values.ndim != 2 or values.size == 0 or values.dtype.kind not in "buif":
@@ -76,15 +83,23 @@ def map_of(values: np.ndarray, name: str) -> Float32[np.ndarray, "h w"]:
         )
     with np.errstate(over="ignore"):
         numbers = values.astype(np.float32)
-    return np.where(np.isfinite(numbers), numbers, np.float32(np.nan))
+    known = np.isfinite(numbers) if shown is None else np.isfinite(numbers) & shown
+    return np.where(known, numbers, np.float32(np.nan))
 
 
-def read_labels(path: Path) -> Int32[np.ndarray, "h w"]:
+def without(values: Float32[np.ndarray, "h w"], *nodata: float) -> Float32[np.ndarray, "h w"]:
+    """NaN where a map holds one of these values, as 32 bits hold it."""
+    with np.errstate(over="ignore"):
+        marks = np.array(nodata, np.float64).astype(np.float32)
+    return np.where(np.isin(values, marks), np.float32(np.nan), values)
+
+
+def read_labels(path: Path, say: Say = unsaid) -> Int32[np.ndarray, "h w"]:
     """A label picture as 0..n-1, each of them present, in the order of its grey values, palette indices or colours.
 
     Raises: PictureError as `read_picture`, or if it holds too many labels to be a label picture.
     """
-    return labels_of(_read(path, indices=True), str(path))
+    return labels_of(_read(path, say, indices=True), str(path))
 
 
 def labels_of(values: np.ndarray, name: str) -> Int32[np.ndarray, "h w"]:
@@ -105,15 +120,20 @@ def labels_of(values: np.ndarray, name: str) -> Int32[np.ndarray, "h w"]:
     return labels.reshape(values.shape).astype(np.int32)
 
 
-def _read(path: Path, indices: bool = False) -> np.ndarray:
+def _read(path: Path, say: Say, indices: bool = False) -> np.ndarray:
     """The raw values of any file that holds an array; `indices` keeps those of a palette."""
-    data = _read_bytes(path)
+    return values_of(path, bytes_of(path), say, indices)
+
+
+def values_of(path: Path, data: bytes, say: Say, indices: bool = False) -> np.ndarray:
+    """The array that a file of these bytes holds. Raises: PictureError."""
     if path.suffix.lower() in (".npy", ".npz"):
         return _array(path, data)
-    return _picture(path, data, indices)
+    return decode(path, data, indices, say)
 
 
-def _read_bytes(path: Path) -> bytes:
+def bytes_of(path: Path) -> bytes:
+    """The whole of a file. Raises: PictureError, with the cure, where there is none or it cannot be read."""
     try:
         data = read_bytes(path)
     except (FileNotFoundError, NotADirectoryError) as error:
@@ -141,15 +161,30 @@ def _array(path: Path, data: bytes) -> np.ndarray:
         ) from error
 
 
-def _picture(path: Path, data: bytes, indices: bool) -> np.ndarray:
+def decode(path: Path, data: bytes, indices: bool = False, say: Say = unsaid, frame: int = 0) -> np.ndarray:
     """By Pillow, which says what is wrong with a file; by OpenCV where there are more bits than Pillow keeps."""
+    with _said_of(path):
+        return _decoded(path, data, indices, say, frame)
+
+
+def look_at(path: Path, data: bytes, look: Callable[["Image"], T]) -> T:
+    """What is to be seen in a file before its pixels are decoded."""
+    from PIL import Image
+
+    with _said_of(path), Image.open(BytesIO(data), formats=FORMATS) as image:
+        return look(image)
+
+
+@contextmanager
+def _said_of(path: Path) -> Generator[None]:
+    """Whatever is wrong with a file becomes a PictureError."""
     from PIL import Image, UnidentifiedImageError
 
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of tags that it passes over
             warnings.simplefilter("error", Image.DecompressionBombWarning)
-            return _decoded(path, data, indices)
+            yield
     except UnidentifiedImageError as error:
         raise PictureError(
             f"{path}: is not a picture that this program can read; use PNG, JPEG, TIFF, PFM or NPY"
@@ -170,11 +205,11 @@ def _too_large(path: Path, why: object) -> PictureError:
     return PictureError(f"{path}: {why}; make it smaller first")
 
 
-def _decoded(path: Path, data: bytes, indices: bool) -> np.ndarray:
+def _decoded(path: Path, data: bytes, indices: bool, say: Say, frame: int) -> np.ndarray:
     from PIL import Image, UnidentifiedImageError
 
     if data[:4] in TIFF:
-        check_size(*_tiff_size(data))  # Pillow does not look at tiles, which may be larger than the picture
+        check_size(*tiff_size(data))  # Pillow does not look at tiles, which may be larger than the picture
     try:
         image = Image.open(BytesIO(data), formats=FORMATS)
     except UnidentifiedImageError:
@@ -182,10 +217,17 @@ def _decoded(path: Path, data: bytes, indices: bool) -> np.ndarray:
             raise
         return _picture_by_opencv(path, data)
     with image:
+        if (count := count_pictures(image)) > 1 and not frame:
+            say(f"{path.name} holds {count} pictures, of which the first is taken{_cure(image)}")
+        image.seek(frame)
         check_size((image.height, image.width, len(image.getbands())), 4)
         image.load()
         values = _picture_by_opencv(path, data) if _is_deep_colour(image, data) else _values(image, indices)
-        return np.ascontiguousarray(_upright(values, _orientation(image)))
+        return np.ascontiguousarray(upright(values, orientation(image)))
+
+
+def _cure(image: "Image") -> str:
+    return "; for both views write `stereo:`" if image.format == "MPO" else ""
 
 
 def _is_deep_colour(image: "Image", data: bytes) -> bool:
@@ -209,7 +251,8 @@ def _values(image: "Image", indices: bool) -> np.ndarray:
     return np.asarray(image.convert("L" if mode == "1" else "RGBA" if image.has_transparency_data else "RGB"))
 
 
-def _orientation(image: "Image") -> int:
+def orientation(image: "Image") -> int:
+    """What EXIF says of how the camera was held; 1 where it says nothing that can be read."""
     try:
         return image.getexif().get(_ORIENTATION, 1)
     except Exception as error:  # noqa: BLE001 - a picture is worth more than its damaged tags
@@ -217,7 +260,7 @@ def _orientation(image: "Image") -> int:
         return 1
 
 
-def _upright(values: np.ndarray, orientation: int) -> np.ndarray:
+def upright(values: np.ndarray, orientation: int) -> np.ndarray:
     """Source: EXIF 2.3, tag 0x0112: where the picture's first row and column belong."""
     if orientation in (5, 6, 7, 8):
         values = values.swapaxes(0, 1)
@@ -253,29 +296,3 @@ def _png_size(data: bytes) -> tuple[Shape, int]:
     """Shape and bytes a value at most, by the first chunk."""
     width, height = struct.unpack_from(">II", data, 16)
     return (height, width, 4), 2
-
-
-def _tiff_size(data: bytes) -> tuple[Shape, int]:
-    """Shape and bytes a value, by the tags of the first directory: the largest, where a tag is there twice.
-
-    Source: TIFF 6.0, section 2 and 15 (tiles, which are decoded whole); BigTIFF, whose numbers have 8 bytes.
-    """
-    order, big = "<" if data[:2] == b"II" else ">", b"+" in data[2:4]
-    first, many, place = ("Q", "Q", "Q") if big else ("I", "H", "I")
-    (at,) = struct.unpack_from(order + first, data, 8 if big else 4)
-    (count,) = struct.unpack_from(order + many, data, at)
-    if count > MOST_TAGS:
-        raise ValueError(f"its directory has {count} tags")
-    at += struct.calcsize(many)
-    said = {256: 1, 257: 1, 258: 1, 277: 1, 322: 1, 323: 1}
-    for _ in range(count):
-        tag, kind, number = struct.unpack_from(f"{order}HH{place}", data, at)
-        at += struct.calcsize(f"{order}HH{place}")
-        if tag in said:
-            values = f"{order}{min(number, MOST_SAMPLES)}{TAG_TYPES[kind]}"
-            short = struct.calcsize(values) <= struct.calcsize(place)
-            found = struct.unpack_from(values, data, at if short else struct.unpack_from(order + place, data, at)[0])
-            said[tag] = max(said[tag], *found)
-        at += struct.calcsize(place)
-    rows, columns = max(said[257], said[323]), max(said[256], said[322])
-    return (rows, columns, said[277]), -(-said[258] // 8)

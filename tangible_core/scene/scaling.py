@@ -1,36 +1,96 @@
-"""Views at a size that can be felt, and what is found in them at the size of the pictures again."""
+"""Pictures and maps at a size that can be felt, and what is found in them at the size of the pictures again."""
 
 import numpy as np
+from jaxtyping import Bool, Float32
 
 from ..data import DisparityMap, SegmentMap, Views
 from ..runtime.opencv import plain_opencv
 
 
-def felt_factor(columns: int, width_m: float, finest_m: float) -> int:
+def felt_factor(columns: int, width_m: float, finest_m: float) -> float:
     """By how much a picture of so many columns can be reduced before a pixel is wider than finest_m; at least 1.
 
-    >>> felt_factor(6000, 0.08, 3e-5), felt_factor(741, 0.08, 3e-5)
-    (2, 1)
+    In steps of a half, so that a new pixel is a mean of whole and half ones.
+
+    >>> felt_factor(6000, 0.08, 3e-5), felt_factor(4032, 0.08, 3e-5), felt_factor(741, 0.08, 3e-5)
+    (2.0, 1.5, 1)
     """
-    return max(1, int(finest_m * columns / width_m))
+    return max(1, int(2 * finest_m * columns / width_m) / 2)
 
 
-def reduced(views: Views, factor: int) -> Views:
+def reduced_shape(shape: tuple[int, int], factor: float) -> tuple[int, int]:
+    """Rows and columns of what is reduced to 1/factor; at least one of each."""
+    rows, columns = (max(1, round(side / factor)) for side in shape)
+    return rows, columns
+
+
+def reduced(views: Views, factor: float) -> Views:
     """Views of 1/factor of the size, each pixel a mean over its area; without calibration, whose pixels are others."""
     if factor == 1:
         return views
-    rows, columns = (max(1, round(side / factor)) for side in views.shape)
+    rows, columns = reduced_shape(views.shape, factor)
     right = None if views.right is None else _mean(views.right, rows, columns)
     return Views(_mean(views.left, rows, columns), right)
 
 
-def enlarged(disparity: DisparityMap, shape: tuple[int, int]) -> DisparityMap:
-    """The disparity of reduced views for views of (h, w), in their pixels; between pixels it is linear."""
+def reduced_map(values: Float32[np.ndarray, "h w"], shape: tuple[int, int]) -> Float32[np.ndarray, "r c"]:
+    """A smaller map of (r, c), each value a mean of what is known in its area; NaN where that is less than half."""
+    if values.shape == shape:
+        return values
+    known = np.isfinite(values)
+    if known.all():
+        return _mean(values, *shape)
+    size = np.float32(np.abs(values[known]).max(initial=0)) or np.float32(1)  # divided out: sums stay finite
+    share = _mean(known.astype(np.float32), *shape)
+    sums = _mean(np.where(known, values / size, np.float32(0)), *shape)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(share >= 0.5, sums / share * size, np.float32(np.nan))
+
+
+def reduced_mask(known: Bool[np.ndarray, "h w"], shape: tuple[int, int]) -> Bool[np.ndarray, "r c"]:
+    """A smaller mask of (r, c), where at least half of an area is."""
+    return known if known.shape == shape else _mean(known.astype(np.float32), *shape) >= 0.5
+
+
+def reduced_disparity(disparity: DisparityMap, shape: tuple[int, int]) -> DisparityMap:
+    """The disparity of the pictures, in their pixels still, on a coarser grid of (r, c)."""
     if disparity.disparity_px.shape == shape:
         return disparity
-    scale = shape[1] / disparity.disparity_px.shape[1] if disparity.unit == "px" else 1.0
-    values = _resized(disparity.disparity_px, shape) * np.float32(scale)
-    return DisparityMap(values, _resized(disparity.confidence, shape), disparity.unit)
+    values = reduced_map(disparity.disparity_px, shape)
+    return DisparityMap(values, _mean(disparity.confidence, *shape), disparity.unit)
+
+
+def reduced_segments(segments: SegmentMap, shape: tuple[int, int]) -> SegmentMap:
+    """The segments of the pictures on a coarser grid of (r, c): of the middle pixels, but none is lost."""
+    whole = segments.labels
+    if whole.shape == shape:
+        return segments
+    rows, columns = (np.arange(new) * old // new + old // new // 2 for new, old in zip(shape, whole.shape, strict=True))
+    labels = whole[np.ix_(rows, columns)]
+    for lost in np.setdiff1d(np.arange(segments.count), labels):
+        row, column = np.argwhere(whole == lost)[0]
+        labels[row * shape[0] // whole.shape[0], column * shape[1] // whole.shape[1]] = lost
+    return SegmentMap(labels, _mean(segments.confidence, *shape))
+
+
+def in_pixels_of(disparity: DisparityMap, columns: int) -> DisparityMap:
+    """The disparity of reduced views, on their grid, in pixels of the pictures, which have so many columns."""
+    if disparity.unit != "px" or disparity.disparity_px.shape[1] == columns:
+        return disparity
+    scale = np.float32(columns / disparity.disparity_px.shape[1])
+    return DisparityMap(disparity.disparity_px * scale, disparity.confidence, disparity.unit)
+
+
+def on_grid(disparity: DisparityMap, shape: tuple[int, int]) -> DisparityMap:
+    """The same disparity on a finer grid of (h, w); between its places it is linear."""
+    if disparity.disparity_px.shape == shape:
+        return disparity
+    return DisparityMap(_resized(disparity.disparity_px, shape), _resized(disparity.confidence, shape), disparity.unit)
+
+
+def enlarged(disparity: DisparityMap, shape: tuple[int, int]) -> DisparityMap:
+    """The disparity of reduced views for views of (h, w), in their pixels; between pixels it is linear."""
+    return on_grid(in_pixels_of(disparity, shape[1]), shape)
 
 
 def enlarged_segments(segments: SegmentMap, shape: tuple[int, int]) -> SegmentMap:

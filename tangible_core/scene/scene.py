@@ -1,6 +1,7 @@
 """What there is to feel: a pair of views, a photo or a height map, from files, from arrays or built in."""
 
-from collections.abc import Mapping
+import logging
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
@@ -12,17 +13,25 @@ from numpy.typing import ArrayLike
 from pydantic import ValidationError
 
 from ..data import Calibration, DisparityMap, Record, SegmentMap, Views
-from ..data.pictures import fill_non_finite
+from ..data.pictures import fill_non_finite, filled, opaque
 from ..errors import ConfigError, PictureError
+from .frames import Say, unsaid
+from .framing import framed
 from .geometry import Holes, scale_heights
+from .pair_files import Layout, halves, read_pair
+from .phone_depth import read_phone_depth
 from .picture_files import NonFinite, labels_of, map_of, picture_of, read_labels, read_map, read_picture
 from .rig import StereoRig, turned
 from .rig_files import read_rig
+from .scaling import felt_factor, reduced_map, reduced_shape
 from .scene_files import BUILTINS, SceneFiles, unknown_scene
 
+log = logging.getLogger(__name__)
+
 File = str | PathLike[str]
-_PICTURES = {"left", "right", "photo"}
+_PICTURES = {"left", "right", "photo", "stereo"}
 _READERS = {"height": read_map, "disparity": read_map, "segments": read_labels, "truth": read_map}
+_PHONE_DEPTH = "phone depth"
 _CONVERTERS = {"height": map_of, "disparity": map_of, "segments": labels_of, "truth": map_of}
 
 
@@ -48,6 +57,10 @@ class Scene:
     """True disparity in pixels, NaN where unknown."""
     known: Bool[np.ndarray, "h w"] | None = None
     """Where the left view or the photo is; None for everywhere."""
+    shown: Bool[np.ndarray, "h w"] | None = None
+    """Where the left view or the photo is opaque: elsewhere lies flat ground; None for everywhere."""
+    notes: tuple[str, ...] = ()
+    """What was noticed while it was read."""
     files: str | SceneFiles | None = None
     """The builtin name, or the files with absolute paths, that it was read from; None if any of it was an array."""
 
@@ -57,6 +70,7 @@ class Scene:
         *,
         left: File | ArrayLike | None = None,
         right: File | ArrayLike | None = None,
+        stereo: File | ArrayLike | None = None,
         photo: File | ArrayLike | None = None,
         height: File | ArrayLike | None = None,
         disparity: File | ArrayLike | None = None,
@@ -65,16 +79,24 @@ class Scene:
         calibration: Calibration | None = None,
         rig: "StereoRig | File | None" = None,
         relief_m: float | None = None,
+        layout: Layout | None = None,
+        photo_depth: bool = True,
+        crop: Sequence[int] | None = None,
+        rotate: int = 0,
+        invert: bool = False,
+        nodata: float | Sequence[float] | None = None,
+        clip: Sequence[float] | None = None,
         non_finite: NonFinite = "error",
         name: str = "",
     ) -> Self:
         """A scene of files and arrays: left and right, or a photo, or heights; the meanings are those of `SceneFiles`.
 
+        What is transparent in a picture with a fourth channel is no part of the scene.
         Pictures are (h, w) or (h, w, 3|4), uint8, uint16, bool or float (white is 1). All are of one size.
         Raises: ConfigError for parts that make no scene, PictureError for one that cannot be read or is no picture.
         """
         parts: dict[str, Any] = {
-            "left": left, "right": right, "photo": photo, "height": height,
+            "left": left, "right": right, "stereo": stereo, "photo": photo, "height": height,
             "disparity": disparity, "segments": segments, "truth": truth, "rig": rig,
         }  # fmt: skip
         parts = {part: value for part, value in parts.items() if value is not None}
@@ -85,17 +107,21 @@ class Scene:
         }
         files = _checked(
             paths | {part: Path(f"the array given as {part}") for part in parts.keys() - paths.keys()},
-            calibration, relief_m, non_finite,
+            calibration,
+            {"relief_m": relief_m, "layout": layout, "photo_depth": photo_depth, "crop": crop, "rotate": rotate,
+             "invert": invert, "nodata": nodata, "clip": clip, "non_finite": non_finite},
         )  # fmt: skip
         if paths.keys() == parts.keys():
             return cls._read(name or str(paths[files.main]), files, Path(), files)
         cameras = _rig(paths["rig"], files).cameras if "rig" in paths else rig
-        held = {
-            part: _read(part, paths[part], files) if part in paths else _converted(part, np.asarray(value), files)
-            for part, value in sorted(parts.items(), key=lambda each: each[0] != files.main)
-            if part != "rig"
-        }
-        return cls._made(name or "arrays", files, held, None, cast("StereoRig | None", cameras))
+        said: list[str] = []
+        held: dict[str, np.ndarray] = {}
+        for part, value in sorted(parts.items(), key=lambda each: each[0] != files.main):
+            if part in paths and part != "rig":
+                held |= _read(part, paths[part], files, said.append)
+            elif part != "rig":
+                held |= _converted(part, np.asarray(value), files)
+        return cls._made(name or "arrays", files, held, None, said, cast("StereoRig | None", cameras))
 
     @classmethod
     def builtin(cls, name: str) -> Self:
@@ -122,12 +148,15 @@ class Scene:
     def _read(cls, name: str, files: SceneFiles, folder: Path, origin: "str | SceneFiles") -> Self:
         paths = {part: folder / path.expanduser() for part, path in files if isinstance(path, Path)}
         rig = _rig(paths.pop("rig"), files) if "rig" in paths else None
-        held = {part: _read(part, path, files) for part, path in paths.items()}
+        said: list[str] = []
+        held: dict[str, np.ndarray] = {}
+        for part, path in paths.items():
+            held |= _read(part, path, files, said.append)
         if rig is not None and rig.size not in (None, held[files.main].shape[1::-1]):
             raise PictureError(
                 f"{paths[files.main]} is not {rig.size[0]} x {rig.size[1]}, the size that the rig was calibrated for"
             )
-        return cls._made(name, files.model_copy(update=paths), held, origin, rig and rig.cameras)
+        return cls._made(name, files.model_copy(update=paths), held, origin, said, rig and rig.cameras)
 
     @classmethod
     def _made(
@@ -136,49 +165,70 @@ class Scene:
         files: SceneFiles,
         held: dict[str, np.ndarray],
         origin: "str | SceneFiles | None",
+        said: list[str],
         rig: StereoRig | None = None,
     ) -> Self:
+        if files.stereo is not None:
+            files = files.model_copy(update={"left": files.stereo, "right": files.stereo, "stereo": None})
         _check_sizes(files, held)
+        held = framed(held, files)
+        shown = None if files.height else _cut_out(held, files, said.append)
         masked = files.non_finite == "mask" and files.main in _PICTURES
-        known = _fill(held, files.main) if masked else None
+        known = _both(_fill(held, files.main) if masked else None, shown)
         views = None if files.height else Views(held[files.main], held.get("right"), files.calibration)
         if rig is not None and views is not None:
             views, known = turned(views, rig)
+            shown = None
+        for each in said:
+            log.info("%s", each)
         return cls(
             name=name,
             views=views,
-            disparity=DisparityMap(held["disparity"]) if "disparity" in held else None,
+            disparity=_disparity(held),
             segments=SegmentMap(held["segments"]) if "segments" in held else None,
             height=_frozen(held.get("height")),
             relief_m=files.relief_m,
             truth=_frozen(held.get("truth")),
             known=_frozen(known),
+            shown=_frozen(shown),
+            notes=tuple(said),
             files=origin,
         )
 
-    def brings(self, width_m: float, relief_m: float, holes: Holes = "fill") -> dict[str, Record]:
+    @property
+    def shape(self) -> tuple[int, int]:
+        """(h, w) of the pictures, or of the heights. Raises: PictureError if it has neither."""
+        if self.views is not None:
+            return self.views.shape
+        if self.height is None:
+            raise PictureError(f"the scene {self.name} has neither a picture nor heights")
+        rows, columns = self.height.shape
+        return rows, columns
+
+    def brings(self, width_m: float, relief_m: float, holes: Holes = "fill", finest_m: float = 0) -> dict[str, Record]:
         """The products that need not be made, by name; heights become a relief of this size.
 
-        relief_m: where the scene says none. holes: what becomes of unknown heights.
+        relief_m: where the scene says none. holes: what becomes of unknown heights. finest_m: heights on a finer grid
+        are reduced to it; 0 keeps them all.
         Raises: GeometryError for heights that are unknown everywhere.
         """
         relief = None
         if self.height is not None:
-            relief = scale_heights(self.height, width_m, self.relief_m or relief_m, holes)
+            factor = felt_factor(self.height.shape[1], width_m, finest_m)
+            height = reduced_map(self.height, reduced_shape(self.shape, factor))
+            relief = scale_heights(height, width_m, self.relief_m or relief_m, holes)
         found = {"views": self.views, "relief": relief, "disparity": self.disparity, "segments": self.segments}
         return {product: record for product, record in found.items() if record is not None}
 
 
-def _checked(
-    paths: Mapping[str, Path], calibration: Calibration | None, relief_m: float | None, non_finite: NonFinite
-) -> SceneFiles:
+def _checked(paths: Mapping[str, Path], calibration: Calibration | None, options: Mapping[str, Any]) -> SceneFiles:
     """The parts of a scene as files. Raises: ConfigError if they make none."""
     cameras: dict[str, float] = {}
     if calibration is not None:
         cameras = {"focal_px": calibration.focal_px, "baseline_m": calibration.baseline_m}
         cameras |= {"offset_px": calibration.offset_px} if calibration.offset_px else {}
     try:
-        return SceneFiles.model_validate({**paths, **cameras, "relief_m": relief_m, "non_finite": non_finite})
+        return SceneFiles.model_validate({**paths, **cameras, **options})
     except ValidationError as error:
         raise ConfigError(
             *(f"{'.'.join(['scene', *map(str, each['loc'])])}: {each['msg']}" for each in error.errors())
@@ -196,16 +246,32 @@ def _rig(path: Path, files: SceneFiles) -> _Rig:
     return _Rig(*read_rig(path, files.rig_unit_m or 1.0))
 
 
-def _read(part: str, path: Path, files: SceneFiles) -> np.ndarray:
-    return read_picture(path, files.non_finite) if part in _PICTURES else _READERS[part](path)
+def _read(part: str, path: Path, files: SceneFiles, say: Say = unsaid) -> dict[str, np.ndarray]:
+    """What a file of a scene holds, by what it is: two views, or a photo and its depth, or what it was given for."""
+    if part == "stereo":
+        return read_pair(path, files.layout, files.non_finite, say)._asdict()
+    if part not in _PICTURES:
+        return {part: _READERS[part](path, say)}
+    picture = read_picture(path, files.non_finite, say)
+    depth = None
+    if part == "photo" and files.photo_depth and files.disparity is None:
+        depth = read_phone_depth(path, (picture.shape[0], picture.shape[1]), say)
+    return {part: picture} if depth is None else {part: picture, _PHONE_DEPTH: depth}
 
 
-def _converted(part: str, values: np.ndarray, files: SceneFiles) -> np.ndarray:
+def _converted(part: str, values: np.ndarray, files: SceneFiles) -> dict[str, np.ndarray]:
     """A copy, as what it was given for."""
     name = str(getattr(files, part))
-    if part in _PICTURES:
-        return picture_of(values.copy(), name, files.non_finite)
-    return _CONVERTERS[part](values.copy(), name)
+    if part not in _PICTURES:
+        return {part: _CONVERTERS[part](values.copy(), name)}
+    picture = picture_of(values.copy(), name, files.non_finite)
+    return halves(picture, files.layout, name)._asdict() if part == "stereo" else {part: picture}
+
+
+def _disparity(held: Mapping[str, np.ndarray]) -> DisparityMap | None:
+    if _PHONE_DEPTH in held:
+        return DisparityMap(held[_PHONE_DEPTH], unit="relative")
+    return DisparityMap(held["disparity"]) if "disparity" in held else None
 
 
 def _scikit_image_data() -> Path:
@@ -235,6 +301,30 @@ def _fill(held: dict[str, np.ndarray], main: str) -> np.ndarray | None:
     for name in held.keys() & _PICTURES:
         held[name], known[name] = fill_non_finite(held[name])
     return None if known[main].all() else known[main]
+
+
+def _cut_out(held: dict[str, np.ndarray], files: SceneFiles, say: Say) -> np.ndarray | None:
+    """Take the fourth channel from the pictures and fill what it hides; where the main one is opaque, or None.
+
+    Raises: PictureError if all of it is transparent.
+    """
+    shown: dict[str, np.ndarray] = {}
+    for name in [each for each in held if each in _PICTURES and held[each].shape[2:] == (4,)]:
+        shown[name] = opaque(held[name])
+        if not shown[name].any():
+            raise PictureError(f"{getattr(files, name)}: all of the picture is transparent; there is nothing to feel")
+        held[name] = np.ascontiguousarray(held[name][..., :3])
+        if not shown[name].all():
+            held[name] = filled(held[name], shown[name])
+    main = shown.get(files.main)
+    if main is None or main.all():
+        return None
+    say(f"{100 * (1 - main.mean()):.0f} % of {Path(getattr(files, files.main)).name} is transparent: flat ground")
+    return main
+
+
+def _both(one: np.ndarray | None, other: np.ndarray | None) -> np.ndarray | None:
+    return other if one is None else one if other is None else one & other
 
 
 def _frozen(values: np.ndarray | None) -> np.ndarray | None:

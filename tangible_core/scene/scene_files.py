@@ -8,19 +8,26 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from ..data import Calibration
 from ..errors import did_you_mean, quoted
+from .pair_files import Layout
 from .picture_files import NonFinite
 
 Length = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+Start = Annotated[int, Field(ge=0)]
+Count = Annotated[int, Field(ge=1)]
+Percent = Annotated[float, Field(ge=0, le=100, allow_inf_nan=False)]
+Number = Annotated[float, Field(allow_inf_nan=False)]
 
 _NEEDS = {
     **{"focal_px": "baseline_m", "baseline_m": "focal_px", "offset_px": "focal_px"},
-    **{"relief_m": "height", "rig": "left", "rig_unit_m": "rig"},
+    **{"relief_m": "height", "rig": "left", "rig_unit_m": "rig", "nodata": "height", "layout": "stereo"},
 }
+_ALONE = ("rotate", "invert", "clip")
 _OF_VIEWS = ("disparity", "truth", "focal_px", "baseline_m", "offset_px")
 
 
 class SceneFiles(BaseModel):
-    """A scene in files: a pair (left and right), one photo, or a height map. Relative paths start at the YAML file."""
+    """A scene in files: a pair (left and right, or both in one file, stereo), one photo, or a height map. Relative
+    paths start at the YAML file."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
@@ -28,8 +35,16 @@ class SceneFiles(BaseModel):
     """Left view of a rectified pair."""
     right: Path | None = None
     """Right view of a rectified pair, of the same size."""
+    stereo: Path | None = None
+    """A rectified pair in one file: two halves of a picture, a .jps file, or the two pictures of an .mpo file."""
+    layout: Layout | None = None
+    """How the halves of `stereo` lie: `side-by-side`, the left view on the left; `cross-eyed`, the left view on the
+    right; `top-bottom`, the left view on top. When left out, as the file says, and otherwise side-by-side (.jps:
+    cross-eyed)."""
     photo: Path | None = None
     """A single picture."""
+    photo_depth: bool = True
+    """Whether the depth that a phone kept in the photo is taken, where there is one; no depth is estimated then."""
     height: Path | None = None
     """A height map in any unit, larger values standing higher: a grey picture, .npy, .pfm or .tif. No depth is
     estimated."""
@@ -54,17 +69,33 @@ class SceneFiles(BaseModel):
     relief_m: Length | None = None
     """Height of the relief made from a height map; by default that of `workspace`."""
 
+    crop: tuple[Start, Start, Count, Count] | None = None
+    """The part that is felt, [x, y, width, height] in pixels of the upright picture, x and y from its upper left
+    corner. All files of the scene are cropped alike; points of materials count from the part's corner."""
+    rotate: Literal[0, 90, 180, 270] = 0
+    """Turn a photo or a height map so many degrees clockwise, after cropping."""
+    invert: bool = False
+    """Turn light and dark of a photo round, or high and low of a height map."""
+    nodata: Number | tuple[Number, ...] | None = None
+    """Values of a height map that mean that nothing is known there, such as -9999. One that the file states itself
+    (GDAL's tag of a GeoTIFF) needs no mention."""
+    clip: tuple[Percent, Percent] | None = None
+    """Percentiles between which a photo's brightness or a map's heights are kept, such as [1, 99]: what lies beyond
+    becomes the nearer of them, so that a few spikes do not take up the whole relief."""
     non_finite: NonFinite = "error"
     """What to do with NaN and infinity in a picture. `error`: stop, and name the first such pixel. `mask`: fill from
     the nearest pixel, and leave the disparity unknown and the segment's confidence 0 there."""
 
     @model_validator(mode="after")
     def _one_scene(self) -> Self:
-        given = [name for name, value in self if isinstance(value, Path | float)]
-        kinds = [kind for kind in (("left", "right"), ("photo",), ("height",)) if set(kind) & set(given)]
+        given = [name for name, value in self if isinstance(value, Path | float | str) and name != "non_finite"]
+        given += ["nodata"] if isinstance(self.nodata, tuple) else []
+        kinds = [kind for kind in (("left", "right"), ("stereo",), ("photo",), ("height",)) if set(kind) & set(given)]
         if len(kinds) != 1 or not set(kinds[0]) <= set(given):
             named = ", ".join(given) or "nothing"
-            raise ValueError(f"a scene is either left and right, or photo, or height; this one gives {named}")
+            raise ValueError(
+                f"a scene is stereo, or either left and right, or photo, or height; this one gives {named}"
+            )
         for name, other in _NEEDS.items():
             if name in given and other not in given:
                 raise ValueError(f"{name} needs {other} beside it")
@@ -72,12 +103,24 @@ class SceneFiles(BaseModel):
             raise ValueError(f"rig says what the cameras are, and turns the pictures; leave out {', '.join(idle)}")
         if idle := self.height and [name for name in given if name in _OF_VIEWS]:
             raise ValueError(f"height already gives all heights; leave out {', '.join(idle)}")
+        self._check_framing()
         return self
 
+    def _check_framing(self) -> None:
+        """Raises: ValueError for what cannot be done with this kind of scene."""
+        if self.clip is not None and not self.clip[0] < self.clip[1]:
+            raise ValueError(f"clip is [low, high] with low < high, not {list(self.clip)}")
+        if self.main in ("left", "stereo") and (idle := [name for name in _ALONE if getattr(self, name)]):
+            raise ValueError(
+                f"{' and '.join(idle)} is for a photo or a height map: the rows of a pair's views belong together"
+            )
+        if self.rig and self.crop:
+            raise ValueError("rig is for whole pictures; leave out crop")
+
     @property
-    def main(self) -> Literal["left", "photo", "height"]:
+    def main(self) -> Literal["left", "stereo", "photo", "height"]:
         """The field that says what kind of scene this is, and whose size the others share."""
-        return "left" if self.left else "photo" if self.photo else "height"
+        return "left" if self.left else "stereo" if self.stereo else "photo" if self.photo else "height"
 
     @property
     def calibration(self) -> Calibration | None:

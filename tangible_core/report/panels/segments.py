@@ -33,7 +33,7 @@ def draw_segments(
     kinds = {name: kind for kind, name in enumerate(dict.fromkeys(names))}
     labels = _drawn_size(segments.labels)
     kind_of = np.array([kinds[name] for name in names])[labels]
-    grey = np.ones(labels.shape, np.float32) if views is None else _drawn_size(to_grey(views.left))
+    grey = np.ones(labels.shape, np.float32) if views is None else _grey(views.left, segments.labels.shape)
     _draw_regions(axes, grey, labels, kind_of)
     _write_names(axes, labels, names)
     _draw_legend(axes, list(kinds), np.bincount(kind_of.ravel(), minlength=len(kinds)) / kind_of.size)
@@ -46,8 +46,14 @@ def _count(number: int, noun: str) -> str:
     return f"{number} {noun}{'s' * (number != 1)}"
 
 
+def _grey(picture: np.ndarray, shape: tuple[int, ...]) -> Float[np.ndarray, "h w"]:
+    """The picture beneath segments of (h, w), which may be coarser, as it is drawn."""
+    rows, columns = (np.arange(new) * old // new for new, old in zip(shape, picture.shape, strict=False))
+    return to_grey(_drawn_size(picture if picture.shape[:2] == shape else picture[np.ix_(rows, columns)]))
+
+
 def _drawn_size(map_: np.ndarray) -> np.ndarray:
-    times = max(1, SIDE_PX // max(map_.shape))
+    times = max(1, SIDE_PX // max(map_.shape[:2]))
     return np.repeat(np.repeat(thinned(map_, SIDE_PX), times, axis=0), times, axis=1)
 
 

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
 from hostile import npy_header, npz, npz_bomb
-from tangible_core.files.arrays import Archive, read_array
+from tangible_core.files.arrays import Archive, read_array, write_arrays
 from tangible_core.files.reading import MOST_BYTES, TooLargeError
 
 ONE = npy_header((2, 3)) + np.arange(6.0).tobytes()
@@ -201,3 +201,17 @@ def test_any_damage_is_a_reason_or_an_array(data):
         assert isinstance(read_array(io.BytesIO(bytes(whole))), np.ndarray)
     except ValueError as error:
         assert str(error).isprintable()
+
+
+def test_what_shrinks_is_compressed_and_what_does_not_is_stored():
+    noise = np.random.default_rng(0).random((300, 400), np.float32)
+    labels = np.repeat(np.arange(4, dtype=np.int32), 30_000).reshape(300, 400)
+    held, file = {"heights": noise, "labels": labels, "few": np.zeros(9), "one": np.array(2)}, io.BytesIO()
+    write_arrays(file, held)
+    sizes = {each.filename: each.compress_size for each in zipfile.ZipFile(file).infolist()}
+    assert sizes["labels.npy"] < labels.nbytes / 50
+    assert sizes["heights.npy"] > noise.nbytes
+    file.seek(0)
+    for name, found in np.load(file).items():  # by NumPy itself
+        np.testing.assert_array_equal(found, held[name], strict=True)
+    assert Archive(file).read(["labels"])["labels"].tolist() == labels.tolist()

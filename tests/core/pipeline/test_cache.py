@@ -201,7 +201,7 @@ def test_a_full_disk_leaves_nothing_behind(tmp_path: Path, monkeypatch: pytest.M
     def full(*_: object, **__: object):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(np, "savez", full)
+    monkeypatch.setattr(np.lib.format, "write_array", full)
     Cache(tmp_path).put("k", RECORDS[1])
     assert "No space left" in caplog.text
     assert list(tmp_path.iterdir()) == []

@@ -349,6 +349,53 @@ def test_a_photo_finer_than_can_be_felt_is_segmented_smaller_and_it_is_said(fold
     assert "of the size" not in "".join(each.why for each in whole.outcomes)
 
 
+class TestFelt:
+    """Thirty columns of 1 mm, of which 2 mm are felt."""
+
+    COARSE = Workspace(width_m=0.03, relief_m=0.01, finest_m=0.002)
+
+    def test_what_is_felt_is_as_coarse_and_as_large_in_metres(self, folder: Path):
+        surface = pipeline(folder, workspace=self.COARSE).make("surface")
+        assert surface.height_m.shape == surface.labels.shape == (10, 15)
+        assert surface.extent_m == (0.03, 0.02)
+        assert surface.labels.tolist() == [[0] * 7 + [1] * 8] * 10
+        whole = pipeline(folder, workspace=Workspace(width_m=0.03, relief_m=0.01, finest_m=0)).make("surface")
+        assert whole.height_m.shape == whole.labels.shape == (20, 30)
+        pairs = whole.height_m.reshape(10, 2, 15, 2).mean(axis=(1, 3))
+        np.testing.assert_allclose(surface.height_m, pairs, atol=0.01 / 15)
+
+    def test_disparity_on_the_coarse_grid_is_in_pixels_of_the_picture(self, folder: Path):
+        found = pipeline(folder, workspace=self.COARSE).felt("disparity")
+        assert found.disparity_px.tolist() == [[2.0 * column for column in range(15)]] * 10
+
+    def test_what_a_scene_brings_at_full_size_is_felt_as_coarsely(self, folder: Path):
+        labels = np.zeros((20, 30), np.uint8)
+        labels[:, 20:], labels[3, 4] = 2, 1  # one is smaller than can be felt, and keeps its material
+        write_png(folder / "labels.png", labels)
+        files = {"segments": Path("labels.png"), "disparity": Path("heights.npy")}
+        pipe = pipeline(
+            folder,
+            scene=SceneFiles(photo=Path("left.png"), **files),
+            workspace=self.COARSE,
+            materials=MaterialChoice(rules=[{"at": [4, 3], "material": "sand"}], by={0: "ice", 2: "wood"}),
+        )
+        surface = pipe.make("surface")
+        assert [each.name for each in surface.materials] == ["ice", "sand", "wood"]
+        assert surface.labels.tolist() == [[0] * 2 + [int(row == 1)] + [0] * 7 + [2] * 5 for row in range(10)]
+        np.testing.assert_allclose(surface.height_m[0], np.linspace(0, 0.01, 15), atol=1e-8)
+        assert pipe.make("segments").labels.shape == (20, 30)
+
+    def test_heights_are_felt_as_coarsely_and_holes_stay_holes(self, folder: Path):
+        heights = np.tile(np.arange(30.0), (20, 1))
+        heights[4:6, 10:12], heights[8, 20] = np.nan, np.nan
+        np.save(folder / "torn.npy", heights)
+        parts = {"scene": SceneFiles(height=Path("torn.npy")), "texture": None}
+        surface = pipeline(folder, **parts, workspace=self.COARSE.model_copy(update={"holes": "cut"})).make("surface")
+        wanted = np.tile(np.linspace(0, 0.01, 15), (10, 1))
+        wanted[2, 5] = 0
+        np.testing.assert_allclose(surface.height_m, wanted, atol=0.0002)
+
+
 def test_what_is_not_finite_is_an_error_or_a_mask_as_asked_for(folder: Path):
     picture = np.random.default_rng(0).random((20, 30))
     np.save(folder / "whole.npy", picture)

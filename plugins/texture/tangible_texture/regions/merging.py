@@ -81,7 +81,8 @@ class _Graph:
                 own = self.beside[kept].get(far)
                 self.beside[kept][far] = border.joined(own) if own else border
         for far, border in self.beside[kept].items():
-            self.connect(kept, far, Border(*border))  # a new one, so that the pairs of the old area are void
+            if far in borders or self.reluctance(kept, far, border) >= 0:  # of the others, none depends on the area
+                self.connect(kept, far, Border(*border))  # a new one, so that the pairs of the old area are void
 
     def root(self, region: int) -> int:
         """The region that this one has become part of."""

@@ -1,0 +1,78 @@
+"""Files with several pictures in them: pages, frames of an animation, the two views of a stereo camera."""
+# pyright: reportUnknownMemberType=false
+# (Pillow leaves what it keeps of several pictures without types)
+
+import re
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
+
+Say = Callable[[str], None]
+"""Is told what was noticed in a file."""
+
+MOST_PAGES = 100
+"""Of a TIFF that are counted."""
+NOT_A_PAGE = 0b101
+"""Bits of a TIFF's NewSubfileType: a smaller copy, and a mask, of another page."""
+_SUBFILE, _MP_ENTRIES = 254, 0xB002  # tags of TIFF and of the Multi-Picture Format
+_MP_HEAD = re.compile(rb"MPF\0(?:II\*\0|MM\0\*)")
+
+
+def unsaid(_: str) -> None:
+    """Nobody listens."""
+
+
+def count_pictures(image: "Image") -> int:
+    """How many there are in a file that was opened; smaller copies, thumbnails and maps of gain are none.
+
+    The first one is the one that stands open afterwards.
+    """
+    try:
+        if image.format == "MPO":
+            return max(1, len(view_numbers(image)))
+        return _pages(image) if image.format == "TIFF" else int(getattr(image, "n_frames", 1))
+    except Exception:  # noqa: BLE001 - what is damaged behind the first one costs nothing
+        return 1
+    finally:
+        image.seek(0)
+
+
+def _pages(image: "Image") -> int:
+    pages = 1
+    for number in range(1, MOST_PAGES):
+        try:
+            image.seek(number)
+        except EOFError:
+            break
+        pages += not cast(Any, image).tag_v2.get(_SUBFILE, 0) & NOT_A_PAGE
+    return pages
+
+
+class Part(NamedTuple):
+    """A picture of a Multi-Picture file: what it is, and its bytes."""
+
+    kind: str
+    data: bytes
+
+
+def multi_pictures(image: "Image", data: bytes) -> list[Part]:
+    """The pictures of a Multi-Picture file (CIPA DC-007), the first one too; none of another file."""
+    if image.format != "MPO":
+        return []
+    found = _MP_HEAD.search(data)
+    start = found.end() - 4 if found else 0
+    entries = cast(Any, image).mpinfo[_MP_ENTRIES]
+    starts = [start + each["DataOffset"] if each["DataOffset"] else 0 for each in entries]
+    return [
+        Part(str(each["Attribute"]["MPType"]), data[at : at + each["Size"]])
+        for each, at in zip(entries, starts, strict=True)
+    ]
+
+
+def view_numbers(image: "Image") -> list[int]:
+    """Which pictures of a Multi-Picture file show the scene from several places, in their order."""
+    entries = cast(Any, image).mpinfo[_MP_ENTRIES]
+    kinds = [str(each["Attribute"]["MPType"]) for each in entries]
+    return [number for number, kind in enumerate(kinds) if "Disparity" in kind or "Multi-Angle" in kind]

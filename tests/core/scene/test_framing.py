@@ -1,0 +1,213 @@
+"""What of a picture is felt: crop, turn, invert, clip, no data, transparency."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from tangible_core import Pipeline, Scene, Workspace
+from tangible_core.errors import ConfigError, PictureError
+from tangible_depth.luminance import Luminance
+from tangible_texture.gradient import Gradient
+
+HEIGHTS = np.arange(12.0).reshape(3, 4)
+PHOTO = np.arange(36, dtype=np.uint8).reshape(3, 4, 3)
+
+
+class TestHeights:
+    def of(self, heights=HEIGHTS, **options) -> np.ndarray:
+        found = Scene.of(height=heights, **options).height
+        assert found is not None
+        return found
+
+    def test_a_part_counted_from_the_upper_left_corner(self):
+        assert self.of(crop=[1, 0, 3, 2]).tolist() == [[1, 2, 3], [5, 6, 7]]
+
+    def test_turned_clockwise_after_cropping(self):
+        assert self.of(rotate=90).tolist() == [[8, 4, 0], [9, 5, 1], [10, 6, 2], [11, 7, 3]]
+        assert self.of(rotate=270).tolist() == [[3, 7, 11], [2, 6, 10], [1, 5, 9], [0, 4, 8]]
+        assert self.of(crop=[1, 0, 2, 1], rotate=180).tolist() == [[2, 1]]
+
+    def test_high_becomes_low(self):
+        relief = Pipeline(Scene.of(height=HEIGHTS, invert=True), cached=False).relief.height_m
+        assert (relief[0, 0], relief[2, 3]) == (np.float32(0.02), 0)
+
+    @pytest.mark.parametrize("nodata", [-9999, [-9999, 1e20], -9999.0])
+    def test_no_data_is_unknown_and_no_depth_of_ten_kilometres(self, nodata):
+        torn = HEIGHTS.copy()
+        torn[1, 1] = -9999
+        found = self.of(torn, nodata=nodata)
+        assert np.isnan(found).tolist() == (torn == -9999).tolist()
+        assert np.nanmin(found) == 0
+
+    def test_a_value_that_32_bits_round_is_the_same_one(self):
+        lowest = float(np.finfo(np.float32).min)
+        assert np.isnan(self.of(np.array([[lowest, 0.1, 1]]), nodata=[-3.4028235e38, 0.1])).tolist() == [[1, 1, 0]]
+
+    def test_spikes_are_clipped(self):
+        spiked = np.linspace(0, 1, 1000).reshape(20, 50)
+        spiked[3, 3] = 1e6
+        found = self.of(spiked, clip=[1, 99])
+        assert found.max() == pytest.approx(0.99, abs=0.005)
+        assert found.min() == pytest.approx(0.01, abs=0.005)
+
+    def test_what_is_transparent_is_unknown(self):
+        grey = np.repeat(HEIGHTS.astype(np.uint8)[..., None], 4, axis=2)
+        grey[..., 3] = 255
+        grey[0, 3, 3] = 0
+        assert np.argwhere(np.isnan(self.of(grey))).tolist() == [[0, 3]]
+
+
+class TestPhotos:
+    def of(self, photo=PHOTO, **options) -> np.ndarray:
+        views = Scene.of(photo=photo, **options).views
+        assert views is not None
+        return views.left
+
+    def test_a_part_and_a_turn(self):
+        np.testing.assert_array_equal(self.of(crop=[1, 1, 2, 2], rotate=90), np.rot90(PHOTO[1:3, 1:3], -1))
+
+    def test_labels_and_disparity_are_cropped_and_turned_with_it(self):
+        labels = np.uint8([[0, 0, 0, 0], [0, 0, 7, 9], [0, 0, 7, 9]])
+        scene = Scene.of(photo=PHOTO, segments=labels, disparity=HEIGHTS, crop=[2, 1, 2, 2], rotate=90)
+        assert scene.segments is not None and scene.disparity is not None
+        assert scene.segments.labels.tolist() == [[1, 1], [2, 2]]
+        assert scene.disparity.disparity_px.tolist() == [[10, 6], [11, 7]]
+
+    @pytest.mark.parametrize(
+        ("photo", "inverted"),
+        [
+            (np.uint8([[0, 200]]), [[255, 55]]),
+            (np.uint16([[0, 65535]]), [[65535, 0]]),
+            (np.float32([[0.25, 1]]), [[0.75, 0]]),
+            (np.array([[True, False]]), [[False, True]]),
+        ],
+    )
+    def test_light_becomes_dark(self, photo, inverted):
+        found = self.of(photo, invert=True)
+        assert found.tolist() == inverted
+        assert found.dtype == photo.dtype
+
+    def test_brightness_is_kept_between_percentiles(self):
+        photo = np.linspace(50, 150, 1000).astype(np.uint8).reshape(20, 50)
+        photo[0, 0], photo[5, 5] = 0, 255
+        found = self.of(photo, clip=[5, 95])
+        assert (found.min(), found.max()) == (54, 145)
+
+    def test_what_cannot_be_seen_says_nothing_of_brightness(self):
+        photo = np.full((10, 10, 4), 100, np.uint8)
+        photo[0, 1:4, :3] = 110
+        photo[..., 3] = 255
+        photo[:9, :, 3] = 0
+        photo[:9, :, :3][photo[:9, :, :3] == 100] = 0
+        assert self.of(photo, clip=[1, 99]).min() == 100
+
+
+class TestTransparency:
+    """A disc cut out of a picture: half of it light, half dark, and white where nothing is seen."""
+
+    @pytest.fixture
+    def cut_out(self) -> np.ndarray:
+        y, x = np.mgrid[-1:1:64j, -1:1:64j]
+        picture = np.full((64, 64, 4), 255, np.uint8)
+        picture[..., :3] = np.where(x < 0, 40, 160)[..., None]
+        picture[x * x + y * y > 0.5] = (255, 255, 255, 0)
+        return picture
+
+    def test_nothing_lies_under_it_but_flat_ground_without_a_material_of_its_own(self, cut_out: np.ndarray):
+        hidden = cut_out[..., 3] == 0
+        pipeline = Pipeline(
+            Scene.of(photo=cut_out), depth=Luminance(), texture=Gradient(smallest_px=20), cached=False,
+            workspace=Workspace(width_m=0.05),
+        )  # fmt: skip
+        surface = pipeline.surface
+        assert np.all(surface.height_m[hidden] == 0)
+        assert surface.height_m[~hidden].max() == pytest.approx(0.02)
+        assert surface.labels is not None and surface.materials is not None
+        ground = len(surface.materials) - 1
+        assert np.array_equal(surface.labels == ground, hidden)
+        assert surface.materials[ground].name == "plain"
+        assert len(surface.materials) == 3
+        assert "transparent in the picture" in pipeline.materials.reasons[ground]
+        assert np.isnan(pipeline.disparity.disparity_px[hidden]).all()
+        [why] = [each.why for each in pipeline.outcomes if each.product == "views"]
+        assert why.endswith(f"{100 * hidden.mean():.0f} % of the array given as photo is transparent: flat ground")
+
+    def test_a_material_may_be_named_for_the_ground(self, cut_out: np.ndarray):
+        parts = {"depth": Luminance(), "texture": Gradient(smallest_px=20), "cached": False}
+        surface = Pipeline(Scene.of(photo=cut_out), **parts, materials={2: "ice"}).surface
+        assert [each.name for each in surface.materials] == ["plain", "plain", "ice"]
+
+    def test_another_outline_over_the_same_colours_is_not_answered_from_the_cache(self, cut_out: np.ndarray):
+        whole = cut_out.copy()
+        whole[..., 3] = 255
+        keys = [
+            Pipeline(Scene.of(photo=each), depth=Luminance(), cached=False).engine.key("relief")
+            for each in (cut_out, whole)
+        ]
+        assert keys[0] != keys[1]
+
+    def test_opaque_pictures_are_what_they_were_without_their_fourth_channel(self):
+        rgba = np.dstack([PHOTO, np.full(PHOTO.shape[:2], 128, np.uint8)])
+        scene = Scene.of(photo=rgba)
+        np.testing.assert_array_equal(scene.views.left, PHOTO)
+        assert scene.shown is None and scene.known is None
+
+    def test_a_picture_without_a_pixel_to_see(self):
+        with pytest.raises(PictureError, match="all of the picture is transparent; there is nothing to feel"):
+            Scene.of(photo=np.zeros((3, 3, 4), np.uint8))
+
+
+@pytest.mark.parametrize(
+    ("parts", "says"),
+    [
+        ({"crop": [2, 0, 3, 3]}, r"crop \[2, 0, 3, 3\] reaches beyond the picture, which is 4 x 3"),
+        ({"crop": [0, 1, 1, 3]}, r"crop \[0, 1, 1, 3\] reaches beyond"),
+    ],
+)
+def test_a_crop_beyond_the_picture_is_said(parts, says):
+    with pytest.raises(PictureError, match=says):
+        Scene.of(height=HEIGHTS, **parts)
+
+
+@pytest.mark.parametrize(
+    ("parts", "says"),
+    [
+        ({"photo": PHOTO, "crop": [0, 0, 0, 3]}, "scene.crop.2: Input should be greater than or equal to 1"),
+        ({"photo": PHOTO, "crop": [0, 0, 3]}, "scene.crop.3: Field required"),
+        ({"photo": PHOTO, "rotate": 45}, "scene.rotate: Input should be 0, 90, 180 or 270"),
+        ({"photo": PHOTO, "clip": [99, 1]}, r"clip is \[low, high\] with low < high"),
+        ({"photo": PHOTO, "nodata": 0}, "nodata needs height beside it"),
+        ({"photo": PHOTO, "layout": "top-bottom"}, "layout needs stereo beside it"),
+        ({"left": PHOTO, "right": PHOTO, "rotate": 90, "invert": True}, "rotate and invert is for a photo or a height"),
+        ({"stereo": PHOTO, "photo": PHOTO}, "this one gives stereo, photo"),
+    ],
+)
+def test_what_makes_no_sense_is_said(parts, says):
+    with pytest.raises(ConfigError, match=says):
+        Scene.of(**parts)
+
+
+def test_the_same_words_in_a_file(tmp_path: Path):
+    np.save(tmp_path / "dem.npy", HEIGHTS)
+    text = "scene: {height: dem.npy, crop: [1, 0, 3, 2], rotate: 180, invert: true, nodata: [6], clip: [0, 90]}\n"
+    (tmp_path / "p.yaml").write_text(text)
+    pipeline = Pipeline.from_yaml(tmp_path / "p.yaml")
+    pipeline.to_yaml(tmp_path / "again.yaml")
+    for each in (pipeline, Pipeline.from_yaml(tmp_path / "again.yaml")):
+        np.testing.assert_allclose(each.scene.height, [[-6.2, np.nan, -5], [-3, -2, -1]], rtol=1e-6)
+    (tmp_path / "p.yaml").write_text("scene:\n  height: dem.npy\n  rotate: 45\n  crop: [0, 0, -1, 2]\nwant: relief\n")
+    with pytest.raises(ConfigError) as error:
+        Pipeline.from_yaml(tmp_path / "p.yaml")
+    first, second = str(error.value).splitlines()
+    assert "p.yaml:4:" in first and "scene.crop.2" in first
+    assert "p.yaml:3:3: scene.rotate: Input should be 0, 90, 180 or 270, not 45" in second
+
+
+def test_a_phone_held_upright_is_cropped_as_it_is_seen(tmp_path: Path):
+    exif = Image.Exif()
+    exif[0x0112] = 6
+    Image.fromarray(PHOTO).save(tmp_path / "p.png", exif=exif)
+    found = Scene.of(photo=tmp_path / "p.png", crop=[0, 0, 3, 1]).views
+    np.testing.assert_array_equal(found.left, np.rot90(PHOTO, -1)[:1])

@@ -1,0 +1,242 @@
+"""Files with more in them than one picture: pages, both views of a pair, a phone's depth, a value for no data."""
+
+import io
+import struct
+from base64 import b64encode
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image, TiffImagePlugin
+
+from tangible_core import Scene
+from tangible_core.errors import PictureError
+from tangible_core.scene.picture_files import read_map
+from tangible_core.scene.tiff_tags import stated_nodata
+
+RNG = np.random.default_rng(0)
+LEFT = np.repeat(RNG.integers(0, 255, (6, 8, 1), dtype=np.uint8), 3, axis=2)
+RIGHT = np.ascontiguousarray(LEFT[:, ::-1])
+
+
+def jpeg(picture: np.ndarray, xmp: bytes = b"", **options) -> bytes:
+    file = io.BytesIO()
+    Image.fromarray(picture).save(file, format="JPEG", quality=95, **options)
+    data = file.getvalue()
+    return data[:2] + segment(b"http://ns.adobe.com/xap/1.0/\0" + xmp) + data[2:] if xmp else data
+
+
+def segment(content: bytes, marker: int = 0xE1) -> bytes:
+    return struct.pack(">BBH", 0xFF, marker, len(content) + 2) + content
+
+
+class TestSeveralPictures:
+    @pytest.mark.parametrize("kind", ["TIFF", "GIF", "PNG", "WEBP"])
+    def test_the_first_is_taken_and_it_is_said(self, tmp_path: Path, kind: str):
+        path = tmp_path / f"several.{kind.lower()}"
+        options = {"lossless": True} if kind == "WEBP" else {}
+        first, *others = (Image.fromarray(each) for each in (LEFT, RIGHT, RIGHT // 2))
+        first.save(path, format=kind, save_all=True, append_images=others, **options)
+        scene = Scene.of(photo=path)
+        np.testing.assert_array_equal(scene.views.left, LEFT)
+        assert scene.notes == (f"several.{kind.lower()} holds 3 pictures, of which the first is taken",)
+
+    def test_smaller_copies_of_a_page_are_no_pictures(self, tmp_path: Path):
+        page, small = (Image.fromarray(each) for each in (LEFT, LEFT[::2, ::2]))
+        tags = TiffImagePlugin.ImageFileDirectory_v2()
+        tags[254] = 1
+        small.encoderinfo = {"tiffinfo": tags}
+        page.save(tmp_path / "pyramid.tif", save_all=True, append_images=[small])
+        assert Scene.of(photo=tmp_path / "pyramid.tif").notes == ()
+
+    def test_one_picture_is_not_worth_a_word(self, tmp_path: Path):
+        Image.fromarray(LEFT).save(tmp_path / "one.png")
+        assert Scene.of(photo=tmp_path / "one.png").notes == ()
+
+
+class TestPairs:
+    @pytest.mark.parametrize(
+        ("layout", "whole"),
+        [
+            (None, np.hstack([LEFT, RIGHT])),
+            ("side-by-side", np.hstack([LEFT, LEFT[:, :1], RIGHT])),
+            ("cross-eyed", np.hstack([RIGHT, LEFT])),
+            ("top-bottom", np.vstack([LEFT, RIGHT])),
+        ],
+    )
+    def test_the_halves_are_the_views(self, tmp_path: Path, layout, whole):
+        Image.fromarray(whole).save(tmp_path / "both.png")
+        for given in (whole, tmp_path / "both.png"):
+            views = Scene.of(stereo=given, layout=layout).views
+            np.testing.assert_array_equal(views.left, LEFT)
+            np.testing.assert_array_equal(views.right, RIGHT)
+
+    @pytest.mark.parametrize(
+        ("state", "order"),
+        [
+            (b"", [RIGHT, LEFT]),
+            (b"_JPSJPS_\0\4\0\0\2\1\0\0", [RIGHT, LEFT]),
+            (b"_JPSJPS_\0\4\0\4\2\1\0\0", [LEFT, RIGHT]),
+        ],
+        ids=["nothing", "right first", "left first"],
+    )
+    def test_a_jps_file_says_which_half_is_which(self, tmp_path: Path, state: bytes, order):
+        data = jpeg(np.hstack([np.kron(each, np.ones((16, 16, 1), np.uint8)) for each in order]))
+        (tmp_path / "pair.jps").write_bytes(data[:2] + (segment(state, 0xE3) if state else b"") + data[2:])
+        views = Scene.of(stereo=tmp_path / "pair.jps").views
+        assert np.abs(views.left[8::16, 8::16].astype(int) - LEFT).max() < 12
+        assert np.abs(views.right[8::16, 8::16].astype(int) - RIGHT).max() < 12
+
+    def test_the_two_pictures_of_an_mpo_file(self, tmp_path: Path):
+        shades = [np.full((32, 48, 3), each, np.uint8) for each in (40, 200)]
+        write_mpo(tmp_path / "pair.mpo", shades, 0x020002)
+        views = Scene.of(stereo=tmp_path / "pair.mpo").views
+        assert (views.left[0, 0, 0], views.right[0, 0, 0]) == (40, 200)
+        photo = Scene.of(photo=tmp_path / "pair.mpo")
+        assert photo.views.left[0, 0, 0] == 40
+        assert photo.notes == (
+            "pair.mpo holds 2 pictures, of which the first is taken; for both views write `stereo:`",
+        )
+
+    def test_a_thumbnail_is_no_view_and_no_news(self, tmp_path: Path):
+        write_mpo(tmp_path / "phone.jpg", [np.full((32, 48, 3), each, np.uint8) for each in (40, 200)], 0x010001)
+        assert Scene.of(photo=tmp_path / "phone.jpg").notes == ()
+        assert Scene.of(stereo=tmp_path / "phone.jpg").views.shape == (32, 24)
+
+    def test_both_views_are_cropped_alike(self):
+        views = Scene.of(stereo=np.hstack([LEFT, RIGHT]), crop=[1, 2, 3, 4]).views
+        np.testing.assert_array_equal(views.left, LEFT[2:6, 1:4])
+        np.testing.assert_array_equal(views.right, RIGHT[2:6, 1:4])
+
+    def test_a_column_has_no_halves(self):
+        with pytest.raises(PictureError, match="1 x 6 pixels have no two halves; give left and right"):
+            Scene.of(stereo=LEFT[:, :1])
+
+
+def write_mpo(path: Path, pictures: list[np.ndarray], kind: int) -> None:
+    """As Pillow writes it, with another kind of pictures in its directory."""
+    first, *others = (Image.fromarray(each) for each in pictures)
+    first.save(path, format="MPO", save_all=True, append_images=others, quality=95)
+    data = bytearray(path.read_bytes())
+    entries = data.index(b"MPF\0") + 54  # behind the head of the directory and its three tags
+    for number in range(len(pictures)):
+        first_kind = 0x030000 if kind == 0x010001 else kind
+        struct.pack_into("<I", data, entries + 16 * number, kind if number else first_kind)
+    path.write_bytes(bytes(data))
+
+
+RAMP = np.tile(np.linspace(0, 255, 16).astype(np.uint8), (12, 1))
+"""A depth map, 0 near."""
+PHOTO = np.full((24, 32, 3), 90, np.uint8)
+
+
+def gdepth(depth: bytes) -> bytes:
+    """What fits into a segment, and the rest in two that stand in the wrong order."""
+    text = b'<x GDepth:Format="RangeInverse" GDepth:Near="1" GDepth:Far="9" GDepth:Data="' + b64encode(depth) + b'"/>'
+    half = len(text) // 2
+    parts = [(half, text[half:]), (0, text[:half])]
+    extended = [
+        segment(b"http://ns.adobe.com/xmp/extension/\0" + b"A" * 32 + struct.pack(">II", len(text), at) + part)
+        for at, part in parts
+    ]
+    data = jpeg(PHOTO, b'<x xmpNote:HasExtendedXMP="AA"/>')
+    return data[:2] + b"".join(extended) + data[2:]
+
+
+def dynamic(depth: bytes) -> bytes:
+    other = b"a video"
+    items = [("Primary", b"", 0), ("MotionPhoto", other, 3), ("Depth", depth, 0), ("Confidence", other, 0)]
+    xmp = "".join(
+        f'<Container:Item Item:Semantic="{name}" Item:Length="{len(part)}" Item:Padding="{pad}"/>'
+        for name, part, pad in items
+    )
+    return jpeg(PHOTO, xmp.encode()) + other + b"\0\0\0" + depth + other
+
+
+def iphone(depth: bytes) -> bytes:
+    """Near is light in it."""
+    told = b"<apdi:AuxiliaryImageType>disparity</apdi:AuxiliaryImageType>"
+    file = io.BytesIO()
+    Image.fromarray(PHOTO).save(
+        file, format="MPO", save_all=True, append_images=[Image.fromarray(255 - RAMP)], quality=95
+    )
+    data = file.getvalue()
+    start = data.rindex(b"\xff\xd8\xff")
+    extra = segment(b"http://ns.adobe.com/xap/1.0/\0" + told)
+    grown = bytearray(data[: start + 2] + extra + data[start + 2 :])
+    size = struct.pack("<I", len(data) - start)
+    at = grown.index(size, grown.index(b"MPF\0"))
+    grown[at : at + 4] = struct.pack("<I", len(data) - start + len(extra))
+    return bytes(grown)
+
+
+class TestPhoneDepth:
+    @pytest.mark.parametrize("kept", [gdepth, dynamic, iphone])
+    def test_it_is_the_scene_s_disparity_and_nothing_is_estimated(self, tmp_path: Path, kept):
+        (tmp_path / "portrait.jpg").write_bytes(kept(jpeg(RAMP)))
+        scene = Scene.of(photo=tmp_path / "portrait.jpg")
+        assert scene.disparity is not None and scene.disparity.unit == "relative"
+        near = scene.disparity.disparity_px
+        assert near.shape == (24, 32)
+        np.testing.assert_allclose(near[12], np.clip(1 - (np.arange(32) + 0.5 - 1) / 30, 0, 1), atol=0.03)
+        [note] = scene.notes
+        assert note.startswith("portrait.jpg holds a depth map of 16 x 12 (")
+        assert note.endswith("which is taken; `photo_depth: false` leaves it out")
+
+    def test_it_can_be_left_out_and_gives_way_to_one_that_is_given(self, tmp_path: Path):
+        (tmp_path / "portrait.jpg").write_bytes(gdepth(jpeg(RAMP)))
+        assert Scene.of(photo=tmp_path / "portrait.jpg", photo_depth=False).disparity is None
+        given = Scene.of(photo=tmp_path / "portrait.jpg", disparity=np.ones((24, 32))).disparity
+        assert given.unit == "px"
+
+    def test_it_is_turned_as_the_photo_is(self, tmp_path: Path):
+        exif = Image.Exif()
+        exif[0x0112] = 6
+        data = gdepth(jpeg(RAMP))
+        upright = jpeg(PHOTO, exif=exif)
+        (tmp_path / "portrait.jpg").write_bytes(upright[:2] + data[2 : data.index(b"\xff\xe0")] + upright[2:])
+        scene = Scene.of(photo=tmp_path / "portrait.jpg", rotate=180)
+        near = scene.disparity.disparity_px
+        assert near.shape == scene.views.shape == (32, 24)
+        assert near[0].max() < 0.1 and near[-1].min() > 0.9
+
+    @pytest.mark.parametrize(
+        "broken", [gdepth(b"no picture"), gdepth(jpeg(RAMP)).replace(b"A" * 32 + b"\0\0", b"A" * 32 + b"\xff\0")]
+    )
+    def test_what_is_damaged_costs_a_word_and_not_the_photo(self, tmp_path: Path, broken: bytes):
+        (tmp_path / "portrait.jpg").write_bytes(broken)
+        scene = Scene.of(photo=tmp_path / "portrait.jpg")
+        assert scene.disparity is None
+        np.testing.assert_array_equal(scene.views.left, PHOTO)
+        assert scene.notes[0].startswith("the depth map in portrait.jpg is damaged and left out: ")
+
+
+class TestNoData:
+    @pytest.mark.parametrize("mode", ["float32", "int16"])
+    def test_what_a_geotiff_states_is_unknown(self, tmp_path: Path, mode: str):
+        heights = np.arange(12, dtype=mode).reshape(3, 4)
+        heights[1, 2] = -9999
+        tags = TiffImagePlugin.ImageFileDirectory_v2()
+        tags[42113] = "-9999"
+        Image.fromarray(heights).save(tmp_path / "dem.tif", tiffinfo=tags)
+        scene = Scene.of(height=tmp_path / "dem.tif")
+        assert np.argwhere(np.isnan(scene.height)).tolist() == [[1, 2]]
+        assert scene.notes == ("8.3 % of dem.tif is -9999, which it states to be no data",)
+        assert scene.brings(0.08, 0.02)["relief"].height_m.max() == np.float32(0.02)
+
+    @pytest.mark.parametrize(("text", "number"), [("-3.4028234663852886e+38", -3.4028234663852886e38), ("n/a", None)])
+    def test_it_is_a_text(self, tmp_path: Path, text: str, number: float | None):
+        tags = TiffImagePlugin.ImageFileDirectory_v2()
+        tags[42113] = text
+        Image.fromarray(np.zeros((2, 2), np.float32)).save(tmp_path / "dem.tif", tiffinfo=tags)
+        data = (tmp_path / "dem.tif").read_bytes()
+        assert stated_nodata(data) == number
+        assert all(stated_nodata(data[:end]) in (number, None) for end in range(8, len(data)))
+
+    def test_one_that_no_height_has_is_not_worth_a_word(self, tmp_path: Path):
+        tags = TiffImagePlugin.ImageFileDirectory_v2()
+        tags[42113] = "nan"
+        Image.fromarray(np.ones((2, 2), np.float32)).save(tmp_path / "dem.tif", tiffinfo=tags)
+        said = []
+        assert read_map(tmp_path / "dem.tif", said.append).min() == 1
+        assert said == []

@@ -169,6 +169,20 @@ def test_log_levels_can_be_set_by_name(folder: Path):
     assert "no level is named 'loud'" in mistake("plan", "p.yaml", "--log-level", "loud", cwd=folder)
 
 
+def test_a_check_that_the_law_itself_declares_to_fail_is_told_and_no_failure(monkeypatch: pytest.MonkeyPatch):
+    from tangible_render import Penalty
+
+    done = tangible("check", "render", "penalty", cwd=Path())
+    assert done.returncode == 0, done.stdout
+    assert "0 failed, 1 failed as the method declares" in done.stdout
+    assert "a spring along z alone is its law" in " ".join(done.stdout.split())
+    monkeypatch.setattr(Penalty, "expected_failures", {"pickle_is_small": "a mistake"})
+    done = tangible("check", "render", "penalty", "--json", cwd=Path())
+    assert done.returncode == 1
+    odd = [each for each in json.loads(done.stdout) if each["passed"] == bool(each["expected_failure"])]
+    assert {each["name"]: each["passed"] for each in odd} == {"springs_are_exact": False, "pickle_is_small": True}
+
+
 def test_a_check_that_fails_ends_with_1(folder: Path):
     assert tangible("check", "device", "mock", cwd=folder).returncode == 0
     assert "unknown" in mistake("check", "depht", "x", cwd=folder) or "did you mean" in mistake(

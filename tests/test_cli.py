@@ -7,6 +7,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,7 +16,7 @@ from command_line import tangible
 from ctrl_c import HEARING
 from distributions import distribution
 from tangible_core.cli import show
-from tangible_core.data import Outcome
+from tangible_core.data import Outcome, ServoReport
 
 TANGIBLE = str(Path(sys.executable).with_name("tangible"))
 
@@ -320,6 +321,26 @@ def test_ctrl_c_ends_with_130_and_nothing_half_written(folder: Path):
     assert "Traceback" not in errors
     assert (folder / "hand.npz").exists() and not growing.exists()
     assert not [path for path in folder.iterdir() if path.name.startswith(".")]
+
+
+def test_ctrl_c_while_a_run_feels_ends_with_130_and_says_what_is_kept(folder: Path, monkeypatch: pytest.MonkeyPatch):
+    from tangible_core.pipeline import runs
+    from tangible_core.session import INTERRUPTED, Recording, run_simulated
+
+    def pressed(report: ServoReport) -> None:
+        if not report.stopped:
+            raise KeyboardInterrupt
+
+    def felt(touch: Any, device: Any, seconds: float, on_report: object, limits: Any) -> Recording:
+        return run_simulated(touch, device, seconds, pressed, limits)
+
+    monkeypatch.setattr(runs, "run_simulated", felt)
+    done = tangible("run", "p.yaml", "--seconds", 600, cwd=folder)
+    assert done.returncode == 130, done.stderr
+    assert "feeling ended after 0.1 s: interrupted from the keyboard; recording.npz holds these" in done.stderr
+    assert done.stderr.splitlines()[-1] == "interrupted; what was finished is kept"
+    assert Recording.load(folder / "out/p/recording.npz").stopped == INTERRUPTED
+    assert (folder / "out/p/sheet.png").exists()
 
 
 def test_a_reader_that_goes_away_is_no_error(folder: Path):

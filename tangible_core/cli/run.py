@@ -41,7 +41,9 @@ def demo(
     text = files("tangible_core").joinpath("demo.yaml").read_text(encoding="utf-8")
     config = parse_config(text, Path("demo.yaml"), default_registry())
     pipeline = Pipeline.of(config, default_registry(), None if no_cache else Cache())
-    _print(pipeline.run(out, seconds=seconds), as_json)
+    done = pipeline.run(out, seconds=seconds)
+    _print(done, as_json)
+    _say_if_ended_early(done)
     if not as_json:
         show.say(NEXT.format(config=out / "config.yaml"))
 
@@ -67,7 +69,9 @@ def run(
     A simulated device feels the surface; a real one is never moved: see `feel`.
     """
     pipeline = open_pipeline(config, sets or [], not no_cache)
-    _print(pipeline.run(out or Path("out") / config.stem, seconds=seconds), as_json)
+    done = pipeline.run(out or Path("out") / config.stem, seconds=seconds)
+    _print(done, as_json)
+    _say_if_ended_early(done)
 
 
 def plan(config: Config, sets: Sets = None, as_json: Json = False, no_cache: NoCache = False) -> None:
@@ -116,6 +120,20 @@ def _print(run: Run, as_json: bool) -> None:
     show.say("\n[bold]written[/]")
     for path in run.files:
         show.plain(f"  {path}")
+
+
+def _say_if_ended_early(run: Run) -> None:
+    """Raises: KeyboardInterrupt if it was Ctrl-C that ended the feeling."""
+    from ..session import INTERRUPTED
+    from . import show
+
+    if run.recording is None or not run.recording.stopped:
+        return
+    felt_s, why = run.recording.figures()["seconds"], run.recording.stopped
+    show.flush()
+    show.note(f"feeling ended after {felt_s:.1f} s: {why}; recording.npz holds these, and all else was made whole")
+    if why == INTERRUPTED:
+        raise KeyboardInterrupt
 
 
 def _error_lines(figures: Mapping[Any, Any]) -> list[str]:

@@ -83,6 +83,17 @@ def test_plan_runs_nothing(folder: Path):
     assert not (folder / "out").exists()
 
 
+def test_plan_says_what_run_will_refuse_and_run_leaves_nothing(folder: Path):
+    one = ("p.yaml", "--set", "scene={photo: left.png}", "--set", "depth={use: semi-global}")
+    said = mistake("plan", *one, cwd=folder)
+    assert said.startswith("this cannot be run: depth method semi-global needs two views, and the scene ")
+    assert "left.png has one: give both" in said
+    assert said.removeprefix("this cannot be run: ") == mistake("run", *one, cwd=folder)
+    assert not (folder / "out").exists()
+    table = tangible("plan", *one, "--json", cwd=folder)
+    assert json.loads(table.stdout)[-1]["outcome"] == "refused"
+
+
 def test_feel_records_every_tick(folder: Path):
     done = tangible("feel", "p.yaml", "--seconds", 0.5, "--record", "hand.npz", "--json", cwd=folder)
     assert done.returncode == 0, done.stderr

@@ -75,14 +75,21 @@ def run(
 
 
 def plan(config: Config, sets: Sets = None, as_json: Json = False, no_cache: NoCache = False) -> None:
-    """Say what `run` would do, and why; run nothing."""
+    """Say what `run` would do, and why; run nothing.
+
+    Exit 2 if `run` would refuse.
+    """
+    from ..errors import ConfigError
     from . import show
 
-    steps = open_pipeline(config, sets or [], not no_cache).plan().steps
+    plan = open_pipeline(config, sets or [], not no_cache).plan()
     if as_json:
-        show.print_json(show.as_rows(steps))
+        show.print_json(show.as_rows(plan.steps))
     else:
-        show.outcomes(steps, ran="to run")
+        show.outcomes(plan.steps, ran="to run")
+    if plan.refusal:
+        show.flush()
+        raise ConfigError(f"this cannot be run: {plan.refusal}")
 
 
 def open_pipeline(config: Path, sets: Sequence[str], cached: bool) -> Pipeline:

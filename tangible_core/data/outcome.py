@@ -8,7 +8,8 @@ from typing import Literal
 Kind = Literal["depth", "texture", "render", "device"]
 
 
-OutcomeKind = Literal["given", "ran", "cached", "skipped", "failed"]
+OutcomeKind = Literal["given", "ran", "cached", "skipped", "failed", "refused"]
+"""`refused`: it cannot be made of this scene, which is known before anything is begun."""
 HEADINGS = ("product", "method", "outcome", "why", "seconds")
 
 
@@ -42,11 +43,16 @@ class Outcomes(list[Outcome]):
 class Plan:
     """What asking for a product will do: one outcome a product, in order, nothing run.
 
-    It shows itself as a table, in a terminal and in a notebook.
+    It ends with the first product that cannot be made. It shows itself as a table, in a terminal and in a notebook.
     """
 
     want: str
     steps: tuple[Outcome, ...]
+
+    @property
+    def refusal(self) -> str:
+        """Why this cannot be run, as far as that is known beforehand; empty where it can."""
+        return next((each.why for each in self.steps if each.outcome == "refused"), "")
 
     def __repr__(self) -> str:
         return text_table(HEADINGS[:-1], self._rows())

@@ -101,6 +101,13 @@ class Engine:
         hooks.tell(self.registry.plugins, "tangible_plan_made", plan=plan)
         return plan
 
+    def check(self, want: str | None = None) -> None:
+        """Plan, and raise what the plan says is refused."""
+        for step in self.plan(want).steps:
+            refusal = self._rules[step.product].refusal if step.outcome == "refused" else None
+            if refusal is not None:
+                raise refusal
+
     def make(self, want: str | None = None) -> Any:
         """The product, made from what it needs and no more; None if this scene does not need it.
 
@@ -139,6 +146,9 @@ class Engine:
             return None
         if (found := self._from_cache(rule)) is not None:
             return found
+        if rule.refusal is not None:
+            self._note(Outcome(rule.product, "refused", str(rule.refusal), rule.method))
+            raise rule.refusal
         inputs = {name: self._pull(name, f"{rule.product} is made from it") for name in rule.needs}
         check_stopped()
         self._progress(Stage(rule.product, rule.method))
@@ -181,9 +191,13 @@ class Engine:
             steps[product] = Outcome(product, "skipped", rule.skip, rule.method)
         elif self.cache is not None and rule.cached and self.key(product) in self.cache:
             steps[product] = Outcome(product, "cached", SAME, rule.method)
+        elif rule.refusal is not None:
+            steps[product] = Outcome(product, "refused", str(rule.refusal), rule.method)
         else:
             for name in rule.needs:
                 self._foresee(name, f"{product} is made from it", steps)
+                if any(each.outcome == "refused" for each in steps.values()):
+                    return steps
             steps[product] = Outcome(product, "ran", _with((rule.note,), why), rule.method)
         return steps
 

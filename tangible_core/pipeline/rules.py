@@ -12,7 +12,7 @@ from uuid import uuid4
 import numpy as np
 
 from ..data import DisparityMap, HapticSurface, Material, MaterialMap, Record, Relief, SegmentMap, Views, digest_of
-from ..errors import BrokenMethod, ConfigError
+from ..errors import BrokenMethod, ConfigError, PictureError, TangibleError
 from ..materials import assignment
 from ..plugins.interfaces import Method, Skippable, Touch
 from ..provenance.closure import closure
@@ -42,6 +42,8 @@ class Rule:
     note: str = ""
     """What part of the work this scene does not need."""
     cached: bool = True
+    refusal: TangibleError | None = None
+    """Why it cannot be made of this scene, as far as that is known beforehand."""
 
 
 def rules(config: PipelineConfig, scene: Scene, brought: Mapping[str, Record]) -> dict[str, Rule]:
@@ -79,7 +81,8 @@ def _disparity(config: PipelineConfig, scene: Scene) -> Rule:
 
     name, key = _identity(config.depth)
     key = f"{_core(scaling.__name__)} {key} 1/{factor} {_known(scene)}"
-    return Rule("disparity", name, key, ("views",), make, _skip(config.depth, scene), note)
+    skip, refusal = _skip(config.depth, scene), _no_depth(config, scene)
+    return Rule("disparity", name, key, ("views",), make, skip, note, refusal=refusal)
 
 
 def _relief(config: PipelineConfig, scene: Scene) -> Rule:
@@ -148,7 +151,8 @@ def _touch(config: PipelineConfig, scene: Scene) -> Rule:
     def make(inputs: Inputs) -> Touch:
         return _configured(config, "render").method.touch(inputs["surface"])
 
-    return Rule("touch", *_identity(config.render), ("surface",), make, cached=False)
+    refusal = config.missing("render") if config.render is None else None
+    return Rule("touch", *_identity(config.render), ("surface",), make, cached=False, refusal=refusal)
 
 
 def given_key(value: Record) -> str:
@@ -205,6 +209,20 @@ def _skip(chosen: NamedMethod[Any] | None, scene: Scene) -> str | None:
     return None
 
 
+def _no_depth(config: PipelineConfig, scene: Scene) -> TangibleError | None:
+    """Why no depth can be found in this scene, before anything looks."""
+    if scene.views is None:
+        return _pictureless(scene)
+    if config.depth is None:
+        return config.missing("depth")
+    if config.depth.method.needs_pair and scene.views.right is None:
+        return PictureError(
+            f"depth method {config.depth.name} needs two views, and the scene {scene.name} has one: give both, `left:` "
+            "and `right:`, or name a method for one picture (`tangible plugins` lists them)"
+        )
+    return None
+
+
 def _check_shape(
     kind: str, chosen: NamedMethod[Any], what: str, found: tuple[int, ...], wanted: tuple[int, ...]
 ) -> None:
@@ -229,5 +247,9 @@ def _configured(config: PipelineConfig, kind: str) -> NamedMethod[Any]:
 
 def _views(scene: Scene) -> Views:
     if scene.views is None:
-        raise ConfigError(f"the scene {scene.name} has no picture; give one with `photo:` or `left:` and `right:`")
+        raise _pictureless(scene)
     return scene.views
+
+
+def _pictureless(scene: Scene) -> ConfigError:
+    return ConfigError(f"the scene {scene.name} has no picture; give one with `photo:` or `left:` and `right:`")

@@ -61,12 +61,12 @@ def make_run(
 ) -> Run:
     """Make what is wanted, and write the results and their report into a folder.
 
-    The completed configuration is written first: a folder that cannot be written stops the run before it starts. A
+    What is refused, and a folder that cannot be written, stop the run before it starts. A
     touch is felt for so many seconds of a simulated device's own time; a real device is not moved.
     Raises: OutputError if the folder cannot be written; TangibleError as `Engine.make` and `run_simulated`.
     """
+    engine.check(want)
     files = [*_configuration(engine, out)]
-    engine.plan(want)
     with rehearsal(engine, want) as engine.beside:
         value = engine.make(want)
         products = {name: engine.make(name) for name in SHOWN if name in engine.needed(want)}

@@ -39,6 +39,9 @@ class Method(BaseModel, ABC):
 class DepthEstimator(Method):
     """Makes a disparity map from one picture or two."""
 
+    needs_pair: ClassVar[bool] = False
+    """True for a method that finds nothing without a right view: then a plan says so, and nothing is begun."""
+
     @abstractmethod
     def estimate(self, views: Views) -> DisparityMap:
         """Disparity of the left view. Raises: TangibleError if these views do not allow it."""

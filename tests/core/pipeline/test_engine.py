@@ -282,6 +282,51 @@ def test_a_missing_method_is_a_clear_error(folder: Path):
         pipeline(folder, render=None).make()
 
 
+class Pairs(Ramp):
+    """Finds nothing in one picture."""
+
+    needs_pair: ClassVar[bool] = True
+
+
+@pytest.mark.parametrize(
+    ("parts", "product", "error", "says"),
+    [
+        (
+            {"scene": SceneFiles(photo=Path("left.png")), "depth": chosen(Pairs(), "pairs")},
+            "disparity",
+            PictureError,
+            "depth method pairs needs two views, and the scene left.png has one",
+        ),
+        ({"depth": None}, "disparity", ConfigError, "`depth:` is missing"),
+        ({"render": None}, "touch", ConfigError, "`render:` is missing"),
+        (
+            {"scene": SceneFiles(height=Path("heights.npy")), "want": "disparity"},
+            "disparity",
+            ConfigError,
+            "no picture",
+        ),
+    ],
+)
+def test_a_plan_ends_with_what_is_refused_and_nothing_is_begun(folder: Path, parts: dict, product, error, says: str):
+    plan = pipeline(folder, **parts).plan()
+    assert (plan.steps[-1].product, plan.steps[-1].outcome) == (product, "refused")
+    assert says in plan.refusal
+    pipe = pipeline(folder, **parts)
+    with pytest.raises(error) as raised:
+        pipe.make()
+    assert str(raised.value) == plan.refusal
+    assert ran == []
+    assert said(pipe)[product] == "refused"
+    assert not pipeline(folder).plan().refusal
+
+
+def test_a_pair_is_no_need_where_the_scene_brings_what_is_asked_for(folder: Path):
+    np.save(folder / "d.npy", np.full((20, 30), 3.0, np.float32))
+    files = SceneFiles(photo=Path("left.png"), disparity=Path("d.npy"))
+    assert not pipeline(folder, scene=files, depth=chosen(Pairs())).plan("relief").refusal
+    assert not pipeline(folder, scene=SceneFiles(photo=Path("left.png")), depth=None).plan("segments").refusal
+
+
 def test_an_unknown_product_is_named(folder: Path):
     with pytest.raises(UnknownMethod, match="did you mean 'surface'"):
         pipeline(folder).make("surfaces")

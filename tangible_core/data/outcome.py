@@ -13,6 +13,18 @@ OutcomeKind = Literal["given", "ran", "cached", "skipped", "failed", "refused"]
 HEADINGS = ("product", "method", "outcome", "why", "seconds")
 
 
+NoteKind = Literal["decision", "warning", "doubt"]
+"""`doubt`: what was made is hardly worth feeling."""
+
+
+@dataclass(frozen=True)
+class Note:
+    """What a method noticed while it made a product."""
+
+    text: str
+    kind: NoteKind = "decision"
+
+
 @dataclass(frozen=True)
 class Outcome:
     """What became of one product, and why."""
@@ -20,8 +32,11 @@ class Outcome:
     product: str
     outcome: OutcomeKind
     why: str
+    """The texts of the notes included."""
     method: str = ""
     seconds: float = 0.0
+    notes: tuple[Note, ...] = ()
+    """What was noticed when it was made; before, if it comes from the cache."""
 
     def row(self, ran: str = "ran") -> tuple[str, ...]:
         """Texts under HEADINGS; ran: the word for one that ran, or is to."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import logging
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -15,12 +16,16 @@ from ..data import DisparityMap, HapticSurface, Material, MaterialMap, Record, R
 from ..errors import BrokenMethod, ConfigError, PictureError, TangibleError
 from ..materials import assignment
 from ..plugins.interfaces import Method, Skippable, Touch
+from ..plugins.notes import note
 from ..provenance.closure import closure
 from ..provenance.source import source_digest
-from ..scene import geometry, scaling
+from ..scene import geometry, scaling, view_order
 from ..scene.scene import Scene
+from ..scene.scene_files import SceneFiles
 from .cache import Cache
 from .config import NamedMethod, PipelineConfig
+
+log = logging.getLogger(__name__)
 
 Inputs = Mapping[str, Any]
 """Products by name; None where one was skipped."""
@@ -66,13 +71,17 @@ def rules(config: PipelineConfig, scene: Scene, brought: Mapping[str, Record]) -
 
 
 def _disparity(config: PipelineConfig, scene: Scene) -> Rule:
-    factor, note = _felt(config, scene)
+    factor, reduced = _felt(config, scene)
+    as_named = isinstance(scene.files, SceneFiles) and scene.files.order == "as-named"
 
     def make(inputs: Inputs) -> DisparityMap:
         views = _views(scene)
         small, chosen = scaling.reduced(views, factor), _configured(config, "depth")
         made = chosen.method.estimate(small)
         _check_shape("depth", chosen, "disparity", made.disparity_px.shape, small.shape)
+        if not as_named:
+            offset_px = views.calibration.offset_px if views.calibration else 0.0
+            made = _in_order(made, small, offset_px / factor)
         found = scaling.enlarged(made, views.shape)
         if scene.known is None:
             return found
@@ -80,9 +89,9 @@ def _disparity(config: PipelineConfig, scene: Scene) -> Rule:
         return DisparityMap(known_px, found.confidence * scene.known, found.unit)
 
     name, key = _identity(config.depth)
-    key = f"{_core(scaling.__name__)} {key} 1/{factor} {_known(scene)}"
+    key = f"{_core(scaling.__name__)} {_core(view_order.__name__)} {as_named} {key} 1/{factor} {_known(scene)}"
     skip, refusal = _skip(config.depth, scene), _no_depth(config, scene)
-    return Rule("disparity", name, key, ("views",), make, skip, note, refusal=refusal)
+    return Rule("disparity", name, key, ("views",), make, skip, reduced, refusal=refusal)
 
 
 def _relief(config: PipelineConfig, scene: Scene) -> Rule:
@@ -100,7 +109,7 @@ def _relief(config: PipelineConfig, scene: Scene) -> Rule:
 
 
 def _segments(config: PipelineConfig, scene: Scene) -> Rule:
-    factor, note = _felt(config, scene)
+    factor, reduced = _felt(config, scene)
 
     def make(inputs: Inputs) -> SegmentMap:
         views = _views(scene)
@@ -117,7 +126,7 @@ def _segments(config: PipelineConfig, scene: Scene) -> Rule:
         skip = "the scene has heights and no picture"
     name, key = _identity(config.texture)
     key = f"{_core(scaling.__name__)} {key} 1/{factor} {_known(scene)}"
-    return Rule("segments", name, key, ("views",), make, skip, note)
+    return Rule("segments", name, key, ("views",), make, skip, reduced)
 
 
 def _materials(config: PipelineConfig, scene: Scene, unsegmented: str | None) -> Rule:
@@ -207,6 +216,16 @@ def _skip(chosen: NamedMethod[Any] | None, scene: Scene) -> str | None:
     if chosen is not None and isinstance(chosen.method, Skippable) and scene.views is not None:
         return chosen.method.skip(scene.views)
     return None
+
+
+def _in_order(made: DisparityMap, views: Views, offset_px: float) -> DisparityMap:
+    """The map, put right where its views were exchanged."""
+    if views.right is None:
+        return made
+    order = view_order.view_order(made, views.left, offset_px)
+    if order.said:
+        note(log, order.said, logging.WARNING if order.exchanged else logging.INFO)
+    return view_order.put_right(made) if order.exchanged else made
 
 
 def _no_depth(config: PipelineConfig, scene: Scene) -> TangibleError | None:

@@ -53,6 +53,9 @@ class SceneFiles(BaseModel):
     """Metres that one unit of the rig's translation is; 1 when left out, 0.001 for a board measured in millimetres."""
     relief_m: Length | None = None
     """Height of the relief made from a height map; by default that of `workspace`."""
+    order: Literal["as-named"] | None = None
+    """`as-named`: left and right are in order, whatever is found out. When left out, views that show to be exchanged
+    are put right: larger disparities of the view named left are then nearer, and it is said."""
 
     non_finite: NonFinite = "error"
     """What to do with NaN and infinity in a picture. `error`: stop, and name the first such pixel. `mask`: fill from

@@ -9,15 +9,16 @@ import pluggy
 import pytest
 
 from pictures import write_png
-from tangible_core.data import DisparityMap, HapticSurface, SegmentMap, Views
+from tangible_core.data import DisparityMap, HapticSurface, Note, SegmentMap, Views
 from tangible_core.errors import BrokenMethod, ConfigError, GeometryError, PictureError, UnknownMethod
 from tangible_core.pipeline.cache import Cache
 from tangible_core.pipeline.config import MaterialChoice, NamedMethod, PipelineConfig
 from tangible_core.pipeline.engine import Engine
 from tangible_core.plugins import hooks
 from tangible_core.plugins.interfaces import DepthEstimator, ForceRenderer, Segmenter, Skippable, Touch
-from tangible_core.plugins.notes import note
+from tangible_core.plugins.notes import doubt, note
 from tangible_core.plugins.registry import Registry
+from tangible_core.scene.scene import Scene
 from tangible_core.scene.scene_files import SceneFiles
 from tangible_core.scene.workspace import Workspace
 
@@ -176,6 +177,58 @@ def test_what_a_method_notes_is_in_its_outcome(folder: Path):
     pipe.make("segments")
     [outcome] = [each for each in pipe.outcomes if each.product == "segments"]
     assert outcome.why == "asked for; skipped: everything"
+
+
+class Warns(Ramp):
+    """Is not sure."""
+
+    def estimate(self, views: Views) -> DisparityMap:
+        note(logging.getLogger("tests"), "every row is strange", logging.WARNING)
+        doubt(logging.getLogger("tests"), "hardly worth it")
+        return super().estimate(views)
+
+
+def test_what_a_method_noticed_is_told_again_with_what_comes_from_the_cache(
+    folder: Path, caplog: pytest.LogCaptureFixture
+):
+    parts = {"depth": chosen(Warns()), "texture": chosen(Says()), "materials": MaterialChoice(by={0: "ice"})}
+    noticed = [Note("every row is strange", "warning"), Note("hardly worth it", "doubt")]
+    first = pipeline(folder, **parts)
+    first.make("disparity")
+    first.make("surface")
+    for want in ("disparity", "surface"):  # of the second, only the surface is read, and holds what it is made from
+        caplog.clear()
+        again = pipeline(folder, **parts)
+        assert again.plan(want).steps[-1].notes == (tuple(noticed) if want == "disparity" else ())
+        again.make(want)
+        told = {each.product: each for each in again.outcomes}
+        assert said(again)["disparity"] == ("cached" if want == "disparity" else "skipped")
+        assert list(told["disparity"].notes) == noticed
+        assert told["disparity"].why.endswith("; every row is strange; hardly worth it")
+        assert [each.message for each in caplog.records] == ["every row is strange", "hardly worth it"]
+    assert told["segments"].why == "within what comes from the cache; skipped: everything"
+    again.make("disparity")
+    assert len(caplog.records) == 2  # and not told twice
+
+
+def test_what_was_noticed_in_reading_the_scene_is_told_with_the_views(folder: Path, monkeypatch: pytest.MonkeyPatch):
+    def read(*_: object) -> Scene:
+        note(logging.getLogger("tests"), "the first of 3 frames is taken", logging.WARNING)
+        return Scene.of(photo=np.zeros((4, 4)))
+
+    monkeypatch.setattr(Scene, "read", read)
+    pipe = pipeline(folder)
+    pipe.make("segments")
+    assert pipe.outcomes[0].notes == (Note("the first of 3 frames is taken", "warning"),)
+    assert pipe.outcomes[0].why.endswith(" brings it; the first of 3 frames is taken")
+
+
+def test_left_and_right_that_are_named_in_order_are_not_exchanged(folder: Path):
+    paths = {"left": Path("left.png"), "right": Path("right.png")}
+    found = pipeline(folder, scene=SceneFiles(**paths), depth=chosen(Ramp(slope=-3.0))).make("disparity")
+    assert np.nanmax(found.disparity_px) == 87
+    found = pipeline(folder, scene=SceneFiles(**paths, order="as-named"), depth=chosen(Ramp(slope=-3.0)))
+    assert np.nanmax(found.make("disparity").disparity_px) == 0
 
 
 def test_a_second_run_takes_the_surface_from_the_cache_and_runs_no_stage(folder: Path):

@@ -63,7 +63,7 @@ def test_run_makes_everything_and_says_so(folder: Path):
         assert word in done.stdout
     written = {path.name for path in (folder / "out" / "p").iterdir()}
     products = {"disparity.npz", "segments.npz", "materials.npz", "surface.npz"}
-    assert written == products | {"config.yaml", "outcomes.json", "recording.npz", "sheet.png"}
+    assert written == products | {"config.yaml", "manifest.json", "outcomes.json", "recording.npz", "sheet.png"}
     again = tangible("run", "out/p/config.yaml", "--seconds", 1, "--json", cwd=folder)
     outcomes = {each["product"]: each["outcome"] for each in json.loads(again.stdout)["outcomes"]}
     assert outcomes["surface"] == outcomes["disparity"] == "cached"

@@ -21,7 +21,7 @@ Seconds = Annotated[float, typer.Option(help="Simulated time for which the surfa
 
 
 def demo(
-    out: Annotated[Path, typer.Option("--out", help="Folder for the results.")] = Path("out/demo"),
+    out: Annotated[Path | None, typer.Option("--out", help="Folder for the results [default: out/demo].")] = None,
     seconds: Seconds = 8.0,
     as_json: Json = False,
     no_cache: NoCache = False,
@@ -39,14 +39,18 @@ def demo(
     from . import show
 
     text = files("tangible_core").joinpath("demo.yaml").read_text(encoding="utf-8")
-    config = parse_config(text, Path("demo.yaml"), default_registry())
+    config = parse_config(text, DEMO, default_registry())
     pipeline = Pipeline.of(config, default_registry(), None if no_cache else Cache())
+    out = out or _folder(DEMO)
     done = pipeline.run(out, seconds=seconds)
     _print(done, as_json)
     _say_if_ended_early(done)
     if not as_json:
         show.say(NEXT.format(config=out / "config.yaml"))
 
+
+DEMO = Path("tangible demo/demo.yaml")
+"""What the built-in example is called, as if it were a file: nobody's own demo.yaml is taken for it."""
 
 NEXT = """
 Next:
@@ -69,7 +73,7 @@ def run(
     A simulated device feels the surface; a real one is never moved: see `feel`.
     """
     pipeline = open_pipeline(config, sets or [], not no_cache)
-    done = pipeline.run(out or Path("out") / config.stem, seconds=seconds)
+    done = pipeline.run(out or _folder(config), seconds=seconds)
     _print(done, as_json)
     _say_if_ended_early(done)
 
@@ -110,6 +114,19 @@ def device_of(pipeline: Pipeline) -> NamedMethod[HapticDevice]:
     if device is None or felt is None:
         raise pipeline.config.missing("device")
     return replace(device, method=felt)
+
+
+def _folder(source: Path) -> Path:
+    """Where results go that nobody named a folder for."""
+    from ..pipeline.run_folder import default_folder, default_name
+    from . import show
+
+    folder = default_folder(source)
+    if folder.name != (first := default_name(source)):
+        show.note(
+            f"{folder.parent / first} holds other results, and keeps them; these go to {folder} (`--out` chooses)"
+        )
+    return folder
 
 
 def _print(run: Run, as_json: bool) -> None:

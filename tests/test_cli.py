@@ -7,6 +7,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -100,6 +101,27 @@ def test_feel_records_every_tick(folder: Path):
     figures = json.loads(done.stdout)["figures"]
     with np.load(folder / "hand.npz") as recording:
         assert len(recording["time_s"]) == figures["ticks"] == 500
+
+
+def test_feel_asks_first_where_hardly_anything_matched(folder: Path, monkeypatch: pytest.MonkeyPatch):
+    from pictures import write_png
+
+    write_png(folder / "right.png", np.random.default_rng(9).integers(0, 255, (64, 96), dtype=np.uint8))
+    words = ("feel", "p.yaml", "--seconds", 0.2)
+    said = mistake(*words, cwd=folder)
+    assert "hardly anything matches in the two pictures" in said
+    assert said.endswith("this is felt only if you say so: --yes")
+    answers, asked = [False, True], []
+
+    def confirm(text: str, err: bool) -> bool:
+        asked.append(text)
+        return answers.pop(0)
+
+    monkeypatch.setattr("typer.confirm", confirm)
+    monkeypatch.setattr(sys, "stdin", SimpleNamespace(isatty=lambda: True))
+    codes = [tangible(*words, *more, cwd=folder).returncode for more in ((), ("--yes",), ())]
+    assert codes == [1, 0, 0]
+    assert len(asked) == 2 and asked[0].endswith("\nFeel it all the same?")
 
 
 def test_set_overrides_one_value(folder: Path):

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from .options import Config, Json, NoCache, Record, Sets
+from .asking import ask_first
+from .options import Config, Json, NoCache, Record, Sets, Yes
 from .run import device_of, open_pipeline
 
 if TYPE_CHECKING:
@@ -21,8 +22,12 @@ def feel(
     record: Record = None,
     as_json: Json = False,
     no_cache: NoCache = False,
+    yes: Yes = False,
 ) -> None:
-    """Feel the surface on the configured device, in real time."""
+    """Feel the surface on the configured device, in real time.
+
+    Where hardly anything matched in a pair of pictures, it asks first.
+    """
     import time
     from dataclasses import asdict
 
@@ -32,6 +37,7 @@ def feel(
 
     pipeline = open_pipeline(config, sets or [], not no_cache)
     device = device_of(pipeline)
+    ask_first(pipeline, yes)
     loop: dict[str, Any] = {}
     reports: list[ServoReport] = []
 

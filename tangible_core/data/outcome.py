@@ -47,6 +47,11 @@ class Outcome:
 class Outcomes(list[Outcome]):
     """Outcomes that show themselves as a table, in a terminal and in a notebook."""
 
+    @property
+    def doubts(self) -> list[Note]:
+        """Why what was made is hardly worth feeling; empty where it is."""
+        return [note for each in self for note in each.notes if note.kind == "doubt"]
+
     def __repr__(self) -> str:
         return text_table(HEADINGS, [each.row() for each in self])
 

@@ -16,10 +16,10 @@ from ..data import DisparityMap, HapticSurface, Material, MaterialMap, Record, R
 from ..errors import BrokenMethod, ConfigError, PictureError, TangibleError
 from ..materials import assignment
 from ..plugins.interfaces import Method, Skippable, Touch
-from ..plugins.notes import note
+from ..plugins.notes import doubt, note
 from ..provenance.closure import closure
 from ..provenance.source import source_digest
-from ..scene import geometry, scaling, view_order
+from ..scene import geometry, scaling, unmatched, view_order
 from ..scene.scene import Scene
 from ..scene.scene_files import SceneFiles
 from .cache import Cache
@@ -83,13 +83,16 @@ def _disparity(config: PipelineConfig, scene: Scene) -> Rule:
             offset_px = views.calibration.offset_px if views.calibration else 0.0
             made = _in_order(made, small, offset_px / factor)
         found = scaling.enlarged(made, views.shape)
+        if views.right is not None and (said := unmatched.hardly_matched(found, scene.known)):
+            doubt(log, said)
         if scene.known is None:
             return found
         known_px = np.where(scene.known, found.disparity_px, np.float32(np.nan))
         return DisparityMap(known_px, found.confidence * scene.known, found.unit)
 
     name, key = _identity(config.depth)
-    key = f"{_core(scaling.__name__)} {_core(view_order.__name__)} {as_named} {key} 1/{factor} {_known(scene)}"
+    code = " ".join(_core(each.__name__) for each in (scaling, view_order, unmatched))
+    key = f"{code} {as_named} {key} 1/{factor} {_known(scene)}"
     skip, refusal = _skip(config.depth, scene), _no_depth(config, scene)
     return Rule("disparity", name, key, ("views",), make, skip, reduced, refusal=refusal)
 

@@ -127,7 +127,9 @@ def _felt(
 
 def _draw(engine: Engine, products: Mapping[str, Any], recording: Recording | None, path: Path) -> None:
     scene = engine.scene
-    draw_sheet(path, views=scene.views, truth=scene.truth, recording=recording, title=scene.name,
+    doubts = [each.text.partition(":")[0] for each in engine.outcomes.doubts]
+    title = f"{scene.name} (doubtful: {'; '.join(doubts)})" if doubts else scene.name
+    draw_sheet(path, views=scene.views, truth=scene.truth, recording=recording, title=title,
                **{name: products.get(name) for name in (*SHOWN, "relief")})  # fmt: skip
 
 

@@ -7,6 +7,8 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,7 +17,7 @@ from command_line import tangible
 from ctrl_c import HEARING
 from distributions import distribution
 from tangible_core.cli import show
-from tangible_core.data import Outcome
+from tangible_core.data import Outcome, ServoReport
 
 TANGIBLE = str(Path(sys.executable).with_name("tangible"))
 
@@ -62,7 +64,7 @@ def test_run_makes_everything_and_says_so(folder: Path):
         assert word in done.stdout
     written = {path.name for path in (folder / "out" / "p").iterdir()}
     products = {"disparity.npz", "segments.npz", "materials.npz", "surface.npz"}
-    assert written == products | {"config.yaml", "outcomes.json", "recording.npz", "sheet.png"}
+    assert written == products | {"config.yaml", "manifest.json", "outcomes.json", "recording.npz", "sheet.png"}
     again = tangible("run", "out/p/config.yaml", "--seconds", 1, "--json", cwd=folder)
     outcomes = {each["product"]: each["outcome"] for each in json.loads(again.stdout)["outcomes"]}
     assert outcomes["surface"] == outcomes["disparity"] == "cached"
@@ -82,12 +84,44 @@ def test_plan_runs_nothing(folder: Path):
     assert not (folder / "out").exists()
 
 
+def test_plan_says_what_run_will_refuse_and_run_leaves_nothing(folder: Path):
+    one = ("p.yaml", "--set", "scene={photo: left.png}", "--set", "depth={use: semi-global}")
+    said = mistake("plan", *one, cwd=folder)
+    assert said.startswith("this cannot be run: depth method semi-global needs two views, and the scene ")
+    assert "left.png has one: give both" in said
+    assert said.removeprefix("this cannot be run: ") == mistake("run", *one, cwd=folder)
+    assert not (folder / "out").exists()
+    table = tangible("plan", *one, "--json", cwd=folder)
+    assert json.loads(table.stdout)[-1]["outcome"] == "refused"
+
+
 def test_feel_records_every_tick(folder: Path):
     done = tangible("feel", "p.yaml", "--seconds", 0.5, "--record", "hand.npz", "--json", cwd=folder)
     assert done.returncode == 0, done.stderr
     figures = json.loads(done.stdout)["figures"]
     with np.load(folder / "hand.npz") as recording:
         assert len(recording["time_s"]) == figures["ticks"] == 500
+
+
+def test_feel_asks_first_where_hardly_anything_matched(folder: Path, monkeypatch: pytest.MonkeyPatch):
+    from pictures import write_png
+
+    write_png(folder / "right.png", np.random.default_rng(9).integers(0, 255, (64, 96), dtype=np.uint8))
+    words = ("feel", "p.yaml", "--seconds", 0.2)
+    said = mistake(*words, cwd=folder)
+    assert "hardly anything matches in the two pictures" in said
+    assert said.endswith("this is felt only if you say so: --yes")
+    answers, asked = [False, True], []
+
+    def confirm(text: str, err: bool) -> bool:
+        asked.append(text)
+        return answers.pop(0)
+
+    monkeypatch.setattr("typer.confirm", confirm)
+    monkeypatch.setattr(sys, "stdin", SimpleNamespace(isatty=lambda: True))
+    codes = [tangible(*words, *more, cwd=folder).returncode for more in ((), ("--yes",), ())]
+    assert codes == [1, 0, 0]
+    assert len(asked) == 2 and asked[0].endswith("\nFeel it all the same?")
 
 
 def test_set_overrides_one_value(folder: Path):
@@ -167,6 +201,20 @@ def test_log_levels_can_be_set_by_name(folder: Path):
     assert word not in quiet
     assert f"INFO {word}: plan for touch" in told
     assert "no level is named 'loud'" in mistake("plan", "p.yaml", "--log-level", "loud", cwd=folder)
+
+
+def test_a_check_that_the_law_itself_declares_to_fail_is_told_and_no_failure(monkeypatch: pytest.MonkeyPatch):
+    from tangible_render import Penalty
+
+    done = tangible("check", "render", "penalty", cwd=Path())
+    assert done.returncode == 0, done.stdout
+    assert "0 failed, 1 failed as the method declares" in done.stdout
+    assert "a spring along z alone is its law" in " ".join(done.stdout.split())
+    monkeypatch.setattr(Penalty, "expected_failures", {"pickle_is_small": "a mistake"})
+    done = tangible("check", "render", "penalty", "--json", cwd=Path())
+    assert done.returncode == 1
+    odd = [each for each in json.loads(done.stdout) if each["passed"] == bool(each["expected_failure"])]
+    assert {each["name"]: each["passed"] for each in odd} == {"springs_are_exact": False, "pickle_is_small": True}
 
 
 def test_a_check_that_fails_ends_with_1(folder: Path):
@@ -306,6 +354,26 @@ def test_ctrl_c_ends_with_130_and_nothing_half_written(folder: Path):
     assert "Traceback" not in errors
     assert (folder / "hand.npz").exists() and not growing.exists()
     assert not [path for path in folder.iterdir() if path.name.startswith(".")]
+
+
+def test_ctrl_c_while_a_run_feels_ends_with_130_and_says_what_is_kept(folder: Path, monkeypatch: pytest.MonkeyPatch):
+    from tangible_core.pipeline import runs
+    from tangible_core.session import INTERRUPTED, Recording, run_simulated
+
+    def pressed(report: ServoReport) -> None:
+        if not report.stopped:
+            raise KeyboardInterrupt
+
+    def felt(touch: Any, device: Any, seconds: float, on_report: object, limits: Any) -> Recording:
+        return run_simulated(touch, device, seconds, pressed, limits)
+
+    monkeypatch.setattr(runs, "run_simulated", felt)
+    done = tangible("run", "p.yaml", "--seconds", 600, cwd=folder)
+    assert done.returncode == 130, done.stderr
+    assert "feeling ended after 0.1 s: interrupted from the keyboard; recording.npz holds these" in done.stderr
+    assert done.stderr.splitlines()[-1] == "interrupted; what was finished is kept"
+    assert Recording.load(folder / "out/p/recording.npz").stopped == INTERRUPTED
+    assert (folder / "out/p/sheet.png").exists()
 
 
 def test_a_reader_that_goes_away_is_no_error(folder: Path):

@@ -47,6 +47,12 @@ class Results:
         return value if self.task.measures[measure].best == "low" else -value
 
     @property
+    def failed(self) -> list[str]:
+        """Methods without a result on any scene, in order."""
+        done = {cell.method for cell in self.cells.values() if cell.seconds}
+        return [name for name in dict.fromkeys(cell.method for cell in self.cells.values()) if name not in done]
+
+    @property
     def judged(self) -> str:
         """The measure that methods are judged by."""
         return self.task.columns[0]

@@ -1,11 +1,19 @@
 """`check`: the conformance kit against one installed method."""
 
-from typing import Annotated
+from __future__ import annotations
+
+from collections import Counter
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from ..plugins.registry import KIND_NAMES
 from .options import FAILED, Json
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from ..testing import CheckResult
 
 
 def check(
@@ -15,7 +23,7 @@ def check(
 ) -> None:
     """Test an installed method with the conformance kit.
 
-    Exit 1 if a check fails.
+    Exit 1 if a check fails that the method does not declare to fail, or passes that it declares to fail.
     """
     from rich.markup import escape
 
@@ -23,13 +31,38 @@ def check(
     from . import show
 
     results = list(run_checks(kind, name))
-    failed = [each for each in results if not each.passed]
     if as_json:
-        show.print_json([{"name": each.name, "passed": each.passed, "message": each.message} for each in results])
+        show.print_json([each._asdict() for each in results])
     else:
-        grades = {True: "[green]passed[/]", False: "[red]FAILED[/]"}
-        rows = [(each.name, grades[each.passed], escape(each.message)) for each in results]
+        rows = [(each.name, GRADES[each.passed, bool(each.expected_failure)], escape(_said(each))) for each in results]
         show.table(("check", "result", "message"), rows)
-        show.say(f"\n{len(results) - len(failed)} passed, {len(failed)} failed")
-    if failed:
+        show.say(f"\n{_count(results)}")
+    if not all(each.as_declared for each in results):
         raise typer.Exit(FAILED)
+
+
+GRADES = {
+    (True, False): "[green]passed[/]",
+    (False, False): "[red]FAILED[/]",
+    (False, True): "[yellow]fails as declared[/]",
+    (True, True): "[red]PASSED, declared to fail[/]",
+}
+"""By whether it passed, and whether it was declared to fail."""
+
+
+def _said(result: CheckResult) -> str:
+    return (
+        f"{result.expected_failure} ({result.message})"
+        if result.expected_failure and not result.passed
+        else result.message
+    )
+
+
+def _count(results: Sequence[CheckResult]) -> str:
+    numbers = Counter((each.passed, bool(each.expected_failure)) for each in results)
+    parts = [f"{numbers[True, False]} passed", f"{numbers[False, False]} failed"]
+    if declared := numbers[False, True]:
+        parts.append(f"{declared} failed as the method declares")
+    if wrong := numbers[True, True]:
+        parts.append(f"{wrong} passed that the method declares to fail")
+    return ", ".join(parts)

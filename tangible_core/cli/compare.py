@@ -33,7 +33,8 @@ def compare(
 ) -> None:
     """Compare methods by time, memory and error.
 
-    All methods are measured on the same scenes. What was interrupted goes on where it stopped.
+    All methods are measured on the same scenes. What was interrupted goes on where it stopped. Exit 1 if a method
+    failed on every scene.
     """
     from dataclasses import replace
 
@@ -60,7 +61,10 @@ def compare(
         show.print_json(_document(found.results, found.files, found.verdict))
     else:
         _print(found.results, found.files, found.verdict, detail)
-    if found.verdict is not None and found.verdict.worse:
+    if failed := found.results.failed:
+        show.flush()
+        show.note(f"no result on any scene: {', '.join(failed)}")
+    if failed or (found.verdict is not None and found.verdict.worse):
         raise typer.Exit(FAILED)
 
 
@@ -100,6 +104,7 @@ def _document(results: Results, files: Sequence[Path], verdict: verdicts.Verdict
         "methods": [asdict(line) for perturb in results.perturbs for line in results.means(perturb)],
         "front": [results.means()[index].method for index in results.on_front(results.means(), results.judged)],
         "cells": [asdict(cell) for cell in results.cells.values()],
+        "failed": results.failed,
         "files": [str(path) for path in files],
         **({} if verdict is None else {"against": asdict(verdict)}),
     }

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from .options import Json, NoCache, Record, Sets
+from .asking import ask_first
+from .options import Json, NoCache, Record, Sets, Yes
 from .run import device_of, open_pipeline
 
 if TYPE_CHECKING:
@@ -31,10 +32,12 @@ def feel(
     record: Record = None,
     as_json: Json = False,
     no_cache: NoCache = False,
+    yes: Yes = False,
 ) -> None:
     """Feel the surface on the configured device, in real time.
 
-    Several files are felt in turn, each with the device of the first; none may have another one.
+    Several files are felt in turn, each with the device of the first; none may have another one. Where hardly anything
+    matched in a pair of pictures, it asks first.
     """
     import math
     import time
@@ -49,6 +52,8 @@ def feel(
     pipeline, *then = (open_pipeline(config, sets or [], not no_cache) for config in configs)
     device = device_of(pipeline)
     until_s = (each * len(configs) if then else SECONDS) if seconds is None else seconds
+    for one in (pipeline, *then):
+        ask_first(one, yes)
     loop: dict[str, Any] = {}
     reports: list[ServoReport] = []
 

@@ -13,4 +13,5 @@ Sets = Annotated[
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")]
 NoCache = Annotated[bool, typer.Option("--no-cache", help="Neither read nor write the cache of results.")]
+Yes = Annotated[bool, typer.Option("--yes", "-y", help="Feel also what is hardly worth it, without being asked.")]
 Record = Annotated[Path | None, typer.Option(help="Save every tick to this file (.nc, .npz or .csv).")]

@@ -21,7 +21,7 @@ Seconds = Annotated[float, typer.Option(help="Simulated time for which the surfa
 
 
 def demo(
-    out: Annotated[Path, typer.Option("--out", help="Folder for the results.")] = Path("out/demo"),
+    out: Annotated[Path | None, typer.Option("--out", help="Folder for the results [default: out/demo].")] = None,
     seconds: Seconds = 8.0,
     as_json: Json = False,
     no_cache: NoCache = False,
@@ -39,12 +39,18 @@ def demo(
     from . import show
 
     text = files("tangible_core").joinpath("demo.yaml").read_text(encoding="utf-8")
-    config = parse_config(text, Path("demo.yaml"), default_registry())
+    config = parse_config(text, DEMO, default_registry())
     pipeline = Pipeline.of(config, default_registry(), None if no_cache else Cache())
-    _print(pipeline.run(out, seconds=seconds), as_json)
+    out = out or _folder(DEMO)
+    done = pipeline.run(out, seconds=seconds)
+    _print(done, as_json)
+    _say_if_ended_early(done)
     if not as_json:
         show.say(NEXT.format(config=out / "config.yaml"))
 
+
+DEMO = Path("tangible demo/demo.yaml")
+"""What the built-in example is called, as if it were a file: nobody's own demo.yaml is taken for it."""
 
 NEXT = """
 Next:
@@ -67,18 +73,27 @@ def run(
     A simulated device feels the surface; a real one is never moved: see `feel`.
     """
     pipeline = open_pipeline(config, sets or [], not no_cache)
-    _print(pipeline.run(out or Path("out") / config.stem, seconds=seconds), as_json)
+    done = pipeline.run(out or _folder(config), seconds=seconds)
+    _print(done, as_json)
+    _say_if_ended_early(done)
 
 
 def plan(config: Config, sets: Sets = None, as_json: Json = False, no_cache: NoCache = False) -> None:
-    """Say what `run` would do, and why; run nothing."""
+    """Say what `run` would do, and why; run nothing.
+
+    Exit 2 if `run` would refuse.
+    """
+    from ..errors import ConfigError
     from . import show
 
-    steps = open_pipeline(config, sets or [], not no_cache).plan().steps
+    plan = open_pipeline(config, sets or [], not no_cache).plan()
     if as_json:
-        show.print_json(show.as_rows(steps))
+        show.print_json(show.as_rows(plan.steps))
     else:
-        show.outcomes(steps, ran="to run")
+        show.outcomes(plan.steps, ran="to run")
+    if plan.refusal:
+        show.flush()
+        raise ConfigError(f"this cannot be run: {plan.refusal}")
 
 
 def open_pipeline(config: Path, sets: Sequence[str], cached: bool) -> Pipeline:
@@ -101,6 +116,19 @@ def device_of(pipeline: Pipeline) -> NamedMethod[HapticDevice]:
     return replace(device, method=felt)
 
 
+def _folder(source: Path) -> Path:
+    """Where results go that nobody named a folder for."""
+    from ..pipeline.run_folder import default_folder, default_name
+    from . import show
+
+    folder = default_folder(source)
+    if folder.name != (first := default_name(source)):
+        show.note(
+            f"{folder.parent / first} holds other results, and keeps them; these go to {folder} (`--out` chooses)"
+        )
+    return folder
+
+
 def _print(run: Run, as_json: bool) -> None:
     from . import show
 
@@ -116,6 +144,20 @@ def _print(run: Run, as_json: bool) -> None:
     show.say("\n[bold]written[/]")
     for path in run.files:
         show.plain(f"  {path}")
+
+
+def _say_if_ended_early(run: Run) -> None:
+    """Raises: KeyboardInterrupt if it was Ctrl-C that ended the feeling."""
+    from ..session import INTERRUPTED
+    from . import show
+
+    if run.recording is None or not run.recording.stopped:
+        return
+    felt_s, why = run.recording.figures()["seconds"], run.recording.stopped
+    show.flush()
+    show.note(f"feeling ended after {felt_s:.1f} s: {why}; recording.npz holds these, and all else was made whole")
+    if why == INTERRUPTED:
+        raise KeyboardInterrupt
 
 
 def _error_lines(figures: Mapping[Any, Any]) -> list[str]:

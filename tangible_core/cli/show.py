@@ -16,7 +16,7 @@ from ..runtime.standard_output import stream
 if TYPE_CHECKING:
     from ..data import Outcome
 
-COLOURS = {"given": "blue", "ran": "green", "cached": "cyan", "skipped": "dim", "failed": "red"}
+COLOURS = {"given": "blue", "ran": "green", "cached": "cyan", "skipped": "dim", "failed": "red", "refused": "red"}
 
 
 def print_json(value: Any) -> None:

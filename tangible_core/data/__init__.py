@@ -1,7 +1,7 @@
 """What travels between stages: frozen records of read-only arrays, and the servo's tuples."""
 
 from .device import NO_FORCE, DeviceSpec, Finding, Force, HapticState, Unit, Vector, limited
-from .outcome import Kind, Outcome, OutcomeKind, Outcomes, Plan
+from .outcome import Kind, Note, NoteKind, Outcome, OutcomeKind, Outcomes, Plan
 from .records import Record, digest_of
 from .surface import TEXTURES, HapticSurface, Material, MaterialMap, Relief, Texture
 from .ticks import TICK_COLUMNS, UNTOUCHED, ServoReport, Spread, TickFlag
@@ -19,6 +19,8 @@ __all__ = [
     "Material",
     "MaterialMap",
     "NO_FORCE",
+    "Note",
+    "NoteKind",
     "Outcome",
     "OutcomeKind",
     "Outcomes",

@@ -8,8 +8,21 @@ from typing import Literal
 Kind = Literal["depth", "texture", "render", "device"]
 
 
-OutcomeKind = Literal["given", "ran", "cached", "skipped", "failed"]
+OutcomeKind = Literal["given", "ran", "cached", "skipped", "failed", "refused"]
+"""`refused`: it cannot be made of this scene, which is known before anything is begun."""
 HEADINGS = ("product", "method", "outcome", "why", "seconds")
+
+
+NoteKind = Literal["decision", "warning", "doubt"]
+"""`doubt`: what was made is hardly worth feeling."""
+
+
+@dataclass(frozen=True)
+class Note:
+    """What a method noticed while it made a product."""
+
+    text: str
+    kind: NoteKind = "decision"
 
 
 @dataclass(frozen=True)
@@ -19,8 +32,11 @@ class Outcome:
     product: str
     outcome: OutcomeKind
     why: str
+    """The texts of the notes included."""
     method: str = ""
     seconds: float = 0.0
+    notes: tuple[Note, ...] = ()
+    """What was noticed when it was made; before, if it comes from the cache."""
 
     def row(self, ran: str = "ran") -> tuple[str, ...]:
         """Texts under HEADINGS; ran: the word for one that ran, or is to."""
@@ -30,6 +46,11 @@ class Outcome:
 
 class Outcomes(list[Outcome]):
     """Outcomes that show themselves as a table, in a terminal and in a notebook."""
+
+    @property
+    def doubts(self) -> list[Note]:
+        """Why what was made is hardly worth feeling; empty where it is."""
+        return [note for each in self for note in each.notes if note.kind == "doubt"]
 
     def __repr__(self) -> str:
         return text_table(HEADINGS, [each.row() for each in self])
@@ -42,11 +63,16 @@ class Outcomes(list[Outcome]):
 class Plan:
     """What asking for a product will do: one outcome a product, in order, nothing run.
 
-    It shows itself as a table, in a terminal and in a notebook.
+    It ends with the first product that cannot be made. It shows itself as a table, in a terminal and in a notebook.
     """
 
     want: str
     steps: tuple[Outcome, ...]
+
+    @property
+    def refusal(self) -> str:
+        """Why this cannot be run, as far as that is known beforehand; empty where it can."""
+        return next((each.why for each in self.steps if each.outcome == "refused"), "")
 
     def __repr__(self) -> str:
         return text_table(HEADINGS[:-1], self._rows())

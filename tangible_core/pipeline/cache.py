@@ -1,6 +1,7 @@
 """Records on disk, found by the key of what made them.
 
-One file an entry, `<key>.npz`: readable by numpy.load, checked by the archive's CRC when it is read. Files appear whole
+One file an entry, `<key>.npz`: readable by numpy.load, checked by the archive's CRC when it is read. It holds what was
+noticed when the record was made, and when all that it is made from was. Files appear whole
 (written beside and renamed), so two processes can share a folder; a damaged entry is deleted and made again.
 """
 
@@ -10,12 +11,12 @@ import os
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
 from pathlib import Path
-from typing import Any, cast
+from typing import Any, NamedTuple, cast, get_args
 
 import numpy as np
 
 from .. import data
-from ..data import Record
+from ..data import Note, NoteKind, Record
 from ..errors import OutputError, quoted, shown
 from ..files.arrays import Archive, write_arrays
 from ..files.reading import check_file
@@ -24,8 +25,20 @@ from ..files.writing import atomic_write
 log = logging.getLogger(__name__)
 
 DEFAULT_BYTES = 2 << 30
+NOTES = "notes"
 KEPT = frozenset(name for name, each in vars(data).items() if is_dataclass(each))
 """What an entry may be made of."""
+
+
+Notes = Mapping[str, tuple[Note, ...]]
+"""By product."""
+
+
+class Entry(NamedTuple):
+    """A record, and what was noticed when it and all that it is made from were made."""
+
+    record: Record
+    notes: Notes
 
 
 class Cache:
@@ -40,9 +53,14 @@ class Cache:
 
     def get(self, key: str) -> Record | None:
         """The record of this key, or None if there is none or it is damaged (then it is deleted and said)."""
+        entry = self.entry(key)
+        return entry and entry.record
+
+    def entry(self, key: str) -> Entry | None:
+        """As `get`, with the notes."""
         path = self._path(key)
         try:
-            record = read_record(path)
+            entry = read_entry(path)
             os.utime(path)  # least recently used, not oldest, goes first
         except FileNotFoundError:  # or dropped by another process while it was read
             return None
@@ -50,12 +68,21 @@ class Cache:
             log.warning("cache entry %s is damaged and is made again: %s", path, shown(str(error), 200))
             path.unlink(missing_ok=True)
             return None
-        return record
+        return entry
 
-    def put(self, key: str, record: Record) -> None:
+    def notes(self, key: str) -> Notes:
+        """The notes of this key alone, for a plan; none where there is no such entry, or it is damaged."""
+        try:
+            check_file(self._path(key))
+            with self._path(key).open("rb") as file:
+                return _notes(Archive(file).read([NOTES])[NOTES])
+        except Exception:  # noqa: BLE001 - a damaged file can provoke any; `get` says so
+            return {}
+
+    def put(self, key: str, record: Record, notes: Notes | None = None) -> None:
         """Keep a record; a cache that cannot be written costs a warning, never the result."""
         try:
-            write_record(self._path(key), record)
+            write_record(self._path(key), record, notes or {})
             self._prune()
         except (OutputError, OSError) as error:
             log.warning("the result is not cached: %s", error)
@@ -83,27 +110,48 @@ def default_folder() -> Path:
     return user_cache_path("tangible-images")
 
 
-def write_record(path: Path, record: Record) -> None:
-    """A record as an .npz: its arrays by name, and the rest in `record` as JSON.
+def write_record(path: Path, record: Record, notes: Notes | None = None) -> None:
+    """A record as an .npz: its arrays by name, and the rest in `record` and `notes` as JSON.
 
     Raises: OutputError if the place cannot be written.
     """
     arrays: dict[str, np.ndarray] = {}
-    tree = json.dumps(_pack(record, "", arrays))
+    texts = {"record": _pack(record, "", arrays)}
+    if notes is not None:
+        texts[NOTES] = {product: [[each.text, each.kind] for each in notes[product]] for product in notes}
+    packed = {name: np.frombuffer(json.dumps(tree).encode(), np.uint8) for name, tree in texts.items()}
     with atomic_write(path) as file:
-        write_arrays(file, {"record": np.frombuffer(tree.encode(), np.uint8), **arrays})
+        write_arrays(file, packed | arrays)
 
 
 def read_record(path: Path) -> Record:
-    """What `write_record` wrote. Raises: FileNotFoundError, or ValueError and its like when damaged."""
+    """The record that `write_record` wrote. Raises: FileNotFoundError, or ValueError and its like when damaged."""
+    return read_entry(path).record
+
+
+def read_entry(path: Path) -> Entry:
+    """What `write_record` wrote. Raises: as `read_record`."""
     check_file(path)
     with path.open("rb") as file:
         archive = Archive(file)
         arrays = archive.read(archive.names)
+    notes: Notes = _notes(arrays.pop(NOTES)) if NOTES in arrays else {}
     record = _unpack(json.loads(arrays.pop("record").tobytes()), arrays)
     if not isinstance(record, Record):
         raise ValueError(f"holds no record, but {quoted(record)}")
-    return record
+    return Entry(record, notes)
+
+
+def _notes(packed: np.ndarray) -> Notes:
+    return {
+        str(product): tuple(_note(*each) for each in found) for product, found in json.loads(packed.tobytes()).items()
+    }
+
+
+def _note(text: Any, kind: Any) -> Note:
+    if not isinstance(text, str) or kind not in get_args(NoteKind):
+        raise ValueError(f"holds no note, but {quoted([text, kind])}")
+    return Note(text, kind)
 
 
 def _pack(value: Any, name: str, arrays: dict[str, np.ndarray]) -> Any:

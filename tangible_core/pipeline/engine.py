@@ -9,14 +9,14 @@ from time import perf_counter
 from typing import Any, NamedTuple
 
 from ..compiled.beside import Beside
-from ..data import Outcome, Outcomes, Plan, Record
+from ..data import Note, Outcome, Outcomes, Plan, Record
 from ..errors import UnknownMethod
 from ..plugins import hooks
-from ..plugins.notes import collected
+from ..plugins.notes import noted
 from ..plugins.registry import Registry
 from ..runtime.stopping import check_stopped, stoppable
 from ..scene.scene import Scene
-from .cache import Cache
+from .cache import Cache, Notes
 from .config import PRODUCTS, PipelineConfig
 from .rules import Rule, given_key, made_key, rules
 
@@ -51,6 +51,8 @@ class Engine:
         self._whole: dict[str, Any] = {}
         self._keys: dict[str, str] = {}
         self._outcomes: dict[str, Outcome] = {}
+        self._notes: dict[str, tuple[Note, ...]] = {}
+        """What was noticed of each product when it was made, in this process or before."""
         self._progress: Progress = _unheard
 
     @contextmanager
@@ -66,19 +68,27 @@ class Engine:
     @property
     def outcomes(self) -> Outcomes:
         """What became of each product, in the order of making; last those that nothing needed."""
-        unasked = [
-            Outcome(product, "skipped", "nothing that was asked for needs it", rule.method)
-            for product, rule in self._rules.items()
-            if product not in self._outcomes
-        ]
+        unasked = [self._unasked(rule) for product, rule in self._rules.items() if product not in self._outcomes]
         return Outcomes([*self._outcomes.values(), *unasked])
+
+    def _unasked(self, rule: Rule) -> Outcome:
+        notes = self._notes.get(rule.product, ())
+        why = _with(notes, EARLIER) if notes else "nothing that was asked for needs it"
+        return Outcome(rule.product, "skipped", why, rule.method, notes=notes)
 
     @cached_property
     def scene(self) -> Scene:
         """The scene, read from its files. Raises: PictureError, GeometryError."""
+        return self._read[0]
+
+    @cached_property
+    def _read(self) -> tuple[Scene, tuple[Note, ...]]:
+        """The scene, and what was noticed when it was read."""
         if isinstance(self.config.scene, Scene):
-            return self.config.scene
-        return Scene.read(self.config.scene, self.config.folder)
+            return self.config.scene, tuple(map(Note, self.config.scene.notes))
+        with noted() as notes:
+            scene = Scene.read(self.config.scene, self.config.folder)
+        return scene, (*notes, *map(Note, scene.notes))
 
     @cached_property
     def brought(self) -> Mapping[str, Record]:
@@ -86,7 +96,8 @@ class Engine:
         start, size = perf_counter(), self.config.workspace
         found = self.scene.brings(size.width_m, size.relief_m, size.holes, size.finest_m)
         for product in found:
-            self._note(Outcome(product, "given", self._bringing(product), "", perf_counter() - start))
+            why, notes = self._bringing(product)
+            self._note(Outcome(product, "given", why, "", perf_counter() - start, notes))
             start = perf_counter()
         self._made |= found
         return found
@@ -100,6 +111,13 @@ class Engine:
         plan = Plan(want, tuple(self._foresee(want, ASKED, {}).values()))
         hooks.tell(self.registry.plugins, "tangible_plan_made", plan=plan)
         return plan
+
+    def check(self, want: str | None = None) -> None:
+        """Plan, and raise what the plan says is refused."""
+        for step in self.plan(want).steps:
+            refusal = self._rules[step.product].refusal if step.outcome == "refused" else None
+            if refusal is not None:
+                raise refusal
 
     def make(self, want: str | None = None) -> Any:
         """The product, made from what it needs and no more; None if this scene does not need it.
@@ -150,6 +168,9 @@ class Engine:
             return None
         if (found := self._from_cache(rule)) is not None:
             return found
+        if rule.refusal is not None:
+            self._note(Outcome(rule.product, "refused", str(rule.refusal), rule.method))
+            raise rule.refusal
         inputs = {name: self._pull(name, f"{rule.product} is made from it") for name in rule.needs}
         check_stopped()
         self._progress(Stage(rule.product, rule.method))
@@ -159,26 +180,39 @@ class Engine:
             self.beside.wait(rule.product)
         start = perf_counter()
         try:
-            with collected() as notes:
+            with noted() as notes:
                 value = rule.make(inputs)
         except BaseException as error:
             failure = f"{type(error).__name__}: {error}"
             self._note(Outcome(rule.product, "failed", failure, rule.method, perf_counter() - start))
             raise
         seconds = perf_counter() - start
-        self._note(Outcome(rule.product, "ran", _with((rule.note, *notes), why), rule.method, seconds))
+        self._notes[rule.product] = found = (*_foreseen(rule), *notes)
+        self._note(Outcome(rule.product, "ran", _with(found, why), rule.method, seconds, found))
         if self.cache is not None and rule.cached:
-            self.cache.put(self.key(rule.product), value)
+            within = {name: self._notes[name] for name in sorted(self.needed(rule.product)) if self._notes.get(name)}
+            self.cache.put(self.key(rule.product), value, within)
         return value
 
     def _from_cache(self, rule: Rule) -> Record | None:
         if self.cache is None or not rule.cached:
             return None
         start = perf_counter()
-        found = self.cache.get(self.key(rule.product))
-        if found is not None:
-            self._note(Outcome(rule.product, "cached", SAME, rule.method, perf_counter() - start))
-        return found
+        entry = self.cache.entry(self.key(rule.product))
+        if entry is None:
+            return None
+        self._tell_again(entry.notes)
+        notes = self._notes.get(rule.product, ())
+        self._note(Outcome(rule.product, "cached", _with(notes, SAME), rule.method, perf_counter() - start, notes))
+        return entry.record
+
+    def _tell_again(self, kept: Notes) -> None:
+        """Notes of products that come from the cache, or are within one that does; warnings are logged as at first."""
+        for product in kept.keys() - self._notes.keys():
+            self._notes[product] = kept[product]
+            for each in kept[product]:
+                if each.kind != "decision":
+                    log.warning("%s", each.text)
 
     def _foresee(self, product: str, why: str, steps: dict[str, Outcome]) -> dict[str, Outcome]:
         """Outcomes of a product and, before it, of what it needs."""
@@ -187,21 +221,29 @@ class Engine:
             return steps
         if rule is None:
             if product in self.brought:
-                steps[product] = Outcome(product, "given", self._bringing(product))
+                why, notes = self._bringing(product)
+                steps[product] = Outcome(product, "given", why, notes=notes)
         elif rule.skip:
             steps[product] = Outcome(product, "skipped", rule.skip, rule.method)
         elif self.cache is not None and rule.cached and self.key(product) in self.cache:
-            steps[product] = Outcome(product, "cached", SAME, rule.method)
+            notes = self.cache.notes(self.key(product)).get(product, ())
+            steps[product] = Outcome(product, "cached", _with(notes, SAME), rule.method, notes=notes)
+        elif rule.refusal is not None:
+            steps[product] = Outcome(product, "refused", str(rule.refusal), rule.method)
         else:
             for name in rule.needs:
                 self._foresee(name, f"{product} is made from it", steps)
-            steps[product] = Outcome(product, "ran", _with((rule.note,), why), rule.method)
+                if any(each.outcome == "refused" for each in steps.values()):
+                    return steps
+            notes = _foreseen(rule)
+            steps[product] = Outcome(product, "ran", _with(notes, why), rule.method, notes=notes)
         return steps
 
-    def _bringing(self, product: str) -> str:
+    def _bringing(self, product: str) -> tuple[str, tuple[Note, ...]]:
         """Why it is given; with the pictures or the heights, what was noticed in their files."""
-        source = "relief" if self.scene.views is None else "views"
-        return _with(self.scene.notes if product == source else (), f"the scene {self.scene.name} brings it")
+        scene, noticed = self._read
+        notes = noticed if product == ("relief" if scene.views is None else "views") else ()
+        return _with(notes, f"the scene {scene.name} brings it"), notes
 
     @cached_property
     def _rules(self) -> dict[str, Rule]:
@@ -223,9 +265,14 @@ def _unheard(stage: Stage) -> None:
     """Nobody listens."""
 
 
-def _with(notes: Iterable[str], why: str) -> str:
-    return "; ".join([why, *filter(None, notes)])
+def _foreseen(rule: Rule) -> tuple[Note, ...]:
+    return (Note(rule.note),) if rule.note else ()
+
+
+def _with(notes: Iterable[Note], why: str) -> str:
+    return "; ".join([why, *(each.text for each in notes)])
 
 
 ASKED = "asked for"
+EARLIER = "within what comes from the cache"
 SAME = "same method, options and inputs as before"

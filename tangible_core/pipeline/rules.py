@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import logging
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -10,17 +11,21 @@ from typing import Any
 from uuid import uuid4
 
 from ..data import DisparityMap, HapticSurface, Material, MaterialMap, Record, Relief, SegmentMap, Views, digest_of
-from ..errors import BrokenMethod, ConfigError
+from ..errors import BrokenMethod, ConfigError, PictureError, TangibleError
 from ..materials import assignment
 from ..plugins.interfaces import Method, Skippable, Touch
+from ..plugins.notes import doubt, note
 from ..provenance.closure import closure
 from ..provenance.source import source_digest
-from ..scene import geometry, scaling
+from ..scene import geometry, scaling, unmatched, view_order
 from ..scene.scene import Scene
+from ..scene.scene_files import SceneFiles
 from . import felt
 from .cache import Cache
 from .config import NamedMethod, PipelineConfig
 from .felt import FeltScene
+
+log = logging.getLogger(__name__)
 
 Inputs = Mapping[str, Any]
 """Products by name; None where one was skipped."""
@@ -45,6 +50,8 @@ class Rule:
     note: str = ""
     """What part of the work this scene does not need."""
     cached: bool = True
+    refusal: TangibleError | None = None
+    """Why it cannot be made of this scene, as far as that is known beforehand."""
 
 
 def rules(config: PipelineConfig, scene: Scene, brought: Mapping[str, Record]) -> dict[str, Rule]:
@@ -68,16 +75,26 @@ def rules(config: PipelineConfig, scene: Scene, brought: Mapping[str, Record]) -
 
 
 def _disparity(config: PipelineConfig, grid: FeltScene) -> Rule:
+    files, original = grid.scene.files, grid.scene.views
+    as_named = isinstance(files, SceneFiles) and files.order == "as-named"
+    offset_px = original.calibration.offset_px if original and original.calibration else 0.0
+
     def make(inputs: Inputs) -> DisparityMap:
         views, chosen = _views(grid), _configured(config, "depth")
         made = chosen.method.estimate(views)
         _check_shape("depth", chosen, "disparity", made.disparity_px.shape, views.shape)
-        return felt.known_disparity(scaling.in_pixels_of(made, grid.scene.shape[1]), grid.known)
+        if not as_named:
+            made = _in_order(made, views, offset_px / grid.factor)
+        found = felt.known_disparity(scaling.in_pixels_of(made, grid.scene.shape[1]), grid.known)
+        if views.right is not None and (said := unmatched.hardly_matched(found, grid.known)):
+            doubt(log, said)
+        return found
 
     name, key = _identity(config.depth)
-    key = f"{_core(scaling.__name__)} {key} {grid.key}"
-    skip = _skip(config.depth, grid.scene)
-    return Rule("disparity", name, key, ("views",), make, grid.whole_disparity, skip, grid.note)
+    code = " ".join(_core(each.__name__) for each in (scaling, view_order, unmatched))
+    key = f"{code} {as_named} {key} {grid.key}"
+    skip, refusal = _skip(config.depth, grid.scene), _no_depth(config, grid.scene)
+    return Rule("disparity", name, key, ("views",), make, grid.whole_disparity, skip, grid.note, refusal=refusal)
 
 
 def _relief(config: PipelineConfig, grid: FeltScene) -> Rule:
@@ -149,7 +166,8 @@ def _touch(config: PipelineConfig) -> Rule:
     def make(inputs: Inputs) -> Touch:
         return _configured(config, "render").method.touch(inputs["surface"])
 
-    return Rule("touch", *_identity(config.render), ("surface",), make, cached=False)
+    refusal = config.missing("render") if config.render is None else None
+    return Rule("touch", *_identity(config.render), ("surface",), make, cached=False, refusal=refusal)
 
 
 def given_key(value: Record) -> str:
@@ -198,6 +216,30 @@ def _skip(chosen: NamedMethod[Any] | None, scene: Scene) -> str | None:
     return None
 
 
+def _in_order(made: DisparityMap, views: Views, offset_px: float) -> DisparityMap:
+    """The map, put right where its views were exchanged."""
+    if views.right is None:
+        return made
+    order = view_order.view_order(made, views.left, offset_px)
+    if order.said:
+        note(log, order.said, logging.WARNING if order.exchanged else logging.INFO)
+    return view_order.put_right(made) if order.exchanged else made
+
+
+def _no_depth(config: PipelineConfig, scene: Scene) -> TangibleError | None:
+    """Why no depth can be found in this scene, before anything looks."""
+    if scene.views is None:
+        return _pictureless(scene)
+    if config.depth is None:
+        return config.missing("depth")
+    if config.depth.method.needs_pair and scene.views.right is None:
+        return PictureError(
+            f"depth method {config.depth.name} needs two views, and the scene {scene.name} has one: give both, `left:` "
+            "and `right:`, or name a method for one picture (`tangible plugins` lists them)"
+        )
+    return None
+
+
 def _check_shape(
     kind: str, chosen: NamedMethod[Any], what: str, found: tuple[int, ...], wanted: tuple[int, ...]
 ) -> None:
@@ -222,5 +264,9 @@ def _configured(config: PipelineConfig, kind: str) -> NamedMethod[Any]:
 
 def _views(grid: FeltScene) -> Views:
     if grid.views is None:
-        raise ConfigError(f"the scene {grid.scene.name} has no picture; give one with `photo:` or `left:` and `right:`")
+        raise _pictureless(grid.scene)
     return grid.views
+
+
+def _pictureless(scene: Scene) -> ConfigError:
+    return ConfigError(f"the scene {scene.name} has no picture; give one with `photo:` or `left:` and `right:`")

@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from ..data import DisparityMap, MaterialMap, Outcomes, Record, ServoReport
 from ..errors import ConfigError
@@ -17,10 +17,10 @@ from ..session import About, Recording, run_simulated
 from .cache import write_record
 from .engine import Engine
 from .rehearsal import FELT, rehearsal
+from .run_folder import CONFIG, NO_CONFIG, OUTCOMES, RECORDING, SHEET, check_folder, rewritten
 
 SHOWN = ("disparity", "segments", "materials", "surface")
 """Products that the report draws, beside what is wanted."""
-SHEET = "sheet.png"
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,43 +59,46 @@ class Run:
 def make_run(
     engine: Engine, out: Path, want: str, seconds: float, on_report: Callable[[ServoReport], None] | None = None
 ) -> Run:
-    """Make what is wanted, and write the results and their report into a folder.
+    """Make what is wanted, and write the results and their report into a folder, in place of an earlier run's.
 
-    The completed configuration is written first: a folder that cannot be written stops the run before it starts. A
+    What is refused, and a folder that cannot be written, stop the run before it starts. A
     touch is felt for so many seconds of a simulated device's own time; a real device is not moved.
     Raises: OutputError if the folder cannot be written; TangibleError as `Engine.make` and `run_simulated`.
     """
-    files = [*_configuration(engine, out)]
-    engine.plan(want)
+    engine.check(want)
+    check_folder(out, engine.config.path)
     with rehearsal(engine, want) as engine.beside:
         value = engine.felt(want)
         products = {name: engine.felt(name) for name in SHOWN if name in engine.needed(want)}
         products[want] = value
         recording = _felt(engine, value, seconds, on_report) if want == "touch" else None
-    for name, record in products.items():
-        if isinstance(record, Record):
-            write_record(out / f"{name}.npz", record)
-            files.append(out / f"{name}.npz")
-    if recording is not None:
-        recording.save(out / "recording.npz")
-        files.append(out / "recording.npz")
-    figures = _figures(engine, products, recording)
-    _draw(engine, products, recording, out / SHEET)
-    files += [out / SHEET, out / "outcomes.json"]
-    run = Run(engine.scene.name, products, recording, figures, engine.outcomes, _versions(), tuple(files))
-    write_figures(out / "outcomes.json", run.document())
+    figures, config = _figures(engine, products, recording), _configuration(engine)
+    kept = {f"{name}.npz": record for name, record in products.items() if isinstance(record, Record)}
+    felt = [RECORDING] if recording is not None else []
+    files = tuple(out / name for name in (config.name, *kept, *felt, SHEET, OUTCOMES))
+    run = Run(engine.scene.name, products, recording, figures, engine.outcomes, _versions(), files)
+    with rewritten(out, engine.config.path) as place:
+        for name, record in kept.items():
+            write_record(place(name), record)
+        if recording is not None:
+            recording.save(place(RECORDING))
+        _draw(engine, products, recording, place(SHEET))
+        write_text(place(config.name), config.text)
+        write_figures(place(OUTCOMES), run.document())
     return run
 
 
-def _configuration(engine: Engine, out: Path) -> list[Path]:
-    """The file of the completed configuration; nothing but a test of the folder where no file can say it."""
+class _Configuration(NamedTuple):
+    name: str
+    text: str
+
+
+def _configuration(engine: Engine) -> _Configuration:
+    """The file of the completed configuration; where no file can say it, one that says why."""
     try:
-        text = engine.config.as_yaml()
+        return _Configuration(CONFIG, engine.config.as_yaml())
     except ConfigError as error:
-        write_text(out / "config.txt", f"{error}\n")
-        return [out / "config.txt"]
-    write_text(out / "config.yaml", text)
-    return [out / "config.yaml"]
+        return _Configuration(NO_CONFIG, f"{error}\n")
 
 
 def about(engine: Engine) -> About:
@@ -126,7 +129,9 @@ def _draw(engine: Engine, products: Mapping[str, Any], recording: Recording | No
     scene, shown = engine.scene, {name: products.get(name) for name in (*SHOWN, "relief")}
     if scene.truth is not None and shown["disparity"] is not None:
         shown["disparity"] = engine.make("disparity")  # pixel by pixel beside its truth
-    draw_sheet(path, views=scene.views, truth=scene.truth, recording=recording, title=scene.name, **shown)
+    doubts = [each.text.partition(":")[0] for each in engine.outcomes.doubts]
+    title = f"{scene.name} (doubtful: {'; '.join(doubts)})" if doubts else scene.name
+    draw_sheet(path, views=scene.views, truth=scene.truth, recording=recording, title=title, **shown)
 
 
 def _figures(engine: Engine, products: Mapping[str, Any], recording: Recording | None) -> dict[str, Any]:

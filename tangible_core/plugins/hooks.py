@@ -40,7 +40,7 @@ class Specs:
 
     @hookspec
     def tangible_stage_finished(self, outcome: Outcome) -> None:
-        """A product is given, ran, cached, skipped or failed; outcome.why says why."""
+        """A product is given, ran, cached, skipped, failed or refused; outcome.why says why."""
 
     @hookspec
     def tangible_servo_report(self, report: ServoReport) -> None:

@@ -4,7 +4,7 @@ Methods are stateless; what keeps state is a session: `Touch` for a renderer, `L
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from typing import ClassVar
 
 import numpy as np
@@ -32,10 +32,15 @@ class Method(BaseModel, ABC):
 
     version: ClassVar[int] = 1
     """Raise it when results change: it is part of the cache key."""
+    expected_failures: ClassVar[Mapping[str, str]] = {}
+    """Checks of the conformance kit that it does not keep, by name, each with the reason; they must then fail."""
 
 
 class DepthEstimator(Method):
     """Makes a disparity map from one picture or two."""
+
+    needs_pair: ClassVar[bool] = False
+    """True for a method that finds nothing without a right view: then a plan says so, and nothing is begun."""
 
     @abstractmethod
     def estimate(self, views: Views) -> DisparityMap:

@@ -1,32 +1,61 @@
-"""What a method decided or left out: said in the log, and kept for whoever asks, such as a benchmark."""
+"""What a method decided, left out or doubts: said in the log, and kept with its result for whoever asks."""
 
 import logging
-from collections.abc import Generator
+from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from contextvars import ContextVar
 
-_asked: ContextVar[list[str] | None] = ContextVar("tangible_notes", default=None)
+from ..data import Note
+
+_told: ContextVar[Callable[[Note], None] | None] = ContextVar("tangible_notes", default=None)
 
 
 def note(log: logging.Logger, message: str, level: int = logging.INFO) -> None:
-    """Log a decision, and hand it to `collected` where that is open."""
+    """Log a decision, or from `logging.WARNING` on a warning, and keep it with the result that is being made.
+
+    What is kept is told again when the result comes from the cache; what is only logged is not.
+    """
     log.log(level, message)
-    if (notes := _asked.get()) is not None:
-        notes.append(message)
+    _keep(Note(message, "warning" if level >= logging.WARNING else "decision"))
+
+
+def doubt(log: logging.Logger, message: str) -> None:
+    """`note` that a result is hardly worth feeling: a warning, on which `tangible feel` asks first."""
+    log.warning(message)
+    _keep(Note(message, "doubt"))
+
+
+@contextmanager
+def noted() -> Generator[list[Note]]:
+    """The notes of all methods that run in this block, in order."""
+    notes: list[Note] = []
+    with _heard(notes.append):
+        yield notes
 
 
 @contextmanager
 def collected() -> Generator[list[str]]:
-    """The notes of all methods that run in this block, in order.
+    """The texts of these notes.
 
     >>> with collected() as notes:
     ...     note(logging.getLogger("doctest"), "skipped: the views are identical")
     >>> notes
     ['skipped: the views are identical']
     """
-    notes: list[str] = []
-    token = _asked.set(notes)
+    texts: list[str] = []
+    with _heard(lambda each: texts.append(each.text)):
+        yield texts
+
+
+@contextmanager
+def _heard(tell: Callable[[Note], None]) -> Generator[None]:
+    token = _told.set(tell)
     try:
-        yield notes
+        yield
     finally:
-        _asked.reset(token)
+        _told.reset(token)
+
+
+def _keep(made: Note) -> None:
+    if (tell := _told.get()) is not None:
+        tell(made)

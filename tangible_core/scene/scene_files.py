@@ -68,6 +68,9 @@ class SceneFiles(BaseModel):
     """Metres that one unit of the rig's translation is; 1 when left out, 0.001 for a board measured in millimetres."""
     relief_m: Length | None = None
     """Height of the relief made from a height map; by default that of `workspace`."""
+    order: Literal["as-named"] | None = None
+    """`as-named`: left and right are in order, whatever is found out. When left out, views that show to be exchanged
+    are put right: larger disparities of the view named left are then nearer, and it is said."""
 
     crop: tuple[Start, Start, Count, Count] | None = None
     """The part that is felt, [x, y, width, height] in pixels of the upright picture, x and y from its upper left

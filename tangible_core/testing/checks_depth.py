@@ -98,11 +98,15 @@ def flat_pair_claims_nothing(method: DepthEstimator) -> None:
 
 
 def one_view_is_answered(method: DepthEstimator) -> None:
-    """Without a right view there is a relative map, or a TangibleError that says a pair is needed."""
+    """Without a right view there is a relative map; or a TangibleError, which `needs_pair` foretells to a plan."""
     try:
         found = method.estimate(Views(wall().left))
     except TangibleError:
+        demand(
+            method.needs_pair, "it raises without a right view; write `needs_pair: ClassVar[bool] = True` in its class"
+        )
         return
+    demand(not method.needs_pair, "one view gives a map, though the class has `needs_pair = True`; leave that out")
     demand(found.unit == "relative", "one view gives a map in px; without a second view only relative is known")
 
 

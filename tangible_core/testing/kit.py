@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple, cast
 
-from ..errors import DeviceAbsent, TangibleError, UnknownMethod, did_you_mean
+from ..errors import BrokenMethod, DeviceAbsent, TangibleError, UnknownMethod, did_you_mean
 from ..plugins.interfaces import HapticDevice
 from ..plugins.registry import Registry, default_registry
 from . import checks_depth, checks_device, checks_listing, checks_options, checks_render, checks_texture, checks_touch
@@ -24,6 +24,7 @@ FAMILIES: dict[str, tuple[Check, ...]] = {
 """What each kind is asked on top of what every method is asked."""
 
 
+PASSES = "it passes, though the method declares that it fails ({reason}): take {check} out of its expected_failures"
 MOTORS = "TANGIBLE_MOTORS"
 """Environment variable that lets a test suite push with real devices; `tangible check device NAME` does so as asked."""
 
@@ -37,6 +38,13 @@ class CheckResult(NamedTuple):
     name: str
     passed: bool
     message: str
+    expected_failure: str = ""
+    """The reason that the method declares for failing this check; empty where it declares none."""
+
+    @property
+    def as_declared(self) -> bool:
+        """Whether it passed, or failed as the method declares: one that passes all the same is declared wrongly."""
+        return self.passed != bool(self.expected_failure)
 
 
 def checks(kind: str) -> tuple[Check, ...]:
@@ -55,29 +63,31 @@ def conforms(
     """A pytest test of every check; `test_mine = conforms("depth", "mine")` is a whole test module.
 
     Parameters: kind and name as in `load_method`; expected_failures maps the name of a check to the reason why the
-    method does not keep it (it must then fail, or the test does); options as the method's own.
+    method does not keep it (it must then fail, or the test does), beside those that its class declares; options as the
+    method's own.
     Raises: ValueError if expected_failures names a check that does not exist.
     """
     import pytest
 
-    known = {check.__name__: check for check in checks(kind)}
     reasons = dict(expected_failures or {})
-    for unknown in reasons.keys() - known.keys():
-        raise ValueError(f"expected_failures: no {kind} check is named {unknown!r}{did_you_mean(unknown, known)}")
+    if complaint := _unknown(kind, reasons):
+        raise ValueError(complaint)
 
-    marks = {name: pytest.mark.xfail(reason=reason, strict=True) for name, reason in reasons.items()}
-    cases = [
-        pytest.param(check, id=name, marks=[marks[name]] if name in marks else []) for name, check in known.items()
-    ]
-
-    @pytest.mark.parametrize("check", cases)
+    @pytest.mark.parametrize("check", [pytest.param(check, id=check.__name__) for check in checks(kind)])
     def test_conforms(check: Check) -> None:
+        declared = {**_declared(default_registry(), kind, name), **reasons}.get(check.__name__, "")
         try:
             if check in checks_device.WITH_MOTORS and _would_push(name, options):
                 pytest.skip(f"a real device is there, and this pushes: let its grip hang free, and set {MOTORS}=1")
             _run(default_registry(), check, kind, name, options)
         except DeviceAbsent as absent:  # that it is said is a check of its own, and passes
             pytest.skip(f"nothing to ask: {absent}")
+        except Exception:
+            if declared:
+                pytest.xfail(declared)
+            raise
+        if declared:
+            pytest.fail(PASSES.format(check=check.__name__, reason=declared))
 
     return test_conforms
 
@@ -94,20 +104,43 @@ def _would_push(name: str, options: dict[str, Any]) -> bool:
 def run_checks(kind: str, name: str, registry: Registry | None = None, **options: Any) -> Iterator[CheckResult]:
     """Run every check against an installed method, without pytest; each result comes as soon as it is known.
 
-    Raises: UnknownMethod, BrokenMethod.
+    Raises: UnknownMethod; BrokenMethod, also where its `expected_failures` name a check that does not exist.
     """
     installed = registry or default_registry()
-    installed.load(kind, name)
+    declared = _declared(installed, kind, name)
     for check in checks(kind):
+        reason = declared.get(check.__name__, "")
         try:
             _run(installed, check, kind, name, options)
         except DeviceAbsent as absent:
-            yield CheckResult(check.__name__, True, f"not asked: {absent}")
+            yield CheckResult(check.__name__, not reason, f"not asked: {absent}", reason)
         except Exception as error:
             log.debug("%s %s fails in %s", kind, name, check.__name__, exc_info=True)
-            yield CheckResult(check.__name__, False, _in_words(error))
+            yield CheckResult(check.__name__, False, _in_words(error), reason)
         else:
-            yield CheckResult(check.__name__, True, " ".join((check.__doc__ or "").split("\n\n")[0].split()))
+            said = PASSES.format(check=check.__name__, reason=reason) if reason else _demand(check)
+            yield CheckResult(check.__name__, True, said, reason)
+
+
+def _declared(registry: Registry, kind: str, name: str) -> Mapping[str, str]:
+    """What the class says that it does not keep. Raises: UnknownMethod, BrokenMethod."""
+    declared = registry.load(kind, name).expected_failures
+    if complaint := _unknown(kind, declared):
+        raise BrokenMethod(f"{kind} method {name}: {complaint}")
+    return declared
+
+
+def _unknown(kind: str, reasons: Mapping[str, str]) -> str:
+    """A complaint about the first that is no check of this kind; empty where all are."""
+    known = [check.__name__ for check in checks(kind)]
+    unknown = next((each for each in reasons if each not in known), None)
+    if unknown is None:
+        return ""
+    return f"expected_failures: no {kind} check is named {unknown!r}{did_you_mean(unknown, known)}"
+
+
+def _demand(check: Check) -> str:
+    return " ".join((check.__doc__ or "").split("\n\n")[0].split())
 
 
 def _run(registry: Registry, check: Check, kind: str, name: str, options: dict[str, Any]) -> None:

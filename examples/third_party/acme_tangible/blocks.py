@@ -1,6 +1,6 @@
 """Depth by comparing blocks."""
 
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 from pydantic import Field
@@ -13,6 +13,7 @@ from tangible_core.errors import PictureError
 class Blocks(DepthEstimator):
     """Sum of absolute differences over a square window; the winner takes all."""
 
+    needs_pair: ClassVar[bool] = True
     window_px: Annotated[int, Field(ge=1)] = 7
     """Side of the window."""
     max_disparity_px: Annotated[int, Field(ge=1)] = 16

@@ -1,6 +1,6 @@
 """Method `kornia-report`: the chain of `report`, its Harris response, eight-point and correlation in torch."""
 
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from jaxtyping import Float64, Int64
@@ -21,6 +21,7 @@ class KorniaReport(DepthEstimator):
     Source: as `report`; Riba et al., Kornia, WACV 2020.
     """
 
+    needs_pair: ClassVar[bool] = True
     window_px: Literal[5, 7, 9, 11, 13, 15, 17, 19, 21] = 9
     """Side of the square correlation window."""
     least_contrast: Annotated[float, Field(gt=0, le=1)] = 0.005

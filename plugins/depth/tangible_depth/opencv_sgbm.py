@@ -1,7 +1,7 @@
 """OpenCV's semi-global block matcher."""
 
 from math import floor, log2
-from typing import Annotated, Literal, Self
+from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
 from jaxtyping import Bool, Float32, UInt8
@@ -35,6 +35,7 @@ class OpenCVSGBM(DepthEstimator, Skippable):
     Source: Hirschmueller, PAMI 2008; Birchfield & Tomasi, PAMI 1998, for the cost.
     """
 
+    needs_pair: ClassVar[bool] = True
     mode: Literal["3way", "hh4", "sgbm", "hh"] = "3way"
     """Number of directions along which costs are aggregated: `3way` 3 and `sgbm` 5, in little memory; `hh4` 4 and `hh`
     8, with 4 bytes per pixel and disparity."""

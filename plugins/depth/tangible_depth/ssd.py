@@ -1,6 +1,6 @@
 """Dense sums of squared differences."""
 
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
@@ -19,6 +19,7 @@ class Ssd(DepthEstimator):
     Source: the report "Tangible Images", ch. 2.
     """
 
+    needs_pair: ClassVar[bool] = True
     window_px: WindowSide = 7
     """Side of the square matching window; odd."""
     max_disparity_px: Annotated[int, Field(ge=1, le=512)] | Literal["auto"] = "auto"

@@ -34,16 +34,30 @@ def test_measure_show_and_compare(tangible, tmp_path: Path):
     config.write_text(TEXT)
     process = tangible("compare", config)
     said, noise = process.communicate()
-    assert process.returncode == 0, noise
+    assert process.returncode == 1, noise
+    assert "no result on any scene: raises" in noise
     for word in ("constant", "half", "raises", "baseline", "no result", "PictureError: not this picture", str(rows)):
         assert word in said
     assert (tmp_path / "out" / "plot.png").is_file()
 
+    # A method that failed on one scene of several has results; without the one that failed on all of them, so has all.
+    good = tmp_path / "good.jsonl"
+    for row in read_rows(rows).values():
+        if row.method != "raises":
+            append(good, row)
+            append(
+                good, replace(row, scene="elsewhere", key=row.key + "2", error="no" if row.method == "half" else None)
+            )
+    process = tangible("compare", good)
+    _, noise = process.communicate()
+    assert process.returncode == 0, noise
+
     # The same file against itself: nothing is measured, nothing is worse.
+    rows.write_text(good.read_text())
     process = tangible("compare", rows, "--against", rows)
     said, noise = process.communicate()
     assert process.returncode == 0, noise
-    assert "3 cells compared, times as ratios to constant; 0 figures got worse" in said
+    assert "4 cells compared, times as ratios to constant; 0 figures got worse" in said
 
     # Against results that were better.
     better = tmp_path / "better.jsonl"

@@ -14,6 +14,7 @@ from tangible_core.data import (
     HapticSurface,
     Material,
     MaterialMap,
+    Note,
     Record,
     Relief,
     SegmentMap,
@@ -42,6 +43,27 @@ def test_a_record_comes_back_as_it_was(tmp_path: Path, record: Record):
     again = read_record(tmp_path / "x.npz")
     assert type(again) is type(record)
     assert again.digest() == record.digest()
+
+
+NOTES = {"disparity": (Note("views exchanged", "warning"), Note("at 1/2")), "relief": (Note("noise", "doubt"),)}
+
+
+def test_what_was_noticed_comes_back_with_the_record(tmp_path: Path):
+    kept = Cache(tmp_path)
+    kept.put("k", RECORDS[1], NOTES)
+    assert kept.entry("k") is not None and kept.entry("k").notes == kept.notes("k") == NOTES
+    kept.put("k", RECORDS[1])
+    assert kept.entry("k").notes == kept.notes("k") == kept.notes("nothing") == {}
+
+
+@pytest.mark.parametrize("tree", [["x"], {"relief": [["x", "shout"]]}, {"relief": [[1, "doubt"]]}, {"relief": ["x"]}])
+def test_notes_that_are_none_are_damage(tmp_path: Path, tree: object, caplog: pytest.LogCaptureFixture):
+    record = {"class": "SegmentMap", "fields": {"labels": {"array": "a"}}}
+    packed = np.frombuffer(json.dumps(tree).encode(), np.uint8)
+    entry(tmp_path / "k.npz", record, notes=packed, a=np.zeros((2, 2), np.int32))
+    assert Cache(tmp_path).notes("k") == {}
+    assert Cache(tmp_path).get("k") is None
+    assert "damaged" in caplog.text
 
 
 def test_any_program_can_read_an_entry(tmp_path: Path):

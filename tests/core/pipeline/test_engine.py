@@ -9,15 +9,16 @@ import pluggy
 import pytest
 
 from pictures import write_png
-from tangible_core.data import DisparityMap, HapticSurface, SegmentMap, Views
+from tangible_core.data import DisparityMap, HapticSurface, Note, SegmentMap, Views
 from tangible_core.errors import BrokenMethod, ConfigError, GeometryError, PictureError, UnknownMethod
 from tangible_core.pipeline.cache import Cache
 from tangible_core.pipeline.config import MaterialChoice, NamedMethod, PipelineConfig
 from tangible_core.pipeline.engine import Engine
 from tangible_core.plugins import hooks
 from tangible_core.plugins.interfaces import DepthEstimator, ForceRenderer, Segmenter, Skippable, Touch
-from tangible_core.plugins.notes import note
+from tangible_core.plugins.notes import doubt, note
 from tangible_core.plugins.registry import Registry
+from tangible_core.scene.scene import Scene
 from tangible_core.scene.scene_files import SceneFiles
 from tangible_core.scene.workspace import Workspace
 
@@ -178,6 +179,58 @@ def test_what_a_method_notes_is_in_its_outcome(folder: Path):
     assert outcome.why == "asked for; skipped: everything"
 
 
+class Warns(Ramp):
+    """Is not sure."""
+
+    def estimate(self, views: Views) -> DisparityMap:
+        note(logging.getLogger("tests"), "every row is strange", logging.WARNING)
+        doubt(logging.getLogger("tests"), "hardly worth it")
+        return super().estimate(views)
+
+
+def test_what_a_method_noticed_is_told_again_with_what_comes_from_the_cache(
+    folder: Path, caplog: pytest.LogCaptureFixture
+):
+    parts = {"depth": chosen(Warns()), "texture": chosen(Says()), "materials": MaterialChoice(by={0: "ice"})}
+    noticed = [Note("every row is strange", "warning"), Note("hardly worth it", "doubt")]
+    first = pipeline(folder, **parts)
+    first.make("disparity")
+    first.make("surface")
+    for want in ("disparity", "surface"):  # of the second, only the surface is read, and holds what it is made from
+        caplog.clear()
+        again = pipeline(folder, **parts)
+        assert again.plan(want).steps[-1].notes == (tuple(noticed) if want == "disparity" else ())
+        again.make(want)
+        told = {each.product: each for each in again.outcomes}
+        assert said(again)["disparity"] == ("cached" if want == "disparity" else "skipped")
+        assert list(told["disparity"].notes) == noticed
+        assert told["disparity"].why.endswith("; every row is strange; hardly worth it")
+        assert [each.message for each in caplog.records] == ["every row is strange", "hardly worth it"]
+    assert told["segments"].why == "within what comes from the cache; skipped: everything"
+    again.make("disparity")
+    assert len(caplog.records) == 2  # and not told twice
+
+
+def test_what_was_noticed_in_reading_the_scene_is_told_with_the_views(folder: Path, monkeypatch: pytest.MonkeyPatch):
+    def read(*_: object) -> Scene:
+        note(logging.getLogger("tests"), "the first of 3 frames is taken", logging.WARNING)
+        return Scene.of(photo=np.zeros((4, 4)))
+
+    monkeypatch.setattr(Scene, "read", read)
+    pipe = pipeline(folder)
+    pipe.make("segments")
+    assert pipe.outcomes[0].notes == (Note("the first of 3 frames is taken", "warning"),)
+    assert pipe.outcomes[0].why.endswith(" brings it; the first of 3 frames is taken")
+
+
+def test_left_and_right_that_are_named_in_order_are_not_exchanged(folder: Path):
+    paths = {"left": Path("left.png"), "right": Path("right.png")}
+    found = pipeline(folder, scene=SceneFiles(**paths), depth=chosen(Ramp(slope=-3.0))).make("disparity")
+    assert np.nanmax(found.disparity_px) == 87
+    found = pipeline(folder, scene=SceneFiles(**paths, order="as-named"), depth=chosen(Ramp(slope=-3.0)))
+    assert np.nanmax(found.make("disparity").disparity_px) == 0
+
+
 def test_a_second_run_takes_the_surface_from_the_cache_and_runs_no_stage(folder: Path):
     pipeline(folder).make()
     ran.clear()
@@ -280,6 +333,51 @@ def test_a_failure_is_noted_and_raised_and_nothing_of_it_is_kept(folder: Path):
 def test_a_missing_method_is_a_clear_error(folder: Path):
     with pytest.raises(ConfigError, match=r"p\.yaml: `render:` is missing"):
         pipeline(folder, render=None).make()
+
+
+class Pairs(Ramp):
+    """Finds nothing in one picture."""
+
+    needs_pair: ClassVar[bool] = True
+
+
+@pytest.mark.parametrize(
+    ("parts", "product", "error", "says"),
+    [
+        (
+            {"scene": SceneFiles(photo=Path("left.png")), "depth": chosen(Pairs(), "pairs")},
+            "disparity",
+            PictureError,
+            "depth method pairs needs two views, and the scene left.png has one",
+        ),
+        ({"depth": None}, "disparity", ConfigError, "`depth:` is missing"),
+        ({"render": None}, "touch", ConfigError, "`render:` is missing"),
+        (
+            {"scene": SceneFiles(height=Path("heights.npy")), "want": "disparity"},
+            "disparity",
+            ConfigError,
+            "no picture",
+        ),
+    ],
+)
+def test_a_plan_ends_with_what_is_refused_and_nothing_is_begun(folder: Path, parts: dict, product, error, says: str):
+    plan = pipeline(folder, **parts).plan()
+    assert (plan.steps[-1].product, plan.steps[-1].outcome) == (product, "refused")
+    assert says in plan.refusal
+    pipe = pipeline(folder, **parts)
+    with pytest.raises(error) as raised:
+        pipe.make()
+    assert str(raised.value) == plan.refusal
+    assert ran == []
+    assert said(pipe)[product] == "refused"
+    assert not pipeline(folder).plan().refusal
+
+
+def test_a_pair_is_no_need_where_the_scene_brings_what_is_asked_for(folder: Path):
+    np.save(folder / "d.npy", np.full((20, 30), 3.0, np.float32))
+    files = SceneFiles(photo=Path("left.png"), disparity=Path("d.npy"))
+    assert not pipeline(folder, scene=files, depth=chosen(Pairs())).plan("relief").refusal
+    assert not pipeline(folder, scene=SceneFiles(photo=Path("left.png")), depth=None).plan("segments").refusal
 
 
 def test_an_unknown_product_is_named(folder: Path):

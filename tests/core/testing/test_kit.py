@@ -74,6 +74,31 @@ def test_results_come_one_by_one_with_reasons(registry):
     assert results["wall_is_found"].message.startswith("A textured wall shifted by 6 px is found")
 
 
+def declaring(*names: str) -> str:
+    """`SOURCE`, whose method says of its own that it fails these checks."""
+    said = f"expected_failures: ClassVar[Mapping[str, str]] = {dict.fromkeys(names, 'a toy')}"
+    imports = "from collections.abc import Mapping\n    from typing import ClassVar\n    import numpy"
+    return SOURCE.replace("shift_px: float", f"{said}\n        shift_px: float").replace("import numpy", imports)
+
+
+def test_a_failure_that_the_method_declares_is_no_complaint_and_a_pass_is_one(install):
+    source = declaring("flat_pair_claims_nothing", "one_view_is_answered", "wall_is_found")
+    install("acme", {"tangible.depth": {"mine": "acme:Mine"}}, acme=source)
+    results = {each.name: each for each in run_checks("depth", "mine", Registry())}
+    assert [name for name, each in results.items() if each.expected_failure and not each.passed] == [
+        "flat_pair_claims_nothing",
+        "one_view_is_answered",
+    ]
+    assert [name for name, each in results.items() if not each.as_declared] == ["wall_is_found"]
+    assert "take wall_is_found out of its expected_failures" in results["wall_is_found"].message
+
+
+def test_a_method_that_declares_what_is_no_check(install):
+    install("acme", {"tangible.depth": {"mine": "acme:Mine"}}, acme=declaring("wall_is_fond"))
+    with pytest.raises(BrokenMethod, match=r"depth method mine: .*'wall_is_fond' \(did you mean 'wall_is_found'\?\)"):
+        list(run_checks("depth", "mine", Registry()))
+
+
 def test_options_are_handed_on(registry):
     [result] = [each for each in run_checks("depth", "mine", registry, shift_px=9.0) if each.name == "wall_is_found"]
     assert result == CheckResult("wall_is_found", False, "the wall is shifted by 6 px; the median error is 3 px")
@@ -104,8 +129,9 @@ def test_a_method_without_its_extra_says_so_itself(install):
 
 
 def test_a_whole_test_module_of_someone_elses(install, tmp_path, monkeypatch):
-    site = install("acme", {"tangible.depth": {"mine": "acme:Mine"}}, acme=SOURCE)
-    reasons = {"flat_pair_claims_nothing": "a toy", "one_view_is_answered": "a toy", "options_are_frozen": "not true"}
+    points = {"tangible.depth": {"mine": "acme:Mine"}}
+    site = install("acme", points, acme=declaring("flat_pair_claims_nothing"))
+    reasons = {"one_view_is_answered": "a toy", "options_are_frozen": "not true"}
     tmp_path.joinpath("test_acme.py").write_text(
         f"from tangible_core.testing import conforms\ntest_mine = conforms('depth', 'mine', {reasons}, shift_px=9.0)\n"
     )

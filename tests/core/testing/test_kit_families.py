@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from itertools import count
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import pytest
@@ -40,6 +40,7 @@ def right_depth(views: Views) -> DisparityMap:
 
 
 class Depth(DepthEstimator):
+    needs_pair: ClassVar[bool] = True
     twist: Callable[[Views], DisparityMap] = right_depth
 
     def estimate(self, views: Views) -> DisparityMap:
@@ -263,6 +264,22 @@ WRONG = [
 @pytest.mark.parametrize(("check", "method"), RIGHT)
 def test_a_method_that_is_right(check, method):
     check(method)
+
+
+def test_a_method_that_raises_without_a_right_view_says_so_in_its_class():
+    class Silent(DepthEstimator):
+        def estimate(self, views: Views) -> DisparityMap:
+            return right_depth(views)
+
+    class Boasts(DepthEstimator):
+        needs_pair: ClassVar[bool] = True
+
+        def estimate(self, views: Views) -> DisparityMap:
+            return DisparityMap(np.zeros(views.shape, np.float32), unit="relative")
+
+    for method, says in ((Silent(), "write `needs_pair"), (Boasts(), "leave that out")):
+        with pytest.raises(CheckFailure, match=says):
+            checks_depth.one_view_is_answered(method)
 
 
 @pytest.mark.parametrize(("check", "method"), WRONG)

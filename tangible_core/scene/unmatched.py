@@ -1,0 +1,27 @@
+"""Whether anything at all was matched in a pair, in words."""
+
+import numpy as np
+from jaxtyping import Bool
+
+from ..data import DisparityMap
+from .view_order import MATCHED
+
+LEAST_MATCHED = 0.25
+"""Part of the picture below which hardly anything was matched: good pairs reach 0.5 to 0.9, noise 0.02 to 0.12."""
+
+
+def hardly_matched(disparity: DisparityMap, known: Bool[np.ndarray, "h w"] | None = None) -> str:
+    """What to say of a map that is mostly filled in, with likely causes and cures; empty where enough was matched.
+
+    known: where the picture shows anything.
+    """
+    matched = np.isfinite(disparity.disparity_px) & (disparity.confidence > MATCHED)
+    shown = matched if known is None else matched[known]
+    if disparity.unit != "px" or shown.size == 0 or (share := float(shown.mean())) >= LEAST_MATCHED:
+        return ""
+    return (
+        f"hardly anything matches in the two pictures: a depth was found for {share:.0%} of the left one, and the rest "
+        "is filled in. Check that both show the same scene at the same time, from side by side and equally sharp, and "
+        "that left and right are not exchanged; let pictures of cameras that did not look in parallel be turned "
+        "(`rectify: auto`); search a wider range (`max_disparity_px`); or try another depth method"
+    )

@@ -49,7 +49,7 @@ for line in sys.stdin:
         os._exit(0)
     os.wait()
 """
-"""A process that has imported numba alone, and compiled with it; each line of code runs in a process that begins then."""
+"""A process that has imported numba alone, and compiled with it; each line of code runs in one that begins then."""
 
 
 
@@ -70,8 +70,7 @@ class Acme:
 
     def felt(self, code: str = FELT) -> list[str]:
         """By a process that imports all there is itself."""
-        done = subprocess.run([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True, check=True, **self._world)
-        return done.stdout.split()
+        return subprocess.check_output([sys.executable, "-c", code], text=True, **self._world).split()
 
     @cached_property
     def _forking(self) -> "subprocess.Popen[str]":

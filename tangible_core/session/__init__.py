@@ -1,5 +1,6 @@
 """A session joins a touch and a device: the loop, and what it records."""
 
+from .limited import changed_most
 from .live import figures, keeping, run_in_real_time
 from .loop import run_simulated
 from .recording import INTERRUPTED, STOPPED, Recording, failure
@@ -14,6 +15,7 @@ __all__ = [
     "About",
     "Recording",
     "Writer",
+    "changed_most",
     "check_record_path",
     "compared",
     "failure",

@@ -3,6 +3,8 @@
 import logging
 from collections.abc import Callable, Generator, Iterable, Mapping
 from contextlib import contextmanager
+from copy import copy
+from dataclasses import replace
 from functools import cached_property
 from threading import Event
 from time import perf_counter
@@ -12,12 +14,13 @@ from ..compiled.beside import Beside
 from ..data import Outcome, Outcomes, Plan, Record
 from ..errors import UnknownMethod
 from ..plugins import hooks
+from ..plugins.interfaces import HapticDevice
 from ..plugins.notes import collected
 from ..plugins.registry import Registry
 from ..runtime.stopping import check_stopped, stoppable
 from ..scene.scene import Scene
 from .cache import Cache
-from .config import PRODUCTS, PipelineConfig
+from .config import PRODUCTS, NamedMethod, PipelineConfig
 from .rules import Rule, given_key, made_key, rules
 
 log = logging.getLogger(__name__)
@@ -82,7 +85,7 @@ class Engine:
     @cached_property
     def brought(self) -> Mapping[str, Record]:
         """The products that the scene brings, by name."""
-        start, size = perf_counter(), self.config.workspace
+        start, size = perf_counter(), self.config.size
         found = self.scene.brings(size.width_m, size.relief_m, size.holes)
         for product in found:
             why = f"the scene {self.scene.name} brings it"
@@ -107,6 +110,25 @@ class Engine:
         Raises: TangibleError for what a user can put right; whatever a plugin raises.
         """
         return self._pull(self._product(want), ASKED)
+
+    def touch_on(self, device: HapticDevice) -> Any:
+        """A touch for a device that the configuration does not name; all else is shared. Raises: as `make`."""
+        other = copy(self)
+        other.config = replace(self.config, device=NamedMethod("", "", device))
+        other.__dict__.pop("_rules", None)
+        other._made = {product: made for product, made in self._made.items() if product != "touch"}
+        touch = other.make("touch")
+        self._made |= {product: made for product, made in other._made.items() if product != "touch"}
+        return touch
+
+    def changed(self, config: PipelineConfig) -> "Engine":
+        """Another configuration of the same; products that it makes alike are those of this one."""
+        other = Engine(config, self.registry, self.cache)
+        if config.scene == self.config.scene:
+            other.scene = self.scene
+            alike = (name for name in self._made if name in self._rules and self._rules[name].cached)
+            other._made |= {name: self._made[name] for name in alike if other.key(name) == self.key(name)}
+        return other
 
     def needed(self, want: str) -> set[str]:
         """The product and everything that it is made from, by the rules."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import logging
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -14,7 +15,9 @@ import numpy as np
 from ..data import DisparityMap, HapticSurface, Material, MaterialMap, Record, Relief, SegmentMap, Views, digest_of
 from ..errors import BrokenMethod, ConfigError
 from ..materials import assignment
-from ..plugins.interfaces import Method, Skippable, Touch
+from ..plugins.interfaces import HapticDevice, Method, Skippable, Touch
+from ..plugins.notes import note
+from ..preflight import fit_surface
 from ..provenance.closure import closure
 from ..provenance.source import source_digest
 from ..scene import geometry, scaling
@@ -22,6 +25,7 @@ from ..scene.scene import Scene
 from .cache import Cache
 from .config import NamedMethod, PipelineConfig
 
+log = logging.getLogger(__name__)
 Inputs = Mapping[str, Any]
 """Products by name; None where one was skipped."""
 
@@ -83,7 +87,7 @@ def _disparity(config: PipelineConfig, scene: Scene) -> Rule:
 
 
 def _relief(config: PipelineConfig, scene: Scene) -> Rule:
-    size = config.workspace
+    size = config.size
 
     def make(inputs: Inputs) -> Relief:
         disparity: DisparityMap | None = inputs["disparity"]
@@ -146,9 +150,20 @@ def _surface(config: PipelineConfig, scene: Scene) -> Rule:
 
 def _touch(config: PipelineConfig, scene: Scene) -> Rule:
     def make(inputs: Inputs) -> Touch:
-        return _configured(config, "render").method.touch(inputs["surface"])
+        chosen, device = _configured(config, "render"), config.felt_device
+        surface, said = fitted(inputs["surface"], config, device) if device else (inputs["surface"], "")
+        if said:
+            note(log, said)
+        return chosen.method.touch(surface)
 
     return Rule("touch", *_identity(config.render), ("surface",), make, cached=False)
+
+
+def fitted(surface: HapticSurface, config: PipelineConfig, device: HapticDevice) -> tuple[HapticSurface, str]:
+    """The surface as a law is given it on this device, and what was taken off its materials, in words."""
+    if config.materials.fit == "never":
+        return surface, ""
+    return fit_surface(surface, device.spec(), config.safety)
 
 
 def given_key(value: Record) -> str:
@@ -187,7 +202,7 @@ def _core(module: str) -> str:
 
 def _felt(config: PipelineConfig, scene: Scene) -> tuple[int, str]:
     """By how much the pictures are reduced, as nothing finer is felt; and the words for it."""
-    size = config.workspace
+    size = config.size
     factor = scaling.felt_factor(scene.views.shape[1], size.width_m, size.finest_m) if scene.views else 1
     if factor == 1:
         return factor, ""

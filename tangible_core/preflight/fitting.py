@@ -60,7 +60,7 @@ def changes(before: Material, after: Material) -> str:
         ("texture", 1e6 * before.roughness_m, 1e6 * after.roughness_m, "um"),
         ("damping", before.damping_n_s_per_m, after.damping_n_s_per_m, "N s/m"),
     )
-    said = [f"{what} {was:.4g} to {now:.4g} {unit}" for what, was, now, unit in each if was != now]
+    said = [f"{what} {was:g} to {float(f'{now:.3g}'):g} {unit}" for what, was, now, unit in each if was != now]
     return f"{before.name} ({', '.join(said)})" if said else ""
 
 

@@ -9,6 +9,7 @@ from ...data import Relief
 from ..flight import Flight
 from ..verdict import FEW, Cure, Verdict, held
 from .cures import COUPLE, FIT, flatten, joined, round_off, soften
+from .stiffness import TOO_STIFF
 
 MEASURED = 1.01
 """A stiffness that was felt may be so much over what it is."""
@@ -19,6 +20,8 @@ WALLS = 0.1
 
 PROXY = "proxy"
 """The law whose stiffness is that of level ground everywhere."""
+LEVEL = 1.1
+"""Times a law's stiffness on level ground, up to which no slope is at fault."""
 RARE = 0.001
 """Share of the surface that may be too stiff: the passivity controller brakes there."""
 
@@ -37,7 +40,7 @@ def slope_stiffness(flight: Flight) -> Iterator[Verdict]:
     yield held(
         *("slope", "too stiff", share, "<=", RARE, "share", source),
         worse="unsafe" if share > FEW else "warn",
-        says="slopes and textures make the law stiffer than the device holds",
+        says=TOO_STIFF if most <= LEVEL * flight.stiffness_n_per_m else f"on slopes and textures {TOO_STIFF}",
         note=f"over {limit:.4g} N/m; up to {most:.4g} N/m, the median {np.median(felt):.4g} N/m",
         cure=_less_stiff(flight, limit, most),
     )
@@ -46,7 +49,7 @@ def slope_stiffness(flight: Flight) -> Iterator[Verdict]:
 def _less_stiff(flight: Flight, limit: float, most: float) -> Cure:
     """What of it is not done already, the least that it changes first."""
     level = flight.stiffness_n_per_m
-    if most <= 1.1 * level:
+    if most <= LEVEL * level:
         return soften(flight, limit)
     ways: list[Cure] = []
     if flight.met and not flight.fitted:

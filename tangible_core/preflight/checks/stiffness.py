@@ -9,6 +9,8 @@ from ..flight import PASSIVE, Ceiling, Flight
 from ..verdict import FEW, Change, Cure, Verdict, held, under
 from .cures import COUPLE, FIT, soften, soften_materials
 
+STIFFER = "stiffer than the device holds"
+TOO_STIFF = f"the law is {STIFFER}"
 CLEAN_N_PER_M = 900.0
 CLEAN = "Choi & Tan 2004: textures are clean up to 0.3 to 0.9 N/mm"
 STEP_SHARE = 0.07
@@ -46,7 +48,7 @@ def _under_ceiling(of: str, stiffness: float, ceiling: Ceiling, cure: Cure) -> V
         *("stiffness", of, stiffness, "<=", ceiling.most_n_per_m, "N/m", source),
         worse="unsafe" if not stiffness <= limit else "warn",
         note="" if share == 1 else f"{100 * share:g} % of {limit:.4g} N/m",
-        says=f"{of} is {'stiffer than the device holds' if not stiffness <= limit else 'so stiff that it is softened'}",
+        says=f"{of} is {'so stiff that it is softened' if stiffness <= limit else STIFFER}",
         cure=cure,
     )
 

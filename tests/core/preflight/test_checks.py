@@ -253,6 +253,20 @@ class TestSlopes:
     def test_its_other_cures(self, cure: dict[str, Any]):
         assert grades(slope_stiffness(fly(half_slope(2.0, cells=64), stiffness_n_per_m=1000.0, **cure))) == ["ok"]
 
+    @pytest.mark.parametrize(
+        ("law", "fitted", "cure"),
+        [
+            ("proxy", True, "`safety.coupling: auto`"),
+            ("proxy", False, "`materials.fit: device`; or `safety.coupling: auto`"),
+            ("penalty", True, "`safety.coupling: auto`; or a law that slopes do not stiffen, `render.use: proxy`"),
+        ],
+    )
+    def test_no_cure_is_what_is_done_already(self, law: str, fitted: bool, cure: str):
+        flight = fly(with_materials(material()), law, fitted=fitted)
+        object.__setattr__(flight.probes, "stiffness_n_per_m", np.full(4, 9000.0))
+        [found] = slope_stiffness(flight)
+        assert found.cure == cure
+
     @pytest.mark.parametrize(("stiffness", "verdict"), [(4040.0, "ok"), (4050.0, "unsafe")])
     def test_what_was_felt_may_be_a_hundredth_over(self, stiffness: float, verdict: str):
         flight = fly(level())
@@ -435,6 +449,7 @@ class TestJitter:
         worse = of(lateness(fly(level(), stiffness_n_per_m=801.0, **late)), "stiffness it leaves")
         assert (ok.verdict, ok.bound) == ("ok", pytest.approx(800))
         assert worse.verdict == verdict
+        assert bool(worse.changes) != simulated  # a busy moment of this machine is nothing to write into a file
 
     @pytest.mark.parametrize(
         ("call_s", "simulated", "verdict"),

@@ -114,7 +114,7 @@ class TestPipeline:
         pipeline = self.pipeline(device=Mock())
         pipeline.make("touch")
         [touch] = [each for each in pipeline.outcomes if each.product == "touch"]
-        assert "softened to what the device holds: brick (texture 225 to 85.49 um), stone" in touch.why
+        assert "softened to what the device holds: brick (texture 225 to 85.5 um), stone" in touch.why
         assert pipeline.surface.materials[0] == library()["brick"]
 
     def test_a_device_that_is_given_counts_and_not_the_configured_one(self):
@@ -122,7 +122,7 @@ class TestPipeline:
         pipeline = self.pipeline(device=strong)
         pipeline.feel(Mock(), 0.01, in_real_time=False)
         [touch] = [each for each in pipeline.outcomes if each.product == "touch"]
-        assert "brick (texture 225 to 85.49 um)" in touch.why
+        assert "brick (texture 225 to 85.5 um)" in touch.why
         assert pipeline.preflight(Mock()).safe
 
     def test_nothing_where_it_is_not_wanted_or_no_device_is_known(self):

@@ -82,12 +82,15 @@ def feel(
     if as_json:
         figures = {"device": device.name, "spec": asdict(device.method.spec()), **felt}
         outcomes = show.as_rows(pipeline.outcomes)
-        show.print_json({"outcomes": outcomes, "loop": loop, "figures": figures, "file": record and str(record)})
+        said = {"guard": session.changed_most(report.flagged), "file": record and str(record)}
+        show.print_json({"outcomes": outcomes, "loop": loop, "figures": figures, **said})
     else:
         show.outcomes(pipeline.outcomes)
         if loop:
             show.say(f"\n{loop['how']}; the first tick came {loop['start_s']:.2f} s after the loop was asked for\n")
         show.table(("figure", "value"), [(name, _text(value)) for name, value in felt.items()])
+        if said := session.changed_most(report.flagged):
+            show.plain(f"\n{said}")
     if report.stopped in (session.INTERRUPTED, TERMINATED):
         raise KeyboardInterrupt
     if report.stopped != OVER:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -10,15 +12,21 @@ from .options import FAILED, Config, Json, NoCache, Sets
 from .run import device_of, open_pipeline
 
 if TYPE_CHECKING:
-    from ..preflight import Flight, Verdict
+    from collections.abc import Mapping, Sequence
+
+    from ..preflight import Flight, Hand, Loop, Preflight, Verdict
 
 COLOURS = {"ok": "green", "warn": "yellow", "unsafe": "bold red"}
+MOST_DIGITS = 13
 PREFIXES = ((1.0, ""), (1e-3, "m"), (1e-6, "u"))
 
 
 def preflight(
     config: Config,
     sets: Sets = None,
+    fix: Annotated[
+        Path | None, typer.Option("--fix", metavar="OUT.yaml", help="Write a pipeline file that passes.")
+    ] = None,
     seconds: Annotated[float, typer.Option(help="How long to measure this machine's timing, s.")] = 2.0,
     rate: Annotated[float, typer.Option(help="Rate of the force loop, Hz.")] = 1000.0,
     speed: Annotated[float, typer.Option(help="Speed of the hand's stroke, m/s.")] = 0.12,
@@ -28,53 +36,107 @@ def preflight(
 ) -> None:
     """Check, before a motor moves, what is safe.
 
-    Says what is ok, what is not, and its cure. Opens no device. Exit 1 if something is unsafe.
+    Says what is ok, what is not, and its cure. Opens no device. Exit 1 if something is unsafe. With --fix, the cures
+    are tried, and a file with what is needed of them is written; if that is not enough, none is, and the exit is 1.
     """
-    from dataclasses import asdict
-
     from ..preflight import Hand, Loop, judge
-    from . import show
 
     hand, loop = Hand(speed, press), Loop(rate, seconds)
     pipeline = open_pipeline(config, sets or [], not no_cache)
-    device, flight = device_of(pipeline), pipeline.flight(hand=hand, loop=loop)
-    verdicts = judge(flight)
-    if as_json:
-        said = {"scene": pipeline.scene.name, "device": device.name, **_figures(flight)}
-        show.print_json({**said, "verdicts": [asdict(each) for each in verdicts]})
+    device = device_of(pipeline)
+    if fix is None:
+        flight = pipeline.flight(hand=hand, loop=loop)
+        verdicts, more = judge(flight), {}
     else:
-        for verdict in verdicts:
-            show.say(line(verdict))
-        counts = {grade: sum(each.verdict == grade for each in verdicts) for grade in COLOURS}
-        show.say(f"\n{pipeline.scene.name} on {device.name}: " + ", ".join(f"{n} {name}" for name, n in counts.items()))
-    if any(each.verdict == "unsafe" for each in verdicts):
+        flight, verdicts, more = _fixed(config, sets or [], hand, loop, fix, not no_cache)
+    _print(pipeline.scene.name, device.name, flight, verdicts, more, as_json)
+    if not verdicts.safe:
         raise typer.Exit(FAILED)
+
+
+def _fixed(
+    config: Path, sets: Sequence[str], hand: Hand, loop: Loop, out: Path, cached: bool
+) -> tuple[Flight, Preflight, dict[str, Any]]:
+    """What is so after the cures, which are written where they are enough; with what there is to say of them."""
+    from ..files.writing import write_text
+    from ..pipeline.fixing import fix
+
+    found = fix(config, sets, hand, loop, out, cached)
+    if found.verdicts.safe:
+        write_text(out, found.text)
+    return found.flight, found.verdicts, {"file": str(out) if found.verdicts.safe else None, "changes": found.changes}
+
+
+def _print(
+    scene: str, device: str, flight: Flight, verdicts: Preflight, more: Mapping[str, Any], as_json: bool
+) -> None:
+    from dataclasses import asdict
+
+    from rich.markup import escape
+
+    from . import show
+
+    if as_json:
+        said = {"scene": scene, "device": device, "sentence": verdicts.sentence, "grade": verdicts.grade}
+        rows = [{**asdict(each), "changes": {change.key: change.value for change in each.changes}} for each in verdicts]
+        show.print_json({**said, **more, **_figures(flight), "verdicts": rows})
+        return
+    sentence = f"[{COLOURS[verdicts.grade]}]{escape(verdicts.sentence)}[/]"
+    show.say(f"{escape(scene)} on {escape(device)}: {sentence}\n")
+    for verdict in verdicts:
+        show.say(line(verdict))
+    counts = {grade: sum(each.verdict == grade for each in verdicts) for grade in COLOURS}
+    show.say("\n" + ", ".join(f"{n} {name}" for name, n in counts.items()))
+    if more:
+        changed = "; ".join(f"{key}: {value}" for key, value in more["changes"].items()) or "nothing had to change"
+        written = f"written to {more['file']}" if more["file"] else "tried, which is not enough; nothing was written"
+        show.plain(f"{changed}: {written}")
 
 
 def line(verdict: Verdict) -> str:
     """A verdict as text, its cure on a line of its own, with rich's marks."""
     from rich.markup import escape
 
-    found = quantity(verdict.value, verdict.unit)
-    if verdict.relation:
-        found += f" {verdict.relation} {quantity(verdict.bound, verdict.unit)}"
-    said = "; ".join(filter(None, (f"{verdict.of}: {found}", verdict.note, verdict.source)))
+    said = "; ".join(filter(None, (f"{verdict.of}: {relation(verdict)}", verdict.note, verdict.source)))
     cure = f"\n{'':>20}cure: {verdict.cure}" if verdict.cure else ""
     return f"[{COLOURS[verdict.verdict]}]{verdict.verdict:<6}[/] {verdict.check:<12} {escape(said + cure)}"
 
 
-def quantity(value: float, unit: str) -> str:
-    """A value for people.
+def relation(verdict: Verdict) -> str:
+    """The value and how it stands to its bound, as it is, with as many digits as show it.
+
+    >>> from tangible_core.preflight import Verdict
+    >>> relation(Verdict("damping", "the law", "warn", 3.215, "N s/m", "<=", 0.4))
+    '3.215 N s/m > 0.4 N s/m'
+    >>> relation(Verdict("stiffness", "the law", "unsafe", 3000.02, "N/m", "<=", 3000.0))
+    '3000.02 N/m > 3000 N/m'
+    """
+    if not verdict.relation:
+        return quantity(verdict.value, verdict.unit)
+    if verdict.keeps:
+        return f"{quantity(verdict.value, verdict.unit)} {verdict.relation} {quantity(verdict.bound, verdict.unit)}"
+    numbers = verdict.value, verdict.bound
+    if any(map(math.isnan, numbers)):
+        return f"{verdict.value:g} is to be {verdict.relation} {verdict.bound:g} {verdict.unit}"
+    texts = ([quantity(each, verdict.unit, digits) for each in numbers] for digits in range(MOST_DIGITS))
+    value, bound = next(
+        (pair for pair in texts if pair[0] != pair[1]), [f"{each!r} {verdict.unit}" for each in numbers]
+    )
+    return f"{value} {'>' if verdict.relation == '<=' else '<'} {bound}"
+
+
+def quantity(value: float, unit: str, more_digits: int = 0) -> str:
+    """A value for people: with three digits, of newtons with four, and as many more.
 
     >>> quantity(2.9e-5, "m"), quantity(800.0, "N/m"), quantity(0.125, "share"), quantity(0.0, "s")
     ('29 um', '800 N/m', '12.5 %', '0 s')
     """
     if unit == "share":
-        return f"{100 * value:.3g} %"
+        return f"{100 * value:.{3 + more_digits}g} %"
     if unit not in ("m", "s"):
-        return f"{float(f'{value:.4g}'):.15g} {unit}"
+        return f"{float(f'{value:.{4 + more_digits}g}'):.15g} {unit}"
     scale, prefix = next((each for each in PREFIXES if abs(value) >= each[0]), PREFIXES[-1] if value else PREFIXES[0])
-    return f"{value / scale:.3g} {prefix}{unit}"
+    return f"{value / scale:.{3 + more_digits}g} {prefix}{unit}"
 
 
 def _figures(flight: Flight) -> dict[str, Any]:
@@ -94,5 +156,5 @@ def _figures(flight: Flight) -> dict[str, Any]:
             "real_time": late.real_time,
         },
         "tick": {f"{name}_s": cost.at(percent) for name, percent in PERCENTILES.items()}
-        | {"compiled_s": cost.kernel_s},
+        | {"compiled_s": cost.kernel_s if cost.compiled else None},
     }

@@ -18,7 +18,7 @@ from ..plugins.interfaces import DepthEstimator, ForceRenderer, HapticDevice, Me
 from ..plugins.registry import Registry
 from ..scene.scene import Scene
 from ..scene.scene_files import BUILTINS, SceneFiles, unknown_scene
-from ..scene.workspace import Section, Workspace
+from ..scene.workspace import FeltSize, Section, Workspace, kind_of
 from ..servo.guard.safety import Safety
 
 M = TypeVar("M", bound=Method, covariant=True)
@@ -42,6 +42,9 @@ class MaterialChoice(Section):
     """Material of the segments that are left."""
     library: Path | None = None
     """A YAML file with materials of your own, in addition to the built-in ones."""
+    fit: Literal["device", "never"] = "device"
+    """`device`: what the device cannot hold of a material's stiffness, texture or damping is taken off that material,
+    and the outcome of the touch says so. `never`: materials stay as they are, and the guard softens the whole law."""
 
 
 @dataclass(frozen=True)
@@ -85,6 +88,11 @@ class PipelineConfig:
         )
 
     @property
+    def size(self) -> FeltSize:
+        """The workspace, with what suits the scene where it says nothing."""
+        return self.workspace.size(kind_of(self.scene))
+
+    @property
     def felt_device(self) -> HapticDevice | None:
         """The device as the picture sees it, by the mapping; None where none is configured."""
         return None if self.device is None else mapped(self.device.method, self.mapping)
@@ -97,7 +105,7 @@ class PipelineConfig:
         plain: dict[str, Any] = {
             "scene": self._scene_as_said(),
             "want": self.want,
-            "workspace": self.workspace.model_dump(mode="json"),
+            "workspace": self.size._asdict(),
             "mapping": self.mapping.model_dump(mode="json", exclude_none=True),
             "materials": self.materials.model_dump(mode="json", exclude_none=True),
             "safety": self.safety.model_dump(mode="json", exclude_none=True),

@@ -3,6 +3,8 @@
 import logging
 from collections.abc import Callable, Generator, Iterable, Mapping
 from contextlib import contextmanager
+from copy import copy
+from dataclasses import replace
 from functools import cached_property
 from threading import Event
 from time import perf_counter
@@ -12,12 +14,13 @@ from ..compiled.beside import Beside
 from ..data import Note, Outcome, Outcomes, Plan, Record
 from ..errors import UnknownMethod
 from ..plugins import hooks
+from ..plugins.interfaces import HapticDevice
 from ..plugins.notes import noted
 from ..plugins.registry import Registry
 from ..runtime.stopping import check_stopped, stoppable
 from ..scene.scene import Scene
 from .cache import Cache, Notes
-from .config import PRODUCTS, PipelineConfig
+from .config import PRODUCTS, NamedMethod, PipelineConfig
 from .rules import Rule, given_key, made_key, rules
 
 log = logging.getLogger(__name__)
@@ -93,7 +96,7 @@ class Engine:
     @cached_property
     def brought(self) -> Mapping[str, Record]:
         """The products that the scene brings, by name."""
-        start, size = perf_counter(), self.config.workspace
+        start, size = perf_counter(), self.config.size
         found = self.scene.brings(size.width_m, size.relief_m, size.holes, size.finest_m)
         for product in found:
             why, notes = self._bringing(product)
@@ -136,6 +139,25 @@ class Engine:
     def felt(self, product: str) -> Any:
         """The product as `make` gives it, but as finely as it is felt; that of a scene is as the scene brings it."""
         return self._pull(product, ASKED)
+
+    def touch_on(self, device: HapticDevice) -> Any:
+        """A touch for a device that the configuration does not name; all else is shared. Raises: as `make`."""
+        other = copy(self)
+        other.config = replace(self.config, device=NamedMethod("", "", device))
+        other.__dict__.pop("_rules", None)
+        other._made = {product: made for product, made in self._made.items() if product != "touch"}
+        touch = other.make("touch")
+        self._made |= {product: made for product, made in other._made.items() if product != "touch"}
+        return touch
+
+    def changed(self, config: PipelineConfig) -> "Engine":
+        """Another configuration of the same; products that it makes alike are those of this one."""
+        other = Engine(config, self.registry, self.cache)
+        if config.scene == self.config.scene:
+            other._read = self._read
+            alike = (name for name in self._made if name in self._rules and self._rules[name].cached)
+            other._made |= {name: self._made[name] for name in alike if other.key(name) == self.key(name)}
+        return other
 
     def needed(self, want: str) -> set[str]:
         """The product and everything that it is made from, by the rules."""

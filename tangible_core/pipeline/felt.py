@@ -10,14 +10,14 @@ from ..data import DisparityMap, Relief, SegmentMap, Views
 from ..data.records import digest_of
 from ..scene import scaling
 from ..scene.scene import Scene
-from ..scene.workspace import Workspace
+from ..scene.workspace import FeltSize
 
 
 @final
 class FeltScene:
     """What a scene has on the grid that is felt. Reduced when first asked for, and kept."""
 
-    def __init__(self, scene: Scene, size: Workspace) -> None:
+    def __init__(self, scene: Scene, size: FeltSize) -> None:
         self.scene = scene
         self.factor = scaling.felt_factor(scene.shape[1], size.width_m, size.finest_m)
         self.shape = scaling.reduced_shape(scene.shape, self.factor)

@@ -29,7 +29,7 @@ from ..mapping import WorkspaceMapping, mapped
 from ..plugins import hooks
 from ..plugins.interfaces import KINDS, DepthEstimator, ForceRenderer, HapticDevice, Method, Segmenter, Touch
 from ..plugins.registry import Registry, default_registry
-from ..preflight import Flight, Hand, Loop, Verdict, judge, survey
+from ..preflight import Flight, Hand, Loop, Preflight, judge, survey
 from ..scene.scene import Scene
 from ..scene.workspace import Workspace
 from ..servo import OVER, Safety, Servo
@@ -38,6 +38,7 @@ from .cache import Cache
 from .config import MaterialChoice, NamedMethod, PipelineConfig, Product, load_config
 from .engine import Engine, Progress
 from .rehearsal import rehearsal
+from .rules import fitted
 from .runs import Run, about, make_run
 
 M = TypeVar("M", bound=Method)
@@ -116,6 +117,12 @@ class Pipeline:
         """A pipeline from a configuration that was checked."""
         made = cls.__new__(cls)
         made.engine = Engine(config, registry, cache)
+        return made
+
+    def changed(self, config: PipelineConfig) -> Self:
+        """The same with another configuration; what that makes alike is not made again."""
+        made = type(self).__new__(type(self))
+        made.engine = self.engine.changed(config)
         return made
 
     def to_yaml(self, path: str | PathLike[str]) -> None:
@@ -271,7 +278,7 @@ class Pipeline:
         file = None if record is None else Path(record)
         if file is not None:
             check_record_path(file, seconds is None)
-        felt, said, touch = self._device(device), self._about(device), self.touch
+        felt, said, touch = self._device(device), self._about(device), self._touch(device)
         tell = _both(self._tell, on_report)
         if not in_real_time:
             found = run_simulated(touch, felt, math.inf if seconds is None else seconds, tell, self.config.safety, stop)
@@ -310,27 +317,32 @@ class Pipeline:
 
     def preflight(
         self, device: HapticDevice | None = None, hand: Hand | None = None, loop: Loop | None = None
-    ) -> tuple[Verdict, ...]:
+    ) -> Preflight:
         """What is safe and what will be felt on a device, this or the configured one; no device is opened.
+
+        It shows itself as one sentence, and the cure of all that is wrong; it is a tuple of verdicts.
 
         Raises: ConfigError if there is no device or law; TangibleError as `make`.
         """
-        return tuple(judge(self.flight(device, hand, loop)))
+        return judge(self.flight(device, hand, loop))
 
     def flight(self, device: HapticDevice | None = None, hand: Hand | None = None, loop: Loop | None = None) -> Flight:
         """What the checks of `preflight` know. Raises: as `preflight`."""
         felt, law = self._device(device), self.config.render
         if law is None:
             raise self.config.missing("render")
+        touch = self._touch(device)
         return survey(
-            self.surface,
-            self.touch,
+            fitted(self.surface, self.config, felt)[0],
+            touch,
             law.method,
             felt,
-            workspace=self.config.workspace,
+            size=self.config.size,
             safety=self.config.safety,
             scene_relief_m=self.scene.relief_m,
             smoothed=self.scene.height is None,
+            law_name=law.name,
+            fitted=self.config.materials.fit == "device",
             hand=hand,
             loop=loop,
         )
@@ -355,7 +367,13 @@ class Pipeline:
                 f"{here}: has another `device:` or `mapping:` than {before}, which is felt before it; give both the "
                 "same, or leave `device:` out of all but the first"
             )
-        return Turn(self.touch, ours.safety)
+        if device is None and ours.device is None and theirs.device is not None:
+            device = theirs.device.method
+        return Turn(self._touch(device), ours.safety)
+
+    def _touch(self, device: HapticDevice | None) -> Touch:
+        """The law on the surface, whose materials fit this device, or the configured one."""
+        return self.touch if device is None else self.engine.touch_on(device)
 
     def _about(self, device: HapticDevice | None) -> About:
         said = about(self.engine)

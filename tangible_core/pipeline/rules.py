@@ -13,8 +13,9 @@ from uuid import uuid4
 from ..data import DisparityMap, HapticSurface, Material, MaterialMap, Record, Relief, SegmentMap, Views, digest_of
 from ..errors import BrokenMethod, ConfigError, PictureError, TangibleError
 from ..materials import assignment
-from ..plugins.interfaces import Method, Skippable, Touch
+from ..plugins.interfaces import HapticDevice, Method, Skippable, Touch
 from ..plugins.notes import doubt, note
+from ..preflight import fit_surface
 from ..provenance.closure import closure
 from ..provenance.source import source_digest
 from ..scene import geometry, scaling, unmatched, view_order
@@ -27,6 +28,7 @@ from .felt import FeltScene
 
 log = logging.getLogger(__name__)
 
+log = logging.getLogger(__name__)
 Inputs = Mapping[str, Any]
 """Products by name; None where one was skipped."""
 
@@ -60,7 +62,7 @@ def rules(config: PipelineConfig, scene: Scene, brought: Mapping[str, Record]) -
     brought: products that the scene brings, which have no rule.
     Raises: ConfigError for a material library that cannot be read.
     """
-    grid = FeltScene(scene, config.workspace)
+    grid = FeltScene(scene, config.size)
     segments = _segments(config, grid)
     unsegmented = None if "segments" in brought else segments.skip
     table = (
@@ -98,7 +100,7 @@ def _disparity(config: PipelineConfig, grid: FeltScene) -> Rule:
 
 
 def _relief(config: PipelineConfig, grid: FeltScene) -> Rule:
-    size, scene = config.workspace, grid.scene
+    size, scene = config.size, grid.scene
 
     def make(inputs: Inputs) -> Relief:
         disparity: DisparityMap | None = inputs["disparity"]
@@ -164,10 +166,21 @@ def _surface(config: PipelineConfig, grid: FeltScene) -> Rule:
 
 def _touch(config: PipelineConfig) -> Rule:
     def make(inputs: Inputs) -> Touch:
-        return _configured(config, "render").method.touch(inputs["surface"])
+        chosen, device = _configured(config, "render"), config.felt_device
+        surface, said = fitted(inputs["surface"], config, device) if device else (inputs["surface"], "")
+        if said:
+            note(log, said)
+        return chosen.method.touch(surface)
 
     refusal = config.missing("render") if config.render is None else None
     return Rule("touch", *_identity(config.render), ("surface",), make, cached=False, refusal=refusal)
+
+
+def fitted(surface: HapticSurface, config: PipelineConfig, device: HapticDevice) -> tuple[HapticSurface, str]:
+    """The surface as a law is given it on this device, and what was taken off its materials, in words."""
+    if config.materials.fit == "never":
+        return surface, ""
+    return fit_surface(surface, device.spec(), config.safety)
 
 
 def given_key(value: Record) -> str:

@@ -147,6 +147,8 @@ def _figures(engine: Engine, products: Mapping[str, Any], recording: Recording |
         }
     if recording is not None:
         figures["force"] = recording.figures()
+        if said := recording.guard_sentence:
+            figures["guard"] = {"says": said}
     return figures
 
 

@@ -1,9 +1,11 @@
 """What can be known before a motor moves: of the surface, the law, the device and this machine; a verdict a line."""
 
 from .checks import CHECKS, judge
+from .fitting import fit_surface
 from .flight import Flight, Hand, Loop
+from .preflight import Preflight
 from .survey import survey
 from .timing import PERCENTILES
 from .verdict import Verdict
 
-__all__ = ["CHECKS", "PERCENTILES", "Flight", "Hand", "Loop", "Verdict", "judge", "survey"]
+__all__ = ["CHECKS", "PERCENTILES", "Flight", "Hand", "Loop", "Preflight", "Verdict", "fit_surface", "judge", "survey"]

@@ -10,7 +10,7 @@ import numpy as np
 from ..data import DeviceSpec, HapticSurface, Material
 from ..errors import ConfigError
 from ..plugins.interfaces import ForceRenderer
-from ..scene.workspace import Workspace
+from ..scene.workspace import FeltSize
 from ..servo.guard import layout
 from ..servo.guard.safety import (
     NOMINAL_S,
@@ -87,13 +87,17 @@ class Flight:
     stiffness_n_per_m: float
     """The law's own word for the greatest on level ground, or what was felt of it; 0 for one that is no spring."""
     spec: DeviceSpec
-    workspace: Workspace
+    size: FeltSize
     relief_key: str
     """Where the configuration says how high the relief is,"""
     relief_m: float
     """and what it says there."""
     smoothed: bool
     """Whether `workspace.smooth_m` rounds the relief; one that the scene brings stays as it is."""
+    law_name: str
+    """What the configuration calls the law."""
+    fitted: bool
+    """Whether the materials were made to fit the device."""
     safety: Safety
     hand: Hand
     period_s: float
@@ -134,6 +138,19 @@ class Flight:
     def felt_n_per_m(self, stiffness_n_per_m: float) -> float:
         """What the device feels of a stiffness, through the coupling."""
         return stiffness_n_per_m / (1 + max(0.0, stiffness_n_per_m) * self.coupling_m_per_n)
+
+    def felt_damping_n_s_per_m(self, damping_n_s_per_m: float) -> float:
+        """What the device feels of a damping that changes fast, through the coupling."""
+        settings, _ = self.safety.arrays(self.spec, self.stiffness_n_per_m)
+        if not settings[layout.COUPLING] > 0:
+            return damping_n_s_per_m
+        own = float(settings[layout.COUPLING_DAMPING])
+        return own * damping_n_s_per_m / max(own + damping_n_s_per_m, 1e-9)
+
+    @property
+    def nominal_n_per_m(self) -> float:
+        """The stiffest wall that a loop of 1 kHz holds on this device, by its damping."""
+        return stiffness_limit_n_per_m(self.damping_n_s_per_m, NOMINAL_S, self.safety.delay_ticks)
 
     def passive_n_per_m(self, late_s: float = 0.0) -> float:
         """The stiffest wall that this loop holds where ticks come so late."""

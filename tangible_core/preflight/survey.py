@@ -8,7 +8,7 @@ from jaxtyping import Float64
 from ..data import HapticSurface
 from ..plugins.interfaces import ForceRenderer, HapticDevice, Touch
 from ..scene.geometry import workspace_to_picture
-from ..scene.workspace import Workspace
+from ..scene.workspace import FeltSize, Workspace
 from ..servo.guard.safety import Safety
 from ..servo.guard.stiffness import stiffness_of
 from .flight import Flight, Hand, Loop
@@ -22,20 +22,23 @@ def survey(
     law: ForceRenderer,
     device: HapticDevice,
     *,
-    workspace: Workspace | None = None,
+    size: FeltSize | None = None,
     safety: Safety | None = None,
     scene_relief_m: float | None = None,
     smoothed: bool = True,
+    law_name: str = "",
+    fitted: bool = False,
     hand: Hand | None = None,
     loop: Loop | None = None,
 ) -> Flight:
     """What there is to know of this surface and its touch under a law, on a device that is not opened for it.
 
     scene_relief_m: height of the relief, where the scene says it and not the workspace. smoothed: whether
-    `workspace.smooth_m` rounds the relief; one that the scene brings stays as it is.
+    `workspace.smooth_m` rounds the relief; one that the scene brings stays as it is. law_name: what the configuration
+    calls the law. fitted: whether the materials were made to fit the device.
     Takes `loop.seconds`, in which this machine's lateness is measured, and a moment more.
     """
-    workspace, safety = workspace or Workspace(), safety or Safety()
+    size, safety = size or Workspace().size("heights"), safety or Safety()
     hand, loop = hand or Hand(), loop or Loop()
     period_s, spec = loop.period_s, device.spec()
     stiffness = stiffness_of(touch, spec).n_per_m
@@ -45,10 +48,12 @@ def survey(
         law=law,
         stiffness_n_per_m=stiffness,
         spec=spec,
-        workspace=workspace,
+        size=size,
         relief_key="workspace.relief_m" if scene_relief_m is None else "scene.relief_m",
-        relief_m=scene_relief_m or workspace.relief_m,
+        relief_m=scene_relief_m or size.relief_m,
         smoothed=smoothed,
+        law_name=law_name,
+        fitted=fitted,
         safety=safety,
         hand=hand,
         period_s=period_s,

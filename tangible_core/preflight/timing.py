@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float64
 
+from ..compiled.touch import CompiledTouch
 from ..data import HapticState, Record
 from ..plugins.interfaces import Touch
 from ..servo.priority import PRIORITY
@@ -46,6 +47,8 @@ class TickCost(Record):
     """Each, called from Python."""
     kernel_s: float
     """Of the law alone, the mean along a path."""
+    compiled: bool = True
+    """Whether the law is one of kernels, and not Python's."""
 
     def at(self, percent: float) -> float:
         """What this many per cent of the calls do not exceed, seconds."""
@@ -86,7 +89,7 @@ def measure_ticks(touch: Touch, way_m: Float64[np.ndarray, "n 3"], period_s: flo
     for tick, state in enumerate(states, 1):
         touch.force(state)
         clock[tick] = time.perf_counter_ns()
-    return TickCost(1e-9 * np.diff(clock), kernel_s)
+    return TickCost(1e-9 * np.diff(clock), kernel_s, isinstance(touch, CompiledTouch))
 
 
 @contextmanager

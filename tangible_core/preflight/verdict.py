@@ -1,9 +1,9 @@
-"""A verdict: one number, the bound it is held against, where the bound comes from, and the cure."""
+"""A verdict: one number, the bound it is held against, where the bound comes from, and the cure; and all of them."""
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Literal
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Literal, NamedTuple
 
 Grade = Literal["ok", "warn", "unsafe"]
 """`warn`: it will not feel as it should. `unsafe`: the device may buzz, or be driven too late."""
@@ -11,6 +11,35 @@ FEW = 0.01
 """Share of the surface up to which a place is called the exception."""
 
 Unit = Literal["m", "s", "N", "N/m", "N s/m", "share"]
+
+
+class Change(NamedTuple):
+    """A key of the configuration, and what to write there."""
+
+    key: str
+    value: str
+    towards: Literal["at most", "at least", "is"]
+    """Which other values would do as well."""
+
+    def __str__(self) -> str:
+        return f"`{self.key}: {self.value}`"
+
+    def keeps(self, other: "Change") -> bool:
+        """Whether the other, of the same key, is content with this value too."""
+        if self.towards == other.towards:
+            return True
+        numbers = float(self.value), float(other.value)
+        return numbers[0] >= numbers[1] if other.towards == "at least" else numbers[0] <= numbers[1]
+
+    def stricter(self, other: "Change") -> "Change":
+        """Of two for one key, the one that keeps both bounds."""
+        if self.towards == "is" or self.towards != other.towards:
+            return self
+        return (min if self.towards == "at most" else max)(self, other, key=lambda each: float(each.value))
+
+
+Cure = str | Sequence[str | Change]
+"""What to change to what: a text, or its parts in order."""
 
 
 @dataclass(frozen=True)
@@ -31,6 +60,16 @@ class Verdict:
     note: str = ""
     cure: str = ""
     """What to change to what; empty where all is well."""
+    says: str = ""
+    """What is wrong, as the end of a plain sentence; empty where all is well."""
+    changes: tuple[Change, ...] = ()
+    """What of the cure a configuration can say, the first that does first."""
+
+    @property
+    def keeps(self) -> bool:
+        """Whether the value keeps its bound; one at its bound does, NaN keeps none."""
+        within = self.value <= self.bound if self.relation == "<=" else self.value >= self.bound
+        return not self.relation or within or math.isclose(self.value, self.bound)
 
 
 def held(
@@ -42,7 +81,8 @@ def held(
     unit: Unit,
     source: str,
     *,
-    cure: str,
+    cure: Cure,
+    says: str = "",
     worse: Grade = "warn",
     note: str = "",
 ) -> Verdict:
@@ -51,11 +91,12 @@ def held(
     >>> held("stiffness", "the law", 800.0, "<=", 600.0, "N/m", "", cure="soften it", worse="unsafe").verdict
     'unsafe'
     """
-    within = value <= bound if relation == "<=" else value >= bound
-    keeps = within or math.isclose(value, bound)
-    return Verdict(
-        check, of, "ok" if keeps else worse, value, unit, relation, bound, source, note, "" if keeps else cure
-    )
+    fine = Verdict(check, of, "ok", value, unit, relation, bound, source, note)
+    if fine.keeps:
+        return fine
+    parts = (cure,) if isinstance(cure, str) else cure
+    changes = tuple(part for part in parts if isinstance(part, Change))
+    return replace(fine, verdict=worse, cure="".join(map(str, parts)), says=says or f"{of} fails", changes=changes)
 
 
 def under(value: float) -> str:

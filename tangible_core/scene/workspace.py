@@ -1,8 +1,24 @@
-"""The size of what is felt."""
+"""The size of what is felt, and what suits a scene where nothing is said."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, NamedTuple
 
 from pydantic import BaseModel, ConfigDict, Field
+
+from .geometry import Holes
+from .scene import Scene
+from .scene_files import BUILTINS, SceneFiles
+
+SceneKind = Literal["photograph", "depth", "heights"]
+"""What a relief is made of: the brightness of one picture, depth (of a pair, or a map of it), or a height map."""
+
+SUITS: dict[SceneKind, tuple[float, float]] = {
+    "photograph": (0.004, 0.0015),
+    "depth": (0.01, 0.002),
+    "heights": (0.02, 0.0),
+}
+"""Height and smoothing, metres. An edge from black to white is then no steeper than h / (s sqrt(2 pi)): 1.06 in a
+photograph, where every line is one, and 2 between the nearest and the farthest of a pair. A height map stays as it
+is."""
 
 
 class Section(BaseModel):
@@ -11,17 +27,54 @@ class Section(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
 
+class FeltSize(NamedTuple):
+    """A workspace in which everything is said."""
+
+    width_m: float
+    relief_m: float
+    smooth_m: float
+    finest_m: float
+    holes: Holes
+
+
 class Workspace(Section):
     """The size of what is felt."""
 
     width_m: Annotated[float, Field(gt=0, le=10, allow_inf_nan=False)] = 0.08
     """Width of the surface under the hand."""
-    relief_m: Annotated[float, Field(gt=0, le=1, allow_inf_nan=False)] = 0.02
-    """Height of the nearest point above the farthest."""
-    smooth_m: Annotated[float, Field(ge=0, le=0.1, allow_inf_nan=False)] = 0.0
-    """Standard deviation of a Gaussian that smooths an estimated relief; matching noise would feel like grit."""
+    relief_m: Annotated[float, Field(gt=0, le=1, allow_inf_nan=False)] | None = None
+    """Height of the nearest point above the farthest; null for what suits the scene: 0.004 for a photograph, whose
+    brightness is no depth, 0.01 for depth, 0.02 for a height map."""
+    smooth_m: Annotated[float, Field(ge=0, le=0.1, allow_inf_nan=False)] | None = None
+    """Standard deviation of a Gaussian that smooths an estimated relief, as matching noise would feel like grit; null
+    for what suits the scene: 0.0015 for a photograph, 0.002 for depth. A height map is never smoothed."""
     finest_m: Annotated[float, Field(ge=0, le=0.1, allow_inf_nan=False)] = 3e-5
     """Finest detail that is kept: larger pictures are reduced to it first. A Falcon resolves 0.03 mm; 0 keeps every
     pixel."""
     holes: Literal["fill", "cut"] = "fill"
     """Where the depth is unknown: `fill` with the background beside it, or `cut` down to the base plane."""
+
+    def size(self, kind: SceneKind) -> FeltSize:
+        """With what suits a scene of this kind where nothing is said.
+
+        >>> Workspace(relief_m=0.006).size("photograph")[1:3]
+        (0.006, 0.0015)
+        """
+        relief_m, smooth_m = SUITS[kind]
+        relief_m = relief_m if self.relief_m is None else self.relief_m
+        smooth_m = smooth_m if self.smooth_m is None else self.smooth_m
+        return FeltSize(self.width_m, relief_m, smooth_m, self.finest_m, self.holes)
+
+
+def kind_of(scene: str | SceneFiles | Scene) -> SceneKind:
+    """What the relief of a scene is made of, as its files say it before one of them is read."""
+    if isinstance(scene, Scene) and scene.files is not None:
+        scene = scene.files
+    if isinstance(scene, str):
+        scene = BUILTINS[scene]
+    if isinstance(scene, SceneFiles):
+        heights, depth = scene.height is not None, scene.right is not None or scene.disparity is not None
+    else:
+        heights = scene.height is not None
+        depth = scene.disparity is not None or (scene.views is not None and scene.views.right is not None)
+    return "heights" if heights else "depth" if depth else "photograph"

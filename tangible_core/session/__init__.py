@@ -1,6 +1,7 @@
 """A session joins a touch and a device: the loop, and what it records."""
 
 from .in_turn import Turn, run_in_turn
+from .limited import changed_most
 from .live import figures, keeping, run_in_real_time
 from .loop import run_simulated
 from .recording import INTERRUPTED, STOPPED, Recording, failure
@@ -16,6 +17,7 @@ __all__ = [
     "Recording",
     "Turn",
     "Writer",
+    "changed_most",
     "check_record_path",
     "compared",
     "failure",

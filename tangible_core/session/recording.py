@@ -10,6 +10,7 @@ from jaxtyping import Float64, Int64
 from ..data import TICK_COLUMNS, Record, TickFlag
 from ..errors import DeviceError, OutputError
 from . import recording_files
+from .limited import changed_most, flag_counts
 from .recording_files import RecordingContents
 from .tick_arrays import ARRAYS, joined
 from .tick_file import NOTHING_SAID, About
@@ -108,6 +109,16 @@ class Recording(Record):
     def work_j(self) -> float:
         """Work done by the device on the hand: each force over the way to the next tick."""
         return float(np.sum(self.force_n[:-1] * np.diff(self.position_m, axis=0)))
+
+    @property
+    def guard_sentence(self) -> str:
+        """What the guard did to most of what was felt, and the cure; empty where it changed less."""
+        return changed_most(flag_counts(self.flags))
+
+    def __repr__(self) -> str:
+        seconds = float(np.ptp(self.time_s)) if self.time_s.size else 0.0
+        said = f"Recording of {seconds:.3g} s: {self.time_s.size} ticks, peak force {self.peak_force_n:.3g} N"
+        return "\n".join(filter(None, [said, self.stopped and f"It ended early: {self.stopped}.", self.guard_sentence]))
 
     def figures(self) -> dict[str, float]:
         """The recording in numbers, by name."""

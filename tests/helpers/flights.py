@@ -41,10 +41,12 @@ def fly(surface: HapticSurface, law: str = "proxy", device: Any = None, **change
     period_s = changes.pop("period_s", 0.001)
     stiffness = touch.stiffness_n_per_m
     fields: dict[str, Any] = {
-        "workspace": Workspace(),
+        "size": Workspace().size("depth"),
         "relief_key": "workspace.relief_m",
         "relief_m": 0.02,
         "smoothed": True,
+        "law_name": law,
+        "fitted": False,
         "safety": Safety(),
         "probes": probe(touch, surface, hand.press_n, stiffness, spec.workspace_m[2], period_s),
         "lateness": Lateness(np.full(1000, 1e-5), period_s, True),

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterable
 
 from ..flight import Flight
+from ..preflight import Preflight
 from ..verdict import Verdict
 from .clipping import clipping, contact
 from .device import damping, friction
@@ -25,6 +26,6 @@ CHECKS: tuple[Check, ...] = (
 )
 
 
-def judge(flight: Flight) -> list[Verdict]:
-    """What every check says, in their order."""
-    return [verdict for check in CHECKS for verdict in check(flight)]
+def judge(flight: Flight) -> Preflight:
+    """What every check says, in their order; their cures agree with each other."""
+    return Preflight.of(verdict for check in CHECKS for verdict in check(flight))

@@ -15,8 +15,15 @@ def damping(flight: Flight) -> Iterator[Verdict]:
     known = flight.spec.simulated or 0 < stated <= taken
     note = "" if stated == taken else f"{stated:g} N s/m stated; its stiffness at 1 kHz implies no more than this"
     cure = "" if known else "a guess: start at half the stiffness, and raise it for as long as nothing buzzes"
+    says = "" if known else "how well the device damps is a guess"
     source = "simulated" if flight.spec.simulated else "the device's specification"
-    yield Verdict("device", "damping", "ok" if known else "warn", taken, "N s/m", source=source, note=note, cure=cure)
+    yield Verdict(
+        *("device", "damping", "ok" if known else "warn", taken, "N s/m"),
+        source=source,
+        note=note,
+        cure=cure,
+        says=says,
+    )
 
 
 def friction(flight: Flight) -> Iterator[Verdict]:
@@ -25,4 +32,7 @@ def friction(flight: Flight) -> Iterator[Verdict]:
     known = flight.spec.simulated or found is not None
     cure = "" if known else "unknown: measure the force at which the handle starts to move, `safety.friction_n: ...`"
     source = "simulated" if flight.spec.simulated else "`safety.friction_n`" if known else ""
-    yield Verdict("device", "friction", "ok" if known else "warn", found or 0.0, "N", source=source, cure=cure)
+    says = "" if known else "the friction of the device's handle is unknown"
+    yield Verdict(
+        *("device", "friction", "ok" if known else "warn", found or 0.0, "N"), source=source, cure=cure, says=says
+    )

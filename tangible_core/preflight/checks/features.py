@@ -5,7 +5,7 @@ from itertools import pairwise
 
 from ..bumps import WIDTHS_M, feature_m, left_over, threshold_m
 from ..flight import Flight
-from ..verdict import Verdict, held, over
+from ..verdict import Change, Verdict, held, over
 
 SOURCE = "Louw, Kappers & Koenderink 2000 (bare hand)"
 NOTHING_M = 1e-7
@@ -17,7 +17,8 @@ OWN = 1.2
 def features(flight: Flight) -> Iterator[Verdict]:
     """The greatest feature of each width that the relief has, against a bump's threshold and the device's resolution.
 
-    What a wider feature leaves in a narrower band is no feature of that width.
+    What a wider feature leaves in a narrower band is no feature of that width. It is no fault that some widths are too
+    low, as long as others are felt.
     """
     relief, resolution_m = flight.surface.relief, flight.spec.resolution_m
     low, high = 2 * max(relief.pitch_m), min(relief.extent_m) / 2
@@ -27,13 +28,17 @@ def features(flight: Flight) -> Iterator[Verdict]:
     own = [width for width in widths if found[width] > max(NOTHING_M, OWN * of_wider.get(width, 0.0))]
     if not own:
         yield _nothing(flight)
-    for width in own:
-        bound = max(threshold_m(width), resolution_m)
+    bounds = {width: max(threshold_m(width), resolution_m) for width in own}
+    any_felt = any(found[width] >= bound for width, bound in bounds.items())
+    for width, bound in bounds.items():
         source = SOURCE if bound > resolution_m else "the device's resolution"
-        larger = over(flight.relief_m * bound / found[width])
+        higher = Change(flight.relief_key, over(flight.relief_m * bound / found[width]), "at least")
         yield held(
             *("features", f"{1e3 * width:g} mm wide", found[width], ">=", bound, "m", source),
-            cure=f"`{flight.relief_key}: {larger}`, or remove them: they take time and are not felt",
+            worse="ok" if any_felt else "warn",
+            note="" if found[width] >= bound else "too low to be felt",
+            says="the relief is too low to be felt",
+            cure="" if any_felt else [higher],
         )
 
 
@@ -41,4 +46,5 @@ def _nothing(flight: Flight) -> Verdict:
     """Of a relief without a feature of any width that is looked at."""
     height_m = float(flight.surface.height_m.max() - flight.surface.height_m.min())
     cure = "only its materials can be felt: choose a scene with relief, or `workspace.width_m` for a larger one"
-    return Verdict("features", "the relief", "warn", height_m, "m", note="no feature 1 to 32 mm wide", cure=cure)
+    note, says = "no feature 1 to 32 mm wide", "the relief has nothing that can be felt"
+    return Verdict("features", "the relief", "warn", height_m, "m", note=note, cure=cure, says=says)

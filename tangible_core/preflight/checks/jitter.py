@@ -4,13 +4,14 @@ from collections.abc import Iterator
 
 from ..flight import PASSIVE, Flight
 from ..timing import PERCENTILES
-from ..verdict import Grade, Verdict, held, under
-from .cures import soften
+from ..verdict import Grade, Verdict, held
+from .cures import joined, soften
 
 OVERRUNS = 0.001
 """Share of ticks that may be lost."""
 HALF = 0.5
 """Of a period, for the law; the device needs the rest."""
+LATE = "this machine keeps time badly just now"
 CALMER = "stop other work on this machine"
 PRIVILEGE = "permit real-time scheduling (`ulimit -r 99`, or `rtprio` in /etc/security/limits.conf)"
 
@@ -23,27 +24,37 @@ def lateness(flight: Flight) -> Iterator[Verdict]:
     yield held(
         *("jitter", "lateness, p99.9", late.at(99.9), "<=", period_s, "s", "a period"),
         note=f"{figures} us; SCHED_FIFO {'permitted' if late.real_time else 'not permitted'}",
+        says=LATE,
         cure=cure,
     )
-    yield held(*("jitter", "overruns", late.overruns, "<=", OVERRUNS, "share", "ticks over a period late"), cure=cure)
+    lost = late.overruns, "<=", OVERRUNS, "share", "ticks over a period late"
+    yield held("jitter", "overruns", *lost, says=LATE, cure=cure)
     if (stiffness := flight.felt_n_per_m(flight.stiffness_n_per_m)) == 0:
         return
     bound = flight.passive_n_per_m(max(0.0, late.at(99.9)))
     yield held(
         *("jitter", "stiffness it leaves", stiffness, "<=", bound, "N/m", f"{PASSIVE}, T + p99.9"),
         worse=_worse(flight),
-        cure=f"{cure}; or {soften(flight, bound)}",
+        says="the machine is too late for so stiff a law",
+        cure=cure if flight.spec.simulated else joined(f"{cure}; or ", soften(flight, bound)),
     )
 
 
 def tick_cost(flight: Flight) -> Iterator[Verdict]:
     """How long a tick of the law takes, p99, against half a period; unsafe where most take a whole one."""
     period_s, p50, p99 = flight.period_s, flight.cost.at(50), flight.cost.at(99)
+    asked, lighter = "in Python", "a law of compiled kernels instead of Python"
+    if flight.cost.compiled:
+        asked, lighter = (
+            f"called from Python, {1e6 * flight.cost.kernel_s:.2f} us compiled",
+            "a lighter law (`render.use`)",
+        )
     yield held(
         *("tick", "the law, p99", p99, "<=", HALF * period_s, "s", "half a period"),
         worse=_worse(flight) if p50 > period_s else "warn",
-        note=f"p50 {1e6 * p50:.1f} us called from Python, {1e6 * flight.cost.kernel_s:.2f} us compiled",
-        cure=f"a lighter law (`render.use`), fewer ticks (`--rate {under(HALF / p99)}`), or {CALMER}",
+        note=f"p50 {1e6 * p50:.1f} us {asked}",
+        says="the law takes too long to compute",
+        cure=f"{lighter}, or {CALMER}",
     )
 
 

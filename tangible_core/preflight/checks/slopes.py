@@ -7,8 +7,9 @@ from jaxtyping import Float32
 
 from ...data import Relief
 from ..flight import Flight
-from ..verdict import FEW, Verdict, held
-from .cures import flatten, round_off, soften
+from ..verdict import FEW, Cure, Verdict, held
+from .cures import COUPLE, FIT, flatten, joined, round_off, soften
+from .stiffness import TOO_STIFF
 
 MEASURED = 1.01
 """A stiffness that was felt may be so much over what it is."""
@@ -16,6 +17,13 @@ WALL = 1.0
 """Above 45 degrees a hand must push harder sideways than it presses down: a slope is then a wall."""
 WALLS = 0.1
 """Share of the surface up to which walls are its outlines."""
+
+PROXY = "proxy"
+"""The law whose stiffness is that of level ground everywhere."""
+LEVEL = 1.1
+"""Times a law's stiffness on level ground, up to which no slope is at fault."""
+RARE = 0.001
+"""Share of the surface that may be too stiff: the passivity controller brakes there."""
 
 Slopes = Float32[np.ndarray, "h w"]
 
@@ -30,47 +38,60 @@ def slope_stiffness(flight: Flight) -> Iterator[Verdict]:
     felt = np.array([flight.felt_n_per_m(each) for each in flight.probes.stiffness_n_per_m.tolist()])
     share, most = float(np.mean(~(felt <= MEASURED * limit))), float(felt.max())
     yield held(
-        *("slope", "too stiff", share, "<=", 0.0, "share", source),
+        *("slope", "too stiff", share, "<=", RARE, "share", source),
         worse="unsafe" if share > FEW else "warn",
+        says=TOO_STIFF if most <= LEVEL * flight.stiffness_n_per_m else f"on slopes and textures {TOO_STIFF}",
         note=f"over {limit:.4g} N/m; up to {most:.4g} N/m, the median {np.median(felt):.4g} N/m",
         cure=_less_stiff(flight, limit, most),
     )
 
 
-def _less_stiff(flight: Flight, limit: float, most: float) -> str:
+def _less_stiff(flight: Flight, limit: float, most: float) -> Cure:
+    """What of it is not done already, the least that it changes first."""
     level = flight.stiffness_n_per_m
-    if most <= 1.1 * level:
+    if most <= LEVEL * level:
         return soften(flight, limit)
-    others = "a law that slopes do not stiffen, `render.use: proxy`; or a coupling, `safety.coupling: auto`"
-    if any(material.roughness_m > 0 for material in flight.met):
-        others += "; or less `roughness_m` of the materials"
-    return others if flight.met or not level else f"{others}; or {soften(flight, level * limit / most)}"
+    ways: list[Cure] = []
+    if flight.met and not flight.fitted:
+        ways.append([FIT])
+    if flight.safety.coupling is None:
+        ways.append([COUPLE])
+    if level > 0 and not flight.met:
+        ways.append(soften(flight, level * limit / most))
+    if flight.law_name != PROXY:
+        ways.append(f"a law that slopes do not stiffen, `render.use: {PROXY}`")
+    if not ways:
+        ways.append([flatten(flight, limit / most)])
+    return joined(ways[0], *(part for way in ways[1:] for part in ("; or ", way)))
 
 
 def cliffs(flight: Flight) -> Iterator[Verdict]:
     """Shares of the surface that are walls, and that a stroke meets faster than a safe loop lets a force grow."""
     steep = slopes(flight.surface.relief)
-    yield _gentle(flight, steep, "a wall", WALL, WALLS, "over 45 degrees a hand pushes harder sideways than down")
+    source = "over 45 degrees a hand pushes harder sideways than down"
+    yield _gentle(flight, steep, "a wall", WALL, WALLS, source, "much of the surface is as steep as a wall")
     if flight.stiffness_n_per_m > 0:
         per_tick_n = flight.stiffness_n_per_m * flight.hand.speed_m_per_s * flight.period_s
         source = f"`safety.max_step_n`, {flight.max_step_n:.3g} N, at this speed"
-        yield _gentle(flight, steep, "too sudden", flight.max_step_n / per_tick_n, FEW, source)
+        says = "a stroke meets slopes at which the force has to grow too fast"
+        yield _gentle(flight, steep, "too sudden", flight.max_step_n / per_tick_n, FEW, source, says)
 
 
-def _gentle(flight: Flight, steep: Slopes, of: str, bound: float, few: float, source: str) -> Verdict:
+def _gentle(flight: Flight, steep: Slopes, of: str, bound: float, few: float, source: str, says: str) -> Verdict:
     """Whether no more than a few places are steeper."""
-    share = float(np.mean(steep > bound))
+    share = float(np.mean(steep > np.float64(bound)))
     return held(
         *("slope", of, share, "<=", few, "share", source),
         note=f"slope over {bound:.3g}; the steepest is {steep.max():.3g}",
+        says=says,
         cure="" if share <= few else _gentler(flight, steep, bound, few),
     )
 
 
-def _gentler(flight: Flight, steep: Slopes, bound: float, few: float) -> str:
+def _gentler(flight: Flight, steep: Slopes, bound: float, few: float) -> Cure:
     lower = flatten(flight, bound / float(np.quantile(steep, 1 - few, method="higher")))
     rounder = round_off(flight, lambda relief: float(np.mean(slopes(relief) > bound)) <= few)
-    return f"{rounder}, or {lower}" if rounder else lower
+    return [rounder, f", or a lower `{lower.key}`"] if rounder else [lower]
 
 
 def slopes(relief: Relief) -> Slopes:

@@ -1,13 +1,16 @@
 """How stiff and how damped a wall this loop and this device hold."""
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
 
 from ..flight import PASSIVE, Ceiling, Flight
-from ..verdict import FEW, Verdict, held, under
-from .cures import soften, soften_material
+from ..verdict import FEW, Change, Cure, Verdict, held, under
+from .cures import COUPLE, FIT, soften, soften_materials
 
+STIFFER = "stiffer than the device holds"
+TOO_STIFF = f"the law is {STIFFER}"
 CLEAN_N_PER_M = 900.0
 CLEAN = "Choi & Tan 2004: textures are clean up to 0.3 to 0.9 N/mm"
 STEP_SHARE = 0.07
@@ -30,37 +33,52 @@ def material_stiffness(flight: Flight) -> Iterator[Verdict]:
     for material in flight.met:
         stiffness = flight.felt_n_per_m(material.stiffness_n_per_m)
         if material.roughness_m > 0 and CLEAN_N_PER_M <= ceiling.most_n_per_m >= stiffness:
-            cure = soften_material([material], CLEAN_N_PER_M)
-            yield held("stiffness", material.name, stiffness, "<=", CLEAN_N_PER_M, "N/m", CLEAN, cure=cure)
+            cure = f"in a file for `materials.library`, `{material.name}: {{stiffness_n_per_m: {CLEAN_N_PER_M:g}}}`"
+            says = f"the texture of {material.name} is not clean on ground so stiff"
+            yield held("stiffness", material.name, stiffness, "<=", CLEAN_N_PER_M, "N/m", CLEAN, cure=cure, says=says)
         else:
-            cure = soften_material([material], ceiling.most_n_per_m)
+            cure = soften_materials(flight, [material], ceiling.most_n_per_m)
             yield _under_ceiling(material.name, stiffness, ceiling, cure)
 
 
-def _under_ceiling(of: str, stiffness: float, ceiling: Ceiling, cure: str) -> Verdict:
+def _under_ceiling(of: str, stiffness: float, ceiling: Ceiling, cure: Cure) -> Verdict:
     """Over what the guard leaves to a law, it is softened: it feels softer than it says. Over the limit it may buzz."""
     limit, share, source = ceiling
     return held(
         *("stiffness", of, stiffness, "<=", ceiling.most_n_per_m, "N/m", source),
         worse="unsafe" if not stiffness <= limit else "warn",
         note="" if share == 1 else f"{100 * share:g} % of {limit:.4g} N/m",
+        says=f"{of} is {'so stiff that it is softened' if stiffness <= limit else STIFFER}",
         cure=cure,
     )
 
 
 def law_damping(flight: Flight) -> Iterator[Verdict]:
-    """The law's damping against what its stiffness leaves of the device's own: b > K T (1 + 2 d) / 2 + B."""
-    felt = np.quantile(flight.probes.damping_n_s_per_m, 1 - FEW)  # where a proxy leaps, it is no damping
-    found = max(0.0, round(float(felt), 3))
+    """The law's damping against what its stiffness leaves of the device's own: b > K T (1 + 2 d) / 2 + B.
+
+    Each place has a stiffness and a damping of its own; where a proxy leaps, it is no damping, so a few are left out.
+    """
+    felt = np.array([flight.felt_damping_n_s_per_m(each) for each in flight.probes.damping_n_s_per_m.clip(0).tolist()])
+    level = np.clip(flight.probes.stiffness_n_per_m, 0, flight.stiffness_n_per_m)  # no slope's, of which `slope` says
+    held_n_per_m = np.array([flight.felt_n_per_m(each) for each in level.tolist()])
     tick_s = flight.period_s * (1 + 2 * flight.safety.delay_ticks) / 2
-    left = max(0.0, flight.damping_n_s_per_m - tick_s * flight.stiffness_n_per_m)
-    own = "damping_n_s_per_m" in type(flight.law).model_fields and not flight.met
-    less = f"`render.damping_n_s_per_m: {under(left)}`" if own else "less `damping_n_s_per_m` of the materials"
+    left = np.maximum(0.0, flight.damping_n_s_per_m - tick_s * held_n_per_m)
+    worst = int(np.argsort(felt - left, kind="stable")[math.ceil((1 - FEW) * (felt.size - 1))])
+    found, most = max(0.0, round(float(felt[worst]), 3)), float(left[worst])
     yield held(
-        *("damping", "the law", found, "<=", left, "N s/m", PASSIVE),
+        *("damping", "the law", found, "<=", most, "N s/m", PASSIVE),
         note=f"b = {flight.damping_n_s_per_m:.3g} N s/m",
-        cure=less,
+        says="the law is damped more than the device can render",
+        cure=_less_damped(flight, found, most),
     )
+
+
+def _less_damped(flight: Flight, found: float, most: float) -> Cure:
+    own = getattr(flight.law, "damping_n_s_per_m", None)
+    if own and not (flight.met and type(flight.law).renders_materials):
+        return [Change("render.damping_n_s_per_m", under(own * most / found) if most else "0", "at most")]
+    ways = [[FIT]] if flight.met and not flight.fitted else [[COUPLE]] if flight.safety.coupling is None else []
+    return ways[0] if ways else "less `damping_n_s_per_m` of the materials, in a file for `materials.library`"
 
 
 def quantisation(flight: Flight) -> Iterator[Verdict]:
@@ -69,5 +87,6 @@ def quantisation(flight: Flight) -> Iterator[Verdict]:
     if (stiffness := flight.felt_n_per_m(flight.stiffness_n_per_m)) > 0:
         yield held(
             *("quantisation", "a step of position", stiffness * step_m, "<=", felt_n, "N", STEP),
+            says="the steps of the device's encoders are felt",
             cure=soften(flight, felt_n / step_m),
         )

@@ -21,6 +21,7 @@ def textures(flight: Flight) -> Iterator[Verdict]:
         said = f"{samples:.3g} samples a wave"
         yield held(
             *("texture", material.name, material.grain_m, ">=", bound_m, "m", SOURCE),
+            says=f"the texture of {material.name} is too fine for a hand so fast",
             note=said if samples > SEEN else f"{said}: none of it is felt",
             cure=f"in a file for `materials.library`, `{material.name}: {{grain_m: {over(bound_m)}}}`; "
             f"or move slower than {material.grain_m / (FEELS_RIGHT * flight.period_s):.2g} m/s",

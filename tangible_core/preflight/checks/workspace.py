@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from ..flight import Flight
-from ..verdict import Verdict, held, under
+from ..verdict import Change, Verdict, held, under
 from .cures import flatten
 
 SOURCE = "the device's workspace"
@@ -17,10 +17,12 @@ def workspace(flight: Flight) -> Iterator[Verdict]:
         narrower = under(width_m * reach_m / size_m)
         yield held(
             *("workspace", of, size_m, "<=", reach_m, "m", SOURCE),
-            cure=f"`workspace.width_m: {narrower}`; or the borders cannot be reached",
+            says=f"the surface has more {of} than the device reaches",
+            cure=[Change("workspace.width_m", narrower, "at most"), "; or the borders cannot be reached"],
         )
     height_m = float(flight.surface.height_m.max())
     yield held(
         *("workspace", "height", height_m, "<=", reach_z, "m", SOURCE),
-        cure=flatten(flight, reach_z / max(height_m, reach_z)),
+        says="the surface is higher than the device reaches",
+        cure=[flatten(flight, reach_z / max(height_m, reach_z))],
     )

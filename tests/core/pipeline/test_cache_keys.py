@@ -137,7 +137,7 @@ class TestEachAnswerIsItsOwn:
 
     @pytest.mark.parametrize(
         "size",
-        [{"width_m": 0.06}, {"relief_m": 0.01}, {"smooth_m": 0.001}, {"holes": "cut"}],
+        [{"width_m": 0.06}, {"relief_m": 0.011}, {"smooth_m": 0.001}, {"holes": "cut"}],
         ids=lambda each: next(iter(each)),
     )
     def test_the_size_and_shape_of_a_relief(self, folder: Path, size: dict):

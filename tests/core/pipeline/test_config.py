@@ -145,7 +145,7 @@ def test_a_completed_configuration_keeps_its_rules():
     text = "scene: builtin/brick\nmaterials: {rules: [{colour: blue, material: water}]}"
     completed = parse(text).completed()["materials"]
     assert completed == {
-        "rules": [{"colour": "blue", "material": "water"}], "by": "roughness", "default": "plain",
+        "rules": [{"colour": "blue", "material": "water"}], "by": "roughness", "default": "plain", "fit": "device",
     }  # fmt: skip
 
 

@@ -146,7 +146,9 @@ class TestStiffness:
 
     def test_a_material_is_blamed_by_name_and_cured_in_the_library(self):
         surface = with_materials(material("soft"), material("hard", stiffness_n_per_m=5000.0))
-        flight = fly(surface)
+        [unfitted, *_] = law_stiffness(fly(surface))
+        assert unfitted.cure == "`materials.fit: device`"
+        flight = fly(surface, fitted=True)
         [law, *_] = law_stiffness(flight)
         assert "`hard: {stiffness_n_per_m: 3200}`" in law.cure
         assert "soft" not in law.cure
@@ -170,7 +172,7 @@ class TestStiffness:
     def test_damping_beside_stiffness(self, own: float, verdict: str):
         """b > K T / 2 + B, with b 2 N s/m and K 2000 N/m."""
         flight = fly(level(), "penalty-gradient", stiffness_n_per_m=2000.0)
-        object.__setattr__(flight.probes, "damping_n_s_per_m", np.full(4, own))
+        object.__setattr__(flight.probes, "damping_n_s_per_m", np.full_like(flight.probes.damping_n_s_per_m, own))
         [found] = law_damping(flight)
         assert (found.verdict, found.bound) == (verdict, pytest.approx(1.0))
 
@@ -187,9 +189,26 @@ class TestStiffness:
     @pytest.mark.parametrize(("places", "verdict"), [(2, "ok"), (15, "warn")])
     def test_damping_at_a_few_places_is_the_exception(self, places: int, verdict: str):
         flight = fly(level(), "penalty-gradient", stiffness_n_per_m=2000.0)
+        object.__setattr__(flight.probes, "stiffness_n_per_m", np.full(1000, 2000.0))
         object.__setattr__(flight.probes, "damping_n_s_per_m", np.where(np.arange(1000) < places, 9.0, 0.5))
         [found] = law_damping(flight)
         assert (found.verdict, found.value) == (verdict, 0.5 if verdict == "ok" else 9.0)
+
+    def test_each_place_is_held_by_what_its_own_stiffness_leaves(self):
+        """b is 2 N s/m: 500 N/m leave 1.75 of it, 3000 N/m leave 0.5."""
+        soft, hard = {"stiffness_n_per_m": 500.0}, {"stiffness_n_per_m": 3000.0}
+        pair = material("soft", damping_n_s_per_m=1.6, **soft), material("hard", damping_n_s_per_m=0.4, **hard)
+        assert grades(law_damping(fly(with_materials(*pair)))) == ["ok"]
+        swapped = material("soft", damping_n_s_per_m=0.4, **soft), material("hard", damping_n_s_per_m=1.6, **hard)
+        [found] = law_damping(fly(with_materials(*swapped)))
+        assert (found.verdict, found.value) == ("warn", pytest.approx(1.6, rel=0.01))
+        assert found.bound == pytest.approx(0.5, rel=0.01)
+
+    def test_a_coupling_hides_damping_that_changes_fast(self):
+        """The coupling's own is a quarter of the device's 2 N s/m: beside 3 N s/m 0.43 of it is felt."""
+        flight = fly(level(), "penalty-gradient", damping_n_s_per_m=3.0, safety=Safety(coupling="auto"))
+        [found] = law_damping(flight)
+        assert (found.verdict, found.value) == ("ok", pytest.approx(3.0 * 0.5 / 3.5, rel=0.01))
 
     def test_a_step_of_the_encoder_that_is_felt(self):
         [fine] = quantisation(fly(level(), stiffness_n_per_m=800.0, press_n=1.0, resolution_m=8.75e-5))
@@ -234,6 +253,20 @@ class TestSlopes:
     def test_its_other_cures(self, cure: dict[str, Any]):
         assert grades(slope_stiffness(fly(half_slope(2.0, cells=64), stiffness_n_per_m=1000.0, **cure))) == ["ok"]
 
+    @pytest.mark.parametrize(
+        ("law", "fitted", "cure"),
+        [
+            ("proxy", True, "`safety.coupling: auto`"),
+            ("proxy", False, "`materials.fit: device`; or `safety.coupling: auto`"),
+            ("penalty", True, "`safety.coupling: auto`; or a law that slopes do not stiffen, `render.use: proxy`"),
+        ],
+    )
+    def test_no_cure_is_what_is_done_already(self, law: str, fitted: bool, cure: str):
+        flight = fly(with_materials(material()), law, fitted=fitted)
+        object.__setattr__(flight.probes, "stiffness_n_per_m", np.full(4, 9000.0))
+        [found] = slope_stiffness(flight)
+        assert found.cure == cure
+
     @pytest.mark.parametrize(("stiffness", "verdict"), [(4040.0, "ok"), (4050.0, "unsafe")])
     def test_what_was_felt_may_be_a_hundredth_over(self, stiffness: float, verdict: str):
         flight = fly(level())
@@ -261,12 +294,12 @@ class TestSlopes:
 
     def test_both_cures_of_a_wall_cure(self):
         surface = shape(lambda x, y: 0.01 * np.sin(2 * np.pi * x / 0.02), 256)
-        found = of(cliffs(fly(surface)), "a wall")
-        lower = advised(found, "workspace.relief_m") / 0.02
-        assert np.mean(slopes(HapticSurface.from_heights(lower * surface.height_m).relief) > 1) <= 0.1
-        rounder = smooth(surface.relief, advised(found, "workspace.smooth_m"))
+        rounder = smooth(surface.relief, advised(of(cliffs(fly(surface)), "a wall"), "workspace.smooth_m"))
         assert np.mean(slopes(rounder) > 1) <= 0.1
-        assert "smooth_m" not in of(cliffs(fly(surface, smoothed=False)), "a wall").cure
+        given = of(cliffs(fly(surface, smoothed=False)), "a wall")
+        lower = advised(given, "workspace.relief_m") / 0.02
+        assert np.mean(slopes(HapticSurface.from_heights(lower * surface.height_m).relief) > 1) <= 0.1
+        assert "smooth_m" not in given.cure
 
     def test_the_greater_slope_to_either_side(self):
         step = HapticSurface.from_heights(np.array([[0, 0, 0.01, 0.01]], np.float32), 0.04)
@@ -416,6 +449,7 @@ class TestJitter:
         worse = of(lateness(fly(level(), stiffness_n_per_m=801.0, **late)), "stiffness it leaves")
         assert (ok.verdict, ok.bound) == ("ok", pytest.approx(800))
         assert worse.verdict == verdict
+        assert bool(worse.changes) != simulated  # a busy moment of this machine is nothing to write into a file
 
     @pytest.mark.parametrize(
         ("call_s", "simulated", "verdict"),
@@ -425,18 +459,18 @@ class TestJitter:
         cost = TickCost(np.full(100, call_s), 1e-6)
         [found] = tick_cost(fly(level(), cost=cost, simulated=simulated))
         assert found.verdict == verdict
-        if verdict != "ok":
-            assert advised_rate(found) * call_s <= 0.5
+        assert verdict == "ok" or found.cure == "a lighter law (`render.use`), or stop other work on this machine"
+
+    def test_a_law_in_python_is_not_called_compiled(self):
+        [found] = tick_cost(fly(level(), cost=TickCost(np.full(100, 6e-4), 6e-4, compiled=False)))
+        assert "compiled" not in found.note
+        assert found.cure.startswith("a law of compiled kernels instead of Python")
 
 
 def test_the_page_names_every_check():
     page = Path(__file__).parents[3].joinpath("docs/preflight.md").read_text(encoding="utf-8")
     for each in judge(fly(with_materials(material(texture="stochastic", roughness_m=1e-4)))):
         assert f"| {each.check} |" in page
-
-
-def advised_rate(verdict: Verdict) -> float:
-    return float(re.search(r"--rate ([\d.]+)", verdict.cure)[1])
 
 
 @pytest.mark.parametrize("law", ["proxy", "penalty-gradient", "grey-level", "tangible-mask", "lateral-gradient"])
@@ -450,7 +484,8 @@ def test_every_check_has_a_say_and_every_complaint_a_cure(law: str, surface: Hap
     verdicts = judge(flight)
     assert len(verdicts) >= len(CHECKS) - 3
     for each in verdicts:
-        assert (each.verdict == "ok") == (each.cure == ""), each
+        assert (each.verdict == "ok") == (each.cure == "") == (each.says == ""), each
+        assert "proxy" not in each.cure or law != "proxy", each
         assert math.isfinite(each.value)
 
 

@@ -40,10 +40,10 @@ def folder(tmp_path: Path) -> Path:
 def test_a_line_a_verdict_and_0_where_nothing_is_unsafe(folder: Path):
     done = tangible("preflight", "p.yaml", "--seconds", 0.1, cwd=folder)
     assert done.returncode == 0, done.stdout + done.stderr
-    *verdicts, _, summary = done.stdout.splitlines()
+    sentence, _, *verdicts, _, summary = done.stdout.splitlines()
+    assert re.fullmatch(r".*hills\.npy on mock: Safe(: nothing is wrong|, but .*)\.", sentence)
     assert {each.split()[0] for each in verdicts} <= GRADES | {"cure:"}
     assert " 700 N/m <= 2400 N/m; 80 % of 3000 N/m; Colgate & Schenkel 1997" in done.stdout
-    assert "hills.npy on mock: " in summary
     assert summary.endswith(" 0 unsafe")
 
 
@@ -59,10 +59,11 @@ def test_1_where_something_is_and_json_says_all_of_it(folder: Path):
     assert found["hand"] == {"speed_m_per_s": 0.12, "press_n": 3.0}
     assert 0 < found["tick"]["p50_s"] <= found["tick"]["max_s"]
     assert set(found["jitter"]) == {"p50_s", "p99_s", "p99.9_s", "max_s", "ticks", "overruns", "real_time"}
-    keys = {"check", "of", "verdict", "value", "unit", "relation", "bound", "source", "note", "cure"}
+    keys = {"check", "of", "verdict", "value", "unit", "relation", "bound", "source", "note", "cure", "says", "changes"}
     assert all(set(each) == keys and each["verdict"] in GRADES for each in found["verdicts"])
     checks = {"device", "stiffness", "damping", "slope", "clipping", "contact", "texture", "features", "workspace"}
     assert {each["check"] for each in found["verdicts"]} == checks | {"quantisation", "jitter", "tick"}
+    assert (found["grade"], found["sentence"][:16]) == ("unsafe", "Unsafe, because ")
     unsafe = [each for each in found["verdicts"] if each["verdict"] == "unsafe"]
     assert {(each["check"], each["of"]) for each in unsafe} >= {("stiffness", "the law")}
     assert all("render.stiffness_n_per_m: " in each["cure"] for each in unsafe if each["check"] == "stiffness")
@@ -107,7 +108,7 @@ def test_the_device_is_never_opened(folder: Path, monkeypatch: pytest.MonkeyPatc
 def test_a_cure_stands_below_its_verdict_and_brackets_are_no_marks():
     shown = line(Verdict("slope", "a[b]", "warn", 0.125, "share", "<=", 0.01, "why [1]", "note", "do `x: [1]`"))
     assert shown.splitlines() == [
-        "[yellow]warn  [/] slope        a\\[b]: 12.5 % <= 1 %; note; why [1]",
+        "[yellow]warn  [/] slope        a\\[b]: 12.5 % > 1 %; note; why [1]",
         f"{'':20}cure: do `x: [1]`",
     ]
 

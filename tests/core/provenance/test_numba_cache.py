@@ -52,7 +52,6 @@ for line in sys.stdin:
 """A process that has imported numba alone, and compiled with it; each line of code runs in one that begins then."""
 
 
-
 class Acme:
     """A package that knows nothing of Tangible Images, and what another process feels of its law."""
 

@@ -1,0 +1,98 @@
+"""`tangible preflight --fix`: one file that passes, with its own comments and keys; or none."""
+
+import json
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+from command_line import tangible
+from tangible_core import load_pipeline
+from tangible_core.preflight import Loop
+
+STEEP = """\
+# a photograph of mine
+scene: {photo: mine.png}       # beside this file
+want: touch
+depth: luminance
+texture: {use: gradient, segments: 3}
+materials: {by: rules, default: brick, fit: never}
+workspace:
+  relief_m: 0.02   # as high as it goes
+  smooth_m: 0
+render: penalty-gradient
+device: {use: mock}
+"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    (tmp_path / "p.yaml").write_text(STEEP)
+    noise = np.random.default_rng(0).normal(size=(60, 80)).cumsum(axis=0).cumsum(axis=1)
+    cv2.imwrite(str(tmp_path / "mine.png"), cv2.normalize(noise, None, 0, 255, cv2.NORM_MINMAX).astype(np.uint8))
+    return tmp_path
+
+
+def test_a_file_that_passes_with_what_the_user_wrote(folder: Path):
+    asked = "preflight", "p.yaml", "--seconds", 0.05
+    assert tangible(*asked, cwd=folder).returncode == 1
+    done = tangible(*asked, "--fix", "kept/fixed.yaml", "--set", "workspace.width_m=0.06", cwd=folder)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert done.stdout.rstrip().endswith(": written to kept/fixed.yaml")
+    text = (folder / "kept/fixed.yaml").read_text()
+    for kept in ("# a photograph of mine", "# beside this file", "# as high as it goes", "width_m: 0.06"):
+        assert kept in text
+    fixed = load_pipeline(folder / "kept/fixed.yaml")
+    assert fixed.scene.files.photo.resolve() == folder / "mine.png"
+    assert fixed.preflight(loop=Loop(seconds=0.01)).safe
+    assert (folder / "p.yaml").read_text() == STEEP
+
+
+def test_every_value_is_one_and_json_names_them(folder: Path):
+    done = tangible("preflight", "p.yaml", "--seconds", 0.05, "--fix", "fixed.yaml", "--json", cwd=folder)
+    found = json.loads(done.stdout)
+    assert (found["grade"] != "unsafe", found["file"]) == (True, "fixed.yaml")
+    assert found["sentence"].startswith("Safe")
+    assert found["changes"]["materials.fit"] == "device"
+    fixed = load_pipeline(folder / "fixed.yaml")
+    assert fixed.config.materials.fit == "device"
+    assert fixed.config.render.name == "penalty-gradient"
+
+
+def test_what_passes_is_written_as_it_is(folder: Path):
+    calm = (
+        STEEP.replace(", fit: never", "")
+        .replace("  smooth_m: 0\n", "")
+        .replace("0.02 ", "0.004 ")
+        .replace("penalty-gradient", "proxy")
+    )
+    (folder / "p.yaml").write_text(calm)
+    done = tangible("preflight", "p.yaml", "--seconds", 0.05, "--fix", "fixed.yaml", cwd=folder)
+    assert done.stdout.rstrip().endswith("nothing had to change: written to fixed.yaml")
+    assert (folder / "fixed.yaml").read_text() == calm
+
+
+def test_where_nothing_helps_nothing_is_written(folder: Path):
+    """A wall of a material that no key of the file softens, on a loop so slow that it holds none."""
+    (folder / "hard.yaml").write_text(
+        "hard: {stiffness_n_per_m: 3000, damping_n_s_per_m: 0, static_friction: 0, dynamic_friction: 0, "
+        "texture: smooth}\n"
+    )
+    text = (
+        STEEP.replace("brick, fit: never", "hard, library: hard.yaml").replace("smooth_m: 0", "smooth_m: 0.002")
+        + "safety: {coupling: {stiffness_n_per_m: 2900, damping_n_s_per_m: 0}}\n"
+    )
+    (folder / "p.yaml").write_text(text)
+    done = tangible("preflight", "p.yaml", "--seconds", 0.05, "--rate", 100, "--fix", "fixed.yaml", cwd=folder)
+    assert done.returncode == 1
+    assert "on mock: Unsafe, because " in done.stdout
+    assert done.stdout.rstrip().endswith("tried, which is not enough; nothing was written")
+    assert not (folder / "fixed.yaml").exists()
+
+
+def test_a_place_that_cannot_be_written(folder: Path):
+    (folder / "taken").write_text("")
+    done = tangible("preflight", "p.yaml", "--seconds", 0.05, "--fix", "taken/fixed.yaml", cwd=folder)
+    assert done.returncode == 2
+    assert "taken/fixed.yaml: cannot be written" in done.stderr

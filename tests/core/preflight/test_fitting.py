@@ -1,0 +1,135 @@
+"""Materials made to fit a device: what is taken off, what is left alone, and what is then felt."""
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from flights import SPEC, level, material
+from tangible_core import HapticSurface, Pipeline, Scene, load_method
+from tangible_core.data import TickFlag
+from tangible_core.materials.assignment import library
+from tangible_core.preflight.fitting import fit, fit_surface
+from tangible_core.servo import Safety
+from tangible_core.session import run_simulated
+from tangible_devices.mock import Mock
+from tangible_render.proxy import Proxy
+
+SHIPPED = ("mock", "falcon", "falcon-simulated", "haply")
+ROUGH = {"texture": "stochastic", "roughness_m": 2e-4, "grain_m": 1e-3}
+
+
+def test_what_a_device_holds_is_left_alone():
+    """SPEC leaves 3200 N/m to a law: a wave of 50 um and 1 mm adds 1974 N/m under 1 N."""
+    for each in (
+        material(stiffness_n_per_m=3200.0),
+        material(**{**ROUGH, "roughness_m": 5e-5}, stiffness_n_per_m=1200.0),
+    ):
+        assert fit(each, SPEC, Safety()) is each
+
+
+@pytest.mark.parametrize(
+    ("safety", "most"),
+    [
+        (Safety(), 3200.0),
+        (Safety(stiffness_margin=0.5), 2000.0),
+        (Safety(delay_ticks=1), 3200.0 / 3),
+        (Safety(friction_n=0.01), 0.8 * 2 * 0.01 / 1e-5),
+    ],
+)
+def test_stiffness_and_texture_together_are_what_the_guard_leaves(safety: Safety, most: float):
+    hard, rough = material(stiffness_n_per_m=9000.0), material(**ROUGH, stiffness_n_per_m=500.0)
+    assert fit(hard, SPEC, safety).stiffness_n_per_m == pytest.approx(most)
+    fitted = fit(rough, SPEC, safety)
+    assert fitted.stiffness_n_per_m + fitted.roughness_m * (2 * math.pi / 1e-3) ** 2 == pytest.approx(most)
+    assert fit(replace(rough, stiffness_n_per_m=9000.0), SPEC, safety).roughness_m == 0
+
+
+def test_the_device_s_own_word_bounds_too():
+    assert (
+        fit(material(stiffness_n_per_m=9000.0), replace(SPEC, max_stiffness_n_per_m=1000.0), Safety()).stiffness_n_per_m
+        == 800
+    )
+
+
+def test_damping_is_what_stiffness_leaves():
+    """b is 2 N s/m: 2000 N/m leave 1, without delay."""
+    damped = material(stiffness_n_per_m=1000.0, damping_n_s_per_m=5.0)
+    assert fit(damped, SPEC, Safety()).damping_n_s_per_m == pytest.approx(1.5)
+    assert fit(damped, SPEC, Safety(delay_ticks=1)).damping_n_s_per_m == pytest.approx(0.5)
+
+
+def test_a_device_that_holds_nothing_takes_nothing_off():
+    each = material(stiffness_n_per_m=500.0)
+    assert fit(each, replace(SPEC, max_stiffness_n_per_m=0.0), Safety()) is each
+
+
+def test_what_was_taken_off_is_said_once():
+    hard = material("hard", stiffness_n_per_m=9000.0)
+    labels = np.tile(np.array([0, 1], np.int32), (32, 16))
+    surface, said = fit_surface(level(labels=labels, materials=(hard, hard)), SPEC, Safety())
+    assert said == "softened to what the device holds: hard (stiffness 9000 to 3200 N/m)"
+    assert [each.stiffness_n_per_m for each in surface.materials] == [3200, 3200]
+    plain = level()
+    assert fit_surface(plain, SPEC, Safety()) == (plain, "")
+
+
+@pytest.mark.parametrize("device", SHIPPED)
+def test_shipped_materials_are_no_stiffer_nor_more_damped_than_shipped_devices_hold(device: str):
+    spec = load_method("device", device)().spec()
+    for each in library().values():
+        fitted = fit(each, spec, Safety())
+        assert fitted.stiffness_n_per_m == each.stiffness_n_per_m, each.name
+        if device != "haply":  # which is a third weaker than a Falcon
+            assert fitted.damping_n_s_per_m == each.damping_n_s_per_m, each.name
+
+
+@pytest.mark.parametrize("name", ["glass", "ice"])
+@pytest.mark.parametrize("device", ["mock", "falcon-simulated"])
+def test_the_guard_softens_none_of_the_hardest_shipped(name: str, device: str):
+    surface = level(labels=np.zeros((32, 32), np.int32), materials=(library()[name],))
+    felt = run_simulated(Proxy().touch(surface), load_method("device", device)(), 1.0)
+    assert np.count_nonzero(felt.flags & TickFlag.TOUCHING) > 100
+    assert not np.any(felt.flags & TickFlag.STIFFNESS_LIMITED)
+
+
+class TestPipeline:
+    def pipeline(self, **changes: Any) -> Pipeline:
+        labels = np.repeat(np.int32([[0, 1]]), 16, axis=1).repeat(32, axis=0)
+        scene = Scene.of(photo=np.linspace(0, 1, 1024).reshape(32, 32), segments=labels)
+        materials = {"by": {0: "brick", 1: "stone"}, **changes.pop("materials", {})}
+        render = Proxy()
+        return Pipeline(
+            scene,
+            depth=load_method("depth", "luminance")(),
+            materials=materials,
+            render=render,
+            cached=False,
+            **changes,
+        )
+
+    def test_the_touch_says_what_was_taken_off(self):
+        pipeline = self.pipeline(device=Mock())
+        pipeline.make("touch")
+        [touch] = [each for each in pipeline.outcomes if each.product == "touch"]
+        assert "softened to what the device holds: brick (texture 225 to 85.5 um), stone" in touch.why
+        assert pipeline.surface.materials[0] == library()["brick"]
+
+    def test_a_device_that_is_given_counts_and_not_the_configured_one(self):
+        strong = load_method("device", "force-dimension")(model="sigma")
+        pipeline = self.pipeline(device=strong)
+        pipeline.feel(Mock(), 0.01, in_real_time=False)
+        [touch] = [each for each in pipeline.outcomes if each.product == "touch"]
+        assert "brick (texture 225 to 85.5 um)" in touch.why
+        assert pipeline.preflight(Mock()).safe
+
+    def test_nothing_where_it_is_not_wanted_or_no_device_is_known(self):
+        for pipeline in (self.pipeline(device=Mock(), materials={"fit": "never"}), self.pipeline()):
+            pipeline.make("touch")
+            assert not any("softened" in each.why for each in pipeline.outcomes)
+
+    def test_surfaces_without_materials(self):
+        surface = HapticSurface.from_heights(np.zeros((2, 2)))
+        assert fit_surface(surface, SPEC, Safety())[0] is surface

@@ -1,0 +1,78 @@
+"""All verdicts together: one sentence, and cures that agree."""
+
+import pytest
+
+from tangible_core.cli.preflight import relation
+from tangible_core.preflight import Preflight, Verdict
+from tangible_core.preflight.verdict import Change, held
+
+RELIEF = "workspace.relief_m"
+
+
+def low(value: str, worse: str = "warn") -> Verdict:
+    """A verdict that wants a lower relief."""
+    cure = [Change(RELIEF, value, "at most"), ", or press less"]
+    return held("slope", "a wall", 2.0, "<=", 1.0, "share", "", cure=cure, says=f"it is over {value}", worse=worse)
+
+
+def high(value: str) -> Verdict:
+    return held(
+        "features", "3 mm wide", 1.0, ">=", 2.0, "m", "", cure=[Change(RELIEF, value, "at least")], says="too low"
+    )
+
+
+OK = held("stiffness", "the law", 1.0, "<=", 2.0, "N/m", "", cure="softer", says="too stiff")
+
+
+@pytest.mark.parametrize(
+    ("verdicts", "sentence", "grade"),
+    [
+        ([OK], "Safe: nothing is wrong.", "ok"),
+        ([OK, low("0.01")], "Safe, but it is over 0.01.", "warn"),
+        ([low("0.01"), low("0.02")], "Safe, but it is over 0.01 and it is over 0.02.", "warn"),
+        ([low("0.01"), low("0.02", "unsafe"), OK], "Unsafe, because it is over 0.02.", "unsafe"),
+        ([low("0.01")] * 3 + [low("0.02")], "Safe, but it is over 0.01 and it is over 0.02.", "warn"),
+        (
+            [low(f"0.0{n}") for n in range(1, 6)],
+            "Safe, but it is over 0.01, it is over 0.02, it is over 0.03 and 2 more things.",
+            "warn",
+        ),
+    ],
+)
+def test_one_sentence_on_top(verdicts: list[Verdict], sentence: str, grade: str):
+    found = Preflight.of(verdicts)
+    assert (found.sentence, found.grade, found.safe) == (sentence, grade, grade != "unsafe")
+    assert repr(found).splitlines()[0] == sentence
+    assert len(repr(found).splitlines()) == 1 + sum(each.verdict != "ok" for each in verdicts)
+
+
+def test_all_cures_of_one_key_say_one_value_the_strictest():
+    found = Preflight.of([low("0.01"), low("0.0021"), low("0.014")])
+    assert {each.cure for each in found} == {"`workspace.relief_m: 0.0021`, or press less"}
+    assert {change.value for each in found for change in each.changes} == {"0.0021"}
+
+
+def test_no_cure_undoes_that_of_what_is_worse():
+    one, other = Preflight.of([high("0.02"), low("0.01", "unsafe")])
+    assert one.changes == ()
+    assert one.cure == "(not by `workspace.relief_m`, which another check wants at most 0.01)"
+    assert other.cure.startswith("`workspace.relief_m: 0.01`")
+
+
+def test_two_bounds_that_leave_room_are_met_by_one_value():
+    found = Preflight.of([low("0.01", "unsafe"), high("0.004")])
+    assert [each.cure for each in found] == ["`workspace.relief_m: 0.01`, or press less", "`workspace.relief_m: 0.01`"]
+
+
+@pytest.mark.parametrize(
+    ("value", "sign", "bound", "said"),
+    [
+        (3.215, "<=", 0.4, "3.215 N s/m > 0.4 N s/m"),
+        (0.1, ">=", 0.4, "0.1 N s/m < 0.4 N s/m"),
+        (0.4, "<=", 0.4, "0.4 N s/m <= 0.4 N s/m"),
+        (0.400001, "<=", 0.4, "0.400001 N s/m > 0.4 N s/m"),
+        (float("nan"), "<=", 0.4, "nan is to be <= 0.4 N s/m"),
+    ],
+)
+def test_an_inequality_is_a_true_one(value: float, sign: str, bound: float, said: str):
+    assert relation(held("damping", "the law", value, sign, bound, "N s/m", "", cure="less")) == said

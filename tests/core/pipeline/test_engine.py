@@ -450,14 +450,14 @@ def test_a_photo_finer_than_can_be_felt_is_segmented_smaller_and_it_is_said(fold
 class TestFelt:
     """Thirty columns of 1 mm, of which 2 mm are felt."""
 
-    COARSE = Workspace(width_m=0.03, relief_m=0.01, finest_m=0.002)
+    COARSE = Workspace(width_m=0.03, relief_m=0.01, smooth_m=0, finest_m=0.002)
 
     def test_what_is_felt_is_as_coarse_and_as_large_in_metres(self, folder: Path):
         surface = pipeline(folder, workspace=self.COARSE).make("surface")
         assert surface.height_m.shape == surface.labels.shape == (10, 15)
         assert surface.extent_m == (0.03, 0.02)
         assert surface.labels.tolist() == [[0] * 7 + [1] * 8] * 10
-        whole = pipeline(folder, workspace=Workspace(width_m=0.03, relief_m=0.01, finest_m=0)).make("surface")
+        whole = pipeline(folder, workspace=Workspace(width_m=0.03, relief_m=0.01, smooth_m=0, finest_m=0)).make("surface")
         assert whole.height_m.shape == whole.labels.shape == (20, 30)
         pairs = whole.height_m.reshape(10, 2, 15, 2).mean(axis=(1, 3))
         np.testing.assert_allclose(surface.height_m, pairs, atol=0.01 / 15)

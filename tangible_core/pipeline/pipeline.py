@@ -306,12 +306,13 @@ class Pipeline:
         stopped = run(keep or rows.append)
         return Recording(np.concatenate(rows), stopped, said.stamped())
 
-    def replay(self, recording: Recording) -> Recording:
+    def replay(self, recording: Recording, device: HapticDevice | None = None) -> Recording:
         """What this pipeline's law gives for each recorded state: forces of its own, which nothing limits.
 
+        device: which one the materials fit, as for `feel`; the configured one by default.
         `session.compared` says how far they are from those that were recorded. Raises: as `make`.
         """
-        touch = self.touch
+        touch = self._touch(device)
         said = replace(self._about(None), device=f"replay of {recording.about.device or 'a recording'}")
         return replace(replay(touch, recording), about=said.stamped())
 

@@ -125,6 +125,14 @@ class TestPipeline:
         assert "brick (texture 225 to 85.5 um)" in touch.why
         assert pipeline.preflight(Mock()).safe
 
+    def test_a_hand_is_replayed_on_the_materials_that_it_felt(self):
+        """Unguarded as far as can be: what the law says is what was felt, once the force is there."""
+        free = {"ramp_s": 0, "max_step_n": 10, "passivity": "off"}
+        pipeline = self.pipeline(safety=free)
+        felt = pipeline.feel(Mock(), 0.3, in_real_time=False)
+        assert np.abs(pipeline.replay(felt, Mock()).force_n - felt.force_n).max() < 1e-6
+        assert np.abs(pipeline.replay(felt).force_n - felt.force_n).max() > 0.01
+
     def test_nothing_where_it_is_not_wanted_or_no_device_is_known(self):
         for pipeline in (self.pipeline(device=Mock(), materials={"fit": "never"}), self.pipeline()):
             pipeline.make("touch")

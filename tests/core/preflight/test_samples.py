@@ -15,6 +15,7 @@ from tangible_texture import Gradient
 
 ROOT = Path(__file__).parents[3]
 FOLDERS = "configs", "tangible_core"
+DEVICES = "mock", "falcon-simulated"
 
 
 def felt() -> list[Path]:
@@ -42,6 +43,7 @@ def test_no_verdict_on_a_sample_is_a_complaint(path: Path):
     assert verdicts.sentence.startswith("Safe")
 
 
+@pytest.mark.slow
 def test_the_first_file_of_the_readme(tmp_path: Path):
     text = (ROOT / "README.md").read_text(encoding="utf-8").partition("# mine.yaml\n")[2].partition("```")[0]
     left, right = (Scene.builtin("motorcycle").views.left, Scene.builtin("motorcycle").views.right)
@@ -54,15 +56,16 @@ def test_the_first_file_of_the_readme(tmp_path: Path):
         assert verdicts.safe
 
 
-@pytest.mark.parametrize("device", ["mock", "falcon-simulated"])
+@pytest.mark.slow
 @pytest.mark.parametrize("name", BUILTINS)
-def test_a_builtin_scene_with_what_is_default(name: str, device: str):
+def test_a_builtin_scene_with_what_is_default(name: str):
     scene = Scene.builtin(name)
     depth = SemiGlobal() if scene.views.right is not None else Luminance()
     pipeline = Pipeline(scene, depth=depth, texture=Gradient(segments=6), render=Proxy())
-    verdicts = pipeline.preflight(load_method("device", device)(), loop=Loop(seconds=0.01))
-    assert complaints(verdicts) == []
-    assert verdicts.safe
+    for device in DEVICES:
+        verdicts = pipeline.preflight(load_method("device", device)(), loop=Loop(seconds=0.01))
+        assert complaints(verdicts) == []
+        assert verdicts.safe
 
 
 def photograph(rows: int, columns: int) -> np.ndarray:
@@ -78,14 +81,14 @@ def photograph(rows: int, columns: int) -> np.ndarray:
     return np.select([top & left, top, left], [noise, hills, stripes], blocks).astype(np.uint8)
 
 
-@pytest.mark.parametrize("device", ["mock", "falcon-simulated"])
 @pytest.mark.parametrize("size", [(120, 160), (400, 600)])
-def test_a_photograph_of_one_s_own_with_the_roughest_materials(size: tuple[int, int], device: str):
+def test_a_photograph_of_one_s_own_with_the_roughest_materials(size: tuple[int, int]):
     rows, columns = size
     quarters = (np.arange(rows)[:, None] * 2 // rows * 2 + np.arange(columns) * 2 // columns).astype(np.int32)
     scene = Scene.of(photo=photograph(rows, columns), segments=quarters)
     by = {0: "brick", 1: "carpet", 2: "glass", 3: "stone"}
     pipeline = Pipeline(scene, depth=Luminance(), materials=by, render=Proxy(), cached=False)
-    verdicts = pipeline.preflight(load_method("device", device)(), loop=Loop(seconds=0.01))
-    assert complaints(verdicts) == []
-    assert verdicts.safe
+    for device in DEVICES:
+        verdicts = pipeline.preflight(load_method("device", device)(), loop=Loop(seconds=0.01))
+        assert complaints(verdicts) == []
+        assert verdicts.safe

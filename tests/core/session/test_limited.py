@@ -53,6 +53,7 @@ def test_a_recording_says_it():
     assert "\n" not in repr(held)
 
 
+@pytest.mark.slow
 def test_a_run_says_it(folder: Path):
     done = tangible("run", "p.yaml", "--seconds", 0.5, cwd=folder)
     assert done.returncode == 0, done.stderr

@@ -21,10 +21,10 @@ def ask_first(pipeline: Pipeline, yes: bool) -> None:
     from ..errors import PictureError
 
     pipeline.make("touch")
-    doubts = [each.text for each in pipeline.outcomes.doubts]
+    doubts = "; ".join(each.text.partition(":")[0] for each in pipeline.outcomes.doubts)
     if yes or not doubts:
         return
     if sys.stdin is None or not sys.stdin.isatty():
-        raise PictureError(*doubts, "this is felt only if you say so: --yes")
-    if not typer.confirm("\n".join([*doubts, "Feel it all the same?"]), err=True):
+        raise PictureError(f"{doubts}; put it right as the warning says, or feel it all the same with --yes")
+    if not typer.confirm(f"{doubts[:1].upper()}{doubts[1:]}. Feel it all the same?", err=True):
         raise typer.Exit(FAILED)

@@ -248,7 +248,7 @@ class Engine:
         elif rule.skip:
             steps[product] = Outcome(product, "skipped", rule.skip, rule.method)
         elif self.cache is not None and rule.cached and self.key(product) in self.cache:
-            notes = self.cache.notes(self.key(product)).get(product, ())
+            notes = _foretold(self.cache.notes(self.key(product)), product)
             steps[product] = Outcome(product, "cached", _with(notes, SAME), rule.method, notes=notes)
         elif rule.refusal is not None:
             steps[product] = Outcome(product, "refused", str(rule.refusal), rule.method)
@@ -289,6 +289,12 @@ def _unheard(stage: Stage) -> None:
 
 def _foreseen(rule: Rule) -> tuple[Note, ...]:
     return (Note(rule.note),) if rule.note else ()
+
+
+def _foretold(kept: Notes, product: str) -> tuple[Note, ...]:
+    """Notes of a product in the cache, and what is not only a decision of those that it was made from."""
+    within = (each for name in sorted(kept) if name != product for each in kept[name] if each.kind != "decision")
+    return (*kept.get(product, ()), *within)
 
 
 def _with(notes: Iterable[Note], why: str) -> str:

@@ -18,7 +18,7 @@ from typing import Any, cast
 import xxhash
 
 from ..errors import OutputError
-from ..files.reading import read_bytes
+from ..files.reading import MOST_TEXT_BYTES, read_bytes
 from ..files.writing import write_text
 from .config import PRODUCTS
 
@@ -52,7 +52,7 @@ class Manifest:
 def read_manifest(folder: Path) -> Manifest | None:
     """The manifest of a folder; None where there is none that can be read."""
     try:
-        plain = json.loads(read_bytes(folder / MANIFEST))
+        plain = json.loads(read_bytes(folder / MANIFEST, MOST_TEXT_BYTES))
         files = cast("dict[Any, Any]", plain["files"])
         own = {name: digest for name, digest in files.items() if isinstance(digest, str) and Path(name).name == name}
         return Manifest(str(plain["source"]), own, plain["complete"] is True)

@@ -199,7 +199,7 @@ def test_what_a_method_noticed_is_told_again_with_what_comes_from_the_cache(
     for want in ("disparity", "surface"):  # of the second, only the surface is read, and holds what it is made from
         caplog.clear()
         again = pipeline(folder, **parts)
-        assert again.plan(want).steps[-1].notes == (tuple(noticed) if want == "disparity" else ())
+        assert again.plan(want).steps[-1].notes == tuple(noticed)
         again.make(want)
         told = {each.product: each for each in again.outcomes}
         assert said(again)["disparity"] == ("cached" if want == "disparity" else "skipped")

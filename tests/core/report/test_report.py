@@ -132,7 +132,14 @@ class TestFigures:
             "map": [[1.0, None]],
             "count": 3,
             "outcomes": [
-                {"product": "disparity", "outcome": "ran", "why": "asked for", "method": "", "seconds": 0.0},
+                {
+                    "product": "disparity",
+                    "outcome": "ran",
+                    "why": "asked for",
+                    "method": "",
+                    "seconds": 0.0,
+                    "notes": [],
+                },
             ],
             "file": str(Path("a") / "b"),
             "flag": True,

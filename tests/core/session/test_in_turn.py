@@ -139,6 +139,7 @@ def test_ctrl_c_while_it_waits() -> None:
         last = run_in_turn(
             [Turn(proxy(), AT_ONCE)],
             Failing(),
+            5.0,
             on_report=reports.append,
             on_wait=lambda _: signal.raise_signal(signal.SIGINT),
         )

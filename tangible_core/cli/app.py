@@ -117,8 +117,7 @@ def _guarded(work: Callable[[], int]) -> int:
         typer.echo(str(error), err=True)
         return MISTAKE
     except (KeyboardInterrupt, typer.Abort):
-        asked = ending.asked_by()
-        typer.echo(f"{f'ended by {asked.name}' if asked else 'interrupted'}; what was finished is kept", err=True)
+        typer.echo("interrupted; what was finished is kept", err=True)
         return INTERRUPTED
     except BrokenPipeError:  # the reader went away: `tangible plugins | head`
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -280,6 +280,8 @@ class Pipeline:
             check_record_path(file, seconds is None)
         felt, said, touch = self._device(device), self._about(device), self._touch(device)
         tell = _both(self._tell, on_report)
+        if not in_real_time and (then or on_wait):
+            raise ConfigError("then, on_wait: are for a session in real time; leave them out, or in_real_time=False")
         if not in_real_time:
             found = run_simulated(touch, felt, math.inf if seconds is None else seconds, tell, self.config.safety, stop)
             found = replace(found, about=said.stamped())

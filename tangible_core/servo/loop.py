@@ -58,7 +58,9 @@ class Kernel(NamedTuple):
 def prepare(link: Link, touch: Touch, ring: Ring, settings: np.ndarray) -> Loop:
     """The fastest loop that this device and this law allow; what it needs is compiled or loaded before this returns."""
     from . import clock, cycle
+    from .guard import guard
 
+    cast(Any, guard).restart(np.zeros_like(ring.guard))  # `take_over` needs it between two ticks
     kernels = cast(Any, cycle)
     row = np.full(len(TICK_COLUMNS), np.nan)
     shared, limits = sections(ring), (settings, ring.guard)

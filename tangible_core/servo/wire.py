@@ -13,9 +13,6 @@ from ..errors import BrokenMethod, exited
 from ..plugins.interfaces import HapticDevice
 from ..runtime.child_process import dumps
 
-TERMINATED = "the process was asked to end"
-"""Why a loop ended that heard SIGTERM or SIGHUP."""
-
 
 class Start(NamedTuple):
     """What the loop's process is told first."""

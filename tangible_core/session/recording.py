@@ -19,8 +19,8 @@ Vectors = Float64[np.ndarray, "n 3"]
 Times = Float64[np.ndarray, "n"]
 Bits = Int64[np.ndarray, "n"]
 
-INTERRUPTED = "interrupted from the keyboard"
-"""What a recording says that Ctrl-C ended."""
+INTERRUPTED = "interrupted from the keyboard, or by a signal that asks a program to end"
+"""What a recording says that Ctrl-C, SIGTERM or SIGHUP ended."""
 STOPPED = "stopped by the program"
 """What one says that another thread ended."""
 

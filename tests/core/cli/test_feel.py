@@ -51,7 +51,7 @@ def test_files_in_turn_and_a_recording_that_is_never_in_memory(folder: Path):
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (("a.yaml", "c.yaml"), "c.yaml: has another `device:` or `mapping:` than a.yaml"),
+        (("a.yaml", "c.yaml", "--seconds", 0.5), "c.yaml: has another `device:` or `mapping:` than a.yaml"),
         (("a.yaml", "b.yaml", "--set", "scene.height=none.npy"), "none.npy"),
         (("a.yaml", "--each", 0), "--each: is 0"),
         (("a.yaml", "--seconds", "inf", "--record", "hand.npz"), "recorded as .nc"),

@@ -318,6 +318,8 @@ class TestFeeling:
     def test_in_simulated_time_there_is_an_end(self, pipeline: Pipeline):
         with pytest.raises(ConfigError, match="seconds: is inf; it must be positive and finite"):
             pipeline.feel(seconds=None, in_real_time=False)
+        with pytest.raises(ConfigError, match="then, on_wait: are for a session in real time"):
+            pipeline.feel(in_real_time=False, on_wait=pytest.fail)
 
     def test_again_with_another_law(self, pipeline: Pipeline):
         before = pipeline.feel(seconds=1.0, in_real_time=False)

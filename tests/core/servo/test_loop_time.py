@@ -12,6 +12,7 @@ from tangible_core.compiled.touch import CompiledLink, LinkKernels
 from tangible_core.data import TICK_COLUMNS, Force, HapticState, TickFlag
 from tangible_core.plugins.interfaces import Link, Touch
 from tangible_core.servo import Ring, Safety, clock, loop
+from tangible_core.servo.guard import guard
 from tangible_core.servo.reports import report
 from tangible_core.servo.ring import LAST, LEAD_NS, PERIOD_NS
 from tangible_core.testing.loop_devices import SPEC
@@ -273,3 +274,19 @@ def test_a_sleep_that_a_signal_ends_is_slept_on(made_up: Clock, ring: Ring):
     assert made_up.wakes[2] == made_up.wakes[3]
     assert made_up.reads < 100
     np.testing.assert_allclose(rows[:, 0], np.arange(5) * 1e-3, atol=1e-6)
+
+
+def test_what_a_swap_needs_is_compiled_before_a_tick_waits_for_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Compiled between two ticks, it is a standstill on a slow machine."""
+    restarted: list[np.ndarray] = []
+    monkeypatch.setattr(guard, "restart", restarted.append)
+    ring = Ring.create(16)
+    try:
+        loop.prepare(
+            Sinking(exchanges=True), load_method("render", "proxy")().touch(LEVEL), ring, AT_ONCE.arrays(SPEC, 0)[0]
+        )
+        (memory,) = restarted
+        assert (memory.shape, memory.dtype) == (ring.guard.shape, ring.guard.dtype)
+        assert not np.shares_memory(memory, ring.guard)
+    finally:
+        ring.remove()

@@ -42,7 +42,7 @@ def test_each_is_felt_in_its_turn_with_its_own_limits_and_the_first_again() -> N
             stop.set()
 
     turns = [Turn(proxy(0.002), AT_ONCE), Turn(proxy(0.003), AT_ONCE.model_copy(update={"max_force_n": 0.3}))]
-    last = run_in_turn(turns, Circling(), each_s=0.2, keep=keep, stop=stop)
+    last = run_in_turn(turns, Circling(), 20.0, each_s=0.2, keep=keep, stop=stop)
     rows = np.concatenate(kept)
     assert (last.stopped, last.ticks) == (STOPPED, len(rows))
     first, second = np.flatnonzero(rows[:, FLAGS].astype(int) & TickFlag.SWAPPED)
@@ -139,6 +139,7 @@ def test_ctrl_c_while_it_waits() -> None:
         last = run_in_turn(
             [Turn(proxy(), AT_ONCE)],
             Failing(),
+            5.0,
             on_report=reports.append,
             on_wait=lambda _: signal.raise_signal(signal.SIGINT),
         )

@@ -184,7 +184,7 @@ def test_a_crop_beyond_the_picture_is_said(parts, says):
         ({"photo": PHOTO, "nodata": 0}, "nodata needs height beside it"),
         ({"photo": PHOTO, "layout": "top-bottom"}, "layout needs stereo beside it"),
         ({"left": PHOTO, "right": PHOTO, "rotate": 90, "invert": True}, "rotate and invert is for a photo or a height"),
-        ({"stereo": PHOTO, "photo": PHOTO}, "this one gives stereo, photo"),
+        ({"stereo": PHOTO, "photo": PHOTO}, "stereo already gives both views; leave out photo"),
     ],
 )
 def test_what_makes_no_sense_is_said(parts, says):

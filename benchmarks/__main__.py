@@ -18,6 +18,7 @@ SECTIONS = {
     "house": "The house itself",
     "depth": "Depth",
     "texture": "Texture",
+    "photos": "Photographs",
     "render": "Force laws",
     "servo": "The force loop",
     "servo_faults": "Faults around the force loop",

@@ -27,8 +27,10 @@ if TYPE_CHECKING:
 _XMP, _EXTENDED = b"http://ns.adobe.com/xap/1.0/\0", b"http://ns.adobe.com/xmp/extension/\0"
 _GUID = 32
 _APP1, _SCAN, _ALONE = 0xE1, 0xDA, (0x01, *range(0xD0, 0xD8))
-_DATA = re.compile(rb'GDepth:Data\s*(?:=\s*"([^"]*)"|>([^<]*)<)')
-_ITEM = re.compile(rb"<Container:Item\b[^>]*>")
+_DATA = re.compile(rb'GDepth:Data\s{0,9}(?:=\s{0,9}(")|(>))')
+_ITEM = re.compile(rb"<Container:Item\b[^>]{0,600}>")
+_ITEMS = 1 << 20
+"""Bytes of metadata in which a list of parts is looked for; patterns take a bounded time on any file."""
 _SEMANTIC = re.compile(rb'Item:Semantic\s*=\s*"([^"]*)"')
 _LENGTHS = re.compile(rb'Item:(?:Length|Padding)\s*=\s*"(\d{1,10})"')
 _AUXILIARY = re.compile(rb'AuxiliaryImageType\s*(?:=\s*"|>)\s*(disparity|depth)\b')
@@ -77,8 +79,9 @@ def phone_depth(image: "Image", data: bytes) -> PhoneDepth | None:
     Raises: ValueError or struct.error where it is damaged.
     """
     xmp = _xmp(data)
-    if b"GDepth:" in xmp and (found := _DATA.search(xmp)):
-        return PhoneDepth(b64decode(found[1] or found[2]), False, "GDepth")
+    if found := _DATA.search(xmp):
+        end = xmp.find(b'"' if found[1] else b"<", found.end())
+        return PhoneDepth(b64decode(xmp[found.end() : max(end, found.end())]), False, "GDepth")
     if item := _depth_item(xmp, data):
         return PhoneDepth(item, False, "Dynamic Depth")
     for part in multi_pictures(image, data)[1:]:
@@ -120,7 +123,7 @@ def _segments(data: bytes) -> Iterator[bytes]:
 def _depth_item(xmp: bytes, data: bytes) -> bytes | None:
     """The part of a container that is its depth: parts stand one behind the other, up to the end of the file."""
     end = len(data)
-    for item in reversed(_ITEM.findall(xmp)):
+    for item in reversed(_ITEM.findall(xmp, 0, _ITEMS)):
         semantic = _SEMANTIC.search(item)
         start = end - sum(map(int, _LENGTHS.findall(item)))
         if semantic and semantic[1] in (b"Depth", b"DepthMap") and 0 < start < end:

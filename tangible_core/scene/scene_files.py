@@ -94,11 +94,11 @@ class SceneFiles(BaseModel):
         given = [name for name, value in self if isinstance(value, Path | float | str) and name != "non_finite"]
         given += ["nodata"] if isinstance(self.nodata, tuple) else []
         kinds = [kind for kind in (("left", "right"), ("stereo",), ("photo",), ("height",)) if set(kind) & set(given)]
+        if self.stereo and (idle := [name for name in ("left", "right", "photo", "height") if name in given]):
+            raise ValueError(f"stereo already gives both views; leave out {', '.join(idle)}")
         if len(kinds) != 1 or not set(kinds[0]) <= set(given):
             named = ", ".join(given) or "nothing"
-            raise ValueError(
-                f"a scene is stereo, or either left and right, or photo, or height; this one gives {named}"
-            )
+            raise ValueError(f"a scene is either left and right, or photo, or height; this one gives {named}")
         for name, other in _NEEDS.items():
             if name in given and other not in given:
                 raise ValueError(f"{name} needs {other} beside it")

@@ -139,14 +139,17 @@ class TestTransparency:
         surface = Pipeline(Scene.of(photo=cut_out), **parts, materials={2: "ice"}).surface
         assert [each.name for each in surface.materials] == ["plain", "plain", "ice"]
 
-    def test_another_outline_over_the_same_colours_is_not_answered_from_the_cache(self, cut_out: np.ndarray):
-        whole = cut_out.copy()
-        whole[..., 3] = 255
-        keys = [
-            Pipeline(Scene.of(photo=each), depth=Luminance(), cached=False).engine.key("relief")
-            for each in (cut_out, whole)
+    def test_another_outline_over_the_same_colours_is_not_answered_from_the_cache(self):
+        """One half of a corner is transparent, the other is not finite; and the other way round."""
+        photos = [np.full((8, 8, 4), 0.5), np.full((8, 8, 4), 0.5)]
+        for photo, (clear, torn) in zip(photos, [(0, 1), (1, 0)], strict=True):
+            photo[4:, :, :3] = 0.2
+            photo[0, clear, 3], photo[0, torn, 0] = 0, np.nan
+        pipelines = [
+            Pipeline(Scene.of(photo=each, non_finite="mask"), texture=Gradient(), cached=False) for each in photos
         ]
-        assert keys[0] != keys[1]
+        assert pipelines[0].views.digest() == pipelines[1].views.digest()
+        assert pipelines[0].engine.key("segments") != pipelines[1].engine.key("segments")
 
     def test_opaque_pictures_are_what_they_were_without_their_fourth_channel(self):
         rgba = np.dstack([PHOTO, np.full(PHOTO.shape[:2], 128, np.uint8)])
@@ -181,7 +184,7 @@ def test_a_crop_beyond_the_picture_is_said(parts, says):
         ({"photo": PHOTO, "nodata": 0}, "nodata needs height beside it"),
         ({"photo": PHOTO, "layout": "top-bottom"}, "layout needs stereo beside it"),
         ({"left": PHOTO, "right": PHOTO, "rotate": 90, "invert": True}, "rotate and invert is for a photo or a height"),
-        ({"stereo": PHOTO, "photo": PHOTO}, "this one gives stereo, photo"),
+        ({"stereo": PHOTO, "photo": PHOTO}, "stereo already gives both views; leave out photo"),
     ],
 )
 def test_what_makes_no_sense_is_said(parts, says):

@@ -210,6 +210,17 @@ class TestPhoneDepth:
         np.testing.assert_array_equal(scene.views.left, PHOTO)
         assert scene.notes[0].startswith("the depth map in portrait.jpg is damaged and left out: ")
 
+    @pytest.mark.parametrize("text", [b"<Container:Item ", b'GDepth:Data="', b"GDepth:Data=" + 99 * b" "])
+    def test_what_was_written_to_take_for_ever_does_not(self, tmp_path: Path, text: bytes):
+        """Ten megabytes of beginnings without an end: a pattern that looks for it from each takes hours."""
+        content = text * (10_000_000 // len(text))
+        parts = [(at, content[at : at + 65_000]) for at in range(0, len(content), 65_000)]
+        head = b"http://ns.adobe.com/xmp/extension/\0" + b"A" * 32
+        xmp = [segment(head + struct.pack(">II", len(content), at) + part) for at, part in parts]
+        data = jpeg(PHOTO)
+        (tmp_path / "portrait.jpg").write_bytes(data[:2] + b"".join(xmp) + data[2:])
+        assert Scene.of(photo=tmp_path / "portrait.jpg").disparity is None
+
 
 class TestNoData:
     @pytest.mark.parametrize("mode", ["float32", "int16"])

@@ -24,15 +24,10 @@ def merge(areas: list[int], borders: dict[tuple[int, int], Border], most: int) -
     Returns: for each region the one that it has become part of.
     """
     graph = _Graph(areas, borders)
-    left = len(areas)
-    while graph.queue:
-        reluctance, one, other, border = heapq.heappop(graph.queue)
-        if graph.beside[one].get(other) is not border:
-            continue
-        if reluctance >= 0 and left <= most:
-            break
-        graph.join(one, other)
-        left -= 1
+    graph.merge(most)
+    if graph.left > most:
+        graph.weigh()
+        graph.merge(most)
     return np.array([graph.root(region) for region in range(len(areas))], np.int32)
 
 
@@ -47,10 +42,15 @@ def weakest_border(borders: dict[tuple[int, int], Border], parts: Int32[np.ndarr
 
 
 class _Graph:
-    """Regions, their neighbours, and a queue of pairs; a pair in it whose border is no longer the same is void."""
+    """Regions, their neighbours, and a queue of pairs; a pair in it whose border is no longer the same is void.
+
+    Pairs that edges hold apart come last, and their order changes with every merge: they are queued by `weigh`.
+    """
 
     def __init__(self, areas: list[int], borders: dict[tuple[int, int], Border]) -> None:
         self.areas = areas.copy()
+        self.left = len(areas)
+        self.weighing = False
         self.parent = list(range(len(areas)))
         self.beside: list[dict[int, Border]] = [{} for _ in areas]
         self.queue: list[tuple[float, int, int, Border]] = []
@@ -60,7 +60,27 @@ class _Graph:
     def connect(self, one: int, other: int, border: Border) -> None:
         """Set the border of two regions."""
         self.beside[one][other] = self.beside[other][one] = border
-        heapq.heappush(self.queue, (self.reluctance(one, other, border), min(one, other), max(one, other), border))
+        reluctance = self.reluctance(one, other, border)
+        if reluctance < 0 or self.weighing:
+            heapq.heappush(self.queue, (reluctance, min(one, other), max(one, other), border))
+
+    def weigh(self) -> None:
+        """Queue what edges hold apart, too."""
+        self.weighing = True
+        for one, others in enumerate(self.beside):
+            for other, border in others.items():
+                if one < other:
+                    self.connect(one, other, border)
+
+    def merge(self, most: int) -> None:
+        """Merge the pairs in the queue until no more than `most` regions are left, or edges hold all apart."""
+        while self.queue:
+            reluctance, one, other, border = heapq.heappop(self.queue)
+            if self.beside[one].get(other) is not border:
+                continue
+            if reluctance >= 0 and self.left <= most:
+                break
+            self.join(one, other)
 
     def reluctance(self, one: int, other: int, border: Border) -> float:
         """How much speaks against merging; negative where edges do not."""
@@ -74,15 +94,17 @@ class _Graph:
         """Make two regions one."""
         self.parent[lost] = kept
         self.areas[kept] += self.areas[lost]
+        self.left -= 1
         borders, self.beside[lost] = self.beside[lost], {}
         for far, border in borders.items():
             del self.beside[far][lost]
             if far != kept:
                 own = self.beside[kept].get(far)
                 self.beside[kept][far] = border.joined(own) if own else border
-        for far, border in self.beside[kept].items():
-            if far in borders or self.reluctance(kept, far, border) >= 0:  # of the others, none depends on the area
-                self.connect(kept, far, Border(*border))  # a new one, so that the pairs of the old area are void
+        for far in self.beside[kept] if self.weighing else borders:
+            if far != kept:
+                border = Border(*self.beside[kept][far])  # a new one, so that the pairs of the old area are void
+                self.connect(kept, far, border)
 
     def root(self, region: int) -> int:
         """The region that this one has become part of."""

@@ -4,9 +4,10 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import ConfigDict, Field, model_validator
 
 from ..data import Calibration
+from ..data.quantities import Quantities
 from ..errors import did_you_mean, quoted
 from .picture_files import NonFinite
 
@@ -19,7 +20,7 @@ _NEEDS = {
 _OF_VIEWS = ("disparity", "truth", "focal_px", "baseline_m", "offset_px")
 
 
-class SceneFiles(BaseModel):
+class SceneFiles(Quantities):
     """A scene in files: a pair (left and right), one photo, or a height map. Relative paths start at the YAML file."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)

@@ -14,7 +14,7 @@ from ..errors import ConfigError, TangibleError, exited, quoted, shown
 from ..plugins import hooks
 from ..plugins.registry import default_registry
 from ..runtime import standard_output
-from . import check, compare, devices, feel, materials, plugins, preflight, replay, run, schema
+from . import check, compare, devices, feel, materials, new, plugins, preflight, replay, run, schema
 from .options import DONE, INTERRUPTED, MISTAKE
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ app = typer.Typer(
 )
 
 for command in (
-    *(run.demo, run.run, run.plan, feel.feel, replay.replay, preflight.preflight, compare.compare),
+    *(run.demo, new.new, run.run, run.plan, feel.feel, replay.replay, preflight.preflight, compare.compare),
     *(plugins.plugins, schema.schema, check.check),
 ):
     app.command()(command)

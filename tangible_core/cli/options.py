@@ -8,6 +8,10 @@ import typer
 DONE, FAILED, MISTAKE, INTERRUPTED = 0, 1, 2, 130
 
 Config = Annotated[Path, typer.Argument(help="Pipeline file (YAML).", show_default=False)]
+Felt = Annotated[
+    list[Path],
+    typer.Argument(metavar="FILE...", help="Pipeline file (YAML), a picture, or left and right.", show_default=False),
+]
 Sets = Annotated[
     list[str] | None, typer.Option("--set", metavar="KEY.KEY=VALUE", help="Set one value of the file; repeatable.")
 ]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from .options import Config, Json, NoCache, Sets
+from .options import Felt, Json, NoCache, Sets
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -55,22 +55,22 @@ Next:
 
 
 def run(
-    config: Config,
+    config: Felt,
     sets: Sets = None,
     out: Annotated[Path | None, typer.Option("--out", help="Folder for the results [default: out/NAME].")] = None,
     seconds: Seconds = 8.0,
     as_json: Json = False,
     no_cache: NoCache = False,
 ) -> None:
-    """Run a pipeline file and write a report.
+    """Run a pipeline file, or a picture, and write a report.
 
     A simulated device feels the surface; a real one is never moved: see `feel`.
     """
     pipeline = open_pipeline(config, sets or [], not no_cache)
-    _print(pipeline.run(out or Path("out") / config.stem, seconds=seconds), as_json)
+    _print(pipeline.run(out or Path("out") / config[0].stem, seconds=seconds), as_json)
 
 
-def plan(config: Config, sets: Sets = None, as_json: Json = False, no_cache: NoCache = False) -> None:
+def plan(config: Felt, sets: Sets = None, as_json: Json = False, no_cache: NoCache = False) -> None:
     """Say what `run` would do, and why; run nothing."""
     from . import show
 
@@ -81,11 +81,19 @@ def plan(config: Config, sets: Sets = None, as_json: Json = False, no_cache: NoC
         show.outcomes(steps, ran="to run")
 
 
-def open_pipeline(config: Path, sets: Sequence[str], cached: bool) -> Pipeline:
-    """The pipeline of a file, with or without the user's cache."""
+def open_pipeline(config: Path | Sequence[Path], sets: Sequence[str], cached: bool) -> Pipeline:
+    """The pipeline of a file, or of pictures that have none; with or without the user's cache."""
+    from ..errors import ConfigError
     from ..pipeline.pipeline import load_pipeline
+    from ..pipeline.starter import are_pictures, pipeline_of
 
-    pipeline = load_pipeline(config, sets)
+    files = [config] if isinstance(config, Path) else config
+    if are_pictures(files):
+        pipeline = pipeline_of(files, sets)
+    elif len(files) > 1:
+        raise ConfigError(f"{', '.join(map(str, files))}: name one pipeline file, one picture, or left and right")
+    else:
+        pipeline = load_pipeline(files[0], sets)
     if not cached:
         pipeline.cache = None
     return pipeline

@@ -44,9 +44,8 @@ class Quantities(BaseModel):
     def _number_of(cls, value: Any, info: ValidationInfo) -> Any:
         """Raises: ValueError for a text that is no such quantity."""
         units = units_of(info.field_name or "")
-        if isinstance(value, list | tuple):
-            parts = cast("list[Any]", value)
-            return [_as_number(each, units) for each in parts] if units else value
+        if units and isinstance(value, list | tuple):
+            return [_as_number(each, units) for each in cast("list[Any]", value)]
         return _as_number(value, units)
 
     @classmethod
@@ -64,7 +63,10 @@ def units_of(name: str) -> Mapping[str, Decimal]:
     >>> list(units_of("stiffness_n_per_m")), list(units_of("segments"))
     (['N/m', 'N/cm', 'N/mm'], [])
     """
-    return next((units for suffix, units in UNITS.items() if name.endswith(suffix)), {})
+    return next((units for suffix, units in UNITS.items() if name.endswith(suffix)), _NONE)
+
+
+_NONE: Mapping[str, Decimal] = {}
 
 
 def _as_number(value: Any, units: Mapping[str, Decimal]) -> Any:

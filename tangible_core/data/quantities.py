@@ -77,7 +77,10 @@ def _as_number(value: Any, units: Mapping[str, Decimal]) -> Any:
     worth = next((each for unit, each in units.items() if _plain(unit) == _plain(found[2])), None)
     if worth is None:
         raise ValueError(f"write a number in {next(iter(units))}, or with one of the units {', '.join(units)}")
-    return float(Decimal(found[1]) * worth)  # in decimals: 30 um is 3e-05 to the last digit
+    try:
+        return float(Decimal(found[1]) * worth)  # in decimals: 30 um is 3e-05 to the last digit
+    except ArithmeticError as error:
+        raise ValueError("this number is beyond all measure") from error
 
 
 def _plain(unit: str) -> str:

@@ -19,6 +19,7 @@ SECTIONS = {
     "depth": "Depth",
     "texture": "Texture",
     "render": "Force laws",
+    "methods": "Every method with its defaults",
     "servo": "The force loop",
     "servo_faults": "Faults around the force loop",
     "record": "Recordings",

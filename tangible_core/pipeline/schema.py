@@ -1,10 +1,11 @@
 """JSON Schema of a pipeline file, for completion in editors, and the same as a page to read."""
 
 from collections.abc import Iterable
-from typing import Any, cast
+from typing import Any, NamedTuple, cast
 
 from pydantic import BaseModel
 
+from ..data.quantities import units_of
 from ..errors import TangibleError
 from ..materials.assignment import library
 from ..materials.files import MaterialBlock
@@ -89,6 +90,34 @@ def _methods(kind: str, registry: Registry, distribution: str | None) -> Iterabl
                 yield name, registry.load(kind, name)
         except TangibleError:
             continue
+
+
+class Option(NamedTuple):
+    """An option of a method, in words."""
+
+    name: str
+    unit: str
+    values: str
+    """What may be written, with bounds."""
+    default: str
+    meaning: str
+
+
+def options_of(model: type[BaseModel]) -> list[Option]:
+    """All options of a method, those of a block below it as `block.option`."""
+    blocks: dict[str, Any] = {}
+    form = _schema(model, blocks)
+    return [
+        Option(
+            name, _unit(name), _type(option).replace("`", ""), _default(option).strip("`"),
+            " ".join(option.get("description", "").split()),
+        )
+        for name, option in _options(form, blocks)
+    ]  # fmt: skip
+
+
+def _unit(name: str) -> str:
+    return "px" if name.endswith("_px") else next(iter(units_of(name)), "")
 
 
 def markdown(schema: dict[str, Any]) -> str:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from .loudness import is_quiet
 from .options import Config, Json, NoCache, Record, Sets
 from .run import device_of, open_pipeline
 
@@ -28,7 +29,7 @@ def feel(
 
     from .. import session
     from ..servo import OVER
-    from . import show
+    from . import sentences, show
 
     pipeline = open_pipeline(config, sets or [], not no_cache)
     device = device_of(pipeline)
@@ -48,7 +49,8 @@ def feel(
         figures = {"device": device.name, "spec": asdict(device.method.spec()), **felt}
         outcomes = show.as_rows(pipeline.outcomes)
         show.print_json({"outcomes": outcomes, "loop": loop, "figures": figures, "file": record and str(record)})
-    else:
+    elif not is_quiet():
+        show.sentence(sentences.felt(device.name, felt))
         show.outcomes(pipeline.outcomes)
         show.say(f"\n{loop['how']}; the first tick came {loop['start_s']:.2f} s after the loop was asked for\n")
         show.table(("figure", "value"), [(name, _text(value)) for name, value in felt.items()])

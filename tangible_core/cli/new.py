@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from .loudness import is_quiet
+
 
 def new(
     pictures: Annotated[
@@ -30,6 +32,8 @@ def new(
     if file.exists() and not force:
         raise OutputError(f"{file}: is there already; --out FILE writes another one, --force writes over it")
     write_text(file, starter(pictures, file).text)
+    if is_quiet():
+        return
     show.plain(f"written: {file}\n\nNext:")
     show.plain(f"  tangible run {file}        makes what can be felt, and draws it")
     show.plain(f"  tangible preflight {file}  says whether it is safe on its device")

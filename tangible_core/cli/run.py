@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from .loudness import is_quiet
 from .options import Felt, Json, NoCache, Sets
 
 if TYPE_CHECKING:
@@ -42,7 +44,7 @@ def demo(
     config = parse_config(text, Path("demo.yaml"), default_registry())
     pipeline = Pipeline.of(config, default_registry(), None if no_cache else Cache())
     _print(pipeline.run(out, seconds=seconds), as_json)
-    if not as_json:
+    if not (as_json or is_quiet()):
         show.say(NEXT.format(config=out / "config.yaml"))
 
 
@@ -72,12 +74,13 @@ def run(
 
 def plan(config: Felt, sets: Sets = None, as_json: Json = False, no_cache: NoCache = False) -> None:
     """Say what `run` would do, and why; run nothing."""
-    from . import show
+    from . import sentences, show
 
     steps = open_pipeline(config, sets or [], not no_cache).plan().steps
     if as_json:
         show.print_json(show.as_rows(steps))
     else:
+        show.sentence(sentences.planned(steps))
         show.outcomes(steps, ran="to run")
 
 
@@ -86,10 +89,16 @@ def open_pipeline(config: Path | Sequence[Path], sets: Sequence[str], cached: bo
     from ..errors import ConfigError
     from ..pipeline.pipeline import load_pipeline
     from ..pipeline.starter import are_pictures, pipeline_of
+    from . import show
 
     files = [config] if isinstance(config, Path) else config
     if are_pictures(files):
         pipeline = pipeline_of(files, sets)
+        if not is_quiet():
+            command = shlex.join(["tangible", "new", *map(str, files)])
+            show.note(
+                f"no pipeline file is named, so values that suit the picture are taken: `{command}` writes them down"
+            )
     elif len(files) > 1:
         raise ConfigError(f"{', '.join(map(str, files))}: name one pipeline file, one picture, or left and right")
     else:
@@ -110,11 +119,14 @@ def device_of(pipeline: Pipeline) -> NamedMethod[HapticDevice]:
 
 
 def _print(run: Run, as_json: bool) -> None:
-    from . import show
+    from . import sentences, show
 
     if as_json:
         show.print_json({**run.document(), "files": [str(path) for path in run.files]})
         return
+    if is_quiet():
+        return
+    show.sentence(sentences.made(run))
     show.outcomes(run.outcomes, f"[bold]{run.scene}[/]")
     for name, values in run.figures.items():
         title, lines = LINES[name]
@@ -128,6 +140,7 @@ def _print(run: Run, as_json: bool) -> None:
 
 def _error_lines(figures: Mapping[Any, Any]) -> list[str]:
     return [
+        f"{figures['bad2']:.0f} % of the picture is off by more than 2 px, or unknown",
         f"bad1 {figures['bad1']:.2f} %, bad2 {figures['bad2']:.2f} % of pixels over 1 px, 2 px (unknown counts as bad)",
         f"average {figures['average_px']:.3f} px, rms {figures['rms_px']:.3f} px "
         f"over the {figures['density']:.1f} % that are known",

@@ -74,6 +74,7 @@ def test_new_writes_a_file_that_runs_and_never_writes_over_one(folder: Path):
 def test_a_picture_runs_without_a_file(folder: Path):
     done = tangible("run", "calm.png", "--set", "want=surface", "--set", "workspace.width_m=30 mm", cwd=folder)
     assert done.returncode == 0, done.stderr
+    assert "`tangible new calm.png` writes them down" in done.stderr
     written = (folder / "out" / "calm" / "config.yaml").read_text()
     assert "width_m: 0.03" in written and f"{folder}/calm.png" in written
     assert tangible("plan", "out/calm/config.yaml", cwd=folder).returncode == 0

@@ -17,7 +17,7 @@ def made(run: Run) -> str:
     """What a run made, how large it is, and what a hand felt."""
     products = [name for name, value in run.products.items() if value is not None]
     felt = "touch" in products
-    said = f"{run.scene} can now be felt" if felt else f"Of {run.scene}, there {_are(products)} now"
+    said = f"{run.scene} can now be felt" if felt else f"{run.scene} is done: {_are_made(products)}"
     if (surface := run.products.get("surface")) is not None:
         width_m, length_m = surface.extent_m
         height_m = float(surface.height_m.max())
@@ -28,8 +28,10 @@ def made(run: Run) -> str:
     return f"{said}."
 
 
-def _are(products: Sequence[str]) -> str:
-    return f"{'is' if len(products) == 1 else 'are'} {_and(products)}" if products else "is nothing to make"
+def _are_made(products: Sequence[str]) -> str:
+    if not products:
+        return "nothing of it had to be made"
+    return f"its {_and(products)} {'is' if len(products) == 1 else 'are'} made"
 
 
 def planned(steps: Sequence[Outcome]) -> str:

@@ -20,6 +20,7 @@ SECTIONS = {
     "texture": "Texture",
     "photos": "Photographs",
     "render": "Force laws",
+    "methods": "Every method with its defaults",
     "servo": "The force loop",
     "servo_faults": "Faults around the force loop",
     "record": "Recordings",

@@ -16,6 +16,7 @@ from .run import Outlook, look, run
 from .summary import cells
 from .table import Results
 from .task import TASKS, load_task
+from .writing import write_tables
 
 ROWS, PLOT = "results.jsonl", "plot.png"
 
@@ -37,7 +38,7 @@ class ComparisonOutcome:
 
     results: Results
     files: tuple[Path, ...]
-    """The rows, and the plot where there is something to plot."""
+    """The rows, the tables for other programs, and the plot where there is something to plot."""
     verdict: verdicts.Verdict | None = None
     """What got worse than in earlier results, where there are any."""
 
@@ -88,7 +89,7 @@ def _summed(rows: Mapping[str, Row], path: Path, earlier: Sequence[Row] | None) 
     found = list(rows.values())
     results = _results(found, path)
     plot = path.with_name(PLOT)
-    files = (path, plot) if draw_plot(plot, results) else (path,)
+    files = (path, *write_tables(path.parent, results), *((plot,) if draw_plot(plot, results) else ()))
     return ComparisonOutcome(results, files, None if earlier is None else verdicts.compare(earlier, found))
 
 

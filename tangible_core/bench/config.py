@@ -1,7 +1,7 @@
 """A comparison file: which methods, on which scenes, damaged how; every complaint at once, each with its place."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any, cast
 
@@ -59,6 +59,16 @@ class Comparison:
     baseline: str | None
     """Label of the method that times are compared with."""
     out: Path
+
+
+def quick(comparison: Comparison) -> Comparison:
+    """The same in a fraction of the time, for a first look: one round, one call, no perturbations; in a folder beside.
+
+    Times of it are rough; errors are those of the whole comparison, for methods are deterministic.
+    """
+    protocol = comparison.protocol.model_copy(update={"repeats": 1, "calls": 1})
+    out = comparison.out.with_name(f"{comparison.out.name}-quick")
+    return replace(comparison, protocol=protocol, damages=(Damage(),), out=out)
 
 
 def load_comparison(path: Path, registry: Registry, overrides: Iterable[str] = ()) -> Comparison:

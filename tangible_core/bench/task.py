@@ -9,14 +9,15 @@ from dataclasses import dataclass, field
 from importlib import import_module
 from typing import Any, Literal
 
-from pydantic import BaseModel, ConfigDict
+from pydantic import ConfigDict
 
 from ..data import Kind, Record
+from ..data.quantities import Quantities
 
 Apply = Callable[[Any, float], Any]
 
 
-class SceneSpec(BaseModel):
+class SceneSpec(Quantities):
     """Which scene, as the file says it: a few plain options, the same in every process."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ..plugins.registry import KIND_NAMES
+from . import completing
 from .options import FAILED, Json
 
 if TYPE_CHECKING:
@@ -17,8 +18,15 @@ if TYPE_CHECKING:
 
 
 def check(
-    kind: Annotated[str, typer.Argument(help=" | ".join(KIND_NAMES), show_default=False)],
-    name: Annotated[str, typer.Argument(help="The method, as `tangible plugins` lists it.", show_default=False)],
+    kind: Annotated[
+        str, typer.Argument(help=" | ".join(KIND_NAMES), show_default=False, autocompletion=completing.kinds)
+    ],
+    name: Annotated[
+        str,
+        typer.Argument(
+            help="The method, as `tangible plugins` lists it.", show_default=False, autocompletion=completing.methods
+        ),
+    ],
     as_json: Json = False,
 ) -> None:
     """Test an installed method with the conformance kit.

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from os import environ
 from pathlib import Path
+from time import monotonic
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from .loudness import is_quiet
 from .options import FAILED, Json, Sets
 
 if TYPE_CHECKING:
@@ -14,6 +17,7 @@ if TYPE_CHECKING:
 
     from ..bench import against as verdicts
     from ..bench.comparing import Step
+    from ..bench.forecast import Forecast
     from ..bench.run import Outlook
     from ..bench.table import Results, Table
 
@@ -28,6 +32,9 @@ def compare(
         Path | None, typer.Option(help="Earlier results (.jsonl); exit 1 if something got worse.")
     ] = None,
     detail: Annotated[bool, typer.Option("--detail", help="A table for each scene, with every measure.")] = False,
+    quick: Annotated[
+        bool, typer.Option("--quick", help="A first look: one round, one call, nothing perturbed.")
+    ] = False,
     retry: Annotated[bool, typer.Option("--retry", help="Measure again what failed before.")] = False,
     as_json: Json = False,
 ) -> None:
@@ -41,6 +48,7 @@ def compare(
     from ..bench.comparing import ROWS, read_comparison
     from ..bench.comparing import compare as measured
     from ..bench.config import load_comparison
+    from ..bench.config import quick as shortened
     from ..bench.rows import read_rows
     from ..plugins.registry import default_registry
     from . import show
@@ -50,16 +58,18 @@ def compare(
         found = read_comparison(config, earlier)
     else:
         comparison = load_comparison(config, default_registry(), sets or [])
+        comparison = shortened(comparison) if quick else comparison
         comparison = replace(comparison, out=out or comparison.out)
         path = comparison.out / ROWS
+        watch = _Watch(path)
         try:
-            found = measured(comparison, earlier, retry=retry, progress=_tell, on_outlook=lambda each: _say(each, path))
+            found = measured(comparison, earlier, retry=retry, progress=watch.tell, on_outlook=watch.say)
         except KeyboardInterrupt:
             show.note(f"interrupted; what was measured is kept in {path}, and the same command goes on from there")
             raise
     if as_json:
         show.print_json(_document(found.results, found.files, found.verdict))
-    else:
+    elif not is_quiet():
         _print(found.results, found.files, found.verdict, detail)
     if failed := found.results.failed:
         show.flush()
@@ -68,30 +78,49 @@ def compare(
         raise typer.Exit(FAILED)
 
 
-def _say(outlook: Outlook, path: Path) -> None:
-    from . import show
+class _Watch:
+    """Says before the first measurement how long all of them will take, and during each how long the rest will."""
 
-    if outlook.kept:
-        wanted = len(outlook.kept) + len(outlook.waiting)
-        failed = sum(row.error is not None for row in outlook.kept.values())
-        again = f", {failed} of them failed: --retry measures these once more" if failed else ""
-        show.note(f"{len(outlook.kept)} of {wanted} measurements are in {path} already and are kept{again}")
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self._forecast: Forecast | None = None
+        self._since_s = 0.0
 
+    def say(self, outlook: Outlook) -> None:
+        """What is known already, and how long the rest takes."""
+        from ..bench.forecast import forecast, in_words
+        from . import show
 
-def _tell(step: Step) -> None:
-    """A measurement is a stage like any other: whoever watches stages sees it, and --quiet hides it."""
-    from ..data import Outcome
-    from ..plugins import hooks
-    from ..plugins.registry import default_registry
+        self._forecast, self._since_s = forecast(outlook.waiting), monotonic()
+        if is_quiet():
+            return
+        count = len(outlook.waiting)
+        if outlook.kept:
+            failed = sum(row.error is not None for row in outlook.kept.values())
+            again = f", {failed} of them failed: --retry measures these once more" if failed else ""
+            wanted = len(outlook.kept) + count
+            show.note(f"{len(outlook.kept)} of {wanted} measurements are in {self._path} already and are kept{again}")
+        if count:
+            takes = in_words(self._forecast.whole_s)
+            show.note(f"{count} measurements, which will take {takes}; what is done is kept if you interrupt it")
 
-    plugins, row = default_registry().plugins, step.row
-    name = f"{row.scene}, {row.perturb}, round {row.repeat + 1} ({step.number + 1} of {step.of})"
-    if not step.done:
-        hooks.tell(plugins, "tangible_stage_started", product=name, method=row.method)
-        return
-    kind, why = ("failed", row.error) if row.error else ("ran", "measured")
-    outcome = Outcome(name, kind, why or "", row.method, row.seconds or 0.0)
-    hooks.tell(plugins, "tangible_stage_finished", outcome=outcome)
+    def tell(self, step: Step) -> None:
+        """A measurement is a stage like any other: whoever watches stages sees it, and --quiet hides it."""
+        from ..bench.forecast import in_words
+        from ..data import Outcome
+        from ..plugins import hooks
+        from ..plugins.registry import default_registry
+
+        plugins, row = default_registry().plugins, step.row
+        name = f"{row.scene}, {row.perturb}, round {row.repeat + 1} ({step.number + 1} of {step.of}"
+        if not step.done:
+            assert self._forecast is not None
+            left = in_words(self._forecast.left_s(step.number, monotonic() - self._since_s))
+            hooks.tell(plugins, "tangible_stage_started", product=f"{name}, {left} left)", method=row.method)
+            return
+        kind, why = ("failed", row.error) if row.error else ("ran", "measured")
+        outcome = Outcome(f"{name})", kind, why or "", row.method, row.seconds or 0.0)
+        hooks.tell(plugins, "tangible_stage_finished", outcome=outcome)
 
 
 def _document(results: Results, files: Sequence[Path], verdict: verdicts.Verdict | None) -> dict[str, Any]:
@@ -112,7 +141,9 @@ def _document(results: Results, files: Sequence[Path], verdict: verdicts.Verdict
 
 def _print(results: Results, files: Sequence[Path], verdict: verdicts.Verdict | None, detail: bool) -> None:
     from ..bench.table import FRONT, tables
-    from . import show
+    from . import sentences, show
+
+    show.sentence(sentences.compared(results))
 
     for table in tables(results, detail):
         _print_table(table)
@@ -164,15 +195,17 @@ def _print_table(table: Table) -> None:
     for row in table.rows:
         drawn.add_row(*(Text(cell) for cell in row))
     console = show.console()
+    if (console.is_terminal or "COLUMNS" in environ) and show.is_narrow(console, drawn):
+        console.print(table.title, "")
+        show.entries(console, table.headings, [[Text(cell) for cell in row] for row in table.rows])
+        console.print("")
+        return
     numbers = sum(heading not in words for heading in table.headings)
     if numbers > 1:
-        console.width = max(
-            console.width, Measurement.get(console, console.options.update(max_width=WIDEST), drawn).maximum
-        )
+        wanted = Measurement.get(console, console.options.update(max_width=show.WIDEST), drawn)
+        console.width = max(console.width, wanted.maximum)
     console.print(drawn, "")
 
-
-WIDEST = 1000
 
 WORDS = {"method", "where", "what", "why"}
 """Headings of columns that hold text, beside that of the front."""

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, cast
 import typer
 
 from ..errors import ConfigError
+from . import completing
 from .options import FAILED, Json
 
 if TYPE_CHECKING:
@@ -18,12 +19,15 @@ if TYPE_CHECKING:
     from ..plugins.registry import Listing
 
 COLOURS = {"fine": "green", "failed": "red", "not asked": "dim"}
-Device = Annotated[str, typer.Argument(help="As `tangible devices` lists it.", show_default=False)]
+Device = Annotated[
+    str,
+    typer.Argument(help="As `tangible devices` lists it.", show_default=False, autocompletion=completing.devices),
+]
 DeviceSets = Annotated[
     list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Set an option of the device; repeatable.")
 ]
 
-app = typer.Typer(name="devices")
+app = typer.Typer(name="devices", rich_markup_mode=None, add_completion=False)
 
 
 @app.callback(invoke_without_command=True)
@@ -36,19 +40,23 @@ def devices(context: typer.Context, as_json: Json = False) -> None:
     from rich.markup import escape
 
     from ..plugins.registry import default_registry
-    from . import show
+    from . import sentences, show
 
     rows = [_row(each) for each in default_registry().listings if each.kind == "device"]
     if as_json:
         show.print_json(rows)
         return
+    show.sentence(sentences.connected(rows))
     cells = [(row["name"], *map(escape, cell)) for row in rows for cell in _cells(row)]
     show.table(("device", "connected", "serial", "where", "to do"), cells)
 
 
 @app.command()
 def doctor(
-    name: Annotated[str | None, typer.Argument(help="The device [default: all].", show_default=False)] = None,
+    name: Annotated[
+        str | None,
+        typer.Argument(help="The device [default: all].", show_default=False, autocompletion=completing.devices),
+    ] = None,
     sets: DeviceSets = None,
     as_json: Json = False,
 ) -> None:

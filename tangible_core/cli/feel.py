@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from .asking import ask_first
+from .loudness import is_quiet
 from .options import Json, NoCache, Record, Sets, Yes
 from .run import device_of, open_pipeline
 
@@ -46,7 +47,7 @@ def feel(
     from .. import session
     from ..errors import check_positive
     from ..servo import OVER, TERMINATED
-    from . import show
+    from . import sentences, show
 
     check_positive("--each", each)
     pipeline, *then = (open_pipeline(config, sets or [], not no_cache) for config in configs)
@@ -84,7 +85,8 @@ def feel(
         outcomes = show.as_rows(pipeline.outcomes)
         said = {"guard": session.changed_most(report.flagged), "file": record and str(record)}
         show.print_json({"outcomes": outcomes, "loop": loop, "figures": figures, **said})
-    else:
+    elif not is_quiet():
+        show.sentence(sentences.felt(device.name, felt))
         show.outcomes(pipeline.outcomes)
         if loop:
             show.say(f"\n{loop['how']}; the first tick came {loop['start_s']:.2f} s after the loop was asked for\n")

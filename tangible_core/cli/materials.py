@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..errors import ConfigError
+from . import completing
 from .options import Json
 
 if TYPE_CHECKING:
@@ -25,7 +26,7 @@ MODELS: dict[Texture, str] = {
 UNITS = {"_n_s_per_m": "N s/m", "_n_per_m": "N/m", "_deg": "degrees", "_m": "m"}
 Library = Annotated[Path | None, typer.Option(help="YAML file of your own, added to the shipped materials.")]
 
-app = typer.Typer(name="materials")
+app = typer.Typer(name="materials", rich_markup_mode=None, add_completion=False)
 
 
 @app.callback(invoke_without_command=True)
@@ -44,6 +45,7 @@ def materials(context: typer.Context, library: Library = None, as_json: Json = F
     if as_json:
         show.print_json({name: asdict(material) for name, material in known.items()})
         return
+    show.sentence(f"{len(known)} materials; `tangible materials show NAME` says what the values of one mean.")
     rows = [
         (
             each.name,
@@ -66,7 +68,14 @@ def materials(context: typer.Context, library: Library = None, as_json: Json = F
 
 @app.command("show")
 def show_one(
-    name: Annotated[str, typer.Argument(help="The material, as `tangible materials` lists it.", show_default=False)],
+    name: Annotated[
+        str,
+        typer.Argument(
+            help="The material, as `tangible materials` lists it.",
+            show_default=False,
+            autocompletion=completing.materials,
+        ),
+    ],
     library: Library = None,
     as_json: Json = False,
 ) -> None:
@@ -94,7 +103,10 @@ def show_one(
 
 @app.command()
 def draw(
-    names: Annotated[list[str] | None, typer.Argument(help="The materials [default: all].", show_default=False)] = None,
+    names: Annotated[
+        list[str] | None,
+        typer.Argument(help="The materials [default: all].", show_default=False, autocompletion=completing.materials),
+    ] = None,
     out: Annotated[Path, typer.Option("--out", help="Folder for the pictures.")] = Path("out/materials"),
     library: Library = None,
     as_json: Json = False,

@@ -5,11 +5,28 @@ from typing import Annotated
 
 import typer
 
+from . import completing
+
 DONE, FAILED, MISTAKE, INTERRUPTED = 0, 1, 2, 130
 
-Config = Annotated[Path, typer.Argument(help="Pipeline file (YAML).", show_default=False)]
+Config = Annotated[
+    Path,
+    typer.Argument(help="Pipeline file (YAML), or a picture.", show_default=False, autocompletion=completing.scenes),
+]
+Felt = Annotated[
+    list[Path],
+    typer.Argument(
+        metavar="FILE...",
+        help="Pipeline file (YAML), a picture, or left and right.",
+        show_default=False,
+        autocompletion=completing.scenes,
+    ),
+]
 Sets = Annotated[
-    list[str] | None, typer.Option("--set", metavar="KEY.KEY=VALUE", help="Set one value of the file; repeatable.")
+    list[str] | None,
+    typer.Option(
+        "--set", metavar="KEY.KEY=VALUE", help="Set one value of the file; repeatable.", autocompletion=completing.keys
+    ),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")]
 NoCache = Annotated[bool, typer.Option("--no-cache", help="Neither read nor write the cache of results.")]

@@ -42,7 +42,8 @@ def replay(
     if record is not None:
         replace(after, about=replace(after.about, device=f"replay of {recording.name}")).save(record)
     figures = {**session.compared(before, after), "ns_per_tick": 1e9 * seconds / max(1, len(after.rows))}
-    _print(before, figures, record, as_json)
+    law = pipeline.config.render
+    _print(before, figures, record, as_json, law.name if law else "the law")
 
 
 MEANINGS = {
@@ -62,9 +63,9 @@ MEANINGS = {
 }
 
 
-def _print(before: Recording, figures: dict[str, float], record: Path | None, as_json: bool) -> None:
+def _print(before: Recording, figures: dict[str, float], record: Path | None, as_json: bool, law: str) -> None:
     from ..errors import MOST_IN_LINE, shown
-    from . import show
+    from . import sentences, show
 
     if as_json:
         said: dict[str, Any] = {"device": before.about.device, "renderer": before.about.renderer}
@@ -73,4 +74,5 @@ def _print(before: Recording, figures: dict[str, float], record: Path | None, as
         return
     if before.stopped:
         show.note(f"the recording ended early: {shown(before.stopped, MOST_IN_LINE)}")
+    show.sentence(sentences.replayed(law, figures))
     show.table(("figure", "value", ""), [(name, f"{value:.6g}", MEANINGS[name]) for name, value in figures.items()])

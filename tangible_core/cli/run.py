@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from .options import Config, Json, NoCache, Sets
+from .loudness import is_quiet
+from .options import Felt, Json, NoCache, Sets
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -45,7 +47,7 @@ def demo(
     done = pipeline.run(out, seconds=seconds)
     _print(done, as_json)
     _say_if_ended_early(done)
-    if not as_json:
+    if not (as_json or is_quiet()):
         show.say(NEXT.format(config=out / "config.yaml"))
 
 
@@ -61,46 +63,62 @@ Next:
 
 
 def run(
-    config: Config,
+    config: Felt,
     sets: Sets = None,
     out: Annotated[Path | None, typer.Option("--out", help="Folder for the results [default: out/NAME].")] = None,
     seconds: Seconds = 8.0,
     as_json: Json = False,
     no_cache: NoCache = False,
 ) -> None:
-    """Run a pipeline file and write a report.
+    """Run a pipeline file, or a picture, and write a report.
 
     A simulated device feels the surface; a real one is never moved: see `feel`.
     """
     pipeline = open_pipeline(config, sets or [], not no_cache)
-    done = pipeline.run(out or _folder(config), seconds=seconds)
+    done = pipeline.run(out or _folder(config[0]), seconds=seconds)
     _print(done, as_json)
     _say_if_ended_early(done)
 
 
-def plan(config: Config, sets: Sets = None, as_json: Json = False, no_cache: NoCache = False) -> None:
+def plan(config: Felt, sets: Sets = None, as_json: Json = False, no_cache: NoCache = False) -> None:
     """Say what `run` would do, and why; run nothing.
 
     Exit 2 if `run` would refuse.
     """
     from ..errors import ConfigError
-    from . import show
+    from . import sentences, show
 
     plan = open_pipeline(config, sets or [], not no_cache).plan()
     if as_json:
         show.print_json(show.as_rows(plan.steps))
     else:
+        if not plan.refusal:
+            show.sentence(sentences.planned(plan.steps))
         show.outcomes(plan.steps, ran="to run")
     if plan.refusal:
         show.flush()
         raise ConfigError(f"this cannot be run: {plan.refusal}")
 
 
-def open_pipeline(config: Path, sets: Sequence[str], cached: bool) -> Pipeline:
-    """The pipeline of a file, with or without the user's cache."""
+def open_pipeline(config: Path | Sequence[Path], sets: Sequence[str], cached: bool) -> Pipeline:
+    """The pipeline of a file, or of pictures that have none; with or without the user's cache."""
+    from ..errors import ConfigError
     from ..pipeline.pipeline import load_pipeline
+    from ..pipeline.starter import are_pictures, pipeline_of
+    from . import show
 
-    pipeline = load_pipeline(config, sets)
+    files = [config] if isinstance(config, Path) else config
+    if are_pictures(files):
+        pipeline = pipeline_of(files, sets)
+        if not is_quiet():
+            command = shlex.join(["tangible", "new", *map(str, files)])
+            show.note(
+                f"no pipeline file is named, so values that suit the picture are taken: `{command}` writes them down"
+            )
+    elif len(files) > 1:
+        raise ConfigError(f"{', '.join(map(str, files))}: name one pipeline file, one picture, or left and right")
+    else:
+        pipeline = load_pipeline(files[0], sets)
     if not cached:
         pipeline.cache = None
     return pipeline
@@ -130,11 +148,14 @@ def _folder(source: Path) -> Path:
 
 
 def _print(run: Run, as_json: bool) -> None:
-    from . import show
+    from . import sentences, show
 
     if as_json:
         show.print_json({**run.document(), "files": [str(path) for path in run.files]})
         return
+    if is_quiet():
+        return
+    show.sentence(sentences.made(run))
     show.outcomes(run.outcomes, f"[bold]{run.scene}[/]")
     for name, values in run.figures.items():
         title, lines = LINES[name]
@@ -162,6 +183,7 @@ def _say_if_ended_early(run: Run) -> None:
 
 def _error_lines(figures: Mapping[Any, Any]) -> list[str]:
     return [
+        f"{figures['bad2']:.0f} % of the picture is off by more than 2 px, or unknown",
         f"bad1 {figures['bad1']:.2f} %, bad2 {figures['bad2']:.2f} % of pixels over 1 px, 2 px (unknown counts as bad)",
         f"average {figures['average_px']:.3f} px, rms {figures['rms_px']:.3f} px "
         f"over the {figures['density']:.1f} % that are known",

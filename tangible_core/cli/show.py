@@ -9,7 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
 from rich.markup import escape
+from rich.measure import Measurement
+from rich.padding import Padding
 from rich.table import Table
+from rich.text import Text
 
 from ..runtime.standard_output import stream
 
@@ -41,11 +44,51 @@ def flush() -> None:
 
 
 def table(headings: Sequence[str], rows: Iterable[Sequence[str]], title: str | None = None) -> None:
-    """A table without frames; numbers are the caller's to format."""
-    shown = Table(*headings, title=title, title_justify="left", box=None, pad_edge=False, header_style="bold")
-    for row in rows:
+    """A table without frames, or one entry a row where the terminal is too narrow; numbers are the caller's to format.
+
+    No text is lost, however narrow it is: a word that is too long goes on in the next line.
+    """
+    shown = Table(title=title, title_justify="left", box=None, pad_edge=False, header_style="bold")
+    for heading in headings:
+        shown.add_column(heading, overflow="fold")
+    cells = [tuple(row) for row in rows]
+    for row in cells:
         shown.add_row(*row)
-    console().print(shown)
+    drawn = console()
+    if not is_narrow(drawn, shown):
+        drawn.print(shown)
+        return
+    if title:
+        drawn.print(f"{title}\n")
+    entries(drawn, headings, cells)
+
+
+def is_narrow(drawn: Console, shown: Table) -> bool:
+    """Whether a table would break words, or crowd most of its text into a column of a few letters."""
+    wanted = Measurement.get(drawn, drawn.options.update(max_width=WIDEST), shown)
+    return wanted.minimum > drawn.width or wanted.maximum > MOST_FOLDS * drawn.width
+
+
+WIDEST = 1000
+MOST_FOLDS = 3
+"""A table is at most so many times as wide as the terminal, were nothing folded."""
+
+
+def entries(drawn: Console, headings: Sequence[str], rows: Iterable[Sequence[str | Text]]) -> None:
+    """Each row as lines of `heading: cell` below its first cell."""
+    for first, *others in rows:
+        drawn.print(first, style="bold", highlight=False)
+        for heading, cell in zip(headings[1:], others, strict=True):
+            if cell:
+                said = Text.from_markup(cell) if isinstance(cell, str) else cell
+                drawn.print(Padding(Text.assemble(f"{heading}: " if heading else "", said), (0, 0, 0, 2)))
+
+
+def entry(head: str, text: str) -> None:
+    """A name, and what is to be said of it, indented; as they stand, without marks."""
+    drawn = console(highlight=False)
+    drawn.print(Text(head, style="bold"))
+    drawn.print(Padding(Text(text), (0, 0, 0, 4)))
 
 
 def outcomes(found: Iterable[Outcome], title: str | None = None, ran: str = "ran") -> None:
@@ -66,6 +109,11 @@ def outcomes(found: Iterable[Outcome], title: str | None = None, ran: str = "ran
 def as_rows(found: Iterable[Outcome]) -> list[dict[str, Any]]:
     """Outcomes as plain values."""
     return [asdict(each) for each in found]
+
+
+def sentence(text: str) -> None:
+    """What the lines below say, in plain words; folded between words."""
+    console(highlight=False).print(text, "", markup=False, sep="\n")
 
 
 def say(text: str) -> None:

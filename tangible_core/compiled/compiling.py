@@ -44,7 +44,7 @@ class _CompileNotice(event.Listener):
             self.said.add(package)
             kind = package.removeprefix("tangible_")
             takes = f"about {SECONDS[kind]} s" if kind in SECONDS else "seconds"
-            log.warning("compiling the %s kernels for this processor, %s; later runs find them on disk", kind, takes)
+            log.info("compiling the %s kernels for this processor, %s; later runs find them on disk", kind, takes)
 
     def on_end(self, event: Any) -> None:
         pass

@@ -4,16 +4,17 @@ import math
 from dataclasses import replace
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import ConfigDict, Field
 
 from ..data import DeviceSpec, Vector
+from ..data.quantities import Quantities
 from .placement import Placement, turn
 
 Metres = Annotated[float, Field(ge=-10, le=10)]
 Size = Annotated[float, Field(gt=0, le=10)]
 
 
-class WorkspaceMapping(BaseModel):
+class WorkspaceMapping(Quantities):
     """How the picture lies under the hand; without options they coincide."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)

@@ -6,9 +6,10 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Annotated, Any, cast
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field, Tag
+from pydantic import AfterValidator, ConfigDict, Discriminator, Field, Tag
 
 from ..data import Material, Texture
+from ..data.quantities import Quantities
 from ..errors import MaterialError, did_you_mean, quoted, shown
 from ..files.source import Source, Tree, parse_source, read_text
 
@@ -28,7 +29,7 @@ Share = Annotated[float, Field(strict=True, ge=0, le=1)]
 Explanations = dict[Annotated[str, AfterValidator(_explained)], str]
 
 
-class MaterialBlock(BaseModel):
+class MaterialBlock(Quantities):
     """How a material feels; where a shipped one is changed, what is left out stays."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True, title="Material")

@@ -8,6 +8,7 @@ noticed when the record was made, and when all that it is made from was. Files a
 import json
 import logging
 import os
+import re
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
 from pathlib import Path
@@ -26,6 +27,8 @@ log = logging.getLogger(__name__)
 
 DEFAULT_BYTES = 2 << 30
 NOTES = "notes"
+_OURS = re.compile(r"[0-9a-f]{32,64}\.npz|\.[0-9a-f]{32,64}\.npz\..+")
+"""Names of entries, and of what is not whole yet: the folder may hold files of somebody else."""
 KEPT = frozenset(name for name, each in vars(data).items() if is_dataclass(each))
 """What an entry may be made of."""
 
@@ -86,6 +89,29 @@ class Cache:
             self._prune()
         except (OutputError, OSError) as error:
             log.warning("the result is not cached: %s", error)
+
+    def size(self) -> tuple[int, int]:
+        """How many results are kept, and how many bytes they take; what a killed writer left behind counts too."""
+        sizes = [_used(path)[1] for path in self._files()]
+        return len(sizes), sum(sizes)
+
+    def clear(self) -> tuple[int, int]:
+        """Delete every result, and nothing else; how many that were, and their bytes.
+
+        Raises: OutputError for one that cannot be deleted.
+        """
+        freed: list[int] = []
+        for path in self._files():
+            size = _used(path)[1]
+            try:
+                path.unlink(missing_ok=True)
+            except OSError as error:
+                raise OutputError(f"{path}: cannot be deleted: {error.strerror}") from error
+            freed.append(size)
+        return len(freed), sum(freed)
+
+    def _files(self) -> list[Path]:
+        return [path for path in self.folder.glob("*.npz*") if _OURS.fullmatch(path.name) and path.is_file()]
 
     def _path(self, key: str) -> Path:
         return self.folder / f"{key}.npz"

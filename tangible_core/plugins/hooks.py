@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import pluggy
 
 from ..errors import did_you_mean
+from .origin import origin
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -61,7 +62,7 @@ def manager() -> pluggy.PluginManager:
     plugins.add_hookspecs(Specs)
     for point in entry_points(group="tangible.hooks"):
         try:
-            plugins.register(point.load(), name=f"{point.dist.name if point.dist else '?'}/{point.name}")
+            plugins.register(point.load(), name=f"{origin(point.dist).name if point.dist else '?'}/{point.name}")
         except (Exception, SystemExit) as error:
             log.warning("hooks %s (%s) cannot be loaded and are left out: %r", point.name, point.value, error)
             log.debug("the import of %s", point.value, exc_info=True)

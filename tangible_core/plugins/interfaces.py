@@ -20,12 +20,13 @@ from ..data import (
     Unit,
     Views,
 )
+from ..data.quantities import Quantities
 from .link import Link as Link
 from .touch import PlainTouch as PlainTouch
 from .touch import Touch as Touch
 
 
-class Method(BaseModel, ABC):
+class Method(Quantities, ABC):
     """A named way of doing one stage; its fields are its options, and each has a default."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)

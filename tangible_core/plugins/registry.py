@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from dataclasses import dataclass
 from functools import cache, cached_property
 from importlib.metadata import Distribution, EntryPoint, entry_points
@@ -12,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Literal, cast, overload
 
 from ..errors import BrokenMethod, UnknownMethod, did_you_mean
 from . import hooks
+from .origin import origin
 
 if TYPE_CHECKING:
     import pluggy
@@ -144,9 +146,8 @@ def load_method(kind: str, name: str) -> type[Any]:
     return default_registry().load(kind, name)
 
 
-@cache
 def _origin(distribution: Distribution | None) -> str:
-    return f"{distribution.name} {distribution.version}" if distribution else "computed by a hook"
+    return " ".join(origin(distribution)) if distribution else "computed by a hook"
 
 
 def _docstring_line(point: EntryPoint) -> str:
@@ -154,11 +155,19 @@ def _docstring_line(point: EntryPoint) -> str:
     found = EntryPoint.pattern.match(point.value)
     if found is None or not found["attr"]:
         raise ImportError(f"{point.value!r} is not package.module:Class")
-    tree = ast.parse(_source(*found["module"].split(".")).read_text(encoding="utf-8"))
+    text = _source(*found["module"].split(".")).read_text(encoding="utf-8")
+    if plain := re.search(_PLAIN_CLASS.format(re.escape(found["attr"])), text, re.MULTILINE):
+        return plain[1]
+    tree = ast.parse(text)
     classes = {node.name: node for node in tree.body if isinstance(node, ast.ClassDef)}
     if found["attr"] not in classes:
         raise ImportError(f"{found['module']} has no class {found['attr']}{did_you_mean(found['attr'], classes)}")
     return (ast.get_docstring(classes[found["attr"]]) or "(no docstring)").splitlines()[0]
+
+
+_PLAIN_CLASS = r"^class {}\b[^\n]*:\n    \"\"\"(\w[^\n\\]*?)(?:\"\"\")?$"
+"""A class as nearly all are written, and the first line of its docstring: Python's parser takes a fifth of the
+listing's time."""
 
 
 def _source(top: str, *rest: str) -> Path:

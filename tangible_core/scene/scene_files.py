@@ -4,9 +4,10 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import ConfigDict, Field, model_validator
 
 from ..data import Calibration
+from ..data.quantities import Quantities
 from ..errors import did_you_mean, quoted
 from .pair_files import Layout
 from .picture_files import NonFinite
@@ -25,7 +26,7 @@ _ALONE = ("rotate", "invert", "clip")
 _OF_VIEWS = ("disparity", "truth", "focal_px", "baseline_m", "offset_px")
 
 
-class SceneFiles(BaseModel):
+class SceneFiles(Quantities):
     """A scene in files: a pair (left and right, or both in one file, stereo), one photo, or a height map. Relative
     paths start at the YAML file."""
 

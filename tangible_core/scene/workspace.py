@@ -2,8 +2,9 @@
 
 from typing import Annotated, Literal, NamedTuple
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import ConfigDict, Field
 
+from ..data.quantities import Quantities
 from .geometry import Holes
 from .scene import Scene
 from .scene_files import BUILTINS, SceneFiles
@@ -21,7 +22,7 @@ photograph, where every line is one, and 2 between the nearest and the farthest 
 is."""
 
 
-class Section(BaseModel):
+class Section(Quantities):
     """Base of the configuration's own blocks."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)

@@ -4,12 +4,13 @@ import cmath
 import math
 from typing import Annotated, final
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import ConfigDict, Field
 
 from tangible_core.data import Force, Vector
+from tangible_core.data.quantities import Quantities
 
 
-class VirtualHand(BaseModel):
+class VirtualHand(Quantities):
     """What a hand on the device is like: m a = F - b v + k (target - x), pressing down with limited strength.
 
     The defaults are of the order of a relaxed hand holding a handle.

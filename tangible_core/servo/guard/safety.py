@@ -4,9 +4,10 @@ from typing import Annotated, Literal
 
 import numpy as np
 from jaxtyping import Float64
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import ConfigDict, Field
 
 from ...data import DeviceSpec, TickFlag
+from ...data.quantities import Quantities
 from . import layout as at
 
 BRAKE_TIMES = 5
@@ -19,7 +20,7 @@ DEBT_M = 0.001
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 
 
-class Coupling(BaseModel):
+class Coupling(Quantities):
     """A spring and a damper between the device and the tool that the law feels."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
@@ -30,7 +31,7 @@ class Coupling(BaseModel):
     """Damping of the coupling, which the device's own damping must exceed."""
 
 
-class Safety(BaseModel):
+class Safety(Quantities):
     """What no law may do to a hand; every limit that acted is counted and reported."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)

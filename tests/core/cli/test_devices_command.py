@@ -93,11 +93,15 @@ class TestList:
         assert arm["units"][0] == {"name": "Arm", "serial": "A1", "place": "bus 1", "problem": ""}
         assert lost["units"] == [] and "cannot be loaded" in lost["problem"]
 
-    def test_a_line_a_unit(self, registry: Registry, capsys: pytest.CaptureFixture[str]):
+    def test_a_line_a_unit(
+        self, registry: Registry, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    ):
+        monkeypatch.setenv("COLUMNS", "600")
         command.devices(ALONE)
-        lines = capsys.readouterr().out.splitlines()
-        assert lines[1].split() == ["arm", "Arm", "A1", "bus", "1"]
-        assert lines[2].split() == ["arm", "Arm", "A2", "bus", "2", "is", "[busy]"]
+        sentence, _, _, *lines = capsys.readouterr().out.splitlines()
+        assert sentence == "arm is connected."
+        assert lines[0].split() == ["arm", "Arm", "A1", "bus", "1"]
+        assert lines[1].split() == ["arm", "Arm", "A2", "bus", "2", "is", "[busy]"]
 
     def test_a_bus_that_fails_is_said(self, registry: Registry, capsys: pytest.CaptureFixture[str]):
         row = command._row(registry.find("device", "arm"))

@@ -457,7 +457,8 @@ class TestFelt:
         assert surface.height_m.shape == surface.labels.shape == (10, 15)
         assert surface.extent_m == (0.03, 0.02)
         assert surface.labels.tolist() == [[0] * 7 + [1] * 8] * 10
-        whole = pipeline(folder, workspace=Workspace(width_m=0.03, relief_m=0.01, smooth_m=0, finest_m=0)).make("surface")
+        finest = Workspace(width_m=0.03, relief_m=0.01, smooth_m=0, finest_m=0)
+        whole = pipeline(folder, workspace=finest).make("surface")
         assert whole.height_m.shape == whole.labels.shape == (20, 30)
         pairs = whole.height_m.reshape(10, 2, 15, 2).mean(axis=(1, 3))
         np.testing.assert_allclose(surface.height_m, pairs, atol=0.01 / 15)

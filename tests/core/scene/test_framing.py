@@ -119,7 +119,7 @@ class TestTransparency:
         hidden = cut_out[..., 3] == 0
         pipeline = Pipeline(
             Scene.of(photo=cut_out), depth=Luminance(), texture=Gradient(smallest_px=20), cached=False,
-            workspace=Workspace(width_m=0.05),
+            workspace=Workspace(width_m=0.05, relief_m=0.02, smooth_m=0),
         )  # fmt: skip
         surface = pipeline.surface
         assert np.all(surface.height_m[hidden] == 0)

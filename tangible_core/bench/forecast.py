@@ -1,0 +1,67 @@
+"""How long measurements will take: a guess from figures that come with the program, corrected by what is done."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from statistics import median
+
+from .measured import measured
+from .plan import Measurement
+
+CALLS = 4
+"""Of a process whose time is known: a warm-up and three."""
+START_S = 1.5
+"""Of a process: what it imports takes so long, however few calls follow."""
+UNKNOWN_S = 5.0
+
+
+@dataclass(frozen=True)
+class Forecast:
+    """What each of several measurements is guessed to take, in order."""
+
+    guessed_s: tuple[float, ...]
+
+    @property
+    def whole_s(self) -> float:
+        """All of them."""
+        return sum(self.guessed_s)
+
+    def left_s(self, number: int, taken_s: float) -> float:
+        """What is left before measurement `number` begins, the others having taken so long.
+
+        Each of these makes the guess about the rest a better one, for it shows how fast this machine is.
+        >>> Forecast((2.0, 2.0, 4.0)).left_s(2, taken_s=6.0)
+        6.0
+        """
+        done_s = sum(self.guessed_s[:number])
+        return sum(self.guessed_s[number:]) * (taken_s / done_s if done_s else 1.0)
+
+
+def forecast(waiting: Sequence[Measurement]) -> Forecast:
+    """A guess for these."""
+    return Forecast(tuple(_guessed_s(each) for each in waiting))
+
+
+def _guessed_s(each: Measurement) -> float:
+    known = _known_s(each.job.kind)
+    usual_s = known.get(each.job.use, median(known.values()) if known else UNKNOWN_S)
+    calls_s = max(0.0, usual_s - START_S) * (each.job.warmups + each.job.calls) / CALLS
+    return min(usual_s, START_S) + calls_s
+
+
+def _known_s(kind: str) -> Mapping[str, float]:
+    found = measured().get(kind)
+    return {} if found is None else found.process_s
+
+
+def in_words(seconds: float) -> str:
+    """A time that is a guess.
+
+    >>> in_words(0.4), in_words(42), in_words(150), in_words(9000)
+    ('a few seconds', 'about 40 s', 'about 2 min', 'about 2 h 30 min')
+    """
+    if seconds < 7.5:
+        return "a few seconds"
+    if seconds < 90:
+        return f"about {5 * round(seconds / 5)} s"
+    minutes = round(seconds / 60)
+    return f"about {minutes} min" if minutes < 90 else f"about {minutes // 60} h {10 * round(minutes % 60 / 10)} min"

@@ -1,0 +1,111 @@
+"""Every command: where it is, and what its help says in a line. A command's module is imported when it is called."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, MutableMapping
+from functools import cache
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import typer
+from typer.core import TyperGroup
+
+from ..runtime import standard_output
+
+if TYPE_CHECKING:
+    from typer.models import CommandInfo, TyperInfo
+
+
+class Command(NamedTuple):
+    """A command that is not imported yet."""
+
+    place: str
+    """`module:name` of its function, or of its group of commands, in this room."""
+    summary: str
+    """The first line of its help."""
+
+
+COMMANDS = {
+    "demo": Command("run:demo", "Run the built-in example from picture to force."),
+    "new": Command("new:new", "Write a pipeline file for your pictures."),
+    "run": Command("run:run", "Run a pipeline file, or a picture, and write a report."),
+    "plan": Command("run:plan", "Say what `run` would do, and why; run nothing."),
+    "preflight": Command("preflight:preflight", "Check, before a motor moves, what is safe."),
+    "feel": Command("feel:feel", "Feel the surface on the configured device, in real time."),
+    "replay": Command("replay:replay", "Feel a recording again with another law."),
+    "compare": Command("compare:compare", "Compare methods by time, memory and error."),
+    "plugins": Command("plugins:app", "List the installed methods and devices; show one of them."),
+    "check": Command("check:check", "Test an installed method with the conformance kit."),
+    "materials": Command("materials:app", "List the materials; show or draw some."),
+    "devices": Command("devices:app", "List devices; examine, home or calibrate one."),
+    "cache": Command("cache:app", "Say how much is kept of earlier results; clear it."),
+    "schema": Command("schema:schema", "Print the JSON Schema of pipeline files."),
+}
+
+
+class Lazy(TyperGroup):
+    """The group of all commands; what is only listed is not imported."""
+
+    def __init__(self, **told: Any) -> None:
+        super().__init__(**told)
+        self.commands: MutableMapping[str, Any] = _Known(dict(self.commands))
+
+    def list_commands(self, ctx: Any) -> list[str]:
+        """Names, in the order of the help."""
+        return list(self.commands)
+
+    def format_commands(self, ctx: Any, formatter: Any) -> None:
+        """Summaries, whole, however narrow the terminal is."""
+        rows = [(name, _summary(name, self.commands)) for name in self.commands]
+        with formatter.section("Commands"):
+            formatter.write_dl(rows)
+
+
+class _Known(MutableMapping[str, Any]):
+    """Commands by name; those of this room are made when one asks for them."""
+
+    def __init__(self, others: dict[str, Any]) -> None:
+        self.others = others
+        """What plugins add; none of them takes the place of one of ours."""
+
+    def __getitem__(self, name: str) -> Any:
+        return made(name) if name in COMMANDS else self.others[name]
+
+    def __setitem__(self, name: str, command: Any) -> None:
+        self.others[name] = command
+
+    def __delitem__(self, name: str) -> None:
+        del self.others[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(dict.fromkeys((*COMMANDS, *self.others)))
+
+    def __len__(self) -> int:
+        return sum(1 for _ in self)
+
+
+@cache
+def made(name: str) -> Any:
+    """One of COMMANDS, imported."""
+    module, _, attribute = COMMANDS[name].place.partition(":")
+    found = getattr(import_module(f".{module}", __package__), attribute)
+    app = found if isinstance(found, typer.Typer) else typer.Typer(rich_markup_mode=None, add_completion=False)
+    if app is not found:
+        app.command(name)(found)
+    for each in _within(app):
+        each.callback = each.callback and standard_output.kept()(each.callback)
+    return typer.main.get_command(app)
+
+
+def _within(typed: typer.Typer) -> Iterator[CommandInfo | TyperInfo]:
+    """Every command, and what is called before one."""
+    yield from typed.registered_commands
+    yield from filter(None, [typed.registered_callback])
+    for group in typed.registered_groups:
+        if group.typer_instance:
+            yield from _within(group.typer_instance)
+
+
+def _summary(name: str, commands: MutableMapping[str, Any]) -> str:
+    said = COMMANDS[name].summary if name in COMMANDS else (commands[name].help or "").partition("\n")[0]
+    return said.removesuffix(".")

@@ -1,0 +1,94 @@
+"""What a command found out, in a plain sentence, above the tables, which say the same in the field's words."""
+
+from __future__ import annotations
+
+from math import isfinite, nan
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from ..bench.table import Results
+    from ..data import Outcome
+    from ..pipeline.runs import Run
+
+
+def made(run: Run) -> str:
+    """What a run made, how large it is, and what a hand felt."""
+    products = [name for name, value in run.products.items() if value is not None]
+    felt = "touch" in products
+    said = f"{run.scene} can now be felt" if felt else f"{run.scene} is done: {_are_made(products)}"
+    if (surface := run.products.get("surface")) is not None:
+        width_m, length_m = surface.extent_m
+        height_m = float(surface.height_m.max())
+        said += f", as a surface of {1e3 * width_m:.0f} x {1e3 * length_m:.0f} mm, {1e3 * height_m:.3g} mm high"
+    if (force := run.figures.get("force")) is not None:
+        said += f". A simulated hand felt it for {force['seconds']:.1f} s, with forces of up to "
+        said += f"{force['peak_force_n']:.1f} N"
+    return f"{said}."
+
+
+def _are_made(products: Sequence[str]) -> str:
+    if not products:
+        return "nothing of it had to be made"
+    return f"its {_and(products)} {'is' if len(products) == 1 else 'are'} made"
+
+
+def planned(steps: Sequence[Outcome]) -> str:
+    """How much of a plan is still to be run."""
+    to_run = [each.product for each in steps if each.outcome == "ran"]
+    kept = sum(each.outcome == "cached" for each in steps)
+    if not to_run:
+        return "Nothing is left to run: all of it is kept from earlier runs, or comes with the scene."
+    said = f"`run` would make {_and(to_run)}"
+    if kept:
+        said += f", and take {kept} {'result' if kept == 1 else 'results'} of earlier runs as they are"
+    return f"{said}. Nothing is run now."
+
+
+def felt(device: str, figures: Mapping[str, Any]) -> str:
+    """How long a device was felt, how hard, and whether the machine kept time."""
+    late = figures["overruns"]
+    in_time = "every tick came in time" if not late else f"{late} of {figures['ticks']} ticks came late"
+    return (
+        f"{device} was felt for {figures['seconds']:.1f} s, {100 * figures['contact_share']:.0f} % of it in contact, "
+        f"with forces of up to {figures['peak_force_n']:.1f} N; {in_time}."
+    )
+
+
+def replayed(law: str, figures: Mapping[str, float]) -> str:
+    """How far the forces of another law are from those that were recorded."""
+    if not (figures["compared"] and isfinite(figures["error_percent"])):
+        return f"Nothing was felt in this recording that the forces of {law} could be compared with."
+    return (
+        f"The forces of {law} differ by {figures['error_percent']:.0f} % from those that were recorded; a hand would "
+        f"notice it in {figures['noticed_percent']:.0f} % of the time in contact."
+    )
+
+
+def compared(results: Results) -> str:
+    """Which method is the most exact and which the fastest."""
+    known = [line for line in results.means() if isfinite(line.seconds)]
+    if not known:
+        return "No method has a result on every scene."
+    best, fastest = known[0], min(known, key=lambda line: line.seconds)
+    measure, clock = results.task.measures[results.judged], results.task.clock
+    scenes = f"{len(results.scenes)} scenes" if len(results.scenes) > 1 else results.scenes[0]
+    fast = f"{fastest.method} is the fastest ({clock.per_second * fastest.seconds:.3g} {clock.unit})"
+    value = best.measures.get(results.judged, nan)
+    if not isfinite(value):
+        return f"On {scenes}, {fast}."
+    return f"On {scenes}, {best.method} is the most exact ({measure.title} {value:.{measure.digits}f}), and {fast}."
+
+
+def connected(rows: Sequence[Mapping[str, Any]]) -> str:
+    """Which devices can be felt now."""
+    real = [row["name"] for row in rows if row["units"]]
+    simulated = [row["name"] for row in rows if row["simulated"]]
+    there = f"{_and(real)} {'is' if len(real) == 1 else 'are'} connected" if real else "No real device is connected"
+    return f"{there}; {_and(simulated)} need none." if simulated else f"{there}."
+
+
+def _and(words: Sequence[str]) -> str:
+    *most, last = words
+    return f"{', '.join(most)} and {last}" if most else last

@@ -1,0 +1,112 @@
+"""Numbers with a unit: the unit stands in an option's name, and may be written with the number too."""
+
+import re
+from collections.abc import Mapping
+from decimal import Decimal
+from typing import Any, cast
+
+from pydantic import BaseModel, GetJsonSchemaHandler, ValidationInfo, field_validator
+from pydantic.json_schema import JsonSchemaValue
+from pydantic_core import CoreSchema
+
+_LENGTHS = {"m": 1, "cm": "1e-2", "mm": "1e-3", "um": "1e-6"}
+UNITS: Mapping[str, Mapping[str, Decimal]] = {
+    suffix: {unit: Decimal(worth) for unit, worth in units.items()}
+    for suffix, units in {
+        "_n_s_per_m": {"N s/m": 1},
+        "_n_per_m": {"N/m": 1, "N/cm": 100, "N/mm": 1000},
+        "_m_per_s": {"m/s": 1, "cm/s": "1e-2", "mm/s": "1e-3"},
+        "_deg": {"deg": 1},
+        "_hz": {"Hz": 1, "kHz": 1000},
+        "_kg": {"kg": 1, "g": "1e-3"},
+        "_m": _LENGTHS,
+        "_n": {"N": 1, "mN": "1e-3"},
+        "_s": {"s": 1, "ms": "1e-3", "us": "1e-6", "min": 60},
+    }.items()
+}
+"""End of an option's name -> units that may be written, and how much of the option's own unit each is."""
+
+_DIGITS = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+_QUANTITY = re.compile(rf"\s*((?>{_DIGITS}))\s*(\D.*?)\s*")
+
+
+class Quantities(BaseModel):
+    """Base of all blocks of options. A number whose name ends with a unit may be a text with another unit of its kind.
+
+    >>> class Block(Quantities):
+    ...     width_m: float
+    >>> Block(width_m="6 mm").width_m, Block(width_m=0.006).width_m
+    (0.006, 0.006)
+    """
+
+    @field_validator("*", mode="before")
+    @classmethod
+    def _number_of(cls, value: Any, info: ValidationInfo) -> Any:
+        """Raises: ValueError for a text that is no such quantity."""
+        units = units_of(info.field_name or "")
+        if units and isinstance(value, list | tuple):
+            return [_as_number(each, units) for each in cast("list[Any]", value)]
+        return _as_number(value, units)
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, core: CoreSchema, handler: GetJsonSchemaHandler, /) -> JsonSchemaValue:
+        schema = handler(core)
+        for name, option in handler.resolve_ref_schema(schema).get("properties", {}).items():
+            if units := units_of(name):
+                _allow_text(option, units)
+        return schema
+
+
+def units_of(name: str) -> Mapping[str, Decimal]:
+    """The units in which an option of this name may be written, its own first; none where its name ends with none.
+
+    >>> list(units_of("stiffness_n_per_m")), list(units_of("segments"))
+    (['N/m', 'N/cm', 'N/mm'], [])
+    """
+    return next((units for suffix, units in UNITS.items() if name.endswith(suffix)), _NONE)
+
+
+_NONE: Mapping[str, Decimal] = {}
+
+
+def _as_number(value: Any, units: Mapping[str, Decimal]) -> Any:
+    """The number in an option's own unit; whatever is no number with a unit, as it is."""
+    found = _QUANTITY.fullmatch(value) if units and isinstance(value, str) else None
+    if found is None:
+        return value
+    worth = next((each for unit, each in units.items() if _plain(unit) == _plain(found[2])), None)
+    if worth is None:
+        raise ValueError(f"write a number in {next(iter(units))}, or with one of the units {', '.join(units)}")
+    try:
+        return float(Decimal(found[1]) * worth)  # in decimals: 30 um is 3e-05 to the last digit
+    except ArithmeticError as error:
+        raise ValueError("this number is beyond all measure") from error
+
+
+def _plain(unit: str) -> str:
+    """A unit however it is written: `N s/m`, `N·s/m` and `Ns/m` are one, and so are the two signs for micro."""
+    return re.sub(r"[\s*·]", "", unit).translate({0xB5: "u", 0x3BC: "u"})
+
+
+def _allow_text(schema: dict[str, Any], units: Mapping[str, Decimal]) -> None:
+    """Say in the schema of an option that each of its numbers may be such a text."""
+    for part in ("anyOf", "prefixItems"):
+        if part in schema:
+            schema[part] = [form for each in schema[part] for form in _forms(each, units, nested=part != "anyOf")]
+    if schema.get("type") == "number":
+        schema["anyOf"] = _forms({key: schema.pop(key) for key in _OF_NUMBERS if key in schema}, units)
+
+
+def _forms(form: dict[str, Any], units: Mapping[str, Decimal], nested: bool = False) -> list[dict[str, Any]]:
+    if form.get("type") != "number":
+        _allow_text(form, units)
+        return [form]
+    found = [form, {"type": "string", "pattern": rf"^{_DIGITS}\s*({'|'.join(units)})$", "examples": [_example(units)]}]
+    return [{"anyOf": found}] if nested else found
+
+
+_OF_NUMBERS = ("type", "minimum", "maximum", "exclusiveMinimum", "exclusiveMaximum")
+
+
+def _example(units: Mapping[str, Decimal]) -> str:
+    return f"6 {'mm' if 'mm' in units else next(iter(units))}"

@@ -1,0 +1,142 @@
+"""A pipeline file for pictures that have none: commented, with values that suit these pictures."""
+
+import json
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from importlib.resources import files
+from math import floor
+from pathlib import Path
+from string import Template
+from typing import Any, Literal, NamedTuple
+
+import numpy as np
+from jaxtyping import Float32
+
+from ..data.pictures import to_grey
+from ..errors import ConfigError
+from ..plugins.registry import default_registry
+from ..runtime.opencv import plain_opencv
+from ..scene.scene import Scene
+from .cache import Cache
+from .config import parse_config
+from .pipeline import Pipeline
+
+PICTURES = frozenset(
+    (".png", ".jpg", ".jpeg", ".jp2", ".webp", ".bmp", ".gif", ".tif", ".tiff", ".ppm", ".pgm", ".heic", ".avif")
+)
+"""Ends of names that are taken for a picture's; any other one is a pipeline file's."""
+MAPS = frozenset({".npy", ".npz", ".pfm"})
+"""And for those of a map of heights."""
+
+SIDE_MM = 80
+"""The longer side of the surface: what a small desktop device reaches."""
+SMOOTH_MM: Mapping[str, float] = {"photo": 1.5, "heights": 0.0}
+STEEPEST = 0.6
+"""Slope that at most a twentieth of the relief exceeds: from 1 on, 45 degrees, a hand pushes harder sideways than
+down."""
+LEAST_MM = 2.0
+MOST_MM: Mapping[str, float] = {"photo": 8.0, "heights": 15.0}
+"""Of a relief. The brightness of a photograph is no depth."""
+CELLS = 400
+"""Of the longer side, at which slopes are measured."""
+
+Kind = Literal["photo", "pair", "heights"]
+
+
+def are_pictures(paths: Iterable[Path]) -> bool:
+    """Whether these are to be felt as they are, and not the name of one pipeline file."""
+    return all(_is_builtin(path) or path.suffix.lower() in PICTURES | MAPS for path in paths)
+
+
+class Starter(NamedTuple):
+    """A pipeline file for a scene, which was read for it already."""
+
+    text: str
+    scene: Scene
+
+
+def starter(pictures: Sequence[Path], file: Path) -> Starter:
+    """A pipeline file for one picture, for left and right, for a map of heights, or for a builtin scene.
+
+    file: where the text is to stand: its paths are relative to that.
+    Raises: ConfigError if there are more; PictureError for one that cannot be read, or two that differ in size.
+    """
+    if len(pictures) > 2:
+        raise ConfigError(
+            f"{len(pictures)} pictures: name one, or left and right; of more, each is a pipeline of its own"
+        )
+    parts = _parts(pictures)
+    scene = Scene.of(**parts) if parts else Scene.builtin(str(pictures[0]))
+    kind: Kind = "heights" if scene.views is None else "pair" if scene.views.right is not None else "photo"
+    named = ", ".join(f"{part}: {_in_yaml(path, file.parent)}" for part, path in parts.items())
+    said = {"scene": f"{{{named}}}" if parts else scene.name, "name": " and ".join(path.name for path in pictures)}
+    text = files("tangible_core.pipeline").joinpath(f"starter_{kind}.yaml").read_text(encoding="utf-8")
+    return Starter(Template(text).substitute(said, file=file, **_size(scene, kind)), scene)
+
+
+def pipeline_of(pictures: Sequence[Path], overrides: Sequence[str] = ()) -> Pipeline:
+    """The pipeline of a starter that is not written. Raises: as `starter`, and ConfigError for the overrides."""
+    registry, path = default_registry(), pictures[0]
+    made = starter(pictures, path)
+    config = parse_config(made.text, path, registry, overrides)
+    if not any(each.lstrip().startswith("scene") for each in overrides):
+        config = replace(config, scene=made.scene)  # it need not be read again
+    return Pipeline.of(config, registry, Cache())
+
+
+def _is_builtin(path: Path) -> bool:
+    return path.parts[:1] == ("builtin",) and not path.suffix and not path.exists()
+
+
+def _parts(pictures: Sequence[Path]) -> Mapping[str, Any]:
+    """Which part of a scene each is; none for a builtin one. Raises: ConfigError."""
+    if len(pictures) == 1:
+        (path,) = pictures
+        return {} if _is_builtin(path) else {"height" if path.suffix.lower() in MAPS else "photo": path}
+    if odd := next((path for path in pictures if _is_builtin(path) or path.suffix.lower() in MAPS), None):
+        raise ConfigError(f"{odd}: left and right are two pictures; name this one alone")
+    return dict(zip(("left", "right"), pictures, strict=True))
+
+
+def _size(scene: Scene, kind: Kind) -> dict[str, object]:
+    """How large it is felt: it fits the device, and no more of it is too steep than can be felt as a slope."""
+    values = scene.height if scene.views is None else to_grey(scene.views.left)
+    assert values is not None
+    rows, columns = values.shape
+    longer = max(rows, columns)
+    found: dict[str, object] = {"columns": columns, "rows": rows}
+    found |= {"width_mm": f"{SIDE_MM * columns / longer:.3g}", "length_mm": f"{SIDE_MM * rows / longer:.3g}"}
+    if kind == "pair":
+        return found
+    slope = _slope(values, SMOOTH_MM[kind])
+    least, most = LEAST_MM, MOST_MM[kind]
+    relief_mm = max(least, min(most, floor(2 * STEEPEST / slope) / 2)) if slope > 0 else most
+    why = "more would make its edges walls" if relief_mm < most else "its edges would bear more"
+    return found | {"relief_mm": f"{relief_mm:g}", "smooth_mm": f"{SMOOTH_MM[kind]:g}", "why": why}
+
+
+def _slope(values: Float32[np.ndarray, "h w"], smooth_mm: float) -> float:
+    """The slope that a relief of 1 mm has in the steepest twentieth of the surface."""
+    import cv2
+
+    longer = max(values.shape)
+    scale = min(1.0, CELLS / longer)
+    rows, columns = (max(1, round(side * scale)) for side in values.shape)
+    known = np.where(np.isfinite(values), values, np.float32(np.nanmin(values)))
+    with plain_opencv():
+        small = cv2.resize(known, (columns, rows), interpolation=cv2.INTER_AREA).astype(np.float64)
+        if sigma := smooth_mm / SIDE_MM * longer * scale:
+            small = cv2.GaussianBlur(small, (0, 0), sigma)
+    span = np.ptp(known)
+    if min(small.shape) < 2 or not span > 0:
+        return 0.0
+    steep = np.hypot(*np.gradient(small / span)) * longer * scale / SIDE_MM
+    return float(np.percentile(steep, 95))
+
+
+def _in_yaml(path: Path, folder: Path) -> str:
+    """A path as a file in this folder names it; in quotes where YAML would take it for something else."""
+    here = path.absolute()
+    text = here.relative_to(folder.absolute()).as_posix() if here.is_relative_to(folder.absolute()) else here.as_posix()
+    return text if re.fullmatch(r"[A-Za-z0-9_./-]+", text) else json.dumps(text, ensure_ascii=False)

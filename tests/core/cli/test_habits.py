@@ -1,0 +1,173 @@
+"""What one expects of any command line: --version, completion, a cache that can be cleared, quiet, narrow terminals."""
+
+import json
+import logging
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from command_line import tangible
+from pictures import write_png
+from tangible_core.cli import loudness, sentences, show
+from tangible_core.cli.commands import COMMANDS, made
+from tangible_core.data import Outcome, Relief
+from tangible_core.pipeline.cache import Cache
+
+TANGIBLE = str(Path(sys.executable).with_name("tangible"))
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    write_png(tmp_path / "dot.png", np.arange(64, dtype=np.uint8).reshape(8, 8))
+    (tmp_path / "p.yaml").write_text("scene: {photo: dot.png}\nwant: relief\ndepth: {use: luminance}\n")
+    return tmp_path
+
+
+def test_the_version_is_said(tmp_path: Path):
+    done = tangible("--version", cwd=tmp_path)
+    assert done.returncode == 0
+    assert re.fullmatch(r"tangible \d+\.\d+\.\d+\n", done.stdout)
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_the_help_of_a_command_begins_as_the_list_of_commands_says(name: str):
+    assert (made(name).help or "").split("\n")[0] == COMMANDS[name].summary
+
+
+def test_a_command_that_is_nearly_right_is_suggested(tmp_path: Path):
+    done = tangible("pluins", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "Did you mean 'plugins'" in done.stderr
+
+
+def completed(words: str) -> list[str]:
+    """What bash is offered after these words."""
+    told = {"_TANGIBLE_COMPLETE": "complete_bash", "COMP_WORDS": words, "COMP_CWORD": str(len(words.split(" ")) - 1)}
+    return subprocess.run([TANGIBLE], env={**os.environ, **told}, capture_output=True, text=True).stdout.split("\n")
+
+
+@pytest.mark.parametrize(
+    ("words", "offered"),
+    [
+        ("tangible pre", ["preflight"]),
+        ("tangible plugins show depth semi", ["semi-global"]),
+        ("tangible run builtin/m", ["builtin/motorcycle"]),
+        ("tangible run p.yaml --set workspace.wid", ["workspace.width_m="]),
+        ("tangible run p.yaml --set render.use=prox", ["render.use=proxy"]),
+    ],
+)
+def test_a_shell_completes_commands_methods_scenes_and_keys(words: str, offered: list[str]):
+    assert [word for word in completed(words) if word] == offered
+
+
+def test_completion_is_installed_where_the_shell_looks(tmp_path: Path):
+    words = ["bash", "-c", f"{TANGIBLE} --install-completion bash; true"]
+    told = {"HOME": str(tmp_path), "_TYPER_COMPLETE_TEST_DISABLE_SHELL_DETECTION": "1"}
+    done = subprocess.run(words, env={**os.environ, **told}, capture_output=True, text=True)
+    assert "completion installed" in done.stdout, done.stderr
+    (script,) = tmp_path.glob(".bash_completions/*")
+    assert "_TANGIBLE_COMPLETE" in script.read_text()
+    assert str(script) in (tmp_path / ".bashrc").read_text()
+
+
+def test_the_cache_is_measured_and_cleared_of_results_alone(folder: Path, cache_dir: Path):
+    assert tangible("run", "p.yaml", cwd=folder).returncode == 0
+    (cache_dir / "holiday.npz").write_bytes(b"somebody's own")
+    said = json.loads(tangible("cache", "--json", cwd=folder).stdout)
+    assert said["folder"] == str(cache_dir) and said["entries"] == 2 and said["bytes"] > 0
+    asked = tangible("cache", "clear", cwd=folder)
+    assert (asked.returncode, asked.stderr.count("--yes")) == (2, 1), "nobody is there to be asked"
+    assert Cache().size() == (2, said["bytes"])
+    gone = json.loads(tangible("cache", "clear", "--yes", "--json", cwd=folder).stdout)
+    assert (gone["entries"], gone["bytes"]) == (2, said["bytes"])
+    assert [path.name for path in cache_dir.iterdir()] == ["holiday.npz"]
+    assert "0 results" in tangible("cache", cwd=folder).stdout
+
+
+def test_what_a_killed_writer_left_behind_is_cleared_too(cache_dir: Path):
+    Cache().put("ab" * 16, Relief(np.zeros((2, 2), np.float32), (1.0, 1.0)))
+    (cache_dir / f".{'cd' * 16}.npz.x7f_k2").write_bytes(b"half")
+    assert Cache().clear()[0] == 2
+    assert list(cache_dir.iterdir()) == []
+
+
+def test_a_method_is_shown_with_units_bounds_and_measured_figures(tmp_path: Path):
+    done = tangible("plugins", "show", "depth", "semi-global", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    for word in (
+        "semi-global is a depth method of tangible-images",
+        "Hirschm",
+        "(px, integer",
+        "On builtin/motorcycle",
+    ):
+        assert word in done.stdout
+    found = json.loads(tangible("plugins", "show", "render", "proxy", "--json", cwd=tmp_path).stdout)
+    (stiffness,) = [each for each in found["options"] if each["name"] == "stiffness_n_per_m"]
+    assert (stiffness["unit"], stiffness["default"]) == ("N/m", "800.0")
+    assert found["measured"]["machine"]["processor"] and found["measured"]["figures"]["ns a tick"] > 0
+    assert "devices stress mock" in tangible("plugins", "show", "device", "mock", cwd=tmp_path).stdout
+    missing = tangible("plugins", "show", "depth", "semi-globl", cwd=tmp_path)
+    assert missing.returncode == 2 and "did you mean 'semi-global'?" in missing.stderr
+
+
+def test_quiet_says_nothing_of_what_went_well(folder: Path):
+    done = tangible("run", "p.yaml", "-q", cwd=folder)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+    assert (folder / "out" / "p" / "relief.npz").exists()
+    assert tangible("plan", "p.yaml", "-q", cwd=folder).stdout, "that was asked for"
+    assert json.loads(tangible("run", "p.yaml", "-q", "--json", cwd=folder).stdout)["outcomes"]
+    assert "no such file" in tangible("run", "q.yaml", "-q", cwd=folder).stderr
+
+
+def test_a_log_that_nobody_asked_for_reads_like_a_sentence(caplog: pytest.LogCaptureFixture):
+    formatter = loudness._Plain()
+    compiling = logging.LogRecord("tangible_core.compiled.compiling", logging.INFO, "", 0, "compiling", None, None)
+    lost = logging.LogRecord("tangible_core.session.live", logging.WARNING, "", 0, "3 ticks were lost", None, None)
+    assert [formatter.format(each) for each in (compiling, lost)] == ["compiling", "warning: 3 ticks were lost"]
+
+
+WORDS = "the disparity map is given, and the file /somewhere/very/deeply/nested/in/a/long/path/left_view.png[1] says so"
+
+
+@pytest.mark.parametrize("width", [20, 40, 80, 200])
+def test_tables_lose_no_text_however_narrow_the_terminal_is(
+    width: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+):
+    monkeypatch.setenv("COLUMNS", str(width))
+    show.outcomes([Outcome("disparity", "ran", WORDS, "semi-global", 0.75)], "a title")
+    said = "".join(capsys.readouterr().out.split())
+    for text in ("disparity", "semi-global", "0.750", *WORDS.split()):
+        assert text in said, width
+
+
+@pytest.mark.parametrize("words", [["materials"], ["devices"], ["plan", "p.yaml"], ["--help"]])
+def test_forty_columns_are_enough(words: list[str], folder: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setenv("COLUMNS", "200")
+    wide = tangible(*words, cwd=folder).stdout
+    monkeypatch.setenv("COLUMNS", "40")
+    narrow = tangible(*words, cwd=folder).stdout
+    assert "…" not in narrow
+    missing = set(re.findall(r"\w+", wide)) - set(re.findall(r"\w+", narrow.replace("\n", " ")))
+    joined = "".join(narrow.split())
+    empty = {"product", "serial", "seconds"}  # headings of a name, and of columns without a value
+    assert not [word for word in missing - empty if word not in joined]
+
+
+def test_sentences_stand_above_the_tables(folder: Path):
+    plan = tangible("plan", "p.yaml", cwd=folder).stdout
+    assert plan.startswith("`run` would make disparity and relief. Nothing is run now.\n")
+    run = tangible("run", "p.yaml", cwd=folder).stdout
+    assert "dot.png is done: its disparity and relief are made." in " ".join(run.split())
+    assert tangible("plan", "p.yaml", cwd=folder).stdout.startswith("Nothing is left to run")
+    figures = {"overruns": 0, "ticks": 500, "seconds": 0.5, "contact_share": 0.931, "peak_force_n": 2.04}
+    assert sentences.felt("mock", figures) == (
+        "mock was felt for 0.5 s, 93 % of it in contact, with forces of up to 2.0 N; every tick came in time."
+    )
+    assert "12 of 500 ticks came late" in sentences.felt("mock", {**figures, "overruns": 12})
+    nothing = sentences.replayed("proxy", {"compared": 0, "error_percent": float("nan"), "noticed_percent": 0.0})
+    assert nothing.startswith("Nothing was felt")

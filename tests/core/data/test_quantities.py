@@ -1,0 +1,75 @@
+"""Lengths and their like with a unit: in files, in Python, and what the schema says of them."""
+
+from pathlib import Path
+
+import jsonschema
+import pytest
+from pydantic import ValidationError
+
+from tangible_core import Workspace, load_method
+from tangible_core.errors import ConfigError
+from tangible_core.mapping import WorkspaceMapping
+from tangible_core.materials.files import parse_materials
+from tangible_core.pipeline.config import parse_config
+from tangible_core.pipeline.schema import json_schema, markdown
+from tangible_core.plugins.registry import default_registry
+from tangible_core.scene.scene_files import SceneFiles
+from tangible_core.servo import Safety
+
+TEXT = """\
+scene: {height: map.png, relief_m: 12 mm}
+workspace: {width_m: 8cm, smooth_m: 30 um, finest_m: 0.00003}
+mapping: {offset_m: [5 mm, 0, -1 cm]}
+render: {use: proxy, stiffness_n_per_m: 0.8 N/mm}
+safety: {ramp_s: 250 ms}
+"""
+
+
+def test_a_file_says_quantities_with_their_units():
+    config = parse_config(TEXT, Path("p.yaml"), default_registry(), ["workspace.relief_m=6 mm"])
+    assert isinstance(config.scene, SceneFiles) and config.scene.relief_m == 0.012
+    size = config.workspace
+    assert (size.width_m, size.relief_m, size.smooth_m, size.finest_m) == (0.08, 0.006, 3e-5, 3e-5)
+    assert config.mapping.offset_m == (0.005, 0.0, -0.01)
+    assert config.safety.ramp_s == 0.25
+    assert config.render and config.render.method == load_method("render", "proxy")(stiffness_n_per_m=800.0)
+
+
+@pytest.mark.parametrize("text", ["6 mm", "6mm", " 6e3 um ", "0.6 cm", "6000 μm", "6000 µm", "0.006 m", "0.006"])
+def test_one_length_in_every_unit_is_one_block(text: str):
+    assert Workspace(relief_m=text) == Workspace(relief_m=0.006)
+
+
+@pytest.mark.parametrize("text", ["6 inches", "6 N/m", "6 m m m", "6,5 mm"])
+def test_what_is_no_length_is_said_with_the_units_that_there_are(text: str):
+    with pytest.raises(ConfigError) as error:
+        parse_config(f"scene: builtin/coins\nworkspace: {{width_m: {text!r}}}\n", Path("p.yaml"), default_registry())
+    assert str(error.value) == (
+        f"p.yaml:2:13: workspace.width_m: write a number in m, or with one of the units m, cm, mm, um, not {text!r}"
+    )
+
+
+def test_bounds_and_words_are_checked_as_before():
+    for wrong in ("-6 mm", "11 m", "wide", None, "1e999 mm", "1e9999999 mm", "1" * 100_000 + " mm", "nan mm", "inf"):
+        with pytest.raises(ValidationError):
+            Workspace(width_m=wrong)
+    with pytest.raises(ValidationError):
+        Safety(coupling="6 N/m")
+    assert WorkspaceMapping(region_m=("1 cm", 0, "2 cm", "30 mm")).region_m == (0.01, 0.0, 0.02, 0.03)
+
+
+def test_a_material_is_strict_about_texts_but_knows_units():
+    said = "felt: {stiffness_n_per_m: 0.4 N/mm, damping_n_s_per_m: 1 N s/m, static_friction: 1, dynamic_friction: 1}"
+    assert parse_materials(said, Path("m.yaml"), {})["felt"].stiffness_n_per_m == 400.0
+    with pytest.raises(ConfigError, match=r"stiffness_n_per_m: Input should be a valid number"):
+        parse_materials(said.replace("0.4 N/mm", "'400'"), Path("m.yaml"), {})
+
+
+def test_the_schema_says_so():
+    schema = json_schema()
+    validator = jsonschema.Draft202012Validator(schema)
+    right = {"scene": "builtin/coins", "workspace": {"width_m": "8 cm"}, "mapping": {"offset_m": ["1 mm", 0, 0]}}
+    assert validator.is_valid(right)
+    for wrong in ({"width_m": "8 kg"}, {"width_m": "wide"}, {"width_m": -1}):
+        assert not validator.is_valid({**right, "workspace": wrong})
+    assert "| `width_m` | number > 0 ≤ 10 or `6 mm` | `0.08` |" in markdown(schema)

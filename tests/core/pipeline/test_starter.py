@@ -1,0 +1,85 @@
+"""A pipeline file for pictures that have none, and pictures in place of a file."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from command_line import tangible
+from pictures import write_png
+from tangible_core.errors import ConfigError
+from tangible_core.pipeline.config import parse_config
+from tangible_core.pipeline.starter import are_pictures, starter
+from tangible_core.plugins.registry import default_registry
+from tangible_core.scene.scene_files import SceneFiles
+
+
+def waves(columns: int, rows: int, across: float) -> np.ndarray:
+    """A grey picture of so many waves from left to right."""
+    wave = np.rint(127 + 120 * np.sin(np.linspace(0, 2 * np.pi * across, columns))).astype(np.uint8)
+    return np.tile(wave, (rows, 1))
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    write_png(tmp_path / "calm.png", waves(120, 160, 1))
+    write_png(tmp_path / "my steep: one.png", waves(160, 120, 12))
+    np.save(tmp_path / "map.npy", np.hypot(*np.indices((30, 60))))
+    return tmp_path
+
+
+def relief_mm(picture: str) -> float:
+    config = parse_config(starter([Path(picture)], Path("p.yaml")).text, Path("p.yaml"), default_registry())
+    return 1e3 * config.workspace.relief_m
+
+
+def test_the_values_suit_the_picture(folder: Path):
+    made = starter([Path("calm.png")], folder / "p.yaml")
+    config = parse_config(made.text, folder / "p.yaml", default_registry())
+    assert isinstance(config.scene, SceneFiles) and config.scene.photo == folder / "calm.png"
+    assert config.workspace.width_m == 0.06, "portrait: its longer side fits the device"
+    assert made.scene.views is not None and made.scene.views.shape == (160, 120)
+    assert relief_mm("calm.png") == 8.0
+    assert relief_mm("my steep: one.png") < 4.0, "steep edges allow less"
+    assert all(line.count("#") for line in made.text.splitlines() if " mm " in line), "each length is explained"
+
+
+def test_a_map_and_a_pair_and_a_builtin_scene(folder: Path):
+    assert "scene: {height: map.npy}" in starter([Path("map.npy")], Path("p.yaml")).text
+    pair = starter([folder / "calm.png", folder / "calm.png"], folder / "sub" / "p.yaml").text
+    assert f"left: {folder.as_posix()}/calm.png" in pair
+    assert "scene: builtin/coins" in starter([Path("builtin/coins")], Path("p.yaml")).text
+    with pytest.raises(ConfigError, match="did you mean 'builtin/coins'"):
+        starter([Path("builtin/coin")], Path("p.yaml"))
+    with pytest.raises(ConfigError, match="3 pictures: name one, or left and right"):
+        starter([Path("calm.png")] * 3, Path("p.yaml"))
+    assert are_pictures([Path("A.JPG")]) and not are_pictures([Path("a.yaml")])
+
+
+def test_new_writes_a_file_that_runs_and_never_writes_over_one(folder: Path):
+    assert tangible("new", "my steep: one.png", "--out", "p.yaml", cwd=folder).returncode == 0
+    text = (folder / "p.yaml").read_text()
+    assert tangible("plan", "p.yaml", cwd=folder).returncode == 0
+    again = tangible("new", "calm.png", "--out", "p.yaml", cwd=folder)
+    assert (again.returncode, again.stderr) == (
+        2, "p.yaml: is there already; --out FILE writes another one, --force writes over it\n"
+    )  # fmt: skip
+    assert (folder / "p.yaml").read_text() == text
+    assert tangible("new", "calm.png", "--out", "p.yaml", "--force", cwd=folder).returncode == 0
+    assert (folder / "p.yaml").read_text() != text
+    assert "name a picture" in tangible("new", "p.yaml", cwd=folder).stderr
+
+
+def test_a_picture_runs_without_a_file(folder: Path):
+    done = tangible("run", "calm.png", "--set", "want=surface", "--set", "workspace.width_m=30 mm", cwd=folder)
+    assert done.returncode == 0, done.stderr
+    assert "`tangible new calm.png` writes them down" in done.stderr
+    written = (folder / "out" / "calm" / "config.yaml").read_text()
+    assert "width_m: 0.03" in written and f"{folder}/calm.png" in written
+    assert tangible("plan", "out/calm/config.yaml", cwd=folder).returncode == 0
+    assert not list(folder.glob("*.yaml")), "nothing is written beside the picture"
+    other = tangible("plan", "calm.png", "--set", "scene=builtin/coins", cwd=folder)
+    assert "builtin/coins" in other.stdout
+    assert "name one pipeline file" in tangible("run", "a.yaml", "calm.png", cwd=folder).stderr
+    assert "there is no such file (did you mean 'calm.png'?)" in tangible("run", "calmm.png", cwd=folder).stderr

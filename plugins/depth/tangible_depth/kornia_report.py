@@ -1,6 +1,6 @@
 """Method `kornia-report`: the chain of `report`, its Harris response, eight-point and correlation in torch."""
 
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from jaxtyping import Float64, Int64
@@ -20,6 +20,8 @@ class KorniaReport(DepthEstimator):
     Takes any pair, rectified or not. Matched in grey; colour only says where filling stops.
     Source: as `report`; Riba et al., Kornia, WACV 2020.
     """
+
+    version: ClassVar[int] = 2
 
     window_px: Literal[5, 7, 9, 11, 13, 15, 17, 19, 21] = 9
     """Side of the square correlation window."""

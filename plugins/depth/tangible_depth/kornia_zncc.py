@@ -1,6 +1,6 @@
 """Method `kornia-zncc`: dense normalised cross-correlation in torch."""
 
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field
@@ -23,6 +23,8 @@ class KorniaZNCC(DepthEstimator):
 
     The blocks it is made of (`torch_zncc`) take batches and give gradients; this method takes one pair.
     """
+
+    version: ClassVar[int] = 2
 
     window_px: Literal[3, 5, 7, 9, 11, 13, 15] = 7
     """Side of the square correlation window."""

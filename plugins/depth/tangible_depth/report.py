@@ -1,6 +1,6 @@
 """Method `report`: the documented baseline, the chain of the report "Tangible Images" as it is written there."""
 
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from jaxtyping import Int64
@@ -24,6 +24,8 @@ class Report(DepthEstimator):
     score and its neighbours is used.
     Source: Harris & Stephens 1988; Hartley 1997; Fusiello & Irsara 2011; Gastal & Oliveira 2011.
     """
+
+    version: ClassVar[int] = 2
 
     window_px: Literal[5, 7, 9, 11, 13, 15, 17, 19, 21] = 9
     """Side of the square correlation window."""

@@ -1,6 +1,6 @@
 """Semi-global matching of census codes: the default, for its time and its error."""
 
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
@@ -20,6 +20,8 @@ class SemiGlobal(DepthEstimator):
     volumes of all strips at work.
     Source: Hirschmueller, IEEE PAMI 30(2), 2008; census after Zabih & Woodfill, ECCV 1994.
     """
+
+    version: ClassVar[int] = 2
 
     max_disparity_px: Annotated[int, Field(ge=1)] | Literal["auto"] = "auto"
     """Upper end of the search range, exclusive; auto: estimated from a few bands of the pair."""

@@ -1,6 +1,6 @@
 """Dense sums of squared differences."""
 
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
@@ -18,6 +18,8 @@ class Ssd(DepthEstimator):
     Memory above the pictures: about 25 bytes a pixel, and 8 bytes a column and disparity for each thread.
     Source: the report "Tangible Images", ch. 2.
     """
+
+    version: ClassVar[int] = 2
 
     window_px: WindowSide = 7
     """Side of the square matching window; odd."""

@@ -1,6 +1,6 @@
 """Dense zero-mean normalised cross-correlation."""
 
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
@@ -18,6 +18,8 @@ class Zncc(DepthEstimator):
     Memory above the pictures: about 25 bytes a pixel, and 8 bytes a column and disparity for each thread.
     Source: the report "Tangible Images", ch. 2, matching value (2.14).
     """
+
+    version: ClassVar[int] = 2
 
     window_px: WindowSide = 7
     """Side of the square matching window; odd."""

@@ -22,6 +22,8 @@ class KorniaReport(DepthEstimator):
     """
 
     needs_pair: ClassVar[bool] = True
+    version: ClassVar[int] = 2
+
     window_px: Literal[5, 7, 9, 11, 13, 15, 17, 19, 21] = 9
     """Side of the square correlation window."""
     least_contrast: Annotated[float, Field(gt=0, le=1)] = 0.005

@@ -25,6 +25,8 @@ class KorniaZNCC(DepthEstimator):
     """
 
     needs_pair: ClassVar[bool] = True
+    version: ClassVar[int] = 2
+
     window_px: Literal[3, 5, 7, 9, 11, 13, 15] = 7
     """Side of the square correlation window."""
     max_disparity_px: Annotated[int, Field(ge=1)] | Literal["auto"] = "auto"

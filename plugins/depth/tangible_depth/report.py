@@ -26,6 +26,8 @@ class Report(DepthEstimator):
     """
 
     needs_pair: ClassVar[bool] = True
+    version: ClassVar[int] = 2
+
     window_px: Literal[5, 7, 9, 11, 13, 15, 17, 19, 21] = 9
     """Side of the square correlation window."""
     harris_sigma_px: Annotated[float, Field(gt=0, le=10)] = 1.0

@@ -22,6 +22,8 @@ class SemiGlobal(DepthEstimator):
     """
 
     needs_pair: ClassVar[bool] = True
+    version: ClassVar[int] = 2
+
     max_disparity_px: Annotated[int, Field(ge=1)] | Literal["auto"] = "auto"
     """Upper end of the search range, exclusive; auto: estimated from a few bands of the pair."""
     min_disparity_px: int | Literal["auto"] = "auto"

@@ -20,6 +20,8 @@ class Ssd(DepthEstimator):
     """
 
     needs_pair: ClassVar[bool] = True
+    version: ClassVar[int] = 2
+
     window_px: WindowSide = 7
     """Side of the square matching window; odd."""
     max_disparity_px: Annotated[int, Field(ge=1, le=512)] | Literal["auto"] = "auto"

@@ -12,7 +12,7 @@ from tangible_core.plugins.notes import note
 from ..dense.confidence import flat_pixels
 from ..dense.refinement import DenseMatches, as_map
 from ..dense.span import Span
-from ..rectify.rectification import with_rectification
+from ..rectify.rectification import RectificationError, rectify, whole_picture_matches
 from ..search.asked import Auto, asked_span
 from ..search.bands import match_bands
 from ..search.pairs import Pair, grey_pair
@@ -22,6 +22,9 @@ log = logging.getLogger(__name__)
 
 Matcher = Callable[[Pair, Span], DenseMatches]
 Rectify = Literal["auto", "never"]
+DOUBTFUL, MOST_DOUBTFUL = 0.15, 0.5
+"""Confidence below which a pixel was not matched but filled; and the share of such pixels from which a map fares so
+badly that the whole picture is looked at again."""
 
 
 class Search(NamedTuple):
@@ -46,14 +49,44 @@ def disparity_map(views: Views, name: str, search: Search, match: Matcher) -> Di
     if search.skip_identical and np.array_equal(*pair):
         note(log, "skipped: matching, as both views are identical")
         return nothing_moved(pair, search.fill)
-    span, bands = asked_span(pair, search.least, search.most)
-    if search.rectify == "auto" and views.calibration is None:
-        aligned = with_common_rows(pair, bands or match_bands(pair, span), search.most_row_offset_px)
-        if aligned is None:
-            rectified = search._replace(rectify="never")
-            return with_rectification(views, lambda turned: disparity_map(turned, name, rectified, match))
-        pair = aligned
-    return _in_order(pair, span, search.fill, match)
+    found = asked_span(pair, search.least, search.most)
+    if search.rectify == "never" or views.calibration is not None:
+        found.say()
+        return _in_order(pair, found.span, search.fill, match)
+    aligned = with_common_rows(pair, found.bands or match_bands(pair, found.span), search.most_row_offset_px)
+    if aligned is None:
+        return _rectified(views, name, search, match, None)
+    found.say()
+    return _looked_over(views, name, search, match, _in_order(aligned, found.span, search.fill, match))
+
+
+def _rectified(views: Views, name: str, search: Search, match: Matcher, instead: DisparityMap | None) -> DisparityMap:
+    """The map of a pair that is turned by features of the whole picture; `instead` of one that need not be."""
+    rectified = rectify(views, matches=whole_picture_matches(views))
+    if rectified.skipped and instead is not None:
+        return instead
+    pair = grey_pair(rectified.views, name)
+    found = asked_span(pair, search.least, search.most, rectified.seen_px)
+    found.say()
+    return rectified.to_original(_in_order(pair, found.span, search.fill, match))
+
+
+def _looked_over(views: Views, name: str, search: Search, match: Matcher, first: DisparityMap) -> DisparityMap:
+    """The map that was found, or a better one: where most of it is doubtful, the whole picture is looked at again."""
+    if _doubtful(first) <= MOST_DOUBTFUL:
+        return first
+    note(log, f"looked again at the whole picture: {_doubtful(first):.0%} of the map are hardly trusted")
+    try:
+        again = _rectified(views, name, search, match, first)
+    except RectificationError as error:
+        note(log, f"matched as it is: {error}", logging.WARNING)
+        return first
+    return again if _doubtful(again) < _doubtful(first) else first
+
+
+def _doubtful(found: DisparityMap) -> float:
+    """Share of the pixels whose disparity is hardly trusted."""
+    return float(np.count_nonzero(found.confidence < DOUBTFUL) / found.confidence.size)
 
 
 def _in_order(pair: Pair, span: Span, fill: bool, match: Matcher) -> DisparityMap:

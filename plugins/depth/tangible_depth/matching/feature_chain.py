@@ -15,7 +15,6 @@ from tangible_core.data.pictures import to_grey
 from tangible_core.errors import PictureError
 
 from ..rectify.fundamental import Fit
-from ..rectify.homographies import transform
 from ..rectify.rectification import rectify
 from ..rectify.rectified import RectifiedPair
 from ..sparse.assembling import assemble
@@ -75,5 +74,4 @@ def _range(matches: Matches, rectified: RectifiedPair, most: MaxDisparity) -> tu
     width = rectified.views.shape[1]
     if most != "auto":
         return within(-rectified.offset_px, most - rectified.offset_px, width)
-    left = transform(rectified.left_homography, matches.left_px)
-    return range_of_shifts(left - transform(rectified.right_homography, matches.right_px), width)
+    return range_of_shifts(rectified.left_place_px(matches.left_px) - rectified.right_place_px(matches.right_px), width)

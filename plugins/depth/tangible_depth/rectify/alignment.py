@@ -2,7 +2,8 @@
 
 Each picture is turned in its plane and tilted; the right one is also scaled and moved along its columns. About the
 pictures' middles that is seven numbers, as many as a fundamental matrix has. Those that the matches hardly tell stay
-near zero; shift and stretch along the rows, of which the matches tell nothing, are left out.
+near zero; shift and stretch along the rows, of which the matches tell nothing, are left out. Where lenses distort, one
+coefficient for each is found along with the seven.
 Source: the split into similarity and perspective is that of Loop & Zhang, Computing Rectifying Homographies for
 Stereo Vision, CVPR 1999; fitting to the matches that of Hartley, Theory and Practice of Projective Rectification, 1999.
 """
@@ -16,10 +17,13 @@ from jaxtyping import Float64
 from ..sparse.matches import Matches
 from .epipolar import epipoles, product
 from .homographies import transform
+from .lenses import undistorted
 
 _PRIOR = np.array([0.5, 0.2, 0.5, 0.2, 0.2, 0.5, 0.5])
 """Standard deviations about the start: left roll and tilt along x; right roll, tilts along x and y, logarithm of scale,
 shift along y. Rolls in radians, lengths in half the longer side of the picture, tilts in one over that."""
+_RADIAL_PRIOR = np.array([0.1, 0.1])
+"""The same of the coefficients of both lenses."""
 _NOISE_PX = 0.3
 _START, _FOUND, _SINE = 2.0**-10, 2.0**-20, 2.0**-32
 """What is rounded, and to what: the roll to start with, in radians, whose last bits are those of a processor's linear
@@ -40,17 +44,44 @@ def aligning_homographies(
     The middle of each picture keeps its column: a disparity is the shift against the right picture turned about its
     middle. roll: where to start, radians, see `epipole_roll`.
     """
-    start = np.zeros(7)
+    return _homographies(_fitted(matches, shape, roll, _PRIOR), matches, shape)
+
+
+def aligning_lenses(
+    matches: Matches, shape: tuple[int, int], roll: float, radials: tuple[float, float]
+) -> tuple[tuple[Float64[np.ndarray, "3 3"], Float64[np.ndarray, "3 3"]], tuple[float, float]]:
+    """The same of pictures that lenses distort: homographies of the points that `undistorted` gives, and coefficients.
+
+    Both as (left, right). roll, radials: where to start.
+    """
+    found = _fitted(matches, shape, roll, np.concatenate([_PRIOR, _RADIAL_PRIOR]), radials)
+    left, right = float(found[7]), float(found[8])
+    straight = Matches(undistorted(matches.left_px, left, shape), undistorted(matches.right_px, right, shape))
+    return _homographies(found[:7], straight, shape), (left, right)
+
+
+def _fitted(
+    matches: Matches, shape: tuple[int, int], roll: float, prior: np.ndarray, radials: tuple[float, ...] = ()
+) -> np.ndarray:
+    """The seven numbers, and the coefficients of the lenses where there is a prior for them."""
+    start = np.array([*[0.0] * len(_PRIOR), *radials])
     start[[0, 2]] = _rounded(roll, _START)
 
     def cost(values: np.ndarray) -> np.ndarray:
-        left, right = (transform(h, points) for h, points in zip(_pair(values, shape), matches, strict=True))
+        lenses = values[7:].tolist() or [0.0, 0.0]
+        straight = (undistorted(points, k, shape) for points, k in zip(matches, lenses, strict=True))
+        left, right = (transform(h, points) for h, points in zip(_pair(values[:7], shape), straight, strict=True))
         offset = (left[:, 1] - right[:, 1]) / _NOISE_PX
         # A Cauchy-like pull: what the robust estimate let through by chance may not bend the geometry.
         pull = np.sqrt(np.array([log1p(each) for each in (offset * offset).tolist()]))
-        return np.concatenate([np.sign(offset) * pull, (values - start) / _PRIOR])
+        return np.concatenate([np.sign(offset) * pull, (values - start) / prior])
 
-    found = np.array([_rounded(each, _FOUND) for each in _least_squares(cost, start, _PRIOR)])
+    return np.array([_rounded(each, _FOUND) for each in _least_squares(cost, start, prior)])
+
+
+def _homographies(
+    found: np.ndarray, matches: Matches, shape: tuple[int, int]
+) -> tuple[Float64[np.ndarray, "3 3"], Float64[np.ndarray, "3 3"]]:
     left, right = _pair(found, shape)
     if abs(found[0]) > np.pi / 4 and _runs_backwards(left, right, matches):
         # Both turned over: what lies along the axes changes its sign.
@@ -73,7 +104,7 @@ def _least_squares(cost: Callable[[np.ndarray], np.ndarray], start: np.ndarray, 
         slopes = np.stack(both, axis=1) / (2 * _STEP)
         normal, down = np.einsum("ni,nj->ij", slopes, slopes), np.einsum("ni,n->i", slopes, found)
         for _ in range(_TRIES):
-            move = -solved(normal + damping * np.trace(normal) / 7 * np.eye(7), down[None])[0]
+            move = -solved(normal + damping * np.trace(normal) / len(start) * np.eye(len(start)), down[None])[0]
             then = cost(values + scale * move)
             gain, expected = np.square(found).sum() - np.square(then).sum(), -(down * move).sum()
             if gain > 0 and gain >= _LEAST_GAIN * expected:

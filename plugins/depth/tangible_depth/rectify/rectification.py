@@ -8,19 +8,19 @@ import logging
 from collections.abc import Callable
 
 import numpy as np
-from jaxtyping import Bool, Float64
+from jaxtyping import Float64
 
 from tangible_core.data import DisparityMap, Views
 from tangible_core.data.pictures import to_grey
-from tangible_core.errors import GeometryError, PictureError
+from tangible_core.errors import PictureError
 from tangible_core.plugins.notes import note
 
 from ..sparse.matches import Matches, flow_matches, sift_matches
-from .alignment import aligning_homographies, epipole_roll
 from .epipolar import homogeneous, product
-from .fundamental import DegenerateMatches, Fit, eight_point, on_homography, robust_fundamental
+from .fundamental import Fit, eight_point
 from .homographies import transform
 from .rectified import RectifiedPair, as_it_is, warped
+from .turning import LEAST_TRUSTED, RectificationError, different, find_turn, seen_range
 
 logger = logging.getLogger(__name__)
 
@@ -30,13 +30,10 @@ LEAST_GAIN_PX = 0.2
 """Noise in the matches promises less than this; to turn the pictures for it would only blur them."""
 EXCHANGED_PX = -2.0
 """Views are exchanged if all but one match in twenty are below this disparity: parallel cameras give none below 0."""
-
-
-class RectificationError(GeometryError):
-    """A pair whose rows do not correspond and that cannot be turned so that they do."""
-
-    def __init__(self, message: str) -> None:
-        super().__init__(f"cannot rectify: {message}; to match the rows as they are, leave rectification out")
+_VERGED_OR_EXCHANGED = (
+    "every disparity is negative: the cameras look towards each other, or the views are exchanged (left is right); "
+    "if what is near comes out far, exchange them"
+)
 
 
 def with_rectification(views: Views, estimate: Callable[[Views], DisparityMap]) -> DisparityMap:
@@ -82,14 +79,25 @@ def rectify(
     return _turned(views, matches, before, fit)
 
 
-def _left_alone(views: Views, why: str) -> RectifiedPair:
-    note(logger, f"not rectified: {why}")
+def whole_picture_matches(views: Views) -> Matches:
+    """By SIFT, of a pair: unlike what is followed from place to place, it leaves out what repeats."""
+    if views.right is None:
+        raise PictureError("rectification needs two views; give a right one")
+    return sift_matches(to_grey(views.left), to_grey(views.right))
+
+
+def _left_alone(views: Views, why: str, level: int = logging.INFO) -> RectifiedPair:
+    note(logger, f"not rectified: {why}", level)
     return as_it_is(views, why)
 
 
 def _say_if_exchanged(disparity_px: Float64[np.ndarray, "n"]) -> None:
-    if np.percentile(disparity_px, 95) < EXCHANGED_PX:
+    if _all_negative(disparity_px):
         note(logger, "every disparity is negative: the views seem to be exchanged (left is right)", logging.WARNING)
+
+
+def _all_negative(disparity_px: Float64[np.ndarray, "n"]) -> bool:
+    return bool(np.percentile(disparity_px, 95) < EXCHANGED_PX)
 
 
 def _median_offset(matches: Matches) -> float:
@@ -97,33 +105,26 @@ def _median_offset(matches: Matches) -> float:
 
 
 def _turned(views: Views, matches: Matches, before: float, fit: Fit) -> RectifiedPair:
-    trusted, roll = _trusted(matches, views.shape, fit)
-    kept = Matches(matches.left_px[trusted], matches.right_px[trusted])
-    pair = aligning_homographies(kept, views.shape, roll)
-    turned = [transform(h, points) for h, points in zip(pair, kept, strict=True)]
-    offsets = np.abs(turned[1][:, 1] - turned[0][:, 1])
+    matches = different(matches)
+    turn, doubt = find_turn(matches, views.shape, fit)
+    disparity, offsets = turn.shifts(matches, views.shape)[turn.trusted].T
+    offsets = np.abs(offsets)
     if (after := float(np.median(offsets))) > before - LEAST_GAIN_PX:
         return _left_alone(views, f"turning would not help: median vertical offset {before:.2f} px, then {after:.2f}")
-    check_homographies(pair, views.shape, offsets)
-    disparity = turned[0][:, 0] - turned[1][:, 0]
-    _say_if_exchanged(disparity)
+    if len(offsets) >= LEAST_TRUSTED:
+        check_homographies(turn.homographies, views.shape, offsets)
+    if doubt is not None:
+        why = f"matches lie {before:.1f} px off their rows, but how to turn the pictures is not sure: {doubt}"
+        return _left_alone(views, why, logging.WARNING)
+    if _all_negative(disparity):
+        note(logger, _VERGED_OR_EXCHANGED, logging.WARNING)
     why = f"median vertical offset {before:.2f} px, now {after:.2f}"
-    note(logger, f"rectified: {why}")
-    return warped(views, pair, why, _search_start(disparity))
-
-
-def _trusted(matches: Matches, shape: tuple[int, int], fit: Fit) -> tuple[Bool[np.ndarray, "n"], float]:
-    """Which matches one geometry explains, and the roll that lays its epipole along the rows."""
-    threshold = max(1.0, max(shape) / 1500)
-    try:
-        found = robust_fundamental(*matches, threshold, fit)
-    except DegenerateMatches as error:
-        if error.reason != "homography":
-            raise RectificationError(f"matches do not lie on their rows, and there is {error}") from error
-        # A flat scene leaves the epipole open: any that aligns the matches will do, and the nearest bends least.
-        logger.warning("rectifying without parallax: %s", error)
-        return on_homography(*matches, threshold), 0.0
-    return found.inliers, epipole_roll(found.matrix, shape)
+    lenses = (
+        f"; radial distortion of the lenses {turn.radials[0]:.3f}, {turn.radials[1]:.3f}" if any(turn.radials) else ""
+    )
+    note(logger, f"rectified: {why}{lenses}")
+    seen = seen_range(matches.left_px[turn.trusted], disparity)
+    return warped(views, turn.homographies, why + lenses, _search_start(disparity), turn.radials, seen)
 
 
 def _search_start(disparity_px: Float64[np.ndarray, "n"]) -> int:

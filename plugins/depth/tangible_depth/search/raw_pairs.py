@@ -10,6 +10,7 @@ from .bands import Bands
 from .corner_look import corners_correspond
 from .pairs import Pair
 from .row_offset import LEAST_ROW_OFFSET_PX, LEAST_VOTES, realigned, row_votes
+from .row_profiles import rows_lie_elsewhere
 
 log = logging.getLogger(__name__)
 
@@ -17,16 +18,25 @@ LEAST_AGREED, MOST_SPREAD_PX = 0.45, 0.3
 """Share of the edges whose views agree on an offset, and median deviation of these offsets, if rows correspond. Damaged
 pairs reach 0.21 px; a roll of 0.3 degrees has 0.47 px and more."""
 
+MOST_ALONE = 0.35
+"""Share of the bands' matches that no neighbour confirms from which they are no evidence: matches of anything with
+anything have 0.7 and more, damaged pairs up to 0.65. Corners are followed then."""
+
 
 def with_common_rows(pair: Pair, bands: Bands, most_row_offset_px: float) -> Pair | None:
     """The pair, realigned where its rows miss each other by a constant; None where they do not correspond otherwise.
 
     bands: what was matched of the pair. most_row_offset_px: the constant that the method puts right by itself; 0: it is
-    put right here.
+    put right here. Bands look along the rows only and are not believed alone: where the rows repeat, they match as well
+    at a wrong height.
     """
+    if rows_lie_elsewhere(pair):
+        return None
     row_offset_px = common_row_offset(pair, bands)
     if row_offset_px is None:
         return pair if corners_correspond(pair, most_row_offset_px) else None
+    if bands.loss > MOST_ALONE and not corners_correspond(pair, abs(row_offset_px)):
+        return None
     if most_row_offset_px > 0 or abs(row_offset_px) <= LEAST_ROW_OFFSET_PX:
         return pair
     note(log, f"rows realigned by {row_offset_px:.2f} px")

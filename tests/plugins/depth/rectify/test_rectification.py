@@ -5,11 +5,14 @@ import pytest
 
 from tangible_core.data import Calibration, DisparityMap, Views
 from tangible_core.errors import PictureError
-from tangible_depth.rectify import alignment, rectification
+from tangible_depth.rectify import alignment, rectification, turning
 from tangible_depth.rectify.alignment import aligning_homographies, epipole_roll
 from tangible_depth.rectify.fundamental import eight_point
 from tangible_depth.rectify.homographies import camera_matrix, rotation, transform
+from tangible_depth.rectify.lenses import distorted, undistorted
 from tangible_depth.rectify.rectification import RectificationError, check_homographies, rectify, with_rectification
+from tangible_depth.rectify.rectified import warped
+from tangible_depth.rectify.turning import seen_range
 from tangible_depth.sparse.matches import Matches
 from two_cameras import HEIGHT, WIDTH, Scene, roll_and_tilt, seen_points, some_wrong
 
@@ -20,7 +23,7 @@ def shifted(before_px, after_px, monkeypatch):
     """A pair whose rows lie this far apart, and homographies that leave them so far apart."""
     left, right = seen_points(turn=(0, 0, 0), move_m=(-0.3, 0, 0))
     pair = np.eye(3), np.array([[1, 0, 0], [0, 1, after_px - before_px], [0, 0, 1.0]])
-    monkeypatch.setattr(rectification, "aligning_homographies", lambda matches, shape, roll: pair)
+    monkeypatch.setattr(turning, "aligning_homographies", lambda matches, shape, roll: pair)
     return Matches(left, right + np.array([0, before_px]))
 
 
@@ -173,8 +176,9 @@ class TestWhatIsSkippedAndWhy:
     def test_twenty_matches_tell(self, count, told, monkeypatch):
         matches = shifted(0.5, 0.0, monkeypatch)
         rectified = rectify(Views(BLANK, BLANK), matches=Matches(matches.left_px[:count], matches.right_px[:count]))
-        assert rectified.skipped != told
+        assert rectified.skipped
         assert ("only 19 matches, too few to tell" in rectified.why) != told
+        assert ("only 20 of 20 matches agree, 30 are needed" in rectified.why) == told
 
     def test_a_skipped_map_comes_back_itself(self):
         found = DisparityMap(np.ones((HEIGHT, WIDTH), np.float32))
@@ -324,3 +328,86 @@ def test_the_search_starts_below_all_but_stray_disparities(low, high, start):
     disparity = np.linspace(low, high, 981)
     stray = np.concatenate([np.full(10, -500.0), disparity, np.full(10, 900.0)])
     assert rectification._search_start(stray) == start
+
+
+class TestWhatARectificationIsBelievedOn:
+    def matches(self, asked=slice(None)):
+        left, right = seen_points(noise_px=0.2, turn=(0.02, -0.05, 0.03), move_m=(-0.3, 0.02, 0.05), count=120)
+        return Matches(left[asked], right[asked])
+
+    def refused(self, matches, caplog):
+        rectified = rectify(Views(BLANK, BLANK), matches=matches)
+        assert rectified.skipped
+        assert "WARNING" in caplog.text
+        return rectified.why
+
+    @pytest.mark.parametrize(("count", "believed"), [(29, False), (36, True)])
+    def test_thirty_matches(self, count, believed):
+        """Two or three of 36 stand off by more than a pixel."""
+        assert rectify(Views(BLANK, BLANK), matches=self.matches(slice(count))).skipped != believed
+
+    def test_one_match_many_times_is_one(self, caplog):
+        left, right = self.matches(slice(25))
+        assert "only 25 of 25" in self.refused(Matches(np.tile(left, (4, 1)), np.tile(right, (4, 1))), caplog)
+
+    def test_they_lie_all_over_the_picture(self, caplog):
+        left, right = seen_points(noise_px=0.2, turn=(0.02, -0.05, 0.03), move_m=(-0.3, 0.02, 0.05), count=1000)
+        corner = (left < [0.5 * WIDTH, 0.5 * HEIGHT]).all(axis=1)
+        assert "4 of 16 parts" in self.refused(Matches(left[corner], right[corner]), caplog)
+
+    def test_matches_that_had_no_part_in_it_agree(self, caplog):
+        """Here every other match is of something else that moved by itself."""
+        left, right = (points.copy() for points in self.matches())
+        right[1::2, 1] += np.random.default_rng(0).uniform(20, 200, len(right[1::2]))
+        assert "of the matches that had no part in it" in self.refused(Matches(left, right), caplog)
+
+
+@pytest.mark.parametrize("radial", [-0.15, -0.05, 0.1])
+def test_lenses_that_distort_are_found(radial):
+    shape = HEIGHT, WIDTH
+    cameras = {"turn": (0.02, -0.05, 0.03), "move_m": (-0.3, 0.02, 0.05), "count": 400}
+    exact, noisy = (
+        Matches(*(distorted(points, radial, shape) for points in seen_points(**cameras, noise_px=noise)))
+        for noise in (0.0, 0.2)
+    )
+    rectified = rectify(Views(BLANK, BLANK), matches=noisy)
+    assert rectified.left_radial == pytest.approx(radial, abs=0.02)
+    assert rectified.right_radial == pytest.approx(radial, abs=0.02)
+    shift = rectified.left_place_px(exact.left_px) - rectified.right_place_px(exact.right_px)
+    assert np.percentile(np.abs(shift[:, 1]), 95) <= 0.3
+    assert "radial distortion of the lenses" in rectified.why
+
+
+def test_a_lens_without_distortion_is_given_none():
+    rectified, _ = rectified_points()
+    assert (rectified.left_radial, rectified.right_radial) == (0, 0)
+
+
+@pytest.mark.parametrize("radial", [-0.2, 0.0, 0.1])
+def test_distortion_is_taken_out_and_put_back(radial):
+    points = np.random.default_rng(0).uniform(0, [WIDTH, HEIGHT], (200, 2))
+    straight = undistorted(points, radial, (HEIGHT, WIDTH))
+    assert distorted(straight, radial, (HEIGHT, WIDTH)) == pytest.approx(points)
+
+
+def test_a_map_goes_back_through_the_lens():
+    """Each pixel of the original gets what stands at its place in the turned view, and leads to its match."""
+    size = np.indices((60, 80), np.uint8).sum(axis=0).astype(np.uint8)
+    bent = warped(Views(size, size), (np.eye(3), np.eye(3)), "", 0, (-0.1, -0.1))
+    place = np.indices(bent.views.shape, np.float32)[1]
+    back = bent.to_original(DisparityMap(place)).disparity_px
+    y, x = np.indices(size.shape)
+    expected = bent.left_place_px(np.column_stack([x.ravel(), y.ravel()]))[:, 0].reshape(size.shape)
+    assert np.abs(back - expected)[1:-1, 1:-1].max() <= 0.5
+    still = bent.right_px(np.zeros(size.shape, np.float32))
+    assert still == pytest.approx(np.dstack([x, y]).astype(float), abs=1e-6)
+    # A grey that grows along the diagonal is where the lens's inverse puts it.
+    rows, columns = bent.to_original(DisparityMap(bent.views.left.astype(np.float32))).disparity_px, size
+    assert np.abs(rows - columns)[2:-2, 2:-2].max() <= 2
+
+
+def test_disparities_that_no_neighbour_has_do_not_widen_the_range():
+    points = np.random.default_rng(0).uniform(0, 700, (300, 2))
+    disparity = 0.05 * points[:, 0] + 10
+    disparity[[3, 77]] = -400.0, 300.0
+    assert seen_range(points, disparity) == (10, 45)

@@ -9,11 +9,16 @@ from tangible_core.data import Calibration, Views
 from tangible_core.plugins.notes import collected
 from tangible_core.synthetic.stereo_scenes import SCENES, synthetic_pair
 from tangible_depth.dense.span import Span
-from tangible_depth.search.bands import match_bands
+from tangible_depth.matching import chain
+from tangible_depth.search import asked
+from tangible_depth.search.asked import asked_span
+from tangible_depth.search.bands import Bands, match_bands
 from tangible_depth.search.corner_look import corners_correspond
 from tangible_depth.search.pairs import Pair, grey_pair
 from tangible_depth.search.raw_pairs import common_row_offset
-from tangible_depth.search.search_range import find_range
+from tangible_depth.search.row_profiles import rows_lie_elsewhere
+from tangible_depth.search.search_range import RangeEstimate, find_range
+from tangible_depth.semi_global import SemiGlobal
 from tangible_depth.zncc import Zncc
 from two_cameras import Scene, roll_and_tilt
 
@@ -130,3 +135,84 @@ def test_a_calibrated_pair_is_not_looked_at():
         found = Zncc(max_disparity_px=16).estimate(calibrated)
     assert not any("rows" in each or "rectified" in each for each in notes)
     assert found.digest() == Zncc(max_disparity_px=16, rectify="never").estimate(views).digest()
+
+
+def bricks(rows: np.ndarray, columns: np.ndarray) -> np.ndarray:
+    """A wall at places (y, x): courses of 12 rows, bricks of 24 columns, each of a tone of its own."""
+    course, column = rows // 12, columns + rows // 12 % 2 * 12
+    tones = np.random.default_rng(0).integers(80, 150, (100, 100))
+    grain = np.random.default_rng(1).integers(-8, 9, (700, 900))
+    mortar = (rows % 12 < 2) | (column % 24 < 2)
+    return (np.where(mortar, 200, tones[course, column // 24]) + grain[rows, columns]).astype(np.uint8)
+
+
+WALL_PX, PILLAR_PX = 20, 34
+
+
+def is_pillar(rows: np.ndarray, columns: np.ndarray) -> np.ndarray:
+    return (abs(columns - 260) < 60) & (abs(rows - 150) < 80)
+
+
+def walls(rows_lower: int) -> tuple[Views, np.ndarray]:
+    """A wall and a pillar of bricks before it, the right view some rows lower, and the disparity of the left one."""
+    y, x = np.indices((300, 400))
+    left = np.where(is_pillar(y, x), bricks(y + 300, x + 300), bricks(y + 100, x + 100))
+    v = y - rows_lower
+    pillar = bricks(v + 300, x + 300 + PILLAR_PX)
+    right = np.where(is_pillar(v, x + PILLAR_PX), pillar, bricks(v + 100, x + 100 + WALL_PX))
+    return Views(left, right), np.where(is_pillar(y, x), PILLAR_PX, WALL_PX)
+
+
+@pytest.mark.parametrize("rows_lower", [-24, 12, 36])
+def test_courses_that_repeat_are_no_evidence(rows_lower: int):
+    """The next course fits as well to a look along the rows; the wall as a whole lies elsewhere."""
+    views, truth = walls(rows_lower)
+    assert not rows_lie_elsewhere(grey_pair(walls(0)[0], ""))
+    assert rows_lie_elsewhere(grey_pair(views, ""))
+    error = (SemiGlobal().estimate(views).disparity_px - truth)[40:-40, 60:-40]
+    assert np.mean(np.abs(error - np.nanmedian(error)) <= 2) >= 0.93
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_rows_of_a_rectified_pair_lie_nowhere_else(scene: str):
+    views = synthetic_pair(scene, 320, 240).views
+    assert not rows_lie_elsewhere(grey_pair(views, ""))
+    assert rows_lie_elsewhere(grey_pair(shifted(views, 10), ""))
+
+
+def test_a_map_that_fares_badly_is_looked_at_again(monkeypatch: pytest.MonkeyPatch):
+    """Whatever the rows were taken for: here for corresponding, which they do not."""
+    monkeypatch.setattr(chain, "with_common_rows", lambda pair, *_: pair)
+    scene = Scene((240, 320), 8.0, 20.0)
+    with collected() as notes:
+        found = Zncc().estimate(rolled(6, scene)).disparity_px
+    assert any(each.startswith("looked again at the whole picture") for each in notes)
+    assert any(each.startswith("rectified: ") for each in notes)
+    assert share_right(found, scene) >= 0.9
+
+
+def test_chance_matches_are_not_followed_into_the_range(monkeypatch: pytest.MonkeyPatch):
+    """As those where a turned picture shows nothing: one match in ten is anywhere, the others are in 0..60 px."""
+    random = np.random.default_rng(0)
+    found_px = np.concatenate([random.uniform(0, 60, 21600), random.uniform(-270, 200, 2400)]).reshape(24, 1000)
+    bands = Bands(np.arange(24), np.rint(16 * found_px).astype(np.int16), 1, 0.3)
+    monkeypatch.setattr(asked, "find_range", lambda pair: RangeEstimate(Span(-273, 200), bands, False))
+    pair = Pair(*[np.zeros((24, 1000), np.uint8)] * 2)
+    assert asked_span(pair, "auto", "auto").span.low == -273
+    found = asked_span(pair, "auto", "auto", (3, 40)).span
+    assert -16 <= found.low <= 0
+    assert 60 <= found.high <= 128
+
+
+def test_matches_of_the_bands_widen_the_range_that_features_showed():
+    pair = grey_pair(synthetic_pair("planes", 480, 360).views, "")
+    asked = asked_span(pair, "auto", "auto").span
+    found = asked_span(pair, "auto", "auto", (20, 24)).span
+    assert found.low <= 10
+    assert found.high >= asked.high - 8
+
+
+def test_nothing_is_said_of_a_pair_that_is_turned_before_it_is_matched():
+    with collected() as notes:
+        Zncc().estimate(rolled(2))
+    assert sum("disparities outside" in each for each in notes) == 1

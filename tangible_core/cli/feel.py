@@ -33,6 +33,7 @@ def feel(
     pipeline = open_pipeline(config, sets or [], not no_cache)
     device = device_of(pipeline)
     loop: dict[str, Any] = {}
+    looks = session.Looks()
     reports: list[ServoReport] = []
 
     def started(servo: Servo) -> None:
@@ -41,26 +42,25 @@ def feel(
     def heard(report: ServoReport) -> None:
         reports[:] = [report]
 
-    pipeline.feel(None, seconds, record=record, keep=None if record else _forget, on_report=heard, on_start=started)
+    pipeline.feel(None, seconds, record=record, keep=looks.keep, on_report=heard, on_start=started)
     (report,) = reports
-    felt = session.figures(report)
+    felt, hand = session.figures(report), pipeline.followed(looks.recording())
     if as_json:
         figures = {"device": device.name, "spec": asdict(device.method.spec()), **felt}
         outcomes = show.as_rows(pipeline.outcomes)
-        show.print_json({"outcomes": outcomes, "loop": loop, "figures": figures, "file": record and str(record)})
+        said = {"hand": hand._asdict(), "file": record and str(record)}
+        show.print_json({"outcomes": outcomes, "loop": loop, "figures": figures, **said})
     else:
         show.outcomes(pipeline.outcomes)
         show.say(f"\n{loop['how']}; the first tick came {loop['start_s']:.2f} s after the loop was asked for\n")
         show.table(("figure", "value"), [(name, _text(value)) for name, value in felt.items()])
+        if hand.says:
+            show.plain(f"\n{hand.says}")
     if report.stopped == session.INTERRUPTED:
         raise KeyboardInterrupt
     if report.stopped != OVER:
         show.flush()
         raise session.failure(report.ticks, report.stopped)
-
-
-def _forget(rows: Any) -> None:
-    """Nobody records."""
 
 
 def _text(value: Any) -> str:

@@ -141,4 +141,5 @@ LINES: dict[str, tuple[str, Callable[[Mapping[Any, Any]], list[str]]]] = {
     "disparity": ("error against the truth", _error_lines),
     "materials": ("materials", _material_lines),
     "force": ("force along the path", _force_lines),
+    "hand": ("the hand", lambda figures: [figures["says"]]),
 }

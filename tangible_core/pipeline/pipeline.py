@@ -25,7 +25,7 @@ from ..data import (
 )
 from ..errors import ConfigError, quoted
 from ..files.writing import write_text
-from ..mapping import WorkspaceMapping, mapped
+from ..mapping import WorkspaceMapping
 from ..plugins import hooks
 from ..plugins.interfaces import KINDS, DepthEstimator, ForceRenderer, HapticDevice, Method, Segmenter, Touch
 from ..plugins.registry import Registry, default_registry
@@ -33,14 +33,17 @@ from ..preflight import Flight, Hand, Loop, Verdict, judge, survey
 from ..scene.scene import Scene
 from ..scene.workspace import Workspace
 from ..servo import OVER, Safety, Servo
-from ..session import About, Recording, check_record_path, keeping, replay, run_in_real_time, run_simulated
+from ..session import About, Followed, Recording, check_record_path, keeping, replay, run_in_real_time, run_simulated
 from .cache import Cache
 from .config import MaterialChoice, NamedMethod, PipelineConfig, Product, load_config
 from .engine import Engine, Progress
+from .following import felt_device, how_followed
 from .runs import Run, about, make_run
 
 M = TypeVar("M", bound=Method)
 S = TypeVar("S", bound=BaseModel)
+T = TypeVar("T")
+NO_ROWS = np.empty((0, len(TICK_COLUMNS)))
 Materials = MaterialChoice | Mapping[Any, Any] | str
 """As in YAML: a rule's name, a map from label to material, or a block of options."""
 
@@ -254,7 +257,7 @@ class Pipeline:
         says why. In real time the force loop runs in a process of its own.
         seconds: None goes on until something ends it; in real time alone. in_real_time: False goes by the clock of the
         device, for simulated ones. record: a file (.nc, .npz, .csv) that keeps every tick while it is felt. keep: given
-        all ticks instead, as rows of `TICK_COLUMNS`; the recording that is returned is then empty. on_report: called
+        all ticks, as rows of `TICK_COLUMNS`; the recording that is returned is then empty. on_report: called
         ten times a second, and at the end. on_start: called once a loop in real time runs.
         Raises: ConfigError if there is no device or law, DeviceError if it cannot be opened, OutputError for the file.
         """
@@ -276,9 +279,10 @@ class Pipeline:
 
         if file is not None:
             with keeping(file, said) as writer:
-                writer.close(run(writer.append))
-            return Recording.load(file)
-        rows = [np.empty((0, len(TICK_COLUMNS)))]
+                stopped = run(_both(writer.append, keep))
+                writer.close(stopped)
+            return Recording.load(file) if keep is None else Recording(NO_ROWS, stopped, said.stamped())
+        rows = [NO_ROWS]
         stopped = run(keep or rows.append)
         return Recording(np.concatenate(rows), stopped, said.stamped())
 
@@ -290,6 +294,13 @@ class Pipeline:
         touch = self.touch
         said = replace(self._about(None), device=f"replay of {recording.about.device or 'a recording'}")
         return replace(replay(touch, recording), about=said.stamped())
+
+    def followed(self, seen: Recording, device: HapticDevice | None = None) -> Followed:
+        """How the hand followed its path on this or the configured device, where the device knows that.
+
+        seen: what was felt, one tick of `session.EVERY`. Raises: as `feel`.
+        """
+        return how_followed(self.engine, self._device(device), seen)
 
     def preflight(
         self, device: HapticDevice | None = None, hand: Hand | None = None, loop: Loop | None = None
@@ -323,7 +334,7 @@ class Pipeline:
 
     def _device(self, device: HapticDevice | None) -> HapticDevice:
         """The device as the picture sees it, by the mapping. Raises: ConfigError if there is none."""
-        felt = self.config.felt_device if device is None else mapped(device, self.config.mapping)
+        felt = felt_device(self.engine, device)
         if felt is None:
             raise self.config.missing("device")
         return felt
@@ -395,12 +406,10 @@ def _as_in_yaml(materials: Materials | None) -> MaterialChoice | Mapping[str, An
     return materials
 
 
-def _both(
-    one: Callable[[ServoReport], None], other: Callable[[ServoReport], None] | None
-) -> Callable[[ServoReport], None]:
-    def tell(report: ServoReport) -> None:
-        one(report)
+def _both(one: Callable[[T], None], other: Callable[[T], None] | None) -> Callable[[T], None]:
+    def tell(heard: T) -> None:
+        one(heard)
         if other is not None:
-            other(report)
+            other(heard)
 
     return tell

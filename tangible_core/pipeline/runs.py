@@ -13,9 +13,10 @@ from ..files.writing import write_text
 from ..plugins.interfaces import Touch
 from ..report import disparity_errors, draw_sheet, write_figures
 from ..report.html import png_html
-from ..session import About, Recording, run_simulated
+from ..session import EVERY, About, Recording, run_simulated
 from .cache import write_record
 from .engine import Engine
+from .following import felt_device, how_followed
 from .rehearsal import FELT, rehearsal
 
 SHOWN = ("disparity", "segments", "materials", "surface")
@@ -112,7 +113,7 @@ def about(engine: Engine) -> About:
 def _felt(
     engine: Engine, touch: Touch, seconds: float, on_report: Callable[[ServoReport], None] | None
 ) -> Recording | None:
-    device = engine.config.felt_device
+    device = felt_device(engine)
     if device is None or not device.spec().simulated:
         return None
     said = about(engine).stamped()
@@ -140,6 +141,9 @@ def _figures(engine: Engine, products: Mapping[str, Any], recording: Recording |
         }
     if recording is not None:
         figures["force"] = recording.figures()
+        hand = how_followed(engine, felt_device(engine), Recording(recording.rows[::EVERY]))
+        if hand.says:
+            figures["hand"] = hand._asdict()
     return figures
 
 

@@ -1,5 +1,6 @@
 """A session joins a touch and a device: the loop, and what it records."""
 
+from .following import EVERY, Followed, Looks, followed
 from .live import figures, keeping, run_in_real_time
 from .loop import run_simulated
 from .recording import INTERRUPTED, STOPPED, Recording, failure
@@ -9,15 +10,19 @@ from .tick_file import About
 from .writer import Writer
 
 __all__ = [
+    "EVERY",
     "INTERRUPTED",
     "STOPPED",
     "About",
+    "Followed",
+    "Looks",
     "Recording",
     "Writer",
     "check_record_path",
     "compared",
     "failure",
     "figures",
+    "followed",
     "keeping",
     "replay",
     "run_in_real_time",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
@@ -59,6 +59,7 @@ def run(
     sets: Sets = None,
     out: Annotated[Path | None, typer.Option("--out", help="Folder for the results [default: out/NAME].")] = None,
     seconds: Seconds = 8.0,
+    sheet: Annotated[Literal["png", "svg", "pdf"], typer.Option(help="What the sheet is drawn as.")] = "png",
     as_json: Json = False,
     no_cache: NoCache = False,
 ) -> None:
@@ -67,7 +68,7 @@ def run(
     A simulated device feels the surface; a real one is never moved: see `feel`.
     """
     pipeline = open_pipeline(config, sets or [], not no_cache)
-    _print(pipeline.run(out or Path("out") / config.stem, seconds=seconds), as_json)
+    _print(pipeline.run(out or Path("out") / config.stem, seconds=seconds, sheet=sheet), as_json)
 
 
 def plan(config: Config, sets: Sets = None, as_json: Json = False, no_cache: NoCache = False) -> None:

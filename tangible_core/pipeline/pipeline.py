@@ -38,7 +38,7 @@ from .cache import Cache
 from .config import MaterialChoice, NamedMethod, PipelineConfig, Product, load_config
 from .engine import Engine, Progress
 from .following import felt_device, how_followed
-from .runs import Run, about, make_run
+from .runs import Run, Sheet, about, make_run
 
 M = TypeVar("M", bound=Method)
 S = TypeVar("S", bound=BaseModel)
@@ -229,15 +229,16 @@ class Pipeline:
         seconds: float = 8.0,
         progress: Progress | None = None,
         stop: Event | None = None,
+        sheet: Sheet = "png",
     ) -> Run:
         """Make what is wanted, and write products, figures and a sheet into a folder.
 
         A touch is felt for so many seconds of a simulated device's own time; a real device is never moved by it.
-        progress, stop: as `make`.
+        progress, stop: as `make`. sheet: png, or svg or pdf, which can be enlarged.
         Raises: OutputError if the folder cannot be written; TangibleError as `make`.
         """
         with self.engine.watched(progress, stop):
-            return make_run(self.engine, Path(out), want or self.config.want, seconds, self._tell)
+            return make_run(self.engine, Path(out), want or self.config.want, seconds, self._tell, sheet)
 
     def feel(
         self,

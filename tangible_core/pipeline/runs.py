@@ -3,9 +3,10 @@
 import platform
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, replace
+from html import escape
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from ..data import DisparityMap, MaterialMap, Outcomes, Record, ServoReport
 from ..errors import ConfigError
@@ -21,7 +22,9 @@ from .rehearsal import FELT, rehearsal
 
 SHOWN = ("disparity", "segments", "materials", "surface")
 """Products that the report draws, beside what is wanted."""
-SHEET = "sheet.png"
+SHEET = "sheet"
+Sheet = Literal["png", "svg", "pdf"]
+"""What a sheet can be drawn as."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,14 +41,18 @@ class Run:
     outcomes: Outcomes
     versions: Mapping[str, str]
     files: tuple[Path, ...]
+    sheet_says: str
+    """What is on the sheet, in words."""
 
     @property
     def sheet(self) -> Path:
         """The picture of all of it."""
-        return next(path for path in self.files if path.name == SHEET)
+        return next(path for path in self.files if path.stem == SHEET)
 
     def _repr_html_(self) -> str:
-        return png_html(self.sheet.read_bytes(), f"{self.scene}: the sheet of this run")
+        if self.sheet.suffix == ".png":
+            return png_html(self.sheet.read_bytes(), self.sheet_says)
+        return self.sheet.read_text(encoding="utf-8") if self.sheet.suffix == ".svg" else escape(self.sheet_says)
 
     def document(self) -> dict[str, Any]:
         """Everything but the products, as plain values."""
@@ -58,7 +65,12 @@ class Run:
 
 
 def make_run(
-    engine: Engine, out: Path, want: str, seconds: float, on_report: Callable[[ServoReport], None] | None = None
+    engine: Engine,
+    out: Path,
+    want: str,
+    seconds: float,
+    on_report: Callable[[ServoReport], None] | None = None,
+    sheet: Sheet = "png",
 ) -> Run:
     """Make what is wanted, and write the results and their report into a folder.
 
@@ -81,9 +93,9 @@ def make_run(
         recording.save(out / "recording.npz")
         files.append(out / "recording.npz")
     figures = _figures(engine, products, recording)
-    _draw(engine, products, recording, out / SHEET)
-    files += [out / SHEET, out / "outcomes.json"]
-    run = Run(engine.scene.name, products, recording, figures, engine.outcomes, _versions(), tuple(files))
+    says = _draw(engine, products, recording, out / f"{SHEET}.{sheet}")
+    files += [out / f"{SHEET}.{sheet}", out / "outcomes.json"]
+    run = Run(engine.scene.name, products, recording, figures, engine.outcomes, _versions(), tuple(files), says)
     write_figures(out / "outcomes.json", run.document())
     return run
 
@@ -123,9 +135,10 @@ def _felt(
     return replace(recording, about=said)
 
 
-def _draw(engine: Engine, products: Mapping[str, Any], recording: Recording | None, path: Path) -> None:
+def _draw(engine: Engine, products: Mapping[str, Any], recording: Recording | None, path: Path) -> str:
     scene = engine.scene
-    draw_sheet(path, views=scene.views, truth=scene.truth, recording=recording, title=scene.name,
+    title = Path(scene.name).name if Path(scene.name).is_absolute() else scene.name
+    return draw_sheet(path, views=scene.views, truth=scene.truth, recording=recording, title=title,
                **{name: products.get(name) for name in (*SHOWN, "relief")})  # fmt: skip
 
 

@@ -65,7 +65,9 @@ def test_run_makes_everything_and_says_so(folder: Path):
     written = {path.name for path in (folder / "out" / "p").iterdir()}
     products = {"disparity.npz", "segments.npz", "materials.npz", "surface.npz"}
     assert written == products | {"config.yaml", "manifest.json", "outcomes.json", "recording.npz", "sheet.png"}
-    again = tangible("run", "out/p/config.yaml", "--seconds", 1, "--json", cwd=folder)
+    again = tangible("run", "out/p/config.yaml", "--seconds", 1, "--sheet", "svg", "--json", cwd=folder)
+    (sheet,) = (folder / each for each in json.loads(again.stdout)["files"] if each.endswith(".svg"))
+    assert "<title>left.png</title>" in sheet.read_text(encoding="utf-8")  # and no path of this machine
     outcomes = {each["product"]: each["outcome"] for each in json.loads(again.stdout)["outcomes"]}
     assert outcomes["surface"] == outcomes["disparity"] == "cached"
 

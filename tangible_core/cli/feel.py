@@ -56,6 +56,7 @@ def feel(
     for one in (pipeline, *then):
         ask_first(one, yes)
     loop: dict[str, Any] = {}
+    looks = session.Looks()
     reports: list[ServoReport] = []
 
     def started(servo: Servo) -> None:
@@ -71,7 +72,7 @@ def feel(
     pipeline.feel(
         seconds=None if until_s == math.inf else until_s,
         record=record,
-        keep=_forget,
+        keep=looks.keep,
         on_report=heard,
         on_start=started,
         then=then,
@@ -80,28 +81,27 @@ def feel(
     )
     (report,) = reports
     felt = session.figures(report)
+    hand = None if then or wait else pipeline.followed(looks.recording())
     if as_json:
         figures = {"device": device.name, "spec": asdict(device.method.spec()), **felt}
         outcomes = show.as_rows(pipeline.outcomes)
-        said = {"guard": session.changed_most(report.flagged), "file": record and str(record)}
-        show.print_json({"outcomes": outcomes, "loop": loop, "figures": figures, **said})
+        said = {"guard": session.changed_most(report.flagged), "hand": hand and hand._asdict()}
+        file = {"file": record and str(record)}
+        show.print_json({"outcomes": outcomes, "loop": loop, "figures": figures, **said, **file})
     elif not is_quiet():
         show.sentence(sentences.felt(device.name, felt))
         show.outcomes(pipeline.outcomes)
         if loop:
             show.say(f"\n{loop['how']}; the first tick came {loop['start_s']:.2f} s after the loop was asked for\n")
         show.table(("figure", "value"), [(name, _text(value)) for name, value in felt.items()])
-        if said := session.changed_most(report.flagged):
-            show.plain(f"\n{said}")
+        for said in (session.changed_most(report.flagged), hand and hand.says):
+            if said:
+                show.plain(f"\n{said}")
     if report.stopped in (session.INTERRUPTED, TERMINATED):
         raise KeyboardInterrupt
     if report.stopped != OVER:
         show.flush()
         raise session.failure(report.ticks, report.stopped)
-
-
-def _forget(rows: Any) -> None:
-    """A recording is on disk; none is kept in memory."""
 
 
 def _say_if_alone(device: HapticDevice | None) -> None:

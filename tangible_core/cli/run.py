@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shlex
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
@@ -67,6 +67,7 @@ def run(
     sets: Sets = None,
     out: Annotated[Path | None, typer.Option("--out", help="Folder for the results [default: out/NAME].")] = None,
     seconds: Seconds = 8.0,
+    sheet: Annotated[Literal["png", "svg", "pdf"], typer.Option(help="What the sheet is drawn as.")] = "png",
     as_json: Json = False,
     no_cache: NoCache = False,
 ) -> None:
@@ -75,7 +76,7 @@ def run(
     A simulated device feels the surface; a real one is never moved: see `feel`.
     """
     pipeline = open_pipeline(config, sets or [], not no_cache)
-    done = pipeline.run(out or _folder(config[0]), seconds=seconds)
+    done = pipeline.run(out or _folder(config[0]), seconds=seconds, sheet=sheet)
     _print(done, as_json)
     _say_if_ended_early(done)
 
@@ -206,4 +207,5 @@ LINES: dict[str, tuple[str, Callable[[Mapping[Any, Any]], list[str]]]] = {
     "materials": ("materials", _material_lines),
     "force": ("force along the path", _force_lines),
     "guard": ("what the guard changed", lambda figures: [figures["says"]]),
+    "hand": ("the hand", lambda figures: [figures["says"]]),
 }

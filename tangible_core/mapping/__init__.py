@@ -3,5 +3,6 @@
 from .device import MappedDevice, mapped
 from .options import WorkspaceMapping
 from .placement import Placement
+from .scripted import over, wanted
 
-__all__ = ["MappedDevice", "Placement", "WorkspaceMapping", "mapped"]
+__all__ = ["MappedDevice", "Placement", "WorkspaceMapping", "mapped", "over", "wanted"]

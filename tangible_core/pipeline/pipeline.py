@@ -25,7 +25,7 @@ from ..data import (
 )
 from ..errors import ConfigError, quoted
 from ..files.writing import write_text
-from ..mapping import WorkspaceMapping, mapped
+from ..mapping import WorkspaceMapping
 from ..plugins import hooks
 from ..plugins.interfaces import KINDS, DepthEstimator, ForceRenderer, HapticDevice, Method, Segmenter, Touch
 from ..plugins.registry import Registry, default_registry
@@ -33,13 +33,14 @@ from ..preflight import Flight, Hand, Loop, Preflight, judge, survey
 from ..scene.scene import Scene
 from ..scene.workspace import Workspace
 from ..servo import OVER, Safety, Servo
-from ..session import About, Recording, Turn, check_record_path, keeping, replay, run_in_turn, run_simulated
+from ..session import About, Followed, Recording, Turn, check_record_path, keeping, replay, run_in_turn, run_simulated
 from .cache import Cache
 from .config import MaterialChoice, NamedMethod, PipelineConfig, Product, load_config
 from .engine import Engine, Progress
+from .following import felt_device, how_followed
 from .rehearsal import rehearsal
 from .rules import fitted
-from .runs import Run, about, make_run
+from .runs import Run, Sheet, about, make_run
 
 M = TypeVar("M", bound=Method)
 S = TypeVar("S", bound=BaseModel)
@@ -237,15 +238,16 @@ class Pipeline:
         seconds: float = 8.0,
         progress: Progress | None = None,
         stop: Event | None = None,
+        sheet: Sheet = "png",
     ) -> Run:
         """Make what is wanted, and write products, figures and a sheet into a folder.
 
         A touch is felt for so many seconds of a simulated device's own time; a real device is never moved by it.
-        progress, stop: as `make`.
+        progress, stop: as `make`. sheet: png, or svg or pdf, which can be enlarged.
         Raises: OutputError if the folder cannot be written; TangibleError as `make`.
         """
         with self.engine.watched(progress, stop):
-            return make_run(self.engine, Path(out), want or self.config.want, seconds, self._tell)
+            return make_run(self.engine, Path(out), want or self.config.want, seconds, self._tell, sheet)
 
     def feel(
         self,
@@ -318,6 +320,13 @@ class Pipeline:
         said = replace(self._about(None), device=f"replay of {recording.about.device or 'a recording'}")
         return replace(replay(touch, recording), about=said.stamped())
 
+    def followed(self, seen: Recording, device: HapticDevice | None = None) -> Followed:
+        """How the hand followed its path on this or the configured device, where the device knows that.
+
+        seen: what was felt, one tick of `session.EVERY`. Raises: as `feel`.
+        """
+        return how_followed(self.engine, self._device(device), seen)
+
     def preflight(
         self, device: HapticDevice | None = None, hand: Hand | None = None, loop: Loop | None = None
     ) -> Preflight:
@@ -355,7 +364,7 @@ class Pipeline:
 
     def _device(self, device: HapticDevice | None) -> HapticDevice:
         """The device as the picture sees it, by the mapping. Raises: ConfigError if there is none."""
-        felt = self.config.felt_device if device is None else mapped(device, self.config.mapping)
+        felt = felt_device(self.engine, device)
         if felt is None:
             raise self.config.missing("device")
         return felt

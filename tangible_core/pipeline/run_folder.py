@@ -26,8 +26,9 @@ MANIFEST = "manifest.json"
 CONFIG, NO_CONFIG, OUTCOMES = "config.yaml", "config.txt", "outcomes.json"
 CLAIMS = (CONFIG, NO_CONFIG, OUTCOMES)
 """What says what the other files are."""
-RECORDING, SHEET = "recording.npz", "sheet.png"
-NAMES = (*CLAIMS, *(f"{product}.npz" for product in PRODUCTS), RECORDING, SHEET)
+RECORDING, SHEET = "recording.npz", "sheet"
+SHEETS = tuple(f"{SHEET}.{drawn_as}" for drawn_as in ("png", "svg", "pdf"))
+NAMES = (*CLAIMS, *(f"{product}.npz" for product in PRODUCTS), RECORDING, *SHEETS)
 """What a run may write."""
 CHUNK = 1 << 20
 

@@ -3,9 +3,10 @@
 import platform
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, replace
+from html import escape
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 from ..data import DisparityMap, MaterialMap, Outcomes, Record, ServoReport
 from ..errors import ConfigError
@@ -13,14 +14,17 @@ from ..files.writing import write_text
 from ..plugins.interfaces import Touch
 from ..report import disparity_errors, draw_sheet, write_figures
 from ..report.html import png_html
-from ..session import About, Recording, run_simulated
+from ..session import EVERY, About, Recording, run_simulated
 from .cache import write_record
 from .engine import Engine
+from .following import felt_device, how_followed
 from .rehearsal import FELT, rehearsal
 from .run_folder import CONFIG, NO_CONFIG, OUTCOMES, RECORDING, SHEET, check_folder, rewritten
 
 SHOWN = ("disparity", "segments", "materials", "surface")
 """Products that the report draws, beside what is wanted."""
+Sheet = Literal["png", "svg", "pdf"]
+"""What a sheet can be drawn as."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,14 +41,18 @@ class Run:
     outcomes: Outcomes
     versions: Mapping[str, str]
     files: tuple[Path, ...]
+    sheet_says: str
+    """What is on the sheet, in words."""
 
     @property
     def sheet(self) -> Path:
         """The picture of all of it."""
-        return next(path for path in self.files if path.name == SHEET)
+        return next(path for path in self.files if path.stem == SHEET)
 
     def _repr_html_(self) -> str:
-        return png_html(self.sheet.read_bytes(), f"{self.scene}: the sheet of this run")
+        if self.sheet.suffix == ".png":
+            return png_html(self.sheet.read_bytes(), self.sheet_says)
+        return self.sheet.read_text(encoding="utf-8") if self.sheet.suffix == ".svg" else escape(self.sheet_says)
 
     def document(self) -> dict[str, Any]:
         """Everything but the products, as plain values."""
@@ -57,7 +65,12 @@ class Run:
 
 
 def make_run(
-    engine: Engine, out: Path, want: str, seconds: float, on_report: Callable[[ServoReport], None] | None = None
+    engine: Engine,
+    out: Path,
+    want: str,
+    seconds: float,
+    on_report: Callable[[ServoReport], None] | None = None,
+    sheet: Sheet = "png",
 ) -> Run:
     """Make what is wanted, and write the results and their report into a folder, in place of an earlier run's.
 
@@ -74,15 +87,15 @@ def make_run(
         recording = _felt(engine, value, seconds, on_report) if want == "touch" else None
     figures, config = _figures(engine, products, recording), _configuration(engine)
     kept = {f"{name}.npz": record for name, record in products.items() if isinstance(record, Record)}
-    felt = [RECORDING] if recording is not None else []
-    files = tuple(out / name for name in (config.name, *kept, *felt, SHEET, OUTCOMES))
-    run = Run(engine.scene.name, products, recording, figures, engine.outcomes, _versions(), files)
+    felt, drawn = [RECORDING] if recording is not None else [], f"{SHEET}.{sheet}"
+    files = tuple(out / name for name in (config.name, *kept, *felt, drawn, OUTCOMES))
     with rewritten(out, engine.config.path) as place:
         for name, record in kept.items():
             write_record(place(name), record)
         if recording is not None:
             recording.save(place(RECORDING))
-        _draw(engine, products, recording, place(SHEET))
+        says = _draw(engine, products, recording, place(drawn))
+        run = Run(engine.scene.name, products, recording, figures, engine.outcomes, _versions(), files, says)
         write_text(place(config.name), config.text)
         write_figures(place(OUTCOMES), run.document())
     return run
@@ -115,7 +128,7 @@ def about(engine: Engine) -> About:
 def _felt(
     engine: Engine, touch: Touch, seconds: float, on_report: Callable[[ServoReport], None] | None
 ) -> Recording | None:
-    device = engine.config.felt_device
+    device = felt_device(engine)
     if device is None or not device.spec().simulated:
         return None
     said = about(engine).stamped()
@@ -125,13 +138,14 @@ def _felt(
     return replace(recording, about=said)
 
 
-def _draw(engine: Engine, products: Mapping[str, Any], recording: Recording | None, path: Path) -> None:
+def _draw(engine: Engine, products: Mapping[str, Any], recording: Recording | None, path: Path) -> str:
     scene, shown = engine.scene, {name: products.get(name) for name in (*SHOWN, "relief")}
     if scene.truth is not None and shown["disparity"] is not None:
         shown["disparity"] = engine.make("disparity")  # pixel by pixel beside its truth
-    doubts = [each.text.partition(":")[0] for each in engine.outcomes.doubts]
-    title = f"{scene.name} (doubtful: {'; '.join(doubts)})" if doubts else scene.name
-    draw_sheet(path, views=scene.views, truth=scene.truth, recording=recording, title=title, **shown)
+    title = Path(scene.name).name if Path(scene.name).is_absolute() else scene.name
+    if doubts := [each.text.partition(":")[0] for each in engine.outcomes.doubts]:
+        title = f"{title} (doubtful: {'; '.join(doubts)})"
+    return draw_sheet(path, views=scene.views, truth=scene.truth, recording=recording, title=title, **shown)
 
 
 def _figures(engine: Engine, products: Mapping[str, Any], recording: Recording | None) -> dict[str, Any]:
@@ -149,6 +163,9 @@ def _figures(engine: Engine, products: Mapping[str, Any], recording: Recording |
         figures["force"] = recording.figures()
         if said := recording.guard_sentence:
             figures["guard"] = {"says": said}
+        hand = how_followed(engine, felt_device(engine), Recording(recording.rows[::EVERY]))
+        if hand.says:
+            figures["hand"] = hand._asdict()
     return figures
 
 

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import ClassVar
 
 import numpy as np
+from jaxtyping import Float64, Int64
 from pydantic import BaseModel, ConfigDict
 
 from ..data import (
@@ -109,6 +110,18 @@ class Attended(ABC):
     @abstractmethod
     def unattended(self) -> str | None:
         """In one line that nobody moves it now, and what to do; None if somebody does. Asked while it is open."""
+
+
+class Scripted(ABC):
+    """For a device whose hand follows a path that it knows."""
+
+    @abstractmethod
+    def over(self, extent_m: tuple[float, float]) -> HapticDevice:
+        """The same, with a path within this width and length about its centre, where its options leave that open."""
+
+    @abstractmethod
+    def wanted(self, ticks: Int64[np.ndarray, " n"]) -> Float64[np.ndarray, "n 3"] | None:
+        """Where its hand wants to be at these reads, the first of which is 0; None where that depends on more."""
 
 
 class Adjustable(ABC):

@@ -14,8 +14,12 @@ class Panel(NamedTuple):
     out."""
     likes: Collection[str] = ()
     """Given to it where the run has them."""
-    aspect: float = 0.0
-    """Width over height; 0 is the scene's own."""
+    aspect: float | Callable[..., float] = 0.0
+    """Width over height; 0 is the scene's own. A function is called with what the panel needs and likes, by name."""
     left_in: float = 0.15
     right_in: float = 0.15
     bottom_in: float = 0.4
+    least_in: float = 2.9
+    """Room for its headline, where its axes are narrower."""
+    least_aspect: float = 0.0
+    """Width over height beside panels that want to be high, if that is not fixed."""

@@ -16,6 +16,7 @@ from ..data import DisparityMap, HapticSurface, MaterialMap, Relief, SegmentMap,
 from ..errors import OutputError
 from ..files.writing import atomic_write
 from .layout import Cell, arrange
+from .sheet_files import described, writer
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -27,7 +28,6 @@ if TYPE_CHECKING:
 WIDTH_IN = 12.0
 TITLE_IN = 0.3
 HEADLINE_IN = 0.45
-LEAST_IN = 2.9
 DPI = 150
 SHAPES: dict[str, Callable[[Any], tuple[float, float]]] = {
     "views": lambda views: views.shape,
@@ -50,13 +50,16 @@ def draw_sheet(
     surface: HapticSurface | None = None,
     recording: Recording | None = None,
     title: str = "",
-) -> None:
-    """Draw what a run has as a PNG, whole or not at all; panels without data are left out.
+) -> str:
+    """Draw what a run has as .png, .svg or .pdf, whole or not at all; panels without data are left out.
+
+    Returns: what is on it in words, which is in the file too.
 
     truth: disparity (h, w) in px, not finite where unknown; shown as an error where the disparity is in px.
     relief: where there is no surface yet; a surface brings its own.
     recording: shown together with the relief that it was felt on.
-    Raises: OutputError if the place cannot be written, PictureError if truth and disparity differ in size.
+    Raises: OutputError for another suffix or a place that cannot be written, PictureError if truth and disparity
+    differ in size.
     """
     from .added import added_panels
     from .panels import PANELS
@@ -72,20 +75,22 @@ def draw_sheet(
         "recording": recording if recording is not None and len(recording.time_s) else None,
     }
     run = {name: value for name, value in given.items() if value is not None}
-    write_sheet(path, run, title, (*PANELS, *added_panels()))
+    return write_sheet(path, run, title, (*PANELS, *added_panels()))
 
 
-def write_sheet(path: Path, run: Mapping[str, Any], title: str, panels: Sequence[Panel]) -> None:
-    """Draw what is given in the report's style, as a PNG, whole or not at all. Raises: OutputError as `draw_sheet`."""
+def write_sheet(path: Path, run: Mapping[str, Any], title: str, panels: Sequence[Panel]) -> str:
+    """Draw what is given in the report's style, whole or not at all, and say what it is. Raises: as `draw_sheet`."""
     from matplotlib import style
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
 
     from .style import STYLE
 
+    write = writer(path)
     with style.context(STYLE, after_reset=True):
         figure = draw_figure(run, title, panels)
+        says = described(figure)
         with atomic_write(path) as file:
-            FigureCanvasAgg(figure).print_png(file)
+            write(figure, file, title, says)
+    return says
 
 
 def draw_figure(run: Mapping[str, Any], title: str, panels: Sequence[Panel]) -> Figure:
@@ -95,7 +100,7 @@ def draw_figure(run: Mapping[str, Any], title: str, panels: Sequence[Panel]) -> 
     panels = [panel for panel in panels if run.keys() >= set(panel.needs)]
     if not panels:
         raise OutputError(f"{title}: there is nothing to draw; ask for a product that can be drawn")
-    boxes, width_in, height_in = arrange([_cell(panel, scene_aspect(run)) for panel in panels], WIDTH_IN)
+    boxes, width_in, height_in = arrange([_cell(panel, run) for panel in panels], WIDTH_IN)
     figure = Figure(figsize=(width_in, height_in + TITLE_IN), dpi=DPI, facecolor="white")
     figure.text(0.15 / width_in, 1 - 0.1 / (height_in + TITLE_IN), title, fontsize=13, weight="bold", va="top")
     for letter, panel, box in zip(_letters(), panels, boxes, strict=False):
@@ -110,13 +115,24 @@ def _letters() -> Iterator[str]:
 
 
 def scene_aspect(run: Mapping[str, Any]) -> float:
-    """Width over height of what the run shows, kept between 1:2 and 3:1 so that a strip still has a panel."""
+    """Width over height of what the run shows, kept between 1:4 and 6:1 so that a strip still has a panel."""
     height, width = next((SHAPES[name](run[name]) for name in SHAPES if name in run), (1.0, 1.0))
-    return min(max(width / height, 0.5), 3.0)
+    return min(max(width / height, 0.25), 6.0)
 
 
-def _cell(panel: Panel, scene: float) -> Cell:
-    return Cell(panel.aspect or scene, panel.left_in, panel.right_in, panel.bottom_in, HEADLINE_IN, LEAST_IN)
+def panel_aspect(panel: Panel, run: Mapping[str, Any]) -> float:
+    """Width over height of this panel of a run."""
+    own = panel.aspect(**_shown(panel, run)) if callable(panel.aspect) else panel.aspect
+    return own or scene_aspect(run)
+
+
+def _cell(panel: Panel, run: Mapping[str, Any]) -> Cell:
+    room_in = panel.left_in, panel.right_in, panel.bottom_in, HEADLINE_IN
+    return Cell(panel_aspect(panel, run), *room_in, panel.least_in, panel.least_aspect)
+
+
+def _shown(panel: Panel, run: Mapping[str, Any]) -> dict[str, Any]:
+    return {name: run[name] for name in (*panel.needs, *panel.likes) if name in run}
 
 
 def _draw_panel(figure: Figure, panel: Panel, box: Box, run: Mapping[str, Any], letter: str) -> None:
@@ -125,7 +141,7 @@ def _draw_panel(figure: Figure, panel: Panel, box: Box, run: Mapping[str, Any], 
     left, top = box.left_in / width_in, top_in / height_in
     place = (left, top - box.height_in / height_in, box.width_in / width_in, box.height_in / height_in)
     axes = figure.add_axes(place)
-    headline = panel.draw(axes, **{name: run[name] for name in (*panel.needs, *panel.likes) if name in run})
+    headline = panel.draw(axes, **_shown(panel, run))
     line = top + 0.1 / height_in
     figure.text(left, line, letter, fontsize=11, weight="bold")
     figure.text(left + 0.18 / width_in, line, headline, fontsize=10)

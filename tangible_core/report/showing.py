@@ -57,9 +57,9 @@ def show(product: Record, axes: Axes | None = None, **beside: Any) -> Axes:
 def _new_axes(panel: Panel, run: Mapping[str, Any]) -> Axes:
     from matplotlib import pyplot
 
-    from .sheet import HEADLINE_IN, scene_aspect
+    from .sheet import HEADLINE_IN, panel_aspect
 
-    width_in = HEIGHT_IN * (panel.aspect or scene_aspect(run))
+    width_in = HEIGHT_IN * panel_aspect(panel, run)
     size_in = width_in + panel.left_in + panel.right_in, HEIGHT_IN + panel.bottom_in + HEADLINE_IN
     figure = pyplot.figure(figsize=size_in)
     wide, high = size_in

@@ -5,9 +5,10 @@
 from typing import Any
 
 import numpy as np
+from jaxtyping import Float64
 from matplotlib import colormaps
 from matplotlib.axes import Axes
-from matplotlib.colors import Colormap, ListedColormap
+from matplotlib.colors import Colormap, ListedColormap, to_rgb
 
 INK = "#222222"
 PALE = "#e9e9e9"
@@ -33,6 +34,7 @@ STYLE: dict[str, Any] = {
     "hatch.linewidth": 0.5,
     "hatch.color": "#999999",
     "image.interpolation": "nearest",
+    "svg.hashsalt": "tangible",
 }
 
 OKABE_ITO = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00", "#F0E442", "#999999")
@@ -43,6 +45,18 @@ ERRORS: Colormap = colormaps["magma_r"]
 """Errors: pale is right, dark is wrong."""
 FORCES = ListedColormap(colormaps["magma_r"](np.linspace(0.3, 0.95, 256)), "forces")
 """Forces: dark enough at its pale end to stand on white."""
+
+
+def colours(count: int) -> Float64[np.ndarray, "n 3"]:
+    """So many colours, no two alike: those of Okabe & Ito first.
+
+    Source for more than 24: Roberts, The unreasonable effectiveness of quasirandom sequences (2018).
+    """
+    plain = np.array([to_rgb(colour) for colour in OKABE_ITO])
+    first = np.vstack([plain, 0.5 * plain, 0.45 * plain + 0.55])
+    step = 1 / 1.2207440846057596 ** np.arange(1, 4)
+    rest = 0.1 + 0.8 * ((0.5 + np.arange(1, max(count - len(first), 0) + 1)[:, None] * step) % 1)
+    return np.vstack([first, rest])[:count]
 
 
 def bare(axes: Axes, caption: str = "") -> None:

@@ -1,5 +1,6 @@
 """A session joins a touch and a device: the loop, and what it records."""
 
+from .following import EVERY, Followed, Looks, followed
 from .in_turn import Turn, run_in_turn
 from .limited import changed_most
 from .live import figures, keeping, run_in_real_time
@@ -11,9 +12,12 @@ from .tick_file import About
 from .writer import Writer
 
 __all__ = [
+    "EVERY",
     "INTERRUPTED",
     "STOPPED",
     "About",
+    "Followed",
+    "Looks",
     "Recording",
     "Turn",
     "Writer",
@@ -22,6 +26,7 @@ __all__ = [
     "compared",
     "failure",
     "figures",
+    "followed",
     "keeping",
     "replay",
     "run_in_real_time",

@@ -5,20 +5,22 @@ from pathlib import Path
 from typing import Annotated, Literal, Self, final
 
 import numpy as np
+from jaxtyping import Float64, Int64
 from pydantic import Field, model_validator
 
 from tangible_core.data import DeviceSpec, Force, HapticState, Vector
-from tangible_core.plugins.interfaces import HapticDevice, Link
+from tangible_core.plugins.interfaces import HapticDevice, Link, Scripted
 
 from .hand import MovingHand, VirtualHand
-from .paths import DRAWN, Stroke, read_csv, walk
+from .paths import DRAWN, Stroke, read_csv, walk, within
 from .simulated import LIKE_A_FALCON, SimulatedLink
 
 Height = Annotated[float, Field(ge=-1, le=1)]
 Size = Annotated[float, Field(ge=1e-6, le=1)]
+MOST_M = (0.06, 0.04)
 
 
-class Mock(HapticDevice):
+class Mock(HapticDevice, Scripted):
     """A hand that follows a path, in simulated time: every read is one period later.
 
     With a virtual hand (the default) the path is where the hand wants to be: below the surface, so that it leans on
@@ -31,8 +33,9 @@ class Mock(HapticDevice):
     """Path of the hand: over the surface, straight down and up, or as recorded in `csv_file`."""
     csv_file: Path | None = None
     """Recorded path with columns time_s, x_m, y_m, z_m; played once, linear between rows, then held at its end."""
-    size_m: tuple[Size, Size] = (0.06, 0.04)
-    """Width and length of raster, circle and spiral, which are centred."""
+    size_m: tuple[Size, Size] | None = None
+    """Width and length of raster, circle and spiral, which are centred; null: 60 x 40 mm, or three quarters of
+    a surface that is smaller."""
     lines: Annotated[int, Field(ge=2, le=200)] = 8
     """Number of lines of the raster, or turns of the spiral."""
     z_m: Height = -0.005
@@ -66,10 +69,19 @@ class Mock(HapticDevice):
         """A new simulated device. Raises: DeviceError if the CSV file cannot be read or makes no sense."""
         return SimulatedLink("mock", Motion(self, self._stroke()).step)
 
+    def over(self, extent_m: tuple[float, float]) -> "Mock":
+        """The same, its path within this width and length, unless it has a `size_m`."""
+        return self if self.size_m else self.model_copy(update={"size_m": within(extent_m, MOST_M)})
+
+    def wanted(self, ticks: Int64[np.ndarray, " n"]) -> Float64[np.ndarray, "n 3"]:
+        """The path at these reads, its tremor included."""
+        hand = Motion(self, self._stroke())
+        return np.array([hand.target(tick) for tick in ticks.tolist()]).reshape(-1, 3)
+
     def _stroke(self) -> Stroke:
         if self.csv_file is not None:
             return read_csv(self.csv_file, self.period_s)
-        points = DRAWN[self.path](self.size_m, self.lines, self.z_m, self.lift_m)
+        points = DRAWN[self.path](self.size_m or MOST_M, self.lines, self.z_m, self.lift_m)
         return walk(points, self.speed_m_per_s, self.period_s)
 
 
@@ -82,22 +94,23 @@ class Motion:
         self._tremor = Tremor(options.tremor_m, options.seed)
         self._period_s = options.period_s
         self._tick = -1
-        x, y, z = self._target(0)
+        x, y, z = self.target(0)
         self._hand = options.hand and MovingHand(options.hand, (x, y, max(z, options.lift_m)), options.period_s)
 
     def step(self, held: Force) -> HapticState:
         """The first state is at time 0; each further one is a period later, under the force held until then."""
         self._tick += 1
-        position = self._target(self._tick)
+        position = self.target(self._tick)
         if self._hand is None:
-            (x, y, z), (px, py, pz), period = position, self._target(self._tick - 1), self._period_s
+            (x, y, z), (px, py, pz), period = position, self.target(self._tick - 1), self._period_s
             velocity = (x - px) / period, (y - py) / period, (z - pz) / period
             return HapticState(position, velocity, self._tick * period)
         if self._tick:
             self._hand.step(position, held)
         return HapticState(self._hand.position_m, self._hand.velocity_m_per_s, self._tick * self._period_s)
 
-    def _target(self, tick: int) -> Vector:
+    def target(self, tick: int) -> Vector:
+        """Where the hand wants to be."""
         x, y, z = self._stroke.at(tick)
         dx, dy, dz = self._tremor.at(tick * self._period_s)
         return x + dx, y + dy, z + dz

@@ -97,6 +97,15 @@ DRAWN: dict[str, Callable[[tuple[float, float], int, float, float], Points]] = {
 """Paths by name; each takes size_m, lines, low_m and high_m."""
 
 
+OVER = 0.75
+"""Of a surface's width and length a path takes at most so much: hands overshoot."""
+
+
+def within(extent_m: tuple[float, float], most_m: tuple[float, float]) -> tuple[float, float]:
+    """Width and length of a path over a surface of this size: the greatest, or less where the surface is small."""
+    return min(OVER * extent_m[0], most_m[0]), min(OVER * extent_m[1], most_m[1])
+
+
 def read_csv(path: Path, period_s: float) -> Stroke:
     """A recorded stroke, played once: columns time_s, x_m, y_m, z_m, one row a moment, times rising.
 

@@ -14,7 +14,7 @@ from ..style import FORCES, INK, colour_bar, inches
 
 ARROWS = 150
 STRONG = 0.1
-"""Share of the surface's width that a strong lateral force takes."""
+"""Share of the surface's size, the mean of its sides, that a strong lateral force takes."""
 
 
 def draw_force_map(axes: Axes, relief: Relief, recording: Recording) -> str:
@@ -25,7 +25,7 @@ def draw_force_map(axes: Axes, relief: Relief, recording: Recording) -> str:
     some = spread(at_mm, np.linalg.norm(recording.force_n, axis=1) > 0, ARROWS)
     if not some.size:
         return "Path, never in contact"
-    _draw_arrows(axes, at_mm[some], recording.force_n[some], STRONG * 1000 * relief.extent_m[0])
+    _draw_arrows(axes, at_mm[some], recording.force_n[some], (1000 * relief.extent_m[0], 1000 * relief.extent_m[1]))
     return "Lateral force along the path"
 
 
@@ -41,21 +41,21 @@ def _draw_heights(axes: Axes, relief: Relief) -> None:
 
 
 def _draw_arrows(
-    axes: Axes, at_mm: Float64[np.ndarray, "n 3"], force_n: Float64[np.ndarray, "n 3"], strong_mm: float
+    axes: Axes, at_mm: Float64[np.ndarray, "n 3"], force_n: Float64[np.ndarray, "n 3"], size_mm: tuple[float, float]
 ) -> None:
     """Lateral arrows, cut where they are over twice the strong one that the scale below the map shows."""
+    width_mm, strong_mm = size_mm[0], STRONG * (size_mm[0] * size_mm[1]) ** 0.5
     lateral_n = np.hypot(force_n[:, 0], force_n[:, 1])
     key_n = round_number(float(np.percentile(lateral_n, 95)))
     cut = np.minimum(1, 2 * key_n / np.maximum(lateral_n, 1e-300))
     arrows = axes.quiver(
         *at_mm[:, :2].T, *(force_n[:, :2] * cut[:, None]).T, force_n[:, 2],
-        cmap=FORCES, angles="xy", scale_units="xy", scale=key_n / strong_mm, width=0.004,
+        cmap=FORCES, angles="xy", scale_units="xy", scale=key_n / strong_mm, units="inches", width=0.014,
     )  # fmt: skip
     wide, high = inches(axes)
     label = f"{key_n:g} N" + (f", cut at {2 * key_n:g} N" if cut.min() < 1 else "")
-    axes.quiverkey(
-        arrows, 1 + 0.8 * wide - STRONG, -0.33 * high, key_n, label, labelpos="W", coordinates="axes", color=INK
-    )
+    right = 1 + 0.8 * wide - strong_mm / width_mm
+    axes.quiverkey(arrows, right, -0.47 * high, key_n, label, labelpos="W", coordinates="axes", color=INK)
     colour_bar(axes, arrows, "vertical force [N]")
 
 

@@ -5,28 +5,31 @@
 import numpy as np
 from jaxtyping import Bool, Float, Int
 from matplotlib.axes import Axes
-from matplotlib.colors import to_rgb
 from matplotlib.patches import Patch
 from matplotlib.patheffects import withStroke
 
 from ...data import MaterialMap, SegmentMap, Views
 from ...data.pictures import to_grey
-from ..style import INK, OKABE_ITO, bare, inches, thinned
+from ..style import INK, bare, colours, inches, thinned
 
-PALETTE = np.array([to_rgb(colour) for colour in OKABE_ITO])
 TINT = 0.45
 SIDE_PX = 800
 """The longer side as it is drawn, about; small pictures grow, so that outlines stay thin."""
 NAMED = 40
 """So many of the largest segments may carry their name."""
-LEGEND, SHORT = 9, 16
-"""Entries of the legend and letters of a name, at most."""
+LINE_IN = 0.165
+"""A line of the legend, of which there are as many as the panel is high."""
+SHORT, NUMBERS = 14, 3
+"""Letters of a name and numbers of segments in an entry of the legend, at most."""
 
 
 def draw_segments(
     axes: Axes, segments: SegmentMap, views: Views | None = None, materials: MaterialMap | None = None
 ) -> str:
-    """Regions tinted by material (by segment where there are none), outlined, named inside where the name fits."""
+    """Regions tinted by material (by segment where there are none), outlined, numbered and named where there is room.
+
+    The legend has the materials in the order of their segments, and the numbers of these.
+    """
     names = [f"segment {label}" for label in range(segments.count)]
     if materials is not None:
         names = [material.name for material in materials.materials]
@@ -35,8 +38,9 @@ def draw_segments(
     kind_of = np.array([kinds[name] for name in names])[labels]
     grey = np.ones(labels.shape, np.float32) if views is None else _grey(views.left, segments.labels.shape)
     _draw_regions(axes, grey, labels, kind_of)
-    _write_names(axes, labels, names)
-    _draw_legend(axes, list(kinds), np.bincount(kind_of.ravel(), minlength=len(kinds)) / kind_of.size)
+    _write_names(axes, labels, [f"{label} {name}" for label, name in enumerate(names)] if materials else names)
+    shares = np.bincount(kind_of.ravel(), minlength=len(kinds)) / kind_of.size
+    _draw_legend(axes, _entries(names) if materials else [*kinds], shares)
     materials_too = f", {_count(len(kinds), 'material')}" if materials else ""
     bare(axes, _count(segments.count, "segment") + materials_too)
     return "Segments and their materials" if materials else "Segments"
@@ -60,7 +64,7 @@ def _drawn_size(map_: np.ndarray) -> np.ndarray:
 def _draw_regions(
     axes: Axes, grey: Float[np.ndarray, "h w"], labels: Int[np.ndarray, "h w"], kind_of: Int[np.ndarray, "h w"]
 ) -> None:
-    picture = (1 - TINT) * grey[..., None] + TINT * PALETTE[kind_of % len(PALETTE)]
+    picture = (1 - TINT) * grey[..., None] + TINT * colours(int(kind_of.max()) + 1)[kind_of]
     picture[_borders(labels)] *= 0.2
     axes.imshow(picture, interpolation="antialiased")
 
@@ -82,13 +86,15 @@ def _largest(values: np.ndarray, most: int) -> list[int]:
 
 
 def _write_names(axes: Axes, labels: Int[np.ndarray, "h w"], names: list[str]) -> None:
-    """Write names, the largest segment's first, each in the middle of the largest disc in its segment, if it fits."""
+    """Write names, or numbers where only those fit, each in the middle of the largest disc in its segment."""
     point_px = inches(axes)[0] / 72 * labels.shape[1]
     for label in _largest(np.bincount(labels.ravel()), NAMED):
         column, row, radius_px = _largest_disc(labels == label)
-        if 2 * radius_px > point_px * max(10.0, 4.2 * len(names[label])):
-            halo = withStroke(linewidth=2, foreground="white")
-            axes.text(column, row, names[label], fontsize=8, ha="center", va="center", path_effects=[halo])
+        for text in (names[label], str(label)):
+            if 2 * radius_px > point_px * max(10.0, 4.2 * len(text)):
+                halo = withStroke(linewidth=2, foreground="white")
+                axes.text(column, row, text, fontsize=8, ha="center", va="center", path_effects=[halo])
+                break
 
 
 def _largest_disc(region: Bool[np.ndarray, "h w"]) -> tuple[float, float, float]:
@@ -104,14 +110,26 @@ def _short(name: str) -> str:
     return name if len(name) <= SHORT else f"{name[: SHORT - 3]}..."
 
 
-def _draw_legend(axes: Axes, kinds: list[str], shares: Float[np.ndarray, " n"]) -> None:
+def _entries(names: list[str]) -> list[str]:
+    """Each material after the numbers of its segments."""
+    labels: dict[str, list[str]] = {}
+    for label, name in enumerate(names):
+        labels.setdefault(name, []).append(str(label))
+    more = {name: ", ..." if len(found) > NUMBERS else "" for name, found in labels.items()}
+    return [f"{', '.join(found[:NUMBERS])}{more[name]}: {_short(name)}" for name, found in labels.items()]
+
+
+def _draw_legend(axes: Axes, entries: list[str], shares: Float[np.ndarray, " n"]) -> None:
+    """As many of them as there is room for, in their order."""
+    lines = max(2, int(1 / (LINE_IN * inches(axes)[1])))
+    fit = len(entries) if len(entries) <= lines else lines - 1
     keys = [
-        Patch(
-            facecolor=OKABE_ITO[kind % len(OKABE_ITO)], edgecolor=INK, linewidth=0.6,
-            label=f"{_short(kinds[kind])}, {100 * shares[kind]:.0f} %",
-        )
-        for kind in _largest(shares, LEGEND)
-    ]  # fmt: skip
-    if len(kinds) > LEGEND:
-        keys.append(Patch(alpha=0, label=f"and {len(kinds) - LEGEND} more"))
-    axes.legend(handles=keys, loc="upper left", bbox_to_anchor=(1.0, 1.02), handlelength=1, handleheight=1)
+        Patch(facecolor=colour, edgecolor=INK, linewidth=0.6, label=f"{entry}, {100 * share:.0f} %")
+        for entry, share, colour in zip(entries[:fit], shares, colours(fit), strict=False)
+    ]
+    if len(entries) > fit:
+        keys.append(Patch(alpha=0, label=f"and {len(entries) - fit} more"))
+    axes.legend(
+        handles=keys, loc="upper left", bbox_to_anchor=(1.0, 1.0), handlelength=1, handleheight=1,
+        borderaxespad=0.0, borderpad=0.5, labelspacing=0.35,
+    )  # fmt: skip

@@ -7,6 +7,7 @@ from itertools import combinations, pairwise
 from math import log
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 import matplotlib
 import numpy as np
@@ -15,7 +16,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.quiver import Quiver
 from PIL import Image
@@ -44,7 +44,7 @@ from tangible_core.report.material_sheet import draw_material, spectra
 from tangible_core.report.panels import PANELS
 from tangible_core.report.panels.force import round_number, spread
 from tangible_core.report.sheet import DPI, WIDTH_IN, draw_figure
-from tangible_core.report.style import OKABE_ITO
+from tangible_core.report.style import colours
 from tangible_core.session import Recording
 
 NAN = np.nan
@@ -191,7 +191,7 @@ class TestLayout:
         inner = range(1, len(cells))
         cuts = [(0, *cut, len(cells)) for count in range(len(cells)) for cut in combinations(inner, count)]
         ways = [[cells[a:b] for a, b in pairwise(cut)] for cut in cuts]
-        least = min(ways, key=lambda rows: sum(len(row) * log(_height(row, 12.0) / ROW_IN) ** 2 for row in rows))
+        least = min(ways, key=lambda rows: sum(log(_height(row, 12.0) / c.wanted_in) ** 2 for row in rows for c in row))
         boxes, _, _ = arrange(cells, 12.0)
         assert [sum(box.top_in == top for box in boxes) for top in sorted({box.top_in for box in boxes})] == [
             len(row) for row in least
@@ -531,17 +531,15 @@ class TestSheet:
         assert not axes.texts  # none of them is large enough for its name
         legend = axes.get_legend()
         assert legend is not None
-        assert [text.get_text() for text in legend.get_texts()] == [
-            *(f"segment {label}, 0 %" for label in range(9)),
-            "and 2391 more",
-        ]
+        *listed, more = [text.get_text() for text in legend.get_texts()]
+        assert listed == [f"segment {label}, 0 %" for label in range(len(listed))] and len(listed) > 9
+        assert more == f"and {2400 - len(listed)} more"
         (picture,) = images(axes)
         assert picture.shape == (13 * ROWS, 13 * COLUMNS, 3)
         for label in (0, 1, 7, 8, 2399):
             row, column = divmod(label, COLUMNS)
-            tinted = 0.45 * np.array(to_rgb(OKABE_ITO[label % 8]))
-            np.testing.assert_allclose(picture[13 * row + 6, 13 * column + 6], tinted)
-        outlined = 0.2 * 0.45 * np.array(to_rgb(OKABE_ITO[61 % 8]))
+            np.testing.assert_allclose(picture[13 * row + 6, 13 * column + 6], 0.45 * colours(2400)[label])
+        outlined = 0.2 * 0.45 * colours(2400)[61]
         np.testing.assert_allclose(picture[13, 13], outlined)
 
     @pytest.mark.parametrize(("count", "arrows", "contact"), [(1, 1, 100), (2, 1, 50), (5000, 150, 50)])
@@ -599,6 +597,117 @@ with tempfile.TemporaryDirectory() as folder:
 assert "matplotlib" in sys.modules
 assert "matplotlib.pyplot" not in sys.modules
 """
+
+
+def scene(rows: int, columns: int, count: int = 14) -> dict[str, Any]:
+    """A run on a picture of this shape, with segments in stripes, each of a material of its own."""
+    labels = np.int32(np.arange(rows)[:, None] * count // rows * np.ones(columns, np.int32))
+    heights_m = np.float32(0.005 + 0.004 * np.sin(np.arange(columns) / 9)) * np.ones((rows, columns), np.float32)
+    chosen = tuple(library().values())[:count]
+    return {
+        "views": Views(np.zeros((rows, columns, 3), np.uint8)),
+        "disparity": DisparityMap(heights_m * 1000),
+        "segments": SegmentMap(labels),
+        "materials": MaterialMap(chosen, ("",) * count),
+        "relief": HapticSurface.from_heights(heights_m).relief,
+        "recording": record(),
+    }
+
+
+class TestEveryShape:
+    """Square, portrait, panorama; a map of heights alone."""
+
+    @pytest.mark.parametrize("alone", [False, True], ids=["run", "heights"])
+    @pytest.mark.parametrize("shape", [(90, 90), (180, 60), (50, 200), (600, 30)])
+    def test_nothing_overlaps_and_the_sheet_is_filled(self, shape: tuple[int, int], alone: bool) -> None:
+        run = scene(*shape)
+        if alone:
+            run = {name: run[name] for name in ("relief", "recording")}
+        figure = draw_figure(run, "title", PANELS)
+        FigureCanvasAgg(figure).draw()
+        bars = [bar for axes in figure.axes for bar in axes.child_axes if axes.images or axes.collections]
+        drawn = [
+            *figure.texts,
+            *(axes.xaxis.label for axes in figure.axes if axes.get_xlabel()),
+            *(bar.yaxis.label for bar in bars),
+            *(text for axes in figure.axes if (legend := axes.get_legend()) for text in legend.get_texts()),
+        ]
+        boxes = [text.get_window_extent() for text in drawn]
+        for number, box in enumerate(boxes):
+            assert figure.bbox.x0 <= box.x0 and box.x1 <= figure.bbox.x1 and figure.bbox.y0 <= box.y0
+            assert not any(box.overlaps(other) for other in boxes[:number]), drawn[number].get_text()
+        for row in {round(axes.get_position().y1, 6) for axes in figure.axes}:
+            panels = [axes for axes in figure.axes if round(axes.get_position().y1, 6) == row]
+            ends = [axes.get_position().x1 for axes in panels]
+            ends += [
+                bar.yaxis.label.get_window_extent().x1 / figure.bbox.x1 for each in panels for bar in each.child_axes
+            ]
+            assert max(ends) > 0.65
+
+    @pytest.mark.parametrize("shape", [(90, 90), (180, 60), (50, 200)])
+    def test_pictures_keep_their_proportion(self, shape: tuple[int, int]) -> None:
+        figure = draw_figure(scene(*shape), "title", PANELS)
+        views, _, segments, _, way, _ = figure.axes
+        for axes in (views, segments, way):
+            assert axes.bbox.width / axes.bbox.height == pytest.approx(shape[1] / shape[0], rel=1e-6)
+
+
+class TestSegments:
+    def test_each_is_numbered_and_the_legend_has_their_order(self) -> None:
+        axes = draw_figure(scene(900, 900), "title", PANELS).axes[2]
+        names = list(library())[:14]
+        assert sorted(int(text.get_text().split()[0]) for text in axes.texts) == [*range(14)]
+        legend = axes.get_legend()
+        assert legend is not None
+        said = [text.get_text() for text in legend.get_texts()]
+        assert [each.rpartition(",")[0] for each in said] == [f"{label}: {name}" for label, name in enumerate(names)]
+        shown = {key.get_facecolor() for key in legend.get_patches()}
+        assert len(shown) == 14
+
+    def test_segments_of_one_material_share_its_entry(self) -> None:
+        legend = draw_figure(whole_run(), "title", PANELS).axes[3].get_legend()
+        assert legend is not None
+        assert [text.get_text() for text in legend.get_texts()] == ["0, 2: ice, 67 %", "1: sandpaper, 33 %"]
+
+    @pytest.mark.parametrize("count", [0, 3, 8, 24, 25, 3000])
+    def test_no_two_colours_are_alike(self, count: int) -> None:
+        found = colours(count)
+        assert found.shape == (count, 3) and (found >= 0).all() and (found <= 1).all()
+        assert len(np.unique(found.round(6), axis=0)) == count
+        if 8 < count < 30:
+            apart = np.linalg.norm(found[:, None] - found, axis=2) + np.eye(count)
+            assert apart.min() > 0.1
+
+
+class TestFiles:
+    SAYS = (
+        "A sheet of 3 pictures of a & b. Input: left, inset right: 60 x 40 px, f 1000 px, B 200 mm. "
+        "Segments and their materials: 3 segments, 2 materials; 0, 2: ice, 67 %; 1: sandpaper, 33 %. "
+        "Relief and its normals."
+    )
+
+    @pytest.mark.parametrize("suffix", ["png", "svg", "pdf"])
+    def test_who_does_not_see_it_is_told_what_is_on_it(self, tmp_path: Path, suffix: str) -> None:
+        """In the file, which is the same each time."""
+        run: dict[str, Any] = {name: whole_run()[name] for name in ("views", "segments", "materials", "relief")}
+        for name in "xy":
+            assert draw_sheet(tmp_path / f"{name}.{suffix}", title="a & b", **run) == self.SAYS
+        first = (tmp_path / f"x.{suffix}").read_bytes()
+        assert first == (tmp_path / f"y.{suffix}").read_bytes()
+        if suffix == "png":
+            with Image.open(tmp_path / "x.png") as sheet:
+                assert (sheet.info["Title"], sheet.info["Description"]) == ("a & b", self.SAYS)
+        elif suffix == "svg":
+            root = ElementTree.fromstring(first)
+            texts = {each.tag.rpartition("}")[2]: each.text for each in [*root][:2]}
+            assert texts == {"title": "a & b", "desc": self.SAYS}
+            assert root.get("role") == "img"
+        else:
+            assert first.startswith(b"%PDF") and b"/Subject" in first
+
+    def test_another_suffix_is_refused(self, tmp_path: Path) -> None:
+        with pytest.raises(OutputError, match=r"drawn as \.png, \.svg or \.pdf"):
+            draw_sheet(tmp_path / "sheet.jpg", views=Views(np.zeros((4, 4), np.uint8)))
 
 
 class TestMaterial:

@@ -2,22 +2,25 @@
 
 from typing import Annotated, Literal
 
+import numpy as np
+from jaxtyping import Int64
 from pydantic import Field
 
 from tangible_core.data import DeviceSpec
-from tangible_core.plugins.interfaces import HapticDevice, Link
+from tangible_core.plugins.interfaces import HapticDevice, Link, Scripted
 
 from ..hand import VirtualHand
-from ..paths import DRAWN, walk
+from ..paths import DRAWN, walk, within
 from .calibration import Calibration
 from .falcon import Falcon
 from .simulator.faults import Fault
 
 Size = Annotated[float, Field(ge=1e-3, le=0.06)]
 Height = Annotated[float, Field(ge=-0.03, le=0.03)]
+MOST_M = (0.05, 0.035)
 
 
-class FalconSimulated(HapticDevice):
+class FalconSimulated(HapticDevice, Scripted):
     """A simulated Novint Falcon, byte by byte: the real driver loads its firmware, homes it and feels.
 
     Simulated are the USB chip, the boot loader, the packets, the homing, the mass and friction of the mechanics, and a
@@ -29,8 +32,9 @@ class FalconSimulated(HapticDevice):
     """Options of the driver, as of `falcon`; without firmware, a made-up one is used."""
     path: Literal["raster", "circle", "spiral", "press"] = "raster"
     """Path of the hand, over the surface or straight down and up."""
-    size_m: tuple[Size, Size] = (0.05, 0.035)
-    """Width and length of raster, circle and spiral, which are centred."""
+    size_m: tuple[Size, Size] | None = None
+    """Width and length of raster, circle and spiral, which are centred; null: 50 x 35 mm, or three quarters of
+    a surface that is smaller."""
     lines: Annotated[int, Field(ge=2, le=200)] = 8
     """Number of lines of the raster, or turns of the spiral."""
     z_m: Height = -0.005
@@ -50,6 +54,13 @@ class FalconSimulated(HapticDevice):
         """As of device falcon, but that no motor moves."""
         return (self.driver.calibration or Calibration()).spec(simulated=True)
 
+    def over(self, extent_m: tuple[float, float]) -> "FalconSimulated":
+        """The same, its path within this width and length, unless it has a `size_m`."""
+        return self if self.size_m else self.model_copy(update={"size_m": within(extent_m, MOST_M)})
+
+    def wanted(self, ticks: Int64[np.ndarray, " n"]) -> None:
+        """Not known before: the path begins once the device is homed."""
+
     def open(self) -> Link:
         """A new Falcon, its firmware loaded and homed by the hand.
 
@@ -62,7 +73,7 @@ class FalconSimulated(HapticDevice):
         from .simulator.firmware_image import synthetic_image
 
         clock = RealClock() if self.real_time else SimulatedClock()
-        points = DRAWN[self.path](self.size_m, self.lines, self.z_m, self.lift_m)
+        points = DRAWN[self.path](self.size_m or MOST_M, self.lines, self.z_m, self.lift_m)
         unit = simulated_falcon(clock, walk(points, self.speed_m_per_s, 0.001), self.lift_m, self.hand)
         image = self.driver.image() or synthetic_image()
         return open_falcon(self.driver.settings(), image, Bus([unit], self.faults), clock)

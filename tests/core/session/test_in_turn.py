@@ -16,7 +16,7 @@ from tangible_core.servo import OVER, Safety
 from tangible_core.session import INTERRUPTED, STOPPED, Turn, in_turn, run_in_turn
 from tangible_core.testing.loop_devices import Circling, Failing
 
-AT_ONCE = Safety(ramp_s=0, max_step_n=10)
+AT_ONCE = Safety(ramp_s=0, max_step_n=10, stale_s=1.0, passivity="off")  # late ticks change nothing
 TIME_S, PROXY_Z_M, FORCE_Z_N, FLAGS = (TICK_COLUMNS.index(name) for name in ("time_s", "proxy_z_m", "fz_n", "flags"))
 
 

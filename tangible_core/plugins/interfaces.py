@@ -5,7 +5,8 @@ Methods are stateless; what keeps state is a session: `Touch` for a renderer, `L
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator
-from typing import ClassVar
+from functools import partial
+from typing import Any, ClassVar
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict
@@ -20,9 +21,11 @@ from ..data import (
     Unit,
     Views,
 )
+from ..data.arguments import as_picture
 from .link import Link as Link
 from .touch import PlainTouch as PlainTouch
 from .touch import Touch as Touch
+from .verbs import guard_verb, taking
 
 
 class Method(BaseModel, ABC):
@@ -37,6 +40,10 @@ class Method(BaseModel, ABC):
 class DepthEstimator(Method):
     """Makes a disparity map from one picture or two."""
 
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
+        guard_verb(cls, "depth", "estimate", DisparityMap, taking("views", Views, ", such as Views(left, right)"))
+
     @abstractmethod
     def estimate(self, views: Views) -> DisparityMap:
         """Disparity of the left view. Raises: TangibleError if these views do not allow it."""
@@ -44,6 +51,10 @@ class DepthEstimator(Method):
 
 class Segmenter(Method):
     """Divides a picture into parts of one texture each."""
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
+        guard_verb(cls, "texture", "segment", SegmentMap, partial(as_picture, "picture"))
 
     @abstractmethod
     def segment(self, picture: np.ndarray) -> SegmentMap:
@@ -60,6 +71,10 @@ class ForceRenderer(Method):
     is_lateral: ClassVar[bool] = False
     """True for a law of lateral forces alone: the normal force is the table's, under the hand."""
 
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
+        guard_verb(cls, "render", "touch", Touch, taking("surface", HapticSurface, ", such as from_heights makes"))
+
     @abstractmethod
     def touch(self, surface: HapticSurface) -> Touch:
         """A new touch on this surface, free of contact."""
@@ -67,6 +82,11 @@ class ForceRenderer(Method):
 
 class HapticDevice(Method):
     """Something that has a position and gives a force."""
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
+        guard_verb(cls, "device", "spec", DeviceSpec)
+        guard_verb(cls, "device", "open", Link)
 
     @abstractmethod
     def spec(self) -> DeviceSpec:

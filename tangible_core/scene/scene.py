@@ -12,8 +12,10 @@ from numpy.typing import ArrayLike
 from pydantic import ValidationError
 
 from ..data import Calibration, DisparityMap, Record, SegmentMap, Views
+from ..data.arguments import as_picture
 from ..data.pictures import fill_non_finite
-from ..errors import ConfigError, PictureError
+from ..errors import ConfigError, PictureError, wrong_argument
+from ..files.paths import as_path
 from .geometry import Holes, scale_heights
 from .picture_files import NonFinite, labels_of, map_of, picture_of, read_labels, read_map, read_picture
 from .rig import StereoRig, turned
@@ -78,8 +80,9 @@ class Scene:
             "disparity": disparity, "segments": segments, "truth": truth, "rig": rig,
         }  # fmt: skip
         parts = {part: value for part, value in parts.items() if value is not None}
+        _check_cameras(calibration, rig)
         paths = {
-            part: Path(cast("str | PathLike[str]", value)).absolute()
+            part: as_path(cast(Any, value), part).absolute()
             for part, value in parts.items()
             if isinstance(value, str | PathLike)
         }
@@ -91,7 +94,7 @@ class Scene:
             return cls._read(name or str(paths[files.main]), files, Path(), files)
         cameras = _rig(paths["rig"], files).cameras if "rig" in paths else rig
         held = {
-            part: _read(part, paths[part], files) if part in paths else _converted(part, np.asarray(value), files)
+            part: _read(part, paths[part], files) if part in paths else _converted(part, as_picture(part, value), files)
             for part, value in sorted(parts.items(), key=lambda each: each[0] != files.main)
             if part != "rig"
         }
@@ -103,6 +106,7 @@ class Scene:
 
         Raises: ConfigError for another name.
         """
+        name = str(name)
         return cls.read(name if name.startswith("builtin/") else f"builtin/{name}", Path())
 
     @classmethod
@@ -120,7 +124,7 @@ class Scene:
 
     @classmethod
     def _read(cls, name: str, files: SceneFiles, folder: Path, origin: "str | SceneFiles") -> Self:
-        paths = {part: folder / path.expanduser() for part, path in files if isinstance(path, Path)}
+        paths = {part: as_path(folder) / as_path(path) for part, path in files if isinstance(path, Path)}
         rig = _rig(paths.pop("rig"), files) if "rig" in paths else None
         held = {part: _read(part, path, files) for part, path in paths.items()}
         if rig is not None and rig.size not in (None, held[files.main].shape[1::-1]):
@@ -167,6 +171,14 @@ class Scene:
             relief = scale_heights(self.height, width_m, self.relief_m or relief_m, holes)
         found = {"views": self.views, "relief": relief, "disparity": self.disparity, "segments": self.segments}
         return {product: record for product, record in found.items() if record is not None}
+
+
+def _check_cameras(calibration: object, rig: object) -> None:
+    """Raises: ArgumentError for what describes no camera."""
+    if not isinstance(calibration, Calibration | None):
+        raise wrong_argument("calibration", calibration, "a Calibration, such as Calibration(focal_px, baseline_m)")
+    if not isinstance(rig, StereoRig | str | PathLike | None):
+        raise wrong_argument("rig", rig, "a StereoRig, or the path of its file")
 
 
 def _checked(

@@ -8,6 +8,7 @@ import json
 import logging
 import os
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any, cast
@@ -18,12 +19,15 @@ from .. import data
 from ..data import Record
 from ..errors import OutputError, quoted, shown
 from ..files.arrays import Archive
+from ..files.paths import as_path
 from ..files.reading import check_file
 from ..files.writing import atomic_write
 
 log = logging.getLogger(__name__)
 
 DEFAULT_BYTES = 2 << 30
+_unwritable: set[Path] = set()
+"""Folders that were complained of: each once, not for each result."""
 KEPT = frozenset(name for name, each in vars(data).items() if is_dataclass(each))
 """What an entry may be made of."""
 
@@ -36,7 +40,10 @@ class Cache:
         self.max_bytes = max_bytes
 
     def __contains__(self, key: str) -> bool:
-        return self._path(key).exists()
+        try:
+            return self._path(key).is_file()
+        except OSError:  # the folder may not be looked into
+            return False
 
     def get(self, key: str) -> Record | None:
         """The record of this key, or None if there is none or it is damaged (then it is deleted and said)."""
@@ -47,8 +54,9 @@ class Cache:
         except FileNotFoundError:  # or dropped by another process while it was read
             return None
         except Exception as error:  # noqa: BLE001 - a damaged file can provoke any
-            log.warning("cache entry %s is damaged and is made again: %s", path, shown(str(error), 200))
-            path.unlink(missing_ok=True)
+            if self._is_there():
+                log.warning("cache entry %s is damaged and is made again: %s", path, shown(str(error), 200))
+                _remove(path)
             return None
         return record
 
@@ -58,7 +66,16 @@ class Cache:
             write_record(self._path(key), record)
             self._prune()
         except (OutputError, OSError) as error:
-            log.warning("the result is not cached: %s", error)
+            if self.folder not in _unwritable:
+                _unwritable.add(self.folder)
+                log.warning("results are not cached: %s; TANGIBLE_CACHE_DIR names another cache", error)
+
+    def _is_there(self) -> bool:
+        """Whether there is a folder to hold entries; of what stands in its place, `put` complains."""
+        try:
+            return self.folder.is_dir()
+        except OSError:
+            return False
 
     def _path(self, key: str) -> Path:
         return self.folder / f"{key}.npz"
@@ -77,7 +94,7 @@ class Cache:
 def default_folder() -> Path:
     """$TANGIBLE_CACHE_DIR, or the user's cache folder."""
     if named := os.environ.get("TANGIBLE_CACHE_DIR"):
-        return Path(named)
+        return as_path(named, "TANGIBLE_CACHE_DIR")
     from platformdirs import user_cache_path
 
     return user_cache_path("tangible-images")
@@ -131,6 +148,15 @@ def _unpack(tree: Any, arrays: Mapping[str, np.ndarray]) -> Any:
             return tree
         case _:
             raise ValueError(f"unknown entry {quoted(tree)}")
+
+
+def _remove(path: Path) -> None:
+    """A damaged entry. A folder that holds something is somebody's: it stays, and `put` complains of it."""
+    with suppress(OSError):
+        if path.is_dir() and not path.is_symlink():
+            path.rmdir()
+        else:
+            path.unlink()
 
 
 def _used(path: Path) -> tuple[float, int]:

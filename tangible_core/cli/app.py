@@ -6,21 +6,28 @@ import argparse
 import logging
 import os
 import sys
-from typing import TYPE_CHECKING
+from functools import wraps
+from pathlib import Path
+from traceback import walk_tb
+from typing import TYPE_CHECKING, Any
 
 import typer
 
 from ..errors import ConfigError, TangibleError, exited, quoted, shown
+from ..files.paths import as_path
 from ..plugins import hooks
 from ..plugins.registry import default_registry
-from ..runtime import standard_output
+from ..runtime import ending, standard_output
 from . import check, compare, devices, feel, materials, plugins, preflight, replay, run, schema
-from .options import DONE, INTERRUPTED, MISTAKE
+from .options import DONE, FAILED, INTERRUPTED, MISTAKE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from typer.models import CommandInfo, TyperInfo
+
+ENDED_BY = 128
+"""With the number of a signal: the exit code of a program that one has ended, as shells have it."""
 
 app = typer.Typer(
     name="tangible",
@@ -52,20 +59,44 @@ def _ours(typed: typer.Typer) -> Iterator[CommandInfo | TyperInfo]:
             yield from _ours(group.typer_instance)
 
 
+def _at_home(command: Callable[..., Any]) -> Callable[..., Any]:
+    """What a shell leaves of `~`, as in --out=~/maps, is a home here too."""
+
+    @wraps(command)
+    def called(**options: Any) -> Any:
+        return command(
+            **{name: as_path(value) if isinstance(value, Path) else value for name, value in options.items()}
+        )
+
+    return called
+
+
 for each in _ours(app):  # not those of others, added later: these write as they like
-    each.callback = each.callback and standard_output.kept()(each.callback)
+    each.callback = each.callback and standard_output.kept()(_at_home(each.callback))
 
 
 def main() -> None:
     """Entry point: one clear message for a user's mistake, and an exit code that says whose it is."""
-    sys.exit(_guarded(lambda: _run_and_leave()))
+    with ending.as_ctrl_c():
+        code = _guarded(_run_and_leave)
+        asked = ending.asked_by()
+    sys.exit(code if asked is None else ENDED_BY + asked)
 
 
 def _run_and_leave() -> int:
     try:
+        _check_folder()
         return _run_app()
     finally:
         standard_output.leave()
+
+
+def _check_folder() -> None:
+    """Raises: ConfigError if there is no current folder: nothing that is relative to it could be found."""
+    try:
+        os.getcwd()  # noqa: PTH109 - pathlib is not needed for it
+    except FileNotFoundError as error:
+        raise ConfigError("the current folder was deleted; go to one that exists, such as by `cd`") from error
 
 
 def _run_app() -> int:
@@ -74,6 +105,10 @@ def _run_app() -> int:
         hooks.tell(default_registry().plugins, "tangible_commands", app=app)
     try:
         code = app(words, standalone_mode=False, default_map=_no_help())
+    except OSError as error:
+        if not isinstance(error, BrokenPipeError) and _in_typer(error):
+            raise standard_output.give_up(error) from error
+        raise
     except SystemExit as error:
         if isinstance(error.__context__, BrokenPipeError):  # typer's own answer to a reader that went away
             raise error.__context__ from None
@@ -81,6 +116,12 @@ def _run_app() -> int:
     if code == INTERRUPTED:  # typer answers Ctrl-C itself, without a word
         raise KeyboardInterrupt
     return code if isinstance(code, int) else DONE
+
+
+def _in_typer(error: OSError) -> bool:
+    """Whether it was raised where typer writes, such as the words of `--help`."""
+    *_, (frame, _) = walk_tb(error.__traceback__)
+    return str(frame.f_globals.get("__name__")).startswith("typer.")
 
 
 def _no_help() -> dict[str, object]:
@@ -108,21 +149,35 @@ def _guarded(work: Callable[[], int]) -> int:
     try:
         return work()
     except TangibleError as error:
-        typer.echo(str(error), err=True)
-        return MISTAKE
+        return _said(str(error), MISTAKE)
     except (KeyboardInterrupt, typer.Abort):
-        typer.echo("interrupted; what was finished is kept", err=True)
-        return INTERRUPTED
+        asked = ending.asked_by()
+        return _said(f"{f'ended by {asked.name}' if asked else 'interrupted'}; what was finished is kept", INTERRUPTED)
     except BrokenPipeError:  # the reader went away: `tangible plugins | head`
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return DONE
     except typer.Exit as ended:
         return ended.exit_code
-    except Exception as error:
-        if (show := getattr(error, "show", None)) is None:  # typer's own complaints about the words of the call
-            raise
-        show()
-        return MISTAKE
+    except BaseException as error:  # noqa: BLE001 - whatever a plugin raises
+        return _unforeseen(error)
+
+
+def _unforeseen(error: BaseException) -> int:
+    """A fault that is nobody's mistake at the keyboard, or what typer has to say of the words of the call."""
+    if (show := getattr(error, "show", None)) is not None:
+        return _said(show, MISTAKE)
+    from ..plugins import failures
+
+    return _said(failures.sentence(error), FAILED if failures.place_of(error) is None else MISTAKE)
+
+
+def _said(what: str | Callable[[], None], code: int) -> int:
+    """Say it on standard error, which may be full or gone, and return the code."""
+    try:
+        what() if callable(what) else typer.echo(what, err=True)
+    except OSError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stderr.fileno())
+    return code
 
 
 def _set_logging(levels: list[str]) -> None:

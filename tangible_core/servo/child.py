@@ -19,6 +19,8 @@ from .ring import STOP, SWAP, Ring
 from .wire import End, Refusal, Start, StartReply, Swap, SwapReply, receive, send, sendable
 
 TERMINATED = "the process was asked to end"
+ENDING = ("SIGTERM", "SIGHUP", "SIGQUIT")
+"""From `kill`, from a terminal that is closed, from Ctrl-\\: sent to the loop as well, they must not end it at once."""
 PAUSED = "the program was paused from the keyboard"
 SWITCH_S = 1e-4
 """After so long a thread that holds Python's lock hands it to one that waits: the loop, where it needs Python."""
@@ -129,7 +131,9 @@ def main() -> None:
     sys.setswitchinterval(SWITCH_S)
     commands = open(0, "rb", buffering=0)  # noqa: SIM115 - a buffer's lock would outlive the thread that waits
     child = Child(commands, replies)
-    signal.signal(signal.SIGTERM, lambda _number, _frame: child.stop(TERMINATED))
+    for name in ENDING:
+        if hasattr(signal, name):
+            signal.signal(getattr(signal, name), lambda _number, _frame: child.stop(TERMINATED))
     if hasattr(signal, "SIGTSTP"):  # Ctrl-Z: a process that stands still would leave its force on
         signal.signal(signal.SIGTSTP, lambda _number, _frame: child.stop(PAUSED))
     gc.disable()  # a collection takes longer than a tick

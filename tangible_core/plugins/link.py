@@ -8,7 +8,7 @@ from typing import Any, Self, final
 
 from ..data import NO_FORCE, Force, HapticState, limited
 from ..data.arguments import as_force, as_state
-from ..errors import DeviceError, wrong_argument
+from ..errors import ArgumentError, BrokenMethod, DeviceError, what_is, wrong_argument
 
 log = logging.getLogger(__name__)
 
@@ -51,7 +51,7 @@ class Link(ABC):
         if self.__closed:
             raise self.__refusal()
         found = self._read()
-        return found if type(found) is HapticState else as_state(found)
+        return found if type(found) is HapticState else self.__as_state(found)
 
     @final
     def write(self, force: Force) -> None:
@@ -108,6 +108,13 @@ class Link(ABC):
             if not self.__closed:  # else the driver did so itself
                 self.__closed = "is closed"
                 self._release()
+
+    def __as_state(self, found: Any) -> HapticState:
+        try:
+            return as_state(found)
+        except ArgumentError as error:
+            gave = what_is(found)
+            raise BrokenMethod(f"{self.__name}: its driver read {gave}; it must read a HapticState") from error
 
     def __refusal(self) -> DeviceError:
         return DeviceError(f"{self.__name} {self.__closed}; open it again")

@@ -78,7 +78,10 @@ for each in _ours(app):  # not those of others, added later: these write as they
 def main() -> None:
     """Entry point: one clear message for a user's mistake, and an exit code that says whose it is."""
     with ending.as_ctrl_c():
-        code = _guarded(_run_and_leave)
+        try:
+            code = _guarded(_run_and_leave)
+        except KeyboardInterrupt:  # while the last words were said
+            code = INTERRUPTED
         asked = ending.asked_by()
     sys.exit(code if asked is None else ENDED_BY + asked)
 

@@ -220,6 +220,8 @@ class TestHomes:
         assert done.returncode == 0, done.stderr
         assert (home / "out" / "surface.npz").exists()
         assert not (folder / "~").exists()
+        library = home / "mine.yaml"
+        assert failed(tangible("materials", "--library=~/mine.yaml", cwd=folder)).startswith(f"{library}: there is no")
         done = tangible("plan", "~/p.yaml", "--set", "scene={photo: ~/a.npy}", "--set", "depth=depth", cwd=folder)
         assert done.returncode == 0, done.stderr
 

@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 from difflib import get_close_matches
 from math import inf
+from numbers import Real
 from reprlib import Repr
 from sys import stdlib_module_names
 from traceback import walk_tb
@@ -37,7 +38,7 @@ class UnknownMethod(TangibleError):
     """No installed method has this name."""
 
     def __init__(self, kind: str, name: str, known: Iterable[str]) -> None:
-        names = sorted(set(known))
+        names, name = sorted(set(known)), str(name)
         hint, there = did_you_mean(name, names), ", ".join(names) or "none"
         super().__init__(f"no {kind} method is named {quoted(name)}{hint}; installed: {there}")
 
@@ -81,11 +82,45 @@ class ResultsError(TangibleError):
     """Files of measurements that are damaged, or that cannot be compared."""
 
 
+class ArgumentError(TangibleError, TypeError):
+    """An argument of the wrong type that nothing can be made of."""
+
+
+def wrong_argument(name: str, value: object, wanted: str) -> ArgumentError:
+    """What to raise where an argument cannot be used: its name, what it is and what it should be.
+
+    >>> wrong_argument("seconds", "long", "a number")
+    ArgumentError("seconds: is the str 'long'; it must be a number")
+    """
+    return ArgumentError(f"{name}: is {what_is(value)}; it must be {wanted}")
+
+
+def what_is(value: object) -> str:
+    """A value of the wrong type in words: its type, and the value itself where that is short.
+
+    >>> what_is(7), what_is(None), what_is(slice(2))
+    ('the int 7', 'None', 'a slice')
+    """
+    if value is None:
+        return "None"
+    if (dtype := getattr(value, "dtype", None)) is not None:
+        return f"an array of {dtype} {getattr(value, 'shape', '')}"
+    if isinstance(value, type):
+        return f"the class {value.__name__}"
+    name = type(value).__name__
+    return f"the {name} {quoted(value)}" if isinstance(value, _SHOWN) else f"a {name}"
+
+
+_SHOWN = (str, bytes, int, float, complex, tuple, list, dict, set)
+
+
 def check_positive(name: str, value: float) -> None:
-    """Raises: ConfigError for a number that is not positive and finite.
+    """Raises: ConfigError for a number that is not positive and finite, ArgumentError for what is no number.
 
     >>> check_positive("seconds", 0.5)
     """
+    if not isinstance(value, Real):
+        raise wrong_argument(name, value, "a number")
     if not 0 < value < inf:
         raise ConfigError(f"{name}: is {value}; it must be positive and finite")
 

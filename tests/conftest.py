@@ -111,6 +111,12 @@ def config_dir(own_dir: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return _told("TANGIBLE_CONFIG_DIR", own_dir / "config", monkeypatch)
 
 
+@pytest.fixture(autouse=True)
+def log_dir(own_dir: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Tracebacks of failures on purpose are kept in no developer's log."""
+    return _told("TANGIBLE_LOG_DIR", own_dir / "log", monkeypatch)
+
+
 def _told(name: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     folder.mkdir()
     monkeypatch.setenv(name, str(folder))
@@ -132,7 +138,7 @@ def install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Install
     site = tmp_path / "site"
     site.mkdir()
     monkeypatch.syspath_prepend(site)
-    for module in ("registry", "hooks"):
+    for module in ("registry", "hooks", "naming"):
         monkeypatch.setattr(f"tangible_core.plugins.{module}.entry_points", lambda **of: _entry_points(site, **of))
 
     def install(name: str, points: Points, version: str = "1.0", **modules: str) -> Path:

@@ -18,8 +18,10 @@ from time import perf_counter
 from typing import Any, NamedTuple
 
 from ..data import Kind
+from ..errors import TangibleError
 from ..plugins.registry import load_method
 from ..runtime.child_process import imported
+from ..runtime.failure_log import where_kept
 from .memory import start_peak
 from .task import Task, load_task
 
@@ -105,7 +107,8 @@ def main() -> None:
         imported(*place)
         answer: dict[str, Any] = asdict(measure(Job(**job)))
     except Exception as error:  # noqa: BLE001 - a method's failure is a result
-        answer = {"error": f"{type(error).__name__}: {error}"}
+        rest = "" if isinstance(error, TangibleError) else f"; {where_kept(error)}"
+        answer = {"error": f"{type(error).__name__}: {error}{rest}"}
     os.write(answers, (json.dumps(answer, allow_nan=False) + "\n").encode())
 
 

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ..errors import TangibleError, exited
+from ..errors import ConfigError, TangibleError, exited
 from ..plugins import hooks
 from ..plugins.registry import default_registry
 from ..runtime import ending, standard_output
 from . import loudness
 from .commands import COMMANDS, Lazy
-from .options import DONE, INTERRUPTED, MISTAKE
+from .options import DONE, FAILED, INTERRUPTED, MISTAKE
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -57,16 +57,28 @@ def options(
 def main() -> None:
     """Entry point: one clear message for a user's mistake, and an exit code that says whose it is."""
     with ending.as_ctrl_c():
-        code = _guarded(_run_and_leave)
+        try:
+            code = _guarded(_run_and_leave)
+        except KeyboardInterrupt:  # while the last words were said
+            code = INTERRUPTED
         asked = ending.asked_by()
     sys.exit(code if asked is None else ENDED_BY + asked)
 
 
 def _run_and_leave() -> int:
     try:
+        _check_folder()
         return _run_app()
     finally:
         standard_output.leave()
+
+
+def _check_folder() -> None:
+    """Raises: ConfigError if there is no current folder: nothing that is relative to it could be found."""
+    try:
+        os.getcwd()  # noqa: PTH109 - pathlib is not needed for it
+    except FileNotFoundError as error:
+        raise ConfigError("the current folder was deleted; go to one that exists, such as by `cd`") from error
 
 
 def _run_app() -> int:
@@ -75,8 +87,12 @@ def _run_app() -> int:
         hooks.tell(default_registry().plugins, "tangible_commands", app=app)
     try:
         code = app(words, standalone_mode=False, default_map=_no_help())
+    except OSError as error:
+        if not isinstance(error, BrokenPipeError) and _in_typer(error):
+            raise standard_output.give_up(error) from error
+        raise
     except SystemExit as error:
-        if _is_typers(error):  # of completion, which is said or installed
+        if _in_typer(error):  # of completion, which is said or installed
             return int(error.code or DONE)
         if isinstance(error.__context__, BrokenPipeError):  # typer's own answer to a reader that went away
             raise error.__context__ from None
@@ -86,8 +102,9 @@ def _run_app() -> int:
     return code if isinstance(code, int) else DONE
 
 
-def _is_typers(error: SystemExit) -> bool:
-    (*_, (frame, _)) = walk_tb(error.__traceback__)
+def _in_typer(error: BaseException) -> bool:
+    """Whether it was raised by typer, such as where it writes the words of `--help`."""
+    *_, (frame, _) = walk_tb(error.__traceback__)
     return str(frame.f_globals.get("__name__")).partition(".")[0] == "typer"
 
 
@@ -102,18 +119,32 @@ def _guarded(work: Callable[[], int]) -> int:
     try:
         return work()
     except TangibleError as error:
-        typer.echo(str(error), err=True)
-        return MISTAKE
+        return _said(str(error), MISTAKE)
     except (KeyboardInterrupt, typer.Abort):
-        typer.echo("interrupted; what was finished is kept", err=True)
-        return INTERRUPTED
+        asked = ending.asked_by()
+        return _said(f"{f'ended by {asked.name}' if asked else 'interrupted'}; what was finished is kept", INTERRUPTED)
     except BrokenPipeError:  # the reader went away: `tangible plugins | head`
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return DONE
     except typer.Exit as ended:
         return ended.exit_code
-    except Exception as error:
-        if (show := getattr(error, "show", None)) is None:  # typer's own complaints about the words of the call
-            raise
-        show()
-        return MISTAKE
+    except BaseException as error:  # noqa: BLE001 - whatever a plugin raises
+        return _unforeseen(error)
+
+
+def _unforeseen(error: BaseException) -> int:
+    """A fault that is nobody's mistake at the keyboard, or what typer has to say of the words of the call."""
+    if (show := getattr(error, "show", None)) is not None:
+        return _said(show, MISTAKE)
+    from ..plugins import failures
+
+    return _said(failures.sentence(error), FAILED if failures.place_of(error) is None else MISTAKE)
+
+
+def _said(what: str | Callable[[], None], code: int) -> int:
+    """Say it on standard error, which may be full or gone, and return the code."""
+    try:
+        what() if callable(what) else typer.echo(what, err=True)
+    except OSError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stderr.fileno())
+    return code

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, MutableMapping
-from functools import cache
+from collections.abc import Callable, Iterator, MutableMapping
+from functools import cache, wraps
 from importlib import import_module
-from typing import TYPE_CHECKING, Any, NamedTuple
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 import typer
 from typer.core import TyperGroup
 
+from ..files.paths import as_path
 from ..runtime import standard_output
 
 if TYPE_CHECKING:
@@ -93,8 +95,24 @@ def made(name: str) -> Any:
     if app is not found:
         app.command(name)(found)
     for each in _within(app):
-        each.callback = each.callback and standard_output.kept()(each.callback)
+        each.callback = each.callback and standard_output.kept()(_at_home(each.callback))
     return typer.main.get_command(app)
+
+
+def _at_home(command: Callable[..., Any]) -> Callable[..., Any]:
+    """What a shell leaves of `~`, as in --out=~/maps, is a home here too."""
+
+    @wraps(command)
+    def called(**options: Any) -> Any:
+        return command(**{name: _expanded(value) for name, value in options.items()})
+
+    return called
+
+
+def _expanded(value: Any) -> Any:
+    if isinstance(value, list):
+        return [_expanded(each) for each in cast("list[Any]", value)]
+    return as_path(value) if isinstance(value, Path) else value
 
 
 def _within(typed: typer.Typer) -> Iterator[CommandInfo | TyperInfo]:

@@ -160,6 +160,7 @@ def _row(listing: Listing) -> dict[str, Any]:
     from dataclasses import asdict
 
     from ..errors import TangibleError
+    from ..plugins.failures import sentence
     from ..plugins.interfaces import Serviceable
 
     row: dict[str, Any] = {"name": listing.name, "origin": listing.origin, "summary": listing.summary}
@@ -170,6 +171,8 @@ def _row(listing: Listing) -> dict[str, Any]:
         row["units"] = [asdict(unit) for unit in device.connected()] if isinstance(device, Serviceable) else []
     except TangibleError as error:
         row["problem"] = str(error)
+    except Exception as error:  # noqa: BLE001 - one that fails costs its own row
+        row["problem"] = sentence(error)
     return row
 
 
@@ -186,6 +189,7 @@ def _cells(row: dict[str, Any]) -> list[tuple[str, str, str, str]]:
 def _findings(name: str, sets: Sequence[str], named: bool) -> list[Finding]:
     from ..data import Finding
     from ..errors import TangibleError
+    from ..plugins.failures import sentence
     from ..plugins.interfaces import Serviceable
 
     try:
@@ -194,9 +198,13 @@ def _findings(name: str, sets: Sequence[str], named: bool) -> list[Finding]:
         if named:
             raise
         return [Finding("plugin", "failed", str(error))]
-    if isinstance(device, Serviceable):
-        return list(device.examine())
-    return [Finding("device", "fine", "needs nothing" if device.spec().simulated else "offers no examination")]
+    try:
+        if isinstance(device, Serviceable):
+            return list(device.examine())
+        return [Finding("device", "fine", "needs nothing" if device.spec().simulated else "offers no examination")]
+    except Exception as error:  # noqa: BLE001 - one that fails costs its own rows
+        said = str(error) if isinstance(error, TangibleError) else sentence(error)
+        return [Finding("plugin", "failed", said)]
 
 
 def _tell(found: dict[str, list[Finding]]) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 from jaxtyping import Bool, Float32, UInt8
 
 from ..errors import PictureError
+from .arguments import as_picture
 
 RED, BLUE = np.float32(0.299), np.float32(0.114)
 """ITU-R BT.601 weights of R and B; that of G is what is left of 1."""
@@ -20,6 +21,7 @@ def check_picture(picture: np.ndarray, name: str = "picture") -> np.ndarray:
     Raises: PictureError naming what is wrong: the shape, the type, an empty picture, or the first place that is
     NaN or infinite.
     """
+    picture = as_picture(name, picture)
     if picture.ndim not in (2, 3) or (picture.ndim == 3 and picture.shape[2] not in (3, 4)):
         raise PictureError(f"{name}: a picture is (h, w) or (h, w, 3|4), not {picture.shape}")
     if picture.size == 0:
@@ -123,7 +125,7 @@ def to_rgb8(picture: np.ndarray) -> UInt8[np.ndarray, "h w 3"]:
 
 
 def _scaled(picture: np.ndarray) -> Float32[np.ndarray, "..."]:
-    check_picture(picture)
+    picture = check_picture(picture)
     white = full_scale(picture)
     if picture.dtype.kind == "f":
         return np.asarray(picture / white, np.float32)

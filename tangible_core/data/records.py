@@ -8,14 +8,19 @@ from typing import Any, cast
 import numpy as np
 import xxhash
 
+from .fields import settle
+
 
 class Record:
     """Base of the frozen records: read-only arrays and a digest of the content.
 
-    A record keeps read-only views of the arrays it is given, not copies: whoever made them leaves them alone.
+    A record keeps read-only views of the arrays it is given, not copies: whoever made them leaves them alone. What is
+    not of a field's type is converted (a list to an array, float64 to float32).
+    Raises: ArgumentError for what nothing can be made of.
     """
 
     def __post_init__(self) -> None:
+        settle(self)
         for name, value in items_of(self):
             if isinstance(value, np.ndarray):
                 view = cast(np.ndarray, value).view()

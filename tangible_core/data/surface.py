@@ -1,15 +1,16 @@
 """What can be touched: heights, materials and both together, in metres and newtons."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Literal, get_args
 
 import numpy as np
 from jaxtyping import Float32, Int32
 
 from ..errors import GeometryError, MaterialError, PictureError, did_you_mean, quoted
+from .arguments import as_array, as_number
 from .pictures import check_finite, size_in_words
-from .records import Record, items_of
+from .records import Record
 
 Texture = Literal["smooth", "periodic", "stochastic", "stick-slip", "drag"]
 
@@ -79,8 +80,9 @@ class Material:
     source: str = ""
 
     def __post_init__(self) -> None:
-        for name, value in items_of(self):
-            if not isinstance(value, str) and not 0 <= value < np.inf:
+        for name in (each.name for each in fields(self) if each.type in (float, int)):
+            value = as_number(f"material {quoted(self.name)}: {name}", getattr(self, name))
+            if not 0 <= value < np.inf:
                 raise MaterialError(f"material {quoted(self.name)}: {name} is {value}; it must be >= 0 and finite")
         if wrong := next(self._nonsense(), None):
             raise MaterialError(f"material {quoted(self.name)}: {wrong}")
@@ -150,8 +152,10 @@ class HapticSurface(Record):
 
         Raises: GeometryError as `Relief`, MaterialError as the class.
         """
+        height_m = as_array("height_m", height_m)
         if height_m.ndim != 2 or height_m.size == 0:
             raise GeometryError(f"heights must be (h, w) with at least one cell, not {height_m.shape}")
+        as_number("width_m", width_m)
         rows, columns = height_m.shape
         relief = Relief(np.ascontiguousarray(height_m, np.float32), (width_m, width_m * rows / columns))
         return cls(relief, labels, materials)

@@ -10,6 +10,7 @@ import numpy as np
 from jaxtyping import Float32, Int32
 
 from ..errors import GeometryError, PictureError
+from .fields import settle
 from .pictures import check_picture, check_same_shape, size_in_words
 from .records import Record
 
@@ -27,6 +28,7 @@ class Calibration(Record):
     """Difference of the principal points' columns, right minus left (Middlebury's `doffs`)."""
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         if not (0 < self.focal_px < np.inf and 0 < self.baseline_m < np.inf and np.isfinite(self.offset_px)):
             raise GeometryError(
                 f"a calibration needs focal_px > 0 and baseline_m > 0, not {self.focal_px} px and {self.baseline_m} m"
@@ -75,6 +77,7 @@ class DisparityMap(Record):
     unit: Literal["px", "relative"] = "px"
 
     def __post_init__(self) -> None:
+        settle(self)
         if self.confidence.size == 0:
             object.__setattr__(self, "confidence", np.isfinite(self.disparity_px).astype(np.float32))
         check_same_shape("disparity_px", self.disparity_px, "confidence", self.confidence)
@@ -93,6 +96,7 @@ class SegmentMap(Record):
     confidence: Float32[np.ndarray, "h w"] = field(default_factory=lambda: np.empty((0, 0), np.float32))
 
     def __post_init__(self) -> None:
+        settle(self)
         if self.confidence.size == 0:
             object.__setattr__(self, "confidence", np.ones(self.labels.shape, np.float32))
         check_same_shape("labels", self.labels, "confidence", self.confidence)

@@ -13,6 +13,7 @@ from ruamel.yaml.comments import CommentedMap
 from ruamel.yaml.error import YAMLError
 
 from ..errors import ConfigError, did_you_mean, quoted, shown
+from .paths import as_path
 from .reading import MOST_TEXT_BYTES, in_words, read_bytes
 from .yaml_bounds import MOST_DEPTH, MOST_DIGITS, BoundedConstructor, check_events
 
@@ -99,6 +100,9 @@ class Source:
         """A block as a model, its files relative to this one; None after a complaint for each thing that is wrong."""
         try:
             return _relative_to(self.path.parent, model.model_validate(_plain(block)))
+        except ConfigError as error:
+            self.complain(location, str(error))
+            return None
         except ValidationError as error:
             for each in error.errors():
                 self._complain_of(location, model, cast(Any, each))
@@ -203,7 +207,7 @@ def _models_in(annotation: Any) -> Iterator[type[BaseModel]]:
 
 
 def _relative_to(folder: Path, model: BaseModel) -> BaseModel:
-    paths = {name: value for name, value in model if isinstance(value, Path) and not value.is_absolute()}
+    paths = {name: as_path(value) for name, value in model if isinstance(value, Path) and not value.is_absolute()}
     return model.model_copy(update={name: (folder / value).absolute() for name, value in paths.items()})
 
 

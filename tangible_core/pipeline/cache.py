@@ -10,6 +10,7 @@ import logging
 import os
 import re
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any, NamedTuple, cast, get_args
@@ -20,6 +21,7 @@ from .. import data
 from ..data import Note, NoteKind, Record
 from ..errors import OutputError, quoted, shown
 from ..files.arrays import Archive, write_arrays
+from ..files.paths import as_path
 from ..files.reading import check_file
 from ..files.writing import atomic_write
 
@@ -29,6 +31,8 @@ DEFAULT_BYTES = 2 << 30
 NOTES = "notes"
 _OURS = re.compile(r"[0-9a-f]{32,64}\.npz|\.[0-9a-f]{32,64}\.npz\..+")
 """Names of entries, and of what is not whole yet: the folder may hold files of somebody else."""
+_unwritable: set[Path] = set()
+"""Folders that were complained of: each once, not for each result."""
 KEPT = frozenset(name for name, each in vars(data).items() if is_dataclass(each))
 """What an entry may be made of."""
 
@@ -52,7 +56,10 @@ class Cache:
         self.max_bytes = max_bytes
 
     def __contains__(self, key: str) -> bool:
-        return self._path(key).exists()
+        try:
+            return self._path(key).is_file()
+        except OSError:  # the folder may not be looked into
+            return False
 
     def get(self, key: str) -> Record | None:
         """The record of this key, or None if there is none or it is damaged (then it is deleted and said)."""
@@ -68,8 +75,9 @@ class Cache:
         except FileNotFoundError:  # or dropped by another process while it was read
             return None
         except Exception as error:  # noqa: BLE001 - a damaged file can provoke any
-            log.warning("cache entry %s is damaged and is made again: %s", path, shown(str(error), 200))
-            path.unlink(missing_ok=True)
+            if self._is_there():
+                log.warning("cache entry %s is damaged and is made again: %s", path, shown(str(error), 200))
+                _remove(path)
             return None
         return entry
 
@@ -88,7 +96,16 @@ class Cache:
             write_record(self._path(key), record, notes or {})
             self._prune()
         except (OutputError, OSError) as error:
-            log.warning("the result is not cached: %s", error)
+            if self.folder not in _unwritable:
+                _unwritable.add(self.folder)
+                log.warning("results are not cached: %s; TANGIBLE_CACHE_DIR names another cache", error)
+
+    def _is_there(self) -> bool:
+        """Whether there is a folder to hold entries; of what stands in its place, `put` complains."""
+        try:
+            return self.folder.is_dir()
+        except OSError:
+            return False
 
     def size(self) -> tuple[int, int]:
         """How many results are kept, and how many bytes they take; what a killed writer left behind counts too."""
@@ -130,7 +147,7 @@ class Cache:
 def default_folder() -> Path:
     """$TANGIBLE_CACHE_DIR, or the user's cache folder."""
     if named := os.environ.get("TANGIBLE_CACHE_DIR"):
-        return Path(named)
+        return as_path(named, "TANGIBLE_CACHE_DIR")
     from platformdirs import user_cache_path
 
     return user_cache_path("tangible-images")
@@ -205,6 +222,15 @@ def _unpack(tree: Any, arrays: Mapping[str, np.ndarray]) -> Any:
             return tree
         case _:
             raise ValueError(f"unknown entry {quoted(tree)}")
+
+
+def _remove(path: Path) -> None:
+    """A damaged entry. A folder that holds something is somebody's: it stays, and `put` complains of it."""
+    with suppress(OSError):
+        if path.is_dir() and not path.is_symlink():
+            path.rmdir()
+        else:
+            path.unlink()
 
 
 def _used(path: Path) -> tuple[float, int]:

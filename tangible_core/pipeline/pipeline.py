@@ -4,7 +4,6 @@ import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from os import PathLike
-from pathlib import Path
 from threading import Event
 from typing import Any, Literal, Self, TypeVar, cast, final, overload
 
@@ -23,7 +22,8 @@ from ..data import (
     ServoReport,
     Views,
 )
-from ..errors import ConfigError, quoted
+from ..errors import ConfigError, quoted, wrong_argument
+from ..files.paths import as_path
 from ..files.writing import write_text
 from ..mapping import WorkspaceMapping
 from ..plugins import hooks
@@ -82,6 +82,8 @@ class Pipeline:
         cached: False neither reads nor writes the user's cache.
         Raises: ConfigError for a block that says nonsense.
         """
+        if not isinstance(scene, cast(Any, Scene)):
+            raise wrong_argument("scene", scene, "a Scene, such as Scene.of(photo=...) makes")
         registry = default_registry()
         config = PipelineConfig(
             scene=scene,
@@ -111,7 +113,7 @@ class Pipeline:
         Raises: ConfigError with every complaint, each with file:line:column.
         """
         registry = registry or default_registry()
-        return cls.of(load_config(Path(path), registry, overrides), registry, cache or Cache())
+        return cls.of(load_config(as_path(path), registry, overrides), registry, cache or Cache())
 
     @classmethod
     def of(cls, config: PipelineConfig, registry: Registry, cache: Cache | None) -> Self:
@@ -131,7 +133,7 @@ class Pipeline:
 
         Raises: ConfigError for what no file can say: a scene of arrays, a method of no installed plugin; OutputError.
         """
-        write_text(Path(path), self.config.as_yaml())
+        write_text(as_path(path), self.config.as_yaml())
 
     @property
     def config(self) -> PipelineConfig:
@@ -247,7 +249,7 @@ class Pipeline:
         Raises: OutputError if the folder cannot be written; TangibleError as `make`.
         """
         with self.engine.watched(progress, stop):
-            return make_run(self.engine, Path(out), want or self.config.want, seconds, self._tell, sheet)
+            return make_run(self.engine, as_path(out, "out"), want or self.config.want, seconds, self._tell, sheet)
 
     def feel(
         self,
@@ -277,7 +279,7 @@ class Pipeline:
         Raises: ConfigError if there is no device or law, or others of `then` have another device; DeviceError if it
         cannot be opened; OutputError for the file.
         """
-        file = None if record is None else Path(record)
+        file = None if record is None else as_path(record, "record")
         if file is not None:
             check_record_path(file, seconds is None)
         felt, said, touch = self._device(device), self._about(device), self._touch(device)
@@ -310,12 +312,14 @@ class Pipeline:
         stopped = run(keep or rows.append)
         return Recording(np.concatenate(rows), stopped, said.stamped())
 
-    def replay(self, recording: Recording, device: HapticDevice | None = None) -> Recording:
+    def replay(self, recording: Recording | str | PathLike[str], device: HapticDevice | None = None) -> Recording:
         """What this pipeline's law gives for each recorded state: forces of its own, which nothing limits.
 
-        device: which one the materials fit, as for `feel`; the configured one by default.
-        `session.compared` says how far they are from those that were recorded. Raises: as `make`.
+        recording: or the file of one. device: which one the materials fit, as for `feel`; the configured one by
+        default. `session.compared` says how far they are from those that were recorded.
+        Raises: as `make`, and OutputError for a file that cannot be read.
         """
+        recording = recording if isinstance(recording, Recording) else Recording.load(recording)
         touch = self._touch(device)
         said = replace(self._about(None), device=f"replay of {recording.about.device or 'a recording'}")
         return replace(replay(touch, recording), about=said.stamped())
@@ -364,6 +368,8 @@ class Pipeline:
 
     def _device(self, device: HapticDevice | None) -> HapticDevice:
         """The device as the picture sees it, by the mapping. Raises: ConfigError if there is none."""
+        if device is not None:
+            _check_kind("device", device)
         felt = felt_device(self.engine, device)
         if felt is None:
             raise self.config.missing("device")
@@ -419,15 +425,21 @@ def _chosen(kind: str, method: M | None, registry: Registry) -> NamedMethod[M] |
     """
     if method is None:
         return None
-    wanted, cls = KINDS[cast(Any, kind)], type(method)
-    if not isinstance(method, wanted):
-        raise ConfigError(f"{kind}: takes a {wanted.__name__}, such as an object of one, not {quoted(method)}")
+    _check_kind(kind, method)
+    cls = type(method)
     target = f"{cls.__module__}:{cls.__qualname__}"
     for each in registry.listings:
         if (each.kind, each.target) == (kind, target):
             alone = each.name in registry.names(kind)
             return NamedMethod(each.name if alone else f"{each.distribution}/{each.name}", each.origin, method)
     return NamedMethod(cls.__qualname__, "", method)
+
+
+def _check_kind(kind: str, method: object) -> None:
+    """Raises: ConfigError if it is no method of this kind."""
+    wanted = KINDS[cast(Any, kind)]
+    if not isinstance(method, wanted):
+        raise ConfigError(f"{kind}: takes a {wanted.__name__}, such as an object of one, not {quoted(method)}")
 
 
 def _block(name: str, model: type[S], value: S | Mapping[str, Any] | None) -> S:

@@ -5,10 +5,13 @@ from __future__ import annotations
 import logging
 from importlib.metadata import entry_points
 from typing import TYPE_CHECKING, Any
+from weakref import WeakKeyDictionary
 
 import pluggy
 
-from ..errors import did_you_mean
+from ..errors import did_you_mean, shown
+from ..runtime.failure_log import where_kept
+from ..runtime.slowness import said_if_slow
 from .origin import origin
 
 if TYPE_CHECKING:
@@ -22,6 +25,8 @@ if TYPE_CHECKING:
 log = logging.getLogger(__name__)
 hookspec = pluggy.HookspecMarker("tangible")
 hookimpl = pluggy.HookimplMarker("tangible")
+_failed: WeakKeyDictionary[pluggy.PluginManager, set[tuple[str, str]]] = WeakKeyDictionary()
+"""Observers that failed, and the moments: a moment may come ten times a second, and is complained of once."""
 
 
 class Specs:
@@ -62,7 +67,9 @@ def manager() -> pluggy.PluginManager:
     plugins.add_hookspecs(Specs)
     for point in entry_points(group="tangible.hooks"):
         try:
-            plugins.register(point.load(), name=f"{origin(point.dist).name if point.dist else '?'}/{point.name}")
+            with said_if_slow(log, f"importing hooks {point.name} ({point.value})"):
+                module = point.load()
+            plugins.register(module, name=f"{origin(point.dist).name}/{point.name}")
         except (Exception, SystemExit) as error:
             log.warning("hooks %s (%s) cannot be loaded and are left out: %r", point.name, point.value, error)
             log.debug("the import of %s", point.value, exc_info=True)
@@ -85,6 +92,16 @@ def tell(plugins: pluggy.PluginManager, moment: str, **facts: Any) -> list[Any]:
     for each in plugins.hook.__getattribute__(moment).get_hookimpls():
         try:
             answers.append(each.function(*(facts[name] for name in each.argnames)))
-        except Exception:
-            log.warning("observer %s failed in %s and is ignored", each.plugin_name, moment, exc_info=True)
+        except Exception as error:  # noqa: BLE001 - whatever it raises, the others hear
+            _say_failed(plugins, each.plugin_name, moment, error)
     return [answer for answer in answers if answer is not None]
+
+
+def _say_failed(plugins: pluggy.PluginManager, name: str, moment: str, error: Exception) -> None:
+    known = _failed.setdefault(plugins, set())
+    if (name, moment) in known:
+        log.debug("observer %s failed in %s again", name, moment, exc_info=error)
+        return
+    known.add((name, moment))
+    what = f"{type(error).__name__}: {shown(str(error), 500)}"
+    log.warning("observer %s failed in %s and is ignored: %s; %s", name, moment, what, where_kept(error))

@@ -5,7 +5,8 @@ Methods are stateless; what keeps state is a session: `Touch` for a renderer, `L
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
-from typing import ClassVar
+from functools import partial
+from typing import Any, ClassVar
 
 import numpy as np
 from jaxtyping import Float64, Int64
@@ -21,10 +22,12 @@ from ..data import (
     Unit,
     Views,
 )
+from ..data.arguments import as_picture
 from ..data.quantities import Quantities
 from .link import Link as Link
 from .touch import PlainTouch as PlainTouch
 from .touch import Touch as Touch
+from .verbs import guard_verb, taking
 
 
 class Method(Quantities, ABC):
@@ -44,6 +47,10 @@ class DepthEstimator(Method):
     needs_pair: ClassVar[bool] = False
     """True for a method that finds nothing without a right view: then a plan says so, and nothing is begun."""
 
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
+        guard_verb(cls, "depth", "estimate", DisparityMap, taking("views", Views, ", such as Views(left, right)"))
+
     @abstractmethod
     def estimate(self, views: Views) -> DisparityMap:
         """Disparity of the left view. Raises: TangibleError if these views do not allow it."""
@@ -51,6 +58,10 @@ class DepthEstimator(Method):
 
 class Segmenter(Method):
     """Divides a picture into parts of one texture each."""
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
+        guard_verb(cls, "texture", "segment", SegmentMap, partial(as_picture, "picture"))
 
     @abstractmethod
     def segment(self, picture: np.ndarray) -> SegmentMap:
@@ -67,6 +78,10 @@ class ForceRenderer(Method):
     is_lateral: ClassVar[bool] = False
     """True for a law of lateral forces alone: the normal force is the table's, under the hand."""
 
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
+        guard_verb(cls, "render", "touch", Touch, taking("surface", HapticSurface, ", such as from_heights makes"))
+
     @abstractmethod
     def touch(self, surface: HapticSurface) -> Touch:
         """A new touch on this surface, free of contact."""
@@ -74,6 +89,11 @@ class ForceRenderer(Method):
 
 class HapticDevice(Method):
     """Something that has a position and gives a force."""
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
+        guard_verb(cls, "device", "spec", DeviceSpec)
+        guard_verb(cls, "device", "open", Link)
 
     @abstractmethod
     def spec(self) -> DeviceSpec:

@@ -4,10 +4,11 @@ import logging
 import math
 from abc import ABC, abstractmethod
 from types import TracebackType
-from typing import Self, final
+from typing import Any, Self, final
 
 from ..data import NO_FORCE, Force, HapticState, limited
-from ..errors import DeviceError
+from ..data.arguments import as_force, as_state
+from ..errors import ArgumentError, BrokenMethod, DeviceError, what_is, wrong_argument
 
 log = logging.getLogger(__name__)
 
@@ -49,7 +50,8 @@ class Link(ABC):
         """Where the tip is now. Raises: DeviceError if the device stopped answering or the link is closed."""
         if self.__closed:
             raise self.__refusal()
-        return self._read()
+        found = self._read()
+        return found if type(found) is HapticState else self.__as_state(found)
 
     @final
     def write(self, force: Force) -> None:
@@ -59,6 +61,8 @@ class Link(ABC):
         """
         if self.__closed:
             raise self.__refusal()
+        if type(force) is not Force:
+            force = _as_force(force)
         most_n = self.__max_force_n
         self._send(force if math.hypot(*force) <= most_n else limited(force, most_n))
 
@@ -105,5 +109,18 @@ class Link(ABC):
                 self.__closed = "is closed"
                 self._release()
 
+    def __as_state(self, found: Any) -> HapticState:
+        try:
+            return as_state(found)
+        except ArgumentError as error:
+            gave = what_is(found)
+            raise BrokenMethod(f"{self.__name}: its driver read {gave}; it must read a HapticState") from error
+
     def __refusal(self) -> DeviceError:
         return DeviceError(f"{self.__name} {self.__closed}; open it again")
+
+
+def _as_force(force: Any) -> Force:
+    if (found := as_force(force)) is None:
+        raise wrong_argument("force", force, "a Force, or three numbers: x, y and z in newtons")
+    return found

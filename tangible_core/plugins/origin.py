@@ -13,15 +13,20 @@ _HEADER = re.compile(r"^(Name|Version): *(.+?) *$", re.MULTILINE)
 
 
 class Origin(NamedTuple):
-    """A distribution."""
+    """A distribution; in words, its name and its version."""
 
     name: str
     version: str
 
+    def __str__(self) -> str:
+        return " ".join(self).rstrip()
+
 
 @cache
-def origin(distribution: Distribution) -> Origin:
+def origin(distribution: Distribution | None) -> Origin:
     """Name and version, from the head of its metadata: `Distribution.name` parses all of it as an e-mail."""
+    if distribution is None:
+        return Origin("computed by a hook", "")
     text = distribution.read_text("METADATA") or distribution.read_text("PKG-INFO") or ""
     found = dict(_HEADER.findall(text.partition("\n\n")[0].replace("\r", "")))
     return Origin(found.get("Name", "?"), found.get("Version", "?"))

@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import ast
+import logging
 import re
 from dataclasses import dataclass
 from functools import cache, cached_property
-from importlib.metadata import Distribution, EntryPoint, entry_points
+from importlib.metadata import EntryPoint, entry_points
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, cast, overload
 
-from ..errors import BrokenMethod, UnknownMethod, did_you_mean
+from ..errors import BrokenMethod, UnknownMethod, did_you_mean, shown
+from ..runtime.failure_log import where_kept
+from ..runtime.slowness import said_if_slow
 from . import hooks
+from .naming import KIND_NAMES as KIND_NAMES
 from .origin import origin
 
 if TYPE_CHECKING:
@@ -21,7 +25,8 @@ if TYPE_CHECKING:
     from ..data import Kind
     from .interfaces import DepthEstimator, ForceRenderer, HapticDevice, Method, Segmenter
 
-KIND_NAMES = ("depth", "texture", "render", "device")
+
+log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True)
@@ -60,7 +65,7 @@ class Registry:
         """Every installed method, two of one name included, by kind and name."""
         installed = entry_points()  # one walk over what is installed serves all kinds
         found = [
-            Listing(kind, point.name, point.value, _origin(point.dist), point)
+            Listing(kind, point.name, point.value, str(origin(point.dist)), point)
             for kind in KIND_NAMES
             for point in (*installed.select(group=f"tangible.{kind}"), *self._computed(kind))
         ]
@@ -79,7 +84,7 @@ class Registry:
         """
         if kind not in KIND_NAMES:
             raise UnknownMethod("plugin", kind, KIND_NAMES)
-        distribution, _, short = name.rpartition("/")
+        distribution, _, short = str(name).rpartition("/")
         found = [
             each
             for each in self.listings
@@ -103,11 +108,13 @@ class Registry:
 
         each = self.find(kind, name)
         try:
-            cls: Any = each.point.load()
+            with said_if_slow(log, f"importing {kind} method {name} ({each.target}, from {each.origin})"):
+                cls: Any = each.point.load()
         except (Exception, SystemExit) as error:
             raise BrokenMethod(
                 f"{kind} method {name!r} ({each.target}, from {each.origin}) cannot be loaded: "
-                f"{type(error).__name__}: {error}; repair or remove {each.distribution}"
+                f"{type(error).__name__}: {shown(str(error), 500)}; repair or remove {each.distribution}; "
+                f"{where_kept(error)}"
             ) from error
         wanted = KINDS[each.kind]  # pyright: ignore[reportArgumentType]
         if not (isinstance(cls, type) and issubclass(cls, wanted)):
@@ -144,10 +151,6 @@ def load_method(kind: str, name: str) -> type[Any]:
     Raises: UnknownMethod, BrokenMethod.
     """
     return default_registry().load(kind, name)
-
-
-def _origin(distribution: Distribution | None) -> str:
-    return " ".join(origin(distribution)) if distribution else "computed by a hook"
 
 
 def _docstring_line(point: EntryPoint) -> str:

@@ -1,13 +1,14 @@
 """A force law at work on one surface."""
 
 from abc import ABC, abstractmethod
-from typing import final
+from typing import Any, final
 
 import numpy as np
 from jaxtyping import Float64
 
 from ..data import Force, HapticState
 from ..errors import GeometryError
+from .verbs import guard_force
 
 
 class Touch(ABC):
@@ -22,6 +23,10 @@ class Touch(ABC):
     A law stiffer than the device holds is softened by this number. None says nothing: then a copy is felt all over
     before the device is opened, and the steepest slope found counts, that of steep ground too.
     """
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
+        guard_force(cls)
 
     @abstractmethod
     def force(self, state: HapticState) -> Force:

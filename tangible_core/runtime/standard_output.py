@@ -43,8 +43,27 @@ def kept() -> Generator[None]:
 def leave() -> None:
     """The program has said all: what libraries in C hold back, they write when the process ends, to standard error."""
     if _is_file_1(sys.stdout):
-        sys.stdout.flush()
+        try:
+            sys.stdout.flush()
+        except OSError as error:
+            raise give_up(error) from error
         os.dup2(ERR, OUT)
+
+
+def give_up(error: OSError) -> OutputError:
+    """After an error of `sys.stdout` itself: what it still holds goes nowhere, and this is to be said."""
+    _lead_nowhere(OUT)
+    return OutputError(_refused(error))
+
+
+def _refused(error: OSError) -> str:
+    return f"standard output cannot be written: {error.strerror}"
+
+
+def _lead_nowhere(number: int) -> None:
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, number)
+    os.close(nowhere)
 
 
 @final
@@ -67,12 +86,10 @@ class _Output(io.RawIOBase):
         try:
             return os.write(self._number, data)
         except BrokenPipeError:
-            nowhere = os.open(os.devnull, os.O_WRONLY)
-            os.dup2(nowhere, self._number)
-            os.close(nowhere)
+            _lead_nowhere(self._number)
             return memoryview(data).nbytes
         except OSError as error:
-            raise OutputError(f"standard output cannot be written: {error.strerror}") from error
+            raise OutputError(_refused(error)) from error
 
     def close(self) -> None:
         if not self.closed:

@@ -8,6 +8,7 @@ from urllib.parse import quote
 from pydantic import BaseModel, ValidationError
 
 from ..errors import DeviceError
+from ..files.paths import as_path
 from ..files.reading import MOST_TEXT_BYTES, read_bytes
 from ..files.writing import write_text
 
@@ -17,7 +18,7 @@ M = TypeVar("M", bound=BaseModel)
 def calibration_path(device: str, serial: str) -> Path:
     """Where a unit's calibration is kept; a unit without a serial number shares it with its like."""
     if named := os.environ.get("TANGIBLE_CONFIG_DIR"):
-        folder = Path(named)
+        folder = as_path(named, "TANGIBLE_CONFIG_DIR")
     else:
         from platformdirs import user_config_path
 

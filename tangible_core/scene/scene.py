@@ -13,8 +13,10 @@ from numpy.typing import ArrayLike
 from pydantic import ValidationError
 
 from ..data import Calibration, DisparityMap, Record, SegmentMap, Views
+from ..data.arguments import as_picture
 from ..data.pictures import fill_non_finite, filled, opaque
-from ..errors import ConfigError, PictureError
+from ..errors import ConfigError, PictureError, wrong_argument
+from ..files.paths import as_path
 from .frames import Say, unsaid
 from .framing import framed
 from .geometry import Holes, scale_heights
@@ -100,8 +102,9 @@ class Scene:
             "disparity": disparity, "segments": segments, "truth": truth, "rig": rig,
         }  # fmt: skip
         parts = {part: value for part, value in parts.items() if value is not None}
+        _check_cameras(calibration, rig)
         paths = {
-            part: Path(cast("str | PathLike[str]", value)).absolute()
+            part: as_path(cast(Any, value), part).absolute()
             for part, value in parts.items()
             if isinstance(value, str | PathLike)
         }
@@ -120,7 +123,7 @@ class Scene:
             if part in paths and part != "rig":
                 held |= _read(part, paths[part], files, said.append)
             elif part != "rig":
-                held |= _converted(part, np.asarray(value), files)
+                held |= _converted(part, as_picture(part, value), files)
         return cls._made(name or "arrays", files, held, None, said, cast("StereoRig | None", cameras))
 
     @classmethod
@@ -129,6 +132,7 @@ class Scene:
 
         Raises: ConfigError for another name.
         """
+        name = str(name)
         return cls.read(name if name.startswith("builtin/") else f"builtin/{name}", Path())
 
     @classmethod
@@ -146,7 +150,7 @@ class Scene:
 
     @classmethod
     def _read(cls, name: str, files: SceneFiles, folder: Path, origin: "str | SceneFiles") -> Self:
-        paths = {part: folder / path.expanduser() for part, path in files if isinstance(path, Path)}
+        paths = {part: as_path(folder) / as_path(path) for part, path in files if isinstance(path, Path)}
         rig = _rig(paths.pop("rig"), files) if "rig" in paths else None
         said: list[str] = []
         held: dict[str, np.ndarray] = {}
@@ -219,6 +223,14 @@ class Scene:
             relief = scale_heights(height, width_m, self.relief_m or relief_m, holes)
         found = {"views": self.views, "relief": relief, "disparity": self.disparity, "segments": self.segments}
         return {product: record for product, record in found.items() if record is not None}
+
+
+def _check_cameras(calibration: object, rig: object) -> None:
+    """Raises: ArgumentError for what describes no camera."""
+    if not isinstance(calibration, Calibration | None):
+        raise wrong_argument("calibration", calibration, "a Calibration, such as Calibration(focal_px, baseline_m)")
+    if not isinstance(rig, StereoRig | str | PathLike | None):
+        raise wrong_argument("rig", rig, "a StereoRig, or the path of its file")
 
 
 def _checked(paths: Mapping[str, Path], calibration: Calibration | None, options: Mapping[str, Any]) -> SceneFiles:

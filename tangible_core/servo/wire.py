@@ -9,7 +9,8 @@ from typing import IO, Any, NamedTuple
 
 import numpy as np
 
-from ..errors import BrokenMethod, exited
+from ..errors import BrokenMethod, TangibleError, exited
+from ..plugins.failures import remember_place, sentence
 from ..plugins.interfaces import HapticDevice
 from ..runtime.child_process import dumps
 
@@ -60,15 +61,17 @@ class End(NamedTuple):
 
 
 def sendable(error: BaseException) -> Exception:
-    """The error, if it arrives as it is at the other end; else one that says its name and its text."""
+    """The error, if it arrives as it is at the other end; else one that says whose it is, its name and its text."""
     if isinstance(error, SystemExit):
         return exited(error)
     try:
+        if not isinstance(error, TangibleError):
+            remember_place(error, "".join(traceback.format_exception(error)))
         if isinstance(error, Exception) and type(pickle.loads(dumps(error))) is type(error):
             return error
     except Exception:  # noqa: BLE001 - pickling runs the plugin's own code
         pass
-    return BrokenMethod(*"".join(traceback.format_exception_only(error)).splitlines())
+    return BrokenMethod(sentence(error))
 
 
 def send(file: IO[bytes], message: Any) -> None:

@@ -1,7 +1,7 @@
 """What was felt, tick by tick, and the files it is kept in."""
 
 from dataclasses import dataclass
-from pathlib import Path
+from os import PathLike
 from typing import Self
 
 import numpy as np
@@ -9,6 +9,7 @@ from jaxtyping import Float64, Int64
 
 from ..data import TICK_COLUMNS, Record, TickFlag
 from ..errors import DeviceError, OutputError
+from ..files.paths import as_path
 from . import recording_files
 from .limited import changed_most, flag_counts
 from .recording_files import RecordingContents
@@ -135,21 +136,21 @@ class Recording(Record):
             "not_finite": self.not_finite,
         }
 
-    def save(self, path: Path) -> None:
+    def save(self, path: str | PathLike[str]) -> None:
         """Write .nc (as a `Writer`), .npz (`numpy.load` reads it) or, the ticks alone, .csv; whole or not at all.
 
         Raises: OutputError for another suffix, or if the place cannot be written.
         """
-        recording_files.write(path, RecordingContents(self.rows, self.stopped, self.about))
+        recording_files.write(as_path(path), RecordingContents(self.rows, self.stopped, self.about))
 
     @classmethod
-    def load(cls, path: Path) -> Self:
+    def load(cls, path: str | PathLike[str]) -> Self:
         """A recording that was saved, or written by a `Writer`; one that was cut off says so in `stopped`.
 
         It is all in memory then, half a gigabyte for an hour at 1 kHz.
         Raises: OutputError if it cannot be read, is none, or holds more than `reading.MOST_BYTES`.
         """
-        return cls(*recording_files.read(path))
+        return cls(*recording_files.read(as_path(path)))
 
 
 def failure(ticks: int, stopped: str) -> DeviceError:

@@ -82,6 +82,13 @@ class Raises(DepthEstimator):
         raise PictureError("not this picture")
 
 
+class Fails(DepthEstimator):
+    '''Has a bug.'''
+
+    def estimate(self, views):
+        return [][0]
+
+
 class Dies(DepthEstimator):
     '''Takes its process along.'''
 
@@ -116,6 +123,7 @@ NAMES = {
     "talks": "Talks",
     "ranged": "Ranged",
     "raises": "Raises",
+    "fails": "Fails",
     "dies": "Dies",
     "sleeps": "Sleeps",
     "relative": "Relative",

@@ -102,10 +102,13 @@ def test_what_a_method_prints_does_not_disturb(registry: Registry, tmp_path: Pat
 
 
 @pytest.mark.slow
-def test_a_method_that_fails_is_a_row_and_stops_nobody(registry: Registry, tmp_path: Path):
-    methods = "raises, dies, {use: dies, label: leaves, how: exit}, relative, constant"
+def test_a_method_that_fails_is_a_row_and_stops_nobody(registry: Registry, tmp_path: Path, log_dir: Path):
+    methods = "raises, fails, dies, {use: dies, label: leaves, how: exit}, relative, constant"
     rows = {row.method: row for row in measured(registry, tmp_path / "r.jsonl", methods)}
     assert rows["raises"].error == "PictureError: not this picture"
+    log = log_dir / "failures.log"
+    assert rows["fails"].error == f"IndexError: list index out of range; the traceback is in {log}"
+    assert "bench_fakes.py" in log.read_text()
     assert rows["dies"].error == "killed by SIGKILL: last words"
     assert rows["leaves"].error == "ended with exit code 7: last words"
     assert "relative, not in px" in str(rows["relative"].error)

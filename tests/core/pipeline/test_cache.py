@@ -213,9 +213,41 @@ def test_entries_that_cannot_be_dropped_cost_a_warning(
     assert "Permission denied" in caplog.text
 
 
-def test_a_folder_that_cannot_be_written_costs_a_warning(tmp_path: Path, caplog: pytest.LogCaptureFixture):
+@pytest.mark.parametrize("place", ["file", "file/below", "loop"])
+def test_a_folder_that_cannot_be_written_costs_one_warning(
+    tmp_path: Path, place: str, caplog: pytest.LogCaptureFixture
+):
+    """A process has many results, and several caches of one folder."""
     (tmp_path / "file").write_text("")
-    Cache(tmp_path / "file" / "below").put("k", RECORDS[1])
+    (tmp_path / "loop").symlink_to("loop")
+    for key in "abc":
+        kept = Cache(tmp_path / place)
+        assert key not in kept
+        assert kept.get(key) is None
+        kept.put(key, RECORDS[1])
+    [message] = caplog.messages
+    assert message.startswith(f"results are not cached: {tmp_path / place}/a.npz: cannot be written: ")
+    assert message.endswith("TANGIBLE_CACHE_DIR names another cache")
+    assert (tmp_path / "file").read_text() == ""
+
+
+def test_an_entry_that_is_a_folder_is_made_again(tmp_path: Path, caplog: pytest.LogCaptureFixture):
+    kept = Cache(tmp_path)
+    (tmp_path / "k.npz").mkdir()
+    assert "k" not in kept
+    assert kept.get("k") is None
+    assert "damaged" in caplog.text
+    kept.put("k", RECORDS[1])
+    assert kept.get("k") is not None
+
+
+def test_a_folder_that_holds_something_is_not_the_caches_to_remove(tmp_path: Path, caplog: pytest.LogCaptureFixture):
+    kept, theirs = Cache(tmp_path), tmp_path / "k.npz" / "theirs"
+    theirs.parent.mkdir()
+    theirs.write_text("of somebody")
+    assert kept.get("k") is None
+    kept.put("k", RECORDS[1])
+    assert theirs.read_text() == "of somebody"
     assert "not cached" in caplog.text
 
 

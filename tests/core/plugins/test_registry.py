@@ -4,6 +4,7 @@ import sys
 import pytest
 
 from tangible_core.errors import BrokenMethod, UnknownMethod
+from tangible_core.plugins import hooks
 from tangible_core.plugins.interfaces import DepthEstimator
 from tangible_core.plugins.registry import KIND_NAMES, Registry, load_method
 
@@ -140,6 +141,30 @@ def test_two_plugins_of_one_name_are_both_listed_and_the_distribution_chooses(in
     assert registry.load("depth", "rival/mine").__module__ == "rival"
     assert registry.load("depth", "acme/mine").__module__ == "acme"
     assert registry.load("depth", "other").__module__ == "rival"
+
+
+@pytest.mark.parametrize(
+    ("group", "what"), [("depth", "depth method slow (slow:Slow, from acme 1.0)"), ("hooks", "hooks slow (slow)")]
+)
+def test_a_plugin_that_takes_long_to_import_is_named_meanwhile(install, monkeypatch, caplog, group, what):
+    monkeypatch.setattr("tangible_core.runtime.slowness.LONG_S", 0.01)
+    slow = """
+        import time
+        until = time.monotonic() + 60
+        while not heard.messages and time.monotonic() < until:
+            time.sleep(0.005)
+        class Slow: pass
+        """
+    monkeypatch.setattr("builtins.heard", caplog, raising=False)
+    target = "slow" if group == "hooks" else "slow:Slow"
+    install("acme", {f"tangible.{group}": {"slow": target}}, slow=slow)
+    if group == "hooks":
+        hooks.manager()
+    else:
+        with pytest.raises(BrokenMethod, match="is not a DepthEstimator"):
+            Registry().load("depth", "slow")
+    assert caplog.messages[0].startswith(f"importing {what}")
+    assert caplog.messages[0].endswith("has taken 0.01 s so far and goes on; Ctrl-C ends it")
 
 
 def test_a_plugin_that_is_slow_to_import_is_listed_without_waiting(install):

@@ -297,7 +297,7 @@ FEELS_ITS_OWN = """
 from tangible_core import HapticSurface, load_method
 from tangible_core.servo import Servo
 try:
-    with Servo(Law().touch(None), load_method("device", "mock")()):
+    with Servo(Law().touch(HapticSurface.from_heights(np.zeros((2, 2)))), load_method("device", "mock")()):
         pass
 except Exception as error:
     print(type(error).__name__, error)

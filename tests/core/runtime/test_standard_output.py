@@ -154,11 +154,18 @@ class TestTheStreams:
         assert (done.returncode, done.stderr) == (0, "")
         assert len(done.stdout.splitlines()) == lines
 
-    def test_a_full_disk_is_said_in_one_line(self, folder: Path) -> None:
+    @pytest.mark.parametrize("unbuffered", ["", "1"])
+    @pytest.mark.parametrize("words", [["plugins", "--json"], ["--help"]])
+    def test_a_full_disk_is_said_in_one_line(self, folder: Path, words: list[str], unbuffered: str) -> None:
         with Path("/dev/full").open("w") as full:
-            done = tangible(folder, "plugins", "--json", stdout=full, env=quiet())
+            done = tangible(folder, *words, stdout=full, env={**quiet(), "PYTHONUNBUFFERED": unbuffered})
         assert done.returncode == 2
         assert done.stderr == "standard output cannot be written: No space left on device\n"
+
+    @pytest.mark.parametrize("words", [["plan", "none.yaml"], ["plan", "--no-such-option"]])
+    def test_a_mistake_that_cannot_be_told_is_one_all_the_same(self, folder: Path, words: list[str]) -> None:
+        with Path("/dev/full").open("w") as full:
+            assert tangible(folder, *words, stderr=full, env=quiet()).returncode == 2
 
     @pytest.mark.parametrize("closed", [">&-", "2>&-", ">&- 2>&-"])
     def test_streams_that_are_closed(self, folder: Path, closed: str) -> None:

@@ -230,6 +230,16 @@ class TestStandstill:
         program.wait()
         until(lambda: held(record) == 0)
 
+    @pytest.mark.parametrize("name", ["SIGTERM", "SIGHUP", "SIGQUIT"])
+    def test_signals_that_a_terminal_sends_to_the_loop_too_leave_no_force(self, tmp_path: Path, name: str) -> None:
+        record = tmp_path / "force"
+        with self.feel(record, FaultyTouch()) as servo:
+            until(lambda: held(record) > 0)
+            os.kill(servo.process_id, getattr(signal, name))
+            until(lambda: not servo.running)
+            assert servo.report().stopped == "the process was asked to end"
+            assert held(record) == 0
+
     def test_stop_does_not_wait_for_a_law_that_blocks(self, tmp_path: Path) -> None:
         record = tmp_path / "force"
         with self.feel(record, FaultyTouch("blocks")):

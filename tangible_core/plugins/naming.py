@@ -1,0 +1,45 @@
+"""What messages call a plugin's object: its kind, its name and its distribution, as far as metadata tells."""
+
+from importlib.metadata import EntryPoint, entry_points
+
+from .origin import origin
+
+KIND_NAMES = ("depth", "texture", "render", "device")
+GROUPS = "tangible."
+"""How the groups of entry points begin; what follows is a kind, or `hooks`."""
+
+
+def named(kind: str, module: str, owner: str) -> str:
+    """What to call a class, or with no owner a function, of this module: `depth method zncc (tangible-images 0.1)`.
+
+    It is the method itself, or the only one of its kind in its module or its package; else its package is named.
+    """
+    of_kind = [each for each in points() if kind in ("", _kind(each))]
+    exact = [each for each in of_kind if each.value == f"{module}:{owner}"]
+    beside = [each for each in of_kind if each.module == module]
+    near = exact or beside or [each for each in of_kind if package(each.module) == package(module)]
+    if not near:
+        return f"{module}{owner and '.'}{owner}"
+    if exact or len(near) == 1:
+        return f"{_title(near[0])} ({origin(near[0].dist)})"
+    return f"{owner or module} of {origin(near[0].dist)}"
+
+
+def points() -> list[EntryPoint]:
+    """Of all plugins that are installed."""
+    installed = entry_points()
+    return [each for kind in (*KIND_NAMES, "hooks") for each in installed.select(group=f"{GROUPS}{kind}")]
+
+
+def package(module: str) -> str:
+    """The outermost package of a module."""
+    return module.partition(".")[0]
+
+
+def _kind(point: EntryPoint) -> str:
+    return point.group.removeprefix(GROUPS)
+
+
+def _title(point: EntryPoint) -> str:
+    kind = _kind(point)
+    return f"hooks {point.name}" if kind == "hooks" else f"{kind} method {point.name}"

@@ -1,0 +1,70 @@
+"""What goes into a plugin's verbs and comes out: converted where it can be, else said in one sentence.
+
+Around the verbs of every method and touch, ours and anyone else's, so that none has to look for itself.
+"""
+
+from collections.abc import Callable
+from functools import wraps
+from typing import Any
+
+from ..data.arguments import as_force, as_state
+from ..data.device import Force, HapticState
+from ..errors import BrokenMethod, what_is, wrong_argument
+from .naming import named
+
+Convert = Callable[[Any], Any]
+
+
+def taking(name: str, wanted: type, hint: str = "") -> Convert:
+    """What takes an argument of one type alone. hint: how to make one."""
+
+    def convert(value: Any) -> Any:
+        if not isinstance(value, wanted):
+            raise wrong_argument(name, value, f"a {wanted.__name__}{hint}")
+        return value
+
+    return convert
+
+
+def guard_verb(cls: type, kind: str, verb: str, gives: type, take: Convert | None = None) -> None:
+    """Around a class's own verb, if it has one: what it takes is converted, and what it gives is of this type.
+
+    Its caller then gets a BrokenMethod that names the plugin in place of something else.
+    """
+    own = cls.__dict__.get(verb)
+    if own is None or getattr(own, "__isabstractmethod__", False):
+        return
+
+    @wraps(own)
+    def guarded(self: Any, *given: Any, **by_name: Any) -> Any:
+        if take is not None:
+            given, by_name = tuple(map(take, given)), {name: take(value) for name, value in by_name.items()}
+        found = own(self, *given, **by_name)
+        if not isinstance(found, gives):
+            raise _unexpected(self, kind, verb, found, gives)
+        return found
+
+    setattr(cls, verb, guarded)
+
+
+def guard_force(cls: type) -> None:
+    """Around a touch's `force`, if the class has one of its own: three numbers do for a state and for a force."""
+    own = cls.__dict__.get("force")
+    if own is None or getattr(own, "__isabstractmethod__", False):
+        return
+
+    @wraps(own)
+    def force(self: Any, state: HapticState) -> Force:
+        found = own(self, state if type(state) is HapticState else as_state(state))
+        if type(found) is Force:
+            return found
+        if (made := as_force(found)) is None:
+            raise _unexpected(self, "render", "force", found, Force)
+        return made
+
+    setattr(cls, "force", force)  # noqa: B010 - of a class that is made now
+
+
+def _unexpected(giver: object, kind: str, verb: str, found: Any, wanted: type) -> BrokenMethod:
+    who, gave = named(kind, type(giver).__module__, type(giver).__qualname__), what_is(found)
+    return BrokenMethod(f"{who}: {verb} gave {gave}; it must give a {wanted.__name__}, as `tangible check` tests")

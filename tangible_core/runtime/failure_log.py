@@ -1,0 +1,54 @@
+"""Tracebacks, kept in a file: a person is told one sentence, and where the file is for whoever repairs it."""
+
+import os
+import shlex
+import sys
+import traceback
+from datetime import datetime
+from pathlib import Path
+
+from ..errors import OutputError
+
+NAME, OLDER = "failures.log", "failures.old.log"
+MOST_BYTES = 1_000_000
+"""Of the file: one that is larger becomes the older one, and a new one is begun."""
+
+
+def log_folder() -> Path:
+    """$TANGIBLE_LOG_DIR, or the user's folder of logs."""
+    if named := os.environ.get("TANGIBLE_LOG_DIR"):
+        return Path(os.path.expanduser(named))  # noqa: PTH111 - which leaves a home that nobody has as it is
+    from platformdirs import user_log_path
+
+    return user_log_path("tangible-images")
+
+
+def keep(error: BaseException) -> Path:
+    """Append an error's traceback, when it happened and in which command; returns the file.
+
+    Raises: OutputError if it cannot be written.
+    """
+    path = log_folder() / NAME
+    when = datetime.now().astimezone().isoformat(timespec="seconds")
+    text = f"{when} {shlex.join(sys.argv)}\n{''.join(traceback.format_exception(error))}\n"
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        if path.exists() and path.stat().st_size > MOST_BYTES:
+            path.replace(path.with_name(OLDER))
+        with path.open("a", encoding="utf-8", errors="backslashreplace") as file:
+            file.write(text)
+    except OSError as failed:
+        raise OutputError(f"{path}: cannot be written: {failed.strerror}") from failed
+    return path
+
+
+def where_kept(error: BaseException) -> str:
+    """Keep a traceback, and say where it is: the end of a sentence.
+
+    >>> where_kept(ValueError()).startswith("the traceback is in ")
+    True
+    """
+    try:
+        return f"the traceback is in {keep(error)}"
+    except OutputError as failed:
+        return f"its traceback could not be kept ({failed}); --log-level debug shows it"

@@ -1,0 +1,97 @@
+"""Arguments of the wrong type: converted where they can be, else one sentence that names the argument."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tangible_core import (
+    Calibration,
+    DisparityMap,
+    HapticSurface,
+    Material,
+    Recording,
+    Relief,
+    Scene,
+    SegmentMap,
+    Views,
+)
+from tangible_core.data.arguments import as_array, as_force, as_picture, as_state
+from tangible_core.data.device import Force, HapticState
+from tangible_core.errors import ArgumentError, TangibleError
+
+pytestmark = pytest.mark.usefixtures("unchecked_shapes")
+
+GREY = np.zeros((2, 2), np.uint8)
+FLAT = np.zeros((2, 2), np.float32)
+
+
+@pytest.mark.parametrize(
+    ("make", "said"),
+    [
+        (lambda: Views("l.png"), "left: is the str 'l.png'; it must be an array of numbers; Scene.of and numpy.load"),
+        (lambda: Views(GREY, Path("r.png")), "right: is a PosixPath; it must be an array of numbers"),
+        (lambda: Views(GREY, calibration=(900, 0.1)), r"calibration: is the tuple \(900, 0.1\); it must be a"),
+        (lambda: Views([[1], [2, 3]]), r"left: is the list \[\[1\], \[2, 3\]\]; it must be an array of numbers"),
+        (lambda: Calibration("900", 0.1), "focal_px: is the str '900'; it must be a number"),
+        (lambda: DisparityMap(None), "disparity_px: is None; it must be an array"),
+        (lambda: DisparityMap(FLAT, unit="m"), "unit: is the str 'm'; it must be one of px, relative"),
+        (lambda: SegmentMap([[0.5]]), "labels: is an array of float64 .*; it must be an array of int32"),
+        (lambda: Relief(FLAT, 0.1), "extent_m: is the float 0.1; it must be 2 numbers"),
+        (lambda: Relief(FLAT, (0.1, "b")), r"extent_m\[1\]: is the str 'b'; it must be a number"),
+        (lambda: HapticSurface(FLAT), "relief: is an array of float32 .*; it must be a Relief"),
+        (lambda: HapticSurface.from_heights("h.npy"), "height_m: is the str 'h.npy'; it must be an array"),
+        (lambda: HapticSurface.from_heights(FLAT, "8 cm"), "width_m: is the str '8 cm'; it must be a number"),
+        (lambda: HapticSurface.from_heights(FLAT, 0.1, [[0, 0]] * 2, ["ice"]), r"materials\[0\]: is the str 'ice'"),
+        (lambda: Material("ice", "100", 0, 0, 0), "material 'ice': stiffness_n_per_m: is the str '100'; it"),
+        (lambda: Recording.load(7), "path: is the int 7; it must be a path"),
+        (lambda: Recording("x"), "rows: is the str 'x'; it must be an array of numbers"),
+        (lambda: Scene.of(photo=[[1], [2, 3]]), "photo: is the list"),
+        (lambda: Scene.of(left=GREY, right=GREY, calibration=900), "calibration: is the int 900; it must be a"),
+        (lambda: Scene.of(left=GREY, right=GREY, rig=7), "rig: is the int 7; it must be a StereoRig, or"),
+    ],
+)  # fmt: skip
+def test_one_sentence_names_the_argument(make: Callable[[], Any], said: str):
+    with pytest.raises(TangibleError, match=f"^{said}") as raised:
+        make()
+    assert isinstance(raised.value, TypeError)
+    assert "\n" not in str(raised.value)
+
+
+def test_what_can_be_converted_is():
+    assert Views([[0, 255], [7, 0]]).left.dtype == np.uint8
+    assert Views([[0, 256], [7, 0]]).left.dtype == np.uint16
+    assert Views([[0.0, 1.0]]).left.shape == (1, 2)
+    found = DisparityMap([[1, 2], [3, np.nan]])
+    assert (found.disparity_px.dtype, found.confidence.tolist()) == (np.float32, [[1, 1], [1, 0]])
+    assert SegmentMap(np.eye(3)).labels.dtype == np.int32
+    relief = Relief(np.zeros((2, 2)), [0.1, 0.2])
+    assert (relief.height_m.dtype, relief.extent_m) == (np.float32, (0.1, 0.2))
+    assert HapticSurface.from_heights([[0, 1]], 0.1, [[0, 1]]).labels is not None
+    assert Recording([[0] * 16]).rows.dtype == np.float64
+
+
+def test_what_is_right_is_left_alone():
+    assert as_array("a", FLAT, "float32") is FLAT
+    assert np.shares_memory(DisparityMap(FLAT).disparity_px, FLAT)
+    assert as_picture("a", GREY) is GREY
+    state = HapticState((0.0, 0.0, 0.0))
+    assert as_state(state) is state
+
+
+def test_numbers_that_a_type_cannot_hold_are_refused():
+    for wrong in ([[2**40]], [[np.nan]], [[0.25]]):
+        with pytest.raises(ArgumentError, match="it must be an array of int32"):
+            as_array("labels", wrong, "int32")
+
+
+def test_three_numbers_are_a_place_or_a_force():
+    for three in ((0, 1, 2), [0.0, 1.0, 2.0], np.arange(3)):
+        assert as_state(three) == HapticState((0.0, 1.0, 2.0))
+        assert as_force(three) == Force(0.0, 1.0, 2.0)
+    for other in (None, "abc", (0, 1), (0, 1, "x"), np.zeros((3, 3)), 7):
+        assert as_force(other) is None
+        with pytest.raises(ArgumentError, match=r"state: is .*three numbers"):
+            as_state(other)

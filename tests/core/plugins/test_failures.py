@@ -1,0 +1,32 @@
+"""Which plugin an error came from: the innermost one, and none where the fault is ours."""
+
+import pytest
+
+from tangible_core import CompiledTouch, Force, PlainTouch
+from tangible_core.plugins.failures import Place, place_of
+
+
+class Law(PlainTouch):
+    """Asks another law, or fails itself."""
+
+    def __init__(self, other: PlainTouch | None = None) -> None:
+        self.other = other
+
+    def force(self, state: object) -> Force:
+        return [][0] if self.other is None else self.other.force(state)  # pyright: ignore[reportArgumentType]
+
+
+class Outer(Law):
+    """Stands around another."""
+
+
+def test_the_innermost_plugin_is_named():
+    with pytest.raises(IndexError) as raised:
+        Outer(Law()).force((0, 0, 0))
+    assert place_of(raised.value) == Place("render", __name__, "Law", "force")
+
+
+def test_a_fault_of_the_core_is_nobody_elses():
+    with pytest.raises(TypeError) as raised:
+        CompiledTouch(None, ()).force((0, 0, 0))  # pyright: ignore[reportArgumentType]
+    assert place_of(raised.value) is None

@@ -110,9 +110,10 @@ def _taken(
     top, side = (round(CUT * size) for size in SHAPE)
     kept = slice(top, -top), slice(side, -side)
     truth = truth[kept] - [side, top]
-    seen = (truth >= 0).all(axis=2) & (truth <= np.array(truth.shape[1::-1]) - 1).all(axis=2)
-    views = Views(*(np.ascontiguousarray(_warped(each, by)[kept]) for each, by in ((left, one), (right, other))))
-    return views, np.where(seen[..., None], truth, np.nan)
+    last = [truth.shape[1] - 1, truth.shape[0] - 1]
+    seen = np.all((truth >= 0) & (truth <= last), axis=2, keepdims=True)
+    views = Views(_warped(left, one)[kept], _warped(right, other)[kept])
+    return views, np.where(seen, truth, np.nan)
 
 
 def _warped(picture: np.ndarray, camera: Taken) -> np.ndarray:

@@ -12,7 +12,8 @@ from tangible_core.plugins.notes import note
 from ..dense.confidence import flat_pixels
 from ..dense.refinement import DenseMatches, as_map
 from ..dense.span import Span
-from ..rectify.rectification import RectificationError, rectify, whole_picture_matches
+from ..rectify.rectification import rectify, whole_picture_matches
+from ..rectify.turning import RectificationError
 from ..search.asked import Auto, asked_span
 from ..search.bands import match_bands
 from ..search.pairs import Pair, grey_pair

@@ -131,14 +131,14 @@ def _warp(picture: np.ndarray, homography: np.ndarray, radial: float, width: int
     if picture.dtype not in (np.uint8, np.uint16, np.float32, np.float64):
         picture = picture.astype(np.float32)
     raw = np.ascontiguousarray(picture)
-    how = {"borderMode": cv2.BORDER_REPLICATE}
+    cubic, edge = cv2.INTER_CUBIC, cv2.BORDER_REPLICATE
     with plain_opencv():
         if radial:
             straight = transform(inverse(homography), _pixels((height, width)))
             columns, rows = distorted(straight, radial, picture.shape[:2]).astype(np.float32).T.reshape(2, height, -1)
-            warped = cv2.remap(raw, columns, rows, cv2.INTER_CUBIC, **how)
+            warped = cv2.remap(raw, columns, rows, cubic, borderMode=edge)
         else:
-            warped = cv2.warpPerspective(raw, homography, (width, height), flags=cv2.INTER_CUBIC, **how)
+            warped = cv2.warpPerspective(raw, homography, (width, height), flags=cubic, borderMode=edge)
     return np.clip(warped, picture.min(), picture.max(), out=warped)
 
 

@@ -34,8 +34,10 @@ MOST_FITTED = 800
 """Matches that lenses are fitted to: more tell no more."""
 
 
-NEIGHBOURS, LEAST_LIKE = 8, 3
+NEIGHBOURS, LEAST_LIKE = 8, 4
 """Of its nearest NEIGHBOURS, how many must have a disparity like that of a match that is to widen the range."""
+STRAY = 0.5
+"""Percent of those at either end that stray all the same."""
 LIKE_PX, LIKE_SLOPE = 8.0, 0.1
 """How far apart like disparities may be: in pixels, and per pixel between the two matches."""
 
@@ -92,9 +94,10 @@ def find_turn(matches: Matches, shape: tuple[int, int], fit: Fit) -> tuple[Turn,
     except RectificationError:
         return plain, "half of the matches do not tell what all of them do"
     lenses = _with_lenses(half, learnt, shape, fit)
-    near, better = (_on_rows(each, judges, shape) for each in (half, lenses))
-    if max(near, better) < LEAST_KEPT * np.mean(half.trusted):
-        return plain, f"it explains {max(near, better):.0%} of the matches that had no part in it"
+    kept = max(_on_rows(each, judges, shape) for each in (half, lenses))
+    if kept < LEAST_KEPT * np.mean(half.trusted):
+        return plain, f"it explains {kept:.0%} of the matches that had no part in it"
+    near, better = (_on_rows(each, judges, shape, FINE) for each in (half, lenses))
     if better > (1 + LEAST_MORE) * near:
         return _with_lenses(plain, matches, shape, fit), None
     return plain, None
@@ -140,22 +143,22 @@ def _with_lenses(turn: Turn, matches: Matches, shape: tuple[int, int], fit: Fit)
     if found is None:
         return turn
     roll, trusted = epipole_roll(found.matrix, shape), found.inliers
-    radials = radial, radial
+    lenses = Turn(turn.homographies, (radial, radial), trusted)
     for _ in range(3):
         some = np.flatnonzero(trusted)[:: 1 + np.count_nonzero(trusted) // MOST_FITTED]
-        pair, radials = aligning_lenses(Matches(matches.left_px[some], matches.right_px[some]), shape, roll, radials)
-        if max(map(abs, radials)) > MOST_RADIAL:
+        kept = Matches(matches.left_px[some], matches.right_px[some])
+        lenses = Turn(*aligning_lenses(kept, shape, roll, lenses.radials), trusted)
+        if max(map(abs, lenses.radials)) > MOST_RADIAL:
             return turn
-        lenses = Turn(pair, radials, trusted)
         trusted = np.abs(lenses.shifts(matches, shape)[:, 1]) <= threshold_px(shape)
         if np.count_nonzero(trusted) < np.count_nonzero(turn.trusted) / 2:
             return turn
-    return Turn(pair, radials, trusted)
+    return lenses._replace(trusted=trusted)
 
 
 def _explained(matches: Matches, radial: float, shape: tuple[int, int], fit: Fit) -> int:
     """How many matches one geometry explains to a fraction of the threshold, where both lenses distort by `radial`."""
-    straight = (undistorted(points, radial, shape) for points in matches)
+    straight = Matches(*(undistorted(points, radial, shape) for points in matches))
     try:
         return int(np.count_nonzero(robust_fundamental(*straight, FINE * threshold_px(shape), fit).inliers))
     except DegenerateMatches:
@@ -163,7 +166,7 @@ def _explained(matches: Matches, radial: float, shape: tuple[int, int], fit: Fit
 
 
 def seen_range(points_px: np.ndarray, disparity_px: np.ndarray) -> tuple[int, int]:
-    """Lowest and highest disparity among matches (n, 2), (n,) whose neighbours have one like theirs; of all if none.
+    """Lowest and highest disparity, but for STRAY, of matches (n, 2), (n,) with neighbours like them; of all if none.
 
     What lies on its row may still be matched to a wrong column.
     """
@@ -173,12 +176,13 @@ def seen_range(points_px: np.ndarray, disparity_px: np.ndarray) -> tuple[int, in
     differing = np.abs(disparity_px[nearest] - disparity_px[:, None])
     like = np.count_nonzero(differing <= LIKE_PX + LIKE_SLOPE * away, axis=1) > LEAST_LIKE
     kept = disparity_px[like] if like.any() else disparity_px
-    return int(np.floor(kept.min())), int(np.ceil(kept.max()))
+    low, high = np.percentile(kept, [STRAY, 100 - STRAY])
+    return int(np.floor(low)), int(np.ceil(high))
 
 
-def _on_rows(turn: Turn, matches: Matches, shape: tuple[int, int]) -> float:
-    """Share of the matches that lie on their rows."""
-    return float(np.mean(np.abs(turn.shifts(matches, shape)[:, 1]) <= threshold_px(shape)))
+def _on_rows(turn: Turn, matches: Matches, shape: tuple[int, int], share: float = 1.0) -> float:
+    """Share of the matches that lie on their rows, to a share of the threshold."""
+    return float(np.mean(np.abs(turn.shifts(matches, shape)[:, 1]) <= share * threshold_px(shape)))
 
 
 def _parts(points_px: np.ndarray, shape: tuple[int, int]) -> int:

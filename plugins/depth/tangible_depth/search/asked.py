@@ -15,8 +15,10 @@ from .search_range import MARGIN, find_range, reach_px
 
 log = logging.getLogger(__name__)
 Auto = Literal["auto"]
-LEAST_BEYOND = 0.005
+LEAST_BEYOND = 0.01
 """Share of the bands' matches that must lie beyond verified ones, on the way to where a range ends, to be followed."""
+MOST_FILLED = 256
+"""Disparities of a turned pair beyond which what its lanes hold anyway is left: a pair is made smaller for it."""
 
 
 class SearchRange(NamedTuple):
@@ -63,7 +65,9 @@ def _found(pair: Pair, least: int | Auto, seen_px: tuple[int, int] | None) -> Se
         low, high = least, max(high, least)
     why = "beyond what is searched where nothing stands out" if found is None else "which do not occur"
     notes.append((f"skipped: disparities outside {low}..{high} px, {why}", logging.INFO))
-    span = Span(low, high).filled() if high > 0 else Span(low, high)
+    span = Span(low, high)
+    if high > 0 and (seen_px is None or span.size <= MOST_FILLED):
+        span = span.filled()
     return SearchRange(span.within(pair.width), found and found.bands, tuple(notes))
 
 

@@ -126,7 +126,9 @@ def _cause(
     held_n = float(np.median(np.hypot(*seen.force_n[off, :2].T)))
     if held_n < HOLDS_N:
         return "nothing held it, it is too slow for its path. A smaller `speed_m_per_s` of the device lets it follow."
-    at_m = (seen.proxy_m if np.isfinite(seen.proxy_m[worst]).all() else seen.position_m)[worst]
+    at_m: Float64[np.ndarray, " 3"] = seen.proxy_m[worst]
+    if not np.isfinite(at_m).all():
+        at_m = seen.position_m[worst]
     here, goal_m = f"at x {1000 * at_m[0]:.0f} mm, y {1000 * at_m[1]:.0f} mm", wanted_m[worst] - at_m
     turned = np.arctan2(goal_m[1], goal_m[0]) + 2 * np.pi * np.arange(DIRECTIONS) / DIRECTIONS
     foot_m = min(float(_ground(surface, at_m, angle, FOOT_M).min(initial=np.inf)) for angle in turned.tolist())

@@ -26,7 +26,7 @@ NORMALS = 11
 """Along the longer side."""
 FLAT_M = 1e-6
 """Lower reliefs are drawn as a plane."""
-ROOM_IN = (0.15, 0.45, 0.42, 0.2)
+ROOM_IN = (0.1, 0.45, 0.4, 0.12)
 """Left of the block, right of it, below and above: for its scales and normals."""
 LARGE_IN2 = 6.0
 """Of the block on paper, as wide as it is high together, about."""

@@ -26,7 +26,9 @@ def test_the_innermost_plugin_is_named():
     assert place_of(raised.value) == Place("render", __name__, "Law", "force")
 
 
+@pytest.mark.usefixtures("unchecked_shapes")
 def test_a_fault_of_the_core_is_nobody_elses():
-    with pytest.raises(TypeError) as raised:
-        CompiledTouch(None, ()).force((0, 0, 0))  # pyright: ignore[reportArgumentType]
+    touch = CompiledTouch(None, ())  # pyright: ignore[reportArgumentType]
+    with pytest.raises(TypeError, match="'NoneType' object is not callable") as raised:
+        touch.force((0, 0, 0))  # pyright: ignore[reportArgumentType]
     assert place_of(raised.value) is None

@@ -101,7 +101,7 @@ def _cell(cls: type) -> str:
 
 def _functions(cls: type) -> Iterator[FunctionType]:
     for each in vars(cls).values():
-        function = getattr(each, "__func__", each)
+        function = inspect.unwrap(getattr(each, "__func__", each))
         if isinstance(function, FunctionType) and function.__module__ == cls.__module__:
             yield function
 

@@ -162,7 +162,7 @@ def test_sentences_stand_above_the_tables(folder: Path):
     plan = tangible("plan", "p.yaml", cwd=folder).stdout
     assert plan.startswith("`run` would make disparity and relief. Nothing is run now.\n")
     run = tangible("run", "p.yaml", cwd=folder).stdout
-    assert "dot.png is done: its disparity and relief are made." in " ".join(run.split())
+    assert "dot.pngisdone:itsdisparityandreliefaremade." in "".join(run.split())  # a long path is broken
     assert tangible("plan", "p.yaml", cwd=folder).stdout.startswith("Nothing is left to run")
     figures = {"overruns": 0, "ticks": 500, "seconds": 0.5, "contact_share": 0.931, "peak_force_n": 2.04}
     assert sentences.felt("mock", figures) == (

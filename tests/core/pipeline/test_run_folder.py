@@ -25,7 +25,7 @@ HEIGHTS = np.arange(16.0).reshape(4, 4)
 @pytest.fixture(autouse=True)
 def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
     """Drawing takes most of the time of a run."""
-    monkeypatch.setattr(runs, "draw_sheet", lambda path, **_: path.write_bytes(b"a sheet"))
+    monkeypatch.setattr(runs, "draw_sheet", lambda path, **_: str(path.write_bytes(b"a sheet")))
 
 
 def run(out: Path, want: Product = "touch", heights: np.ndarray = HEIGHTS):

@@ -48,7 +48,7 @@ def test_it_is_in_the_log_the_outcomes_and_the_title_of_the_sheet(
     from tangible_core.pipeline import runs
 
     titles: list[str] = []
-    monkeypatch.setattr(runs, "draw_sheet", lambda path, *, title, **_: titles.append(title))
+    monkeypatch.setattr(runs, "draw_sheet", lambda path, *, title, **_: titles.append(title) or "")
     picture = np.random.default_rng(0).random((8, 8))
     Pipeline(Scene.of(left=picture, right=picture[::-1]), depth=Guesses(), cached=False).run(tmp_path, "relief")
     [message] = [each.message for each in caplog.records]

@@ -9,7 +9,7 @@ Stereo Vision, CVPR 1999; fitting to the matches that of Hartley, Theory and Pra
 """
 
 from collections.abc import Callable
-from math import cos, exp, log1p, sin
+from math import cos, exp, sin
 
 import numpy as np
 from jaxtyping import Float64
@@ -29,6 +29,7 @@ _START, _FOUND, _SINE = 2.0**-10, 2.0**-20, 2.0**-32
 """What is rounded, and to what: the roll to start with, in radians, whose last bits are those of a processor's linear
 algebra; the seven numbers, to under a thousandth of a pixel; and sines and the like, whose last bits are those of the C
 library, which fuses operations where a processor can."""
+_LOG_2 = 0.6931471805599453
 _ROUNDS, _TRIES = 80, 15
 """Steps of the fit, and how often one is tried anew."""
 _STEP, _STILL, _LEAST_GAIN = 1e-5, 1e-5, 0.05
@@ -73,7 +74,7 @@ def _fitted(
         left, right = (transform(h, points) for h, points in zip(_pair(values[:7], shape), straight, strict=True))
         offset = (left[:, 1] - right[:, 1]) / _NOISE_PX
         # A Cauchy-like pull: what the robust estimate let through by chance may not bend the geometry.
-        pull = np.sqrt(np.array([log1p(each) for each in (offset * offset).tolist()]))
+        pull = np.sqrt(_log1p(offset * offset))
         return np.concatenate([np.sign(offset) * pull, (values - start) / prior])
 
     return np.array([_rounded(each, _FOUND) for each in _least_squares(cost, start, prior)])
@@ -143,6 +144,20 @@ def _similarity_and_tilt(roll: float, tilt: tuple[float, float], scale: float, s
     across, down = (scale * _rounded(function(roll), _SINE) for function in (cos, sin))
     turn = np.array([[across, -down, 0], [down, across, 0], [0, 0, 1]])
     return product(np.array([[1, 0, 0], [0, 1, shift], [*tilt, 1]]), turn)
+
+
+def _log1p(values: np.ndarray) -> np.ndarray:
+    """Of numbers >= 0, by multiplications and additions alone: the C library's differs by the processor.
+
+    2 atanh(x / (2 + x)), for large x of the fraction of 1 + x and with log 2 for each power of two.
+    """
+    fraction, power = np.frexp(1 + values)
+    small = values < 1
+    share = np.where(small, values / (2 + values), (fraction - 1) / (fraction + 1))
+    square, total = share * share, np.zeros(values.shape)
+    for odd in range(37, 0, -2):
+        total = total * square + 1 / odd
+    return 2 * share * total + np.where(small, 0, power) * _LOG_2
 
 
 def _rounded(value: float, step: float) -> float:

@@ -17,6 +17,7 @@ log = logging.getLogger(__name__)
 Auto = Literal["auto"]
 LEAST_BEYOND = 0.01
 """Share of the bands' matches that must lie beyond verified ones, on the way to where a range ends, to be followed."""
+LEAST_STEP_PX = 8
 MOST_FILLED = 256
 """Disparities of a turned pair beyond which what its lanes hold anyway is left: a pair is made smaller for it."""
 
@@ -73,7 +74,7 @@ def _found(pair: Pair, least: int | Auto, seen_px: tuple[int, int] | None) -> Se
 
 def _round_seen(seen: Span, bands: Bands | None) -> Span:
     """The range of verified matches, widened at either end as far as matches of the bands go on."""
-    step = max(4, seen.size // 8)
+    step = max(LEAST_STEP_PX, seen.size // 8)
     known = np.empty(0)
     if bands is not None:
         known = np.sort(bands.disparity[bands.disparity != UNKNOWN]) * (bands.factor / 16)

@@ -18,10 +18,6 @@ LEAST_AGREED, MOST_SPREAD_PX = 0.45, 0.3
 """Share of the edges whose views agree on an offset, and median deviation of these offsets, if rows correspond. Damaged
 pairs reach 0.21 px; a roll of 0.3 degrees has 0.47 px and more."""
 
-MOST_ALONE = 0.35
-"""Share of the bands' matches that no neighbour confirms from which they are no evidence: matches of anything with
-anything have 0.7 and more, damaged pairs up to 0.65. Corners are followed then."""
-
 
 def with_common_rows(pair: Pair, bands: Bands, most_row_offset_px: float) -> Pair | None:
     """The pair, realigned where its rows miss each other by a constant; None where they do not correspond otherwise.
@@ -35,8 +31,6 @@ def with_common_rows(pair: Pair, bands: Bands, most_row_offset_px: float) -> Pai
     row_offset_px = common_row_offset(pair, bands)
     if row_offset_px is None:
         return pair if corners_correspond(pair, most_row_offset_px) else None
-    if bands.loss > MOST_ALONE and not corners_correspond(pair, abs(row_offset_px)):
-        return None
     if most_row_offset_px > 0 or abs(row_offset_px) <= LEAST_ROW_OFFSET_PX:
         return pair
     note(log, f"rows realigned by {row_offset_px:.2f} px")

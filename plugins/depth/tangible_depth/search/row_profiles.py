@@ -46,11 +46,12 @@ def _correlations(
 ) -> Float64[np.ndarray, "shifts"]:
     """Of the left rows with the right ones -reach to reach rows further down, over the rows that both have."""
     nothing = np.zeros(reach)
-
-    def along(values: np.ndarray) -> np.ndarray:
-        return np.lib.stride_tricks.sliding_window_view(np.concatenate([nothing, values, nothing]), len(left))
-
-    there = np.ones(len(left))
-    both = np.einsum("sh,h->s", along(right), left)
-    ours, theirs = np.einsum("sh,h->s", along(there), left**2), np.einsum("sh,h->s", along(right**2), there)
-    return both / np.sqrt(np.maximum(ours * theirs, np.finfo(np.float64).tiny))
+    windows = np.lib.stride_tricks.sliding_window_view(np.concatenate([nothing, right, nothing]), len(left))
+    both = np.einsum("sh,h->s", windows, left)
+    # Of the left rows those above the lowest ones count, and of the right rows the others; the other way round upwards.
+    ours, theirs = (np.cumsum(each**2) for each in (left, right))
+    steps = np.arange(1, reach + 1)
+    down = ours[-1 - steps] * (theirs[-1] - theirs[steps - 1])
+    up = theirs[-1 - steps] * (ours[-1] - ours[steps - 1])
+    energy = np.concatenate([up[::-1], [ours[-1] * theirs[-1]], down])
+    return both / np.sqrt(np.maximum(energy, np.finfo(np.float64).tiny))

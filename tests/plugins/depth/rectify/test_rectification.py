@@ -1,3 +1,4 @@
+import math
 from contextlib import nullcontext
 
 import numpy as np
@@ -411,3 +412,8 @@ def test_disparities_that_no_neighbour_has_do_not_widen_the_range():
     disparity = 0.05 * points[:, 0] + 10
     disparity[[3, 77]] = -400.0, 300.0
     assert seen_range(points, disparity) == (10, 45)
+
+
+def test_the_logarithm_is_one():
+    values = np.concatenate([[0.0, 1.0, 3.0], np.geomspace(1e-18, 1e9, 500)])
+    assert alignment._log1p(values) == pytest.approx([math.log1p(each) for each in values], rel=4e-15, abs=0)

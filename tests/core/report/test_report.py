@@ -188,14 +188,17 @@ class TestLayout:
     @given(st.lists(st.floats(0.5, 5.0), min_size=1, max_size=7))
     def test_no_other_rows_are_nearer_to_the_wanted_height(self, aspects: list[float]) -> None:
         cells = [Cell(aspect, 0.2, 0.8, 0.5, 0.4, 2.9) for aspect in aspects]
+        boxes, _, _ = arrange(cells, 12.0)
+        tops = [box.top_in for box in boxes]
+        made = (0, *(i for i in range(1, len(cells)) if tops[i] != tops[i - 1]), len(cells))
+
+        def far(cut: tuple[int, ...]) -> float:
+            rows = [cells[a:b] for a, b in pairwise(cut)]
+            return sum(log(_height(row, 12.0) / each.wanted_in) ** 2 for row in rows for each in row)
+
         inner = range(1, len(cells))
         cuts = [(0, *cut, len(cells)) for count in range(len(cells)) for cut in combinations(inner, count)]
-        ways = [[cells[a:b] for a, b in pairwise(cut)] for cut in cuts]
-        least = min(ways, key=lambda rows: sum(log(_height(row, 12.0) / c.wanted_in) ** 2 for row in rows for c in row))
-        boxes, _, _ = arrange(cells, 12.0)
-        assert [sum(box.top_in == top for box in boxes) for top in sorted({box.top_in for box in boxes})] == [
-            len(row) for row in least
-        ]
+        assert far(made) <= min(map(far, cuts)) + 1e-9  # several may be as near
 
     def test_many_cells_are_arranged_at_once(self) -> None:
         """Not by trying all ways, of which 40 cells have half a million millions."""

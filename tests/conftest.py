@@ -44,9 +44,13 @@ def pytest_configure(config: pytest.Config) -> None:
         compile_once()
 
 
+gc.disable()
+
+
 def pytest_collection_finish() -> None:
-    """What is imported by now stays: the garbage collector need not look at it again and again."""
+    """What is imported by now stays: the garbage collector need not look at it, neither before nor again and again."""
     gc.freeze()
+    gc.enable()
 
 
 @pytest.hookimpl(tryfirst=True)

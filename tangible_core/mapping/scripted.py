@@ -31,7 +31,7 @@ def wanted(device: HapticDevice, ticks: Int64[np.ndarray, " n"]) -> Float64[np.n
 def _placed(to: Placement, hand_m: Float64[np.ndarray, "n 3"]) -> Float64[np.ndarray, "n 3"]:
     turned_back = np.array([[to.cos, to.sin, 0.0], [-to.sin, to.cos, 0.0], [0.0, 0.0, 1.0]])
     from_m = hand_m - np.array([to.offset_x_m, to.offset_y_m, to.offset_z_m])
-    return from_m @ turned_back.T / to.scale + np.array([to.centre_x_m, to.centre_y_m, 0.0])
+    return np.einsum("ni,ji->nj", from_m, turned_back) / to.scale + np.array([to.centre_x_m, to.centre_y_m, 0.0])
 
 
 def _under_the_hand(device: MappedDevice, extent_m: tuple[float, float]) -> tuple[float, float]:

@@ -33,7 +33,7 @@ UNCHECKED = {
     "tangible_core.servo.schedule": "its functions are compiled into the loop, as they stand",
 }
 """Modules whose calls are not checked, and why."""
-CALLS = 10_000
+CALLS = 1_000
 """So many of each function and process are checked: a simulated device's clock is asked ten million times."""
 COMPILED = {"njit", "inner", "intrinsic", "operation", "overload"}
 """What these decorate is compiled, or never called, as by `overload` of typing."""

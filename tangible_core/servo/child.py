@@ -131,9 +131,9 @@ def main() -> None:
     sys.setswitchinterval(SWITCH_S)
     commands = open(0, "rb", buffering=0)  # noqa: SIM115 - a buffer's lock would outlive the thread that waits
     child = Child(commands, replies)
-    for name in ENDING:
-        if hasattr(signal, name):
-            signal.signal(getattr(signal, name), lambda _number, _frame: child.stop(TERMINATED))
+    for number in (getattr(signal, name) for name in ENDING if hasattr(signal, name)):
+        if signal.getsignal(number) != signal.SIG_IGN:  # as nohup has it: the program goes on, and so does its loop
+            signal.signal(number, lambda _number, _frame: child.stop(TERMINATED))
     if hasattr(signal, "SIGTSTP"):  # Ctrl-Z: a process that stands still would leave its force on
         signal.signal(signal.SIGTSTP, lambda _number, _frame: child.stop(PAUSED))
     gc.disable()  # a collection takes longer than a tick

@@ -9,8 +9,8 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from types import FrameType
 from typing import Any
@@ -232,13 +232,20 @@ class TestStandstill:
 
     @pytest.mark.parametrize("name", ["SIGTERM", "SIGHUP", "SIGQUIT"])
     def test_signals_that_a_terminal_sends_to_the_loop_too_leave_no_force(self, tmp_path: Path, name: str) -> None:
-        record = tmp_path / "force"
-        with self.feel(record, FaultyTouch()) as servo:
+        record, number = tmp_path / "force", getattr(signal, name)
+        with answered(number, signal.SIG_DFL), self.feel(record, FaultyTouch()) as servo:
             until(lambda: held(record) > 0)
-            os.kill(servo.process_id, getattr(signal, name))
+            os.kill(servo.process_id, number)
             until(lambda: not servo.running)
             assert servo.report().stopped == "the process was asked to end"
             assert held(record) == 0
+
+    def test_a_signal_that_the_program_ignores_ends_its_loop_neither(self, tmp_path: Path) -> None:
+        """Under nohup, when the terminal is closed."""
+        with answered(signal.SIGHUP, signal.SIG_IGN), self.feel(tmp_path / "force", FaultyTouch()) as servo:
+            os.kill(servo.process_id, signal.SIGHUP)
+            there = servo.report().ticks
+            until(lambda: servo.report().ticks > there + 50)
 
     def test_stop_does_not_wait_for_a_law_that_blocks(self, tmp_path: Path) -> None:
         record = tmp_path / "force"
@@ -255,6 +262,16 @@ class TestStandstill:
             until(lambda: not servo.running)
             assert "paused from the keyboard" in servo.report().stopped
             assert held(record) == 0
+
+
+@contextmanager
+def answered(number: int, how: signal.Handlers) -> Iterator[None]:
+    """A signal is answered so by this process, and by those that it starts."""
+    before = signal.signal(number, how)
+    try:
+        yield
+    finally:
+        signal.signal(number, before)
 
 
 class TestWhatAPluginRaises:

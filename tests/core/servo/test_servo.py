@@ -175,16 +175,6 @@ class TestNoForceIsLeft:
             pytest.fail("it was opened")
         assert set(shared_folder().glob(f"tangible-{os.getpid()}-*")) == before
 
-    @pytest.mark.parametrize("asked_by", [signal.SIGTERM, signal.SIGHUP])
-    def test_a_loop_that_is_asked_to_end(self, tmp_path: Path, asked_by: signal.Signals) -> None:
-        record = tmp_path / "force"
-        with Servo(proxy(), Failing(fault="none", record=str(record)), AT_ONCE) as servo:
-            until(lambda: held(record) > 0)
-            os.kill(servo.process_id, asked_by)
-            until(lambda: not servo.running)
-            assert "asked to end" in servo.report().stopped
-        assert held(record) == 0
-
     def test_a_killed_loop(self, tmp_path: Path) -> None:
         """Nobody can run in a process that is killed: the host opens the device once more and lets go."""
         record = tmp_path / "force"

@@ -36,13 +36,14 @@ def check(
     from rich.markup import escape
 
     from ..testing import run_checks
-    from . import show
+    from . import sentences, show
 
     results = list(run_checks(kind, name))
     if as_json:
         show.print_json([each._asdict() for each in results])
     else:
         rows = [(each.name, GRADES[each.passed, bool(each.expected_failure)], escape(_said(each))) for each in results]
+        show.sentence(sentences.checked(f"{kind} method {name}", results))
         show.table(("check", "result", "message"), rows)
         show.say(f"\n{_count(results)}")
     if not all(each.as_declared for each in results):

@@ -67,16 +67,17 @@ def doctor(
     from dataclasses import asdict
 
     from ..plugins.registry import default_registry
-    from . import show
+    from . import sentences, show
 
     if name is None and sets:
         raise ConfigError("--set: name the device that has this option")
     names = [name] if name else [each.name for each in default_registry().listings if each.kind == "device"]
     found = {each: _findings(each, sets or [], named=name is not None) for each in names}
-    verdicts = {each.verdict for findings in found.values() for each in findings}
+    verdicts = [each.verdict for findings in found.values() for each in findings]
     if as_json:
         show.print_json({each: [asdict(finding) for finding in findings] for each, findings in found.items()})
     else:
+        show.sentence(sentences.diagnosed(name, verdicts))
         _tell(found)
     if "failed" in verdicts or (name and "not asked" in verdicts):
         raise typer.Exit(FAILED)
@@ -118,7 +119,7 @@ def stress(
     No force is given. Rate, and percentiles of the time of one cycle.
     """
     from ..session.stress import stressed
-    from . import show
+    from . import sentences, show
 
     if not 0 < seconds <= 3600:
         raise ConfigError(f"--seconds {seconds}: is above 0, and at most an hour")
@@ -127,6 +128,7 @@ def stress(
         show.print_json(figures)
     else:
         texts = [(key, f"{value:.1f}" if isinstance(value, float) else str(value)) for key, value in figures.items()]
+        show.sentence(sentences.stressed(figures))
         show.table(("figure", "value"), texts)
 
 

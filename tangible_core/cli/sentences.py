@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from ..bench.table import Results
     from ..data import Outcome
     from ..pipeline.runs import Run
+    from ..testing import CheckResult
 
 
 def made(run: Run) -> str:
@@ -54,6 +55,33 @@ def felt(device: str, figures: Mapping[str, Any]) -> str:
         f"{device} was felt for {figures['seconds']:.1f} s, {100 * figures['contact_share']:.0f} % of it in contact, "
         f"with forces of up to {figures['peak_force_n']:.1f} N; {in_time}."
     )
+
+
+def checked(name: str, results: Sequence[CheckResult]) -> str:
+    """Whether a method keeps what its kind promises."""
+    broken = sum(not each.as_declared for each in results)
+    if not broken:
+        return f"{name} does what a method of its kind must: none of {len(results)} checks speaks against it."
+    return f"{name} does not do what a method of its kind must: {broken} of {len(results)} checks speak against it."
+
+
+def diagnosed(name: str | None, verdicts: Sequence[str]) -> str:
+    """Whether anything keeps a device, or any of all, from working."""
+    failed, unasked = verdicts.count("failed"), verdicts.count("not asked")
+    if failed:
+        return f"{_number(failed, 'check')} failed; the cure is said beside it."
+    found = f"Nothing was found that keeps {name or 'a device'} from working"
+    return f"{found}, but {_number(unasked, 'question')} could not be asked." if unasked else f"{found}."
+
+
+def stressed(figures: Mapping[str, Any]) -> str:
+    """How often a device can be read and written, and how often a force loop does."""
+    rate = f"{figures['device']} can be read and written {figures['rate_hz']:.0f} times a second"
+    return f"{rate}; a force loop does so 1000 times."
+
+
+def _number(count: int, what: str) -> str:
+    return f"{count} {what}{'' if count == 1 else 's'}"
 
 
 def replayed(law: str, figures: Mapping[str, float]) -> str:

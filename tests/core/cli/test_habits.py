@@ -171,3 +171,8 @@ def test_sentences_stand_above_the_tables(folder: Path):
     assert "12 of 500 ticks came late" in sentences.felt("mock", {**figures, "overruns": 12})
     nothing = sentences.replayed("proxy", {"compared": 0, "error_percent": float("nan"), "noticed_percent": 0.0})
     assert nothing.startswith("Nothing was felt")
+    check = tangible("check", "render", "penalty", cwd=folder).stdout
+    assert check.startswith("render method penalty does what a method of its kind must: none of ")
+    assert tangible("devices", "doctor", "mock", cwd=folder).stdout.startswith("Nothing was found that keeps mock from")
+    stress = tangible("devices", "stress", "mock", "--seconds", 0.01, cwd=folder).stdout
+    assert re.match(r"mock can be read and written \d+ times a second", stress)

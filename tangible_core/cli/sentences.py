@@ -49,8 +49,9 @@ def planned(steps: Sequence[Outcome]) -> str:
 
 def felt(device: str, figures: Mapping[str, Any]) -> str:
     """How long a device was felt, how hard, and whether the machine kept time."""
-    late = figures["overruns"]
-    in_time = "every tick came in time" if not late else f"{late} of {figures['ticks']} ticks came late"
+    missed = figures["overruns"]
+    due = figures["ticks"] + missed
+    in_time = "every tick came in time" if not missed else f"the loop was late, and left out {missed} of {due} ticks"
     return (
         f"{device} was felt for {figures['seconds']:.1f} s, {100 * figures['contact_share']:.0f} % of it in contact, "
         f"with forces of up to {figures['peak_force_n']:.1f} N; {in_time}."

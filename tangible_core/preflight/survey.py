@@ -6,7 +6,9 @@ import numpy as np
 from jaxtyping import Float64
 
 from ..data import HapticSurface
+from ..errors import BrokenMethod
 from ..plugins.interfaces import ForceRenderer, HapticDevice, Touch
+from ..plugins.naming import named
 from ..scene.geometry import workspace_to_picture
 from ..scene.workspace import FeltSize, Workspace
 from ..servo.guard.safety import Safety
@@ -36,13 +38,15 @@ def survey(
     scene_relief_m: height of the relief, where the scene says it and not the workspace. smoothed: whether
     `workspace.smooth_m` rounds the relief; one that the scene brings stays as it is. law_name: what the configuration
     calls the law. fitted: whether the materials were made to fit the device.
-    Takes `loop.seconds`, in which this machine's lateness is measured, and a moment more.
+    Takes `loop.seconds`, in which this machine's lateness is measured, and a moment more. Raises: BrokenMethod if the
+    touch gives a force that is not finite, for no bound can then be told.
     """
     size, safety = size or Workspace().size("heights"), safety or Safety()
     hand, loop = hand or Hand(), loop or Loop()
     period_s, spec = loop.period_s, device.spec()
     stiffness = stiffness_of(touch, spec).n_per_m
     probes = probe(touch, surface, hand.press_n, stiffness, spec.workspace_m[2], period_s)
+    _check_finite(law, probes)
     return Flight(
         surface=surface,
         law=law,
@@ -61,6 +65,17 @@ def survey(
         lateness=measure_lateness(loop.seconds, period_s),
         cost=measure_ticks(touch, _stroke(surface, probes, hand.speed_m_per_s * period_s), period_s),
     )
+
+
+def _check_finite(law: ForceRenderer, probes: Probes) -> None:
+    felt = (probes.force_n.sum(axis=1), probes.onset_n, probes.stiffness_n_per_m, probes.damping_n_s_per_m)
+    broken = ~np.isfinite(felt).all(axis=0)
+    if broken.any():
+        who = named("render", type(law).__module__, type(law).__qualname__)
+        raise BrokenMethod(
+            f"{who}: force gave values that are not finite at {np.count_nonzero(broken)} of {broken.size} places of "
+            "the surface; a force is always finite, as `tangible check` tests"
+        )
 
 
 def _stroke(surface: HapticSurface, probes: Probes, step_m: float) -> Float64[np.ndarray, "n 3"]:

@@ -21,7 +21,8 @@ SAID = {
     "texture, or `safety.coupling: auto`",
     TickFlag.NOT_FINITE: "the force was set to zero, because the law or the device gave a value that is no number; the "
     "force law or the driver is at fault",
-    TickFlag.STALE: "the force was set to zero, because the device sent no new position in time; check its connection",
+    TickFlag.STALE: "the force was set to zero, because no new position came in time; check the device's "
+    "connection, and whether the force law takes longer than a tick",
 }
 
 

@@ -13,7 +13,7 @@ from command_line import tangible
 from tangible_core import load_pipeline
 from tangible_core.cli.preflight import line, preflight
 from tangible_core.data import HapticState
-from tangible_core.errors import ConfigError
+from tangible_core.errors import BrokenMethod, ConfigError
 from tangible_core.preflight import Hand, Loop, Verdict
 from tangible_devices.mock import Mock
 
@@ -130,6 +130,25 @@ def test_a_law_of_somebody_elses_without_a_word_on_its_stiffness():
     flight = survey(surface, Spring(), Proxy(), Mock(), loop=Loop(seconds=0.01))
     assert flight.stiffness_n_per_m == pytest.approx(350)
     assert (flight.relief_key, flight.relief_m) == ("workspace.relief_m", 0.02)
+
+
+def test_a_law_whose_force_is_no_number_is_named_and_not_measured():
+    """Bounds of NaN would name cures that are no values: `render.stiffness_n_per_m: nan`."""
+    from tangible_core import HapticSurface
+    from tangible_core.data import Force
+    from tangible_core.plugins.interfaces import PlainTouch
+    from tangible_core.preflight import survey
+    from tangible_render import Proxy
+
+    class Broken(PlainTouch):
+        stiffness_n_per_m = 600.0
+
+        def force(self, state: HapticState) -> Force:
+            return Force(0.0, 0.0, math.nan if state.position_m[0] > 0.02 else 1.0)
+
+    surface = HapticSurface.from_heights(np.full((4, 4), 0.01, np.float32))
+    with pytest.raises(BrokenMethod, match=r"^render method proxy \(.*not finite at 4 of 16 places of the surface"):
+        survey(surface, Broken(), Proxy(), Mock(), loop=Loop(seconds=0.01))
 
 
 def test_where_the_height_of_a_relief_is_said(folder: Path):

@@ -36,7 +36,7 @@ def folder(tmp_path: Path) -> Path:
         ({"TOUCHING": 10, "FORCE_LIMITED": 9}, "In 90 % of the ticks in contact the force was over the greatest"),
         ({"TOUCHING": 10, "DAMPED": 9}, "In 90 % of the ticks in contact the hand was braked"),
         ({"TOUCHING": 10, "NOT_FINITE": 30}, "In 75 % of the ticks in contact the force was set to zero"),
-        ({"STALE": 5}, "In 100 % of the ticks in contact the force was set to zero, because the device sent"),
+        ({"STALE": 5}, "In 100 % of the ticks in contact the force was set to zero, because no new position came"),
     ],
 )
 def test_a_sentence_where_most_ticks_were_changed(flagged: dict[str, int], said: str):

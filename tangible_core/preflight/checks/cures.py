@@ -12,6 +12,8 @@ from ..verdict import Change, Cure, over, under
 
 CELLS = 512
 """A side: on so many, how much smoothing will do is soon tried."""
+SOFTEST_N_PER_M = 50.0
+"""A hand that explores with 1 N sinks 20 mm into a law so soft, as deep as most reliefs are high: no cure is softer."""
 FIT = Change("materials.fit", "device", "is")
 COUPLE = Change("safety.coupling", "auto", "is")
 
@@ -27,7 +29,7 @@ def soften(flight: Flight, most_n_per_m: float) -> Cure:
     stiffer = [material for material in materials if material.stiffness_n_per_m > most_n_per_m]
     if stiffer:
         return soften_materials(flight, stiffer, most_n_per_m)
-    if "stiffness_n_per_m" in type(flight.law).model_fields:
+    if "stiffness_n_per_m" in type(flight.law).model_fields and most_n_per_m >= SOFTEST_N_PER_M:
         return [Change("render.stiffness_n_per_m", under(most_n_per_m), "at most")]
     return "a softer law, `render.use: ...`"
 

@@ -1,5 +1,6 @@
 """Places too steep: where the law is stiffer than on level ground, and where the hand runs into a wall."""
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -8,7 +9,7 @@ from jaxtyping import Float32
 from ...data import Relief
 from ..flight import Flight
 from ..verdict import FEW, Cure, Verdict, held
-from .cures import COUPLE, FIT, flatten, joined, round_off, soften
+from .cures import COUPLE, FIT, SOFTEST_N_PER_M, flatten, joined, round_off, soften
 from .stiffness import TOO_STIFF
 
 MEASURED = 1.01
@@ -57,12 +58,20 @@ def _less_stiff(flight: Flight, limit: float, most: float) -> Cure:
     if flight.safety.coupling is None:
         ways.append([COUPLE])
     if level > 0 and not flight.met:
-        ways.append(soften(flight, level * limit / most))
+        softer = level * limit / most
+        ways += [soften(flight, softer)] if softer >= SOFTEST_N_PER_M else _rounder(flight, limit / level)
     if flight.law_name != PROXY:
         ways.append(f"a law that slopes do not stiffen, `render.use: {PROXY}`")
     if not ways:
         ways.append([flatten(flight, limit / most)])
     return joined(ways[0], *(part for way in ways[1:] for part in ("; or ", way)))
+
+
+def _rounder(flight: Flight, times: float) -> list[Cure]:
+    """Where slopes may make a penalty so many times as stiff as level ground."""
+    steepest = math.sqrt(max(times - 1, 0.0))
+    change = round_off(flight, lambda relief: float(np.mean(slopes(relief) > steepest)) <= RARE)
+    return [[change]] if change else []
 
 
 def cliffs(flight: Flight) -> Iterator[Verdict]:

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..flight import PASSIVE, Ceiling, Flight
 from ..verdict import FEW, Change, Cure, Verdict, held, under
-from .cures import COUPLE, FIT, soften, soften_materials
+from .cures import COUPLE, FIT, SOFTEST_N_PER_M, soften, soften_materials
 
 STIFFER = "stiffer than the device holds"
 TOO_STIFF = f"the law is {STIFFER}"
@@ -22,6 +22,13 @@ def law_stiffness(flight: Flight) -> Iterator[Verdict]:
     if flight.stiffness_n_per_m == 0:
         yield Verdict("stiffness", "the law", "ok", 0.0, "N/m", note="not a spring; see `contact`")
         return
+    felt = flight.felt_n_per_m(flight.stiffness_n_per_m)
+    if felt < SOFTEST_N_PER_M:
+        yield held(
+            *("stiffness", "the law", felt, ">=", SOFTEST_N_PER_M, "N/m", "a hand that explores with 1 N sinks 20 mm"),
+            says="the law is so soft that a hand goes through the surface",
+            cure="a stiffer law, such as by `render.stiffness_n_per_m`",
+        )
     for ceiling in flight.ceilings:
         cure = soften(flight, ceiling.most_n_per_m)
         yield _under_ceiling("the law", flight.felt_n_per_m(flight.stiffness_n_per_m), ceiling, cure)

@@ -98,3 +98,15 @@ def test_a_place_that_cannot_be_written(folder: Path):
     done = tangible("preflight", "p.yaml", "--seconds", 0.05, "--fix", "taken/fixed.yaml", cwd=folder)
     assert done.returncode == 2
     assert "taken/fixed.yaml: cannot be written" in done.stderr
+
+
+def test_what_is_safe_can_still_be_felt(folder: Path):
+    """Cliffs make a stiff penalty endlessly stiff: the surface becomes gentler then, and no law gives way to a hand."""
+    render = "render={use: penalty-gradient, stiffness_n_per_m: 6000}"
+    sets = ("materials={by: rules}", "device=falcon-simulated", "workspace.relief_m=0.04", render)
+    words = [word for each in sets for word in ("--set", each)]
+    done = tangible("preflight", "p.yaml", "--seconds", 0.05, *words, "--fix", "fixed.yaml", "--json", cwd=folder)
+    found = json.loads(done.stdout)
+    assert found["grade"] != "unsafe", found["sentence"]
+    assert float(found["changes"].get("render.stiffness_n_per_m", 6000)) >= 50
+    assert load_pipeline(folder / "fixed.yaml").surface.height_m.max() > 0.001

@@ -90,6 +90,10 @@ class TestStiffness:
         found, _ = law_stiffness(fly(level(), stiffness_n_per_m=stiffness))
         assert (found.verdict, found.bound) == (verdict, 3200)
 
+    def test_a_law_that_gives_way_is_said(self):
+        soft, *_ = law_stiffness(fly(level(), stiffness_n_per_m=0.26))
+        assert (soft.verdict, soft.says) == ("warn", "the law is so soft that a hand goes through the surface")
+
     @pytest.mark.parametrize(
         ("changes", "limit"),
         [

@@ -104,8 +104,8 @@ class Source:
             self.complain(location, str(error))
             return None
         except ValidationError as error:
-            for each in error.errors():
-                self._complain_of(location, model, cast(Any, each))
+            for each in _deepest(error, _plain(block)):
+                self._complain_of(location, model, each)
             return None
 
     def _complain_of(self, location: Location, model: type[BaseModel], error: Mapping[str, Any]) -> None:
@@ -116,10 +116,46 @@ class Source:
             known = f"; known: {', '.join(options)}" if options else "; there are no options"
             self.complain(where, f"{name}: unknown option{did_you_mean(str(where[-1]), options)}{known}")
         else:
-            given = "" if isinstance(error["input"], dict) else f", not {quoted(error['input'])}"
+            told = isinstance(error["input"], dict) or error["type"] == "missing"
+            given = "" if told else f", not {quoted(error['input'])}"
             if error["type"] == "literal_error":
                 given += did_you_mean(f"{error['input']}", re.findall(r"'([^']*)'", error["msg"]))
-            self.complain(where, f"{name}: {error['msg'].removeprefix('Value error, ')}{given}")
+            said = PLAIN_WORDS.get(error["type"], error["msg"].removeprefix("Value error, "))
+            self.complain(where, f"{name}: {said}{given}")
+
+
+PLAIN_WORDS = {
+    "dict_type": "Input should be a mapping, such as {key: value}",
+    "model_type": "Input should be a mapping, such as {key: value}",
+    "list_type": "Input should be a list, such as [1, 2]",
+    "tuple_type": "Input should be a list, such as [1, 2]",
+    "path_type": "Input should be the path of a file",
+}
+"""What pydantic says in words of Python's, by the type of its error."""
+
+
+def _deepest(error: ValidationError, block: Any) -> list[Mapping[str, Any]]:
+    """What pydantic complains of, at places that the block has; of the forms of an option, that which fits farthest."""
+    found: list[dict[str, Any]] = [{**each, "loc": _place_in(block, each["loc"])} for each in error.errors()]
+    places: list[Location] = [each["loc"] for each in found]
+    return [each for each in found if not any(_is_within(place, each["loc"]) for place in places)]
+
+
+def _is_within(inner: Location, outer: Location) -> bool:
+    return len(inner) > len(outer) and inner[: len(outer)] == outer
+
+
+def _place_in(block: Any, location: Location) -> Location:
+    """A place as the block has it: without the names that pydantic gives the forms of an option that has several."""
+    node: Any = block
+    place = list[Any]()
+    for part in location:
+        if isinstance(part, str) and not isinstance(node, dict) and part != "[key]":
+            continue
+        place.append(part)
+        if isinstance(node, dict | list) and _has(node, part):
+            node = cast(Any, node)[part]
+    return tuple(place)
 
 
 def read_text(path: Path) -> str:

@@ -121,6 +121,8 @@ def _own(folder: Path) -> dict[str, str]:
 
 def _is_of_before_manifests(folder: Path) -> bool:
     """Whether a run wrote this folder by a version that wrote no manifest: its outcomes tell it."""
+    if (folder / MANIFEST).exists():  # damaged: what was changed since can no longer be told
+        return False
     try:
         return isinstance(json.loads(read_bytes(folder / OUTCOMES))["outcomes"], list)
     except (OSError, ValueError, TypeError, KeyError, RecursionError):

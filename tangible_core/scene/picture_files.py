@@ -7,7 +7,7 @@ from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, TypeVar, cast
 
 import numpy as np
 from jaxtyping import Float32, Int32
@@ -73,7 +73,13 @@ def read_map(path: Path, say: Say = unsaid) -> Float32[np.ndarray, "h w"]:
 
 
 def map_of(values: np.ndarray, name: str) -> Float32[np.ndarray, "h w"]:
-    """An array as `read_map` returns it. Raises: PictureError if there is more than one number a pixel."""
+    """An array as `read_map` returns it, NaN where it is masked.
+
+    Raises: PictureError if there is more than one number a pixel.
+    """
+    masked: Any = values if np.ma.isMaskedArray(values) and values.dtype.kind in "buif" else None
+    if masked is not None:
+        values = cast(np.ndarray, masked.astype(np.float64).filled(np.nan))
     shown = opaque(values) if values.ndim == 3 and values.shape[2] == 4 else None
     if values.ndim == 3 and values.shape[2] in (3, 4) and not np.any(values[..., :3] != values[..., :1]):
         values = values[..., 0]

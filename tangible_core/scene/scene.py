@@ -243,7 +243,10 @@ def _checked(paths: Mapping[str, Path], calibration: Calibration | None, options
         return SceneFiles.model_validate({**paths, **cameras, **options})
     except ValidationError as error:
         raise ConfigError(
-            *(f"{'.'.join(['scene', *map(str, each['loc'])])}: {each['msg']}" for each in error.errors())
+            *(
+                f"{'.'.join(['scene', *map(str, each['loc'])])}: {each['msg'].removeprefix('Value error, ')}"
+                for each in error.errors()
+            )
         ) from error
 
 

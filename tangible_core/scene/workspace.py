@@ -41,7 +41,7 @@ class FeltSize(NamedTuple):
 class Workspace(Section):
     """The size of what is felt."""
 
-    width_m: Annotated[float, Field(gt=0, le=10, allow_inf_nan=False)] = 0.08
+    width_m: Annotated[float, Field(ge=1e-6, le=10, allow_inf_nan=False)] = 0.08
     """Width of the surface under the hand."""
     relief_m: Annotated[float, Field(gt=0, le=1, allow_inf_nan=False)] | None = None
     """Height of the nearest point above the farthest; null for what suits the scene: 0.004 for a photograph, whose

@@ -72,4 +72,4 @@ def test_the_schema_says_so():
     assert validator.is_valid(right)
     for wrong in ({"width_m": "8 kg"}, {"width_m": "wide"}, {"width_m": -1}):
         assert not validator.is_valid({**right, "workspace": wrong})
-    assert "| `width_m` | number > 0 ≤ 10 or `6 mm` | `0.08` |" in markdown(schema)
+    assert "| `width_m` | number ≥ 1e-06 ≤ 10 or `6 mm` | `0.08` |" in markdown(schema)

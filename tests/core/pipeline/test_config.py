@@ -106,7 +106,7 @@ RULES = "scene: builtin/brick\nmaterials:\n  rules:\n    - "
         (f"{RULES}{{colour: blue}}\n", "here/p.yaml:4:7", "materials.rules.0.material: Field required"),
         (f"{RULES}{{material: ice}}\n", "here/p.yaml:4:7", "takes one of segment, at and colour; this one has none"),
         (f"{RULES}{{at: [-1, 2], material: ice}}\n", "here/p.yaml:4:13", "greater than or equal to 0, not -1"),
-        (f"{RULES}{{at: 3, material: ice}}\n", "here/p.yaml:4:8", "tuple"),
+        (f"{RULES}{{at: 3, material: ice}}\n", "here/p.yaml:4:8", "a list"),
         (f"{RULES}{{at: [.inf, 2], material: ice}}\n", "here/p.yaml:4:13", "finite"),
         ("scene: builtin/brick\nmaterials: {rules: ice}\n", "here/p.yaml:2:13", "materials.rules"),
     ],
@@ -161,6 +161,20 @@ def test_scene_files():
     config = parse("scene: {left: a.png, right: b.png, focal_px: 900, baseline_m: 0.2}\n")
     assert isinstance(config.scene, SceneFiles)
     assert config.scene.left == Path("here/a.png").absolute()
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("scene: {height: h.npy, nodata: [6, x]}\n", "1:36: scene.nodata.1: Input should be a valid number"),
+        ("scene: {height: h.npy, clip: [1]}\n", "1:24: scene.clip.1: Field required"),
+        ("scene: {height: 3}\n", "1:9: scene.height: Input should be the path of a file, not 3"),
+        ("scene: builtin/brick\nworkspace: x\n", "2:1: workspace: Input should be a mapping, such as {key: value}"),
+    ],
+)
+def test_a_complaint_has_the_words_and_places_of_the_file(text: str, says: str):
+    (found,) = complaints(text)
+    assert says in found and not any(word in found for word in ("tuple", "float", "dictionary", "class", "[1]"))
 
 
 def test_an_override_goes_before_the_file_and_complains_the_same_way():

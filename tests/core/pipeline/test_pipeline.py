@@ -197,7 +197,8 @@ class TestMethods:
     @pytest.mark.parametrize(
         ("block", "said"),
         [
-            ({"workspace": {"width_m": -1}}, "workspace.width_m: Input should be greater than 0"),
+            ({"workspace": {"width_m": -1}}, "workspace.width_m: Input should be greater than or equal to 0.000001"),
+            ({"workspace": {"width_m": 1e-300}}, "workspace.width_m: Input should be greater than or equal to"),
             ({"workspace": {"widht_m": 1}}, "workspace.widht_m: Extra inputs"),
             ({"safety": {"ramp_s": "long"}}, "safety.ramp_s"),
             ({"materials": "smoothness"}, "materials.by"),

@@ -71,6 +71,17 @@ def test_the_folder_of_a_version_without_manifests_is_a_runs(tmp_path: Path):
     assert "surface.npz" not in names(tmp_path)
 
 
+@pytest.mark.parametrize("text", ["", "[1]"])
+def test_a_folder_whose_manifest_is_damaged_is_not_written_over(tmp_path: Path, text: str):
+    run(tmp_path)
+    (tmp_path / "surface.npz").write_text("changed")
+    (tmp_path / "manifest.json").write_text(text)
+    before = digests(tmp_path)
+    with pytest.raises(OutputError, match="no run left it so"):
+        run(tmp_path)
+    assert digests(tmp_path) == before
+
+
 def test_a_copied_folder_is_still_a_runs(tmp_path: Path):
     run(tmp_path / "a")
     shutil.copytree(tmp_path / "a", tmp_path / "b", copy_function=shutil.copy)

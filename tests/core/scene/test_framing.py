@@ -180,7 +180,7 @@ def test_a_crop_beyond_the_picture_is_said(parts, says):
         ({"photo": PHOTO, "crop": [0, 0, 0, 3]}, "scene.crop.2: Input should be greater than or equal to 1"),
         ({"photo": PHOTO, "crop": [0, 0, 3]}, "scene.crop.3: Field required"),
         ({"photo": PHOTO, "rotate": 45}, "scene.rotate: Input should be 0, 90, 180 or 270"),
-        ({"photo": PHOTO, "clip": [99, 1]}, r"clip is \[low, high\] with low < high"),
+        ({"photo": PHOTO, "clip": [99, 1]}, r"^scene: clip is \[low, high\] with low < high"),
         ({"photo": PHOTO, "nodata": 0}, "nodata needs height beside it"),
         ({"photo": PHOTO, "layout": "top-bottom"}, "layout needs stereo beside it"),
         ({"left": PHOTO, "right": PHOTO, "rotate": 90, "invert": True}, "rotate and invert is for a photo or a height"),
@@ -190,6 +190,12 @@ def test_a_crop_beyond_the_picture_is_said(parts, says):
 def test_what_makes_no_sense_is_said(parts, says):
     with pytest.raises(ConfigError, match=says):
         Scene.of(**parts)
+
+
+def test_what_an_array_masks_is_unknown():
+    scene = Scene.of(height=np.ma.masked_equal(HEIGHTS, HEIGHTS[0, 1]))
+    assert scene.height is not None
+    np.testing.assert_array_equal(np.isnan(scene.height), HEIGHTS[0, 1] == HEIGHTS)
 
 
 def test_the_same_words_in_a_file(tmp_path: Path):

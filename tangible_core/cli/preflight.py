@@ -27,6 +27,7 @@ def preflight(
     fix: Annotated[
         Path | None, typer.Option("--fix", metavar="OUT.yaml", help="Write a pipeline file that passes.")
     ] = None,
+    force: Annotated[bool, typer.Option("--force", help="With --fix, write over a file that is there.")] = False,
     seconds: Annotated[float, typer.Option(help="How long to measure this machine's timing, s.")] = 2.0,
     rate: Annotated[float, typer.Option(help="Rate of the force loop, Hz.")] = 1000.0,
     speed: Annotated[float, typer.Option(help="Speed of the hand's stroke, m/s.")] = 0.12,
@@ -39,9 +40,12 @@ def preflight(
     Says what is ok, what is not, and its cure. Opens no device. Exit 1 if something is unsafe. With --fix, the cures
     are tried, and a file with what is needed of them is written; if that is not enough, none is, and the exit is 1.
     """
+    from ..errors import OutputError
     from ..preflight import Hand, Loop, judge
 
     hand, loop = Hand(speed, press), Loop(rate, seconds)
+    if fix is not None and fix.exists() and not force:
+        raise OutputError(f"{fix}: is there already; name another file, or --force writes over it")
     pipeline = open_pipeline(config, sets or [], not no_cache)
     device = device_of(pipeline)
     if fix is None:

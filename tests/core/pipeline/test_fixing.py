@@ -110,3 +110,12 @@ def test_what_is_safe_can_still_be_felt(folder: Path):
     assert found["grade"] != "unsafe", found["sentence"]
     assert float(found["changes"].get("render.stiffness_n_per_m", 6000)) >= 50
     assert load_pipeline(folder / "fixed.yaml").surface.height_m.max() > 0.001
+
+
+def test_a_file_that_is_there_is_written_over_only_if_asked(folder: Path):
+    asked = "preflight", "p.yaml", "--seconds", 0.05, "--fix", "p.yaml"
+    done = tangible(*asked, cwd=folder)
+    assert (done.returncode, (folder / "p.yaml").read_text()) == (2, STEEP)
+    assert "p.yaml: is there already; name another file, or --force writes over it" in done.stderr
+    assert tangible(*asked, "--force", cwd=folder).returncode == 0
+    assert (folder / "p.yaml").read_text() != STEEP

@@ -12,7 +12,7 @@ from jaxtyping import Float64, Int64
 
 from ..data import TICK_COLUMNS, Force, HapticState, ServoReport, Spread, Vector
 from .guard import safety
-from .ring import COUNT, LONGEST_S, MOST_LATE_S, OVERRUNS, PEAK_N, WORK_J, Ring
+from .ring import LONGEST_S, MOST_LATE_S, PEAK_N, WORK_J, Ring
 
 AT = {name: column for column, name in enumerate(TICK_COLUMNS)}
 Counts = Int64[np.ndarray, "n"]
@@ -37,8 +37,8 @@ class Counted(NamedTuple):
     def of(cls, ring: Ring) -> Self:
         """By the loop that writes to this ring, until now."""
         return cls(
-            ticks=int(ring.header[COUNT]),
-            overruns=int(ring.header[OVERRUNS]),
+            ticks=ring.count,
+            overruns=ring.overruns,
             peak_force_n=float(ring.sums[PEAK_N]),
             work_j=float(ring.sums[WORK_J]),
             most_late_s=float(ring.sums[MOST_LATE_S]),
@@ -70,7 +70,7 @@ def report(ring: Ring, stopped: str = "", before: Counted | None = None, since_s
 
     before: what loops before it counted in the same session, which began since_s before this one's clock.
     """
-    rows, _ = ring.since(int(ring.header[COUNT]) - 1)
+    rows, _ = ring.since(ring.count - 1)
     rows[:, AT["time_s"]] += since_s
     counted = Counted.of(ring)
     found = counted if before is None else before.then(counted)

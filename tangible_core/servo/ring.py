@@ -112,12 +112,36 @@ class Ring:
         """Take the file away; who has it mapped may go on reading."""
         self.path.unlink(missing_ok=True)
 
+    @property
+    def count(self) -> int:
+        """Ticks so far, which is the number of the next one."""
+        return int(self.header[COUNT])
+
+    @property
+    def start_ns(self) -> int:
+        """When the first tick was due, in nanoseconds of the monotonic clock; a tick's `time_s` counts from then."""
+        return int(self.header[START_NS])
+
+    @property
+    def overruns(self) -> int:
+        """Periods that had no tick."""
+        return int(self.header[OVERRUNS])
+
+    def latest(self) -> Float64[np.ndarray, "c"] | None:
+        """The newest tick, a row of `TICK_COLUMNS`; None before the first, and for one overwritten while it is read."""
+        number = self.count - 1
+        if number < 0:
+            return None
+        slot = number % len(self.stamps)
+        row = self.ticks[slot].copy()
+        return row if self.stamps[slot] == number else None  # as in `since`: a look afterwards is enough
+
     def since(self, first: int) -> tuple[Float64[np.ndarray, "n c"], int]:
         """Ticks from number `first` on, those still there, and the number of the next one to come.
 
         If the loop has overwritten some of them there are fewer rows than numbers.
         """
-        count = int(self.header[COUNT])
+        count = self.count
         numbers = np.arange(max(first, count - len(self.stamps), 0), count)
         slots = numbers % len(self.stamps)
         # Ticks below COUNT are stamped, and no slot gets a stamp back that it had: the look after would do. The one

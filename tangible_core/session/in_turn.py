@@ -17,7 +17,6 @@ from ..plugins.interfaces import HapticDevice, Touch
 from ..runtime.stopping import stop_asked, stoppable
 from ..servo import OVER, Safety, Servo
 from ..servo.reports import Counted, report, so_far
-from ..servo.ring import START_NS
 from .live import LOOK_EVERY_S, attended, ignored
 from .recording import INTERRUPTED, STOPPED
 from .tick_arrays import ARRAYS
@@ -125,7 +124,7 @@ class _Session:
         return self._last.stopped
 
     def _started(self, servo: Servo) -> None:
-        began_ns = int(servo.ring.header[START_NS])
+        began_ns = servo.ring.start_ns
         if self._told and self._on_wait is not None:
             self._on_wait("the device is there; the surface is felt")
         self._told, self._pause_s = "", FIRST_PAUSE_S

@@ -22,6 +22,7 @@ from tangible_core.servo.ring import (
     OVERRUNS,
     PERIOD_NS,
     SLOTS,
+    START_NS,
     WIDEST_US,
     shared_folder,
 )
@@ -111,6 +112,48 @@ class TestReading:
             seen += len(rows)
         thread.join()
         assert seen > 0
+
+
+class Overtaken:
+    """The ticks of a ring whose loop goes once round it, just after a row was copied or between its two halves."""
+
+    def __init__(self, ring: Ring) -> None:
+        self._ring, self._ticks = ring, ring.ticks
+
+    def __getitem__(self, slot: int) -> np.ndarray:
+        torn = self._ticks[slot].copy()
+        self._ring.ticks = self._ticks
+        put(self._ring, *range(self._ring.count, self._ring.count + 16))
+        torn[8:] = self._ticks[slot, 8:]
+        return torn
+
+
+class TestLatest:
+    def test_it_is_the_newest_tick_of_a_ring_that_is_full_or_not(self, small: Ring) -> None:
+        small.stamps[-1] = -1  # the mark of a slot that is being written is no number of a tick
+        assert small.latest() is None
+        for number in range(40):
+            put(small, number)
+            row = small.latest()
+            assert row is not None and row[0] == number
+            assert small.count == number + 1
+
+    def test_it_stays_what_it_was(self, small: Ring) -> None:
+        put(small, *range(3))
+        row = small.latest()
+        put(small, *range(3, 30))
+        assert row is not None and np.delete(row, cycle.FLAGS).tolist() == [2] * 15
+
+    def test_one_that_is_overwritten_while_it_is_read_is_none(self, small: Ring) -> None:
+        put(small, *range(20))
+        small.ticks = Overtaken(small)
+        assert small.latest() is None
+        row = small.latest()
+        assert row is not None and row[0] == 35
+
+    def test_the_words_of_the_header_have_names(self, small: Ring) -> None:
+        small.header[START_NS], small.header[OVERRUNS] = 7, 5
+        assert (small.start_ns, small.overruns, small.count) == (7, 5, 0)
 
 
 class TestWriting:

@@ -2,6 +2,7 @@
 
 from .following import EVERY, Followed, Looks, followed
 from .in_turn import Turn, run_in_turn
+from .keeper import Keeper
 from .limited import changed_most
 from .live import figures, keeping, run_in_real_time
 from .loop import run_simulated
@@ -17,6 +18,7 @@ __all__ = [
     "STOPPED",
     "About",
     "Followed",
+    "Keeper",
     "Looks",
     "Recording",
     "Turn",

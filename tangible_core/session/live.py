@@ -1,13 +1,12 @@
 """A session in real time: the force loop in its own process, watched and recorded from here."""
 
-import logging
 import time
 from collections.abc import Callable, Generator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from pathlib import Path
 from threading import Event
-from typing import Any, final
+from typing import Any
 
 import numpy as np
 
@@ -15,11 +14,11 @@ from ..data import UNTOUCHED, ServoReport, TickFlag
 from ..plugins.interfaces import HapticDevice, Touch
 from ..runtime.stopping import stop_asked, stoppable
 from ..servo import Safety, Servo
+from .keeper import Keeper
 from .recording import INTERRUPTED, STOPPED, Recording
 from .tick_file import About
 from .writer import Writer
 
-log = logging.getLogger(__name__)
 LOOK_EVERY_S = 0.05
 """How often what was felt is taken from the loop's ring: what a crash of this process can lose of a recording."""
 REPORT_EVERY_S = 0.1
@@ -62,7 +61,7 @@ def attended(
     """
     with ThreadPoolExecutor(1) as aside, servo:  # the force goes first
         on_start(servo)
-        keeper, next_s, ended = _Keeper(servo, keep), time.monotonic(), ""
+        keeper, next_s, ended = Keeper(servo, keep), time.monotonic(), ""
         try:
             while servo.running and not ended:
                 time.sleep(LOOK_EVERY_S)
@@ -81,25 +80,6 @@ def attended(
 
 def ignored(_: Any) -> None:
     """Nobody listens."""
-
-
-@final
-class _Keeper:
-    """Hands on each tick once. A look is made in a thread of its own, where no Ctrl-C ends it half done: nobody would
-    know which ticks are kept."""
-
-    def __init__(self, servo: Servo, keep: Callable[[np.ndarray], None]) -> None:
-        self._servo, self._keep = servo, keep
-        self._next = 0
-
-    def look(self) -> None:
-        """Hand on what came since the last look."""
-        rows, following = self._servo.ring.since(self._next)
-        if lost := following - self._next - len(rows):
-            log.warning("%d ticks were overwritten before they could be recorded; the machine is too busy", lost)
-        if len(rows):
-            self._keep(rows)
-        self._next = following
 
 
 @contextmanager

@@ -1,0 +1,11 @@
+"""What a tab may ask for, by name: one file each topic, each with its table."""
+
+from collections.abc import Awaitable, Callable, Mapping
+from typing import Any
+
+from . import document, feeling
+
+Ask = Callable[..., Awaitable[Any]]
+"""Called with the desk, the tab, and what the tab says by name; the tab is answered with what it returns, as JSON."""
+
+ASKS: Mapping[str, Ask] = {**document.ASKS, **feeling.ASKS}

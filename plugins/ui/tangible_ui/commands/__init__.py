@@ -1,0 +1,18 @@
+"""What the page adds to `tangible`. Imported whenever `tangible` starts, so this room imports next to nothing."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from tangible_core import hookimpl
+
+if TYPE_CHECKING:
+    from typer import Typer
+
+
+@hookimpl
+def tangible_commands(app: Typer) -> None:
+    """Add `tangible ui`."""
+    from .ui import ui
+
+    app.command()(ui)

@@ -1,0 +1,23 @@
+"""`tangible ui`: see, hear and feel a surface in the browser."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+HELP = "A pipeline file, a picture, left and right, or a recording; without one, the built-in example."
+
+
+def ui(
+    files: Annotated[list[Path] | None, typer.Argument(metavar="[FILE]...", help=HELP, show_default=False)] = None,
+    sets: Annotated[list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change one value.")] = None,
+    port: Annotated[int, typer.Option(min=0, max=65535, help="Port of this machine; 0 takes a free one.")] = 0,
+    browser: Annotated[bool, typer.Option(help="Open the page in the browser.")] = True,
+) -> None:
+    """See, hear and feel a surface in the browser.
+
+    The page is served to this machine alone; its address holds a key that changes with every start. Ctrl-C ends it.
+    """
+    from ..serve import serve
+
+    serve(files or [], sets or [], port, browser)

@@ -1,0 +1,104 @@
+"""What all tabs share: the document, what is being made and felt, who holds the hand, and what has happened."""
+
+import asyncio
+import json
+import time
+from collections import deque
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any, Protocol, final
+
+from .feeling import Feeling, Felt
+from .maker import Maker
+from .maker.messages import Event
+
+MOST_HISTORY = 500
+"""Events that a tab which is opened later hears of."""
+
+
+class Tab(Protocol):
+    """A page in a browser, as the desk knows it."""
+
+    def say(self, event: dict[str, Any]) -> None:
+        """Tell it something; it does not wait."""
+
+
+@final
+class Desk:
+    """One program's state, in the event loop's thread."""
+
+    def __init__(self, folder: Path, feeling: Feeling, sets: Iterable[str]) -> None:
+        self.folder, self.feeling = folder, feeling
+        self.sets = list(sets)
+        """Changes from the command line, which go before what the file says."""
+        self.text, self.path = "", Path.cwd() / "untitled.yaml"
+        """The document: a pipeline file as text, and where it stands."""
+        self.own_hand = True
+        """Whether the page's own hand is felt, and not the document's device."""
+        self.scene: dict[str, Any] | None = None
+        self.tabs: list[Tab] = []
+        self.holder: Tab | None = None
+        """The tab whose hand is felt."""
+        self.history: deque[dict[str, Any]] = deque(maxlen=MOST_HISTORY)
+        self.maker = Maker(folder, self._hear)
+        self.began_s = time.time()
+        self._tasks: set[asyncio.Task[Any]] = set()
+
+    def felt_sets(self) -> list[str]:
+        """Changes to the document for the one who feels: the page's own hand, unless a device was chosen."""
+        return [*self.sets, f"device={json.dumps(self.feeling.own_device)}"] if self.own_hand else self.sets
+
+    async def feel(self, made: dict[str, Any]) -> None:
+        """Feel what was made. Raises: DeviceError."""
+        felt = Felt.of(made, self.own_hand)
+        seconds = await asyncio.to_thread(self.feeling.feel, felt)
+        self.tell("touch", law=felt.law, seconds=seconds, how=self.feeling.how)
+
+    def tell(self, event: str, **told: Any) -> None:
+        """Say something to all tabs, and to those that come later."""
+        said = {"event": event, "at_s": round(time.time(), 3), **told}
+        if event == "scene":
+            self.scene = said
+        else:
+            self.history.append(said)
+        for tab in list(self.tabs):
+            tab.say(said)
+
+    def enter(self, tab: Tab) -> None:
+        """Another tab; the first one holds the hand."""
+        self.tabs.append(tab)
+        if self.holder is None:
+            self.hold(tab)
+
+    def leave(self, tab: Tab) -> None:
+        """It was closed, or is gone: if its hand was felt, nothing is."""
+        self.tabs.remove(tab)
+        if self.holder is tab:
+            self.feeling.hand.release()
+            self.hold(self.tabs[0] if self.tabs else None)
+
+    def hold(self, tab: Tab | None) -> None:
+        """From now on this tab's hand is felt; the others watch."""
+        self.feeling.hand.release()
+        self.holder = tab
+        for each in self.tabs:
+            each.say({"event": "holding", "holding": each is tab})
+
+    def begin(self, work: Any) -> None:
+        """Do something beside; what it raises is said to all tabs."""
+        task = asyncio.ensure_future(work)
+        self._tasks.add(task)
+        task.add_done_callback(self._done)
+
+    def _done(self, task: "asyncio.Task[Any]") -> None:
+        self._tasks.discard(task)
+        if not task.cancelled() and (error := task.exception()) is not None:
+            self.tell("error", text=str(error) or type(error).__name__)
+
+    def _hear(self, event: Event) -> None:
+        self.tell(event.event, **event.told)
+
+    async def close(self) -> None:
+        """No force, no process."""
+        self.maker.close()
+        await asyncio.to_thread(self.feeling.stop)

@@ -1,0 +1,5 @@
+"""The process that makes surfaces, and its handle in the server: it may take long, and be killed at any moment."""
+
+from .handle import Maker
+
+__all__ = ["Maker"]

@@ -1,0 +1,33 @@
+"""What the server and the maker tell each other: pickles over a pipe, as the force loop has them."""
+
+from typing import Any, NamedTuple
+
+
+class Ask(NamedTuple):
+    """Do one of the maker's jobs."""
+
+    number: int
+    job: str
+    told: dict[str, Any]
+    """Arguments by name."""
+
+
+class Answer(NamedTuple):
+    """The job is done."""
+
+    number: int
+    value: Any
+
+
+class Refused(NamedTuple):
+    """The job could not be done."""
+
+    number: int
+    error: Exception
+
+
+class Event(NamedTuple):
+    """Something happened meanwhile that pages should hear of."""
+
+    event: str
+    told: dict[str, Any]

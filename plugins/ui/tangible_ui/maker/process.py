@@ -1,0 +1,69 @@
+"""The maker's process: quick jobs and long ones, each kind in a thread of its own, one job after the other.
+
+A long job may hold Python's lock for seconds, or be killed: neither the page's server nor the force loop notices.
+"""
+
+import os
+import queue
+import signal
+import threading
+from pathlib import Path
+from typing import IO, Any, final
+
+from tangible_core.servo.wire import receive, send, sendable
+
+from .messages import Answer, Ask, Event, Refused
+
+NICENESS = 10
+"""Pictures can wait; the loop and the page cannot."""
+
+
+@final
+class Voice:
+    """Says what happens to the server; any thread may."""
+
+    def __init__(self, replies: IO[bytes]) -> None:
+        self._replies, self._lock = replies, threading.Lock()
+
+    def say(self, message: Answer | Refused | Event) -> None:
+        """Ends the process if nobody listens any more."""
+        try:
+            with self._lock:
+                send(self._replies, message)
+        except OSError:
+            os._exit(0)
+
+
+def main() -> None:
+    """Until the pipe closes."""
+    replies = os.fdopen(os.dup(1), "wb")
+    os.dup2(2, 1)  # what a plugin prints goes to standard error
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the server, which ends this
+    if hasattr(os, "nice"):
+        os.nice(NICENESS)
+    commands, voice = open(0, "rb", buffering=0), Voice(replies)  # noqa: SIM115 - a buffer's lock outlives its thread
+    folder: Path = receive(commands)
+    lanes: dict[bool, queue.SimpleQueue[Ask]] = {quick: queue.SimpleQueue() for quick in (True, False)}
+    from .bench import Bench
+    from .jobs import JOBS
+
+    bench = Bench(folder, lambda event, **told: voice.say(Event(event, told)))
+    for lane in lanes.values():
+        threading.Thread(target=_work, args=(bench, lane, voice), daemon=True).start()
+    voice.say(Event("maker", {}))
+    while (ask := receive(commands)) is not None:
+        lanes[JOBS[ask.job].quick].put(ask)
+    os._exit(0)  # no thread is waited for: the server is gone
+
+
+def _work(bench: Any, asks: "queue.SimpleQueue[Ask]", voice: Voice) -> None:
+    from .jobs import JOBS
+
+    while True:
+        ask = asks.get()
+        try:
+            value = JOBS[ask.job].do(bench, **ask.told)
+        except BaseException as error:  # noqa: BLE001 - whatever a plugin raises is for the page to say
+            voice.say(Refused(ask.number, sendable(error)))
+        else:
+            voice.say(Answer(ask.number, value))

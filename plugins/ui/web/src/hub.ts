@@ -1,0 +1,23 @@
+/** Who hears what: every part of the page subscribes here, and none knows another. */
+import type { Events } from "./messages";
+
+type Hear<K extends keyof Events> = (event: Events[K]) => void;
+
+export class Hub {
+  private hears = new Map<keyof Events, Hear<never>[]>();
+
+  on<K extends keyof Events>(name: K, hear: Hear<K>): void {
+    this.hears.set(name, [...(this.hears.get(name) ?? []), hear as Hear<never>]);
+  }
+
+  /** One that fails is told in the console; the rest still hear. */
+  tell<K extends keyof Events>(name: K, event: Events[K]): void {
+    for (const hear of this.hears.get(name) ?? []) {
+      try {
+        (hear as Hear<K>)(event);
+      } catch (error) {
+        console.error(error);
+      }
+    }
+  }
+}

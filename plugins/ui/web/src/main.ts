@@ -1,0 +1,50 @@
+/** The page: its parts are put together here. */
+import "./app.css";
+import { Frames } from "./frames";
+import { Hand } from "./hand";
+import { Hub } from "./hub";
+import { Net } from "./net";
+import type { Page } from "./page";
+import { build } from "./panel";
+import { panels } from "./panels";
+import { Scene } from "./scene";
+import { Speech } from "./speech";
+import { Status } from "./status";
+import { View } from "./view";
+import { language } from "./words/words";
+
+document.documentElement.lang = language;
+const element = <T extends HTMLElement>(id: string): T => document.getElementById(id) as T;
+const asked = new URLSearchParams(location.search);
+if (asked.has("measure")) document.body.classList.add("measure");
+
+const canvas = element<HTMLCanvasElement>("terrain");
+const hub = new Hub();
+const speech = new Speech(element("said"), hub);
+const page: Page = {
+  hub,
+  net: new Net(hub),
+  view: new View(canvas),
+  canvas,
+  scene: null,
+  document: null,
+  say: (text) => speech.say(text),
+};
+
+hub.on("hello", ({ history, scene }) => {
+  for (const each of history) hub.tell(each.event, each as never);
+  if (scene) hub.tell("scene", scene);
+});
+hub.on("document", (said) => (page.document = said));
+hub.on("scene", async (meta) => {
+  if (page.scene?.meta.digest === meta.digest) return;
+  const loaded = await Scene.load(meta);
+  page.scene = loaded;
+  page.view.put(loaded);
+  hub.tell("shown", loaded);
+});
+
+new Status(page);
+new Hand(page);
+build(page, panels);
+new Frames(page, asked.has("measure"));

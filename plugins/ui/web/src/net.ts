@@ -1,0 +1,105 @@
+/** The one websocket: states in, pointers and acknowledgements out, JSON for what is rare. It comes back by itself. */
+import type { Hub } from "./hub";
+import type { Events } from "./messages";
+import { ack, now, pointer, release, state, TAGS, type State, type Vec } from "./protocol";
+
+const FIRST_PAUSE_MS = 250;
+const LONGEST_PAUSE_MS = 4000;
+const KEPT_TAGS = 512;
+
+export const token = new URLSearchParams(location.search).get("token") ?? "";
+
+/** What the server keeps under an address. Throws if it is not there. */
+export async function bulk(path: string): Promise<Response> {
+  const response = await fetch(`${path}?token=${encodeURIComponent(token)}`);
+  if (!response.ok) throw new Error(`${path}: ${response.status} ${await response.text()}`);
+  return response;
+}
+
+interface Waiting {
+  done: (value: unknown) => void;
+  refused: (error: Error) => void;
+}
+
+export class Net {
+  latest: State | null = null;
+  /** When each pointer was sent, by its tag: how long until its force is drawn. */
+  readonly sentMs = new Map<number, number>();
+  private tag = 0;
+  private number = 0;
+  private waiting = new Map<number, Waiting>();
+  private socket: WebSocket | null = null;
+  private pauseMs = FIRST_PAUSE_MS;
+
+  constructor(private hub: Hub) {
+    this.connect();
+  }
+
+  /** Ask the server for something; rejects with its words where it refuses. */
+  ask<T>(name: string, told: Record<string, unknown> = {}): Promise<T> {
+    if (!this.open) return Promise.reject(new Error("the program is not there"));
+    const number = ++this.number;
+    this.socket!.send(JSON.stringify({ number, ask: name, ...told }));
+    return new Promise<T>((done, refused) => {
+      this.waiting.set(number, { done: done as (value: unknown) => void, refused });
+    });
+  }
+
+  point(hand: Vec, buttons: number): void {
+    if (!this.open) return;
+    this.tag = (this.tag + 1) & TAGS;
+    this.sentMs.set(this.tag, now());
+    this.sentMs.delete((this.tag - KEPT_TAGS) & TAGS);
+    this.socket!.send(pointer(hand, buttons, this.tag));
+  }
+
+  release(): void {
+    if (this.open) this.socket!.send(release());
+  }
+
+  drawn(seq: number): void {
+    if (this.open) this.socket!.send(ack(seq));
+  }
+
+  private get open(): boolean {
+    return this.socket?.readyState === WebSocket.OPEN;
+  }
+
+  private connect(): void {
+    const socket = new WebSocket(`ws://${location.host}/live?token=${encodeURIComponent(token)}`);
+    socket.binaryType = "arraybuffer";
+    socket.onopen = () => (this.pauseMs = FIRST_PAUSE_MS);
+    socket.onmessage = ({ data }: MessageEvent<string | ArrayBuffer>) =>
+      typeof data === "string" ? this.hear(JSON.parse(data)) : this.take(data);
+    socket.onclose = () => this.lost();
+    this.socket = socket;
+  }
+
+  private hear(said: Events[keyof Events] & { event: string; number?: number; value?: unknown; text?: string }): void {
+    const waits = said.number === undefined ? undefined : this.waiting.get(said.number);
+    if (said.number !== undefined) {
+      this.waiting.delete(said.number);
+      if (said.event === "answer") waits?.done(said.value);
+      else waits?.refused(new Error(said.text));
+      return;
+    }
+    this.hub.tell(said.event as keyof Events, said as never);
+  }
+
+  private take(data: ArrayBuffer): void {
+    const fresh = state(data);
+    if (!fresh) return;
+    this.latest = fresh;
+    this.hub.tell("state", fresh);
+    if (document.hidden) this.drawn(fresh.seq); // nothing is drawn then
+  }
+
+  private lost(): void {
+    for (const { refused } of this.waiting.values()) refused(new Error("the program is gone"));
+    this.waiting.clear();
+    this.latest = null;
+    this.hub.tell("gone", { event: "gone", at_s: now() / 1000 });
+    setTimeout(() => this.connect(), this.pauseMs);
+    this.pauseMs = Math.min(2 * this.pauseMs, LONGEST_PAUSE_MS);
+  }
+}

@@ -1,0 +1,19 @@
+/** What all parts of the page share. */
+import type { Hub } from "./hub";
+import type { Events } from "./messages";
+import type { Net } from "./net";
+import type { Scene } from "./scene";
+import type { View } from "./view";
+
+export interface Page {
+  readonly hub: Hub;
+  readonly net: Net;
+  readonly view: View;
+  readonly canvas: HTMLCanvasElement;
+  /** What is drawn; null before the first. */
+  scene: Scene | null;
+  /** The pipeline file on the screen. */
+  document: Events["document"] | null;
+  /** Say something to who listens: in the live region, and aloud where that is asked for. */
+  say(text: string): void;
+}

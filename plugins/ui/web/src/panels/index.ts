@@ -1,0 +1,7 @@
+/** All panels, in the order in which they stand. */
+import type { Panel } from "../panel";
+import { log } from "./log";
+import { methods } from "./methods";
+import { view } from "./view";
+
+export const panels: Panel[] = [methods, view, log];

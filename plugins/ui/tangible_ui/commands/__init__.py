@@ -1,0 +1,1 @@
+"""What the page adds to `tangible`. Imported whenever `tangible` starts, so this room imports next to nothing."""

@@ -35,14 +35,7 @@ class Source:
 
     def override(self, text: str) -> None:
         """Apply `key.key=value`; a block with another `use` starts without the options of the method before."""
-        keys, equals, value = text.partition("=")
-        parts = tuple(keys.strip().split("."))
-        if not equals or not all(parts) or len(parts) > MOST_DEPTH:
-            raise _refused(text, (), "write key.key=value, such as render.stiffness_n_per_m=500")
-        try:
-            loaded = _load(value)
-        except YAMLError as error:
-            raise _refused(text, parts, f"{quoted(value)} is not a YAML value: {_problem(error)}") from error
+        parts, loaded = parse_override(text)
         node: Any = self.tree
         for part in parts[:-1]:
             if isinstance(node.get(part), list):
@@ -52,7 +45,7 @@ class Source:
             node = node[part]
         if parts[-1] == "use" and node.get("use") != loaded:
             node.clear()
-        node[_key(parts[-1], node)] = loaded
+        node[key_of(parts[-1], node)] = loaded
         self.overridden[parts] = text
 
     def place(self, location: Location) -> str:
@@ -113,12 +106,12 @@ class Source:
     def model(self, location: Location, model: type[BaseModel], block: Any) -> Any:
         """A block as a model, its files relative to this one; None after a complaint for each thing that is wrong."""
         try:
-            return _relative_to(self.path.parent, model.model_validate(_plain(block)))
+            return _relative_to(self.path.parent, model.model_validate(plain(block)))
         except ConfigError as error:
             self.complain(location, str(error))
             return None
         except ValidationError as error:
-            for each in _deepest(error, _plain(block)):
+            for each in _deepest(error, plain(block)):
                 self._complain_of(location, model, each)
             return None
 
@@ -183,18 +176,20 @@ def read_text(path: Path) -> str:
         raise ConfigError(f"{path}: cannot be read as text: {getattr(error, 'strerror', None) or error}") from error
 
 
-def parse_source(text: str, path: Path, what: str, overrides: Iterable[str] = ()) -> Source:
+def parse_source(text: str, path: Path, what: str, overrides: Iterable[str] = (), *, empty: bool = False) -> Source:
     """A YAML text whose parts know their places, for whoever checks it.
 
-    what: what the file is, for the complaint about one that is no mapping.
+    what: what the file is, for the complaint about one that is no mapping. empty: one that says nothing is one too.
     Raises: ConfigError if it is no YAML, or no mapping.
     """
     try:
-        tree = _load(text)
+        tree = parse_value(text)
     except YAMLError as error:
         mark, problem = _mark_of(error), _problem(error)
         place = ":".join(map(str, (path, *mark)))
         raise ConfigError(f"{place}: {problem}", complaints=[Complaint((), problem, *mark)]) from error
+    if tree is None and empty:
+        tree = CommentedMap()
     if not isinstance(tree, dict):
         raise ConfigError(f"{path}:1:1: {what}", complaints=[Complaint((), what, 1, 1)])
     source = Source(path, cast(Tree, tree))
@@ -203,8 +198,20 @@ def parse_source(text: str, path: Path, what: str, overrides: Iterable[str] = ()
     return source
 
 
-def _load(text: str) -> Any:
-    """What a text says. Raises: YAMLError."""
+def parse_override(text: str) -> tuple[tuple[str, ...], Any]:
+    """The keys and the value of `key.key=value`. Raises: ConfigError if it is none."""
+    keys, equals, value = text.partition("=")
+    parts = tuple(keys.strip().split("."))
+    if not equals or not all(parts) or len(parts) > MOST_DEPTH:
+        raise _refused(text, (), "write key.key=value, such as render.stiffness_n_per_m=500")
+    try:
+        return parts, parse_value(value)
+    except YAMLError as error:
+        raise _refused(text, parts, f"{quoted(value)} is not a YAML value: {_problem(error)}") from error
+
+
+def parse_value(text: str) -> Any:
+    """What a YAML text says, as the parser's own values. Raises: YAMLError."""
     if len(text) > MOST_TEXT_BYTES:
         raise YAMLError(f"it holds more than {in_words(MOST_TEXT_BYTES)}")
     yaml: Any = YAML(typ="rt")  # of ruamel's loaders, the one that knows places
@@ -239,9 +246,11 @@ def _named(override: str) -> str:
     return f"--set {shown(override)}"
 
 
-def _key(text: str, node: Mapping[Any, Any]) -> Any:
+def key_of(part: Any, node: Mapping[Any, Any]) -> Any:
     """Keys are words; labels of a material map are whole numbers."""
-    return int(text) if text.isdecimal() and len(text) <= MOST_DIGITS and text not in node else text
+    if not isinstance(part, str) or part in node:
+        return part
+    return int(part) if part.isdecimal() and len(part) <= MOST_DIGITS else part
 
 
 def _word_or_number(part: Any) -> str | int:
@@ -273,12 +282,12 @@ def _relative_to(folder: Path, model: BaseModel) -> BaseModel:
     return model.model_copy(update={name: (folder / value).absolute() for name, value in paths.items()})
 
 
-def _plain(node: Any) -> Any:
-    """Plain Python values for pydantic, without the parser's own types."""
+def plain(node: Any) -> Any:
+    """Plain Python values, without the parser's own types."""
     if isinstance(node, dict):
-        return {key: _plain(value) for key, value in cast("dict[Any, Any]", node).items()}
+        return {key: plain(value) for key, value in cast("dict[Any, Any]", node).items()}
     if isinstance(node, list):
-        return [_plain(value) for value in cast("list[Any]", node)]
+        return [plain(value) for value in cast("list[Any]", node)]
     for kind in (bool, int, float, str):
         if isinstance(node, kind):
             return kind(node)

@@ -194,6 +194,7 @@ class TestCurrency:
         assert hook().is_current(tree)
 
 
+@pytest.mark.slow
 class TestNpm:
     """The real one, without a network; it comes with the extra `dev`."""
 
@@ -230,6 +231,7 @@ class TestNpm:
             assert locked[group] == wanted[group]
 
 
+@pytest.mark.slow
 class TestBundler:
     """build.mjs with the page's packages, in a copy."""
 
@@ -314,6 +316,7 @@ class TestPage:
             assert f"{name} {wanted[name]} (" in texts
 
 
+@pytest.mark.slow
 def test_the_units_of_the_page_pass():
     """`npm test`, by node's own test runner."""
     done = node("test/run.mjs", "--test-reporter=tap", cwd=WEB)

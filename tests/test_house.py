@@ -72,7 +72,7 @@ def test_folders_of_tests_mirror_rooms(tests: str, house: Path):
 
 def test_every_test_is_in_a_house_of_its_own():
     there = {path.relative_to(ROOT / "tests").parts[0] for path in ROOT.joinpath("tests").rglob("test_*.py")}
-    assert {name for name in there if not name.endswith(".py")} == {"benchmarks", "core", "plugins"}
+    assert {name for name in there if not name.endswith(".py")} == {"benchmarks", "core", "plugins", "ui"}
     assert not list(ROOT.joinpath("tests/plugins").glob("test_*.py"))
 
 

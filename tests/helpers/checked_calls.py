@@ -23,7 +23,9 @@ from unittest.mock import patch
 import jaxtyping
 from beartype import BeartypeConf, FrozenDict, beartype
 
-OURS = ("tangible_core", "tangible_depth", "tangible_texture", "tangible_render", "tangible_devices")
+OURS = (
+    "tangible_core", "tangible_depth", "tangible_texture", "tangible_render", "tangible_devices", "tangible_ui",
+)  # fmt: skip
 UNCHECKED = {
     "tangible_core.cli.devices": "typer's Context, as its documentation has it, is given another class's",
     "tangible_core.cli.cache": "likewise",

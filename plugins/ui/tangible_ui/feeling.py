@@ -9,10 +9,9 @@ from typing import Any, NamedTuple, final
 from tangible_core.data import Vector
 from tangible_core.mapping import WorkspaceMapping
 from tangible_core.plugins.interfaces import HapticDevice
-from tangible_core.servo import Safety, Servo
+from tangible_core.servo import Packed, Safety, Servo, still
 
 from .hand import Hand
-from .shim import Packed, still
 from .wire import BUTTON_BITS, STATE, STATE_FRAME
 
 NOBODY: Vector = (0.0, 0.0, 0.0)

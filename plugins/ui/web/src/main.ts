@@ -5,6 +5,7 @@ import { Frames } from "./frames";
 import { Hand } from "./hand";
 import { Hub } from "./hub";
 import { Net } from "./net";
+import { notice } from "./notice";
 import type { Page } from "./page";
 import { build } from "./panel";
 import { panels } from "./panels";
@@ -37,16 +38,23 @@ hub.on("hello", ({ history, scene }) => {
   if (scene) hub.tell("scene", scene);
 });
 hub.on("document", (said) => (page.document = said));
+let newest = "";
 hub.on("scene", async (meta) => {
-  if (page.scene?.meta.digest === meta.digest) return;
-  const loaded = await Scene.load(meta);
-  page.scene = loaded;
-  page.view.put(loaded);
-  hub.tell("shown", loaded);
+  if (page.scene?.meta.digest === meta.digest && newest === meta.digest) return;
+  newest = meta.digest;
+  try {
+    const loaded = await Scene.load(meta);
+    if (newest !== meta.digest) return; // another one was made meanwhile
+    page.scene = loaded;
+    hub.tell("shown", loaded);
+  } catch (error) {
+    hub.tell("error", { event: "error", at_s: Date.now() / 1000, text: (error as Error).message });
+  }
 });
 
 new Status(page);
 new Hand(page);
 new Cursors(page);
+notice(page);
 build(page, panels);
 new Frames(page, asked.has("measure"));

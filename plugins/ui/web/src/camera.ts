@@ -8,6 +8,7 @@ const FLATTEST = 1.48;
 const STEEPEST = 0.002;
 const HOME = { azimuth: 0, polar: 0.86 };
 const MARGIN = 0.94;
+const NEAR_GROUND = 0.3;
 const KEY_TURN = 0.12;
 const KEY_SHARE = 0.06;
 const TURN_PER_PIXEL = 0.008;
@@ -25,6 +26,8 @@ export class Eye {
   pose: Pose = { target: [0, 0, 0], distance: 0.2, ...HOME };
   /** Called whenever it looks another way. */
   changed: () => void = () => {};
+  /** Height of what is under a place; NaN where nothing is. */
+  ground: (x: number, y: number) => number = () => NaN;
   private size: [number, number] = [0.08, 0.06];
   private flight: { from: Pose; to: Pose; begunMs: number } | null = null;
 
@@ -81,7 +84,7 @@ export class Eye {
     const next = this.bounded(distance * times);
     const share = next / distance;
     const kept = about ?? target;
-    const moved = target.map((part, k) => (k < 2 ? kept[k] + (part - kept[k]) * share : part)) as Vec;
+    const moved = target.map((part, k) => kept[k] + (part - kept[k]) * share) as Vec;
     this.go({ ...this.pose, distance: next, target: moved });
   }
 
@@ -114,8 +117,16 @@ export class Eye {
 
   private go(pose: Pose): void {
     this.flight = null;
-    this.pose = pose;
+    this.pose = { ...pose, target: this.grounded(pose) };
     this.place();
+  }
+
+  /** The nearer one looks, the nearer to the ground is what one looks at, so that nobody dives under it. */
+  private grounded({ target, distance }: Pose): Vec {
+    const [x, y, z] = target;
+    const ground = this.ground(x, y);
+    const within = Math.min(Math.max(z, ground - NEAR_GROUND * distance), ground + NEAR_GROUND * distance);
+    return [x, y, Number.isNaN(within) ? z : within];
   }
 
   private fly(to: Pose): void {

@@ -94,11 +94,11 @@ export class Lens {
   private describe(patch: FinePatch): void {
     const { scene } = this.page;
     const material = scene?.material(patch.x_m, patch.y_m);
-    const values = { side: (1000 * patch.side_m).toFixed(0), depth: amplitude(patch).toFixed(0) };
-    const grain = material ? (1000 * material.grain_m).toPrecision(2) : "";
+    const side = (1000 * patch.side_m).toFixed(0);
+    const [grain, depth] = material ? [(1000 * material.grain_m).toPrecision(2), (1e6 * material.roughness_m).toFixed(0)] : [];
     this.caption.textContent = material?.roughness_m
-      ? t("lensTextured", { ...values, material: material.name, grain })
-      : t("lensSmooth", { ...values, material: material?.name ?? t("noMaterial") });
+      ? t("lensTextured", { side, material: material.name, grain: grain!, depth: depth! })
+      : t("lensSmooth", { side, material: material?.name ?? t("noMaterial") });
     this.canvas.setAttribute("aria-label", this.caption.textContent);
     this.box.hidden = false;
   }
@@ -111,13 +111,6 @@ export class Lens {
     const around = (x: number, y: number): number => scene.on(x, y)[2];
     this.canvas.getContext("2d")!.putImageData(shaded(patch, around, azimuthDeg, elevationDeg), 0, 0);
   }
-}
-
-/** Half of the difference between the highest and the lowest, micrometres. */
-function amplitude({ heights }: FinePatch): number {
-  let [low, high] = [Infinity, -Infinity];
-  for (const height of heights) [low, high] = [Math.min(low, height), Math.max(high, height)];
-  return 5e5 * (high - low);
 }
 
 /** A patch and what lies under it, in raking light, its slopes as they are. */

@@ -64,6 +64,7 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
     this.fixed.background = new Color(GROUND).convertLinearToSRGB(); // targets hold what the screen shows
     this.renderer = rendererOf(canvas);
     if (!this.renderer) this.trouble = "missing";
+    this.eye.ground = (x, y) => this.scene?.height(x, y) ?? NaN;
     this.eye.changed = () => this.moved();
     steer(canvas, this.eye, (x, y) => this.scene?.pick(...this.ray(x, y)) ?? this.onGround(x, y));
     canvas.addEventListener("webglcontextlost", (event) => this.lost(event));

@@ -9,9 +9,9 @@ import { notice } from "./notice";
 import type { Page } from "./page";
 import { build } from "./panel";
 import { panels } from "./panels";
-import { Scene } from "./scene";
 import { Speech } from "./speech";
 import { Status } from "./status";
+import { loadScene } from "./terrain/fetching";
 import { View } from "./view";
 import { language } from "./words/words";
 
@@ -43,7 +43,7 @@ hub.on("scene", async (meta) => {
   if (page.scene?.meta.digest === meta.digest && newest === meta.digest) return;
   newest = meta.digest;
   try {
-    const loaded = await Scene.load(meta);
+    const loaded = await loadScene(meta);
     if (newest !== meta.digest) return; // another one was made meanwhile
     page.scene = loaded;
     hub.tell("shown", loaded);

@@ -3,17 +3,16 @@
 import os
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from io import StringIO
 from pathlib import Path
 from typing import Any, cast
 
 from pydantic import BaseModel
-from ruamel.yaml import YAML
 
-from ..files.source import Source, parse_source, read_text
+from ..files.source import read_text
 from ..preflight import Flight, Hand, Loop, Preflight, judge
 from ..preflight.verdict import Change
-from .config import STAGES, PipelineConfig, parse_config
+from .config import STAGES, parse_config
+from .editing import edited, said, with_overrides
 from .pipeline import Pipeline
 
 ROUNDS = 24
@@ -40,8 +39,8 @@ def fix(path: Path, sets: Iterable[str], hand: Hand, loop: Loop, out: Path, cach
     sets: `key.key=value` each, as `--set` takes them. out: where the file is to stand; nothing is written.
     Raises: ConfigError as `load_config`; TangibleError as `Pipeline.flight`.
     """
-    text, made = read_text(path), list[str](sets)
-    pipeline = Pipeline.from_yaml(path, made)
+    pipeline = Pipeline.from_yaml(path, sets := list(sets))
+    text = with_overrides(read_text(path), path, sets)
     if not cached:
         pipeline.cache = None
     first = flight = pipeline.flight(hand=hand, loop=loop)
@@ -49,14 +48,13 @@ def fix(path: Path, sets: Iterable[str], hand: Hand, loop: Loop, out: Path, cach
     for _ in range(ROUNDS):
         if (change := _next(judge(flight), done)) is None:
             break
-        made += _overrides(change, pipeline.config, text, made)
+        text = edited(text, path, {change.key: change.setting})
         done[change.key] = change
-        config = parse_config(text, path, pipeline.engine.registry, made)
-        pipeline = pipeline.changed(config)
+        pipeline = pipeline.changed(parse_config(text, path, pipeline.engine.registry))
         flight = pipeline.flight(hand=hand, loop=replace(loop, seconds=AT_ONCE))
         flight = replace(flight, lateness=first.lateness)
     changes = {key: change.value for key, change in done.items()}
-    return Fixed(changes, flight, judge(flight), _moved(text, path, made, pipeline, out))
+    return Fixed(changes, flight, judge(flight), _moved(text, path, pipeline, out))
 
 
 def _next(verdicts: Preflight, done: Mapping[str, Change]) -> Change | None:
@@ -72,34 +70,23 @@ def _is_new(change: Change, done: Mapping[str, Change]) -> bool:
     return before.towards == change.towards != "is" and before.stricter(change).value != before.value
 
 
-def _overrides(change: Change, config: PipelineConfig, text: str, made: Iterable[str]) -> Iterable[str]:
-    """As `--set` takes it; a method that is named by a word alone becomes a block first."""
-    block, _, _ = change.key.partition(".")
-    tree = parse_source(text, Path("file"), "", made).tree
-    if block in STAGES and isinstance(tree.get(block), str):
-        yield f"{block}={{use: {tree[block]}}}"
-    yield f"{change.key}={change.value}"
+def _moved(text: str, path: Path, pipeline: Pipeline, out: Path) -> str:
+    """The file, its relative paths leading to the same files from where it is to stand."""
+    if out.parent.absolute() == path.parent.absolute():
+        return text
+    config = pipeline.config
+    methods = {kind: chosen.method for kind in STAGES if (chosen := getattr(config, kind))}
+    blocks = {"scene": config.scene, "materials": config.materials, **methods}
+    return edited(text, path, dict(_lead_elsewhere(said(text, path), blocks, out.parent.resolve())))
 
 
-def _moved(text: str, path: Path, made: Iterable[str], pipeline: Pipeline, out: Path) -> str:
-    """The file with what was changed, its relative paths leading to the same files from where it is to stand."""
-    source = parse_source(text, path, "", made)
-    if out.parent.absolute() != path.parent.absolute():
-        config = pipeline.config
-        methods = {kind: chosen.method for kind in STAGES if (chosen := getattr(config, kind))}
-        for key, model in {"scene": config.scene, "materials": config.materials, **methods}.items():
-            if isinstance(model, BaseModel):
-                _lead_elsewhere(source, key, model, out.parent.resolve())
-    written = StringIO()
-    yaml: Any = YAML(typ="rt")
-    yaml.width = 4096
-    yaml.dump(source.tree, written)
-    return written.getvalue()
-
-
-def _lead_elsewhere(source: Source, key: str, model: BaseModel, folder: Path) -> None:
-    block = source.tree.get(key)
-    for name, value in model:
-        said = cast("dict[str, Any]", block).get(name) if isinstance(block, dict) else None
-        if isinstance(value, Path) and isinstance(said, str) and not Path(said).is_absolute():
-            cast("dict[str, Any]", block)[name] = os.path.relpath(value.parent.resolve() / value.name, folder)
+def _lead_elsewhere(
+    tree: Mapping[str, Any], blocks: Mapping[str, Any], folder: Path
+) -> Iterable[tuple[tuple[str, str], str]]:
+    """Keys of relative paths, and what they are from this folder."""
+    for key, model in blocks.items():
+        block = tree.get(key)
+        for name, value in model if isinstance(model, BaseModel) and isinstance(block, dict) else ():
+            written = cast("dict[str, Any]", block).get(name)
+            if isinstance(value, Path) and isinstance(written, str) and not Path(written).is_absolute():
+                yield (key, name), os.path.relpath(value.parent.resolve() / value.name, folder)

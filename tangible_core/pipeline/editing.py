@@ -1,0 +1,55 @@
+"""A pipeline file that is edited key by key, with its own comments and in its own order."""
+
+from collections.abc import Iterable
+from math import isfinite
+from pathlib import Path
+from typing import Any, cast
+
+from ..files.editing import REMOVE, Changes, change_text
+from ..files.source import parse_override, parse_source, plain
+from .config import STAGES
+
+__all__ = ["REMOVE", "Changes", "edited", "said", "with_overrides"]
+
+
+def edited(text: str, path: Path, changes: Changes) -> str:
+    """A pipeline file's text in which these keys say that; comments elsewhere, and the order, stay.
+
+    Another `depth.use` clears the options of the method before. A stage that is None goes, as with `REMOVE`.
+    path: what complaints name. Nothing is checked but that it is YAML: see `parse_config`.
+    Raises: ConfigError if the text is no YAML, or a key leads into a list; ArgumentError for what JSON cannot say.
+    """
+    changes = {key: REMOVE if value is None and _is_stage(key) else value for key, value in changes.items()}
+    return change_text(text, path, changes, named=STAGES)
+
+
+def _is_stage(key: Any) -> bool:
+    return (key if isinstance(key, str) else ".".join(map(str, key))) in STAGES
+
+
+def with_overrides(text: str, path: Path, overrides: Iterable[str]) -> str:
+    """The text with what `key.key=value` says, each as `--set` takes it. Raises: ConfigError as `edited`."""
+    for each in overrides:
+        parts, value = parse_override(each)
+        text = edited(text, path, {parts: plain(value)})
+    return text
+
+
+def said(text: str, path: Path) -> dict[str, Any]:
+    """What a pipeline file says, as plain values that JSON can say, whether it is right or wrong.
+
+    Raises: ConfigError if it is no YAML, or no mapping.
+    """
+    source = parse_source(text, path, "a configuration is a mapping that starts with `scene:`", empty=True)
+    return _as_json(plain(source.tree))
+
+
+def _as_json(node: Any) -> Any:
+    """Keys are words there, and what is no number is a word."""
+    if isinstance(node, dict):
+        return {str(key): _as_json(value) for key, value in cast("dict[Any, Any]", node).items()}
+    if isinstance(node, list):
+        return [_as_json(value) for value in cast("list[Any]", node)]
+    if node is None or isinstance(node, bool | int | str):
+        return node
+    return node if isinstance(node, float) and isfinite(node) else str(node)

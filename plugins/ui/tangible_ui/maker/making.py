@@ -1,6 +1,6 @@
 """Jobs that make products, and say on the way what there is to see; and what making would do."""
 
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from threading import Event
 from time import perf_counter
@@ -8,8 +8,9 @@ from typing import Any, cast
 
 import numpy as np
 
-from tangible_core.data import HapticSurface
+from tangible_core.data import HapticSurface, Outcome, Plan
 from tangible_core.errors import TangibleError
+from tangible_core.pipeline.config import PRODUCTS
 from tangible_core.pipeline.engine import Progress, Stage
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.runtime.child_process import dumps
@@ -22,6 +23,7 @@ from .shown import show
 
 SLOW = ("disparity", "segments")
 """Products that take seconds: who edits says when they are made."""
+WITHIN = "within what is kept of what is made from it"
 
 
 def plan(bench: Bench, text: str, path: Path, sets: list[str], want: str) -> dict[str, Any]:
@@ -36,8 +38,20 @@ def planned(pipeline: Pipeline, text: str, want: str) -> dict[str, Any]:
     """The plan as pages have it. Raises: as `Pipeline.plan`."""
     found = pipeline.plan(cast(Any, want))
     slow = [each.product for each in found.steps if each.outcome == "ran" and each.product in SLOW]
-    steps = [asdict(each) for each in found.steps]
+    steps = [asdict(each) for each in _all_steps(pipeline, found)]
     return {"digest": digest_of(text), "want": want, "steps": steps, "slow": slow, "refusal": found.refusal}
+
+
+def _all_steps(pipeline: Pipeline, found: Plan) -> list[Outcome]:
+    """Those of the plan, and the products that are within one which is kept, in the order of making."""
+    steps = {each.product: each for each in found.steps}
+    if not found.refusal:
+        needed = pipeline.engine.needed(found.want)
+        for each in pipeline.outcomes:
+            if each.product in needed and each.product not in steps:
+                steps[each.product] = each if each.outcome == "given" else replace(each, outcome="cached", why=WITHIN)
+    order = ["views", *PRODUCTS]
+    return sorted(steps.values(), key=lambda each: order.index(each.product))
 
 
 def make(bench: Bench, number: int, text: str, path: Path, sets: list[str], want: str) -> dict[str, Any] | None:

@@ -71,10 +71,8 @@ export interface Verdict {
   check: string;
   of: string;
   verdict: "ok" | "warn" | "unsafe";
-  value: number | null;
-  unit: string;
-  relation: "<=" | ">=" | "";
-  bound: number | null;
+  /** How the value stands to its bound, in words. */
+  stands: string;
   source: string;
   note: string;
   cure: string;

@@ -59,7 +59,7 @@ class Feeling:
     @property
     def own_device(self) -> dict[str, Any]:
         """The page's own device, as a pipeline file says it."""
-        return {"use": "pointer", "channel": self.channel, "stale_after_s": STALE_AFTER_S}
+        return {"use": "pointer", "channel": self.channel, "stale_after_s": STALE_AFTER_S, "follow_s": FOLLOW_S}
 
     @property
     def servo(self) -> Servo | None:

@@ -28,6 +28,7 @@ const page: Page = {
   canvas,
   scene: null,
   document: null,
+  replayed: null,
   say: (text) => speech.say(text),
 };
 

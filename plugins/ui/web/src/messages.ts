@@ -64,4 +64,6 @@ export interface Events {
   state: State;
   drawn: State;
   shown: Scene;
+  /** Of this page alone: the colours are others now (see `colour` of themes.ts). */
+  theme: { chosen: string; dark: boolean; contrast: boolean };
 }

@@ -1,5 +1,6 @@
 /** The page: its parts are put together here. */
 import "./app.css";
+import { Cursors } from "./cursors";
 import { frame } from "./frame";
 import { Frames } from "./frames";
 import { Hand } from "./hand";
@@ -54,5 +55,6 @@ splits();
 listen(canvas);
 new Status(page);
 new Hand(page);
+new Cursors(page);
 build(page, panels);
 new Frames(page, asked.has("measure"));

@@ -34,7 +34,7 @@ NAMES = {f"http://www.w3.org/{name}" for name in ("1999/xhtml", "1999/xlink", "1
 def tree(tmp_path: Path) -> Path:
     """What the hook and the builders read of this tree; the page is not built."""
     root = tmp_path / "tree"
-    leave = shutil.ignore_patterns("node_modules", "static*", "__pycache__")
+    leave = shutil.ignore_patterns("node_modules", "static", "static-*", "__pycache__")
     shutil.copytree(ROOT / "plugins/ui", root / "plugins/ui", ignore=leave)
     for name in ("pyproject.toml", "hatch_build.py", "README.md", "LICENSE", ".gitignore"):
         shutil.copy(ROOT / name, root / name)

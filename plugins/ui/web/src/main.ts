@@ -1,15 +1,18 @@
 /** The page: its parts are put together here. */
 import "./app.css";
+import { Announcer, regions } from "./announcer";
 import { frame } from "./frame";
 import { Frames } from "./frames";
 import { Hand } from "./hand";
 import { Hub } from "./hub";
+import { Narrator } from "./narrator";
 import { Net } from "./net";
 import type { Page } from "./page";
 import { build } from "./panel";
 import { panels } from "./panels";
 import { Scene } from "./scene";
 import { listen } from "./shortcuts";
+import { Sound } from "./sound";
 import { Speech } from "./speech";
 import { splits } from "./splits";
 import { Status } from "./status";
@@ -24,7 +27,12 @@ if (asked.has("measure")) document.body.classList.add("measure");
 
 const canvas = element<HTMLCanvasElement>("terrain");
 const hub = new Hub();
-const speech = new Speech(element("said"));
+const speech = new Speech(hub);
+const shown = regions(element("said"), element("alerted"));
+const announcer = new Announcer((said) => {
+  shown(said);
+  speech.speak(said);
+});
 const page: Page = {
   hub,
   net: new Net(hub),
@@ -32,7 +40,11 @@ const page: Page = {
   canvas,
   scene: null,
   document: null,
-  say: (text) => speech.say(text),
+  sound: new Sound(hub, () => page.scene),
+  speech,
+  themes: new Themes(hub),
+  say: (text, how) => announcer.say(text, how),
+  forget: (topic) => announcer.forget(topic),
 };
 
 hub.on("hello", ({ history, scene }) => {
@@ -48,10 +60,11 @@ hub.on("scene", async (meta) => {
   hub.tell("shown", loaded);
 });
 
-frame(page, new Themes(hub));
+frame(page);
 splits();
 listen(canvas);
 new Status(page);
+new Narrator(page);
 new Hand(page);
 build(page, panels);
 new Frames(page, asked.has("measure"));

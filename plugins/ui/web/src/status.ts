@@ -53,6 +53,6 @@ export class Status {
   private say(what: What, text: string): void {
     this.line.dataset.state = what;
     this.line.textContent = text;
-    this.page.say(text);
+    this.page.say(text, { topic: what === "error" ? text : "status", urgent: what === "error" || what === "stopped" });
   }
 }

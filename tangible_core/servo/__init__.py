@@ -3,6 +3,8 @@
 from .child import TERMINATED
 from .guard.safety import Safety
 from .host import OVER, Servo
+from .packed import Packed, packed
 from .ring import Ring
+from .still import still
 
-__all__ = ["OVER", "TERMINATED", "Ring", "Safety", "Servo"]
+__all__ = ["OVER", "TERMINATED", "Packed", "Ring", "Safety", "Servo", "packed", "still"]

@@ -18,6 +18,7 @@ from ..runtime.child_process import command
 from . import parcel
 from .guard.safety import Safety
 from .guard.stiffness import stiffness_of
+from .packed import Packed
 from .reports import report
 from .ring import COUNT, LAST, PERIOD_NS, STOP, Ring
 from .wire import End, Refusal, Start, StartReply, Swap, SwapReply, receive, send, sendable
@@ -66,7 +67,7 @@ class Servo:
         self._ring: Ring | None = None
         self._child: subprocess.Popen[bytes] | None = None
         self._ear: threading.Thread | None = None
-        self._sent: list[Path] = []
+        self._sent = [touch.parcel] if isinstance(touch, Packed) else list[Path]()
         self._why = ""
         self._ended: End | None = None
         self._heard = threading.Event()
@@ -182,7 +183,7 @@ class Servo:
             self._child.kill()
 
     def _pack(self, touch: Touch) -> str:
-        self._sent.append(parcel.pack(touch))
+        self._sent.append(touch.handed_on() if isinstance(touch, Packed) else parcel.pack(touch))
         return str(self._sent[-1])
 
     def _remove_sent(self) -> None:

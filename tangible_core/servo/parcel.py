@@ -9,7 +9,7 @@ from typing import Any
 
 from ..errors import DeviceError
 from ..runtime.child_process import dumps
-from .ring import ALIGN, PREFIX, shared_folder
+from .ring import ALIGN, NAME, PREFIX, shared_folder
 
 
 def pack(thing: Any) -> Path:
@@ -36,6 +36,21 @@ def pack(thing: Any) -> Path:
         Path(name).unlink(missing_ok=True)
         raise DeviceError(f"{folder}: no room to hand over the scene: {error.strerror or error}") from error
     return Path(name)
+
+
+def adopted(path: Path) -> Path:
+    """The file of `pack` under a name of this process: it is swept away when this process is gone, not its maker.
+
+    Raises: DeviceError if it is not there any more, or is no such file.
+    """
+    named = NAME.fullmatch(path.name)
+    if named is None or named[2] != "parcel":
+        raise DeviceError(f"{path}: is not the file of a packed scene; give the one that `packed` made")
+    mine = path.with_name(f"{PREFIX}{os.getpid()}{path.name[named.end(1) :]}")
+    try:
+        return path.rename(mine)
+    except OSError as error:
+        raise DeviceError(f"{path}: the packed scene is not there ({error.strerror}); make it again") from error
 
 
 def unpack(path: Path) -> Any:

@@ -9,10 +9,9 @@ from typing import Any, NamedTuple, final
 from tangible_core.data import Vector
 from tangible_core.mapping import WorkspaceMapping
 from tangible_core.plugins.interfaces import HapticDevice
-from tangible_core.servo import Safety, Servo
+from tangible_core.servo import Packed, Safety, Servo, still
 
 from .hand import Hand
-from .shim import Packed, still
 from .wire import BUTTON_BITS, STATE, STATE_FRAME
 
 NOBODY: Vector = (0.0, 0.0, 0.0)
@@ -28,6 +27,7 @@ class Felt(NamedTuple):
 
     touch: Packed
     law: str
+    device_name: str
     device: HapticDevice
     """As the picture sees it, by the mapping."""
     own_hand: bool
@@ -41,7 +41,7 @@ class Felt(NamedTuple):
         touch = Packed(Path(made["parcel"]), made["stiffness_n_per_m"])
         parts = (pickle.loads(made[name]) for name in ("device", "mapping", "safety"))
         device, mapping, safety = parts
-        return cls(touch, made["law"], device, own_hand, mapping, safety)
+        return cls(touch, made["law"], made["device_name"], device, own_hand, mapping, safety)
 
 
 @final
@@ -60,7 +60,7 @@ class Feeling:
     @property
     def own_device(self) -> dict[str, Any]:
         """The page's own device, as a pipeline file says it."""
-        return {"use": "pointer", "channel": self.channel, "stale_after_s": STALE_AFTER_S}
+        return {"use": "pointer", "channel": self.channel, "stale_after_s": STALE_AFTER_S, "follow_s": FOLLOW_S}
 
     @property
     def servo(self) -> Servo | None:

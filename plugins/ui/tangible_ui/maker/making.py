@@ -6,7 +6,7 @@ from typing import Any
 
 from tangible_core.pipeline.engine import Stage
 from tangible_core.runtime.child_process import dumps
-from tangible_core.servo import parcel
+from tangible_core.servo import packed
 
 from .bench import Bench, Job
 from .shown import show
@@ -32,11 +32,15 @@ def make(bench: Bench, text: str, path: Path, sets: list[str], want: str) -> dic
         return None
     touch = pipeline.make("touch", heard)
     config = pipeline.config
+    device = config.felt_device
+    assert device is not None
+    sent = packed(touch, device.spec())
     return {
-        "parcel": str(parcel.pack(touch)),
-        "stiffness_n_per_m": touch.stiffness_n_per_m,
+        "parcel": str(sent.parcel),
+        "stiffness_n_per_m": sent.stiffness_n_per_m,
         "law": config.render.name if config.render else "",
-        "device": dumps(config.felt_device),
+        "device_name": config.device.name if config.device else "",
+        "device": dumps(device),
         "mapping": dumps(config.mapping),
         "safety": dumps(config.safety),
     }

@@ -33,6 +33,8 @@ export const AGAIN_MS = 10_000;
 const BROWSERS: Clock = { now: () => performance.now(), after: (ms, act) => void setTimeout(act, ms) };
 
 export class Announcer {
+  /** Nothing is said, as while a page hears what happened before it was opened. */
+  hushed = false;
   private queue: Waiting[] = [];
   private last = new Map<string, { text: string; atMs: number }>();
   private saidMs = -Infinity;
@@ -44,7 +46,7 @@ export class Announcer {
   ) {}
 
   say(text: string, { topic = text, urgent = false, asked = false }: How = {}): void {
-    if (!text) return;
+    if (!text || this.hushed) return;
     const atMs = this.clock.now();
     this.queue = this.queue.filter((each) => each.topic !== topic);
     if (asked) {

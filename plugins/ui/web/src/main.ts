@@ -1,6 +1,7 @@
 /** The page: its parts are put together here. */
 import "./app.css";
 import { Announcer, regions } from "./announcer";
+import { Cursors } from "./cursors";
 import { frame } from "./frame";
 import { Frames } from "./frames";
 import { Hand } from "./hand";
@@ -33,13 +34,15 @@ const announcer = new Announcer((said) => {
   shown(said);
   speech.speak(said);
 });
+const net = new Net(hub);
 const page: Page = {
   hub,
-  net: new Net(hub),
+  net,
   view: new View(canvas),
   canvas,
   scene: null,
   document: null,
+  replayed: null,
   sound: new Sound(hub, () => page.scene),
   speech,
   themes: new Themes(hub),
@@ -48,7 +51,10 @@ const page: Page = {
 };
 
 hub.on("hello", ({ history, scene }) => {
-  for (const each of history) hub.tell(each.event, each as never);
+  // After a connection that was lost, what was heard before is not heard again; and what is long over is not said.
+  announcer.hushed = true;
+  for (const each of history) if (each.at_s > net.heard_s) hub.tell(each.event, each as never);
+  announcer.hushed = false;
   if (scene) hub.tell("scene", scene);
 });
 hub.on("document", (said) => (page.document = said));
@@ -66,5 +72,6 @@ listen(canvas);
 new Status(page);
 new Narrator(page);
 new Hand(page);
+new Cursors(page);
 build(page, panels);
 new Frames(page, asked.has("measure"));

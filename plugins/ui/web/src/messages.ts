@@ -65,12 +65,15 @@ export interface Events {
   touch: Said & { law: string; seconds: number; how: string };
   loop: Said & { running: boolean; why: string };
   error: Said & { text: string };
+  recorder: Said & { recording: boolean; path: string; ticks: number; why: string };
   /** What Python's logging and warnings say, in the server and in the maker. */
   log: Said & { level: "detail" | "warning" | "error"; logger: string; text: string };
   /** Of this page alone: a state that arrived, one that was drawn, a surface that can be drawn. */
   state: State;
   drawn: State;
   shown: Scene;
+  /** A recording was opened, a file of this machine. */
+  recording: { path: string };
   /** Of this page alone: the colours are others now (see `colour` of themes.ts). */
   theme: { chosen: string; dark: boolean; contrast: boolean };
   /** Sound was switched; speech was, or has another voice ("": none). */

@@ -1,8 +1,9 @@
 /** What all parts of the page share. */
+import type { How } from "./announcer";
 import type { Hub } from "./hub";
 import type { Events } from "./messages";
 import type { Net } from "./net";
-import type { How } from "./announcer";
+import type { State } from "./protocol";
 import type { Scene } from "./scene";
 import type { Sound } from "./sound";
 import type { Speech } from "./speech";
@@ -18,6 +19,8 @@ export interface Page {
   scene: Scene | null;
   /** The pipeline file on the screen. */
   document: Events["document"] | null;
+  /** The tick of a recording that is shown in place of the loop's; null for what is felt now. */
+  replayed: State | null;
   readonly sound: Sound;
   readonly speech: Speech;
   readonly themes: Themes;

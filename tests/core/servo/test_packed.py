@@ -1,0 +1,208 @@
+"""A touch that one process makes and another hands on unread, and the touch of no force that a loop begins with."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tangible_core import HapticSurface, load_method
+from tangible_core.compiled.touch import CompiledTouch
+from tangible_core.data import NO_FORCE, Force, HapticState
+from tangible_core.errors import BrokenMethod, DeviceError
+from tangible_core.plugins.interfaces import Touch
+from tangible_core.plugins.touch import PlainTouch
+from tangible_core.servo import Packed, Ring, Safety, Servo, packed, parcel, ring, still
+from tangible_core.servo.ring import shared_folder
+from tangible_core.testing.loop_devices import Circling, Failing
+from tangible_core.testing.loop_laws import FaultyTouch
+
+SPEC = Circling().spec()
+STIFF_N_PER_M, DEPTH_M = 50_000.0, 1e-5
+
+
+def stiff() -> Touch:
+    level = HapticSurface.from_heights(np.full((16, 16), 0.002, np.float32))
+    return load_method("render", "proxy")(stiffness_n_per_m=STIFF_N_PER_M).touch(level)
+
+
+class Silent(PlainTouch):
+    """A spring that does not say how stiff it is."""
+
+    def force(self, state: HapticState) -> Force:
+        return Force(0.0, 0.0, max(0.0, -7000 * state.position_m[2]))
+
+
+class Unsendable(PlainTouch):
+    """Of a law that holds what no other process can have."""
+
+    stiffness_n_per_m = 0.0
+
+    def __init__(self) -> None:
+        self.held = lambda: None
+
+    def force(self, state: HapticState) -> Force:
+        return NO_FORCE
+
+
+def of_a_dead_maker(touch: Touch) -> tuple[Path, float]:
+    made = packed(touch, SPEC)
+    dead = made.parcel.with_name("tangible-999999999-a_b1.parcel")
+    return made.parcel.rename(dead), made.stiffness_n_per_m
+
+
+def parcels() -> set[Path]:
+    return set(shared_folder().glob("*.parcel"))
+
+
+class TestStiffness:
+    @pytest.mark.parametrize("touch", [stiff(), Silent()])
+    @pytest.mark.parametrize("limits", [Safety(), Safety(coupling="auto")])
+    def test_it_is_limited_as_the_touch_itself(self, touch: Touch, limits: Safety):
+        one = packed(touch, SPEC)
+        settings = [Servo(each, Circling(), limits)._arrays(each)[0] for each in (touch, one)]
+        assert np.array_equal(*settings)
+        assert one.stiffness_n_per_m > 5000
+        one.discard()
+
+    def test_one_that_is_none_is_refused(self):
+        one = Packed(parcel.pack(stiff()), float("nan"))
+        with pytest.raises(BrokenMethod, match="stiffness of nan"), Servo(one, Circling()):
+            pass
+        assert not parcels()
+
+
+class TestWhoseItIs:
+    def test_that_of_a_maker_that_was_killed_is_ours_from_then_on(self):
+        one = Packed(*of_a_dead_maker(stiff()))
+        assert one.parcel.name == f"tangible-{os.getpid()}-a_b1.parcel"
+        Ring.create(16).remove()  # which sweeps
+        assert one.handed_on().exists()
+        one.discard()
+        one.discard()
+        assert not parcels()
+
+    def test_what_was_swept_away_before_is_said(self):
+        path, stiffness = of_a_dead_maker(stiff())
+        Ring.create(16).remove()
+        with pytest.raises(DeviceError, match=r"the packed scene is not there .*; make it again"):
+            Packed(path, stiffness)
+
+    def test_it_has_one_owner(self):
+        first = packed(stiff(), SPEC)
+        dead = first.parcel.rename(first.parcel.with_name("tangible-999999999-c.parcel"))
+        second = Packed(str(dead), 1.0)
+        with pytest.raises(DeviceError, match="make it again"):
+            Packed(str(dead), 1.0)
+        second.discard()
+
+    @pytest.mark.parametrize("name", ["tangible-1-x.ring", "x.parcel", "../tangible-1.parcel", ""])
+    def test_what_is_no_parcel_is_left_alone(self, tmp_path: Path, name: str):
+        with pytest.raises(DeviceError, match="is not the file of a packed scene"):
+            Packed(tmp_path / name, 1.0)
+
+    def test_nothing_is_left_where_it_cannot_be_packed(self):
+        with pytest.raises(DeviceError, match="make it picklable"):
+            packed(Unsendable(), SPEC)
+        assert not parcels()
+
+
+class TestHandedOn:
+    def test_here_it_gives_no_force(self):
+        one = packed(stiff(), SPEC)
+        for ask in (lambda: one.force(HapticState((0.0, 0.0, 0.0))), lambda: one.path(np.zeros((2, 3)))):
+            with pytest.raises(DeviceError, match="a packed touch is felt in the loop's process alone"):
+                ask()
+        one.discard()
+
+    def test_within_something_else_it_arrives_as_the_touch(self):
+        one = packed(stiff(), SPEC)
+        (touch,) = parcel.unpack(parcel.pack([one]))
+        assert isinstance(touch, CompiledTouch)
+        assert touch.force(HapticState((0.0, 0.0, 0.001))).z == pytest.approx(50)
+        assert not parcels()
+
+    @pytest.mark.parametrize("device", [Failing(opens="never"), Circling()])
+    def test_a_loop_that_does_not_start_takes_it_along(self, device, monkeypatch: pytest.MonkeyPatch):
+        one = packed(stiff(), SPEC)
+        if isinstance(device, Circling):  # there is no room for the ring
+            monkeypatch.setattr(ring, "_size", lambda slots: 1 << 62)
+        with pytest.raises(DeviceError), Servo(one, device):
+            pass
+        assert not parcels()
+
+    def test_it_is_felt_once_and_what_was_felt_before_stays(self):
+        with Servo(still(), Failing(fault="none")) as servo:
+            one = packed(FaultyTouch(), SPEC)
+            servo.swap(one)
+            with pytest.raises(DeviceError, match="felt once"):
+                servo.swap(one)
+            broken = packed(FaultyTouch("does not arrive"), SPEC)
+            with pytest.raises(LookupError, match="the law's data is not in process"):
+                servo.swap(broken)
+            assert servo.running
+            servo.stop()
+            late = packed(FaultyTouch(), SPEC)
+            with pytest.raises(DeviceError, match="has ended"):
+                servo.swap(late)
+        assert not parcels()
+
+
+SERVER = """
+import json, sys, time
+from tangible_core.data import TickFlag
+from tangible_core.servo import Packed, Safety, Servo, still
+from tangible_core.testing.loop_devices import Circling
+
+def wait(ticks):
+    end, there = time.monotonic() + 60, servo.ring.count
+    while servo.ring.count < there + ticks:
+        assert servo.running and time.monotonic() < end
+        time.sleep(0.005)
+
+path, stiffness, z_m = sys.argv[1:]
+with Servo(still(), Circling(z_m=float(z_m)), Safety(ramp_s=0)) as servo:
+    wait(50)
+    servo.swap(Packed(path, float(stiffness)))
+    wait(500)
+    servo.stop()
+    rows = servo.ring.since(0)[0]
+flags = rows[:, -2].astype(int)
+(swapped,) = (flags & TickFlag.SWAPPED).nonzero()[0]
+print(json.dumps({
+    "how": servo.how,
+    "before_n": float(abs(rows[:swapped, 11:14]).max()),
+    "after_n": float(rows[-1, 13]),
+    "limited": bool(flags[-1] & TickFlag.STIFFNESS_LIMITED),
+    "imported": sorted({"numba", "cv2", "llvmlite"} & sys.modules.keys()),
+}))
+"""
+
+
+def test_a_process_without_kernels_begins_with_no_force_and_hands_a_scene_on():
+    made = packed(stiff(), SPEC)
+    words = [str(made.parcel), str(made.stiffness_n_per_m), str(0.002 - DEPTH_M)]
+    ran = subprocess.run([sys.executable, "-c", SERVER, *words], capture_output=True, text=True, timeout=120)
+    assert ran.returncode == 0, ran.stderr
+    said = json.loads(ran.stdout)
+    assert "the whole loop is compiled" in said["how"] or sys.platform != "linux"
+    assert said["imported"] == []
+    assert said["before_n"] == 0
+    assert said["limited"]
+    assert 0 < said["after_n"] < 0.5 * STIFF_N_PER_M * DEPTH_M
+    assert not parcels()
+
+
+class TestStill:
+    def test_it_gives_no_force_anywhere(self):
+        here, there = still(), parcel.unpack(parcel.pack(still()))
+        assert isinstance(there, CompiledTouch)
+        places = np.random.default_rng(0).uniform(-1, 1, (100, 3)) * np.logspace(-9, 3, 100)[:, None]
+        places[:3] = np.nan, np.inf, 0
+        for touch in (here, there):
+            assert touch.stiffness_n_per_m == 0
+            assert touch.force(HapticState((0.0, 0.0, -1.0), (9.0, 9.0, 9.0))) == NO_FORCE
+            assert not touch.path(places).any()

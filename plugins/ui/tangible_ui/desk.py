@@ -12,10 +12,12 @@ from .feeling import Feeling, Felt
 from .maker import Maker
 from .maker.messages import Event
 from .makes import Makes
+from .recorder import Recorder
+from .shelf import Shelf, user_folder
 from .texts import Texts
 
-MOST_HISTORY = 500
-"""Events that a tab which is opened later hears of."""
+MOST_HISTORY, MOST_LOGGED = 500, 200
+"""Events, and lines that were logged, that a tab which is opened later hears of."""
 LAST_ALONE = frozenset({"document", "plan", "materials", "preflight"})
 """Events of which only the last one counts."""
 
@@ -43,11 +45,15 @@ class Desk:
         self.makes = Makes()
         self.own_hand = True
         """Whether the page's own hand is felt, and not the document's device."""
+        self.shelf = Shelf(user_folder("opened"), folder / "incoming")
+        self.recorder: Recorder | None = None
+        """Of the recording that was made last, or is being made."""
         self.scene: dict[str, Any] | None = None
         self.tabs: list[Tab] = []
         self.holder: Tab | None = None
         """The tab whose hand is felt."""
-        self.history: deque[dict[str, Any]] = deque(maxlen=MOST_HISTORY)
+        self._history: deque[dict[str, Any]] = deque(maxlen=MOST_HISTORY)
+        self._logged: deque[dict[str, Any]] = deque(maxlen=MOST_LOGGED)
         self.maker = Maker(folder, self._hear)
         self.began_s = time.time()
         self._tasks: set[asyncio.Task[Any]] = set()
@@ -70,13 +76,18 @@ class Desk:
         else:
             if event in LAST_ALONE:
                 self._forget(event)
-            self.history.append(said)
+            (self._logged if event == "log" else self._history).append(said)
         for tab in list(self.tabs):
             tab.say(said)
 
     def _forget(self, event: str) -> None:
-        if (before := next((each for each in self.history if each["event"] == event), None)) is not None:
-            self.history.remove(before)
+        if (before := next((each for each in self._history if each["event"] == event), None)) is not None:
+            self._history.remove(before)
+
+    @property
+    def history(self) -> list[dict[str, Any]]:
+        """What a tab that comes later hears of; however much is logged, the rest is there."""
+        return sorted([*self._history, *self._logged], key=lambda said: said["at_s"])
 
     def enter(self, tab: Tab) -> None:
         """Another tab; the first one holds the hand."""
@@ -113,6 +124,8 @@ class Desk:
         self.tell(event.event, **event.told)
 
     async def close(self) -> None:
-        """No force, no process."""
+        """No force, no process, no recording that is open."""
         self.maker.close()
         await asyncio.to_thread(self.feeling.stop)
+        if self.recorder is not None:
+            await asyncio.to_thread(self.recorder.stop)

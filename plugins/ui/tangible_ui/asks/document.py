@@ -10,16 +10,22 @@ from ..texts import Text
 from .making import foresee, make
 
 
-async def begin(desk: Desk, tab: Tab | None, files: list[str]) -> None:
-    """Open pipeline files or pictures, and make and feel them."""
+async def begin(desk: Desk, tab: Tab | None, files: list[str], make_it: bool = True) -> dict[str, Any]:
+    """Open a pipeline file, pictures or a recording; what can be felt is made and felt.
+
+    Returns: where a recording lies, if it is one: it is for whoever shows recordings.
+    """
     found = await desk.maker.quick("begin", files=[Path(each) for each in files])
+    if "text" not in found:
+        return found
     text, path = found["text"], found["path"]
     if desk.sets:  # of the command line: the text says them from now on
         text, desk.sets = await desk.maker.quick("overridden", text=text, path=path, sets=desk.sets), []
     async with desk.texts.lock:
         said = await _take(desk, Text(text, path))
-    if not said["complaints"]:
+    if make_it and not said["complaints"]:
         desk.begin(make(desk, tab))
+    return {}
 
 
 async def edit(desk: Desk, tab: Tab | None, text: str, of: str = "", apply: bool = False) -> dict[str, Any]:

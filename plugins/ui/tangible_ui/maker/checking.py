@@ -12,7 +12,6 @@ from tangible_core.files.source import parse_value, plain
 from tangible_core.materials.assignment import load_library
 from tangible_core.pipeline.editing import REMOVE, edited, said, with_overrides
 from tangible_core.pipeline.schema import json_schema
-from tangible_core.pipeline.starter import are_pictures, starter
 
 from .bench import Bench, Job
 
@@ -58,16 +57,6 @@ def overridden(bench: Bench, text: str, path: Path, sets: list[str]) -> str:
     return with_overrides(text, path, sets)
 
 
-def begin(bench: Bench, files: list[Path]) -> dict[str, Any]:
-    """The text of a pipeline file, or of a new one for pictures, and where it stands."""
-    if are_pictures(files):
-        path = Path.cwd() / f"{files[0].stem}.yaml"
-        return {"text": starter(files, path).text, "path": path}
-    from tangible_core.files.source import read_text
-
-    return {"text": read_text(files[0]), "path": files[0].absolute()}
-
-
 def schema(bench: Bench) -> dict[str, Any]:
     """The JSON Schema of all methods that are installed."""
     return json_schema(bench.registry, None)
@@ -104,7 +93,6 @@ JOBS = {
     "check": Job(check, quick=True),
     "change": Job(change, quick=True),
     "overridden": Job(overridden, quick=True),
-    "begin": Job(begin, quick=True),
     "schema": Job(schema, quick=True),
     "library": Job(library, quick=True),
 }

@@ -1,5 +1,5 @@
 """Everything the maker can be asked, by name."""
 
-from . import checking, making, preflight
+from . import checking, making, opening, preflight, records
 
-JOBS = {**making.JOBS, **checking.JOBS, **preflight.JOBS}
+JOBS = {**making.JOBS, **checking.JOBS, **opening.JOBS, **preflight.JOBS, **records.JOBS}

@@ -144,6 +144,7 @@ def _touch(pipeline: Pipeline, heard: Progress, stop: Event) -> dict[str, Any]:
         "parcel": str(sent.parcel),
         "stiffness_n_per_m": sent.stiffness_n_per_m,
         "law": config.render.name if config.render else "",
+        "device_name": config.device.name if config.device else "",
         "device": dumps(device),
         "mapping": dumps(config.mapping),
         "safety": dumps(config.safety),

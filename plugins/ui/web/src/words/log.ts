@@ -18,7 +18,6 @@ export const t = words({
   copy: ["Copy", "Kopieren"],
   save: ["Save", "Speichern"],
   clear: ["Clear", "Leeren"],
-  read: ["Read new lines out", "Neue Zeilen vorlesen"],
   copied: ["Lines copied: {count}.", "Kopierte Zeilen: {count}."],
   selected: ["The browser does not copy here. The lines are selected: press Ctrl and C.",
     "Der Browser kopiert hier nicht. Die Zeilen sind ausgewählt: Drücken Sie Strg und C."],

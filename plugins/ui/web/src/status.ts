@@ -42,7 +42,7 @@ export class Status {
     const stop = (): void => this.ask("stop");
     const button = this.give("stop", t("stopLong"), stop);
     const key = document.createElement("kbd");
-    key.textContent = "Esc";
+    key.textContent = t("escape");
     button.append(" ", key);
     button.setAttribute("aria-keyshortcuts", "Escape");
     on("stop", stop);

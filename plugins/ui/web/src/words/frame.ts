@@ -6,6 +6,7 @@ export const t = words({
   starting: ["Starting", "Wird gestartet"],
   stop: ["Stop", "Stopp"],
   stopLong: ["Stop: no force", "Stopp: keine Kraft"],
+  escape: ["Esc", "Esc"],
   feelAgain: ["Feel again", "Wieder fühlen"],
   stopped: ["Stopped: no force.", "Angehalten: keine Kraft."],
   gone: ["The program is not there any more. Start `tangible ui` again; this page then goes on.",

@@ -55,9 +55,9 @@ const page: Page = {
 hub.on("hello", ({ history, scene }) => {
   // After a connection that was lost, what was heard before is not heard again; and what is long over is not said.
   announcer.hushed = true;
-  for (const each of history) if (each.at_s > net.heard_s) hub.tell(each.event, each as never);
+  const all = [...history, ...(scene ? [{ ...scene, event: "scene" as const }] : [])].sort((a, b) => a.at_s - b.at_s);
+  for (const each of all) if (each.at_s > net.heard_s) hub.tell(each.event, each as never);
   announcer.hushed = false;
-  if (scene) hub.tell("scene", scene);
 });
 hub.on("document", (said) => (page.document = said));
 hub.on("scene", async (meta) => {

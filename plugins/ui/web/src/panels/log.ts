@@ -54,8 +54,14 @@ class Log {
       this.show();
       this.page.say(this.count.value, { topic: "log" });
     };
-    const acts = [button(t("copy"), () => this.copy()), button(t("save"), () => this.save()), button(t("clear"), () => this.clear())];
-    tools.append(filters, search, this.count, ...acts);
+    const acts = document.createElement("div");
+    acts.className = "log-acts";
+    acts.append(
+      button(t("copy"), () => this.copy()),
+      button(t("save"), () => this.save()),
+      button(t("clear"), () => this.clear()),
+    );
+    tools.append(filters, search, this.count, acts);
     return tools;
   }
 
@@ -81,8 +87,8 @@ class Log {
 
   private stage({ at_s, product, method, done: { outcome, seconds, why } }: Events["stage"]): void {
     if (!outcome) return this.add("detail", t("begun", { product: made(product), method }), at_s);
-    const told = { product: made(product), method: method || t("noMethod"), outcome: t(outcome), seconds: decimal(seconds ?? 0, 3) };
-    this.add(outcome === "failed" ? "error" : "event", `${t("stage", told)}${why ? `: ${why}` : ""}`, at_s);
+    const told = { product: made(product), method, outcome: t(outcome), seconds: decimal(seconds ?? 0, 3) };
+    this.add(outcome === "failed" ? "error" : "event", `${t(method ? "stage" : "given by", told)}${why ? `: ${why}` : ""}`, at_s);
   }
 
   /** Many may come at once: they are put on the page together, before it is drawn. */

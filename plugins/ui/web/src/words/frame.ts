@@ -23,6 +23,7 @@ export const t = words({
   bottom: ["What happened", "Was geschehen ist"],
   head: ["Head of the page", "Kopf der Seite"],
   jump: ["Jump to", "Springen zu"],
+  sizes: ["Sizes", "Größen"],
   leftSize: ["Width of the left column", "Breite der linken Spalte"],
   rightSize: ["Width of the right column", "Breite der rechten Spalte"],
   bottomSize: ["Height of the log", "Höhe des Protokolls"],

@@ -32,7 +32,7 @@ export const t = words({
     "Die Verbindung zum Programm ist unterbrochen; die Seite versucht es wieder."],
   begun: ["{product} is being made by {method}", "{product} wird mit {method} berechnet"],
   stage: ["{product} {outcome}, {method}, {seconds} s", "{product}: {outcome}, {method}, {seconds} s"],
-  noMethod: ["no method", "ohne Verfahren"],
+  "given by": ["{product} {outcome}", "{product}: {outcome}"],
   given: ["given", "gegeben"],
   ran: ["made", "berechnet"],
   cached: ["kept from before", "von früher behalten"],

@@ -11,11 +11,15 @@ from typing import Any, Protocol, final
 from .feeling import Feeling, Felt
 from .maker import Maker
 from .maker.messages import Event
+from .makes import Makes
 from .recorder import Recorder
 from .shelf import Shelf, user_folder
+from .texts import Texts
 
 MOST_HISTORY, MOST_LOGGED = 500, 200
 """Events, and lines that were logged, that a tab which is opened later hears of."""
+LAST_ALONE = frozenset({"document", "plan", "materials", "preflight"})
+"""Events of which only the last one counts."""
 
 
 class Tab(Protocol):
@@ -35,6 +39,10 @@ class Desk:
         """Changes from the command line, which go before what the file says."""
         self.text, self.path = "", Path.cwd() / "untitled.yaml"
         """The document: a pipeline file as text, and where it stands."""
+        self.digest = ""
+        """Of the text, as events name it."""
+        self.texts = Texts()
+        self.makes = Makes()
         self.own_hand = True
         """Whether the page's own hand is felt, and not the document's device."""
         self.shelf = Shelf(user_folder("opened"), folder / "incoming")
@@ -66,9 +74,15 @@ class Desk:
         if event == "scene":
             self.scene = said
         else:
+            if event in LAST_ALONE:
+                self._forget(event)
             (self._logged if event == "log" else self._history).append(said)
         for tab in list(self.tabs):
             tab.say(said)
+
+    def _forget(self, event: str) -> None:
+        if (before := next((each for each in self._history if each["event"] == event), None)) is not None:
+            self._history.remove(before)
 
     @property
     def history(self) -> list[dict[str, Any]]:

@@ -32,21 +32,89 @@ export interface Meta {
   says?: Record<string, string>;
 }
 
+export interface Note {
+  text: string;
+  kind: "decision" | "warning" | "doubt";
+}
+
 export interface Outcome {
   product: string;
   outcome: "given" | "ran" | "cached" | "skipped" | "failed" | "refused";
   why: string;
   method: string;
   seconds: number;
+  notes: Note[];
 }
 
 export interface Complaint {
   location: (string | number)[];
   text: string;
+  line: number | null;
+  column: number | null;
+}
+
+/** What making a product would do; `digest` is that of the text. */
+export interface Plan {
+  digest: string;
+  want: string;
+  steps: Outcome[];
+  /** Products that take seconds and would be made. */
+  slow: string[];
+  /** Why it cannot be made; empty where it can. */
+  refusal: string;
+}
+
+export interface Segment {
+  label: number;
+  material: string;
+  why: string;
+  /** Of the area, 0 to 1. */
+  share: number;
+}
+
+export interface Verdict {
+  check: string;
+  of: string;
+  verdict: "ok" | "warn" | "unsafe";
+  value: number | null;
+  unit: string;
+  relation: "<=" | ">=" | "";
+  bound: number | null;
+  source: string;
+  note: string;
+  cure: string;
+  says: string;
+  changes: { key: string; value: number | string }[];
 }
 
 /** Plain values of a pipeline file. */
 export type Values = Record<string, unknown>;
+
+/** A preflight of the text with this digest. */
+export interface Judged {
+  digest: string;
+  grade: "ok" | "warn" | "unsafe";
+  sentence: string;
+  /** Empty for the page's own hand. */
+  device: string;
+  law: string;
+  /** Whether lateness is that of the loop that gives the forces, and not of the process that judged. */
+  of_loop: boolean;
+  verdicts: Verdict[];
+}
+
+export interface Document {
+  text: string;
+  path: string;
+  digest: string;
+  /** What the text says; null if it is no YAML. */
+  said: Values | null;
+  /** The same with every default filled in; null if something is wrong. */
+  values: Values | null;
+  complaints: Complaint[];
+  can_undo: boolean;
+  can_redo: boolean;
+}
 
 interface Said {
   event: string;
@@ -58,10 +126,16 @@ export interface Events {
   gone: Said;
   holding: Said & { holding: boolean };
   maker: Said;
-  making: Said & { want: string };
+  /** The maker does not start, and is not tried any more. */
+  maker_gone: Said & { why: string };
+  making: Said & { want: string; digest: string };
+  made: Said & { want: string; digest: string; outcome: "made" | "stopped" | "failed"; why: string; seconds: number };
+  plan: Said & Plan;
+  materials: Said & { segments: Segment[] };
+  preflight: Said & Judged;
   stage: Said & { product: string; method: string; done: Partial<Outcome> };
   scene: Said & Meta;
-  document: Said & { text: string; path: string; values: Values | null; complaints: Complaint[] };
+  document: Said & Document;
   touch: Said & { law: string; seconds: number; how: string };
   loop: Said & { running: boolean; why: string };
   error: Said & { text: string };

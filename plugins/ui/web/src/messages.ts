@@ -151,4 +151,6 @@ export interface Events {
   /** Sound was switched; speech was, or has another voice ("": none). */
   sound: { on: boolean };
   aloud: { on: boolean; voice: string };
+  /** Whether every line of the log is to be read out. */
+  "read log": { on: boolean };
 }

@@ -1,15 +1,18 @@
 """A pipeline file that is edited key by key, with its own comments and in its own order."""
 
-from collections.abc import Iterable
+import os
+from collections.abc import Iterable, Mapping
 from math import isfinite
 from pathlib import Path
 from typing import Any, cast
 
+from pydantic import BaseModel
+
 from ..files.editing import REMOVE, Changes, change_text
 from ..files.source import parse_override, parse_source, plain
-from .config import STAGES
+from .config import STAGES, PipelineConfig
 
-__all__ = ["REMOVE", "Changes", "edited", "said", "with_overrides"]
+__all__ = ["REMOVE", "Changes", "edited", "moved", "said", "with_overrides"]
 
 
 def edited(text: str, path: Path, changes: Changes) -> str:
@@ -53,3 +56,27 @@ def _as_json(node: Any) -> Any:
     if node is None or isinstance(node, bool | int | str):
         return node
     return node if isinstance(node, float) and isfinite(node) else str(node)
+
+
+def moved(text: str, path: Path, config: PipelineConfig, out: Path) -> str:
+    """A pipeline file's text as it reads where it is to stand: its relative paths lead to the same files from there.
+
+    config: what the text says at `path`.
+    """
+    if out.parent.absolute() == path.parent.absolute():
+        return text
+    methods = {kind: chosen.method for kind in STAGES if (chosen := getattr(config, kind))}
+    blocks = {"scene": config.scene, "materials": config.materials, **methods}
+    return edited(text, path, dict(_lead_elsewhere(said(text, path), blocks, out.parent.resolve())))
+
+
+def _lead_elsewhere(
+    tree: Mapping[str, Any], blocks: Mapping[str, Any], folder: Path
+) -> Iterable[tuple[tuple[str, str], str]]:
+    """Keys of relative paths, and what they are from this folder."""
+    for key, model in blocks.items():
+        block = tree.get(key)
+        for name, value in model if isinstance(model, BaseModel) and isinstance(block, dict) else ():
+            written = cast("dict[str, Any]", block).get(name)
+            if isinstance(value, Path) and isinstance(written, str) and not Path(written).is_absolute():
+                yield (key, name), os.path.relpath(value.parent.resolve() / value.name, folder)

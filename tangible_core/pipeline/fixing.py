@@ -1,18 +1,14 @@
 """What to change in a pipeline file for it to pass preflight: the cures, one at a time, each tried before the next."""
 
-import os
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, cast
-
-from pydantic import BaseModel
 
 from ..files.source import read_text
 from ..preflight import Flight, Hand, Loop, Preflight, judge
 from ..preflight.verdict import Change
-from .config import STAGES, parse_config
-from .editing import edited, said, with_overrides
+from .config import parse_config
+from .editing import edited, moved, with_overrides
 from .pipeline import Pipeline
 
 ROUNDS = 24
@@ -54,7 +50,7 @@ def fix(path: Path, sets: Iterable[str], hand: Hand, loop: Loop, out: Path, cach
         flight = pipeline.flight(hand=hand, loop=replace(loop, seconds=AT_ONCE))
         flight = replace(flight, lateness=first.lateness)
     changes = {key: change.value for key, change in done.items()}
-    return Fixed(changes, flight, judge(flight), _moved(text, path, pipeline, out))
+    return Fixed(changes, flight, judge(flight), moved(text, path, pipeline.config, out))
 
 
 def _next(verdicts: Preflight, done: Mapping[str, Change]) -> Change | None:
@@ -68,25 +64,3 @@ def _is_new(change: Change, done: Mapping[str, Change]) -> bool:
     if before is None:
         return True
     return before.towards == change.towards != "is" and before.stricter(change).value != before.value
-
-
-def _moved(text: str, path: Path, pipeline: Pipeline, out: Path) -> str:
-    """The file, its relative paths leading to the same files from where it is to stand."""
-    if out.parent.absolute() == path.parent.absolute():
-        return text
-    config = pipeline.config
-    methods = {kind: chosen.method for kind in STAGES if (chosen := getattr(config, kind))}
-    blocks = {"scene": config.scene, "materials": config.materials, **methods}
-    return edited(text, path, dict(_lead_elsewhere(said(text, path), blocks, out.parent.resolve())))
-
-
-def _lead_elsewhere(
-    tree: Mapping[str, Any], blocks: Mapping[str, Any], folder: Path
-) -> Iterable[tuple[tuple[str, str], str]]:
-    """Keys of relative paths, and what they are from this folder."""
-    for key, model in blocks.items():
-        block = tree.get(key)
-        for name, value in model if isinstance(model, BaseModel) and isinstance(block, dict) else ():
-            written = cast("dict[str, Any]", block).get(name)
-            if isinstance(value, Path) and isinstance(written, str) and not Path(written).is_absolute():
-                yield (key, name), os.path.relpath(value.parent.resolve() / value.name, folder)

@@ -144,11 +144,13 @@ class TestHook:
     def test_it_is_an_error_where_the_page_is_required(
         self, tree: Path, programs: Programs, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
     ):
+        """And npm is given its time: nobody waits for this one."""
         monkeypatch.setenv("TANGIBLE_UI_REQUIRED", "1")
-        programs.ends["ping"] = (1, UNREACHABLE)
+        programs.ends["ci"] = (1, UNREACHABLE)
         with pytest.raises(SystemExit):
             built(WheelBuilder, tree)
         assert "ECONNREFUSED" in "".join(capfd.readouterr())
+        assert programs.called == ["ci"]
 
     def test_a_registry_that_does_not_know_a_ping_has_answered(self, tree: Path, programs: Programs):
         programs.ends["ping"] = (1, "npm error code E404\nnpm error 404 Not Found\n")
@@ -169,7 +171,7 @@ class TestCurrency:
             lambda web: (web / "src/main.ts").write_text("1;"),
             lambda web: (web / "package-lock.json").write_text("{}"),
             lambda web: (web / "src/deeper").mkdir() or (web / "src/deeper/new.ts").touch(),
-            lambda web: (web / "app.css").unlink(),
+            lambda web: (web / "src/protocol.ts").unlink(),
             lambda web: (web / "index.html").rename(web / "other.html"),
             lambda web: (web.parent / "tangible_ui/static/built.json").write_text("{"),
         ],
@@ -188,10 +190,11 @@ class TestCurrency:
         for name in ("node_modules/three/index.js", "test/new.test.ts", "src/.main.ts.swp"):
             (web / name).parent.mkdir(parents=True, exist_ok=True)
             (web / name).touch()
-        (web / "app.css").touch()
+        (web / "index.html").touch()
         assert hook().is_current(tree)
 
 
+@pytest.mark.slow
 class TestNpm:
     """The real one, without a network; it comes with the extra `dev`."""
 
@@ -228,6 +231,7 @@ class TestNpm:
             assert locked[group] == wanted[group]
 
 
+@pytest.mark.slow
 class TestBundler:
     """build.mjs with the page's packages, in a copy."""
 
@@ -312,6 +316,7 @@ class TestPage:
             assert f"{name} {wanted[name]} (" in texts
 
 
+@pytest.mark.slow
 def test_the_units_of_the_page_pass():
     """`npm test`, by node's own test runner."""
     done = node("test/run.mjs", "--test-reporter=tap", cwd=WEB)

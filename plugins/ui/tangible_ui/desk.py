@@ -11,6 +11,7 @@ from typing import Any, Protocol, final
 from .feeling import Feeling, Felt
 from .maker import Maker
 from .maker.messages import Event
+from .shelf import Shelf, user_folder
 
 MOST_HISTORY = 500
 """Events that a tab which is opened later hears of."""
@@ -35,6 +36,7 @@ class Desk:
         """The document: a pipeline file as text, and where it stands."""
         self.own_hand = True
         """Whether the page's own hand is felt, and not the document's device."""
+        self.shelf = Shelf(user_folder("opened"), folder / "incoming")
         self.scene: dict[str, Any] | None = None
         self.tabs: list[Tab] = []
         self.holder: Tab | None = None

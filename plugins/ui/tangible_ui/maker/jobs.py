@@ -1,5 +1,5 @@
 """Everything the maker can be asked, by name."""
 
-from . import checking, making
+from . import checking, making, opening
 
-JOBS = {**making.JOBS, **checking.JOBS}
+JOBS = {**making.JOBS, **checking.JOBS, **opening.JOBS}

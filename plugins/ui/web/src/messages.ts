@@ -64,4 +64,6 @@ export interface Events {
   state: State;
   drawn: State;
   shown: Scene;
+  /** A recording was opened, a file of this machine. */
+  recording: { path: string };
 }

@@ -1,7 +1,9 @@
 /** All panels, in the order in which they stand. */
 import type { Panel } from "../panel";
 import { log } from "./log";
+import { open } from "./open";
+import { yaml } from "./yaml";
 import { methods } from "./methods";
 import { view } from "./view";
 
-export const panels: Panel[] = [methods, view, log];
+export const panels: Panel[] = [open, methods, yaml, view, log];

@@ -35,6 +35,8 @@ class Felt(NamedTuple):
 
     touch: Packed
     law: str
+    name: str
+    """Of the device."""
     device: HapticDevice
     """As the picture sees it, by the mapping."""
     own_hand: bool
@@ -43,12 +45,13 @@ class Felt(NamedTuple):
     safety: Safety
 
     @classmethod
-    def of(cls, made: dict[str, Any], own_hand: bool) -> "Felt":
-        """From the maker's answer."""
+    def of(cls, made: dict[str, Any], channel: str) -> "Felt":
+        """From the maker's answer; channel: of the page's own pointer."""
         touch = Packed(Path(made["parcel"]), made["stiffness_n_per_m"])
         parts = (pickle.loads(made[name]) for name in ("device", "mapping", "safety"))
         device, mapping, safety = parts
-        return cls(touch, made["law"], device, own_hand, mapping, safety)
+        own_hand = getattr(unmapped(device), "channel", None) == channel
+        return cls(touch, made["law"], made["name"], device, own_hand, mapping, safety)
 
     @property
     def held(self) -> HapticDevice:
@@ -180,7 +183,7 @@ class Feeling:
         return None if self.stopped else Ended(_end(servo), servo.lost)
 
     def frame(self, seq: int, status: int) -> bytes | None:
-        """The newest tick as a STATE; where no loop runs, a hand that is nowhere. None for a tick that was overwritten."""
+        """The newest tick as a STATE; a hand that is nowhere without a loop; None for a tick that was overwritten."""
         servo = self._servo
         if servo is None or not self.running:
             nowhere = *HIGH_M, *UNKNOWN, *NOBODY, *NOBODY, *NOBODY
@@ -231,7 +234,8 @@ class Feeling:
             self.hand.open(mapping.placement(unmapped(device).spec().workspace_m))
 
 
-def _held(device: HapticDevice) -> HapticDevice:
+def unmapped(device: HapticDevice) -> HapticDevice:
+    """What the hand holds."""
     return device.device if isinstance(device, MappedDevice) else device
 
 

@@ -3,9 +3,9 @@
 from collections.abc import Awaitable, Callable, Mapping
 from typing import Any
 
-from . import document, feeling, opening
+from . import devices, document, feeling, opening
 
 Ask = Callable[..., Awaitable[Any]]
 """Called with the desk, the tab, and what the tab says by name; the tab is answered with what it returns, as JSON."""
 
-ASKS: Mapping[str, Ask] = {**document.ASKS, **feeling.ASKS, **opening.ASKS}
+ASKS: Mapping[str, Ask] = {**document.ASKS, **feeling.ASKS, **opening.ASKS, **devices.ASKS}

@@ -1,5 +1,5 @@
 """Everything the maker can be asked, by name."""
 
-from . import checking, making, opening
+from . import checking, devices, making, opening
 
-JOBS = {**making.JOBS, **checking.JOBS, **opening.JOBS}
+JOBS = {**making.JOBS, **checking.JOBS, **opening.JOBS, **devices.JOBS}

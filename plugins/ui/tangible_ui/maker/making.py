@@ -4,6 +4,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from tangible_core.mapping import over
 from tangible_core.pipeline.engine import Stage
 from tangible_core.runtime.child_process import dumps
 from tangible_core.servo import packed
@@ -32,13 +33,14 @@ def make(bench: Bench, text: str, path: Path, sets: list[str], want: str) -> dic
         return None
     touch = pipeline.make("touch", heard)
     config = pipeline.config
-    device = config.felt_device
-    assert device is not None
+    assert config.device is not None and config.felt_device is not None
+    device = over(config.felt_device, surface.extent_m)
     sent = packed(touch, device.spec())
     return {
         "parcel": str(sent.parcel),
         "stiffness_n_per_m": sent.stiffness_n_per_m,
         "law": config.render.name if config.render else "",
+        "name": config.device.name,
         "device": dumps(device),
         "mapping": dumps(config.mapping),
         "safety": dumps(config.safety),

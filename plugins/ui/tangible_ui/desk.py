@@ -13,6 +13,7 @@ from .choice import Choice, NotAgreed
 from .feeling import Feeling, Felt
 from .maker import Maker
 from .maker.messages import Event
+from .recorder import Recorder
 from .shelf import Shelf, user_folder
 
 MOST_HISTORY = 500
@@ -39,6 +40,8 @@ class Desk:
         self.choice = Choice()
         """Which device is felt."""
         self.shelf = Shelf(user_folder("opened"), folder / "incoming")
+        self.recorder: Recorder | None = None
+        """Of the recording that was made last, or is being made."""
         self.scene: dict[str, Any] | None = None
         self.tabs: list[Tab] = []
         self.holder: Tab | None = None
@@ -74,7 +77,7 @@ class Desk:
             raise
         if seconds is not None:
             self.tell("touch", law=felt.law, seconds=seconds, how=self.feeling.how)
-            self.tell("loop", running=True, why="", device=felt.name, own_hand=felt.own_hand)
+            self.tell("loop", running=True, why="", device=felt.device_name, own_hand=felt.own_hand)
 
     def tell(self, event: str, **told: Any) -> None:
         """Say something to all tabs, and to those that come later."""
@@ -128,6 +131,8 @@ class Desk:
         self.tell(event.event, **event.told)
 
     async def close(self) -> None:
-        """No force, no process."""
+        """No force, no process, no recording that is open."""
         self.maker.close()
         await asyncio.to_thread(self.feeling.stop)
+        if self.recorder is not None:
+            await asyncio.to_thread(self.recorder.stop)

@@ -35,8 +35,7 @@ class Felt(NamedTuple):
 
     touch: Packed
     law: str
-    name: str
-    """Of the device."""
+    device_name: str
     device: HapticDevice
     """As the picture sees it, by the mapping."""
     own_hand: bool
@@ -51,7 +50,7 @@ class Felt(NamedTuple):
         parts = (pickle.loads(made[name]) for name in ("device", "mapping", "safety"))
         device, mapping, safety = parts
         own_hand = getattr(unmapped(device), "channel", None) == channel
-        return cls(touch, made["law"], made["name"], device, own_hand, mapping, safety)
+        return cls(touch, made["law"], made["device_name"], device, own_hand, mapping, safety)
 
     @property
     def held(self) -> HapticDevice:

@@ -3,9 +3,9 @@
 from collections.abc import Awaitable, Callable, Mapping
 from typing import Any
 
-from . import devices, document, feeling, opening
+from . import devices, document, feeling, opening, records
 
 Ask = Callable[..., Awaitable[Any]]
 """Called with the desk, the tab, and what the tab says by name; the tab is answered with what it returns, as JSON."""
 
-ASKS: Mapping[str, Ask] = {**document.ASKS, **feeling.ASKS, **opening.ASKS, **devices.ASKS}
+ASKS: Mapping[str, Ask] = {**document.ASKS, **feeling.ASKS, **opening.ASKS, **records.ASKS, **devices.ASKS}

@@ -1,5 +1,5 @@
 """Everything the maker can be asked, by name."""
 
-from . import checking, devices, making, opening
+from . import checking, devices, making, opening, records
 
-JOBS = {**making.JOBS, **checking.JOBS, **opening.JOBS, **devices.JOBS}
+JOBS = {**making.JOBS, **checking.JOBS, **opening.JOBS, **records.JOBS, **devices.JOBS}

@@ -40,7 +40,7 @@ def make(bench: Bench, text: str, path: Path, sets: list[str], want: str) -> dic
         "parcel": str(sent.parcel),
         "stiffness_n_per_m": sent.stiffness_n_per_m,
         "law": config.render.name if config.render else "",
-        "name": config.device.name,
+        "device_name": config.device.name,
         "device": dumps(device),
         "mapping": dumps(config.mapping),
         "safety": dumps(config.safety),

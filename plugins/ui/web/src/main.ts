@@ -1,5 +1,7 @@
 /** The page: its parts are put together here. */
 import "./app.css";
+import { Cursors } from "./cursors";
+import { frame } from "./frame";
 import { Frames } from "./frames";
 import { Hand } from "./hand";
 import { Hub } from "./hub";
@@ -8,8 +10,11 @@ import type { Page } from "./page";
 import { build } from "./panel";
 import { panels } from "./panels";
 import { Scene } from "./scene";
+import { listen } from "./shortcuts";
 import { Speech } from "./speech";
+import { splits } from "./splits";
 import { Status } from "./status";
+import { Themes } from "./themes";
 import { View } from "./view";
 import { language } from "./words/words";
 
@@ -20,7 +25,7 @@ if (asked.has("measure")) document.body.classList.add("measure");
 
 const canvas = element<HTMLCanvasElement>("terrain");
 const hub = new Hub();
-const speech = new Speech(element("said"), hub);
+const speech = new Speech(element("said"));
 const page: Page = {
   hub,
   net: new Net(hub),
@@ -28,6 +33,7 @@ const page: Page = {
   canvas,
   scene: null,
   document: null,
+  replayed: null,
   say: (text) => speech.say(text),
 };
 
@@ -44,7 +50,11 @@ hub.on("scene", async (meta) => {
   hub.tell("shown", loaded);
 });
 
+frame(page, new Themes(hub));
+splits();
+listen(canvas);
 new Status(page);
 new Hand(page);
+new Cursors(page);
 build(page, panels);
 new Frames(page, asked.has("measure"));

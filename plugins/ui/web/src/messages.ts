@@ -60,10 +60,13 @@ export interface Events {
   touch: Said & { law: string; seconds: number; how: string };
   loop: Said & { running: boolean; why: string };
   error: Said & { text: string };
+  recorder: Said & { recording: boolean; path: string; ticks: number; why: string };
   /** Of this page alone: a state that arrived, one that was drawn, a surface that can be drawn. */
   state: State;
   drawn: State;
   shown: Scene;
   /** A recording was opened, a file of this machine. */
   recording: { path: string };
+  /** Of this page alone: the colours are others now (see `colour` of themes.ts). */
+  theme: { chosen: string; dark: boolean; contrast: boolean };
 }

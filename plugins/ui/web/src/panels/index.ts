@@ -4,6 +4,7 @@ import { log } from "./log";
 import { open } from "./open";
 import { yaml } from "./yaml";
 import { methods } from "./methods";
+import { records } from "./records";
 import { view } from "./view";
 
-export const panels: Panel[] = [open, methods, yaml, view, log];
+export const panels: Panel[] = [open, methods, yaml, view, records, log];

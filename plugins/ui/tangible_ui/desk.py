@@ -5,7 +5,7 @@ import time
 from collections import deque
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any, Protocol, final
+from typing import Any, Protocol, final, runtime_checkable
 
 from tangible_core.errors import DeviceError
 
@@ -20,6 +20,7 @@ MOST_HISTORY = 500
 """Events that a tab which is opened later hears of."""
 
 
+@runtime_checkable
 class Tab(Protocol):
     """A page in a browser, as the desk knows it."""
 

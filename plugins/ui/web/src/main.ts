@@ -32,6 +32,7 @@ const page: Page = {
   view: new View(canvas),
   canvas,
   scene: null,
+  hand: null,
   document: null,
   replayed: null,
   say: (text) => speech.say(text),
@@ -54,7 +55,7 @@ frame(page, new Themes(hub));
 splits();
 listen(canvas);
 new Status(page);
-new Hand(page);
+page.hand = new Hand(page);
 new Cursors(page);
 build(page, panels);
 new Frames(page, asked.has("measure"));

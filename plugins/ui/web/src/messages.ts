@@ -1,4 +1,5 @@
 /** What the server says, by the name of the event; `at_s` is the Unix time. */
+import type { Hand } from "./hand";
 import type { State } from "./protocol";
 import type { Scene } from "./scene";
 
@@ -51,20 +52,34 @@ interface Said {
 export interface Events {
   hello: Said & { version: number; history: (Said & { event: keyof Events })[]; scene: (Said & Meta) | null };
   gone: Said;
-  holding: Said & { holding: boolean };
+  /** free: no tab holds the hand. */
+  holding: Said & { holding: boolean; free: boolean };
   maker: Said;
   making: Said & { want: string };
   stage: Said & { product: string; method: string; done: Partial<Outcome> };
   scene: Said & Meta;
   document: Said & { text: string; path: string; values: Values | null; complaints: Complaint[] };
   touch: Said & { law: string; seconds: number; how: string };
-  loop: Said & { running: boolean; why: string };
+  /** stopped: somebody pressed stop; lost: the device went; waiting: it is looked for again and again. */
+  loop: Said & {
+    running: boolean;
+    why: string;
+    stopped?: boolean;
+    lost?: boolean;
+    waiting?: boolean;
+    device?: string;
+    own_hand?: boolean;
+  };
+  /** Another device was chosen. */
+  device: Said & { kind: "hand" | "document" | "other"; name: string };
   error: Said & { text: string };
   recorder: Said & { recording: boolean; path: string; ticks: number; why: string };
   /** Of this page alone: a state that arrived, one that was drawn, a surface that can be drawn. */
   state: State;
   drawn: State;
   shown: Scene;
+  /** Something about this page's hand changed: what moves it, how, whether it is felt. */
+  hand: Hand;
   /** A recording was opened, a file of this machine. */
   recording: { path: string };
   /** Of this page alone: the colours are others now (see `colour` of themes.ts). */

@@ -20,12 +20,12 @@ export class Status {
       if (!done.outcome) this.say("busy", t("making", { product, method }));
     });
     hub.on("touch", ({ law }) => this.say("felt", t("feeling", { law })));
-    hub.on("loop", ({ running }) => {
-      if (!running) this.say("stopped", t("stopped"));
+    hub.on("loop", ({ running, stopped, why, waiting }) => {
+      if (!running) this.say("stopped", stopped ? t("stopped") : t(waiting ? "waiting" : "ended", { why }));
     });
-    hub.on("holding", ({ holding }) => {
+    hub.on("holding", ({ holding, free }) => {
       document.getElementById("hold")!.hidden = holding;
-      if (!holding) this.say("idle", t("watching"));
+      if (!holding) this.say("idle", t(free ? "nobody" : "watching"));
     });
   }
 

@@ -1,5 +1,7 @@
 /** All panels, in the order in which they stand. */
 import type { Panel } from "../panel";
+import { devices } from "./devices";
+import { hand } from "./hand";
 import { log } from "./log";
 import { open } from "./open";
 import { yaml } from "./yaml";
@@ -7,4 +9,4 @@ import { methods } from "./methods";
 import { records } from "./records";
 import { view } from "./view";
 
-export const panels: Panel[] = [open, methods, yaml, view, records, log];
+export const panels: Panel[] = [open, methods, yaml, view, hand, devices, records, log];

@@ -43,6 +43,7 @@ const page: Page = {
   view: new View(canvas),
   canvas,
   scene: null,
+  hand: null,
   document: null,
   replayed: null,
   sound: new Sound(hub, () => page.scene),
@@ -73,7 +74,7 @@ splits();
 listen(canvas);
 new Status(page);
 new Narrator(page);
-new Hand(page);
+page.hand = new Hand(page);
 new Cursors(page);
 build(page, panels);
 new Frames(page, asked.has("measure"));

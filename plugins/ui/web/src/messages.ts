@@ -1,4 +1,5 @@
 /** What the server says, by the name of the event; `at_s` is the Unix time. */
+import type { Hand } from "./hand";
 import type { State } from "./protocol";
 import type { Scene } from "./scene";
 
@@ -122,7 +123,8 @@ interface Said {
 export interface Events {
   hello: Said & { version: number; history: (Said & { event: keyof Events })[]; scene: (Said & Meta) | null };
   gone: Said;
-  holding: Said & { holding: boolean };
+  /** free: no tab holds the hand. */
+  holding: Said & { holding: boolean; free: boolean };
   maker: Said;
   /** The maker does not start, and is not tried any more. */
   maker_gone: Said & { why: string };
@@ -135,7 +137,18 @@ export interface Events {
   scene: Said & Meta;
   document: Said & Document;
   touch: Said & { law: string; seconds: number; how: string };
-  loop: Said & { running: boolean; why: string };
+  /** stopped: somebody pressed stop; lost: the device went; waiting: it is looked for again and again. */
+  loop: Said & {
+    running: boolean;
+    why: string;
+    stopped?: boolean;
+    lost?: boolean;
+    waiting?: boolean;
+    device?: string;
+    own_hand?: boolean;
+  };
+  /** Another device was chosen. */
+  device: Said & { kind: "hand" | "document" | "other"; name: string };
   error: Said & { text: string };
   recorder: Said & { recording: boolean; path: string; ticks: number; why: string };
   /** What Python's logging and warnings say, in the server and in the maker. */
@@ -144,6 +157,8 @@ export interface Events {
   state: State;
   drawn: State;
   shown: Scene;
+  /** Something about this page's hand changed: what moves it, how, whether it is felt. */
+  hand: Hand;
   /** A recording was opened, a file of this machine. */
   recording: { path: string };
   /** Of this page alone: the colours are others now (see `colour` of themes.ts). */

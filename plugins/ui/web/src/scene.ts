@@ -66,6 +66,13 @@ export class Scene {
     return [-gx / n, -gy / n, 1 / n];
   }
 
+  /** The segment there; null outside. */
+  label(x: number, y: number): number | null {
+    const { rows, columns } = this.meta;
+    const [i, j] = this.cell(x, y).map(Math.round);
+    return i < 0 || j < 0 || i >= columns || j >= rows ? null : this.labels[j * columns + i];
+  }
+
   material(x: number, y: number): Material | null {
     const { rows, columns, materials } = this.meta,
       [u, v] = this.cell(x, y),

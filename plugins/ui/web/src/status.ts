@@ -22,12 +22,12 @@ export class Status {
       if (!done.outcome) this.show("busy", t("making", { product: made(product), method }));
     });
     hub.on("touch", ({ law }) => this.show("felt", t("feeling", { law })));
-    hub.on("loop", ({ running }) => {
-      if (!running) this.show("stopped", t("stopped"));
+    hub.on("loop", ({ running, stopped, why, waiting }) => {
+      if (!running) this.show("stopped", stopped ? t("stopped") : t(waiting ? "waiting" : "ended", { why }));
     });
-    hub.on("holding", ({ holding }) => {
+    hub.on("holding", ({ holding, free }) => {
       document.getElementById("hold")!.hidden = holding;
-      if (!holding) this.show("idle", t("watching"));
+      if (!holding) this.show("idle", t(free ? "nobody" : "watching"));
     });
   }
 

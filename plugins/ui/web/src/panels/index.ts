@@ -1,5 +1,7 @@
 /** All panels, in the order in which they stand. */
 import type { Panel } from "../panel";
+import { devices } from "./devices";
+import { hand } from "./hand";
 import { help } from "./help";
 import { log } from "./log";
 import { materials } from "./materials";
@@ -14,4 +16,8 @@ import { view } from "./view";
 import { yaml } from "./yaml";
 
 /** Left: what is made. Right: what is seen, heard and felt, settings and help last. Bottom: the log. */
-export const panels: Panel[] = [open, methods, stages, materials, preflight, yaml, view, sound, records, settings, help, log];
+export const panels: Panel[] = [
+  open, methods, stages, materials, preflight, yaml,
+  view, hand, devices, sound, records, settings, help,
+  log,
+];

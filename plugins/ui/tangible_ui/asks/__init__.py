@@ -3,7 +3,7 @@
 from collections.abc import Awaitable, Callable, Mapping
 from typing import Any
 
-from . import devices, document, feeling, making, opening, records
+from . import devices, document, feeling, making, opening, records, seeing
 
 Ask = Callable[..., Awaitable[Any]]
 """Called with the desk, the tab, and what the tab says by name; the tab is answered with what it returns, as JSON."""
@@ -11,6 +11,7 @@ Ask = Callable[..., Awaitable[Any]]
 ASKS: Mapping[str, Ask] = {
     **document.ASKS,
     **making.ASKS,
+    **seeing.ASKS,
     **feeling.ASKS,
     **opening.ASKS,
     **records.ASKS,

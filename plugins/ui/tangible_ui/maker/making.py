@@ -8,18 +8,18 @@ from typing import Any, cast
 
 import numpy as np
 
-from tangible_core.data import HapticSurface, Outcome, Plan
+from tangible_core.data import Outcome, Plan
 from tangible_core.errors import TangibleError
 from tangible_core.mapping import over
 from tangible_core.pipeline.config import PRODUCTS
 from tangible_core.pipeline.engine import Progress, Stage
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.runtime.child_process import dumps
-from tangible_core.scene.geometry import flat_relief
 from tangible_core.servo import packed
 
 from .bench import Bench, Job, Work
 from .checking import digest_of
+from .seen import Seen, see
 from .shown import show
 
 SLOW = ("disparity", "segments")
@@ -66,8 +66,9 @@ def make(bench: Bench, number: int, text: str, path: Path, sets: list[str], want
         bench.tell("making", want=want, digest=digest_of(text))
         bench.tell("plan", **planned(pipeline, text, want))
         heard = telling(bench, work)
-        if (surface := _seen(pipeline, want, heard, work.stop)) is not None:
-            _show(bench, pipeline, surface)
+        product = TO_SEE.get(want, want)
+        pipeline.make(product, heard, work.stop)
+        _show(bench, pipeline, product)
         work.worth = True
         made = _touch(pipeline, heard, work.stop) if want == "touch" else None
     bench.tell("made", want=want, digest=digest_of(text), outcome="made", why="", seconds=perf_counter() - begun_s)
@@ -93,42 +94,26 @@ def give_way(bench: Bench, number: int, text: str, path: Path, sets: list[str], 
     return bench.give_way(number, bench.pipeline_of(text, path, sets), want)
 
 
-def _seen(pipeline: Pipeline, want: str, heard: Progress, stop: Event) -> HapticSurface | None:
-    """What can be seen of a product: depth without materials; materials on the relief, or flat before there is one."""
-    if want in ("surface", "touch"):
-        return pipeline.make("surface", heard, stop)
-    if want in ("disparity", "relief"):
-        pipeline.make(want, heard, stop)
-        return HapticSurface(pipeline.make("relief", heard, stop))
-    pipeline.make(want, heard, stop)
-    chosen, segments = pipeline.make("materials", heard, stop), pipeline.engine.felt("segments")
-    if chosen is None or segments is None:
-        return None
-    relief = flat_relief(segments.labels.shape, pipeline.config.size.width_m)
-    if not any(
-        each.outcome in ("ran", "refused") and each.product == "disparity" for each in pipeline.plan("relief").steps
-    ):
-        made = pipeline.make("relief", heard, stop)
-        relief = made if made.height_m.shape == segments.labels.shape else relief
-    return HapticSurface(relief, segments.labels, chosen.materials)
+TO_SEE = {"touch": "surface", "disparity": "relief", "segments": "materials"}
+"""What is seen of a product, where that is another one."""
 
 
-def _show(bench: Bench, pipeline: Pipeline, surface: HapticSurface) -> None:
+def _show(bench: Bench, pipeline: Pipeline, product: str) -> None:
     """Pages draw it while the touch is made."""
-    if (digest := surface.digest()) != bench.shown:
-        bench.tell("scene", **show(pipeline, surface, digest, bench.folder))
-        bench.shown = digest
-    bench.tell("materials", segments=_segments(pipeline, surface))
+    if (seen := see(pipeline, product)).digest != bench.shown:
+        bench.tell("scene", **show(seen, bench.folder))
+        bench.shown = seen.digest
+    bench.tell("materials", segments=_segments(pipeline, seen))
 
 
-def _segments(pipeline: Pipeline, surface: HapticSurface) -> list[dict[str, Any]]:
+def _segments(pipeline: Pipeline, seen: Seen) -> list[dict[str, Any]]:
     """Each segment with its material, why it has it, and its share of the area."""
-    if surface.labels is None or surface.materials is None:
+    if seen.labels is None or not seen.materials:
         return []
     chosen = pipeline.make("materials")
-    reasons = chosen.reasons if chosen is not None else ("",) * len(surface.materials)
-    shares = np.bincount(surface.labels.ravel(), minlength=len(surface.materials)) / max(1, surface.labels.size)
-    named = enumerate(zip(surface.materials, reasons, shares.tolist(), strict=False))
+    reasons = chosen.reasons if chosen is not None else ("",) * len(seen.materials)
+    shares = np.bincount(seen.labels.ravel(), minlength=len(seen.materials)) / max(1, seen.labels.size)
+    named = enumerate(zip(seen.materials, reasons, shares.tolist(), strict=False))
     return [
         {"label": label, "material": material.name, "why": why, "share": share}
         for label, (material, why, share) in named

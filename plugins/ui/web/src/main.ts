@@ -9,6 +9,7 @@ import { Hub } from "./hub";
 import { Instrument } from "./instrument";
 import { Narrator } from "./narrator";
 import { Net } from "./net";
+import { notice } from "./notice";
 import type { Page } from "./page";
 import { build } from "./panel";
 import { panels } from "./panels";
@@ -61,12 +62,18 @@ hub.on("hello", ({ history, scene }) => {
   announcer.hushed = false;
 });
 hub.on("document", (said) => (page.document = said));
+let newest = "";
 hub.on("scene", async (meta) => {
-  if (page.scene?.meta.digest === meta.digest) return;
-  const loaded = await Scene.load(meta);
-  page.scene = loaded;
-  page.view.put(loaded);
-  hub.tell("shown", loaded);
+  if (page.scene?.meta.digest === meta.digest && newest === meta.digest) return;
+  newest = meta.digest;
+  try {
+    const loaded = await Scene.load(meta);
+    if (newest !== meta.digest) return; // another one was made meanwhile
+    page.scene = loaded;
+    hub.tell("shown", loaded);
+  } catch (error) {
+    hub.tell("error", { event: "error", at_s: Date.now() / 1000, text: (error as Error).message });
+  }
 });
 
 frame(page);
@@ -76,6 +83,7 @@ new Status(page);
 new Narrator(page);
 page.hand = new Hand(page);
 new Cursors(page);
+notice(page);
 build(page, panels);
 new Frames(page, asked.has("measure"));
 if (asked.has("measure")) Object.assign(window, { page, Instrument, stroke }); // what tests look into

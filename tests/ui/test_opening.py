@@ -8,15 +8,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PIL import Image
-from tangible_ui.maker import opening
-from tangible_ui.maker.bench import Bench
-from tangible_ui.shelf import MOST_FILES, Shelf
 
 from tangible_core import load_pipeline
 from tangible_core.errors import ConfigError
 from tangible_core.pipeline.editing import said
 from tangible_core.session import Recording
 from tangible_core.session.tick_file import About
+from tangible_ui.maker import opening
+from tangible_ui.maker.bench import Bench
+from tangible_ui.shelf import MOST_FILES, Shelf
 
 
 @pytest.fixture

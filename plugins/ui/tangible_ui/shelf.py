@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import final
 
 from tangible_core.errors import ConfigError, quoted
+from tangible_core.files.paths import as_path
 from tangible_core.files.reading import MOST_BYTES, in_words
 
 MOST_FILES = 16
@@ -22,11 +23,13 @@ WRONG = re.compile(r'[\x00-\x1f\x7f<>:"/\\|?*]')
 """What cannot stand in a name on every system."""
 
 
-def user_shelf() -> Path:
-    """Where pictures are kept that came from a page."""
+def user_folder(name: str) -> Path:
+    """Where this user's data of one kind is kept: below $TANGIBLE_DATA_DIR, or where the system has such data."""
+    if named := os.environ.get("TANGIBLE_DATA_DIR"):
+        return as_path(named, "TANGIBLE_DATA_DIR") / name
     from platformdirs import user_data_path
 
-    return user_data_path("tangible-images") / "opened"
+    return user_data_path("tangible-images") / name
 
 
 @final

@@ -9,9 +9,7 @@ MOST_ITEMS = 4_000_000
 
 def read_window(path: Path, asked: dict[str, int]) -> bytes:
     """The rectangle, row by row. asked: a number for each of WINDOW. Raises: ValueError if the file has none such."""
-    row, rows, column, columns, of, size = (
-        asked[key] for key in ("row", "rows", "column", "columns", "of", "bytes")
-    )
+    row, rows, column, columns, of, size = (asked[key] for key in ("row", "rows", "column", "columns", "of", "bytes"))
     inside = min(row, column) >= 0 and min(rows, columns, size) > 0 and column + columns <= of
     if not inside or rows * columns > MOST_ITEMS or (row + rows) * of * size > path.stat().st_size:
         raise ValueError("no such window")

@@ -38,7 +38,9 @@ def show(seen: Seen, folder: Path) -> dict[str, Any]:
         try:
             _write(seen, about, folder, at)
         except OSError as error:
-            raise OutputError(f"{folder}: what is to be drawn cannot be written: {error.strerror}; free some space") from error
+            raise OutputError(
+                f"{folder}: what is to be drawn cannot be written: {error.strerror}; free some space"
+            ) from error
     (at / ABOUT).touch()
     _sweep(folder)
     return about

@@ -21,7 +21,9 @@ MOST_PIXELS = 512
 LARGEST_M = 0.1
 
 
-def texture_patch(bench: Bench, digest: str, x_m: float, y_m: float, side_m: float, pixels: int = 192) -> dict[str, Any]:
+def texture_patch(
+    bench: Bench, digest: str, x_m: float, y_m: float, side_m: float, pixels: int = 192
+) -> dict[str, Any]:
     """Write the heights of a square round a place over the surface's own, metres, the top row far; and say where.
 
     digest: of the surface as pages know it. Raises: GeometryError if that is gone, or the square is none.
@@ -31,7 +33,9 @@ def texture_patch(bench: Bench, digest: str, x_m: float, y_m: float, side_m: flo
         raise GeometryError("this surface is not kept any more; make it again")
     square = 0 < side_m <= LARGEST_M and 1 <= pixels <= MOST_PIXELS and np.isfinite(x_m + y_m)
     if not square:
-        raise GeometryError(f"a texture is shown on up to {LARGEST_M} m and {MOST_PIXELS} pixels, not {side_m} m, {pixels}")
+        raise GeometryError(
+            f"a texture is shown on up to {LARGEST_M} m and {MOST_PIXELS} pixels, not {side_m} m, {pixels}"
+        )
     heights = patch(at, (x_m, y_m), side_m, pixels)
     name = f"texture-{digest_of((x_m, y_m, side_m, pixels))}.f32"
     (at / name).write_bytes(heights.astype("<f4").data)
@@ -66,7 +70,9 @@ def _labels(at: Path, about: dict[str, Any], x: np.ndarray, y: np.ndarray) -> Sh
     return labels[row, column]
 
 
-def _heights(material: Material, x: Float64[np.ndarray, " n"], y: Float64[np.ndarray, " n"]) -> Float64[np.ndarray, " n"]:
+def _heights(
+    material: Material, x: Float64[np.ndarray, " n"], y: Float64[np.ndarray, " n"]
+) -> Float64[np.ndarray, " n"]:
     found = np.zeros(x.shape)
     for fx, fy, amplitude_m, phase in zip(*waves(material), strict=True):
         found += amplitude_m * np.cos(2 * np.pi * (fx * x + fy * y + phase))

@@ -13,7 +13,7 @@ export const figures = {
 };
 
 export class Frames {
-  private seq = -1;
+  private shown: State | null = null;
   private echoed = 0;
 
   constructor(
@@ -27,8 +27,10 @@ export class Frames {
   private frame(): void {
     requestAnimationFrame(() => this.frame());
     const { net, view } = this.page;
-    const state = net.latest;
-    const fresh = state !== null && state.seq !== this.seq;
+    const { latest } = net;
+    const state = this.page.replayed ?? latest;
+    if (this.page.replayed && latest) net.drawn(latest.seq); // it will not be drawn
+    const fresh = state !== null && state !== this.shown;
     if (!view.dirty && !fresh) return;
     const first = view.terrain !== null && !figures.firstMs;
     view.draw(this.measuring || first);
@@ -39,10 +41,10 @@ export class Frames {
 
   private drawn(state: State, at: number): void {
     const { net, hub } = this.page;
-    this.seq = state.seq;
-    net.drawn(state.seq);
+    this.shown = state;
+    if (state === net.latest) net.drawn(state.seq);
     hub.tell("drawn", state);
-    if (!this.measuring) return;
+    if (!this.measuring || state !== net.latest) return;
     figures.drawn.push([state.seq, at - state.sampleMs, state.arrivedMs - state.sampleMs, at]);
     const sentMs = net.sentMs.get(state.tag);
     if (state.tag !== this.echoed && sentMs) {

@@ -195,3 +195,64 @@ def test_without_webgl_the_page_says_so_and_works(url: str, browser, complaints:
     assert page.evaluate("() => window.page.scene.pick([0.016, 0, 1], [0, 0, -1])[2]") == pytest.approx(0.004, abs=1e-6)
     context.close()
     assert complaints == []
+
+
+POSE = "() => window.page.view.eye.pose"
+
+
+def test_the_camera_takes_what_is_its_own_and_leaves_the_rest_to_the_hand(url: str, open_page):
+    page = open_page(f"{url}&measure", reduced_motion="reduce", has_touch=True)
+    page.wait_for_function("() => window.page?.scene && window.figures.firstMs > 0", timeout=60_000)
+    page.evaluate(
+        "() => { window.heard = []; for (const kind of ['pointerdown', 'pointercancel', 'wheel'])"
+        " document.querySelector('#terrain').addEventListener(kind, () => window.heard.push(kind)) }"
+    )
+    box = page.locator("#terrain").bounding_box()
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+
+    def drag(button: str = "left") -> None:
+        page.mouse.move(x, y)
+        page.mouse.down(button=button)
+        page.mouse.move(x + 40, y + 30, steps=3)
+        page.mouse.up(button=button)
+
+    home = page.evaluate(POSE)
+    for button, key, part in [
+        ("middle", None, "azimuth"),
+        ("left", "Alt", "azimuth"),
+        ("right", None, "target"),
+        ("left", "Shift", "target"),
+    ]:
+        if key:
+            page.keyboard.down(key)
+        drag(button)
+        if key:
+            page.keyboard.up(key)
+        assert page.evaluate(POSE)[part] != home[part], (button, key)
+        page.focus("#terrain")
+        page.keyboard.press("Home")
+        assert page.evaluate(POSE) == home
+    page.keyboard.down("Control")
+    page.mouse.wheel(0, -50)
+    page.keyboard.up("Control")
+    page.wait_for_function(f"() => ({POSE})().distance < {home['distance']}")
+    assert page.evaluate("() => window.heard") == []
+    page.mouse.wheel(0, -50)
+    page.wait_for_function("() => window.heard.includes('wheel')")
+    drag()
+    assert "pointerdown" in page.evaluate("() => window.heard")
+
+    page.evaluate("() => { window.heard = [] }")
+    page.keyboard.press("Home")
+    touch = page.context.new_cdp_session(page)
+
+    def fingers(kind: str, *at: tuple[float, float]) -> None:
+        points = [{"x": each[0], "y": each[1], "id": number} for number, each in enumerate(at)]
+        touch.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+
+    fingers("touchStart", (x - 50, y))
+    fingers("touchStart", (x - 50, y), (x + 50, y))
+    fingers("touchMove", (x - 90, y), (x + 90, y))
+    fingers("touchEnd")
+    page.wait_for_function(f"() => ({POSE})().distance < {0.8 * home['distance']}")
+    assert page.evaluate("() => window.heard") == ["pointerdown", "pointercancel"]

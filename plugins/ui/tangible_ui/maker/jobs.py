@@ -1,5 +1,13 @@
 """Everything the maker can be asked, by name."""
 
-from . import checking, making, opening, records
+from . import checking, devices, making, opening, preflight, records, textures
 
-JOBS = {**making.JOBS, **checking.JOBS, **opening.JOBS, **records.JOBS}
+JOBS = {
+    **making.JOBS,
+    **checking.JOBS,
+    **opening.JOBS,
+    **preflight.JOBS,
+    **records.JOBS,
+    **devices.JOBS,
+    **textures.JOBS,
+}

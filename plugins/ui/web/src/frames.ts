@@ -1,6 +1,6 @@
 /** Drawing: each state once, and the whole again when the view changed. */
 import type { Page } from "./page";
-import { now, type State, type Vec } from "./protocol";
+import { now, type State } from "./protocol";
 
 /** What `tests` and `benchmarks` read: window.figures. */
 export const figures = {
@@ -26,15 +26,14 @@ export class Frames {
 
   private frame(): void {
     requestAnimationFrame(() => this.frame());
-    const { net, view, scene } = this.page;
+    const { net, view } = this.page;
     const { latest } = net;
     const state = this.page.replayed ?? latest;
     if (this.page.replayed && latest) net.drawn(latest.seq); // it will not be drawn
     const fresh = state !== null && state !== this.shown;
     if (!view.dirty && !fresh) return;
     const first = view.terrain !== null && !figures.firstMs;
-    const normal: Vec = state && scene ? scene.normal(state.hand[0], state.hand[1]) : [0, 0, 1];
-    view.draw(state, normal, this.measuring || first);
+    view.draw(this.measuring || first);
     const at = now();
     if (first) figures.firstMs = at;
     if (fresh) this.drawn(state, at);

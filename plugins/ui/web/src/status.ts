@@ -1,39 +1,60 @@
 /** The head of the page: what goes on, the stop button, and who holds the hand. */
 import type { Page } from "./page";
+import { on } from "./shortcuts";
 import { t } from "./words/frame";
+import { made } from "./words/products";
+
+type What = "idle" | "busy" | "felt" | "stopped" | "error";
 
 export class Status {
+  private line = document.getElementById("status")!;
+
   constructor(private page: Page) {
-    const { hub, net } = page;
-    const stop = document.getElementById("stop") as HTMLButtonElement;
-    const again = document.getElementById("again") as HTMLButtonElement;
-    const hold = document.getElementById("hold") as HTMLButtonElement;
-    stop.textContent = t("stop");
-    again.textContent = t("feelAgain");
-    hold.textContent = t("takeHand");
-    stop.onclick = () => void net.ask("stop");
-    again.onclick = () => void net.ask("feel").catch((error: Error) => this.say(error.message));
-    hold.onclick = () => void net.ask("hold");
-    hub.on("gone", () => this.say(t("gone")));
-    hub.on("error", ({ text }) => this.say(text));
+    const { hub } = page;
+    this.give("hold", t("takeHand"), () => this.ask("hold"));
+    this.give("again", t("feelAgain"), () => this.ask("feel"));
+    this.stopButton();
+    this.line.textContent = t("starting");
+    hub.on("gone", () => this.show("error", t("gone"), "gone"));
+    hub.on("hello", () => page.forget("gone"));
+    hub.on("error", ({ text }) => this.show("error", text));
     hub.on("stage", ({ product, method, done }) => {
-      if (!done.outcome) this.say(t("making", { product, method }));
+      if (!done.outcome) this.show("busy", t("making", { product: made(product), method }));
     });
-    hub.on("touch", ({ law }) => this.say(t("feeling", { law })));
-    hub.on("loop", ({ running }) => {
-      if (!running) this.say(t("stopped"));
+    hub.on("touch", ({ law }) => this.show("felt", t("feeling", { law })));
+    hub.on("loop", ({ running, stopped, why, waiting }) => {
+      if (!running) this.show("stopped", stopped ? t("stopped") : t(waiting ? "waiting" : "ended", { why }));
     });
-    hub.on("holding", ({ holding }) => {
-      hold.hidden = holding;
-      if (!holding) this.say(t("watching"));
-    });
-    document.addEventListener("keydown", (event) => {
-      if (event.key === "Escape") void net.ask("stop");
+    hub.on("holding", ({ holding, free }) => {
+      document.getElementById("hold")!.hidden = holding;
+      if (!holding) this.show("idle", t(free ? "nobody" : "watching"));
     });
   }
 
-  private say(text: string): void {
-    document.getElementById("status")!.textContent = text;
-    this.page.say(text);
+  private give(id: string, text: string, act: () => void): HTMLButtonElement {
+    const button = document.getElementById(id) as HTMLButtonElement;
+    button.textContent = text;
+    button.onclick = act;
+    return button;
+  }
+
+  private stopButton(): void {
+    const stop = (): void => this.ask("stop");
+    const button = this.give("stop", t("stopLong"), stop);
+    const key = document.createElement("kbd");
+    key.textContent = t("escape");
+    button.append(" ", key);
+    button.setAttribute("aria-keyshortcuts", "Escape");
+    on("stop", stop);
+  }
+
+  private ask(name: string): void {
+    this.page.net.ask(name).catch((error: Error) => this.show("error", error.message));
+  }
+
+  private show(what: What, text: string, topic = what === "error" ? text : "status"): void {
+    this.line.dataset.state = what;
+    this.line.textContent = text;
+    this.page.say(text, { topic, urgent: what === "error" || what === "stopped" });
   }
 }

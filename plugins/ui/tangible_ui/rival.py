@@ -70,9 +70,7 @@ class Rival:
 
     def _start(self) -> None:
         self._end()
-        device = load_method("device", "pointer")(
-            channel=self._channel, stale_after_s=STALE_AFTER_S, follow_s=FOLLOW_S
-        )
+        device = load_method("device", "pointer")(channel=self._channel, stale_after_s=STALE_AFTER_S, follow_s=FOLLOW_S)
         servo = Servo(still(), device, Safety())
         servo.__enter__()
         self._servo = servo

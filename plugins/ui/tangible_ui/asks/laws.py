@@ -1,9 +1,11 @@
 """Two laws on one hand: one is felt, the other's force is shown beside it; or both are felt blindly, and counted."""
 
 import asyncio
+import json
+from datetime import datetime
 from typing import Any
 
-from tangible_core.errors import ConfigError
+from tangible_core.errors import ConfigError, DeviceError
 from tangible_core.files.writing import write_text
 
 from ..desk import Desk, Tab
@@ -15,11 +17,18 @@ NAMES = ("a", "b")
 MOST_QUESTION = 200
 
 
-async def compare_laws(desk: Desk, tab: Tab | None, other: dict[str, Any]) -> None:
-    """Hold another law against the document's, on the same surface and hand; the document's is felt first."""
-    desk.laws.other = other
-    desk.laws.tally = None
-    await _feel(desk, 0)
+async def law_names(desk: Desk, tab: Tab | None) -> list[str]:
+    """The laws that there are to compare with."""
+    return await desk.maker.quick("law_names")
+
+
+async def compare_laws(desk: Desk, tab: Tab | None, use: str, options: str = "") -> None:
+    """Hold another law against the document's, on the same surface and hand; the document's is felt first.
+
+    options: of the other law, in YAML. Raises: ConfigError for what is no law.
+    """
+    other = await desk.maker.quick("law_block", use=use, options=options)
+    await _feel(desk, 0, other)
 
 
 async def switch_law(desk: Desk, tab: Tab | None, to: str) -> None:
@@ -31,9 +40,9 @@ async def switch_law(desk: Desk, tab: Tab | None, to: str) -> None:
 
 async def end_laws(desk: Desk, tab: Tab | None) -> None:
     """One law again: the document's."""
-    if desk.laws.other is not None:
+    if desk.laws.other is not None and desk.laws.felt != 0:
         await _feel(desk, 0)
-    desk.laws.other, desk.laws.tally = None, None
+    desk.laws.alone()
     await asyncio.to_thread(desk.laws.rival.close)
     desk.tell("laws", **desk.laws.told())
 
@@ -67,9 +76,6 @@ async def end_blind(desk: Desk, tab: Tab | None) -> dict[str, Any]:
     found = tally.told()
     desk.laws.tally = None
     if tally.trials:
-        import json
-        from datetime import datetime
-
         path = user_folder("comparisons") / f"{datetime.now():%Y-%m-%d %H.%M.%S} {' and '.join(tally.laws)}.json"
         await asyncio.to_thread(write_text, path, json.dumps({**found, "document": desk.text}, indent=2) + "\n")
         found["path"] = str(path)
@@ -83,22 +89,26 @@ def _tally(desk: Desk) -> Tally:
     return desk.laws.tally
 
 
-async def _feel(desk: Desk, which: int) -> None:
-    """Feel one of the two laws; the other one is computed beside, unless they are compared blindly."""
-    laws = desk.laws
-    assert laws.other is not None
-    made = await desk.maker.ask(
-        "laws", text=desk.text, path=desk.path, sets=desk.felt_sets(), others=[laws.other]
-    )
-    felt, other = (Felt.of(made[i], desk.feeling.channel) for i in (which, 1 - which))
-    laws.named = _told_apart(made[0]["law"], made[1]["law"])
-    laws.felt = which
-    await asyncio.to_thread(desk.feeling.feel, felt)
-    if laws.tally is None:
-        await asyncio.to_thread(laws.rival.feel, other.touch, other.safety)
-    else:
-        other.touch.discard()
-        await asyncio.to_thread(laws.rival.close)
+async def _feel(desk: Desk, which: int, other: dict[str, Any] | None = None) -> None:
+    """Feel one of the two laws; the other one is computed beside, unless they are compared blindly.
+
+    other: another law than before. Raises: DeviceError if nothing is felt; ConfigError if there is no such law.
+    """
+    laws, feeling = desk.laws, desk.feeling
+    if not feeling.running:
+        raise DeviceError("nothing is felt; make and feel a surface first")
+    blocks = [other or laws.other]
+    made = await desk.maker.ask("laws", text=desk.text, path=desk.path, sets=desk.felt_sets(), others=blocks)
+    felt, beside = (Felt.of(made[i], feeling.channel) for i in (which, 1 - which))
+    laws.other, laws.felt, laws.named = other or laws.other, which, _told_apart(made[0]["law"], made[1]["law"])
+    try:
+        await asyncio.to_thread(feeling.feel, felt)
+        if laws.tally is None:
+            await asyncio.to_thread(laws.rival.feel, beside.touch, beside.safety)
+        else:
+            await asyncio.to_thread(laws.rival.close)
+    finally:
+        beside.touch.discard()
     desk.tell("laws", **laws.told())
 
 
@@ -108,6 +118,7 @@ def _told_apart(one: str, two: str) -> tuple[str, str]:
 
 
 ASKS = {
+    "law_names": law_names,
     "compare_laws": compare_laws,
     "switch_law": switch_law,
     "end_laws": end_laws,

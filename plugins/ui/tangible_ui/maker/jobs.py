@@ -1,6 +1,6 @@
 """Everything the maker can be asked, by name."""
 
-from . import checking, devices, making, opening, preflight, records, textures
+from . import checking, devices, laws, making, opening, preflight, records, textures
 
 JOBS = {
     **making.JOBS,
@@ -10,4 +10,5 @@ JOBS = {
     **records.JOBS,
     **devices.JOBS,
     **textures.JOBS,
+    **laws.JOBS,
 }

@@ -70,7 +70,7 @@ def make(bench: Bench, number: int, text: str, path: Path, sets: list[str], want
         pipeline.make(product, heard, work.stop)
         _show(bench, pipeline, product)
         work.worth = True
-        made = _touch(pipeline, heard, work.stop) if want == "touch" else None
+        made = felt(pipeline, heard, work.stop) if want == "touch" else None
     bench.tell("made", want=want, digest=digest_of(text), outcome="made", why="", seconds=perf_counter() - begun_s)
     return made
 
@@ -120,7 +120,8 @@ def _segments(pipeline: Pipeline, seen: Seen) -> list[dict[str, Any]]:
     ]
 
 
-def _touch(pipeline: Pipeline, heard: Progress, stop: Event) -> dict[str, Any]:
+def felt(pipeline: Pipeline, heard: Progress | None = None, stop: Event | None = None) -> dict[str, Any]:
+    """What the force loop needs of a touch, which is made. Raises: ConfigError without a device; as `Pipeline.make`."""
     touch, config = pipeline.make("touch", heard, stop), pipeline.config
     if config.device is None or config.felt_device is None:
         raise config.missing("device")

@@ -171,6 +171,12 @@ export interface Events {
   /** Another device was chosen. */
   device: Said & { kind: "hand" | "document" | "other"; name: string };
   error: Said & { text: string };
+  laws: Said &
+    (
+      | { state: "one" }
+      | { state: "two"; named: [string, string]; felt: number }
+      | { state: "blind"; called: number; trials: number; question: string }
+    );
   recorder: Said & { recording: boolean; path: string; ticks: number; why: string };
   /** What Python's logging and warnings say, in the server and in the maker. */
   log: Said & { level: "detail" | "warning" | "error"; logger: string; text: string };

@@ -3,6 +3,7 @@ import type { Panel } from "../panel";
 import { devices } from "./devices";
 import { hand } from "./hand";
 import { help } from "./help";
+import { laws } from "./laws";
 import { log } from "./log";
 import { materials } from "./materials";
 import { methods } from "./methods";
@@ -18,6 +19,6 @@ import { yaml } from "./yaml";
 /** Left: what is made. Right: what is seen, heard and felt, settings and help last. Bottom: the log. */
 export const panels: Panel[] = [
   open, methods, stages, materials, preflight, yaml,
-  view, hand, devices, sound, records, settings, help,
+  view, hand, devices, sound, laws, records, settings, help,
   log,
 ];

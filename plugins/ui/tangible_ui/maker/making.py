@@ -18,6 +18,7 @@ from tangible_core.servo import packed
 
 from .bench import Bench, Job, Work
 from .checking import digest_of
+from .described import described
 from .shown import show
 
 SLOW = ("disparity", "segments")
@@ -103,6 +104,7 @@ def _show(bench: Bench, pipeline: Pipeline, surface: HapticSurface) -> None:
     if (digest := surface.digest()) != bench.shown:
         bench.tell("scene", **show(pipeline, surface, digest, bench.folder))
         bench.shown = digest
+        bench.tell("described", **described(pipeline, surface, digest))
     bench.tell("materials", segments=_segments(pipeline, surface))
 
 

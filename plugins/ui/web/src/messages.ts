@@ -28,8 +28,6 @@ export interface Meta {
   height_m: [number, number];
   materials: Material[];
   photo: boolean;
-  /** The surface in words, by language. */
-  says?: Record<string, string>;
 }
 
 export interface Note {
@@ -135,6 +133,8 @@ export interface Events {
   preflight: Said & Judged;
   stage: Said & { product: string; method: string; done: Partial<Outcome> };
   scene: Said & Meta;
+  /** The surface with this digest in words, and its materials' names, by language. */
+  described: Said & { digest: string; says: Record<string, string>; names: Record<string, Record<string, string>> };
   document: Said & Document;
   touch: Said & { law: string; seconds: number; how: string };
   loop: Said & { running: boolean; why: string };

@@ -13,6 +13,7 @@ export const t = words({
     "Das Programm ist nicht mehr da. Starten Sie `tangible ui` wieder; dann geht es auf dieser Seite weiter."],
   feeling: ["Feeling: {law}", "Zu fühlen: {law}"],
   making: ["{product} is being made by {method}", "{product} wird mit {method} berechnet"],
+  makingStopped: ["Making was stopped.", "Die Berechnung wurde abgebrochen."],
   watching: ["Another tab holds the hand.", "Ein anderer Tab führt die Hand."],
   takeHand: ["Take the hand", "Die Hand übernehmen"],
   language: ["Language", "Sprache"],

@@ -19,6 +19,7 @@ from tangible_core.servo import packed
 
 from .bench import Bench, Job, Work
 from .checking import digest_of
+from .described import described
 from .seen import Seen, see
 from .shown import show
 
@@ -103,6 +104,7 @@ def _show(bench: Bench, pipeline: Pipeline, product: str) -> None:
     if (seen := see(pipeline, product)).digest != bench.shown:
         bench.tell("scene", **show(seen, bench.folder))
         bench.shown = seen.digest
+        bench.tell("described", **described(pipeline, seen))
     bench.tell("materials", segments=_segments(pipeline, seen))
 
 

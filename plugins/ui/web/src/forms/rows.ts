@@ -81,7 +81,7 @@ function help(option: Option, id: string): { root: HTMLElement; show(byDefault: 
   about.textContent = option.about;
   const now = document.createElement("span");
   const range = rangeOf(option.kind, option.unit);
-  root.append(about, " ", range ? `${range}. ` : "", now);
+  root.append(about, " ", range && `${range[0].toUpperCase()}${range.slice(1)}. `, now);
   return {
     root,
     show: (byDefault, isSet) => {

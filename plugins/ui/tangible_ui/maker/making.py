@@ -25,7 +25,6 @@ from .shown import show
 
 SLOW = ("disparity", "segments")
 """Products that take seconds: who edits says when they are made."""
-WITHIN = "within what is kept of what is made from it"
 
 
 def plan(bench: Bench, text: str, path: Path, sets: list[str], want: str) -> dict[str, Any]:
@@ -51,7 +50,7 @@ def _all_steps(pipeline: Pipeline, found: Plan) -> list[Outcome]:
         needed = pipeline.engine.needed(found.want)
         for each in pipeline.outcomes:
             if each.product in needed and each.product not in steps:
-                steps[each.product] = each if each.outcome == "given" else replace(each, outcome="cached", why=WITHIN)
+                steps[each.product] = each if each.outcome == "given" else replace(each, outcome="cached", why="")
     order = ["views", *PRODUCTS]
     return sorted(steps.values(), key=lambda each: order.index(each.product))
 

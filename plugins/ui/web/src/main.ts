@@ -13,13 +13,13 @@ import { notice } from "./notice";
 import type { Page } from "./page";
 import { build } from "./panel";
 import { panels } from "./panels";
-import { Scene } from "./scene";
 import { listen } from "./shortcuts";
 import { stroke } from "./sonify";
 import { Sound } from "./sound";
 import { Speech } from "./speech";
 import { splits } from "./splits";
 import { Status } from "./status";
+import { loadScene } from "./terrain/fetching";
 import { Themes } from "./themes";
 import { View } from "./view";
 import { language } from "./words/words";
@@ -67,7 +67,7 @@ hub.on("scene", async (meta) => {
   if (page.scene?.meta.digest === meta.digest && newest === meta.digest) return;
   newest = meta.digest;
   try {
-    const loaded = await Scene.load(meta);
+    const loaded = await loadScene(meta);
     if (newest !== meta.digest) return; // another one was made meanwhile
     page.scene = loaded;
     hub.tell("shown", loaded);

@@ -1,6 +1,6 @@
 /** Drawing: each state once, and the whole again when the view changed. */
 import type { Page } from "./page";
-import { now, type State, type Vec } from "./protocol";
+import { now, type State } from "./protocol";
 
 /** What `tests` and `benchmarks` read: window.figures. */
 export const figures = {
@@ -26,13 +26,12 @@ export class Frames {
 
   private frame(): void {
     requestAnimationFrame(() => this.frame());
-    const { net, view, scene } = this.page;
+    const { net, view } = this.page;
     const state = net.latest;
     const fresh = state !== null && state.seq !== this.seq;
     if (!view.dirty && !fresh) return;
     const first = view.terrain !== null && !figures.firstMs;
-    const normal: Vec = state && scene ? scene.normal(state.hand[0], state.hand[1]) : [0, 0, 1];
-    view.draw(state, normal, this.measuring || first);
+    view.draw(this.measuring || first);
     const at = now();
     if (first) figures.firstMs = at;
     if (fresh) this.drawn(state, at);

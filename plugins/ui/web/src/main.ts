@@ -1,5 +1,6 @@
 /** The page: its parts are put together here. */
 import "./app.css";
+import { Cursors } from "./cursors";
 import { Frames } from "./frames";
 import { Hand } from "./hand";
 import { Hub } from "./hub";
@@ -46,5 +47,6 @@ hub.on("scene", async (meta) => {
 
 new Status(page);
 new Hand(page);
+new Cursors(page);
 build(page, panels);
 new Frames(page, asked.has("measure"));

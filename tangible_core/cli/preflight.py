@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -17,8 +16,6 @@ if TYPE_CHECKING:
     from ..preflight import Flight, Hand, Loop, Preflight, Verdict
 
 COLOURS = {"ok": "green", "warn": "yellow", "unsafe": "bold red"}
-MOST_DIGITS = 13
-PREFIXES = ((1.0, ""), (1e-3, "m"), (1e-6, "u"))
 
 
 def preflight(
@@ -101,46 +98,11 @@ def line(verdict: Verdict) -> str:
     """A verdict as text, its cure on a line of its own, with rich's marks."""
     from rich.markup import escape
 
+    from ..preflight import relation
+
     said = "; ".join(filter(None, (f"{verdict.of}: {relation(verdict)}", verdict.note, verdict.source)))
     cure = f"\n{'':>20}cure: {verdict.cure}" if verdict.cure else ""
     return f"[{COLOURS[verdict.verdict]}]{verdict.verdict:<6}[/] {verdict.check:<12} {escape(said + cure)}"
-
-
-def relation(verdict: Verdict) -> str:
-    """The value and how it stands to its bound, as it is, with as many digits as show it.
-
-    >>> from tangible_core.preflight import Verdict
-    >>> relation(Verdict("damping", "the law", "warn", 3.215, "N s/m", "<=", 0.4))
-    '3.215 N s/m > 0.4 N s/m'
-    >>> relation(Verdict("stiffness", "the law", "unsafe", 3000.02, "N/m", "<=", 3000.0))
-    '3000.02 N/m > 3000 N/m'
-    """
-    if not verdict.relation:
-        return quantity(verdict.value, verdict.unit)
-    if verdict.keeps:
-        return f"{quantity(verdict.value, verdict.unit)} {verdict.relation} {quantity(verdict.bound, verdict.unit)}"
-    numbers = verdict.value, verdict.bound
-    if any(map(math.isnan, numbers)):
-        return f"{verdict.value:g} is to be {verdict.relation} {verdict.bound:g} {verdict.unit}"
-    texts = ([quantity(each, verdict.unit, digits) for each in numbers] for digits in range(MOST_DIGITS))
-    value, bound = next(
-        (pair for pair in texts if pair[0] != pair[1]), [f"{each!r} {verdict.unit}" for each in numbers]
-    )
-    return f"{value} {'>' if verdict.relation == '<=' else '<'} {bound}"
-
-
-def quantity(value: float, unit: str, more_digits: int = 0) -> str:
-    """A value for people: with three digits, of newtons with four, and as many more.
-
-    >>> quantity(2.9e-5, "m"), quantity(800.0, "N/m"), quantity(0.125, "share"), quantity(0.0, "s")
-    ('29 um', '800 N/m', '12.5 %', '0 s')
-    """
-    if unit == "share":
-        return f"{100 * value:.{3 + more_digits}g} %"
-    if unit not in ("m", "s"):
-        return f"{float(f'{value:.{4 + more_digits}g}'):.15g} {unit}"
-    scale, prefix = next((each for each in PREFIXES if abs(value) >= each[0]), PREFIXES[-1] if value else PREFIXES[0])
-    return f"{value / scale:.{3 + more_digits}g} {prefix}{unit}"
 
 
 def _figures(flight: Flight) -> dict[str, Any]:

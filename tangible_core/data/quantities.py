@@ -51,7 +51,12 @@ class Quantities(BaseModel):
     @classmethod
     def __get_pydantic_json_schema__(cls, core: CoreSchema, handler: GetJsonSchemaHandler, /) -> JsonSchemaValue:
         schema = handler(core)
-        for name, option in handler.resolve_ref_schema(schema).get("properties", {}).items():
+        block = handler.resolve_ref_schema(schema)
+        block["title"] = title_of(re.sub(r"(?<=[a-z])(?=[A-Z])", "_", cls.__name__).lower())
+        for name, option in block.get("properties", {}).items():
+            option["title"] = title_of(name)
+            if unit := unit_of(name):
+                option["unit"] = unit
             if units := units_of(name):
                 _allow_text(option, units)
         return schema
@@ -67,6 +72,34 @@ def units_of(name: str) -> Mapping[str, Decimal]:
 
 
 _NONE: Mapping[str, Decimal] = {}
+
+
+def unit_of(name: str) -> str:
+    """The unit of an option of this name; empty where it has none.
+
+    >>> unit_of("stiffness_n_per_m"), unit_of("window_px"), unit_of("segments")
+    ('N/m', 'px', '')
+    """
+    return next((unit for suffix, unit in _UNIT_OF.items() if name.endswith(suffix)), "")
+
+
+def title_of(name: str) -> str:
+    """An option's name in words, without its unit: what stands beside a field for it.
+
+    >>> title_of("stiffness_n_per_m"), title_of("least_contrast")
+    ('Stiffness', 'Least contrast')
+    """
+    suffix = next((suffix for suffix in _UNIT_OF if name.endswith(suffix)), "")
+    words = name.removesuffix(suffix).replace("_", " ").strip()
+    return words[:1].upper() + words[1:]
+
+
+_UNIT_OF = {suffix: next(iter(units)) for suffix, units in UNITS.items()} | {
+    "_px": "px",
+    "_mb": "MB",
+    "_percent": "%",
+}
+"""End of an option's name -> its unit; those that no other unit can stand for among them."""
 
 
 def _as_number(value: Any, units: Mapping[str, Decimal]) -> Any:

@@ -12,7 +12,7 @@ from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap
 from ruamel.yaml.error import YAMLError
 
-from ..errors import ConfigError, did_you_mean, quoted, shown
+from ..errors import Complaint, ConfigError, did_you_mean, quoted, shown
 from .paths import as_path
 from .reading import MOST_TEXT_BYTES, in_words, read_bytes
 from .yaml_bounds import MOST_DEPTH, MOST_DIGITS, BoundedConstructor, check_events
@@ -29,36 +29,40 @@ class Source:
 
     path: Path
     tree: Tree
-    complaints: list[str] = field(default_factory=list[str])
+    complaints: list[tuple[str, Complaint]] = field(default_factory=list[tuple[str, Complaint]])
+    """Each as a sentence that begins with its place, and for a program."""
     overridden: dict[tuple[str, ...], str] = field(default_factory=dict[tuple[str, ...], str])
 
     def override(self, text: str) -> None:
         """Apply `key.key=value`; a block with another `use` starts without the options of the method before."""
-        keys, equals, value = text.partition("=")
-        parts = tuple(keys.strip().split("."))
-        if not equals or not all(parts) or len(parts) > MOST_DEPTH:
-            raise ConfigError(f"{_named(text)}: write key.key=value, such as render.stiffness_n_per_m=500")
-        try:
-            loaded = _load(value)
-        except YAMLError as error:
-            raise ConfigError(f"{_named(text)}: {quoted(value)} is not a YAML value: {_problem(error)}") from error
+        parts, loaded = parse_override(text)
         node: Any = self.tree
         for part in parts[:-1]:
             if isinstance(node.get(part), list):
-                raise ConfigError(f"{_named(text)}: {part} is a list; set it as a whole: {part}=[...]")
+                raise _refused(text, parts, f"{part} is a list; set it as a whole: {part}=[...]")
             if not isinstance(node.get(part), dict):
                 node[part] = CommentedMap()
             node = node[part]
         if parts[-1] == "use" and node.get("use") != loaded:
             node.clear()
-        node[_key(parts[-1], node)] = loaded
+        node[key_of(parts[-1], node)] = loaded
         self.overridden[parts] = text
 
     def place(self, location: Location) -> str:
         """file:line:column of the deepest part of the location that the file has."""
-        for end in range(len(location), 0, -1):
-            if text := self.overridden.get(tuple(str(part) for part in location[:end])):
-                return _named(text)
+        if text := self._override_of(location):
+            return _named(text)
+        line, column = self._mark(location)
+        return f"{self.path}:{line}:{column}"
+
+    def _override_of(self, location: Location) -> str | None:
+        """What set the location, or what contains it."""
+        ends = range(len(location), 0, -1)
+        found = (self.overridden.get(tuple(str(part) for part in location[:end])) for end in ends)
+        return next(filter(None, found), None)
+
+    def _mark(self, location: Location) -> tuple[int, int]:
+        """Line and column, from 1, of the deepest part of the location that the file has."""
         node: Any = self.tree
         line, column = 0, 0
         for part in location:
@@ -68,16 +72,19 @@ class Source:
             if marks.data and part in marks.data:
                 line, column = marks.key(part) if isinstance(node, dict) else marks.item(part)
             node = cast(Any, node)[part]
-        return f"{self.path}:{line + 1}:{column + 1}"
+        return line + 1, column + 1
 
     def complain(self, location: Location, text: str) -> None:
         """Note a complaint with its place."""
-        self.complaints.append(f"{self.place(location)}: {text}")
+        mark = (None, None) if self._override_of(location) else self._mark(location)
+        complaint = Complaint(tuple(map(_word_or_number, location)), text, *mark)
+        self.complaints.append((f"{self.place(location)}: {text}", complaint))
 
     def settle(self) -> None:
         """Raises: ConfigError with every complaint, one a line, if there are any."""
         if self.complaints:
-            raise ConfigError(*self.complaints)
+            sentences, complaints = zip(*self.complaints, strict=True)
+            raise ConfigError(*sentences, complaints=complaints)
 
     def check_keys(self, known: Iterable[str]) -> None:
         """Complain of every key of the file that is not known."""
@@ -99,12 +106,12 @@ class Source:
     def model(self, location: Location, model: type[BaseModel], block: Any) -> Any:
         """A block as a model, its files relative to this one; None after a complaint for each thing that is wrong."""
         try:
-            return _relative_to(self.path.parent, model.model_validate(_plain(block)))
+            return _relative_to(self.path.parent, model.model_validate(plain(block)))
         except ConfigError as error:
             self.complain(location, str(error))
             return None
         except ValidationError as error:
-            for each in _deepest(error, _plain(block)):
+            for each in _deepest(error, plain(block)):
                 self._complain_of(location, model, each)
             return None
 
@@ -169,26 +176,42 @@ def read_text(path: Path) -> str:
         raise ConfigError(f"{path}: cannot be read as text: {getattr(error, 'strerror', None) or error}") from error
 
 
-def parse_source(text: str, path: Path, what: str, overrides: Iterable[str] = ()) -> Source:
+def parse_source(text: str, path: Path, what: str, overrides: Iterable[str] = (), *, empty: bool = False) -> Source:
     """A YAML text whose parts know their places, for whoever checks it.
 
-    what: what the file is, for the complaint about one that is no mapping.
+    what: what the file is, for the complaint about one that is no mapping. empty: one that says nothing is one too.
     Raises: ConfigError if it is no YAML, or no mapping.
     """
     try:
-        tree = _load(text)
+        tree = parse_value(text)
     except YAMLError as error:
-        raise ConfigError(f"{_place(path, error)}: {_problem(error)}") from error
+        mark, problem = _mark_of(error), _problem(error)
+        place = ":".join(map(str, (path, *mark)))
+        raise ConfigError(f"{place}: {problem}", complaints=[Complaint((), problem, *mark)]) from error
+    if tree is None and empty:
+        tree = CommentedMap()
     if not isinstance(tree, dict):
-        raise ConfigError(f"{path}:1:1: {what}")
+        raise ConfigError(f"{path}:1:1: {what}", complaints=[Complaint((), what, 1, 1)])
     source = Source(path, cast(Tree, tree))
     for override in overrides:
         source.override(override)
     return source
 
 
-def _load(text: str) -> Any:
-    """What a text says. Raises: YAMLError."""
+def parse_override(text: str) -> tuple[tuple[str, ...], Any]:
+    """The keys and the value of `key.key=value`. Raises: ConfigError if it is none."""
+    keys, equals, value = text.partition("=")
+    parts = tuple(keys.strip().split("."))
+    if not equals or not all(parts) or len(parts) > MOST_DEPTH:
+        raise _refused(text, (), "write key.key=value, such as render.stiffness_n_per_m=500")
+    try:
+        return parts, parse_value(value)
+    except YAMLError as error:
+        raise _refused(text, parts, f"{quoted(value)} is not a YAML value: {_problem(error)}") from error
+
+
+def parse_value(text: str) -> Any:
+    """What a YAML text says, as the parser's own values. Raises: YAMLError."""
     if len(text) > MOST_TEXT_BYTES:
         raise YAMLError(f"it holds more than {in_words(MOST_TEXT_BYTES)}")
     yaml: Any = YAML(typ="rt")  # of ruamel's loaders, the one that knows places
@@ -209,18 +232,30 @@ def _problem(error: YAMLError) -> str:
     return f"{text}; indent with spaces, not tabs" if "\\t" in text else text
 
 
-def _place(path: Path, error: YAMLError) -> str:
+def _mark_of(error: YAMLError) -> tuple[int, int] | tuple[()]:
+    """Line and column, from 1, of what a parser complains of; nothing where it does not say."""
     mark = getattr(error, "problem_mark", None) or getattr(error, "context_mark", None)
-    return f"{path}:{mark.line + 1}:{mark.column + 1}" if mark else f"{path}"
+    return (mark.line + 1, mark.column + 1) if mark else ()
+
+
+def _refused(override: str, location: Location, problem: str) -> ConfigError:
+    return ConfigError(f"{_named(override)}: {problem}", complaints=[Complaint(location, problem)])
 
 
 def _named(override: str) -> str:
     return f"--set {shown(override)}"
 
 
-def _key(text: str, node: Mapping[Any, Any]) -> Any:
+def key_of(part: Any, node: Mapping[Any, Any]) -> Any:
     """Keys are words; labels of a material map are whole numbers."""
-    return int(text) if text.isdecimal() and len(text) <= MOST_DIGITS and text not in node else text
+    if not isinstance(part, str) or part in node:
+        return part
+    return int(part) if part.isdecimal() and len(part) <= MOST_DIGITS else part
+
+
+def _word_or_number(part: Any) -> str | int:
+    """A key as JSON can say it."""
+    return int(part) if isinstance(part, int) and not isinstance(part, bool) else str(part)
 
 
 def _has(node: Any, part: Any) -> bool:
@@ -247,12 +282,12 @@ def _relative_to(folder: Path, model: BaseModel) -> BaseModel:
     return model.model_copy(update={name: (folder / value).absolute() for name, value in paths.items()})
 
 
-def _plain(node: Any) -> Any:
-    """Plain Python values for pydantic, without the parser's own types."""
+def plain(node: Any) -> Any:
+    """Plain Python values, without the parser's own types."""
     if isinstance(node, dict):
-        return {key: _plain(value) for key, value in cast("dict[Any, Any]", node).items()}
+        return {key: plain(value) for key, value in cast("dict[Any, Any]", node).items()}
     if isinstance(node, list):
-        return [_plain(value) for value in cast("list[Any]", node)]
+        return [plain(value) for value in cast("list[Any]", node)]
     for kind in (bool, int, float, str):
         if isinstance(node, kind):
             return kind(node)

@@ -225,7 +225,8 @@ def _check_names(source: Source, choice: MaterialChoice) -> None:
         return
     named: list[tuple[Location, str]] = [(("default",), choice.default)]
     named += [(("rules", number, "material"), rule.material) for number, rule in enumerate(choice.rules)]
-    named += [((label,), name) for label, name in (choice.by.items() if isinstance(choice.by, dict) else ())]
+    labels = ("by",) if "by" in source.tree["materials"] else ()
+    named += [((*labels, label), name) for label, name in (choice.by.items() if isinstance(choice.by, dict) else ())]
     for place, name in named:
         try:
             find(name, library)

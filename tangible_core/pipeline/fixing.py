@@ -1,19 +1,14 @@
 """What to change in a pipeline file for it to pass preflight: the cures, one at a time, each tried before the next."""
 
-import os
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from io import StringIO
 from pathlib import Path
-from typing import Any, cast
 
-from pydantic import BaseModel
-from ruamel.yaml import YAML
-
-from ..files.source import Source, parse_source, read_text
+from ..files.source import read_text
 from ..preflight import Flight, Hand, Loop, Preflight, judge
 from ..preflight.verdict import Change
-from .config import STAGES, PipelineConfig, parse_config
+from .config import parse_config
+from .editing import edited, moved, with_overrides
 from .pipeline import Pipeline
 
 ROUNDS = 24
@@ -40,8 +35,8 @@ def fix(path: Path, sets: Iterable[str], hand: Hand, loop: Loop, out: Path, cach
     sets: `key.key=value` each, as `--set` takes them. out: where the file is to stand; nothing is written.
     Raises: ConfigError as `load_config`; TangibleError as `Pipeline.flight`.
     """
-    text, made = read_text(path), list[str](sets)
-    pipeline = Pipeline.from_yaml(path, made)
+    pipeline = Pipeline.from_yaml(path, sets := list(sets))
+    text = with_overrides(read_text(path), path, sets)
     if not cached:
         pipeline.cache = None
     first = flight = pipeline.flight(hand=hand, loop=loop)
@@ -49,14 +44,13 @@ def fix(path: Path, sets: Iterable[str], hand: Hand, loop: Loop, out: Path, cach
     for _ in range(ROUNDS):
         if (change := _next(judge(flight), done)) is None:
             break
-        made += _overrides(change, pipeline.config, text, made)
+        text = edited(text, path, {change.key: change.setting})
         done[change.key] = change
-        config = parse_config(text, path, pipeline.engine.registry, made)
-        pipeline = pipeline.changed(config)
+        pipeline = pipeline.changed(parse_config(text, path, pipeline.engine.registry))
         flight = pipeline.flight(hand=hand, loop=replace(loop, seconds=AT_ONCE))
         flight = replace(flight, lateness=first.lateness)
     changes = {key: change.value for key, change in done.items()}
-    return Fixed(changes, flight, judge(flight), _moved(text, path, made, pipeline, out))
+    return Fixed(changes, flight, judge(flight), moved(text, path, pipeline.config, out))
 
 
 def _next(verdicts: Preflight, done: Mapping[str, Change]) -> Change | None:
@@ -70,36 +64,3 @@ def _is_new(change: Change, done: Mapping[str, Change]) -> bool:
     if before is None:
         return True
     return before.towards == change.towards != "is" and before.stricter(change).value != before.value
-
-
-def _overrides(change: Change, config: PipelineConfig, text: str, made: Iterable[str]) -> Iterable[str]:
-    """As `--set` takes it; a method that is named by a word alone becomes a block first."""
-    block, _, _ = change.key.partition(".")
-    tree = parse_source(text, Path("file"), "", made).tree
-    if block in STAGES and isinstance(tree.get(block), str):
-        yield f"{block}={{use: {tree[block]}}}"
-    yield f"{change.key}={change.value}"
-
-
-def _moved(text: str, path: Path, made: Iterable[str], pipeline: Pipeline, out: Path) -> str:
-    """The file with what was changed, its relative paths leading to the same files from where it is to stand."""
-    source = parse_source(text, path, "", made)
-    if out.parent.absolute() != path.parent.absolute():
-        config = pipeline.config
-        methods = {kind: chosen.method for kind in STAGES if (chosen := getattr(config, kind))}
-        for key, model in {"scene": config.scene, "materials": config.materials, **methods}.items():
-            if isinstance(model, BaseModel):
-                _lead_elsewhere(source, key, model, out.parent.resolve())
-    written = StringIO()
-    yaml: Any = YAML(typ="rt")
-    yaml.width = 4096
-    yaml.dump(source.tree, written)
-    return written.getvalue()
-
-
-def _lead_elsewhere(source: Source, key: str, model: BaseModel, folder: Path) -> None:
-    block = source.tree.get(key)
-    for name, value in model:
-        said = cast("dict[str, Any]", block).get(name) if isinstance(block, dict) else None
-        if isinstance(value, Path) and isinstance(said, str) and not Path(said).is_absolute():
-            cast("dict[str, Any]", block)[name] = os.path.relpath(value.parent.resolve() / value.name, folder)

@@ -22,7 +22,7 @@ from ..data import (
     ServoReport,
     Views,
 )
-from ..errors import ConfigError, quoted, wrong_argument
+from ..errors import Complaint, ConfigError, quoted, wrong_argument
 from ..files.paths import as_path
 from ..files.writing import write_text
 from ..mapping import WorkspaceMapping
@@ -453,8 +453,14 @@ def _block(name: str, model: type[S], value: S | Mapping[str, Any] | None) -> S:
             raise ConfigError(
                 f"{name}: takes a {model.__name__} or a mapping of its options, not {quoted(value)}"
             ) from error
-        parts = ((".".join(map(str, (name, *each["loc"]))), each["msg"]) for each in error.errors())
-        raise ConfigError(*(f"{where}: {what.removeprefix('Value error, ')}" for where, what in parts)) from error
+        parts = [(_place_of(name, each["loc"]), each["msg"].removeprefix("Value error, ")) for each in error.errors()]
+        said = [Complaint(where, f"{'.'.join(map(str, where))}: {what}") for where, what in parts]
+        raise ConfigError(*(each.text for each in said), complaints=said) from error
+
+
+def _place_of(name: str, parts: Iterable[str | int]) -> tuple[str | int, ...]:
+    """Of an option, without the names that pydantic gives its forms."""
+    return (name, *(part for part in parts if part != "[key]" and not str(part).startswith(":")))
 
 
 def _as_in_yaml(materials: Materials | None) -> MaterialChoice | Mapping[str, Any] | None:

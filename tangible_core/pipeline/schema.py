@@ -5,25 +5,28 @@ from typing import Any, NamedTuple, cast
 
 from pydantic import BaseModel
 
-from ..data.quantities import units_of
-from ..errors import TangibleError
+from ..data.quantities import title_of, unit_of
+from ..errors import TangibleError, UnknownMethod
 from ..materials.assignment import library
 from ..materials.files import MaterialBlock
 from ..plugins.registry import Registry, default_registry
 from ..scene.scene_files import BUILTINS, SceneFiles
 from .config import PRODUCTS, SECTIONS, STAGES
 
+_DIALECT = "https://json-schema.org/draft/2020-12/schema"
+
 
 def json_schema(registry: Registry | None = None, distribution: str | None = "tangible-images") -> dict[str, Any]:
-    """One schema for the whole file.
+    """One schema for the whole file. A form has in it a `title` in words and the `unit` of every option.
 
+    It takes the import of every method: see `stage_schema` and `method_schema`.
     distribution: only methods of this one, or of all that are installed when None. A broken plugin has no schema and
     takes nobody down.
     """
     registry = registry or default_registry()
     definitions: dict[str, Any] = {}
     return {
-        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "$schema": _DIALECT,
         "title": "Tangible Images pipeline",
         "type": "object",
         "required": ["scene"],
@@ -41,12 +44,36 @@ def json_schema(registry: Registry | None = None, distribution: str | None = "ta
     }
 
 
+def stage_schema(
+    kind: str, registry: Registry | None = None, distribution: str | None = "tangible-images"
+) -> dict[str, Any]:
+    """The schema of one stage alone (depth, texture, render, device): what `json_schema` says of it, a whole schema.
+
+    Raises: UnknownMethod for a stage that there is not.
+    """
+    if kind not in STAGES:
+        raise UnknownMethod("stage", kind, STAGES)
+    definitions: dict[str, Any] = {}
+    stage = _stage(kind, registry or default_registry(), distribution, definitions)
+    return {"$schema": _DIALECT, "title": title_of(kind), **stage, "$defs": definitions}
+
+
+def method_schema(kind: str, name: str, registry: Registry | None = None) -> dict[str, Any]:
+    """The schema of one method's block alone; no other method is imported.
+
+    Raises: UnknownMethod or BrokenMethod.
+    """
+    definitions: dict[str, Any] = {}
+    form = _method_form(name, (registry or default_registry()).load(kind, name), definitions)
+    return {"$schema": _DIALECT, **form, "$defs": definitions}
+
+
 def materials_schema() -> dict[str, Any]:
     """The schema of a file of materials: of those that are shipped, only what changes must be said."""
     block = MaterialBlock.model_json_schema()
     change = {name: part for name, part in block.items() if name != "required"}
     return {
-        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "$schema": _DIALECT,
         "title": "Tangible Images materials",
         "type": "object",
         "properties": {name: {"$ref": "#/$defs/change"} for name in library()},
@@ -67,6 +94,7 @@ def _stage(kind: str, registry: Registry, distribution: str | None, definitions:
 
 def _method_form(name: str, cls: type[BaseModel], definitions: dict[str, Any]) -> dict[str, Any]:
     form = _schema(cls, definitions)
+    form["title"] = name
     form["properties"] = {"use": {"const": name}, **form.get("properties", {})}
     form["required"] = ["use", *form.get("required", [])]
     return form
@@ -109,15 +137,11 @@ def options_of(model: type[BaseModel]) -> list[Option]:
     form = _schema(model, blocks)
     return [
         Option(
-            name, _unit(name), _type(option).replace("`", ""), _default(option).strip("`"),
+            name, unit_of(name), _type(option).replace("`", ""), _default(option).strip("`"),
             " ".join(option.get("description", "").split()),
         )
         for name, option in _options(form, blocks)
     ]  # fmt: skip
-
-
-def _unit(name: str) -> str:
-    return "px" if name.endswith("_px") else next(iter(units_of(name)), "")
 
 
 def markdown(schema: dict[str, Any]) -> str:

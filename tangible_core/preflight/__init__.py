@@ -6,6 +6,20 @@ from .flight import Flight, Hand, Loop
 from .preflight import Preflight
 from .survey import survey
 from .timing import PERCENTILES
-from .verdict import Verdict
+from .verdict import Change, Verdict
+from .wording import relation
 
-__all__ = ["CHECKS", "PERCENTILES", "Flight", "Hand", "Loop", "Preflight", "Verdict", "fit_surface", "judge", "survey"]
+__all__ = [
+    "CHECKS",
+    "PERCENTILES",
+    "Change",
+    "Flight",
+    "Hand",
+    "Loop",
+    "Preflight",
+    "Verdict",
+    "fit_surface",
+    "judge",
+    "relation",
+    "survey",
+]

@@ -2,9 +2,10 @@
 
 from collections.abc import Iterable
 from dataclasses import replace
-from typing import Self
+from typing import Any, Self
 
 from .verdict import Change, Grade, Verdict
+from .wording import as_data
 
 SAID = 3
 """So many reasons are named in a sentence; how many more there are is counted."""
@@ -52,6 +53,11 @@ class Preflight(tuple[Verdict, ...]):
         named = reasons[:SAID] + ([f"{more} more thing{'s' * (more > 1)}"] if more > 0 else [])
         said = " and ".join(filter(None, [", ".join(named[:-1]), named[-1]]))
         return f"{'Safe, but' if worst == 'warn' else 'Unsafe, because'} {said}."
+
+    def as_data(self) -> dict[str, Any]:
+        """All of it as JSON says it, for a program that shows it: see `wording.as_data`."""
+        said = {"grade": self.grade, "safe": self.safe, "sentence": self.sentence}
+        return {**said, "verdicts": [as_data(each) for each in self]}
 
     def __repr__(self) -> str:
         wrong = [each for each in self if each.verdict != "ok"]

@@ -1,5 +1,6 @@
 """A verdict: one number, the bound it is held against, where the bound comes from, and the cure; and all of them."""
 
+import json
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -23,6 +24,14 @@ class Change(NamedTuple):
 
     def __str__(self) -> str:
         return f"`{self.key}: {self.value}`"
+
+    @property
+    def setting(self) -> float | str:
+        """The value as JSON and `pipeline.editing.edited` take it: a number, or a word."""
+        try:
+            return json.loads(self.value)
+        except ValueError:
+            return self.value
 
     def keeps(self, other: "Change") -> bool:
         """Whether the other, of the same key, is content with this value too."""

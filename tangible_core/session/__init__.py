@@ -1,5 +1,6 @@
 """A session joins a touch and a device: the loop, and what it records."""
 
+from .beside import beside
 from .following import EVERY, Followed, Looks, followed
 from .in_turn import Turn, run_in_turn
 from .keeper import Keeper
@@ -23,6 +24,7 @@ __all__ = [
     "Recording",
     "Turn",
     "Writer",
+    "beside",
     "changed_most",
     "check_record_path",
     "compared",

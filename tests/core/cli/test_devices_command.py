@@ -2,6 +2,7 @@
 
 import json
 from contextlib import nullcontext
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -11,6 +12,7 @@ import typer
 from command_line import tangible
 from tangible_core.cli import devices as command
 from tangible_core.errors import ConfigError, DeviceError
+from tangible_core.plugins.devices import examined, installed_devices
 from tangible_core.plugins.registry import Registry
 from tangible_core.scene.calibrations import calibration_path
 from tangible_core.session.stress import stressed
@@ -103,10 +105,20 @@ class TestList:
         assert lines[0].split() == ["arm", "Arm", "A1", "bus", "1"]
         assert lines[1].split() == ["arm", "Arm", "A2", "bus", "2", "is", "[busy]"]
 
-    def test_a_bus_that_fails_is_said(self, registry: Registry, capsys: pytest.CaptureFixture[str]):
-        row = command._row(registry.find("device", "arm"))
-        assert row["problem"] == ""
-        assert command._cells({**row, "units": [], "problem": "x; y"}) == [("-", "", "", "x; y")]
+    def test_a_program_is_told_the_same_and_nothing_is_opened(self, registry: Registry):
+        arm, lost = installed_devices(registry)
+        assert (arm.name, arm.usable, [unit.problem for unit in arm.units]) == ("arm", True, ["", "is [busy]"])
+        assert (lost.usable, lost.simulated, lost.units) == (False, None, ())
+        assert not replace(arm, units=arm.units[1:]).usable
+        assert replace(arm, units=(), simulated=True).usable
+
+    def test_a_bus_that_fails_is_said(
+        self, registry: Registry, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    ):
+        monkeypatch.setattr(registry.load("device", "arm").model_fields["state"], "default", "broken")
+        registry.load("device", "arm").model_rebuild(force=True)
+        command.devices(ALONE)
+        assert "the bus [usb] fails; plug it in again" in capsys.readouterr().out
 
 
 class TestDoctor:
@@ -118,6 +130,10 @@ class TestDoctor:
         """A plugin that cannot be loaded has failed; and so has what is not there, where it is asked for."""
         with nullcontext() if passed else pytest.raises(typer.Exit):
             command.doctor("arm" if named else None, [f"state={state}"] if named else [])
+
+    def test_what_it_found_for_a_program(self, registry: Registry):
+        assert [each.verdict for each in examined(registry, "arm", ["state=wrong"])] == ["fine", "failed"]
+        assert [each.verdict for each in examined(registry, "arm", ["state=gone"])] == ["not asked"]
 
     def test_the_cure_can_be_copied_as_it_stands(self, registry: Registry, capsys: pytest.CaptureFixture[str]):
         with pytest.raises(typer.Exit):

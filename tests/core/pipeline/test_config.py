@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tangible_core.errors import ConfigError
+from tangible_core.errors import Complaint, ConfigError
 from tangible_core.pipeline.config import load_config, parse_config
 from tangible_core.plugins.registry import default_registry
 from tangible_core.scene.scene_files import SceneFiles
@@ -115,6 +115,51 @@ def test_one_mistake_one_line(text: str, place: str, what: str):
     found = complaints(text)
     assert found[0].startswith(place + ": "), found
     assert what in "\n".join(found)
+
+
+def located(text: str, *overrides: str) -> list[Complaint]:
+    """The complaints as a program has them, the same as in the sentences."""
+    with pytest.raises(ConfigError) as error:
+        parse(text, *overrides)
+    found = list(error.value.complaints)
+    for sentence, each in zip(str(error.value).splitlines(), found, strict=True):
+        place = f"here/p.yaml:{each.line}:{each.column}: " if each.line else ""
+        assert sentence == place + each.text or (not place and sentence.endswith(f": {each.text}"))
+    return found
+
+
+@pytest.mark.parametrize(
+    ("text", "override", "location", "mark"),
+    [
+        ("scene: builtin/brick\nworkspace:\n  relief_m: x\n", None, ("workspace", "relief_m"), (3, 3)),
+        ("scene: builtin/brick\nrender: {use: proxi}\n", None, ("render", "use"), (2, 10)),
+        ("scene: builtin/brick\nrender: 3\n", None, ("render",), (2, 1)),
+        ("scene: builtin/brick\n5: 3\n", None, (5,), (2, 1)),
+        ("scene: builtin/brick\ntrue: 3\n", None, ("True",), (2, 1)),
+        (f"{RULES}{{colour: blue}}\n", None, ("materials", "rules", 0, "material"), (4, 7)),
+        (f"{RULES}{{colour: blue, material: watr}}\n", None, ("materials", "rules", 0, "material"), (4, 22)),
+        ("scene: builtin/brick\nmaterials: {by: {1: sandd}}\n", None, ("materials", "by", 1), (2, 18)),
+        ("scene: builtin/brick\nmaterials: {1: sandd}\n", None, ("materials", 1), (2, 13)),
+        ("want: touch\n", None, (), (1, 1)),
+        ("- scene\n", None, (), (1, 1)),
+        ("scene: a\nscene: b\n", None, (), (2, 1)),
+        ("scene: builtin/brick\ndepth:\n\tuse: x\n", None, (), (3, 1)),
+        ("scene: builtin/brick\n", "workspace.width_m=wide", ("workspace", "width_m"), (None, None)),
+        ("scene: builtin/brick\n", "workspace.width_m=[", ("workspace", "width_m"), (None, None)),
+        ("scene: builtin/brick\n", "workspace", (), (None, None)),
+    ],
+)  # fmt: skip
+def test_a_complaint_knows_its_place(text: str, override: str | None, location: tuple, mark: tuple):
+    (found,) = located(text, *([override] if override else []))
+    assert (found.location, (found.line, found.column)) == (location, mark)
+    assert json.loads(json.dumps(found._asdict()))["location"] == list(location)
+
+
+def test_all_complaints_have_their_places_at_once():
+    text = "scene: builtin/brick\ndepht: x\nworkspace: {width_m: wide, relief_m: -1}\nwant: surfaces\n"
+    assert [each.location for each in located(text)] == [
+        ("depht",), ("want",), ("workspace", "width_m"), ("workspace", "relief_m"),
+    ]  # fmt: skip
 
 
 def test_numbers_and_words_mean_what_they_look_like():

@@ -206,8 +206,10 @@ class TestMethods:
         ],
     )
     def test_blocks_that_say_nonsense(self, block: dict, said: str):
-        with pytest.raises(ConfigError, match=said):
+        with pytest.raises(ConfigError, match=said) as error:
             Pipeline(Scene.builtin("coins"), **block)
+        place = said.partition(":")[0].split(".")
+        assert error.value.complaints[0].location == (tuple(place) if " takes " not in said else ())
 
     def test_a_product_that_nothing_makes(self):
         with pytest.raises(UnknownMethod, match="no product method is named 'surfaces'"):

@@ -1,12 +1,17 @@
 import json
+from collections.abc import Iterator
 from importlib import metadata
 from pathlib import Path
+from typing import Any
 
 import pytest
 from jsonschema import Draft202012Validator
 from ruamel.yaml import YAML
 
-from tangible_core.pipeline.schema import json_schema, markdown, materials_schema
+from tangible_core.errors import UnknownMethod
+from tangible_core.pipeline.config import parse_config
+from tangible_core.pipeline.schema import json_schema, markdown, materials_schema, method_schema, stage_schema
+from tangible_core.plugins.registry import Registry, default_registry
 
 ROOT = Path(__file__).parents[3]
 
@@ -61,6 +66,68 @@ def test_every_option_says_what_it_means():
     for form in forms:
         for name, option in form["properties"].items():
             assert name == "use" or option.get("description"), f"{form['title']}.{name}"
+
+
+def test_a_form_has_words_and_units():
+    schema = json_schema()
+    (proxy,) = (form for form in schema["properties"]["render"]["anyOf"] if form.get("title") == "proxy")
+    stiffness = proxy["properties"]["stiffness_n_per_m"]
+    assert (stiffness["title"], stiffness["unit"]) == ("Stiffness", "N/m")
+    workspace = schema["properties"]["workspace"]["properties"]
+    assert {name: option.get("unit") for name, option in workspace.items()} == {
+        "width_m": "m", "relief_m": "m", "smooth_m": "m", "finest_m": "m", "holes": None,
+    }  # fmt: skip
+    assert schema["properties"]["depth"]["anyOf"][1]["title"] == "contour"
+    assert schema["$defs"]["VirtualHand"]["title"] == "Virtual hand"
+    titles = [option["title"] for name, option in _options(schema) if name != "use"]
+    assert len(titles) > 150 and all(title.strip() and "_" not in title for title in titles)
+
+
+def _options(node: object) -> Iterator[tuple[str, dict]]:
+    if isinstance(node, dict):
+        options = node.get("properties", {}) if "properties" in node and "anyOf" not in node else {}
+        if "scene" not in options:
+            yield from options.items()
+        for each in node.values():
+            yield from _options(each)
+    elif isinstance(node, list):
+        for each in node:
+            yield from _options(each)
+
+
+@pytest.mark.parametrize("kind", ["depth", "texture", "render", "device"])
+def test_a_stage_has_a_schema_of_its_own(kind: str):
+    whole, stage = json_schema(), stage_schema(kind)
+    Draft202012Validator.check_schema(stage)
+    assert whole["properties"][kind]["anyOf"] == stage["anyOf"]
+    assert stage["$defs"].items() <= whole["$defs"].items()
+
+
+def test_a_method_has_a_schema_of_its_own_and_no_other_is_imported():
+    mock = Draft202012Validator(method_schema("device", "mock"))
+    assert mock.is_valid({"use": "mock", "path": "circle", "hand": {"mass_kg": "90 g"}})
+    assert not mock.is_valid({"use": "mock", "path": "circle", "hand": {"mass_kg": "90 m"}})
+    loaded = list[str]()
+
+    class Watched(Registry):
+        def load(self, kind: str, name: str) -> Any:
+            loaded.append(name)
+            return super().load(kind, name)
+
+    assert method_schema("depth", "zncc", Watched())["title"] == "zncc"
+    assert loaded == ["zncc"]
+    with pytest.raises(UnknownMethod, match="did you mean 'depth'"):
+        stage_schema("depht")
+    with pytest.raises(UnknownMethod, match="did you mean 'zncc'"):
+        method_schema("depth", "znc")
+
+
+@pytest.mark.parametrize("kind", ["depth", "texture", "render", "device"])
+def test_every_default_is_a_value_that_JSON_can_say(kind: str):
+    registry = default_registry()
+    for name in registry.names(kind):
+        config = parse_config(f"scene: builtin/brick\n{kind}: {name}\n", Path("p.yaml"), registry)
+        assert json.loads(json.dumps(config.completed(), allow_nan=False))[kind]["use"] == name
 
 
 def test_the_page_in_docs_is_current():

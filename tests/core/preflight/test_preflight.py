@@ -1,9 +1,13 @@
 """All verdicts together: one sentence, and cures that agree."""
 
+import json
+import math
+from pathlib import Path
+
 import pytest
 
-from tangible_core.cli.preflight import relation
-from tangible_core.preflight import Preflight, Verdict
+from tangible_core.pipeline.editing import edited
+from tangible_core.preflight import Preflight, Verdict, relation
 from tangible_core.preflight.verdict import Change, held
 
 RELIEF = "workspace.relief_m"
@@ -76,3 +80,27 @@ def test_two_bounds_that_leave_room_are_met_by_one_value():
 )
 def test_an_inequality_is_a_true_one(value: float, sign: str, bound: float, said: str):
     assert relation(held("damping", "the law", value, sign, bound, "N s/m", "", cure="less")) == said
+
+
+def test_a_program_is_told_all_of_it_and_can_apply_a_cure():
+    fit = held(
+        *("textures", "brick", math.inf, "<=", 1.0, "N/m", "here"),
+        cure=[Change("materials.fit", "device", "is"), "; or ", Change(RELIEF, "0.0012", "at most")],
+        says="brick buzzes",
+        worse="unsafe",
+    )
+    said = json.loads(json.dumps(Preflight.of([fit, OK]).as_data(), allow_nan=False))
+    assert (said["grade"], said["safe"], said["sentence"]) == ("unsafe", False, "Unsafe, because brick buzzes.")
+    wrong, fine = said["verdicts"]
+    assert (wrong["verdict"], wrong["check"], wrong["of"], wrong["says"]) == (
+        "unsafe", "textures", "brick", "brick buzzes",
+    )  # fmt: skip
+    assert (wrong["value"], wrong["bound"], wrong["stands"]) == (None, 1.0, "inf N/m > 1 N/m")
+    assert wrong["changes"] == [
+        {"key": "materials.fit", "value": "device", "towards": "is"},
+        {"key": RELIEF, "value": 0.0012, "towards": "at most"},
+    ]
+    assert (fine["changes"], fine["cure"], fine["stands"]) == ([], "", "1 N/m <= 2 N/m")
+    text = "scene: builtin/brick\nmaterials: {by: rules}  # mine\nworkspace: {relief_m: 4 mm}\n"
+    cured = edited(text, Path("p.yaml"), {each["key"]: each["value"] for each in wrong["changes"]})
+    assert cured == text.replace("rules}", "rules, fit: device}").replace("4 mm", "0.0012")

@@ -6,7 +6,7 @@ Words of 8 bytes in the machine's order. Each side writes a block of its own, an
 |---|---|---|---|
 | 0 | `TANGPTR1` | 8 letters | device |
 | 1 | 1 while the device is open | uint64 | device |
-| 2 | 1 while a client is there | uint64 | client |
+| 2 | 1 while a client holds the pointer | uint64 | client |
 | 16 | number of this sample, counting up | uint64 | client |
 | 17..19, 20..22 | position, metres; velocity, metres per second | float64 | client |
 | 23 | buttons, one bit each | float64 | client |
@@ -14,6 +14,10 @@ Words of 8 bytes in the machine's order. Each side writes a block of its own, an
 | 32 | number of this force, counting up | uint64 | device |
 | 33..35 | force on the hand, newtons | float64 | device |
 | 36 | checksum of words 32..35 | uint64 | device |
+
+Of the buttons, bits above those that are a button's may carry a number of the client's own: nothing here looks at them,
+a mapping's clutch looks at its button's bit alone, and they come back with the tick that used the sample, in the ring's
+and a recording's column `buttons`. Bits up to 30 do in each of them; recordings hold 32 with a sign.
 
 A block that is read while it is written does not have its checksum, on every processor and whatever the order in which
 memory becomes visible; it is then read again. Beside the file lie two locks, held by the operating system for as long

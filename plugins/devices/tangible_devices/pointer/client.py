@@ -30,7 +30,8 @@ SILENT_S = 0.5
 class PointerClient:
     """Moves a `pointer` device and is shown its forces; a context manager, for one thread at a time.
 
-    Send at least every tenth of a second, also when nothing moves: who falls silent is taken for gone. Needs no numba.
+    Send at least every tenth of a second, also when nothing moves: who falls silent is taken for gone; who lets go says
+    so by `release`. Needs no numba.
 
         with PointerClient() as client:
             client.send((0.01, 0.0, 0.005))
@@ -52,7 +53,7 @@ class PointerClient:
         self._numbers = count(1 + (before[0] if before else time.monotonic_ns()))
         self._last: tuple[float, Vector] | None = None
         self._heard = (-1, time.monotonic())
-        self._open = True
+        self._open, self._released = True, False
 
     def send(self, position_m: Vector, buttons: int = 0, velocity_m_per_s: Vector | None = None) -> None:
         """Where the tip is now; without a velocity, it is the way since the last time over the time since.
@@ -70,9 +71,21 @@ class PointerClient:
         self._last = now, position_m
         self._channel.put(SAMPLE, next(self._numbers), values)
         self._channel.set_flag(CLIENT_OPEN, True)
+        self._released = False
+
+    def release(self) -> None:
+        """Let go of the pointer until the next `send`: nobody holds it, and nobody is to keep sending.
+
+        At its next tick the device is high above the surface, where the law gives no force; this client is shown none
+        from now on. The next `send` begins anew: its position is taken as it is, and without a velocity it is at rest.
+        A client that is closed has let go already.
+        """
+        if self._open:
+            self._channel.set_flag(CLIENT_OPEN, False)
+            self._last, self._released = None, True
 
     def force(self) -> Force:
-        """The force on the hand now; zero from a device that is silent.
+        """The force on the hand now; zero from a device that is silent, and for a hand that let go.
 
         Raises: DeviceError if the device or this client is closed.
         """
@@ -81,15 +94,15 @@ class PointerClient:
         block = self._channel.take(FORCE, FORCE_WORDS)
         if block is not None and block[0] != self._heard[0]:
             self._heard = block[0], now
-        if block is None or now - self._heard[1] > SILENT_S:
+        if block is None or self._released or now - self._heard[1] > SILENT_S:
             return NO_FORCE
         return Force(*block[1])
 
     def close(self) -> None:
         """Leave; the tip is then high above the surface. A second call does nothing."""
         if self._open:
+            self.release()
             self._open = False
-            self._channel.set_flag(CLIENT_OPEN, False)
             self._channel.close()
 
     def __enter__(self) -> Self:

@@ -14,7 +14,10 @@ WORDS, NUMBERS = uint64[::1], float64[::1]
 LAST, AGE, OLDEST = SAMPLE_WORDS + 1, SAMPLE_WORDS + 2, SAMPLE_WORDS + 3
 """Of what a link keeps behind a copied block: the number of the newest sample, the reads since it came, and how many
 there may be."""
-KEPT_WORDS = SAMPLE_WORDS + 4
+SHARE, TIP = SAMPLE_WORDS + 4, SAMPLE_WORDS + 5
+"""Behind that, the share of its way that the tip goes in a read, 1 for a tip that does not follow but is there; and
+where it is: position and velocity."""
+KEPT_WORDS = TIP + 6
 NOBODY, BROKEN, WHOLE = 0, 1, 2
 HIGH_M = 1.0
 """Where the tip is without a client: above every surface."""
@@ -50,7 +53,10 @@ def fetch(words, kept):
 
 @njit(int64(WORDS, WORDS, NUMBERS, NUMBERS), **KERNEL)
 def read(words, kept, numbers, state):
-    """The newest sample; without a client high above. 0 if the client has been silent for too many reads."""
+    """The newest sample, or the tip on its way there; without a client high above.
+
+    0 if the client has been silent for too many reads. The first sample, and one after that, is taken as it is.
+    """
     found = fetch(words, kept)
     if found == NOBODY:
         kept[AGE] = kept[OLDEST]
@@ -58,6 +64,9 @@ def read(words, kept, numbers, state):
             state[i] = HIGH_M if i == 2 else 0.0
         return 1
     if found == WHOLE and kept[0] != kept[LAST]:
+        if kept[AGE] >= kept[OLDEST]:
+            for i in range(6):
+                numbers[TIP + i] = numbers[1 + i]
         kept[LAST], kept[AGE] = kept[0], 0
     elif kept[AGE] < kept[OLDEST]:
         kept[AGE] += np.uint64(1)
@@ -65,6 +74,10 @@ def read(words, kept, numbers, state):
         return 0
     for i in range(7):
         state[i] = numbers[1 + i]
+    if numbers[SHARE] < 1.0:
+        for i in range(6):
+            numbers[TIP + i] += numbers[SHARE] * (numbers[1 + i] - numbers[TIP + i])
+            state[i] = numbers[TIP + i]
     return 1
 
 

@@ -8,12 +8,19 @@ from ..desk import Desk, Tab
 PRODUCTS = ("disparity", "relief", "segments", "materials", "surface", "touch")
 
 
-async def begin(desk: Desk, tab: Tab | None, files: list[str]) -> None:
-    """Open pipeline files or pictures, and make and feel them."""
+async def begin(desk: Desk, tab: Tab | None, files: list[str], make_it: bool = True) -> dict[str, Any]:
+    """Open a pipeline file, pictures or a recording; what can be felt is made and felt.
+
+    Returns: where a recording lies, if it is one: it is for whoever shows recordings.
+    """
     found = await desk.maker.ask("begin", files=[Path(each) for each in files])
+    if "text" not in found:
+        return found
     desk.path = found["path"]
     await edit(desk, tab, found["text"])
-    desk.begin(make(desk, tab))
+    if make_it:
+        desk.begin(make(desk, tab))
+    return {}
 
 
 async def edit(desk: Desk, tab: Tab | None, text: str) -> dict[str, Any]:

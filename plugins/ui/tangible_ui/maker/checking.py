@@ -6,7 +6,6 @@ from typing import Any
 from tangible_core.errors import ConfigError
 from tangible_core.pipeline.config import parse_config
 from tangible_core.pipeline.schema import json_schema
-from tangible_core.pipeline.starter import are_pictures, starter
 
 from .bench import Bench, Job
 
@@ -20,19 +19,9 @@ def check(bench: Bench, text: str, path: Path, sets: list[str]) -> dict[str, Any
         return {"text": text, "path": str(path), "values": None, "complaints": str(error).splitlines()}
 
 
-def begin(bench: Bench, files: list[Path]) -> dict[str, Any]:
-    """The text of a pipeline file, or of a new one for pictures, and where it stands."""
-    if are_pictures(files):
-        path = Path.cwd() / f"{files[0].stem}.yaml"
-        return {"text": starter(files, path).text, "path": path}
-    from tangible_core.files.source import read_text
-
-    return {"text": read_text(files[0]), "path": files[0].absolute()}
-
-
 def schema(bench: Bench) -> dict[str, Any]:
     """The JSON Schema of all methods that are installed."""
     return json_schema(bench.registry, None)
 
 
-JOBS = {"check": Job(check, quick=True), "begin": Job(begin, quick=True), "schema": Job(schema, quick=True)}
+JOBS = {"check": Job(check, quick=True), "schema": Job(schema, quick=True)}

@@ -1,5 +1,5 @@
 """Everything the maker can be asked, by name."""
 
-from . import checking, making
+from . import checking, making, mapping, opening, records
 
-JOBS = {**making.JOBS, **checking.JOBS}
+JOBS = {**making.JOBS, **checking.JOBS, **mapping.JOBS, **opening.JOBS, **records.JOBS}

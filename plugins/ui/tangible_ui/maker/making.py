@@ -39,6 +39,7 @@ def make(bench: Bench, text: str, path: Path, sets: list[str], want: str) -> dic
         "parcel": str(sent.parcel),
         "stiffness_n_per_m": sent.stiffness_n_per_m,
         "law": config.render.name if config.render else "",
+        "device_name": config.device.name if config.device else "",
         "device": dumps(device),
         "mapping": dumps(config.mapping),
         "safety": dumps(config.safety),

@@ -18,14 +18,15 @@ def reach(bench: Bench, text: str, path: Path, sets: list[str]) -> dict[str, Any
     method = parse_config(text, path, bench.registry, sets).device
     if method is None:
         return {"device": "", "workspace_m": None}
-    return {"device": method.name, "workspace_m": list(method.options.spec().workspace_m)}
+    return {"device": method.name, "workspace_m": list(method.method.spec().workspace_m)}
 
 
 def place(bench: Bench, text: str, path: Path, mapping: dict[str, Any]) -> str:
     """The text with another mapping: what is as by default is not written. Raises: ConfigError."""
     usual = WorkspaceMapping().model_dump(mode="json")
-    changes = {f"mapping.{key}": mapping[key] for key in PLACED if key in mapping}
-    return edited(text, path, {key: REMOVE if value == usual[key.partition(".")[2]] else value for key, value in changes.items()})
+    said = {key: mapping[key] for key in PLACED if key in mapping}
+    changes = {f"mapping.{key}": REMOVE if value == usual[key] else value for key, value in said.items()}
+    return edited(text, path, changes)
 
 
 JOBS = {"reach": Job(reach, quick=True), "place": Job(place, quick=True)}

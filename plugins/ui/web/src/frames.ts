@@ -27,8 +27,9 @@ export class Frames {
 
   private frame(): void {
     requestAnimationFrame(() => this.frame());
-    const { net, view, overlay } = this.page;
-    const state = net.latest;
+    const { net, view, overlay, replayed } = this.page;
+    const state = replayed ?? net.latest;
+    if (replayed && net.latest) net.drawn(net.latest.seq); // it will not be drawn
     const fresh = state !== this.last;
     if (!view.dirty && !overlay.changed && !fresh) return;
     const first = view.terrain !== null && !figures.firstMs;
@@ -45,9 +46,9 @@ export class Frames {
   /** A state that shows nothing new, as nobody holds the device, counts as drawn. */
   private drawn(state: State, at: number): void {
     const { net, hub } = this.page;
-    net.drawn(state.seq);
+    if (state === net.latest) net.drawn(state.seq);
     hub.tell("drawn", state);
-    if (!this.measuring) return;
+    if (!this.measuring || state !== net.latest) return;
     figures.drawn.push([state.seq, at - state.sampleMs, state.arrivedMs - state.sampleMs, at]);
     const sentMs = net.sentMs.get(state.tag);
     if (state.tag !== this.echoed && sentMs) {

@@ -32,6 +32,7 @@ const page: Page = {
   canvas,
   scene: null,
   document: null,
+  replayed: null,
   say: (text) => speech.say(text),
 };
 

@@ -60,8 +60,11 @@ export interface Events {
   touch: Said & { law: string; seconds: number; how: string };
   loop: Said & { running: boolean; why: string };
   error: Said & { text: string };
+  recorder: Said & { recording: boolean; path: string; ticks: number; why: string };
   /** Of this page alone: a state that arrived, one that was drawn, a surface that can be drawn. */
   state: State;
   drawn: State;
   shown: Scene;
+  /** A recording was opened, a file of this machine. */
+  recording: { path: string };
 }

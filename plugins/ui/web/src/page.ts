@@ -3,6 +3,7 @@ import type { Hub } from "./hub";
 import type { Events } from "./messages";
 import type { Net } from "./net";
 import type { Overlay } from "./overlay/overlay";
+import type { State } from "./protocol";
 import type { Scene } from "./scene";
 import type { View } from "./view";
 
@@ -17,6 +18,8 @@ export interface Page {
   scene: Scene | null;
   /** The pipeline file on the screen. */
   document: Events["document"] | null;
+  /** The tick of a recording that is shown in place of the loop's; null for what is felt now. */
+  replayed: State | null;
   /** Say something to who listens: in the live region, and aloud where that is asked for. */
   say(text: string): void;
 }

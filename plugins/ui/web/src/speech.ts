@@ -7,7 +7,7 @@ export class Speech {
   aloud = false;
   private said = "";
   private saidMs = 0;
-  constructor(private region: HTMLElement, private hub: Hub) {}
+  constructor(private region: HTMLElement, _hub: Hub) {}
   feel(s: State, scene: Scene) {
     if (performance.now() - this.saidMs < 1000) return;
     const touching = (s.flags & 1) === 1,

@@ -22,6 +22,10 @@ from tangible_core.compiled.touch import CompiledLink
 from tangible_core.data import NO_FORCE, Force, HapticState
 from tangible_core.errors import ConfigError, DeviceError
 from tangible_core.mapping import WorkspaceMapping, mapped
+from tangible_core.plugins.interfaces import Link
+from tangible_core.servo import Safety, Servo, still
+from tangible_core.servo.guard import guard
+from tangible_core.session import About, Recording, keeping
 from tangible_devices.pointer import PointerClient, channel, kernels
 from tangible_devices.pointer.channel import Channel, checksum, packed, unpacked
 from tangible_devices.pointer.following import follow, parse
@@ -99,6 +103,190 @@ class TestExchange:
             client.send((0.5, 0.25, 0.125))
             thread.join(30)
             assert client.force() == (0.5, 0.25, 0.125)
+
+
+def compiled(link: Link) -> CompiledLink:
+    assert isinstance(link, CompiledLink)
+    return link
+
+
+FOLLOW_S = 0.012
+
+
+class TestFollowing:
+    @pytest.mark.parametrize("follow_s", [0.0, FOLLOW_S])
+    def test_the_first_is_taken_as_it_is_and_so_is_one_after_nobody_or_a_silence(self, follow_s: float):
+        with Pointer(stale_after_s=0.02, follow_s=follow_s).open() as link:
+            here, there = (0.01, -0.02, 0.003), (0.3, 0.2, -0.1)
+            with PointerClient() as client:
+                client.send(here, 1, (1.0, 2.0, 3.0))
+                assert ticked(compiled(link))[1].tolist() == [*here, 1.0, 2.0, 3.0, 1.0]
+                for _ in range(25):
+                    silent = ticked(compiled(link))[0]
+                assert not silent
+                client.send(there)
+                assert ticked(compiled(link))[1][:3].tolist() == list(there)
+                client.release()
+                assert ticked(compiled(link))[1].tolist() == [*HIGH_M, 0, 0, 0, 0]
+                client.send(here)
+                assert ticked(compiled(link))[1].tolist() == [*here, 0, 0, 0, 0]
+            assert ticked(compiled(link))[1].tolist() == [*HIGH_M, 0, 0, 0, 0]
+            with PointerClient() as client:
+                client.send(there)
+                assert ticked(compiled(link))[1][:3].tolist() == list(there)
+
+    def test_a_compiled_loop_follows_as_a_filter_of_first_order_ticking_at_a_millisecond(self):
+        with Pointer(follow_s=FOLLOW_S).open() as link, PointerClient() as client:
+            client.send((0.0, 0.0, 0.0))
+            ticked(compiled(link))
+            client.send((0.01, -0.02, 0.003), 5, (1.0, 2.0, 3.0))
+            seen = np.array([ticked(compiled(link))[1] for _ in range(50)])
+        way = 1 - np.exp(-np.arange(1, 51) / (1000 * FOLLOW_S))
+        np.testing.assert_allclose(seen[:, :6], way[:, None] * [0.01, -0.02, 0.003, 1.0, 2.0, 3.0], rtol=1e-9)
+        assert (seen[:, 6] == 5).all()
+
+    def test_python_follows_by_the_clock_and_begins_as_the_kernel(self, monkeypatch: pytest.MonkeyPatch):
+        now = [1000.0]
+        monkeypatch.setattr(time, "monotonic", lambda: now[0])
+        monkeypatch.setattr(time, "sleep", lambda seconds: None)
+        with Pointer(follow_s=FOLLOW_S).open() as link, PointerClient() as client:
+
+            def read_after(seconds: float) -> HapticState:
+                now[0] += seconds
+                return link.read()
+
+            client.send((0.01, 0.0, 0.0))
+            assert read_after(0.001).position_m == (0.01, 0.0, 0.0)
+            client.send((0.03, 0.0, -0.01), 4, (2.0, 0.0, 0.0))
+            for seconds in (0.001, 0.004, 0.002):
+                seen = read_after(seconds)
+            way = 1 - np.exp(-0.007 / FOLLOW_S)
+            assert seen.position_m == pytest.approx((0.01 + 0.02 * way, 0.0, -0.01 * way))
+            assert seen.velocity_m_per_s == pytest.approx((2.0 * way, 0.0, 0.0))
+            assert (seen.buttons, seen.time_s) == (4, now[0])
+            client.release()
+            assert read_after(0.001)[:2] == (HIGH_M, (0.0, 0.0, 0.0))
+            for pause_s in (0.0, 0.2):  # let go, then silent
+                now[0] += pause_s
+                client.send((0.5, 0.0, 0.0), velocity_m_per_s=(0.0, 0.0, 0.0))
+                assert read_after(0.001)[:2] == ((0.5, 0.0, 0.0), (0.0, 0.0, 0.0))
+
+    @given(st.lists(st.tuples(*[st.floats(-1, 1)] * 6), min_size=2, max_size=4))
+    def test_without_it_a_position_is_the_client_s_to_the_bit(self, samples: list[tuple[float, ...]]):
+        with Pointer(channel="bits").open() as link, PointerClient("bits") as client:
+            for sample in samples:
+                client.send(sample[:3], 1, sample[3:])
+                assert ticked(compiled(link))[1].tobytes() == np.array([*sample, 1.0]).tobytes()
+                assert (*link.read().position_m, *link.read().velocity_m_per_s) == sample
+
+
+class Felt:
+    """A spring of 1 N/mm under z = 0 on a link, tick by tick of 1 ms, by its kernels and a guard."""
+
+    def __init__(self, link: Link, limits: Safety) -> None:
+        self._kernels = compiled(link).kernels()
+        self._settings, self._memory = limits.arrays(Pointer().spec(), 1000.0)
+
+    def ticks(self, count: int) -> list[float]:
+        """What is given in these ticks, N upwards."""
+        return [self._tick() for _ in range(count)]
+
+    def _tick(self) -> float:
+        state = np.zeros(7)
+        if self._kernels.read(*self._kernels.fixed, state):
+            pushed = 0.0, 0.0, max(0.0, -1000 * state[2])
+            *force, _ = guard.guard(self._settings, self._memory, 0.001, *state[:6], *pushed)
+        else:
+            *force, _ = guard.wait(self._settings, self._memory, 0.001)
+        self._kernels.write(*self._kernels.fixed, *force)
+        return force[2]
+
+
+@pytest.mark.parametrize("follow_s", [0.0, FOLLOW_S])
+class TestLettingGo:
+    """A hand 2 mm deep, which the spring and nothing else holds."""
+
+    @pytest.fixture
+    def held(self, follow_s: float) -> Iterator[tuple[PointerClient, Felt]]:
+        with Pointer(follow_s=follow_s).open() as link, PointerClient() as client:
+            felt = Felt(link, Safety(ramp_s=0, passivity="off"))
+            client.send((0.0, 0.0, -0.002))
+            assert felt.ticks(10)[-1] == 2.0 == client.force().z
+            yield client, felt
+
+    @pytest.mark.parametrize("leave", [PointerClient.release, PointerClient.close])
+    def test_the_law_gives_nothing_from_the_next_tick_on_and_the_guard_takes_off_the_rest(self, held, leave):
+        client, felt = held
+        leave(client)
+        assert felt.ticks(6) == [1.5, 1.0, 0.5, 0.0, 0.0, 0.0]
+
+    def test_it_is_shown_no_force_from_then_on(self, held):
+        client, felt = held
+        client.release()
+        assert client.force() == NO_FORCE
+        felt.ticks(1)
+        assert client.force() == NO_FORCE
+
+    def test_who_comes_back_does_so_at_rest_and_is_shown_its_force(self, held):
+        client, felt = held
+        client.release()
+        felt.ticks(10)
+        client.send((0.1, 0.0, -0.001))
+        assert felt.ticks(5) == [0.5, 1.0, 1.0, 1.0, 1.0]
+        assert client.force().z == 1.0
+        assert client._channel.take(channel.SAMPLE, channel.SAMPLE_WORDS)[1][3:6] == (0, 0, 0)
+
+    def test_who_has_left_does_not_let_go_for_the_next(self, held):
+        client, felt = held
+        client.close()
+        with PointerClient() as other:
+            other.send((0.0, 0.0, -0.002))
+            client.release()
+            assert felt.ticks(10)[-1] == 2.0
+
+    def test_a_device_that_is_gone_is_let_go_of_in_silence(self, held):
+        client, _ = held
+        client._channel.set_flag(channel.DEVICE_OPEN, False)
+        client.release()
+
+    def test_in_silence_it_is_zero_at_once_a_stale_time_after_the_device_s_own(self, held):
+        _, felt = held
+        forces = felt.ticks(200)
+        assert 90 < (end := forces.index(0.0)) <= 90 + 20, "100 reads of a sample, ten of which were; then 20 ms"
+        assert set(forces[:end]) == {2.0}
+        assert set(forces[end:]) == {0.0}
+
+
+TAGS = [0, 1, 0x2AAAAA, 0x555555, 0x7FFFFF]
+"""In bits 8 to 30 of the buttons."""
+
+
+@pytest.mark.parametrize("tag", TAGS)
+def test_a_clutch_looks_at_its_own_button_whatever_number_is_above(tag: int):
+    with mapped(Pointer(), WorkspaceMapping(scale=2.0, clutch_button=1)).open() as link, PointerClient() as client:
+        for x, buttons, seen in ((0.02, 0, 0.01), (0.04, 1, 0.02), (0.06, 2, 0.02), (0.06, 3, 0.02), (0.08, 5, 0.03)):
+            client.send((x, 0.0, 0.01), tag << 8 | buttons)
+            state = ticked(compiled(link))[1]
+            assert (state[0], state[6]) == (pytest.approx(seen), tag << 8 | buttons)
+
+
+def test_a_number_of_the_client_s_own_comes_back_with_its_tick_and_is_kept(tmp_path: Path):
+    device = mapped(Pointer(follow_s=FOLLOW_S), WorkspaceMapping(scale=2.0, clutch_button=1))
+    sent = [tag << 8 | 5 for tag in TAGS]
+    with Servo(still(), device) as servo, PointerClient() as client:
+        for buttons in sent:
+            end = time.monotonic() + 30
+            while (row := servo.ring.latest()) is None or row[-1] != buttons:
+                client.send((0.02, 0.0, 0.01), buttons)
+                assert time.monotonic() < end
+                time.sleep(0.001)
+        servo.stop()
+        rows, _ = servo.ring.since(0)
+    with keeping(tmp_path / "hand.nc", About()) as writer:
+        writer.append(rows)
+    kept = Recording.load(tmp_path / "hand.nc").rows[:, -1]
+    assert set(kept.tolist()) <= {0, *sent}
+    assert kept[-1] == sent[-1]
 
 
 def before_a_device(force_n: tuple[float, float, float]) -> Channel:

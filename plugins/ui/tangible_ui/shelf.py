@@ -1,0 +1,117 @@
+"""Files that a page sends: kept on this machine, where a pipeline file that names them finds them tomorrow."""
+
+import asyncio
+import hashlib
+import os
+import re
+import secrets
+import shutil
+from collections.abc import AsyncIterator
+from pathlib import Path
+from typing import final
+
+from tangible_core.errors import ConfigError, quoted
+from tangible_core.files.paths import as_path
+from tangible_core.files.reading import MOST_BYTES, in_words
+
+MOST_FILES = 16
+"""Of one drop: two pictures and what belongs to them, or a pipeline file and its pictures."""
+MOST_NAME = 120
+AT_ONCE_BYTES = 1 << 22
+"""So much is collected before it is written."""
+WRONG = re.compile(r'[\x00-\x1f\x7f<>:"/\\|?*]')
+"""What cannot stand in a name on every system."""
+
+
+def user_folder(name: str) -> Path:
+    """Where this user's data of one kind is kept: below $TANGIBLE_DATA_DIR, or where the system has such data."""
+    if named := os.environ.get("TANGIBLE_DATA_DIR"):
+        return as_path(named, "TANGIBLE_DATA_DIR") / name
+    from platformdirs import user_data_path
+
+    return user_data_path("tangible-images") / name
+
+
+@final
+class Shelf:
+    """Files arrive in batches; a batch that is whole gets a folder named by what is in it, once."""
+
+    def __init__(self, folder: Path, incoming: Path) -> None:
+        """folder: where batches are kept. incoming: where they lie meanwhile; whoever ends this clears it away."""
+        self._folder, self._incoming = folder, incoming
+
+    def batch(self) -> str:
+        """The name of a new batch."""
+        name = secrets.token_hex(8)
+        (self._incoming / name).mkdir(parents=True)
+        return name
+
+    async def put(self, batch: str, name: str, body: AsyncIterator[bytes]) -> None:
+        """Take a file; one that breaks off leaves nothing.
+
+        Raises: ConfigError for a batch that there is not, a name that no file can have, too many files, one that is
+        too large, or a disk that is full.
+        """
+        path = self._place(batch, name)
+        try:
+            with path.open("wb") as file:
+                waiting, size = bytearray(), 0
+                async for part in body:
+                    size += len(part)
+                    if size > MOST_BYTES:
+                        raise ConfigError(f"{name}: holds more than {in_words(MOST_BYTES)}; open a smaller one")
+                    waiting += part
+                    if len(waiting) >= AT_ONCE_BYTES:
+                        await asyncio.to_thread(file.write, waiting)
+                        waiting = bytearray()
+                await asyncio.to_thread(file.write, waiting)
+        except OSError as error:
+            path.unlink(missing_ok=True)
+            raise ConfigError(f"{name}: cannot be kept: {error.strerror or error}; free some space") from error
+        except BaseException:
+            path.unlink(missing_ok=True)
+            raise
+
+    def keep(self, batch: str) -> list[Path]:
+        """The files of a whole batch, in the folder where they stay. Raises: ConfigError as `put`."""
+        here = self._batch(batch)
+        names = sorted(path.name for path in here.iterdir())
+        there = self._folder / _digest([here / name for name in names])
+        try:
+            self._folder.mkdir(parents=True, exist_ok=True)
+            if not there.is_dir():
+                part = there.with_name(f".{there.name}-{os.getpid()}")
+                shutil.rmtree(part, ignore_errors=True)
+                shutil.move(here, part)
+                part.replace(there)
+        except OSError as error:
+            raise ConfigError(f"{there}: cannot be written: {error.strerror or error}; free some space") from error
+        finally:
+            shutil.rmtree(here, ignore_errors=True)
+        return [there / name for name in names]
+
+    def _batch(self, batch: str) -> Path:
+        here = self._incoming / batch
+        if not re.fullmatch(r"[0-9a-f]{16}", batch) or not here.is_dir():
+            raise ConfigError("these files were not sent, or are no longer waiting; send them again")
+        return here
+
+    def _place(self, batch: str, name: str) -> Path:
+        here = self._batch(batch)
+        path = here / name
+        if not name.strip(". ") or WRONG.search(name) or len(os.fsencode(name)) > MOST_NAME:
+            raise ConfigError(f"{quoted(name)}: a file of this name cannot be kept; give it a short, plain one")
+        if not path.exists() and len(list(here.iterdir())) >= MOST_FILES:
+            raise ConfigError(f"more than {MOST_FILES} files at once; open a pair, or a pipeline file and its pictures")
+        return path
+
+
+def _digest(paths: list[Path]) -> str:
+    """Of names and contents."""
+    digest = hashlib.sha256()
+    for path in paths:
+        digest.update(f"{path.name}\0{path.stat().st_size}\0".encode())
+        with path.open("rb") as file:
+            while part := file.read(1 << 20):
+                digest.update(part)
+    return digest.hexdigest()[:16]

@@ -1,0 +1,25 @@
+/** Files dropped anywhere on the page. */
+import { t } from "../../words/open";
+
+export function onDrop(take: (files: File[]) => void): void {
+  const shade = document.createElement("div");
+  shade.className = "drop";
+  shade.textContent = t("drop");
+  shade.hidden = true;
+  document.body.append(shade);
+  const hasFiles = (event: DragEvent): boolean => event.dataTransfer?.types.includes("Files") ?? false;
+  document.addEventListener("dragover", (event) => {
+    if (!hasFiles(event)) return;
+    event.preventDefault();
+    shade.hidden = false;
+  });
+  document.addEventListener("dragleave", (event) => {
+    if (!event.relatedTarget) shade.hidden = true;
+  });
+  document.addEventListener("drop", (event) => {
+    if (!hasFiles(event)) return;
+    event.preventDefault();
+    shade.hidden = true;
+    take([...event.dataTransfer!.files]);
+  });
+}

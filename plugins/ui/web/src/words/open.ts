@@ -1,0 +1,38 @@
+import { words } from "./words";
+
+/** Opening pictures, and the pipeline file on the screen. */
+export const t = words({
+  title: ["Open", "Öffnen"],
+  choose: ["Choose files…", "Dateien wählen …"],
+  chooseHelp: [
+    "A photograph, left and right of a pair, a height map, a recording, or a pipeline file with its pictures. You can also drop them anywhere on this page.",
+    "Ein Foto, linkes und rechtes Bild eines Paares, eine Höhenkarte, eine Aufzeichnung oder eine Pipeline-Datei mit ihren Bildern. Sie können sie auch irgendwo auf dieser Seite ablegen.",
+  ],
+  sending: ["{name}: {percent} % sent", "{name}: {percent} % gesendet"],
+  opened: ["Opened: {names}", "Geöffnet: {names}"],
+  opening: ["Opening {names}", "{names} wird geöffnet"],
+  drop: ["Drop the files to open them", "Zum Öffnen hier ablegen"],
+  examples: ["Examples", "Beispiele"],
+  folder: ["Folder of this computer", "Ordner auf diesem Computer"],
+  go: ["Show", "Anzeigen"],
+  up: ["The folder above", "Der Ordner darüber"],
+  entries: ["In this folder", "In diesem Ordner"],
+  entry: ["{name} ({kind})", "{name} ({kind})"],
+  nothing: ["Nothing here can be opened.", "Hier lässt sich nichts öffnen."],
+  more: ["and {count} more", "und {count} weitere"],
+  openChosen: ["Open what is chosen", "Auswahl öffnen"],
+  chooseFirst: ["Choose one file, or left and right of a pair.", "Wählen Sie eine Datei, oder das linke und das rechte Bild eines Paares."],
+  kind_folder: ["folder", "Ordner"],
+  kind_picture: ["picture", "Bild"],
+  kind_heights: ["height map", "Höhenkarte"],
+  kind_recording: ["recording", "Aufzeichnung"],
+  kind_pipeline: ["pipeline file", "Pipeline-Datei"],
+  exchange: ["Exchange left and right", "Links und rechts tauschen"],
+  camera: ["Camera", "Kamera"],
+  cameraStart: ["Show the camera's picture", "Kamerabild anzeigen"],
+  cameraTake: ["Take this picture", "Dieses Bild nehmen"],
+  cameraStop: ["Switch the camera off", "Kamera ausschalten"],
+  cameraPicture: ["What the camera sees", "Was die Kamera sieht"],
+  cameraNone: ["There is no camera, or the browser may not use it: {why}", "Es gibt keine Kamera, oder der Browser darf sie nicht benutzen: {why}"],
+  failed: ["It could not be opened: {why}", "Das ließ sich nicht öffnen: {why}"],
+});

@@ -1,0 +1,52 @@
+"""Tabs of a browser that are watched: nothing that a page complains of is missed, nor whom it asks for something."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Page
+
+HERE = ("http://127.0.0.1:", "ws://127.0.0.1:", "http://localhost:", "ws://localhost:", "data:", "blob:", "about:")
+OPTIONS = {"locale": "en-GB", "viewport": {"width": 1180, "height": 720}}
+
+OpenPage = Callable[..., "Page"]
+
+
+@contextmanager
+def tabs(browser: "Browser", complaints: list[str]) -> Iterator[OpenPage]:
+    """What opens addresses, each in a context of its own. In the end nobody may have complained."""
+    contexts = []
+
+    def open_page(url: str, **options: Any) -> "Page":
+        context = browser.new_context(**{**OPTIONS, **options})
+        contexts.append(context)
+        context.on("page", lambda page: watch(page, complaints))  # those that a page opens too
+        page = context.new_page()
+        page.goto(url)
+        return page
+
+    try:
+        yield open_page
+    finally:
+        for context in contexts:
+            for page in context.pages:
+                with suppress(Exception):  # it may have crashed; whatever it said until now is heard before it answers
+                    page.evaluate("() => 0")
+            context.close()
+    if complaints:
+        raise AssertionError("\n".join(complaints))
+
+
+def watch(page: "Page", complaints: list[str]) -> None:
+    """Collect what a page says is wrong, and whom it asks that is not this machine."""
+
+    def asks(url: str) -> None:
+        if not url.startswith(HERE):
+            complaints.append(f"asks {url}")
+
+    page.on("console", lambda said: complaints.append(f"console: {said.text}") if said.type == "error" else None)
+    page.on("pageerror", lambda error: complaints.append(f"error: {error}"))
+    page.on("crash", lambda _: complaints.append("the page crashed"))
+    page.on("request", lambda request: asks(request.url))
+    page.on("websocket", lambda socket: asks(socket.url))

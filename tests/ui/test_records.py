@@ -1,0 +1,141 @@
+"""What is felt is kept while the loop goes on, and shown, compared and felt again as it was."""
+
+import errno
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tangible_core import HapticSurface, load_method
+from tangible_core.data import TICK_COLUMNS
+from tangible_core.errors import OutputError
+from tangible_core.servo import Servo
+from tangible_core.session import About, Recording, Writer
+from tangible_ui.maker import records
+from tangible_ui.maker.bench import Bench
+from tangible_ui.recorder import BY_HAND, Recorder
+
+
+@pytest.fixture
+def bench(tmp_path: Path) -> Bench:
+    return Bench(tmp_path, lambda event, **told: None)
+
+
+@pytest.fixture
+def servo() -> Any:
+    surface = HapticSurface.from_heights(np.zeros((8, 8), np.float32))
+    touch = load_method("render", "penalty")().touch(surface)
+    with Servo(touch, load_method("device", "mock")(), seconds=20) as running:
+        yield running
+
+
+def some(ticks: int, force_n: float = 1.0) -> Recording:
+    rows = np.zeros((ticks, len(TICK_COLUMNS)))
+    rows[:, 0] = 1e6 + np.arange(ticks) / 1000
+    rows[:, 2] = np.linspace(-0.01, 0.01, ticks)
+    rows[:, 4] = -0.001
+    rows[:, 13] = force_n
+    return Recording(rows, "", About("mock", "penalty", "scene: builtin/brick\n"))
+
+
+class TestRecorder:
+    def test_every_tick_from_now_on_is_kept_once(self, servo: Servo, tmp_path: Path) -> None:
+        ended: list[tuple[Path, int, str]] = []
+        recorder = Recorder(servo, tmp_path / "a.nc", About(), lambda *told: ended.append(told))
+        first = servo.ring.count
+        time.sleep(0.3)
+        recorder.stop()
+        found = Recording.load(tmp_path / "a.nc")
+        assert ended == [(tmp_path / "a.nc", len(found.rows), BY_HAND)]
+        assert found.stopped == ""
+        assert len(found.rows) >= 250
+        steps = np.diff(found.time_s)
+        assert steps.min() > 0
+        assert servo.running
+        assert found.time_s[0] <= first / 1000 + 0.5
+
+    def test_it_ends_with_its_loop(self, servo: Servo, tmp_path: Path) -> None:
+        recorder = Recorder(servo, tmp_path / "a.nc", About(), lambda *told: None)
+        time.sleep(0.1)
+        servo.stop("the device was pulled out")
+        recorder._thread.join(5)  # pyright: ignore[reportPrivateUsage]
+        found = Recording.load(tmp_path / "a.nc")
+        assert found.stopped == "the device was pulled out"
+        assert len(found.rows) >= 50
+
+    def test_a_full_disk_ends_the_recording_and_not_the_loop(
+        self, servo: Servo, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        ended: list[str] = []
+        recorder = Recorder(servo, tmp_path / "a.nc", About(), lambda path, ticks, why: ended.append(why))
+
+        def full(writer: Writer, data: bytes, at: int) -> None:
+            raise OSError(errno.ENOSPC, "No space left on device")
+
+        monkeypatch.setattr(Writer, "_put", full)
+        recorder._thread.join(5)  # pyright: ignore[reportPrivateUsage]
+        assert len(ended) == 1
+        assert "free some space" in ended[0]
+        assert servo.running
+
+    def test_two_do_not_write_one_file(self, servo: Servo, tmp_path: Path) -> None:
+        recorder = Recorder(servo, tmp_path / "a.nc", About(), lambda *told: None)
+        with pytest.raises(OutputError, match="another program"):
+            Recorder(servo, tmp_path / "a.nc", About(), lambda *told: None)
+        recorder.stop()
+
+
+class TestShown:
+    def test_the_ticks_of_a_day_old_clock_keep_their_time(self, bench: Bench, tmp_path: Path) -> None:
+        some(50).save(tmp_path / "a.nc")
+        shown = records.show_record(bench, tmp_path / "a.nc")
+        rows = np.fromfile(tmp_path / shown["digest"] / "ticks.f32", "<f4").reshape(shown["rows"], shown["columns"])
+        assert np.allclose(rows[:, 0], np.arange(50) / 1000, atol=1e-6)
+        assert np.allclose(rows[:, 2], some(50).position_m[:, 0], atol=1e-8)
+        assert (shown["every"], shown["law"], shown["stopped"]) == (1, "penalty", "")
+
+    def test_a_long_one_is_thinned_and_says_so(
+        self, bench: Bench, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        monkeypatch.setattr(records, "MOST_ROWS", 20)
+        some(50).save(tmp_path / "a.nc")
+        shown = records.show_record(bench, tmp_path / "a.nc")
+        assert (shown["rows"], shown["every"]) == (17, 3)
+
+    def test_an_empty_one(self, bench: Bench, tmp_path: Path) -> None:
+        some(0).save(tmp_path / "a.nc")
+        assert records.show_record(bench, tmp_path / "a.nc")["rows"] == 0
+
+    def test_the_list_has_the_newest_first_and_what_cannot_be_read(self, bench: Bench, tmp_path: Path) -> None:
+        some(5).save(tmp_path / "old.nc")
+        time.sleep(0.02)
+        (tmp_path / "broken.nc").write_bytes(b"CDF nothing")
+        found = records.records(bench, tmp_path)
+        assert [each["name"] for each in found] == ["broken.nc", "old.nc"]
+        assert found[0]["trouble"]
+        assert found[1]["figures"]["ticks"] == 5
+        assert records.records(bench, tmp_path / "missing") == []
+
+
+def test_two_are_compared_place_by_place(bench: Bench, tmp_path: Path) -> None:
+    some(50, 1.0).save(tmp_path / "a.nc")
+    some(80, 1.5).save(tmp_path / "b.nc")
+    found = records.compare_records(bench, tmp_path / "a.nc", tmp_path / "b.nc")
+    assert found["error_n"] == pytest.approx(0.5)
+    assert (found["first_peak_force_n"], found["second_peak_force_n"]) == (1.0, 1.5)
+
+
+def test_another_law_feels_the_same_states(bench: Bench, tmp_path: Path) -> None:
+    np.save(tmp_path / "flat.npy", np.zeros((8, 8)))
+    text = (
+        "scene: {height: flat.npy}\nwant: touch\nrender: {use: penalty, stiffness_n_per_m: 500}\n"
+        "workspace: {relief_m: 0.001, smooth_m: 0}\n"
+    )
+    some(50).save(tmp_path / "a.nc")
+    shown = records.try_law(bench, tmp_path / "a.nc", text, tmp_path / "p.yaml", [], tmp_path)
+    after = Recording.load(shown["path"])
+    assert Path(shown["path"]).name == "a with penalty.nc"
+    assert np.allclose(after.force_n[1:-1, 2], 0.5, atol=0.05)
+    assert shown["compared"]["worst_error_n"] == pytest.approx(0.5, abs=0.05)

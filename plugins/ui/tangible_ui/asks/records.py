@@ -66,11 +66,6 @@ async def try_law(desk: Desk, tab: Tab | None, path: str) -> dict[str, Any]:
         document=desk.path,
         sets=desk.felt_sets(),
         folder=user_folder(FOLDER),
-        path=Path(path),
-        text=desk.text,
-        document=desk.path,
-        sets=desk.felt_sets(),
-        folder=user_folder(FOLDER),
     )
 
 

@@ -1,5 +1,6 @@
 /** The page: its parts are put together here. */
 import "./app.css";
+import { frame } from "./frame";
 import { Frames } from "./frames";
 import { Hand } from "./hand";
 import { Hub } from "./hub";
@@ -10,8 +11,11 @@ import { build } from "./panel";
 import { panels } from "./panels";
 import { dataCursor } from "./panels/cursor";
 import { Scene } from "./scene";
+import { listen } from "./shortcuts";
 import { Speech } from "./speech";
+import { splits } from "./splits";
 import { Status } from "./status";
+import { Themes } from "./themes";
 import { View } from "./view";
 import { language } from "./words/words";
 
@@ -22,7 +26,7 @@ if (asked.has("measure")) document.body.classList.add("measure");
 
 const canvas = element<HTMLCanvasElement>("terrain");
 const hub = new Hub();
-const speech = new Speech(element("said"), hub);
+const speech = new Speech(element("said"));
 const view = new View(canvas);
 const page: Page = {
   hub,
@@ -49,6 +53,9 @@ hub.on("scene", async (meta) => {
   hub.tell("shown", loaded);
 });
 
+frame(page, new Themes(hub));
+splits();
+listen(canvas);
 new Status(page);
 new Hand(page);
 build(page, panels);

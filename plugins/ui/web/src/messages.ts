@@ -67,4 +67,6 @@ export interface Events {
   shown: Scene;
   /** A recording was opened, a file of this machine. */
   recording: { path: string };
+  /** Of this page alone: the colours are others now (see `colour` of themes.ts). */
+  theme: { chosen: string; dark: boolean; contrast: boolean };
 }

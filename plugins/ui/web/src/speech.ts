@@ -1,5 +1,4 @@
 /** Changes in words: in a polite live region for who has a screen reader, aloud where that is asked for. */
-import type { Hub } from "./hub";
 import type { State } from "./protocol";
 import type { Scene } from "./scene";
 
@@ -7,7 +6,7 @@ export class Speech {
   aloud = false;
   private said = "";
   private saidMs = 0;
-  constructor(private region: HTMLElement, _hub: Hub) {}
+  constructor(private region: HTMLElement) {}
   feel(s: State, scene: Scene) {
     if (performance.now() - this.saidMs < 1000) return;
     const touching = (s.flags & 1) === 1,

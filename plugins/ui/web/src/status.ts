@@ -1,39 +1,58 @@
 /** The head of the page: what goes on, the stop button, and who holds the hand. */
 import type { Page } from "./page";
+import { on } from "./shortcuts";
 import { t } from "./words/frame";
 
+type What = "idle" | "busy" | "felt" | "stopped" | "error";
+
 export class Status {
+  private line = document.getElementById("status")!;
+
   constructor(private page: Page) {
-    const { hub, net } = page;
-    const stop = document.getElementById("stop") as HTMLButtonElement;
-    const again = document.getElementById("again") as HTMLButtonElement;
-    const hold = document.getElementById("hold") as HTMLButtonElement;
-    stop.textContent = t("stop");
-    again.textContent = t("feelAgain");
-    hold.textContent = t("takeHand");
-    stop.onclick = () => void net.ask("stop");
-    again.onclick = () => void net.ask("feel").catch((error: Error) => this.say(error.message));
-    hold.onclick = () => void net.ask("hold");
-    hub.on("gone", () => this.say(t("gone")));
-    hub.on("error", ({ text }) => this.say(text));
+    const { hub } = page;
+    this.button("hold", t("takeHand"), () => this.ask("hold"));
+    this.button("again", t("feelAgain"), () => this.ask("feel"));
+    this.stopButton();
+    this.line.textContent = t("starting");
+    hub.on("gone", () => this.say("error", t("gone")));
+    hub.on("error", ({ text }) => this.say("error", text));
     hub.on("stage", ({ product, method, done }) => {
-      if (!done.outcome) this.say(t("making", { product, method }));
+      if (!done.outcome) this.say("busy", t("making", { product, method }));
     });
-    hub.on("touch", ({ law }) => this.say(t("feeling", { law })));
+    hub.on("touch", ({ law }) => this.say("felt", t("feeling", { law })));
     hub.on("loop", ({ running }) => {
-      if (!running) this.say(t("stopped"));
+      if (!running) this.say("stopped", t("stopped"));
     });
     hub.on("holding", ({ holding }) => {
-      hold.hidden = holding;
-      if (!holding) this.say(t("watching"));
-    });
-    document.addEventListener("keydown", (event) => {
-      if (event.key === "Escape") void net.ask("stop");
+      document.getElementById("hold")!.hidden = holding;
+      if (!holding) this.say("idle", t("watching"));
     });
   }
 
-  private say(text: string): void {
-    document.getElementById("status")!.textContent = text;
+  private button(id: string, text: string, act: () => void): HTMLButtonElement {
+    const button = document.getElementById(id) as HTMLButtonElement;
+    button.textContent = text;
+    button.onclick = act;
+    return button;
+  }
+
+  private stopButton(): void {
+    const stop = (): void => this.ask("stop");
+    const button = this.button("stop", t("stopLong"), stop);
+    const key = document.createElement("kbd");
+    key.textContent = "Esc";
+    button.append(" ", key);
+    button.setAttribute("aria-keyshortcuts", "Escape");
+    on("stop", stop);
+  }
+
+  private ask(name: string): void {
+    this.page.net.ask(name).catch((error: Error) => this.say("error", error.message));
+  }
+
+  private say(what: What, text: string): void {
+    this.line.dataset.state = what;
+    this.line.textContent = text;
     this.page.say(text);
   }
 }

@@ -1,6 +1,7 @@
 /** What the device reaches, as a frame on the picture that can be moved, sized and turned; and the region that is felt. */
 import type { Page } from "../page";
 import type { Vec } from "../protocol";
+import { on } from "../shortcuts";
 import { t } from "../words/overlay";
 import { COLOURS } from "./colours";
 import { Draped } from "./draped";
@@ -40,19 +41,20 @@ export class MappingFrame implements Picked {
     const done = (): void => this.write();
     const keep = { done, drag: () => {}, nudge: () => {} };
     new Handle(page, "move", t("frameMove"), {
-      ...keep, at: () => this.on(0, 0), drag: (to) => this.move(to[0], to[1]), nudge: (right, away) => this.step(right * STEP_M, away * STEP_M),
+      ...keep, at: () => this.corner(0, 0), drag: (to) => this.move(to[0], to[1]), nudge: (right, away) => this.step(right * STEP_M, away * STEP_M),
     }).element.dataset.sign = "✥";
     for (const [u, v] of [[-1, -1], [1, -1], [1, 1], [-1, 1]]) {
       new Handle(page, "square", t("frameSize"), {
-        ...keep, at: () => this.on(u, v), drag: (to) => this.stretch(to), nudge: (right, away) => this.grow(LARGER ** (Math.abs(right) > Math.abs(away) ? right : away)),
+        ...keep, at: () => this.corner(u, v), drag: (to) => this.stretch(to), nudge: (right, away) => this.grow(LARGER ** (Math.abs(right) > Math.abs(away) ? right : away)),
       });
     }
     new Handle(page, "turn", t("frameTurn"), {
-      ...keep, at: () => this.on(0, 1 + 2 * TURN_OFF), drag: (to) => this.aim(to), nudge: (right, away) => this.rotate(TURN_DEG * (away || -right)),
+      ...keep, at: () => this.corner(0, 1 + 2 * TURN_OFF), drag: (to) => this.aim(to), nudge: (right, away) => this.rotate(TURN_DEG * (away || -right)),
     }).element.dataset.sign = "↻";
     hub.on("document", () => void this.ask());
     hub.on("shown", () => this.draw());
-    page.canvas.addEventListener("keydown", (event) => this.pressed(event));
+    on("enlarge", () => this.zoomHere());
+    on("whole picture", () => this.whole());
   }
 
   /** As the document has it, or as it is being dragged. */
@@ -147,14 +149,6 @@ export class MappingFrame implements Picked {
     this.write();
   }
 
-  /** Z feels half as much about the hand, Shift+Z the whole picture. */
-  private pressed(event: KeyboardEvent): void {
-    if (event.key.toLowerCase() !== "z" || event.ctrlKey || event.metaKey || event.altKey) return;
-    event.preventDefault();
-    if (event.shiftKey) this.whole();
-    else this.zoomHere();
-  }
-
   private step(right: number, away: number): void {
     const now = this.reach;
     if (now) this.move(now.centre[0] + right, now.centre[1] + away);
@@ -237,7 +231,7 @@ export class MappingFrame implements Picked {
   }
 
   /** A place of the frame, its sides at 1 and -1, on the surface; null while it is not shown. */
-  private on(u: number, v: number): Vec | null {
+  private corner(u: number, v: number): Vec | null {
     const { scene } = this.page;
     const now = this.shown ? this.reach : null;
     if (!scene || !now) return null;

@@ -1,6 +1,7 @@
 /** Places that were marked, numbered: to find them again, and to speak of them. */
 import type { Page } from "../page";
 import type { Vec } from "../protocol";
+import { on } from "../shortcuts";
 import { t } from "../words/overlay";
 import { Handle, STEP_M } from "./handle";
 
@@ -21,11 +22,7 @@ export class Markers {
       for (const each of this.list) each.at = scene.on(each.at[0], each.at[1]);
       this.changed();
     });
-    page.canvas.addEventListener("keydown", (event) => {
-      if (event.key !== "k" || event.ctrlKey || event.metaKey || event.altKey) return;
-      event.preventDefault();
-      this.here();
-    });
+    on("mark", () => this.here());
   }
 
   /** Where the hand is, or in the middle of what is seen. */

@@ -1,6 +1,7 @@
 /** The ruler: two places on the surface, and what lies between them. */
 import type { Page } from "../page";
 import type { Vec } from "../protocol";
+import { on } from "../shortcuts";
 import { t } from "../words/overlay";
 import { COLOURS } from "./colours";
 import { Draped } from "./draped";
@@ -34,7 +35,8 @@ export class Ruler implements Picked {
       new Handle(page, "round", t(end ? "rulerEnd" : "rulerStart"), grasped);
     }
     page.hub.on("shown", () => this.again());
-    page.canvas.addEventListener("keydown", (event) => this.pressed(event));
+    on("measure here", () => this.here());
+    on("remove ruler", () => this.remove());
   }
 
   /** Whether clicks are its own. */
@@ -75,14 +77,6 @@ export class Ruler implements Picked {
   remove(): void {
     this.ends = [];
     this.again();
-  }
-
-  /** With the keyboard: M sets the next place where the hand is, Shift+M takes the ruler away. */
-  private pressed(event: KeyboardEvent): void {
-    if (event.key.toLowerCase() !== "m" || event.ctrlKey || event.metaKey || event.altKey) return;
-    event.preventDefault();
-    if (event.shiftKey) this.remove();
-    else this.here();
   }
 
   /** The next place is where the hand is, or in the middle of what is seen. */

@@ -3,6 +3,7 @@ import "./cursor.css";
 import { place, type Place } from "../overlay/live";
 import { asJson, asText, rows, type Row } from "../overlay/values";
 import type { Page } from "../page";
+import { on } from "../shortcuts";
 import { t } from "../words/overlay";
 
 /** Ten times a second can be read, and costs nothing. */
@@ -25,11 +26,8 @@ export function dataCursor(page: Page): void {
   setInterval(() => {
     if (box.open && !document.hidden) fill(table, rows(page.overlay.live, under()));
   }, EVERY_MS);
-  page.canvas.addEventListener("keydown", (event) => {
-    if (event.key.toLowerCase() !== "c" || event.ctrlKey || event.metaKey || event.altKey) return;
-    event.preventDefault();
-    void copy(event.shiftKey);
-  });
+  on("copy values", () => void copy(false));
+  on("copy values as JSON", () => void copy(true));
 
   async function copy(json: boolean): Promise<void> {
     const { live } = page.overlay;

@@ -1,0 +1,95 @@
+/** All keys of the page, in one table: the help panel shows it, a test looks for conflicts.
+ *
+ * To add one: a line in SHORTCUTS, its text in words/keys.ts under the same name, and where it acts
+ * `on("its name", () => ...)`. Keys that a part hears itself, like the hand's arrows, have a line too, with `own`,
+ * so that they are shown and collide with none; that part does not call `on`.
+ *
+ * `where`: "page", wherever the focus is (function keys and such alone, or with Ctrl or Alt); "surface", while the
+ * surface has the focus; "letter", wherever no text is typed: a person can switch these off (settings panel), and then
+ * they act on the surface alone, because speech input types letters. */
+import { recall, remember } from "./remembered";
+
+interface Shortcut {
+  /** As KeyboardEvent.key says it, letters small; with Shift+, Ctrl+, Alt+ before it. Shift is not said for signs. */
+  keys: string[];
+  where: "page" | "surface" | "letter";
+  /** The part that has the key hears it itself. */
+  own?: true;
+}
+
+export const SHORTCUTS = {
+  stop: { keys: ["Escape"], where: "page" },
+  "next region": { keys: ["F6"], where: "page" },
+  "previous region": { keys: ["Shift+F6"], where: "page" },
+  help: { keys: ["?", "F1"], where: "letter" },
+  "move hand": { keys: ["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown"], where: "surface", own: true },
+  "press or lift": { keys: [" "], where: "surface", own: true },
+  deeper: { keys: ["PageDown"], where: "surface", own: true },
+  "less deep": { keys: ["PageUp"], where: "surface", own: true },
+  where: { keys: ["w"], where: "letter" },
+  describe: { keys: ["d"], where: "letter" },
+  sound: { keys: ["s"], where: "letter" },
+  aloud: { keys: ["a"], where: "letter" },
+  "hear heights": { keys: ["h"], where: "letter" },
+  "measure here": { keys: ["m"], where: "letter" },
+  "remove ruler": { keys: ["Shift+m"], where: "letter" },
+  mark: { keys: ["k"], where: "letter" },
+  enlarge: { keys: ["z"], where: "letter" },
+  "whole picture": { keys: ["Shift+z"], where: "letter" },
+  "copy values": { keys: ["c"], where: "letter" },
+  "copy values as JSON": { keys: ["Shift+c"], where: "letter" },
+} as const satisfies Record<string, Shortcut>;
+
+export type Name = keyof typeof SHORTCUTS;
+
+const KEPT = "letters";
+const acts = new Map<Name, () => void>();
+const byKey = new Map<string, Name>();
+for (const [name, { keys }] of Object.entries<Shortcut>(SHORTCUTS)) for (const key of keys) byKey.set(key, name as Name);
+
+/** Whether letters act wherever the focus is. */
+export const letters = {
+  get everywhere(): boolean {
+    return recall(KEPT, true);
+  },
+  set everywhere(on: boolean) {
+    remember(KEPT, on);
+  },
+};
+
+/** What a shortcut does. */
+export function on(name: Name, act: () => void): void {
+  acts.set(name, act);
+}
+
+/** Hear the keys of a page; once. The stop key is heard before anything else can take it, and still closes what it
+ * closes. */
+export function listen(surface: HTMLElement): void {
+  document.addEventListener("keydown", (event) => named(event) === "stop" && acts.get("stop")?.(), { capture: true });
+  document.addEventListener("keydown", (event) => {
+    const name = named(event);
+    const act = name && acts.get(name);
+    if (!act || name === "stop" || event.isComposing || event.defaultPrevented) return;
+    if (!heard(SHORTCUTS[name].where, event.target as Element, surface)) return;
+    event.preventDefault();
+    if (!event.repeat) act();
+  });
+}
+
+function named(event: KeyboardEvent): Name | undefined {
+  return byKey.get(pressed(event));
+}
+
+/** The key with what is held beside it, as the table says it. */
+export function pressed({ key, shiftKey, ctrlKey, altKey, metaKey }: KeyboardEvent): string {
+  const named = key.length > 1;
+  const small = key.toLowerCase();
+  const letter = small !== key.toUpperCase();
+  const held = [ctrlKey && "Ctrl+", altKey && "Alt+", metaKey && "Meta+", shiftKey && (named || letter) && "Shift+"];
+  return held.filter(Boolean).join("") + (named ? key : small);
+}
+
+function heard(where: Shortcut["where"], target: Element, surface: HTMLElement): boolean {
+  if (where === "page" || target === surface) return true;
+  return where === "letter" && letters.everywhere && !target.matches("input, select, textarea, [contenteditable]");
+}

@@ -16,6 +16,7 @@ const OFF_PX = 14;
 export const GLYPHS = { apart: "", rests: "●", sticks: "■", slips: "»", glides: "○" } as const;
 
 export class Labels implements Piece {
+  late = false;
   private box = document.createElement("div");
   private force = line(this.box, "force");
   private other = line(this.box, "other");
@@ -39,6 +40,7 @@ export class Labels implements Piece {
     const { show } = settings;
     const hidden = !live || (!live.touching && live.otherN === 0 && !limited(live.state.flags)) || !(show.labels || show.limits);
     if (this.box.hidden !== hidden) this.box.hidden = hidden;
+    this.late = false;
     if (!live || hidden) return;
     this.words(live, settings);
     this.place(live, settings, sight);
@@ -47,7 +49,8 @@ export class Labels implements Piece {
   private words(live: Live, { show }: Settings): void {
     const now = performance.now();
     for (const { bit } of LIMITS) if (live.state.flags & bit) this.seenMs.set(bit, now);
-    if (now - this.readMs < EVERY_MS) return;
+    this.late = now - this.readMs < EVERY_MS;
+    if (this.late) return;
     this.readMs = now;
     say(this.force, show.labels ? `${live.newtons.toFixed(2)} N` : "");
     say(this.other, show.labels && live.otherN > 0 ? t("otherForce", { newtons: live.otherN.toFixed(2) }) : "");

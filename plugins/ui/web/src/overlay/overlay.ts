@@ -85,6 +85,7 @@ export class Overlay {
     const live = this.live?.seen ? this.live : null;
     for (const each of this.pieces) each.put(live, this.settings, this.sight);
     for (const each of this.pinned) this.pin(each);
+    this.changed = this.pieces.some((each) => each.late);
   }
 
   /** Keep an element of the layer at a place of the workspace; hidden while that is null. The answer takes it away. */

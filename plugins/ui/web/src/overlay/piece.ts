@@ -12,6 +12,8 @@ export interface Sight {
 }
 
 export interface Piece {
+  /** Whether it shows less than it was told, as words change only so often: it wants another frame. */
+  readonly late?: boolean;
   /** live: null while there is no hand. */
   put(live: Live | null, settings: Settings, sight: Sight): void;
 }

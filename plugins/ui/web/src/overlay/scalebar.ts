@@ -11,6 +11,7 @@ const MOST_PX = 130;
 const EVERY_MS = 100;
 
 export class ScaleBar implements Piece {
+  late = false;
   private box = document.createElement("div");
   private bar = document.createElement("span");
   private words = document.createElement("span");
@@ -29,7 +30,8 @@ export class ScaleBar implements Piece {
   put(live: Live | null, { show, metresPerNewton }: Settings, sight: Sight): void {
     this.box.hidden = !show.arrow;
     const now = performance.now();
-    if (this.box.hidden || now - this.readMs < EVERY_MS) return;
+    this.late = !this.box.hidden && now - this.readMs < EVERY_MS;
+    if (this.box.hidden || this.late) return;
     this.readMs = now;
     const pixel = metresPerPixel(sight, live?.contact ?? this.looked());
     const newtons = round((MOST_PX * pixel) / metresPerNewton);

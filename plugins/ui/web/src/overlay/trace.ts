@@ -9,15 +9,18 @@ import {
   ShaderMaterial,
   Vector2,
 } from "three";
-import { now } from "../protocol";
+import type { State, Vec } from "../protocol";
 import type { View } from "../view";
 import type { Live } from "./live";
 import type { Piece, Sight } from "./piece";
 import { SECONDS, type Settings } from "./settings";
 import { STRIDE, Trail } from "./trail";
+import { length, minus } from "./vectors";
 
 const HZ = 60;
 const GREAT_N = 4;
+/** No hand moves that far between two states: it was put down elsewhere, or is being let go. */
+const LEAP_M = 0.02;
 
 const vertexShader = `
 attribute vec4 from, to; attribute vec2 fromMore, toMore;
@@ -45,7 +48,9 @@ export class Trace implements Piece {
   private geometry = new InstancedBufferGeometry();
   private uniforms = { canvas: { value: new Vector2(1, 1) }, now: { value: 0 }, seconds: { value: SECONDS.first as number } };
   private mesh: Mesh;
-  private arrivedMs = 0;
+  private last: State | null = null;
+  private lastMs = -Infinity;
+  private at: Vec = [0, 0, 0];
 
   constructor(view: View) {
     this.buffer.setUsage(DynamicDrawUsage);
@@ -81,15 +86,18 @@ export class Trace implements Piece {
 
   /** Whether some of it has yet to fade. */
   fades(seconds: number): boolean {
-    return this.mesh.visible && now() - this.arrivedMs < 1000 * seconds;
+    return this.mesh.visible && performance.now() - this.lastMs < 1000 * seconds;
   }
 
   /** A frame may show a state again, from elsewhere. */
   private add({ state, contact, hand, touching, newtons }: Live): void {
-    if (state.arrivedMs === this.arrivedMs) return;
-    this.arrivedMs = state.arrivedMs;
-    const [x, y, z] = touching ? contact : hand;
-    this.trail.add(x, y, z, touching ? newtons : 0, performance.now() / 1000);
+    if (state === this.last) return;
+    this.last = state;
+    this.lastMs = performance.now();
+    const at = touching ? contact : hand;
+    if (length(minus(at, this.at)) > LEAP_M) this.trail.lift();
+    this.at = at;
+    this.trail.add(at[0], at[1], at[2], touching ? newtons : 0, this.lastMs / 1000);
     this.buffer.needsUpdate = true;
   }
 }

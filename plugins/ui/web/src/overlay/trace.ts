@@ -33,9 +33,9 @@ void main() {
   way = length(way) > 1e-4 ? normalize(way) : vec2(1., 0.);
   force = clamp((position.y > .5 ? to.w : from.w) / ${GREAT_N.toFixed(1)}, 0., 1.);
   age = (now - (position.y > .5 ? toMore.x : fromMore.x)) / seconds;
-  float half_ = .6 + 3.4 * force;
+  float half_width = .6 + 3.4 * force;
   gl_Position = position.y > .5 ? b : a;
-  gl_Position.xy += (vec2(-way.y, way.x) * position.x * half_ + way * (position.y - .5) * half_) / canvas * 2. * gl_Position.w;
+  gl_Position.xy += (vec2(-way.y, way.x) * position.x * half_width) / canvas * 2. * gl_Position.w;
   gl_Position.z -= 4e-4 * gl_Position.w;
 }`;
 const fragmentShader = `

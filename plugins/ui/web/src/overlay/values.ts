@@ -28,12 +28,11 @@ export function rows(live: Live | null, pointer: Place | null): Row[] {
     [`${t("row_pointer")}, mm`, ...mm(pointer && pointer.at)],
     [`${t("row_normal")}`, ...(held ?? pointer)?.normal.map((part) => fixed(part, 3)) ?? [NONE, NONE, NONE]],
     [`${t("row_force")}, N`, ...(held ? held.state.force.map((part) => fixed(part, 3)) : [NONE, NONE, NONE])],
-    [`${t("row_force")}`, held ? `${fixed(held.newtons, 3)} N` : NONE],
+    [t("row_magnitude"), held ? `${fixed(held.newtons, 3)} N` : NONE],
     [t("row_collision"), held ? (held.depthM > 0 || held.touching ? t("yes", { mm: fixed(MM * held.depthM, 3) }) : t("no")) : NONE],
     [t("row_surface"), `${fixed(MM * (held?.surfaceM ?? pointer?.at[2] ?? NaN), 2)} mm`],
     [t("row_material"), made(held ?? pointer)],
-    [t("row_speed"), held ? `${fixed(MM * held.speedMPerS, 0)} mm/s` : NONE],
-    [t("row_grip"), held ? t(held.grip) : NONE],
+    [t("row_grip"), held ? `${t(held.grip)}, ${fixed(MM * held.speedMPerS, 0)} mm/s` : NONE],
     [t("row_limits"), held ? limitsOf(held).map((word) => t(word)).join(", ") || t("none") : NONE],
   ];
   if (held && held.otherN > 0) found.splice(7, 0, [t("row_other"), `${fixed(held.otherN, 3)} N`]);

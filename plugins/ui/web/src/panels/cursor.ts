@@ -24,7 +24,9 @@ export function dataCursor(page: Page): void {
   page.canvas.parentElement!.append(box);
   const under = follow(page);
   setInterval(() => {
-    if (box.open && !document.hidden) fill(table, rows(page.overlay.live, under()));
+    if (document.hidden) return;
+    if (box.open) fill(table, rows(page.overlay.live, under()));
+    box.classList.toggle("under", covers(box, page));
   }, EVERY_MS);
   on("copy values", () => void copy(false));
   on("copy values as JSON", () => void copy(true));
@@ -38,6 +40,13 @@ export function dataCursor(page: Page): void {
       page.say(t("notCopied"));
     }
   }
+}
+
+/** Whether the contact lies behind it. */
+function covers(box: HTMLElement, { overlay, view, canvas }: Page): boolean {
+  if (!overlay.live?.seen) return false;
+  const [x, y] = view.toScreen(overlay.live.contact);
+  return x > box.offsetLeft - canvas.offsetLeft && y > box.offsetTop - canvas.offsetTop;
 }
 
 /** The place on the surface under the mouse, looked up when it is asked for and the mouse or the view has moved. */

@@ -29,16 +29,18 @@ export class MappingFrame implements Picked {
   changed: () => void = () => {};
   device = "";
   private workspace: Vec | null = null;
+  /** While it is dragged or written: what the document will say. */
   private draft: Mapping | null = null;
+  private writing = false;
   private line: Draped;
-  private rim: Draped;
   private drawn: Draped;
   private from: Vec | null = null;
 
   constructor(private page: Page) {
     const { view, hub } = page;
-    [this.rim, this.line, this.drawn] = [new Draped(view, 4, COLOURS.rim), new Draped(view, 4, COLOURS.frame), new Draped(view, 4, COLOURS.device, true)];
-    const done = (): void => this.write();
+    this.line = new Draped(view, 4, COLOURS.frame);
+    this.drawn = new Draped(view, 4, COLOURS.device, true);
+    const done = (): void => void (this.draft && this.write());
     const keep = { done, drag: () => {}, nudge: () => {} };
     new Handle(page, "move", t("frameMove"), {
       ...keep, at: () => this.corner(0, 0), drag: (to) => this.move(to[0], to[1]), nudge: (right, away) => this.step(right * STEP_M, away * STEP_M),
@@ -104,7 +106,7 @@ export class MappingFrame implements Picked {
     if (!this.from || !scene) return;
     const [a, b] = [this.from, at];
     this.drawn.put(scene, [[a[0], a[1]], [b[0], a[1]], [b[0], b[1]], [a[0], b[1]], [a[0], a[1]]]);
-    this.drawn.line.visible = overlay.changed = true;
+    this.drawn.visible = overlay.changed = true;
   }
 
   end(at: Vec): void {
@@ -117,7 +119,7 @@ export class MappingFrame implements Picked {
 
   left(): void {
     this.from = null;
-    this.drawn.line.visible = false;
+    this.drawn.visible = false;
     this.page.overlay.changed = true;
     this.changed();
   }
@@ -139,14 +141,14 @@ export class MappingFrame implements Picked {
     if (!scene) return;
     view.focus(scene.on(x, y), Math.max(width, length));
     this.draft = zoomed(this.mapping, x, y, width, length);
-    this.write();
+    void this.write();
   }
 
   whole(): void {
     const { scene, view } = this.page;
     if (scene) view.frame(...scene.meta.extent_m);
     this.draft = whole(this.mapping);
-    this.write();
+    void this.write();
   }
 
   private step(right: number, away: number): void {
@@ -193,22 +195,28 @@ export class MappingFrame implements Picked {
     this.draw();
   }
 
-  /** Into the document; what is felt follows. */
-  private write(): void {
-    const { draft } = this;
-    if (!draft) return;
-    const { scale, region_m, rotation_deg, offset_m } = draft;
+  /** Into the document, where what is felt follows; one write after the other, and of several the last. */
+  private async write(): Promise<void> {
     this.draw();
-    this.page.net.ask("set_mapping", { mapping: { scale, region_m, rotation_deg, offset_m } }).catch((error: Error) => {
-      if (this.draft === draft) this.draft = null;
-      this.draw();
-      this.page.say(error.message);
-    });
+    if (this.writing) return;
+    this.writing = true;
+    for (let written: Mapping | null = null; this.draft && written !== this.draft; ) {
+      written = this.draft;
+      const { scale, region_m, rotation_deg, offset_m } = written;
+      try {
+        await this.page.net.ask("set_mapping", { mapping: { scale, region_m, rotation_deg, offset_m } });
+      } catch (error) {
+        this.page.say((error as Error).message);
+        break;
+      }
+    }
+    this.writing = false;
+    this.draft = null;
+    this.draw();
   }
 
   /** What the document's device reaches. */
   private async ask(): Promise<void> {
-    this.draft = null;
     try {
       const { device, workspace_m } = await this.page.net.ask<Reached>("reach");
       [this.device, this.workspace] = [device, workspace_m];
@@ -221,10 +229,10 @@ export class MappingFrame implements Picked {
   private draw(): void {
     const { scene, overlay } = this.page;
     const now = this.shown ? this.reach : null;
-    this.line.line.visible = this.rim.line.visible = now !== null;
+    this.line.visible = now !== null;
     if (scene && now) {
       const around = corners(now);
-      for (const each of [this.rim, this.line]) each.put(scene, [...around, around[0]]);
+      this.line.put(scene, [...around, around[0]]);
     }
     overlay.changed = true;
     this.changed();
@@ -240,6 +248,7 @@ export class MappingFrame implements Picked {
     const at = (axis: 0 | 1): number =>
       middle[axis] + (u * (right[axis] - left[axis])) / 2 + (v * (far[axis] - left[axis])) / 2;
     const [x, y] = [at(0), at(1)];
-    return [x, y, scene.on(x, y)[2]];
+    const edge = scene.on(middle[0] + (far[0] - left[0]) / 2, middle[1] + (far[1] - left[1]) / 2);
+    return [x, y, v > 1 ? Math.max(edge[2], scene.on(x, y)[2]) : scene.on(x, y)[2]];
   }
 }

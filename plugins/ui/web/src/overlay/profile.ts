@@ -4,7 +4,7 @@ import type { Measured } from "./measure";
 import { round } from "./settings";
 
 const NS = "http://www.w3.org/2000/svg";
-const SIZE = { width: 230, height: 110, left: 34, right: 8, top: 8, bottom: 24 };
+const SIZE = { width: 230, height: 118, left: 34, right: 8, top: 8, bottom: 32 };
 const MARKS = 4;
 
 /** Round numbers within a span, in millimetres. */
@@ -23,12 +23,12 @@ export function profile(measured: Measured): SVGSVGElement {
   const y = (mm: number): number => SIZE.height - SIZE.bottom - ((mm - low) / (high - low)) * (SIZE.height - SIZE.top - SIZE.bottom);
   const svg = make("svg", { viewBox: `0 0 ${SIZE.width} ${SIZE.height}`, role: "img", class: "profile" });
   svg.setAttribute("aria-label", t("profileSays", { mm: far.toFixed(1), low: Math.min(...heights).toFixed(2), high: Math.max(...heights).toFixed(2) }));
-  for (const mm of marks(0, far)) svg.append(grid(x(mm), SIZE.top, x(mm), SIZE.height - SIZE.bottom), words(x(mm), SIZE.height - 11, "middle", mm));
+  for (const mm of marks(0, far)) svg.append(grid(x(mm), SIZE.top, x(mm), SIZE.height - SIZE.bottom), words(x(mm), SIZE.height - 20, "middle", mm));
   for (const mm of marks(low, high)) svg.append(grid(SIZE.left, y(mm), SIZE.width - SIZE.right, y(mm)), words(SIZE.left - 4, y(mm) + 3, "end", mm));
   const last = measured.heightsM.length - 1;
   const points = Array.from(measured.heightsM, (each, i) => `${x((far * i) / last).toFixed(1)},${y(1000 * each).toFixed(1)}`);
   svg.append(make("polyline", { points: points.join(" "), class: "heights" }));
-  const unit = make("text", { x: `${SIZE.width - SIZE.right}`, y: `${SIZE.height - 1}`, "text-anchor": "end" });
+  const unit = make("text", { x: `${SIZE.width - SIZE.right}`, y: `${SIZE.height - 5}`, "text-anchor": "end" });
   unit.textContent = t("profileAxes");
   svg.append(unit);
   return svg as SVGSVGElement;

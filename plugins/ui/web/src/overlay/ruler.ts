@@ -17,11 +17,9 @@ export class Ruler implements Picked {
   /** Called when anything of it changed. */
   changed: () => void = () => {};
   private line: Draped;
-  private rim: Draped;
   private label = document.createElement("div");
 
   constructor(private page: Page) {
-    this.rim = new Draped(page.view, 1, COLOURS.rim);
     this.line = new Draped(page.view, 1, COLOURS.frame, true);
     this.label.className = "ruler-label";
     page.overlay.stay(this.label, () => this.middle());
@@ -32,7 +30,7 @@ export class Ruler implements Picked {
         nudge: (right: number, away: number) => this.nudge(end, right * STEP_M, away * STEP_M),
         done: () => this.tell(),
       };
-      new Handle(page, "round", t(end ? "rulerEnd" : "rulerStart"), grasped);
+      new Handle(page, "round", t(end ? "rulerEnd" : "rulerStart"), grasped).element.dataset.sign = "AB"[end];
     }
     page.hub.on("shown", () => this.again());
     on("measure here", () => this.here());
@@ -105,9 +103,9 @@ export class Ruler implements Picked {
     const [from, to] = this.ends;
     const whole = scene !== null && from !== undefined && to !== undefined;
     this.measured = whole ? measure(scene, from, to, scene.meta.extent_m[0] / scene.meta.columns) : null;
-    this.line.line.visible = this.rim.line.visible = whole;
+    this.line.visible = whole;
     if (whole && this.measured) {
-      for (const each of [this.rim, this.line]) each.put(scene, this.ends);
+      this.line.put(scene, this.ends);
       this.label.textContent = `${(1000 * this.measured.straightM).toFixed(2)} mm`;
     }
     overlay.changed = true;

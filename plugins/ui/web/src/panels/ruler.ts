@@ -4,6 +4,7 @@ import { Markers } from "../overlay/markers";
 import type { Measured } from "../overlay/measure";
 import { profile } from "../overlay/profile";
 import { Ruler } from "../overlay/ruler";
+import { fixed } from "../overlay/values";
 import type { Page } from "../page";
 import type { Panel } from "../panel";
 import { t } from "../words/overlay";
@@ -31,15 +32,15 @@ function build(page: Page, root: HTMLElement): void {
 function figures(measured: Measured): HTMLElement {
   const list = document.createElement("dl");
   list.className = "ruler-figures";
-  const mm = (metres: number): string => `${(1000 * metres).toFixed(2)} mm`;
+  const mm = (metres: number): string => `${fixed(1000 * metres, 2)} mm`;
   const degrees = (measured.slope * 180) / Math.PI;
-  const steep = Math.abs(degrees) > 89.99 ? "" : ` (${(100 * Math.tan(measured.slope)).toFixed(0)} %)`;
+  const steep = Math.abs(degrees) > 89.99 ? "" : ` (${fixed(100 * Math.tan(measured.slope), 0)} %)`;
   const rows: [string, string][] = [
     [t("straight"), mm(measured.straightM)],
     [t("horizontal"), mm(measured.horizontalM)],
-    [t("surface"), Number.isFinite(measured.surfaceM) ? mm(measured.surfaceM) : "–"],
+    [t("surface"), mm(measured.surfaceM)],
     [t("rise"), mm(measured.riseM)],
-    [t("slope"), `${degrees.toFixed(1)}°${steep}`],
+    [t("slope"), `${fixed(degrees, 1)}°${steep}`],
   ];
   for (const [name, value] of rows) {
     const [term, says] = [document.createElement("dt"), document.createElement("dd")];

@@ -32,7 +32,7 @@ test("over a half cylinder the way is half a circle, though its ends are level",
 test("a step is climbed, and the profile has it where it is", () => {
   const step: Surface = { height: (x) => (x < 0.004 ? 0 : 0.003) };
   const found = measure(step, on(step, 0, 0), on(step, 0.01, 0), CELL);
-  close(found.surfaceM, 0.01 + 0.003, 1e-2);
+  close(found.surfaceM, 0.01 + 0.003, 1e-3);
   const at = found.heightsM.findIndex((each) => each > 0);
   close((at / (found.heightsM.length - 1)) * 0.01, 0.004, 0.02);
 });
@@ -41,7 +41,7 @@ test("nothing is measured between a place and itself, and much is bounded", () =
   const level: Surface = { height: () => 0.001 };
   const none = measure(level, [0, 0, 0.001], [0, 0, 0.001], CELL);
   assert.deepEqual([none.straightM, none.surfaceM, none.slope], [0, 0, 0]);
-  assert.ok(measure(level, [0, 0, 0], [9, 0, 0], 1e-9).heightsM.length < 5000);
+  assert.ok(measure(level, [0, 0, 0], [9, 0, 0], 1e-9).heightsM.length < 10_000);
   assert.ok(Number.isNaN(measure({ height: () => NaN }, [0, 0, 0], [1, 0, 0], 1).surfaceM));
 });
 

@@ -11,9 +11,9 @@ from tangible_core.errors import DeviceError
 
 from .choice import Choice, NotAgreed
 from .feeling import Feeling, Felt
+from .laws import Laws
 from .maker import Maker
 from .maker.messages import Event
-from .laws import Laws
 from .makes import Makes
 from .recorder import Recorder
 from .rival import Rival

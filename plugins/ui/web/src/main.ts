@@ -1,7 +1,6 @@
 /** The page: its parts are put together here. */
 import "./app.css";
 import { Announcer, regions } from "./announcer";
-import { Cursors } from "./cursors";
 import { frame } from "./frame";
 import { Frames } from "./frames";
 import { Hand } from "./hand";
@@ -10,9 +9,11 @@ import { Instrument } from "./instrument";
 import { Narrator } from "./narrator";
 import { Net } from "./net";
 import { notice } from "./notice";
+import { Overlay } from "./overlay/overlay";
 import type { Page } from "./page";
 import { build } from "./panel";
 import { panels } from "./panels";
+import { dataCursor } from "./panels/cursor";
 import { listen } from "./shortcuts";
 import { stroke } from "./sonify";
 import { Sound } from "./sound";
@@ -38,10 +39,12 @@ const announcer = new Announcer((said) => {
   speech.speak(said);
 });
 const net = new Net(hub);
+const view = new View(canvas);
 const page: Page = {
   hub,
   net,
-  view: new View(canvas),
+  view,
+  overlay: new Overlay(view, canvas),
   canvas,
   scene: null,
   hand: null,
@@ -82,8 +85,8 @@ listen(canvas);
 new Status(page);
 new Narrator(page);
 page.hand = new Hand(page);
-new Cursors(page);
 notice(page);
 build(page, panels);
+dataCursor(page);
 new Frames(page, asked.has("measure"));
 if (asked.has("measure")) Object.assign(window, { page, Instrument, stroke }); // what tests look into

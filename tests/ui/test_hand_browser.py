@@ -109,9 +109,16 @@ def test_the_mouse_feels_until_nobody_sees_the_page(page: Any) -> None:
     drawn(page)
 
     press(page, felt)
-    frozen_s = time.monotonic()
-    page.context.new_cdp_session(page).send("Page.setWebLifecycleState", {"state": "frozen"})
-    print("frozen", felt.quiet_after_s(frozen_s))
+    begun = felt.ring.count
+    frozen_s = time.monotonic() - felt.ring.start_ns / 1e9
+    page.evaluate("{ const end = performance.now() + 3000; while (performance.now() < end); }")
+    rows, _ = felt.ring.since(begun)
+    while_frozen = (rows[:, 0] > frozen_s + GONE_S) & (rows[:, 0] < frozen_s + 2.9)
+    assert while_frozen.any()
+    assert np.abs(rows[while_frozen, FORCE]).max() < FELT_N
+    given = rows[(rows[:, 0] < frozen_s + 2.9) & (np.abs(rows[:, FORCE]).max(axis=1) > FELT_N)]
+    print("frozen", given[-1, 0] - frozen_s)
+    page.mouse.up()
 
 
 def test_a_tab_that_is_closed_leaves_no_force(page: Any) -> None:
@@ -144,12 +151,17 @@ def test_the_keyboard_alone_feels_and_the_stop_key_works_in_a_field(page: Any) -
     until(lambda: Felt.rings() and Felt.rings()[0] != felt.path)
 
 
-def test_another_device_is_felt_and_examined(page: Any) -> None:
+def test_another_device_is_felt_and_examined(page: Any, server: Any) -> None:
     page.locator("#devices > summary").click()
     page.get_by_role("button", name="Examine mock").click()
     until(lambda: "needs nothing" in page.locator(".devices").text_content())
     page.get_by_role("button", name="Feel with mock").click()
-    until(lambda: page.locator("#device-felt").text_content() == "Felt with: mock")
+    try:
+        until(lambda: page.locator("#device-felt").text_content() == "Felt with: mock", 20)
+    except AssertionError:
+        page.screenshot(path="/tmp/hands-fail.png")
+        print(page.locator("#device-felt").text_content(), page.locator("#log").text_content(), server.lines)
+        raise
     until(lambda: "Hz" in page.locator("#devices .figures").text_content())
     page.screenshot(path="/tmp/hands-devices.png")
     page.locator("#use-hand").click()

@@ -11,13 +11,19 @@ from tangible_core.errors import DeviceError
 
 from .choice import Choice, NotAgreed
 from .feeling import Feeling, Felt
+from .laws import Laws
 from .maker import Maker
 from .maker.messages import Event
+from .makes import Makes
 from .recorder import Recorder
+from .rival import Rival
 from .shelf import Shelf, user_folder
+from .texts import Texts
 
-MOST_HISTORY = 500
-"""Events that a tab which is opened later hears of."""
+MOST_HISTORY, MOST_LOGGED = 500, 200
+"""Events, and lines that were logged, that a tab which is opened later hears of."""
+LAST_ALONE = frozenset({"document", "plan", "materials", "preflight"})
+"""Events of which only the last one counts."""
 
 
 @runtime_checkable
@@ -38,16 +44,22 @@ class Desk:
         """Changes from the command line, which go before what the file says."""
         self.text, self.path = "", Path.cwd() / "untitled.yaml"
         """The document: a pipeline file as text, and where it stands."""
+        self.digest = ""
+        """Of the text, as events name it."""
+        self.texts = Texts()
+        self.makes = Makes()
         self.choice = Choice()
         """Which device is felt."""
         self.shelf = Shelf(user_folder("opened"), folder / "incoming")
         self.recorder: Recorder | None = None
         """Of the recording that was made last, or is being made."""
+        self.laws = Laws(Rival(f"{feeling.channel}-beside"))
         self.scene: dict[str, Any] | None = None
         self.tabs: list[Tab] = []
         self.holder: Tab | None = None
         """The tab whose hand is felt."""
-        self.history: deque[dict[str, Any]] = deque(maxlen=MOST_HISTORY)
+        self._history: deque[dict[str, Any]] = deque(maxlen=MOST_HISTORY)
+        self._logged: deque[dict[str, Any]] = deque(maxlen=MOST_LOGGED)
         self.maker = Maker(folder, self._hear)
         self.began_s = time.time()
         self._tasks: set[asyncio.Task[Any]] = set()
@@ -77,6 +89,9 @@ class Desk:
                 self.tell("loop", running=False, why=str(error), lost=isinstance(error, DeviceError))
             raise
         if seconds is not None:
+            self.laws.alone()
+            self.tell("laws", **self.laws.told())
+            await asyncio.to_thread(self.laws.rival.close)
             self.tell("touch", law=felt.law, seconds=seconds, how=self.feeling.how)
             self.tell("loop", running=True, why="", device=felt.device_name, own_hand=felt.own_hand)
 
@@ -86,9 +101,20 @@ class Desk:
         if event == "scene":
             self.scene = said
         else:
-            self.history.append(said)
+            if event in LAST_ALONE:
+                self._forget(event)
+            (self._logged if event == "log" else self._history).append(said)
         for tab in list(self.tabs):
             tab.say(said)
+
+    def _forget(self, event: str) -> None:
+        if (before := next((each for each in self._history if each["event"] == event), None)) is not None:
+            self._history.remove(before)
+
+    @property
+    def history(self) -> list[dict[str, Any]]:
+        """What a tab that comes later hears of; however much is logged, the rest is there."""
+        return sorted([*self._history, *self._logged], key=lambda said: said["at_s"])
 
     def enter(self, tab: Tab) -> None:
         """Another tab; it holds the hand if no other one does."""
@@ -135,5 +161,6 @@ class Desk:
         """No force, no process, no recording that is open."""
         self.maker.close()
         await asyncio.to_thread(self.feeling.stop)
+        await asyncio.to_thread(self.laws.rival.close)
         if self.recorder is not None:
             await asyncio.to_thread(self.recorder.stop)

@@ -3,7 +3,7 @@
 import asyncio
 
 from ..desk import Desk, Tab
-from .document import make
+from .making import make
 
 
 async def hold(desk: Desk, tab: Tab) -> None:

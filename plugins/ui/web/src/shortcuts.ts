@@ -41,6 +41,13 @@ export const SHORTCUTS = {
   sound: { keys: ["s"], where: "letter" },
   aloud: { keys: ["a"], where: "letter" },
   "hear heights": { keys: ["h"], where: "letter" },
+  "measure here": { keys: ["m"], where: "letter" },
+  "remove ruler": { keys: ["Shift+m"], where: "letter" },
+  mark: { keys: ["k"], where: "letter" },
+  enlarge: { keys: ["z"], where: "letter" },
+  "whole picture": { keys: ["Shift+z"], where: "letter" },
+  "copy values": { keys: ["c"], where: "letter" },
+  "copy values as JSON": { keys: ["Shift+c"], where: "letter" },
 } as const satisfies Record<string, Shortcut>;
 
 export type Name = keyof typeof SHORTCUTS;

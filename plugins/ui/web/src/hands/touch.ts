@@ -43,7 +43,6 @@ export function touch(hand: Hand): void {
   const { canvas, view } = hand.page;
   const fingers = new Fingers();
   const pressure = new Pressure();
-  view.controls.touches.ONE = null; // one finger is the hand
 
   function follow(event: PointerEvent): void {
     const at = hand.page.scene?.pick(...view.ray(event.clientX, event.clientY));

@@ -99,7 +99,10 @@ export function pressed({ key, shiftKey, ctrlKey, altKey, metaKey }: KeyboardEve
   return held.filter(Boolean).join("") + (named ? key : small);
 }
 
+/** Where letters are typed, or choose. */
+const TYPED = "input:not([type=checkbox], [type=radio], [type=range], [type=file]), select, textarea, [contenteditable]";
+
 function heard(where: Shortcut["where"], target: Element, surface: HTMLElement): boolean {
   if (where === "page" || target === surface) return true;
-  return where === "letter" && letters.everywhere && !target.matches("input, select, textarea, [contenteditable]");
+  return where === "letter" && letters.everywhere && !target.matches(TYPED);
 }

@@ -126,7 +126,7 @@ class TestSeen:
             stop, surface = page.locator("#stop").bounding_box(), page.locator("#terrain").bounding_box()
             assert stop and surface
             assert stop["height"] >= 44 and stop["x"] >= 0 and stop["x"] + stop["width"] <= width, name
-            assert 0 <= stop["y"] and stop["y"] + stop["height"] <= height, name
+            assert stop["y"] >= 0 and stop["y"] + stop["height"] <= height, name
             assert surface["width"] >= 300 and surface["height"] >= 150, name
 
     def test_every_target_is_large_enough(self, show: Show):

@@ -58,6 +58,18 @@ class Felt(NamedTuple):
         return unmapped(self.device)
 
 
+class Beside(NamedTuple):
+    """What is shown beside the law that is felt."""
+
+    force_n: Vector = NOBODY
+    """Of another law on the same hand."""
+    blind: bool = False
+    """Whether who feels shall not see which law it is: not every law has a proxy."""
+
+
+ALONE = Beside()
+
+
 class Ended(NamedTuple):
     """A loop that ended though nobody stopped it."""
 
@@ -181,7 +193,7 @@ class Feeling:
         self._told = servo
         return None if self.stopped else Ended(_end(servo), servo.lost)
 
-    def frame(self, seq: int, status: int) -> bytes | None:
+    def frame(self, seq: int, status: int, beside: Beside = ALONE) -> bytes | None:
         """The newest tick as a STATE; a hand that is nowhere without a loop; None for a tick that was overwritten."""
         servo = self._servo
         if servo is None or not self.running:
@@ -194,7 +206,7 @@ class Feeling:
         tag = int(buttons) >> BUTTON_BITS
         return STATE_FRAME.pack(
             STATE, status, int(flags), seq & 0xFFFFFFFF, tag, servo.ring.overruns, sample_ms,
-            x, y, z, px, py, pz, fx, fy, fz, vx, vy, vz, *NOBODY, 1e6 * late,
+            x, y, z, *(UNKNOWN if beside.blind else (px, py, pz)), fx, fy, fz, vx, vy, vz, *beside.force_n, 1e6 * late,
         )  # fmt: skip
 
     @contextmanager

@@ -3,7 +3,7 @@
 from collections.abc import Awaitable, Callable, Mapping
 from typing import Any
 
-from . import devices, document, feeling, making, opening, records, seeing
+from . import devices, document, feeling, laws, making, mapping, opening, preflight, records, seeing
 
 Ask = Callable[..., Awaitable[Any]]
 """Called with the desk, the tab, and what the tab says by name; the tab is answered with what it returns, as JSON."""
@@ -12,8 +12,11 @@ ASKS: Mapping[str, Ask] = {
     **document.ASKS,
     **making.ASKS,
     **seeing.ASKS,
+    **preflight.ASKS,
+    **mapping.ASKS,
     **feeling.ASKS,
     **opening.ASKS,
     **records.ASKS,
     **devices.ASKS,
+    **laws.ASKS,
 }

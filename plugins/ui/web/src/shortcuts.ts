@@ -41,6 +41,13 @@ export const SHORTCUTS = {
   sound: { keys: ["s"], where: "letter" },
   aloud: { keys: ["a"], where: "letter" },
   "hear heights": { keys: ["h"], where: "letter" },
+  "measure here": { keys: ["m"], where: "letter" },
+  "remove ruler": { keys: ["Shift+m"], where: "letter" },
+  mark: { keys: ["k"], where: "letter" },
+  enlarge: { keys: ["z"], where: "letter" },
+  "whole picture": { keys: ["Shift+z"], where: "letter" },
+  "copy values": { keys: ["c"], where: "letter" },
+  "copy values as JSON": { keys: ["Shift+c"], where: "letter" },
 } as const satisfies Record<string, Shortcut>;
 
 export type Name = keyof typeof SHORTCUTS;
@@ -92,7 +99,10 @@ export function pressed({ key, shiftKey, ctrlKey, altKey, metaKey }: KeyboardEve
   return held.filter(Boolean).join("") + (named ? key : small);
 }
 
+/** Where letters are typed, or choose. */
+const TYPED = "input:not([type=checkbox], [type=radio], [type=range], [type=file]), select, textarea, [contenteditable]";
+
 function heard(where: Shortcut["where"], target: Element, surface: HTMLElement): boolean {
   if (where === "page" || target === surface) return true;
-  return where === "letter" && letters.everywhere && !target.matches("input, select, textarea, [contenteditable]");
+  return where === "letter" && letters.everywhere && !target.matches(TYPED);
 }

@@ -21,6 +21,11 @@ export class Status {
     hub.on("stage", ({ product, method, done }) => {
       if (!done.outcome) this.show("busy", t("making", { product: made(product), method }));
     });
+    hub.on("made", ({ outcome, why }) => {
+      if (outcome === "failed") this.show("error", why);
+      if (outcome === "stopped") this.show("idle", t("makingStopped"));
+    });
+    hub.on("maker_gone", ({ why }) => this.show("error", why));
     hub.on("touch", ({ law }) => this.show("felt", t("feeling", { law })));
     hub.on("loop", ({ running, stopped, why, waiting }) => {
       if (!running) this.show("stopped", stopped ? t("stopped") : t(waiting ? "waiting" : "ended", { why }));

@@ -9,7 +9,7 @@ import { asText } from "./values";
 /** Of the fields of all forms; what follows is the key, as in "field:render.stiffness_n_per_m". */
 export const FIELD = "field:";
 
-/** Where the document's defaults are asked for, which may depend on the scene. */
+/** What counts where the document says nothing, which may depend on the scene. */
 export type DefaultOf = (key: string) => Plain | undefined;
 
 export function rows(defaultOf: DefaultOf): Row {
@@ -35,7 +35,7 @@ export function rows(defaultOf: DefaultOf): Row {
     return {
       root: box,
       show: (value) => {
-        const byDefault = defaultOf(key) ?? option.byDefault;
+        const byDefault = (value === undefined ? defaultOf(key) : undefined) ?? option.byDefault;
         reset.hidden = value === undefined || option.byDefault === undefined;
         box.classList.toggle("set", value !== undefined);
         made.show(value === undefined ? byDefault : value);
@@ -81,7 +81,7 @@ function help(option: Option, id: string): { root: HTMLElement; show(byDefault: 
   about.textContent = option.about;
   const now = document.createElement("span");
   const range = rangeOf(option.kind, option.unit);
-  root.append(about, " ", range ? `${range}. ` : "", now);
+  root.append(about, " ", range && `${range[0].toUpperCase()}${range.slice(1)}. `, now);
   return {
     root,
     show: (byDefault, isSet) => {

@@ -64,9 +64,9 @@ function line(row: Row): HTMLElement {
   head.append(
     part("shape", SHAPES[row.state], true),
     part("product", named(row.product)),
-    part("method", row.method === "core" ? "" : row.method),
     part("state", t(row.state)),
     part("time", time(row, performance.now())),
+    part("method", row.method === "core" ? "" : row.method),
   );
   box.append(head);
   if (row.state === "running") box.append(bar(row));

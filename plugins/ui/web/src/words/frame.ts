@@ -15,6 +15,7 @@ export const t = words({
   making: ["{product} is being made by {method}", "{product} wird mit {method} berechnet"],
   ended: ["No force: {why}", "Keine Kraft: {why}"],
   waiting: ["No force; waiting for the device: {why}", "Keine Kraft; das Gerät wird gesucht: {why}"],
+  makingStopped: ["Making was stopped.", "Die Berechnung wurde abgebrochen."],
   watching: ["Another tab holds the hand.", "Ein anderer Tab führt die Hand."],
   nobody: ["No tab holds the hand. Press on the surface to take it.",
     "Kein Tab führt die Hand. Drücken Sie auf die Oberfläche, um sie zu übernehmen."],

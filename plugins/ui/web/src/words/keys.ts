@@ -26,4 +26,11 @@ export const t = words({
   aloud: ["Speech on or off", "Sprachausgabe ein oder aus"],
   "hear heights": ["Hear the heights from left to right, in the row under the hand",
     "Die Höhen von links nach rechts hören, in der Zeile unter der Hand"],
+  "measure here": ["Set the next end of the ruler at the hand", "Das nächste Ende des Lineals bei der Hand setzen"],
+  "remove ruler": ["Remove the ruler", "Das Lineal entfernen"],
+  mark: ["Mark the place under the hand", "Die Stelle unter der Hand markieren"],
+  enlarge: ["Feel half as much about the hand, enlarged", "Um die Hand herum halb so viel fühlen, vergrößert"],
+  "whole picture": ["Feel the whole picture", "Das ganze Bild fühlen"],
+  "copy values": ["Copy the values of the data cursor as text", "Die Messwerte am Cursor als Text kopieren"],
+  "copy values as JSON": ["Copy the values of the data cursor as JSON", "Die Messwerte am Cursor als JSON kopieren"],
 });

@@ -163,10 +163,12 @@ def test_a_large_relief_is_drawn_at_once_and_finer_where_one_looks(serve, open_p
 
 
 def test_graphics_that_are_taken_away_and_come_back(url: str, open_page, complaints: list[str]):
-    page = open_page(f"{url}&measure", reduced_motion="reduce")
+    """On a screen of fine pixels, too, which are drawn where that is not slow."""
+    page = open_page(f"{url}&measure", reduced_motion="reduce", device_scale_factor=2)
     page.wait_for_function("() => window.page?.scene && window.figures.firstMs > 0", timeout=60_000)
     settled(page)
     before = pixels(page)
+    assert before.std() > 10
     page.evaluate(
         "() => { const gl = document.querySelector('#terrain').getContext('webgl2');"
         " window.taken = gl.getExtension('WEBGL_lose_context'); window.taken.loseContext() }"

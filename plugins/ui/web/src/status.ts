@@ -20,6 +20,10 @@ export class Status {
     hub.on("stage", ({ product, method, done }) => {
       if (!done.outcome) this.say("busy", t("making", { product, method }));
     });
+    hub.on("made", ({ want, outcome }) => {
+      if (outcome === "stopped") this.say("idle", t("makingStopped"));
+      else if (outcome === "made" && want !== "touch") this.say("idle", t("made"));
+    });
     hub.on("touch", ({ law }) => this.say("felt", t("feeling", { law })));
     hub.on("loop", ({ running }) => {
       if (!running) this.say("stopped", t("stopped"));

@@ -21,9 +21,10 @@ export class Status {
     hub.on("stage", ({ product, method, done }) => {
       if (!done.outcome) this.show("busy", t("making", { product: made(product), method }));
     });
-    hub.on("made", ({ outcome, why }) => {
+    hub.on("made", ({ want, outcome, why }) => {
       if (outcome === "failed") this.show("error", why);
-      if (outcome === "stopped") this.show("idle", t("makingStopped"));
+      else if (outcome === "stopped") this.show("idle", t("makingStopped"));
+      else if (want !== "touch") this.show("idle", t("made"));
     });
     hub.on("maker_gone", ({ why }) => this.show("error", why));
     hub.on("touch", ({ law }) => this.show("felt", t("feeling", { law })));

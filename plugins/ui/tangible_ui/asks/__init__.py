@@ -3,9 +3,11 @@
 from collections.abc import Awaitable, Callable, Mapping
 from typing import Any
 
-from . import document, feeling, making, opening, records
+from . import devices, document, feeling, making, opening, records
 
 Ask = Callable[..., Awaitable[Any]]
 """Called with the desk, the tab, and what the tab says by name; the tab is answered with what it returns, as JSON."""
 
-ASKS: Mapping[str, Ask] = {**document.ASKS, **making.ASKS, **feeling.ASKS, **opening.ASKS, **records.ASKS}
+ASKS: Mapping[str, Ask] = {
+    **document.ASKS, **making.ASKS, **feeling.ASKS, **opening.ASKS, **records.ASKS, **devices.ASKS,
+}  # fmt: skip

@@ -1,5 +1,7 @@
 """Everything the maker can be asked, by name."""
 
-from . import checking, making, opening, preflight, records
+from . import checking, devices, making, opening, preflight, records
 
-JOBS = {**making.JOBS, **checking.JOBS, **opening.JOBS, **preflight.JOBS, **records.JOBS}
+JOBS = {
+    **making.JOBS, **checking.JOBS, **opening.JOBS, **preflight.JOBS, **records.JOBS, **devices.JOBS,
+}  # fmt: skip

@@ -10,6 +10,7 @@ import numpy as np
 
 from tangible_core.data import HapticSurface
 from tangible_core.errors import TangibleError
+from tangible_core.mapping import over
 from tangible_core.pipeline.engine import Progress, Stage
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.runtime.child_process import dumps
@@ -122,15 +123,15 @@ def _segments(pipeline: Pipeline, surface: HapticSurface) -> list[dict[str, Any]
 
 def _touch(pipeline: Pipeline, heard: Progress, stop: Event) -> dict[str, Any]:
     touch, config = pipeline.make("touch", heard, stop), pipeline.config
-    device = config.felt_device
-    if device is None:
+    if config.felt_device is None:
         raise config.missing("device")
+    device = over(config.felt_device, pipeline.make("surface").extent_m)
     sent = packed(touch, device.spec())
     return {
         "parcel": str(sent.parcel),
         "stiffness_n_per_m": sent.stiffness_n_per_m,
         "law": config.render.name if config.render else "",
-        "device_name": config.device.name if config.device else "",
+        "device_name": config.device.name,
         "device": dumps(device),
         "mapping": dumps(config.mapping),
         "safety": dumps(config.safety),

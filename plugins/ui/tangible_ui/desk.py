@@ -18,8 +18,8 @@ from .recorder import Recorder
 from .shelf import Shelf, user_folder
 from .texts import Texts
 
-MOST_HISTORY = 500
-"""Events that a tab which is opened later hears of."""
+MOST_HISTORY, MOST_LOGGED = 500, 200
+"""Events, and lines that were logged, that a tab which is opened later hears of."""
 LAST_ALONE = frozenset({"document", "plan", "materials", "preflight"})
 """Events of which only the last one counts."""
 
@@ -54,7 +54,8 @@ class Desk:
         self.tabs: list[Tab] = []
         self.holder: Tab | None = None
         """The tab whose hand is felt."""
-        self.history: deque[dict[str, Any]] = deque(maxlen=MOST_HISTORY)
+        self._history: deque[dict[str, Any]] = deque(maxlen=MOST_HISTORY)
+        self._logged: deque[dict[str, Any]] = deque(maxlen=MOST_LOGGED)
         self.maker = Maker(folder, self._hear)
         self.began_s = time.time()
         self._tasks: set[asyncio.Task[Any]] = set()
@@ -95,13 +96,18 @@ class Desk:
         else:
             if event in LAST_ALONE:
                 self._forget(event)
-            self.history.append(said)
+            (self._logged if event == "log" else self._history).append(said)
         for tab in list(self.tabs):
             tab.say(said)
 
     def _forget(self, event: str) -> None:
-        if (before := next((each for each in self.history if each["event"] == event), None)) is not None:
-            self.history.remove(before)
+        if (before := next((each for each in self._history if each["event"] == event), None)) is not None:
+            self._history.remove(before)
+
+    @property
+    def history(self) -> list[dict[str, Any]]:
+        """What a tab that comes later hears of; however much is logged, the rest is there."""
+        return sorted([*self._history, *self._logged], key=lambda said: said["at_s"])
 
     def enter(self, tab: Tab) -> None:
         """Another tab; it holds the hand if no other one does."""

@@ -54,7 +54,7 @@ class LiveTab:
     async def live(self) -> None:
         """Until it is closed."""
         await self._socket.accept()
-        self.say({"event": "hello", "version": VERSION, "history": list(self._desk.history), "scene": self._desk.scene})
+        self.say({"event": "hello", "version": VERSION, "history": self._desk.history, "scene": self._desk.scene})
         self._desk.enter(self)
         senders = [asyncio.create_task(self._send_states()), asyncio.create_task(self._send_events())]
         try:

@@ -11,6 +11,9 @@ export interface Material {
   roughness_m: number;
   grain_m: number;
   texture: string;
+  direction_deg: number;
+  anisotropy: number;
+  irregularity: number;
   drag_n_s_per_m: number;
 }
 
@@ -25,6 +28,8 @@ export interface Meta {
   height_m: [number, number];
   materials: Material[];
   photo: boolean;
+  /** The surface in words, by language. */
+  says?: Record<string, string>;
 }
 
 export interface Note {
@@ -135,6 +140,8 @@ export interface Events {
   loop: Said & { running: boolean; why: string };
   error: Said & { text: string };
   recorder: Said & { recording: boolean; path: string; ticks: number; why: string };
+  /** What Python's logging and warnings say, in the server and in the maker. */
+  log: Said & { level: "detail" | "warning" | "error"; logger: string; text: string };
   /** Of this page alone: a state that arrived, one that was drawn, a surface that can be drawn. */
   state: State;
   drawn: State;
@@ -143,4 +150,7 @@ export interface Events {
   recording: { path: string };
   /** Of this page alone: the colours are others now (see `colour` of themes.ts). */
   theme: { chosen: string; dark: boolean; contrast: boolean };
+  /** Sound was switched; speech was, or has another voice ("": none). */
+  sound: { on: boolean };
+  aloud: { on: boolean; voice: string };
 }

@@ -25,6 +25,8 @@ export class Net {
   latest: State | null = null;
   /** When each pointer was sent, by its tag: how long until its force is drawn. */
   readonly sentMs = new Map<number, number>();
+  /** When the newest event was said that this page heard. */
+  heard_s = 0;
   private tag = 0;
   private number = 0;
   private waiting = new Map<number, Waiting>();
@@ -84,6 +86,8 @@ export class Net {
       return;
     }
     this.hub.tell(said.event as keyof Events, said as never);
+    const last = said.event === "hello" ? (said as Events["hello"]).history.at(-1) : said;
+    this.heard_s = Math.max(this.heard_s, (last as { at_s?: number } | undefined)?.at_s ?? 0);
   }
 
   private take(data: ArrayBuffer): void {

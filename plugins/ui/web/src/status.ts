@@ -14,7 +14,8 @@ export class Status {
     this.button("again", t("feelAgain"), () => this.ask("feel"));
     this.stopButton();
     this.line.textContent = t("starting");
-    hub.on("gone", () => this.say("error", t("gone")));
+    hub.on("gone", () => this.say("error", t("gone"), "gone"));
+    hub.on("hello", () => page.forget("gone"));
     hub.on("error", ({ text }) => this.say("error", text));
     hub.on("stage", ({ product, method, done }) => {
       if (!done.outcome) this.say("busy", t("making", { product, method }));
@@ -50,9 +51,9 @@ export class Status {
     this.page.net.ask(name).catch((error: Error) => this.say("error", error.message));
   }
 
-  private say(what: What, text: string): void {
+  private say(what: What, text: string, topic = what === "error" ? text : "status"): void {
     this.line.dataset.state = what;
     this.line.textContent = text;
-    this.page.say(text);
+    this.page.say(text, { topic, urgent: what === "error" || what === "stopped" });
   }
 }

@@ -36,3 +36,8 @@ export function words<T extends Table>(table: T): (key: keyof T, values?: Record
   return (key, values = {}) =>
     table[key]![column]!.replace(/\{(\w+)\}/g, (whole, name: string) => String(values[name] ?? whole));
 }
+
+/** A number as the language writes it. */
+export function decimal(value: number, digits: number): string {
+  return value.toLocaleString(language, { minimumFractionDigits: digits, maximumFractionDigits: digits });
+}

@@ -3,11 +3,12 @@
 from collections.abc import Awaitable, Callable, Mapping
 from typing import Any
 
-from . import devices, document, feeling, making, opening, records
+from . import devices, document, drafts, feeling, making, opening, records
 
 Ask = Callable[..., Awaitable[Any]]
 """Called with the desk, the tab, and what the tab says by name; the tab is answered with what it returns, as JSON."""
 
 ASKS: Mapping[str, Ask] = {
     **document.ASKS, **making.ASKS, **feeling.ASKS, **opening.ASKS, **records.ASKS, **devices.ASKS,
+    **drafts.ASKS,
 }  # fmt: skip

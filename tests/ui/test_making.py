@@ -89,6 +89,9 @@ def test_another_law_makes_the_touch_alone(bench: Bench, scene: Path):
     other = TEXT.replace("400", "500")
     plan = JOBS["plan"].do(bench, text=other, path=scene, sets=DEVICE, want="touch")
     assert (plan["slow"], plan["refusal"]) == ([], "")
+    products = {each["product"]: each["outcome"] for each in plan["steps"]}
+    assert list(products) == ["views", "disparity", "relief", "segments", "materials", "surface", "touch"]
+    assert (products["views"], products["disparity"], products["touch"]) == ("given", "cached", "ran")
     make(bench, other, scene)
     assert {told["product"] for told in heard(bench, "stage")} == {"touch"}
     assert not heard(bench, "scene")

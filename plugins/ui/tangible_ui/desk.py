@@ -5,7 +5,7 @@ import time
 from collections import deque
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any, Protocol, final
+from typing import Any, Protocol, final, runtime_checkable
 
 from tangible_core.errors import DeviceError
 
@@ -26,6 +26,7 @@ LAST_ALONE = frozenset({"restored", "document", "plan", "materials", "preflight"
 """Events of which only the last one counts."""
 
 
+@runtime_checkable
 class Tab(Protocol):
     """A page in a browser, as the desk knows it."""
 

@@ -3,12 +3,18 @@
 from collections.abc import Awaitable, Callable, Mapping
 from typing import Any
 
-from . import devices, document, drafts, feeling, making, opening, records
+from . import devices, document, drafts, feeling, making, opening, records, seeing
 
 Ask = Callable[..., Awaitable[Any]]
 """Called with the desk, the tab, and what the tab says by name; the tab is answered with what it returns, as JSON."""
 
 ASKS: Mapping[str, Ask] = {
-    **document.ASKS, **making.ASKS, **feeling.ASKS, **opening.ASKS, **records.ASKS, **devices.ASKS,
+    **document.ASKS,
     **drafts.ASKS,
-}  # fmt: skip
+    **making.ASKS,
+    **seeing.ASKS,
+    **feeling.ASKS,
+    **opening.ASKS,
+    **records.ASKS,
+    **devices.ASKS,
+}

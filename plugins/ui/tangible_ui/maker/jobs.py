@@ -1,7 +1,13 @@
 """Everything the maker can be asked, by name."""
 
-from . import checking, devices, making, opening, preflight, records
+from . import checking, devices, making, opening, preflight, records, textures
 
 JOBS = {
-    **making.JOBS, **checking.JOBS, **opening.JOBS, **preflight.JOBS, **records.JOBS, **devices.JOBS,
-}  # fmt: skip
+    **making.JOBS,
+    **checking.JOBS,
+    **opening.JOBS,
+    **preflight.JOBS,
+    **records.JOBS,
+    **devices.JOBS,
+    **textures.JOBS,
+}

@@ -6,13 +6,16 @@ import { frame } from "./frame";
 import { Frames } from "./frames";
 import { Hand } from "./hand";
 import { Hub } from "./hub";
+import { Instrument } from "./instrument";
 import { Narrator } from "./narrator";
 import { Net } from "./net";
+import { notice } from "./notice";
 import type { Page } from "./page";
 import { build } from "./panel";
 import { panels } from "./panels";
 import { Scene } from "./scene";
 import { listen } from "./shortcuts";
+import { stroke } from "./sonify";
 import { Sound } from "./sound";
 import { Speech } from "./speech";
 import { splits } from "./splits";
@@ -41,6 +44,7 @@ const page: Page = {
   view: new View(canvas),
   canvas,
   scene: null,
+  hand: null,
   document: null,
   replayed: null,
   sound: new Sound(hub, () => page.scene),
@@ -53,17 +57,23 @@ const page: Page = {
 hub.on("hello", ({ history, scene }) => {
   // After a connection that was lost, what was heard before is not heard again; and what is long over is not said.
   announcer.hushed = true;
-  for (const each of history) if (each.at_s > net.heard_s) hub.tell(each.event, each as never);
+  const all = [...history, ...(scene ? [{ ...scene, event: "scene" as const }] : [])].sort((a, b) => a.at_s - b.at_s);
+  for (const each of all) if (each.at_s > net.heard_s) hub.tell(each.event, each as never);
   announcer.hushed = false;
-  if (scene) hub.tell("scene", scene);
 });
 hub.on("document", (said) => (page.document = said));
+let newest = "";
 hub.on("scene", async (meta) => {
-  if (page.scene?.meta.digest === meta.digest) return;
-  const loaded = await Scene.load(meta);
-  page.scene = loaded;
-  page.view.put(loaded);
-  hub.tell("shown", loaded);
+  if (page.scene?.meta.digest === meta.digest && newest === meta.digest) return;
+  newest = meta.digest;
+  try {
+    const loaded = await Scene.load(meta);
+    if (newest !== meta.digest) return; // another one was made meanwhile
+    page.scene = loaded;
+    hub.tell("shown", loaded);
+  } catch (error) {
+    hub.tell("error", { event: "error", at_s: Date.now() / 1000, text: (error as Error).message });
+  }
 });
 
 frame(page);
@@ -71,7 +81,9 @@ splits();
 listen(canvas);
 new Status(page);
 new Narrator(page);
-new Hand(page);
+page.hand = new Hand(page);
 new Cursors(page);
+notice(page);
 build(page, panels);
 new Frames(page, asked.has("measure"));
+if (asked.has("measure")) Object.assign(window, { page, Instrument, stroke }); // what tests look into

@@ -29,14 +29,6 @@ export function named(material: Material | null, part: number | null, parts: num
   return part === null || parts < 2 ? name : t("part", { name, part: part + 1 });
 }
 
-/** The number of the part at a place; null outside. */
-export function partAt(scene: Scene, x: number, y: number): number | null {
-  const { rows, columns, extent_m } = scene.meta;
-  const column = Math.floor((x / extent_m[0] + 0.5) * columns);
-  const row = Math.floor((0.5 - y / extent_m[1]) * rows);
-  return column < 0 || row < 0 || column >= columns || row >= rows ? null : scene.labels[row * columns + column];
-}
-
 export class Narrator {
   private lasting = new Map<number, number>();
   private limits = new Set<number>();
@@ -59,7 +51,7 @@ export class Narrator {
     if (!held(state)) return t("noHand");
     if (!touching(state)) return t("inTheAir");
     const [x, y] = state.hand;
-    const what = named(scene.material(x, y), partAt(scene, x, y), scene.meta.materials.length);
+    const what = named(scene.material(x, y), scene.label(x, y), scene.meta.materials.length);
     return t("touching", { what });
   }
 
@@ -84,7 +76,7 @@ export class Narrator {
       t(x < 0 ? "left" : "right", at),
       t(y < 0 ? "near" : "far", at),
       t("high", { height: millimetres(scene.height(x, y)) }),
-      named(scene.material(x, y), partAt(scene, x, y), scene.meta.materials.length),
+      named(scene.material(x, y), scene.label(x, y), scene.meta.materials.length),
       touching(state) ? t("force", { force: decimal(Math.hypot(...state.force), 1) }) : t("inTheAir"),
     ].join(", ");
   }

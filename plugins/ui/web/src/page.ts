@@ -1,5 +1,6 @@
 /** What all parts of the page share. */
 import type { How } from "./announcer";
+import type { Hand } from "./hand";
 import type { Hub } from "./hub";
 import type { Events } from "./messages";
 import type { Net } from "./net";
@@ -17,6 +18,8 @@ export interface Page {
   readonly canvas: HTMLCanvasElement;
   /** What is drawn; null before the first. */
   scene: Scene | null;
+  /** What moves the device of this page; null before the first moment is over. */
+  hand: Hand | null;
   /** The pipeline file on the screen. */
   document: Events["document"] | null;
   /** The tick of a recording that is shown in place of the loop's; null for what is felt now. */

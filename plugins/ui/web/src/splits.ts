@@ -20,6 +20,7 @@ const LEAST_PX = 80;
 const KEYS: Record<string, number> = { ArrowLeft: -1, ArrowUp: -1, ArrowRight: 1, ArrowDown: 1 };
 
 export function splits(): void {
+  document.getElementById("sizes")!.setAttribute("aria-label", t("sizes"));
   for (const split of SPLITS) lines.push(new Line(split));
 }
 

@@ -5,6 +5,7 @@ import type { Page } from "../page";
 import type { Panel } from "../panel";
 import { recall, remember } from "../remembered";
 import { t } from "../words/log";
+import { made } from "../words/products";
 import { decimal, language } from "../words/words";
 import { asText, LEVELS, Lines, seen, type Level, type Line } from "./log/lines";
 import "./log.css";
@@ -28,15 +29,16 @@ class Log {
     box.id = "log";
     box.tabIndex = 0;
     box.setAttribute("role", "log");
-    box.setAttribute("aria-live", "off"); // the announcer says what matters, once a second at most
+    box.setAttribute("aria-live", "off"); // the announcer says what matters, once a second at most; but who wants all
+    this.page.hub.on("read log", ({ on }) => box.setAttribute("aria-live", on ? "polite" : "off"));
     box.setAttribute("aria-label", t("lines"));
     box.append(this.list);
-    this.root.append(this.tools(box), box);
+    this.root.append(this.tools(), box);
     this.listen();
     this.show();
   }
 
-  private tools(box: HTMLElement): HTMLElement {
+  private tools(): HTMLElement {
     const tools = document.createElement("div");
     tools.className = "log-tools";
     const filters = document.createElement("div");
@@ -52,9 +54,14 @@ class Log {
       this.show();
       this.page.say(this.count.value, { topic: "log" });
     };
-    const read = check(t("read"), false, (on) => box.setAttribute("aria-live", on ? "polite" : "off"));
-    const acts = [button(t("copy"), () => this.copy()), button(t("save"), () => this.save()), button(t("clear"), () => this.clear())];
-    tools.append(filters, search, this.count, ...acts, read);
+    const acts = document.createElement("div");
+    acts.className = "log-acts";
+    acts.append(
+      button(t("copy"), () => this.copy()),
+      button(t("save"), () => this.save()),
+      button(t("clear"), () => this.clear()),
+    );
+    tools.append(filters, search, this.count, acts);
     return tools;
   }
 
@@ -79,9 +86,9 @@ class Log {
   }
 
   private stage({ at_s, product, method, done: { outcome, seconds, why } }: Events["stage"]): void {
-    if (!outcome) return this.add("detail", t("begun", { product, method }), at_s);
-    const told = { product, method: method || t("noMethod"), outcome: t(outcome), seconds: decimal(seconds ?? 0, 3) };
-    this.add(outcome === "failed" ? "error" : "event", `${t("stage", told)}${why ? `: ${why}` : ""}`, at_s);
+    if (!outcome) return this.add("detail", t("begun", { product: made(product), method }), at_s);
+    const told = { product: made(product), method, outcome: t(outcome), seconds: decimal(seconds ?? 0, 3) };
+    this.add(outcome === "failed" ? "error" : "event", `${t(method ? "stage" : "given by", told)}${why ? `: ${why}` : ""}`, at_s);
   }
 
   /** Many may come at once: they are put on the page together, before it is drawn. */

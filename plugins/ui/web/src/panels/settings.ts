@@ -2,6 +2,7 @@
 import { button } from "../elements";
 import type { Page } from "../page";
 import type { Panel } from "../panel";
+import { recall, remember } from "../remembered";
 import { letters } from "../shortcuts";
 import { resetSizes, resize } from "../splits";
 import { THEMES, type Theme } from "../themes";
@@ -9,7 +10,7 @@ import { t } from "../words/settings";
 import { LANGUAGES, language, speak, type Language } from "../words/words";
 
 function build(page: Page, root: HTMLElement): void {
-  root.append(colours(page), languages(), sizes(), keys());
+  root.append(colours(page), languages(), sizes(), keys(), reading(page));
 }
 
 function colours(page: Page): HTMLElement {
@@ -58,6 +59,21 @@ function keys(): HTMLElement {
   const box = document.createElement("div");
   box.append(label, hint);
   return box;
+}
+
+function reading(page: Page): HTMLElement {
+  const input = document.createElement("input");
+  input.type = "checkbox";
+  input.checked = recall("read", false);
+  const tell = (): void => page.hub.tell("read log", { on: input.checked });
+  input.onchange = () => {
+    remember("read", input.checked);
+    tell();
+  };
+  queueMicrotask(tell); // when all panels are there
+  const label = document.createElement("label");
+  label.append(input, t("read"));
+  return label;
 }
 
 function choose(options: (readonly [value: string, text: string])[], value: string): HTMLSelectElement {

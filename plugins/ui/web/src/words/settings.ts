@@ -13,6 +13,7 @@ export const t = words({
   wider: ["Larger", "Größer"],
   narrower: ["Smaller", "Kleiner"],
   reset: ["As at first", "Wie zu Anfang"],
+  read: ["A screen reader reads every new line of the log", "Ein Screenreader liest jede neue Zeile des Protokolls vor"],
   letters: ["Letters are keys everywhere", "Buchstaben sind überall Tasten"],
   lettersHint: ["Off: letters such as W or S act on the surface alone, so that speech input does not set them off.",
     "Aus: Buchstaben wie W oder S wirken nur auf der Oberfläche, damit eine Spracheingabe sie nicht auslöst."],

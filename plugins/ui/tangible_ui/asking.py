@@ -1,4 +1,4 @@
-"""What a tab asks for, taken apart: a name that there is, and arguments that fit it; or one sentence of what is wrong."""
+"""What a tab asks for, taken apart: a name that there is and arguments that fit, or a sentence of what is wrong."""
 
 import inspect
 import json

@@ -9,9 +9,11 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from tangible_core.errors import OutputError
+from tangible_devices.pointer.channel import channel_path
 
 PREFIX = "tangible-ui-"
-NUMBER = re.compile(r"(?:.*-)?([0-9]{1,9})(?:-\w+|\.\w+)")
+CHANNEL = "ui-"
+NUMBER = re.compile(r"(?:.*-)?([0-9]{1,9})(?:-[\w.]+|\.\w+)")
 
 
 @contextmanager
@@ -30,6 +32,23 @@ def folder_of_this_process() -> Generator[Path]:
         yield folder
     finally:
         shutil.rmtree(folder, ignore_errors=True)
+
+
+@contextmanager
+def channel_of_this_process() -> Generator[str]:
+    """The name of the page's own pointer; its files go at the end, and so do those of servers that were killed.
+
+    Raises: DeviceError if the folder for them is somebody else's.
+    """
+    name = f"{CHANNEL}{os.getpid()}"
+    folder = channel_path(name).parent
+    for each in left_in(folder, f"{CHANNEL}*"):
+        each.unlink(missing_ok=True)
+    try:
+        yield name
+    finally:
+        for each in [*folder.glob(f"{name}.*"), *folder.glob(f"{name}-*")]:
+            each.unlink(missing_ok=True)
 
 
 def left_in(folder: Path, pattern: str) -> Iterator[Path]:

@@ -38,7 +38,6 @@ FOREVER = "private, max-age=31536000, immutable"
 ASK_AGAIN = "no-cache"
 """A browser may keep it, and asks each time whether it is still the same."""
 NEVER = "no-store"
-MOST_DIGITS = 18
 READING = ("GET", "HEAD")
 WRONG_KEY = 4401
 NOT_YOURS = "the key in the address is not this program's; open the address it printed"
@@ -135,7 +134,7 @@ def routes(desk: Callable[[], Desk], key: str) -> list[BaseRoute]:
     async def upload(request: Request) -> Response:
         name = request.path_params["name"]
         said = request.headers.get("content-length", "0")
-        if len(said) > MOST_DIGITS or int(said) > MOST_BYTES:  # before a byte of it is read
+        if int(said) > MOST_BYTES:  # before a byte of it is read
             return PlainTextResponse(f"{name}: holds more than {in_words(MOST_BYTES)}; open a smaller one", 413)
         try:
             await desk().shelf.put(request.path_params["batch"], name, request.stream())

@@ -25,7 +25,7 @@ from .asks import document, drafts
 from .connection import PING_S, Connection
 from .desk import Desk
 from .feeling import Feeling
-from .left_behind import folder_of_this_process
+from .left_behind import channel_of_this_process, folder_of_this_process
 from .logs import silence, tell_pages
 from .routes import application, static
 from .watching import watch
@@ -34,6 +34,8 @@ HOST = "127.0.0.1"
 EXAMPLE = Path("builtin/motorcycle")
 MOST_CONNECTIONS = 256
 """Whoever comes then is told to come again later; who is there is served on."""
+MOST_MESSAGE_BYTES = 2**20
+"""A pipeline file is smaller."""
 THREADS = 32
 """For what waits: a disk, a pipe, a loop that ends. It is to wait for nothing else that waits."""
 ENDING = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
@@ -50,12 +52,13 @@ def serve(files: list[Path], sets: list[str], port: int, browser: bool) -> None:
             "(`pip install --force-reinstall --no-deps .`), or build it: `npm ci && npm run build` in plugins/ui/web"
         )
     key = new_key()
-    with folder_of_this_process() as folder, _listening(port) as listening:
+    with folder_of_this_process() as folder, channel_of_this_process() as channel, _listening(port) as listening:
         number = listening.getsockname()[1]
         url = f"http://{HOST}:{number}/?token={key}"
         hosts = frozenset({f"{HOST}:{number}", f"localhost:{number}"})
-        served = Served(folder, files or [EXAMPLE], sets)
-        server = Server(settings(application(lambda: served.desk, key, hosts, served.lifespan)), served.asked_to_end)
+        served = Served(folder, channel, files or [EXAMPLE], sets)
+        app = application(lambda: served.desk, key, hosts, served.lifespan)
+        server = Server(settings(app), served.asked_to_end)
         print(url, flush=True)  # noqa: T201 - what the command is called for
         if browser:  # in a thread of its own: one that needs the terminal is waited for until it ends
             threading.Thread(target=webbrowser.open, args=(url,), daemon=True).start()
@@ -73,8 +76,9 @@ def new_key() -> str:
 def settings(app: ASGIApp) -> uvicorn.Config:
     """How it is served: nobody can make it wait, or fill its memory, or read the key in a log."""
     return uvicorn.Config(
-        app, log_level="warning", access_log=False, server_header=False, loop="asyncio", lifespan="on", ws=Connection,
-        ws_per_message_deflate=False, ws_max_size=2**20, ws_ping_interval=PING_S, ws_ping_timeout=PING_S,
+        app, log_level="warning", access_log=False, server_header=False, loop="asyncio", http="h11", lifespan="on",
+        ws=Connection, ws_per_message_deflate=False, ws_max_size=MOST_MESSAGE_BYTES,
+        ws_ping_interval=PING_S, ws_ping_timeout=PING_S,
         limit_concurrency=MOST_CONNECTIONS, timeout_graceful_shutdown=1,
     )  # fmt: skip
 
@@ -123,8 +127,8 @@ class Server(uvicorn.Server):
 class Served:
     """What lives as long as the server."""
 
-    def __init__(self, folder: Path, files: list[Path], sets: list[str]) -> None:
-        self._folder, self._files, self._sets = folder, files, sets
+    def __init__(self, folder: Path, channel: str, files: list[Path], sets: list[str]) -> None:
+        self._folder, self._channel, self._files, self._sets = folder, channel, files, sets
         self._desk: Desk | None = None
         self._failure: Exception | None = None
 
@@ -150,7 +154,7 @@ class Served:
         loop = asyncio.get_running_loop()
         loop.set_default_executor(ThreadPoolExecutor(THREADS))
         try:
-            self._desk = desk = Desk(self._folder, Feeling(f"ui-{os.getpid()}"), self._sets)
+            self._desk = desk = Desk(self._folder, Feeling(self._channel), self._sets)
         except Exception as error:
             self._failure = error
             raise

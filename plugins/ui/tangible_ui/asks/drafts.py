@@ -16,7 +16,7 @@ async def offer(desk: Desk) -> None:
 
 
 async def restore(desk: Desk, tab: Tab | None) -> None:
-    """What was left is the document from now on, one step after that of before. Raises: ConfigError if there is none."""
+    """What was left is the document from now on, a step after that of before. Raises: ConfigError if there is none."""
     draft = desk.drafts.left
     if draft is None:
         raise ConfigError("there is nothing that was not saved")

@@ -163,23 +163,30 @@ class Feeling:
                 felt.touch.discard()
         return None if stopped() else time.monotonic() - begun_s
 
-    def cut(self) -> None:
-        """No force from the next tick on, and none until `allow`. Waits for nothing and nobody."""
+    def cut(self) -> Callable[[], None]:
+        """No force from the next tick on, and none until `allow`. Waits for nothing and nobody.
+
+        Returns: what waits until the loops that there are now are gone, and leaves later ones alone.
+        """
         self.stopped, self._stops = True, self._stops + 1
         self._told = self._servo
         self.hand.release()
-        for servo in (self._starting, self._servo):
-            if servo is not None:
-                with suppress(DeviceError):  # it has no ring yet; what it begins with gives no force
-                    servo.ring.header[STOP] = 1
+        cut = [servo for servo in (self._starting, self._servo) if servo is not None]
+        for servo in cut:
+            with suppress(DeviceError):  # it has no ring yet; what it begins with gives no force
+                servo.ring.header[STOP] = 1
+
+        def ended() -> None:
+            for servo in cut:
+                _end(servo)
+
+        return ended
 
     def stop(self) -> None:
-        """No force, at once; returns when the loop is gone. Does not wait for one that starts, nor for a swap."""
-        self.cut()
+        """No force, at once, and for good; returns when the loop is gone, but does not wait for one that starts."""
+        ended = self.cut()
         self.hand.close()
-        for servo in (self._starting, self._servo):
-            if servo is not None:
-                _end(servo)
+        ended()
 
     def allow(self) -> None:
         """Loops may start again."""

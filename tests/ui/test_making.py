@@ -89,6 +89,9 @@ def test_another_law_makes_the_touch_alone(bench: Bench, scene: Path):
     other = TEXT.replace("400", "500")
     plan = JOBS["plan"].do(bench, text=other, path=scene, sets=DEVICE, want="touch")
     assert (plan["slow"], plan["refusal"]) == ([], "")
+    products = {each["product"]: each["outcome"] for each in plan["steps"]}
+    assert list(products) == ["views", "disparity", "relief", "segments", "materials", "surface", "touch"]
+    assert (products["views"], products["disparity"], products["touch"]) == ("given", "cached", "ran")
     make(bench, other, scene)
     assert {told["product"] for told in heard(bench, "stage")} == {"touch"}
     assert not heard(bench, "scene")
@@ -229,10 +232,10 @@ def test_stopping_kills_the_maker_only_while_it_makes(small: Any, monkeypatch: p
         making = asyncio.ensure_future(ask("make"))
         assert await asyncio.to_thread(begun.wait, 20)
         await ask("stop_making")
+        go.set()
         assert await making is None  # who stops is not told of an error
         assert small.maker.kills == 1
         assert small.tab.last("made")["outcome"] == "stopped"
-        go.set()
         assert "error" not in small.tab.names()
         await ask("make")
         assert small.tab.last("made")["outcome"] == "made"

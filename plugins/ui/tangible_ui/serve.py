@@ -22,11 +22,10 @@ from .desk import Desk
 from .feeling import Feeling
 from .logs import silence, tell_pages
 from .routes import application, static
+from .watching import watch
 
 HOST = "127.0.0.1"
 EXAMPLE = Path("builtin/motorcycle")
-KEEP_S = 0.02
-"""How often the server says that it lives."""
 
 
 def serve(files: list[Path], sets: list[str], port: int, browser: bool) -> None:
@@ -81,14 +80,8 @@ class _Served:
         telling = tell_pages(tell)
         desk.begin(document.begin(desk, None, [str(each) for each in self._files]))
         desk.begin(asyncio.to_thread(desk.feeling.start))
-        desk.begin(_keep(desk))
+        desk.begin(watch(desk))
         gc.freeze()  # what was imported is never looked through again
         yield
         silence(telling)
         await desk.close()
-
-
-async def _keep(desk: Desk) -> None:
-    while True:
-        desk.feeling.hand.keep()
-        await asyncio.sleep(KEEP_S)

@@ -8,15 +8,18 @@ from tangible_core.scene.description import Language, describe
 from tangible_core.scene.description_words import MATERIALS
 from tangible_core.scene.workspace import kind_of
 
+from .seen import Seen
 
-def described(pipeline: Pipeline, surface: HapticSurface, digest: str) -> dict[str, Any]:
-    """What is said of a surface, by language; a material that has no name in a language keeps its own."""
+
+def described(pipeline: Pipeline, seen: Seen) -> dict[str, Any]:
+    """What is said of what is seen, by language; a material that has no name in a language keeps its own."""
     scene = pipeline.scene
     kind = kind_of(scene)
-    names = {each.name for each in surface.materials or ()} & MATERIALS.keys()
+    surface = HapticSurface(seen.relief, seen.labels, seen.materials) if seen.materials else HapticSurface(seen.relief)
+    names = {each.name for each in seen.materials} & MATERIALS.keys()
     languages = get_args(Language)
     return {
-        "digest": digest,
+        "digest": seen.digest,
         "says": {each: describe(surface, scene.name, each, kind) for each in languages},
         "names": {each: {name: MATERIALS[name][column] for name in names} for column, each in enumerate(languages)},
     }

@@ -1,6 +1,6 @@
 """Jobs that make products, and say on the way what there is to see; and what making would do."""
 
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from threading import Event
 from time import perf_counter
@@ -8,17 +8,19 @@ from typing import Any, cast
 
 import numpy as np
 
-from tangible_core.data import HapticSurface
+from tangible_core.data import Outcome, Plan
 from tangible_core.errors import TangibleError
+from tangible_core.mapping import over
+from tangible_core.pipeline.config import PRODUCTS
 from tangible_core.pipeline.engine import Progress, Stage
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.runtime.child_process import dumps
-from tangible_core.scene.geometry import flat_relief
 from tangible_core.servo import packed
 
 from .bench import Bench, Job, Work
 from .checking import digest_of
 from .described import described
+from .seen import Seen, see
 from .shown import show
 
 SLOW = ("disparity", "segments")
@@ -37,8 +39,20 @@ def planned(pipeline: Pipeline, text: str, want: str) -> dict[str, Any]:
     """The plan as pages have it. Raises: as `Pipeline.plan`."""
     found = pipeline.plan(cast(Any, want))
     slow = [each.product for each in found.steps if each.outcome == "ran" and each.product in SLOW]
-    steps = [asdict(each) for each in found.steps]
+    steps = [asdict(each) for each in _all_steps(pipeline, found)]
     return {"digest": digest_of(text), "want": want, "steps": steps, "slow": slow, "refusal": found.refusal}
+
+
+def _all_steps(pipeline: Pipeline, found: Plan) -> list[Outcome]:
+    """Those of the plan, and the products that are within one which is kept, in the order of making."""
+    steps = {each.product: each for each in found.steps}
+    if not found.refusal:
+        needed = pipeline.engine.needed(found.want)
+        for each in pipeline.outcomes:
+            if each.product in needed and each.product not in steps:
+                steps[each.product] = each if each.outcome == "given" else replace(each, outcome="cached", why="")
+    order = ["views", *PRODUCTS]
+    return sorted(steps.values(), key=lambda each: order.index(each.product))
 
 
 def make(bench: Bench, number: int, text: str, path: Path, sets: list[str], want: str) -> dict[str, Any] | None:
@@ -52,10 +66,11 @@ def make(bench: Bench, number: int, text: str, path: Path, sets: list[str], want
         bench.tell("making", want=want, digest=digest_of(text))
         bench.tell("plan", **planned(pipeline, text, want))
         heard = telling(bench, work)
-        if (surface := _seen(pipeline, want, heard, work.stop)) is not None:
-            _show(bench, pipeline, surface)
+        product = TO_SEE.get(want, want)
+        pipeline.make(product, heard, work.stop)
+        _show(bench, pipeline, product)
         work.worth = True
-        made = _touch(pipeline, heard, work.stop) if want == "touch" else None
+        made = felt(pipeline, heard, work.stop) if want == "touch" else None
     bench.tell("made", want=want, digest=digest_of(text), outcome="made", why="", seconds=perf_counter() - begun_s)
     return made
 
@@ -79,60 +94,45 @@ def give_way(bench: Bench, number: int, text: str, path: Path, sets: list[str], 
     return bench.give_way(number, bench.pipeline_of(text, path, sets), want)
 
 
-def _seen(pipeline: Pipeline, want: str, heard: Progress, stop: Event) -> HapticSurface | None:
-    """What can be seen of a product: depth without materials; materials on the relief, or flat before there is one."""
-    if want in ("surface", "touch"):
-        return pipeline.make("surface", heard, stop)
-    if want in ("disparity", "relief"):
-        pipeline.make(want, heard, stop)
-        return HapticSurface(pipeline.make("relief", heard, stop))
-    pipeline.make(want, heard, stop)
-    chosen, segments = pipeline.make("materials", heard, stop), pipeline.engine.felt("segments")
-    if chosen is None or segments is None:
-        return None
-    relief = flat_relief(segments.labels.shape, pipeline.config.size.width_m)
-    if not any(
-        each.outcome in ("ran", "refused") and each.product == "disparity" for each in pipeline.plan("relief").steps
-    ):
-        made = pipeline.make("relief", heard, stop)
-        relief = made if made.height_m.shape == segments.labels.shape else relief
-    return HapticSurface(relief, segments.labels, chosen.materials)
+TO_SEE = {"touch": "surface", "disparity": "relief", "segments": "materials"}
+"""What is seen of a product, where that is another one."""
 
 
-def _show(bench: Bench, pipeline: Pipeline, surface: HapticSurface) -> None:
+def _show(bench: Bench, pipeline: Pipeline, product: str) -> None:
     """Pages draw it while the touch is made."""
-    if (digest := surface.digest()) != bench.shown:
-        bench.tell("scene", **show(pipeline, surface, digest, bench.folder))
-        bench.shown = digest
-        bench.tell("described", **described(pipeline, surface, digest))
-    bench.tell("materials", segments=_segments(pipeline, surface))
+    if (seen := see(pipeline, product)).digest != bench.shown:
+        bench.tell("scene", **show(seen, bench.folder))
+        bench.shown = seen.digest
+        bench.tell("described", **described(pipeline, seen))
+    bench.tell("materials", segments=_segments(pipeline, seen))
 
 
-def _segments(pipeline: Pipeline, surface: HapticSurface) -> list[dict[str, Any]]:
+def _segments(pipeline: Pipeline, seen: Seen) -> list[dict[str, Any]]:
     """Each segment with its material, why it has it, and its share of the area."""
-    if surface.labels is None or surface.materials is None:
+    if seen.labels is None or not seen.materials:
         return []
     chosen = pipeline.make("materials")
-    reasons = chosen.reasons if chosen is not None else ("",) * len(surface.materials)
-    shares = np.bincount(surface.labels.ravel(), minlength=len(surface.materials)) / max(1, surface.labels.size)
-    named = enumerate(zip(surface.materials, reasons, shares.tolist(), strict=False))
+    reasons = chosen.reasons if chosen is not None else ("",) * len(seen.materials)
+    shares = np.bincount(seen.labels.ravel(), minlength=len(seen.materials)) / max(1, seen.labels.size)
+    named = enumerate(zip(seen.materials, reasons, shares.tolist(), strict=False))
     return [
         {"label": label, "material": material.name, "why": why, "share": share}
         for label, (material, why, share) in named
     ]
 
 
-def _touch(pipeline: Pipeline, heard: Progress, stop: Event) -> dict[str, Any]:
+def felt(pipeline: Pipeline, heard: Progress | None = None, stop: Event | None = None) -> dict[str, Any]:
+    """What the force loop needs of a touch, which is made. Raises: ConfigError without a device; as `Pipeline.make`."""
     touch, config = pipeline.make("touch", heard, stop), pipeline.config
-    device = config.felt_device
-    if device is None:
+    if config.device is None or config.felt_device is None:
         raise config.missing("device")
+    device = over(config.felt_device, pipeline.make("surface").extent_m)
     sent = packed(touch, device.spec())
     return {
         "parcel": str(sent.parcel),
         "stiffness_n_per_m": sent.stiffness_n_per_m,
         "law": config.render.name if config.render else "",
-        "device_name": config.device.name if config.device else "",
+        "device_name": config.device.name,
         "device": dumps(device),
         "mapping": dumps(config.mapping),
         "safety": dumps(config.safety),

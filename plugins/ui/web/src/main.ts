@@ -1,32 +1,33 @@
 /** The page: its parts are put together here. */
 import "./app.css";
 import { Announcer, regions } from "./announcer";
-import { Cursors } from "./cursors";
 import { frame } from "./frame";
 import { Frames } from "./frames";
 import { Hand } from "./hand";
 import { Hub } from "./hub";
 import { Instrument } from "./instrument";
+import { measure, measuring } from "./measure";
 import { Narrator } from "./narrator";
 import { Net } from "./net";
+import { notice } from "./notice";
+import { Overlay } from "./overlay/overlay";
 import type { Page } from "./page";
 import { build } from "./panel";
 import { panels } from "./panels";
-import { Scene } from "./scene";
+import { dataCursor } from "./panels/cursor";
 import { listen } from "./shortcuts";
 import { stroke } from "./sonify";
 import { Sound } from "./sound";
 import { Speech } from "./speech";
 import { splits } from "./splits";
 import { Status } from "./status";
+import { loadScene } from "./terrain/fetching";
 import { Themes } from "./themes";
 import { View } from "./view";
 import { language } from "./words/words";
 
 document.documentElement.lang = language;
 const element = <T extends HTMLElement>(id: string): T => document.getElementById(id) as T;
-const asked = new URLSearchParams(location.search);
-if (asked.has("measure")) document.body.classList.add("measure");
 
 const canvas = element<HTMLCanvasElement>("terrain");
 const hub = new Hub();
@@ -37,12 +38,15 @@ const announcer = new Announcer((said) => {
   speech.speak(said);
 });
 const net = new Net(hub);
+const view = new View(canvas);
 const page: Page = {
   hub,
   net,
-  view: new View(canvas),
+  view,
+  overlay: new Overlay(view, canvas),
   canvas,
   scene: null,
+  hand: null,
   document: null,
   replayed: null,
   sound: new Sound(hub, () => page.scene),
@@ -52,6 +56,7 @@ const page: Page = {
   forget: (topic) => announcer.forget(topic),
 };
 
+measure(page);
 hub.on("hello", ({ history, scene }) => {
   // After a connection that was lost, what was heard before is not heard again; and what is long over is not said.
   announcer.hushed = true;
@@ -60,12 +65,18 @@ hub.on("hello", ({ history, scene }) => {
   announcer.hushed = false;
 });
 hub.on("document", (said) => (page.document = said));
+let newest = "";
 hub.on("scene", async (meta) => {
-  if (page.scene?.meta.digest === meta.digest) return;
-  const loaded = await Scene.load(meta);
-  page.scene = loaded;
-  page.view.put(loaded);
-  hub.tell("shown", loaded);
+  if (page.scene?.meta.digest === meta.digest && newest === meta.digest) return;
+  newest = meta.digest;
+  try {
+    const loaded = await loadScene(meta);
+    if (newest !== meta.digest) return; // another one was made meanwhile
+    page.scene = loaded;
+    hub.tell("shown", loaded);
+  } catch (error) {
+    hub.tell("error", { event: "error", at_s: Date.now() / 1000, text: (error as Error).message });
+  }
 });
 
 frame(page);
@@ -73,8 +84,9 @@ splits();
 listen(canvas);
 new Status(page);
 new Narrator(page);
-new Hand(page);
-new Cursors(page);
+page.hand = new Hand(page);
+notice(page);
 build(page, panels);
-new Frames(page, asked.has("measure"));
-if (asked.has("measure")) Object.assign(window, { page, Instrument, stroke }); // what tests look into
+dataCursor(page);
+new Frames(page);
+if (measuring) Object.assign(window, { Instrument, stroke }); // what tests look into

@@ -1,4 +1,5 @@
 /** What the server says, by the name of the event; `at_s` is the Unix time. */
+import type { Hand } from "./hand";
 import type { State } from "./protocol";
 import type { Scene } from "./scene";
 
@@ -17,17 +18,38 @@ export interface Material {
   drag_n_s_per_m: number;
 }
 
+/** Values that can be warped over a surface; colours run from low to high. */
+export interface LayerMeta {
+  unit: string;
+  low: number;
+  high: number;
+  rows: number;
+  columns: number;
+}
+
 /** A surface: what the arrays at /scene/<digest>/ mean. */
 export interface Meta {
   digest: string;
   name: string;
+  /** Heights and materials; heights alone; or segments over whatever heights there are. */
+  shows: "surface" | "relief" | "segments";
+  /** Of the finest level. */
   rows: number;
   columns: number;
   extent_m: [number, number];
   /** Lowest and highest. */
   height_m: [number, number];
+  /** Level 0 is the finest; a cell of another is a mean over step x step of its cells. The last is drawn at once. */
+  levels: { step: number; rows: number; columns: number }[];
+  /** How many labels there are; 0 without any. */
+  labels: number;
+  label_bytes: 2 | 4;
+  /** Each once; which of them a label has is in materials.u16. */
   materials: Material[];
   photo: boolean;
+  /** Width and height of the finer picture beside the one that is drawn at once; null where that is the finest. */
+  fine_photo: [number, number] | null;
+  layers: Record<string, LayerMeta>;
 }
 
 export interface Note {
@@ -74,10 +96,8 @@ export interface Verdict {
   check: string;
   of: string;
   verdict: "ok" | "warn" | "unsafe";
-  value: number | null;
-  unit: string;
-  relation: "<=" | ">=" | "";
-  bound: number | null;
+  /** How the value stands to its bound, in words. */
+  stands: string;
   source: string;
   note: string;
   cure: string;
@@ -122,7 +142,8 @@ interface Said {
 export interface Events {
   hello: Said & { version: number; history: (Said & { event: keyof Events })[]; scene: (Said & Meta) | null };
   gone: Said;
-  holding: Said & { holding: boolean };
+  /** free: no tab holds the hand. */
+  holding: Said & { holding: boolean; free: boolean };
   maker: Said;
   /** The maker does not start, and is not tried any more. */
   maker_gone: Said & { why: string };
@@ -137,8 +158,25 @@ export interface Events {
   described: Said & { digest: string; says: Record<string, string>; names: Record<string, Record<string, string>> };
   document: Said & Document;
   touch: Said & { law: string; seconds: number; how: string };
-  loop: Said & { running: boolean; why: string };
+  /** stopped: somebody pressed stop; lost: the device went; waiting: it is looked for again and again. */
+  loop: Said & {
+    running: boolean;
+    why: string;
+    stopped?: boolean;
+    lost?: boolean;
+    waiting?: boolean;
+    device?: string;
+    own_hand?: boolean;
+  };
+  /** Another device was chosen. */
+  device: Said & { kind: "hand" | "document" | "other"; name: string };
   error: Said & { text: string };
+  laws: Said &
+    (
+      | { state: "one" }
+      | { state: "two"; named: [string, string]; felt: number }
+      | { state: "blind"; called: number; trials: number; question: string }
+    );
   recorder: Said & { recording: boolean; path: string; ticks: number; why: string };
   /** What Python's logging and warnings say, in the server and in the maker. */
   log: Said & { level: "detail" | "warning" | "error"; logger: string; text: string };
@@ -146,6 +184,10 @@ export interface Events {
   state: State;
   drawn: State;
   shown: Scene;
+  /** Something about this page's hand changed: what moves it, how, whether it is felt. */
+  hand: Hand;
+  /** Something finer of the surface on the screen has come. */
+  finer: Scene;
   /** A recording was opened, a file of this machine. */
   recording: { path: string };
   /** Of this page alone: the colours are others now (see `colour` of themes.ts). */

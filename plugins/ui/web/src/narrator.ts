@@ -29,14 +29,6 @@ export function named(name: string | undefined, part: number | null, parts: numb
   return part === null || parts < 2 ? said : t("part", { name: said, part: part + 1 });
 }
 
-/** The number of the part at a place; null outside. */
-export function partAt(scene: Scene, x: number, y: number): number | null {
-  const { rows, columns, extent_m } = scene.meta;
-  const column = Math.floor((x / extent_m[0] + 0.5) * columns);
-  const row = Math.floor((0.5 - y / extent_m[1]) * rows);
-  return column < 0 || row < 0 || column >= columns || row >= rows ? null : scene.labels[row * columns + column];
-}
-
 export class Narrator {
   private lasting = new Map<number, number>();
   private limits = new Set<number>();
@@ -95,7 +87,7 @@ export class Narrator {
 
   /** The material and the part at a place. */
   private under(scene: Scene, x: number, y: number): string {
-    const part = partAt(scene, x, y);
+    const part = scene.label(x, y);
     return named(scene.material(x, y)?.name, part, scene.meta.materials.length, this.known(scene)?.names[language] ?? {});
   }
 

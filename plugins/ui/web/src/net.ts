@@ -10,8 +10,9 @@ const KEPT_TAGS = 512;
 export const token = new URLSearchParams(location.search).get("token") ?? "";
 
 /** What the server keeps under an address. Throws if it is not there. */
-export async function bulk(path: string): Promise<Response> {
-  const response = await fetch(`${path}?token=${encodeURIComponent(token)}`);
+export async function bulk(path: string, asked: Record<string, number> = {}, signal?: AbortSignal): Promise<Response> {
+  const query = new URLSearchParams({ token, ...Object.fromEntries(Object.entries(asked).map(([k, v]) => [k, `${v}`])) });
+  const response = await fetch(`${path}?${query}`, { signal });
   if (!response.ok) throw new Error(`${path}: ${response.status} ${await response.text()}`);
   return response;
 }

@@ -1,8 +1,10 @@
 /** What all parts of the page share. */
 import type { How } from "./announcer";
+import type { Hand } from "./hand";
 import type { Hub } from "./hub";
 import type { Events } from "./messages";
 import type { Net } from "./net";
+import type { Overlay } from "./overlay/overlay";
 import type { State } from "./protocol";
 import type { Scene } from "./scene";
 import type { Sound } from "./sound";
@@ -14,9 +16,13 @@ export interface Page {
   readonly hub: Hub;
   readonly net: Net;
   readonly view: View;
+  /** What is drawn over the surface. */
+  readonly overlay: Overlay;
   readonly canvas: HTMLCanvasElement;
   /** What is drawn; null before the first. */
   scene: Scene | null;
+  /** What moves the device of this page; null before the first moment is over. */
+  hand: Hand | null;
   /** The pipeline file on the screen. */
   document: Events["document"] | null;
   /** The tick of a recording that is shown in place of the loop's; null for what is felt now. */

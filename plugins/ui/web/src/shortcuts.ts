@@ -23,6 +23,16 @@ export const SHORTCUTS = {
   "previous region": { keys: ["Shift+F6"], where: "page" },
   help: { keys: ["?", "F1"], where: "letter" },
   "move hand": { keys: ["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown"], where: "surface", own: true },
+  "move finely": {
+    keys: ["Shift+ArrowLeft", "Shift+ArrowRight", "Shift+ArrowUp", "Shift+ArrowDown"], where: "surface", own: true,
+  },
+  "move coarsely": {
+    keys: ["Ctrl+ArrowLeft", "Ctrl+ArrowRight", "Ctrl+ArrowUp", "Ctrl+ArrowDown"], where: "surface", own: true,
+  },
+  "to the middle": { keys: ["Home"], where: "surface", own: true },
+  "next part": { keys: ["n"], where: "surface", own: true },
+  "previous part": { keys: ["Shift+n"], where: "surface", own: true },
+  "in space": { keys: ["f"], where: "surface", own: true },
   "press or lift": { keys: [" "], where: "surface", own: true },
   deeper: { keys: ["PageDown"], where: "surface", own: true },
   "less deep": { keys: ["PageUp"], where: "surface", own: true },
@@ -31,6 +41,13 @@ export const SHORTCUTS = {
   sound: { keys: ["s"], where: "letter" },
   aloud: { keys: ["a"], where: "letter" },
   "hear heights": { keys: ["h"], where: "letter" },
+  "measure here": { keys: ["m"], where: "letter" },
+  "remove ruler": { keys: ["Shift+m"], where: "letter" },
+  mark: { keys: ["k"], where: "letter" },
+  enlarge: { keys: ["z"], where: "letter" },
+  "whole picture": { keys: ["Shift+z"], where: "letter" },
+  "copy values": { keys: ["c"], where: "letter" },
+  "copy values as JSON": { keys: ["Shift+c"], where: "letter" },
 } as const satisfies Record<string, Shortcut>;
 
 export type Name = keyof typeof SHORTCUTS;

@@ -27,12 +27,12 @@ export class Status {
     });
     hub.on("maker_gone", ({ why }) => this.show("error", why));
     hub.on("touch", ({ law }) => this.show("felt", t("feeling", { law })));
-    hub.on("loop", ({ running }) => {
-      if (!running) this.show("stopped", t("stopped"));
+    hub.on("loop", ({ running, stopped, why, waiting }) => {
+      if (!running) this.show("stopped", stopped ? t("stopped") : t(waiting ? "waiting" : "ended", { why }));
     });
-    hub.on("holding", ({ holding }) => {
+    hub.on("holding", ({ holding, free }) => {
       document.getElementById("hold")!.hidden = holding;
-      if (!holding) this.show("idle", t("watching"));
+      if (!holding) this.show("idle", t(free ? "nobody" : "watching"));
     });
   }
 

@@ -12,6 +12,7 @@ from ruamel.yaml.nodes import MappingNode, ScalarNode
 
 from ..errors import ConfigError, quoted, wrong_argument
 from .source import Location, key_of, parse_source, parse_value, plain
+from .yaml_bounds import MOST_DEPTH
 
 Node = Any
 """A key or a value that knows where it stands in the text."""
@@ -34,25 +35,35 @@ def change_text(text: str, path: Path, changes: Changes, named: Collection[str] 
     Another `use` clears the other options of its block; a block whose last option is removed goes with it. What cannot
     be changed in its place (a value that is shared by an alias) is written anew, and the comments are lost.
     path: what complaints name. named: keys at the top whose word alone stands for `{use: word}`.
-    Raises: ConfigError if the text is no YAML, or a key leads into a list; ArgumentError for what JSON cannot say.
+    Raises: ConfigError if the text is no YAML, a key leads into a list, or what is set is more than a file may hold;
+    ArgumentError for what JSON cannot say.
     """
     meant = _tree(text, path)
     for key, value in changes.items():
         parts = tuple(key.split(".")) if isinstance(key, str) else tuple(key)
-        if not parts or "" in parts:
+        if not 0 < len(parts) <= MOST_DEPTH or "" in parts:
             raise ConfigError(f"{quoted(key)}: is no key; write such as render.stiffness_n_per_m")
         value, before = _labelled(value), deepcopy(meant)
         _change(meant, parts, value, named)
         if _canonical(before) != _canonical(meant):
             text = _spliced(text, parts, value, named)
-    return text if _says(text, path, meant) else _written(meant)
+    if _says(text, path, meant):
+        return text
+    text = _written(meant)
+    if _canonical(_tree(text, path)) != _canonical(meant):
+        raise ConfigError(f"{path}: {quoted(list(changes))} cannot be changed key by key; change the text itself")
+    return text
 
 
-def _labelled(value: Any) -> Any:
+def _labelled(value: Any, depth: int = 0) -> Any:
     """JSON's keys are words; labels of a material map are whole numbers."""
+    if depth > MOST_DEPTH:
+        raise ConfigError(f"more than {MOST_DEPTH} blocks are nested")
     if isinstance(value, dict):
-        return {key_of(key, {}): _labelled(each) for key, each in cast("dict[Any, Any]", value).items()}
-    return [_labelled(each) for each in cast("list[Any]", value)] if isinstance(value, list | tuple) else value
+        return {key_of(key, {}): _labelled(each, depth + 1) for key, each in cast("dict[Any, Any]", value).items()}
+    if isinstance(value, list | tuple):
+        return [_labelled(each, depth + 1) for each in cast("list[Any]", value)]
+    return value
 
 
 def _tree(text: str, path: Path) -> dict[Any, Any]:

@@ -39,9 +39,15 @@ class MappedDevice(HapticDevice):
 
     def open(self) -> Link:
         """Raises: DeviceError as the device does."""
-        link = self.device.open()
-        to = self.mapping.placement(self.device.spec().workspace_m)
+        link, to = self.device.open(), placement_of(self)
         return MappedCompiledLink(link, to) if isinstance(link, CompiledLink) else MappedLink(link, to)
+
+
+def placement_of(device: HapticDevice) -> Placement:
+    """How the picture lies under this device's hand: as its mapping says, or as it is where it has none."""
+    if isinstance(device, MappedDevice):
+        return device.mapping.placement(device.device.spec().workspace_m)
+    return Placement()
 
 
 @final

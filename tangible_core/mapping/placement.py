@@ -7,6 +7,8 @@ picture that the hand finds at o. Forces are only turned, F_h = R F_s: a newton 
 import math
 from typing import NamedTuple
 
+from ..data import Vector
+
 QUARTERS = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))
 """Cosine and sine of the quarter turns, exactly."""
 
@@ -30,6 +32,22 @@ class Placement(NamedTuple):
     """How far from its centre the device may give force."""
     clutch: float = 0.0
     """The bits of the button that moves the picture."""
+
+    def on_picture(self, hand_m: Vector) -> Vector:
+        """The point of the picture at a point of the hand's space, where no clutch has moved the picture."""
+        x, y, z = hand_m
+        x, y = self.turned_back(x - self.offset_x_m, y - self.offset_y_m)
+        return self.centre_x_m + x / self.scale, self.centre_y_m + y / self.scale, (z - self.offset_z_m) / self.scale
+
+    def under_hand(self, picture_m: Vector) -> Vector:
+        """Where the hand finds a point of the picture, where no clutch has moved the picture."""
+        x, y, z = picture_m
+        x, y = self.scale * (x - self.centre_x_m), self.scale * (y - self.centre_y_m)
+        return (
+            self.offset_x_m + self.cos * x - self.sin * y,
+            self.offset_y_m + self.sin * x + self.cos * y,
+            self.offset_z_m + self.scale * z,
+        )
 
     def turned_back(self, x: float, y: float) -> tuple[float, float]:
         """A horizontal vector of the hand's space as the picture has it."""

@@ -4,10 +4,8 @@ import numpy as np
 from jaxtyping import Float64, Int64
 
 from ..plugins.interfaces import HapticDevice, Scripted
-from .device import MappedDevice
+from .device import MappedDevice, placement_of
 from .placement import Placement
-
-NOTHING = Placement()
 
 
 def over(device: HapticDevice, extent_m: tuple[float, float]) -> HapticDevice:
@@ -21,9 +19,9 @@ def over(device: HapticDevice, extent_m: tuple[float, float]) -> HapticDevice:
 
 def wanted(device: HapticDevice, ticks: Int64[np.ndarray, " n"]) -> Float64[np.ndarray, "n 3"] | None:
     """Where the hand wants to be at these ticks, the first of which is 0; None where the device does not know."""
-    to = NOTHING
+    to = placement_of(device)
     if isinstance(device, MappedDevice):
-        to, device = device.mapping.placement(device.device.spec().workspace_m), device.device
+        device = device.device
     found = device.wanted(ticks) if isinstance(device, Scripted) else None
     return None if found is None else _placed(to, found)
 
@@ -36,7 +34,7 @@ def _placed(to: Placement, hand_m: Float64[np.ndarray, "n 3"]) -> Float64[np.nda
 
 def _under_the_hand(device: MappedDevice, extent_m: tuple[float, float]) -> tuple[float, float]:
     """Width and length, in the hand's metres, of what about the device's centre lies over the picture."""
-    to = device.mapping.placement(device.device.spec().workspace_m)
+    to = placement_of(device)
     ((x, y, _),) = _placed(to, np.zeros((1, 3)))
     width, length = (to.scale * (side - 2 * abs(off)) for side, off in zip(extent_m, (x, y), strict=True))
     if width <= 0 or length <= 0:

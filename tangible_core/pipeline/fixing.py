@@ -1,11 +1,13 @@
 """What to change in a pipeline file for it to pass preflight: the cures, one at a time, each tried before the next."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import NamedTuple
 
 from ..files.source import read_text
 from ..preflight import Flight, Hand, Loop, Preflight, judge
+from ..preflight.timing import Lateness
 from ..preflight.verdict import Change
 from .config import parse_config
 from .editing import edited, moved, with_overrides
@@ -29,6 +31,18 @@ class Fixed:
     """The file with these changes and with its own comments, as one that stands where it is to be written."""
 
 
+class Cured(NamedTuple):
+    """A text that was changed until nothing is left to change."""
+
+    changes: Mapping[str, Change]
+    """By key, in the order in which they were made."""
+    flight: Flight
+    verdicts: Preflight
+    text: str
+    pipeline: Pipeline
+    """What the text says."""
+
+
 def fix(path: Path, sets: Iterable[str], hand: Hand, loop: Loop, out: Path, cached: bool = True) -> Fixed:
     """Change what the cures say, the unsafe first, until nothing is left to change; `verdicts.safe` says if it passes.
 
@@ -36,21 +50,39 @@ def fix(path: Path, sets: Iterable[str], hand: Hand, loop: Loop, out: Path, cach
     Raises: ConfigError as `load_config`; TangibleError as `Pipeline.flight`.
     """
     pipeline = Pipeline.from_yaml(path, sets := list(sets))
-    text = with_overrides(read_text(path), path, sets)
     if not cached:
         pipeline.cache = None
-    first = flight = pipeline.flight(hand=hand, loop=loop)
+    found = cured(with_overrides(read_text(path), path, sets), path, pipeline, hand, loop)
+    changes = {key: change.value for key, change in found.changes.items()}
+    return Fixed(changes, found.flight, found.verdicts, moved(found.text, path, found.pipeline.config, out))
+
+
+def cured(
+    text: str,
+    path: Path,
+    pipeline: Pipeline,
+    hand: Hand,
+    loop: Loop,
+    sets: Sequence[str] = (),
+    lateness: Lateness | None = None,
+) -> Cured:
+    """`fix` for a text, and the pipeline of it.
+
+    sets: what the pipeline has beside the text. lateness: of a loop that runs, in place of this process's own.
+    Raises: as `fix`.
+    """
+    flight = pipeline.flight(hand=hand, loop=loop)
+    flight = replace(flight, lateness=(lateness := lateness or flight.lateness))
     done: dict[str, Change] = {}
     for _ in range(ROUNDS):
         if (change := _next(judge(flight), done)) is None:
             break
         text = edited(text, path, {change.key: change.setting})
         done[change.key] = change
-        pipeline = pipeline.changed(parse_config(text, path, pipeline.engine.registry))
+        pipeline = pipeline.changed(parse_config(text, path, pipeline.engine.registry, sets))
         flight = pipeline.flight(hand=hand, loop=replace(loop, seconds=AT_ONCE))
-        flight = replace(flight, lateness=first.lateness)
-    changes = {key: change.value for key, change in done.items()}
-    return Fixed(changes, flight, judge(flight), moved(text, path, pipeline.config, out))
+        flight = replace(flight, lateness=lateness)
+    return Cured(done, flight, judge(flight), text, pipeline)
 
 
 def _next(verdicts: Preflight, done: Mapping[str, Change]) -> Change | None:

@@ -15,6 +15,7 @@ import numpy as np
 from ..data import DisparityMap, HapticSurface, MaterialMap, Relief, SegmentMap, Views
 from ..errors import OutputError
 from ..files.writing import atomic_write
+from ..scene.description import describe
 from .layout import Cell, arrange
 from .sheet_files import described, writer
 
@@ -88,6 +89,8 @@ def write_sheet(path: Path, run: Mapping[str, Any], title: str, panels: Sequence
     with style.context(STYLE, after_reset=True):
         figure = draw_figure(run, title, panels)
         says = described(figure)
+        if isinstance(surface := run.get("surface"), HapticSurface):
+            says = f"{says} {describe(surface, '')}"
         with atomic_write(path) as file:
             write(figure, file, title, says)
     return says

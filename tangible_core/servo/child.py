@@ -35,7 +35,7 @@ class Child:
     def __init__(self, commands: IO[bytes], replies: IO[bytes]) -> None:
         self._commands, self._replies = commands, replies
         self._ring: Ring | None = None
-        self._stopped = ""
+        self._stopped = self._granted = ""
         self._lock = threading.Lock()
         self._taken = threading.Event()
 
@@ -81,6 +81,7 @@ class Child:
         try:
             real_time, granted = priority.ask()
             loop.start_clock(ring.header, real_time)
+            self._granted = granted
             self._reply(StartReply(f"{granted}; {self._next.how}"))
             self._next.run()
             while ring.header[SWAP] and not ring.header[STOP]:
@@ -110,7 +111,7 @@ class Child:
         if not ring.header[STOP]:  # looked at after clearing: the loop sets both when it ends, in this order
             self._taken.wait()
         if not ring.header[STOP]:
-            self._reply(SwapReply())
+            self._reply(SwapReply(f"{self._granted}; {self._next.how}"))
 
     def stop(self, why: str = "") -> None:
         """End the loop with the next tick."""

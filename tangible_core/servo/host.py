@@ -72,7 +72,8 @@ class Servo:
         self._ended: End | None = None
         self._heard = threading.Event()
         self.how = ""
-        """What the operating system granted, which loop runs, and how stiff the law is if it does not say so."""
+        """What the operating system granted, which loop runs, and how stiff the law is if it does not say so; of the
+        scene that is felt now."""
         self.start_s = 0.0
         """From asking for the loop to its first tick."""
 
@@ -87,7 +88,7 @@ class Servo:
             start = Start(str(self.ring.path), self._pack(self._touch), self._device, settings)
             self._ear = threading.Thread(target=self._hear, args=(start,), daemon=True)
             self._ear.start()
-            self.how = "; ".join(filter(None, (self._answer(StartReply).how, self._felt.how)))
+            self._felt_now(self._answer(StartReply))
             threading.Thread(target=self._watch, daemon=True).start()
             self.start_s = time.monotonic() - begun_s
             return self
@@ -113,7 +114,7 @@ class Servo:
         self._limits = limits or self._limits
         try:
             self._tell(Swap(self._pack(touch), self._arrays(touch)[0]))
-            self._answer(SwapReply)
+            self._felt_now(self._answer(SwapReply))
         finally:
             self._remove_sent()
 
@@ -187,9 +188,10 @@ class Servo:
         return str(self._sent[-1])
 
     def _remove_sent(self) -> None:
-        """Scenes that were not taken out of their files."""
-        while self._sent:
-            self._sent.pop().unlink(missing_ok=True)
+        """Scenes that were not taken out of their files; who stops and who swaps may do it at once."""
+        with suppress(IndexError):
+            while True:
+                self._sent.pop().unlink(missing_ok=True)
 
     def _arrays(self, touch: Touch) -> tuple[Any, Any]:
         spec = self._device.spec()
@@ -215,6 +217,9 @@ class Servo:
         if not isinstance(message, kind):
             raise self._failure()
         return message
+
+    def _felt_now(self, reply: StartReply | SwapReply) -> None:
+        self.how = "; ".join(filter(None, (reply.how, self._felt.how)))
 
     def _failure(self) -> Exception:
         ended = self._ended or End(OVER)

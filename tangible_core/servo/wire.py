@@ -44,6 +44,9 @@ class StartReply(NamedTuple):
 class SwapReply(NamedTuple):
     """The scene sent last is felt."""
 
+    how: str
+    """As of `StartReply`, of this scene."""
+
 
 class Refusal(NamedTuple):
     """The scene sent last cannot be felt; the one before it still is."""

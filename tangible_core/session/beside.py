@@ -1,4 +1,5 @@
 """Two recordings side by side: how the forces of one differ from those of the other, at the same places."""
+# pyright: reportMissingTypeStubs=false
 
 from typing import Any
 

@@ -26,7 +26,7 @@ PAGE = {"app.css", "app.js", "built.json", "index.html", "LICENSES.txt"}
 UNREACHABLE = "npm error code ECONNREFUSED\nnpm error syscall connect\n"
 MOST_BYTES = 250_000
 """Of the page's script and style, compressed."""
-NAMES = {"http://www.w3.org/1999/xhtml"}
+NAMES = {f"http://www.w3.org/{name}" for name in ("1999/xhtml", "1999/xlink", "1998/Math/MathML", "2000/svg")}
 """What looks like an address in the bundle and is the name of something, of which nothing is requested."""
 
 
@@ -34,7 +34,7 @@ NAMES = {"http://www.w3.org/1999/xhtml"}
 def tree(tmp_path: Path) -> Path:
     """What the hook and the builders read of this tree; the page is not built."""
     root = tmp_path / "tree"
-    leave = shutil.ignore_patterns("node_modules", "static*", "__pycache__")
+    leave = shutil.ignore_patterns("node_modules", "static", "static-*", "__pycache__")
     shutil.copytree(ROOT / "plugins/ui", root / "plugins/ui", ignore=leave)
     for name in ("pyproject.toml", "hatch_build.py", "README.md", "LICENSE", ".gitignore"):
         shutil.copy(ROOT / name, root / name)

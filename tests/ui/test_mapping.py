@@ -1,28 +1,17 @@
-"""The mapping as the page draws and drags it: the same numbers as the core's, and a text that else stays."""
+"""The mapping as the page draws it: the same numbers as the core's."""
 
 import json
 from pathlib import Path
-from typing import Any
 
 import pytest
 
 from tangible_core.data import Vector
-from tangible_core.errors import ConfigError
 from tangible_core.mapping import WorkspaceMapping
-from tangible_core.pipeline.editing import said
 from tangible_ui.maker import mapping
 from tangible_ui.maker.bench import Bench
 
 CASES = Path(__file__).parents[2] / "plugins/ui/web/test/placement.json"
-OF_MINE = """\
-scene: builtin/brick  # mine
-mapping:
-  scale: 2            # twice
-  clutch_button: 1    # stays
-device: {use: mock}
-"""
 PATH = Path("p.yaml")
-AS_IT_LIES: dict[str, Any] = {"scale": None, "region_m": None, "rotation_deg": 0, "offset_m": [0, 0, 0]}
 
 
 @pytest.fixture
@@ -46,28 +35,6 @@ def test_the_page_s_reference_is_what_the_core_computes():
 def vector(numbers: list[float]) -> Vector:
     x, y, z = numbers
     return x, y, z
-
-
-def test_another_mapping_leaves_the_rest_of_the_text(bench: Bench):
-    wanted = {**AS_IT_LIES, "region_m": [0.01, 0, 0.02, 0.02], "rotation_deg": 90}
-    text = mapping.place(bench, OF_MINE, PATH, wanted)
-    assert said(text, PATH)["mapping"] == {
-        "clutch_button": 1, "region_m": [0.01, 0, 0.02, 0.02], "rotation_deg": 90,
-    }  # fmt: skip
-    assert "# mine" in text
-    assert "clutch_button: 1    # stays" in text
-    again = mapping.place(bench, text, PATH, AS_IT_LIES)
-    assert said(again, PATH)["mapping"] == {"clutch_button": 1}
-
-
-def test_a_mapping_that_says_nothing_is_not_written(bench: Bench):
-    text = "scene: builtin/brick\n"
-    assert mapping.place(bench, text, PATH, AS_IT_LIES) == text
-
-
-def test_a_text_that_is_none_is_not_changed(bench: Bench):
-    with pytest.raises(ConfigError, match=r"p\.yaml"):
-        mapping.place(bench, "scene: [", PATH, AS_IT_LIES)
 
 
 @pytest.mark.parametrize(

@@ -272,10 +272,7 @@ def test_the_frame_is_what_the_device_reaches_and_is_dragged(shown: Shown):
     side = 0.04
     shown.only("labels")
     shown.page.get_by_label("Show what the device reaches").check()
-    shown.page.evaluate(
-        "mapping => page.net.ask('set_mapping', { mapping })",
-        {"scale": 2, "region_m": None, "rotation_deg": 0, "offset_m": [0, 0, 0]},
-    )
+    shown.page.evaluate("() => page.net.ask('set', { changes: { 'mapping.scale': 2 } })")
     until(lambda: shown.mapping().get("scale") == 2)
     until(lambda: "40.0 \N{MULTIPLICATION SIGN} 40.0" in shown.page.inner_text("#mapping-panel"))
     shown.pixels()

@@ -1,23 +1,32 @@
 """What all tabs share: the document, what is being made and felt, who holds the hand, and what has happened."""
 
 import asyncio
-import json
 import time
 from collections import deque
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any, Protocol, final
+from typing import Any, Protocol, final, runtime_checkable
 
+from tangible_core.errors import DeviceError
+
+from .choice import Choice, NotAgreed
 from .feeling import Feeling, Felt
 from .maker import Maker
 from .maker.messages import Event
+from .laws import Laws
+from .makes import Makes
 from .recorder import Recorder
+from .rival import Rival
 from .shelf import Shelf, user_folder
+from .texts import Texts
 
-MOST_HISTORY = 500
-"""Events that a tab which is opened later hears of."""
+MOST_HISTORY, MOST_LOGGED = 500, 200
+"""Events, and lines that were logged, that a tab which is opened later hears of."""
+LAST_ALONE = frozenset({"document", "plan", "materials", "preflight"})
+"""Events of which only the last one counts."""
 
 
+@runtime_checkable
 class Tab(Protocol):
     """A page in a browser, as the desk knows it."""
 
@@ -35,29 +44,56 @@ class Desk:
         """Changes from the command line, which go before what the file says."""
         self.text, self.path = "", Path.cwd() / "untitled.yaml"
         """The document: a pipeline file as text, and where it stands."""
-        self.own_hand = True
-        """Whether the page's own hand is felt, and not the document's device."""
+        self.digest = ""
+        """Of the text, as events name it."""
+        self.texts = Texts()
+        self.makes = Makes()
+        self.choice = Choice()
+        """Which device is felt."""
         self.shelf = Shelf(user_folder("opened"), folder / "incoming")
         self.recorder: Recorder | None = None
         """Of the recording that was made last, or is being made."""
+        self.laws = Laws(Rival(f"{feeling.channel}-beside"))
         self.scene: dict[str, Any] | None = None
         self.tabs: list[Tab] = []
         self.holder: Tab | None = None
         """The tab whose hand is felt."""
-        self.history: deque[dict[str, Any]] = deque(maxlen=MOST_HISTORY)
+        self._history: deque[dict[str, Any]] = deque(maxlen=MOST_HISTORY)
+        self._logged: deque[dict[str, Any]] = deque(maxlen=MOST_LOGGED)
         self.maker = Maker(folder, self._hear)
         self.began_s = time.time()
         self._tasks: set[asyncio.Task[Any]] = set()
 
     def felt_sets(self) -> list[str]:
         """Changes to the document for the one who feels: the page's own hand, unless a device was chosen."""
-        return [*self.sets, f"device={json.dumps(self.feeling.own_device)}"] if self.own_hand else self.sets
+        return [*self.sets, *self.choice.sets(self.feeling.own_device)]
 
     async def feel(self, made: dict[str, Any]) -> None:
-        """Feel what was made. Raises: DeviceError."""
-        felt = Felt.of(made, self.own_hand)
-        seconds = await asyncio.to_thread(self.feeling.feel, felt)
-        self.tell("touch", law=felt.law, seconds=seconds, how=self.feeling.how)
+        """Feel what was made; not after a stop, nor with a device that is not the one that is chosen by now.
+
+        Raises: NotAgreed for a motor that nobody said yes to, DeviceError if the device cannot be opened.
+        """
+        felt = Felt.of(made, self.feeling.channel)
+        try:
+            self.choice.check(felt.held)
+        except NotAgreed:
+            felt.touch.discard()
+            raise
+        if felt.own_hand != (self.choice.kind == "hand"):
+            felt.touch.discard()
+            return
+        try:
+            seconds = await asyncio.to_thread(self.feeling.feel, felt)
+        except Exception as error:
+            if not self.feeling.running:
+                self.tell("loop", running=False, why=str(error), lost=isinstance(error, DeviceError))
+            raise
+        if seconds is not None:
+            self.laws.alone()
+            self.tell("laws", **self.laws.told())
+            await asyncio.to_thread(self.laws.rival.close)
+            self.tell("touch", law=felt.law, seconds=seconds, how=self.feeling.how)
+            self.tell("loop", running=True, why="", device=felt.device_name, own_hand=felt.own_hand)
 
     def tell(self, event: str, **told: Any) -> None:
         """Say something to all tabs, and to those that come later."""
@@ -65,29 +101,47 @@ class Desk:
         if event == "scene":
             self.scene = said
         else:
-            self.history.append(said)
+            if event in LAST_ALONE:
+                self._forget(event)
+            (self._logged if event == "log" else self._history).append(said)
         for tab in list(self.tabs):
             tab.say(said)
 
+    def _forget(self, event: str) -> None:
+        if (before := next((each for each in self._history if each["event"] == event), None)) is not None:
+            self._history.remove(before)
+
+    @property
+    def history(self) -> list[dict[str, Any]]:
+        """What a tab that comes later hears of; however much is logged, the rest is there."""
+        return sorted([*self._history, *self._logged], key=lambda said: said["at_s"])
+
     def enter(self, tab: Tab) -> None:
-        """Another tab; the first one holds the hand."""
+        """Another tab; it holds the hand if no other one does."""
         self.tabs.append(tab)
         if self.holder is None:
             self.hold(tab)
+        else:
+            self._say_who_holds()
 
     def leave(self, tab: Tab) -> None:
-        """It was closed, or is gone: if its hand was felt, nothing is."""
+        """It was closed, or is gone: if its hand was felt, nothing is, until another tab takes it.
+
+        None gets it unasked: a mouse may lie pressed on a page that nobody looks at.
+        """
         self.tabs.remove(tab)
         if self.holder is tab:
-            self.feeling.hand.release()
-            self.hold(self.tabs[0] if self.tabs else None)
+            self.hold(None)
 
     def hold(self, tab: Tab | None) -> None:
-        """From now on this tab's hand is felt; the others watch."""
+        """From now on this tab's hand is felt, or none; the others watch."""
         self.feeling.hand.release()
         self.holder = tab
+        self._say_who_holds()
+
+    def _say_who_holds(self) -> None:
         for each in self.tabs:
-            each.say({"event": "holding", "holding": each is tab})
+            each.say({"event": "holding", "holding": each is self.holder, "free": self.holder is None})
 
     def begin(self, work: Any) -> None:
         """Do something beside; what it raises is said to all tabs."""
@@ -107,5 +161,6 @@ class Desk:
         """No force, no process, no recording that is open."""
         self.maker.close()
         await asyncio.to_thread(self.feeling.stop)
+        await asyncio.to_thread(self.laws.rival.close)
         if self.recorder is not None:
             await asyncio.to_thread(self.recorder.stop)

@@ -1,25 +1,33 @@
 """The force loop as the page's server has it: started before there is a scene, swapped, watched. No numba here."""
 
+import math
 import pickle
 import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from threading import Lock
 from typing import Any, NamedTuple, final
 
 from tangible_core.data import Vector
-from tangible_core.mapping import WorkspaceMapping
+from tangible_core.errors import DeviceError, TangibleError
+from tangible_core.mapping import MappedDevice, WorkspaceMapping
+from tangible_core.plugins.failures import sentence
 from tangible_core.plugins.interfaces import HapticDevice
 from tangible_core.servo import Packed, Safety, Servo, still
+from tangible_core.servo.ring import STOP
 
-from .hand import Hand
+from .hand import HIGH_M, Hand
 from .wire import BUTTON_BITS, STATE, STATE_FRAME
 
 NOBODY: Vector = (0.0, 0.0, 0.0)
+UNKNOWN: Vector = (math.nan, math.nan, math.nan)
 STALE_AFTER_S = 0.3
 """The server's own silence, after which the loop lets go of the page's hand: a machine that starts a browser keeps it
 waiting for a quarter of a second. A page's silence is `hand.SILENT_S`."""
 FOLLOW_S = 0.012
 """A mouse moves 60 times a second, the loop looks a thousand times: the hand follows smoothly."""
+STOPPED = "stopped"
 
 
 class Felt(NamedTuple):
@@ -36,98 +44,217 @@ class Felt(NamedTuple):
     safety: Safety
 
     @classmethod
-    def of(cls, made: dict[str, Any], own_hand: bool) -> "Felt":
-        """From the maker's answer."""
+    def of(cls, made: dict[str, Any], channel: str) -> "Felt":
+        """From the maker's answer; channel: of the page's own pointer."""
         touch = Packed(Path(made["parcel"]), made["stiffness_n_per_m"])
         parts = (pickle.loads(made[name]) for name in ("device", "mapping", "safety"))
         device, mapping, safety = parts
+        own_hand = getattr(unmapped(device), "channel", None) == channel
         return cls(touch, made["law"], made["device_name"], device, own_hand, mapping, safety)
+
+    @property
+    def held(self) -> HapticDevice:
+        """The device itself."""
+        return unmapped(self.device)
+
+
+class Beside(NamedTuple):
+    """What is shown beside the law that is felt."""
+
+    force_n: Vector = NOBODY
+    """Of another law on the same hand."""
+    blind: bool = False
+    """Whether who feels shall not see which law it is: not every law has a proxy."""
+
+
+ALONE = Beside()
+
+
+class Ended(NamedTuple):
+    """A loop that ended though nobody stopped it."""
+
+    why: str
+    lost: bool
+    """Whether its device went: it may come back."""
 
 
 @final
 class Feeling:
-    """One force loop at a time, and the page's hand in it. What takes long blocks: call it in a thread."""
+    """One force loop at a time, and the page's hand in it.
+
+    What takes long blocks: call it in a thread. `cut` and `frame` do not, and may be called whatever else goes on.
+    """
 
     def __init__(self, channel: str) -> None:
         """channel: of the page's own pointer device."""
         self.channel = channel
         self.hand = Hand(channel)
         self.felt: Felt | None = None
+        self.stopped = False
+        """Whether somebody pressed stop: no loop starts until `allow`."""
+        self._stops = 0
         self._servo: Servo | None = None
+        self._starting: Servo | None = None
         self._device: HapticDevice | None = None
+        self._told: Servo | None = None
+        """The loop whose end is known."""
         self._lock = Lock()
 
     @property
     def own_device(self) -> dict[str, Any]:
         """The page's own device, as a pipeline file says it."""
-        return {"use": "pointer", "channel": self.channel, "stale_after_s": STALE_AFTER_S, "follow_s": FOLLOW_S}
+        return {
+            "use": "pointer",
+            "channel": self.channel,
+            "stale_after_s": STALE_AFTER_S,
+            "follow_s": FOLLOW_S,
+        }
 
     @property
     def servo(self) -> Servo | None:
-        """The loop; None before the first."""
+        """The loop; None before the first, and between two."""
         return self._servo
 
     @property
     def running(self) -> bool:
         """Whether forces are given."""
-        return self._servo is not None and self._servo.running
+        servo = self._servo
+        return servo is not None and servo.running and not servo.ring.header[STOP]
 
     @property
     def how(self) -> str:
-        """What the operating system granted the loop."""
+        """What the operating system granted the loop, and how what is felt now is computed."""
         return "" if self._servo is None else self._servo.how
 
-    def start(self) -> float:
-        """Start the loop on the page's own device before there is a scene; seconds that took. Raises: DeviceError."""
+    def start(self) -> float | None:
+        """Start the loop on the page's own device before there is a scene; seconds that took, None if it was stopped.
+
+        Raises: DeviceError.
+        """
         from tangible_core import load_method
 
         options = {name: value for name, value in self.own_device.items() if name != "use"}
+        begun_s = time.monotonic()
         with self._lock:
-            return self._restart(load_method("device", "pointer")(**options), own_hand=True)
+            if self.stopped or self.running:
+                return None
+            with self._unless_stopped() as stopped:
+                self._restart(load_method("device", "pointer")(**options), WorkspaceMapping(), own_hand=True)
+        return None if stopped() else time.monotonic() - begun_s
 
-    def feel(self, felt: Felt) -> float:
+    def feel(self, felt: Felt) -> float | None:
         """Feel a scene, from one tick to the next where the device is the same; seconds that took.
 
-        Raises: DeviceError if the device cannot be opened.
+        Returns: None if somebody pressed stop, before or meanwhile: it is then not felt.
+        Raises: DeviceError if the device cannot be opened; then nothing is felt.
         """
         begun_s = time.monotonic()
         with self._lock:
-            if not self.running or felt.device != self._device:
-                self._restart(felt.device, felt.own_hand)
-            self.hand.mapping = felt.mapping
-            assert self._servo is not None
-            self._servo.swap(felt.touch, felt.safety)
-            self.felt = felt
-        return time.monotonic() - begun_s
+            try:
+                if self.stopped:
+                    return None
+                with self._unless_stopped() as stopped:
+                    if not self.running or felt.device != self._device:
+                        self._restart(felt.device, felt.mapping, felt.own_hand)
+                    assert self._servo is not None
+                    self._servo.swap(felt.touch, felt.safety)
+            finally:
+                self.felt = felt
+                felt.touch.discard()
+        return None if stopped() else time.monotonic() - begun_s
+
+    def cut(self) -> None:
+        """No force from the next tick on, and none until `allow`. Waits for nothing and nobody."""
+        self.stopped, self._stops = True, self._stops + 1
+        self._told = self._servo
+        self.hand.release()
+        for servo in (self._starting, self._servo):
+            if servo is not None:
+                with suppress(DeviceError):  # it has no ring yet; what it begins with gives no force
+                    servo.ring.header[STOP] = 1
 
     def stop(self) -> None:
-        """No force, at once."""
+        """No force, at once; returns when the loop is gone. Does not wait for one that starts, nor for a swap."""
+        self.cut()
         self.hand.close()
-        with self._lock:
-            if self._servo is not None:
-                self._servo.stop()
+        for servo in (self._starting, self._servo):
+            if servo is not None:
+                _end(servo)
 
-    def frame(self, seq: int, status: int) -> bytes | None:
-        """The newest tick as a STATE; None before the first."""
+    def allow(self) -> None:
+        """Loops may start again."""
+        self.stopped = False
+
+    def ended(self) -> Ended | None:
+        """Why the loop ended, if it did so by itself; said once. To be asked often."""
         servo = self._servo
-        if servo is None or (row := servo.ring.latest()) is None:
+        if servo is None or servo.running or servo is self._told:
+            return None
+        self._told = servo
+        return None if self.stopped else Ended(_end(servo), servo.lost)
+
+    def frame(self, seq: int, status: int, beside: Beside = ALONE) -> bytes | None:
+        """The newest tick as a STATE; a hand that is nowhere without a loop; None for a tick that was overwritten."""
+        servo = self._servo
+        if servo is None or not self.running:
+            nowhere = *HIGH_M, *UNKNOWN, *NOBODY, *NOBODY, *NOBODY
+            return STATE_FRAME.pack(STATE, status, 0, seq & 0xFFFFFFFF, 0, 0, 1e3 * time.time(), *nowhere, 0.0)
+        if (row := servo.ring.latest()) is None:
             return None
         t, late, x, y, z, vx, vy, vz, px, py, pz, fx, fy, fz, flags, buttons = row.tolist()
         sample_ms = 1e3 * (servo.ring.start_ns / 1e9 + t + time.time() - time.monotonic())
         tag = int(buttons) >> BUTTON_BITS
         return STATE_FRAME.pack(
             STATE, status, int(flags), seq & 0xFFFFFFFF, tag, servo.ring.overruns, sample_ms,
-            x, y, z, px, py, pz, fx, fy, fz, vx, vy, vz, *NOBODY, 1e6 * late,
+            x, y, z, *(UNKNOWN if beside.blind else (px, py, pz)), fx, fy, fz, vx, vy, vz, *beside.force_n, 1e6 * late,
         )  # fmt: skip
 
-    def _restart(self, device: HapticDevice, own_hand: bool) -> float:
-        begun_s = time.monotonic()
+    @contextmanager
+    def _unless_stopped(self) -> Iterator[Callable[[], bool]]:
+        """What fails because somebody pressed stop did not fail. Gives who can say whether somebody has.
+
+        Who pressed it did not see the loop that came to be meanwhile: that one is ended here.
+        """
+        before = self._stops
+
+        def stopped() -> bool:
+            return self._stops != before
+
+        try:
+            yield stopped
+        except DeviceError:
+            if not stopped():
+                raise
+        finally:
+            if stopped() and self._servo is not None:
+                _end(self._servo)
+
+    def _restart(self, device: HapticDevice, mapping: WorkspaceMapping, own_hand: bool) -> None:
+        """Another loop, on this device; it begins without force."""
         self.hand.close()
-        if self._servo is not None:
-            self._servo.stop()
-        servo = Servo(still(), device, Safety())
-        servo.__enter__()
-        self._servo, self._device = servo, device
-        if own_hand:
-            self.hand.open()
-        return time.monotonic() - begun_s
+        before, self._servo, self._device = self._servo, None, None
+        if before is not None:
+            _end(before)
+        self._starting = servo = Servo(still(), device, Safety())
+        try:
+            servo.__enter__()
+            self._servo, self._device = servo, device
+        finally:
+            self._starting = None
+        if own_hand and self.running:
+            self.hand.open(mapping.placement(unmapped(device).spec().workspace_m))
+
+
+def unmapped(device: HapticDevice) -> HapticDevice:
+    """What the hand holds."""
+    return device.device if isinstance(device, MappedDevice) else device
+
+
+def _end(servo: Servo) -> str:
+    """End it, if it still runs; why it ended."""
+    try:
+        return servo.stop(STOPPED).stopped
+    except TangibleError as error:
+        return str(error)
+    except Exception as error:  # noqa: BLE001 - what a plugin raised in the loop is no failure of stopping it
+        return sentence(error)

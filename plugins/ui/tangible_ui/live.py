@@ -54,7 +54,7 @@ class LiveTab:
     async def live(self) -> None:
         """Until it is closed."""
         await self._socket.accept()
-        self.say({"event": "hello", "version": VERSION, "history": list(self._desk.history), "scene": self._desk.scene})
+        self.say({"event": "hello", "version": VERSION, "history": self._desk.history, "scene": self._desk.scene})
         self._desk.enter(self)
         senders = [asyncio.create_task(self._send_states()), asyncio.create_task(self._send_events())]
         try:
@@ -118,7 +118,7 @@ class LiveTab:
                 while self._seq - self._drawn >= IN_FLIGHT:
                     self._acked.clear()
                     await self._acked.wait()
-                if frame := self._desk.feeling.frame(self._seq + 1, self._status()):
+                if frame := self._desk.feeling.frame(self._seq + 1, self._status(), self._desk.laws.beside()):
                     self._seq += 1
                     await self._socket.send_bytes(frame)
 

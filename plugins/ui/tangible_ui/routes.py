@@ -1,5 +1,6 @@
 """What the server answers: the page, the arrays it draws, and its websocket; to this machine and to who has the key."""
 
+import asyncio
 import secrets
 from collections.abc import Awaitable, Callable
 from importlib.resources import files
@@ -18,6 +19,7 @@ from tangible_core.errors import TangibleError
 
 from .desk import Desk
 from .live import LiveTab
+from .windows import WINDOW, read_window
 
 POLICY = (
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; connect-src 'self'; "
@@ -81,7 +83,16 @@ def application(
         path = (folder / request.path_params["digest"] / request.path_params["name"]).resolve()
         if folder.resolve() not in path.parents or not path.is_file():
             return PlainTextResponse("there is no such thing any more", 404)
+        if request.query_params.keys() & WINDOW:
+            return await window_of(path, request)
         return FileResponse(path, headers={"cache-control": FOREVER})
+
+    async def window_of(path: Path, request: Request) -> Response:
+        try:
+            found = await asyncio.to_thread(read_window, path, {key: int(request.query_params[key]) for key in WINDOW})
+        except (KeyError, ValueError):
+            return PlainTextResponse("there is no such window", 400)
+        return Response(found, media_type="application/octet-stream", headers={"cache-control": FOREVER})
 
     async def upload(request: Request) -> Response:
         try:

@@ -9,6 +9,7 @@ import tempfile
 import webbrowser
 from collections.abc import AsyncGenerator
 from contextlib import asynccontextmanager
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -19,12 +20,12 @@ from tangible_core.errors import ConfigError
 from .asks import document
 from .desk import Desk
 from .feeling import Feeling
+from .logs import silence, tell_pages
 from .routes import application, static
+from .watching import watch
 
 HOST = "127.0.0.1"
 EXAMPLE = Path("builtin/motorcycle")
-KEEP_S = 0.02
-"""How often the server says that it lives."""
 
 
 def serve(files: list[Path], sets: list[str], port: int, browser: bool) -> None:
@@ -71,15 +72,16 @@ class _Served:
     async def lifespan(self, _: Any) -> AsyncGenerator[None]:
         """Start what takes long at once; at the end leave no force, no process and no file."""
         self.desk = desk = Desk(self._folder, Feeling(f"ui-{os.getpid()}"), self._sets)
+        loop = asyncio.get_running_loop()
+
+        def tell(**told: str) -> None:
+            loop.call_soon_threadsafe(partial(desk.tell, "log", **told))
+
+        telling = tell_pages(tell)
         desk.begin(document.begin(desk, None, [str(each) for each in self._files]))
         desk.begin(asyncio.to_thread(desk.feeling.start))
-        desk.begin(_keep(desk))
+        desk.begin(watch(desk))
         gc.freeze()  # what was imported is never looked through again
         yield
+        silence(telling)
         await desk.close()
-
-
-async def _keep(desk: Desk) -> None:
-    while True:
-        desk.feeling.hand.keep()
-        await asyncio.sleep(KEEP_S)

@@ -12,7 +12,7 @@ from numba import float64, int64, njit, void
 from tangible_core.compiled.kernels import Address
 from tangible_core.compiled.touch import CompiledLink, LinkKernels
 from tangible_core.data import NO_FORCE, DeviceSpec, Force, HapticState
-from tangible_core.mapping import MappedDevice, Placement, WorkspaceMapping, mapped
+from tangible_core.mapping import MappedDevice, Placement, WorkspaceMapping, mapped, placement_of
 from tangible_core.mapping.placement import turn
 from tangible_core.plugins.interfaces import HapticDevice, Link
 from tangible_core.testing import checks_device
@@ -125,6 +125,27 @@ def to_hand(place: Placement, picture_m: tuple[float, ...]) -> tuple[float, floa
     x, y = x - place.centre_x_m, y - place.centre_y_m
     x, y = place.cos * x - place.sin * y, place.sin * x + place.cos * y
     return place.offset_x_m + place.scale * x, place.offset_y_m + place.scale * y, place.offset_z_m + place.scale * z
+
+
+class TestInPlainPython:
+    """For whoever moves a hand without the kernels."""
+
+    @given(placements, points)
+    def test_both_ways_are_the_kernel_s_and_each_other_s(self, place: Placement, point: tuple[float, float, float]):
+        size = max(1.0, 1.0 / place.scale, place.scale)
+        close = partial(pytest.approx, abs=1e-12 * size)
+        assert place.on_picture(point) == close(to_picture(place, point))
+        assert to_picture(place, place.under_hand(point)) == close(point)
+        assert place.under_hand(to_picture(place, point)) == close(point)
+        assert place.under_hand(point) == close(to_hand(place, point))
+
+    def test_of_a_device_it_is_what_its_link_does(self, buffer: np.ndarray):
+        mapping = WorkspaceMapping(region_m=(0.01, -0.005, 0.02, 0.01), rotation_deg=30, offset_m=(0.0, 0.01, 0.02))
+        device = mapped(BufferDevice(), mapping)
+        picture_m = (0.012, -0.003, 0.001)
+        seen = hold(buffer, device.open(), *placement_of(device).under_hand(picture_m)).position_m
+        assert seen == pytest.approx(picture_m, abs=1e-15)
+        assert placement_of(Mock()) == Placement()
 
 
 class TestGeometry:

@@ -45,6 +45,7 @@ from tangible_core.report.panels import PANELS
 from tangible_core.report.panels.force import round_number, spread
 from tangible_core.report.sheet import DPI, WIDTH_IN, draw_figure
 from tangible_core.report.style import colours
+from tangible_core.scene.description import describe
 from tangible_core.session import Recording
 
 NAN = np.nan
@@ -707,6 +708,10 @@ class TestFiles:
             assert root.get("role") == "img"
         else:
             assert first.startswith(b"%PDF") and b"/Subject" in first
+
+    def test_of_a_surface_it_is_told_what_a_hand_would_find(self, tmp_path: Path) -> None:
+        surface = HapticSurface.from_heights(np.linspace(0, 0.01, 12).reshape(3, 4))
+        assert draw_sheet(tmp_path / "s.png", surface=surface, title="ramp").endswith(f". {describe(surface, '')}")
 
     def test_another_suffix_is_refused(self, tmp_path: Path) -> None:
         with pytest.raises(OutputError, match=r"drawn as \.png, \.svg or \.pdf"):

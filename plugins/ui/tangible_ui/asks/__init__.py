@@ -3,9 +3,19 @@
 from collections.abc import Awaitable, Callable, Mapping
 from typing import Any
 
-from . import document, feeling, mapping, opening, records
+from . import devices, document, feeling, laws, making, mapping, opening, records, seeing
 
 Ask = Callable[..., Awaitable[Any]]
 """Called with the desk, the tab, and what the tab says by name; the tab is answered with what it returns, as JSON."""
 
-ASKS: Mapping[str, Ask] = {**document.ASKS, **feeling.ASKS, **mapping.ASKS, **opening.ASKS, **records.ASKS}
+ASKS: Mapping[str, Ask] = {
+    **document.ASKS,
+    **making.ASKS,
+    **seeing.ASKS,
+    **feeling.ASKS,
+    **opening.ASKS,
+    **records.ASKS,
+    **devices.ASKS,
+    **laws.ASKS,
+    **mapping.ASKS,
+}

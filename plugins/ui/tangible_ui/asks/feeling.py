@@ -3,7 +3,7 @@
 import asyncio
 
 from ..desk import Desk, Tab
-from .document import make
+from .making import make
 
 
 async def hold(desk: Desk, tab: Tab) -> None:
@@ -12,16 +12,16 @@ async def hold(desk: Desk, tab: Tab) -> None:
 
 
 async def stop(desk: Desk, tab: Tab) -> None:
-    """No force, at once."""
+    """No force, at once, and none until `feel`, whatever else is made meanwhile."""
+    desk.feeling.cut()  # before anything is waited for
+    desk.tell("loop", running=False, why="stopped", stopped=True)
     await asyncio.to_thread(desk.feeling.stop)
-    desk.tell("loop", running=False, why="stopped")
 
 
 async def feel(desk: Desk, tab: Tab) -> None:
-    """Feel again what was made last."""
-    if desk.feeling.felt is not None:
-        await make(desk, tab)
-    desk.tell("loop", running=True, why="")
+    """Feel the document, also after a stop. Raises: DeviceError if its device cannot be opened."""
+    desk.feeling.allow()
+    await make(desk, tab)
 
 
 ASKS = {"hold": hold, "stop": stop, "feel": feel}

@@ -13,7 +13,7 @@ from .document import begin, edit, make
 
 async def folder(desk: Desk, tab: Tab | None, path: str = "") -> dict[str, Any]:
     """What lies in a folder of this machine that can be opened; of the current one, without a name."""
-    return await desk.maker.ask("folder", path=as_path(path) if path else Path.cwd())
+    return await desk.maker.quick("folder", path=as_path(path) if path else Path.cwd())
 
 
 async def batch(desk: Desk, tab: Tab | None) -> str:
@@ -29,7 +29,7 @@ async def open_batch(desk: Desk, tab: Tab | None, batch: str) -> dict[str, Any]:
 
 async def examples(desk: Desk, tab: Tab | None) -> list[str]:
     """Scenes that are built in."""
-    return await desk.maker.ask("examples")
+    return await desk.maker.quick("examples")
 
 
 async def save(desk: Desk, tab: Tab | None, path: str, replace: bool = False) -> dict[str, Any]:
@@ -44,13 +44,13 @@ async def save(desk: Desk, tab: Tab | None, path: str, replace: bool = False) ->
         place = place.with_name(f"{place.name}.yaml")
     if not replace and place.exists() and place != desk.path:
         raise ConfigError(f"{place}: is there already; choose another name, or replace it")
-    await desk.maker.ask("save", text=desk.text, path=desk.path, out=place)
+    await desk.maker.quick("save", text=desk.text, path=desk.path, out=place)
     return await begin(desk, tab, [str(place)], make_it=False)
 
 
 async def exchange(desk: Desk, tab: Tab | None) -> None:
     """Left and right of the pair change places, in the document and under the hand."""
-    await edit(desk, tab, await desk.maker.ask("exchange", text=desk.text, path=desk.path))
+    await edit(desk, tab, await desk.maker.quick("exchange", text=desk.text, path=desk.path))
     desk.begin(make(desk, tab))
 
 

@@ -44,17 +44,17 @@ async def stop_recording(desk: Desk, tab: Tab | None) -> None:
 
 async def records(desk: Desk, tab: Tab | None) -> list[dict[str, Any]]:
     """The user's recordings, the newest first: name, path, seconds, law, device, why it ended."""
-    return await desk.maker.ask("records", folder=user_folder(FOLDER))
+    return await desk.maker.quick("records", folder=user_folder(FOLDER))
 
 
 async def show_record(desk: Desk, tab: Tab | None, path: str) -> dict[str, Any]:
     """Lay out a recording's ticks for pages to fetch; what it is of, and its figures."""
-    return await desk.maker.ask("show_record", path=Path(path))
+    return await desk.maker.quick("show_record", path=Path(path))
 
 
 async def compare_records(desk: Desk, tab: Tab | None, path: str, other: str) -> dict[str, Any]:
     """Two recordings in figures, and how far they are from each other."""
-    return await desk.maker.ask("compare_records", path=Path(path), other=Path(other))
+    return await desk.maker.quick("compare_records", path=Path(path), other=Path(other))
 
 
 async def try_law(desk: Desk, tab: Tab | None, path: str) -> dict[str, Any]:

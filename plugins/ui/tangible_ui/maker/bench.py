@@ -1,37 +1,113 @@
 """What lies on the maker's bench, and what a job is."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Generator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, NamedTuple, Protocol
+from threading import Event, Lock
+from typing import Any, NamedTuple, Protocol, final
 
+from tangible_core.errors import Stopped
 from tangible_core.pipeline.cache import Cache
-from tangible_core.pipeline.config import parse_config
+from tangible_core.pipeline.config import PipelineConfig, parse_config
+from tangible_core.pipeline.engine import Stage
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.plugins.registry import Registry, default_registry
+
+NEVER = -1
 
 
 class Tell(Protocol):
     """Says an event to all pages."""
 
-    def __call__(self, event: str, **told: Any) -> None: ...
+    def __call__(self, event: str, **told: Any) -> None:
+        """Its name, and what there is to know of it."""
 
 
+@final
+class Work:
+    """What a long job is at: one stage after the other, until it is told to stop."""
+
+    def __init__(self, pipeline: Pipeline) -> None:
+        self.pipeline = pipeline
+        self.stop = Event()
+        self.worth = False
+        """Whether there is something to see of it, even if the rest fails."""
+        self._product = ""
+        self._after = False
+
+    def heard(self, stage: Stage) -> None:
+        """A stage began or ended."""
+        self._product = "" if stage.outcome else stage.product
+        if stage.outcome and self._after:
+            self.stop.set()
+
+    def give_way(self, to: Pipeline, want: str) -> bool:
+        """Stop for another pipeline: at once, or after a stage which that one needs too; whether at once."""
+        product, needed = self._product, to.engine.needed(want)
+        if product in needed and self.pipeline.engine.key(product) == to.engine.key(product):
+            self._after = True
+            return False
+        self.stop.set()
+        return True
+
+
+@final
 class Bench:
-    """The pipeline that was made last, and the folder of what pages fetch."""
+    """The last pipeline that became something to feel or to see, and the folder of what pages fetch.
 
-    def __init__(self, folder: Path, tell: Tell) -> None:
+    Long jobs and quick ones come from two threads. A pipeline that lies here is never worked on: a job works on
+    another one, which shares what was made, and lays it here when it is done. One that fails leaves the last good one.
+    """
+
+    def __init__(self, folder: Path, tell: Tell, cache: Cache | None = None) -> None:
+        """cache: where results are kept; the user's own by default."""
         self.folder, self.tell = folder, tell
         self.registry: Registry = default_registry()
         self.pipeline: Pipeline | None = None
         self.shown = ""
         """Digest of the surface that pages were told of last."""
+        self._cache = cache or Cache()
+        self._newest, self._work = NEVER, None
+        self._parsed: tuple[Any, PipelineConfig] | None = None
+        self._lock = Lock()
+
+    def config_of(self, text: str, path: Path, sets: list[str]) -> PipelineConfig:
+        """What a text says; the last one is remembered, as one edit asks for it three times. Raises: ConfigError."""
+        asked = text, path, tuple(sets)
+        if (parsed := self._parsed) is not None and parsed[0] == asked:
+            return parsed[1]
+        config = parse_config(text, path, self.registry, sets)
+        self._parsed = asked, config
+        return config
 
     def pipeline_of(self, text: str, path: Path, sets: list[str]) -> Pipeline:
-        """The pipeline that a text says; what is alike in the one before is not made again. Raises: ConfigError."""
-        config = parse_config(text, path, self.registry, sets)
+        """The pipeline that a text says; what is alike in the last good one is not made again. Raises: ConfigError."""
+        config = self.config_of(text, path, sets)
         before = self.pipeline
-        self.pipeline = Pipeline.of(config, self.registry, Cache()) if before is None else before.changed(config)
-        return self.pipeline
+        return Pipeline.of(config, self.registry, self._cache) if before is None else before.changed(config)
+
+    @contextmanager
+    def work(self, pipeline: Pipeline, number: int) -> Generator[Work]:
+        """A long job's block; others see what it is at. Raises: Stopped if a newer one was asked for already."""
+        work = Work(pipeline)
+        with self._lock:
+            if number < self._newest:
+                raise Stopped
+            self._work = work
+        try:
+            yield work
+            work.worth = True
+        finally:
+            with self._lock:
+                self._work = None
+            if work.worth:
+                self.pipeline = pipeline
+
+    def give_way(self, number: int, to: Pipeline, want: str) -> bool:
+        """Jobs below this number stop, or do not begin; whether one was told to stop at once."""
+        with self._lock:
+            self._newest, work = number, self._work
+        return work is not None and work.give_way(to, want)
 
 
 class Job(NamedTuple):

@@ -1,5 +1,15 @@
 """Everything the maker can be asked, by name."""
 
-from . import checking, making, mapping, opening, records
+from . import checking, devices, laws, making, mapping, opening, preflight, records, textures
 
-JOBS = {**making.JOBS, **checking.JOBS, **mapping.JOBS, **opening.JOBS, **records.JOBS}
+JOBS = {
+    **making.JOBS,
+    **checking.JOBS,
+    **opening.JOBS,
+    **preflight.JOBS,
+    **records.JOBS,
+    **devices.JOBS,
+    **textures.JOBS,
+    **laws.JOBS,
+    **mapping.JOBS,
+}

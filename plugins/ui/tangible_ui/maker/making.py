@@ -1,49 +1,141 @@
-"""The job that makes a product, and shows on the way what there is to see."""
+"""Jobs that make products, and say on the way what there is to see; and what making would do."""
 
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
-from typing import Any
+from threading import Event
+from time import perf_counter
+from typing import Any, cast
 
-from tangible_core.pipeline.engine import Stage
+import numpy as np
+
+from tangible_core.data import Outcome, Plan
+from tangible_core.errors import TangibleError
+from tangible_core.mapping import over
+from tangible_core.pipeline.config import PRODUCTS
+from tangible_core.pipeline.engine import Progress, Stage
+from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.runtime.child_process import dumps
 from tangible_core.servo import packed
 
-from .bench import Bench, Job
+from .bench import Bench, Job, Work
+from .checking import digest_of
+from .seen import Seen, see
 from .shown import show
 
+SLOW = ("disparity", "segments")
+"""Products that take seconds: who edits says when they are made."""
+WITHIN = "within what is kept of what is made from it"
 
-def make(bench: Bench, text: str, path: Path, sets: list[str], want: str) -> dict[str, Any] | None:
+
+def plan(bench: Bench, text: str, path: Path, sets: list[str], want: str) -> dict[str, Any]:
+    """What making a product would do, and why; what stands in the way where it cannot."""
+    try:
+        return planned(bench.pipeline_of(text, path, sets), text, want)
+    except TangibleError as error:
+        return {"digest": digest_of(text), "want": want, "steps": [], "slow": [], "refusal": str(error)}
+
+
+def planned(pipeline: Pipeline, text: str, want: str) -> dict[str, Any]:
+    """The plan as pages have it. Raises: as `Pipeline.plan`."""
+    found = pipeline.plan(cast(Any, want))
+    slow = [each.product for each in found.steps if each.outcome == "ran" and each.product in SLOW]
+    steps = [asdict(each) for each in _all_steps(pipeline, found)]
+    return {"digest": digest_of(text), "want": want, "steps": steps, "slow": slow, "refusal": found.refusal}
+
+
+def _all_steps(pipeline: Pipeline, found: Plan) -> list[Outcome]:
+    """Those of the plan, and the products that are within one which is kept, in the order of making."""
+    steps = {each.product: each for each in found.steps}
+    if not found.refusal:
+        needed = pipeline.engine.needed(found.want)
+        for each in pipeline.outcomes:
+            if each.product in needed and each.product not in steps:
+                steps[each.product] = each if each.outcome == "given" else replace(each, outcome="cached", why=WITHIN)
+    order = ["views", *PRODUCTS]
+    return sorted(steps.values(), key=lambda each: order.index(each.product))
+
+
+def make(bench: Bench, number: int, text: str, path: Path, sets: list[str], want: str) -> dict[str, Any] | None:
     """Make a product; pages hear of every stage, and of the surface as soon as it can be drawn.
 
     Returns: what the force loop needs, where a touch was wanted.
     """
+    begun_s = perf_counter()
     pipeline = bench.pipeline_of(text, path, sets)
+    with bench.work(pipeline, number) as work:
+        bench.tell("making", want=want, digest=digest_of(text))
+        bench.tell("plan", **planned(pipeline, text, want))
+        heard = telling(bench, work)
+        product = TO_SEE.get(want, want)
+        pipeline.make(product, heard, work.stop)
+        _show(bench, pipeline, product)
+        work.worth = True
+        made = felt(pipeline, heard, work.stop) if want == "touch" else None
+    bench.tell("made", want=want, digest=digest_of(text), outcome="made", why="", seconds=perf_counter() - begun_s)
+    return made
+
+
+def telling(bench: Bench, work: Work) -> Progress:
+    """Hears of stages, and tells pages."""
 
     def heard(stage: Stage) -> None:
         done = {} if stage.outcome is None else asdict(stage.outcome)
         bench.tell("stage", product=stage.product, method=stage.method, done=done)
+        work.heard(stage)
 
-    bench.tell("making", want=want)
-    surface = pipeline.make("surface", heard)
-    if (digest := surface.digest()) != bench.shown:  # pages draw it while the touch is made
-        bench.tell("scene", **show(pipeline, surface, digest, bench.folder))
-        bench.shown = digest
-    if want != "touch":
-        return None
-    touch = pipeline.make("touch", heard)
-    config = pipeline.config
-    device = config.felt_device
-    assert device is not None
+    return heard
+
+
+def give_way(bench: Bench, number: int, text: str, path: Path, sets: list[str], want: str) -> bool:
+    """What is being made ends for this newer document; whether at once, as it needs nothing of what is at work.
+
+    Raises: ConfigError if that makes no sense; then what is being made goes on.
+    """
+    return bench.give_way(number, bench.pipeline_of(text, path, sets), want)
+
+
+TO_SEE = {"touch": "surface", "disparity": "relief", "segments": "materials"}
+"""What is seen of a product, where that is another one."""
+
+
+def _show(bench: Bench, pipeline: Pipeline, product: str) -> None:
+    """Pages draw it while the touch is made."""
+    if (seen := see(pipeline, product)).digest != bench.shown:
+        bench.tell("scene", **show(seen, bench.folder))
+        bench.shown = seen.digest
+    bench.tell("materials", segments=_segments(pipeline, seen))
+
+
+def _segments(pipeline: Pipeline, seen: Seen) -> list[dict[str, Any]]:
+    """Each segment with its material, why it has it, and its share of the area."""
+    if seen.labels is None or not seen.materials:
+        return []
+    chosen = pipeline.make("materials")
+    reasons = chosen.reasons if chosen is not None else ("",) * len(seen.materials)
+    shares = np.bincount(seen.labels.ravel(), minlength=len(seen.materials)) / max(1, seen.labels.size)
+    named = enumerate(zip(seen.materials, reasons, shares.tolist(), strict=False))
+    return [
+        {"label": label, "material": material.name, "why": why, "share": share}
+        for label, (material, why, share) in named
+    ]
+
+
+def felt(pipeline: Pipeline, heard: Progress | None = None, stop: Event | None = None) -> dict[str, Any]:
+    """What the force loop needs of a touch, which is made. Raises: ConfigError without a device; as `Pipeline.make`."""
+    touch, config = pipeline.make("touch", heard, stop), pipeline.config
+    if config.device is None or config.felt_device is None:
+        raise config.missing("device")
+    device = over(config.felt_device, pipeline.make("surface").extent_m)
     sent = packed(touch, device.spec())
     return {
         "parcel": str(sent.parcel),
         "stiffness_n_per_m": sent.stiffness_n_per_m,
         "law": config.render.name if config.render else "",
-        "device_name": config.device.name if config.device else "",
+        "device_name": config.device.name,
         "device": dumps(device),
         "mapping": dumps(config.mapping),
         "safety": dumps(config.safety),
     }
 
 
-JOBS = {"make": Job(make)}
+JOBS = {"make": Job(make), "plan": Job(plan, quick=True), "give_way": Job(give_way, quick=True)}

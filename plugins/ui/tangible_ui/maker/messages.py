@@ -2,6 +2,8 @@
 
 from typing import Any, NamedTuple
 
+import numpy as np
+
 
 class Ask(NamedTuple):
     """Do one of the maker's jobs."""
@@ -31,3 +33,12 @@ class Event(NamedTuple):
 
     event: str
     told: dict[str, Any]
+
+
+class Late(NamedTuple):
+    """How late the ticks of the loop began that gives the forces now."""
+
+    late_s: np.ndarray
+    period_s: float
+    real_time: bool
+    """Whether it runs before all others."""

@@ -44,9 +44,11 @@ def main() -> None:
     commands, voice = open(0, "rb", buffering=0), Voice(replies)  # noqa: SIM115 - a buffer's lock outlives its thread
     folder: Path = receive(commands)
     lanes: dict[bool, queue.SimpleQueue[Ask]] = {quick: queue.SimpleQueue() for quick in (True, False)}
+    from ..logs import tell_pages
     from .bench import Bench
     from .jobs import JOBS
 
+    tell_pages(lambda **told: voice.say(Event("log", told)), information=True)
     bench = Bench(folder, lambda event, **told: voice.say(Event(event, told)))
     for lane in lanes.values():
         threading.Thread(target=_work, args=(bench, lane, voice), daemon=True).start()

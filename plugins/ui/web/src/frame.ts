@@ -12,7 +12,8 @@ type Region = keyof typeof REGIONS;
 const regions = Object.keys(REGIONS) as Region[];
 const element = (id: string): HTMLElement => document.getElementById(id)!;
 
-export function frame(page: Page, themes: Themes): void {
+export function frame(page: Page): void {
+  const { themes } = page;
   for (const region of regions) element(region).setAttribute("aria-label", t(region));
   skipLinks();
   on("next region", () => jump(1));

@@ -20,7 +20,7 @@ export class Frames {
     private page: Page,
     private measuring: boolean,
   ) {
-    if (measuring) Object.assign(window, { figures, page });
+    if (measuring) Object.assign(window, { figures });
     page.hub.on("shown", (scene) => page.overlay.show(scene));
     requestAnimationFrame(() => this.frame());
   }

@@ -1,10 +1,14 @@
 /** The page: its parts are put together here. */
 import "./app.css";
+import { Announcer, regions } from "./announcer";
 import { frame } from "./frame";
 import { Frames } from "./frames";
 import { Hand } from "./hand";
 import { Hub } from "./hub";
+import { Instrument } from "./instrument";
+import { Narrator } from "./narrator";
 import { Net } from "./net";
+import { notice } from "./notice";
 import { Overlay } from "./overlay/overlay";
 import type { Page } from "./page";
 import { build } from "./panel";
@@ -12,6 +16,8 @@ import { panels } from "./panels";
 import { dataCursor } from "./panels/cursor";
 import { Scene } from "./scene";
 import { listen } from "./shortcuts";
+import { stroke } from "./sonify";
+import { Sound } from "./sound";
 import { Speech } from "./speech";
 import { splits } from "./splits";
 import { Status } from "./status";
@@ -26,38 +32,61 @@ if (asked.has("measure")) document.body.classList.add("measure");
 
 const canvas = element<HTMLCanvasElement>("terrain");
 const hub = new Hub();
-const speech = new Speech(element("said"));
+const speech = new Speech(hub);
+const shown = regions(element("said"), element("alerted"));
+const announcer = new Announcer((said) => {
+  shown(said);
+  speech.speak(said);
+});
+const net = new Net(hub);
 const view = new View(canvas);
 const page: Page = {
   hub,
-  net: new Net(hub),
+  net,
   view,
   overlay: new Overlay(view, canvas),
   canvas,
   scene: null,
+  hand: null,
   document: null,
   replayed: null,
-  say: (text) => speech.say(text),
+  sound: new Sound(hub, () => page.scene),
+  speech,
+  themes: new Themes(hub),
+  say: (text, how) => announcer.say(text, how),
+  forget: (topic) => announcer.forget(topic),
 };
 
 hub.on("hello", ({ history, scene }) => {
-  for (const each of history) hub.tell(each.event, each as never);
-  if (scene) hub.tell("scene", scene);
+  // After a connection that was lost, what was heard before is not heard again; and what is long over is not said.
+  announcer.hushed = true;
+  const all = [...history, ...(scene ? [{ ...scene, event: "scene" as const }] : [])].sort((a, b) => a.at_s - b.at_s);
+  for (const each of all) if (each.at_s > net.heard_s) hub.tell(each.event, each as never);
+  announcer.hushed = false;
 });
 hub.on("document", (said) => (page.document = said));
+let newest = "";
 hub.on("scene", async (meta) => {
-  if (page.scene?.meta.digest === meta.digest) return;
-  const loaded = await Scene.load(meta);
-  page.scene = loaded;
-  page.view.put(loaded);
-  hub.tell("shown", loaded);
+  if (page.scene?.meta.digest === meta.digest && newest === meta.digest) return;
+  newest = meta.digest;
+  try {
+    const loaded = await Scene.load(meta);
+    if (newest !== meta.digest) return; // another one was made meanwhile
+    page.scene = loaded;
+    hub.tell("shown", loaded);
+  } catch (error) {
+    hub.tell("error", { event: "error", at_s: Date.now() / 1000, text: (error as Error).message });
+  }
 });
 
-frame(page, new Themes(hub));
+frame(page);
 splits();
 listen(canvas);
 new Status(page);
-new Hand(page);
+new Narrator(page);
+page.hand = new Hand(page);
+notice(page);
 build(page, panels);
 dataCursor(page);
 new Frames(page, asked.has("measure"));
+if (asked.has("measure")) Object.assign(window, { page, Instrument, stroke }); // what tests look into

@@ -1,4 +1,5 @@
 /** What the server says, by the name of the event; `at_s` is the Unix time. */
+import type { Hand } from "./hand";
 import type { State } from "./protocol";
 import type { Scene } from "./scene";
 
@@ -11,20 +12,51 @@ export interface Material {
   roughness_m: number;
   grain_m: number;
   texture: string;
+  direction_deg: number;
+  anisotropy: number;
+  irregularity: number;
   drag_n_s_per_m: number;
+}
+
+/** Values that can be warped over a surface; colours run from low to high. */
+export interface LayerMeta {
+  unit: string;
+  low: number;
+  high: number;
+  rows: number;
+  columns: number;
 }
 
 /** A surface: what the arrays at /scene/<digest>/ mean. */
 export interface Meta {
   digest: string;
   name: string;
+  /** Heights and materials; heights alone; or segments over whatever heights there are. */
+  shows: "surface" | "relief" | "segments";
+  /** Of the finest level. */
   rows: number;
   columns: number;
   extent_m: [number, number];
   /** Lowest and highest. */
   height_m: [number, number];
+  /** Level 0 is the finest; a cell of another is a mean over step x step of its cells. The last is drawn at once. */
+  levels: { step: number; rows: number; columns: number }[];
+  /** How many labels there are; 0 without any. */
+  labels: number;
+  label_bytes: 2 | 4;
+  /** Each once; which of them a label has is in materials.u16. */
   materials: Material[];
   photo: boolean;
+  /** The surface in words, by language. */
+  says?: Record<string, string>;
+  /** Width and height of the finer picture beside the one that is drawn at once; null where that is the finest. */
+  fine_photo: [number, number] | null;
+  layers: Record<string, LayerMeta>;
+}
+
+export interface Note {
+  text: string;
+  kind: "decision" | "warning" | "doubt";
 }
 
 export interface Outcome {
@@ -33,15 +65,76 @@ export interface Outcome {
   why: string;
   method: string;
   seconds: number;
+  notes: Note[];
 }
 
 export interface Complaint {
   location: (string | number)[];
   text: string;
+  line: number | null;
+  column: number | null;
+}
+
+/** What making a product would do; `digest` is that of the text. */
+export interface Plan {
+  digest: string;
+  want: string;
+  steps: Outcome[];
+  /** Products that take seconds and would be made. */
+  slow: string[];
+  /** Why it cannot be made; empty where it can. */
+  refusal: string;
+}
+
+export interface Segment {
+  label: number;
+  material: string;
+  why: string;
+  /** Of the area, 0 to 1. */
+  share: number;
+}
+
+export interface Verdict {
+  check: string;
+  of: string;
+  verdict: "ok" | "warn" | "unsafe";
+  /** How the value stands to its bound, in words. */
+  stands: string;
+  source: string;
+  note: string;
+  cure: string;
+  says: string;
+  changes: { key: string; value: number | string }[];
 }
 
 /** Plain values of a pipeline file. */
 export type Values = Record<string, unknown>;
+
+/** A preflight of the text with this digest. */
+export interface Judged {
+  digest: string;
+  grade: "ok" | "warn" | "unsafe";
+  sentence: string;
+  /** Empty for the page's own hand. */
+  device: string;
+  law: string;
+  /** Whether lateness is that of the loop that gives the forces, and not of the process that judged. */
+  of_loop: boolean;
+  verdicts: Verdict[];
+}
+
+export interface Document {
+  text: string;
+  path: string;
+  digest: string;
+  /** What the text says; null if it is no YAML. */
+  said: Values | null;
+  /** The same with every default filled in; null if something is wrong. */
+  values: Values | null;
+  complaints: Complaint[];
+  can_undo: boolean;
+  can_redo: boolean;
+}
 
 interface Said {
   event: string;
@@ -51,22 +144,57 @@ interface Said {
 export interface Events {
   hello: Said & { version: number; history: (Said & { event: keyof Events })[]; scene: (Said & Meta) | null };
   gone: Said;
-  holding: Said & { holding: boolean };
+  /** free: no tab holds the hand. */
+  holding: Said & { holding: boolean; free: boolean };
   maker: Said;
-  making: Said & { want: string };
+  /** The maker does not start, and is not tried any more. */
+  maker_gone: Said & { why: string };
+  making: Said & { want: string; digest: string };
+  made: Said & { want: string; digest: string; outcome: "made" | "stopped" | "failed"; why: string; seconds: number };
+  plan: Said & Plan;
+  materials: Said & { segments: Segment[] };
+  preflight: Said & Judged;
   stage: Said & { product: string; method: string; done: Partial<Outcome> };
   scene: Said & Meta;
-  document: Said & { text: string; path: string; values: Values | null; complaints: Complaint[] };
+  document: Said & Document;
   touch: Said & { law: string; seconds: number; how: string };
-  loop: Said & { running: boolean; why: string };
+  /** stopped: somebody pressed stop; lost: the device went; waiting: it is looked for again and again. */
+  loop: Said & {
+    running: boolean;
+    why: string;
+    stopped?: boolean;
+    lost?: boolean;
+    waiting?: boolean;
+    device?: string;
+    own_hand?: boolean;
+  };
+  /** Another device was chosen. */
+  device: Said & { kind: "hand" | "document" | "other"; name: string };
   error: Said & { text: string };
+  laws: Said &
+    (
+      | { state: "one" }
+      | { state: "two"; named: [string, string]; felt: number }
+      | { state: "blind"; called: number; trials: number; question: string }
+    );
   recorder: Said & { recording: boolean; path: string; ticks: number; why: string };
+  /** What Python's logging and warnings say, in the server and in the maker. */
+  log: Said & { level: "detail" | "warning" | "error"; logger: string; text: string };
   /** Of this page alone: a state that arrived, one that was drawn, a surface that can be drawn. */
   state: State;
   drawn: State;
   shown: Scene;
+  /** Something about this page's hand changed: what moves it, how, whether it is felt. */
+  hand: Hand;
+  /** Something finer of the surface on the screen has come. */
+  finer: Scene;
   /** A recording was opened, a file of this machine. */
   recording: { path: string };
   /** Of this page alone: the colours are others now (see `colour` of themes.ts). */
   theme: { chosen: string; dark: boolean; contrast: boolean };
+  /** Sound was switched; speech was, or has another voice ("": none). */
+  sound: { on: boolean };
+  aloud: { on: boolean; voice: string };
+  /** Whether every line of the log is to be read out. */
+  "read log": { on: boolean };
 }

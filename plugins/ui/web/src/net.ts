@@ -10,8 +10,9 @@ const KEPT_TAGS = 512;
 export const token = new URLSearchParams(location.search).get("token") ?? "";
 
 /** What the server keeps under an address. Throws if it is not there. */
-export async function bulk(path: string): Promise<Response> {
-  const response = await fetch(`${path}?token=${encodeURIComponent(token)}`);
+export async function bulk(path: string, asked: Record<string, number> = {}, signal?: AbortSignal): Promise<Response> {
+  const query = new URLSearchParams({ token, ...Object.fromEntries(Object.entries(asked).map(([k, v]) => [k, `${v}`])) });
+  const response = await fetch(`${path}?${query}`, { signal });
   if (!response.ok) throw new Error(`${path}: ${response.status} ${await response.text()}`);
   return response;
 }
@@ -25,6 +26,8 @@ export class Net {
   latest: State | null = null;
   /** When each pointer was sent, by its tag: how long until its force is drawn. */
   readonly sentMs = new Map<number, number>();
+  /** When the newest event was said that this page heard. */
+  heard_s = 0;
   private tag = 0;
   private number = 0;
   private waiting = new Map<number, Waiting>();
@@ -84,6 +87,8 @@ export class Net {
       return;
     }
     this.hub.tell(said.event as keyof Events, said as never);
+    const last = said.event === "hello" ? (said as Events["hello"]).history.at(-1) : said;
+    this.heard_s = Math.max(this.heard_s, (last as { at_s?: number } | undefined)?.at_s ?? 0);
   }
 
   private take(data: ArrayBuffer): void {

@@ -1,10 +1,15 @@
 /** What all parts of the page share. */
+import type { How } from "./announcer";
+import type { Hand } from "./hand";
 import type { Hub } from "./hub";
 import type { Events } from "./messages";
 import type { Net } from "./net";
 import type { Overlay } from "./overlay/overlay";
 import type { State } from "./protocol";
 import type { Scene } from "./scene";
+import type { Sound } from "./sound";
+import type { Speech } from "./speech";
+import type { Themes } from "./themes";
 import type { View } from "./view";
 
 export interface Page {
@@ -16,10 +21,17 @@ export interface Page {
   readonly canvas: HTMLCanvasElement;
   /** What is drawn; null before the first. */
   scene: Scene | null;
+  /** What moves the device of this page; null before the first moment is over. */
+  hand: Hand | null;
   /** The pipeline file on the screen. */
   document: Events["document"] | null;
   /** The tick of a recording that is shown in place of the loop's; null for what is felt now. */
   replayed: State | null;
-  /** Say something to who listens: in the live region, and aloud where that is asked for. */
-  say(text: string): void;
+  readonly sound: Sound;
+  readonly speech: Speech;
+  readonly themes: Themes;
+  /** Say something to who listens, when its turn comes (announcer.ts): in a live region, and aloud where asked for. */
+  say(text: string, how?: How): void;
+  /** What a topic said no longer holds. */
+  forget(topic: string): void;
 }

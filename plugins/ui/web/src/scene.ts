@@ -1,130 +1,180 @@
-/** What is felt, as the page has it: heights, labels, the photo; metres, x right, y away, z up. */
+/** What is felt, as the page has it: heights, labels, materials, the picture; metres, x right, y away, z up. */
+import { Grid } from "./grid";
+import type { LayerMeta, Material, Meta } from "./messages";
 import { bulk } from "./net";
-import type { Material, Meta } from "./messages";
 import type { Vec } from "./protocol";
 
+export type Labels = Uint16Array | Uint32Array;
+
+/** A part of the surface at a level of detail. */
+export interface Part {
+  grid: Grid;
+  labels: Labels | null;
+}
+
+/** Cells of a level: from a row and a column on, so many. */
+export interface Window {
+  level: number;
+  row: number;
+  rows: number;
+  column: number;
+  columns: number;
+}
+
+export interface Layer extends LayerMeta {
+  values: Float32Array;
+}
+
 export class Scene {
+  /** What is finer than the whole, of where the camera looks. */
+  detail: Part | null = null;
+  private layers = new Map<string, Promise<Layer>>();
+
   constructor(
     readonly meta: Meta,
-    readonly heights: Float32Array,
-    readonly labels: Uint16Array,
+    readonly whole: Part,
+    /** Of each label, which of `meta.materials` it has. */
+    readonly kinds: Uint16Array,
     readonly photo: ImageBitmap | null,
   ) {}
 
   static async load(meta: Meta): Promise<Scene> {
-    const at = `/scene/${meta.digest}`;
-    const [heights, labels, photo] = await Promise.all([
-      bulk(`${at}/height.f32`).then((r) => r.arrayBuffer()),
-      bulk(`${at}/labels.u16`).then((r) => r.arrayBuffer()),
-      meta.photo ? bulk(`${at}/photo.jpg`).then((r) => r.blob()).then((b) => createImageBitmap(b)) : null,
+    const level = meta.levels.length - 1;
+    const { rows, columns } = meta.levels[level];
+    const [whole, kinds, photo] = await Promise.all([
+      fetchPart(meta, { level, row: 0, rows, column: 0, columns }),
+      bulk(`${root(meta)}/materials.u16`).then((answer) => answer.arrayBuffer()),
+      meta.photo ? bulk(`${root(meta)}/photo.jpg`).then((answer) => answer.blob()).then((it) => createImageBitmap(it)) : null,
     ]);
-    return new Scene(meta, new Float32Array(heights), new Uint16Array(labels), photo);
+    return new Scene(meta, whole, new Uint16Array(kinds), photo);
   }
 
-  private cell(x: number, y: number): [number, number] {
-    const {
-      rows,
-      columns,
-      extent_m: [w, l],
-    } = this.meta;
-    return [(x / w + 0.5) * columns - 0.5, (0.5 - y / l) * rows - 0.5];
+  /** Finer heights and labels of a window. */
+  part(window: Window, signal?: AbortSignal): Promise<Part> {
+    return fetchPart(this.meta, window, signal);
+  }
+
+  /** Values to be warped over the surface: fetched when they are first asked for. */
+  layer(name: string): Promise<Layer> {
+    const meta = this.meta.layers[name];
+    const known = this.layers.get(name);
+    if (known) return known;
+    const found = bulk(`${root(this.meta)}/${name}.f32`).then(async (answer) => ({
+      ...meta,
+      values: new Float32Array(await answer.arrayBuffer()),
+    }));
+    found.catch(() => this.layers.delete(name));
+    this.layers.set(name, found);
+    return found;
   }
 
   /** Bilinear height; the rim's beyond the last cell centres, NaN outside. */
   height(x: number, y: number): number {
-    const {
-      rows,
-      columns,
-      extent_m: [w, l],
-    } = this.meta;
-    if (Math.abs(x) > w / 2 || Math.abs(y) > l / 2) return NaN;
-    const [u, v] = this.cell(x, y),
-      c = Math.min(Math.max(u, 0), columns - 1.001),
-      r = Math.min(Math.max(v, 0), rows - 1.001);
-    const i = c | 0,
-      j = r | 0,
-      fx = c - i,
-      fy = r - j,
-      k = j * columns + i,
-      z = this.heights;
-    return (z[k] * (1 - fx) + z[k + 1] * fx) * (1 - fy) + (z[k + columns] * (1 - fx) + z[k + columns + 1] * fx) * fy;
+    return this.inside(x, y) ? this.finest(x, y).grid.height(x, y) : NaN;
   }
 
   /** The place on the surface over or under a point, within its rim. */
   on(x: number, y: number): Vec {
     const [w, l] = this.meta.extent_m;
-    const inside = (part: number, side: number): number => Math.max(-side / 2, Math.min(side / 2, part));
-    const [u, v] = [inside(x, w), inside(y, l)];
+    const within = (part: number, side: number): number => Math.max(-side / 2, Math.min(side / 2, part));
+    const [u, v] = [within(x, w), within(y, l)];
     return [u, v, this.height(u, v)];
   }
 
+  /** Out of the surface: differences over two cells of the finest that is loaded, fewer at the rim. */
   normal(x: number, y: number): Vec {
-    const d = this.meta.extent_m[0] / this.meta.columns;
-    const gx = (this.height(x + d, y) - this.height(x - d, y)) / (2 * d) || 0,
-      gy = (this.height(x, y + d) - this.height(x, y - d)) / (2 * d) || 0;
+    const { dx, dy } = this.finest(x, y).grid.place;
+    const [left, right] = [this.on(x - dx, y), this.on(x + dx, y)];
+    const [near, far] = [this.on(x, y - dy), this.on(x, y + dy)];
+    const gx = (right[2] - left[2]) / (right[0] - left[0]) || 0;
+    const gy = (far[2] - near[2]) / (far[1] - near[1]) || 0;
     const n = Math.hypot(gx, gy, 1);
     return [-gx / n, -gy / n, 1 / n];
   }
 
-  material(x: number, y: number): Material | null {
-    const { rows, columns, materials } = this.meta,
-      [u, v] = this.cell(x, y),
-      i = Math.round(u),
-      j = Math.round(v);
-    return i < 0 || j < 0 || i >= columns || j >= rows ? null : (materials[this.labels[j * columns + i]] ?? null);
+  /** The segment there; null outside and where there are none. */
+  label(x: number, y: number): number | null {
+    if (!this.inside(x, y)) return null;
+    const { grid, labels } = this.finest(x, y);
+    return labels ? labels[grid.cell(x, y)] : null;
   }
 
-  /** Where a ray meets the surface first: every cell on its way is looked at, so that no spike is leapt over. */
-  pick(o: Vec, d: Vec): Vec | null {
-    const {
-      rows,
-      columns,
-      extent_m: [w, l],
-      height_m: [low, high],
-    } = this.meta;
-    let t0 = 0,
-      t1 = Infinity;
-    for (const [from, by, a, b] of [
-      [o[0], d[0], -w / 2, w / 2],
-      [o[1], d[1], -l / 2, l / 2],
-      [o[2], d[2], low - 1e-6, high + 1e-6],
-    ]) {
-      if (by === 0) {
-        if (from < a || from > b) return null;
-        continue;
-      }
-      const p = (a - from) / by,
-        q = (b - from) / by;
-      t0 = Math.max(t0, Math.min(p, q));
-      t1 = Math.min(t1, Math.max(p, q));
-    }
-    if (t0 >= t1) return null;
-    const above = (t: number) => o[2] + t * d[2] - (this.height(o[0] + t * d[0], o[1] + t * d[1]) || 0);
-    const [ex, ey] = [o[0] + t0 * d[0], o[1] + t0 * d[1]];
-    if (above(t0 + 1e-9) < -1e-9) return [ex, ey, this.height(ex * 0.9999, ey * 0.9999)]; // an upright side: its rim
-    const su = (d[0] / w) * columns,
-      sv = (-d[1] / l) * rows; // cells per unit of t
-    let t = t0 + 1e-9,
-      before = t0,
-      [u, v] = this.cell(o[0] + t * d[0], o[1] + t * d[1]);
-    for (let n = 0; n < rows + columns + 2; n++) {
-      const nu = su > 0 ? Math.floor(u) + 1 : Math.ceil(u) - 1,
-        nv = sv > 0 ? Math.floor(v) + 1 : Math.ceil(v) - 1;
-      const step = Math.min(su ? (nu - u) / su : Infinity, sv ? (nv - v) / sv : Infinity, t1 - t);
-      t += Math.max(step, 1e-12);
-      u += step * su;
-      v += step * sv;
-      if (above(t) <= 0 || t >= t1 - 1e-12) {
-        for (let k = 0, a = before, b = t; k < 24; k++) {
-          const m = (a + b) / 2;
-          if (above(m) <= 0) b = m;
-          else a = m;
-          t = b;
-        }
-        return [o[0] + t * d[0], o[1] + t * d[1], o[2] + t * d[2]];
-      }
-      before = t;
-    }
-    return null;
+  material(x: number, y: number): Material | null {
+    const label = this.label(x, y);
+    return label === null ? null : (this.meta.materials[this.kinds[label]] ?? null);
   }
+
+  /** Where a ray meets the surface first, of what is loaded the finest. */
+  pick(o: Vec, d: Vec): Vec | null {
+    const [w, l] = this.meta.extent_m;
+    const [low, high] = this.meta.height_m;
+    const slack = 1e-6 * (w + l);
+    const [from, to] = within(o, d, [-w / 2, -l / 2, low - slack], [w / 2, l / 2, high + slack]);
+    if (!(from < to)) return null;
+    const t = this.meet(o, d, from, to);
+    if (t !== t) return null;
+    const at = this.on(o[0] + t * d[0], o[1] + t * d[1]);
+    if (t > from) at[2] = o[2] + t * d[2]; // else it is an upright side, which is felt at its rim
+    return at;
+  }
+
+  private meet(o: Vec, d: Vec, from: number, to: number): number {
+    const { whole, detail } = this;
+    if (!detail) return whole.grid.meet(o, d, from, to);
+    const { rows, columns, place } = detail.grid;
+    const { left, far, dx, dy } = place;
+    const low: Vec = [left + dx / 2, far - (rows - 0.5) * dy, -Infinity];
+    const high: Vec = [left + (columns - 0.5) * dx, far - dy / 2, Infinity];
+    const [enter, leave] = within(o, d, low, high);
+    if (!(Math.max(enter, from) < Math.min(leave, to))) return whole.grid.meet(o, d, from, to);
+    const before = enter > from ? whole.grid.meet(o, d, from, enter) : NaN;
+    if (before === before) return before;
+    const there = detail.grid.meet(o, d, Math.max(enter, from), Math.min(leave, to));
+    return there === there || leave >= to ? there : whole.grid.meet(o, d, leave, to);
+  }
+
+  private finest(x: number, y: number): Part {
+    return this.detail?.grid.knows(x, y) ? this.detail : this.whole;
+  }
+
+  private inside(x: number, y: number): boolean {
+    const [w, l] = this.meta.extent_m;
+    return Math.abs(x) <= w / 2 && Math.abs(y) <= l / 2;
+  }
+}
+
+/** Where a ray is within a box, from t to t; none if the first is not smaller. */
+function within(o: Vec, d: Vec, low: Vec, high: Vec): [number, number] {
+  let [from, to] = [0, Infinity];
+  for (let k = 0; k < 3; k++) {
+    if (d[k] === 0) {
+      if (o[k] < low[k] || o[k] > high[k]) return [1, 0];
+      continue;
+    }
+    const [p, q] = [(low[k] - o[k]) / d[k], (high[k] - o[k]) / d[k]];
+    from = Math.max(from, Math.min(p, q));
+    to = Math.min(to, Math.max(p, q));
+  }
+  return [from, to];
+}
+
+function root(meta: Meta): string {
+  return `/scene/${meta.digest}`;
+}
+
+async function fetchPart(meta: Meta, window: Window, signal?: AbortSignal): Promise<Part> {
+  const { level, row, rows, column, columns } = window;
+  const asked = (bytes: number) => ({ row, rows, column, columns, bytes, of: meta.levels[level].columns });
+  const [heights, labels] = await Promise.all([
+    bulk(`${root(meta)}/height-${level}.f32`, asked(4), signal).then((answer) => answer.arrayBuffer()),
+    meta.labels
+      ? bulk(`${root(meta)}/labels-${level}.u`, asked(meta.label_bytes), signal).then((answer) => answer.arrayBuffer())
+      : null,
+  ]);
+  const [w, l] = meta.extent_m;
+  const { step } = meta.levels[level];
+  const [dx, dy] = [(step * w) / meta.columns, (step * l) / meta.rows];
+  const place = { left: column * dx - w / 2, far: l / 2 - row * dy, dx, dy };
+  const grid = new Grid(new Float32Array(heights), rows, columns, place);
+  return { grid, labels: labels && (meta.label_bytes === 2 ? new Uint16Array(labels) : new Uint32Array(labels)) };
 }

@@ -23,6 +23,16 @@ export const SHORTCUTS = {
   "previous region": { keys: ["Shift+F6"], where: "page" },
   help: { keys: ["?", "F1"], where: "letter" },
   "move hand": { keys: ["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown"], where: "surface", own: true },
+  "move finely": {
+    keys: ["Shift+ArrowLeft", "Shift+ArrowRight", "Shift+ArrowUp", "Shift+ArrowDown"], where: "surface", own: true,
+  },
+  "move coarsely": {
+    keys: ["Ctrl+ArrowLeft", "Ctrl+ArrowRight", "Ctrl+ArrowUp", "Ctrl+ArrowDown"], where: "surface", own: true,
+  },
+  "to the middle": { keys: ["Home"], where: "surface", own: true },
+  "next part": { keys: ["n"], where: "surface", own: true },
+  "previous part": { keys: ["Shift+n"], where: "surface", own: true },
+  "in space": { keys: ["f"], where: "surface", own: true },
   "press or lift": { keys: [" "], where: "surface", own: true },
   deeper: { keys: ["PageDown"], where: "surface", own: true },
   "less deep": { keys: ["PageUp"], where: "surface", own: true },

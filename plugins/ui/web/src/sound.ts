@@ -1,71 +1,119 @@
-/** Contact and texture to hear: a tap when touched, and noise around speed over grain, as loud as roughness, force and speed make it. */
+/** What is felt, to hear: taps, texture, force, and heights as pitch. Off until a person switches it on. */
+import type { Hub } from "./hub";
+import { Instrument } from "./instrument";
+import { held, touching } from "./narrator";
 import type { State } from "./protocol";
-import type { Material } from "./messages";
+import { recall, remember } from "./remembered";
+import type { Scene } from "./scene";
+import { force_level, pan, pitch_hz, stroke, tap } from "./sonify";
+
+/** What is heard; each can be switched. */
+export const VOICES = { texture: true, contact: true, force: false, height: false } as const;
+export type VoiceName = keyof typeof VOICES;
+
+const SWEEP_S = 2.5;
+const SWEEP_STEPS = 200;
+/** Without a state for so long nothing is heard. */
+const SILENT_MS = 250;
+const NONE = stroke(null, [0, 0, 0], [0, 0, 0]);
 
 export class Sound {
-  private context: AudioContext | null = null;
-  private band!: BiquadFilterNode;
-  private loud!: GainNode;
-  private hum!: OscillatorNode;
-  private humLoud!: GainNode;
-  private touching = false;
+  private instrument: Instrument | null = null;
+  private sounding = false;
+  private touched = false;
+  private heardMs = 0;
+  private sweeping: OscillatorNode | null = null;
 
-  get state() {
-    return this.context ? [this.context.state, this.context.baseLatency] : null;
+  constructor(
+    private hub: Hub,
+    private scene: () => Scene | null,
+  ) {
+    hub.on("state", (state) => this.hear(state));
+    setInterval(() => this.sounding && performance.now() - this.heardMs > SILENT_MS && this.hush(), SILENT_MS);
   }
-  async toggle(): Promise<boolean> {
-    if (this.context) {
-      await this.context.close();
-      this.context = null;
-      return false;
-    }
-    const c = (this.context = new AudioContext({ latencyHint: "interactive" }));
-    const noise = c.createBuffer(1, 2 * c.sampleRate, c.sampleRate),
-      data = noise.getChannelData(0);
-    for (let i = 0; i < data.length; i++) data[i] = Math.random() * 2 - 1;
-    const source = c.createBufferSource();
-    source.buffer = noise;
-    source.loop = true;
-    this.band = c.createBiquadFilter();
-    this.band.type = "bandpass";
-    this.loud = c.createGain();
-    this.loud.gain.value = 0;
-    this.hum = c.createOscillator();
-    this.hum.type = "triangle";
-    this.humLoud = c.createGain();
-    this.humLoud.gain.value = 0;
-    source.connect(this.band).connect(this.loud).connect(c.destination);
-    source.start();
-    this.hum.connect(this.humLoud).connect(c.destination);
-    this.hum.start();
-    return true;
+
+  get on(): boolean {
+    return this.sounding;
   }
-  hear(s: State, m: Material | null) {
-    const c = this.context;
-    if (!c) return;
-    const force = Math.hypot(...s.force),
-      speed = Math.hypot(s.velocity[0], s.velocity[1]),
-      touching = (s.flags & 1) === 1;
-    if (touching && !this.touching) this.tap(c, Math.min(1, 0.15 + 4 * Math.abs(s.velocity[2])));
-    this.touching = touching;
-    const rate = m ? speed / m.grain_m : 0,
-      level = touching && m ? Math.min(0.35, 900 * m.roughness_m * force * Math.min(1, speed / 0.05)) : 0;
-    const periodic = m?.texture === "periodic";
-    this.band.frequency.setTargetAtTime(Math.min(8000, Math.max(60, rate)), c.currentTime, 0.01);
-    this.band.Q.setTargetAtTime(periodic ? 8 : 0.9, c.currentTime, 0.01);
-    this.loud.gain.setTargetAtTime(level, c.currentTime, 0.008);
-    this.hum.frequency.setTargetAtTime(Math.min(2000, Math.max(30, rate)), c.currentTime, 0.01);
-    this.humLoud.gain.setTargetAtTime(periodic ? 0.5 * level : 0, c.currentTime, 0.008);
+
+  async toggle(): Promise<void> {
+    this.sounding = !this.sounding;
+    if (this.sounding) await this.wake();
+    else this.hush();
+    this.hub.tell("sound", { on: this.sounding });
   }
-  private tap(c: AudioContext, level: number) {
-    const o = c.createOscillator(),
-      g = c.createGain();
-    o.frequency.setValueAtTime(180, c.currentTime);
-    o.frequency.exponentialRampToValueAtTime(60, c.currentTime + 0.06);
-    g.gain.setValueAtTime(level * 0.4, c.currentTime);
-    g.gain.exponentialRampToValueAtTime(1e-4, c.currentTime + 0.09);
-    o.connect(g).connect(c.destination);
-    o.start();
-    o.stop(c.currentTime + 0.1);
+
+  get volume(): number {
+    return recall("volume", 0.5);
   }
+
+  set volume(volume: number) {
+    remember("volume", volume);
+    if (this.instrument) this.instrument.volume = volume;
+  }
+
+  has(voice: VoiceName): boolean {
+    return recall(`hear.${voice}`, VOICES[voice] as boolean);
+  }
+
+  let(voice: VoiceName, on: boolean): void {
+    remember(`hear.${voice}`, on);
+  }
+
+  /** How loud it is now, root mean square of full scale. */
+  get level(): number {
+    if (!this.instrument) return 0;
+    const { meter } = this.instrument;
+    const data = new Float32Array(meter.fftSize);
+    meter.getFloatTimeDomainData(data);
+    return Math.sqrt(data.reduce((sum, each) => sum + each * each, 0) / data.length);
+  }
+
+  /** The heights of a row from left to right, as pitches. It is heard with the sound off too: a person asked for it. */
+  async sweep(scene: Scene, y: number): Promise<void> {
+    const instrument = await this.wake();
+    this.sweeping?.stop();
+    this.sweeping = instrument.sweep(row(scene, y), SWEEP_S);
+    await new Promise((ended) => (this.sweeping!.onended = ended));
+  }
+
+  /** There is one context, made when a person first asks for sound: before that browsers allow none. */
+  private async wake(): Promise<Instrument> {
+    this.instrument ??= new Instrument(new AudioContext({ latencyHint: "interactive" }));
+    this.instrument.volume = this.volume;
+    await (this.instrument.context as AudioContext).resume();
+    return this.instrument;
+  }
+
+  private hear(state: State): void {
+    const { instrument } = this;
+    const scene = this.scene();
+    if (!this.sounding || !instrument || !scene) return;
+    this.heardMs = performance.now();
+    const [x, y] = state.hand;
+    const material = scene.material(x, y);
+    const touched = touching(state);
+    if (touched && !this.touched && this.has("contact")) instrument.tap(tap(material, state.velocity));
+    this.touched = touched;
+    instrument.pan(pan(x, scene.meta.extent_m[0]));
+    instrument.stroke(touched && this.has("texture") ? stroke(material, state.force, state.velocity) : NONE);
+    instrument.force(touched && this.has("force") ? force_level(Math.hypot(...state.force)) : 0);
+    const height = held(state) && this.has("height") ? scene.height(x, y) : NaN;
+    instrument.heightAt(Number.isNaN(height) ? null : pitch_hz(height, scene.meta.height_m));
+  }
+
+  private hush(): void {
+    this.touched = false;
+    this.instrument?.stroke(NONE);
+    this.instrument?.force(0);
+    this.instrument?.heightAt(null);
+  }
+}
+
+/** The pitches of a row of a surface. */
+export function row(scene: Scene, y: number): Float32Array {
+  const { extent_m, height_m } = scene.meta;
+  return Float32Array.from({ length: SWEEP_STEPS }, (_, i) =>
+    pitch_hz(scene.height(((i + 0.5) / SWEEP_STEPS - 0.5) * extent_m[0], y), height_m),
+  );
 }

@@ -1,35 +1,56 @@
-/** Changes in words: in a polite live region for who has a screen reader, aloud where that is asked for. */
-import type { State } from "./protocol";
-import type { Scene } from "./scene";
+/** Speech aloud: what the live regions say, in the page's language, where the browser has a voice for it. */
+import type { Said } from "./announcer";
+import type { Hub } from "./hub";
+import { recall, remember } from "./remembered";
+import { language } from "./words/words";
+
+export const RATES = { least: 0.5, most: 3, step: 0.25 };
 
 export class Speech {
-  aloud = false;
-  private said = "";
-  private saidMs = 0;
-  constructor(private region: HTMLElement) {}
-  feel(s: State, scene: Scene) {
-    if (performance.now() - this.saidMs < 1000) return;
-    const touching = (s.flags & 1) === 1,
-      on = touching ? (scene.material(s.hand[0], s.hand[1])?.name ?? "surface") : "";
-    const now = touching ? `touching ${on}` : s.hand[2] > 0.5 ? "no hand" : "in the air";
-    if (now !== this.said) {
-      this.said = now;
-      this.say(now);
-    }
+  private on = recall<boolean>("aloud", false);
+
+  constructor(private hub: Hub) {
+    window.speechSynthesis?.addEventListener("voiceschanged", () => this.tell()); // they come late
   }
-  where(s: State, scene: Scene) {
-    const [x, y] = s.hand.map((part) => Math.round(1000 * part)),
-      f = Math.hypot(...s.force);
-    this.say(
-      `${Math.abs(x)} millimetres ${x < 0 ? "left" : "right"}, ${Math.abs(y)} ${y < 0 ? "near" : "far"}, ${scene.material(s.hand[0], s.hand[1])?.name ?? "no material"}, ${f.toFixed(1)} newtons`,
-    );
+
+  /** The voice that speaks: of this machine before one that needs a network. None: null. */
+  get voice(): SpeechSynthesisVoice | null {
+    const voices = window.speechSynthesis?.getVoices().filter((each) => each.lang.toLowerCase().startsWith(language)) ?? [];
+    return voices.find((each) => each.localService) ?? voices[0] ?? null;
   }
-  say(text: string) {
-    this.saidMs = performance.now();
-    this.region.textContent = text;
-    if (this.aloud && "speechSynthesis" in window) {
-      speechSynthesis.cancel();
-      speechSynthesis.speak(new SpeechSynthesisUtterance(text));
-    }
+
+  get aloud(): boolean {
+    return this.on && this.voice !== null;
+  }
+
+  set aloud(on: boolean) {
+    this.on = on;
+    remember("aloud", on);
+    if (!on) window.speechSynthesis?.cancel();
+    this.tell();
+  }
+
+  get rate(): number {
+    return recall("rate", 1);
+  }
+
+  set rate(rate: number) {
+    remember("rate", Math.min(RATES.most, Math.max(RATES.least, rate)));
+  }
+
+  /** What it still spoke is stale, and ends. */
+  speak({ text }: Said): void {
+    const voice = this.voice;
+    if (!this.on || !voice) return;
+    const words = new SpeechSynthesisUtterance(text);
+    words.voice = voice;
+    words.lang = voice.lang;
+    words.rate = this.rate;
+    speechSynthesis.cancel();
+    speechSynthesis.speak(words);
+  }
+
+  private tell(): void {
+    this.hub.tell("aloud", { on: this.aloud, voice: this.voice?.name ?? "" });
   }
 }

@@ -20,7 +20,8 @@ const LEAST_PX = 80;
 const KEYS: Record<string, number> = { ArrowLeft: -1, ArrowUp: -1, ArrowRight: 1, ArrowDown: 1 };
 
 export function splits(): void {
-  for (const split of SPLITS) new Line(split);
+  document.getElementById("sizes")!.setAttribute("aria-label", t("sizes"));
+  for (const split of SPLITS) lines.push(new Line(split));
 }
 
 /** Sizes of all regions as the page chooses them. */
@@ -30,6 +31,13 @@ export function resetSizes(): void {
     document.documentElement.style.removeProperty(`--${region}`);
   }
 }
+
+/** All regions larger or smaller by some steps. */
+export function resize(steps: number): void {
+  for (const line of lines) line.step(4 * steps);
+}
+
+const lines: Line[] = [];
 
 class Line {
   private line: HTMLElement;
@@ -58,7 +66,11 @@ class Line {
     const step = KEYS[event.key];
     if (!step || event.altKey || event.ctrlKey || event.metaKey) return;
     event.preventDefault();
-    this.put(this.size + step * this.split.way * STEP_PX);
+    this.step(step * this.split.way);
+  }
+
+  step(steps: number): void {
+    this.put(this.size + steps * STEP_PX);
     remember(this.split.region, this.size);
   }
 

@@ -2,6 +2,7 @@
 import type { Page } from "./page";
 import { on } from "./shortcuts";
 import { t } from "./words/frame";
+import { made } from "./words/products";
 
 type What = "idle" | "busy" | "felt" | "stopped" | "error";
 
@@ -10,26 +11,27 @@ export class Status {
 
   constructor(private page: Page) {
     const { hub } = page;
-    this.button("hold", t("takeHand"), () => this.ask("hold"));
-    this.button("again", t("feelAgain"), () => this.ask("feel"));
+    this.give("hold", t("takeHand"), () => this.ask("hold"));
+    this.give("again", t("feelAgain"), () => this.ask("feel"));
     this.stopButton();
     this.line.textContent = t("starting");
-    hub.on("gone", () => this.say("error", t("gone")));
-    hub.on("error", ({ text }) => this.say("error", text));
+    hub.on("gone", () => this.show("error", t("gone"), "gone"));
+    hub.on("hello", () => page.forget("gone"));
+    hub.on("error", ({ text }) => this.show("error", text));
     hub.on("stage", ({ product, method, done }) => {
-      if (!done.outcome) this.say("busy", t("making", { product, method }));
+      if (!done.outcome) this.show("busy", t("making", { product: made(product), method }));
     });
-    hub.on("touch", ({ law }) => this.say("felt", t("feeling", { law })));
-    hub.on("loop", ({ running }) => {
-      if (!running) this.say("stopped", t("stopped"));
+    hub.on("touch", ({ law }) => this.show("felt", t("feeling", { law })));
+    hub.on("loop", ({ running, stopped, why, waiting }) => {
+      if (!running) this.show("stopped", stopped ? t("stopped") : t(waiting ? "waiting" : "ended", { why }));
     });
-    hub.on("holding", ({ holding }) => {
+    hub.on("holding", ({ holding, free }) => {
       document.getElementById("hold")!.hidden = holding;
-      if (!holding) this.say("idle", t("watching"));
+      if (!holding) this.show("idle", t(free ? "nobody" : "watching"));
     });
   }
 
-  private button(id: string, text: string, act: () => void): HTMLButtonElement {
+  private give(id: string, text: string, act: () => void): HTMLButtonElement {
     const button = document.getElementById(id) as HTMLButtonElement;
     button.textContent = text;
     button.onclick = act;
@@ -38,21 +40,21 @@ export class Status {
 
   private stopButton(): void {
     const stop = (): void => this.ask("stop");
-    const button = this.button("stop", t("stopLong"), stop);
+    const button = this.give("stop", t("stopLong"), stop);
     const key = document.createElement("kbd");
-    key.textContent = "Esc";
+    key.textContent = t("escape");
     button.append(" ", key);
     button.setAttribute("aria-keyshortcuts", "Escape");
     on("stop", stop);
   }
 
   private ask(name: string): void {
-    this.page.net.ask(name).catch((error: Error) => this.say("error", error.message));
+    this.page.net.ask(name).catch((error: Error) => this.show("error", error.message));
   }
 
-  private say(what: What, text: string): void {
+  private show(what: What, text: string, topic = what === "error" ? text : "status"): void {
     this.line.dataset.state = what;
     this.line.textContent = text;
-    this.page.say(text);
+    this.page.say(text, { topic, urgent: what === "error" || what === "stopped" });
   }
 }

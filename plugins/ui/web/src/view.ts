@@ -1,76 +1,91 @@
 /** Layers: the terrain is drawn once into a colour and depth target; a frame is a copy of that, and what moves. */
 import {
-  AlwaysDepth,
   Camera,
   Color,
   DepthTexture,
-  HalfFloatType,
-  Mesh,
+  type Mesh,
   NearestFilter,
   type Object3D,
-  PerspectiveCamera,
-  PlaneGeometry,
   Scene as Stage,
-  ShaderMaterial,
   UnsignedIntType,
   Vector3,
   WebGLRenderer,
   WebGLRenderTarget,
-  MOUSE,
 } from "three";
-import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { Eye, steer } from "./camera";
+import { EyeDome, screen } from "./eyedome";
 import type { Vec } from "./protocol";
 import type { Scene } from "./scene";
-import { Terrain } from "./terrain";
+import { type Looks, Terrain } from "./terrain/terrain";
 
-const Z = new Vector3(0, 0, 1);
+const REST_MS = 140;
+/** A terrain that takes longer is drawn coarser while the camera moves. */
+const SLOW_MS = 22;
+const PATTERN_PX = 11;
+const GROUND = 0x10161f;
+
+/** Why nothing is drawn: there is no WebGL, or it was taken away. */
+export type Trouble = "" | "missing" | "lost";
 
 export class View {
-  readonly camera = new PerspectiveCamera(36, 1, 0.002, 2);
-  readonly controls: OrbitControls;
-  terrain: Terrain | null = null;
-  dirty = true;
-  private renderer: WebGLRenderer;
+  readonly eye = new Eye();
+  readonly camera = this.eye.camera;
   /** What is drawn again only when `dirty`. */
   readonly fixed = new Stage();
   /** What is drawn over it in every frame. */
   readonly moving = new Stage();
-  private copy = new Stage();
+  terrain: Terrain | null = null;
+  dirty = true;
+  trouble: Trouble = "";
+  /** Called when that changes. */
+  troubled: (trouble: Trouble) => void = () => {};
+  /** Called when the camera has come to rest. */
+  rested: () => void = () => {};
+  /** 0 none to 1. */
+  eyeDome = 0;
+  private renderer: WebGLRenderer | null;
+  private dome = new EyeDome();
+  private drawn: WebGLRenderTarget | null = null;
+  private shaded: WebGLRenderTarget | null = null;
+  private copied = { colours: { value: null as unknown }, depths: { value: null as unknown } };
+  private copy: Mesh = screen(
+    `precision highp float; precision highp sampler2D; uniform sampler2D colours, depths; out vec4 colour;
+void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 0); gl_FragDepth = texelFetch(depths, p, 0).r; }`,
+    this.copied,
+  );
+  private stage = new Stage();
   private none = new Camera();
-  private target = new WebGLRenderTarget(1, 1);
-  private blit = new ShaderMaterial({
-    depthFunc: AlwaysDepth,
-    uniforms: { c: { value: null }, d: { value: null } },
-    vertexShader: "varying vec2 v; void main() { v = uv; gl_Position = vec4(position.xy, 0., 1.); }",
-    fragmentShader:
-      "uniform sampler2D c, d; varying vec2 v; void main() { gl_FragColor = texture2D(c, v); gl_FragDepth = texture2D(d, v).r;\n#include <colorspace_fragment>\n}",
-  });
   private pixel = new Uint8Array(4);
+  private resting = 0;
+  private takesMs = 0;
+  private scene: Scene | null = null;
 
   constructor(private canvas: HTMLCanvasElement) {
-    this.renderer = new WebGLRenderer({ canvas, antialias: false, powerPreference: "high-performance" });
-    this.renderer.autoClear = false;
-    this.camera.up.copy(Z);
-    this.controls = new OrbitControls(this.camera, canvas);
-    this.controls.mouseButtons = { LEFT: null, MIDDLE: MOUSE.ROTATE, RIGHT: MOUSE.PAN } as any;
-    this.controls.enableZoom = false; // the wheel is the hand's depth; Ctrl+wheel zooms, see hand.ts
-    this.controls.addEventListener("change", () => (this.dirty = true));
-    this.fixed.background = new Color(0x10161f);
-    const quad = new Mesh(new PlaneGeometry(2, 2), this.blit);
-    quad.frustumCulled = false;
-    this.copy.add(quad);
+    this.fixed.background = new Color(GROUND).convertLinearToSRGB(); // targets hold what the screen shows
+    this.renderer = rendererOf(canvas);
+    if (!this.renderer) this.trouble = "missing";
+    this.eye.ground = (x, y) => this.scene?.height(x, y) ?? NaN;
+    this.eye.changed = () => this.moved();
+    steer(canvas, this.eye, (x, y) => this.scene?.pick(...this.ray(x, y)) ?? this.onGround(x, y));
+    canvas.addEventListener("webglcontextlost", (event) => this.lost(event));
+    canvas.addEventListener("webglcontextrestored", () => this.restored());
     new ResizeObserver(() => this.size()).observe(canvas);
     this.size();
   }
 
-  put(scene: Scene) {
-    if (this.terrain) {
-      this.fixed.remove(this.terrain.mesh, this.terrain.normals);
-      this.terrain.dispose();
+  /** Draw this surface from now on; where the size is another one, the whole of it is looked at. */
+  put(scene: Scene, looks: Looks): void {
+    const before = this.scene?.meta.extent_m;
+    this.scene = scene;
+    if (this.renderer) {
+      this.terrain?.dispose();
+      this.fixed.clear();
+      this.terrain = new Terrain(scene, looks);
+      this.fixed.add(this.terrain.group);
     }
-    this.terrain = new Terrain(scene);
-    this.fixed.add(this.terrain.mesh, this.terrain.normals);
-    this.frame(...scene.meta.extent_m);
+    this.takesMs = 0;
+    if (String(before) !== String(scene.meta.extent_m)) this.frame(...scene.meta.extent_m);
+    this.moved();
   }
 
   /** Something that moves; the caller sets `visible` and position before the frame is drawn. */
@@ -78,43 +93,29 @@ export class View {
     this.moving.add(object);
   }
 
-  /** Look at a whole surface of this size. */
+  /** Look at the whole of a surface of this size. */
   frame(width_m: number, length_m: number): void {
-    this.camera.position.set(0, -1.15 * length_m - 0.35 * width_m, 1.05 * width_m);
-    this.controls.target.set(0, 0.06 * length_m, 0);
-    this.controls.update();
-    this.dirty = true;
+    const [low, high] = this.scene?.meta.height_m ?? [0, 0];
+    this.eye.frame(width_m, length_m, (low + high) / 2);
   }
 
-  /** Look at a region this wide from where the camera is, as far as it needs. */
+  /** Look at a region this wide, from the side from which the camera looks. */
   focus(centre: Vec, width_m: number): void {
-    const way = this.camera.position.clone().sub(this.controls.target).normalize();
-    this.controls.target.set(...centre);
-    this.camera.position.copy(this.controls.target).addScaledVector(way, 1.6 * width_m);
-    this.controls.update();
-    this.dirty = true;
+    this.eye.focus(centre, width_m);
   }
 
   /** Nearer by this share of the way, or farther. */
   zoom(share: number): void {
-    this.camera.position.lerp(this.controls.target, share);
-    this.controls.update();
-    this.dirty = true;
+    this.eye.zoom(1 - share);
   }
 
+  /** From the eye through a place of the window: where from, and which way. */
   ray(clientX: number, clientY: number): [Vec, Vec] {
-    const r = this.canvas.getBoundingClientRect();
-    const v = new Vector3(
-      ((clientX - r.left) / r.width) * 2 - 1,
-      1 - ((clientY - r.top) / r.height) * 2,
-      0.5,
-    ).unproject(this.camera);
-    const o = this.camera.position;
-    v.sub(o).normalize();
-    return [
-      [o.x, o.y, o.z],
-      [v.x, v.y, v.z],
-    ];
+    const { left, top, width, height } = this.canvas.getBoundingClientRect();
+    const through = new Vector3(((clientX - left) / width) * 2 - 1, 1 - ((clientY - top) / height) * 2, 0.5);
+    const from = this.camera.position;
+    const way = through.unproject(this.camera).sub(from).normalize();
+    return [from.toArray(), way.toArray()];
   }
 
   /** Where a point of the workspace is on the canvas, in its CSS pixels from its upper left corner. */
@@ -125,36 +126,106 @@ export class View {
 
   /** Draw a frame; wait until it is drawn where that is to be measured. */
   draw(wait: boolean): void {
-    if (this.dirty) {
-      this.renderer.setRenderTarget(this.target);
-      this.renderer.clear();
-      this.renderer.render(this.fixed, this.camera);
-      this.renderer.setRenderTarget(null);
-      this.dirty = false;
+    const { renderer, drawn } = this;
+    const flies = this.eye.advance(performance.now());
+    if (!renderer || !drawn || this.trouble) {
+      this.dirty = flies;
+      return;
     }
-    this.renderer.render(this.copy, this.none);
-    this.renderer.render(this.moving, this.camera);
-    if (wait) {
-      const gl = this.renderer.getContext();
-      gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, this.pixel);
-    }
+    if (this.dirty) this.drawFixed(renderer, drawn);
+    this.dirty = flies;
+    this.stage.clear();
+    this.stage.add(this.copy);
+    renderer.setRenderTarget(null);
+    renderer.render(this.stage, this.none);
+    renderer.render(this.moving, this.camera);
+    if (wait) this.wait(renderer);
   }
 
-  private size() {
-    const w = Math.max(1, this.canvas.clientWidth),
-      h = Math.max(1, this.canvas.clientHeight);
-    this.renderer.setSize(w, h, false);
-    this.camera.aspect = w / h;
-    this.camera.updateProjectionMatrix();
-    this.target.dispose();
-    this.target = new WebGLRenderTarget(w, h, {
-      type: HalfFloatType,
-      minFilter: NearestFilter,
-      magFilter: NearestFilter,
-    });
-    this.target.depthTexture = new DepthTexture(w, h, UnsignedIntType);
-    this.blit.uniforms.c.value = this.target.texture;
-    this.blit.uniforms.d.value = this.target.depthTexture;
+  private drawFixed(renderer: WebGLRenderer, drawn: WebGLRenderTarget): void {
+    const first = this.terrain !== null && !this.takesMs;
+    const begun = performance.now();
+    if (this.terrain) this.terrain.period = PATTERN_PX * this.pixel_m();
+    renderer.setRenderTarget(drawn);
+    renderer.clear();
+    renderer.render(this.fixed, this.camera);
+    let colours = drawn.texture;
+    if (this.eyeDome > 0 && this.shaded) {
+      this.stage.clear();
+      this.stage.add(this.dome.of(drawn.texture, drawn.depthTexture!, this.camera, this.eyeDome));
+      renderer.setRenderTarget(this.shaded);
+      renderer.render(this.stage, this.none);
+      colours = this.shaded.texture;
+    }
+    this.copied.colours.value = colours;
+    if (!first) return;
+    renderer.setRenderTarget(drawn);
+    this.wait(renderer);
+    this.takesMs = performance.now() - begun;
+  }
+
+  /** Width of a pixel at the place that is looked at. */
+  pixel_m(): number {
+    const { fov } = this.camera;
+    return (2 * this.eye.pose.distance * Math.tan((fov * Math.PI) / 360)) / Math.max(1, this.canvas.clientHeight);
+  }
+
+  private onGround(clientX: number, clientY: number): Vec | null {
+    const [o, d] = this.ray(clientX, clientY);
+    const t = (this.eye.pose.target[2] - o[2]) / d[2];
+    return t > 0 ? [o[0] + t * d[0], o[1] + t * d[1], o[2] + t * d[2]] : null;
+  }
+
+  private moved(): void {
+    this.dirty = true;
+    if (this.terrain && this.takesMs > SLOW_MS) this.terrain.moving = true;
+    clearTimeout(this.resting);
+    this.resting = window.setTimeout(() => this.rest(), REST_MS);
+  }
+
+  private rest(): void {
+    if (this.terrain) this.terrain.moving = false;
+    this.dirty = true;
+    this.rested();
+  }
+
+  private wait(renderer: WebGLRenderer): void {
+    const gl = renderer.getContext();
+    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, this.pixel);
+  }
+
+  private lost(event: Event): void {
+    event.preventDefault(); // it may come back
+    this.trouble = "lost";
+    this.troubled("lost");
+  }
+
+  private restored(): void {
+    this.trouble = "";
+    this.size();
+    this.troubled("");
+  }
+
+  private size(): void {
+    const width = Math.max(1, this.canvas.clientWidth);
+    const height = Math.max(1, this.canvas.clientHeight);
+    this.eye.resize(width, height);
+    if (!this.renderer) return;
+    this.renderer.setSize(width, height, false);
+    for (const each of [this.drawn, this.shaded]) each?.dispose();
+    const filters = { minFilter: NearestFilter, magFilter: NearestFilter } as const;
+    this.drawn = new WebGLRenderTarget(width, height, { ...filters });
+    this.drawn.depthTexture = new DepthTexture(width, height, UnsignedIntType);
+    this.shaded = new WebGLRenderTarget(width, height, { ...filters, depthBuffer: false });
+    this.copied.depths.value = this.drawn.depthTexture;
     this.dirty = true;
   }
+}
+
+function rendererOf(canvas: HTMLCanvasElement): WebGLRenderer | null {
+  const context = canvas.getContext("webgl2", { alpha: false, antialias: false, stencil: false });
+  if (!context) return null;
+  const renderer = new WebGLRenderer({ canvas, context, antialias: false });
+  renderer.autoClear = false;
+  return renderer;
 }

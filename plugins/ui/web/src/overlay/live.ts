@@ -45,15 +45,7 @@ export interface Place {
 }
 
 export function place(scene: Scene, x: number, y: number): Place {
-  return { at: [x, y, scene.height(x, y)], normal: scene.normal(x, y), material: scene.material(x, y), part: part(scene, x, y) };
-}
-
-export function part(scene: Scene, x: number, y: number): number | null {
-  const { rows, columns, extent_m } = scene.meta;
-  const column = Math.round((x / extent_m[0] + 0.5) * columns - 0.5);
-  const row = Math.round((0.5 - y / extent_m[1]) * rows - 0.5);
-  const inside = column >= 0 && row >= 0 && column < columns && row < rows;
-  return inside ? scene.labels[row * columns + column] : null;
+  return { at: [x, y, scene.height(x, y)], normal: scene.normal(x, y), material: scene.material(x, y), part: scene.label(x, y) };
 }
 
 /** Follows the states, and says what each means on the surface. */
@@ -78,7 +70,7 @@ export class Reading {
       tangentialN: length(across(force, normal)),
       otherN: length(state.other),
       speedMPerS: length(state.velocity),
-      part: scene && seen ? part(scene, contact[0], contact[1]) : null,
+      part: scene && seen ? scene.label(contact[0], contact[1]) : null,
       grip: this.rule.next({ touching, atMs: state.sampleMs, contact, normal, force, dynamicFriction }),
     };
   }

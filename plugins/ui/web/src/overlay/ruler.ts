@@ -81,7 +81,7 @@ export class Ruler implements Picked {
   here(): void {
     const { scene, overlay, view } = this.page;
     const live = overlay.live?.seen ? overlay.live : null;
-    const [x, y] = live ? live.hand : view.controls.target.toArray();
+    const [x, y] = live ? live.hand : view.eye.pose.target;
     if (scene) this.next(scene.on(x, y));
   }
 

@@ -1,19 +1,75 @@
-/** The methods of the document, as forms; run and stop. */
-import { StageForm } from "../form";
+/** The methods of the document, as forms; run and stop; one step back and forth. */
+import { button } from "../elements";
+import { complain } from "../forms/complaints";
+import { Editor } from "../forms/editor";
+import { SectionForm } from "../forms/section";
+import { sections } from "../forms/sections";
+import type { FileSchema } from "../forms/schema";
 import type { Page } from "../page";
 import type { Panel } from "../panel";
 import { t } from "../words/methods";
+import { running } from "./methods/running";
+import "./methods.css";
+
+/** The methods are all loaded for their schema: not while the first scene is read. */
+const SCHEMA_AFTER_MS = 1200;
 
 function build(page: Page, root: HTMLElement): void {
-  const make = document.createElement("button");
-  make.textContent = t("make");
-  make.onclick = () => void page.net.ask("make");
-  const stop = document.createElement("button");
-  stop.textContent = t("stopMaking");
-  stop.onclick = () => void page.net.ask("stop_making");
+  const editor = new Editor(page);
+  const complaints = document.createElement("div");
+  complaints.className = "complaints";
+  complaints.tabIndex = -1;
+  complaints.hidden = true;
   const forms = document.createElement("div");
-  root.append(make, stop, forms);
-  void StageForm;
+  forms.textContent = t("waiting");
+  let shown: SectionForm[] = [];
+  let timer = 0;
+  const refused = document.createElement("p");
+  refused.className = "bad";
+  refused.setAttribute("role", "status");
+  editor.onRefused = (why) => (refused.textContent = why);
+
+  const show = (): void => {
+    if (!page.document) return;
+    refused.textContent = "";
+    if (page.document.said) for (const each of shown) each.show(page.document);
+    complain(root, complaints, page.document.complaints);
+  };
+  const load = async (): Promise<void> => {
+    if (shown.length) return;
+    const schema = await page.net.ask<FileSchema>("schema");
+    if (shown.length) return;
+    shown = sections(schema).map((each) => new SectionForm(each, (edit) => editor.change(edit)));
+    forms.replaceChildren(...shown.map((each) => each.root));
+    show();
+  };
+
+  const compare = document.createElement("p");
+  compare.className = "hint";
+  compare.textContent = t("compare");
+  root.append(running(page, editor), refused, complaints, steps(page, editor), forms, compare);
+  page.hub.on("document", () => {
+    show();
+    if (shown.length || timer) return;
+    timer = window.setTimeout(() => void load().catch(() => undefined).finally(() => (timer = 0)), SCHEMA_AFTER_MS);
+  });
+}
+
+function steps(page: Page, editor: Editor): HTMLElement {
+  const box = document.createElement("div");
+  box.className = "buttons";
+  const undo = button(t("undo"), () => editor.step("undo"));
+  const redo = button(t("redo"), () => editor.step("redo"));
+  undo.id = "undo";
+  redo.id = "redo";
+  box.append(undo, redo);
+  const able = (): void => {
+    undo.setAttribute("aria-disabled", String(!page.document?.can_undo));
+    redo.setAttribute("aria-disabled", String(!page.document?.can_redo));
+  };
+  able();
+  page.hub.on("document", able);
+  return box;
 }
 
 export const methods: Panel = { id: "methods", title: t("title"), place: "left", open: true, build };

@@ -30,9 +30,21 @@ export function speak(other: Language): void {
 export const tables: Table[] = [];
 
 /** A table as a function: t("opened", { name }) puts values in for {name}. */
-export function words<T extends Table>(table: T): (key: keyof T, values?: Record<string, string | number>) => string {
+export interface Words<T extends Table> {
+  (key: keyof T, values?: Record<string, string | number>): string;
+  /** Whether there is a text for what the program names. */
+  has(name: string): name is keyof T & string;
+}
+
+export function words<T extends Table>(table: T): Words<T> {
   tables.push(table);
   const column = LANGUAGES.indexOf(language);
-  return (key, values = {}) =>
+  const t = (key: keyof T, values: Record<string, string | number> = {}): string =>
     table[key]![column]!.replace(/\{(\w+)\}/g, (whole, name: string) => String(values[name] ?? whole));
+  return Object.assign(t, { has: (name: string): name is keyof T & string => Object.hasOwn(table, name) });
+}
+
+/** A number as the language writes it. */
+export function decimal(value: number, digits: number): string {
+  return value.toLocaleString(language, { minimumFractionDigits: digits, maximumFractionDigits: digits });
 }

@@ -1,0 +1,144 @@
+"""What there is to see of a pipeline: what was made of it, and nothing that would have to be made first."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, Literal, NamedTuple
+
+import numpy as np
+from jaxtyping import Float32, Int32
+
+from tangible_core.data import DisparityMap, Material, Relief, SegmentMap
+from tangible_core.data.records import digest_of
+from tangible_core.metrics import absolute_error
+from tangible_core.pipeline.pipeline import Pipeline
+from tangible_core.pipeline.rules import fitted
+from tangible_core.scene.geometry import RANGE_PERCENT, flat_relief
+from tangible_core.scene.scaling import reduced_map, reduced_segments, reduced_shape
+
+Shows = Literal["surface", "relief", "segments"]
+MOST_LAYER_CELLS = 1_000_000
+"""Of values that are only looked at."""
+
+
+class Layer(NamedTuple):
+    """Values to be warped over the surface, NaN where unknown; colours run from low to high."""
+
+    values: Float32[np.ndarray, "h w"]
+    unit: str
+    low: float
+    high: float
+
+    @classmethod
+    def of(cls, values: np.ndarray, unit: str, span: tuple[float, float] | None = None) -> "Layer":
+        """Reduced where it is large. span: low and high; without it, those of most of the values."""
+        factor = max(1.0, (values.size / MOST_LAYER_CELLS) ** 0.5)
+        seen = reduced_map(np.ascontiguousarray(values, np.float32), reduced_shape(values.shape, factor))
+        known = seen[np.isfinite(seen)]
+        if span is None:
+            low, high = np.percentile(known, RANGE_PERCENT) if known.size else (0.0, 0.0)
+            span = float(low), float(high)
+        return cls(seen, unit, *span)
+
+
+@dataclass(frozen=True)
+class Seen:
+    """A surface to draw, or what there is of one."""
+
+    name: str
+    shows: Shows
+    """Heights and materials; heights alone; or segments over whatever heights there are, flat without any."""
+    relief: Relief
+    labels: Int32[np.ndarray, "h w"] | None
+    materials: tuple[Material, ...]
+    """By label, as they are felt; empty where there are none."""
+    picture: np.ndarray | None
+    layers: dict[str, Layer]
+
+    @cached_property
+    def digest(self) -> str:
+        """Of everything that is drawn."""
+        layers = tuple((name, *layer) for name, layer in sorted(self.layers.items()))
+        parts = (self.name, self.shows, self.relief, self.labels, self.materials, self.picture, layers)
+        return digest_of(parts)
+
+
+def see(pipeline: Pipeline, product: str) -> Seen:
+    """What there is to see once this product is made. Raises: as `make`, where a relief cannot be made of a depth."""
+    if product in ("surface", "touch"):
+        return see_surface(pipeline)
+    return see_relief(pipeline) if product in ("disparity", "relief") else see_segments(pipeline)
+
+
+def see_surface(pipeline: Pipeline) -> Seen:
+    """What is touched, its materials as the device holds them."""
+    surface, device = pipeline.surface, pipeline.config.felt_device
+    if device is not None:
+        surface, _ = fitted(surface, pipeline.config, device)
+    seen = _seen(pipeline, "surface", surface.relief)
+    return seen if surface.labels is None else replace(seen, labels=surface.labels, materials=surface.materials or ())
+
+
+def see_relief(pipeline: Pipeline) -> Seen:
+    """Heights, and segments where they are there. Raises: GeometryError where the depth gives none."""
+    return _seen(pipeline, "relief", pipeline.relief)
+
+
+def see_segments(pipeline: Pipeline) -> Seen:
+    """Segments over the relief that is there, or over a flat picture."""
+    if is_there(pipeline, "relief"):
+        relief = pipeline.relief
+    else:
+        felt = pipeline.engine.felt("segments")
+        shape = pipeline.scene.shape if felt is None else felt.labels.shape
+        relief = flat_relief(shape, pipeline.config.size.width_m)
+    return _seen(pipeline, "segments", relief)
+
+
+def is_there(pipeline: Pipeline, product: str) -> bool:
+    """Whether a product is at hand: the scene brings it, it was made, or is kept."""
+    done = {each.product: each.outcome for each in pipeline.outcomes}
+    if done.get(product) in ("given", "ran", "cached"):
+        return True
+    steps = {each.product: each.outcome for each in pipeline.plan(product).steps}
+    return steps.get(product) in ("given", "cached")
+
+
+def _seen(pipeline: Pipeline, shows: Shows, relief: Relief) -> Seen:
+    shape = relief.height_m.shape
+    segments = _at_hand(pipeline, "segments")
+    labels = None if segments is None else reduced_segments(segments, shape).labels
+    chosen = _at_hand(pipeline, "materials")
+    materials = chosen.materials if chosen is not None and labels is not None else ()
+    views = pipeline.scene.views
+    return Seen(
+        pipeline.scene.name, shows, relief, labels, materials, None if views is None else views.left, _layers(pipeline)
+    )
+
+
+def _at_hand(pipeline: Pipeline, product: str) -> Any:
+    """The product on the grid that is felt; None where it would have to be made."""
+    return pipeline.engine.felt(product) if is_there(pipeline, product) else None
+
+
+def _layers(pipeline: Pipeline) -> dict[str, Layer]:
+    found: dict[str, Layer] = {}
+    disparity: DisparityMap | None = _at_hand(pipeline, "disparity")
+    if disparity is not None:
+        unit = "px" if disparity.unit == "px" else ""
+        found["disparity"] = Layer.of(disparity.disparity_px, unit)
+        found["confidence"] = Layer.of(disparity.confidence, "", (0.0, 1.0))
+        found |= _error(pipeline, disparity)
+    segments: SegmentMap | None = _at_hand(pipeline, "segments")
+    if segments is not None and float(segments.confidence.min()) < 1:
+        found["certainty"] = Layer.of(segments.confidence, "", (0.0, 1.0))
+    return found
+
+
+def _error(pipeline: Pipeline, disparity: DisparityMap) -> dict[str, Layer]:
+    """How far the disparity is from the truth, where the scene knows that."""
+    truth, whole = pipeline.scene.truth, pipeline.disparity
+    if truth is None or whole is None or disparity.unit != "px" or truth.shape != whole.disparity_px.shape:
+        return {}
+    error_px = absolute_error(whole.disparity_px, truth)
+    known = error_px[np.isfinite(error_px)]
+    return {"error": Layer.of(error_px, "px", (0.0, float(np.percentile(known, 98)) if known.size else 0.0))}

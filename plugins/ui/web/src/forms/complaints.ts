@@ -1,0 +1,63 @@
+/** What the check of a document complains of: at its field where there is one, and as a list that leads there. */
+import { button } from "../elements";
+import type { Complaint } from "../messages";
+import { t } from "../words/methods";
+import { FIELD } from "./rows";
+
+/** The field that a complaint belongs to: that of its key, or of what is around it. Null where no form has it. */
+export function fieldOf({ location }: Complaint, isThere: (id: string) => boolean): string | null {
+  for (let depth = location.length; depth > 0; depth--) {
+    const id = FIELD + location.slice(0, depth).filter((part, at) => !(at === 1 && part === "use")).join(".");
+    if (isThere(id)) return id;
+  }
+  return null;
+}
+
+/** Mark the fields of a form, and list everything; the fields marked before are not any more. */
+export function complain(root: HTMLElement, list: HTMLElement, complaints: Complaint[]): void {
+  clear(root);
+  const found = complaints.map((each) => ({ each, id: fieldOf(each, (id) => document.getElementById(id) !== null) }));
+  const byField = new Map<string, string[]>();
+  for (const { each, id } of found) if (id) byField.set(id, [...(byField.get(id) ?? []), each.text]);
+  for (const [id, texts] of byField) mark(id, texts.join(" "));
+  list.hidden = !complaints.length;
+  const heading = document.createElement("p");
+  heading.textContent = complaints.length === 1 ? t("complaint") : t("complaints", { count: complaints.length });
+  const lines = document.createElement("ul");
+  for (const { each, id } of found) {
+    const line = document.createElement("li");
+    line.append(id ? button(`${each.location.join(".")}: ${each.text}`, () => lead(id)) : said(each));
+    lines.append(line);
+  }
+  list.replaceChildren(heading, lines);
+}
+
+/** Open what is folded around a field, and go there. */
+export function lead(id: string): void {
+  const field = document.getElementById(id);
+  for (let box = field?.parentElement; box; box = box.parentElement) if (box instanceof HTMLDetailsElement) box.open = true;
+  field?.focus();
+  field?.scrollIntoView({ block: "center" });
+}
+
+function said({ location, text, line }: Complaint): string {
+  const where = location.length ? `${location.join(".")}: ` : "";
+  return line === null ? where + text : `${where}${text} (${t("line", { line })})`;
+}
+
+function mark(id: string, text: string): void {
+  const field = document.getElementById(id)!;
+  field.setAttribute("aria-invalid", "true");
+  const complaint = document.getElementById(`${id}-complaint`);
+  if (!complaint) return;
+  complaint.textContent = text;
+  complaint.hidden = false;
+}
+
+function clear(root: HTMLElement): void {
+  for (const each of root.querySelectorAll("[aria-invalid]")) each.removeAttribute("aria-invalid");
+  for (const each of root.querySelectorAll<HTMLElement>(".complaint")) {
+    each.hidden = true;
+    each.textContent = "";
+  }
+}

@@ -1,0 +1,279 @@
+/** Native controls for values of every kind. A control shows a value, and says when a person gives it another. */
+import { button } from "../elements";
+import { t } from "../words/methods";
+import { type Kind, type Option, step } from "./kinds";
+import type { Plain } from "./schema";
+import { asText, fits, isMap, put, same, type Said, typedNumber, typedText, typedYaml } from "./values";
+
+export interface Control {
+  root: HTMLElement;
+  /** What has the label, and to which a complaint leads. */
+  main: HTMLElement;
+  /** Show a value, unless somebody is typing here. */
+  show(value: Plain | undefined): void;
+}
+
+/** inside: where within the value, if it is not the whole. */
+export type Tell = (said: Said, inside?: string[]) => void;
+
+/** What is between a block's options and the page: a row with label and help around a control. */
+export type Row = (option: Option, id: string, tell: Tell) => { root: HTMLElement; show(value: Plain | undefined): void };
+
+export function control(kind: Kind, id: string, tell: Tell, row: Row): Control {
+  switch (kind.kind) {
+    case "switch":
+      return toggle(id, tell);
+    case "choice":
+      return choice(kind.values, id, tell);
+    case "number":
+      return number(kind, id, tell);
+    case "text":
+      return text(id, (typed) => tell(typedText(typed, kind.nullable, t("none"))));
+    case "tuple":
+      return tuple(kind, id, tell, row);
+    case "block":
+      return block(kind.options, id, tell, row);
+    case "list":
+      return list(kind.item, id, tell, row);
+    case "either":
+      return either(kind, id, tell, row);
+    case "yaml":
+      return text(id, (typed) => tell(typedYaml(typed)), true);
+  }
+}
+
+/** The control of a kind; for a value that it cannot show, a field of YAML takes its place. */
+export function tolerant(kind: Kind, id: string, tell: Tell, row: Row): Control {
+  let shown = control(kind, id, tell, row);
+  let inYaml = kind.kind === "yaml";
+  const made: Control = {
+    root: holder(shown.root),
+    main: shown.main,
+    show: (value) => {
+      if (kind.kind !== "yaml" && fits(value, kind) === inYaml) {
+        inYaml = !inYaml;
+        shown = control(inYaml ? { kind: "yaml" } : kind, id, tell, row);
+        made.root.replaceChildren(shown.root);
+        made.main = shown.main;
+      }
+      shown.show(value);
+    },
+  };
+  return made;
+}
+
+function holder(inside: HTMLElement): HTMLElement {
+  const box = document.createElement("div");
+  box.className = "control";
+  box.append(inside);
+  return box;
+}
+
+function toggle(id: string, tell: Tell): Control {
+  const input = document.createElement("input");
+  input.type = "checkbox";
+  input.id = id;
+  input.onchange = () => tell({ value: input.checked });
+  return { root: input, main: input, show: (value) => (input.checked = value === true) };
+}
+
+function choice(values: Plain[], id: string, tell: Tell): Control {
+  const select = document.createElement("select");
+  select.id = id;
+  values.forEach((each, at) => select.add(new Option(word(each), String(at))));
+  select.onchange = () => tell({ value: values[Number(select.value)] });
+  return {
+    root: select,
+    main: select,
+    show: (value) => (select.selectedIndex = values.findIndex((each) => same(each, value))),
+  };
+}
+
+function number(kind: Kind & { kind: "number" }, id: string, tell: Tell): Control {
+  const plain = !kind.units.length && !kind.words.length && !kind.nullable;
+  const made = text(id, (typed, input) => {
+    if (input.validity.badInput) input.reportValidity();
+    else tell(typedNumber(typed, kind, t("none")));
+  });
+  const input = made.main as HTMLInputElement;
+  const { least, most } = kind.bounds;
+  if (plain) {
+    input.type = "number";
+    input.step = String(step(kind.integer, kind.bounds));
+    if (least !== undefined) input.min = String(least);
+    if (most !== undefined) input.max = String(most);
+  } else {
+    input.inputMode = kind.words.length || kind.units.length ? "text" : "decimal";
+    const words = [...kind.words, ...(kind.nullable ? [t("none")] : [])];
+    if (words.length) suggest(made.root, input, words);
+  }
+  return made;
+}
+
+/** One line of text; it is told when it is left, or on Enter, and not overwritten while it is typed in. */
+function text(id: string, typed: (text: string, input: HTMLInputElement) => void, isYaml = false): Control {
+  const input = document.createElement("input");
+  input.id = id;
+  input.spellcheck = false;
+  input.autocomplete = "off";
+  if (isYaml) input.className = "mono";
+  let typing = false;
+  let shown: Plain | undefined;
+  const show = (value: Plain | undefined): void => {
+    shown = value;
+    if (!typing) input.value = asText(value, t("none"));
+  };
+  input.addEventListener("input", () => (typing = true));
+  input.addEventListener("change", () => {
+    typing = false;
+    typed(input.value, input);
+  });
+  input.addEventListener("blur", () => {
+    typing = false;
+    if (!input.value && !input.validity.badInput) show(shown); // nothing: the default, which is shown
+  });
+  input.addEventListener("keydown", (event) => {
+    if (event.key !== "Escape" || !typing) return;
+    typing = false;
+    show(shown);
+    event.stopPropagation();
+  });
+  return { root: holder(input), main: input, show };
+}
+
+function suggest(root: HTMLElement, input: HTMLInputElement, words: string[]): void {
+  const list = document.createElement("datalist");
+  list.id = `${input.id}-words`;
+  for (const each of words) list.append(new Option(each, each));
+  input.setAttribute("list", list.id);
+  root.append(list);
+}
+
+function tuple(kind: Kind & { kind: "tuple" }, id: string, tell: Tell, row: Row): Control {
+  const box = group();
+  box.classList.add("tuple");
+  let now: (Plain | undefined)[] = kind.parts.map(() => undefined);
+  const parts = kind.parts.map((part, at) => {
+    const made = control(part, `${id}.${at}`, (said) => {
+      now[at] = "value" in said ? said.value : undefined;
+      if (now.every((each) => each !== undefined)) tell({ value: now as Plain[] });
+      else if (now.every((each) => each === undefined)) tell({ gone: true });
+    }, row);
+    made.main.setAttribute("aria-label", t("part", { number: at + 1, of: kind.parts.length }));
+    box.append(made.root);
+    return made;
+  });
+  return {
+    root: box,
+    main: parts[0].main,
+    show: (value) => {
+      const given: Plain[] = Array.isArray(value) ? value : [];
+      now = kind.parts.map((_, at) => given[at]);
+      parts.forEach((each, at) => each.show(given[at]));
+    },
+  };
+}
+
+function block(options: Option[], id: string, tell: Tell, row: Row): Control {
+  const box = group();
+  const rows = options.map((option) => {
+    const made = row(option, `${id}.${option.name}`, (said, inside = []) => tell(said, [option.name, ...inside]));
+    box.append(made.root);
+    return made;
+  });
+  return {
+    root: box,
+    main: box,
+    show: (value) => rows.forEach((each, at) => each.show(isMap(value) ? value[options[at].name] : undefined)),
+  };
+}
+
+function list(item: Kind, id: string, tell: Tell, row: Row): Control {
+  const box = group();
+  const items = document.createElement("div");
+  let now: Plain[] = [];
+  let shown: Control[] = [];
+  const add = button(t("add"), () => {
+    build([...now, {}]);
+    shown.at(-1)!.root.querySelector<HTMLElement>("input, select")?.focus();
+  });
+  add.id = id;
+  box.append(items, add);
+
+  function build(values: Plain[]): void {
+    now = values;
+    shown = values.map((_, at) => entry(at));
+    items.replaceChildren(...shown.map((each) => each.root));
+    shown.forEach((each, at) => each.show(now[at]));
+  }
+
+  function entry(at: number): Control {
+    const made = tolerant(item, `${id}.${at}`, (said, inside = []) => {
+      now = now.map((each, one) => (one === at ? put(each, inside, said) : each));
+      tell({ value: now });
+    }, row);
+    made.root.classList.add("item");
+    made.root.setAttribute("role", "group");
+    made.root.setAttribute("aria-label", t("entry", { number: at + 1 }));
+    const remove = button(t("remove", { number: at + 1 }), () => {
+      const left = now.filter((_, one) => one !== at);
+      tell(left.length ? { value: left } : { gone: true });
+      add.focus();
+    });
+    remove.className = "quiet";
+    made.root.append(remove);
+    return made;
+  }
+
+  return {
+    root: box,
+    main: add,
+    show: (value) => {
+      const given = Array.isArray(value) ? value : [];
+      if (given.length !== shown.length) build(given);
+      now = given;
+      shown.forEach((each, at) => each.show(given[at]));
+    },
+  };
+}
+
+function either(kind: Kind & { kind: "either" }, id: string, tell: Tell, row: Row): Control {
+  const box = document.createElement("div");
+  const select = document.createElement("select");
+  select.id = id;
+  kind.words.forEach((each, at) => select.add(new Option(word(each), String(at))));
+  select.add(new Option(t(kind.other.kind === "yaml" ? "inYaml" : "ofMyOwn"), "other"));
+  const other = control(kind.other, kind.other.kind === "block" ? id : `${id}.other`, tell, row);
+  other.root.hidden = true;
+  if (kind.other.kind === "yaml") other.main.setAttribute("aria-label", t("inYaml"));
+  select.onchange = () => {
+    other.root.hidden = select.value !== "other";
+    if (select.value !== "other") tell({ value: kind.words[Number(select.value)] });
+  };
+  box.append(select, other.root);
+  return {
+    root: box,
+    main: select,
+    show: (value) => {
+      const at = kind.words.findIndex((each) => same(each, value));
+      if (at < 0 && value === undefined) return;
+      if (at < 0) other.show(value);
+      if (document.activeElement === select && select.value === "other" && at >= 0 && !other.root.hidden) return;
+      select.value = at < 0 ? "other" : String(at);
+      other.root.hidden = at >= 0;
+    },
+  };
+}
+
+function group(): HTMLElement {
+  const box = document.createElement("div");
+  box.setAttribute("role", "group");
+  box.className = "group";
+  return box;
+}
+
+function word(value: Plain): string {
+  if (value === null) return t("none");
+  if (typeof value === "boolean") return t(value ? "yes" : "no");
+  return String(value);
+}

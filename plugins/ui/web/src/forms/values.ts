@@ -1,0 +1,109 @@
+/** Values of a pipeline file as people read and type them. */
+import type { Kind } from "./kinds";
+import type { Plain } from "./schema";
+
+/** What a field says of its key: a value, a value written in YAML, or nothing, so that the default counts. */
+export type Said = { value: Plain } | { written: string } | { gone: true };
+
+/** Changes of the document, as the server takes them. */
+export interface Edit {
+  changes?: Record<string, Plain>;
+  written?: Record<string, string>;
+  removed?: string[];
+}
+
+export function edit(key: string, said: Said): Edit {
+  if ("value" in said) return { changes: { [key]: said.value } };
+  return "written" in said ? { written: { [key]: said.written } } : { removed: [key] };
+}
+
+/** A value in a text field. JSON is YAML, so that whatever a file says can stand there. */
+export function asText(value: Plain | undefined, none: string): string {
+  if (value === undefined) return "";
+  if (value === null) return none;
+  return typeof value === "object" ? JSON.stringify(value) : String(value);
+}
+
+/** What was typed in a number's field: a number, a word that may stand there, or a text such as "6 mm", which the
+ * document's check takes or complains of. Nothing is the default. */
+export function typedNumber(text: string, kind: Kind & { kind: "number" }, none: string): Said {
+  const plain = text.trim();
+  if (!plain) return { gone: true };
+  if (kind.nullable && plain === none) return { value: null };
+  if (kind.words.includes(plain)) return { value: plain };
+  const point = /^[-+]?\d+,\d+(?!\d*,)/.test(plain) ? plain.replace(",", ".") : plain;
+  const number = Number(point);
+  return { value: Number.isFinite(number) ? number : point };
+}
+
+export function typedText(text: string, nullable: boolean, none: string): Said {
+  if (!text) return { gone: true };
+  return { value: nullable && text === none ? null : text };
+}
+
+export function typedYaml(text: string): Said {
+  return text.trim() ? { written: text } : { gone: true };
+}
+
+export function same(one: Plain | undefined, other: Plain | undefined): boolean {
+  return JSON.stringify(one) === JSON.stringify(other);
+}
+
+/** Whether a control of this kind can show this value; if not, it is shown in YAML. */
+export function fits(value: Plain | undefined, kind: Kind): boolean {
+  if (value === undefined) return true;
+  switch (kind.kind) {
+    case "switch":
+      return typeof value === "boolean";
+    case "choice":
+      return kind.values.some((each) => same(each, value));
+    case "number":
+      return value === null ? kind.nullable : typeof value === "number" || typeof value === "string";
+    case "text":
+      return value === null ? kind.nullable : typeof value === "string";
+    case "tuple":
+      if (value === null) return kind.nullable;
+      return Array.isArray(value) && value.length === kind.parts.length && value.every((each, at) => fits(each, kind.parts[at]));
+    case "block":
+      return isMap(value) && Object.keys(value).every((name) => kind.options.some((each) => each.name === name)) &&
+        kind.options.every((each) => fits(value[each.name], each.kind));
+    case "list":
+      return Array.isArray(value) && value.every((each) => fits(each, kind.item));
+    case "either":
+      return kind.words.some((each) => same(each, value)) || fits(value, kind.other);
+    case "yaml":
+      return true;
+  }
+}
+
+export function isMap(value: Plain | undefined): value is { [key: string]: Plain } {
+  return typeof value === "object" && value !== null && !Array.isArray(value);
+}
+
+/** A value with what was said of one part of it. */
+export function put(value: Plain, inside: readonly string[], said: Said): Plain {
+  if (!inside.length) return "value" in said ? said.value : "written" in said ? fromText(said.written) : {};
+  const [name, ...deeper] = inside;
+  const { [name]: before, ...rest } = isMap(value) ? value : {};
+  if ("gone" in said && !deeper.length) return rest;
+  return { ...rest, [name]: put(before ?? {}, deeper, said) };
+}
+
+/** Within a value that is set as a whole, YAML that is JSON is what it says, and any other a text. */
+function fromText(written: string): Plain {
+  try {
+    return JSON.parse(written) as Plain;
+  } catch {
+    return written;
+  }
+}
+
+/** The value at a path of keys. */
+export function at(value: unknown, path: readonly (string | number)[]): Plain | undefined {
+  let here = value;
+  for (const part of path) {
+    if (typeof here !== "object" || here === null) return undefined;
+    here = (here as Record<string, unknown>)[part];
+  }
+  return here as Plain | undefined;
+}

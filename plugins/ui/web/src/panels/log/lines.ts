@@ -1,0 +1,48 @@
+/** The lines of the log: at most so many, the same one again counts up. */
+
+export const LEVELS = ["event", "detail", "warning", "error"] as const;
+export type Level = (typeof LEVELS)[number];
+
+export interface Line {
+  level: Level;
+  text: string;
+  /** Unix time of the last time. */
+  at_s: number;
+  times: number;
+}
+
+export const MOST_LINES = 2000;
+
+export class Lines {
+  readonly all: Line[] = [];
+
+  constructor(private most = MOST_LINES) {}
+
+  /** Add a line; what was dropped for it is said, and whether it is the last one over again. */
+  add(level: Level, text: string, at_s: number): { line: Line; again: boolean; dropped: Line | undefined } {
+    const before = this.all.at(-1);
+    if (before && before.level === level && before.text === text) {
+      before.times++;
+      before.at_s = at_s;
+      return { line: before, again: true, dropped: undefined };
+    }
+    const line = { level, text, at_s, times: 1 };
+    this.all.push(line);
+    return { line, again: false, dropped: this.all.length > this.most ? this.all.shift() : undefined };
+  }
+
+  clear(): void {
+    this.all.length = 0;
+  }
+}
+
+/** Whether a line is to be seen: its level is, and every word that was looked for is in it. */
+export function seen({ level, text }: Line, levels: ReadonlySet<Level>, wanted: string): boolean {
+  const small = text.toLowerCase();
+  return levels.has(level) && wanted.toLowerCase().split(/\s+/).every((word) => small.includes(word));
+}
+
+/** As text: one line each, with the whole time, for who is sent it. */
+export function asText(lines: Line[]): string {
+  return lines.map(({ level, text, at_s, times }) => `${new Date(1000 * at_s).toISOString()} ${level} ${text}${times > 1 ? ` (x ${times})` : ""}\n`).join("");
+}

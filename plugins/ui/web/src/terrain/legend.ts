@@ -1,0 +1,85 @@
+/** What colours and patterns mean. */
+import type { Scene } from "../scene";
+import { t } from "../words/view";
+import { darker, heat, marked, styleOf, type Colour } from "./colours";
+
+const SWATCH_PX = 22;
+const PERIOD_PX = 11;
+const BAR_PX = 220;
+/** Materials and segments that are listed; of more, how many there are. */
+const MOST = 24;
+
+/** The legend of a look; null where it needs none. */
+export function legend(scene: Scene, look: string): HTMLElement | null {
+  const { meta } = scene;
+  if (look === "height") return scale(meta.height_m[0] * 1000, meta.height_m[1] * 1000, "mm", false);
+  if (look === "slope") return scale(0, 90, "°", false);
+  if (look === "materials") return kinds(meta.materials.map(({ name }) => name));
+  if (look === "segments") return kinds(Array.from({ length: meta.labels }, (_, label) => partName(scene, label)));
+  const layer = meta.layers[look];
+  return layer ? scale(layer.low, layer.high, layer.unit, true) : null;
+}
+
+function partName(scene: Scene, label: number): string {
+  const material = scene.meta.materials[scene.kinds[label]];
+  return material ? t("partOf", { label, material: material.name }) : t("part", { label });
+}
+
+function scale(low: number, high: number, unit: string, unknowns: boolean): HTMLElement {
+  const box = document.createElement("figure");
+  box.className = "legend";
+  const bar = picture(BAR_PX, 14, (x) => heat(x / (BAR_PX - 1)));
+  bar.setAttribute("role", "img");
+  const [from, to] = [low, high].map((value) => `${number(value, high - low)} ${unit}`.trim());
+  bar.setAttribute("aria-label", t("scale", { from, to }));
+  const ends = document.createElement("p");
+  ends.className = "ends";
+  ends.ariaHidden = "true";
+  for (const text of [from, to]) {
+    const end = document.createElement("span");
+    end.textContent = text;
+    ends.append(end);
+  }
+  box.append(bar, ends);
+  if (unknowns) box.append(swatched((x, y) => ((x + y) / PERIOD_PX) % 1 > 0.5 ? [80, 80, 80] : [115, 115, 115], t("unknown"), "p"));
+  return box;
+}
+
+/** Numbers of a scale that spans so much, so that its ends differ. */
+export function number(value: number, span: number): string {
+  const digits = Math.min(Math.max(2 - Math.floor(Math.log10(Math.max(Math.abs(span), 1e-9))), 0), 6);
+  return value.toFixed(digits).replace(/(\.\d*?)0+$/, "$1").replace(/\.$/, "");
+}
+
+function kinds(names: string[]): HTMLElement {
+  const list = document.createElement("ul");
+  list.className = "legend";
+  names.slice(0, MOST).forEach((name, kind) => {
+    const { colour, pattern } = styleOf(kind);
+    const at = (x: number, y: number): Colour => (marked(pattern, x / PERIOD_PX, -y / PERIOD_PX) ? darker(colour) : colour);
+    list.append(swatched(at, name, "li"));
+  });
+  if (names.length > MOST) {
+    const more = document.createElement("li");
+    more.textContent = t("more", { count: names.length - MOST });
+    list.append(more);
+  }
+  return list;
+}
+
+function swatched(colour: (x: number, y: number) => Colour, text: string, tag: "li" | "p"): HTMLElement {
+  const item = document.createElement(tag);
+  const swatch = picture(SWATCH_PX, SWATCH_PX, colour);
+  swatch.ariaHidden = "true";
+  item.append(swatch, text);
+  return item;
+}
+
+function picture(width: number, height: number, colour: (x: number, y: number) => Colour): HTMLCanvasElement {
+  const canvas = document.createElement("canvas");
+  [canvas.width, canvas.height] = [width, height];
+  const data = new ImageData(width, height);
+  for (let y = 0, k = 0; y < height; y++) for (let x = 0; x < width; x++, k += 4) data.data.set([...colour(x, y), 255], k);
+  canvas.getContext("2d")!.putImageData(data, 0, 0);
+  return canvas;
+}

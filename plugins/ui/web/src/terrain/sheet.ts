@@ -1,0 +1,66 @@
+/** A part of the surface as it is drawn: a grid whose heights are a texture, and no vertex is stored. */
+import { BufferAttribute, BufferGeometry, GLSL3, Mesh, RawShaderMaterial, Vector4, type IUniform, type Texture } from "three";
+import type { Part } from "../scene";
+import { FRAGMENT, VERTEX } from "./shader";
+import { gradientTexture, integers, numbers, pictureTexture } from "./textures";
+import { strideOf, triangles } from "./triangles";
+
+export type Uniforms = Record<string, IUniform>;
+
+const NO_LABELS = new Uint16Array(1);
+
+export class Sheet {
+  readonly mesh: Mesh<BufferGeometry, RawShaderMaterial>;
+  readonly own: Uniforms;
+  private finest: BufferAttribute;
+  private coarse: BufferAttribute | null = null;
+
+  /** common: uniforms that all sheets share. picture: where it lies, x of its left, y of its far rim, width, length. */
+  constructor(
+    readonly part: Part,
+    common: Uniforms,
+    picture: ImageBitmap | null,
+    pictured: [number, number, number, number],
+  ) {
+    const { grid, labels } = part;
+    const { rows, columns, place } = grid;
+    this.own = {
+      heights: { value: numbers(grid.heights, columns, rows) },
+      gradient: { value: gradientTexture(grid) },
+      labels: { value: labels ? integers(labels, columns, rows) : integers(NO_LABELS, 1, 1) },
+      photo: { value: pictureTexture(picture) },
+      place: { value: new Vector4(place.left, place.far, place.dx, place.dy) },
+      photoPlace: { value: new Vector4(...pictured) },
+      hole: { value: new Vector4() },
+    };
+    const material = new RawShaderMaterial({
+      glslVersion: GLSL3,
+      vertexShader: VERTEX,
+      fragmentShader: FRAGMENT,
+      side: 2,
+      uniforms: { ...common, ...this.own },
+    });
+    this.finest = new BufferAttribute(triangles(rows, columns, 1), 1);
+    this.mesh = new Mesh(new BufferGeometry().setIndex(this.finest), material);
+    this.mesh.frustumCulled = false;
+  }
+
+  /** Fewer triangles, while the camera moves; the shading stays as fine. */
+  set moving(moving: boolean) {
+    const { rows, columns } = this.part.grid;
+    const stride = strideOf(rows, columns);
+    if (moving && stride > 1) this.coarse ??= new BufferAttribute(triangles(rows, columns, stride), 1);
+    this.mesh.geometry.setIndex((moving && this.coarse) || this.finest);
+  }
+
+  /** Where another sheet is drawn instead; none where it is empty. */
+  cut(left: number, near: number, right: number, far: number): void {
+    this.own.hole.value.set(left, near, right, far);
+  }
+
+  dispose(): void {
+    for (const name of ["heights", "gradient", "labels", "photo"]) (this.own[name].value as Texture).dispose();
+    this.mesh.geometry.dispose();
+    this.mesh.material.dispose();
+  }
+}

@@ -1,0 +1,77 @@
+import assert from "node:assert/strict";
+import { before, test } from "node:test";
+import { tables, words, type Table } from "../src/words/words";
+import { sources } from "./sources";
+
+const ENGLISH = /\b(the|and|of|is|are|with|this|that|not|you|your|what|which|there|for)\b/i;
+/** Not English, though they look like it. */
+const GERMAN = /\b(was|in|so|die|an|am|hat|man|war|hell|rate|kind|fast|bald|arm|tag|log|wand)\b/gi;
+const slots = (text: string): string[] => [...text.matchAll(/\{(\w+)\}/g)].map((found) => found[1]).sort();
+const texts = (): [string, readonly [string, string]][] => tables.flatMap((table) => Object.entries(table));
+
+before(async () => {
+  for (const { name } of sources("words", ".ts")) await import(`../src/words/${name.slice(6, -3)}.ts`);
+});
+
+test("every file of words is seen here", () => {
+  const files = sources("words", ".ts").filter(({ text }) => /\bwords\(\{/.test(text));
+  assert.equal(new Set(tables).size, files.length);
+});
+
+test("every text is in both languages, with the same slots", () => {
+  for (const [key, row] of texts()) {
+    assert.equal(row.length, 2, key);
+    assert.ok(row.every((text) => text.trim() !== ""), key);
+    assert.deepEqual(slots(row[0]), slots(row[1]), key);
+  }
+});
+
+test("nothing in the German column is English", () => {
+  for (const [key, [, german]] of texts()) assert.doesNotMatch(german.replace(/\{\w+\}/g, "").replace(GERMAN, ""), ENGLISH, `${key}: ${german}`);
+});
+
+test("people are told Sie, never Du, and quotation marks are theirs", () => {
+  for (const [key, [, german]] of texts()) {
+    assert.doesNotMatch(german, /\b(du|dich|dir|dein\w*)\b/i, key);
+    assert.doesNotMatch(german, /"/, key);
+  }
+});
+
+test("a text ends as its twin does", () => {
+  const end = (text: string): string => /[.:!?…]$/.exec(text.trim())?.[0] ?? "";
+  for (const [key, [english, german]] of texts()) assert.equal(end(english), end(german), key);
+});
+
+test("slots are filled, and one without a value stays to be seen", () => {
+  const t = words({ opened: ["{name} is open, {count}", "{name} ist offen, {count}"] } satisfies Table);
+  assert.equal(t("opened", { name: "a", count: 0 }), "a is open, 0");
+  assert.equal(t("opened", { name: "{count}" }), "{count} is open, {count}");
+  assert.ok(t.has("opened") && !t.has("toString"));
+});
+
+/** What puts text before people, given a literal: a string, or a template. */
+const SINKS = [
+  String.raw`\.(?:textContent|innerText|title|placeholder|alt|ariaLabel|label|caption) = `,
+  String.raw`"aria-(?:label|description|roledescription|valuetext)", `,
+  String.raw`\b(?:say|button|append|prepend|replaceChildren|Option|alert|confirm)\(`,
+];
+const SHOWN = new RegExp(`(?:${SINKS.join("|")})(?:"([^"]*)"|\`([^\`]*)\`)`, "g");
+
+/** Whether something of a literal is words: not what is put in, and not a mark or a unit's letter. */
+const isText = (literal: string): boolean => /[A-Za-z]{2}/.test(literal.replace(/\$\{[^}]*\}/g, ""));
+
+test("no text for people stands outside the tables", () => {
+  const found = ["."].flatMap((folder) => sources(folder, ".ts")).flatMap(({ name, text }) =>
+    name.startsWith("words/") ? [] : [...text.matchAll(SHOWN)].filter((each) => isText(each[1] ?? each[2])).map((each) => `${name}: ${each[0]}`),
+  );
+  assert.deepEqual(found, []);
+});
+
+test("such a text would be found", () => {
+  for (const line of ['a.textContent = "Open it";', "b.append(`${n} lines`)", 'c.setAttribute("aria-label", "Lines")']) {
+    assert.ok([...line.matchAll(SHOWN)].some((each) => isText(each[1] ?? each[2])), line);
+  }
+  for (const line of ['a.textContent = t("open");', "b.append(`${n} `)", 'c.append(" ", box)']) {
+    assert.ok(![...line.matchAll(SHOWN)].some((each) => isText(each[1] ?? each[2])), line);
+  }
+});

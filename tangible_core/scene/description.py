@@ -1,0 +1,166 @@
+"""A surface in a few sentences, for somebody who does not see it: how large, where it is high, of what, and where."""
+
+import math
+from typing import Literal, get_args
+
+import numpy as np
+
+from ..data import HapticSurface
+from ..errors import shown, wrong_argument
+from .description_words import MATERIALS, WORDS
+from .workspace import SceneKind
+
+Language = Literal["en", "de"]
+MOST_CELLS = 512
+"""A side: what is said of a surface shows on so many."""
+ALIKE = 0.1
+"""Share of the relief's height by which the highest places, or the lowest, may differ."""
+LEVEL_SLOPE = 0.02
+"""Up to one degree, a hand feels no slope."""
+MOSTLY, NEARLY = 0.6, 0.8
+"""Share of a part that lies in one third of the picture, or in one half, for that side to be named."""
+NOWHERE = "- -"
+"""Key of a part that is on no side."""
+MOST_NAMED = 4
+"""Materials; of the others, how many they are."""
+FLAT_M = 1e-6
+"""No hand feels a relief so low."""
+
+
+def describe(surface: HapticSurface, scene_name: str, language: Language = "en", kind: SceneKind | None = None) -> str:
+    """One to three sentences on a surface and its scene, always the same for the same surface.
+
+    Places are those of the picture: what is `at the top` of it lies away from the hand.
+    kind: what the scene is made of, if it is to be said (`kind_of`). language: `en` or `de`.
+    Raises: ArgumentError for another language.
+
+    >>> describe(HapticSurface.from_heights(np.zeros((8, 8))), "a plate")
+    'a plate is felt as a surface 8 cm wide and 8 cm long. It is flat everywhere.'
+    """
+    if language not in get_args(Language):
+        raise wrong_argument("language", language, f"one of {', '.join(get_args(Language))}")
+    say = _Words(language)
+    sentences = [_size(surface, scene_name, kind, say), _heights(surface, say), _materials(surface, say)]
+    return " ".join(filter(None, sentences))
+
+
+class _Words:
+    """What is said in one language."""
+
+    def __init__(self, language: Language) -> None:
+        self._column = get_args(Language).index(language)
+
+    def __call__(self, key: str, **parts: object) -> str:
+        return WORDS[key][self._column].format(**parts)
+
+    def material(self, name: str) -> str:
+        return MATERIALS[name][self._column] if name in MATERIALS else shown(name)
+
+    def number(self, value: float) -> str:
+        """Two digits, and all of a whole number."""
+        rounded = float(f"{value:.2g}") if value < 100 else float(round(value))
+        text = f"{rounded:.12f}".rstrip("0").rstrip(".")
+        return text.replace(".", self("point"))
+
+    def together(self, parts: list[str]) -> str:
+        *most, last = parts
+        return f"{', '.join(most)} {self('and')} {last}" if most else last
+
+
+def _size(surface: HapticSurface, name: str, kind: SceneKind | None, say: _Words) -> str:
+    width, length = (say.number(100 * each) for each in surface.extent_m)
+    relief_m = float(np.ptp(surface.height_m))
+    name = shown(name.removeprefix("builtin/"))
+    what = say(kind or "surface", name=name) if name else say("nameless")
+    high = say("high", relief=say.number(1000 * relief_m)) if relief_m > FLAT_M else ""
+    return say("size", what=what, width=width, length=length, high=high)
+
+
+def _heights(surface: HapticSurface, say: _Words) -> str:
+    """Where it is high and low, and how much of it is flat."""
+    lowest_m, highest_m = float(surface.height_m.min()), float(surface.height_m.max())
+    if highest_m - lowest_m <= FLAT_M:
+        return say("all flat")
+    step = _step(surface)
+    height_m = surface.height_m[::step, ::step].astype(np.float64)
+    low_m, high_m = np.percentile(height_m, (1, 99)).tolist()
+    if high_m - low_m < (highest_m - lowest_m) / 2:  # what stands out is small: it is no stray pixel that counts
+        low_m, high_m = float(height_m.min()), float(height_m.max())
+    band_m = ALIKE * (high_m - low_m)
+    highest, lowest = height_m >= high_m - band_m, height_m <= low_m + band_m
+    flat = _flat(surface, height_m, step, say)
+    if _place(highest) == _place(lowest) == NOWHERE:
+        return say("mixed", flat=flat)
+    around = _place(lowest) == NOWHERE and lowest.mean() > 1 / 2
+    return say("highest", highest=say(_place(highest)), lowest=say("around" if around else _place(lowest)), flat=flat)
+
+
+def _flat(surface: HapticSurface, height_m: np.ndarray, step: int, say: _Words) -> str:
+    if min(height_m.shape) < 2:
+        return ""
+    across_m, along_m = (step * each for each in surface.relief.pitch_m)
+    down, right = np.gradient(height_m, along_m, across_m)
+    level = np.hypot(down, right) <= LEVEL_SLOPE
+    share = float(level.mean())
+    if share < 0.05:
+        return say("hardly flat")
+    if share > 0.95:
+        return say("nearly all flat")
+    return say("flat", share=_percent(share), where=_aside(level, ", {}", say))
+
+
+def _materials(surface: HapticSurface, say: _Words) -> str:
+    """Which there are, how much of each, and where; several segments of one material are one part."""
+    if surface.labels is None or not surface.materials:
+        return ""
+    step = _step(surface)
+    labels = surface.labels[::step, ::step]
+    names = [each.name for each in surface.materials]
+    parts = {
+        name: np.isin(labels, [i for i, each in enumerate(names) if each == name]) for name in dict.fromkeys(names)
+    }
+    shares = {name: float(part.mean()) for name, part in parts.items() if part.any()}
+    if len(shares) == 1:
+        return say("one material", material=say.material(*shares))
+    ranked = sorted(shares, key=lambda name: (-shares[name], name))
+    said = [
+        say("part", material=say.material(name), share=_percent(shares[name]), where=_aside(parts[name], " ({})", say))
+        for name in ranked[:MOST_NAMED]
+    ]
+    if others := ranked[MOST_NAMED:]:
+        key = "another" if len(others) == 1 else "others"
+        said.append(say(key, count=len(others), share=_percent(sum(shares[name] for name in others))))
+    return say("materials", count=len(shares), parts=say.together(said))
+
+
+def _step(surface: HapticSurface) -> int:
+    return math.ceil(max(surface.height_m.shape) / MOST_CELLS)
+
+
+def _percent(share: float) -> str:
+    """Whole ones; the smallest part is one."""
+    return str(max(1, round(100 * share)))
+
+
+def _aside(part: np.ndarray, form: str, say: _Words) -> str:
+    """Where it lies, unless it is on no side."""
+    place = _place(part)
+    return "" if place == NOWHERE else form.format(say(place))
+
+
+def _place(part: np.ndarray) -> str:
+    """Where most of a part lies: the key of its third of the picture from the top, and from the left."""
+    return f"{_third(part.sum(axis=1))} {_third(part.sum(axis=0))}"
+
+
+def _third(counts: np.ndarray) -> str:
+    """The third that holds most of what is counted along one side, or the half: 0, 1, 2, or `-` for none."""
+    if counts.size < 3:
+        return "-"
+    held = np.bincount(3 * np.arange(counts.size) // counts.size, weights=counts) / counts.sum()
+    best = int(held.argmax())
+    if held[best] >= MOSTLY:
+        return str(best)
+    half = counts.size // 2
+    first, second = counts[:half].sum() / counts.sum(), counts[-half:].sum() / counts.sum()
+    return "0" if first >= NEARLY else "2" if second >= NEARLY else "-"

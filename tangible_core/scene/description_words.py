@@ -1,0 +1,71 @@
+"""The words of a surface's description: English, and German."""
+
+from collections.abc import Mapping
+
+WORDS: Mapping[str, tuple[str, str]] = {
+    "point": (".", ","),
+    "and": ("and", "und"),
+    "surface": ("{name}", "{name}"),
+    "nameless": ("The scene", "Die Szene"),
+    "photograph": ("The photograph {name}", "Das Foto {name}"),
+    "depth": ("The three-dimensional scene {name}", "Die räumliche Szene {name}"),
+    "heights": ("The height map {name}", "Die Höhenkarte {name}"),
+    "highest": (
+        "It is highest {highest} and lowest {lowest}{flat}.",
+        "Am höchsten ist sie {highest}, am tiefsten {lowest}{flat}.",
+    ),
+    "mixed": ("High and low places lie all over it{flat}.", "Hohe und tiefe Stellen liegen überall darauf{flat}."),
+    "size": (
+        "{what} is felt as a surface {width} cm wide and {length} cm long{high}.",
+        "{what} ist als Fläche zu fühlen, {width} cm breit und {length} cm lang{high}.",
+    ),
+    "high": (", up to {relief} mm high", ", bis zu {relief} mm hoch"),
+    "all flat": ("It is flat everywhere.", "Sie ist überall eben."),
+    "flat": ("; about {share} % of it is flat{where}", "; etwa {share} % davon sind eben{where}"),
+    "nearly all flat": ("; nearly all of it is flat", "; fast alles davon ist eben"),
+    "hardly flat": ("; hardly any of it is flat", "; kaum etwas davon ist eben"),
+    "one material": ("All of it feels like {material}.", "Alles fühlt sich an wie {material}."),
+    "materials": ("It has {count} materials: {parts}.", "Sie hat {count} Materialien: {parts}."),
+    "part": ("{material} on {share} %{where}", "{material} auf {share} %{where}"),
+    "another": ("one other on {share} %", "ein weiteres auf {share} %"),
+    "others": ("{count} others on {share} %", "{count} weitere auf {share} %"),
+    "0 0": ("at the upper left", "oben links"),
+    "0 1": ("at the top in the middle", "oben in der Mitte"),
+    "0 2": ("at the upper right", "oben rechts"),
+    "0 -": ("along the top", "am oberen Rand entlang"),
+    "1 0": ("on the left, halfway down", "links auf halber Höhe"),
+    "1 1": ("in the middle", "in der Mitte"),
+    "1 2": ("on the right, halfway down", "rechts auf halber Höhe"),
+    "1 -": ("across the middle, from left to right", "quer durch die Mitte, von links nach rechts"),
+    "2 0": ("at the lower left", "unten links"),
+    "2 1": ("at the bottom in the middle", "unten in der Mitte"),
+    "2 2": ("at the lower right", "unten rechts"),
+    "2 -": ("along the bottom", "am unteren Rand entlang"),
+    "- 0": ("on the left", "links"),
+    "- 1": ("down the middle, from top to bottom", "längs durch die Mitte, von oben nach unten"),
+    "- 2": ("on the right", "rechts"),
+    "- -": ("in several places", "an mehreren Stellen"),
+    "around": ("nearly everywhere else", "fast überall sonst"),
+}
+"""Key -> English, German. Of a place, the key is its third from the top and its third from the left."""
+
+MATERIALS: Mapping[str, tuple[str, str]] = {
+    "plain": ("plain material", "schlichtes Material"),
+    "ice": ("ice", "Eis"),
+    "glass": ("glass", "Glas"),
+    "metal": ("metal", "Metall"),
+    "paper": ("paper", "Papier"),
+    "leather": ("leather", "Leder"),
+    "wood": ("wood", "Holz"),
+    "rubber": ("rubber", "Gummi"),
+    "cloth": ("cloth", "Stoff"),
+    "foam": ("foam", "Schaumstoff"),
+    "carpet": ("carpet", "Teppich"),
+    "sand": ("sand", "Sand"),
+    "stone": ("stone", "Stein"),
+    "brick": ("brick", "Ziegel"),
+    "skin": ("skin", "Haut"),
+    "grass": ("grass", "Gras"),
+    "water": ("water", "Wasser"),
+}
+"""Materials of the library; others go by their own names."""

@@ -1,0 +1,130 @@
+"""A desk of the page's server without its processes: jobs are done in threads of this one, nothing is felt."""
+
+import asyncio
+import threading
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from PIL import Image
+
+from tangible_core.pipeline.cache import Cache
+from tangible_ui.desk import Desk
+from tangible_ui.feeling import Feeling
+from tangible_ui.maker.bench import Bench
+from tangible_ui.maker.handle import MakingStopped
+from tangible_ui.maker.jobs import JOBS
+from tangible_ui.maker.messages import Event
+
+TEXT = """\
+# a photograph of mine
+scene: {photo: mine.png}
+want: touch
+depth: {use: luminance}  # bright is near
+texture: {use: gabor, segments: 3}
+workspace: {width_m: 0.06, relief_m: 0.004}
+render: {use: penalty, stiffness_n_per_m: 400}  # soft
+"""
+
+
+def small_scene(folder: Path) -> Path:
+    """A pipeline file of a photograph of 32 x 24 pixels."""
+    noise = np.random.default_rng(0).normal(size=(24, 32)).cumsum(axis=0).cumsum(axis=1)
+    grey = np.uint8(255 * (noise - noise.min()) / np.ptp(noise))
+    Image.fromarray(grey).save(folder / "mine.png")
+    (folder / "mine.yaml").write_text(TEXT)
+    return folder / "mine.yaml"
+
+
+class InlineMaker:
+    """The maker's jobs without its process; `kill` makes those that somebody waits for raise, as the real one does."""
+
+    def __init__(self, folder: Path, hear: Any) -> None:
+        self._folder, self._hear = folder, hear
+        self._loop = asyncio.get_running_loop()
+        self.asked: list[str] = []
+        self.kills = 0
+        self._waiting: set[asyncio.Future[Any]] = set()
+        self._start()
+
+    def _start(self) -> None:
+        alive = self._alive = threading.Event()
+        alive.set()
+
+        def tell(event: str, **told: Any) -> None:
+            self._loop.call_soon_threadsafe(lambda: alive.is_set() and self._hear(Event(event, told)))
+
+        self.bench = Bench(self._folder, tell, Cache(self._folder / "cache"))
+        self._long = asyncio.Lock()
+
+    async def ask(self, job: str, **told: Any) -> Any:
+        self.asked.append(job)
+        future = asyncio.ensure_future(self._do(job, told))
+        self._waiting.add(future)
+        try:
+            return await future
+        except asyncio.CancelledError as error:
+            raise MakingStopped("killed") from error
+        finally:
+            self._waiting.discard(future)
+
+    quick = ask
+
+    async def _do(self, job: str, told: dict[str, Any]) -> Any:
+        bench = self.bench
+        if JOBS[job].quick:
+            return await asyncio.to_thread(JOBS[job].do, bench, **told)
+        async with self._long:
+            return await asyncio.to_thread(JOBS[job].do, bench, **told)
+
+    def kill(self) -> None:
+        self.kills += 1
+        self._alive.clear()
+        for each in self._waiting:
+            each.cancel()
+        self._start()
+
+    def close(self) -> None:
+        self.kill()
+
+
+class Heard:
+    """A tab that keeps what it is told."""
+
+    def __init__(self) -> None:
+        self.events: list[dict[str, Any]] = []
+
+    def say(self, event: dict[str, Any]) -> None:
+        self.events.append(event)
+
+    def last(self, name: str) -> dict[str, Any]:
+        return next(each for each in reversed(self.events) if each["event"] == name)
+
+    def names(self) -> list[str]:
+        return [each["event"] for each in self.events]
+
+    async def until(self, name: str, count: int = 1) -> dict[str, Any]:
+        """The newest event of a name, as soon as there were so many."""
+        async with asyncio.timeout(30):
+            while self.names().count(name) < count:
+                await asyncio.sleep(0.005)
+        return self.last(name)
+
+
+class SmallDesk:
+    """A desk with a tab, whose touches are kept in `felt`."""
+
+    def __init__(self, folder: Path, monkeypatch: Any) -> None:
+        monkeypatch.setattr("tangible_ui.desk.Maker", InlineMaker)
+        (folder / "drawn").mkdir()
+        self.desk = Desk(folder / "drawn", Feeling("test"), [])
+        self.maker: Any = self.desk.maker
+        self.tab = Heard()
+        self.desk.tabs.append(self.tab)
+        self.felt: list[dict[str, Any]] = []
+        monkeypatch.setattr(Desk, "feel", self._feel)
+
+    async def _feel(self, made: dict[str, Any]) -> None:
+        Path(made["parcel"]).unlink()
+        self.felt.append(made)
+        self.desk.tell("touch", law=made["law"], seconds=0.0, how="")

@@ -1,0 +1,298 @@
+"""The force loop of the page's server: started, swapped, stopped at any moment, watched, and told of when it ends."""
+
+import threading
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tangible_core import HapticSurface, load_method
+from tangible_core.data import TICK_COLUMNS, Vector
+from tangible_core.errors import DeviceError
+from tangible_core.mapping import WorkspaceMapping, mapped
+from tangible_core.plugins.interfaces import HapticDevice, Touch
+from tangible_core.servo import Safety, Servo, packed
+from tangible_core.servo.ring import STOP, shared_folder
+from tangible_core.testing.loop_devices import Failing
+from tangible_core.testing.loop_laws import FaultyTouch
+from tangible_ui.feeling import Feeling, Felt
+from tangible_ui.wire import STATE_FRAME
+
+LEVEL_M = 0.002
+LEVEL = HapticSurface.from_heights(np.full((32, 32), LEVEL_M, np.float32))
+AT_ONCE = Safety(ramp_s=0, max_step_n=10, passivity="off")
+PLACE = slice(TICK_COLUMNS.index("x_m"), TICK_COLUMNS.index("x_m") + 3)
+FORCE = slice(TICK_COLUMNS.index("fx_n"), TICK_COLUMNS.index("fx_n") + 3)
+IN_TIME_S = 20.0
+INSIDE: Vector = (0.0, 0.0, 0.0)
+NO_MAPPING = WorkspaceMapping()
+
+
+def until(condition: Callable[[], Any], seconds: float = IN_TIME_S) -> None:
+    end = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end, "it did not happen"
+        time.sleep(0.005)
+
+
+def law(k: float = 500.0) -> Touch:
+    return load_method("render", "proxy")(stiffness_n_per_m=k).touch(LEVEL)
+
+
+def felt(
+    feeling: Feeling,
+    device: HapticDevice | None = None,
+    touch: Touch | None = None,
+    mapping: WorkspaceMapping = NO_MAPPING,
+) -> Felt:
+    """A scene for a device, the page's own without one."""
+    options = {name: value for name, value in feeling.own_device.items() if name != "use"}
+    seen = mapped(device or load_method("device", "pointer")(**options), mapping)
+    return Felt(packed(touch or law(), seen.spec()), "proxy", "it", seen, device is None, mapping, AT_ONCE)
+
+
+def newest(feeling: Feeling) -> np.ndarray:
+    """The newest whole tick."""
+    assert feeling.servo is not None
+    until(lambda: feeling.servo and feeling.servo.ring.count)
+    return feeling.servo.ring.since(feeling.servo.ring.count - 1)[0][-1]
+
+
+def state(feeling: Feeling) -> tuple[float, ...]:
+    frame = feeling.frame(1, 0)
+    assert frame is not None
+    return STATE_FRAME.unpack(frame)
+
+
+class Server:
+    """What the page's server does: it hears where a page has its hand, and says that it lives."""
+
+    def __init__(self, feeling: Feeling) -> None:
+        self.at: Vector | None = None
+        self.stands_still = False
+        self._feeling, self._over = feeling, threading.Event()
+        self._thread = threading.Thread(target=self._work)
+
+    def _work(self) -> None:
+        while not self._over.wait(0.01):
+            if self.stands_still:
+                continue
+            if self.at is not None:
+                self._feeling.hand.point(self.at, 1, 7)
+            self._feeling.hand.keep()
+
+    def __enter__(self) -> "Server":
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._over.set()
+        self._thread.join()
+
+
+@pytest.fixture
+def feeling() -> Iterator[Feeling]:
+    """One that leaves no loop behind, and no file."""
+    feeling = Feeling("ui-test")
+    yield feeling
+    feeling.stop()
+    assert not feeling.running
+    assert not list(shared_folder().glob("*.ring"))
+    assert not list(shared_folder().glob("*.parcel"))
+
+
+@pytest.fixture
+def server(feeling: Feeling) -> Iterator[Server]:
+    """Moves its hand."""
+    with Server(feeling) as server:
+        yield server
+
+
+class TestTheHandIsWhereThePageSays:
+    @pytest.mark.parametrize(
+        "mapping",
+        [
+            NO_MAPPING,
+            WorkspaceMapping(region_m=(0.01, -0.005, 0.02, 0.01), rotation_deg=30.0, offset_m=(0.01, 0.02, 0.03)),
+            WorkspaceMapping(scale=500.0),
+        ],
+        ids=["plain", "a region, turned", "much enlarged"],
+    )
+    def test_in_the_picture_whatever_the_mapping(
+        self, feeling: Feeling, server: Server, mapping: WorkspaceMapping
+    ) -> None:
+        """And let go of, it is over every surface: a metre up in the pointer's own frame may be inside one."""
+        assert feeling.feel(felt(feeling, mapping=mapping)) is not None
+        until(lambda: newest(feeling)[PLACE][2] > 0.4)
+        server.at = at = (0.012, -0.004, LEVEL_M - 0.001)
+        until(lambda: np.allclose(newest(feeling)[PLACE], at, atol=2e-5))
+        until(lambda: newest(feeling)[FORCE][2] > 0.49)
+        np.testing.assert_allclose(newest(feeling)[FORCE], (0, 0, 0.5), atol=0.02)
+        assert state(feeling)[4] == 7  # the tag of what was said
+        server.at = None
+        feeling.hand.release()
+        until(lambda: newest(feeling)[PLACE][2] > 0.4)
+        assert not newest(feeling)[FORCE].any()
+
+    def test_silence_lets_go(self, feeling: Feeling, server: Server) -> None:
+        """Of the page; and of the server, which the loop itself watches."""
+        feeling.feel(felt(feeling))
+        server.at = INSIDE
+        until(lambda: newest(feeling)[FORCE][2] > 0.5)
+        server.at = None
+        until(lambda: not feeling.hand.holding)
+        until(lambda: newest(feeling)[PLACE][2] > 0.4)
+        assert not newest(feeling)[FORCE].any()
+        server.at = INSIDE
+        until(lambda: newest(feeling)[FORCE][2] > 0.5)
+        server.stands_still = True
+        until(lambda: not newest(feeling)[FORCE].any())
+
+    @pytest.mark.parametrize("at", [(float("nan"), 0, 0), (0, float("inf"), 0), (0, 0, -1.0)])
+    def test_what_is_no_place_is_not_heard(self, feeling: Feeling, at: tuple[float, float, float]) -> None:
+        feeling.hand.point(at, 0, 1)
+        assert not feeling.hand.holding
+
+
+class TestSwaps:
+    def test_another_law_goes_on_in_the_same_loop(self, feeling: Feeling) -> None:
+        feeling.start()
+        first = feeling.servo
+        feeling.feel(felt(feeling, touch=FaultyTouch()))
+        assert feeling.servo is first
+        assert "the tick is Python's" in feeling.how
+        feeling.feel(felt(feeling))
+        assert feeling.servo is first
+        assert "the tick is Python's" not in feeling.how
+
+    def test_another_device_is_another_loop(self, feeling: Feeling, server: Server) -> None:
+        feeling.start()
+        first = feeling.servo
+        feeling.feel(felt(feeling, Failing(fault="none")))
+        assert feeling.servo is not first
+        until(lambda: state(feeling)[15] > 0.4)
+        server.at = INSIDE  # of no use now
+        time.sleep(0.05)
+        server.at = None
+        feeling.feel(felt(feeling))
+        until(lambda: newest(feeling)[PLACE][2] > 0.4)
+        assert feeling.ended() is None
+
+    def test_a_device_that_is_not_there(self, feeling: Feeling, tmp_path: Path) -> None:
+        """Says so; it is felt once it is there."""
+        device = Failing(fault="none", opens="second", record=str(tmp_path / "held"))
+        with pytest.raises(DeviceError, match="in use by another program"):
+            feeling.feel(felt(feeling, device))
+        assert not feeling.running
+        assert state(feeling)[9] == 1.0  # the hand is nowhere
+        assert feeling.feel(felt(feeling, device)) is not None
+        assert feeling.running
+
+
+class TestWhatEndsByItself:
+    @pytest.mark.parametrize(
+        ("device", "touch", "why", "lost"),
+        [
+            (Failing(fault="unplugged"), None, "the failing device does not answer; plug it in", True),
+            (Failing(fault="blocks"), None, "stood still", True),
+            (Failing(fault="bug"), None, "ZeroDivisionError: the driver's own fault", False),
+            (Failing(fault="none"), FaultyTouch("odd error"), "OddError", False),
+        ],
+        ids=["unplugged", "stands still", "a fault of the driver", "a law that raises"],
+    )
+    def test_is_told_once_with_why(
+        self, feeling: Feeling, device: HapticDevice, touch: Touch | None, why: str, lost: bool
+    ) -> None:
+        feeling.feel(felt(feeling, device, touch))
+        found = []
+        until(lambda: found.append(feeling.ended()) or found[-1] is not None)
+        assert why in found[-1].why
+        assert found[-1].why
+        assert found[-1].lost == lost
+        assert feeling.ended() is None
+        assert state(feeling)[13:16] == (0, 0, 0)
+        assert feeling.feel(felt(feeling)) is not None
+        assert feeling.running
+
+
+class TestStop:
+    def stops(self, feeling: Feeling, doing: Callable[[], Any]) -> list[Any]:
+        """Press stop while something is done; what that gave."""
+        gave: list[Any] = []
+
+        def work() -> None:
+            try:
+                gave.append(doing())
+            except Exception as error:  # noqa: BLE001 - it is looked at
+                gave.append(error)
+
+        thread = threading.Thread(target=work)
+        thread.start()
+        time.sleep(0.05)
+        pressed = time.monotonic()
+        feeling.cut()
+        assert time.monotonic() - pressed < 1.0  # it waits for nobody
+        feeling.stop()
+        thread.join(IN_TIME_S)
+        assert not thread.is_alive()
+        assert not feeling.running
+        return gave
+
+    def test_a_loop_that_runs(self, feeling: Feeling, server: Server) -> None:
+        feeling.feel(felt(feeling))
+        servo = feeling.servo
+        assert servo is not None
+        server.at = INSIDE
+        until(lambda: newest(feeling)[FORCE][2] > 0.5)
+        feeling.cut()
+        assert servo.ring.header[STOP] == 1
+        assert state(feeling)[13:16] == (0, 0, 0)
+        until(lambda: not servo.running)
+        assert feeling.ended() is None
+        assert feeling.feel(felt(feeling)) is None  # what is made later is not felt
+        assert not feeling.running
+        feeling.allow()
+        assert feeling.feel(felt(feeling)) is not None
+
+    def test_feeling_again_at_once(self, feeling: Feeling) -> None:
+        """The loop that was stopped is still there."""
+        feeling.start()
+        feeling.cut()
+        feeling.allow()
+        assert feeling.feel(felt(feeling)) is not None
+        assert feeling.running
+        assert feeling.ended() is None
+
+    def test_while_a_loop_starts(self, feeling: Feeling) -> None:
+        assert self.stops(feeling, feeling.start) == [None]
+
+    def test_while_a_device_is_being_homed(self, feeling: Feeling) -> None:
+        """It never answers: its process is killed."""
+        assert self.stops(feeling, lambda: feeling.feel(felt(feeling, Failing(opens="late")))) == [None]
+
+    def test_while_a_scene_is_swapped(self, feeling: Feeling) -> None:
+        feeling.start()
+        made = felt(feeling, touch=FaultyTouch("begins slowly"))
+        assert self.stops(feeling, lambda: feeling.feel(made)) == [None]
+
+    def test_who_stops_does_not_wait_for_who_starts(self, feeling: Feeling, monkeypatch: pytest.MonkeyPatch) -> None:
+        """Nor before there is a ring to write to."""
+        entering, entered = threading.Event(), Servo.__enter__
+
+        def slow(servo: Servo) -> Servo:
+            entering.set()
+            time.sleep(0.5)
+            return entered(servo)
+
+        monkeypatch.setattr(Servo, "__enter__", slow)
+        thread = threading.Thread(target=feeling.start)
+        thread.start()
+        entering.wait(IN_TIME_S)
+        feeling.cut()
+        feeling.stop()
+        assert thread.is_alive()
+        thread.join(IN_TIME_S)
+        assert not feeling.running

@@ -57,6 +57,7 @@ export const t = words({
   rulerEnd: ["End of the ruler: arrow keys move it", "Ende des Lineals: Pfeiltasten bewegen es"],
   rulerBegun: ["The ruler begins here.", "Das Lineal beginnt hier."],
   measured: ["{mm} millimetres", "{mm} Millimeter"],
+  length: ["{mm} mm", "{mm} mm"],
   straight: ["Straight", "Gerade"],
   horizontal: ["Horizontal", "Waagrecht"],
   surface: ["Along the surface", "Auf der Oberfläche"],

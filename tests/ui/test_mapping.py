@@ -1,12 +1,16 @@
-"""The mapping as the page draws it: the same numbers as the core's."""
+"""The mapping as the page draws it: the same numbers as the core's. What limits the force."""
 
+import asyncio
 import json
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
 from tangible_core.data import Vector
 from tangible_core.mapping import WorkspaceMapping
+from tangible_ui.asks.mapping import limits
 from tangible_ui.maker import mapping
 from tangible_ui.maker.bench import Bench
 
@@ -46,3 +50,12 @@ def test_what_the_document_s_device_reaches(bench: Bench, device: str, name: str
     text = f"scene: builtin/brick\nmapping: {{scale: 3}}\n{device}"
     found = mapping.reach(bench, text, PATH, [])
     assert found == {"device": name, "workspace_m": pytest.approx(workspace_m) if workspace_m else None}
+
+
+def test_what_limits_the_force_is_counted_by_the_loop():
+    """The page takes two of these counts a second apart."""
+    flagged = {"DAMPED": 3, "STALE": 1}
+    servo = SimpleNamespace(report=lambda: SimpleNamespace(ticks=1000, overruns=2, flagged=flagged))
+    for felt_by, counted in ((None, None), (servo, {"ticks": 1000, "overruns": 2, "flagged": flagged})):
+        desk: Any = SimpleNamespace(feeling=SimpleNamespace(servo=felt_by))
+        assert asyncio.run(limits(desk, desk)) == counted

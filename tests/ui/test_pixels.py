@@ -188,6 +188,19 @@ def test_the_arrow_is_the_force(shown: Shown, force: Vec, proxy: Vec | None):
     assert np.hypot(*(tip - end)) < 4
 
 
+def test_the_trace_is_where_the_contact_was(shown: Shown):
+    """Between the places of two states, and not over a place where the hand was let go."""
+    shown.only()
+    before = shown.pixels()
+    shown.only("trace")
+    for hand in ((LEFT - 0.008, 0.0, -0.001), (LEFT, 0.0, -0.001), (LEFT, 0.0, 0.9), (LEFT, 0.012, -0.001)):
+        shown.state(hand, (0, 0, 4))
+        shown.pixels()
+    changed = np.abs(shown.pixels() - before)
+    assert near(changed, shown.spot(LEFT - 0.004, 0, 0)).max() > 20
+    assert near(changed, shown.spot(LEFT, 0.006, 0)).max() < 5
+
+
 def test_a_pressed_mouse_gives_the_force_that_is_shown(shown: Shown):
     """From the mouse to the loop and back: F = k d, drawn and said."""
     shown.only("device", "labels", "arrow")

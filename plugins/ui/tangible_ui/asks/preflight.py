@@ -1,4 +1,4 @@
-"""What is to be known before a motor moves: judge the document, and change what would put it right."""
+"""Judge the document before a hand meets it, and put right what can be."""
 
 import json
 from typing import Any
@@ -16,13 +16,13 @@ LEAST_TICKS = 1000
 
 
 async def preflight(desk: Desk, tab: Tab | None) -> dict[str, Any] | None:
-    """Judge the document on its device, or on the page's own hand where it names none."""
-    return await long_job(desk, "preflight", "touch", sets=desk.sets, **await _loop(desk))
+    """Judge the document on its device, or on the page's own hand where it names none; None if it was stopped."""
+    return await long_job(desk, "preflight", "touch", sets=desk.sets, **_loop(desk))
 
 
 async def fix(desk: Desk, tab: Tab | None, apply: bool = False) -> dict[str, Any] | None:
-    """Change what preflight would have changed, and judge again."""
-    found = await long_job(desk, "fix", "touch", sets=desk.sets, **await _loop(desk))
+    """Change what preflight would have changed, and judge again; None if it was stopped."""
+    found = await long_job(desk, "fix", "touch", sets=desk.sets, **_loop(desk))
     if found is None:
         return None
     if found["changes"]:
@@ -31,7 +31,7 @@ async def fix(desk: Desk, tab: Tab | None, apply: bool = False) -> dict[str, Any
     return found
 
 
-async def _loop(desk: Desk) -> dict[str, Any]:
+def _loop(desk: Desk) -> dict[str, Any]:
     """The page's own hand, and how late the loop's ticks begin, where enough of them were."""
     own = f"device={json.dumps(desk.feeling.own_device)}"
     servo = desk.feeling.servo

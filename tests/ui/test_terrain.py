@@ -28,7 +28,7 @@ def settings(page, **changed) -> None:
 def from_above(page) -> None:
     page.wait_for_function("() => window.page?.scene && window.figures.firstMs > 0", timeout=60_000)
     page.focus("#terrain")
-    page.keyboard.press("End")
+    page.keyboard.press("Control+End")
     settled(page)
 
 
@@ -158,7 +158,7 @@ def test_a_large_relief_is_drawn_at_once_and_finer_where_one_looks(serve, open_p
         x, y = (column + 0.5) * pitch - 0.04, 0.5 * 0.08 * 1400 / 1500 - (row + 0.5) * pitch
         wanted = 0.002 * heights[row, column] / 65535
         assert page.evaluate("([x, y]) => window.page.scene.height(x, y)", [x, y]) == pytest.approx(wanted, abs=1e-9)
-    page.keyboard.press("Home")
+    page.keyboard.press("Control+Home")
     page.wait_for_function("() => window.page.scene.detail === null", timeout=20_000)
 
 
@@ -232,7 +232,7 @@ def test_the_camera_takes_what_is_its_own_and_leaves_the_rest_to_the_hand(url: s
             page.keyboard.up(key)
         assert page.evaluate(POSE)[part] != home[part], (button, key)
         page.focus("#terrain")
-        page.keyboard.press("Home")
+        page.keyboard.press("Control+Home")
         assert page.evaluate(POSE) == home
     page.keyboard.down("Control")
     page.mouse.wheel(0, -50)
@@ -245,7 +245,7 @@ def test_the_camera_takes_what_is_its_own_and_leaves_the_rest_to_the_hand(url: s
     assert "pointerdown" in page.evaluate("() => window.heard")
 
     page.evaluate("() => { window.heard = [] }")
-    page.keyboard.press("Home")
+    page.keyboard.press("Control+Home")
     touch = page.context.new_cdp_session(page)
 
     def fingers(kind: str, *at: tuple[float, float]) -> None:

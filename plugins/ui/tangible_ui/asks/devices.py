@@ -8,7 +8,7 @@ from tangible_core.errors import ConfigError, DeviceError
 from ..choice import Choice
 from ..desk import Desk, Tab
 from ..doctor import figures
-from .document import make
+from .making import make
 
 FIRST_PAUSE_S, LONGEST_PAUSE_S = 1.0, 8.0
 """Before a device is looked for again; twice as long each time: to look for one starts a process."""

@@ -11,7 +11,7 @@ async def hold(desk: Desk, tab: Tab) -> None:
     desk.hold(tab)
 
 
-async def stop(desk: Desk, tab: Tab) -> None:
+async def stop(desk: Desk, tab: Tab | None) -> None:
     """No force, at once, and none until `feel`, whatever else is made meanwhile."""
     ended = desk.feeling.cut()  # before anything is waited for
     desk.tell("loop", running=False, why="stopped", stopped=True)

@@ -4,7 +4,8 @@ import asyncio
 from typing import Any
 
 from ..desk import Desk, Tab
-from .document import edit, make
+from .document import edit
+from .making import make
 
 
 async def reach(desk: Desk, tab: Tab) -> dict[str, Any]:

@@ -5,7 +5,7 @@ from typing import Any
 
 from tangible_core.mapping import WorkspaceMapping
 from tangible_core.pipeline.config import parse_config
-from tangible_core.pipeline.editing import REMOVE, edited
+from tangible_core.pipeline.editing import REMOVE, Changes, edited
 
 from .bench import Bench, Job
 
@@ -25,7 +25,7 @@ def place(bench: Bench, text: str, path: Path, mapping: dict[str, Any]) -> str:
     """The text with another mapping: what is as by default is not written. Raises: ConfigError."""
     usual = WorkspaceMapping().model_dump(mode="json")
     said = {key: mapping[key] for key in PLACED if key in mapping}
-    changes = {f"mapping.{key}": REMOVE if value == usual[key] else value for key, value in said.items()}
+    changes: Changes = {f"mapping.{key}": REMOVE if value == usual[key] else value for key, value in said.items()}
     return edited(text, path, changes)
 
 

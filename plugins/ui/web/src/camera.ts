@@ -198,11 +198,11 @@ export class Eye {
 
 /** The keys of the camera, as they are pressed on the terrain. */
 export const CAMERA_KEYS = [
-  { keys: ["Shift", "← → ↑ ↓"], does: "orbit" },
-  { keys: ["Ctrl", "← → ↑ ↓"], does: "pan" },
+  { keys: ["Ctrl", "Shift", "← → ↑ ↓"], does: "orbit" },
+  { keys: ["Alt", "← → ↑ ↓"], does: "pan" },
   { keys: ["+", "−"], does: "zoom" },
-  { keys: ["Home"], does: "home" },
-  { keys: ["End"], does: "top" },
+  { keys: ["Ctrl", "Home"], does: "home" },
+  { keys: ["Ctrl", "End"], does: "top" },
 ] as const;
 
 const WAYS: Record<string, [number, number]> = {
@@ -212,17 +212,19 @@ const WAYS: Record<string, [number, number]> = {
   ArrowDown: [0, -1],
 };
 
-/** Whether the key is one of the camera's. */
+/** Whether the key is one of the camera's: none that is the hand's (shortcuts.ts). */
 export function key(eye: Eye, event: KeyboardEvent): boolean {
   const way = WAYS[event.key];
-  if (event.altKey || event.metaKey) return false;
-  if (way && event.shiftKey) eye.orbit(way[0] * KEY_TURN, -way[1] * KEY_TURN);
-  else if (way && event.ctrlKey) eye.pan(way[0] * KEY_SHARE, way[1] * KEY_SHARE);
-  else if (event.ctrlKey) return false;
+  const { ctrlKey, shiftKey, altKey } = event;
+  if (event.metaKey) return false;
+  if (way && ctrlKey && shiftKey && !altKey) eye.orbit(way[0] * KEY_TURN, -way[1] * KEY_TURN);
+  else if (way && altKey && !ctrlKey && !shiftKey) eye.pan(way[0] * KEY_SHARE, way[1] * KEY_SHARE);
+  else if (altKey) return false;
+  else if (event.key === "Home" && ctrlKey) eye.home();
+  else if (event.key === "End" && ctrlKey) eye.top();
+  else if (ctrlKey) return false;
   else if (event.key === "+") eye.zoom(0.85);
   else if (event.key === "-") eye.zoom(1 / 0.85);
-  else if (event.key === "Home") eye.home();
-  else if (event.key === "End") eye.top();
   else return false;
   return true;
 }

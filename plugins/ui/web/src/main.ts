@@ -6,6 +6,7 @@ import { Frames } from "./frames";
 import { Hand } from "./hand";
 import { Hub } from "./hub";
 import { Instrument } from "./instrument";
+import { measure, measuring } from "./measure";
 import { Narrator } from "./narrator";
 import { Net } from "./net";
 import { notice } from "./notice";
@@ -27,8 +28,6 @@ import { language } from "./words/words";
 
 document.documentElement.lang = language;
 const element = <T extends HTMLElement>(id: string): T => document.getElementById(id) as T;
-const asked = new URLSearchParams(location.search);
-if (asked.has("measure")) document.body.classList.add("measure");
 
 const canvas = element<HTMLCanvasElement>("terrain");
 const hub = new Hub();
@@ -57,6 +56,7 @@ const page: Page = {
   forget: (topic) => announcer.forget(topic),
 };
 
+measure(page);
 hub.on("hello", ({ history, scene }) => {
   // After a connection that was lost, what was heard before is not heard again; and what is long over is not said.
   announcer.hushed = true;
@@ -88,5 +88,5 @@ page.hand = new Hand(page);
 notice(page);
 build(page, panels);
 dataCursor(page);
-new Frames(page, asked.has("measure"));
-if (asked.has("measure")) Object.assign(window, { page, Instrument, stroke }); // what tests look into
+new Frames(page);
+if (measuring) Object.assign(window, { Instrument, stroke }); // what tests look into

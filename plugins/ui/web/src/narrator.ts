@@ -26,7 +26,7 @@ export const touching = (state: State): boolean => held(state) && (state.flags &
 /** "wood, part 3"; the name alone where there is one part. names: of materials, in the page's language. */
 export function named(name: string | undefined, part: number | null, parts: number, names: Record<string, string>): string {
   const said = name === undefined ? t("nameless") : (names[name] ?? name);
-  return part === null || parts < 2 ? said : t("part", { name: said, part: part + 1 });
+  return part === null || parts < 2 ? said : t("part", { name: said, part });
 }
 
 export class Narrator {
@@ -87,8 +87,8 @@ export class Narrator {
 
   /** The material and the part at a place. */
   private under(scene: Scene, x: number, y: number): string {
-    const part = scene.label(x, y);
-    return named(scene.material(x, y)?.name, part, scene.meta.materials.length, this.known(scene)?.names[language] ?? {});
+    const names = this.known(scene)?.names[language] ?? {};
+    return named(scene.material(x, y)?.name, scene.label(x, y), scene.meta.labels, names);
   }
 
   private known(scene: Scene): Events["described"] | null {

@@ -24,18 +24,21 @@ for (const [w, l] of [[0.08, 0.06], [0.06, 0.3], [10, 0.001], [1e-6, 1e-6]])
       assert.ok(seen(eye, 0, l / 2).y > seen(eye, 0, -l / 2).y && seen(eye, w / 2, 0).x > seen(eye, -w / 2, 0).x);
     });
 
+/** The hand's, with Shift finely and with Ctrl coarsely. */
+const HANDS = [{}, { shiftKey: true }, { ctrlKey: true }].flatMap((held) => ["ArrowLeft", "ArrowUp"].map((each) => pressed(each, held)));
+
 test("keys turn, move, zoom, and come home; nobody flies where motion is not wanted", () => {
   const eye = new Eye();
   eye.frame(0.08, 0.06);
   const home = { ...eye.pose };
-  assert.ok(key(eye, pressed("ArrowLeft", { shiftKey: true })) && eye.pose.azimuth < 0);
-  assert.ok(key(eye, pressed("ArrowUp", { shiftKey: true })) && eye.pose.polar < home.polar);
-  assert.ok(key(eye, pressed("ArrowRight", { ctrlKey: true })) && eye.pose.target[0] > 0);
+  assert.ok(key(eye, pressed("ArrowLeft", { shiftKey: true, ctrlKey: true })) && eye.pose.azimuth < 0);
+  assert.ok(key(eye, pressed("ArrowUp", { shiftKey: true, ctrlKey: true })) && eye.pose.polar < home.polar);
+  assert.ok(key(eye, pressed("ArrowRight", { altKey: true })) && eye.pose.target[0] > 0);
   assert.ok(key(eye, pressed("+")) && eye.pose.distance < home.distance);
-  assert.ok(key(eye, pressed("Home")));
+  assert.ok(key(eye, pressed("Home", { ctrlKey: true })));
   assert.deepEqual(eye.pose, home);
-  assert.ok(key(eye, pressed("End")) && eye.pose.polar < 0.01);
-  for (const other of [pressed("ArrowLeft"), pressed("x"), pressed("+", { ctrlKey: true }), pressed("ArrowLeft", { altKey: true })])
+  assert.ok(key(eye, pressed("End", { ctrlKey: true })) && eye.pose.polar < 0.01);
+  for (const other of [pressed("ArrowLeft"), pressed("x"), pressed("+", { ctrlKey: true }), ...HANDS])
     assert.ok(!key(eye, other));
 });
 

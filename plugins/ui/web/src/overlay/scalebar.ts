@@ -1,5 +1,4 @@
 /** How long a newton is, and how long a length of the picture, where the cursor is: a bar at the lower left. */
-import { Vector3 } from "three";
 import type { Vec } from "../protocol";
 import type { View } from "../view";
 import { t } from "../words/overlay";

@@ -175,7 +175,9 @@ class TestSee:
     def test_segments_lie_over_the_flat_picture_and_no_depth_is_made_for_it(self):
         picture = np.zeros((40, 60), np.uint8)
         picture[:, 30:] = np.random.default_rng(1).integers(0, 255, (40, 30))
-        pipeline = Pipeline(Scene.of(photo=picture), depth=made("depth", "luminance"), texture=made("texture", "gradient"), cached=False)
+        pipeline = Pipeline(
+            Scene.of(photo=picture), depth=made("depth", "luminance"), texture=made("texture", "gradient"), cached=False
+        )
         pipeline.make("segments")
         found = see(pipeline, "segments")
         assert found.shows == "segments"
@@ -185,7 +187,9 @@ class TestSee:
 
     def test_they_lie_over_the_relief_that_is_there(self):
         picture = np.random.default_rng(1).integers(0, 255, (40, 60)).astype(np.uint8)
-        pipeline = Pipeline(Scene.of(photo=picture), depth=made("depth", "luminance"), texture=made("texture", "gradient"), cached=False)
+        pipeline = Pipeline(
+            Scene.of(photo=picture), depth=made("depth", "luminance"), texture=made("texture", "gradient"), cached=False
+        )
         pipeline.make("relief")
         pipeline.make("segments")
         assert see(pipeline, "segments").relief.height_m.max() > 0

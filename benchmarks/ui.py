@@ -21,8 +21,8 @@ def section() -> str:
     late, rows = lateness()
     text = "\n".join(
         [
-            "Terrain 640 x 480, canvas 640 x 400, Chromium without a graphics card (SwiftShader), a mouse dragged 60 times"
-            f" a second; medians of {RUNS} runs. Drawn: the pixels can be read.",
+            "Terrain 640 x 480, canvas 640 x 400, Chromium without a graphics card (SwiftShader), a mouse dragged 60 "
+            f"times a second; medians of {RUNS} runs. Drawn: the pixels can be read.",
             "",
             *judged([*found, late]),
             "",

@@ -4,7 +4,6 @@ import json
 from pathlib import Path
 
 from page_files import WEB, node
-
 from tangible_core.pipeline.schema import json_schema
 
 

@@ -155,7 +155,7 @@ def test_another_device_is_felt_and_examined(page: Any, server: Any) -> None:
     page.locator("#devices > summary").click()
     page.get_by_role("button", name="Examine mock").click()
     until(lambda: "needs nothing" in page.locator(".devices").text_content())
-    page.get_by_role("button", name="Feel with mock").click()
+    page.get_by_role("button", name="Feel with it: mock").click()
     try:
         until(lambda: page.locator("#device-felt").text_content() == "Felt with: mock", 20)
     except AssertionError:

@@ -9,12 +9,12 @@ from typing import Any
 import pytest
 
 from desks import Heard
+from tangible_core.runtime.child_process import command
 from tangible_ui.asks import ASKS
 from tangible_ui.desk import Desk
 from tangible_ui.feeling import Feeling
 from tangible_ui.maker import Maker
-from tangible_ui.maker import handle as maker_handle
-from tangible_ui.maker.handle import MakerAbsent
+from tangible_ui.maker.handle import MakerAbsent, MakingStopped
 
 pytestmark = pytest.mark.slow
 
@@ -77,8 +77,7 @@ def test_one_that_does_not_start_is_tried_three_times_and_says_why(tmp_path: Pat
             started.append(module)
             return [sys.executable, "-c", "raise SystemExit('no such library')"]
 
-        command = maker_handle.command
-        monkeypatch.setattr(maker_handle, "command", broken)
+        monkeypatch.setattr("tangible_ui.maker.handle.command", broken)
         heard: list[Any] = []
         maker = Maker(tmp_path, heard.append)
         try:
@@ -86,13 +85,13 @@ def test_one_that_does_not_start_is_tried_three_times_and_says_why(tmp_path: Pat
                 while True:
                     try:
                         await maker.ask("schema")
-                    except maker_handle.MakingStopped:
+                    except MakingStopped:
                         continue
             assert len(started) == 3
             assert [event.event for event in heard] == ["maker_gone"]
             with pytest.raises(MakerAbsent):
                 await maker.quick("schema")
-            monkeypatch.setattr(maker_handle, "command", command)
+            monkeypatch.setattr("tangible_ui.maker.handle.command", command)
             maker.try_again()
             assert "properties" in await maker.ask("schema")
             assert heard[-1].event != "maker_gone"

@@ -188,6 +188,19 @@ def test_the_arrow_is_the_force(shown: Shown, force: Vec, proxy: Vec | None):
     assert np.hypot(*(tip - end)) < 4
 
 
+def test_the_trace_is_where_the_contact_was(shown: Shown):
+    """Between the places of two states, and not over a place where the hand was let go."""
+    shown.only()
+    before = shown.pixels()
+    shown.only("trace")
+    for hand in ((LEFT - 0.008, 0.0, -0.001), (LEFT, 0.0, -0.001), (LEFT, 0.0, 0.9), (LEFT, 0.012, -0.001)):
+        shown.state(hand, (0, 0, 4))
+        shown.pixels()
+    changed = np.abs(shown.pixels() - before)
+    assert near(changed, shown.spot(LEFT - 0.004, 0, 0)).max() > 20
+    assert near(changed, shown.spot(LEFT, 0.006, 0)).max() < 5
+
+
 def test_a_pressed_mouse_gives_the_force_that_is_shown(shown: Shown):
     """From the mouse to the loop and back: F = k d, drawn and said."""
     shown.only("device", "labels", "arrow")
@@ -272,10 +285,7 @@ def test_the_frame_is_what_the_device_reaches_and_is_dragged(shown: Shown):
     side = 0.04
     shown.only("labels")
     shown.page.get_by_label("Show what the device reaches").check()
-    shown.page.evaluate(
-        "mapping => page.net.ask('set_mapping', { mapping })",
-        {"scale": 2, "region_m": None, "rotation_deg": 0, "offset_m": [0, 0, 0]},
-    )
+    shown.page.evaluate("() => page.net.ask('set', { changes: { 'mapping.scale': 2 } })")
     until(lambda: shown.mapping().get("scale") == 2)
     until(lambda: "40.0 \N{MULTIPLICATION SIGN} 40.0" in shown.page.inner_text("#mapping-panel"))
     shown.pixels()

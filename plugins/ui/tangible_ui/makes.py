@@ -14,7 +14,7 @@ class Makes:
         self.apply_after = False
         """Whether to look, after the one at work, if what was edited meanwhile can be applied at once."""
         self.killed = False
-        """Whether the maker was killed for an earlier one: the newest, if that met the one that died, is asked again."""
+        """Whether the maker was killed for an earlier one: if the newest met the one that died, it is asked again."""
 
     def begin(self) -> int:
         """The number of another one."""

@@ -4,21 +4,11 @@ import asyncio
 from typing import Any
 
 from ..desk import Desk, Tab
-from .document import edit, make
 
 
 async def reach(desk: Desk, tab: Tab) -> dict[str, Any]:
     """What the document's device reaches: its name, and its workspace in metres, or none."""
     return await desk.maker.quick("reach", text=desk.text, path=desk.path, sets=desk.sets)
-
-
-async def set_mapping(desk: Desk, tab: Tab, mapping: dict[str, Any]) -> dict[str, Any]:
-    """Write another mapping into the document, and feel it; the rest of the text stays."""
-    text = await desk.maker.quick("place", text=desk.text, path=desk.path, mapping=mapping)
-    found = await edit(desk, tab, text)
-    if not found["complaints"]:
-        desk.begin(make(desk, tab))
-    return found
 
 
 async def limits(desk: Desk, tab: Tab) -> dict[str, Any] | None:
@@ -30,4 +20,4 @@ async def limits(desk: Desk, tab: Tab) -> dict[str, Any] | None:
     return {"ticks": report.ticks, "overruns": report.overruns, "flagged": dict(report.flagged)}
 
 
-ASKS = {"reach": reach, "set_mapping": set_mapping, "limits": limits}
+ASKS = {"reach": reach, "limits": limits}

@@ -12,4 +12,5 @@ JOBS = {
     **devices.JOBS,
     **textures.JOBS,
     **laws.JOBS,
+    **mapping.JOBS,
 }

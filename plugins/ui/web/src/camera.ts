@@ -32,11 +32,6 @@ export class Eye {
   private span: [number, number] = [0, 0];
   private flight: { from: Pose; to: Pose; begunMs: number } | null = null;
 
-  /** What it turns about. */
-  get target(): Vec {
-    return this.pose.target;
-  }
-
   constructor() {
     this.camera.up.set(0, 0, 1);
     this.place();

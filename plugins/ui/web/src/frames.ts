@@ -20,9 +20,11 @@ export class Frames {
     const fresh = state !== this.last;
     if (!view.dirty && !overlay.changed && !fresh) return;
     const first = view.terrain !== null && !figures.firstMs;
-    if (view.dirty || overlay.wants(state)) {
+    const moved = view.dirty;
+    if (moved || overlay.wants(state)) {
       overlay.put(state);
       view.draw(measuring || first);
+      overlay.changed ||= moved; // a camera that flies moves in `draw`: what stays at a place follows it
     }
     const at = now();
     if (first) figures.firstMs = at;

@@ -142,6 +142,10 @@ interface Said {
 export interface Events {
   hello: Said & { version: number; history: (Said & { event: keyof Events })[]; scene: (Said & Meta) | null };
   gone: Said;
+  /** Of this page alone: the program that answers is another one, by its key or by its version. */
+  refused: Said & { why: "key" | "version" };
+  /** A program before this one ended while this file was edited and not saved; none any more, if path is empty. */
+  restored: Said & { path: string; edited_s: number };
   /** free: no tab holds the hand. */
   holding: Said & { holding: boolean; free: boolean };
   maker: Said;

@@ -34,6 +34,13 @@ test("no line crosses a gap, and none is older than asked", () => {
   assert.deepEqual(lines(trail), []);
 });
 
+test("only what is young enough is looked at", () => {
+  const trail = new Trail(4);
+  assert.equal(trail.since(0), 0);
+  for (let i = 1; i <= 6; i++) trail.add(i, 0, 0, 1, i);
+  assert.deepEqual([7, 6, 4.5, 0].map((seconds) => trail.since(seconds)), [0, 1, 2, 4]);
+});
+
 test("a long way allocates nothing, and keeps the newest", () => {
   const trail = new Trail(64);
   const { data } = trail;

@@ -6,8 +6,8 @@ import type { Scene } from "../scene";
 import type { View } from "../view";
 import { COLOURS } from "./colours";
 
-/** Places between two corners. */
-const PIECES = 64;
+/** Straight pieces of the whole line; in software each costs as much as a small thing. */
+const PIECES = 96;
 const DASHES = 30;
 const WIDTH_PX = { rim: 4, line: 2 };
 
@@ -15,10 +15,13 @@ export class Draped {
   private rim: Line2;
   private line: Line2;
   private places: Float32Array;
+  /** Pieces of a side. */
+  private pieces: number;
 
   /** sides: how many straight pieces, seen from above, it has. */
   constructor(view: View, private sides: number, color: number, dashed = false) {
-    this.places = new Float32Array(3 * (sides * PIECES + 1));
+    this.pieces = Math.round(PIECES / sides);
+    this.places = new Float32Array(3 * (sides * this.pieces + 1));
     const look = { depthTest: false, depthWrite: false, transparent: true };
     const drawn = (material: LineMaterial, order: number): Line2 => {
       const line = new Line2(new LineGeometry(), material);
@@ -41,9 +44,9 @@ export class Draped {
     for (let side = 0, o = 0; side < this.sides; side++) {
       const [from, to] = [through[side], through[side + 1]];
       wayM += Math.hypot(to[0] - from[0], to[1] - from[1]);
-      for (let i = side ? 1 : 0; i <= PIECES; i++, o += 3) {
-        const x = from[0] + (i / PIECES) * (to[0] - from[0]);
-        const y = from[1] + (i / PIECES) * (to[1] - from[1]);
+      for (let i = side ? 1 : 0; i <= this.pieces; i++, o += 3) {
+        const x = from[0] + (i / this.pieces) * (to[0] - from[0]);
+        const y = from[1] + (i / this.pieces) * (to[1] - from[1]);
         this.places.set([x, y, scene.on(x, y)[2]], o);
       }
     }

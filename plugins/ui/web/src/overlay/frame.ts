@@ -130,7 +130,7 @@ export class MappingFrame implements Picked {
     const now = this.reach;
     if (!scene || !now) return;
     const live = overlay.live?.seen ? overlay.live : null;
-    const [x, y] = live ? live.hand : view.eye.target;
+    const [x, y] = live ? live.hand : view.eye.pose.target;
     const size = now.size.map((side, axis) => Math.max(LEAST_REGION_M, HALF * Math.min(side, scene.meta.extent_m[axis])));
     this.zoom(x, y, size[0], size[1]);
   }
@@ -202,9 +202,8 @@ export class MappingFrame implements Picked {
     this.writing = true;
     for (let written: Mapping | null = null; this.draft && written !== this.draft; ) {
       written = this.draft;
-      const { scale, region_m, rotation_deg, offset_m } = written;
       try {
-        await this.page.net.ask("set_mapping", { mapping: { scale, region_m, rotation_deg, offset_m } });
+        await this.page.net.ask("set", { ...changes(written), apply: true });
       } catch (error) {
         this.page.say((error as Error).message);
         break;
@@ -251,4 +250,12 @@ export class MappingFrame implements Picked {
     const edge = scene.on(middle[0] + (far[0] - left[0]) / 2, middle[1] + (far[1] - left[1]) / 2);
     return [x, y, v > 1 ? Math.max(edge[2], scene.on(x, y)[2]) : scene.on(x, y)[2]];
   }
+}
+
+/** What the document has to say of a mapping: nothing of what is as by default. */
+function changes(mapping: Mapping): { changes: Record<string, unknown>; removed: string[] } {
+  const keys = ["scale", "region_m", "rotation_deg", "offset_m"] as const;
+  const usual = (key: (typeof keys)[number]): boolean => String(mapping[key]) === String(AS_IT_LIES[key]);
+  const said = keys.filter((key) => !usual(key)).map((key) => [`mapping.${key}`, mapping[key]]);
+  return { changes: Object.fromEntries(said), removed: keys.filter(usual).map((key) => `mapping.${key}`) };
 }

@@ -29,7 +29,7 @@ export class Markers {
   here(): void {
     const { scene, overlay, view } = this.page;
     const live = overlay.live?.seen ? overlay.live : null;
-    const [x, y] = live ? live.hand : view.eye.target;
+    const [x, y] = live ? live.hand : view.eye.pose.target;
     if (scene) this.add(scene.on(x, y));
   }
 

@@ -19,6 +19,7 @@ import { Trace } from "./trace";
 
 /** Of the picture's width: how long a newton is at first. */
 const NEWTON_SHARE = 1 / 12;
+const NEWTON_M = 0.005;
 
 interface Pinned {
   element: HTMLElement;
@@ -62,9 +63,10 @@ export class Overlay {
     this.size();
   }
 
-  /** Another surface: a newton is as long as suits its size, and the trace of the one before is gone. */
+  /** Another surface: where its size is another, so is the length of a newton; the trace of the one before is gone. */
   show(scene: Scene): void {
-    this.settings.metresPerNewton = round(NEWTON_SHARE * scene.meta.extent_m[0]) || this.settings.metresPerNewton;
+    const wide = scene.meta.extent_m[0];
+    if (wide !== this.scene?.meta.extent_m[0]) this.settings.metresPerNewton = round(NEWTON_SHARE * wide) || NEWTON_M;
     this.scene = scene;
     this.trace.clear();
     this.changed = true;

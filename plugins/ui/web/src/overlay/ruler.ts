@@ -81,7 +81,7 @@ export class Ruler implements Picked {
   here(): void {
     const { scene, overlay, view } = this.page;
     const live = overlay.live?.seen ? overlay.live : null;
-    const [x, y] = live ? live.hand : view.eye.target;
+    const [x, y] = live ? live.hand : view.eye.pose.target;
     if (scene) this.next(scene.on(x, y));
   }
 
@@ -106,7 +106,7 @@ export class Ruler implements Picked {
     this.line.visible = whole;
     if (whole && this.measured) {
       this.line.put(scene, this.ends);
-      this.label.textContent = `${(1000 * this.measured.straightM).toFixed(2)} mm`;
+      this.label.textContent = t("length", { mm: (1000 * this.measured.straightM).toFixed(2) });
     }
     overlay.changed = true;
     this.changed();

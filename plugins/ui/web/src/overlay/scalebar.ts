@@ -1,5 +1,4 @@
 /** How long a newton is, and how long a length of the picture, where the cursor is: a bar at the lower left. */
-import type { Vec } from "../protocol";
 import type { View } from "../view";
 import { t } from "../words/overlay";
 import { metresPerPixel, type Piece, type Sight } from "./piece";
@@ -31,16 +30,11 @@ export class ScaleBar implements Piece {
     this.late = !this.box.hidden && now - this.readMs < EVERY_MS;
     if (this.box.hidden || this.late) return;
     this.readMs = now;
-    const pixel = metresPerPixel(sight, live?.contact ?? this.looked());
+    const pixel = metresPerPixel(sight, live?.contact ?? this.view.eye.pose.target);
     const newtons = round((MOST_PX * pixel) / metresPerNewton);
     const metres = newtons * metresPerNewton;
     this.bar.style.width = `${(metres / pixel).toFixed(1)}px`;
     const text = t("scale", { newtons, mm: Number((1000 * metres).toPrecision(3)) });
     if (this.words.textContent !== text) this.words.textContent = text;
-  }
-
-  /** What the camera turns about. */
-  private looked(): Vec {
-    return this.view.eye.target;
   }
 }

@@ -1,7 +1,7 @@
 /** Where the contact was in the last seconds: a ring of numbers that is allocated once. */
 
-/** Of a sample: x, y, z, newtons, seconds, and 1 if it goes on from the sample before. */
-export const STRIDE = 6;
+/** Of a sample: x, y, z, newtons, seconds, 1 if it goes on from the sample before, and two that fill two texels. */
+export const STRIDE = 8;
 const NEWTONS = 3;
 const SECONDS = 4;
 const JOINED = 5;
@@ -20,6 +20,14 @@ export class Trail {
   /** Where the newest sample lies. */
   get newest(): number {
     return (this.added + this.slots - 1) % this.slots;
+  }
+
+  /** Samples since then, the newest included; those before it need not be looked at. */
+  since(seconds: number): number {
+    const most = Math.min(this.added, this.slots);
+    let found = 0;
+    while (found < most && this.data[((this.added - 1 - found) % this.slots) * STRIDE + SECONDS] >= seconds) found++;
+    return found;
   }
 
   add(x: number, y: number, z: number, newtons: number, seconds: number): void {

@@ -1,5 +1,6 @@
 /** The data cursor at the lower right of the surface: what is where the device, the contact and the mouse are. */
 import "./cursor.css";
+import { button } from "../elements";
 import { place, type Place } from "../overlay/live";
 import { asJson, asText, rows, type Row } from "../overlay/values";
 import type { Page } from "../page";
@@ -79,12 +80,4 @@ function fill(table: HTMLTableElement, wanted: Row[]): void {
     }
     for (const [j, text] of [name, ...values].entries()) if (row.cells[j].textContent !== text) row.cells[j].textContent = text;
   }
-}
-
-function button(text: string, act: () => void): HTMLButtonElement {
-  const made = document.createElement("button");
-  made.type = "button";
-  made.textContent = text;
-  made.onclick = act;
-  return made;
 }

@@ -1,5 +1,6 @@
 /** How the picture lies under the hand: a frame to drag, and a part to feel enlarged. */
 import "./overlay.css";
+import { button } from "../elements";
 import { MappingFrame } from "../overlay/frame";
 import type { Page } from "../page";
 import type { Panel } from "../panel";
@@ -35,14 +36,6 @@ function words(frame: MappingFrame): string {
   return frame.bounded
     ? t("reaches", { device: frame.device, width, length, degrees: now.turnDeg.toFixed(0) })
     : t("reachesAll", { width, length });
-}
-
-function button(text: string, act: () => void): HTMLButtonElement {
-  const made = document.createElement("button");
-  made.type = "button";
-  made.textContent = text;
-  made.onclick = act;
-  return made;
 }
 
 export const mapping: Panel = { id: "mapping-panel", title: t("mapping"), place: "right", open: false, build };

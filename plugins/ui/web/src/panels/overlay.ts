@@ -1,5 +1,6 @@
 /** What is shown over the surface, how large, and what limits the force. */
 import "./overlay.css";
+import { GLYPHS } from "../overlay/labels";
 import { LIMITS, perSecond, type Counts } from "../overlay/limits";
 import { MM_PER_N, SECONDS, SWITCHES } from "../overlay/settings";
 import type { Page } from "../page";
@@ -38,7 +39,7 @@ function build(page: Page, root: HTMLElement): void {
   page.hub.on("shown", () => {
     scale.querySelector("input")!.value = `${Number((1000 * overlay.settings.metresPerNewton).toPrecision(3))}`;
   });
-  root.append(box, seconds, scale, limits(page, root));
+  root.append(box, seconds, scale, grips(), limits(page, root));
 }
 
 /** A number with its bounds; what is not within them is not taken. */
@@ -55,6 +56,24 @@ function number(text: string, least: number, most: number, step: number, first: 
   };
   label.append(text, input);
   return label;
+}
+
+/** What the words and shapes beside the cursor mean. */
+function grips(): HTMLElement {
+  const box = document.createElement("section");
+  const heading = document.createElement("h3");
+  heading.textContent = t("gripTitle");
+  const list = document.createElement("ul");
+  list.className = "limits-list grips";
+  for (const each of ["rests", "sticks", "slips", "glides"] as const) {
+    const [line, name, says] = [document.createElement("li"), document.createElement("strong"), document.createElement("span")];
+    name.textContent = `${GLYPHS[each]} ${t(each)}`;
+    says.textContent = t(`${each}Help`);
+    line.append(name, says);
+    list.append(line);
+  }
+  box.append(heading, list);
+  return box;
 }
 
 /** How often each limit acted in the last second, as the loop counted it; asked for while the panel is open. */

@@ -1,5 +1,6 @@
 /** The ruler and the markers: figures, a profile, and the keyboard's way to both. */
 import "./overlay.css";
+import { button } from "../elements";
 import { Markers } from "../overlay/markers";
 import type { Measured } from "../overlay/measure";
 import { profile } from "../overlay/profile";
@@ -71,14 +72,6 @@ function markers(page: Page): HTMLElement {
     list.replaceChildren(...lines);
   };
   return box;
-}
-
-function button(text: string, act: () => void): HTMLButtonElement {
-  const made = document.createElement("button");
-  made.type = "button";
-  made.textContent = text;
-  made.onclick = act;
-  return made;
 }
 
 export const ruler: Panel = { id: "ruler-panel", title: t("ruler"), place: "right", open: false, build };

@@ -10,7 +10,7 @@ export const t = words({
   useHand: ["Feel with this page's hand", "Mit der Hand dieser Seite fühlen"],
   useDocument: ["Feel with the document's device ({name})", "Mit dem Gerät des Dokuments fühlen ({name})"],
   use: ["Feel with it", "Damit fühlen"],
-  useNamed: ["Feel with {name}", "Mit {name} fühlen"],
+  useNamed: ["Feel with it: {name}", "Damit fühlen: {name}"],
   wait: ["Wait for the device", "Auf das Gerät warten"],
   again: ["Feel again", "Wieder fühlen"],
   refresh: ["Look for devices again", "Geräte neu suchen"],

@@ -10,13 +10,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+
+from tangible_core.errors import ConfigError
 from tangible_ui.asks import laws as asks
 from tangible_ui.desk import Desk
 from tangible_ui.feeling import Feeling
 from tangible_ui.rival import NOTHING
 from tangible_ui.wire import STATE_FRAME
-
-from tangible_core.errors import ConfigError
 
 TEXT = """\
 scene: {height: flat.npy}

@@ -10,19 +10,21 @@ from typing import Any, Protocol, final, runtime_checkable
 from tangible_core.errors import DeviceError
 
 from .choice import Choice, NotAgreed
+from .drafts import Drafts
+from .failing import told
 from .feeling import Feeling, Felt
+from .laws import Laws
 from .maker import Maker
 from .maker.messages import Event
-from .laws import Laws
 from .makes import Makes
 from .recorder import Recorder
 from .rival import Rival
 from .shelf import Shelf, user_folder
-from .texts import Texts
+from .texts import Text, Texts
 
 MOST_HISTORY, MOST_LOGGED = 500, 200
 """Events, and lines that were logged, that a tab which is opened later hears of."""
-LAST_ALONE = frozenset({"document", "plan", "materials", "preflight"})
+LAST_ALONE = frozenset({"restored", "document", "plan", "materials", "preflight"})
 """Events of which only the last one counts."""
 
 
@@ -50,6 +52,7 @@ class Desk:
         self.makes = Makes()
         self.choice = Choice()
         """Which device is felt."""
+        self.drafts = Drafts(user_folder("unsaved"))
         self.shelf = Shelf(user_folder("opened"), folder / "incoming")
         self.recorder: Recorder | None = None
         """Of the recording that was made last, or is being made."""
@@ -104,6 +107,8 @@ class Desk:
             if event in LAST_ALONE:
                 self._forget(event)
             (self._logged if event == "log" else self._history).append(said)
+        if event == "document":
+            self.begin(self.drafts.keep(Text(self.text, self.path)))
         for tab in list(self.tabs):
             tab.say(said)
 
@@ -152,15 +157,25 @@ class Desk:
     def _done(self, task: "asyncio.Task[Any]") -> None:
         self._tasks.discard(task)
         if not task.cancelled() and (error := task.exception()) is not None:
-            self.tell("error", text=str(error) or type(error).__name__)
+            self.failed(error)
+
+    def failed(self, error: BaseException) -> None:
+        """Something beside failed: all tabs are told a sentence."""
+        self.begin(self._say_failure(error))
+
+    async def _say_failure(self, error: BaseException) -> None:
+        self.tell("error", text=await told(error))
 
     def _hear(self, event: Event) -> None:
         self.tell(event.event, **event.told)
 
     async def close(self) -> None:
-        """No force, no process, no recording that is open."""
+        """No force, no process, no recording that is open; whatever of it fails, the rest is done."""
+        self.feeling.cut()
         self.maker.close()
-        await asyncio.to_thread(self.feeling.stop)
-        await asyncio.to_thread(self.laws.rival.close)
-        if self.recorder is not None:
-            await asyncio.to_thread(self.recorder.stop)
+        try:
+            await asyncio.to_thread(self.feeling.stop)
+        finally:
+            await asyncio.to_thread(self.laws.rival.close)
+            if self.recorder is not None:
+                await asyncio.to_thread(self.recorder.stop)

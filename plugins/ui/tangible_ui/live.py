@@ -8,10 +8,10 @@ from typing import Any, final
 
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
-from tangible_core.errors import TangibleError
-
-from .asks import ASKS
+from .asking import Asked, NotUnderstood, parse
+from .connection import cut_off
 from .desk import Desk
+from .failing import told
 from .wire import (
     ACK,
     ACK_FRAME,
@@ -28,8 +28,10 @@ from .wire import (
 IN_FLIGHT = 2
 """States that a tab has not drawn yet; more would only queue up in the browser."""
 HZ = 60
-MOST_WAITING = 2000
-"""Events that a tab may leave unread; one that reads none is closed."""
+MOST_WAITING, MOST_WAITING_CHARACTERS = 2000, 16_000_000
+"""Events that a tab may leave unread; one that reads none is cut off."""
+MOST_ASKS = 32
+"""That a tab may wait for at once; `stop` is always heard."""
 
 
 @final
@@ -38,42 +40,46 @@ class LiveTab:
 
     def __init__(self, desk: Desk, socket: WebSocket) -> None:
         self._desk, self._socket = desk, socket
-        self._events: asyncio.Queue[str] = asyncio.Queue(MOST_WAITING)
+        self._events: asyncio.Queue[str] = asyncio.Queue()
+        self._waiting = self._asks = 0
         self._seq = self._drawn = 0
         self._acked = asyncio.Event()
+        self._gone = False
 
     def say(self, event: dict[str, Any]) -> None:
-        """Tell it something; one that does not listen is closed."""
-        try:
-            self._events.put_nowait(json.dumps(event, allow_nan=False, default=str))
-        except asyncio.QueueFull:
-            self._desk.begin(self._socket.close(1013))
-        except ValueError:
-            self._events.put_nowait(json.dumps(_without_nan(event), default=str))
+        """Tell it something; one that does not listen is cut off."""
+        if self._gone:
+            return
+        text = _as_json(event)
+        self._waiting += len(text)
+        if self._events.qsize() >= MOST_WAITING or self._waiting > MOST_WAITING_CHARACTERS:
+            self._gone = True
+            cut_off(self._socket)
+        else:
+            self._events.put_nowait(text)
 
     async def live(self) -> None:
         """Until it is closed."""
         await self._socket.accept()
         self.say({"event": "hello", "version": VERSION, "history": self._desk.history, "scene": self._desk.scene})
         self._desk.enter(self)
-        senders = [asyncio.create_task(self._send_states()), asyncio.create_task(self._send_events())]
         try:
-            while True:
-                await self._take(await self._socket.receive())
-        except WebSocketDisconnect:
-            pass
+            with suppress(WebSocketDisconnect):
+                async with asyncio.TaskGroup() as group:
+                    senders = [group.create_task(self._send_states()), group.create_task(self._send_events())]
+                    await self._hear()
+                    for each in senders:
+                        each.cancel()
         finally:
+            self._gone = True
             self._desk.leave(self)
-            for each in senders:
-                each.cancel()
 
-    async def _take(self, message: Any) -> None:
-        if message["type"] == "websocket.disconnect":
-            raise WebSocketDisconnect
-        if body := message.get("bytes"):
-            self._frame(body)
-        elif text := message.get("text"):
-            self._desk.begin(self._answer(text))
+    async def _hear(self) -> None:
+        while (message := await self._socket.receive())["type"] != "websocket.disconnect":
+            if body := message.get("bytes"):
+                self._frame(body)
+            elif text := message.get("text"):
+                self._asked(text)
 
     def _frame(self, body: bytes) -> None:
         """A frame that is no whole one of a known kind is not heard."""
@@ -87,27 +93,38 @@ class LiveTab:
         elif kind == RELEASE and len(body) == RELEASE_FRAME.size and self._desk.holder is self:
             hand.release()
 
-    async def _answer(self, text: str) -> None:
-        """Do what it asks for, and answer with its number."""
+    def _asked(self, text: str) -> None:
+        """Begin what it asks for, or refuse it with a sentence."""
         try:
-            said = json.loads(text)
-            number, name = said.pop("number"), said.pop("ask")
-            ask = ASKS[name]
-        except (ValueError, KeyError, AttributeError, TypeError):
+            asked = parse(text)
+        except NotUnderstood as error:
+            self._refuse(error.number, str(error))
             return
-        try:
-            found = await ask(self._desk, self, **said)
-        except TangibleError as error:
-            self.say({"event": "refused", "number": number, "text": str(error)})
-        except Exception as error:  # noqa: BLE001 - whatever a plugin raises is for the page to say
-            self.say({"event": "refused", "number": number, "text": f"{type(error).__name__}: {error}"})
+        if self._asks < MOST_ASKS or asked.name == "stop":
+            self._asks += 1
+            self._desk.begin(self._answer(asked))
         else:
-            self.say({"event": "answer", "number": number, "value": found})
+            self._refuse(asked.number, f"{MOST_ASKS} things were asked for that are not done yet; wait for them")
+
+    async def _answer(self, asked: Asked) -> None:
+        try:
+            found = await asked.ask(self._desk, self, **asked.told)
+        except Exception as error:  # noqa: BLE001 - whatever a plugin raises is for the page to say
+            self._refuse(asked.number, await told(error))
+        else:
+            self.say({"event": "answer", "number": asked.number, "value": found})
+        finally:
+            self._asks -= 1
+
+    def _refuse(self, number: int | None, text: str) -> None:
+        self.say({"event": "refused", "number": number, "text": text})
 
     async def _send_events(self) -> None:
         with suppress(WebSocketDisconnect, RuntimeError):
             while True:
-                await self._socket.send_text(await self._events.get())
+                text = await self._events.get()
+                self._waiting -= len(text)
+                await self._socket.send_text(text)
 
     async def _send_states(self) -> None:
         loop, due = asyncio.get_running_loop(), 0.0
@@ -126,6 +143,13 @@ class LiveTab:
         recorder = self._desk.recorder
         recording = recorder is not None and recorder.recording
         return RUNNING * self._desk.feeling.running | HOLDING * (self._desk.holder is self) | RECORDING * recording
+
+
+def _as_json(event: dict[str, Any]) -> str:
+    try:
+        return json.dumps(event, allow_nan=False, default=str)
+    except ValueError:
+        return json.dumps(_without_nan(event), default=str)
 
 
 def _without_nan(value: Any) -> Any:

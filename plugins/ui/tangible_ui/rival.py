@@ -5,11 +5,11 @@ from contextlib import suppress
 from threading import Lock
 from typing import final
 
-from tangible_core import load_method
 from tangible_core.data import Vector
 from tangible_core.errors import DeviceError
 from tangible_core.servo import Packed, Safety, Servo, still
 from tangible_devices.pointer import PointerClient
+from tangible_devices.pointer.pointer import Pointer
 
 NOTHING: Vector = (0.0, 0.0, 0.0)
 STALE_AFTER_S = 0.3
@@ -70,7 +70,7 @@ class Rival:
 
     def _start(self) -> None:
         self._end()
-        device = load_method("device", "pointer")(channel=self._channel, stale_after_s=STALE_AFTER_S, follow_s=FOLLOW_S)
+        device = Pointer(channel=self._channel, stale_after_s=STALE_AFTER_S, follow_s=FOLLOW_S)
         servo = Servo(still(), device, Safety())
         servo.__enter__()
         self._servo = servo

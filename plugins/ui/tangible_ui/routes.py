@@ -5,18 +5,20 @@ import secrets
 from collections.abc import Awaitable, Callable
 from importlib.resources import files
 from pathlib import Path
+from typing import Any
 
 from starlette.applications import Starlette
-from starlette.middleware import Middleware
 from starlette.requests import ClientDisconnect, HTTPConnection, Request
 from starlette.responses import FileResponse, PlainTextResponse, Response
-from starlette.routing import Mount, Route, WebSocketRoute
+from starlette.routing import BaseRoute, Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from starlette.websockets import WebSocket
 
 from tangible_core.errors import TangibleError
+from tangible_core.files.reading import MOST_BYTES, in_words
 
+from .asks import feeling
 from .desk import Desk
 from .live import LiveTab
 from .windows import WINDOW, read_window
@@ -33,7 +35,14 @@ HEADERS = {
     "cross-origin-resource-policy": "same-origin",
 }
 FOREVER = "private, max-age=31536000, immutable"
-WRONG_ORIGIN, WRONG_KEY = 4403, 4401
+ASK_AGAIN = "no-cache"
+"""A browser may keep it, and asks each time whether it is still the same."""
+NEVER = "no-store"
+READING = ("GET", "HEAD")
+WRONG_KEY = 4401
+NOT_YOURS = "the key in the address is not this program's; open the address it printed"
+
+Answer = Callable[[Request], Awaitable[Response]]
 
 
 class Guarded:
@@ -43,45 +52,73 @@ class Guarded:
         self._app, self._hosts = app, hosts
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """A page elsewhere whose name was made to lead here (DNS rebinding) says its own name as host."""
+        """Whatever it answers, errors too, has the headers."""
         if scope["type"] not in ("http", "websocket"):
             await self._app(scope, receive, send)
-            return
-        if HTTPConnection(scope).headers.get("host", "") not in self._hosts:
-            await PlainTextResponse("this address is not served", 403)(scope, receive, send)
             return
 
         async def with_headers(message: Message) -> None:
             if message["type"] == "http.response.start":
-                extra = [(name.encode(), value.encode()) for name, value in HEADERS.items()]
-                message = {**message, "headers": [*message["headers"], *extra]}
+                message = {**message, "headers": _strict(message["headers"])}
             await send(message)
 
-        await self._app(scope, receive, with_headers)
+        why = self._wrong(HTTPConnection(scope))
+        if not why:
+            await self._app(scope, receive, with_headers)
+        elif scope["type"] == "websocket":
+            await send({"type": "websocket.close", "code": 1008})
+        else:
+            await PlainTextResponse(why, 403)(scope, receive, with_headers)
+
+    def _wrong(self, connection: HTTPConnection) -> str:
+        """A page elsewhere whose name was made to lead here (DNS rebinding) says its own name as host; one that reaches
+        out to here, its own origin: browsers say it with all that changes something, and with every websocket.
+        """
+        host = connection.headers.get("host", "")
+        if host not in self._hosts:
+            return "this address is not served"
+        reads = connection.scope["type"] == "http" and connection.scope["method"] in READING
+        if not reads and connection.headers.get("origin") != f"http://{host}":
+            return "another page may not do that"
+        return ""
 
 
-def application(
-    desk: Callable[[], Desk], key: str, hosts: frozenset[str], lifespan: Callable[..., object]
-) -> Starlette:
-    """The routes. Everything but the built page needs the key."""
+def _strict(headers: list[tuple[bytes, bytes]]) -> list[tuple[bytes, bytes]]:
+    cached = any(name.lower() == b"cache-control" for name, _ in headers)
+    extra = HEADERS if cached else {**HEADERS, "cache-control": NEVER}
+    return [*headers, *((name.encode(), value.encode()) for name, value in extra.items())]
+
+
+class BuiltPage(StaticFiles):
+    """The page's own files. One that was built again is seen at the next load."""
+
+    def file_response(self, *args: Any, **options: Any) -> Response:
+        """With its ETag, which a browser has to show each time."""
+        response = super().file_response(*args, **options)
+        response.headers["cache-control"] = ASK_AGAIN
+        return response
+
+
+def application(desk: Callable[[], Desk], key: str, hosts: frozenset[str], lifespan: Any) -> ASGIApp:
+    """What is served."""
+    return Guarded(Starlette(routes=routes(desk, key), lifespan=lifespan), hosts)
+
+
+def routes(desk: Callable[[], Desk], key: str) -> list[BaseRoute]:
+    """Everything but the built page needs the key."""
 
     def has_key(connection: HTTPConnection) -> bool:
         return secrets.compare_digest(connection.query_params.get("token", "").encode(), key.encode())
 
-    def keyed(answer: Callable[[Request], Awaitable[Response]]) -> Callable[[Request], Awaitable[Response]]:
+    def keyed(answer: Answer) -> Answer:
         async def checked(request: Request) -> Response:
-            if not has_key(request):
-                return PlainTextResponse(
-                    "the key in the address is not this program's; open the address it printed", 403
-                )
-            return await answer(request)
+            return await answer(request) if has_key(request) else PlainTextResponse(NOT_YOURS, 403)
 
         return checked
 
     async def scene(request: Request) -> Response:
-        folder = desk().folder
-        path = (folder / request.path_params["digest"] / request.path_params["name"]).resolve()
-        if folder.resolve() not in path.parents or not path.is_file():
+        path = _lying(desk().folder, request.path_params["digest"], request.path_params["name"])
+        if path is None:
             return PlainTextResponse("there is no such thing any more", 404)
         if request.query_params.keys() & WINDOW:
             return await window_of(path, request)
@@ -95,29 +132,46 @@ def application(
         return Response(found, media_type="application/octet-stream", headers={"cache-control": FOREVER})
 
     async def upload(request: Request) -> Response:
+        name = request.path_params["name"]
+        said = request.headers.get("content-length", "0")
+        if int(said) > MOST_BYTES:  # before a byte of it is read
+            return PlainTextResponse(f"{name}: holds more than {in_words(MOST_BYTES)}; open a smaller one", 413)
         try:
-            await desk().shelf.put(request.path_params["batch"], request.path_params["name"], request.stream())
+            await desk().shelf.put(request.path_params["batch"], name, request.stream())
         except TangibleError as error:
             return PlainTextResponse(str(error), 400)
         except ClientDisconnect:
             return PlainTextResponse("it broke off", 400)
         return Response(status_code=204)
 
-    async def live(socket: WebSocket) -> None:
-        if socket.headers.get("origin", "") != f"http://{socket.headers.get('host', '')}":
-            await socket.close(WRONG_ORIGIN)
-        elif not has_key(socket):
-            await socket.close(WRONG_KEY)
-        else:
-            await LiveTab(desk(), socket).live()
+    async def stop(_: Request) -> Response:
+        """For a page whose websocket does not answer."""
+        await feeling.stop(desk(), None)
+        return Response(status_code=204)
 
-    routes = [
+    async def live(socket: WebSocket) -> None:
+        if has_key(socket):
+            await LiveTab(desk(), socket).live()
+        else:  # a page can tell this from a program that is gone only if it is let in first
+            await socket.accept()
+            await socket.close(WRONG_KEY, NOT_YOURS)
+
+    return [
         Route("/scene/{digest}/{name}", keyed(scene)),
         Route("/upload/{batch}/{name}", keyed(upload), methods=["PUT"]),
+        Route("/stop", keyed(stop), methods=["POST"]),
         WebSocketRoute("/live", live),
-        Mount("/", StaticFiles(directory=static(), html=True)),
+        Mount("/", BuiltPage(directory=static(), html=True)),
     ]
-    return Starlette(routes=routes, middleware=[Middleware(Guarded, hosts=hosts)], lifespan=lifespan)  # pyright: ignore
+
+
+def _lying(folder: Path, digest: str, name: str) -> Path | None:
+    """A file in a folder of this one; None for whatever leads elsewhere, or is no name of a file."""
+    try:
+        path = (folder / digest / name).resolve()
+        return path if folder.resolve() in path.parents and path.is_file() else None
+    except (OSError, ValueError):  # too long, or a NUL in it
+        return None
 
 
 def static() -> Path:

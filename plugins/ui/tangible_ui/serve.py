@@ -4,84 +4,178 @@ import asyncio
 import gc
 import os
 import secrets
+import signal
 import socket
-import tempfile
+import threading
 import webbrowser
-from collections.abc import AsyncGenerator
-from contextlib import asynccontextmanager
+from collections.abc import AsyncGenerator, Callable, Generator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import asynccontextmanager, contextmanager
 from functools import partial
 from pathlib import Path
-from typing import Any
+from types import FrameType
+from typing import Any, final
 
 import uvicorn
+from starlette.types import ASGIApp
 
 from tangible_core.errors import ConfigError
 
-from .asks import document
+from .asks import document, drafts
+from .connection import PING_S, Connection
 from .desk import Desk
 from .feeling import Feeling
+from .left_behind import channel_of_this_process, folder_of_this_process
 from .logs import silence, tell_pages
 from .routes import application, static
 from .watching import watch
 
 HOST = "127.0.0.1"
 EXAMPLE = Path("builtin/motorcycle")
+MOST_CONNECTIONS = 256
+"""Whoever comes then is told to come again later; who is there is served on."""
+MOST_MESSAGE_BYTES = 2**20
+"""A pipeline file is smaller."""
+THREADS = 32
+"""For what waits: a disk, a pipe, a loop that ends. It is to wait for nothing else that waits."""
+ENDING = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
 
 
 def serve(files: list[Path], sets: list[str], port: int, browser: bool) -> None:
-    """Until Ctrl-C. Raises: ConfigError if the page was not built, or the port is taken."""
+    """Until Ctrl-C.
+
+    Raises: ConfigError if the page was not built, or the port is taken; OutputError if there is no room for a folder.
+    """
     if not (static() / "app.js").is_file():
         raise ConfigError(
             "the page was not built when this was installed, as npm could not be reached; install again where it can "
             "(`pip install --force-reinstall --no-deps .`), or build it: `npm ci && npm run build` in plugins/ui/web"
         )
-    key = os.environ.get("TANGIBLE_UI_TOKEN") or secrets.token_urlsafe(16)
-    listening = _listening(port)
-    number = listening.getsockname()[1]
-    url = f"http://{HOST}:{number}/?token={key}"
-    hosts = frozenset({f"{HOST}:{number}", f"localhost:{number}"})
-    with tempfile.TemporaryDirectory(prefix="tangible-ui-") as folder:
-        served = _Served(Path(folder), files or [EXAMPLE], sets)
+    key = new_key()
+    with folder_of_this_process() as folder, channel_of_this_process() as channel, _listening(port) as listening:
+        number = listening.getsockname()[1]
+        url = f"http://{HOST}:{number}/?token={key}"
+        hosts = frozenset({f"{HOST}:{number}", f"localhost:{number}"})
+        served = Served(folder, channel, files or [EXAMPLE], sets)
         app = application(lambda: served.desk, key, hosts, served.lifespan)
+        server = Server(settings(app), served.asked_to_end)
         print(url, flush=True)  # noqa: T201 - what the command is called for
-        if browser:
-            webbrowser.open(url)
-        settings = uvicorn.Config(
-            app, log_level="warning", ws="websockets-sansio", ws_per_message_deflate=False, ws_max_size=2**20,
-            loop="asyncio", lifespan="on", timeout_graceful_shutdown=1,
-        )  # fmt: skip
-        uvicorn.Server(settings).run(sockets=[listening])
+        if browser:  # in a thread of its own: one that needs the terminal is waited for until it ends
+            threading.Thread(target=webbrowser.open, args=(url,), daemon=True).start()
+        server.run(sockets=[listening])
+    served.raise_if_failed()
+    for number in server.heard[:1]:
+        signal.raise_signal(number)
 
 
-def _listening(port: int) -> socket.socket:
+def new_key() -> str:
+    """What the page's address holds: 128 bits, or what $TANGIBLE_UI_TOKEN says, as in a test."""
+    return os.environ.get("TANGIBLE_UI_TOKEN") or secrets.token_urlsafe(16)
+
+
+def settings(app: ASGIApp) -> uvicorn.Config:
+    """How it is served: nobody can make it wait, or fill its memory, or read the key in a log."""
+    return uvicorn.Config(
+        app, log_level="warning", access_log=False, server_header=False, loop="asyncio", http="h11", lifespan="on",
+        ws=Connection, ws_per_message_deflate=False, ws_max_size=MOST_MESSAGE_BYTES,
+        ws_ping_interval=PING_S, ws_ping_timeout=PING_S,
+        limit_concurrency=MOST_CONNECTIONS, timeout_graceful_shutdown=1,
+    )  # fmt: skip
+
+
+@contextmanager
+def _listening(port: int) -> Generator[socket.socket]:
     try:
-        return socket.create_server((HOST, port))
+        listening = socket.create_server((HOST, port))
     except OSError as error:
         raise ConfigError(f"--port {port}: {error.strerror or error}; 0 takes a free one") from error
+    with listening:
+        yield listening
 
 
-class _Served:
+@final
+class Server(uvicorn.Server):
+    """Asked to end, it first takes the force away; then it ends as the whole program does on that signal."""
+
+    def __init__(self, config: uvicorn.Config, asked_to_end: Callable[[], None]) -> None:
+        super().__init__(config)
+        self.heard: list[int] = []
+        self._asked_to_end = asked_to_end
+
+    @contextmanager
+    def capture_signals(self) -> Generator[None]:
+        """Those that were not ignored before, as by nohup."""
+        here = threading.current_thread() is threading.main_thread()
+        before = {each: signal.getsignal(each) for each in ENDING if here}
+        mine = {each: handler for each, handler in before.items() if handler != signal.SIG_IGN}
+        for each in mine:
+            signal.signal(each, self.handle_exit)
+        try:
+            yield
+        finally:
+            for each, handler in mine.items():
+                signal.signal(each, handler)
+
+    def handle_exit(self, sig: int, frame: FrameType | None) -> None:
+        """A second Ctrl-C waits for nobody."""
+        self.heard.append(sig)
+        self._asked_to_end()
+        super().handle_exit(sig, frame)
+
+
+@final
+class Served:
     """What lives as long as the server."""
 
-    desk: Desk
+    def __init__(self, folder: Path, channel: str, files: list[Path], sets: list[str]) -> None:
+        self._folder, self._channel, self._files, self._sets = folder, channel, files, sets
+        self._desk: Desk | None = None
+        self._failure: Exception | None = None
 
-    def __init__(self, folder: Path, files: list[Path], sets: list[str]) -> None:
-        self._folder, self._files, self._sets = folder, files, sets
+    @property
+    def desk(self) -> Desk:
+        """There from the start on."""
+        assert self._desk is not None
+        return self._desk
+
+    def asked_to_end(self) -> None:
+        """No force, at once; the rest in its time."""
+        if self._desk is not None:
+            self._desk.feeling.cut()
+
+    def raise_if_failed(self) -> None:
+        """Raises: why it could not start."""
+        if self._failure is not None:
+            raise self._failure
 
     @asynccontextmanager
     async def lifespan(self, _: Any) -> AsyncGenerator[None]:
         """Start what takes long at once; at the end leave no force, no process and no file."""
-        self.desk = desk = Desk(self._folder, Feeling(f"ui-{os.getpid()}"), self._sets)
         loop = asyncio.get_running_loop()
+        loop.set_default_executor(ThreadPoolExecutor(THREADS))
+        try:
+            self._desk = desk = Desk(self._folder, Feeling(self._channel), self._sets)
+        except Exception as error:
+            self._failure = error
+            raise
 
         def tell(**told: str) -> None:
             loop.call_soon_threadsafe(partial(desk.tell, "log", **told))
 
         telling = tell_pages(tell)
+        loop.set_exception_handler(partial(_unforeseen, desk))
+        desk.begin(watch(desk))
+        desk.begin(drafts.offer(desk))
         desk.begin(document.begin(desk, None, [str(each) for each in self._files]))
         desk.begin(asyncio.to_thread(desk.feeling.start))
-        desk.begin(watch(desk))
         gc.freeze()  # what was imported is never looked through again
-        yield
-        silence(telling)
-        await desk.close()
+        try:
+            yield
+        finally:
+            silence(telling)
+            await desk.close()
+
+
+def _unforeseen(desk: Desk, _: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
+    """What asyncio says of an error that nobody waited for."""
+    desk.failed(context.get("exception") or RuntimeError(context["message"]))

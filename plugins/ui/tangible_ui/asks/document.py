@@ -21,8 +21,9 @@ async def begin(desk: Desk, tab: Tab | None, files: list[str], make_it: bool = T
     text, path = found["text"], found["path"]
     if desk.sets:  # of the command line: the text says them from now on
         text, desk.sets = await desk.maker.quick("overridden", text=text, path=path, sets=desk.sets), []
+    desk.drafts.opened(text)
     async with desk.texts.lock:
-        said = await _take(desk, Text(text, path))
+        said = await take(desk, Text(text, path))
     if make_it and not said["complaints"]:
         desk.begin(make(desk, tab))
     return {}
@@ -37,7 +38,7 @@ async def edit(desk: Desk, tab: Tab | None, text: str, of: str = "", apply: bool
     async with desk.texts.lock:
         if of and of != desk.digest:
             raise ConfigError("the document was changed elsewhere meanwhile; look at what it says now")
-        return _then(desk, await _take(desk, Text(text, desk.path)), apply)
+        return _then(desk, await take(desk, Text(text, desk.path)), apply)
 
 
 async def change(
@@ -78,6 +79,11 @@ async def library(desk: Desk, tab: Tab | None) -> list[dict[str, Any]]:
     return await desk.maker.quick("library", text=desk.text, path=desk.path, sets=desk.sets)
 
 
+async def take(desk: Desk, text: Text) -> dict[str, Any]:
+    """Another text and place of the document, which all tabs hear of; under the lock of `desk.texts`."""
+    return _put(desk, text, await _checked(desk, text))
+
+
 async def _step(desk: Desk, *, back: bool, apply: bool) -> dict[str, Any] | None:
     async with desk.texts.lock:
         text = desk.texts.before() if back else desk.texts.after()
@@ -86,10 +92,6 @@ async def _step(desk: Desk, *, back: bool, apply: bool) -> dict[str, Any] | None
         found = await _checked(desk, text)
         desk.texts.step(Text(desk.text, desk.path), back=back)
         return _then(desk, _told(desk, text, found), apply)
-
-
-async def _take(desk: Desk, text: Text) -> dict[str, Any]:
-    return _put(desk, text, await _checked(desk, text))
 
 
 async def _checked(desk: Desk, text: Text) -> dict[str, Any]:

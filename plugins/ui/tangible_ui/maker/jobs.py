@@ -5,6 +5,7 @@ from . import checking, devices, laws, making, mapping, opening, preflight, reco
 JOBS = {
     **making.JOBS,
     **checking.JOBS,
+    **mapping.JOBS,
     **opening.JOBS,
     **preflight.JOBS,
     **records.JOBS,

@@ -19,12 +19,12 @@ from tangible_core.servo import packed
 
 from .bench import Bench, Job, Work
 from .checking import digest_of
+from .described import described
 from .seen import Seen, see
 from .shown import show
 
 SLOW = ("disparity", "segments")
 """Products that take seconds: who edits says when they are made."""
-WITHIN = "within what is kept of what is made from it"
 
 
 def plan(bench: Bench, text: str, path: Path, sets: list[str], want: str) -> dict[str, Any]:
@@ -50,7 +50,7 @@ def _all_steps(pipeline: Pipeline, found: Plan) -> list[Outcome]:
         needed = pipeline.engine.needed(found.want)
         for each in pipeline.outcomes:
             if each.product in needed and each.product not in steps:
-                steps[each.product] = each if each.outcome == "given" else replace(each, outcome="cached", why=WITHIN)
+                steps[each.product] = each if each.outcome == "given" else replace(each, outcome="cached", why="")
     order = ["views", *PRODUCTS]
     return sorted(steps.values(), key=lambda each: order.index(each.product))
 
@@ -103,6 +103,7 @@ def _show(bench: Bench, pipeline: Pipeline, product: str) -> None:
     if (seen := see(pipeline, product)).digest != bench.shown:
         bench.tell("scene", **show(seen, bench.folder))
         bench.shown = seen.digest
+        bench.tell("described", **described(pipeline, seen))
     bench.tell("materials", segments=_segments(pipeline, seen))
 
 

@@ -3,6 +3,7 @@
 A long job may hold Python's lock for seconds, or be killed: neither the page's server nor the force loop notices.
 """
 
+import errno
 import os
 import queue
 import signal
@@ -10,10 +11,12 @@ import threading
 from pathlib import Path
 from typing import IO, Any, final
 
+from tangible_core.errors import OutputError
 from tangible_core.servo.wire import receive, send, sendable
 
 from .messages import Answer, Ask, Event, Refused
 
+FULL = {getattr(errno, name, -1) for name in ("ENOSPC", "EDQUOT", "EFBIG", "EROFS")}
 NICENESS = 10
 """Pictures can wait; the loop and the page cannot."""
 
@@ -64,8 +67,23 @@ def _work(bench: Any, asks: "queue.SimpleQueue[Ask]", voice: Voice) -> None:
     while True:
         ask = asks.get()
         try:
+            keep_folder(bench)
             value = JOBS[ask.job].do(bench, **ask.told)
         except BaseException as error:  # noqa: BLE001 - whatever a plugin raises is for the page to say
-            voice.say(Refused(ask.number, sendable(error)))
+            voice.say(Refused(ask.number, full(error) or sendable(error)))
         else:
             voice.say(Answer(ask.number, value))
+
+
+def keep_folder(bench: Any) -> None:
+    """What pages fetch lies in a temporary folder: a system that cleans up may have taken it away."""
+    if not bench.folder.is_dir():
+        bench.folder.mkdir(parents=True, exist_ok=True)
+        bench.shown = ""
+
+
+def full(error: BaseException) -> OutputError | None:
+    """A disk that takes no more: what a person can do about it; None for any other error."""
+    if not isinstance(error, OSError) or error.errno not in FULL:
+        return None
+    return OutputError(f"{error.filename or 'a temporary folder'}: {error.strerror or error}; free some space")

@@ -1,26 +1,13 @@
 /** Drawing: each state once, and the whole again when the view or what lies over it changed. */
+import { figures, measuring } from "./measure";
 import type { Page } from "./page";
 import { now, type State } from "./protocol";
-
-/** What `tests` and `benchmarks` read: window.figures. */
-export const figures = {
-  /** seq, ms from tick to drawn, ms from tick to arrived, when drawn. */
-  drawn: [] as number[][],
-  /** ms from a pointer that was sent until its force was drawn. */
-  trips: [] as number[],
-  picks: [] as number[],
-  firstMs: 0,
-};
 
 export class Frames {
   private last: State | null = null;
   private echoed = 0;
 
-  constructor(
-    private page: Page,
-    private measuring: boolean,
-  ) {
-    if (measuring) Object.assign(window, { figures });
+  constructor(private page: Page) {
     page.hub.on("shown", (scene) => page.overlay.show(scene));
     requestAnimationFrame(() => this.frame());
   }
@@ -36,7 +23,7 @@ export class Frames {
     const moved = view.dirty;
     if (moved || overlay.wants(state)) {
       overlay.put(state);
-      view.draw(this.measuring || first);
+      view.draw(measuring || first);
       overlay.changed ||= moved; // a camera that flies moves in `draw`: what stays at a place follows it
     }
     const at = now();
@@ -50,7 +37,7 @@ export class Frames {
     const { net, hub } = this.page;
     if (state === net.latest) net.drawn(state.seq);
     hub.tell("drawn", state);
-    if (!this.measuring || state !== net.latest) return;
+    if (!measuring || state !== net.latest) return;
     figures.drawn.push([state.seq, at - state.sampleMs, state.arrivedMs - state.sampleMs, at]);
     const sentMs = net.sentMs.get(state.tag);
     if (state.tag !== this.echoed && sentMs) {

@@ -171,7 +171,7 @@ export class Hand {
 
   stop(): void {
     this.release();
-    void this.page.net.ask("stop").catch(() => undefined);
+    void this.page.net.stop().catch(() => undefined);
   }
 
   private may(by: Mover, down: boolean): boolean {

@@ -6,6 +6,7 @@ import { Frames } from "./frames";
 import { Hand } from "./hand";
 import { Hub } from "./hub";
 import { Instrument } from "./instrument";
+import { measure, measuring } from "./measure";
 import { Narrator } from "./narrator";
 import { Net } from "./net";
 import { notice } from "./notice";
@@ -14,21 +15,19 @@ import type { Page } from "./page";
 import { build } from "./panel";
 import { panels } from "./panels";
 import { dataCursor } from "./panels/cursor";
-import { Scene } from "./scene";
 import { listen } from "./shortcuts";
 import { stroke } from "./sonify";
 import { Sound } from "./sound";
 import { Speech } from "./speech";
 import { splits } from "./splits";
 import { Status } from "./status";
+import { loadScene } from "./terrain/fetching";
 import { Themes } from "./themes";
 import { View } from "./view";
 import { language } from "./words/words";
 
 document.documentElement.lang = language;
 const element = <T extends HTMLElement>(id: string): T => document.getElementById(id) as T;
-const asked = new URLSearchParams(location.search);
-if (asked.has("measure")) document.body.classList.add("measure");
 
 const canvas = element<HTMLCanvasElement>("terrain");
 const hub = new Hub();
@@ -57,6 +56,7 @@ const page: Page = {
   forget: (topic) => announcer.forget(topic),
 };
 
+measure(page);
 hub.on("hello", ({ history, scene }) => {
   // After a connection that was lost, what was heard before is not heard again; and what is long over is not said.
   announcer.hushed = true;
@@ -70,7 +70,7 @@ hub.on("scene", async (meta) => {
   if (page.scene?.meta.digest === meta.digest && newest === meta.digest) return;
   newest = meta.digest;
   try {
-    const loaded = await Scene.load(meta);
+    const loaded = await loadScene(meta);
     if (newest !== meta.digest) return; // another one was made meanwhile
     page.scene = loaded;
     hub.tell("shown", loaded);
@@ -88,5 +88,5 @@ page.hand = new Hand(page);
 notice(page);
 build(page, panels);
 dataCursor(page);
-new Frames(page, asked.has("measure"));
-if (asked.has("measure")) Object.assign(window, { page, Instrument, stroke }); // what tests look into
+new Frames(page);
+if (measuring) Object.assign(window, { Instrument, stroke }); // what tests look into

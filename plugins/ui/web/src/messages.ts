@@ -47,8 +47,6 @@ export interface Meta {
   /** Each once; which of them a label has is in materials.u16. */
   materials: Material[];
   photo: boolean;
-  /** The surface in words, by language. */
-  says?: Record<string, string>;
   /** Width and height of the finer picture beside the one that is drawn at once; null where that is the finest. */
   fine_photo: [number, number] | null;
   layers: Record<string, LayerMeta>;
@@ -144,6 +142,10 @@ interface Said {
 export interface Events {
   hello: Said & { version: number; history: (Said & { event: keyof Events })[]; scene: (Said & Meta) | null };
   gone: Said;
+  /** Of this page alone: the program that answers is another one, by its key or by its version. */
+  refused: Said & { why: "key" | "version" };
+  /** A program before this one ended while this file was edited and not saved; none any more, if path is empty. */
+  restored: Said & { path: string; edited_s: number };
   /** free: no tab holds the hand. */
   holding: Said & { holding: boolean; free: boolean };
   maker: Said;
@@ -156,6 +158,8 @@ export interface Events {
   preflight: Said & Judged;
   stage: Said & { product: string; method: string; done: Partial<Outcome> };
   scene: Said & Meta;
+  /** The surface with this digest in words, and its materials' names, by language. */
+  described: Said & { digest: string; says: Record<string, string>; names: Record<string, Record<string, string>> };
   document: Said & Document;
   touch: Said & { law: string; seconds: number; how: string };
   /** stopped: somebody pressed stop; lost: the device went; waiting: it is looked for again and again. */

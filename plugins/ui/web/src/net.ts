@@ -1,13 +1,18 @@
 /** The one websocket: states in, pointers and acknowledgements out, JSON for what is rare. It comes back by itself. */
 import type { Hub } from "./hub";
+import { token } from "./key";
 import type { Events } from "./messages";
-import { ack, now, pointer, release, state, TAGS, type State, type Vec } from "./protocol";
+import { ack, now, pointer, release, state, TAGS, VERSION, type State, type Vec } from "./protocol";
 
 const FIRST_PAUSE_MS = 250;
 const LONGEST_PAUSE_MS = 4000;
 const KEPT_TAGS = 512;
+/** After so long without an answer, stop is asked for beside the websocket as well. */
+const STOP_PATIENCE_MS = 300;
+/** How the server closes the websocket of a page whose key is not its own. */
+const WRONG_KEY = 4401;
 
-export const token = new URLSearchParams(location.search).get("token") ?? "";
+export { token };
 
 /** What the server keeps under an address. Throws if it is not there. */
 export async function bulk(path: string, asked: Record<string, number> = {}, signal?: AbortSignal): Promise<Response> {
@@ -48,6 +53,17 @@ export class Net {
     });
   }
 
+  /** No force, whatever else goes on, and though the websocket may hang. */
+  async stop(): Promise<void> {
+    if (!this.open) return this.stopBeside();
+    const waiting = setTimeout(() => void this.stopBeside().catch(() => undefined), STOP_PATIENCE_MS);
+    return this.ask<void>("stop").finally(() => clearTimeout(waiting));
+  }
+
+  private async stopBeside(): Promise<void> {
+    await fetch(`/stop?token=${encodeURIComponent(token)}`, { method: "POST", keepalive: true });
+  }
+
   point(hand: Vec, buttons: number): void {
     if (!this.open) return;
     this.tag = (this.tag + 1) & TAGS;
@@ -74,7 +90,7 @@ export class Net {
     socket.onopen = () => (this.pauseMs = FIRST_PAUSE_MS);
     socket.onmessage = ({ data }: MessageEvent<string | ArrayBuffer>) =>
       typeof data === "string" ? this.hear(JSON.parse(data)) : this.take(data);
-    socket.onclose = () => this.lost();
+    socket.onclose = ({ code }) => this.lost(code === WRONG_KEY ? "key" : undefined);
     this.socket = socket;
   }
 
@@ -86,6 +102,7 @@ export class Net {
       else waits?.refused(new Error(said.text));
       return;
     }
+    if (said.event === "hello" && (said as Events["hello"]).version !== VERSION) return this.leave("version");
     this.hub.tell(said.event as keyof Events, said as never);
     const last = said.event === "hello" ? (said as Events["hello"]).history.at(-1) : said;
     this.heard_s = Math.max(this.heard_s, (last as { at_s?: number } | undefined)?.at_s ?? 0);
@@ -99,11 +116,18 @@ export class Net {
     if (document.hidden) this.drawn(fresh.seq); // nothing is drawn then
   }
 
-  private lost(): void {
+  /** This page cannot go on with that program. */
+  private leave(why: "version"): void {
+    this.socket!.onclose = () => this.lost(why);
+    this.socket!.close();
+  }
+
+  private lost(forGood?: "key" | "version"): void {
     for (const { refused } of this.waiting.values()) refused(new Error("the program is gone"));
     this.waiting.clear();
     this.latest = null;
     this.hub.tell("gone", { event: "gone", at_s: now() / 1000 });
+    if (forGood) return this.hub.tell("refused", { event: "refused", at_s: now() / 1000, why: forGood });
     setTimeout(() => this.connect(), this.pauseMs);
     this.pauseMs = Math.min(2 * this.pauseMs, LONGEST_PAUSE_MS);
   }

@@ -16,11 +16,18 @@ export class Status {
     this.stopButton();
     this.line.textContent = t("starting");
     hub.on("gone", () => this.show("error", t("gone"), "gone"));
+    hub.on("refused", ({ why }) => this.show("error", t(why === "key" ? "wrongKey" : "loadAgain"), "gone"));
     hub.on("hello", () => page.forget("gone"));
     hub.on("error", ({ text }) => this.show("error", text));
     hub.on("stage", ({ product, method, done }) => {
       if (!done.outcome) this.show("busy", t("making", { product: made(product), method }));
     });
+    hub.on("made", ({ want, outcome, why }) => {
+      if (outcome === "failed") this.show("error", why);
+      else if (outcome === "stopped") this.show("idle", t("makingStopped"));
+      else if (want !== "touch") this.show("idle", t("made"));
+    });
+    hub.on("maker_gone", ({ why }) => this.show("error", why));
     hub.on("touch", ({ law }) => this.show("felt", t("feeling", { law })));
     hub.on("loop", ({ running, stopped, why, waiting }) => {
       if (!running) this.show("stopped", stopped ? t("stopped") : t(waiting ? "waiting" : "ended", { why }));
@@ -39,7 +46,7 @@ export class Status {
   }
 
   private stopButton(): void {
-    const stop = (): void => this.ask("stop");
+    const stop = (): void => void this.page.net.stop().catch((error: Error) => this.show("error", error.message));
     const button = this.give("stop", t("stopLong"), stop);
     const key = document.createElement("kbd");
     key.textContent = t("escape");

@@ -22,7 +22,6 @@ const REST_MS = 140;
 /** A terrain that takes longer is drawn coarser while the camera moves. */
 const SLOW_MS = 22;
 const PATTERN_PX = 11;
-const GROUND = 0x10161f;
 
 /** Why nothing is drawn: there is no WebGL, or it was taken away. */
 export type Trouble = "" | "missing" | "lost";
@@ -61,7 +60,6 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
   private scene: Scene | null = null;
 
   constructor(private canvas: HTMLCanvasElement) {
-    this.fixed.background = new Color(GROUND).convertLinearToSRGB(); // targets hold what the screen shows
     this.renderer = rendererOf(canvas);
     if (!this.renderer) this.trouble = "missing";
     this.eye.ground = (x, y) => this.scene?.height(x, y) ?? NaN;
@@ -88,6 +86,12 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
     this.moved();
   }
 
+  /** What lies behind the surface, as styles say a colour. */
+  set ground(colour: string) {
+    this.fixed.background = new Color(colour).convertLinearToSRGB(); // targets hold what the screen shows
+    this.dirty = true;
+  }
+
   /** Something that moves; the caller sets `visible` and position before the frame is drawn. */
   overlay(object: Object3D): void {
     this.moving.add(object);
@@ -95,8 +99,7 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
 
   /** Look at the whole of a surface of this size. */
   frame(width_m: number, length_m: number): void {
-    const [low, high] = this.scene?.meta.height_m ?? [0, 0];
-    this.eye.frame(width_m, length_m, (low + high) / 2);
+    this.eye.frame(width_m, length_m, this.scene?.meta.height_m);
   }
 
   /** Look at a region this wide, from the side from which the camera looks. */

@@ -13,7 +13,7 @@ const EVERY_MS = 100;
 export function dataCursor(page: Page): void {
   const box = document.createElement("details");
   box.id = "data-cursor";
-  box.open = true;
+  box.open = innerWidth >= 768; // on a phone it would cover the surface
   const heading = document.createElement("summary");
   heading.textContent = t("cursor");
   const table = document.createElement("table");

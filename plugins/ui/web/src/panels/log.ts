@@ -77,6 +77,10 @@ class Log {
   private listen(): void {
     const { hub } = this.page;
     hub.on("stage", (stage) => this.stage(stage));
+    hub.on("made", ({ at_s, outcome, why }) => {
+      if (outcome === "failed") this.add("error", why, at_s);
+      if (outcome === "stopped") this.add("event", t("makingStopped"), at_s);
+    });
     hub.on("touch", ({ at_s, law, how }) => this.add("event", `${t("felt", { law })}: ${how}`, at_s));
     hub.on("loop", ({ at_s, running, why }) => this.add("event", `${t(running ? "running" : "stopped")} ${why}`, at_s));
     hub.on("scene", ({ at_s, name }) => this.add("event", t("shown", { name }), at_s));

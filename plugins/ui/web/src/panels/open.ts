@@ -6,6 +6,7 @@ import { t } from "../words/open";
 import { camera } from "./open/camera";
 import { onDrop } from "./open/drop";
 import { folder } from "./open/folder";
+import { restored } from "./open/restored";
 import { send, type Opened } from "./open/send";
 import "./open.css";
 
@@ -37,6 +38,7 @@ function build(page: Page, root: HTMLElement): void {
 
   onDrop(take);
   root.append(
+    restored(page),
     ...chooser(take),
     examples(page, open),
     folded(t("folder"), folder(page.net, open, say)),

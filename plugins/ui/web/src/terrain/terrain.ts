@@ -1,6 +1,7 @@
 /** The surface as it is drawn: the whole of it, and something finer of where the camera looks. */
 import { Group, Vector2, Vector3, Vector4, type Texture } from "three";
-import type { Layer, Part, Scene } from "../scene";
+import type { Part, Scene } from "../scene";
+import type { Layer } from "./fetching";
 import { Needles } from "./needles";
 import { Sheet, type Uniforms } from "./sheet";
 import { LOOKS, STEEPS } from "./shader";

@@ -1,6 +1,8 @@
 /** How the force loop runs, four times a second while somebody looks. */
 import type { Page } from "../../page";
+import { LIMITS } from "../../overlay/limits";
 import { t } from "../../words/devices";
+import { t as named } from "../../words/overlay";
 import { Spark } from "./spark";
 
 const LOOK_MS = 250;
@@ -95,11 +97,10 @@ export function bits(buttons: number): number[] {
   return Array.from({ length: 8 }, (_, i) => i + 1).filter((each) => buttons & (1 << (each - 1)));
 }
 
-/** "FORCE_LIMITED 12": names are those of docs/servo.md; touching is no limit. */
+/** "force limited 12": how many ticks each limit changed; overruns have a line of their own. */
 export function limits(flagged: Record<string, number>): string {
-  return Object.entries(flagged)
-    .filter(([name]) => name !== "TOUCHING" && name !== "RAMPING" && name !== "SWAPPED")
-    .map(([name, ticks]) => `${name} ${ticks}`)
+  return LIMITS.filter(({ name }) => name !== "OVERRUN" && flagged[name])
+    .map(({ name, word }) => `${named(word)} ${flagged[name]}`)
     .join(", ");
 }
 

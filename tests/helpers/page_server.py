@@ -1,0 +1,173 @@
+"""The page's server in this process, in a thread of its own, with no maker and, unless asked for, no loop."""
+
+import asyncio
+import http.client
+import json
+import threading
+from collections.abc import Callable
+from contextlib import AbstractContextManager, ExitStack, asynccontextmanager
+from pathlib import Path
+from typing import Any, Self
+
+from websockets.exceptions import ConnectionClosed
+from websockets.sync.client import ClientConnection, connect
+
+from tangible_ui.desk import Desk
+from tangible_ui.feeling import Feeling
+from tangible_ui.routes import application
+from tangible_ui.serve import HOST, Server, _listening, settings
+from tangible_ui.watching import watch
+
+KEY = "key-of-a-test-0123456789"
+IN_TIME_S = 20.0
+
+
+class NoMaker:
+    """Does nothing that it is asked."""
+
+    def __init__(self, folder: Path, hear: Callable[[Any], None]) -> None:
+        self.asked: list[str] = []
+        self.wait: asyncio.Event | None = None
+
+    async def ask(self, job: str, **told: Any) -> Any:
+        self.asked.append(job)
+        if self.wait is not None:
+            await self.wait.wait()
+        return {}
+
+    quick = ask
+
+    def kill(self) -> None:
+        """There is none."""
+
+    def close(self) -> None:
+        """There is none."""
+
+
+class PageServer:
+    """It listens in its `with`."""
+
+    def __init__(self, folder: Path, monkeypatch: Any) -> None:
+        monkeypatch.setattr("tangible_ui.desk.Maker", NoMaker)
+        self.folder = folder / "drawn"
+        self.folder.mkdir()
+        self.complaints: list[dict[str, Any]] = []
+        self._ready = threading.Event()
+        self._thread = threading.Thread(target=self._serve)
+
+    def _serve(self) -> None:
+        with _listening(0) as listening:
+            self.port = listening.getsockname()[1]
+            self.host = f"{HOST}:{self.port}"
+            self.desk: Desk
+            app = application(lambda: self.desk, KEY, frozenset({self.host}), self._lifespan)
+            self.server = Server(settings(app), lambda: None)
+            self.server.run(sockets=[listening])
+
+    def _lifespan(self, _: Any) -> Any:
+        @asynccontextmanager
+        async def live(_: Any) -> Any:
+            self.loop = asyncio.get_running_loop()
+            self.loop.set_exception_handler(lambda _, context: self.complaints.append(context))
+            self.desk = Desk(self.folder, Feeling("ui-test"), [])
+            self.desk.begin(watch(self.desk))
+            self._ready.set()
+            yield
+            await self.desk.close()
+
+        return live(_)
+
+    def __enter__(self) -> Self:
+        self._thread.start()
+        assert self._ready.wait(IN_TIME_S)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.server.should_exit = True
+        self._thread.join(IN_TIME_S)
+        assert not self._thread.is_alive()
+        assert not self.complaints, self.complaints
+
+    def done(self, work: Callable[[], Any]) -> Any:
+        """Do something in the server's own thread."""
+
+        async def there() -> Any:
+            return work()
+
+        return asyncio.run_coroutine_threadsafe(there(), self.loop).result(IN_TIME_S)
+
+    def ask(
+        self, path: str, method: str = "GET", body: bytes | None = None, **headers: str | None
+    ) -> http.client.HTTPResponse:
+        """One request; headers are named with underscores, None leaves one out. The answer's text is its `text`."""
+        said = {"host": self.host, "origin": f"http://{self.host}" if method not in ("GET", "HEAD") else None}
+        said |= {name.replace("_", "-"): value for name, value in headers.items()}
+        connection = http.client.HTTPConnection(HOST, self.port, timeout=IN_TIME_S)
+        connection.putrequest(method, path, skip_host=True, skip_accept_encoding=True)
+        for name, value in said.items():
+            if value is not None:
+                connection.putheader(name, value)
+        if body is not None and "content_length" not in headers:
+            connection.putheader("content-length", str(len(body)))
+        connection.endheaders(body)
+        response = connection.getresponse()
+        response.text = response.read().decode()  # type: ignore[attr-defined]
+        connection.close()
+        return response
+
+    def tab(self, key: str = KEY, origin: str | None = "", **options: Any) -> "TestTab":
+        """A page's websocket, which must be let in."""
+        own = f"http://{self.host}" if origin == "" else origin
+        url = f"ws://{self.host}/live?token={key}"
+        return TestTab(connect(url, origin=own, compression=None, max_size=None, proxy=None, **options))  # type: ignore[arg-type]
+
+
+class TestTab:
+    """What a page hears and says."""
+
+    __test__ = False
+
+    def __init__(self, connecting: AbstractContextManager[ClientConnection]) -> None:
+        self._open = ExitStack()
+        self.socket = self._open.enter_context(connecting)
+        self.frames = 0
+        self._number = 0
+
+    def ask(self, name: Any, **told: Any) -> int:
+        """Without waiting for the answer."""
+        self._number += 1
+        self.socket.send(json.dumps({"number": self._number, "ask": name, **told}))
+        return self._number
+
+    def next(self, timeout: float = IN_TIME_S) -> dict[str, Any] | None:
+        """The next event; frames are counted. None if there is none in time. Raises: ConnectionClosed."""
+        try:
+            while isinstance(said := self.socket.recv(timeout), bytes):
+                self.frames += 1
+        except TimeoutError:
+            return None
+        return json.loads(said)
+
+    def until(self, **wanted: Any) -> dict[str, Any]:
+        """The next event that has these values."""
+        while (said := self.next()) is not None:
+            if all(said.get(key) == value for key, value in wanted.items()):
+                return said
+        raise AssertionError(f"no {wanted}")
+
+    def closed(self) -> int:
+        """The code with which it is closed."""
+        try:
+            while True:
+                self.socket.recv(IN_TIME_S)
+        except ConnectionClosed as error:
+            return error.rcvd.code if error.rcvd else 1006
+
+    def close(self) -> None:
+        self._open.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()

@@ -1,0 +1,148 @@
+"""What a tab says, whatever it is: a frame is whole or not heard, an ask is done or refused with a sentence."""
+
+import json
+from typing import Any
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from tangible_core.errors import TangibleError
+from tangible_ui import asking, wire
+from tangible_ui.asking import NotUnderstood, parse
+from tangible_ui.asks import ASKS
+from tangible_ui.feeling import Feeling
+from tangible_ui.live import LiveTab
+
+JSON = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False, allow_infinity=False) | st.text(),
+    lambda deeper: st.lists(deeper, max_size=3) | st.dictionaries(st.text(max_size=8), deeper, max_size=3),
+    max_leaves=8,
+)
+WHOLE = {
+    wire.POINTER: wire.POINTER_FRAME.pack(wire.POINTER, 1, 7, 1.7e12, 0.01, -0.02, 0.003),
+    wire.ACK: wire.ACK_FRAME.pack(wire.ACK, 1),
+    wire.RELEASE: wire.RELEASE_FRAME.pack(wire.RELEASE),
+}
+
+
+class QuietDesk:
+    """A desk of one tab, which holds, and what it began."""
+
+    def __init__(self) -> None:
+        self.feeling = Feeling("ui-test")
+        self.holder: Any = None
+
+
+def tab() -> tuple[Any, QuietDesk]:
+    desk: Any = QuietDesk()
+    tab: Any = LiveTab.__new__(LiveTab)
+    tab._desk, tab._seq, tab._drawn = desk, 2, 0
+    tab._acked = type("Acked", (), {"set": lambda self: None})()
+    desk.holder = tab
+    return tab, desk
+
+
+class TestFrames:
+    def test_whole_ones_are_heard(self) -> None:
+        live, desk = tab()
+        live._frame(WHOLE[wire.POINTER])
+        assert desk.feeling.hand.holding
+        live._frame(WHOLE[wire.RELEASE])
+        assert not desk.feeling.hand.holding
+        live._frame(WHOLE[wire.ACK])
+        assert live._drawn == 1
+
+    @pytest.mark.parametrize("kind", WHOLE)
+    def test_what_is_not_whole_is_not_heard(self, kind: int) -> None:
+        frame = WHOLE[kind]
+        for damaged in [*(frame[:end] for end in range(1, len(frame))), frame + b"\0", frame * 2]:
+            if damaged in WHOLE.values():
+                continue
+            live, desk = tab()
+            desk.feeling.hand.point((0.01, 0.0, 0.0), 0, 0)
+            held = desk.feeling.hand._held
+            live._frame(damaged)
+            assert (desk.feeling.hand._held, live._drawn) == (held, 0)
+
+    @pytest.mark.parametrize("kind", WHOLE)
+    def test_every_flipped_bit_leaves_a_hand_that_is_somewhere(self, kind: int) -> None:
+        for bit in range(8 * len(WHOLE[kind])):
+            frame = bytearray(WHOLE[kind])
+            frame[bit // 8] ^= 1 << bit % 8
+            check(bytes(frame))
+
+    @given(st.binary(min_size=1, max_size=100))
+    def test_any_bytes(self, frame: bytes) -> None:
+        check(frame)
+
+
+def check(frame: bytes) -> None:
+    live, desk = tab()
+    live._frame(frame)
+    assert all(abs(part) <= 1.0 for part in desk.feeling.hand._held.at)
+    assert 0 <= live._drawn <= live._seq
+
+
+def ask(**said: Any) -> str:
+    return json.dumps({"number": 1, **said})
+
+
+class TestAsks:
+    def test_a_whole_one_is_understood(self) -> None:
+        asked = parse(ask(ask="edit", text="scene: x", apply=True))
+        assert (asked.number, asked.ask, asked.told) == (1, ASKS["edit"], {"text": "scene: x", "apply": True})
+
+    @pytest.mark.parametrize(
+        ("text", "number", "says"),
+        [
+            ("", None, "no JSON"),
+            ("nonsense", None, "no JSON"),
+            ('{"number": 1', None, "no JSON"),
+            ('{"number": NaN, "ask": "stop"}', None, "no JSON"),
+            ('{"number": 1, "ask": "edit", "text": Infinity}', None, "no JSON"),
+            ("[" * 100_000, None, "no JSON"),
+            ('{"a":' * 100_000 + "1" + "}" * 100_000, None, "no JSON"),
+            ("[]", None, '"number"'),
+            ("1", None, '"number"'),
+            ('{"ask": "stop"}', None, '"number"'),
+            ('{"number": true, "ask": "stop"}', None, '"number"'),
+            ('{"number": 1.0, "ask": "stop"}', None, '"number"'),
+            (ask(ask=["x"]), 1, "to ask for"),
+            (ask(ask={}), 1, "to ask for"),
+            (ask(), 1, "to ask for"),
+            (ask(ask="sotp"), 1, "did you mean"),
+            (ask(ask="__init__"), 1, "to ask for"),
+            (ask(ask="stop", now=True), 1, "now: Extra"),
+            (ask(ask="stop", tab=None), 1, "tab: Extra"),
+            (ask(ask="stop", desk=None), 1, "desk: Extra"),
+            (ask(ask="edit"), 1, "text: Field required"),
+            (ask(ask="edit", text=5), 1, "text: .*string"),
+            (ask(ask="edit", text="", apply=1), 1, "apply: .*bool"),
+            (ask(ask="begin", files="x"), 1, "files: .*array"),
+            (ask(ask="begin", files=[1]), 1, "files.0: .*string"),
+            (ask(ask="save", path=None), 1, "path: .*string"),
+        ],
+    )
+    def test_what_is_none_is_refused_with_a_sentence(self, text: str, number: int | None, says: str) -> None:
+        with pytest.raises(NotUnderstood, match=says) as refused:
+            parse(text)
+        assert refused.value.number == number
+        assert len(str(refused.value)) < 400
+        assert "\n" not in str(refused.value)
+
+    @given(JSON, st.sampled_from(sorted(ASKS)))
+    @settings(suppress_health_check=[HealthCheck.too_slow])
+    def test_any_json(self, told: Any, name: str) -> None:
+        """It is understood, or refused; nothing else."""
+        for said in (told, {"number": 1, "ask": told}, {"number": 1, "ask": name, "path": told, "text": told}):
+            try:
+                asked = parse(json.dumps(said))
+            except TangibleError as error:
+                assert str(error)
+            else:
+                assert asked.ask is ASKS[asked.name]
+
+    def test_every_ask_says_what_it_takes(self) -> None:
+        for name, work in ASKS.items():
+            assert asking._arguments(work).model_fields.keys().isdisjoint({"desk", "tab"}), name

@@ -1,0 +1,324 @@
+"""Who is let in to the page's server, and that nobody keeps it from its work."""
+
+import asyncio
+import socket
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from starlette.routing import Mount, Route, WebSocketRoute
+from websockets.exceptions import InvalidStatus
+
+from page_server import KEY, PageServer
+from tangible_core.files.reading import MOST_BYTES
+from tangible_ui import routes, serve
+from tangible_ui.connection import AT_ONCE_BYTES
+from tangible_ui.live import IN_FLIGHT, MOST_ASKS
+from tangible_ui.routes import HEADERS, WRONG_KEY
+from tangible_ui.wire import ACK, ACK_FRAME, POINTER, POINTER_FRAME
+
+NAMES = {"digest": "abc", "name": "a.f32", "batch": "0" * 16}
+
+
+@pytest.fixture
+def page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[PageServer]:
+    static = tmp_path / "static"
+    static.mkdir()
+    (static / "index.html").write_text("<title>t</title>")
+    (static / "app.js").write_text("1")
+    monkeypatch.setattr(routes, "static", lambda: static)
+    with PageServer(tmp_path, monkeypatch) as page:
+        yield page
+
+
+def keyed(path: str) -> str:
+    return f"{path}?token={KEY}"
+
+
+class TestWhoIsLetIn:
+    def test_every_route_but_the_built_page_needs_the_key(self, page: PageServer) -> None:
+        """Of all that there are: a new one cannot forget it."""
+        seen = set()
+        for route in routes.routes(lambda: page.desk, KEY):
+            if isinstance(route, WebSocketRoute | Mount):
+                seen.add(route.path)
+                continue
+            assert isinstance(route, Route), f"{route}: is not looked at here"
+            for method in route.methods or ():
+                for key in ("", "?token=", "?token=wrong", f"?token={KEY}x", "?token=%00", f"?token={KEY}&token=x"):
+                    answer = page.ask(route.path.format(**NAMES) + key, method)
+                    assert answer.status == 403, (route.path, method, key)
+                    assert "the address it printed" in answer.text or method == "HEAD"
+        assert seen == {"/live", ""}
+        for key in ("", "wrong"):
+            with page.tab(key) as tab:
+                assert tab.closed() == WRONG_KEY
+
+    def test_the_key_is_long_and_another_one_each_time(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        monkeypatch.delenv("TANGIBLE_UI_TOKEN", raising=False)
+        keys = {serve.new_key() for _ in range(50)}
+        assert len(keys) == 50
+        assert all(len(key) * 6 >= 128 for key in keys)
+
+    @pytest.mark.parametrize("host", ["evil.example", "127.0.0.1", "127.0.0.1:1", "", None])
+    def test_no_other_name_leads_here(self, page: PageServer, host: str | None) -> None:
+        for path in ("/", keyed("/scene/abc/a.f32")):
+            assert page.ask(path, host=host).status in (400, 403)
+        with handshake(page, host or "x") as raw:
+            assert raw.recv(100).startswith(b"HTTP/1.1 403")
+
+    @pytest.mark.parametrize("origin", [None, "null", "http://evil.example", "https://{host}", "http://{host}.evil"])
+    def test_no_other_page_changes_anything(self, page: PageServer, origin: str | None) -> None:
+        said = origin and origin.format(host=page.host)
+        for method, path in (("PUT", f"/upload/{NAMES['batch']}/a.png"), ("POST", "/stop")):
+            assert page.ask(keyed(path), method, b"x", origin=said).text == "another page may not do that"
+        with pytest.raises(InvalidStatus, match="403"):
+            page.tab(origin=said)
+
+    @pytest.mark.parametrize(
+        ("path", "status", "cached"),
+        [
+            ("/", 200, "no-cache"),
+            ("/app.js", 200, "no-cache"),
+            ("/nothing", 404, "no-store"),
+            (keyed("/scene/abc/a.f32"), 200, routes.FOREVER),
+            (keyed("/scene/abc/b.f32"), 404, "no-store"),
+            (keyed("/fails"), 500, "no-store"),
+            ("/scene/abc/a.f32", 403, "no-store"),
+        ],
+    )
+    def test_every_answer_has_the_strict_headers(
+        self, page: PageServer, path: str, status: int, cached: str, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        (page.folder / "abc").mkdir()
+        (page.folder / "abc" / "a.f32").write_bytes(b"1")
+        if status == 500:
+            monkeypatch.setattr(page.desk, "folder", None)
+            path = keyed("/scene/abc/a.f32")
+        answer = page.ask(path)
+        assert answer.status == status
+        assert {name: answer.headers.get_all(name) for name in HEADERS} == {
+            name: [text] for name, text in HEADERS.items()
+        }
+        assert answer.headers.get_all("cache-control") == [cached]
+        assert "server" not in answer.headers
+
+    def test_a_page_that_was_built_again_is_seen(self, page: PageServer, tmp_path: Path) -> None:
+        tag = page.ask("/app.js").headers["etag"]
+        assert page.ask("/app.js", if_none_match=tag).status == 304
+        (tmp_path / "static" / "app.js").write_text("22")
+        assert page.ask("/app.js", if_none_match=tag).text == "22"
+
+    @pytest.mark.parametrize(
+        "path",
+        [
+            "/scene/../secret", "/scene/%2e%2e/secret", "/scene/abc/..%2f..%2fsecret", "/scene/abc%2f../x",
+            "/scene/link/secret", "/scene/abc/%00", f"/scene/abc/{'x' * 5000}", "/scene/abc/", "/scene/incoming/x",
+            "/scene//secret", "/../secret", "/%2e%2e/secret", "/..%2fsecret", "//secret", "/scene", "/scene/",
+        ],
+    )  # fmt: skip
+    def test_no_path_leads_elsewhere(self, page: PageServer, tmp_path: Path, path: str) -> None:
+        (tmp_path / "secret").write_text("secret")
+        (page.folder / "abc").mkdir()
+        (page.folder / "link").symlink_to(tmp_path)
+        assert page.ask(keyed(path)).status == 404
+
+    def test_methods(self, page: PageServer) -> None:
+        for method in ("POST", "DELETE", "PUT", "OPTIONS", "TRACE"):
+            assert page.ask(keyed("/scene/abc/a"), method).status == 405
+            assert page.ask("/", method).status == 405
+        assert page.ask(keyed("/stop")).status == 404
+
+    def test_what_is_too_large_is_refused_before_it_is_sent(self, page: PageServer) -> None:
+        answer = page.ask(keyed(f"/upload/{NAMES['batch']}/a.png"), "PUT", content_length=str(MOST_BYTES + 1))
+        assert (answer.status, "holds more than" in answer.text) == (413, True)
+
+    def test_a_header_without_end_is_not_read(self, page: PageServer) -> None:
+        with socket.create_connection(("127.0.0.1", page.port)) as raw:
+            raw.settimeout(20)
+            raw.sendall(b"GET / HTTP/1.1\r\nx: ")
+            said = b""
+            try:
+                for _ in range(100):
+                    raw.sendall(b"x" * 4096)
+                while more := raw.recv(4096):
+                    said += more
+            except ConnectionError:
+                pass
+        assert page.ask("/").status == 200
+
+
+def handshake(page: PageServer, host: str) -> socket.socket:
+    """What a browser sends to open a websocket, and nothing is read."""
+    raw = socket.create_connection(("127.0.0.1", page.port), timeout=20)
+    raw.sendall(
+        f"GET {keyed('/live')} HTTP/1.1\r\nHost: {host}\r\nOrigin: http://{host}\r\nUpgrade: websocket\r\n"
+        f"Connection: Upgrade\r\nSec-WebSocket-Key: {'A' * 22}==\r\nSec-WebSocket-Version: 13\r\n\r\n".encode()
+    )
+    return raw
+
+
+def ack(seq: int) -> bytes:
+    return ACK_FRAME.pack(ACK, seq)
+
+
+def pointer(*at: float) -> bytes:
+    return POINTER_FRAME.pack(POINTER, 1, 7, 0.0, *at)
+
+
+class Lag:
+    """How late the server's thread is, at worst."""
+
+    def __init__(self, page: PageServer) -> None:
+        self.worst_s = 0.0
+        self._on = True
+        asyncio.run_coroutine_threadsafe(self._watch(), page.loop)
+
+    async def _watch(self) -> None:
+        while self._on:
+            before = time.monotonic()
+            await asyncio.sleep(0.01)
+            self.worst_s = max(self.worst_s, time.monotonic() - before - 0.01)
+
+    def __enter__(self) -> "Lag":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._on = False
+
+
+LONGEST_LAG_S = 2.0
+"""Of a server that shares its process with those who flood it, on a machine that does much else."""
+
+
+class TestFloods:
+    def test_ten_tabs_have_their_share(self, page: PageServer) -> None:
+        tabs = [page.tab() for _ in range(10)]
+        counts = [0] * 10
+        end = time.monotonic() + 2
+
+        def draw(k: int) -> None:
+            while time.monotonic() < end:
+                if isinstance(tabs[k].socket.recv(5), bytes):
+                    counts[k] += 1
+                    tabs[k].socket.send(ack(counts[k]))
+
+        with Lag(page) as lag:
+            threads = [threading.Thread(target=draw, args=(k,)) for k in range(10)]
+            for each in threads:
+                each.start()
+            for each in threads:
+                each.join()
+        for tab in tabs:
+            tab.close()
+        assert min(counts) > 0.3 * max(counts)
+        assert lag.worst_s < LONGEST_LAG_S
+
+    def test_a_tab_that_draws_nothing_is_sent_two_states(self, page: PageServer) -> None:
+        with page.tab() as tab:
+            while tab.next(0.5) is not None:
+                pass
+            assert tab.frames == IN_FLIGHT
+            tab.socket.send(ack(1))
+            tab.next(0.3)
+            assert tab.frames == IN_FLIGHT + 1
+            tab.socket.send(ack(4_000_000_000))  # of none that was sent
+            tab.next(0.3)
+            assert tab.frames <= 2 * IN_FLIGHT + 1
+
+    def test_a_tab_that_reads_nothing_is_cut_off(self, page: PageServer) -> None:
+        raw = handshake(page, page.host)
+        with page.tab() as other:
+            while page.done(lambda: len(page.desk.tabs)) < 2:
+                time.sleep(0.01)
+            deadline = time.monotonic() + 20
+            while page.done(lambda: len(page.desk.tabs)) == 2:
+                assert time.monotonic() < deadline
+                page.done(lambda: page.desk.tell("log", text="x" * 1_000_000))
+                other.until(event="log")
+        raw.close()
+
+    def test_the_hand_is_kept_through_a_flood_of_pointers(self, page: PageServer) -> None:
+        with page.tab() as tab, Lag(page) as lag:
+            tab.until(event="holding", holding=True)
+            end = time.monotonic() + 1.5
+            while time.monotonic() < end:
+                tab.socket.socket.sendall(b"".join(masked(pointer(0.01, 0.0, k * 1e-6)) for k in range(500)))
+            assert page.done(lambda: page.desk.feeling.hand.holding)
+            assert page.done(lambda: {each.transport.max_size for each in page.server.server_state.connections}) == {
+                AT_ONCE_BYTES
+            }
+        assert lag.worst_s < LONGEST_LAG_S
+
+    def test_one_that_does_not_hold_moves_nothing(self, page: PageServer) -> None:
+        with page.tab() as first, page.tab() as second:
+            first.until(event="holding", holding=True)
+            second.until(event="holding", holding=False)
+            second.socket.send(pointer(0.01, 0, 0))
+            second.ask("nothing")
+            second.until(event="refused")
+            assert not page.done(lambda: page.desk.feeling.hand.holding)
+            second.ask("hold")
+            first.until(event="holding", holding=False)
+            second.socket.send(pointer(0.01, 0, 0))
+            second.ask("nothing")
+            second.until(event="refused")
+            assert page.done(lambda: page.desk.feeling.hand.holding)
+            first.socket.send(b"\x04")  # and cannot let go of another's
+            first.ask("nothing")
+            first.until(event="refused")
+            assert page.done(lambda: page.desk.feeling.hand.holding)
+
+    @pytest.mark.parametrize("at", [(float("nan"), 0, 0), (0, float("inf"), 0), (0, 0, -float("inf")), (1e30, 0, 0)])
+    def test_a_hand_is_somewhere(self, page: PageServer, at: tuple[float, float, float]) -> None:
+        with page.tab() as tab:
+            tab.until(event="holding", holding=True)
+            tab.socket.send(pointer(*at))
+            tab.ask("nothing")
+            tab.until(event="refused")
+            assert not page.done(lambda: page.desk.feeling.hand.holding)
+
+    def test_asks_are_bounded_and_stop_is_not(self, page: PageServer) -> None:
+        maker: Any = page.desk.maker
+        page.done(lambda: setattr(maker, "wait", asyncio.Event()))
+        with page.tab() as tab:
+            for _ in range(MOST_ASKS):
+                tab.ask("examples")
+            refused = tab.ask("examples")
+            assert "not done yet" in tab.until(event="refused", number=refused)["text"]
+            stop = tab.ask("stop")
+            tab.until(event="loop", running=False)
+            tab.until(event="answer", number=stop)
+            page.done(maker.wait.set)
+            tab.until(event="answer", number=MOST_ASKS)
+            tab.until(event="answer", number=tab.ask("examples"))
+
+    def test_a_page_whose_websocket_hangs_can_stop(self, page: PageServer) -> None:
+        with page.tab() as tab:
+            assert page.ask(keyed("/stop"), "POST", b"").status == 204
+            tab.until(event="loop", running=False, stopped=True)
+            assert page.desk.feeling.stopped
+
+    def test_connections_without_end_stop_nobody(self, page: PageServer) -> None:
+        with page.tab() as tab:
+            tab.until(event="holding", holding=True)
+            slow = [socket.create_connection(("127.0.0.1", page.port)) for _ in range(300)]
+            for each in slow:
+                each.sendall(b"GET / HT")
+            tab.socket.send(pointer(0.01, 0, 0))
+            tab.ask("nothing")
+            tab.until(event="refused")
+            assert page.done(lambda: page.desk.feeling.hand.holding)
+            for each in slow:
+                each.close()
+        deadline = time.monotonic() + 20
+        while page.ask("/").status != 200:
+            assert time.monotonic() < deadline
+
+
+def masked(body: bytes) -> bytes:
+    """A binary frame of a client, with a mask of zeros."""
+    return bytes([0x82, 0x80 | len(body), 0, 0, 0, 0]) + body

@@ -1,0 +1,111 @@
+"""Both ends of the websocket mean the same: frames byte by byte, names of events and of what can be asked for."""
+
+import json
+import re
+import struct
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from page_files import WEB, node
+from tangible_core.data import TickFlag
+from tangible_ui import wire
+from tangible_ui.asks import ASKS
+from tangible_ui.routes import WRONG_KEY
+
+SOURCES = Path(wire.__file__).parent
+SAID = (1, 5, 513, 4_000_000_000, 4_000_000, 77, 1.7e12 + 0.25)
+VECTORS = tuple(k / 8 for k in range(15))
+SCRIPT = """
+import { readFileSync } from "node:fs";
+import { transformSync } from "esbuild";
+const { code } = transformSync(readFileSync("src/protocol.ts", "utf8"), { loader: "ts", format: "esm" });
+const page = await import("data:text/javascript," + encodeURIComponent(code));
+const hex = (buffer) => Buffer.from(buffer).toString("hex");
+const bytes = (text) => Uint8Array.from(Buffer.from(text, "hex")).buffer;
+const constants = Object.fromEntries(Object.entries(page).filter(([, value]) => typeof value !== "function"));
+const read = page.state(bytes(process.argv[1]));
+console.log(JSON.stringify({
+  constants, read,
+  short: page.state(bytes(process.argv[1].slice(2))),
+  other: page.state(bytes("02" + process.argv[1].slice(2))),
+  pointer: hex(page.pointer([0.5, -0.25, 0.125], 3, 4194303)),
+  ack: hex(page.ack(4000000000)),
+  release: hex(page.release()),
+}));
+"""
+
+
+@cache
+def page() -> dict[str, Any]:
+    """What the page's own module writes, and reads of a state that was written here."""
+    frame = wire.STATE_FRAME.pack(*SAID, *VECTORS, 12.5)
+    done = node("--input-type=module", "-e", SCRIPT, frame.hex(), cwd=WEB)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+class TestFrames:
+    def test_constants(self) -> None:
+        said = page()["constants"]
+        names = ("VERSION", "STATE", "POINTER", "ACK", "RELEASE", "TAGS")
+        assert {name: said[name] for name in names} == {name: getattr(wire, name) for name in names}
+        assert said["STATUS"] == {name: getattr(wire, name) for name in ("RUNNING", "HOLDING", "RECORDING")}
+        assert said["FLAGS"] == {flag.name: int(flag) for flag in TickFlag}
+        sizes = {name: getattr(wire, f"{name}_FRAME").size for name in ("STATE", "POINTER", "ACK", "RELEASE")}
+        assert {name: said[f"{name}_BYTES"] for name in sizes} == sizes
+
+    def test_a_state_is_read_as_it_was_written(self) -> None:
+        read = page()["read"]
+        _, status, flags, seq, tag, overruns, sample_ms = SAID
+        assert [read[name] for name in ("status", "flags", "seq", "tag", "overruns", "sampleMs", "lateUs")] == [
+            status, flags, seq, tag, overruns, sample_ms, 12.5,
+        ]  # fmt: skip
+        names = ("hand", "proxy", "force", "velocity", "other")
+        assert [part for name in names for part in read[name]] == list(VECTORS)
+        assert page()["short"] is None
+        assert page()["other"] is None
+
+    def test_what_the_page_writes_is_read(self) -> None:
+        kind, buttons, tag, sent_ms, *hand = wire.POINTER_FRAME.unpack(bytes.fromhex(page()["pointer"]))
+        assert (kind, buttons, tag, hand) == (wire.POINTER, 3, wire.TAGS, [0.5, -0.25, 0.125])
+        assert sent_ms > 1.6e12
+        assert wire.ACK_FRAME.unpack(bytes.fromhex(page()["ack"])) == (wire.ACK, 4_000_000_000)
+        assert bytes.fromhex(page()["release"]) == wire.RELEASE_FRAME.pack(wire.RELEASE)
+
+    @pytest.mark.parametrize("name", ["STATE", "POINTER", "ACK", "RELEASE"])
+    def test_bytes_are_in_the_same_order_on_every_machine(self, name: str) -> None:
+        frame: struct.Struct = getattr(wire, f"{name}_FRAME")
+        assert frame.format.startswith("<")
+
+
+def sources(folder: Path, ending: str) -> str:
+    files = [path for path in folder.rglob(f"*{ending}") if "static" not in path.parts]
+    return "\n".join(path.read_text(encoding="utf-8") for path in sorted(files))
+
+
+class TestNames:
+    def test_what_the_page_asks_for_can_be_asked_for(self) -> None:
+        asked = set(re.findall(r"\bask(?:<[^(]*>)?\(\s*[\"'](\w+)[\"']", sources(WEB / "src", ".ts")))
+        assert len(asked) > 20
+        assert asked <= ASKS.keys()
+
+    def test_what_can_be_asked_for_the_page_asks_for(self) -> None:
+        written = set(re.findall(r"[\"'](\w+)[\"']", sources(WEB / "src", ".ts")))
+        assert ASKS.keys() - written <= NOT_ASKED
+
+    def test_events_have_the_same_names(self) -> None:
+        here, there = sources(SOURCES, ".py"), (WEB / "src/messages.ts").read_text(encoding="utf-8")
+        told = set(re.findall(r"(?:\btell|\bEvent)\(\s*\"(\w+)\"", here) + re.findall(r"\"event\": \"(\w+)\"", here))
+        body = there[there.index("export interface Events") :]
+        assert told - {"answer", "refused"} == set(re.findall(r"^  (\w+): Said\b", body, re.M)) - OF_THE_PAGE
+
+    def test_a_wrong_key_has_the_same_code(self) -> None:
+        assert f"WRONG_KEY = {WRONG_KEY};" in (WEB / "src/net.ts").read_text(encoding="utf-8")
+
+
+OF_THE_PAGE = {"gone", "refused"}
+"""What it says to itself when the program is gone, or is another one."""
+NOT_ASKED: set[str] = set()

@@ -61,6 +61,7 @@ test("nothing of the last contact is left in the next, nor of a pause", () => {
   const level: Held = { touching: true, atMs: 1e4, contact: [0.5, 0, 0], normal: [0, 0, 1], force: [-0.5, 0, 2], dynamicFriction: MU };
   assert.equal(rule.next({ ...level, touching: false }), "apart");
   assert.equal(rule.next({ ...level, contact: [0.1, 0, 0] }), "sticks");
+  assert.equal(rule.next({ ...level, contact: [0.1, 0, 0], atMs: 1e4 + PERIOD_MS }), "sticks");
   assert.equal(rule.next({ ...level, atMs: 2e4 }), "sticks");
   assert.equal(rule.next({ ...level, force: [NaN, 0, NaN] }), "apart");
 });

@@ -19,7 +19,7 @@ from tangible_ui.serve import HOST, Server, _listening, settings
 from tangible_ui.watching import watch
 
 KEY = "key-of-a-test-0123456789"
-IN_TIME_S = 20.0
+IN_TIME_S = 60.0
 
 
 class NoMaker:

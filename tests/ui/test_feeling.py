@@ -217,7 +217,6 @@ class TestWhatEndsByItself:
         assert feeling.feel(felt(feeling)) is not None
         assert feeling.running
 
-
     def test_a_falcon_that_is_pulled_out_while_it_is_homed(self, feeling: Feeling) -> None:
         """The real driver says what happened."""
         falcon = load_method("device", "falcon-simulated")(faults=({"at": "read", "after": 200},))

@@ -12,7 +12,7 @@ from page_files import built_page
 from tangible_core.data import TICK_COLUMNS
 from tangible_core.servo.ring import Ring, shared_folder
 
-IN_TIME_S = 60.0
+IN_TIME_S = 120.0
 GONE_S = 2.0
 """Generous for a machine that is busy: the server lets go after a tenth of a second, and what is told, at once."""
 X = TICK_COLUMNS.index("x_m")
@@ -103,7 +103,7 @@ def test_the_mouse_feels_until_nobody_sees_the_page(page: Any) -> None:
     press(page, felt)
     hidden_s = time.monotonic()
     page.evaluate(HIDE)
-    print("hidden", felt.quiet_after_s(hidden_s))
+    assert felt.quiet_after_s(hidden_s) < GONE_S
     page.mouse.up()
     page.reload()
     drawn(page)
@@ -116,8 +116,6 @@ def test_the_mouse_feels_until_nobody_sees_the_page(page: Any) -> None:
     while_frozen = (rows[:, 0] > frozen_s + GONE_S) & (rows[:, 0] < frozen_s + 2.9)
     assert while_frozen.any()
     assert np.abs(rows[while_frozen, FORCE]).max() < FELT_N
-    given = rows[(rows[:, 0] < frozen_s + 2.9) & (np.abs(rows[:, FORCE]).max(axis=1) > FELT_N)]
-    print("frozen", given[-1, 0] - frozen_s)
     page.mouse.up()
 
 
@@ -126,7 +124,7 @@ def test_a_tab_that_is_closed_leaves_no_force(page: Any) -> None:
     press(page, felt)
     closed_s = time.monotonic()
     page.close()
-    print("closed", felt.quiet_after_s(closed_s))
+    assert felt.quiet_after_s(closed_s) < GONE_S
 
 
 def test_the_keyboard_alone_feels_and_the_stop_key_works_in_a_field(page: Any) -> None:
@@ -151,18 +149,23 @@ def test_the_keyboard_alone_feels_and_the_stop_key_works_in_a_field(page: Any) -
     until(lambda: Felt.rings() and Felt.rings()[0] != felt.path)
 
 
-def test_another_device_is_felt_and_examined(page: Any, server: Any) -> None:
+def test_another_device_is_felt_and_examined_and_a_motor_asks_first(page: Any) -> None:
+    felt = page.locator("#device-felt")
     page.locator("#devices > summary").click()
     page.get_by_role("button", name="Examine mock").click()
     until(lambda: "needs nothing" in page.locator(".devices").text_content())
     page.get_by_role("button", name="Feel with mock").click()
-    try:
-        until(lambda: page.locator("#device-felt").text_content() == "Felt with: mock", 20)
-    except AssertionError:
-        page.screenshot(path="/tmp/hands-fail.png")
-        print(page.locator("#device-felt").text_content(), page.locator("#log").text_content(), server.lines)
-        raise
+    until(lambda: felt.text_content() == "Felt with: mock")
     until(lambda: "Hz" in page.locator("#devices .figures").text_content())
-    page.screenshot(path="/tmp/hands-devices.png")
+
+    page.get_by_role("button", name="Feel with falcon", exact=True).click()
+    dialog = page.get_by_role("dialog", name="falcon has a motor")
+    dialog.wait_for()
+    assert felt.text_content() == "Felt with: mock"
+    assert page.evaluate("document.activeElement.textContent") == "No"
+    page.keyboard.press("Escape")  # it closes what it closes, and stops all force
+    until(lambda: dialog.count() == 0)
+    until(lambda: "Stopped" in page.locator("#status").text_content())
+
     page.locator("#use-hand").click()
-    until(lambda: page.locator("#device-felt").text_content() == "Felt with: this page's hand")
+    until(lambda: felt.text_content() == "Felt with: this page's hand")

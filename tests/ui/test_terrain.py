@@ -163,10 +163,12 @@ def test_a_large_relief_is_drawn_at_once_and_finer_where_one_looks(serve, open_p
 
 
 def test_graphics_that_are_taken_away_and_come_back(url: str, open_page, complaints: list[str]):
-    page = open_page(f"{url}&measure", reduced_motion="reduce")
+    """On a screen of fine pixels, too, which are drawn where that is not slow."""
+    page = open_page(f"{url}&measure", reduced_motion="reduce", device_scale_factor=2)
     page.wait_for_function("() => window.page?.scene && window.figures.firstMs > 0", timeout=60_000)
     settled(page)
     before = pixels(page)
+    assert before.std() > 10
     page.evaluate(
         "() => { const gl = document.querySelector('#terrain').getContext('webgl2');"
         " window.taken = gl.getExtension('WEBGL_lose_context'); window.taken.loseContext() }"
@@ -256,3 +258,29 @@ def test_the_camera_takes_what_is_its_own_and_leaves_the_rest_to_the_hand(url: s
     fingers("touchEnd")
     page.wait_for_function(f"() => ({POSE})().distance < {0.8 * home['distance']}")
     assert page.evaluate("() => window.heard") == ["pointerdown", "pointercancel"]
+
+
+def test_a_fine_texture_is_seen_under_the_magnifier_and_from_near(url: str, open_page):
+    """The scene is flat there: whatever is seen is the cloth's texture."""
+    page = open_page(f"{url}&measure", reduced_motion="reduce")
+    settings(page, look="relief", raking=1, lensMm=10)
+    page.reload()
+    from_above(page)
+    flat = around(page, pixels(page), BEFORE, 20).std()
+    box = page.locator("#terrain").bounding_box()
+    x, y = page.evaluate("([x, y]) => window.page.view.toScreen([x, y, window.page.scene.height(x, y)])", BEFORE)
+    page.mouse.move(box["x"] + x - 1, box["y"] + y)
+    page.mouse.move(box["x"] + x, box["y"] + y)
+    page.wait_for_selector("#lens:visible", timeout=20_000)
+    assert page.inner_text("#lens").startswith("10 mm across. cloth: grain of ")
+    magnified = page.evaluate(
+        "() => { const lens = document.querySelector('#lens canvas');"
+        " return [...lens.getContext('2d').getImageData(0, 0, lens.width, lens.height).data] }"
+    )
+    assert np.std(magnified[::4]) > 5
+    page.evaluate("([x, y]) => window.page.view.focus([x, y, 0.004], 0.008)", BEFORE)
+    page.mouse.move(box["x"] + 2, box["y"] + 2)
+    deadline = time.monotonic() + 20
+    while (seen := around(page, pixels(page), BEFORE, 20).std()) < flat + 5 and time.monotonic() < deadline:
+        time.sleep(0.3)
+    assert seen >= flat + 5

@@ -88,7 +88,8 @@ def _listening(port: int) -> Generator[socket.socket]:
     try:
         listening = socket.create_server((HOST, port))
     except OSError as error:
-        raise ConfigError(f"--port {port}: {error.strerror or error}; 0 takes a free one") from error
+        why = os.strerror(error.errno) if error.errno else error
+        raise ConfigError(f"--port {port}: {why}; 0 takes a free one") from error
     with listening:
         yield listening
 

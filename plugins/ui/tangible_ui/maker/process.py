@@ -62,17 +62,19 @@ def main() -> None:
 
 
 def _work(bench: Any, asks: "queue.SimpleQueue[Ask]", voice: Voice) -> None:
+    while True:
+        voice.say(answer(bench, asks.get()))
+
+
+def answer(bench: Any, ask: Ask) -> Answer | Refused:
+    """Do a job; whatever becomes of it, the next one can be done."""
     from .jobs import JOBS
 
-    while True:
-        ask = asks.get()
-        try:
-            keep_folder(bench)
-            value = JOBS[ask.job].do(bench, **ask.told)
-        except BaseException as error:  # noqa: BLE001 - whatever a plugin raises is for the page to say
-            voice.say(Refused(ask.number, full(error) or sendable(error)))
-        else:
-            voice.say(Answer(ask.number, value))
+    try:
+        keep_folder(bench)
+        return Answer(ask.number, JOBS[ask.job].do(bench, **ask.told))
+    except BaseException as error:  # noqa: BLE001 - whatever a plugin raises is for the page to say
+        return Refused(ask.number, full(error) or sendable(error))
 
 
 def keep_folder(bench: Any) -> None:

@@ -3,6 +3,7 @@ import type { Page } from "./page";
 import { on } from "./shortcuts";
 import { t } from "./words/frame";
 import { made } from "./words/products";
+import { language } from "./words/words";
 
 type What = "idle" | "busy" | "felt" | "stopped" | "error";
 
@@ -62,6 +63,7 @@ export class Status {
   private show(what: What, text: string, topic = what === "error" ? text : "status"): void {
     this.line.dataset.state = what;
     this.line.textContent = text;
+    this.line.lang = what === "error" && topic !== "gone" ? "en" : language; // the program's own words are English
     this.page.say(text, { topic, urgent: what === "error" || what === "stopped" });
   }
 }

@@ -21,6 +21,9 @@ import { type Looks, Terrain } from "./terrain/terrain";
 const REST_MS = 140;
 /** A terrain that takes longer is drawn coarser while the camera moves. */
 const SLOW_MS = 22;
+/** One that takes as long is drawn with a pixel of the page, however fine the screen is. */
+const VERY_SLOW_MS = 80;
+const FINEST_RATIO = 2;
 const PATTERN_PX = 11;
 
 /** Why nothing is drawn: there is no WebGL, or it was taken away. */
@@ -57,6 +60,8 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
   private pixel = new Uint8Array(4);
   private resting = 0;
   private takesMs = 0;
+  /** Pixels that are drawn for one of the page, to the side. */
+  private ratio = 1;
   private scene: Scene | null = null;
 
   constructor(private canvas: HTMLCanvasElement) {
@@ -131,12 +136,10 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
   draw(wait: boolean): void {
     const { renderer, drawn } = this;
     const flies = this.eye.advance(performance.now());
-    if (!renderer || !drawn || this.trouble) {
-      this.dirty = flies;
-      return;
-    }
-    if (this.dirty) this.drawFixed(renderer, drawn);
+    const again = this.dirty;
     this.dirty = flies;
+    if (!renderer || !drawn || this.trouble) return;
+    if (again) this.drawFixed(renderer, drawn);
     this.stage.clear();
     this.stage.add(this.copy);
     renderer.setRenderTarget(null);
@@ -155,7 +158,7 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
     let colours = drawn.texture;
     if (this.eyeDome > 0 && this.shaded) {
       this.stage.clear();
-      this.stage.add(this.dome.of(drawn.texture, drawn.depthTexture!, this.camera, this.eyeDome));
+      this.stage.add(this.dome.of(drawn.texture, drawn.depthTexture!, this.camera, this.eyeDome, this.ratio));
       renderer.setRenderTarget(this.shaded);
       renderer.render(this.stage, this.none);
       colours = this.shaded.texture;
@@ -165,6 +168,9 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
     renderer.setRenderTarget(drawn);
     this.wait(renderer);
     this.takesMs = performance.now() - begun;
+    if (this.takesMs <= VERY_SLOW_MS || this.ratio === 1) return;
+    this.size();
+    this.drawFixed(renderer, this.drawn!);
   }
 
   /** Width of a pixel at the place that is looked at. */
@@ -214,12 +220,15 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
     const height = Math.max(1, this.canvas.clientHeight);
     this.eye.resize(width, height);
     if (!this.renderer) return;
-    this.renderer.setSize(width, height, false);
+    const slow = this.takesMs > VERY_SLOW_MS;
+    this.ratio = slow ? 1 : Math.min(Math.max(devicePixelRatio, 1), FINEST_RATIO);
+    const [across, along] = [Math.round(this.ratio * width), Math.round(this.ratio * height)];
+    this.renderer.setSize(across, along, false);
     for (const each of [this.drawn, this.shaded]) each?.dispose();
     const filters = { minFilter: NearestFilter, magFilter: NearestFilter } as const;
-    this.drawn = new WebGLRenderTarget(width, height, { ...filters });
-    this.drawn.depthTexture = new DepthTexture(width, height, UnsignedIntType);
-    this.shaded = new WebGLRenderTarget(width, height, { ...filters, depthBuffer: false });
+    this.drawn = new WebGLRenderTarget(across, along, { ...filters });
+    this.drawn.depthTexture = new DepthTexture(across, along, UnsignedIntType);
+    this.shaded = new WebGLRenderTarget(across, along, { ...filters, depthBuffer: false });
     this.copied.depths.value = this.drawn.depthTexture;
     this.dirty = true;
   }

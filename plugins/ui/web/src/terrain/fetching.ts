@@ -17,6 +17,9 @@ export interface Layer extends LayerMeta {
   values: Float32Array;
 }
 
+/** When it has been drawn for the first time. */
+const PREPARED_MS = 400;
+
 const layers = new WeakMap<Scene, Map<string, Promise<Layer>>>();
 
 /** The coarsest level, which can be drawn at once. */
@@ -65,5 +68,6 @@ export async function fetchPart(meta: Meta, window: Window, signal?: AbortSignal
   const [dx, dy] = [(step * w) / meta.columns, (step * l) / meta.rows];
   const place = { left: column * dx - w / 2, far: l / 2 - row * dy, dx, dy };
   const grid = new Grid(new Float32Array(heights), rows, columns, place);
+  setTimeout(() => grid.prepare(), PREPARED_MS);
   return { grid, labels: labels && (meta.label_bytes === 2 ? new Uint16Array(labels) : new Uint32Array(labels)) };
 }

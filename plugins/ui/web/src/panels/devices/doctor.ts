@@ -39,9 +39,10 @@ export function doctor(page: Page, open: () => boolean): HTMLElement {
   none.textContent = t("noLoop");
   const list = document.createElement("dl");
   list.className = "figures";
+  const how = Object.assign(document.createElement("p"), { className: "hint" });
   const late = new Spark(t("worstLine"), 0);
   const force = new Spark(t("forceLine"), 2);
-  box.append(heading, none, list, captioned(t("worstLine"), late), captioned(t("forceLine"), force));
+  box.append(heading, none, list, how, captioned(t("worstLine"), late), captioned(t("forceLine"), force));
   let asking = false;
 
   async function look(): Promise<void> {
@@ -58,9 +59,10 @@ export function doctor(page: Page, open: () => boolean): HTMLElement {
 
   function show(found: Figures | null): void {
     none.hidden = found !== null;
-    for (const each of [list, late.element.parentElement!, force.element.parentElement!]) each.hidden = !found;
+    for (const each of [list, how, late.element.parentElement!, force.element.parentElement!]) each.hidden = !found;
     if (!found) return;
     list.replaceChildren(...rows(found).flatMap(([name, value]) => [made("dt", name), made("dd", value)]));
+    how.textContent = t("how", { how: found.how });
     late.add(found.late_us?.most ?? 0);
     force.add(found.force_n);
   }
@@ -83,7 +85,6 @@ function rows(found: Figures): [string, string][] {
     [t("position"), t("millimetres", { x: x!, y: y!, z: z! })],
     [t("buttons"), bits(found.buttons).join(", ") || t("none")],
     [t("limits"), limits(found.flagged) || t("none")],
-    [t("how"), found.how],
   ];
 }
 

@@ -1,5 +1,16 @@
 /** A force as an arrow from the contact: as long as the scale says, its tip where the force ends. */
-import { BoxGeometry, type BufferGeometry, ConeGeometry, CylinderGeometry, Group, Mesh, MeshLambertMaterial, Vector3 } from "three";
+import {
+  BackSide,
+  BoxGeometry,
+  type BufferGeometry,
+  ConeGeometry,
+  CylinderGeometry,
+  Group,
+  Mesh,
+  MeshBasicMaterial,
+  MeshLambertMaterial,
+  Vector3,
+} from "three";
 import { mergeGeometries } from "three/addons/utils/BufferGeometryUtils.js";
 import type { Vec } from "../protocol";
 import type { View } from "../view";
@@ -16,6 +27,8 @@ const HEAD_PX = { radius: 7.5, length: 19 };
 /** The head of a short arrow is at most this share of it. */
 const MOST_HEAD = 0.6;
 const DASHES = 5;
+/** A dark hull around it, of which the far side is seen: it stands out from any ground. */
+const RIM_PX = 1.3;
 
 /** The felt force is round and whole; the other law's is square and dashed, so that no colour is needed. */
 const SHAPES: Record<"force" | "other", () => [shaft: BufferGeometry, head: BufferGeometry]> = {
@@ -30,6 +43,7 @@ export class ForceArrow implements Piece {
   private group = new Group();
   private shaft: Mesh;
   private head: Mesh;
+  private rims: [shaft: Mesh, head: Mesh];
   private way = new Vector3();
 
   constructor(view: View, private which: "force" | "other") {
@@ -37,7 +51,9 @@ export class ForceArrow implements Piece {
     const [shaft, head] = SHAPES[which]();
     this.shaft = new Mesh(shaft, paint);
     this.head = new Mesh(head, paint);
-    this.group.add(this.shaft, this.head);
+    const dark = new MeshBasicMaterial({ color: COLOURS.rim, side: BackSide });
+    this.rims = [new Mesh(shaft, dark), new Mesh(head, dark)];
+    this.group.add(this.shaft, this.head, ...this.rims);
     view.overlay(this.group);
   }
 
@@ -52,9 +68,13 @@ export class ForceArrow implements Piece {
     const thin = head / (HEAD_PX.length * pixel);
     this.group.position.set(...live.contact);
     this.group.quaternion.setFromUnitVectors(UP, this.way.set(...force).divideScalar(newtons));
-    this.shaft.scale.set(SHAFT_PX * pixel * thin, metres - head, SHAFT_PX * pixel * thin);
-    this.head.scale.set(HEAD_PX.radius * pixel * thin, head, HEAD_PX.radius * pixel * thin);
+    const [narrow, broad, rim] = [SHAFT_PX * pixel * thin, HEAD_PX.radius * pixel * thin, RIM_PX * pixel * thin];
+    this.shaft.scale.set(narrow, metres - head, narrow);
+    this.head.scale.set(broad, head, broad);
     this.head.position.y = metres - head;
+    this.rims[0].scale.set(narrow + rim, metres - head, narrow + rim);
+    this.rims[1].scale.set(broad + 1.5 * rim, head + 2 * rim, broad + 1.5 * rim);
+    this.rims[1].position.y = metres - head - rim;
   }
 }
 

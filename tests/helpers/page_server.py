@@ -4,7 +4,7 @@ import asyncio
 import http.client
 import json
 import threading
-from collections.abc import Callable
+from collections.abc import AsyncGenerator, Callable
 from contextlib import AbstractContextManager, ExitStack, asynccontextmanager
 from pathlib import Path
 from typing import Any, Self
@@ -59,23 +59,19 @@ class PageServer:
         with _listening(0) as listening:
             self.port = listening.getsockname()[1]
             self.host = f"{HOST}:{self.port}"
-            self.desk: Desk
             app = application(lambda: self.desk, KEY, frozenset({self.host}), self._lifespan)
             self.server = Server(settings(app), lambda: None)
             self.server.run(sockets=[listening])
 
-    def _lifespan(self, _: Any) -> Any:
-        @asynccontextmanager
-        async def live(_: Any) -> Any:
-            self.loop = asyncio.get_running_loop()
-            self.loop.set_exception_handler(lambda _, context: self.complaints.append(context))
-            self.desk = Desk(self.folder, Feeling("ui-test"), [])
-            self.desk.begin(watch(self.desk))
-            self._ready.set()
-            yield
-            await self.desk.close()
-
-        return live(_)
+    @asynccontextmanager
+    async def _lifespan(self, _: Any) -> AsyncGenerator[None]:
+        self.loop = asyncio.get_running_loop()
+        self.loop.set_exception_handler(lambda _, context: self.complaints.append(context))
+        self.desk = Desk(self.folder, Feeling("ui-test"), [])
+        self.desk.begin(watch(self.desk))
+        self._ready.set()
+        yield
+        await self.desk.close()
 
     def __enter__(self) -> Self:
         self._thread.start()

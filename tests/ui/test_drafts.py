@@ -142,9 +142,7 @@ class TestMaker:
         assert bench.shown == ""  # what pages fetch has to be written again
 
     @pytest.mark.parametrize("number", [errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS])
-    def test_a_full_disk_is_one_sentence(
-        self, tmp_path: Path, number: int, monkeypatch: pytest.MonkeyPatch
-    ) -> None:
+    def test_a_full_disk_is_one_sentence(self, tmp_path: Path, number: int, monkeypatch: pytest.MonkeyPatch) -> None:
         def fails(bench: Any) -> None:
             raise OSError(number, os.strerror(number), "/tmp/height.f32")
 

@@ -25,7 +25,8 @@ class Connection(WebSocketsSansIOProtocol):
 
     async def run_asgi(self) -> None:
         """With a way to cut it off: to close it, everything that waits would have to be read first."""
-        self.scope["state"]["cut_off"] = self.transport.abort
+        scope: Any = self.scope
+        scope["state"]["cut_off"] = self.transport.abort
         await super().run_asgi()
 
     def keepalive_timeout(self) -> None:

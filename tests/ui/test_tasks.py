@@ -1,0 +1,143 @@
+"""The main tasks of the page that no other test goes through, by the keyboard alone: judge, record, compare, open again.
+
+That a first visit and an option's way from its form to the file need no mouse is tested in `test_everybody` and
+`test_forms_in_browser`.
+"""
+
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from browser_tabs import OpenPage
+from desks import small_scene
+from page_files import built_page
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+
+LONGEST_S = 60
+
+
+@pytest.fixture
+def page(serve, open_page: OpenPage, tmp_path: Path) -> "Page":
+    built_page()
+    opened = open_page(serve(small_scene(tmp_path), cwd=tmp_path).url)
+    until(lambda: opened.locator("#status").get_attribute("data-state") == "felt")
+    return opened
+
+
+def until(holds: Callable[[], bool]) -> None:
+    end_s = time.monotonic() + LONGEST_S
+    while not holds():
+        assert time.monotonic() < end_s
+        time.sleep(0.05)
+
+
+def press(page: "Page", panel: str, name: str) -> None:
+    """Open a panel and press one of its buttons."""
+    heading = page.locator(f"#{panel} > summary")
+    if page.locator(f"#{panel}").get_attribute("open") is None:
+        heading.press("Enter")
+    page.locator(f"#{panel}").get_by_role("button", name=name, exact=True).first.press("Enter")
+
+
+def says(page: "Page", panel: str, text: str) -> None:
+    until(lambda: text in page.locator(f"#{panel}").inner_text())
+
+
+def test_depth_and_texture_are_run_apart(page: "Page") -> None:
+    for name in ("Run depth", "Run texture"):
+        press(page, "methods", name)
+        until(lambda: page.locator("#status").get_attribute("data-state") in ("idle", "felt"))
+    until(lambda: page.locator("#view input[value=segments]").count() == 1)
+    press(page, "methods", "Make and feel")
+    until(lambda: page.locator("#status").get_attribute("data-state") == "felt")
+
+
+def test_what_preflight_says_is_put_right(page: "Page") -> None:
+    page.locator("#yaml > summary").press("Enter")
+    before = page.locator("#yaml-text").input_value()
+    page.locator("#yaml-text").fill(before.replace("stiffness_n_per_m: 400", "stiffness_n_per_m: 40000"))
+    until(lambda: "Not taken over yet" in page.locator("#yaml-state").inner_text())
+    until(lambda: "Nothing is wrong" in page.locator("#yaml-state").inner_text())
+    press(page, "preflight", "Check now")
+    until(lambda: page.locator("#preflight button", has_text="stiffness").count() > 0)
+    page.locator("#preflight button", has_text="stiffness").first.press("Enter")
+    until(lambda: "40000" not in page.locator("#yaml-text").input_value())
+
+
+def test_a_stroke_is_recorded_played_and_felt_again_with_another_law(page: "Page") -> None:
+    press(page, "records", "Record what is felt")
+    until(lambda: "Recording: " in page.locator("#records").inner_text())
+    surface = page.locator("#terrain")
+    surface.focus()
+    surface.press("Home")
+    surface.press(" ")
+    until(lambda: "Collision" in page.locator("#data-cursor").inner_text())
+    until(lambda: "yes" in page.locator("#data-cursor").inner_text())
+    page.wait_for_timeout(500)
+    surface.press(" ")
+    press(page, "records", "Stop recording")
+    says(page, "records", "Recorded: ")
+    until(lambda: page.locator("#records-list option").count() == 1)
+    page.locator("#records-list").press("ArrowDown")
+    press(page, "records", "Show")
+    place = page.locator("#records-place")
+    until(place.is_visible)
+    place.press("End")
+    until(lambda: float(place.input_value()) > 0.4)
+    press(page, "records", "Play")
+    press(page, "records", "Back to what is felt now")
+    until(lambda: not place.is_visible())
+    page.locator("#records-list").press("ArrowDown")
+    press(page, "records", "Feel it again with the law on the screen")
+    until(lambda: page.locator("#records-list option").count() == 2)
+    says(page, "records", "worst error n")
+
+
+def test_two_laws_are_compared_and_blindly_too(page: "Page") -> None:
+    page.locator("#laws > summary").press("Enter")
+    until(lambda: page.locator("#laws-other option").count() > 3)
+    page.locator("#laws-options").fill("{stiffness_n_per_m: 200}")
+    page.locator("#laws-other").press("p")
+    press(page, "laws", "Compare")
+    says(page, "laws", "Now felt: a, ")
+    page.locator("#laws button", has_text="b: ").press("Enter")
+    says(page, "laws", "Now felt: b, ")
+    press(page, "laws", "Begin a blind test")
+    says(page, "laws", "Trial 1")
+    press(page, "laws", "Feel 2")
+    says(page, "laws", "now felt is 2")
+    press(page, "laws", "2 it is")
+    says(page, "laws", "Trial 2")
+    press(page, "laws", "End the test and say which was which")
+    says(page, "laws", "chosen 1 times")
+    press(page, "laws", "End the comparison")
+    until(page.locator("#laws-other").is_visible)
+
+
+def test_a_part_is_felt_enlarged_and_what_is_saved_opens_the_same(page: "Page", tmp_path: Path) -> None:
+    page.locator("#terrain").focus()
+    page.keyboard.press("z")
+    page.locator("#yaml > summary").press("Enter")
+    text = page.locator("#yaml-text")
+    until(lambda: "region_m" in text.input_value())
+    zoomed = text.input_value()
+    page.locator("#yaml-path").fill(str(tmp_path / "zoomed.yaml"))
+    press(page, "yaml", "Save")
+    until((tmp_path / "zoomed.yaml").is_file)
+    page.locator("#terrain").focus()
+    page.keyboard.press("Shift+Z")
+    until(lambda: "region_m" not in text.input_value())
+    folder = page.locator("#open details", has_text="Folder of this computer")
+    folder.locator("summary").press("Enter")
+    page.locator("#open-folder").fill(str(tmp_path))
+    page.locator("#open-folder").press("Enter")
+    entry = page.locator("#open-entries option[value='zoomed.yaml']")
+    until(lambda: entry.count() == 1)
+    page.locator("#open-entries").select_option("zoomed.yaml")
+    page.locator("#open-entries").press("Enter")
+    until(lambda: text.input_value() == zoomed)

@@ -60,12 +60,14 @@ def test_depth_and_texture_are_run_apart(page: "Page") -> None:
 def test_what_preflight_says_is_put_right(page: "Page") -> None:
     page.locator("#yaml > summary").press("Enter")
     before = page.locator("#yaml-text").input_value()
-    page.locator("#yaml-text").fill(before.replace("stiffness_n_per_m: 400", "stiffness_n_per_m: 40000"))
+    page.locator("#yaml-text").fill(
+        before.replace("texture: {use: gabor, segments: 3}\n", "").replace("_m: 400}", "_m: 40000}")
+    )
     until(lambda: "Not taken over yet" in page.locator("#yaml-state").inner_text())
     until(lambda: "Nothing is wrong" in page.locator("#yaml-state").inner_text())
     press(page, "preflight", "Check now")
-    until(lambda: page.locator("#preflight button", has_text="stiffness").count() > 0)
-    page.locator("#preflight button", has_text="stiffness").first.press("Enter")
+    until(lambda: page.locator("#preflight button", has_text="stiffness_n_per_m").count() > 0)
+    page.locator("#preflight button", has_text="stiffness_n_per_m").first.press("Enter")
     until(lambda: "40000" not in page.locator("#yaml-text").input_value())
 
 

@@ -25,6 +25,7 @@ SECTIONS = {
     "servo_faults": "Faults around the force loop",
     "record": "Recordings",
     "devices": "Devices",
+    "ui": "The page",
     "tests": "The test run",
     "mutants": "Faults that the tests notice",
 }

@@ -59,7 +59,8 @@ Next:
   tangible plan {config}              what a run does and why, without running it
   tangible feel {config} --seconds 5  the same surface on the configured device
   tangible run {config} --set render.use=grey-level   the report's own law, to compare
-  tangible plugins                    what else there is to put into `use:`"""
+  tangible plugins                    what else there is to put into `use:`
+  tangible ui {config}                see it, hear it and feel it with the mouse, on a page in the browser"""
 
 
 def run(

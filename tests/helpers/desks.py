@@ -68,7 +68,11 @@ class InlineMaker:
         finally:
             self._waiting.discard(future)
 
-    quick = ask
+    async def quick(self, job: str, **told: Any) -> Any:
+        try:
+            return await self.ask(job, **told)
+        except MakingStopped:
+            return await self.ask(job, **told)
 
     async def _do(self, job: str, told: dict[str, Any]) -> Any:
         bench = self.bench

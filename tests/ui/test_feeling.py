@@ -217,6 +217,14 @@ class TestWhatEndsByItself:
         assert feeling.feel(felt(feeling)) is not None
         assert feeling.running
 
+    def test_a_falcon_that_is_pulled_out_while_it_is_homed(self, feeling: Feeling) -> None:
+        """The real driver says what happened."""
+        falcon = load_method("device", "falcon-simulated")(faults=({"at": "read", "after": 200},))
+        with pytest.raises(DeviceError, match="it was unplugged; check its plug"):
+            feeling.feel(felt(feeling, falcon))
+        assert not feeling.running
+        assert state(feeling)[13:16] == (0, 0, 0)
+
 
 class TestStop:
     def stops(self, feeling: Feeling, doing: Callable[[], Any]) -> list[Any]:
@@ -258,11 +266,12 @@ class TestStop:
         assert feeling.feel(felt(feeling)) is not None
 
     def test_feeling_again_at_once(self, feeling: Feeling) -> None:
-        """The loop that was stopped is still there."""
+        """The loop that was stopped is still there, and who waits for its end does not end the next one."""
         feeling.start()
-        feeling.cut()
+        ended = feeling.cut()
         feeling.allow()
         assert feeling.feel(felt(feeling)) is not None
+        ended()
         assert feeling.running
         assert feeling.ended() is None
 

@@ -20,7 +20,7 @@ from tangible_ui import desk as desk_module
 from tangible_ui.asks import ASKS
 from tangible_ui.desk import Desk
 from tangible_ui.feeling import Feeling
-from tangible_ui.hand import high_without_client, under
+from tangible_ui.hand import high_without_client
 from tangible_ui.watching import watch
 
 LEVEL = HapticSurface.from_heights(np.full((32, 32), 0.002, np.float32))
@@ -233,24 +233,6 @@ class Motor(HapticDevice):
 
     def open(self):
         raise DeviceError("it was opened")
-
-
-@pytest.mark.parametrize(
-    "mapping",
-    [
-        WorkspaceMapping(),
-        WorkspaceMapping(scale=2.0, rotation_deg=90.0, offset_m=(0.01, 0.02, 0.03)),
-        WorkspaceMapping(region_m=(0.01, -0.02, 0.03, 0.01), rotation_deg=-30.0),
-    ],
-)
-def test_under_the_picture_is_where_the_mapping_finds_it(mapping: WorkspaceMapping) -> None:
-    """As the kernels place it."""
-    from tangible_core.mapping import kernels
-
-    to, at = mapping.placement((1.0, 1.0, 1.0)), (0.012, -0.034, 0.005)
-    state = np.array([*under(to, at), 0, 0, 0, 0])
-    kernels.place(to, np.zeros(kernels.MEMORY), state)
-    np.testing.assert_allclose(state[:3], at, atol=1e-12)
 
 
 @pytest.mark.parametrize(

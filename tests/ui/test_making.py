@@ -232,10 +232,10 @@ def test_stopping_kills_the_maker_only_while_it_makes(small: Any, monkeypatch: p
         making = asyncio.ensure_future(ask("make"))
         assert await asyncio.to_thread(begun.wait, 20)
         await ask("stop_making")
+        go.set()
         assert await making is None  # who stops is not told of an error
         assert small.maker.kills == 1
         assert small.tab.last("made")["outcome"] == "stopped"
-        go.set()
         assert "error" not in small.tab.names()
         await ask("make")
         assert small.tab.last("made")["outcome"] == "made"

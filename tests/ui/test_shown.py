@@ -6,11 +6,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tangible_ui.maker import levels, making, textures
-from tangible_ui.maker.bench import Bench
-from tangible_ui.maker.seen import Layer, Seen, is_there, see
-from tangible_ui.maker.shown import KEPT, show
-from tangible_ui.windows import read_window
 
 from tangible_core import load_method
 from tangible_core.data import Material, Relief
@@ -20,6 +15,11 @@ from tangible_core.haptic_textures.heights import texture_height
 from tangible_core.metrics import absolute_error
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.scene.scene import Scene
+from tangible_ui.maker import levels, making, textures
+from tangible_ui.maker.bench import Bench
+from tangible_ui.maker.seen import Layer, Seen, is_there, see
+from tangible_ui.maker.shown import KEPT, show
+from tangible_ui.windows import read_window
 
 RANDOM = np.random.default_rng(3)
 WOOD = Material("wood", 800.0, 1.0, 0.4, 0.3, roughness_m=3e-5, grain_m=6e-4, texture="stochastic", seed=4)
@@ -35,6 +35,11 @@ def seen(height_m: np.ndarray, **more) -> Seen:
 
 def made(kind: str, name: str):
     return load_method(kind, name)()
+
+
+def of_photo(picture: np.ndarray) -> Pipeline:
+    methods = {kind: made(kind, name) for kind, name in (("depth", "luminance"), ("texture", "gradient"))}
+    return Pipeline(Scene.of(photo=picture), **methods, cached=False)
 
 
 def array(folder: Path, about: dict, name: str, kind: str, level: int = 0) -> np.ndarray:
@@ -175,7 +180,7 @@ class TestSee:
     def test_segments_lie_over_the_flat_picture_and_no_depth_is_made_for_it(self):
         picture = np.zeros((40, 60), np.uint8)
         picture[:, 30:] = np.random.default_rng(1).integers(0, 255, (40, 30))
-        pipeline = Pipeline(Scene.of(photo=picture), depth=made("depth", "luminance"), texture=made("texture", "gradient"), cached=False)
+        pipeline = of_photo(picture)
         pipeline.make("segments")
         found = see(pipeline, "segments")
         assert found.shows == "segments"
@@ -185,7 +190,7 @@ class TestSee:
 
     def test_they_lie_over_the_relief_that_is_there(self):
         picture = np.random.default_rng(1).integers(0, 255, (40, 60)).astype(np.uint8)
-        pipeline = Pipeline(Scene.of(photo=picture), depth=made("depth", "luminance"), texture=made("texture", "gradient"), cached=False)
+        pipeline = of_photo(picture)
         pipeline.make("relief")
         pipeline.make("segments")
         assert see(pipeline, "segments").relief.height_m.max() > 0
@@ -214,9 +219,9 @@ def test_every_product_can_be_asked_for_and_what_is_shown_is_told_once(tmp_path:
     bench = Bench(tmp_path, lambda event, **more: told.append((event, more)))
     text = "scene: builtin/brick\ndepth: {use: luminance}\ntexture: {use: histogram}\nrender: {use: penalty}\n"
     for want in ("segments", "materials", "disparity", "relief", "surface", "surface"):
-        assert making.make(bench, text, tmp_path / "p.yaml", [], want) is None
+        assert making.make(bench, 1, text, tmp_path / "p.yaml", [], want) is None
     shown = [more["shows"] for event, more in told if event == "scene"]
-    assert shown == ["segments", "segments", "relief", "surface"]
+    assert shown == ["segments", "relief", "surface"]
 
 
 class TestTexture:
@@ -260,9 +265,10 @@ class TestTexture:
             textures.texture_patch(bench, **told)
 
 
-class TestWindow:
-    ASKED = {"row": 2, "rows": 3, "column": 5, "columns": 4, "of": 11, "bytes": 2}
+ASKED = {"row": 2, "rows": 3, "column": 5, "columns": 4, "of": 11, "bytes": 2}
 
+
+class TestWindow:
     @pytest.fixture
     def path(self, tmp_path: Path) -> Path:
         path = tmp_path / "labels"
@@ -270,7 +276,7 @@ class TestWindow:
         return path
 
     def test_it_is_the_rectangle(self, path: Path):
-        found = np.frombuffer(read_window(path, self.ASKED), "<u2").reshape(3, 4)
+        found = np.frombuffer(read_window(path, ASKED), "<u2").reshape(3, 4)
         np.testing.assert_array_equal(found, np.arange(77).reshape(7, 11)[2:5, 5:9])
 
     @pytest.mark.parametrize(
@@ -278,4 +284,4 @@ class TestWindow:
     )
     def test_there_is_none_beyond_the_file(self, path: Path, wrong: dict):
         with pytest.raises(ValueError, match="no such window"):
-            read_window(path, self.ASKED | wrong)
+            read_window(path, ASKED | wrong)

@@ -13,10 +13,12 @@ from .choice import Choice, NotAgreed
 from .drafts import Drafts
 from .failing import told
 from .feeling import Feeling, Felt
+from .laws import Laws
 from .maker import Maker
 from .maker.messages import Event
 from .makes import Makes
 from .recorder import Recorder
+from .rival import Rival
 from .shelf import Shelf, user_folder
 from .texts import Texts
 
@@ -54,6 +56,7 @@ class Desk:
         self.shelf = Shelf(user_folder("opened"), folder / "incoming")
         self.recorder: Recorder | None = None
         """Of the recording that was made last, or is being made."""
+        self.laws = Laws(Rival(f"{feeling.channel}-beside"))
         self.scene: dict[str, Any] | None = None
         self.tabs: list[Tab] = []
         self.holder: Tab | None = None
@@ -89,6 +92,9 @@ class Desk:
                 self.tell("loop", running=False, why=str(error), lost=isinstance(error, DeviceError))
             raise
         if seconds is not None:
+            self.laws.alone()
+            self.tell("laws", **self.laws.told())
+            await asyncio.to_thread(self.laws.rival.close)
             self.tell("touch", law=felt.law, seconds=seconds, how=self.feeling.how)
             self.tell("loop", running=True, why="", device=felt.device_name, own_hand=felt.own_hand)
 
@@ -168,5 +174,6 @@ class Desk:
         try:
             await asyncio.to_thread(self.feeling.stop)
         finally:
+            await asyncio.to_thread(self.laws.rival.close)
             if self.recorder is not None:
                 await asyncio.to_thread(self.recorder.stop)

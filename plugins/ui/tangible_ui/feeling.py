@@ -11,7 +11,7 @@ from typing import Any, NamedTuple, final
 
 from tangible_core.data import Vector
 from tangible_core.errors import DeviceError, TangibleError
-from tangible_core.mapping import MappedDevice, WorkspaceMapping
+from tangible_core.mapping import MappedDevice, WorkspaceMapping, placement_of
 from tangible_core.plugins.failures import sentence
 from tangible_core.plugins.interfaces import HapticDevice
 from tangible_core.servo import Packed, Safety, Servo, still
@@ -56,6 +56,18 @@ class Felt(NamedTuple):
     def held(self) -> HapticDevice:
         """The device itself."""
         return unmapped(self.device)
+
+
+class Beside(NamedTuple):
+    """What is shown beside the law that is felt."""
+
+    force_n: Vector = NOBODY
+    """Of another law on the same hand."""
+    blind: bool = False
+    """Whether who feels shall not see which law it is: not every law has a proxy."""
+
+
+ALONE = Beside()
 
 
 class Ended(NamedTuple):
@@ -127,7 +139,7 @@ class Feeling:
             if self.stopped or self.running:
                 return None
             with self._unless_stopped() as stopped:
-                self._restart(load_method("device", "pointer")(**options), WorkspaceMapping(), own_hand=True)
+                self._restart(load_method("device", "pointer")(**options), own_hand=True)
         return None if stopped() else time.monotonic() - begun_s
 
     def feel(self, felt: Felt) -> float | None:
@@ -143,7 +155,7 @@ class Feeling:
                     return None
                 with self._unless_stopped() as stopped:
                     if not self.running or felt.device != self._device:
-                        self._restart(felt.device, felt.mapping, felt.own_hand)
+                        self._restart(felt.device, felt.own_hand)
                     assert self._servo is not None
                     self._servo.swap(felt.touch, felt.safety)
             finally:
@@ -151,23 +163,30 @@ class Feeling:
                 felt.touch.discard()
         return None if stopped() else time.monotonic() - begun_s
 
-    def cut(self) -> None:
-        """No force from the next tick on, and none until `allow`. Waits for nothing and nobody."""
+    def cut(self) -> Callable[[], None]:
+        """No force from the next tick on, and none until `allow`. Waits for nothing and nobody.
+
+        Returns: what waits until the loops that there are now are gone, and leaves later ones alone.
+        """
         self.stopped, self._stops = True, self._stops + 1
         self._told = self._servo
         self.hand.release()
-        for servo in (self._starting, self._servo):
-            if servo is not None:
-                with suppress(DeviceError):  # it has no ring yet; what it begins with gives no force
-                    servo.ring.header[STOP] = 1
+        cut = [servo for servo in (self._starting, self._servo) if servo is not None]
+        for servo in cut:
+            with suppress(DeviceError):  # it has no ring yet; what it begins with gives no force
+                servo.ring.header[STOP] = 1
+
+        def ended() -> None:
+            for servo in cut:
+                _end(servo)
+
+        return ended
 
     def stop(self) -> None:
-        """No force, at once; returns when the loop is gone. Does not wait for one that starts, nor for a swap."""
-        self.cut()
+        """No force, at once, and for good; returns when the loop is gone, but does not wait for one that starts."""
+        ended = self.cut()
         self.hand.close()
-        for servo in (self._starting, self._servo):
-            if servo is not None:
-                _end(servo)
+        ended()
 
     def allow(self) -> None:
         """Loops may start again."""
@@ -181,7 +200,7 @@ class Feeling:
         self._told = servo
         return None if self.stopped else Ended(_end(servo), servo.lost)
 
-    def frame(self, seq: int, status: int) -> bytes | None:
+    def frame(self, seq: int, status: int, beside: Beside = ALONE) -> bytes | None:
         """The newest tick as a STATE; a hand that is nowhere without a loop; None for a tick that was overwritten."""
         servo = self._servo
         if servo is None or not self.running:
@@ -194,7 +213,7 @@ class Feeling:
         tag = int(buttons) >> BUTTON_BITS
         return STATE_FRAME.pack(
             STATE, status, int(flags), seq & 0xFFFFFFFF, tag, servo.ring.overruns, sample_ms,
-            x, y, z, px, py, pz, fx, fy, fz, vx, vy, vz, *NOBODY, 1e6 * late,
+            x, y, z, *(UNKNOWN if beside.blind else (px, py, pz)), fx, fy, fz, vx, vy, vz, *beside.force_n, 1e6 * late,
         )  # fmt: skip
 
     @contextmanager
@@ -217,7 +236,7 @@ class Feeling:
             if stopped() and self._servo is not None:
                 _end(self._servo)
 
-    def _restart(self, device: HapticDevice, mapping: WorkspaceMapping, own_hand: bool) -> None:
+    def _restart(self, device: HapticDevice, own_hand: bool) -> None:
         """Another loop, on this device; it begins without force."""
         self.hand.close()
         before, self._servo, self._device = self._servo, None, None
@@ -230,7 +249,7 @@ class Feeling:
         finally:
             self._starting = None
         if own_hand and self.running:
-            self.hand.open(mapping.placement(unmapped(device).spec().workspace_m))
+            self.hand.open(placement_of(device))
 
 
 def unmapped(device: HapticDevice) -> HapticDevice:

@@ -91,20 +91,10 @@ class Hand:
             if held is NOBODY and high_without_client(self._to):
                 client.release()
             else:
-                client.send(under(self._to, held.at), held.buttons)
+                client.send(self._to.under_hand(held.at), held.buttons)
         except DeviceError:
             if self._client is client:
                 self.close()
-
-
-def under(to: Placement, at: Vector) -> Vector:
-    """Where the pointer has to be for the hand to be there in the picture: h = o + k R (s - c)."""
-    x, y = to.scale * (at[0] - to.centre_x_m), to.scale * (at[1] - to.centre_y_m)
-    return (
-        to.offset_x_m + to.cos * x - to.sin * y,
-        to.offset_y_m + to.sin * x + to.cos * y,
-        to.offset_z_m + to.scale * at[2],
-    )
 
 
 def high_without_client(to: Placement) -> bool:

@@ -135,7 +135,7 @@ class LiveTab:
                 while self._seq - self._drawn >= IN_FLIGHT:
                     self._acked.clear()
                     await self._acked.wait()
-                if frame := self._desk.feeling.frame(self._seq + 1, self._status()):
+                if frame := self._desk.feeling.frame(self._seq + 1, self._status(), self._desk.laws.beside()):
                     self._seq += 1
                     await self._socket.send_bytes(frame)
 

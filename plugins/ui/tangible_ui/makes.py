@@ -14,7 +14,7 @@ class Makes:
         self.apply_after = False
         """Whether to look, after the one at work, if what was edited meanwhile can be applied at once."""
         self.killed = False
-        """Whether the maker was killed for the sake of the newest, which is then asked for again."""
+        """Whether the maker was killed for an earlier one: if the newest met the one that died, it is asked again."""
 
     def begin(self) -> int:
         """The number of another one."""
@@ -25,4 +25,4 @@ class Makes:
     def stop(self) -> None:
         """None of those at work is wanted any more."""
         self.newest += 1
-        self.killed = self.apply_after = False
+        self.killed, self.apply_after = True, False

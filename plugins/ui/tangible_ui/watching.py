@@ -6,14 +6,15 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from .desk import Desk
 
-KEEP_S = 0.02
-"""How often the server says that it lives."""
+KEEP_S = 0.01
+"""How often the server says that it lives, and hands the hand on to a law that is computed beside."""
 
 
 async def watch(desk: "Desk") -> None:
     """Until the server ends."""
     while True:
         desk.feeling.hand.keep()
+        desk.laws.follow(desk.feeling)
         if (ended := desk.feeling.ended()) is not None:
             desk.tell("loop", running=False, why=ended.why, lost=ended.lost)
         await asyncio.sleep(KEEP_S)

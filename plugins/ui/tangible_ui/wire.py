@@ -8,8 +8,7 @@ STATE, POINTER, ACK, RELEASE = 1, 2, 3, 4
 """The first byte of a frame: its kind."""
 STATE_FRAME = struct.Struct("<BBHIIId15ff8x")
 """To the page, 96 bytes: kind, status, flags, seq, tag, overruns, sample_ms; hand 3, proxy 3, force 3, velocity 3,
-force of the other law 3; late_us. Metres, newtons, metres per second, in the picture's frame; the time is of the Unix
-clock."""
+force of the other law 3; late_us. Metres, newtons, metres per second, in the picture's frame; the Unix clock's time."""
 POINTER_FRAME = struct.Struct("<BBxxIdfff4x")
 """From the page, 32 bytes: kind, buttons, tag, sent_ms, hand 3. The hand is in the picture's frame, metres."""
 ACK_FRAME = struct.Struct("<BxxxI")

@@ -14,7 +14,17 @@ from ...compiled.compiling import KERNEL, inner
 from . import layout as at
 from .vectors import nought, shortened
 
+FASTEST_M_PER_S = 10.0
+"""No hand is faster: a device that leaps, as a pointer does that is let go of, does not drag the tool behind it."""
 READ, WRITTEN = types.Array(float64, 1, "C", readonly=True), types.Array(float64, 1, "C")
+
+
+@inner(forceinline=True)
+def _leapt(settings, memory, elapsed_s, x, y, z):
+    """Whether the device is farther from its tool than the leash and any hand's way in this period."""
+    dx, dy, dz = memory[at.TOOL] - x, memory[at.TOOL + 1] - y, memory[at.TOOL + 2] - z
+    most = settings[at.MAX_FORCE_N] / settings[at.COUPLING] + FASTEST_M_PER_S * elapsed_s
+    return dx * dx + dy * dy + dz * dz > most * most
 
 
 @inner(forceinline=True)
@@ -47,7 +57,8 @@ def couple(settings, memory, period_s, x, y, z, vx, vy, vz):
     if settings[at.COUPLING] <= 0.0:
         return x, y, z, vx, vy, vz
     elapsed_s = memory[at.AGE_S] + period_s
-    if np.isnan(memory[at.TOOL]) or not _lead_tool(settings, memory, elapsed_s, (x, y, z), (vx, vy, vz)):
+    lost = np.isnan(memory[at.TOOL]) or _leapt(settings, memory, elapsed_s, x, y, z)
+    if lost or not _lead_tool(settings, memory, elapsed_s, (x, y, z), (vx, vy, vz)):
         memory[at.TOOL], memory[at.TOOL + 1], memory[at.TOOL + 2] = x, y, z
         memory[at.TOOL + 3], memory[at.TOOL + 4], memory[at.TOOL + 5] = vx, vy, vz
     tool = memory[at.TOOL], memory[at.TOOL + 1], memory[at.TOOL + 2]

@@ -18,6 +18,7 @@ from tangible_core.plugins.interfaces import Touch
 from tangible_core.servo import OVER, Safety, Servo
 from tangible_core.servo.ring import shared_folder
 from tangible_core.testing.loop_devices import Circling, Failing
+from tangible_core.testing.loop_laws import FaultyTouch
 
 FLAGS = TICK_COLUMNS.index("flags")
 FORCE = slice(TICK_COLUMNS.index("fx_n"), TICK_COLUMNS.index("fx_n") + 3)
@@ -127,7 +128,11 @@ class TestSwap:
 
     def test_another_law(self) -> None:
         with Servo(proxy(), Circling()) as servo:
+            assert "the tick is Python's" not in servo.how
+            servo.swap(FaultyTouch())
+            assert "the tick is Python's" in servo.how
             servo.swap(load_method("render", "penalty")().touch(LEVEL))
+            assert "the tick is Python's" not in servo.how
             there = servo.report().ticks
             until(lambda: servo.report().ticks > there + 20)
 

@@ -3,7 +3,7 @@
 from collections.abc import Awaitable, Callable, Mapping
 from typing import Any
 
-from . import devices, document, drafts, feeling, making, opening, records, seeing
+from . import devices, document, drafts, feeling, laws, making, mapping, opening, preflight, records, seeing
 
 Ask = Callable[..., Awaitable[Any]]
 """Called with the desk, the tab, and what the tab says by name; the tab is answered with what it returns, as JSON."""
@@ -13,8 +13,11 @@ ASKS: Mapping[str, Ask] = {
     **drafts.ASKS,
     **making.ASKS,
     **seeing.ASKS,
+    **preflight.ASKS,
+    **mapping.ASKS,
     **feeling.ASKS,
     **opening.ASKS,
     **records.ASKS,
     **devices.ASKS,
+    **laws.ASKS,
 }

@@ -8,7 +8,7 @@ from tangible_core.errors import ConfigError, DeviceError
 from ..choice import Choice
 from ..desk import Desk, Tab
 from ..doctor import figures
-from .document import make
+from .making import make
 
 FIRST_PAUSE_S, LONGEST_PAUSE_S = 1.0, 8.0
 """Before a device is looked for again; twice as long each time: to look for one starts a process."""
@@ -31,7 +31,8 @@ async def about_device(desk: Desk, tab: Tab | None, kind: str, name: str = "") -
 
 
 async def choose_device(desk: Desk, tab: Tab | None, kind: str, name: str = "", sure: bool = False) -> None:
-    """Feel with the page's own hand ("hand"), the document's device ("document"), or another one by its name ("other").
+    """Feel with the page's own hand ("hand"), the document's device ("document"), or another one by its name ("other");
+    also after a stop.
 
     sure: that the person was told that it has a motor, and said yes; it is not opened without.
     Raises: NotAgreed, DeviceError if it cannot be opened.
@@ -42,8 +43,8 @@ async def choose_device(desk: Desk, tab: Tab | None, kind: str, name: str = "", 
         raise ConfigError(f"{about['name']} has a motor: say yes to that first")
     desk.choice = choice
     desk.tell("device", kind=choice.kind, name=about["name"])
-    if not desk.feeling.stopped:
-        await make(desk, tab)
+    desk.feeling.allow()
+    await make(desk, tab)
 
 
 async def wait_for_device(desk: Desk, tab: Tab | None) -> None:

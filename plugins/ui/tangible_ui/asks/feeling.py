@@ -13,9 +13,9 @@ async def hold(desk: Desk, tab: Tab) -> None:
 
 async def stop(desk: Desk, tab: Tab | None) -> None:
     """No force, at once, and none until `feel`, whatever else is made meanwhile."""
-    desk.feeling.cut()  # before anything is waited for
+    ended = desk.feeling.cut()  # before anything is waited for
     desk.tell("loop", running=False, why="stopped", stopped=True)
-    await asyncio.to_thread(desk.feeling.stop)
+    await asyncio.to_thread(ended)
 
 
 async def feel(desk: Desk, tab: Tab) -> None:

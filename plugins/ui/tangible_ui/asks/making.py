@@ -1,26 +1,20 @@
-"""Make what the document says: products, what is felt, and what is to be judged before; and stop."""
+"""Make what the document says: products, and what is felt; and stop."""
 
 import asyncio
-import json
 from typing import Any
 
-from tangible_core.data import TICK_COLUMNS
 from tangible_core.errors import Stopped
-from tangible_core.servo.ring import PERIOD_NS, SPINS
 
 from ..desk import Desk, Tab
 from ..maker.handle import MakingStopped
-from ..maker.messages import Late
 
 PATIENCE_S = 1.5
 """So long what is outdated may take to end by itself."""
-LEAST_TICKS = 1000
-"""Of a loop whose lateness counts."""
 
 
 async def make(desk: Desk, tab: Tab | None, want: str = "touch") -> None:
     """Make a product of the document, and feel it if it is a touch. What was being made before gives way."""
-    made = await _long(desk, "make", want, sets=desk.felt_sets(), want=want)
+    made = await long_job(desk, "make", want, sets=desk.felt_sets(), want=want)
     if made is not None:
         await desk.feel(made)
 
@@ -37,24 +31,6 @@ async def try_again(desk: Desk, tab: Tab | None) -> None:
     desk.maker.try_again()
 
 
-async def preflight(desk: Desk, tab: Tab | None) -> dict[str, Any] | None:
-    """Judge the document on its device, or on the page's own hand where it names none."""
-    return await _long(desk, "preflight", "touch", sets=desk.sets, **await _loop(desk))
-
-
-async def fix(desk: Desk, tab: Tab | None, apply: bool = False) -> dict[str, Any] | None:
-    """Change what preflight would have changed, and judge again."""
-    from .document import change
-
-    found = await _long(desk, "fix", "touch", sets=desk.sets, **await _loop(desk))
-    if found is None:
-        return None
-    if found["changes"]:
-        await change(desk, tab, changes=found["changes"], apply=apply)
-    await preflight(desk, tab)
-    return found
-
-
 async def foresee(desk: Desk, apply: bool = False) -> None:
     """Tell what making the document would do; make it if that is asked for and nothing slow has to run."""
     digest, told = desk.digest, {"text": desk.text, "path": desk.path, "sets": desk.felt_sets()}
@@ -68,7 +44,7 @@ async def foresee(desk: Desk, apply: bool = False) -> None:
         await make(desk, None)
 
 
-async def _long(desk: Desk, job: str, needs: str, sets: list[str], **told: Any) -> Any:
+async def long_job(desk: Desk, job: str, needs: str, sets: list[str], **told: Any) -> Any:
     """Do a long job of the document as it is now; None if it was stopped, which pages hear.
 
     needs: the product that it is made from. Raises: whatever the job raises.
@@ -116,18 +92,4 @@ async def _insist(desk: Desk, numbers: set[int]) -> None:
         desk.maker.kill()
 
 
-async def _loop(desk: Desk) -> dict[str, Any]:
-    """The page's own hand, and how late the loop's ticks begin, where enough of them were."""
-    own = f"device={json.dumps(desk.feeling.own_device)}"
-    servo = desk.feeling.servo
-    if servo is None or not desk.feeling.running:
-        return {"own": own, "late": None}
-    rows, _ = servo.ring.since(0)
-    header = servo.ring.header
-    late = Late(rows[:, TICK_COLUMNS.index("late_s")], float(header[PERIOD_NS]) / 1e9, bool(header[SPINS]))
-    return {"own": own, "late": late if len(rows) >= LEAST_TICKS else None}
-
-
-ASKS = {
-    "make": make, "stop_making": stop_making, "try_again": try_again, "preflight": preflight, "fix": fix,
-}  # fmt: skip
+ASKS = {"make": make, "stop_making": stop_making, "try_again": try_again}

@@ -8,7 +8,8 @@ from tangible_core.errors import ConfigError
 from tangible_core.files.paths import as_path
 
 from ..desk import Desk, Tab
-from .document import begin, edit, make
+from .document import begin, edit
+from .making import make
 
 
 async def folder(desk: Desk, tab: Tab | None, path: str = "") -> dict[str, Any]:

@@ -1,13 +1,16 @@
 """Everything the maker can be asked, by name."""
 
-from . import checking, devices, making, opening, preflight, records, textures
+from . import checking, devices, laws, making, mapping, opening, preflight, records, textures
 
 JOBS = {
     **making.JOBS,
     **checking.JOBS,
+    **mapping.JOBS,
     **opening.JOBS,
     **preflight.JOBS,
     **records.JOBS,
     **devices.JOBS,
     **textures.JOBS,
+    **laws.JOBS,
+    **mapping.JOBS,
 }

@@ -19,12 +19,12 @@ from tangible_core.servo import packed
 
 from .bench import Bench, Job, Work
 from .checking import digest_of
+from .described import described
 from .seen import Seen, see
 from .shown import show
 
 SLOW = ("disparity", "segments")
 """Products that take seconds: who edits says when they are made."""
-WITHIN = "within what is kept of what is made from it"
 
 
 def plan(bench: Bench, text: str, path: Path, sets: list[str], want: str) -> dict[str, Any]:
@@ -50,7 +50,7 @@ def _all_steps(pipeline: Pipeline, found: Plan) -> list[Outcome]:
         needed = pipeline.engine.needed(found.want)
         for each in pipeline.outcomes:
             if each.product in needed and each.product not in steps:
-                steps[each.product] = each if each.outcome == "given" else replace(each, outcome="cached", why=WITHIN)
+                steps[each.product] = each if each.outcome == "given" else replace(each, outcome="cached", why="")
     order = ["views", *PRODUCTS]
     return sorted(steps.values(), key=lambda each: order.index(each.product))
 
@@ -70,7 +70,7 @@ def make(bench: Bench, number: int, text: str, path: Path, sets: list[str], want
         pipeline.make(product, heard, work.stop)
         _show(bench, pipeline, product)
         work.worth = True
-        made = _touch(pipeline, heard, work.stop) if want == "touch" else None
+        made = felt(pipeline, heard, work.stop) if want == "touch" else None
     bench.tell("made", want=want, digest=digest_of(text), outcome="made", why="", seconds=perf_counter() - begun_s)
     return made
 
@@ -103,6 +103,7 @@ def _show(bench: Bench, pipeline: Pipeline, product: str) -> None:
     if (seen := see(pipeline, product)).digest != bench.shown:
         bench.tell("scene", **show(seen, bench.folder))
         bench.shown = seen.digest
+        bench.tell("described", **described(pipeline, seen))
     bench.tell("materials", segments=_segments(pipeline, seen))
 
 
@@ -120,7 +121,8 @@ def _segments(pipeline: Pipeline, seen: Seen) -> list[dict[str, Any]]:
     ]
 
 
-def _touch(pipeline: Pipeline, heard: Progress, stop: Event) -> dict[str, Any]:
+def felt(pipeline: Pipeline, heard: Progress | None = None, stop: Event | None = None) -> dict[str, Any]:
+    """What the force loop needs of a touch, which is made. Raises: ConfigError without a device; as `Pipeline.make`."""
     touch, config = pipeline.make("touch", heard, stop), pipeline.config
     if config.device is None or config.felt_device is None:
         raise config.missing("device")

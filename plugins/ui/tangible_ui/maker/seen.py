@@ -10,6 +10,7 @@ from jaxtyping import Float32, Int32
 from tangible_core.data import DisparityMap, Material, Relief, SegmentMap
 from tangible_core.data.records import digest_of
 from tangible_core.metrics import absolute_error
+from tangible_core.pipeline.config import Product
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.pipeline.rules import fitted
 from tangible_core.scene.geometry import RANGE_PERCENT, flat_relief
@@ -94,7 +95,7 @@ def see_segments(pipeline: Pipeline) -> Seen:
     return _seen(pipeline, "segments", relief)
 
 
-def is_there(pipeline: Pipeline, product: str) -> bool:
+def is_there(pipeline: Pipeline, product: Product) -> bool:
     """Whether a product is at hand: the scene brings it, it was made, or is kept."""
     done = {each.product: each.outcome for each in pipeline.outcomes}
     if done.get(product) in ("given", "ran", "cached"):
@@ -115,7 +116,7 @@ def _seen(pipeline: Pipeline, shows: Shows, relief: Relief) -> Seen:
     )
 
 
-def _at_hand(pipeline: Pipeline, product: str) -> Any:
+def _at_hand(pipeline: Pipeline, product: Product) -> Any:
     """The product on the grid that is felt; None where it would have to be made."""
     return pipeline.engine.felt(product) if is_there(pipeline, product) else None
 

@@ -29,6 +29,7 @@ export class Eye {
   /** Height of what is under a place; NaN where nothing is. */
   ground: (x: number, y: number) => number = () => NaN;
   private size: [number, number] = [0.08, 0.06];
+  private span: [number, number] = [0, 0];
   private flight: { from: Pose; to: Pose; begunMs: number } | null = null;
 
   constructor() {
@@ -37,9 +38,10 @@ export class Eye {
   }
 
   /** The whole of a surface of this size, from the near side. */
-  frame(width_m: number, length_m: number, top_m = 0): void {
+  frame(width_m: number, length_m: number, height_m: [number, number] = [0, 0]): void {
     this.size = [width_m, length_m];
-    this.pose = this.whole(HOME.polar, top_m);
+    this.span = height_m;
+    this.pose = this.whole(HOME.polar);
     this.flight = null;
     this.place();
   }
@@ -111,7 +113,7 @@ export class Eye {
     const whole = atHome && Math.abs(this.pose.distance / this.whole(HOME.polar).distance - 1) < 1e-6;
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
-    if (whole) this.pose = this.whole(HOME.polar, this.pose.target[2]);
+    if (whole) this.pose = this.whole(HOME.polar);
     this.place();
   }
 
@@ -138,14 +140,16 @@ export class Eye {
   }
 
   /** So far away that all corners are seen. */
-  private whole(polar: number, top_m = this.pose.target[2]): Pose {
+  private whole(polar: number): Pose {
     const [w, l] = this.size;
-    const pose = (distance: number): Pose => ({ target: [0, 0, top_m], distance, azimuth: HOME.azimuth, polar });
+    const [low, high] = this.span;
+    const pose = (distance: number): Pose => ({ target: [0, 0, (low + high) / 2], distance, azimuth: HOME.azimuth, polar });
     let [near, far] = [0.05 * (w + l), 20 * (w + l)];
     for (let k = 0; k < 40; k++) {
       const middle = Math.sqrt(near * far);
       this.put(pose(middle));
-      const seen = [-1, 1].every((x) => [-1, 1].every((y) => this.sees([(x * w) / 2, (y * l) / 2, top_m])));
+      const corners = [-w / 2, w / 2].flatMap((x) => [-l / 2, l / 2].flatMap((y) => [low, high].map((z) => [x, y, z] as Vec)));
+      const seen = corners.every((each) => this.sees(each));
       [near, far] = seen ? [near, middle] : [middle, far];
     }
     this.put(this.pose);
@@ -189,11 +193,11 @@ export class Eye {
 
 /** The keys of the camera, as they are pressed on the terrain. */
 export const CAMERA_KEYS = [
-  { keys: ["Shift", "← → ↑ ↓"], does: "orbit" },
-  { keys: ["Ctrl", "← → ↑ ↓"], does: "pan" },
+  { keys: ["Ctrl", "Shift", "← → ↑ ↓"], does: "orbit" },
+  { keys: ["Alt", "← → ↑ ↓"], does: "pan" },
   { keys: ["+", "−"], does: "zoom" },
-  { keys: ["Home"], does: "home" },
-  { keys: ["End"], does: "top" },
+  { keys: ["Ctrl", "Home"], does: "home" },
+  { keys: ["Ctrl", "End"], does: "top" },
 ] as const;
 
 const WAYS: Record<string, [number, number]> = {
@@ -203,17 +207,19 @@ const WAYS: Record<string, [number, number]> = {
   ArrowDown: [0, -1],
 };
 
-/** Whether the key is one of the camera's. */
+/** Whether the key is one of the camera's: none that is the hand's (shortcuts.ts). */
 export function key(eye: Eye, event: KeyboardEvent): boolean {
   const way = WAYS[event.key];
-  if (event.altKey || event.metaKey) return false;
-  if (way && event.shiftKey) eye.orbit(way[0] * KEY_TURN, -way[1] * KEY_TURN);
-  else if (way && event.ctrlKey) eye.pan(way[0] * KEY_SHARE, way[1] * KEY_SHARE);
-  else if (event.ctrlKey) return false;
+  const { ctrlKey, shiftKey, altKey } = event;
+  if (event.metaKey) return false;
+  if (way && ctrlKey && shiftKey && !altKey) eye.orbit(way[0] * KEY_TURN, -way[1] * KEY_TURN);
+  else if (way && altKey && !ctrlKey && !shiftKey) eye.pan(way[0] * KEY_SHARE, way[1] * KEY_SHARE);
+  else if (altKey) return false;
+  else if (event.key === "Home" && ctrlKey) eye.home();
+  else if (event.key === "End" && ctrlKey) eye.top();
+  else if (ctrlKey) return false;
   else if (event.key === "+") eye.zoom(0.85);
   else if (event.key === "-") eye.zoom(1 / 0.85);
-  else if (event.key === "Home") eye.home();
-  else if (event.key === "End") eye.top();
   else return false;
   return true;
 }

@@ -23,10 +23,10 @@ export function screen(fragmentShader: string, uniforms: Record<string, { value:
 }
 
 export class EyeDome {
-  private uniforms = { colours: { value: null as Texture | null }, depths: { value: null as Texture | null }, near: { value: 0 }, far: { value: 1 }, strength: { value: 0 } };
+  private uniforms = { colours: { value: null as Texture | null }, depths: { value: null as Texture | null }, near: { value: 0 }, far: { value: 1 }, strength: { value: 0 }, reach: { value: REACH_PX } };
   readonly quad = screen(
     `precision highp float; precision highp sampler2D;
-uniform sampler2D colours, depths; uniform float near, far, strength; out vec4 colour;
+uniform sampler2D colours, depths; uniform float near, far, strength, reach; out vec4 colour;
 float away(vec2 p) {
   ivec2 s = textureSize(depths, 0);
   float d = texelFetch(depths, clamp(ivec2(p), ivec2(0), s - 1), 0).r;
@@ -36,7 +36,7 @@ void main() {
   vec2 p = gl_FragCoord.xy; float here = away(p), sum = 0.;
   for (int k = 0; k < 8; k++) {
     float a = float(k) * .785398;
-    sum += max(0., here - away(p + ${REACH_PX.toFixed(1)} * vec2(cos(a), sin(a))));
+    sum += max(0., here - away(p + reach * vec2(cos(a), sin(a))));
   }
   colour = vec4(texelFetch(colours, ivec2(p), 0).rgb * exp(-strength * sum / 8.), 1.);
 }`,
@@ -44,10 +44,11 @@ void main() {
   );
 
   /** Shade what was drawn from this camera; strength 0 leaves it as it is. */
-  of(colours: Texture, depths: Texture, camera: PerspectiveCamera, strength: number): Mesh {
+  of(colours: Texture, depths: Texture, camera: PerspectiveCamera, strength: number, ratio: number): Mesh {
     const { uniforms } = this;
     uniforms.colours.value = colours;
     uniforms.depths.value = depths;
+    uniforms.reach.value = REACH_PX * ratio;
     uniforms.near.value = camera.near;
     uniforms.far.value = camera.far;
     uniforms.strength.value = STRENGTH * strength;

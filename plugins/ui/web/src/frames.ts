@@ -1,50 +1,43 @@
-/** Drawing: each state once, and the whole again when the view changed. */
+/** Drawing: each state once, and the whole again when the view or what lies over it changed. */
+import { figures, measuring } from "./measure";
 import type { Page } from "./page";
 import { now, type State } from "./protocol";
 
-/** What `tests` and `benchmarks` read: window.figures. */
-export const figures = {
-  /** seq, ms from tick to drawn, ms from tick to arrived, when drawn. */
-  drawn: [] as number[][],
-  /** ms from a pointer that was sent until its force was drawn. */
-  trips: [] as number[],
-  picks: [] as number[],
-  firstMs: 0,
-};
-
 export class Frames {
-  private shown: State | null = null;
+  private last: State | null = null;
   private echoed = 0;
 
-  constructor(
-    private page: Page,
-    private measuring: boolean,
-  ) {
-    if (measuring) Object.assign(window, { figures });
+  constructor(private page: Page) {
+    page.hub.on("shown", (scene) => page.overlay.show(scene));
     requestAnimationFrame(() => this.frame());
   }
 
   private frame(): void {
     requestAnimationFrame(() => this.frame());
-    const { net, view } = this.page;
-    const { latest } = net;
-    const state = this.page.replayed ?? latest;
-    if (this.page.replayed && latest) net.drawn(latest.seq); // it will not be drawn
-    const fresh = state !== null && state !== this.shown;
-    if (!view.dirty && !fresh) return;
+    const { net, view, overlay, replayed } = this.page;
+    const state = replayed ?? net.latest;
+    if (replayed && net.latest) net.drawn(net.latest.seq); // it will not be drawn
+    const fresh = state !== this.last;
+    if (!view.dirty && !overlay.changed && !fresh) return;
     const first = view.terrain !== null && !figures.firstMs;
-    view.draw(this.measuring || first);
+    const moved = view.dirty;
+    if (moved || overlay.wants(state)) {
+      overlay.put(state);
+      view.draw(measuring || first);
+      overlay.changed ||= moved; // a camera that flies moves in `draw`: what stays at a place follows it
+    }
     const at = now();
     if (first) figures.firstMs = at;
-    if (fresh) this.drawn(state, at);
+    this.last = state;
+    if (fresh && state) this.drawn(state, at);
   }
 
+  /** A state that shows nothing new, as nobody holds the device, counts as drawn. */
   private drawn(state: State, at: number): void {
     const { net, hub } = this.page;
-    this.shown = state;
     if (state === net.latest) net.drawn(state.seq);
     hub.tell("drawn", state);
-    if (!this.measuring || state !== net.latest) return;
+    if (!measuring || state !== net.latest) return;
     figures.drawn.push([state.seq, at - state.sampleMs, state.arrivedMs - state.sampleMs, at]);
     const sentMs = net.sentMs.get(state.tag);
     if (state.tag !== this.echoed && sentMs) {

@@ -45,6 +45,11 @@ export class Grid {
     return upper * (1 - fy) + lower * fy;
   }
 
+  /** What `meet` needs, before it is needed. */
+  prepare(): void {
+    this.tops ??= this.pile();
+  }
+
   /** The cell that a place is in, or is nearest to. */
   cell(x: number, y: number): number {
     const { left, far, dx, dy } = this.place;

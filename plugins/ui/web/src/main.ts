@@ -1,33 +1,33 @@
 /** The page: its parts are put together here. */
 import "./app.css";
 import { Announcer, regions } from "./announcer";
-import { Cursors } from "./cursors";
 import { frame } from "./frame";
 import { Frames } from "./frames";
 import { Hand } from "./hand";
 import { Hub } from "./hub";
 import { Instrument } from "./instrument";
+import { measure, measuring } from "./measure";
 import { Narrator } from "./narrator";
 import { Net } from "./net";
 import { notice } from "./notice";
+import { Overlay } from "./overlay/overlay";
 import type { Page } from "./page";
 import { build } from "./panel";
 import { panels } from "./panels";
-import { Scene } from "./scene";
+import { dataCursor } from "./panels/cursor";
 import { listen } from "./shortcuts";
 import { stroke } from "./sonify";
 import { Sound } from "./sound";
 import { Speech } from "./speech";
 import { splits } from "./splits";
 import { Status } from "./status";
+import { loadScene } from "./terrain/fetching";
 import { Themes } from "./themes";
 import { View } from "./view";
 import { language } from "./words/words";
 
 document.documentElement.lang = language;
 const element = <T extends HTMLElement>(id: string): T => document.getElementById(id) as T;
-const asked = new URLSearchParams(location.search);
-if (asked.has("measure")) document.body.classList.add("measure");
 
 const canvas = element<HTMLCanvasElement>("terrain");
 const hub = new Hub();
@@ -38,10 +38,12 @@ const announcer = new Announcer((said) => {
   speech.speak(said);
 });
 const net = new Net(hub);
+const view = new View(canvas);
 const page: Page = {
   hub,
   net,
-  view: new View(canvas),
+  view,
+  overlay: new Overlay(view, canvas),
   canvas,
   scene: null,
   hand: null,
@@ -54,6 +56,7 @@ const page: Page = {
   forget: (topic) => announcer.forget(topic),
 };
 
+measure(page);
 hub.on("hello", ({ history, scene }) => {
   // After a connection that was lost, what was heard before is not heard again; and what is long over is not said.
   announcer.hushed = true;
@@ -67,7 +70,7 @@ hub.on("scene", async (meta) => {
   if (page.scene?.meta.digest === meta.digest && newest === meta.digest) return;
   newest = meta.digest;
   try {
-    const loaded = await Scene.load(meta);
+    const loaded = await loadScene(meta);
     if (newest !== meta.digest) return; // another one was made meanwhile
     page.scene = loaded;
     hub.tell("shown", loaded);
@@ -82,8 +85,8 @@ listen(canvas);
 new Status(page);
 new Narrator(page);
 page.hand = new Hand(page);
-new Cursors(page);
 notice(page);
 build(page, panels);
-new Frames(page, asked.has("measure"));
-if (asked.has("measure")) Object.assign(window, { page, Instrument, stroke }); // what tests look into
+dataCursor(page);
+new Frames(page);
+if (measuring) Object.assign(window, { Instrument, stroke }); // what tests look into

@@ -47,8 +47,6 @@ export interface Meta {
   /** Each once; which of them a label has is in materials.u16. */
   materials: Material[];
   photo: boolean;
-  /** The surface in words, by language. */
-  says?: Record<string, string>;
   /** Width and height of the finer picture beside the one that is drawn at once; null where that is the finest. */
   fine_photo: [number, number] | null;
   layers: Record<string, LayerMeta>;
@@ -160,6 +158,8 @@ export interface Events {
   preflight: Said & Judged;
   stage: Said & { product: string; method: string; done: Partial<Outcome> };
   scene: Said & Meta;
+  /** The surface with this digest in words, and its materials' names, by language. */
+  described: Said & { digest: string; says: Record<string, string>; names: Record<string, Record<string, string>> };
   document: Said & Document;
   touch: Said & { law: string; seconds: number; how: string };
   /** stopped: somebody pressed stop; lost: the device went; waiting: it is looked for again and again. */
@@ -175,6 +175,12 @@ export interface Events {
   /** Another device was chosen. */
   device: Said & { kind: "hand" | "document" | "other"; name: string };
   error: Said & { text: string };
+  laws: Said &
+    (
+      | { state: "one" }
+      | { state: "two"; named: [string, string]; felt: number }
+      | { state: "blind"; called: number; trials: number; question: string }
+    );
   recorder: Said & { recording: boolean; path: string; ticks: number; why: string };
   /** What Python's logging and warnings say, in the server and in the maker. */
   log: Said & { level: "detail" | "warning" | "error"; logger: string; text: string };

@@ -1,5 +1,5 @@
 /** Says what changes under the hand: contact, material, part, limits; and, asked by a key, where it is and what there is. */
-import type { Material } from "./messages";
+import type { Events } from "./messages";
 import type { Page } from "./page";
 import { FLAGS, STATUS, type State } from "./protocol";
 import type { Scene } from "./scene";
@@ -23,19 +23,24 @@ export const running = (state: State): boolean => (state.status & STATUS.RUNNING
 export const held = (state: State): boolean => running(state) && state.hand[2] < GONE_M;
 export const touching = (state: State): boolean => held(state) && (state.flags & FLAGS.TOUCHING) !== 0;
 
-/** "wood, part 3"; the name alone where there is one part. */
-export function named(material: Material | null, part: number | null, parts: number): string {
-  const name = material?.name ?? t("nameless");
-  return part === null || parts < 2 ? name : t("part", { name, part: part + 1 });
+/** "wood, part 3"; the name alone where there is one part. names: of materials, in the page's language. */
+export function named(name: string | undefined, part: number | null, parts: number, names: Record<string, string>): string {
+  const said = name === undefined ? t("nameless") : (names[name] ?? name);
+  return part === null || parts < 2 ? said : t("part", { name: said, part });
 }
 
 export class Narrator {
   private lasting = new Map<number, number>();
   private limits = new Set<number>();
+  private described: Events["described"] | null = null;
 
   constructor(private page: Page) {
     page.hub.on("state", (state) => this.follow(state));
     page.hub.on("shown", (scene) => this.show(scene));
+    page.hub.on("described", (said) => {
+      this.described = said;
+      this.tell();
+    });
     on("where", () => page.say(this.where(), { topic: "where", asked: true }));
     on("describe", () => page.say(this.description(), { topic: "describe", asked: true }));
   }
@@ -51,8 +56,7 @@ export class Narrator {
     if (!held(state)) return t("noHand");
     if (!touching(state)) return t("inTheAir");
     const [x, y] = state.hand;
-    const what = named(scene.material(x, y), scene.label(x, y), scene.meta.materials.length);
-    return t("touching", { what });
+    return t("touching", { what: this.under(scene, x, y) });
   }
 
   private limit(name: keyof typeof LIMITS, flag: number, state: State): void {
@@ -76,27 +80,41 @@ export class Narrator {
       t(x < 0 ? "left" : "right", at),
       t(y < 0 ? "near" : "far", at),
       t("high", { height: millimetres(scene.height(x, y)) }),
-      named(scene.material(x, y), scene.label(x, y), scene.meta.materials.length),
+      this.under(scene, x, y),
       touching(state) ? t("force", { force: decimal(Math.hypot(...state.force), 1) }) : t("inTheAir"),
     ].join(", ");
   }
 
-  /** The maker's, where it tells one; else what the page knows itself. */
+  /** The material and the part at a place. */
+  private under(scene: Scene, x: number, y: number): string {
+    const names = this.known(scene)?.names[language] ?? {};
+    return named(scene.material(x, y)?.name, scene.label(x, y), scene.meta.labels, names);
+  }
+
+  private known(scene: Scene): Events["described"] | null {
+    return this.described?.digest === scene.meta.digest ? this.described : null;
+  }
+
+  /** The maker's, when it has told it; until then what the page knows itself. */
   private description(): string {
     const scene = this.page.scene;
     if (!scene) return t("nothing");
-    const { says, name, extent_m, height_m, materials } = scene.meta;
-    if (says?.[language]) return says[language];
-    const told = { name, width: millimetres(extent_m[0]), length: millimetres(extent_m[1]) };
+    const says = this.known(scene)?.says[language];
+    if (says) return says;
+    const { name, extent_m, height_m } = scene.meta;
     const heights = t("heights", { low: millimetres(height_m[0]), high: millimetres(height_m[1]) });
-    const names = [...new Set(materials.map((each) => each.name))].join(", ");
-    return `${t("size", told)} ${heights} ${names && t("materials", { count: materials.length, names })}`.trim();
+    return `${t("size", { name, width: millimetres(extent_m[0]), length: millimetres(extent_m[1]) })} ${heights}`;
   }
 
   private show(scene: Scene): void {
     this.page.canvas.setAttribute("aria-label", t("surface", { name: scene.meta.name }));
-    document.getElementById("described")!.textContent = `${this.description()} ${t("keys")}`;
+    this.tell();
     this.page.say(t("shown", { name: scene.meta.name }), { topic: "scene" });
+  }
+
+  /** What a screen reader finds at the surface. */
+  private tell(): void {
+    document.getElementById("described")!.textContent = `${this.description()} ${t("keys")}`;
   }
 }
 

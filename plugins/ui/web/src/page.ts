@@ -4,6 +4,7 @@ import type { Hand } from "./hand";
 import type { Hub } from "./hub";
 import type { Events } from "./messages";
 import type { Net } from "./net";
+import type { Overlay } from "./overlay/overlay";
 import type { State } from "./protocol";
 import type { Scene } from "./scene";
 import type { Sound } from "./sound";
@@ -15,6 +16,8 @@ export interface Page {
   readonly hub: Hub;
   readonly net: Net;
   readonly view: View;
+  /** What is drawn over the surface. */
+  readonly overlay: Overlay;
   readonly canvas: HTMLCanvasElement;
   /** What is drawn; null before the first. */
   scene: Scene | null;

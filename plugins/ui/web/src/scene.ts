@@ -1,7 +1,6 @@
 /** What is felt, as the page has it: heights, labels, materials, the picture; metres, x right, y away, z up. */
 import { Grid } from "./grid";
-import type { LayerMeta, Material, Meta } from "./messages";
-import { bulk } from "./net";
+import type { Material, Meta } from "./messages";
 import type { Vec } from "./protocol";
 
 export type Labels = Uint16Array | Uint32Array;
@@ -12,23 +11,9 @@ export interface Part {
   labels: Labels | null;
 }
 
-/** Cells of a level: from a row and a column on, so many. */
-export interface Window {
-  level: number;
-  row: number;
-  rows: number;
-  column: number;
-  columns: number;
-}
-
-export interface Layer extends LayerMeta {
-  values: Float32Array;
-}
-
 export class Scene {
   /** What is finer than the whole, of where the camera looks. */
   detail: Part | null = null;
-  private layers = new Map<string, Promise<Layer>>();
 
   constructor(
     readonly meta: Meta,
@@ -37,36 +22,6 @@ export class Scene {
     readonly kinds: Uint16Array,
     readonly photo: ImageBitmap | null,
   ) {}
-
-  static async load(meta: Meta): Promise<Scene> {
-    const level = meta.levels.length - 1;
-    const { rows, columns } = meta.levels[level];
-    const [whole, kinds, photo] = await Promise.all([
-      fetchPart(meta, { level, row: 0, rows, column: 0, columns }),
-      bulk(`${root(meta)}/materials.u16`).then((answer) => answer.arrayBuffer()),
-      meta.photo ? bulk(`${root(meta)}/photo.jpg`).then((answer) => answer.blob()).then((it) => createImageBitmap(it)) : null,
-    ]);
-    return new Scene(meta, whole, new Uint16Array(kinds), photo);
-  }
-
-  /** Finer heights and labels of a window. */
-  part(window: Window, signal?: AbortSignal): Promise<Part> {
-    return fetchPart(this.meta, window, signal);
-  }
-
-  /** Values to be warped over the surface: fetched when they are first asked for. */
-  layer(name: string): Promise<Layer> {
-    const meta = this.meta.layers[name];
-    const known = this.layers.get(name);
-    if (known) return known;
-    const found = bulk(`${root(this.meta)}/${name}.f32`).then(async (answer) => ({
-      ...meta,
-      values: new Float32Array(await answer.arrayBuffer()),
-    }));
-    found.catch(() => this.layers.delete(name));
-    this.layers.set(name, found);
-    return found;
-  }
 
   /** Bilinear height; the rim's beyond the last cell centres, NaN outside. */
   height(x: number, y: number): number {
@@ -156,25 +111,4 @@ function within(o: Vec, d: Vec, low: Vec, high: Vec): [number, number] {
     to = Math.min(to, Math.max(p, q));
   }
   return [from, to];
-}
-
-function root(meta: Meta): string {
-  return `/scene/${meta.digest}`;
-}
-
-async function fetchPart(meta: Meta, window: Window, signal?: AbortSignal): Promise<Part> {
-  const { level, row, rows, column, columns } = window;
-  const asked = (bytes: number) => ({ row, rows, column, columns, bytes, of: meta.levels[level].columns });
-  const [heights, labels] = await Promise.all([
-    bulk(`${root(meta)}/height-${level}.f32`, asked(4), signal).then((answer) => answer.arrayBuffer()),
-    meta.labels
-      ? bulk(`${root(meta)}/labels-${level}.u`, asked(meta.label_bytes), signal).then((answer) => answer.arrayBuffer())
-      : null,
-  ]);
-  const [w, l] = meta.extent_m;
-  const { step } = meta.levels[level];
-  const [dx, dy] = [(step * w) / meta.columns, (step * l) / meta.rows];
-  const place = { left: column * dx - w / 2, far: l / 2 - row * dy, dx, dy };
-  const grid = new Grid(new Float32Array(heights), rows, columns, place);
-  return { grid, labels: labels && (meta.label_bytes === 2 ? new Uint16Array(labels) : new Uint32Array(labels)) };
 }

@@ -36,11 +36,29 @@ export const SHORTCUTS = {
   "press or lift": { keys: [" "], where: "surface", own: true },
   deeper: { keys: ["PageDown"], where: "surface", own: true },
   "less deep": { keys: ["PageUp"], where: "surface", own: true },
+  "turn view": {
+    keys: ["Ctrl+Shift+ArrowLeft", "Ctrl+Shift+ArrowRight", "Ctrl+Shift+ArrowUp", "Ctrl+Shift+ArrowDown"],
+    where: "surface", own: true,
+  },
+  "shift view": {
+    keys: ["Alt+ArrowLeft", "Alt+ArrowRight", "Alt+ArrowUp", "Alt+ArrowDown"], where: "surface", own: true,
+  },
+  nearer: { keys: ["+"], where: "surface", own: true },
+  farther: { keys: ["-"], where: "surface", own: true },
+  "view at first": { keys: ["Ctrl+Home"], where: "surface", own: true },
+  "view from above": { keys: ["Ctrl+End"], where: "surface", own: true },
   where: { keys: ["w"], where: "letter" },
   describe: { keys: ["d"], where: "letter" },
   sound: { keys: ["s"], where: "letter" },
   aloud: { keys: ["a"], where: "letter" },
   "hear heights": { keys: ["h"], where: "letter" },
+  "measure here": { keys: ["m"], where: "letter" },
+  "remove ruler": { keys: ["Shift+m"], where: "letter" },
+  mark: { keys: ["k"], where: "letter" },
+  enlarge: { keys: ["z"], where: "letter" },
+  "whole picture": { keys: ["Shift+z"], where: "letter" },
+  "copy values": { keys: ["c"], where: "letter" },
+  "copy values as JSON": { keys: ["Shift+c"], where: "letter" },
 } as const satisfies Record<string, Shortcut>;
 
 export type Name = keyof typeof SHORTCUTS;
@@ -92,7 +110,10 @@ export function pressed({ key, shiftKey, ctrlKey, altKey, metaKey }: KeyboardEve
   return held.filter(Boolean).join("") + (named ? key : small);
 }
 
+/** Where letters are typed, or choose. */
+const TYPED = "input:not([type=checkbox], [type=radio], [type=range], [type=file]), select, textarea, [contenteditable]";
+
 function heard(where: Shortcut["where"], target: Element, surface: HTMLElement): boolean {
   if (where === "page" || target === surface) return true;
-  return where === "letter" && letters.everywhere && !target.matches("input, select, textarea, [contenteditable]");
+  return where === "letter" && letters.everywhere && !target.matches(TYPED);
 }

@@ -3,6 +3,7 @@ import type { Page } from "./page";
 import { on } from "./shortcuts";
 import { t } from "./words/frame";
 import { made } from "./words/products";
+import { language } from "./words/words";
 
 type What = "idle" | "busy" | "felt" | "stopped" | "error";
 
@@ -22,6 +23,12 @@ export class Status {
     hub.on("stage", ({ product, method, done }) => {
       if (!done.outcome) this.show("busy", t("making", { product: made(product), method }));
     });
+    hub.on("made", ({ want, outcome, why }) => {
+      if (outcome === "failed") this.show("error", why);
+      else if (outcome === "stopped") this.show("idle", t("makingStopped"));
+      else if (want !== "touch") this.show("idle", t("made"));
+    });
+    hub.on("maker_gone", ({ why }) => this.show("error", why));
     hub.on("touch", ({ law }) => this.show("felt", t("feeling", { law })));
     hub.on("loop", ({ running, stopped, why, waiting }) => {
       if (!running) this.show("stopped", stopped ? t("stopped") : t(waiting ? "waiting" : "ended", { why }));
@@ -56,6 +63,7 @@ export class Status {
   private show(what: What, text: string, topic = what === "error" ? text : "status"): void {
     this.line.dataset.state = what;
     this.line.textContent = text;
+    this.line.lang = what === "error" && topic !== "gone" ? "en" : language; // the program's own words are English
     this.page.say(text, { topic, urgent: what === "error" || what === "stopped" });
   }
 }

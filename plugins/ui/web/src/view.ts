@@ -21,8 +21,10 @@ import { type Looks, Terrain } from "./terrain/terrain";
 const REST_MS = 140;
 /** A terrain that takes longer is drawn coarser while the camera moves. */
 const SLOW_MS = 22;
+/** One that takes as long is drawn with a pixel of the page, however fine the screen is. */
+const VERY_SLOW_MS = 80;
+const FINEST_RATIO = 2;
 const PATTERN_PX = 11;
-const GROUND = 0x10161f;
 
 /** Why nothing is drawn: there is no WebGL, or it was taken away. */
 export type Trouble = "" | "missing" | "lost";
@@ -58,10 +60,11 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
   private pixel = new Uint8Array(4);
   private resting = 0;
   private takesMs = 0;
+  /** Pixels that are drawn for one of the page, to the side. */
+  private ratio = 1;
   private scene: Scene | null = null;
 
   constructor(private canvas: HTMLCanvasElement) {
-    this.fixed.background = new Color(GROUND).convertLinearToSRGB(); // targets hold what the screen shows
     this.renderer = rendererOf(canvas);
     if (!this.renderer) this.trouble = "missing";
     this.eye.ground = (x, y) => this.scene?.height(x, y) ?? NaN;
@@ -88,6 +91,12 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
     this.moved();
   }
 
+  /** What lies behind the surface, as styles say a colour. */
+  set ground(colour: string) {
+    this.fixed.background = new Color(colour).convertLinearToSRGB(); // targets hold what the screen shows
+    this.dirty = true;
+  }
+
   /** Something that moves; the caller sets `visible` and position before the frame is drawn. */
   overlay(object: Object3D): void {
     this.moving.add(object);
@@ -95,8 +104,7 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
 
   /** Look at the whole of a surface of this size. */
   frame(width_m: number, length_m: number): void {
-    const [low, high] = this.scene?.meta.height_m ?? [0, 0];
-    this.eye.frame(width_m, length_m, (low + high) / 2);
+    this.eye.frame(width_m, length_m, this.scene?.meta.height_m);
   }
 
   /** Look at a region this wide, from the side from which the camera looks. */
@@ -128,12 +136,10 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
   draw(wait: boolean): void {
     const { renderer, drawn } = this;
     const flies = this.eye.advance(performance.now());
-    if (!renderer || !drawn || this.trouble) {
-      this.dirty = flies;
-      return;
-    }
-    if (this.dirty) this.drawFixed(renderer, drawn);
+    const again = this.dirty;
     this.dirty = flies;
+    if (!renderer || !drawn || this.trouble) return;
+    if (again) this.drawFixed(renderer, drawn);
     this.stage.clear();
     this.stage.add(this.copy);
     renderer.setRenderTarget(null);
@@ -152,7 +158,7 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
     let colours = drawn.texture;
     if (this.eyeDome > 0 && this.shaded) {
       this.stage.clear();
-      this.stage.add(this.dome.of(drawn.texture, drawn.depthTexture!, this.camera, this.eyeDome));
+      this.stage.add(this.dome.of(drawn.texture, drawn.depthTexture!, this.camera, this.eyeDome, this.ratio));
       renderer.setRenderTarget(this.shaded);
       renderer.render(this.stage, this.none);
       colours = this.shaded.texture;
@@ -162,6 +168,9 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
     renderer.setRenderTarget(drawn);
     this.wait(renderer);
     this.takesMs = performance.now() - begun;
+    if (this.takesMs <= VERY_SLOW_MS || this.ratio === 1) return;
+    this.size();
+    this.drawFixed(renderer, this.drawn!);
   }
 
   /** Width of a pixel at the place that is looked at. */
@@ -211,12 +220,15 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
     const height = Math.max(1, this.canvas.clientHeight);
     this.eye.resize(width, height);
     if (!this.renderer) return;
-    this.renderer.setSize(width, height, false);
+    const slow = this.takesMs > VERY_SLOW_MS;
+    this.ratio = slow ? 1 : Math.min(Math.max(devicePixelRatio, 1), FINEST_RATIO);
+    const [across, along] = [Math.round(this.ratio * width), Math.round(this.ratio * height)];
+    this.renderer.setSize(across, along, false);
     for (const each of [this.drawn, this.shaded]) each?.dispose();
     const filters = { minFilter: NearestFilter, magFilter: NearestFilter } as const;
-    this.drawn = new WebGLRenderTarget(width, height, { ...filters });
-    this.drawn.depthTexture = new DepthTexture(width, height, UnsignedIntType);
-    this.shaded = new WebGLRenderTarget(width, height, { ...filters, depthBuffer: false });
+    this.drawn = new WebGLRenderTarget(across, along, { ...filters });
+    this.drawn.depthTexture = new DepthTexture(across, along, UnsignedIntType);
+    this.shaded = new WebGLRenderTarget(across, along, { ...filters, depthBuffer: false });
     this.copied.depths.value = this.drawn.depthTexture;
     this.dirty = true;
   }

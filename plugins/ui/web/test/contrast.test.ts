@@ -50,9 +50,14 @@ for (const [name, [table, at]] of Object.entries(THEMES)) {
   });
 }
 
+/** Marks on the surface stand on their own dark ground in every theme, as they must be seen on any picture. */
+const ON_PICTURES = ["overlay/overlay.css"];
+
 test("every colour is a token: none is written out elsewhere", () => {
   const found = sources(".", ".css").flatMap(({ name, text }) => {
-    const rest = name === "app.css" ? text.slice(text.indexOf("/* -- ground -- */")) : text;
+    if (ON_PICTURES.includes(name)) return [];
+    const own = name === "app.css" ? text.slice(text.indexOf("/* -- ground -- */")) : text;
+    const rest = own.replace(/var\(--[\w-]+, #[0-9a-f]+\)/g, "");
     return [...rest.matchAll(/(?<![\w-])#[0-9a-f]{3,8}\b(?!\w* *[{,:.>])|\brgba?\(/gi)].map((each) => `${name}: ${each[0]}`);
   });
   assert.deepEqual(found, []);

@@ -7,6 +7,10 @@ import { level } from "../src/hands/mouse";
 import { Presses, REST, Shake, way } from "../src/hands/pad";
 import { parts } from "../src/hands/parts";
 import { Fingers, Pressure } from "../src/hands/touch";
+import { bits, limits } from "../src/panels/devices/doctor";
+import { there } from "../src/panels/devices/list";
+import { points } from "../src/panels/devices/spark";
+import { held } from "../src/panels/hand";
 import type { Vec } from "../src/protocol";
 
 const PRESS_M = 0.0015;
@@ -186,4 +190,28 @@ test("a ray meets a level before it, or not at all", () => {
   assert.deepEqual(level([0, 0, 1], [0, 0, -1], 0.25), [0, 0, 0.25]);
   assert.equal(level([0, 0, 1], [0, 0, 1], 0.25), null);
   assert.equal(level([0, 0, 1], [1, 0, 0], 0.25), null);
+});
+
+test("the doctor says which buttons are pressed, which limits acted, and draws what was last on the right", () => {
+  assert.deepEqual(bits(0b101), [1, 3]);
+  assert.equal(limits({ TOUCHING: 900, FORCE_LIMITED: 12, DAMPED: 0 }), "force limited 12");
+  assert.equal(points([0, 2, 4], 60), "57,1.000 58,0.500 59,0.000");
+  assert.equal(points([0], 60), "59,1.000");
+});
+
+test("a device is simulated, connected, not connected, or cannot be looked for", () => {
+  const none = { name: "", summary: "", simulated: null, units: [], problem: "", usable: false };
+  assert.equal(there({ ...none, simulated: true }), "simulated");
+  assert.equal(there({ ...none, units: [{ name: "", serial: "", place: "", problem: "busy" }] }), "connected");
+  assert.equal(there({ ...none, simulated: false }), "notConnected");
+  assert.equal(there({ ...none, problem: "no driver" }), "notAsked");
+});
+
+test("who holds the hand is said in words", () => {
+  const hand = { there: true, holding: false, nobodyHolds: false, rests: false };
+  assert.equal(held({ ...hand, there: false }), "gone");
+  assert.equal(held({ ...hand, holding: true, rests: true }), "rests");
+  assert.equal(held({ ...hand, holding: true }), "holds");
+  assert.equal(held({ ...hand, nobodyHolds: true }), "nobody");
+  assert.equal(held(hand), "watches");
 });

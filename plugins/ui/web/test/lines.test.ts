@@ -21,7 +21,7 @@ test("the same line again counts up and has the newest time", () => {
 });
 
 test("a line is seen if its level is, and all words are in it", () => {
-  const line = { level: "warning", text: "The picture is DARK", at_s: 0, times: 1 } as const;
+  const line = { level: "warning", text: "The picture is DARK", foreign: "", at_s: 0, times: 1 } as const;
   assert.ok(seen(line, all, ""));
   assert.ok(seen(line, all, "dark  picture"));
   assert.ok(!seen(line, all, "dark bright"));

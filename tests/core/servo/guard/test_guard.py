@@ -475,6 +475,19 @@ class TestCoupling:
             left = guard(settings, memory, 0.001, 0.0, 0.0, 0.0, *velocity, 0.0, 0.0, 0.0)
             assert left == (0.0, 0.0, 0.0, 0)
 
+    @pytest.mark.parametrize("axis", [0, 1, 2])
+    @pytest.mark.parametrize(("way_m", "follows"), [(0.016, True), (0.021, False), (-1.0, False)])
+    def test_a_device_that_leaps_has_its_tool_with_it(self, axis: int, way_m: float, follows: bool):
+        """As a pointer that is let go of: 8 N at 1000 N/m is a leash of 8 mm, and no hand goes 10 mm in a tick."""
+        safety = Safety(coupling=Coupling(stiffness_n_per_m=1000, damping_n_s_per_m=0.4), **BARE)
+        settings, memory = safety.arrays(SPEC, 500.0)
+        couple(settings, memory, 0.001, *[0.0] * 6)
+        place = way_m * np.eye(3)[axis]
+        tool = couple(settings, memory, 0.001, *place, 0.0, 0.0, 0.0)
+        assert (tool[axis] != way_m) == follows
+        left = guard(settings, memory, 0.001, *place, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        assert (left[axis] != 0.0) == follows
+
     def test_the_tool_is_on_a_leash(self):
         safety = Safety(coupling=Coupling(stiffness_n_per_m=1000, damping_n_s_per_m=0.4), **BARE)
         settings, memory = safety.arrays(SPEC, 500.0)

@@ -26,7 +26,7 @@ export function complain(root: HTMLElement, list: HTMLElement, complaints: Compl
   const lines = document.createElement("ul");
   for (const { each, id } of found) {
     const line = document.createElement("li");
-    line.append(id ? button(`${each.location.join(".")}: ${each.text}`, () => lead(id)) : said(each));
+    line.append(id ? button(placed(each), () => lead(id)) : said(each));
     lines.append(line);
   }
   list.replaceChildren(heading, lines);
@@ -40,9 +40,15 @@ export function lead(id: string): void {
   field?.scrollIntoView({ block: "center" });
 }
 
-function said({ location, text, line }: Complaint): string {
+function said(complaint: Complaint): string {
+  const { line } = complaint;
+  return line === null ? placed(complaint) : `${placed(complaint)} (${t("line", { line })})`;
+}
+
+/** With its key in front, once. */
+function placed({ location, text }: Complaint): string {
   const where = location.length ? `${location.join(".")}: ` : "";
-  return line === null ? where + text : `${where}${text} (${t("line", { line })})`;
+  return text.startsWith(where) ? text : where + text;
 }
 
 function mark(id: string, text: string): void {

@@ -9,15 +9,15 @@ export interface Control {
   root: HTMLElement;
   /** What has the label, and to which a complaint leads. */
   main: HTMLElement;
-  /** Show a value, unless somebody is typing here. */
-  show(value: Plain | undefined): void;
+  /** Show a value, unless somebody is typing here; whether the document says it, or it is the default. */
+  show(value: Plain | undefined, isSet: boolean): void;
 }
 
 /** inside: where within the value, if it is not the whole. */
 export type Tell = (said: Said, inside?: string[]) => void;
 
 /** What is between a block's options and the page: a row with label and help around a control. */
-export type Row = (option: Option, id: string, tell: Tell) => { root: HTMLElement; show(value: Plain | undefined): void };
+export type Row = (option: Option, id: string, tell: Tell) => { root: HTMLElement; show: Control["show"] };
 
 export function control(kind: Kind, id: string, tell: Tell, row: Row): Control {
   switch (kind.kind) {
@@ -49,14 +49,14 @@ export function tolerant(kind: Kind, id: string, tell: Tell, row: Row): Control 
   const made: Control = {
     root: holder(shown.root),
     main: shown.main,
-    show: (value) => {
+    show: (value, isSet) => {
       if (kind.kind !== "yaml" && fits(value, kind) === inYaml) {
         inYaml = !inYaml;
         shown = control(inYaml ? { kind: "yaml" } : kind, id, tell, row);
         made.root.replaceChildren(shown.root);
         made.main = shown.main;
       }
-      shown.show(value);
+      shown.show(value, isSet);
     },
   };
   return made;
@@ -166,10 +166,10 @@ function tuple(kind: Kind & { kind: "tuple" }, id: string, tell: Tell, row: Row)
   return {
     root: box,
     main: parts[0].main,
-    show: (value) => {
+    show: (value, isSet) => {
       const given: Plain[] = Array.isArray(value) ? value : [];
       now = kind.parts.map((_, at) => given[at]);
-      parts.forEach((each, at) => each.show(given[at]));
+      parts.forEach((each, at) => each.show(given[at], isSet));
     },
   };
 }
@@ -184,7 +184,11 @@ function block(options: Option[], id: string, tell: Tell, row: Row): Control {
   return {
     root: box,
     main: box,
-    show: (value) => rows.forEach((each, at) => each.show(isMap(value) ? value[options[at].name] : undefined)),
+    show: (value, isSet) =>
+      rows.forEach((each, at) => {
+        const part = isMap(value) ? value[options[at].name] : undefined;
+        each.show(part, isSet && part !== undefined);
+      }),
   };
 }
 
@@ -204,7 +208,7 @@ function list(item: Kind, id: string, tell: Tell, row: Row): Control {
     now = values;
     shown = values.map((_, at) => entry(at));
     items.replaceChildren(...shown.map((each) => each.root));
-    shown.forEach((each, at) => each.show(now[at]));
+    shown.forEach((each, at) => each.show(now[at], true));
   }
 
   function entry(at: number): Control {
@@ -232,7 +236,7 @@ function list(item: Kind, id: string, tell: Tell, row: Row): Control {
       const given = Array.isArray(value) ? value : [];
       if (given.length !== shown.length) build(given);
       now = given;
-      shown.forEach((each, at) => each.show(given[at]));
+      shown.forEach((each, at) => each.show(given[at], true));
     },
   };
 }
@@ -254,10 +258,10 @@ function either(kind: Kind & { kind: "either" }, id: string, tell: Tell, row: Ro
   return {
     root: box,
     main: select,
-    show: (value) => {
+    show: (value, isSet) => {
       const at = kind.words.findIndex((each) => same(each, value));
       if (at < 0 && value === undefined) return;
-      if (at < 0) other.show(value);
+      if (at < 0) other.show(value, isSet);
       if (document.activeElement === select && select.value === "other" && at >= 0 && !other.root.hidden) return;
       select.value = at < 0 ? "other" : String(at);
       other.root.hidden = at >= 0;

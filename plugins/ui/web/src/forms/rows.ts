@@ -9,7 +9,11 @@ import { asText } from "./values";
 /** Of the fields of all forms; what follows is the key, as in "field:render.stiffness_n_per_m". */
 export const FIELD = "field:";
 
-/** Where the document's defaults are asked for, which may depend on the scene. */
+/** Of the list of the library's names, which the panel of materials keeps. */
+export const LIBRARY = "materials-library";
+const MATERIAL = /^materials\..*\b(default|material)$|^render\.material$/;
+
+/** What counts where the document says nothing, which may depend on the scene. */
 export type DefaultOf = (key: string) => Plain | undefined;
 
 export function rows(defaultOf: DefaultOf): Row {
@@ -34,12 +38,12 @@ export function rows(defaultOf: DefaultOf): Row {
     describe(box, id);
     return {
       root: box,
-      show: (value) => {
-        const byDefault = defaultOf(key) ?? option.byDefault;
-        reset.hidden = value === undefined || option.byDefault === undefined;
-        box.classList.toggle("set", value !== undefined);
-        made.show(value === undefined ? byDefault : value);
-        hint.show(byDefault, value !== undefined);
+      show: (value, isSet) => {
+        const byDefault = (isSet ? undefined : (value ?? defaultOf(key))) ?? option.byDefault;
+        reset.hidden = !isSet || option.byDefault === undefined;
+        box.classList.toggle("set", isSet);
+        made.show(isSet ? value : byDefault, isSet);
+        hint.show(byDefault, isSet);
         describe(box, id);
       },
     };
@@ -49,6 +53,7 @@ export function rows(defaultOf: DefaultOf): Row {
 
 /** Every control of a row tells what helps with it. */
 function describe(box: HTMLElement, id: string): void {
+  if (MATERIAL.test(id.slice(FIELD.length))) box.querySelector("input")?.setAttribute("list", LIBRARY);
   for (const each of box.querySelectorAll(":scope > .control :is(input, select), :scope > .control > .group > button")) {
     if (each.closest(".field") === box) each.setAttribute("aria-describedby", `${id}-complaint ${id}-hint`);
   }
@@ -81,7 +86,7 @@ function help(option: Option, id: string): { root: HTMLElement; show(byDefault: 
   about.textContent = option.about;
   const now = document.createElement("span");
   const range = rangeOf(option.kind, option.unit);
-  root.append(about, " ", range ? `${range}. ` : "", now);
+  root.append(about, " ", range && `${range[0].toUpperCase()}${range.slice(1)}. `, now);
   return {
     root,
     show: (byDefault, isSet) => {

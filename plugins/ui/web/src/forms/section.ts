@@ -93,7 +93,11 @@ export class SectionForm {
       const tell = (said: Parameters<typeof edit>[1], inside: string[] = []): void =>
         this.change(edit([key, ...inside].join("."), said));
       const one = row(option, `${FIELD}${key}`, tell);
-      return { root: one.root, show: (said: Plain | undefined) => one.show(at(said, [option.name])) };
+      const show = (said: Plain | undefined): void => {
+        const value = at(said, [option.name]);
+        one.show(value, value !== undefined);
+      };
+      return { root: one.root, show };
     });
     this.shows = made.map(({ show }) => show);
     const roots = made.map(({ root }) => root);

@@ -1,5 +1,5 @@
 /** The mouse and the pen: over the terrain they are the hand, pressed they touch; the wheel is depth, a pen's own too. */
-import { figures } from "../frames";
+import { figures, measuring } from "../measure";
 import type { Hand } from "../hand";
 import type { Vec } from "../protocol";
 
@@ -55,7 +55,7 @@ export function mouse(hand: Hand): void {
   function pick(x: number, y: number): Vec | null {
     const begun = performance.now();
     const found = hand.page.scene?.pick(...view.ray(x, y)) ?? null;
-    figures.picks.push(performance.now() - begun);
+    if (measuring) figures.picks.push(performance.now() - begun);
     return found;
   }
 

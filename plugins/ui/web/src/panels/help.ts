@@ -40,7 +40,7 @@ function table(): HTMLTableElement {
 function caps(key: string): HTMLElement {
   const made = document.createElement("kbd");
   made.textContent = key
-    .split("+")
+    .split(/(?<=.)\+/)
     .map((part) => (part in NAMES ? t(NAMES[part]) : part.length === 1 ? part.toUpperCase() : part))
     .join(" + ");
   return made;
@@ -51,6 +51,7 @@ const NAMES: Record<string, Parameters<typeof t>[0]> = {
   Escape: "Escape",
   Shift: "Shift",
   Ctrl: "Ctrl",
+  Alt: "Alt",
   ArrowLeft: "ArrowLeft",
   ArrowRight: "ArrowRight",
   ArrowUp: "ArrowUp",

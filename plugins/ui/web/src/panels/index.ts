@@ -3,12 +3,16 @@ import type { Panel } from "../panel";
 import { devices } from "./devices";
 import { hand } from "./hand";
 import { help } from "./help";
+import { laws } from "./laws";
 import { log } from "./log";
+import { mapping } from "./mapping";
 import { materials } from "./materials";
 import { methods } from "./methods";
 import { open } from "./open";
+import { overlay } from "./overlay";
 import { preflight } from "./preflight";
 import { records } from "./records";
+import { ruler } from "./ruler";
 import { settings } from "./settings";
 import { sound } from "./sound";
 import { stages } from "./stages";
@@ -18,6 +22,6 @@ import { yaml } from "./yaml";
 /** Left: what is made. Right: what is seen, heard and felt, settings and help last. Bottom: the log. */
 export const panels: Panel[] = [
   open, methods, stages, materials, preflight, yaml,
-  view, hand, devices, sound, records, settings, help,
+  view, overlay, ruler, mapping, hand, devices, sound, laws, records, settings, help,
   log,
 ];

@@ -77,23 +77,28 @@ class Log {
   private listen(): void {
     const { hub } = this.page;
     hub.on("stage", (stage) => this.stage(stage));
-    hub.on("touch", ({ at_s, law, how }) => this.add("event", `${t("felt", { law })}: ${how}`, at_s));
-    hub.on("loop", ({ at_s, running, why }) => this.add("event", `${t(running ? "running" : "stopped")} ${why}`, at_s));
+    hub.on("made", ({ at_s, outcome, why }) => {
+      if (outcome === "failed") this.add("error", "", at_s, why);
+      if (outcome === "stopped") this.add("event", t("makingStopped"), at_s);
+    });
+    hub.on("touch", ({ at_s, law, how }) => this.add("event", `${t("felt", { law })}: `, at_s, how));
+    hub.on("loop", ({ at_s, running, why }) => this.add("event", `${t(running ? "running" : "stopped")} `, at_s, why));
     hub.on("scene", ({ at_s, name }) => this.add("event", t("shown", { name }), at_s));
-    hub.on("log", ({ at_s, level, logger, text }) => this.add(level, `${logger}: ${text}`, at_s));
-    hub.on("error", ({ at_s, text }) => this.add("error", text, at_s));
+    hub.on("log", ({ at_s, level, logger, text }) => this.add(level, `${logger}: `, at_s, text));
+    hub.on("error", ({ at_s, text }) => this.add("error", "", at_s, text));
     hub.on("gone", ({ at_s }) => this.add("error", t("gone"), at_s));
   }
 
   private stage({ at_s, product, method, done: { outcome, seconds, why } }: Events["stage"]): void {
     if (!outcome) return this.add("detail", t("begun", { product: made(product), method }), at_s);
     const told = { product: made(product), method, outcome: t(outcome), seconds: decimal(seconds ?? 0, 3) };
-    this.add(outcome === "failed" ? "error" : "event", `${t(method ? "stage" : "given by", told)}${why ? `: ${why}` : ""}`, at_s);
+    this.add(outcome === "failed" ? "error" : "event", `${t(method ? "stage" : "given by", told)}${why ? ": " : ""}`, at_s, why);
   }
 
   /** Many may come at once: they are put on the page together, before it is drawn. */
-  private add(level: Level, text: string, at_s: number): void {
-    const { line, again, dropped } = this.lines.add(level, text.trim(), at_s);
+  private add(level: Level, own: string, at_s: number, foreign = ""): void {
+    const text = own + foreign;
+    const { line, again, dropped } = this.lines.add(level, text, at_s, foreign);
     if (dropped) {
       this.items.get(dropped)?.remove();
       this.items.delete(dropped);
@@ -167,7 +172,7 @@ class Log {
   }
 }
 
-function fill(item: HTMLElement, { level, text, at_s, times }: Line): HTMLElement {
+function fill(item: HTMLElement, { level, text, foreign, at_s, times }: Line): HTMLElement {
   item.dataset.level = level;
   const at = document.createElement("time");
   const date = new Date(1000 * at_s);
@@ -176,7 +181,10 @@ function fill(item: HTMLElement, { level, text, at_s, times }: Line): HTMLElemen
   const mark = document.createElement("span");
   mark.className = "level";
   mark.textContent = t(`one ${level}`);
-  item.replaceChildren(at, " ", mark, " ", text);
+  const said = document.createElement("span");
+  said.lang = "en";
+  said.textContent = foreign;
+  item.replaceChildren(at, " ", mark, " ", text.slice(0, text.length - foreign.length), said);
   if (times > 1) item.append(" ", t("times", { times }));
   return item;
 }

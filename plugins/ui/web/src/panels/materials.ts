@@ -1,5 +1,6 @@
 /** Which segment is which material, why, and how much of the surface; and the library with figures and sources. */
 import { Editor } from "../forms/editor";
+import { LIBRARY } from "../forms/rows";
 import type { Material, Segment } from "../messages";
 import type { Page } from "../page";
 import type { Panel } from "../panel";
@@ -24,7 +25,9 @@ function build(page: Page, root: HTMLElement): void {
   const heading = document.createElement("summary");
   heading.textContent = t("libraryAlone");
   library.append(heading);
-  root.append(none, refused, table, library);
+  const list = document.createElement("datalist");
+  list.id = LIBRARY;
+  root.append(none, refused, table, library, list);
   let names: string[] = [];
   let segments: Segment[] = [];
   let of = "";
@@ -42,6 +45,7 @@ function build(page: Page, root: HTMLElement): void {
     const found = await page.net.ask<Listed[]>("library").catch(() => null);
     if (!found) return void (of = "");
     names = found.map(({ name }) => name);
+    list.replaceChildren(...names.map((each) => new Option(each, each)));
     heading.textContent = t("library", { count: found.length });
     library.replaceChildren(heading, figures(found));
     show();

@@ -57,6 +57,7 @@ function build(page: Page, root: HTMLElement): void {
 
 function shown(said: Judged, cure: (key: string, value: string | number) => void): HTMLElement[] {
   const sentence = paragraph("", `sentence ${said.grade}`);
+  sentence.lang = "en";
   sentence.append(mark(said.grade), said.sentence);
   const device = said.device ? t("device", { device: said.device, law: said.law }) : t("ownHand", { law: said.law });
   const about = paragraph(`${device} ${t(said.of_loop ? "ofLoop" : "ofMaker")}`, "hint");
@@ -94,6 +95,7 @@ function row(body: HTMLTableSectionElement, said: Verdict, cure: (key: string, v
   verdict.append(mark(said.verdict), t(said.verdict));
   const what = document.createElement("th");
   what.scope = "row";
+  what.lang = "en";
   what.textContent = `${said.check}: ${said.of}`;
   made.append(what);
   made.insertCell().append(said.stands);
@@ -102,7 +104,10 @@ function row(body: HTMLTableSectionElement, said: Verdict, cure: (key: string, v
   const below = body.insertRow().insertCell();
   below.colSpan = 3;
   below.className = "below";
-  below.append(...more.map((each) => paragraph(each, "hint")));
+  for (const each of more.map((text) => paragraph(text, "hint"))) {
+    each.lang = "en";
+    below.append(each);
+  }
   for (const { key, value } of said.changes) below.append(button(t("set", { key, value }), () => cure(key, value)));
 }
 

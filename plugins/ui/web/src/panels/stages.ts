@@ -64,13 +64,13 @@ function line(row: Row): HTMLElement {
   head.append(
     part("shape", SHAPES[row.state], true),
     part("product", named(row.product)),
-    part("method", row.method === "core" ? "" : row.method),
     part("state", t(row.state)),
     part("time", time(row, performance.now())),
   );
   box.append(head);
   if (row.state === "running") box.append(bar(row));
-  if (row.why) box.append(text(row.why));
+  const method = row.method === "core" ? "" : row.method;
+  if (method || row.why) box.append(text([method, row.why].filter(Boolean).join(": ")));
   for (const { kind, text: said } of row.notes) {
     const note = text(t(kind) + said);
     if (kind !== "decision") note.classList.add("warn");

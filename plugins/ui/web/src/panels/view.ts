@@ -10,6 +10,7 @@ import { Refiner } from "../terrain/refine";
 import { STEEPS } from "../terrain/shader";
 import { BOUNDS, type Settings } from "../terrain/settings";
 import { looksOf, Showing } from "../terrain/showing";
+import { colour } from "../themes";
 import { t } from "../words/view";
 
 type Word = Parameters<typeof t>[0];
@@ -26,6 +27,9 @@ function build(page: Page, root: HTMLElement): void {
   const controls = controlsOf(showing.settings, set);
   root.append(looks(page, showing, set, controls.slider), ...controls.boxes, camera(page));
   page.hub.on("shown", () => showing.begin());
+  const grounded = (): void => void (page.view.ground = colour("--ground"));
+  page.hub.on("theme", grounded);
+  grounded();
 }
 
 /** What the surface shows, and what its colours mean. */

@@ -1,5 +1,6 @@
 /** The pipeline file on the screen, as text: to read, edit, copy, download and save. */
 import { button, field } from "../elements";
+import { Editor } from "../forms/editor";
 import type { Complaint } from "../messages";
 import type { Page } from "../page";
 import type { Panel } from "../panel";
@@ -23,14 +24,19 @@ function build(page: Page, root: HTMLElement): void {
     told.textContent = words;
     page.say(words);
   };
+  const editor = new Editor(page);
   let timer = 0;
+  let of: string | null = null;
 
   text.oninput = () => {
+    of ??= page.document?.digest ?? "";
     state.textContent = t("typing");
     clearTimeout(timer);
     timer = window.setTimeout(() => {
+      const told = { text: text.value, of, apply: editor.apply };
       timer = 0;
-      void page.net.ask("edit", { text: text.value }).catch((error: Error) => say(error.message));
+      of = null; // who goes on typing has seen what was said
+      void page.net.ask("edit", told).catch((error: Error) => say(error.message));
     }, PAUSE_MS);
   };
   page.hub.on("document", (said) => {

@@ -1,7 +1,8 @@
 /** When the camera rests, what it looks at is fetched finer: heights and picture of a large surface, fine textures. */
 import { bulk } from "../net";
 import type { Page } from "../page";
-import type { Scene, Window } from "../scene";
+import type { Scene } from "../scene";
+import { fetchPart, type Window } from "./fetching";
 import { finePatch, textured } from "./fine";
 import { holds, windowOf, type Box } from "./window";
 
@@ -46,7 +47,7 @@ export class Refiner {
     this.ending = new AbortController();
     if (!window) return this.put(scene, null);
     const { signal } = this.ending;
-    const [part, picture] = await Promise.all([scene.part(window, signal), this.cropped(scene, window)]);
+    const [part, picture] = await Promise.all([fetchPart(scene.meta, window, signal), this.cropped(scene, window)]);
     if (signal.aborted || this.page.scene !== scene) return;
     this.put(scene, window);
     scene.detail = part;

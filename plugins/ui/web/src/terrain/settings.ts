@@ -1,4 +1,5 @@
 /** How the surface is drawn, kept from one visit to the next where the browser allows it. */
+import { recall, remember as keep } from "../remembered";
 import { STEEPS } from "./shader";
 import type { Looks } from "./terrain";
 
@@ -51,16 +52,12 @@ export function checked(kept: unknown): Settings {
 
 export function remembered(): Settings {
   try {
-    return checked(JSON.parse(localStorage.getItem(KEPT) ?? "null"));
+    return checked(JSON.parse(recall(KEPT, "null")));
   } catch {
-    return { ...DEFAULTS };
+    return { ...DEFAULTS }; // not ours
   }
 }
 
 export function remember(settings: Settings): void {
-  try {
-    localStorage.setItem(KEPT, JSON.stringify(settings));
-  } catch {
-    // private windows keep nothing
-  }
+  keep(KEPT, JSON.stringify(settings));
 }

@@ -1,7 +1,7 @@
 /** What is shown of the surface on the screen: the chosen look where there is one such, and changes of it. */
 import type { Meta } from "../messages";
 import type { Page } from "../page";
-import type { Layer } from "../scene";
+import { fetchLayer, type Layer } from "./fetching";
 import { remember, remembered, type Settings } from "./settings";
 
 /** The looks that a surface has, in the order in which they are offered. */
@@ -58,7 +58,7 @@ export class Showing {
     const { look } = this;
     if (scene && look in scene.meta.layers) {
       try {
-        this.layer = await scene.layer(look);
+        this.layer = await fetchLayer(scene, look);
       } catch (error) {
         hub.tell("error", { event: "error", at_s: Date.now() / 1000, text: (error as Error).message });
         return;

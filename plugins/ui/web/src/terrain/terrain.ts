@@ -1,11 +1,13 @@
 /** The surface as it is drawn: the whole of it, and something finer of where the camera looks. */
 import { Group, Vector2, Vector3, Vector4, type Texture } from "three";
-import type { Layer, Part, Scene } from "../scene";
+import type { Part, Scene } from "../scene";
+import type { Layer } from "./fetching";
 import { Needles } from "./needles";
 import { Sheet, type Uniforms } from "./sheet";
 import { LOOKS, STEEPS } from "./shader";
 import { heatTexture, kindsTexture, numbers } from "./textures";
 
+const MOST_MOVING_NEEDLES = 4;
 const NOTHING = new Float32Array(1);
 
 /** How a surface is drawn. */
@@ -109,6 +111,7 @@ export class Terrain {
   /** While the camera moves, fewer triangles are drawn, where all of them take long. */
   set moving(moving: boolean) {
     for (const sheet of [this.whole, this.detail]) if (sheet) sheet.moving = moving;
+    this.needles.density = moving ? Math.min(this.looks.normals, MOST_MOVING_NEEDLES) : this.looks.normals;
   }
 
   /** Patterns are this wide, metres. */

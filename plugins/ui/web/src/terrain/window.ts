@@ -1,6 +1,6 @@
 /** Which part of a large surface is drawn finer: what the camera sees, in cells no smaller than is seen. */
 import type { Meta } from "../messages";
-import type { Window } from "../scene";
+import type { Window } from "./fetching";
 
 /** What is drawn of it in a fraction of a second; 300 000 cells are 600 000 triangles. */
 export const MOST_CELLS = 300_000;

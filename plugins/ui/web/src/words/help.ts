@@ -31,6 +31,7 @@ export const t = words({
   Escape: ["Esc", "Esc"],
   Shift: ["Shift", "Umschalt"],
   Ctrl: ["Ctrl", "Strg"],
+  Alt: ["Alt", "Alt"],
   ArrowLeft: ["Left", "Links"],
   ArrowRight: ["Right", "Rechts"],
   ArrowUp: ["Up", "Hoch"],

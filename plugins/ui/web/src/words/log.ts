@@ -27,6 +27,7 @@ export const t = words({
   felt: ["Feeling {law}", "Zu fühlen: {law}"],
   running: ["Forces are on.", "Kräfte sind eingeschaltet."],
   stopped: ["Forces are off.", "Kräfte sind ausgeschaltet."],
+  makingStopped: ["Making was stopped.", "Die Berechnung wurde abgebrochen."],
   shown: ["Shown: {name}", "Gezeigt: {name}"],
   gone: ["The connection to the program is lost; the page tries again.",
     "Die Verbindung zum Programm ist unterbrochen; die Seite versucht es wieder."],

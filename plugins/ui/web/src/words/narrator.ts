@@ -18,7 +18,6 @@ export const t = words({
   shown: ["{name} is shown.", "{name} wird gezeigt."],
   size: ["{name}, {width} by {length} millimetres.", "{name}, {width} mal {length} Millimeter."],
   heights: ["Its heights are from {low} to {high} millimetres.", "Die Höhen reichen von {low} bis {high} Millimeter."],
-  materials: ["Number of parts: {count}. Materials: {names}.", "Anzahl der Teile: {count}. Materialien: {names}."],
   keys: ["The arrow keys move the hand, Space presses and lifts. W says where the hand is, D describes the surface, question mark shows all keys, Escape takes all force away.",
     "Die Pfeiltasten bewegen die Hand, die Leertaste drückt und hebt sie. W sagt, wo die Hand ist, D beschreibt die Oberfläche, das Fragezeichen zeigt alle Tasten, Escape nimmt alle Kraft weg."],
   FORCE_LIMITED: ["The force is at its limit.", "Die Kraft ist an ihrer Grenze."],

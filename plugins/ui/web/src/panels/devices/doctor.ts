@@ -1,6 +1,8 @@
 /** How the force loop runs, four times a second while somebody looks. */
 import type { Page } from "../../page";
+import { LIMITS } from "../../overlay/limits";
 import { t } from "../../words/devices";
+import { t as named } from "../../words/overlay";
 import { Spark } from "./spark";
 
 const LOOK_MS = 250;
@@ -37,9 +39,10 @@ export function doctor(page: Page, open: () => boolean): HTMLElement {
   none.textContent = t("noLoop");
   const list = document.createElement("dl");
   list.className = "figures";
+  const how = Object.assign(document.createElement("p"), { className: "hint" });
   const late = new Spark(t("worstLine"), 0);
   const force = new Spark(t("forceLine"), 2);
-  box.append(heading, none, list, captioned(t("worstLine"), late), captioned(t("forceLine"), force));
+  box.append(heading, none, list, how, captioned(t("worstLine"), late), captioned(t("forceLine"), force));
   let asking = false;
 
   async function look(): Promise<void> {
@@ -56,9 +59,10 @@ export function doctor(page: Page, open: () => boolean): HTMLElement {
 
   function show(found: Figures | null): void {
     none.hidden = found !== null;
-    for (const each of [list, late.element.parentElement!, force.element.parentElement!]) each.hidden = !found;
+    for (const each of [list, how, late.element.parentElement!, force.element.parentElement!]) each.hidden = !found;
     if (!found) return;
     list.replaceChildren(...rows(found).flatMap(([name, value]) => [made("dt", name), made("dd", value)]));
+    how.textContent = t("how", { how: found.how });
     late.add(found.late_us?.most ?? 0);
     force.add(found.force_n);
   }
@@ -81,7 +85,6 @@ function rows(found: Figures): [string, string][] {
     [t("position"), t("millimetres", { x: x!, y: y!, z: z! })],
     [t("buttons"), bits(found.buttons).join(", ") || t("none")],
     [t("limits"), limits(found.flagged) || t("none")],
-    [t("how"), found.how],
   ];
 }
 
@@ -95,11 +98,10 @@ export function bits(buttons: number): number[] {
   return Array.from({ length: 8 }, (_, i) => i + 1).filter((each) => buttons & (1 << (each - 1)));
 }
 
-/** "FORCE_LIMITED 12": names are those of docs/servo.md; touching is no limit. */
+/** "force limited 12": how many ticks each limit changed; overruns have a line of their own. */
 export function limits(flagged: Record<string, number>): string {
-  return Object.entries(flagged)
-    .filter(([name]) => name !== "TOUCHING" && name !== "RAMPING" && name !== "SWAPPED")
-    .map(([name, ticks]) => `${name} ${ticks}`)
+  return LIMITS.filter(({ name }) => name !== "OVERRUN" && flagged[name])
+    .map(({ name, word }) => `${named(word)} ${flagged[name]}`)
     .join(", ");
 }
 

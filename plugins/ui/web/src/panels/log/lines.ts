@@ -6,6 +6,8 @@ export type Level = (typeof LEVELS)[number];
 export interface Line {
   level: Level;
   text: string;
+  /** The end of the text, that the program says and in English. */
+  foreign: string;
   /** Unix time of the last time. */
   at_s: number;
   times: number;
@@ -19,14 +21,14 @@ export class Lines {
   constructor(private most = MOST_LINES) {}
 
   /** Add a line; what was dropped for it is said, and whether it is the last one over again. */
-  add(level: Level, text: string, at_s: number): { line: Line; again: boolean; dropped: Line | undefined } {
+  add(level: Level, text: string, at_s: number, foreign = ""): { line: Line; again: boolean; dropped: Line | undefined } {
     const before = this.all.at(-1);
     if (before && before.level === level && before.text === text) {
       before.times++;
       before.at_s = at_s;
       return { line: before, again: true, dropped: undefined };
     }
-    const line = { level, text, at_s, times: 1 };
+    const line = { level, text, foreign, at_s, times: 1 };
     this.all.push(line);
     return { line, again: false, dropped: this.all.length > this.most ? this.all.shift() : undefined };
   }

@@ -1,0 +1,118 @@
+"""The page in a real browser, drawing in software: how soon and how often, and what it does to the force loop."""
+
+import gzip
+import statistics
+from collections.abc import Iterator
+from pathlib import Path
+
+from .figures import Figure, MissedError, judged, part, table
+from .ui_drive import browser, drag, felt, opened, painted, percentile, scene_640, served
+from .ui_late import lateness, stale_ticks
+from .ui_tasks import large_relief, memory, stopped, swapped
+
+STATIC = Path(__file__).parents[1] / "plugins/ui/tangible_ui/static"
+RUNS = 3
+DRAG_S = 8.0
+
+
+def section() -> str:
+    """The section of RESULTS.md, as Markdown."""
+    found = [*smoothness(), *start(), *tasks(), *size(), *lasting()]
+    late, rows = lateness()
+    text = "\n".join(
+        [
+            "Terrain 640 x 480, canvas 640 x 400, Chromium without a graphics card (SwiftShader), a mouse dragged 60 "
+            f"times a second; medians of {RUNS} runs. Drawn: the pixels can be read.",
+            "",
+            *judged([*found, late]),
+            "",
+            "Ticks of the force loop, interleaved rounds, medians:",
+            "",
+            *table(("felt with", "later than 200 us", "p99.9", "latest", "periods without a tick"), rows),
+        ]
+    )
+    if not all(each.met for each in (*found, late)):
+        raise MissedError(text)
+    return text
+
+
+def smoothness() -> Iterator[Figure]:
+    """The cursor while the mouse is dragged."""
+    runs = [part(f"drag {n + 1}", _dragged) for n in range(RUNS)]
+    hz, tick, tick95, mouse, mouse95, pick, pick99 = (statistics.median(column) for column in zip(*runs, strict=True))
+    yield Figure("cursor drawn", ">= 40 Hz", f"{hz:.0f} Hz", hz >= 40)
+    yield Figure(
+        "tick to drawn, p50 / p95", "<= 30 / 70 ms", f"{tick:.0f} / {tick95:.0f} ms", tick <= 30 and tick95 <= 70
+    )
+    yield Figure(
+        "mouse to drawn with its force, p50 / p95",
+        "<= 45 / 90 ms",
+        f"{mouse:.0f} / {mouse95:.0f} ms",
+        mouse <= 45 and mouse95 <= 90,
+    )
+    yield Figure("pick, p50 / p99", "<= 0.2 / 5 ms", f"{pick:.2f} / {pick99:.1f} ms", pick <= 0.2 and pick99 <= 5)
+
+
+def _dragged() -> tuple[float, ...]:
+    with scene_640() as config, served(config) as server, browser() as chromium:
+        page = opened(chromium, server.url)
+        felt(page)
+        page.evaluate("Object.assign(figures, {drawn: [], trips: [], picks: []})")
+        drag(page, DRAG_S)
+        found = page.evaluate("figures")
+    drawn, trips, picks = found["drawn"], found["trips"], found["picks"]
+    span_s = (drawn[-1][3] - drawn[0][3]) / 1e3
+    ticks = [each[1] for each in drawn]
+    return (
+        (len(drawn) - 1) / span_s,
+        *(percentile(ticks, share) for share in (50, 95)),
+        *(percentile(trips, share) for share in (50, 95)),
+        *(percentile(picks, share) for share in (50, 99)),
+    )
+
+
+def start() -> Iterator[Figure]:
+    """From the command to the first picture, and until it is felt; kernels compiled, results kept."""
+    paint, feel = zip(*[part(f"start {n + 1}", _started) for n in range(RUNS + 1)][1:], strict=True)
+    paint_s, feel_s = statistics.median(paint), statistics.median(feel)
+    yield Figure("command to first paint, warm", "<= 2.2 s", f"{paint_s:.2f} s", paint_s <= 2.2)
+    yield Figure("command to felt, warm", "<= 3 s", f"{feel_s:.2f} s", feel_s <= 3)
+
+
+def _started() -> tuple[float, float]:
+    with scene_640() as config, browser() as chromium:
+        blank = chromium.new_page()  # the browser itself is warm, as it is on a desk
+        with served(config) as server:
+            page = opened(chromium, server.url)
+            result = painted(page) - server.begun_s, felt(page) - server.begun_s
+        blank.close()
+        return result
+
+
+def tasks() -> Iterator[Figure]:
+    """What takes its time, and must not take it from the hand."""
+    swap_s = statistics.median(part("swap", swapped))
+    yield Figure("another law that is known, click to felt", "<= 400 ms", f"{1e3 * swap_s:.0f} ms", swap_s <= 0.4)
+    stop_s, overruns = part("stop", stopped)
+    said = f"{stop_s:.2f} s, {overruns} periods without a tick"
+    yield Figure("stop of a stage", "<= 1.5 s, no tick changed", said, stop_s <= 1.5 and overruns == 0)
+    paint_s, hz = part("18 megapixels", large_relief)
+    yield Figure("relief of 18 megapixels", "draws", f"first paint {paint_s:.1f} s, cursor {hz:.0f} Hz", hz > 0)
+
+
+def size() -> Iterator[Figure]:
+    """Of what a browser fetches of the page."""
+    names = ("index.html", "app.js", "app.css")
+    kb = sum(len(gzip.compress((STATIC / name).read_bytes(), 9)) for name in names) / 1e3
+    yield Figure("page, compressed", "<= 250 kB", f"{kb:.0f} kB", kb <= 250)
+
+
+def lasting() -> Iterator[Figure]:
+    """What happens in a long time."""
+    stale, seconds, asked = part("a minute of dragging", stale_ticks)
+    yield Figure(f"stale ticks in {seconds:.0f} s of dragging", "0", str(stale), stale == 0)
+    yield Figure("requests to another machine meanwhile", "0", str(asked), asked == 0)
+    minutes, grown_page_mb, grown_server_mb = part("memory", memory)
+    said = f"page {grown_page_mb:+.1f} MB, server {grown_server_mb:+.1f} MB"
+    flat = max(grown_page_mb, grown_server_mb) <= 10
+    yield Figure(f"memory after {minutes:g} minutes of a page left open", "flat: <= 10 MB more", said, flat)

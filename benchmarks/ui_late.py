@@ -1,0 +1,121 @@
+"""How late the ticks of the force loop are while a page draws, against the loop alone."""
+
+import subprocess
+import time
+from collections.abc import Callable
+from pathlib import Path
+from statistics import median
+from typing import NamedTuple
+
+import numpy as np
+
+from tangible_core.data import TickFlag
+from tangible_core.servo.ring import Ring, shared_folder
+from tangible_core.session.tick_arrays import ARRAYS
+
+from .figures import Figure, part
+from .ui_drive import browser, drag, end, felt, opened, scene_640, served, tangible
+
+ROUNDS, ROUND_S = 8, 7.0
+LATE_US = 200
+TIMES, POINTS = 1.2, 0.1
+MINUTE_S = 60.0
+
+
+class Late(NamedTuple):
+    """Ticks of one round."""
+
+    late_percent: float
+    p999_us: float
+    latest_us: float
+    overruns: int
+
+
+def lateness() -> tuple[Figure, list[tuple[str, ...]]]:
+    """Both kinds in turn, the order changed from round to round."""
+    kinds: dict[str, Callable[[Path], Late]] = {"`tangible feel` and `tangible pointer`": _alone, "the page": _paged}
+    found: dict[str, list[Late]] = {name: [] for name in kinds}
+    with scene_640() as config:
+        for number in range(ROUNDS):
+            order = list(kinds) if number % 2 == 0 else list(reversed(kinds))
+            for name in order:
+                found[name].append(part(f"late {number + 1}: {name}", lambda name=name: kinds[name](config)))
+    medians = {name: Late(*(median(column) for column in zip(*each, strict=True))) for name, each in found.items()}
+    alone, paged = (each.late_percent for each in medians.values())
+    met = paged <= max(TIMES * alone, alone + POINTS)
+    said = f"{paged:.3f} %, alone {alone:.3f} %"
+    bound = f"<= {TIMES:g} x alone, or {POINTS:g} points more"
+    rows = [
+        (name, f"{each.late_percent:.3f} %", f"{each.p999_us:.0f} us", f"{each.latest_us:.0f} us", f"{each.overruns:g}")
+        for name, each in medians.items()
+    ]
+    return Figure(f"ticks later than {LATE_US} us, page open and dragged", bound, said, met), rows
+
+
+def ring_of(process: int) -> Ring:
+    """The ring of a host's loop, once it ticks. Raises: TimeoutError."""
+    end_s = time.monotonic() + 60
+    while time.monotonic() < end_s:
+        for path in shared_folder().glob(f"tangible-{process}-*.ring"):
+            ring = Ring.attach(path)
+            if ring.count > 500:
+                return ring
+        time.sleep(0.05)
+    raise TimeoutError("no force loop began")
+
+
+def _window(ring: Ring, during: Callable[[], object]) -> Late:
+    before, overruns, first = ring.late.copy(), ring.overruns, ring.count
+    during()
+    late = ring.late - before
+    shares = np.cumsum(late) / max(1, late.sum())
+    rows, _ = ring.since(first)
+    return Late(
+        float(100 * late[LATE_US:].sum() / max(1, late.sum())),
+        float(np.searchsorted(shares, 0.999)),
+        float(1e6 * rows[:, ARRAYS["late_s"]].max(initial=0.0)),
+        ring.overruns - overruns,
+    )
+
+
+def _alone(config: Path) -> Late:
+    words = [tangible(), "feel", str(config), "--seconds", "60"]
+    loop = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, text=True)
+    hand = None
+    try:
+        ring = ring_of(loop.pid)
+        words = [tangible(), "pointer", "--path", "circle", "--seconds", "60", "--wait", "10"]
+        hand = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, text=True)
+        time.sleep(1.5)
+        return _window(ring, lambda: time.sleep(ROUND_S))
+    finally:
+        for process in filter(None, (hand, loop)):
+            end(process)
+
+
+def _paged(config: Path) -> Late:
+    with served(config) as server, browser() as chromium:
+        page = opened(chromium, server.url)
+        felt(page)
+        ring = ring_of(server.process.pid)
+        time.sleep(1.5)
+        return _window(ring, lambda: drag(page, ROUND_S))
+
+
+def stale_ticks() -> tuple[int, float, int]:
+    """Ticks without a fresh position in a minute of dragging, its seconds, and requests that left this machine."""
+    asked: list[str] = []
+    stale = 0
+    with scene_640() as config, served(config) as server, browser() as chromium:
+        page = opened(chromium, server.url)
+        page.on("request", lambda request: asked.append(request.url))
+        felt(page)
+        ring = ring_of(server.process.pid)
+        following = ring.count
+        begun_s = time.monotonic()
+        while time.monotonic() - begun_s < MINUTE_S:
+            drag(page, 3.0)
+            rows, following = ring.since(following)
+            stale += int(np.count_nonzero(rows[:, ARRAYS["flags"]].astype(np.int64) & TickFlag.STALE))
+    here = ("http://127.0.0.1", "ws://127.0.0.1", "data:", "blob:")
+    return stale, time.monotonic() - begun_s, sum(not url.startswith(here) for url in asked)

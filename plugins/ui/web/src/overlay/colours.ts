@@ -1,0 +1,10 @@
+/** Colours of what is drawn over a photograph: light ones have a dark rim, so that none needs a certain ground. */
+export const COLOURS = {
+  device: 0xff5d8f,
+  proxy: 0x35d0ff,
+  force: 0xffb020,
+  other: 0xb79bff,
+  rim: 0x0b0e13,
+  cone: 0xc77f1a,
+  frame: 0xffffff,
+} as const;

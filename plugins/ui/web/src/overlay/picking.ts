@@ -1,0 +1,59 @@
+/** A tool that takes the mouse from the hand: its main button then means places on the surface. */
+import type { Vec } from "../protocol";
+import type { Scene } from "../scene";
+import type { View } from "../view";
+
+export interface Picked {
+  begin(at: Vec): void;
+  drag?(at: Vec): void;
+  end?(at: Vec): void;
+  /** Another tool took the mouse, or it was put away. */
+  left?(): void;
+}
+
+/** One tool at a time. */
+export class Picking {
+  private tool: Picked | null = null;
+  private last: Vec | null = null;
+
+  constructor(
+    private view: View,
+    private canvas: HTMLCanvasElement,
+    private scene: () => Scene | null,
+  ) {
+    const around = canvas.parentElement!;
+    for (const type of ["pointerdown", "pointermove", "pointerup", "pointercancel"] as const)
+      around.addEventListener(type, (event) => this.hear(event), { capture: true });
+  }
+
+  get busy(): Picked | null {
+    return this.tool;
+  }
+
+  take(tool: Picked | null): void {
+    const before = this.tool;
+    this.tool = tool;
+    this.last = null;
+    this.canvas.classList.toggle("picking", tool !== null);
+    if (before !== tool) before?.left?.();
+  }
+
+  private hear(event: PointerEvent): void {
+    if (!this.tool || event.target !== this.canvas || event.altKey || (event.buttons & ~1) !== 0) return;
+    if (event.type === "pointerdown" && event.button !== 0) return;
+    event.stopImmediatePropagation();
+    const at = this.scene()?.pick(...this.view.ray(event.clientX, event.clientY)) ?? null;
+    if (event.type === "pointerdown") {
+      this.canvas.setPointerCapture(event.pointerId);
+      this.canvas.focus();
+      this.last = at;
+      if (at) this.tool.begin(at);
+    } else if (event.type === "pointermove") {
+      if (at && this.last && event.buttons & 1) this.tool.drag?.((this.last = at));
+    } else if (this.last) {
+      const end = this.last;
+      this.last = null;
+      this.tool.end?.(end);
+    }
+  }
+}

@@ -1,0 +1,171 @@
+"""The hand in a browser: the mouse and the keyboard feel, and a page that nobody sees, or that is gone, does not."""
+
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from page_files import built_page
+from tangible_core.data import TICK_COLUMNS
+from tangible_core.servo.ring import Ring, shared_folder
+
+IN_TIME_S = 120.0
+GONE_S = 2.0
+"""Generous for a machine that is busy: the server lets go after a tenth of a second, and what is told, at once."""
+X = TICK_COLUMNS.index("x_m")
+FORCE = slice(TICK_COLUMNS.index("fx_n"), TICK_COLUMNS.index("fx_n") + 3)
+Z = TICK_COLUMNS.index("z_m")
+FELT_N = 0.001
+HIDE = "Object.defineProperty(document, 'hidden', {value: true}); document.dispatchEvent(new Event('visibilitychange'))"
+
+
+def until(condition: Callable[[], Any], seconds: float = IN_TIME_S) -> Any:
+    end = time.monotonic() + seconds
+    while not (found := condition()):
+        assert time.monotonic() < end, "it did not happen"
+        time.sleep(0.01)
+    return found
+
+
+class Felt:
+    """The server's force loop, by its ring."""
+
+    def __init__(self) -> None:
+        self.path = until(lambda: next(iter(self.rings()), None))
+        self.ring = Ring.attach(self.path)
+
+    @staticmethod
+    def rings() -> list[Path]:
+        return sorted(shared_folder().glob("*.ring"), key=lambda path: path.stat().st_mtime, reverse=True)
+
+    def newest(self) -> np.ndarray:
+        return self.ring.since(self.ring.count - 1)[0][-1]
+
+    def force_n(self) -> float:
+        return float(np.linalg.norm(self.newest()[FORCE])) if self.path.exists() else 0.0
+
+    def quiet_after_s(self, begun_s: float) -> float:
+        """How long after this moment the last force was given; waits until there is none for a fifth of a second."""
+
+        def last_s() -> float:
+            rows, _ = self.ring.since(0)
+            given = rows[np.abs(rows[:, FORCE]).max(axis=1) > FELT_N]
+            return self.ring.start_ns / 1e9 + given[-1, 0] - begun_s
+
+        until(lambda: time.monotonic() - begun_s - last_s() > 0.2, GONE_S)
+        return last_s()
+
+
+@pytest.fixture(scope="module")
+def server(serve) -> Any:
+    """One for all: each test leaves it with a loop that runs on the page's own hand."""
+    built_page()
+    return serve("builtin/brick")
+
+
+@pytest.fixture
+def page(server: Any, open_page) -> Any:
+    """A page on which a surface is felt; nothing moves its hand yet."""
+    page = open_page(f"{server.url}&measure")
+    drawn(page)
+    page.wait_for_function(
+        "() => document.getElementById('log').textContent.includes('proxy:')", timeout=1000 * IN_TIME_S
+    )
+    return page
+
+
+def drawn(page: Any) -> None:
+    page.wait_for_function("() => window.figures?.firstMs > 0", timeout=1000 * IN_TIME_S)
+
+
+def over(rows: np.ndarray) -> np.ndarray:
+    """Whether the hand was there, and not let go of."""
+    return rows[..., Z] < 0.1
+
+
+def press(page: Any, felt: Felt) -> None:
+    """The mouse, in the middle of the surface."""
+    box = page.locator("#terrain").bounding_box()
+    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    page.mouse.down()
+    until(lambda: felt.force_n() > 0.05)
+
+
+def test_the_mouse_feels_until_nobody_sees_the_page(page: Any) -> None:
+    felt = Felt()
+    press(page, felt)
+    page.mouse.up()
+    assert felt.quiet_after_s(time.monotonic()) < GONE_S
+
+    press(page, felt)
+    hidden_s = time.monotonic()
+    page.evaluate(HIDE)
+    assert felt.quiet_after_s(hidden_s) < GONE_S
+    page.mouse.up()
+    page.reload()
+    drawn(page)
+
+    press(page, felt)
+    begun = felt.ring.count
+    frozen_s = time.monotonic() - felt.ring.start_ns / 1e9
+    page.evaluate("{ const end = performance.now() + 3000; while (performance.now() < end); }")
+    rows, _ = felt.ring.since(begun)
+    while_frozen = (rows[:, 0] > frozen_s + GONE_S) & (rows[:, 0] < frozen_s + 2.9)
+    assert while_frozen.any()
+    assert np.abs(rows[while_frozen, FORCE]).max() < FELT_N
+    page.mouse.up()
+
+
+def test_a_tab_that_is_closed_leaves_no_force(page: Any) -> None:
+    felt = Felt()
+    press(page, felt)
+    closed_s = time.monotonic()
+    page.close()
+    assert felt.quiet_after_s(closed_s) < GONE_S
+
+
+def test_the_keyboard_alone_feels_and_the_stop_key_works_in_a_field(page: Any) -> None:
+    felt = Felt()
+    page.locator("#terrain").focus()
+    page.keyboard.press("Space")
+    until(lambda: felt.force_n() > 0.05)
+    begun, begun_m = felt.ring.count, felt.newest()[X]
+    page.keyboard.down("ArrowRight")
+    until(lambda: over(felt.newest()) and felt.newest()[X] > begun_m + 0.005)
+    page.keyboard.up("ArrowRight")
+    rows, _ = felt.ring.since(begun)
+    held = over(rows)  # a page that is held up for a tenth of a second lets go
+    steps_m = np.diff(rows[:, X])[held[1:] & held[:-1]]
+    assert np.abs(steps_m).max() < 0.0005  # it does not leap from one step of a key to the next
+    page.evaluate("document.getElementById('hand').open = true")
+    page.locator("#press").focus()
+    page.keyboard.press("Escape")
+    until(lambda: not felt.path.exists())
+    assert "Stopped" in page.locator("#status").text_content()
+    page.locator("#again").click()
+    until(lambda: Felt.rings() and Felt.rings()[0] != felt.path)
+
+
+def test_another_device_is_felt_and_examined_and_a_motor_asks_first(page: Any) -> None:
+    felt = page.locator("#device-felt")
+    page.locator("#devices > summary").click()
+    page.get_by_role("button", name="Examine mock").click()
+    until(lambda: "needs nothing" in page.locator(".devices").text_content())
+    page.get_by_role("button", name="Feel with mock").click()
+    until(lambda: felt.text_content() == "Felt with: mock")
+    until(lambda: "Hz" in page.locator("#devices .figures").text_content())
+
+    page.get_by_role("button", name="Feel with falcon", exact=True).click()
+    dialog = page.get_by_role("dialog", name="falcon has a motor")
+    dialog.wait_for()
+    assert felt.text_content() == "Felt with: mock"
+    assert page.evaluate("document.activeElement.textContent") == "No"
+    page.keyboard.press("Escape")  # it closes what it closes, and stops all force
+    until(lambda: dialog.count() == 0)
+    until(lambda: "Stopped" in page.locator("#status").text_content())
+
+    page.locator("#use-hand").click()
+    until(lambda: felt.text_content() == "Felt with: this page's hand")

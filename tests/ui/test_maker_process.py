@@ -1,0 +1,101 @@
+"""The maker as a process: stopping it leaves the loop as it is; one that does not start is not started for ever."""
+
+import asyncio
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from desks import Heard
+from tangible_core.runtime.child_process import command
+from tangible_ui.asks import ASKS
+from tangible_ui.desk import Desk
+from tangible_ui.feeling import Feeling
+from tangible_ui.maker import Maker
+from tangible_ui.maker.handle import MakerAbsent, MakingStopped
+
+pytestmark = pytest.mark.slow
+
+SLOW = """\
+scene: builtin/motorcycle
+depth: {use: luminance}
+render: {use: penalty}
+"""
+
+
+def test_what_is_made_ends_at_once_and_the_loop_feels_on(tmp_path: Path):
+    async def check() -> None:
+        desk, tab = Desk(tmp_path, Feeling("maker-process"), []), Heard()
+        desk.enter(tab)
+
+        async def ask(name: str, **told: Any) -> Any:
+            return await ASKS[name](desk, tab, **told)
+
+        try:
+            await asyncio.to_thread(desk.feeling.start)
+            await ask("edit", text=SLOW)
+            await ask("make")
+            felt, servo = desk.feeling.felt, desk.feeling.servo
+            assert felt is not None
+            assert servo is not None
+            await ask("set", changes={"depth.use": "ssd", "depth.window_px": 19})
+            making = asyncio.ensure_future(ask("make"))
+            while not any(each["event"] == "stage" and each["method"] == "ssd" for each in tab.events):
+                await asyncio.sleep(0.01)
+                assert not making.done()
+            ticks, swapped, begun = servo.ring.count, tab.names().count("touch"), time.monotonic()
+            await ask("stop_making")
+            await making
+            assert time.monotonic() - begun < 1.5
+            assert tab.last("made")["outcome"] == "stopped"
+            said = await ask("set", changes={"render.stiffness_n_per_m": 300})  # quick work waits for the new one
+            assert said["complaints"] == []
+            assert desk.feeling.felt is felt
+            assert desk.feeling.running
+            rows, count = servo.ring.since(ticks)
+            assert count - ticks > 100
+            assert tab.names().count("touch") == swapped
+            assert len(rows) == count - ticks  # no tick is missing
+            await ask("undo")
+            await ask("undo")
+            await ask("make")
+            assert tab.last("made")["outcome"] == "made"
+            assert desk.feeling.felt is not felt
+        finally:
+            await desk.close()
+
+    asyncio.run(check())
+
+
+def test_one_that_does_not_start_is_tried_three_times_and_says_why(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    async def check() -> None:
+        started: list[str] = []
+
+        def broken(module: str) -> list[str]:
+            started.append(module)
+            return [sys.executable, "-c", "raise SystemExit('no such library')"]
+
+        monkeypatch.setattr("tangible_ui.maker.handle.command", broken)
+        heard: list[Any] = []
+        maker = Maker(tmp_path, heard.append)
+        try:
+            with pytest.raises(MakerAbsent, match="no such library"):
+                while True:
+                    try:
+                        await maker.ask("schema")
+                    except MakingStopped:
+                        continue
+            assert len(started) == 3
+            assert [event.event for event in heard] == ["maker_gone"]
+            with pytest.raises(MakerAbsent):
+                await maker.quick("schema")
+            monkeypatch.setattr("tangible_ui.maker.handle.command", command)
+            maker.try_again()
+            assert "properties" in await maker.ask("schema")
+            assert heard[-1].event != "maker_gone"
+        finally:
+            maker.close()
+
+    asyncio.run(check())

@@ -237,9 +237,10 @@ class TestFloods:
         with page.tab() as other:
             while page.done(lambda: len(page.desk.tabs)) < 2:
                 time.sleep(0.01)
-            deadline = time.monotonic() + 20
+            said = 0
             while page.done(lambda: len(page.desk.tabs)) == 2:
-                assert time.monotonic() < deadline
+                said += 1
+                assert said < 100  # megabytes
                 page.done(lambda: page.desk.tell("log", text="x" * 1_000_000))
                 other.until(event="log")
         raw.close()

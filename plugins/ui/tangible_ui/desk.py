@@ -20,7 +20,7 @@ from .makes import Makes
 from .recorder import Recorder
 from .rival import Rival
 from .shelf import Shelf, user_folder
-from .texts import Text, Texts
+from .texts import Texts
 
 MOST_HISTORY, MOST_LOGGED = 500, 200
 """Events, and lines that were logged, that a tab which is opened later hears of."""
@@ -107,8 +107,6 @@ class Desk:
             if event in LAST_ALONE:
                 self._forget(event)
             (self._logged if event == "log" else self._history).append(said)
-        if event == "document":
-            self.begin(self.drafts.keep(Text(self.text, self.path)))
         for tab in list(self.tabs):
             tab.say(said)
 

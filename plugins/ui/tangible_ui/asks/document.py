@@ -109,6 +109,7 @@ def _put(desk: Desk, text: Text, found: dict[str, Any]) -> dict[str, Any]:
 def _told(desk: Desk, text: Text, found: dict[str, Any]) -> dict[str, Any]:
     desk.text, desk.path = text
     desk.digest = found["digest"]
+    desk.begin(desk.drafts.keep(text))
     found |= {"can_undo": desk.texts.can_undo, "can_redo": desk.texts.can_redo}
     desk.tell("document", **found)
     return found

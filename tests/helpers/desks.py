@@ -9,8 +9,8 @@ import numpy as np
 from PIL import Image
 
 from tangible_core.pipeline.cache import Cache
-from tangible_ui.desk import Desk
-from tangible_ui.feeling import Feeling
+from tangible_ui.desk.desk import Desk
+from tangible_ui.feeling.feeling import Feeling
 from tangible_ui.maker.bench import Bench
 from tangible_ui.maker.handle import MakingStopped
 from tangible_ui.maker.jobs import JOBS
@@ -119,7 +119,7 @@ class SmallDesk:
     """A desk with a tab, whose touches are kept in `felt`."""
 
     def __init__(self, folder: Path, monkeypatch: Any) -> None:
-        monkeypatch.setattr("tangible_ui.desk.Maker", InlineMaker)
+        monkeypatch.setattr("tangible_ui.desk.desk.Maker", InlineMaker)
         (folder / "drawn").mkdir()
         self.desk = Desk(folder / "drawn", Feeling("test"), [])
         self.maker: Any = self.desk.maker

@@ -12,11 +12,11 @@ from typing import Any, Self
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 
-from tangible_ui.desk import Desk
-from tangible_ui.feeling import Feeling
-from tangible_ui.routes import application
-from tangible_ui.serve import HOST, Server, _listening, settings
-from tangible_ui.watching import watch
+from tangible_ui.desk.desk import Desk
+from tangible_ui.feeling.feeling import Feeling
+from tangible_ui.serving.routes import application
+from tangible_ui.serving.serve import HOST, Server, _listening, settings
+from tangible_ui.serving.watching import watch
 
 KEY = "key-of-a-test-0123456789"
 IN_TIME_S = 60.0
@@ -48,7 +48,7 @@ class PageServer:
     """It listens in its `with`."""
 
     def __init__(self, folder: Path, monkeypatch: Any) -> None:
-        monkeypatch.setattr("tangible_ui.desk.Maker", NoMaker)
+        monkeypatch.setattr("tangible_ui.desk.desk.Maker", NoMaker)
         self.folder = folder / "drawn"
         self.folder.mkdir()
         self.complaints: list[dict[str, Any]] = []

@@ -10,7 +10,7 @@ import pytest
 from desks import TEXT, SmallDesk, small_scene
 from tangible_core.errors import ConfigError
 from tangible_ui.asks import ASKS
-from tangible_ui.desk import MOST_HISTORY
+from tangible_ui.desk.desk import MOST_HISTORY
 
 Run = Callable[[Callable[[SmallDesk, Any], Coroutine[Any, Any, None]]], None]
 

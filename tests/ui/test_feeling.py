@@ -18,7 +18,7 @@ from tangible_core.servo import Safety, Servo, packed
 from tangible_core.servo.ring import STOP, shared_folder
 from tangible_core.testing.loop_devices import Failing
 from tangible_core.testing.loop_laws import FaultyTouch
-from tangible_ui.feeling import Feeling, Felt
+from tangible_ui.feeling.feeling import Feeling, Felt
 from tangible_ui.wire import STATE_FRAME
 
 LEVEL_M = 0.002

@@ -13,9 +13,9 @@ import pytest
 
 from tangible_core.errors import ConfigError
 from tangible_ui.asks import laws as asks
-from tangible_ui.desk import Desk
-from tangible_ui.feeling import Feeling
-from tangible_ui.rival import NOTHING
+from tangible_ui.desk.desk import Desk
+from tangible_ui.feeling.feeling import Feeling
+from tangible_ui.feeling.rival import NOTHING
 from tangible_ui.wire import STATE_FRAME
 
 TEXT = """\

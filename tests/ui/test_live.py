@@ -8,11 +8,11 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from tangible_core.errors import TangibleError
-from tangible_ui import asking, wire
-from tangible_ui.asking import NotUnderstood, parse
 from tangible_ui.asks import ASKS
-from tangible_ui.feeling import Feeling
-from tangible_ui.live import LiveTab
+from tangible_ui.feeling.feeling import Feeling
+from tangible_ui.serving import asking, wire
+from tangible_ui.serving.asking import NotUnderstood, parse
+from tangible_ui.serving.live import LiveTab
 
 JSON = st.recursive(
     st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False, allow_infinity=False) | st.text(),

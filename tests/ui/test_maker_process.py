@@ -11,8 +11,8 @@ import pytest
 from desks import Heard
 from tangible_core.runtime.child_process import command
 from tangible_ui.asks import ASKS
-from tangible_ui.desk import Desk
-from tangible_ui.feeling import Feeling
+from tangible_ui.desk.desk import Desk
+from tangible_ui.feeling.feeling import Feeling
 from tangible_ui.maker import Maker
 from tangible_ui.maker.handle import MakerAbsent, MakingStopped
 

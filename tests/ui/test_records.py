@@ -13,9 +13,9 @@ from tangible_core.data import TICK_COLUMNS
 from tangible_core.errors import OutputError
 from tangible_core.servo import Servo
 from tangible_core.session import About, Recording, Writer
+from tangible_ui.feeling.recorder import BY_HAND, Recorder
 from tangible_ui.maker import records
 from tangible_ui.maker.bench import Bench
-from tangible_ui.recorder import BY_HAND, Recorder
 
 
 @pytest.fixture

@@ -19,7 +19,7 @@ from tangible_ui.maker import levels, making, textures
 from tangible_ui.maker.bench import Bench
 from tangible_ui.maker.seen import Layer, Seen, is_there, see
 from tangible_ui.maker.shown import KEPT, show
-from tangible_ui.windows import read_window
+from tangible_ui.serving.windows import read_window
 
 RANDOM = np.random.default_rng(3)
 WOOD = Material("wood", 800.0, 1.0, 0.4, 0.3, roughness_m=3e-5, grain_m=6e-4, texture="stochastic", seed=4)

@@ -1,4 +1,4 @@
-"""The main tasks of the page that no other test goes through, by the keyboard alone: judge, record, compare, open again.
+"""The main tasks of the page that no other test does, by the keyboard alone: judge, record, compare, open again.
 
 That a first visit and an option's way from its form to the file need no mouse is tested in `test_everybody` and
 `test_forms_in_browser`.

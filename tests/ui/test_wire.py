@@ -13,7 +13,7 @@ from page_files import WEB, node
 from tangible_core.data import TickFlag
 from tangible_ui import wire
 from tangible_ui.asks import ASKS
-from tangible_ui.routes import WRONG_KEY
+from tangible_ui.serving.routes import WRONG_KEY
 
 SOURCES = Path(wire.__file__).parent
 SAID = (1, 5, 513, 4_000_000_000, 4_000_000, 77, 1.7e12 + 0.25)

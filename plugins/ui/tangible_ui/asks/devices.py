@@ -5,9 +5,9 @@ from typing import Any
 
 from tangible_core.errors import ConfigError, DeviceError
 
-from ..choice import Choice
-from ..desk import Desk, Tab
-from ..doctor import figures
+from ..desk.desk import Desk, Tab
+from ..feeling.choice import Choice
+from ..feeling.doctor import figures
 from .making import make
 
 FIRST_PAUSE_S, LONGEST_PAUSE_S = 1.0, 8.0

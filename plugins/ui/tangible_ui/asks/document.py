@@ -5,8 +5,8 @@ from typing import Any
 
 from tangible_core.errors import ConfigError
 
-from ..desk import Desk, Tab
-from ..texts import Text
+from ..desk.desk import Desk, Tab
+from ..desk.texts import Text
 from .making import foresee, make
 
 

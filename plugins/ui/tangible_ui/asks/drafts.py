@@ -4,7 +4,7 @@ import asyncio
 
 from tangible_core.errors import ConfigError
 
-from ..desk import Desk, Tab
+from ..desk.desk import Desk, Tab
 from .document import take
 from .making import make
 

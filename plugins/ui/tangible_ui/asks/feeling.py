@@ -2,7 +2,7 @@
 
 import asyncio
 
-from ..desk import Desk, Tab
+from ..desk.desk import Desk, Tab
 from .making import make
 
 

@@ -8,10 +8,10 @@ from typing import Any
 from tangible_core.errors import ConfigError, DeviceError
 from tangible_core.files.writing import write_text
 
-from ..desk import Desk, Tab
-from ..feeling import Felt
-from ..shelf import user_folder
-from ..tally import Choice, Tally
+from ..desk.desk import Desk, Tab
+from ..desk.shelf import user_folder
+from ..desk.tally import Choice, Tally
+from ..feeling.feeling import Felt
 
 NAMES = ("a", "b")
 MOST_QUESTION = 200

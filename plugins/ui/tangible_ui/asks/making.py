@@ -5,7 +5,7 @@ from typing import Any
 
 from tangible_core.errors import Stopped
 
-from ..desk import Desk, Tab
+from ..desk.desk import Desk, Tab
 from ..maker.handle import MakingStopped
 
 PATIENCE_S = 1.5

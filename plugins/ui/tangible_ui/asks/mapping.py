@@ -3,7 +3,7 @@
 import asyncio
 from typing import Any
 
-from ..desk import Desk, Tab
+from ..desk.desk import Desk, Tab
 
 
 async def reach(desk: Desk, tab: Tab) -> dict[str, Any]:

@@ -7,7 +7,7 @@ from typing import Any
 from tangible_core.errors import ConfigError
 from tangible_core.files.paths import as_path
 
-from ..desk import Desk, Tab
+from ..desk.desk import Desk, Tab
 from .document import begin, edit
 from .making import make
 

@@ -6,7 +6,7 @@ from typing import Any
 from tangible_core.data import TICK_COLUMNS
 from tangible_core.servo.ring import PERIOD_NS, SPINS
 
-from ..desk import Desk, Tab
+from ..desk.desk import Desk, Tab
 from ..maker.messages import Late
 from .document import change
 from .making import long_job

@@ -8,9 +8,9 @@ from typing import Any
 from tangible_core.errors import ConfigError, DeviceError
 from tangible_core.session import About
 
-from ..desk import Desk, Tab
-from ..recorder import Recorder
-from ..shelf import user_folder
+from ..desk.desk import Desk, Tab
+from ..desk.shelf import user_folder
+from ..feeling.recorder import Recorder
 
 FOLDER = "recordings"
 

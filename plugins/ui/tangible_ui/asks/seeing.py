@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from ..desk import Desk, Tab
+from ..desk.desk import Desk, Tab
 
 
 async def texture_patch(

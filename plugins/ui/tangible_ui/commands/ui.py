@@ -18,6 +18,6 @@ def ui(
 
     The page is served to this machine alone; its address holds a key that changes with every start. Ctrl-C ends it.
     """
-    from ..serve import serve
+    from ..serving.serve import serve
 
     serve(files or [], sets or [], port, browser)

@@ -4,8 +4,8 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from .feeling import ALONE, Beside, Feeling
-from .rival import Rival
+from ..feeling.feeling import ALONE, Beside, Feeling
+from ..feeling.rival import Rival
 from .tally import Tally
 
 

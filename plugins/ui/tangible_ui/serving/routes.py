@@ -18,8 +18,8 @@ from starlette.websockets import WebSocket
 from tangible_core.errors import TangibleError
 from tangible_core.files.reading import MOST_BYTES, in_words
 
-from .asks import feeling
-from .desk import Desk
+from ..asks import feeling
+from ..desk.desk import Desk
 from .live import LiveTab
 from .windows import WINDOW, read_window
 

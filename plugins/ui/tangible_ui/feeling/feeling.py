@@ -17,8 +17,8 @@ from tangible_core.plugins.interfaces import HapticDevice
 from tangible_core.servo import Packed, Safety, Servo, still
 from tangible_core.servo.ring import STOP
 
+from ..wire import BUTTON_BITS, STATE, STATE_FRAME
 from .hand import HIGH_M, Hand
-from .wire import BUTTON_BITS, STATE, STATE_FRAME
 
 NOBODY: Vector = (0.0, 0.0, 0.0)
 UNKNOWN: Vector = (math.nan, math.nan, math.nan)

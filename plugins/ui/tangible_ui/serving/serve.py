@@ -21,12 +21,12 @@ from starlette.types import ASGIApp
 
 from tangible_core.errors import ConfigError
 
-from .asks import document, drafts
+from ..asks import document, drafts
+from ..desk.desk import Desk
+from ..feeling.feeling import Feeling
+from ..left_behind import channel_of_this_process, folder_of_this_process
 from .connection import PING_S, Connection
-from .desk import Desk
-from .feeling import Feeling
-from .left_behind import channel_of_this_process, folder_of_this_process
-from .logs import silence, tell_pages
+from ..logs import silence, tell_pages
 from .routes import application, static
 from .watching import watch
 

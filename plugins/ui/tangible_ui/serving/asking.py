@@ -9,7 +9,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError, create_model
 
 from tangible_core.errors import TangibleError, did_you_mean, quoted, shown
 
-from .asks import ASKS, Ask
+from ..asks import ASKS, Ask
 
 MOST_SHOWN = 200
 

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple, final
 from tangible_core.errors import OutputError
 from tangible_core.files.writing import write_text
 
-from .left_behind import left_in
+from ..left_behind import left_in
 from .texts import Text
 
 log = logging.getLogger(__name__)

@@ -9,16 +9,16 @@ from typing import Any, Protocol, final, runtime_checkable
 
 from tangible_core.errors import DeviceError
 
-from .choice import Choice, NotAgreed
+from ..failing import told
+from ..feeling.choice import Choice, NotAgreed
+from ..feeling.feeling import Feeling, Felt
+from ..feeling.recorder import Recorder
+from ..feeling.rival import Rival
+from ..maker import Maker
+from ..maker.messages import Event
 from .drafts import Drafts
-from .failing import told
-from .feeling import Feeling, Felt
 from .laws import Laws
-from .maker import Maker
-from .maker.messages import Event
 from .makes import Makes
-from .recorder import Recorder
-from .rival import Rival
 from .shelf import Shelf, user_folder
 from .texts import Texts
 

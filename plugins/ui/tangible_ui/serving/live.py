@@ -8,11 +8,9 @@ from typing import Any, final
 
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
-from .asking import Asked, NotUnderstood, parse
-from .connection import cut_off
-from .desk import Desk
-from .failing import told
-from .wire import (
+from ..desk.desk import Desk
+from ..failing import told
+from ..wire import (
     ACK,
     ACK_FRAME,
     HOLDING,
@@ -24,6 +22,8 @@ from .wire import (
     RUNNING,
     VERSION,
 )
+from .asking import Asked, NotUnderstood, parse
+from .connection import cut_off
 
 IN_FLIGHT = 2
 """States that a tab has not drawn yet; more would only queue up in the browser."""

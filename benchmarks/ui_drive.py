@@ -3,7 +3,6 @@
 import math
 import os
 import shutil
-import signal
 import subprocess
 import sys
 import tempfile
@@ -87,8 +86,8 @@ def tangible() -> str:
 
 
 def end(process: subprocess.Popen[str]) -> None:
-    """As Ctrl-C does; killed if it does not end."""
-    process.send_signal(signal.SIGINT)
+    """As a service manager does: Ctrl-C may be ignored where this runs in the background; killed if it does not end."""
+    process.terminate()
     try:
         process.wait(10)
     except subprocess.TimeoutExpired:

@@ -22,7 +22,7 @@ def swapped() -> list[float]:
     with scene_640() as config, served(config) as server, browser() as chromium:
         page = opened(chromium, server.url)
         felt(page)
-        until(page, "document.getElementById('render-use')?.options.length")
+        until(page, "document.getElementById('field:render')?.options.length > 1")
         times = [_swap(page, LAWS[n % 2]) for n in range(SWAPS + 2)]
     return times[2:]
 
@@ -34,7 +34,7 @@ def _swap(page: object, law: str) -> float:
     before = tab.evaluate("figures.touches.length")
     begun_ms = tab.evaluate(
         """law => {
-          const choice = document.getElementById("render-use");
+          const choice = document.getElementById("field:render");
           choice.value = law;
           const begun = performance.timeOrigin + performance.now();
           choice.dispatchEvent(new Event("change", { bubbles: true }));
@@ -48,7 +48,7 @@ def _swap(page: object, law: str) -> float:
 def stopped() -> tuple[float, int]:
     """Seconds from stop to the end of a stage that would take long, and periods without a tick meanwhile."""
     with tempfile.TemporaryDirectory() as cache, scene_640() as config:
-        text = config.read_text().replace("use: semi-global", "use: zncc")
+        text = config.read_text().replace("use: semi-global", "use: report")
         config.write_text(text)
         with served(config, TANGIBLE_CACHE_DIR=cache) as server, browser() as chromium:
             page = opened(chromium, server.url)

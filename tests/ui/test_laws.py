@@ -11,9 +11,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from tangible_core import load_method
 from tangible_core.errors import ConfigError
 from tangible_ui.asks import laws as asks
 from tangible_ui.desk.desk import Desk
+from tangible_ui.feeling.choice import Choice, NotAgreed
 from tangible_ui.feeling.feeling import Feeling
 from tangible_ui.feeling.rival import NOTHING
 from tangible_ui.wire import STATE_FRAME
@@ -126,6 +128,19 @@ def test_what_is_no_law_is_said_and_the_one_before_is_felt_on(tmp_path: Path) ->
             for (use, options), says in wrong.items():
                 with pytest.raises(ConfigError, match=says):
                     await asks.compare_laws(desk, None, use, options)
+            assert desk.laws.told() == {"state": "one"}
+            await pressed(desk, lambda: np.allclose(forces(desk), (0.4, 0), atol=0.02))
+
+    asyncio.run(compare())
+
+
+def test_no_motor_is_opened_that_nobody_said_yes_to(tmp_path: Path) -> None:
+    async def compare() -> None:
+        async with felt_desk(tmp_path) as (desk, _):
+            desk.choice = Choice("document", sure=True, agreed=type(load_method("device", "mock")()))
+            desk.text = TEXT.replace("{use: pointer}", "{use: falcon}")
+            with pytest.raises(NotAgreed):
+                await asks.compare_laws(desk, None, "penalty", "")
             assert desk.laws.told() == {"state": "one"}
             await pressed(desk, lambda: np.allclose(forces(desk), (0.4, 0), atol=0.02))
 

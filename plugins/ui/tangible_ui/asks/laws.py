@@ -92,7 +92,9 @@ def _tally(desk: Desk) -> Tally:
 async def _feel(desk: Desk, which: int, other: dict[str, Any] | None = None) -> None:
     """Feel one of the two laws; the other one is computed beside, unless they are compared blindly.
 
-    other: another law than before. Raises: DeviceError if nothing is felt; ConfigError if there is no such law.
+    other: another law than before.
+    Raises: DeviceError if nothing is felt, ConfigError if there is no such law, NotAgreed for a motor that nobody said
+    yes to; what was felt before goes on.
     """
     laws, feeling = desk.laws, desk.feeling
     if not feeling.running:
@@ -100,9 +102,10 @@ async def _feel(desk: Desk, which: int, other: dict[str, Any] | None = None) -> 
     blocks = [other or laws.other]
     made = await desk.maker.ask("laws", text=desk.text, path=desk.path, sets=desk.felt_sets(), others=blocks)
     felt, beside = (Felt.of(made[i], feeling.channel) for i in (which, 1 - which))
-    laws.other, laws.felt, laws.named = other or laws.other, which, _told_apart(made[0]["law"], made[1]["law"])
     try:
-        await asyncio.to_thread(feeling.feel, felt)
+        if await desk.put(felt) is None:
+            raise DeviceError("nothing is felt: force was stopped, or another device was chosen meanwhile")
+        laws.other, laws.felt, laws.named = other or laws.other, which, _told_apart(made[0]["law"], made[1]["law"])
         if laws.tally is None:
             await asyncio.to_thread(laws.rival.feel, beside.touch, beside.safety)
         else:

@@ -72,11 +72,22 @@ class Desk:
         return [*self.sets, *self.choice.sets(self.feeling.own_device)]
 
     async def feel(self, made: dict[str, Any]) -> None:
-        """Feel what was made; not after a stop, nor with a device that is not the one that is chosen by now.
+        """Feel what was made, alone. Raises: as `put`."""
+        felt = Felt.of(made, self.feeling.channel)
+        seconds = await self.put(felt)
+        if seconds is not None:
+            self.laws.alone()
+            self.tell("laws", **self.laws.told())
+            await asyncio.to_thread(self.laws.rival.close)
+            self.tell("touch", law=felt.law, seconds=seconds, how=self.feeling.how)
+            self.tell("loop", running=True, why="", device=felt.device_name, own_hand=felt.own_hand)
 
+    async def put(self, felt: Felt) -> float | None:
+        """Put a touch under the hand; seconds that took.
+
+        Returns: None after a stop, and with a device that is not the one that is chosen by now: it is then not felt.
         Raises: NotAgreed for a motor that nobody said yes to, DeviceError if the device cannot be opened.
         """
-        felt = Felt.of(made, self.feeling.channel)
         try:
             self.choice.check(felt.held)
         except NotAgreed:
@@ -84,19 +95,13 @@ class Desk:
             raise
         if felt.own_hand != (self.choice.kind == "hand"):
             felt.touch.discard()
-            return
+            return None
         try:
-            seconds = await asyncio.to_thread(self.feeling.feel, felt)
+            return await asyncio.to_thread(self.feeling.feel, felt)
         except Exception as error:
             if not self.feeling.running:
                 self.tell("loop", running=False, why=str(error), lost=isinstance(error, DeviceError))
             raise
-        if seconds is not None:
-            self.laws.alone()
-            self.tell("laws", **self.laws.told())
-            await asyncio.to_thread(self.laws.rival.close)
-            self.tell("touch", law=felt.law, seconds=seconds, how=self.feeling.how)
-            self.tell("loop", running=True, why="", device=felt.device_name, own_hand=felt.own_hand)
 
     def tell(self, event: str, **told: Any) -> None:
         """Say something to all tabs, and to those that come later."""

@@ -25,8 +25,8 @@ from ..asks import document, drafts
 from ..desk.desk import Desk
 from ..feeling.feeling import Feeling
 from ..left_behind import channel_of_this_process, folder_of_this_process
-from .connection import PING_S, Connection
 from ..logs import silence, tell_pages
+from .connection import PING_S, Connection
 from .routes import application, static
 from .watching import watch
 

@@ -56,7 +56,7 @@ class TestServed:
         page.wait_for_function("() => window.figures?.firstMs > 0", timeout=60_000)
         assert page.title().endswith("Tangible Images")
         assert page.evaluate("document.styleSheets.length") == 1
-        with Image.open(io.BytesIO(page.locator("canvas").screenshot())) as picture:
+        with Image.open(io.BytesIO(page.locator("#terrain").screenshot())) as picture:
             assert np.asarray(picture.convert("L")).std() > 5
 
     def test_one_that_does_not_listen_says_why(self, tmp_path: Path):

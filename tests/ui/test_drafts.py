@@ -11,7 +11,8 @@ from typing import Any
 import pytest
 
 from tangible_core.errors import OutputError
-from tangible_ui.desk import drafts, left_behind
+from tangible_ui import left_behind
+from tangible_ui.desk import drafts
 from tangible_ui.desk.drafts import MOST_LEFT, Drafts
 from tangible_ui.desk.texts import Text
 from tangible_ui.left_behind import channel_of_this_process, folder_of_this_process, left_in

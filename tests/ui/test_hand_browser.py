@@ -154,11 +154,11 @@ def test_another_device_is_felt_and_examined_and_a_motor_asks_first(page: Any) -
     page.locator("#devices > summary").click()
     page.get_by_role("button", name="Examine mock").click()
     until(lambda: "needs nothing" in page.locator(".devices").text_content())
-    page.get_by_role("button", name="Feel with mock").click()
+    page.get_by_role("button", name="Feel with it: mock").click()
     until(lambda: felt.text_content() == "Felt with: mock")
     until(lambda: "Hz" in page.locator("#devices .figures").text_content())
 
-    page.get_by_role("button", name="Feel with falcon", exact=True).click()
+    page.get_by_role("button", name="Feel with it: falcon", exact=True).click()
     dialog = page.get_by_role("dialog", name="falcon has a motor")
     dialog.wait_for()
     assert felt.text_content() == "Felt with: mock"

@@ -8,9 +8,10 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from tangible_core.errors import TangibleError
+from tangible_ui import wire
 from tangible_ui.asks import ASKS
 from tangible_ui.feeling.feeling import Feeling
-from tangible_ui.serving import asking, wire
+from tangible_ui.serving import asking
 from tangible_ui.serving.asking import NotUnderstood, parse
 from tangible_ui.serving.live import LiveTab
 

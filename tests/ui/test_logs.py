@@ -9,10 +9,10 @@ from pathlib import Path
 
 import pytest
 
+from tangible_ui import logs
 from tangible_ui.desk.desk import MOST_LOGGED, Desk
 from tangible_ui.feeling.feeling import Feeling
 from tangible_ui.logs import MOST_A_SECOND, PageHandler, silence, tell_pages
-from tangible_ui.serving import logs
 
 
 @pytest.fixture

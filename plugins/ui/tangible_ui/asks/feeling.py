@@ -15,7 +15,7 @@ async def stop(desk: Desk, tab: Tab | None) -> None:
     """No force, at once, and none until `feel`, whatever else is made meanwhile."""
     ended = desk.feeling.cut()  # before anything is waited for
     desk.tell("loop", running=False, why="stopped", stopped=True)
-    await asyncio.to_thread(ended)
+    desk.begin(asyncio.to_thread(ended))
 
 
 async def feel(desk: Desk, tab: Tab) -> None:

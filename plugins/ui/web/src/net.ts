@@ -34,6 +34,7 @@ export class Net {
   /** When the newest event was said that this page heard. */
   heard_s = 0;
   private tag = 0;
+  private stopping = 0;
   private number = 0;
   private waiting = new Map<number, Waiting>();
   private socket: WebSocket | null = null;
@@ -56,8 +57,15 @@ export class Net {
   /** No force, whatever else goes on, and though the websocket may hang. */
   async stop(): Promise<void> {
     if (!this.open) return this.stopBeside();
-    const waiting = setTimeout(() => void this.stopBeside().catch(() => undefined), STOP_PATIENCE_MS);
-    return this.ask<void>("stop").finally(() => clearTimeout(waiting));
+    clearTimeout(this.stopping);
+    this.stopping = window.setTimeout(() => void this.stopBeside().catch(() => undefined), STOP_PATIENCE_MS);
+    return this.ask<void>("stop").finally(() => clearTimeout(this.stopping));
+  }
+
+  /** Feel again: a stop from before that was not answered yet does not come after it. */
+  feel(): Promise<void> {
+    clearTimeout(this.stopping);
+    return this.ask<void>("feel");
   }
 
   private async stopBeside(): Promise<void> {

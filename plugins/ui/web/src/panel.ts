@@ -54,6 +54,7 @@ function place(panel: Panel): HTMLElement {
   title.textContent = panel.title;
   heading.append(title);
   heading.addEventListener("keydown", walk);
+  heading.addEventListener("click", () => remember(`panel.${panel.id}`, !box.open)); // "toggle" comes later than a reload may
   const root = document.createElement("div");
   root.className = "inside";
   box.append(heading, root);

@@ -13,7 +13,7 @@ export class Status {
   constructor(private page: Page) {
     const { hub } = page;
     this.give("hold", t("takeHand"), () => this.ask("hold"));
-    this.give("again", t("feelAgain"), () => this.ask("feel"));
+    this.give("again", t("feelAgain"), () => void this.page.net.feel().catch((error: Error) => this.show("error", error.message)));
     this.stopButton();
     this.line.textContent = t("starting");
     hub.on("gone", () => this.show("error", t("gone"), "gone"));

@@ -46,7 +46,7 @@ function build(page: Page, root: HTMLElement): void {
   const hand = Object.assign(button(t("useHand"), () => choose("hand")), { id: "use-hand" });
   const ofDocument = Object.assign(button("", () => choose("document")), { id: "use-document", hidden: true });
   const wait = Object.assign(button(t("wait"), () => tried(() => net.ask("wait_for_device"))), { hidden: true });
-  const again = Object.assign(button(t("again"), () => tried(() => net.ask("feel"))), { hidden: true });
+  const again = Object.assign(button(t("again"), () => tried(() => net.feel())), { hidden: true });
   const preflight = Object.assign(button(t("preflight"), () => reveal("preflight")), { hidden: true });
   const refresh = button(t("refresh"), () => tried(look));
 

@@ -8,6 +8,7 @@ import os
 import queue
 import signal
 import threading
+from contextlib import suppress
 from pathlib import Path
 from typing import IO, Any, final
 
@@ -18,7 +19,7 @@ from .messages import Answer, Ask, Event, Refused
 
 FULL = {getattr(errno, name, -1) for name in ("ENOSPC", "EDQUOT", "EFBIG", "EROFS")}
 NICENESS = 10
-"""Pictures can wait; the loop and the page cannot."""
+"""After the first long job: pictures can then wait, the loop and the page cannot. Before it, nothing is felt."""
 
 
 @final
@@ -42,8 +43,6 @@ def main() -> None:
     replies = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # what a plugin prints goes to standard error
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the server, which ends this
-    if hasattr(os, "nice"):
-        os.nice(NICENESS)
     commands, voice = open(0, "rb", buffering=0), Voice(replies)  # noqa: SIM115 - a buffer's lock outlives its thread
     folder: Path = receive(commands)
     lanes: dict[bool, queue.SimpleQueue[Ask]] = {quick: queue.SimpleQueue() for quick in (True, False)}
@@ -62,8 +61,21 @@ def main() -> None:
 
 
 def _work(bench: Any, asks: "queue.SimpleQueue[Ask]", voice: Voice) -> None:
+    from .jobs import JOBS
+
     while True:
-        voice.say(answer(bench, asks.get()))
+        ask = asks.get()
+        voice.say(answer(bench, ask))
+        if not JOBS[ask.job].quick:
+            give_precedence()
+
+
+def give_precedence() -> None:
+    """Let others go first, with every thread: in Linux each has a niceness of its own."""
+    tasks = Path("/proc/self/task")
+    with suppress(OSError, AttributeError):  # a thread that has ended; a system that knows no niceness
+        for thread in tasks.iterdir() if tasks.is_dir() else [Path("0")]:
+            os.setpriority(os.PRIO_PROCESS, int(thread.name), NICENESS)
 
 
 def answer(bench: Any, ask: Ask) -> Answer | Refused:

@@ -27,7 +27,8 @@ from .connection import cut_off
 
 IN_FLIGHT = 2
 """States that a tab has not drawn yet; more would only queue up in the browser."""
-HZ = 60
+SPACING_S = 0.012
+"""Between two states: a screen draws sixty a second."""
 MOST_WAITING, MOST_WAITING_CHARACTERS = 2000, 16_000_000
 """Events that a tab may leave unread; one that reads none is cut off."""
 MOST_ASKS = 32
@@ -127,14 +128,16 @@ class LiveTab:
                 await self._socket.send_text(text)
 
     async def _send_states(self) -> None:
-        loop, due = asyncio.get_running_loop(), 0.0
+        """The newest tick as soon as one before was drawn: the page draws next what is then a frame old at most."""
+        loop, sent_s = asyncio.get_running_loop(), 0.0
         with suppress(WebSocketDisconnect, RuntimeError):
             while True:
-                due = max(due + 1 / HZ, loop.time())
-                await asyncio.sleep(due - loop.time())
                 while self._seq - self._drawn >= IN_FLIGHT:
                     self._acked.clear()
                     await self._acked.wait()
+                if (early_s := sent_s + SPACING_S - loop.time()) > 0:
+                    await asyncio.sleep(early_s)
+                sent_s = loop.time()
                 if frame := self._desk.feeling.frame(self._seq + 1, self._status(), self._desk.laws.beside()):
                     self._seq += 1
                     await self._socket.send_bytes(frame)

@@ -7,6 +7,7 @@ import secrets
 import signal
 import socket
 import threading
+import time
 import webbrowser
 from collections.abc import AsyncGenerator, Callable, Generator
 from concurrent.futures import ThreadPoolExecutor
@@ -39,6 +40,9 @@ MOST_MESSAGE_BYTES = 2**20
 THREADS = 32
 """For what waits: a disk, a pipe, a loop that ends. It is to wait for nothing else that waits."""
 ENDING = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
+
+LATEST_START_S = 2.0
+"""A scene that takes longer than that is not waited for."""
 
 
 def serve(files: list[Path], sets: list[str], port: int, browser: bool) -> None:
@@ -168,7 +172,7 @@ class Served:
         desk.begin(watch(desk))
         desk.begin(drafts.offer(desk))
         desk.begin(document.begin(desk, None, [str(each) for each in self._files]))
-        desk.begin(asyncio.to_thread(desk.feeling.start))
+        desk.begin(_start(desk))
         gc.freeze()  # what was imported is never looked through again
         try:
             yield
@@ -180,3 +184,11 @@ class Served:
 def _unforeseen(desk: Desk, _: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
     """What asyncio says of an error that nobody waited for."""
     desk.failed(context.get("exception") or RuntimeError(context["message"]))
+
+
+async def _start(desk: Desk) -> None:
+    """Start the loop when the surface is on its way to the screen, or late: both take all that the processor has."""
+    until_s = time.monotonic() + LATEST_START_S
+    while desk.scene is None and time.monotonic() < until_s:
+        await asyncio.sleep(0.02)
+    await asyncio.to_thread(desk.feeling.start)

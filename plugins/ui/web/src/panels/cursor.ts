@@ -9,11 +9,13 @@ import { t } from "../words/overlay";
 
 /** Ten times a second can be read, and costs nothing. */
 const EVERY_MS = 100;
+/** A surface so high has room for it. */
+const ROOMY_PX = 540;
 
 export function dataCursor(page: Page): void {
   const box = document.createElement("details");
   box.id = "data-cursor";
-  box.open = innerWidth >= 768; // on a phone it would cover the surface
+  box.open = innerWidth >= 768 && page.canvas.clientHeight >= ROOMY_PX; // elsewhere it would cover the surface
   const heading = document.createElement("summary");
   heading.textContent = t("cursor");
   const table = document.createElement("table");

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from .figures import Figure, MissedError, judged, part, table
 from .ui_drive import browser, drag, felt, opened, painted, percentile, scene_640, served
+from .ui_install import installing
 from .ui_late import lateness, stale_ticks
 from .ui_tasks import large_relief, memory, stopped, swapped
 
@@ -17,7 +18,7 @@ DRAG_S = 8.0
 
 def section() -> str:
     """The section of RESULTS.md, as Markdown."""
-    found = [*smoothness(), *start(), *tasks(), *size(), *lasting()]
+    found = [*smoothness(), *start(), *tasks(), *size(), *installing(), *lasting()]
     late, rows = lateness()
     text = "\n".join(
         [

@@ -20,7 +20,7 @@ NOWHERE = {"npm_config_registry": "http://127.0.0.1:9"}
 
 
 def installing() -> Iterator[Figure]:
-    """Seconds that building the wheel takes, against one whose page is there already; in turn, medians of differences."""
+    """Seconds that a wheel takes, against one whose page is there already; in turn, medians of differences."""
     with tempfile.TemporaryDirectory(prefix="tangible-bench-") as folder:
         built, bare = Path(folder) / "built", Path(folder) / "bare"
         for tree in (built, bare):

@@ -78,6 +78,7 @@ def test_a_stroke_is_recorded_played_and_felt_again_with_another_law(page: "Page
     surface.focus()
     surface.press("Home")
     surface.press(" ")
+    page.locator("#data-cursor").evaluate("(each) => (each.open = true)")
     until(lambda: "Collision" in page.locator("#data-cursor").inner_text())
     until(lambda: "yes" in page.locator("#data-cursor").inner_text())
     page.wait_for_timeout(500)

@@ -63,9 +63,7 @@ def serve(files: list[Path], sets: list[str], port: int, browser: bool) -> None:
         served = Served(folder, channel, files or [EXAMPLE], sets)
         app = application(lambda: served.desk, key, hosts, served.lifespan)
         server = Server(settings(app), served.asked_to_end)
-        print(url, flush=True)  # noqa: T201 - what the command is called for
-        if browser:  # in a thread of its own: one that needs the terminal is waited for until it ends
-            threading.Thread(target=webbrowser.open, args=(url,), daemon=True).start()
+        served.announce = partial(_announce, url, browser)
         server.run(sockets=[listening])
     served.raise_if_failed()
     for number in server.heard[:1]:
@@ -136,6 +134,8 @@ class Served:
         self._folder, self._channel, self._files, self._sets = folder, channel, files, sets
         self._desk: Desk | None = None
         self._failure: Exception | None = None
+        self.announce: Callable[[], None] = lambda: None
+        """Called when what listens can be ended in order."""
 
     @property
     def desk(self) -> Desk:
@@ -173,12 +173,19 @@ class Served:
         desk.begin(drafts.offer(desk))
         desk.begin(document.begin(desk, None, [str(each) for each in self._files]))
         desk.begin(_start(desk))
+        self.announce()  # from here on, whatever ends the program ends it in order
         gc.freeze()  # what was imported is never looked through again
         try:
             yield
         finally:
             silence(telling)
             await desk.close()
+
+
+def _announce(url: str, browser: bool) -> None:
+    print(url, flush=True)  # noqa: T201 - what the command is called for
+    if browser:  # in a thread of its own: one that needs the terminal is waited for until it ends
+        threading.Thread(target=webbrowser.open, args=(url,), daemon=True).start()
 
 
 def _unforeseen(desk: Desk, _: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:

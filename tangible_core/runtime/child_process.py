@@ -33,6 +33,17 @@ class Place(NamedTuple):
     """Of the module; empty for one that is part of Python, or of a notebook."""
 
 
+def is_alive(process: int) -> bool:
+    """Whether a process of this number runs, anybody's."""
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except PermissionError:
+        return True
+    return True
+
+
 def command(module: str) -> list[str]:
     """Words that start Python and call `main()` of a module."""
     return python(f"import {module} as child; child.main()")

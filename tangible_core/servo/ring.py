@@ -32,6 +32,7 @@ from jaxtyping import Float64
 
 from ..data import TICK_COLUMNS
 from ..errors import DeviceError
+from ..runtime.child_process import is_alive
 
 MAGIC, LAYOUT = 0x54414E47_49424C45, 3
 """The word that begins every ring, and the version of this layout."""
@@ -200,14 +201,4 @@ def _left_behind(path: Path) -> bool:
     named = NAME.fullmatch(path.name)
     about = path.lstat()
     ours = hasattr(os, "getuid") and about.st_uid == os.getuid() and stat.S_ISREG(about.st_mode)
-    return bool(named and ours and not _alive(int(named[1])))
-
-
-def _alive(process: int) -> bool:
-    try:
-        os.kill(process, 0)
-    except ProcessLookupError:
-        return False
-    except PermissionError:
-        return True
-    return True
+    return bool(named and ours and not is_alive(int(named[1])))

@@ -69,7 +69,7 @@ class TestDrafts:
         assert not list(tmp_path.iterdir())
 
     def test_the_newest_is_offered_and_few_are_left(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-        monkeypatch.setattr(left_behind, "_alive", lambda process: False)
+        monkeypatch.setattr(left_behind, "is_alive", lambda process: False)
         for number in range(1, MOST_LEFT + 4):
             file = tmp_path / f"{number}.json"
             file.write_text(f'{{"text": "{number}", "path": "/a"}}')

@@ -9,6 +9,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from tangible_core.errors import OutputError
+from tangible_core.runtime.child_process import is_alive
 from tangible_devices.pointer.channel import channel_path
 
 PREFIX = "tangible-ui-"
@@ -57,15 +58,5 @@ def left_in(folder: Path, pattern: str) -> Iterator[Path]:
         with suppress(OSError):
             named = NUMBER.fullmatch(path.name)
             ours = hasattr(os, "getuid") and not path.is_symlink() and path.stat().st_uid == os.getuid()
-            if named and ours and not _alive(int(named[1])):
+            if named and ours and not is_alive(int(named[1])):
                 yield path
-
-
-def _alive(process: int) -> bool:
-    try:
-        os.kill(process, 0)
-    except ProcessLookupError:
-        return False
-    except PermissionError:
-        return True
-    return True

@@ -18,3 +18,25 @@ export function field(name: string, control: HTMLElement): HTMLDivElement {
   box.append(label, control);
   return box;
 }
+
+/** What helps to understand a control, in small letters. */
+export function hint(text: string): HTMLParagraphElement {
+  return Object.assign(document.createElement("p"), { className: "hint", textContent: text });
+}
+
+/** A table with its headings and no rows; its title is for who does not see where it stands. */
+export function headed(title: string, heads: string[], className: string): HTMLTableElement {
+  const table = document.createElement("table");
+  table.className = className;
+  const caption = table.createCaption();
+  caption.className = "visually-hidden";
+  caption.textContent = title;
+  const row = table.createTHead().insertRow();
+  for (const each of heads) {
+    const cell = document.createElement("th");
+    cell.scope = "col";
+    cell.textContent = each;
+    row.append(cell);
+  }
+  return table;
+}

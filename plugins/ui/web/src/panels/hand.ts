@@ -1,5 +1,5 @@
 /** The hand of this page: whether it is felt, what moves it, and how deep it presses. */
-import { button, field } from "../elements";
+import { button, field, hint } from "../elements";
 import { PRESS_M, type Hand } from "../hand";
 import type { Page } from "../page";
 import type { Panel } from "../panel";
@@ -72,10 +72,6 @@ function slider(): HTMLInputElement {
   return Object.assign(made, {
     id: "press", type: "range", min: mm(PRESS_M.least), max: mm(PRESS_M.most), step: "0.1", value: mm(PRESS_M.first),
   });
-}
-
-function hint(text: string): HTMLElement {
-  return Object.assign(document.createElement("p"), { className: "hint", textContent: text });
 }
 
 export const hand: Panel = { id: "hand", title: t("title"), place: "right", open: false, build };

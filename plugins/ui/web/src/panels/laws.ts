@@ -1,5 +1,5 @@
 /** Two laws on one hand: side by side, or blindly with a tally. */
-import { button, field } from "../elements";
+import { button, field, hint } from "../elements";
 import type { Events } from "../messages";
 import type { Page } from "../page";
 import type { Panel } from "../panel";
@@ -122,13 +122,6 @@ function group(title: string): HTMLFieldSetElement {
 function input(id: string): HTMLInputElement {
   const made = document.createElement("input");
   made.id = id;
-  return made;
-}
-
-function hint(text: string): HTMLElement {
-  const made = document.createElement("p");
-  made.className = "hint";
-  made.textContent = text;
   return made;
 }
 

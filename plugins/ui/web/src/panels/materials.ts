@@ -1,4 +1,5 @@
 /** Which segment is which material, why, and how much of the surface; and the library with figures and sources. */
+import { headed } from "../elements";
 import { Editor } from "../forms/editor";
 import { LIBRARY } from "../forms/rows";
 import type { Material, Segment } from "../messages";
@@ -19,7 +20,7 @@ function build(page: Page, root: HTMLElement): void {
   refused.className = "bad";
   refused.setAttribute("role", "status");
   editor.onRefused = (why) => (refused.textContent = why);
-  const table = titled(t("segments"), [t("segment"), t("material"), t("share")]);
+  const table = headed(t("segments"), [t("segment"), t("material"), t("share")], "materials");
   const body = table.createTBody();
   const library = document.createElement("details");
   const heading = document.createElement("summary");
@@ -101,7 +102,7 @@ function figures(library: Listed[]): HTMLElement {
   box.setAttribute("role", "region");
   box.setAttribute("aria-label", t("libraryAlone"));
   const columns = ["name", "stiffness", "damping", "friction", "roughness", "grain", "texture", "source"] as const;
-  const table = titled(t("libraryAlone"), columns.map((each) => t(each)));
+  const table = headed(t("libraryAlone"), columns.map((each) => t(each)), "materials");
   const body = table.createTBody();
   for (const each of library) {
     const row = body.insertRow();
@@ -116,22 +117,6 @@ function figures(library: Listed[]): HTMLElement {
   }
   box.append(table);
   return box;
-}
-
-function titled(title: string, heads: string[]): HTMLTableElement {
-  const table = document.createElement("table");
-  table.className = "materials";
-  const caption = table.createCaption();
-  caption.className = "visually-hidden";
-  caption.textContent = title;
-  const row = table.createTHead().insertRow();
-  for (const each of heads) {
-    const cell = document.createElement("th");
-    cell.scope = "col";
-    cell.textContent = each;
-    row.append(cell);
-  }
-  return table;
 }
 
 function round(value: number): number {

@@ -1,5 +1,5 @@
 /** Preflight: what is safe and what will be felt, in words, with cures that change the document. */
-import { button } from "../elements";
+import { button, headed } from "../elements";
 import { Editor } from "../forms/editor";
 import type { Judged, Verdict } from "../messages";
 import type { Page } from "../page";
@@ -70,18 +70,7 @@ function shown(said: Judged, cure: (key: string, value: string | number) => void
 }
 
 function table(caption: string, verdicts: Verdict[], cure: (key: string, value: string | number) => void): HTMLElement {
-  const made = document.createElement("table");
-  made.className = "verdicts";
-  const title = made.createCaption();
-  title.className = "visually-hidden";
-  title.textContent = caption;
-  const head = made.createTHead().insertRow();
-  for (const each of [t("verdict"), t("what"), t("stands")]) {
-    const cell = document.createElement("th");
-    cell.scope = "col";
-    cell.textContent = each;
-    head.append(cell);
-  }
+  const made = headed(caption, [t("verdict"), t("what"), t("stands")], "verdicts");
   const body = made.createTBody();
   for (const each of verdicts) row(body, each, cure);
   return made;

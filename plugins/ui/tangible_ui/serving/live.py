@@ -27,6 +27,9 @@ from .connection import cut_off
 
 IN_FLIGHT = 2
 """States that a tab has not drawn yet; more would only queue up in the browser."""
+PAUSE_S = 0.008
+"""From what was drawn to the next state: sent at once, it would wait in a busy browser until the frame after next, and
+show the hand where it was; a screen draws every 17 ms."""
 SPACING_S = 0.012
 """Between two states: a screen draws sixty a second."""
 MOST_WAITING, MOST_WAITING_CHARACTERS = 2000, 16_000_000
@@ -128,13 +131,14 @@ class LiveTab:
                 await self._socket.send_text(text)
 
     async def _send_states(self) -> None:
-        """The newest tick as soon as one before was drawn: the page draws next what is then a frame old at most."""
+        """The newest tick soon after one before was drawn: as late as it still comes before the page draws again."""
         loop, sent_s = asyncio.get_running_loop(), 0.0
         with suppress(WebSocketDisconnect, RuntimeError):
             while True:
                 while self._seq - self._drawn >= IN_FLIGHT:
                     self._acked.clear()
                     await self._acked.wait()
+                    await asyncio.sleep(PAUSE_S)
                 if (early_s := sent_s + SPACING_S - loop.time()) > 0:
                     await asyncio.sleep(early_s)
                 sent_s = loop.time()

@@ -12,10 +12,11 @@ from typing import Any, Self
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 
+from tangible_ui.address import HOST, Address
 from tangible_ui.desk.desk import Desk
 from tangible_ui.feeling.feeling import Feeling
 from tangible_ui.serving.routes import application
-from tangible_ui.serving.serve import HOST, Server, _listening, settings
+from tangible_ui.serving.serve import Server, settings
 from tangible_ui.serving.watching import watch
 
 KEY = "key-of-a-test-0123456789"
@@ -56,12 +57,12 @@ class PageServer:
         self._thread = threading.Thread(target=self._serve)
 
     def _serve(self) -> None:
-        with _listening(0) as listening:
-            self.port = listening.getsockname()[1]
+        with Address.of(0) as address:
+            self.port = address.listening.getsockname()[1]
             self.host = f"{HOST}:{self.port}"
             app = application(lambda: self.desk, KEY, frozenset({self.host}), self._lifespan)
             self.server = Server(settings(app), lambda: None)
-            self.server.run(sockets=[listening])
+            self.server.run(sockets=[address.listening])
 
     @asynccontextmanager
     async def _lifespan(self, _: Any) -> AsyncGenerator[None]:

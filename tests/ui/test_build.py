@@ -326,7 +326,7 @@ def test_the_units_of_the_page_pass():
 
 
 def test_without_a_page_the_command_says_how_to_build_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr("tangible_ui.serving.serve.static", lambda: tmp_path)
+    monkeypatch.setattr("tangible_ui.address.static", lambda: tmp_path)
     done = tangible("ui", "--no-browser", cwd=tmp_path)
     assert done.returncode == 2
     assert "the page was not built" in done.stderr

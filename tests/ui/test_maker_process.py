@@ -11,6 +11,7 @@ import pytest
 from desks import Heard
 from tangible_core.runtime.child_process import command
 from tangible_ui.asks import ASKS
+from tangible_ui.beforehand import _started, maker_beforehand, maker_process
 from tangible_ui.desk.desk import Desk
 from tangible_ui.feeling.feeling import Feeling
 from tangible_ui.maker import Maker
@@ -77,7 +78,7 @@ def test_one_that_does_not_start_is_tried_three_times_and_says_why(tmp_path: Pat
             started.append(module)
             return [sys.executable, "-c", "raise SystemExit('no such library')"]
 
-        monkeypatch.setattr("tangible_ui.maker.handle.command", broken)
+        monkeypatch.setattr("tangible_ui.beforehand.command", broken)
         heard: list[Any] = []
         maker = Maker(tmp_path, heard.append)
         try:
@@ -91,7 +92,7 @@ def test_one_that_does_not_start_is_tried_three_times_and_says_why(tmp_path: Pat
             assert [event.event for event in heard] == ["maker_gone"]
             with pytest.raises(MakerAbsent):
                 await maker.quick("schema")
-            monkeypatch.setattr("tangible_ui.maker.handle.command", command)
+            monkeypatch.setattr("tangible_ui.beforehand.command", command)
             maker.try_again()
             assert "properties" in await maker.ask("schema")
             assert heard[-1].event != "maker_gone"
@@ -99,3 +100,17 @@ def test_one_that_does_not_start_is_tried_three_times_and_says_why(tmp_path: Pat
             maker.close()
 
     asyncio.run(check())
+
+
+def test_the_one_that_was_started_beforehand_is_taken_once_and_otherwise_ended():
+    with maker_beforehand():
+        first = maker_process()
+        second = maker_process()
+        assert first.pid != second.pid
+    assert first.poll() is None  # whoever took it ends it
+    with maker_beforehand():
+        unused = _started[0]
+    assert unused.poll() is not None
+    for each in (first, second):
+        with each:
+            each.kill()

@@ -14,6 +14,7 @@ from websockets.exceptions import InvalidStatus
 
 from page_server import KEY, PageServer
 from tangible_core.files.reading import MOST_BYTES
+from tangible_ui.address import new_key
 from tangible_ui.serving import routes, serve
 from tangible_ui.serving.connection import AT_ONCE_BYTES
 from tangible_ui.serving.live import IN_FLIGHT, MOST_ASKS
@@ -60,7 +61,7 @@ class TestWhoIsLetIn:
 
     def test_the_key_is_long_and_another_one_each_time(self, monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.delenv("TANGIBLE_UI_TOKEN", raising=False)
-        keys = {serve.new_key() for _ in range(50)}
+        keys = {new_key() for _ in range(50)}
         assert len(keys) == 50
         assert all(len(key) * 6 >= 128 for key in keys)
 

@@ -18,6 +18,11 @@ def ui(
 
     The page is served to this machine alone; its address holds a key that changes with every start. Ctrl-C ends it.
     """
-    from ..serving.serve import serve
+    from ..address import Address
+    from ..beforehand import maker_beforehand
 
-    serve(files or [], sets or [], port, browser)
+    with Address.of(port) as address, maker_beforehand():
+        address.announce(browser)
+        from ..serving.serve import serve
+
+        serve(files or [], sets or [], address)

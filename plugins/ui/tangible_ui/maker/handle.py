@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import Any, final
 
 from tangible_core.errors import TangibleError, shown
-from tangible_core.runtime.child_process import command
 from tangible_core.servo.wire import receive, send
 
+from ..beforehand import maker_process
 from .messages import Answer, Ask, Event, Refused
 
 MOST_DEATHS = 3
@@ -98,9 +98,7 @@ class Maker:
 
     def _start(self) -> None:
         self._ready = self._killed = False
-        words = command("tangible_ui.maker.process")
-        pipe = subprocess.PIPE
-        self._process = process = subprocess.Popen(words, stdin=pipe, stdout=pipe, stderr=pipe)
+        self._process = process = maker_process()
         self._send(self._folder)
         reading = threading.Thread(target=self._read, args=(process,), daemon=True)
         reading.start()

@@ -44,12 +44,12 @@ def main() -> None:
     os.dup2(2, 1)  # what a plugin prints goes to standard error
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the server, which ends this
     commands, voice = open(0, "rb", buffering=0), Voice(replies)  # noqa: SIM115 - a buffer's lock outlives its thread
-    folder: Path = receive(commands)
     lanes: dict[bool, queue.SimpleQueue[Ask]] = {quick: queue.SimpleQueue() for quick in (True, False)}
     from ..logs import tell_pages
     from .bench import Bench
     from .jobs import JOBS
 
+    folder: Path = receive(commands)
     tell_pages(lambda **told: voice.say(Event("log", told)), information=True)
     bench = Bench(folder, lambda event, **told: voice.say(Event(event, told)))
     for lane in lanes.values():

@@ -3,7 +3,6 @@
 import asyncio
 import secrets
 from collections.abc import Awaitable, Callable
-from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +17,7 @@ from starlette.websockets import WebSocket
 from tangible_core.errors import TangibleError
 from tangible_core.files.reading import MOST_BYTES, in_words
 
+from ..address import static
 from ..asks import feeling
 from ..desk.desk import Desk
 from .live import LiveTab
@@ -172,8 +172,3 @@ def _lying(folder: Path, digest: str, name: str) -> Path | None:
         return path if folder.resolve() in path.parents and path.is_file() else None
     except (OSError, ValueError):  # too long, or a NUL in it
         return None
-
-
-def static() -> Path:
-    """Where the built page lies, if it was built."""
-    return Path(str(files("tangible_ui"))) / "static"

@@ -1,14 +1,10 @@
-"""`tangible ui` at work: the socket, the key, the start and the end."""
+"""`tangible ui` at work: the start and the end."""
 
 import asyncio
 import gc
-import os
-import secrets
 import signal
-import socket
 import threading
 import time
-import webbrowser
 from collections.abc import AsyncGenerator, Callable, Generator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import asynccontextmanager, contextmanager
@@ -20,18 +16,16 @@ from typing import Any, final
 import uvicorn
 from starlette.types import ASGIApp
 
-from tangible_core.errors import ConfigError
-
+from ..address import Address
 from ..asks import document, drafts
 from ..desk.desk import Desk
 from ..feeling.feeling import Feeling
 from ..left_behind import channel_of_this_process, folder_of_this_process
 from ..logs import silence, tell_pages
 from .connection import PING_S, Connection
-from .routes import application, static
+from .routes import application
 from .watching import watch
 
-HOST = "127.0.0.1"
 EXAMPLE = Path("builtin/motorcycle")
 MOST_CONNECTIONS = 256
 """Whoever comes then is told to come again later; who is there is served on."""
@@ -45,34 +39,16 @@ LATEST_START_S = 2.0
 """A scene that takes longer than that is not waited for."""
 
 
-def serve(files: list[Path], sets: list[str], port: int, browser: bool) -> None:
-    """Until Ctrl-C.
-
-    Raises: ConfigError if the page was not built, or the port is taken; OutputError if there is no room for a folder.
-    """
-    if not (static() / "app.js").is_file():
-        raise ConfigError(
-            "the page was not built when this was installed, as npm could not be reached; install again where it can "
-            "(`pip install --force-reinstall --no-deps .`), or build it: `npm ci && npm run build` in plugins/ui/web"
-        )
-    key = new_key()
-    with folder_of_this_process() as folder, channel_of_this_process() as channel, _listening(port) as listening:
-        number = listening.getsockname()[1]
-        url = f"http://{HOST}:{number}/?token={key}"
-        hosts = frozenset({f"{HOST}:{number}", f"localhost:{number}"})
+def serve(files: list[Path], sets: list[str], address: Address) -> None:
+    """Until Ctrl-C. Raises: OutputError if there is no room for a folder."""
+    with folder_of_this_process() as folder, channel_of_this_process() as channel:
         served = Served(folder, channel, files or [EXAMPLE], sets)
-        app = application(lambda: served.desk, key, hosts, served.lifespan)
+        app = application(lambda: served.desk, address.key, address.hosts, served.lifespan)
         server = Server(settings(app), served.asked_to_end)
-        served.announce = partial(_announce, url, browser)
-        server.run(sockets=[listening])
+        server.run(sockets=[address.listening])
     served.raise_if_failed()
     for number in server.heard[:1]:
         signal.raise_signal(number)
-
-
-def new_key() -> str:
-    """What the page's address holds: 128 bits, or what $TANGIBLE_UI_TOKEN says, as in a test."""
-    return os.environ.get("TANGIBLE_UI_TOKEN") or secrets.token_urlsafe(16)
 
 
 def settings(app: ASGIApp) -> uvicorn.Config:
@@ -83,17 +59,6 @@ def settings(app: ASGIApp) -> uvicorn.Config:
         ws_ping_interval=PING_S, ws_ping_timeout=PING_S,
         limit_concurrency=MOST_CONNECTIONS, timeout_graceful_shutdown=1,
     )  # fmt: skip
-
-
-@contextmanager
-def _listening(port: int) -> Generator[socket.socket]:
-    try:
-        listening = socket.create_server((HOST, port))
-    except OSError as error:
-        why = os.strerror(error.errno) if error.errno else error
-        raise ConfigError(f"--port {port}: {why}; 0 takes a free one") from error
-    with listening:
-        yield listening
 
 
 @final
@@ -134,8 +99,6 @@ class Served:
         self._folder, self._channel, self._files, self._sets = folder, channel, files, sets
         self._desk: Desk | None = None
         self._failure: Exception | None = None
-        self.announce: Callable[[], None] = lambda: None
-        """Called when what listens can be ended in order."""
 
     @property
     def desk(self) -> Desk:
@@ -173,19 +136,12 @@ class Served:
         desk.begin(drafts.offer(desk))
         desk.begin(document.begin(desk, None, [str(each) for each in self._files]))
         desk.begin(_start(desk))
-        self.announce()  # from here on, whatever ends the program ends it in order
         gc.freeze()  # what was imported is never looked through again
         try:
             yield
         finally:
             silence(telling)
             await desk.close()
-
-
-def _announce(url: str, browser: bool) -> None:
-    print(url, flush=True)  # noqa: T201 - what the command is called for
-    if browser:  # in a thread of its own: one that needs the terminal is waited for until it ends
-        threading.Thread(target=webbrowser.open, args=(url,), daemon=True).start()
 
 
 def _unforeseen(desk: Desk, _: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:

@@ -1,0 +1,69 @@
+"""Where the page is served: the address is printed, and opened, before the server itself is imported.
+
+The browser takes as long to open a page as the server takes to start; what it asks for meanwhile waits in the socket.
+"""
+
+import os
+import secrets
+import socket
+import threading
+import webbrowser
+from collections.abc import Generator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from importlib.resources import files
+from pathlib import Path
+from typing import Self
+
+from tangible_core.errors import ConfigError
+
+HOST = "127.0.0.1"
+
+
+@dataclass(frozen=True)
+class Address:
+    """A socket that listens on this machine alone, and the key that whoever asks must know."""
+
+    listening: socket.socket
+    key: str
+
+    @classmethod
+    @contextmanager
+    def of(cls, port: int) -> Generator[Self]:
+        """Raises: ConfigError if the page was not built, or the port is taken."""
+        if not (static() / "app.js").is_file():
+            raise ConfigError(
+                "the page was not built when this was installed, as npm could not be reached; install again where it "
+                "can (`pip install --force-reinstall --no-deps .`), or build it: `npm ci && npm run build` in "
+                "plugins/ui/web"
+            )
+        try:
+            listening = socket.create_server((HOST, port))
+        except OSError as error:
+            why = os.strerror(error.errno) if error.errno else error
+            raise ConfigError(f"--port {port}: {why}; 0 takes a free one") from error
+        with listening:
+            yield cls(listening, new_key())
+
+    @property
+    def hosts(self) -> frozenset[str]:
+        """What a browser may call it."""
+        port = self.listening.getsockname()[1]
+        return frozenset({f"{HOST}:{port}", f"localhost:{port}"})
+
+    def announce(self, browser: bool) -> None:
+        """Print it; and open it."""
+        url = f"http://{HOST}:{self.listening.getsockname()[1]}/?token={self.key}"
+        print(url, flush=True)  # noqa: T201 - what the command is called for
+        if browser:  # in a thread of its own: one that needs the terminal is waited for until it ends
+            threading.Thread(target=webbrowser.open, args=(url,), daemon=True).start()
+
+
+def new_key() -> str:
+    """What the page's address holds: 128 bits, or what $TANGIBLE_UI_TOKEN says, as in a test."""
+    return os.environ.get("TANGIBLE_UI_TOKEN") or secrets.token_urlsafe(16)
+
+
+def static() -> Path:
+    """Where the built page lies, if it was built."""
+    return Path(str(files("tangible_ui"))) / "static"

@@ -148,6 +148,9 @@ def test_a_large_relief_is_drawn_at_once_and_finer_where_one_looks(serve, open_p
     from_above(page)
     place = (0.011, 0.007)
     afar = around(page, pixels(page), place, 20).std()
+    drawn = page.evaluate("() => { const { view } = window.page; return [view.terrain.moving, view.takesMs]; }")
+    assert drawn[0] is False  # all of its triangles, though the first picture had fewer
+    assert drawn[1] is not None and drawn[1] > 0  # and that was timed; infinity is no number in JSON
     assert page.evaluate("() => window.page.scene.whole.grid.heights.length") <= 350_000
     page.evaluate("([x, y]) => window.page.view.focus([x, y, 0], 0.003)", place)
     page.wait_for_function("() => window.page.scene.detail !== null", timeout=20_000)

@@ -59,7 +59,8 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
   private none = new Camera();
   private pixel = new Uint8Array(4);
   private resting = 0;
-  private takesMs = 0;
+  /** To draw all of the terrain; infinite until that was measured. */
+  private takesMs = Infinity;
   /** Pixels that are drawn for one of the page, to the side. */
   private ratio = 1;
   private scene: Scene | null = null;
@@ -78,7 +79,7 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
 
   /** Draw this surface from now on; where the size is another one, the whole of it is looked at. */
   put(scene: Scene, looks: Looks): void {
-    const before = this.scene?.meta.extent_m;
+    const before = this.scene?.meta;
     this.scene = scene;
     if (this.renderer) {
       this.terrain?.dispose();
@@ -86,8 +87,8 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
       this.terrain = new Terrain(scene, looks);
       this.fixed.add(this.terrain.group);
     }
-    this.takesMs = 0;
-    if (String(before) !== String(scene.meta.extent_m)) this.frame(...scene.meta.extent_m);
+    if (before?.rows !== scene.meta.rows || before.columns !== scene.meta.columns) this.takesMs = Infinity;
+    if (String(before?.extent_m) !== String(scene.meta.extent_m)) this.frame(...scene.meta.extent_m);
     this.moved();
   }
 
@@ -149,7 +150,7 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
   }
 
   private drawFixed(renderer: WebGLRenderer, drawn: WebGLRenderTarget): void {
-    const first = this.terrain !== null && !this.takesMs;
+    const measured = this.terrain === null || this.terrain.moving || this.takesMs < Infinity;
     const begun = performance.now();
     if (this.terrain) this.terrain.period = PATTERN_PX * this.pixel_m();
     renderer.setRenderTarget(drawn);
@@ -164,7 +165,7 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
       colours = this.shaded.texture;
     }
     this.copied.colours.value = colours;
-    if (!first) return;
+    if (measured) return;
     renderer.setRenderTarget(drawn);
     this.wait(renderer);
     this.takesMs = performance.now() - begun;
@@ -220,7 +221,7 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
     const height = Math.max(1, this.canvas.clientHeight);
     this.eye.resize(width, height);
     if (!this.renderer) return;
-    const slow = this.takesMs > VERY_SLOW_MS;
+    const slow = this.takesMs > VERY_SLOW_MS && this.takesMs < Infinity;
     this.ratio = slow ? 1 : Math.min(Math.max(devicePixelRatio, 1), FINEST_RATIO);
     const [across, along] = [Math.round(this.ratio * width), Math.round(this.ratio * height)];
     this.renderer.setSize(across, along, false);

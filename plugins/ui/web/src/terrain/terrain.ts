@@ -42,6 +42,7 @@ export class Terrain {
   private detail: Sheet | null = null;
   private needles: Needles;
   private looks: Looks;
+  private coarse = false;
 
   constructor(
     private scene: Scene,
@@ -110,8 +111,13 @@ export class Terrain {
 
   /** While the camera moves, fewer triangles are drawn, where all of them take long. */
   set moving(moving: boolean) {
+    this.coarse = moving;
     for (const sheet of [this.whole, this.detail]) if (sheet) sheet.moving = moving;
     this.needles.density = moving ? Math.min(this.looks.normals, MOST_MOVING_NEEDLES) : this.looks.normals;
+  }
+
+  get moving(): boolean {
+    return this.coarse;
   }
 
   /** Patterns are this wide, metres. */

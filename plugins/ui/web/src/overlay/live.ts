@@ -6,7 +6,7 @@ import { GripRule, type Grip } from "./grip";
 import { across, dot, length } from "./vectors";
 
 /** A device without a hand stands a metre high. */
-const NOBODY_M = 0.5;
+export const NOBODY_M = 0.5;
 
 export interface Live {
   readonly state: State;

@@ -8,10 +8,11 @@ import { ForceArrow } from "./arrow";
 import { FrictionCone } from "./cone";
 import { DevicePoint } from "./device";
 import { Labels } from "./labels";
-import { Reading, type Live } from "./live";
+import { NOBODY_M, Reading, type Live } from "./live";
 import { Picking } from "./picking";
 import type { Piece, Sight } from "./piece";
 import { Proxy } from "./proxy";
+import { Rest } from "./rest";
 import { ContactRing } from "./ring";
 import { ScaleBar } from "./scalebar";
 import { round, settings } from "./settings";
@@ -39,6 +40,7 @@ export class Overlay {
   readonly picking: Picking;
   private scene: Scene | null = null;
   private reading = new Reading();
+  private rest = new Rest();
   private trace: Trace;
   private pieces: Piece[];
   private pinned = new Set<Pinned>();
@@ -72,10 +74,11 @@ export class Overlay {
     this.changed = true;
   }
 
-  /** Whether a frame is wanted: something changed, or there is a hand, or its trace has yet to fade. */
+  /** Whether a frame is wanted: something changed, or there is a hand that is not at rest, or its trace has yet to fade. */
   wants(state: State | null): boolean {
-    const seen = this.live?.seen ?? false;
-    return this.changed || seen || (state !== null && state.hand[2] < 0.5) || this.trace.fades(this.settings.seconds);
+    const seen = (this.live?.seen ?? false) || (state !== null && state.hand[2] < NOBODY_M);
+    const stirs = seen && !(state !== null && this.rest.lasts(state));
+    return this.changed || stirs || this.trace.fades(this.settings.seconds);
   }
 
   /** Everything where this state has it, before the frame is drawn. */

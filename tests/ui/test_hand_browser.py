@@ -119,6 +119,24 @@ def test_the_mouse_feels_until_nobody_sees_the_page(page: Any) -> None:
     page.mouse.up()
 
 
+def test_a_hand_at_rest_is_drawn_when_it_moves_again(page: Any) -> None:
+    page.evaluate(
+        "() => { const { view, overlay } = window.page; overlay.settings.seconds = 0.2; window.drawn = 0;"
+        "const draw = view.draw.bind(view); view.draw = (wait) => { window.drawn++; draw(wait); }; }"
+    )
+    press(page, Felt())
+    page.wait_for_function("() => window.drawn > 5")
+    before = "() => { const { drawn } = window; return new Promise((done) => setTimeout(() => done(drawn), 300)); }"
+    until(lambda: page.evaluate(before) == page.evaluate("window.drawn"))  # none in 0.3 s
+    states = page.evaluate("window.page.net.latest.seq")
+    page.wait_for_function("seq => window.page.net.latest.seq > seq + 5", arg=states)  # the loop goes on
+    rests = page.evaluate("window.drawn")
+    box = page.locator("#terrain").bounding_box()
+    page.mouse.move(box["x"] + box["width"] / 2 + 30, box["y"] + box["height"] / 2)
+    page.wait_for_function("rests => window.drawn > rests + 3", arg=rests)
+    page.mouse.up()
+
+
 def test_a_tab_that_is_closed_leaves_no_force(page: Any) -> None:
     felt = Felt()
     press(page, felt)

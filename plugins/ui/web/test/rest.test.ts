@@ -4,7 +4,7 @@ import { Rest } from "../src/overlay/rest";
 import type { State } from "../src/protocol";
 
 const STILL: State = {
-  status: 3, flags: 1, seq: 0, tag: 0, overruns: 0, sampleMs: 0, hand: [0.01, 0.02, 0.003], proxy: [NaN, NaN, NaN],
+  status: 3, flags: 1, seq: 0, tag: 0, overruns: 0, sampleMs: 0, hand: [0.01, 0.02, 0.003], proxy: [0.01, 0.02, NaN],
   force: [0, 0, 1], velocity: [0, 0, 0], other: [0, 0, 0], lateUs: 1, arrivedMs: 0,
 };
 

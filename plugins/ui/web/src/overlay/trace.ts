@@ -57,7 +57,8 @@ export class Trace implements Piece {
   };
   private mesh: Mesh;
   private last: State | null = null;
-  private lastMs = -Infinity;
+  /** When the contact moved last. */
+  private movedMs = -Infinity;
   private at: Vec = [0, 0, 0];
 
   constructor(view: View) {
@@ -90,18 +91,20 @@ export class Trace implements Piece {
 
   /** Whether some of it has yet to fade. */
   fades(seconds: number): boolean {
-    return this.mesh.visible && performance.now() - this.lastMs < 1000 * seconds;
+    return this.mesh.visible && performance.now() - this.movedMs < 1000 * seconds;
   }
 
   /** A frame may show a state again, from elsewhere. */
   private add({ state, contact, hand, touching, newtons }: Live): void {
     if (state === this.last) return;
     this.last = state;
-    this.lastMs = performance.now();
+    const nowMs = performance.now();
     const at = touching ? contact : hand;
-    if (length(minus(at, this.at)) > LEAP_M) this.trail.lift();
+    const moved = length(minus(at, this.at));
+    if (moved > LEAP_M) this.trail.lift();
+    if (moved > 0) this.movedMs = nowMs;
     this.at = at;
-    this.trail.add(at[0], at[1], at[2], touching ? newtons : 0, this.lastMs / 1000);
+    this.trail.add(at[0], at[1], at[2], touching ? newtons : 0, nowMs / 1000);
     this.samples.needsUpdate = true;
   }
 }

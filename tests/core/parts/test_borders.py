@@ -131,14 +131,12 @@ def test_stairs_become_lines_within_the_tolerance():
         assert before.boundary.hausdorff_distance(after.boundary) < 1.5
 
 
-@pytest.mark.parametrize("name", ["astronaut", "coffee", "motorcycle"])
+@pytest.mark.parametrize("name", ["astronaut", "motorcycle"])
 def test_what_is_wider_than_the_tolerance_stays(name):
     """Of each part, what lies deeper in it than half as much again as the tolerance."""
     parts = drawn(name).parts
-    for tolerance_m in (0.0005, 0.001):
-        plain, simple = (np.array(shared_borders(parts, 0.16, each)) for each in (0, tolerance_m))
-        core = shapely.buffer(plain, -1.5 * tolerance_m)
-        assert shapely.area(shapely.difference(core, simple)).max() < 1e-12
+    plain, simple = (np.array(shared_borders(parts, 0.16, tolerance_m)) for tolerance_m in (0, 0.001))
+    assert shapely.area(shapely.difference(shapely.buffer(plain, -0.0015), simple)).max() < 1e-12
 
 
 def test_parts_of_a_coarser_grid_keep_their_numbers():

@@ -14,9 +14,11 @@ from jaxtyping import Bool, Int32, UInt8
 
 from ..data.parts import PartMap
 from ..data.pictures import to_rgb8
+from ..data.records import digest_of
 from ..runtime.opencv import plain_opencv
 
 if TYPE_CHECKING:
+    from PIL.Image import Image
     from PIL.ImageDraw import ImageDraw
     from PIL.ImageFont import FreeTypeFont
 
@@ -27,6 +29,8 @@ LARGE, SMALL = 1 / 32, 1 / 64
 """Height of a number, as a share of the longer side, where its part has room for it, and where it has none."""
 ALIKE = 0.95
 """Of discs that are nearly as wide as the largest one, that is taken which lies in the middle of its part."""
+DRAWN = "tangible parts"
+"""The text chunk of a PNG that says which pixels were drawn."""
 INK, HALO = (0, 0, 0), (255, 255, 255)
 
 
@@ -37,6 +41,7 @@ def numbered_parts(picture: np.ndarray, parts: PartMap, names: Sequence[str] = (
     The picture is of the parts' size.
     """
     from PIL import Image, ImageDraw
+    from PIL.PngImagePlugin import PngInfo
 
     shown, labels = _at_size(to_rgb8(picture), parts.labels)
     longer = max(labels.shape)
@@ -47,9 +52,26 @@ def numbered_parts(picture: np.ndarray, parts: PartMap, names: Sequence[str] = (
         name = names[number] if number < len(names) else ""
         texts = [f"{number} {name}", str(number)] if name else [str(number)]
         _write(draw, _largest_disc(labels == number), texts, longer)
+    told = PngInfo()
+    told.add_text(DRAWN, _digest(image))
     file = BytesIO()
-    image.save(file, format="PNG")
+    image.save(file, format="PNG", pnginfo=told)
     return file.getvalue()
+
+
+def is_as_drawn(path: Path) -> bool:
+    """Whether a file is what `numbered_parts` drew, and nobody has painted on it since."""
+    from PIL.Image import open as opened
+
+    try:
+        with opened(path, formats=("PNG",)) as image:
+            return image.info.get(DRAWN) == _digest(image)
+    except Exception:  # noqa: BLE001 - a damaged file can provoke any, and is none of ours
+        return False
+
+
+def _digest(image: Image) -> str:
+    return digest_of(np.asarray(image))
 
 
 def _at_size(

@@ -4,6 +4,7 @@ import math
 from typing import Literal, get_args
 
 import numpy as np
+from jaxtyping import Bool
 
 from ..data import HapticSurface
 from ..errors import shown, wrong_argument
@@ -42,6 +43,16 @@ def describe(surface: HapticSurface, scene_name: str, language: Language = "en",
     say = _Words(language)
     sentences = [_size(surface, scene_name, kind, say), _heights(surface, say), _materials(surface, say)]
     return " ".join(filter(None, sentences))
+
+
+def place_in_words(part: Bool[np.ndarray, "h w"], language: Language = "en") -> str:
+    """Where most of a part of a picture lies; empty where that is on no side.
+
+    >>> place_in_words(np.eye(6) > 0), place_in_words(np.tri(6, dtype=bool) & (np.arange(6) < 2))
+    ('', 'on the left')
+    """
+    place = _place(part)
+    return "" if place == NOWHERE else _Words(language)(place)
 
 
 class _Words:

@@ -11,7 +11,7 @@ from typing import NamedTuple, final
 
 import numpy as np
 
-from ..data import TICK_COLUMNS, ServoReport, TickFlag
+from ..data import TICK_COLUMNS, ServoReport, TickFlag, Vector
 from ..errors import DeviceError, check_positive
 from ..plugins.interfaces import HapticDevice, Touch
 from ..runtime.stopping import stop_asked, stoppable
@@ -28,11 +28,18 @@ SHORTEST_S = 0.1
 """No device is opened for less."""
 
 
+def nowhere(_: Vector) -> str:
+    """What is under the tip of a scene without parts."""
+    return ""
+
+
 class Turn(NamedTuple):
     """A scene, and what no force on it may do."""
 
     touch: Touch
     limits: Safety
+    part_at: Callable[[Vector], str] = nowhere
+    """What the part of the scene under a tip is called, for reports."""
 
 
 def run_in_turn(
@@ -144,7 +151,7 @@ class _Session:
                 swapped.result()
                 self._at, self._due_s = self._next, time.monotonic() + self._each_s
         elif self._swapping is None and len(self._turns) > 1 and time.monotonic() >= self._due_s:
-            self._swapping = aside.submit(servo.swap, *self._turns[self._next])
+            self._swapping = aside.submit(servo.swap, *self._turns[self._next][:2])
         return self._ended() if self._since_s else ""
 
     @property
@@ -153,6 +160,8 @@ class _Session:
 
     def _tell(self, servo: Servo, found: ServoReport) -> None:
         self._last = report(servo.ring, found.stopped, self._before, self._since_s)
+        if self._last.ticks:
+            self._last = replace(self._last, part=self._turns[self._at].part_at(self._last.state.position_m))
         self._hear(self._last)
 
     def _keep(self, rows: np.ndarray) -> None:

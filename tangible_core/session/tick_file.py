@@ -34,6 +34,8 @@ class About:
     """Date and time, ISO 8601."""
     software: str = ""
     """What wrote it, with versions."""
+    parts: str = ""
+    """Names of the surface's parts, a JSON object from number to name; of scenes felt in turn, a line each."""
 
     def stamped(self) -> Self:
         """With date and versions, where they are not said."""

@@ -11,13 +11,14 @@ from typing import NamedTuple, final
 
 import numpy as np
 
-from ..data import TICK_COLUMNS, ServoReport, TickFlag, Vector
+from ..data import TICK_COLUMNS, HapticSurface, ServoReport, TickFlag
 from ..errors import DeviceError, check_positive
 from ..plugins.interfaces import HapticDevice, Touch
 from ..runtime.stopping import stop_asked, stoppable
 from ..servo import OVER, Safety, Servo
 from ..servo.reports import Counted, report, so_far
 from .live import LOOK_EVERY_S, attended, ignored
+from .parts_felt import with_part
 from .recording import INTERRUPTED, STOPPED
 from .tick_arrays import ARRAYS
 
@@ -28,18 +29,13 @@ SHORTEST_S = 0.1
 """No device is opened for less."""
 
 
-def nowhere(_: Vector) -> str:
-    """What is under the tip of a scene without parts."""
-    return ""
-
-
 class Turn(NamedTuple):
     """A scene, and what no force on it may do."""
 
     touch: Touch
     limits: Safety
-    part_at: Callable[[Vector], str] = nowhere
-    """What the part of the scene under a tip is called, for reports."""
+    parts: HapticSurface | None = None
+    """The surface whose parts reports tell; None for none."""
 
 
 def run_in_turn(
@@ -159,9 +155,8 @@ class _Session:
         return (self._at + 1) % len(self._turns)
 
     def _tell(self, servo: Servo, found: ServoReport) -> None:
-        self._last = report(servo.ring, found.stopped, self._before, self._since_s)
-        if self._last.ticks:
-            self._last = replace(self._last, part=self._turns[self._at].part_at(self._last.state.position_m))
+        found = report(servo.ring, found.stopped, self._before, self._since_s)
+        self._last = with_part(found, self._turns[self._at].parts)
         self._hear(self._last)
 
     def _keep(self, rows: np.ndarray) -> None:

@@ -1,11 +1,15 @@
 """Which part of a picture the tip is on, by the part's name; looked up beside the force loop, never in it."""
 
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Float64, Int32
 
-from ..data import HapticSurface, Vector
+from ..data import HapticSurface, ServoReport, Vector
+from ..errors import OutputError, quoted
 from .recording import Recording
 
 Places = Float64[np.ndarray, "n 3"]
@@ -22,12 +26,38 @@ class PartFelt(NamedTuple):
     peak_force_n: float
 
 
+def telling_parts(surface: HapticSurface | None, tell: Callable[[ServoReport], None]) -> Callable[[ServoReport], None]:
+    """`tell`, which then hears of the part under the tip too. surface: None for one without parts."""
+    return lambda report: tell(with_part(report, surface))
+
+
+def with_part(report: ServoReport, surface: HapticSurface | None) -> ServoReport:
+    """A report with what the part under the tip is called."""
+    if surface is None or not report.ticks:
+        return report
+    return replace(report, part=part_under(surface, report.state.position_m))
+
+
 def part_under(surface: HapticSurface, position_m: Vector) -> str:
     """What the part under a tip is called, touched or not; empty beside the surface, and where that has no parts."""
     if surface.names is None:
         return ""
-    (number,) = _parts_under(surface, np.array([position_m], np.float64)).tolist()
+    number = int(_parts_under(surface, np.array([position_m], np.float64))[0])
     return "" if number < 0 else called(number, surface.names[number])
+
+
+def names_text(names: Mapping[int, str]) -> str:
+    """The names of parts by number, as the header of a recording has them; empty for none."""
+    return json.dumps({str(number): names[number] for number in sorted(names)}, ensure_ascii=False) if names else ""
+
+
+def names_of(text: str) -> list[dict[int, str]]:
+    """What `names_text` wrote, of each scene that was felt in turn. Raises: OutputError if it is damaged."""
+    try:
+        scenes = [json.loads(line or "{}") for line in text.splitlines()]
+        return [{int(number): str(name) for number, name in names.items()} for names in scenes]
+    except (ValueError, AttributeError, RecursionError) as error:
+        raise OutputError(f"the names of its parts are damaged: {quoted(text)}; record it again") from error
 
 
 def called(number: int, name: str) -> str:

@@ -14,7 +14,7 @@ from ..files.writing import write_text
 from ..plugins.interfaces import Touch
 from ..report import disparity_errors, draw_sheet, write_figures
 from ..report.html import png_html
-from ..session import EVERY, About, Recording, run_simulated
+from ..session import EVERY, About, Recording, names_text, run_simulated, telling_parts
 from .cache import write_record
 from .engine import Engine
 from .following import felt_device, how_followed
@@ -137,7 +137,7 @@ def about(engine: Engine) -> About:
         text = engine.config.as_yaml()
     except ConfigError as error:
         text = f"# {error}"
-    return About(names["device"], names["render"], text)
+    return About(names["device"], names["render"], text, parts=names_text(engine.config.part_names))
 
 
 def _felt(
@@ -149,7 +149,9 @@ def _felt(
     said = about(engine).stamped()
     if engine.beside is not None:
         engine.beside.wait(FELT)
-    recording = run_simulated(touch, device, seconds, on_report, engine.config.safety)
+    parts = engine.felt("surface") if engine.config.by_parts else None
+    told = telling_parts(parts, on_report) if on_report else None
+    recording = run_simulated(touch, device, seconds, told, engine.config.safety)
     return replace(recording, about=said)
 
 

@@ -289,6 +289,12 @@ def _disparity(held: Mapping[str, np.ndarray]) -> DisparityMap | None:
     return DisparityMap(held["disparity"]) if "disparity" in held else None
 
 
+def builtin_files(name: str) -> SceneFiles:
+    """The files of a builtin scene, with absolute paths. Raises: PictureError without scikit-image."""
+    files, folder = BUILTINS[name], _scikit_image_data()
+    return files.model_copy(update={part: folder / path for part, path in files if isinstance(path, Path)})
+
+
 def _scikit_image_data() -> Path:
     """The folder itself: scikit-image's own functions download what they miss."""
     from importlib.util import find_spec

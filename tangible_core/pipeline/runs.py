@@ -18,8 +18,8 @@ from ..session import EVERY, About, Recording, run_simulated
 from .cache import write_record
 from .engine import Engine
 from .following import felt_device, how_followed
-from .rehearsal import FELT, rehearsal
 from .parts_text import part_heights, to_correct
+from .rehearsal import FELT, rehearsal
 from .run_folder import CONFIG, GUESSED, NO_CONFIG, OUTCOMES, RECORDING, SHEET, check_folder, rewritten
 
 SHOWN = ("disparity", "segments", "parts", "materials", "surface")
@@ -160,8 +160,16 @@ def _draw(engine: Engine, products: Mapping[str, Any], recording: Recording | No
     title = engine.config.title or (Path(scene.name).name if Path(scene.name).is_absolute() else scene.name)
     if doubts := [each.text.partition(":")[0] for each in engine.outcomes.doubts]:
         title = f"{title} (doubtful: {'; '.join(doubts)})"
-    said = {"title": title, "language": engine.config.language}
-    return draw_sheet(path, views=scene.views, truth=scene.truth, recording=recording, **said, **shown)
+    named = replace(engine.config, title=title)
+    return draw_sheet(
+        path,
+        views=scene.views,
+        truth=scene.truth,
+        recording=recording,
+        title=named.title,
+        language=named.language,
+        **shown,
+    )
 
 
 def _figures(engine: Engine, products: Mapping[str, Any], recording: Recording | None) -> dict[str, Any]:

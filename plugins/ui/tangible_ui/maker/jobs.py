@@ -1,6 +1,21 @@
 """Everything the maker can be asked, by name."""
 
-from . import checking, devices, laws, making, mapping, opening, preflight, records, textures
+from . import (
+    checking,
+    devices,
+    felt_parts,
+    laws,
+    making,
+    mapping,
+    opening,
+    parts,
+    preflight,
+    proposals,
+    records,
+    saved_parts,
+    snapping,
+    textures,
+)
 
 JOBS = {
     **making.JOBS,
@@ -13,4 +28,9 @@ JOBS = {
     **textures.JOBS,
     **laws.JOBS,
     **mapping.JOBS,
+    **parts.JOBS,
+    **saved_parts.JOBS,
+    **proposals.JOBS,
+    **snapping.JOBS,
+    **felt_parts.JOBS,
 }

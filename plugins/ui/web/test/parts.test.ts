@@ -8,7 +8,7 @@ import { fromFront, moved, spread } from "../src/panels/parts/order";
 import { neighboursOf, piecesOf, placesOf } from "../src/panels/parts/pieces";
 import { filled } from "../src/panels/parts/polygon";
 
-const part = (label: number, more: Partial<Part> = {}): Part => ({ label, name: "", height_m: 0, material: null, ...more });
+const part = (label: number, more: Partial<Part> = {}): Part => ({ label, name: "", height_m: 0, material: null, automatic: false, ...more });
 
 /** A picture drawn in letters: each is a part. */
 function picture(...lines: string[]): Labels {

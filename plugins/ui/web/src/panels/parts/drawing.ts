@@ -13,6 +13,8 @@ export interface Part {
   readonly height_m: number;
   /** Null: as the rules for materials say. */
   readonly material: string | null;
+  /** Its height is found by the program, and not said. */
+  readonly automatic: boolean;
 }
 
 interface Step {
@@ -80,10 +82,15 @@ export class Drawing {
     return this.counts[label]! / this.labels.data.length;
   }
 
-  /** What is there now is what was saved. */
-  keep(): void {
-    this.kept = this.done.length;
-    if (this.done.length) this.done.at(-1)!.gesture = "";
+  /** How much was done: told to `keep` when that was saved. */
+  get steps(): number {
+    return this.done.length;
+  }
+
+  /** What was there after so many steps is what was saved. */
+  keep(steps = this.steps): void {
+    this.kept = steps;
+    this.endGesture();
   }
 
   /** Change what is said of parts. gesture: drags that go on are one step. */
@@ -311,7 +318,7 @@ export class Drawing {
 
   private before(label: number, under: number | undefined): Part {
     const ground = this.part(under ?? -1)?.height_m ?? 0;
-    return { label, name: "", height_m: Math.min(this.top_m, ground + BEFORE_M), material: null };
+    return { label, name: "", height_m: Math.min(this.top_m, ground + BEFORE_M), material: null, automatic: false };
   }
 
   /** Of the pixels of a patch, whose most of them were. */

@@ -1,5 +1,5 @@
 /** What hangs together: pixels of one part that touch along a side. */
-import { beside, type Labels, type Point } from "./labels";
+import type { Labels, Point } from "./labels";
 
 /** Runs of equal pixels, row by row, and of each the piece that it belongs to. */
 export interface Found {
@@ -103,12 +103,19 @@ export function placesOf({ columns, data }: Labels): Map<number, Place> {
 }
 
 /** Which parts touch a part along a side. */
-export function neighboursOf(labels: Labels, label: number): Set<number> {
-  const { columns, data } = labels;
+export function neighboursOf({ columns, data }: Labels, label: number): Set<number> {
   const { starts, ends } = runsOf(data, columns, label);
-  const met = new Set<number>();
+  const met = new Set<number>([label]);
+  const look = (from: number, to: number): void => {
+    let last = label;
+    for (let at = Math.max(0, from); at < Math.min(to, data.length); at++) if (data[at] !== last) met.add((last = data[at]!));
+  };
   starts.forEach((start, i) => {
-    for (let at = start; at < ends[i]!; at++) for (const near of beside(labels, at)) met.add(data[near]!);
+    const end = ends[i]!;
+    if (start % columns) look(start - 1, start);
+    if (end % columns) look(end, end + 1);
+    look(start - columns, end - columns);
+    look(start + columns, end + columns);
   });
   met.delete(label);
   return met;

@@ -2,6 +2,7 @@
 
 from .device import NO_FORCE, DeviceSpec, Finding, Force, HapticState, Unit, Vector, limited
 from .outcome import Kind, Note, NoteKind, Outcome, OutcomeKind, Outcomes, Plan
+from .parts import PartMap
 from .records import Record, digest_of
 from .surface import TEXTURES, HapticSurface, Material, MaterialMap, Relief, Texture
 from .ticks import TICK_COLUMNS, UNTOUCHED, ServoReport, Spread, TickFlag
@@ -24,6 +25,7 @@ __all__ = [
     "Outcome",
     "OutcomeKind",
     "Outcomes",
+    "PartMap",
     "Plan",
     "Record",
     "Relief",

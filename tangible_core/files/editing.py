@@ -55,6 +55,11 @@ def change_text(text: str, path: Path, changes: Changes, named: Collection[str] 
     return text
 
 
+def on_one_line(value: Any) -> str:
+    """A value as it stands in YAML, whatever characters it holds. Raises: ArgumentError for what JSON cannot say."""
+    return _flow(value)
+
+
 def _labelled(value: Any, depth: int = 0) -> Any:
     """JSON's keys are words; labels of a material map are whole numbers."""
     if depth > MOST_DEPTH:

@@ -3,7 +3,7 @@
 from collections.abc import Awaitable, Callable, Mapping
 from typing import Any
 
-from . import devices, document, drafts, feeling, laws, making, mapping, opening, preflight, records, seeing
+from . import devices, document, drafts, feeling, laws, making, mapping, opening, parts, preflight, records, seeing
 
 Ask = Callable[..., Awaitable[Any]]
 """Called with the desk, the tab, and what the tab says by name; the tab is answered with what it returns, as JSON."""
@@ -20,4 +20,5 @@ ASKS: Mapping[str, Ask] = {
     **records.ASKS,
     **devices.ASKS,
     **laws.ASKS,
+    **parts.ASKS,
 }

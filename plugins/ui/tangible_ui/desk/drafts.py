@@ -46,6 +46,11 @@ class Drafts:
         """This text is that of a file, or can be had again."""
         self._opened = text
 
+    @property
+    def opened_text(self) -> str:
+        """What the document's file said when it was opened or saved."""
+        return self._opened
+
     async def keep(self, text: Text) -> None:
         """The document's text from now on. A disk that is full is warned of once."""
         self._newest = text

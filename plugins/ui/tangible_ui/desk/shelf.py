@@ -90,6 +90,17 @@ class Shelf:
             shutil.rmtree(here, ignore_errors=True)
         return [there / name for name in names]
 
+    def single(self, batch: str) -> Path:
+        """The one file of a batch, where it waits. Raises: ConfigError if there is not one."""
+        files = list(self._batch(batch).iterdir())
+        if len(files) != 1:
+            raise ConfigError(f"{len(files)} files were sent where one is wanted; send one")
+        return files[0]
+
+    def drop(self, batch: str) -> None:
+        """Take a batch away that is not to be kept."""
+        shutil.rmtree(self._batch(batch), ignore_errors=True)
+
     def _batch(self, batch: str) -> Path:
         here = self._incoming / batch
         if not re.fullmatch(r"[0-9a-f]{16}", batch) or not here.is_dir():

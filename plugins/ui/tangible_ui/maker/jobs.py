@@ -1,6 +1,6 @@
 """Everything the maker can be asked, by name."""
 
-from . import checking, devices, laws, making, mapping, opening, preflight, records, textures
+from . import checking, devices, laws, making, mapping, opening, parts, preflight, records, saved_parts, textures
 
 JOBS = {
     **making.JOBS,
@@ -13,4 +13,6 @@ JOBS = {
     **textures.JOBS,
     **laws.JOBS,
     **mapping.JOBS,
+    **parts.JOBS,
+    **saved_parts.JOBS,
 }

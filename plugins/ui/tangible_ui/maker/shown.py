@@ -131,12 +131,23 @@ def _size(size: tuple[int, int], most_pixels: int, most_side: int) -> tuple[int,
 
 def _write_picture(picture: np.ndarray, part: Path) -> None:
     """At a size that is drawn at once, and as it is where that is larger."""
-    if picture.dtype != np.uint8:
-        picture = np.round(255 * np.clip(to_grey(picture), 0, 1)).astype(np.uint8)
-    whole = Image.fromarray(picture).convert("RGB")
+    whole = image_of(picture)
     if (fine := _fine_size(picture)) is not None:
         _save(whole, fine, part / "photo-fine.jpg")
     _save(whole, _size(whole.size, MOST_PREVIEW, levels.MOST_SIDE), part / "photo.jpg")
+
+
+def image_of(picture: np.ndarray) -> Image.Image:
+    """A picture as a browser shows it."""
+    if picture.dtype != np.uint8:
+        picture = np.round(255 * np.clip(to_grey(picture), 0, 1)).astype(np.uint8)
+    return Image.fromarray(picture).convert("RGB")
+
+
+def write_whole(picture: np.ndarray, path: Path) -> None:
+    """A picture as it is, as far as a browser decodes it."""
+    whole = image_of(picture)
+    _save(whole, _size(whole.size, whole.width * whole.height, MOST_FINE_SIDE), path)
 
 
 def _save(whole: Image.Image, size: tuple[int, int], path: Path) -> None:

@@ -1,0 +1,9 @@
+"""The parts of a picture: found in its segments, given a height each, and made a relief of."""
+
+from .find import find_parts as find_parts
+from .find import part_sizes as part_sizes
+from .find import reduced_parts as reduced_parts
+from .heights import HeightChoice as HeightChoice
+from .heights import PartChoice as PartChoice
+from .heights import PartHeights as PartHeights
+from .layering import Layering as Layering

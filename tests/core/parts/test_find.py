@@ -1,0 +1,69 @@
+"""The connected parts of a picture: which they are, their numbers, and that these stay."""
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as arrays
+
+from tangible_core.data import SegmentMap
+from tangible_core.parts import find_parts, part_sizes, reduced_parts
+
+SMALL = arrays.arrays(np.int32, arrays.array_shapes(min_dims=2, max_dims=2, max_side=9), elements=st.integers(0, 3))
+
+
+def parts_of(labels) -> np.ndarray:
+    return find_parts(SegmentMap(np.asarray(labels, np.int32))).labels
+
+
+def flooded(labels: np.ndarray) -> np.ndarray:
+    """Parts by filling each from its first pixel, row by row."""
+    found = np.full(labels.shape, -1, np.int32)
+    count = 0
+    for start in np.ndindex(labels.shape):
+        if found[start] >= 0:
+            continue
+        waiting = [start]
+        while waiting:
+            row, column = place = waiting.pop()
+            if not (0 <= row < labels.shape[0] and 0 <= column < labels.shape[1]) or found[place] >= 0:
+                continue
+            if labels[place] == labels[start]:
+                found[place] = count
+                waiting += [(row + 1, column), (row - 1, column), (row, column + 1), (row, column - 1)]
+        count += 1
+    return found
+
+
+@given(SMALL)
+def test_parts_are_what_a_flood_from_each_first_pixel_finds(labels):
+    found = find_parts(SegmentMap(labels))
+    assert np.array_equal(found.labels, flooded(labels))
+    assert found.labels.dtype == np.int32
+    assert found.segments == tuple(int(labels[found.labels == part][0]) for part in range(found.count))
+    assert part_sizes(found).tolist() == [np.count_nonzero(found.labels == part) for part in range(found.count)]
+
+
+@given(SMALL, st.integers(1, 4), st.permutations(range(4)))
+def test_parts_stay_when_a_picture_is_enlarged_or_its_segments_are_numbered_otherwise(labels, times, order):
+    parts = parts_of(labels)
+    assert np.array_equal(
+        parts_of(np.kron(labels, np.ones((times, times), np.int32))), parts.repeat(times, 0).repeat(times, 1)
+    )
+    assert np.array_equal(parts_of(np.asarray(order, np.int32)[labels]), parts)
+
+
+def test_corners_do_not_hold_parts_together():
+    assert parts_of([[0, 1], [1, 0]]).tolist() == [[0, 1], [2, 3]]
+
+
+def test_a_coarser_grid_keeps_the_numbers_and_loses_no_part():
+    labels = np.zeros((40, 60), np.int32)
+    labels[:, 30:] = 1
+    labels[5, 7] = 2  # between the middle pixels
+    parts = find_parts(SegmentMap(labels))
+    few = reduced_parts(parts, (4, 6))
+    assert few.segments == parts.segments
+    assert few.labels[0, 0] == parts.labels[5, 7]
+    few_of_both = np.where(few.labels == parts.labels[5, 7], 0, few.labels)
+    assert np.array_equal(few_of_both, parts.labels[:4, 27:33])
+    assert reduced_parts(parts, (40, 60)) is parts

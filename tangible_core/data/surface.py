@@ -121,12 +121,14 @@ class MaterialMap(Record):
 class HapticSurface(Record):
     """What a renderer touches: relief, and per label a material where the scene has them; metres and newtons.
 
-    Raises: GeometryError if labels and heights differ in size, MaterialError if a label has no material.
+    names: what each label shows, in somebody's words, empty where nobody said; None where labels are not of parts.
+    Raises: GeometryError if labels and heights differ in size, MaterialError if a label has no material or no name.
     """
 
     relief: Relief
     labels: Int32[np.ndarray, "h w"] | None = None
     materials: tuple[Material, ...] | None = None
+    names: tuple[str, ...] | None = None
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -139,6 +141,8 @@ class HapticSurface(Record):
         low, high = int(self.labels.min()), int(self.labels.max())
         if low < 0 or (self.materials is not None and high >= len(self.materials)):
             raise MaterialError(f"labels run from {low} to {high}; there are {len(self.materials or ())} materials")
+        if self.names is not None and high >= len(self.names):
+            raise MaterialError(f"labels run from {low} to {high}; there are {len(self.names)} names, one a part")
 
     @classmethod
     def from_heights(

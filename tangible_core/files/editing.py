@@ -1,7 +1,7 @@
 """Changes to a YAML text that leave the rest of it as it was written, with its comments and in its order."""
 
 import re
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from copy import deepcopy
 from enum import Enum
 from pathlib import Path
@@ -11,7 +11,7 @@ from ruamel.yaml import YAML
 from ruamel.yaml.nodes import MappingNode, ScalarNode
 
 from ..errors import ConfigError, quoted, wrong_argument
-from .source import Location, key_of, parse_source, parse_value, plain
+from .source import Location, Shorthand, key_of, no_shorthand, parse_source, parse_value, plain, spelt_out
 from .yaml_bounds import MOST_DEPTH
 
 Node = Any
@@ -29,12 +29,12 @@ Changes = Mapping[str | Location, Any]
 """Keys from the top of the file, as `render.stiffness_n_per_m` or as a tuple, and what JSON can say, or `REMOVE`."""
 
 
-def change_text(text: str, path: Path, changes: Changes, named: Collection[str] = ()) -> str:
+def change_text(text: str, path: Path, changes: Changes, shorthand: Shorthand = no_shorthand) -> str:
     """A text in which these keys say that, one after the other; whatever else it says, it says as before.
 
     Another `use` clears the other options of its block; a block whose last option is removed goes with it. What cannot
     be changed in its place (a value that is shared by an alias) is written anew, and the comments are lost.
-    path: what complaints name. named: keys at the top whose word alone stands for `{use: word}`.
+    path: what complaints name.
     Raises: ConfigError if the text is no YAML, a key leads into a list, or what is set is more than a file may hold;
     ArgumentError for what JSON cannot say.
     """
@@ -44,9 +44,9 @@ def change_text(text: str, path: Path, changes: Changes, named: Collection[str] 
         if not 0 < len(parts) <= MOST_DEPTH or "" in parts:
             raise ConfigError(f"{quoted(key)}: is no key; write such as render.stiffness_n_per_m")
         value, before = _labelled(value), deepcopy(meant)
-        _change(meant, parts, value, named)
+        _change(meant, parts, value, shorthand)
         if _canonical(before) != _canonical(meant):
-            text = _spliced(text, parts, value, named)
+            text = _spliced(text, parts, value, shorthand)
     if _says(text, path, meant):
         return text
     text = _written(meant)
@@ -91,7 +91,7 @@ def _canonical(node: Any) -> Any:
     return repr(node)
 
 
-def _change(tree: dict[Any, Any], parts: Location, value: Any, named: Collection[str]) -> None:
+def _change(tree: dict[Any, Any], parts: Location, value: Any, shorthand: Shorthand) -> None:
     """The same change to plain values."""
     blocks = [tree]
     for depth, part in enumerate(parts[:-1]):
@@ -99,7 +99,7 @@ def _change(tree: dict[Any, Any], parts: Location, value: Any, named: Collection
         if isinstance(node.get(key), list):
             raise ConfigError(f"{'.'.join(map(str, parts))}: {part} is a list; set it as a whole")
         if not isinstance(node.get(key), dict):
-            block = _block_of(node.get(key), part in named and depth == 0)
+            block = spelt_out(node.get(key), shorthand(parts[: depth + 1]))
             if value is REMOVE and not block:
                 return
             node[key] = block
@@ -120,12 +120,7 @@ def _remove(blocks: list[dict[Any, Any]], parts: Location) -> None:
             return
 
 
-def _block_of(value: Any, is_named: bool) -> dict[str, Any]:
-    """What stands in for a value that is to become a block."""
-    return {"use": value} if is_named and isinstance(value, str) else {}
-
-
-def _spliced(text: str, parts: Location, value: Any, named: Collection[str]) -> str:
+def _spliced(text: str, parts: Location, value: Any, shorthand: Shorthand) -> str:
     """The text with one change in its place, where there is one."""
     node: Any = _composed(text)
     above: list[tuple[Node, int]] = []
@@ -139,8 +134,8 @@ def _spliced(text: str, parts: Location, value: Any, named: Collection[str]) -> 
             break
         _, below = node.value[index]
         if not isinstance(below, MappingNode):
-            block = _block_of(below.value, part in named and depth == 0)
-            _change(block, rest, value, ())
+            block = spelt_out(below.value, shorthand(parts[: depth + 1]))
+            _change(block, rest, value, no_shorthand)
             return _replaced(text, node.value[index], block) if block else _removed(text, above)
         node = below
     if value is REMOVE:

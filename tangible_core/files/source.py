@@ -2,7 +2,7 @@
 
 import re
 import warnings
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, cast, get_args
@@ -21,6 +21,13 @@ Tree = dict[Any, Any]
 """The parser's own mapping: a dict that knows where its parts stand."""
 Location = tuple[Any, ...]
 """Keys and indices from the top of the file."""
+Shorthand = Callable[[Location], str]
+"""The option that a word alone stands for where a block may stand, by its place; empty for none."""
+
+
+def no_shorthand(place: Location) -> str:
+    """Of a file in which a word is never short for a block."""
+    return ""
 
 
 @dataclass
@@ -33,16 +40,17 @@ class Source:
     """Each as a sentence that begins with its place, and for a program."""
     overridden: dict[tuple[str, ...], str] = field(default_factory=dict[tuple[str, ...], str])
 
-    def override(self, text: str) -> None:
+    def override(self, text: str, shorthand: Shorthand = no_shorthand) -> None:
         """Apply `key.key=value`; a block with another `use` starts without the options of the method before."""
         parts, loaded = parse_override(text)
         node: Any = self.tree
-        for part in parts[:-1]:
-            if isinstance(node.get(part), list):
+        for depth, part in enumerate(parts[:-1], 1):
+            key = key_of(part, node)
+            if isinstance(node.get(key), list):
                 raise _refused(text, parts, f"{part} is a list; set it as a whole: {part}=[...]")
-            if not isinstance(node.get(part), dict):
-                node[part] = CommentedMap()
-            node = node[part]
+            if not isinstance(node.get(key), dict):
+                node[key] = CommentedMap(spelt_out(node.get(key), shorthand(parts[:depth])))
+            node = node[key]
         if parts[-1] == "use" and node.get("use") != loaded:
             node.clear()
         node[key_of(parts[-1], node)] = loaded
@@ -83,8 +91,14 @@ class Source:
     def settle(self) -> None:
         """Raises: ConfigError with every complaint, one a line, if there are any."""
         if self.complaints:
-            sentences, complaints = zip(*self.complaints, strict=True)
-            raise ConfigError(*sentences, complaints=complaints)
+            raise self.error
+
+    @property
+    def error(self) -> ConfigError:
+        """Every complaint, one a line."""
+        return ConfigError(
+            *(sentence for sentence, _ in self.complaints), complaints=(each for _, each in self.complaints)
+        )
 
     def check_keys(self, known: Iterable[str]) -> None:
         """Complain of every key of the file that is not known."""
@@ -176,10 +190,19 @@ def read_text(path: Path) -> str:
         raise ConfigError(f"{path}: cannot be read as text: {getattr(error, 'strerror', None) or error}") from error
 
 
-def parse_source(text: str, path: Path, what: str, overrides: Iterable[str] = (), *, empty: bool = False) -> Source:
+def parse_source(
+    text: str,
+    path: Path,
+    what: str,
+    overrides: Iterable[str] = (),
+    *,
+    empty: bool = False,
+    shorthand: Shorthand = no_shorthand,
+) -> Source:
     """A YAML text whose parts know their places, for whoever checks it.
 
     what: what the file is, for the complaint about one that is no mapping. empty: one that says nothing is one too.
+    shorthand: of what overrides lead into.
     Raises: ConfigError if it is no YAML, or no mapping.
     """
     try:
@@ -194,7 +217,7 @@ def parse_source(text: str, path: Path, what: str, overrides: Iterable[str] = ()
         raise ConfigError(f"{path}:1:1: {what}", complaints=[Complaint((), what, 1, 1)])
     source = Source(path, cast(Tree, tree))
     for override in overrides:
-        source.override(override)
+        source.override(override, shorthand)
     return source
 
 
@@ -244,6 +267,11 @@ def _refused(override: str, location: Location, problem: str) -> ConfigError:
 
 def _named(override: str) -> str:
     return f"--set {shown(override)}"
+
+
+def spelt_out(value: Any, option: str) -> dict[str, Any]:
+    """What stands in for a value that is to become a block, where a word alone stands for this option of it."""
+    return {option: value} if option and isinstance(value, str) else {}
 
 
 def key_of(part: Any, node: Mapping[Any, Any]) -> Any:

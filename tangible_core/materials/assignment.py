@@ -5,7 +5,7 @@ vibration explains next to nothing: R^2 is 0.07 and -0.06). So materials are ass
 writes, or by relative roughness, which is a convention: rougher to the eye becomes rougher to the hand.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
@@ -14,12 +14,12 @@ from typing import Any, Literal
 import numpy as np
 from jaxtyping import Float64
 
-from ..data import Material, MaterialMap, SegmentMap
+from ..data import Material, MaterialMap, PartMap, SegmentMap
 from ..data.pictures import to_grey
 from ..errors import MaterialError, did_you_mean, quoted
 from ..runtime.opencv import plain_opencv
 from .files import parse_materials, read_materials
-from .rules import Choice, MaterialRule, apply_rules
+from .rules import Choice, MaterialRule, apply_rules, noun_of, parts_of
 
 NEUTRAL = "plain"
 """The material of segments that no material is named for."""
@@ -54,40 +54,46 @@ def find(name: str, library: Mapping[str, Material]) -> Material:
 
 
 def assign(
-    segments: SegmentMap,
+    segments: SegmentMap | PartMap,
     picture: np.ndarray | None,
     by: Literal["roughness", "rules"] | Mapping[int, str],
     library: Mapping[str, Material],
     rules: Sequence[MaterialRule] = (),
     default: str = NEUTRAL,
     shape: tuple[int, int] | None = None,
-    ground: int | None = None,
+    ground: Collection[int] = (),
+    own: Mapping[int, str] | None = None,
 ) -> MaterialMap:
-    """One material a segment, and why.
+    """One material a segment, or a part where parts are given, and why.
 
-    rules: decide first, the first that fits (see `apply_rules`).
-    by: what decides where no rule fits. A map from label to material; `rules`, nothing; or `roughness`, which ranks
-    all the segments of this picture by `relative_roughness` and spreads them evenly over `LADDER`, the smoothest to
-    ice, the roughest to brick. Equally rough segments share a rank; one rank alone says nothing, and gives the default.
+    own: by number, the materials of parts that are said with the parts themselves: they go before all else.
+    rules: decide next, the first that fits (see `apply_rules`).
+    by: what decides where no rule fits. A map from a segment's label to material; `rules`, nothing; or `roughness`,
+    which ranks all of these in this picture by `relative_roughness` and spreads them evenly over `LADDER`, the
+    smoothest to ice, the roughest to brick. Equally rough ones share a rank; one rank alone says nothing, and gives the
+    default.
     default: the material of what nothing decides.
     shape: see `apply_rules`.
-    ground: the last label, where the picture is transparent: it gets the default, and has no roughness.
+    ground: where the picture is transparent: these get the default, and have no roughness.
     Raises: MaterialError for a name, a label or a point that does not exist, or for `roughness` or a colour without a
     picture of the segments' size; PictureError if the picture is none.
     """
-    chosen = dict(apply_rules(rules, segments, picture, shape))
+    noun = noun_of(segments)
+    chosen = {label: (name, f"{noun} {label}: its own -> {name}") for label, name in (own or {}).items()}
+    chosen = {**apply_rules(rules, segments, picture, shape), **chosen}
     if isinstance(by, Mapping):
-        chosen = {**_by_name(segments.count, by, library), **chosen}
+        chosen = {**_by_name(segments, by, library), **chosen}
     elif by == "roughness" and len(chosen) < segments.count:
-        chosen = {**_by_roughness(_roughness(segments, picture)[:ground], default), **chosen}
-    if ground is not None:
-        chosen.setdefault(ground, (default, f"segment {ground}: transparent in the picture -> {default}"))
-    rest = ((default, f"segment {label}: not named -> {default}") for label in range(segments.count))
+        roughness = {label: each for label, each in enumerate(_roughness(segments, picture)) if label not in ground}
+        chosen = {**_by_roughness(roughness, default, noun), **chosen}
+    for label in ground:
+        chosen.setdefault(label, (default, f"{noun} {label}: transparent in the picture -> {default}"))
+    rest = ((default, f"{noun} {label}: not named -> {default}") for label in range(segments.count))
     names, reasons = zip(*(chosen.get(label, each) for label, each in enumerate(rest)), strict=True)
     return MaterialMap(tuple(find(name, library) for name in names), reasons)
 
 
-def _roughness(segments: SegmentMap, picture: np.ndarray | None) -> Float64[np.ndarray, "n"]:
+def _roughness(segments: SegmentMap | PartMap, picture: np.ndarray | None) -> Float64[np.ndarray, "n"]:
     if picture is None or picture.shape[:2] != segments.labels.shape:
         given = "there is none" if picture is None else f"it is {picture.shape[:2]}"
         raise MaterialError(
@@ -97,7 +103,7 @@ def _roughness(segments: SegmentMap, picture: np.ndarray | None) -> Float64[np.n
     return relative_roughness(segments, picture)
 
 
-def relative_roughness(segments: SegmentMap, picture: np.ndarray) -> Float64[np.ndarray, "n"]:
+def relative_roughness(segments: SegmentMap | PartMap, picture: np.ndarray) -> Float64[np.ndarray, "n"]:
     """How rough each segment looks within this picture; the same at any brightness and contrast.
 
     The median over the segment of the local standard deviation of grey, which is taken after removing the local mean,
@@ -124,8 +130,11 @@ def _local_mean(values: Float64[np.ndarray, "h w"], side: int) -> Float64[np.nda
     return mean
 
 
-def _by_name(count: int, names: Mapping[int, str], library: Mapping[str, Material]) -> dict[int, Choice]:
+def _by_name(
+    segments: SegmentMap | PartMap, names: Mapping[int, str], library: Mapping[str, Material]
+) -> dict[int, Choice]:
     complaints: list[str] = []
+    count = max(segments.segments) + 1 if isinstance(segments, PartMap) else segments.count
     for label, name in names.items():
         if label not in range(count):
             complaints.append(f"there is no segment {quoted(label)}; the segments are 0 to {count - 1}")
@@ -135,14 +144,20 @@ def _by_name(count: int, names: Mapping[int, str], library: Mapping[str, Materia
             complaints.append(f"segment {label}: {error}")
     if complaints:
         raise MaterialError(*complaints)
+    if isinstance(segments, PartMap):
+        return {
+            part: (name, f"part {part}: segment {label}, named {name}")
+            for label, name in names.items()
+            for part in parts_of(label, segments)
+        }
     return {label: (name, f"segment {label}: named {name}") for label, name in names.items()}
 
 
-def _by_roughness(roughness: Float64[np.ndarray, "n"], default: str) -> dict[int, Choice]:
-    levels, ranks = np.unique(roughness, return_inverse=True)
+def _by_roughness(roughness: Mapping[int, float], default: str, noun: str) -> dict[int, Choice]:
+    levels, ranks = np.unique(list(roughness.values()), return_inverse=True)
     last = len(levels) - 1
     chosen: dict[int, Choice] = {}
-    for label, (rank, value) in enumerate(zip(ranks, roughness, strict=True)):
+    for (label, value), rank in zip(roughness.items(), ranks, strict=True):
         name = LADDER[round(int(rank) * (len(LADDER) - 1) / last)] if last else default
-        chosen[label] = (name, f"segment {label}: roughness rank {rank + 1} of {last + 1} ({value:.3f}) -> {name}")
+        chosen[label] = (name, f"{noun} {label}: roughness rank {rank + 1} of {last + 1} ({value:.3f}) -> {name}")
     return chosen

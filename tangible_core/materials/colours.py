@@ -6,7 +6,7 @@ from typing import Literal, get_args
 import numpy as np
 from jaxtyping import Float, UInt8
 
-from ..data import SegmentMap
+from ..data import PartMap, SegmentMap
 from ..data.pictures import to_rgb8
 from ..runtime.opencv import plain_opencv
 
@@ -26,8 +26,8 @@ BROWN_CHROMA = 52.0
 _BITS = 5
 
 
-def segment_colours(segments: SegmentMap, picture: np.ndarray) -> list[tuple[Colour, float]]:
-    """Of each segment the name that most of its pixels have, and their share; the first in COLOURS of two.
+def segment_colours(segments: SegmentMap | PartMap, picture: np.ndarray) -> list[tuple[Colour, float]]:
+    """Of each segment or part the name that most of its pixels have, and their share; the first in COLOURS of two.
 
     The picture is of the segments' size. Raises: PictureError if it is none.
     """

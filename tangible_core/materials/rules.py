@@ -1,4 +1,4 @@
-"""Rules by which segments get their materials: a list, of which the first that fits wins."""
+"""Rules by which segments, or their parts, get their materials: a list, of which the first that fits wins."""
 
 import logging
 from collections.abc import Mapping, Sequence
@@ -7,8 +7,8 @@ from typing import Annotated, Self
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from ..data import SegmentMap
-from ..errors import MaterialError
+from ..data import PartMap, SegmentMap
+from ..errors import MaterialError, quoted
 from .colours import Colour, segment_colours
 
 log = logging.getLogger(__name__)
@@ -19,43 +19,52 @@ Choice = tuple[str, str]
 
 
 class MaterialRule(BaseModel):
-    """A material, and which segments it is for: one of `segment`, `at` and `colour`."""
+    """A material, and which segments or parts it is for: one of `segment`, `part`, `at` and `colour`."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     segment: Annotated[int, Field(ge=0)] | None = None
-    """The segment with this label, as numbered in the report."""
+    """The segment with this label, as numbered in the report; all of its parts, where there are parts."""
+    part: Annotated[int, Field(ge=0)] | str | None = None
+    """The part with this number, or of this name in `parts:`."""
     at: tuple[Place, Place] | None = None
-    """The segment at this pixel of the left picture: [x, y], counted from the upper left corner."""
+    """The segment or part at this pixel of the left picture: [x, y], counted from the upper left corner."""
     colour: Colour | None = None
-    """Every segment whose most frequent colour this is, by hue, chroma and lightness in CIELAB."""
+    """Every segment or part whose most frequent colour this is, by hue, chroma and lightness in CIELAB."""
     material: str
-    """Name of the material for these segments."""
+    """Name of the material for these segments or parts."""
 
     @model_validator(mode="after")
     def _one_way(self) -> Self:
-        given = [name for name in ("segment", "at", "colour") if getattr(self, name) is not None]
+        given = [name for name in ("segment", "part", "at", "colour") if getattr(self, name) is not None]
         if len(given) != 1:
             raise ValueError(
-                f"a rule takes one of segment, at and colour; this one has {' and '.join(given) or 'none'}"
+                f"a rule takes one of segment, part, at and colour; this one has {' and '.join(given) or 'none'}"
             )
         return self
 
 
+def noun_of(segments: SegmentMap | PartMap) -> str:
+    """What each of them is called."""
+    return "part" if isinstance(segments, PartMap) else "segment"
+
+
 def apply_rules(
     rules: Sequence[MaterialRule],
-    segments: SegmentMap,
+    segments: SegmentMap | PartMap,
     picture: np.ndarray | None,
     shape: tuple[int, int] | None = None,
 ) -> Mapping[int, Choice]:
-    """The segments that some rule is for. A rule that is for none is logged.
+    """The segments, or the parts, that some rule is for. A rule that is for none is logged.
 
-    shape: (h, w) of the picture in whose pixels points are given, where segments and picture are a reduced one's.
-    Raises: MaterialError, with every complaint, for a segment or a point that is not there, or a colour without a
-    picture of the segments' size.
+    rules: those of parts by number. shape: (h, w) of the picture in whose pixels points are given, where segments and
+    picture are a reduced one's.
+    Raises: MaterialError, with every complaint, for a segment, a part or a point that is not there, or a colour without
+    a picture of the segments' size.
     """
     found: dict[int, Choice] = {}
     complaints: list[str] = []
+    noun = noun_of(segments)
     for number, rule in enumerate(rules, 1):
         try:
             fits = _fits(rule, segments, picture, shape or segments.labels.shape)
@@ -63,22 +72,22 @@ def apply_rules(
             complaints.append(f"materials: rule {number}: {error}")
             continue
         if not fits:
-            log.warning("materials: rule %d: no segment is %s", number, rule.colour)
+            log.warning("materials: rule %d: no %s is %s", number, noun, rule.colour)
         for label, why in fits.items():
-            found.setdefault(label, (rule.material, f"segment {label}: rule {number}, {why} -> {rule.material}"))
+            found.setdefault(label, (rule.material, f"{noun} {label}: rule {number}, {why} -> {rule.material}"))
     if complaints:
         raise MaterialError(*complaints)
     return found
 
 
 def _fits(
-    rule: MaterialRule, segments: SegmentMap, picture: np.ndarray | None, shape: tuple[int, ...]
+    rule: MaterialRule, segments: SegmentMap | PartMap, picture: np.ndarray | None, shape: tuple[int, ...]
 ) -> dict[int, str]:
     """Labels, and why the rule is for them."""
     if rule.segment is not None:
-        if rule.segment >= segments.count:
-            raise MaterialError(f"there is no segment {rule.segment}; the segments are 0 to {segments.count - 1}")
-        return {rule.segment: "named"}
+        return _of_segment(rule.segment, segments)
+    if rule.part is not None:
+        return _part(rule.part, segments)
     if rule.at is not None:
         return {_label_at(*rule.at, segments, shape): f"at [{rule.at[0]:g}, {rule.at[1]:g}]"}
     if picture is None or picture.shape[:2] != segments.labels.shape:
@@ -87,7 +96,31 @@ def _fits(
     return {label: f"{100 * share:.0f} % of it {name}" for label, (name, share) in named if name == rule.colour}
 
 
-def _label_at(x: float, y: float, segments: SegmentMap, shape: tuple[int, ...]) -> int:
+def parts_of(segment: int, parts: PartMap) -> list[int]:
+    """The parts of a segment. Raises: MaterialError if there is no such segment."""
+    found = [number for number, each in enumerate(parts.segments) if each == segment]
+    if not found:
+        raise MaterialError(f"there is no segment {segment}; the segments are 0 to {max(parts.segments)}")
+    return found
+
+
+def _of_segment(segment: int, segments: SegmentMap | PartMap) -> dict[int, str]:
+    if isinstance(segments, PartMap):
+        return dict.fromkeys(parts_of(segment, segments), f"of segment {segment}")
+    if segment >= segments.count:
+        raise MaterialError(f"there is no segment {segment}; the segments are 0 to {segments.count - 1}")
+    return {segment: "named"}
+
+
+def _part(part: int | str, segments: SegmentMap | PartMap) -> dict[int, str]:
+    if not isinstance(segments, PartMap):
+        raise MaterialError("a rule by part needs parts, and these are segments; name the segment instead")
+    if isinstance(part, str) or part >= segments.count:
+        raise MaterialError(f"there is no part {quoted(part)}; the parts are 0 to {segments.count - 1}")
+    return {part: "named"}
+
+
+def _label_at(x: float, y: float, segments: SegmentMap | PartMap, shape: tuple[int, ...]) -> int:
     rows, columns = shape
     row, column = round(y), round(x)
     if row >= rows or column >= columns:

@@ -1,7 +1,8 @@
 """The pipeline file: what it may say, and what it says once it was checked."""
 
-from collections.abc import Iterable
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
 from io import StringIO
 from pathlib import Path
 from typing import Annotated, Any, Generic, Literal, TypeVar, cast
@@ -14,30 +15,43 @@ from ..files.source import Location, Source, parse_source, read_text
 from ..mapping import WorkspaceMapping, mapped
 from ..materials.assignment import NEUTRAL, find, load_library
 from ..materials.rules import MaterialRule
+from ..parts import HeightChoice, PartChoice
 from ..plugins.interfaces import DepthEstimator, ForceRenderer, HapticDevice, Method, Segmenter
 from ..plugins.registry import Registry
 from ..scene.scene import Scene
 from ..scene.scene_files import BUILTINS, SceneFiles, unknown_scene
 from ..scene.workspace import FeltSize, Section, Workspace, kind_of
 from ..servo.guard.safety import Safety
+from .parts_said import (
+    Inscription,
+    Said,
+    read_heights,
+    read_inscription,
+    read_parts,
+    wrong_of_materials,
+    wrong_of_names,
+    wrong_of_rules,
+)
 
 M = TypeVar("M", bound=Method, covariant=True)
 
-Product = Literal["disparity", "relief", "segments", "materials", "surface", "touch"]
-PRODUCTS: tuple[Product, ...] = ("disparity", "relief", "segments", "materials", "surface", "touch")
+Product = Literal["disparity", "relief", "segments", "parts", "materials", "surface", "touch"]
+PRODUCTS: tuple[Product, ...] = ("disparity", "relief", "segments", "parts", "materials", "surface", "touch")
 
 
 class MaterialChoice(Section):
-    """Which material each segment gets."""
+    """Which material each segment gets; each part, where `parts:` or `heights:` is."""
 
     rules: tuple[MaterialRule, ...] = ()
-    """Rules, which decide first; of several that fit a segment, the first one wins."""
+    """Rules, which decide first; of several that fit a segment or a part, the first one wins. Before them goes what
+    `parts:` says of a part itself."""
     by: Annotated[
         Annotated[Literal["roughness", "rules"], Tag(":word")] | Annotated[dict[int, str], Tag(":labels")],
         Discriminator(lambda value: ":labels" if isinstance(value, dict) else ":word"),
     ] = "roughness"
     """How segments without a rule get a material. `roughness`: by rank, the roughest segment of the picture gets the
-    roughest material. A map: from label to material. `rules`: not at all, they get `default`."""
+    roughest material. A map: from label to material, for all parts of that segment. `rules`: not at all, they get
+    `default`."""
     default: str = NEUTRAL
     """Material of the segments that are left."""
     library: Path | None = None
@@ -72,6 +86,34 @@ class PipelineConfig:
     render: NamedMethod[ForceRenderer] | None = None
     device: NamedMethod[HapticDevice] | None = None
     safety: Safety = field(default_factory=Safety)
+    parts: Mapping[int, PartChoice] | None = None
+    """What is said of each part, by its number; None where nothing is."""
+    heights: HeightChoice | None = None
+    """How the relief is made of parts; None where it is made of depth."""
+    title: str = ""
+    language: str = "en"
+    source: Source | None = field(default=None, repr=False, compare=False)
+    """The file with the places of its keys."""
+
+    @property
+    def by_parts(self) -> bool:
+        """Whether materials are one a part, and labels of the surface the numbers of parts."""
+        return self.parts is not None or self.heights is not None
+
+    @property
+    def part_names(self) -> dict[int, str]:
+        """Of the parts that have one, by number."""
+        return {number: name for number, each in (self.parts or {}).items() if (name := each.name.strip())}
+
+    @property
+    def given_heights_m(self) -> dict[int, float]:
+        """Of the parts that have one, by number."""
+        return {number: each.height_m for number, each in (self.parts or {}).items() if each.height_m is not None}
+
+    @property
+    def top_m(self) -> float:
+        """The greatest height that a part may have: that of the relief, less the bulge and the detail on top of it."""
+        return self.size.relief_m - (self.heights.bulge_m + self.heights.detail_m if self.heights else 0)
 
     @property
     def folder(self) -> Path:
@@ -87,10 +129,21 @@ class PipelineConfig:
             "(`tangible plugins` lists them)"
         )
 
+    def complained(self, *said: Said) -> ConfigError:
+        """What is wrong with what these keys say, each at its place in the file."""
+        source = self.source or Source(Path(), {})
+        source = replace(source, complaints=[])
+        for location, text in said:
+            source.complain(location, f"{'.'.join(map(str, location))}: {text}")
+        if self.source is not None:
+            return source.error
+        complaints = [each._replace(line=None, column=None) for _, each in source.complaints]
+        return ConfigError(*(each.text for each in complaints), complaints=complaints)
+
     @property
     def size(self) -> FeltSize:
-        """The workspace, with what suits the scene where it says nothing."""
-        return self.workspace.size(kind_of(self.scene))
+        """The workspace, with what suits the scene, or its parts, where it says nothing."""
+        return self.workspace.size("parts" if self.heights else kind_of(self.scene))
 
     @property
     def felt_device(self) -> HapticDevice | None:
@@ -104,7 +157,10 @@ class PipelineConfig:
         """
         plain: dict[str, Any] = {
             "scene": self._scene_as_said(),
+            **({"title": self.title} if self.title else {}),
+            "language": self.language,
             "want": self.want,
+            **self._parts_as_said(),
             "workspace": self.size._asdict(),
             "mapping": self.mapping.model_dump(mode="json", exclude_none=True),
             "materials": self.materials.model_dump(mode="json", exclude_none=True),
@@ -128,6 +184,15 @@ class PipelineConfig:
         yaml.dump(self.completed(), text)  # pyright: ignore[reportUnknownMemberType]
         return text.getvalue()
 
+    def _parts_as_said(self) -> dict[str, Any]:
+        said: dict[str, Any] = {}
+        if self.parts is not None:
+            plain = {number: each.model_dump(mode="json", exclude_defaults=True) for number, each in self.parts.items()}
+            said["parts"] = plain
+        if self.heights is not None:
+            said["heights"] = self.heights.model_dump(mode="json")
+        return said
+
     def _scene_as_said(self) -> str | dict[str, Any]:
         said = self.scene.files if isinstance(self.scene, Scene) else self.scene
         if said is None:
@@ -144,7 +209,14 @@ SECTIONS: dict[str, type[BaseModel]] = {
     "materials": MaterialChoice,
     "safety": Safety,
 }
-KEYS = ("scene", "want", *STAGES, *SECTIONS)
+KEYS = ("scene", *Inscription.model_fields, "want", "parts", "heights", *STAGES, *SECTIONS)
+
+
+def shorthand(place: Location) -> str:
+    """The option that a word alone stands for in a pipeline file: a method's name, or a part's."""
+    if len(place) == 1 and place[0] in STAGES:
+        return "use"
+    return {("parts", 2): "name", ("heights", 1): "by"}.get((place[0], len(place)), "")
 
 
 def load_config(path: Path, registry: Registry, overrides: Iterable[str] = ()) -> PipelineConfig:
@@ -159,14 +231,49 @@ def load_config(path: Path, registry: Registry, overrides: Iterable[str] = ()) -
 
 def parse_config(text: str, path: Path, registry: Registry, overrides: Iterable[str] = ()) -> PipelineConfig:
     """`load_config` for a text; `path` is what complaints name and what relative files are relative to."""
-    source = parse_source(text, path, "a configuration is a mapping that starts with `scene:`", overrides)
+    what = "a configuration is a mapping that starts with `scene:`"
+    source = parse_source(text, path, what, overrides, shorthand=shorthand)
     source.check_keys(KEYS)
-    values: dict[str, Any] = {"scene": _scene(source), "want": _want(source), **_sections(source)}
+    values: dict[str, Any] = {"scene": _scene(source), "want": _want(source), **_sections(source), **_parts(source)}
     for kind in STAGES:
         if kind in source.tree:
             values[kind] = choose(source, (kind,), kind, source.tree[kind], registry)
+    if values["scene"] is not None:
+        right = {key: each for key, each in values.items() if each is not None}
+        for location, wrong in wrong_of_parts(PipelineConfig(path=path, source=source, **right)):
+            source.complain(location, f"{'.'.join(map(str, location))}: {wrong}")
     source.settle()
-    return PipelineConfig(path=path, **values)
+    return PipelineConfig(path=path, source=source, **values)
+
+
+def wrong_of_parts(config: PipelineConfig) -> Iterator[Said]:
+    """What is said of parts and makes no sense together, as far as that can be told without their picture."""
+    parts, heights = config.parts or {}, config.heights
+    yield from wrong_of_names(parts)
+    with suppress(ConfigError):  # of a library that cannot be read, whoever uses it complains
+        yield from wrong_of_materials(parts, load_library(config.materials.library))
+    yield from wrong_of_rules((rule.part for rule in config.materials.rules), parts if config.by_parts else None)
+    if heights is None:
+        said_off = config.source is not None and "heights" in config.source.tree
+        if not said_off and (idle := next(iter(config.given_heights_m), None)) is not None:
+            yield (
+                ("parts", idle, "height_m"),
+                "without `heights:` no part has a height; write `heights: {by: given}`, or `heights: null` to leave "
+                "the heights of parts aside",
+            )
+    elif kind_of(config.scene) == "heights":
+        yield ("heights",), "the scene is a map of heights, which are felt as they are; leave `heights:` out"
+    elif config.top_m < -ROUNDING_M:
+        least_mm, relief_mm = (1e3 * each for each in (heights.bulge_m + heights.detail_m, config.size.relief_m))
+        yield (
+            ("heights",),
+            f"bulge_m and detail_m are {least_mm:g} mm together, and the whole relief is {relief_mm:g} mm high; make "
+            f"them smaller, or workspace.relief_m larger",
+        )
+
+
+ROUNDING_M = 1e-9
+"""What sums of lengths may be off by."""
 
 
 def choose(source: Source, location: Location, kind: str, block: Any, registry: Registry) -> NamedMethod[Any] | None:
@@ -193,17 +300,20 @@ def _scene(source: Source) -> Any:
     block = source.tree["scene"]
     if not isinstance(block, str):
         return source.model(("scene",), SceneFiles, block)
-    if block not in BUILTINS:
-        source.complain(("scene",), unknown_scene(block))
-    return block
+    return block if block in BUILTINS else source.complain(("scene",), unknown_scene(block))
+
+
+def _parts(source: Source) -> dict[str, Any]:
+    inscription = read_inscription(source) or Inscription()
+    return {"parts": read_parts(source), "heights": read_heights(source), **inscription.model_dump()}
 
 
 def _want(source: Source) -> Any:
     want = source.tree.get("want", "surface")
-    if want not in PRODUCTS:
-        hint = did_you_mean(str(want), PRODUCTS)
-        source.complain(("want",), f"nothing makes {quoted(want)}{hint}; a pipeline makes {', '.join(PRODUCTS)}")
-    return want
+    if want in PRODUCTS:
+        return want
+    hint = did_you_mean(str(want), PRODUCTS)
+    return source.complain(("want",), f"nothing makes {quoted(want)}{hint}; a pipeline makes {', '.join(PRODUCTS)}")
 
 
 def _sections(source: Source) -> dict[str, Any]:

@@ -10,7 +10,7 @@ from pydantic import BaseModel
 
 from ..files.editing import REMOVE, Changes, change_text
 from ..files.source import parse_override, parse_source, plain
-from .config import STAGES, PipelineConfig
+from .config import STAGES, PipelineConfig, shorthand
 
 __all__ = ["REMOVE", "Changes", "edited", "moved", "said", "with_overrides"]
 
@@ -23,7 +23,7 @@ def edited(text: str, path: Path, changes: Changes) -> str:
     Raises: ConfigError if the text is no YAML, or a key leads into a list; ArgumentError for what JSON cannot say.
     """
     changes = {key: REMOVE if value is None and _is_stage(key) else value for key, value in changes.items()}
-    return change_text(text, path, changes, named=STAGES)
+    return change_text(text, path, changes, shorthand)
 
 
 def _is_stage(key: Any) -> bool:

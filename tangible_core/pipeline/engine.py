@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 from ..compiled.beside import Beside
 from ..data import Note, Outcome, Outcomes, Plan, Record
-from ..errors import UnknownMethod
+from ..errors import TangibleError, UnknownMethod
 from ..plugins import hooks
 from ..plugins.interfaces import HapticDevice
 from ..plugins.notes import noted
@@ -51,6 +51,7 @@ class Engine:
         self.begun: set[str] = set()
         """Products that were begun to be made."""
         self._made: dict[str, Any] = {}
+        self._finished: dict[str, Any] = {}
         self._whole: dict[str, Any] = {}
         self._keys: dict[str, str] = {}
         self._outcomes: dict[str, Outcome] = {}
@@ -71,7 +72,8 @@ class Engine:
     @property
     def outcomes(self) -> Outcomes:
         """What became of each product, in the order of making; last those that nothing needed."""
-        unasked = [self._unasked(rule) for product, rule in self._rules.items() if product not in self._outcomes]
+        left = (rule for product, rule in self._rules.items() if product not in self._outcomes and rule.usual)
+        unasked = [self._unasked(rule) for rule in left]
         return Outcomes([*self._outcomes.values(), *unasked])
 
     def _unasked(self, rule: Rule) -> Outcome:
@@ -125,7 +127,8 @@ class Engine:
     def make(self, want: str | None = None) -> Any:
         """The product, made from what it needs and no more; None if this scene does not need it.
 
-        Disparity and segments are told for every pixel of the pictures, even where they were made smaller (`felt`).
+        Disparity, segments and parts are told for every pixel of the pictures, even where they were made smaller
+        (`felt`).
         Raises: TangibleError for what a user can put right; whatever a plugin raises.
         """
         product = self._product(want)
@@ -155,6 +158,7 @@ class Engine:
         other = Engine(config, self.registry, self.cache)
         if config.scene == self.config.scene:
             other._read = self._read
+        if config.scene == self.config.scene and "_rules" in self.__dict__:
             alike = (name for name in self._made if name in self._rules and self._rules[name].cached)
             other._made |= {name: self._made[name] for name in alike if other.key(name) == self.key(name)}
         return other
@@ -182,7 +186,20 @@ class Engine:
     def _pull(self, product: str, why: str) -> Any:
         if product not in self._made and product in self._rules:
             self._made[product] = self._make(self._rules[product], why)
-        return self._made.get(product)
+        return self._finish(product)
+
+    def _finish(self, product: str) -> Any:
+        """What was made, with what its rule adds to it."""
+        found, rule = self._made.get(product), self._rules.get(product)
+        if found is None or rule is None or rule.finish is None:
+            return found
+        if product not in self._finished:
+            try:
+                self._finished[product] = rule.finish(found)
+            except TangibleError as error:
+                self._note(Outcome(product, "failed", str(error), rule.method))
+                raise
+        return self._finished[product]
 
     def _make(self, rule: Rule, why: str) -> Any:
         if rule.skip:

@@ -1,14 +1,17 @@
 """A scene at the size at which it is felt: what is finer than the workspace's `finest_m` is not made."""
 
+from collections.abc import Sequence
 from functools import cached_property
 from typing import final
 
 import numpy as np
 from jaxtyping import Bool
 
-from ..data import DisparityMap, Relief, SegmentMap, Views
+from ..data import DisparityMap, PartMap, Relief, SegmentMap, Views
 from ..data.records import digest_of
+from ..parts import Layering
 from ..scene import scaling
+from ..scene.geometry import smooth
 from ..scene.scene import Scene
 from ..scene.workspace import FeltSize
 
@@ -56,6 +59,10 @@ class FeltScene:
         """Those that were found on this grid, for every pixel of the pictures."""
         return known_segments(scaling.enlarged_segments(found, self.scene.shape), self.scene.known)
 
+    def whole_parts(self, found: PartMap) -> PartMap:
+        """Those that were found on this grid, for every pixel of the pictures, with the same numbers."""
+        return scaling.enlarged_parts(found, self.scene.shape)
+
 
 def known_disparity(found: DisparityMap, known: Bool[np.ndarray, "h w"] | None) -> DisparityMap:
     """Unknown where the pictures are."""
@@ -72,6 +79,13 @@ def known_segments(found: SegmentMap, known: Bool[np.ndarray, "h w"] | None) -> 
 def grounded(relief: Relief, shown: Bool[np.ndarray, "h w"] | None) -> Relief:
     """Flat, and at the bottom, where the picture is transparent."""
     return relief if shown is None else Relief(np.where(shown, relief.height_m, np.float32(0)), relief.extent_m)
+
+
+def layered(
+    layering: Layering, heights_m: Sequence[float], size: FeltSize, shown: Bool[np.ndarray, "h w"] | None = None
+) -> Relief:
+    """The relief of parts of these heights, smoothed, and flat where the picture is transparent."""
+    return grounded(smooth(layering.relief(heights_m), size.smooth_m), shown)
 
 
 def with_ground(found: SegmentMap, shown: Bool[np.ndarray, "h w"] | None) -> SegmentMap:

@@ -16,6 +16,7 @@ from ..data import (
     HapticSurface,
     MaterialMap,
     Outcomes,
+    PartMap,
     Plan,
     Relief,
     SegmentMap,
@@ -26,6 +27,7 @@ from ..errors import Complaint, ConfigError, quoted, wrong_argument
 from ..files.paths import as_path
 from ..files.writing import write_text
 from ..mapping import WorkspaceMapping
+from ..parts import HeightChoice, PartChoice
 from ..plugins import hooks
 from ..plugins.interfaces import KINDS, DepthEstimator, ForceRenderer, HapticDevice, Method, Segmenter, Touch
 from ..plugins.registry import Registry, default_registry
@@ -35,9 +37,10 @@ from ..scene.workspace import Workspace
 from ..servo import OVER, Safety, Servo
 from ..session import About, Followed, Recording, Turn, check_record_path, keeping, replay, run_in_turn, run_simulated
 from .cache import Cache
-from .config import MaterialChoice, NamedMethod, PipelineConfig, Product, load_config
+from .config import MaterialChoice, NamedMethod, PipelineConfig, Product, load_config, wrong_of_parts
 from .engine import Engine, Progress
 from .following import felt_device, how_followed
+from .parts_said import Inscription
 from .rehearsal import rehearsal
 from .rules import fitted
 from .runs import Run, Sheet, about, make_run
@@ -46,8 +49,14 @@ M = TypeVar("M", bound=Method)
 S = TypeVar("S", bound=BaseModel)
 T = TypeVar("T")
 NO_ROWS = np.empty((0, len(TICK_COLUMNS)))
+Place = tuple[str | int, ...]
+"""Keys and indices from the top of a configuration."""
 Materials = MaterialChoice | Mapping[Any, Any] | str
 """As in YAML: a rule's name, a map from label to material, or a block of options."""
+Parts = Mapping[int, PartChoice | Mapping[str, Any] | str]
+"""As in YAML: by number, the name of a part, or a block of what is said of it."""
+Heights = HeightChoice | Mapping[str, Any] | Literal["depth", "given", "guess"]
+"""As in YAML: where the heights of parts come from, or a block of options."""
 
 
 @final
@@ -75,11 +84,17 @@ class Pipeline:
         render: ForceRenderer | None = None,
         device: HapticDevice | None = None,
         safety: Safety | Mapping[str, Any] | None = None,
+        parts: Parts | None = None,
+        heights: Heights | None = None,
+        title: str = "",
+        language: str = "en",
         cached: bool = True,
     ) -> None:
         """Methods are objects, of installed plugins or of classes of one's own; blocks may be mappings, as in YAML.
 
-        cached: False neither reads nor writes the user's cache.
+        parts: what the parts of the segments are called, how high they stand and what they are of, by number.
+        heights: makes the relief of these parts. title, language: of the whole. cached: False neither reads nor writes
+        the user's cache.
         Raises: ConfigError for a block that says nonsense.
         """
         if not isinstance(scene, cast(Any, Scene)):
@@ -96,7 +111,12 @@ class Pipeline:
             render=_chosen("render", render, registry),
             device=_chosen("device", device, registry),
             safety=_block("safety", Safety, safety),
+            parts=None if parts is None else _parts(parts),
+            heights=None if heights is None else _block("heights", HeightChoice, _by(heights)),
+            **_block((), Inscription, {"title": title, "language": language}).model_dump(),
         )
+        if wrong := list(wrong_of_parts(config)):
+            raise config.complained(*wrong)
         self.engine = Engine(config, registry, Cache() if cached else None)
 
     @classmethod
@@ -178,6 +198,10 @@ class Pipeline:
     ) -> SegmentMap | None: ...
     @overload
     def make(
+        self, want: Literal["parts"], progress: Progress | None = None, stop: Event | None = None
+    ) -> PartMap | None: ...
+    @overload
+    def make(
         self, want: Literal["materials"], progress: Progress | None = None, stop: Event | None = None
     ) -> MaterialMap | None: ...
     @overload
@@ -219,8 +243,13 @@ class Pipeline:
         return self.make("segments")
 
     @property
+    def parts(self) -> PartMap | None:
+        """The connected parts of the segments, numbered by their first pixels."""
+        return self.make("parts")
+
+    @property
     def materials(self) -> MaterialMap | None:
-        """One material a segment, and why each was chosen."""
+        """One material a segment, or a part where anything is by parts, and why each was chosen."""
         return self.make("materials")
 
     @property
@@ -442,25 +471,53 @@ def _check_kind(kind: str, method: object) -> None:
         raise ConfigError(f"{kind}: takes a {wanted.__name__}, such as an object of one, not {quoted(method)}")
 
 
-def _block(name: str, model: type[S], value: S | Mapping[str, Any] | None) -> S:
+def _block(place: str | Place, model: type[S], value: S | Mapping[str, Any] | None) -> S:
     """A block of the configuration. Raises: ConfigError with every complaint."""
+    place = (place,) if isinstance(place, str) else place
     if isinstance(value, model):
         return value
     try:
         return model.model_validate(dict(cast("Mapping[str, Any]", value)) if value else {})
     except (ValidationError, TypeError, ValueError) as error:
         if not isinstance(error, ValidationError):
+            name = ".".join(map(str, place))
             raise ConfigError(
                 f"{name}: takes a {model.__name__} or a mapping of its options, not {quoted(value)}"
             ) from error
-        parts = [(_place_of(name, each["loc"]), each["msg"].removeprefix("Value error, ")) for each in error.errors()]
+        parts = [(_place_of(place, each["loc"]), each["msg"].removeprefix("Value error, ")) for each in error.errors()]
         said = [Complaint(where, f"{'.'.join(map(str, where))}: {what}") for where, what in parts]
         raise ConfigError(*(each.text for each in said), complaints=said) from error
 
 
-def _place_of(name: str, parts: Iterable[str | int]) -> tuple[str | int, ...]:
+def _place_of(place: Place, parts: Iterable[str | int]) -> Place:
     """Of an option, without the names that pydantic gives its forms."""
-    return (name, *(part for part in parts if part != "[key]" and not str(part).startswith(":")))
+    return (*place, *(part for part in parts if part != "[key]" and not str(part).startswith(":")))
+
+
+def _parts(parts: Parts) -> dict[int, PartChoice]:
+    """What is said of each part. Raises: ConfigError with every complaint."""
+    if not isinstance(parts, cast(Any, Mapping)):
+        raise wrong_argument("parts", parts, "a mapping from the number of a part to its name or what is said of it")
+    found, wrong = dict[int, PartChoice](), list[ConfigError]()
+    for number, said in parts.items():
+        try:
+            if not isinstance(number, cast(Any, int)) or isinstance(number, bool) or number < 0:
+                raise ConfigError(f"parts: the number of a part is a whole number from 0, not {quoted(number)}")
+            said = {"name": said} if isinstance(said, str) else said
+            found[int(number)] = _block(("parts", int(number)), PartChoice, said)
+        except ConfigError as error:
+            wrong.append(error)
+    if wrong:
+        raise ConfigError(
+            *(sentence for each in wrong for sentence in each.args),
+            complaints=[complaint for each in wrong for complaint in each.complaints],
+        )
+    return found
+
+
+def _by(heights: Heights) -> HeightChoice | Mapping[str, Any]:
+    """A word alone says where the heights come from."""
+    return {"by": heights} if isinstance(heights, str) else heights
 
 
 def _as_in_yaml(materials: Materials | None) -> MaterialChoice | Mapping[str, Any] | None:

@@ -10,9 +10,22 @@ from functools import cache
 from typing import Any
 from uuid import uuid4
 
-from ..data import DisparityMap, HapticSurface, Material, MaterialMap, Record, Relief, SegmentMap, Views, digest_of
+from ..data import (
+    DisparityMap,
+    HapticSurface,
+    Material,
+    MaterialMap,
+    PartMap,
+    Record,
+    Relief,
+    SegmentMap,
+    Views,
+    digest_of,
+)
 from ..errors import BrokenMethod, ConfigError, PictureError, TangibleError
 from ..materials import assignment
+from ..parts import Layering, reduced_parts
+from ..parts import find as part_finding
 from ..plugins.interfaces import HapticDevice, Method, Skippable, Touch
 from ..plugins.notes import doubt, note
 from ..preflight import fit_surface
@@ -21,12 +34,10 @@ from ..provenance.source import source_digest
 from ..scene import geometry, scaling, unmatched, view_order
 from ..scene.scene import Scene
 from ..scene.scene_files import SceneFiles
-from . import felt
+from . import felt, layers, parts_found
 from .cache import Cache
 from .config import NamedMethod, PipelineConfig
 from .felt import FeltScene
-
-log = logging.getLogger(__name__)
 
 log = logging.getLogger(__name__)
 Inputs = Mapping[str, Any]
@@ -54,22 +65,30 @@ class Rule:
     cached: bool = True
     refusal: TangibleError | None = None
     """Why it cannot be made of this scene, as far as that is known beforehand."""
+    finish: Callable[[Any], Any] | None = None
+    """What is added or checked whenever it is handed on, and is not kept with it: names, of which nothing is made."""
+    usual: bool = True
+    """False for what only who asks for it needs to hear of."""
 
 
 def rules(config: PipelineConfig, scene: Scene, brought: Mapping[str, Record]) -> dict[str, Rule]:
     """One rule a product, for this configuration and this scene.
 
     brought: products that the scene brings, which have no rule.
-    Raises: ConfigError for a material library that cannot be read.
+    Raises: ConfigError for a material library that cannot be read, or for parts that the scene's own segments have not.
     """
     grid = FeltScene(scene, config.size)
     segments = _segments(config, grid)
-    unsegmented = None if "segments" in brought else segments.skip
+    known = brought.get("segments")
+    unsegmented = None if known is not None else segments.skip
+    if config.by_parts and isinstance(known, SegmentMap):
+        parts_found.check_found(config, parts_found.parts_of(known), scene.shape[1])
     table = (
         _disparity(config, grid),
-        _relief(config, grid),
+        _relief_of_parts(config, grid) if config.heights else _relief(config, grid),
         segments,
-        _materials(config, grid, unsegmented, "segments" not in brought),
+        _parts(config, grid, unsegmented),
+        _materials(config, grid, unsegmented, known is None),
         _surface(config, grid),
         _touch(config),
     )
@@ -115,6 +134,28 @@ def _relief(config: PipelineConfig, grid: FeltScene) -> Rule:
     return Rule("relief", "core", key, ("views", "disparity"), make)
 
 
+def _relief_of_parts(config: PipelineConfig, grid: FeltScene) -> Rule:
+    heights, size, top_m, given_m = config.heights, config.size, config.top_m, config.given_heights_m
+    assert heights is not None
+
+    def make(inputs: Inputs) -> Relief:
+        views, parts = _views(grid), reduced_parts(inputs["parts"], grid.shape)
+        disparity: DisparityMap | None = inputs.get("disparity")
+        if disparity is not None:
+            disparity = scaling.reduced_disparity(disparity, grid.shape)
+        found = layers.heights_of(parts, heights, top_m, given_m, disparity, grid.shown)
+        layers.tell(found, heights, given_m)
+        layering = Layering(parts, size.width_m, heights, views.left)
+        return felt.layered(layering, found.heights_m, size, grid.shown)
+
+    code = " ".join(_core(each) for each in (layers.__name__, Layering.__module__, geometry.__name__))
+    key = f"{code} {size!r} {heights!r} {sorted(given_m.items())}{_reduction(grid)}"
+    if heights.by == "depth":
+        return Rule("relief", "core", key, ("views", "parts", "disparity"), make)
+    said = "given" if heights.by == "given" else "guessed"
+    return Rule("relief", "core", key, ("views", "parts"), make, note=f"no depth is looked for: heights are {said}")
+
+
 def _segments(config: PipelineConfig, grid: FeltScene) -> Rule:
     def make(inputs: Inputs) -> SegmentMap:
         views, chosen = _views(grid), _configured(config, "texture")
@@ -132,25 +173,69 @@ def _segments(config: PipelineConfig, grid: FeltScene) -> Rule:
     return Rule("segments", name, key, ("views",), make, grid.whole_segments, skip, grid.note)
 
 
+def _parts(config: PipelineConfig, grid: FeltScene, unsegmented: str | None) -> Rule:
+    def make(inputs: Inputs) -> PartMap:
+        found = parts_found.parts_of(inputs["segments"])
+        parts_found.tell_slips(found)
+        return found
+
+    def checked(found: PartMap) -> PartMap:
+        parts_found.check_found(config, found, grid.scene.shape[1])
+        return found
+
+    by_parts = config.by_parts
+    skip = f"there are no segments: {unsegmented}" if unsegmented and not by_parts else None
+    return Rule(
+        "parts", "core", _core(part_finding.__name__), ("segments",), make, grid.whole_parts, skip,
+        refusal=_no_parts(config) if unsegmented and by_parts else None,
+        finish=checked if by_parts else None,
+        usual=by_parts,
+    )  # fmt: skip
+
+
+def _no_parts(config: PipelineConfig) -> ConfigError:
+    """Why a scene without segments has no parts."""
+    key = "heights" if config.heights else "parts"
+    cure = "give it a label picture, `segments:` under `scene:`, or name a method under `texture:` that finds segments"
+    return config.complained(((key,), f"parts are pieces of segments, and the scene has none; {cure}"))
+
+
 def _materials(config: PipelineConfig, grid: FeltScene, unsegmented: str | None, found: bool) -> Rule:
     choice = config.materials
     library = assignment.load_library(choice.library)
 
+    by_parts, rules_by_number, own = config.by_parts, parts_found.numbered(config), parts_found.own_materials(config)
+
     def make(inputs: Inputs) -> MaterialMap:
         picture = grid.views.left if grid.views else None
-        segments = scaling.reduced_segments(inputs["segments"], grid.shape)
-        ground = segments.count - 1 if found and grid.shown is not None else None
+        if by_parts:
+            segments = reduced_parts(inputs["parts"], grid.shape)
+            ground = layers.hidden(segments, grid.shown)
+        else:
+            segments = scaling.reduced_segments(inputs["segments"], grid.shape)
+            ground = [segments.count - 1] if found and grid.shown is not None else []
         return assignment.assign(
-            segments, picture, choice.by, library, choice.rules, choice.default, grid.scene.shape, ground
+            segments, picture, choice.by, library, rules_by_number, choice.default, grid.scene.shape, ground, own
         )
 
-    said = choice.model_dump(exclude={"library"})
+    said = choice.model_copy(update={"rules": rules_by_number}).model_dump(exclude={"library"})
     key = f"{_core(assignment.__name__)} {said} {_library_digest(tuple(library.values()))}{_reduction(grid)}"
+    if by_parts:
+        key = f"{key} {sorted(own.items())} {_core(part_finding.__name__)}"
+        return Rule(
+            "materials", "core", key, ("views", "parts"), make,
+            finish=lambda made: parts_found.reasons_with_names(config, made),
+        )  # fmt: skip
     skip = f"there are no segments: {unsegmented}" if unsegmented else None
     return Rule("materials", "core", key, ("views", "segments"), make, skip=skip)
 
 
 def _surface(config: PipelineConfig, grid: FeltScene) -> Rule:
+    with_materials = config.render is None or config.render.method.uses_materials
+    key = f"{_core(HapticSurface.__module__)}{_reduction(grid)}"
+    if config.by_parts:
+        return _surface_of_parts(config, grid, f"{key} {_core(part_finding.__name__)}", with_materials)
+
     def make(inputs: Inputs) -> HapticSurface:
         segments: SegmentMap | None = inputs.get("segments")
         chosen: MaterialMap | None = inputs.get("materials")
@@ -159,9 +244,20 @@ def _surface(config: PipelineConfig, grid: FeltScene) -> Rule:
         labels = scaling.reduced_segments(segments, grid.shape).labels
         return HapticSurface(inputs["relief"], labels, chosen.materials)
 
-    with_materials = config.render is None or config.render.method.uses_materials
     needs = ("relief", "segments", "materials") if with_materials else ("relief",)
-    return Rule("surface", "core", f"{_core(HapticSurface.__module__)}{_reduction(grid)}", needs, make)
+    return Rule("surface", "core", key, needs, make)
+
+
+def _surface_of_parts(config: PipelineConfig, grid: FeltScene, key: str, with_materials: bool) -> Rule:
+    """Its labels are the numbers of parts, and there for their names alone where the law uses no materials."""
+
+    def make(inputs: Inputs) -> HapticSurface:
+        parts, chosen = reduced_parts(inputs["parts"], grid.shape), inputs.get("materials")
+        return HapticSurface(inputs["relief"], parts.labels, chosen.materials if chosen else None, ("",) * parts.count)
+
+    first = ("relief", "parts") if config.heights else ("parts", "relief")  # what is wrong of parts, before a depth
+    needs = (*first, "materials") if with_materials else first
+    return Rule("surface", "core", key, needs, make, finish=lambda made: parts_found.surface_with_names(config, made))
 
 
 def _touch(config: PipelineConfig) -> Rule:

@@ -45,7 +45,7 @@ def fit_surface(surface: HapticSurface, spec: DeviceSpec, safety: Safety) -> tup
     pairs = dict(zip(surface.materials, materials, strict=True))  # a material is said once, however many labels it has
     if not (said := ", ".join(filter(None, (changes(*pair) for pair in pairs.items())))):
         return surface, ""
-    return HapticSurface(surface.relief, surface.labels, materials), f"softened to what the device holds: {said}"
+    return replace(surface, materials=materials), f"softened to what the device holds: {said}"
 
 
 def changes(before: Material, after: Material) -> str:

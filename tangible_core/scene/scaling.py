@@ -1,9 +1,9 @@
 """Pictures and maps at a size that can be felt, and what is found in them at the size of the pictures again."""
 
 import numpy as np
-from jaxtyping import Bool, Float32
+from jaxtyping import Bool, Float32, Int32
 
-from ..data import DisparityMap, SegmentMap, Views
+from ..data import DisparityMap, PartMap, SegmentMap, Views
 from ..runtime.opencv import plain_opencv
 
 
@@ -99,10 +99,20 @@ def enlarged_segments(segments: SegmentMap, shape: tuple[int, int]) -> SegmentMa
 
     if segments.labels.shape == shape:
         return segments
-    nearest = np.asarray(cv2.resize(segments.labels, shape[::-1], interpolation=cv2.INTER_NEAREST_EXACT), np.int32)
     with plain_opencv():
         confidence = np.asarray(cv2.resize(segments.confidence, shape[::-1], interpolation=cv2.INTER_LINEAR))
-    return SegmentMap(nearest, confidence)
+    return SegmentMap(_nearest(segments.labels, shape), confidence)
+
+
+def enlarged_parts(parts: PartMap, shape: tuple[int, int]) -> PartMap:
+    """The parts of a reduced picture for one of (h, w): of the nearest pixel, with the same numbers."""
+    return parts if parts.labels.shape == shape else PartMap(_nearest(parts.labels, shape), parts.segments)
+
+
+def _nearest(labels: Int32[np.ndarray, "h w"], shape: tuple[int, int]) -> Int32[np.ndarray, "r c"]:
+    import cv2
+
+    return np.asarray(cv2.resize(labels, shape[::-1], interpolation=cv2.INTER_NEAREST_EXACT), np.int32)
 
 
 def _mean(picture: np.ndarray, rows: int, columns: int) -> np.ndarray:

@@ -11,15 +11,18 @@ from .scene_files import BUILTINS, SceneFiles
 
 SceneKind = Literal["photograph", "depth", "heights"]
 """What a relief is made of: the brightness of one picture, depth (of a pair, or a map of it), or a height map."""
+ReliefKind = SceneKind | Literal["parts"]
+"""Or of parts, each of its own height."""
 
-SUITS: dict[SceneKind, tuple[float, float]] = {
+SUITS: dict[ReliefKind, tuple[float, float]] = {
     "photograph": (0.004, 0.0015),
     "depth": (0.01, 0.002),
     "heights": (0.02, 0.0),
+    "parts": (0.006, 0.0005),
 }
 """Height and smoothing, metres. An edge from black to white is then no steeper than h / (s sqrt(2 pi)): 1.06 in a
 photograph, where every line is one, and 2 between the nearest and the farthest of a pair. A height map stays as it
-is."""
+is, and so do the borders of parts, but for the edge of a wall."""
 
 
 class Section(Quantities):
@@ -45,18 +48,19 @@ class Workspace(Section):
     """Width of the surface under the hand."""
     relief_m: Annotated[float, Field(gt=0, le=1, allow_inf_nan=False)] | None = None
     """Height of the nearest point above the farthest; null for what suits the scene: 0.004 for a photograph, whose
-    brightness is no depth, 0.01 for depth, 0.02 for a height map."""
+    brightness is no depth, 0.01 for depth, 0.02 for a height map, 0.006 for parts with `heights:`."""
     smooth_m: Annotated[float, Field(ge=0, le=0.1, allow_inf_nan=False)] | None = None
     """Standard deviation of a Gaussian that smooths an estimated relief, as matching noise would feel like grit; null
-    for what suits the scene: 0.0015 for a photograph, 0.002 for depth. A height map is never smoothed."""
+    for what suits the scene: 0.0015 for a photograph, 0.002 for depth, 0.0005 for parts with `heights:`. A height
+    map is never smoothed."""
     finest_m: Annotated[float, Field(ge=0, le=0.1, allow_inf_nan=False)] = 3e-5
     """Finest detail that is kept: larger pictures are reduced to it first. A Falcon resolves 0.03 mm; 0 keeps every
     pixel."""
     holes: Literal["fill", "cut"] = "fill"
     """Where the depth is unknown: `fill` with the background beside it, or `cut` down to the base plane."""
 
-    def size(self, kind: SceneKind) -> FeltSize:
-        """With what suits a scene of this kind where nothing is said.
+    def size(self, kind: ReliefKind) -> FeltSize:
+        """With what suits a relief of this kind where nothing is said.
 
         >>> Workspace(relief_m=0.006).size("photograph")[1:3]
         (0.006, 0.0015)

@@ -369,5 +369,5 @@ class TestByRules:
 
     @pytest.mark.parametrize("rule", [{}, {"segment": 0, "colour": "red"}])
     def test_a_rule_says_one_thing(self, rule: dict):
-        with pytest.raises(ValueError, match="takes one of segment, at and colour"):
+        with pytest.raises(ValueError, match="takes one of segment, part, at and colour"):
             MaterialRule.model_validate({**rule, "material": "ice"})

@@ -213,7 +213,7 @@ class TestCode:
             ("tangible_core.scene.scaling", {"disparity", "segments"}),
             ("tangible_core.scene.geometry", {"relief"}),
             ("tangible_core.materials.rules", {"materials"}),
-            ("tangible_core.data.surface", set(KEPT)),
+            ("tangible_core.data.surface", set(KEPT) - {"parts"}),
             ("tangible_core.pipeline.rules", set(KEPT)),
             ("tangible_core.pipeline.cache", set(KEPT)),
             ("tangible_core.pipeline.engine", set()),

@@ -100,11 +100,15 @@ RULES = "scene: builtin/brick\nmaterials:\n  rules:\n    - "
         (
             f"{RULES}{{color: blue, material: water}}\n",
             "here/p.yaml:4:8",
-            "did you mean 'colour'?); known: segment, at,",
+            "did you mean 'colour'?); known: segment, part, at,",
         ),
         (f"{RULES}{{colour: blue, material: watr}}\n", "here/p.yaml:4:22", "did you mean 'water'?"),
         (f"{RULES}{{colour: blue}}\n", "here/p.yaml:4:7", "materials.rules.0.material: Field required"),
-        (f"{RULES}{{material: ice}}\n", "here/p.yaml:4:7", "takes one of segment, at and colour; this one has none"),
+        (
+            f"{RULES}{{material: ice}}\n",
+            "here/p.yaml:4:7",
+            "takes one of segment, part, at and colour; this one has none",
+        ),
         (f"{RULES}{{at: [-1, 2], material: ice}}\n", "here/p.yaml:4:13", "greater than or equal to 0, not -1"),
         (f"{RULES}{{at: 3, material: ice}}\n", "here/p.yaml:4:8", "a list"),
         (f"{RULES}{{at: [.inf, 2], material: ice}}\n", "here/p.yaml:4:13", "finite"),

@@ -43,7 +43,7 @@ export const t = words({
   nothingToRedo: ["There is nothing to redo.", "Es gibt nichts zu wiederholen."],
   zoomIn: ["Nearer", "Näher"],
   zoomOut: ["Farther", "Ferner"],
-  fit: ["Whole picture", "Ganzes Bild"],
+  fit: ["Whole", "Ganz"],
   save: ["Save", "Speichern"],
   close: ["Close", "Schließen"],
   picture: ["Picture with its parts", "Bild mit seinen Teilen"],

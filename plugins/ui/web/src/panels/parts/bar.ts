@@ -46,7 +46,7 @@ export class Bar {
     this.back = keyed(t("undo"), "Ctrl+z", act.undo);
     this.again = keyed(t("redo"), "Ctrl+Shift+z", act.redo);
     this.tools.append(
-      ...this.uses.values(), this.fresh, this.back, this.again,
+      ...this.uses.values(), gap(), this.fresh, gap(), this.back, this.again, gap(),
       keyed(t("zoomIn"), "+", () => act.nearer(1.5)), keyed(t("zoomOut"), "-", () => act.nearer(1 / 1.5)), keyed(t("fit"), "0", act.fit),
     );
     this.fields = { width: this.widthField(), snap: this.snapField(), method: this.methodField() };
@@ -109,6 +109,10 @@ export class Bar {
     choice.addEventListener("change", () => (this.pens.kind = choice.value));
     return field(t("method"), choice);
   }
+}
+
+function gap(): HTMLElement {
+  return Object.assign(document.createElement("span"), { className: "gap" });
 }
 
 export function group(name: string): HTMLElement {

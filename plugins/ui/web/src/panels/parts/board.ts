@@ -32,19 +32,26 @@ const LIGHT = "#ffffff";
 
 export class Board {
   readonly element = document.createElement("div");
-  /** The uppermost canvas, which has the focus and hears the pointers. */
-  readonly canvas: HTMLCanvasElement;
+  /** What is seen: one canvas without transparency, which browsers show soonest. */
+  readonly canvas = document.createElement("canvas");
   readonly sight: Sight;
   marks: Marks = { line: [], closed: false, at: null, cross: false, brush: 0 };
-  /** The largest first. */
-  names: Named[] = [];
-  private layers: CanvasRenderingContext2D[];
+  private context = this.canvas.getContext("2d", { alpha: false })!;
+  /** The picture and the borders at the size of the screen, to be put together where something changed. */
+  private base = hidden();
+  private lines = hidden();
+  private names: Named[] = [];
+  private ground = DARK;
   private ratio = 1;
   private stale: Box = EMPTY;
   private moved = true;
+  private anew = true;
+  /** Where marks were drawn last. */
+  private marked: Box = EMPTY;
   private due = false;
   private since = 0;
-  private accent = { css: LIGHT, ink: DARK, pixel: 0, thin: 0 };
+  private selected = -1;
+  private accent = { css: LIGHT, ink: DARK, accent: 0, against: 0, thin: 0 };
   private watching = new ResizeObserver(() => this.resize());
 
   constructor(
@@ -53,10 +60,7 @@ export class Board {
   ) {
     this.sight = new Sight(drawing.labels.columns, drawing.labels.rows);
     this.element.className = "board";
-    const canvases = [0, 1, 2].map(() => document.createElement("canvas"));
-    this.canvas = canvases[2]!;
-    this.layers = canvases.map((each) => each.getContext("2d")!);
-    this.element.append(...canvases);
+    this.element.append(this.canvas);
     this.watching.observe(this.element);
   }
 
@@ -67,10 +71,17 @@ export class Board {
 
   /** The colours are others. */
   dress(): void {
-    const [r, g, b] = colour("--accent").match(/\d+/g)!.map(Number) as [number, number, number];
-    const pixel = ((b << 16) | (g << 8) | r) >>> 0;
-    this.accent = { css: colour("--accent"), ink: colour("--accent-ink"), pixel: (pixel | 0xff000000) >>> 0, thin: (pixel | 0x40000000) >>> 0 };
+    const [css, ink] = [colour("--accent"), colour("--accent-ink")];
+    this.accent = { css, ink, accent: asPixel(css, 0xff), against: asPixel(ink, 0xe6), thin: asPixel(css, 0x40) };
+    this.ground = colour("--ground");
     this.look();
+  }
+
+  /** What stands on the parts; the largest first. */
+  name(names: Named[]): void {
+    this.names = names;
+    this.anew = true;
+    this.wake();
   }
 
   /** Something of the picture's parts is another; at: when it was asked for. */
@@ -110,7 +121,7 @@ export class Board {
   private resize(): void {
     this.ratio = Math.max(1, devicePixelRatio);
     const [width, height] = [this.element.clientWidth, this.element.clientHeight].map((each) => Math.max(1, Math.round(each * this.ratio)));
-    for (const { canvas } of this.layers) Object.assign(canvas, { width, height });
+    for (const { canvas } of [this.context, this.base, this.lines]) Object.assign(canvas, { width, height });
     this.sight.resize(width!, height!);
     this.moved = true;
     this.draw(); // at once: a canvas of another size is empty
@@ -125,17 +136,51 @@ export class Board {
     });
   }
 
+  /** Only what changed, in the middle of a stroke. */
   private draw(): void {
-    const { sight, moved } = this;
+    const { sight, drawing } = this;
     const whole = { left: 0, top: 0, right: sight.width, bottom: sight.height };
-    if (moved) this.drawPicture();
-    const box = moved ? whole : sight.covering(this.stale, rimOf(this.ratio));
-    if (!isEmpty(box)) this.drawBorders(box);
-    this.moved = false;
+    const anew = this.moved || this.selected !== drawing.selected;
+    if (this.moved) this.drawPicture();
+    const lines = anew ? whole : sight.covering(this.stale, rimOf(this.ratio));
+    if (!isEmpty(lines)) this.drawBorders(lines);
+    const marks = this.marksBox();
+    this.show(anew || this.anew ? whole : [lines, marks, this.marked].filter((each) => !isEmpty(each)).reduce(around, EMPTY));
+    this.marked = marks;
+    this.moved = this.anew = false;
+    this.selected = drawing.selected;
     this.stale = EMPTY;
-    this.drawMarks();
     if (measuring && this.since) this.measured(this.since);
     this.since = 0;
+  }
+
+  /** Put together what lies in a box. */
+  private show(box: Box): void {
+    if (isEmpty(box)) return;
+    const { context } = this;
+    const at = [box.left, box.top, box.right - box.left, box.bottom - box.top] as const;
+    context.save();
+    context.beginPath();
+    context.rect(...at);
+    context.clip();
+    for (const { canvas } of [this.base, this.lines]) context.drawImage(canvas, ...at, ...at);
+    this.drawNames(context);
+    this.drawMarks(context);
+    context.restore();
+  }
+
+  private marksBox(): Box {
+    const { line, at, brush } = this.marks;
+    const { ratio, sight } = this;
+    const rim = Math.ceil(22 * ratio + (brush / 2) * sight.zoom);
+    let box = EMPTY;
+    for (const each of at ? [...line, at] : line) {
+      const [x, y] = sight.toBoard(each);
+      box = around(box, { left: x, top: y, right: x, bottom: y });
+    }
+    const within = (side: number, most: number): number => Math.max(0, Math.min(most, Math.round(side)));
+    const [right, bottom] = [within(box.right + rim, sight.width), within(box.bottom + rim, sight.height)];
+    return { left: within(box.left - rim, sight.width), top: within(box.top - rim, sight.height), right, bottom };
   }
 
   private measured(start: number): void {
@@ -143,27 +188,22 @@ export class Board {
   }
 
   private drawPicture(): void {
-    const [context] = this.layers;
-    const { sight, drawing, picture } = this;
+    const { sight, drawing, picture, base } = this;
     const { columns, rows } = drawing.labels;
-    context!.setTransform(1, 0, 0, 1, 0, 0);
-    context!.clearRect(0, 0, sight.width, sight.height);
-    context!.imageSmoothingEnabled = sight.zoom < 3;
+    base.fillStyle = this.ground;
+    base.fillRect(0, 0, sight.width, sight.height);
+    base.imageSmoothingEnabled = sight.zoom < 3;
     const [x, y] = sight.toBoard([0, 0]);
-    context!.drawImage(picture, x, y, columns * sight.zoom, rows * sight.zoom);
+    base.drawImage(picture, x, y, columns * sight.zoom, rows * sight.zoom);
   }
 
   private drawBorders(box: Box): void {
     const { labels, selected, proposed } = this.drawing;
-    const { pixel: accent, thin } = this.accent;
-    const image = borders({ labels, selected, proposed, accent, thin, ratio: this.ratio }, this.sight, box);
-    this.layers[1]!.putImageData(image, box.left, box.top);
+    const image = borders({ labels, selected, proposed, ...this.accent, ratio: this.ratio }, this.sight, box);
+    this.lines.putImageData(image, box.left, box.top);
   }
 
-  private drawMarks(): void {
-    const context = this.layers[2]!;
-    context.clearRect(0, 0, this.sight.width, this.sight.height);
-    this.drawNames(context);
+  private drawMarks(context: CanvasRenderingContext2D): void {
     const { line, closed, at, cross, brush } = this.marks;
     if (line.length > 1) {
       const path = new Path2D();
@@ -228,4 +268,14 @@ export class Board {
     context.fillStyle = chosen ? this.accent.ink : LIGHT;
     context.fillText(text, x, y + this.ratio / 2);
   }
+}
+
+/** rgb(...) as four bytes. */
+function asPixel(css: string, alpha: number): number {
+  const [r, g, b] = css.match(/[\d.]+/g)!.map(Number) as [number, number, number];
+  return ((alpha << 24) | (b << 16) | (g << 8) | r) >>> 0;
+}
+
+function hidden(): CanvasRenderingContext2D {
+  return document.createElement("canvas").getContext("2d")!;
 }

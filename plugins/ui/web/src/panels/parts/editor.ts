@@ -185,8 +185,7 @@ class Editor {
       const number = this.order.get(part.label)!;
       return place ? [{ place, label: part.label, text: part.name ? `${number} ${part.name}` : String(number) }] : [];
     });
-    board.names = named.sort((a, b) => b.place.pixels - a.place.pixels);
-    board.mark({});
+    board.name(named.sort((a, b) => b.place.pixels - a.place.pixels));
     this.bar.show();
     side.show();
     this.help();
@@ -225,7 +224,6 @@ class Editor {
     drawing.endGesture();
     drawing.selected = label;
     if (pens.tool !== "select") pens.fresh = false;
-    this.board.changed({ left: 0, top: 0, right: drawing.labels.columns, bottom: drawing.labels.rows });
     this.survey();
     const part = drawing.part(label);
     const place = this.places.get(label);

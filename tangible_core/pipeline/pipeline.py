@@ -27,7 +27,7 @@ from ..errors import Complaint, ConfigError, quoted, wrong_argument
 from ..files.paths import as_path
 from ..files.writing import write_text
 from ..mapping import WorkspaceMapping
-from ..parts import HeightChoice, PartChoice
+from ..parts import HeightChoice, PartChoice, PartHeights
 from ..plugins import hooks
 from ..plugins.interfaces import KINDS, DepthEstimator, ForceRenderer, HapticDevice, Method, Segmenter, Touch
 from ..plugins.registry import Registry, default_registry
@@ -41,6 +41,7 @@ from .config import MaterialChoice, NamedMethod, PipelineConfig, Product, load_c
 from .engine import Engine, Progress
 from .following import felt_device, how_followed
 from .parts_said import Inscription
+from .parts_text import part_heights, to_correct
 from .rehearsal import rehearsal
 from .rules import fitted
 from .runs import Run, Sheet, about, make_run
@@ -246,6 +247,18 @@ class Pipeline:
     def parts(self) -> PartMap | None:
         """The connected parts of the segments, numbered by their first pixels."""
         return self.make("parts")
+
+    @property
+    def part_heights(self) -> PartHeights | None:
+        """The height of each part, and why; None where `heights` does not make the relief of parts."""
+        return part_heights(self.engine)
+
+    def parts_to_correct(self) -> str:
+        """A pipeline file in which each part has the height that was found, to correct; it runs as it stands.
+
+        Raises: ConfigError where the relief is not made of parts; TangibleError as `make`.
+        """
+        return to_correct(self.engine)
 
     @property
     def materials(self) -> MaterialMap | None:

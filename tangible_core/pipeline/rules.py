@@ -24,7 +24,7 @@ from ..data import (
 )
 from ..errors import BrokenMethod, ConfigError, PictureError, TangibleError
 from ..materials import assignment
-from ..parts import Layering, reduced_parts
+from ..parts import Layering, PartHeights, reduced_parts
 from ..parts import find as part_finding
 from ..plugins.interfaces import HapticDevice, Method, Skippable, Touch
 from ..plugins.notes import doubt, note
@@ -135,15 +135,12 @@ def _relief(config: PipelineConfig, grid: FeltScene) -> Rule:
 
 
 def _relief_of_parts(config: PipelineConfig, grid: FeltScene) -> Rule:
-    heights, size, top_m, given_m = config.heights, config.size, config.top_m, config.given_heights_m
+    heights, size, given_m = config.heights, config.size, config.given_heights_m
     assert heights is not None
 
     def make(inputs: Inputs) -> Relief:
         views, parts = _views(grid), reduced_parts(inputs["parts"], grid.shape)
-        disparity: DisparityMap | None = inputs.get("disparity")
-        if disparity is not None:
-            disparity = scaling.reduced_disparity(disparity, grid.shape)
-        found = layers.heights_of(parts, heights, top_m, given_m, disparity, grid.shown)
+        found = part_heights(config, grid, inputs["parts"], inputs.get("disparity"))
         layers.tell(found, heights, given_m)
         layering = Layering(parts, size.width_m, heights, views.left)
         return felt.layered(layering, found.heights_m, size, grid.shown)
@@ -154,6 +151,17 @@ def _relief_of_parts(config: PipelineConfig, grid: FeltScene) -> Rule:
         return Rule("relief", "core", key, ("views", "parts", "disparity"), make)
     said = "given" if heights.by == "given" else "guessed"
     return Rule("relief", "core", key, ("views", "parts"), make, note=f"no depth is looked for: heights are {said}")
+
+
+def part_heights(
+    config: PipelineConfig, grid: FeltScene, parts: PartMap, disparity: DisparityMap | None
+) -> PartHeights:
+    """The height of each part, and why. parts, disparity: of any size; both are taken as they are felt."""
+    assert config.heights is not None
+    if disparity is not None:
+        disparity = scaling.reduced_disparity(disparity, grid.shape)
+    on_grid = reduced_parts(parts, grid.shape)
+    return layers.heights_of(on_grid, config.heights, config.top_m, config.given_heights_m, disparity, grid.shown)
 
 
 def _segments(config: PipelineConfig, grid: FeltScene) -> Rule:

@@ -27,8 +27,10 @@ CONFIG, NO_CONFIG, OUTCOMES = "config.yaml", "config.txt", "outcomes.json"
 CLAIMS = (CONFIG, NO_CONFIG, OUTCOMES)
 """What says what the other files are."""
 RECORDING, SHEET = "recording.npz", "sheet"
+GUESSED = "parts-guessed.yaml"
+"""What was guessed of parts, to correct."""
 SHEETS = tuple(f"{SHEET}.{drawn_as}" for drawn_as in ("png", "svg", "pdf"))
-NAMES = (*CLAIMS, *(f"{product}.npz" for product in PRODUCTS), RECORDING, *SHEETS)
+NAMES = (*CLAIMS, *(f"{product}.npz" for product in PRODUCTS), RECORDING, GUESSED, *SHEETS)
 """What a run may write."""
 CHUNK = 1 << 20
 

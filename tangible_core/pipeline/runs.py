@@ -8,7 +8,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
-from ..data import DisparityMap, MaterialMap, Outcomes, Record, ServoReport
+from ..data import DisparityMap, HapticSurface, MaterialMap, Outcomes, Record, ServoReport
 from ..errors import ConfigError
 from ..files.writing import write_text
 from ..plugins.interfaces import Touch
@@ -19,9 +19,10 @@ from .cache import write_record
 from .engine import Engine
 from .following import felt_device, how_followed
 from .rehearsal import FELT, rehearsal
-from .run_folder import CONFIG, NO_CONFIG, OUTCOMES, RECORDING, SHEET, check_folder, rewritten
+from .parts_text import part_heights, to_correct
+from .run_folder import CONFIG, GUESSED, NO_CONFIG, OUTCOMES, RECORDING, SHEET, check_folder, rewritten
 
-SHOWN = ("disparity", "segments", "materials", "surface")
+SHOWN = ("disparity", "segments", "parts", "materials", "surface")
 """Products that the report draws, beside what is wanted."""
 Sheet = Literal["png", "svg", "pdf"]
 """What a sheet can be drawn as."""
@@ -40,6 +41,9 @@ class Run:
     """Errors against the truth, materials and why, forces: what of it there is."""
     outcomes: Outcomes
     versions: Mapping[str, str]
+    title: str
+    language: str
+    """Of the title and of the names of parts, as a tag."""
     files: tuple[Path, ...]
     sheet_says: str
     """What is on the sheet, in words."""
@@ -58,6 +62,8 @@ class Run:
         """Everything but the products, as plain values."""
         return {
             "scene": self.scene,
+            "title": self.title,
+            "language": self.language,
             "versions": self.versions,
             "outcomes": [asdict(each) for each in self.outcomes],
             "figures": self.figures,
@@ -88,15 +94,18 @@ def make_run(
     figures, config = _figures(engine, products, recording), _configuration(engine)
     kept = {f"{name}.npz": record for name, record in products.items() if isinstance(record, Record)}
     felt, drawn = [RECORDING] if recording is not None else [], f"{SHEET}.{sheet}"
-    files = tuple(out / name for name in (config.name, *kept, *felt, drawn, OUTCOMES))
+    texts = {config.name: config.text, **_guessed(engine, products)}
+    files = tuple(out / name for name in (*texts, *kept, *felt, drawn, OUTCOMES))
     with rewritten(out, engine.config.path) as place:
         for name, record in kept.items():
             write_record(place(name), record)
         if recording is not None:
             recording.save(place(RECORDING))
         says = _draw(engine, products, recording, place(drawn))
-        run = Run(engine.scene.name, products, recording, figures, engine.outcomes, _versions(), files, says)
-        write_text(place(config.name), config.text)
+        said = engine.config.title, engine.config.language
+        run = Run(engine.scene.name, products, recording, figures, engine.outcomes, _versions(), *said, files, says)
+        for name, text in texts.items():
+            write_text(place(name), text)
         write_figures(place(OUTCOMES), run.document())
     return run
 
@@ -112,6 +121,12 @@ def _configuration(engine: Engine) -> _Configuration:
         return _Configuration(CONFIG, engine.config.as_yaml())
     except ConfigError as error:
         return _Configuration(NO_CONFIG, f"{error}\n")
+
+
+def _guessed(engine: Engine, products: Mapping[str, Any]) -> dict[str, str]:
+    """The file of what was guessed of parts, where anything was."""
+    heights, high = engine.config.heights, products.keys() & {"relief", "surface", "touch"}
+    return {GUESSED: to_correct(engine)} if heights is not None and heights.by == "guess" and high else {}
 
 
 def about(engine: Engine) -> About:
@@ -142,10 +157,11 @@ def _draw(engine: Engine, products: Mapping[str, Any], recording: Recording | No
     scene, shown = engine.scene, {name: products.get(name) for name in (*SHOWN, "relief")}
     if scene.truth is not None and shown["disparity"] is not None:
         shown["disparity"] = engine.make("disparity")  # pixel by pixel beside its truth
-    title = Path(scene.name).name if Path(scene.name).is_absolute() else scene.name
+    title = engine.config.title or (Path(scene.name).name if Path(scene.name).is_absolute() else scene.name)
     if doubts := [each.text.partition(":")[0] for each in engine.outcomes.doubts]:
         title = f"{title} (doubtful: {'; '.join(doubts)})"
-    return draw_sheet(path, views=scene.views, truth=scene.truth, recording=recording, title=title, **shown)
+    said = {"title": title, "language": engine.config.language}
+    return draw_sheet(path, views=scene.views, truth=scene.truth, recording=recording, **said, **shown)
 
 
 def _figures(engine: Engine, products: Mapping[str, Any], recording: Recording | None) -> dict[str, Any]:
@@ -159,6 +175,8 @@ def _figures(engine: Engine, products: Mapping[str, Any], recording: Recording |
             label: {"name": material.name, "why": why}
             for label, (material, why) in enumerate(zip(chosen.materials, chosen.reasons, strict=True))
         }
+    if isinstance(surface := products.get("surface"), HapticSurface) and surface.names is not None:
+        figures["parts"] = _part_figures(engine, surface)
     if recording is not None:
         figures["force"] = recording.figures()
         if said := recording.guard_sentence:
@@ -167,6 +185,21 @@ def _figures(engine: Engine, products: Mapping[str, Any], recording: Recording |
         if hand.says:
             figures["hand"] = hand._asdict()
     return figures
+
+
+def _part_figures(engine: Engine, surface: HapticSurface) -> dict[int, dict[str, Any]]:
+    """By number: the name of each part, its material, and its height with where that is from."""
+    found = part_heights(engine)
+    names, materials = surface.names or (), surface.materials
+    return {
+        number: {
+            "name": name,
+            "material": materials[number].name if materials else None,
+            "height_m": found.heights_m[number] if found else None,
+            "why": found.reasons[number] if found else "",
+        }
+        for number, name in enumerate(names)
+    }
 
 
 def _versions() -> dict[str, str]:

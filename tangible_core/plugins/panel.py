@@ -10,8 +10,8 @@ class Panel(NamedTuple):
     draw: Callable[..., str]
     """Called with matplotlib's axes and, by name, what it needs and likes; draws into them and returns a headline."""
     needs: Collection[str]
-    """Of views, truth, disparity, segments, materials, relief, surface, recording; without all of these it is left
-    out."""
+    """Of views, truth, disparity, segments, parts, materials, relief, surface, recording; without all of these it is
+    left out."""
     likes: Collection[str] = ()
     """Given to it where the run has them."""
     aspect: float | Callable[..., float] = 0.0

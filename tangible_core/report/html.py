@@ -25,7 +25,8 @@ def as_html(record: Record) -> str:
     if isinstance(record, MaterialMap):
         found = zip(record.materials, record.reasons, strict=True)
         rows = [(str(label), material.name, why) for label, (material, why) in enumerate(found)]
-        return html_table(("segment", "material", "why"), rows)
+        what = "part" if any(why.startswith("part ") for why in record.reasons) else "segment"
+        return html_table((what, "material", "why"), rows)
     return html_table(
         ("field", "value"), [(each.name, _said(getattr(record, each.name))) for each in fields(cast(Any, record))]
     )

@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..data import DisparityMap, HapticSurface, MaterialMap, Relief, SegmentMap, Views
+from ..data import DisparityMap, HapticSurface, MaterialMap, PartMap, Relief, SegmentMap, Views
 from ..errors import OutputError
 from ..files.writing import atomic_write
-from ..scene.description import describe
+from ..scene.description import describe, language_of
 from .layout import Cell, arrange
 from .sheet_files import described, writer
 
@@ -34,6 +34,7 @@ SHAPES: dict[str, Callable[[Any], tuple[float, float]]] = {
     "views": lambda views: views.shape,
     "disparity": lambda disparity: disparity.disparity_px.shape,
     "segments": lambda segments: segments.labels.shape,
+    "parts": lambda parts: parts.labels.shape,
     "relief": lambda relief: relief.extent_m[::-1],
 }
 """Height and width of what has the scene's shape."""
@@ -46,40 +47,48 @@ def draw_sheet(
     truth: np.ndarray | None = None,
     disparity: DisparityMap | None = None,
     segments: SegmentMap | None = None,
+    parts: PartMap | None = None,
     materials: MaterialMap | None = None,
     relief: Relief | None = None,
     surface: HapticSurface | None = None,
     recording: Recording | None = None,
     title: str = "",
+    language: str = "en",
 ) -> str:
     """Draw what a run has as .png, .svg or .pdf, whole or not at all; panels without data are left out.
 
     Returns: what is on it in words, which is in the file too.
 
     truth: disparity (h, w) in px, not finite where unknown; shown as an error where the disparity is in px.
+    parts: drawn in place of the segments that they are of.
     relief: where there is no surface yet; a surface brings its own.
-    recording: shown together with the relief that it was felt on.
+    recording: shown together with the relief that it was felt on. language: of the title and of names, as a tag; the
+    surface is described in it where there are words.
     Raises: OutputError for another suffix or a place that cannot be written, PictureError if truth and disparity
     differ in size.
     """
     from .added import added_panels
-    from .panels import PANELS
+    from .panels import PANELS, draw_segments
 
     given = {
         "views": views,
         "truth": truth if disparity is not None and disparity.unit == "px" else None,
         "disparity": disparity,
         "segments": segments,
+        "parts": parts,
         "materials": materials,
         "relief": relief if surface is None else surface.relief,
         "surface": surface,
         "recording": recording if recording is not None and len(recording.time_s) else None,
     }
     run = {name: value for name, value in given.items() if value is not None}
-    return write_sheet(path, run, title, (*PANELS, *added_panels()))
+    panels = [panel for panel in PANELS if parts is None or panel.draw is not draw_segments]
+    return write_sheet(path, run, title, (*panels, *added_panels()), language)
 
 
-def write_sheet(path: Path, run: Mapping[str, Any], title: str, panels: Sequence[Panel]) -> str:
+def write_sheet(
+    path: Path, run: Mapping[str, Any], title: str, panels: Sequence[Panel], language: str = "en"
+) -> str:
     """Draw what is given in the report's style, whole or not at all, and say what it is. Raises: as `draw_sheet`."""
     from matplotlib import style
 
@@ -90,7 +99,7 @@ def write_sheet(path: Path, run: Mapping[str, Any], title: str, panels: Sequence
         figure = draw_figure(run, title, panels)
         says = described(figure)
         if isinstance(surface := run.get("surface"), HapticSurface):
-            says = f"{says} {describe(surface, '')}"
+            says = f"{says} {describe(surface, '', language_of(language))}"
         with atomic_write(path) as file:
             write(figure, file, title, says)
     return says

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from ..data import DisparityMap, HapticSurface, Record, Relief, SegmentMap, Views
+from ..data import DisparityMap, HapticSurface, PartMap, Record, Relief, SegmentMap, Views
 from ..errors import OutputError
 from ..session import Recording
 
@@ -21,6 +21,7 @@ PRODUCTS: Mapping[type[Record], str] = {
     Views: "views",
     DisparityMap: "disparity",
     SegmentMap: "segments",
+    PartMap: "parts",
     Relief: "relief",
     HapticSurface: "relief",
     Recording: "recording",
@@ -33,8 +34,8 @@ def show(product: Record, axes: Axes | None = None, **beside: Any) -> Axes:
     """Draw a product as its panel on the sheet of a run, with units; returns the axes, whose title says what it is.
 
     axes: where to draw; a new pyplot figure of the panel's own proportions where it is None.
-    beside: other products that the panel can show with it, by name: `views` and `materials` with segments, `relief`
-    with a recording.
+    beside: other products that the panel can show with it, by name: `views` and `materials` with segments, `views`
+    and `surface` with parts, `relief` with a recording.
     Raises: OutputError for a product that has no picture, such as materials without segments.
     """
     from matplotlib import style

@@ -4,6 +4,7 @@ import math
 from typing import Literal, get_args
 
 import numpy as np
+from jaxtyping import Bool, Float32, Float64, Int32
 
 from ..data import HapticSurface
 from ..errors import shown, wrong_argument
@@ -23,6 +24,8 @@ NOWHERE = "- -"
 """Key of a part that is on no side."""
 MOST_NAMED = 4
 """Materials; of the others, how many they are."""
+MOST_PARTS = 12
+"""Parts by name, the nearest; of the others, how many they are."""
 FLAT_M = 1e-6
 """No hand feels a relief so low."""
 
@@ -30,7 +33,8 @@ FLAT_M = 1e-6
 def describe(surface: HapticSurface, scene_name: str, language: Language = "en", kind: SceneKind | None = None) -> str:
     """One to three sentences on a surface and its scene, always the same for the same surface.
 
-    Places are those of the picture: what is `at the top` of it lies away from the hand.
+    Places are those of the picture: what is `at the top` of it lies away from the hand. Parts that have a name are
+    said one by one, each with its material; else, which materials there are.
     kind: what the scene is made of, if it is to be said (`kind_of`). language: `en` or `de`.
     Raises: ArgumentError for another language.
 
@@ -40,8 +44,18 @@ def describe(surface: HapticSurface, scene_name: str, language: Language = "en",
     if language not in get_args(Language):
         raise wrong_argument("language", language, f"one of {', '.join(get_args(Language))}")
     say = _Words(language)
-    sentences = [_size(surface, scene_name, kind, say), _heights(surface, say), _materials(surface, say)]
-    return " ".join(filter(None, sentences))
+    of_what = _parts(surface, say) if any(surface.names or ()) else _materials(surface, say)
+    return " ".join(filter(None, [_size(surface, scene_name, kind, say), _heights(surface, say), of_what]))
+
+
+def language_of(tag: str) -> Language:
+    """The language of the words for what is tagged so: English where there are none in its own.
+
+    >>> language_of("de-AT"), language_of("pt")
+    ('de', 'en')
+    """
+    spoken = tag.partition("-")[0].lower()
+    return next((each for each in get_args(Language) if each == spoken), "en")
 
 
 class _Words:
@@ -131,6 +145,42 @@ def _materials(surface: HapticSurface, say: _Words) -> str:
         key = "another" if len(others) == 1 else "others"
         said.append(say(key, count=len(others), share=_percent(sum(shares[name] for name in others))))
     return say("materials", count=len(shares), parts=say.together(said))
+
+
+def _parts(surface: HapticSurface, say: _Words) -> str:
+    """Those that have a name, the highest first, for it is the nearest: where each is, how high, and of what."""
+    names, step = surface.names or (), _step(surface)
+    assert surface.labels is not None
+    labels = surface.labels[::step, ::step]
+    height_m = _part_heights_m(labels, surface.height_m[::step, ::step], len(names))
+    there = np.flatnonzero(np.isfinite(height_m))
+    named = [number for number in there[np.argsort(-height_m[there], kind="stable")].tolist() if names[number]]
+    said = [_part(surface, labels == number, number, float(height_m[number]), say) for number in named[:MOST_PARTS]]
+    left, unnamed = len(named) - len(said), len(there) - len(named)
+    said += [say("part left" if left == 1 else "parts left", count=left)] if left else []
+    said += [say("unnamed" if unnamed == 1 else "all unnamed", count=unnamed)] if unnamed else []
+    return say("one part" if len(said) == 1 else "parts", parts=say.together(said)) if said else ""
+
+
+def _part_heights_m(
+    labels: Int32[np.ndarray, "h w"], height_m: Float32[np.ndarray, "h w"], count: int
+) -> Float64[np.ndarray, " n"]:
+    """The middle height of each of so many parts; NaN for one that is nowhere."""
+    order = np.argsort(labels, axis=None, kind="stable")
+    ends = np.cumsum(np.bincount(labels.ravel(), minlength=count))
+    parts = np.split(height_m.ravel()[order].astype(np.float64), ends[:-1])
+    return np.array([np.median(part) if part.size else np.nan for part in parts])
+
+
+def _part(
+    surface: HapticSurface, there: Bool[np.ndarray, "h w"], number: int, height_m: float, say: _Words
+) -> str:
+    assert surface.names is not None
+    facts = [] if _place(there) == NOWHERE else [say(_place(there))]
+    facts += [say("part high", height=say.number(1000 * height_m))] if height_m > FLAT_M else []
+    facts += [say("part feels", material=say.material(surface.materials[number].name))] if surface.materials else []
+    name = shown(surface.names[number])
+    return say("of a part", name=name, facts=", ".join(facts)) if facts else name
 
 
 def _step(surface: HapticSurface) -> int:

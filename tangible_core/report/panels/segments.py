@@ -1,4 +1,4 @@
-"""Segments over the picture, with the names of their materials."""
+"""Segments over the picture, with the names of their materials; and parts, with names of their own."""
 # pyright: reportUnknownMemberType=false
 # (matplotlib leaves its keywords without types)
 
@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Patch
 from matplotlib.patheffects import withStroke
 
-from ...data import MaterialMap, SegmentMap, Views
+from ...data import HapticSurface, MaterialMap, PartMap, SegmentMap, Views
 from ...data.pictures import to_grey
 from ..style import INK, bare, colours, inches, thinned
 
@@ -44,6 +44,40 @@ def draw_segments(
     materials_too = f", {_count(len(kinds), 'material')}" if materials else ""
     bare(axes, _count(segments.count, "segment") + materials_too)
     return "Segments and their materials" if materials else "Segments"
+
+
+def draw_parts(
+    axes: Axes, parts: PartMap, views: Views | None = None, surface: HapticSurface | None = None
+) -> str:
+    """Parts tinted each in its colour, outlined, numbered and named where there is room.
+
+    The legend has the parts from near to far where there is a surface, in their order where there is none, each with
+    its material.
+    """
+    names = [""] * parts.count if surface is None or surface.names is None else surface.names
+    called = [f"{number} {name}".rstrip() for number, name in enumerate(names)]
+    labels = _drawn_size(parts.labels)
+    grey = np.ones(labels.shape, np.float32) if views is None else _grey(views.left, parts.labels.shape)
+    order = _near_to_far(parts, surface)
+    rank = np.empty(parts.count, np.intp)
+    rank[order] = np.arange(parts.count)
+    _draw_regions(axes, grey, labels, rank[labels])
+    _write_names(axes, labels, called)
+    materials = None if surface is None else surface.materials
+    entries = [_short(called[number]) + (f": {materials[number].name}" if materials else "") for number in order]
+    shares = np.bincount(parts.labels.ravel(), minlength=parts.count) / parts.labels.size
+    _draw_legend(axes, entries, shares[order])
+    bare(axes, _count(parts.count, "part"))
+    return "Parts, from near to far" if surface else "Parts"
+
+
+def _near_to_far(parts: PartMap, surface: HapticSurface | None) -> list[int]:
+    """The numbers of parts by their heights, the highest first; in their order where there is no surface."""
+    if surface is None or surface.labels is None:
+        return list(range(parts.count))
+    sums = np.bincount(surface.labels.ravel(), surface.height_m.ravel(), parts.count)
+    counts = np.bincount(surface.labels.ravel(), minlength=parts.count)
+    return np.argsort(-(sums / np.maximum(counts, 1)), kind="stable").tolist()
 
 
 def _count(number: int, noun: str) -> str:

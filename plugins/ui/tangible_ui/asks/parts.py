@@ -1,7 +1,7 @@
-"""The parts editor: begin, and keep what was drawn."""
+"""The parts editor: begin, propose a part, follow the picture's edges, and keep what was drawn."""
 
 import asyncio
-from typing import Any
+from typing import Any, Literal
 
 from ..desk.desk import Desk, Tab
 from ..desk.shelf import user_folder
@@ -12,7 +12,7 @@ from .making import foresee
 
 async def parts_open(desk: Desk, tab: Tab | None) -> dict[str, Any]:
     """What an editor begins with: the document's picture and parts."""
-    return await desk.maker.quick("parts_open", text=desk.text, path=desk.path, sets=desk.sets)
+    return await desk.maker.quick("parts_open", **_document(desk))
 
 
 async def parts_save(
@@ -34,8 +34,8 @@ async def parts_save(
         sent = await asyncio.to_thread(desk.shelf.single, upload)
         try:
             found = await desk.maker.quick(
-                "parts_save", text=desk.text, path=desk.path, sets=desk.sets, sent=sent, parts=parts, heights=heights,
-                words={"title": title, "language": language}, of=of, opened=desk.drafts.opened_text,
+                "parts_save", **_document(desk), sent=sent, parts=parts, heights=heights, of=of,
+                words={"title": title, "language": language}, opened=desk.drafts.opened_text,
                 shelf=user_folder("opened"),
             )  # fmt: skip
         finally:
@@ -48,4 +48,34 @@ async def parts_save(
     return found
 
 
-ASKS = {"parts_open": parts_open, "parts_save": parts_save}
+async def parts_propose(
+    desk: Desk,
+    tab: Tab | None,
+    points: list[list[float]],
+    width_px: float,
+    kind: Literal["grabcut", "watershed"] = "grabcut",
+    within: list[float] | None = None,
+) -> dict[str, Any] | None:
+    """The part on which a stroke lies, in pixels of the picture; nothing if another stroke came before this began.
+
+    within: first column and row, and those after the last, beyond which nothing is proposed. Raises: ConfigError.
+    """
+    told = {"points": points, "width_px": width_px, "kind": kind, "within": within}
+    return await desk.strokes.do(lambda: desk.maker.quick("parts_propose", **_document(desk), **told))
+
+
+async def parts_snap(desk: Desk, tab: Tab | None, points: list[list[float]], reach_px: float) -> dict[str, Any]:
+    """A closed outline on the picture's edges that are no farther away than this. Raises: ConfigError."""
+    return await desk.maker.quick("parts_snap", **_document(desk), points=points, reach_px=reach_px)
+
+
+def _document(desk: Desk) -> dict[str, Any]:
+    return {"text": desk.text, "path": desk.path, "sets": desk.sets}
+
+
+ASKS = {
+    "parts_open": parts_open,
+    "parts_save": parts_save,
+    "parts_propose": parts_propose,
+    "parts_snap": parts_snap,
+}

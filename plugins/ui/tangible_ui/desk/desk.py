@@ -19,6 +19,7 @@ from ..maker.messages import Event
 from .drafts import Drafts
 from .laws import Laws
 from .makes import Makes
+from .newest import Newest
 from .shelf import Shelf, user_folder
 from .texts import Texts
 
@@ -50,6 +51,8 @@ class Desk:
         """Of the text, as events name it."""
         self.texts = Texts()
         self.makes = Makes()
+        self.strokes = Newest()
+        """Asks for a part under a stroke."""
         self.choice = Choice()
         """Which device is felt."""
         self.drafts = Drafts(user_folder("unsaved"))

@@ -1,6 +1,20 @@
 """Everything the maker can be asked, by name."""
 
-from . import checking, devices, laws, making, mapping, opening, parts, preflight, records, saved_parts, textures
+from . import (
+    checking,
+    devices,
+    laws,
+    making,
+    mapping,
+    opening,
+    parts,
+    preflight,
+    proposals,
+    records,
+    saved_parts,
+    snapping,
+    textures,
+)
 
 JOBS = {
     **making.JOBS,
@@ -15,4 +29,6 @@ JOBS = {
     **mapping.JOBS,
     **parts.JOBS,
     **saved_parts.JOBS,
+    **proposals.JOBS,
+    **snapping.JOBS,
 }

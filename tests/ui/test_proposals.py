@@ -1,0 +1,157 @@
+"""Parts that are proposed from a stroke, and outlines that follow the picture's edges."""
+
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+from PIL import Image
+
+from tangible_core.errors import ConfigError
+from tangible_ui.maker import proposals
+from tangible_ui.maker.bench import Bench
+from tangible_ui.maker.jobs import JOBS
+from tangible_ui.maker.proposals import as_points, proposed, runs
+from tangible_ui.maker.snapping import snapped
+
+SHAPE = (240, 320)
+
+
+def two_things() -> tuple[np.ndarray, np.ndarray]:
+    """A picture of a leaning ellipse on another ground, both rough, and where the ellipse is."""
+    inside = np.zeros(SHAPE, np.uint8)
+    cv2.ellipse(inside, (160, 120), (80, 45), 30, 0, 360, 1, -1)
+    rough = cv2.GaussianBlur(np.random.default_rng(1).normal(0, 40, (*SHAPE, 3)), (0, 0), 1.5)
+    picture = rough + np.where(inside[..., None], [190, 120, 60], [80, 110, 140])
+    return np.clip(picture, 0, 255).astype(np.uint8), inside.astype(bool)
+
+
+def placed(box: tuple[int, ...], mask: np.ndarray, shape: tuple[int, int] = SHAPE) -> np.ndarray:
+    found = np.zeros(shape, bool)
+    x, y, columns, rows = box
+    found[y : y + rows, x : x + columns] = mask
+    return found
+
+
+def overlap(one: np.ndarray, other: np.ndarray) -> float:
+    return float((one & other).sum() / (one | other).sum())
+
+
+STROKE = np.array([[120.0, 97.0], [160.0, 120.0], [200.0, 143.0]])
+
+
+class TestProposals:
+    @pytest.mark.parametrize("kind", ["grabcut", "watershed"])
+    @pytest.mark.parametrize("factor", [1, 6])
+    def test_the_thing_under_the_stroke_is_found(self, kind: proposals.Kind, factor: int) -> None:
+        picture, inside = two_things()
+        picture = cv2.resize(picture, None, fx=factor, fy=factor, interpolation=cv2.INTER_CUBIC)
+        box, mask = proposed(picture, STROKE * factor, 12 * factor, kind)
+        found = placed(box, mask, (factor * SHAPE[0], factor * SHAPE[1]))
+        assert overlap(found[factor // 2 :: factor, factor // 2 :: factor], inside) > 0.95
+        assert mask.any(0).all() or (mask.any(0)[[0, -1]].all() and mask.any(1)[[0, -1]].all())
+
+    def test_a_border_is_as_fine_as_the_picture(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        picture, inside = two_things()
+        monkeypatch.setattr(proposals, "MOST_CELLS", 2000)
+        fine = placed(*proposed(picture, STROKE, 12, "grabcut"))
+        monkeypatch.setattr(proposals, "_refined", lambda whole, mask: cv2.resize(
+            mask.astype(np.uint8), whole.shape[1::-1], interpolation=cv2.INTER_NEAREST) > 0)  # fmt: skip
+        coarse = placed(*proposed(picture, STROKE, 12, "grabcut"))
+        assert overlap(fine, inside) > max(0.96, overlap(coarse, inside) + 0.02)
+
+    def test_nothing_is_proposed_beyond_the_box_that_was_drawn(self) -> None:
+        picture, _ = two_things()
+        box, mask = proposed(picture, STROKE, 12, "grabcut", [100, 80, 215, 160])
+        found = placed(box, mask)
+        found[80:160, 100:215] = False
+        assert not found.any()
+
+    def test_one_that_was_drawn_elsewhere_holds_nothing_back(self) -> None:
+        picture, inside = two_things()
+        assert overlap(placed(*proposed(picture, STROKE, 12, "grabcut", [0, 0, 20, 20])), inside) > 0.95
+
+    @pytest.mark.parametrize("kind", ["grabcut", "watershed"])
+    @pytest.mark.parametrize("shape", [(1, 1), (1, 40), (3, 3), (40, 1), (60, 80)])
+    def test_a_flat_or_tiny_picture_gives_at_least_the_stroke(
+        self, kind: proposals.Kind, shape: tuple[int, int]
+    ) -> None:
+        picture = np.full((*shape, 3), 128, np.uint8)
+        points = as_points([[0, 0], [1e9, -1e9]], picture.shape)
+        box, mask = proposed(picture, points, 3, kind)
+        found = placed(box, mask, shape)
+        assert found[0, 0]
+        assert found[0, -1]
+
+    def test_a_stroke_over_everything_is_everything(self) -> None:
+        picture, _ = two_things()
+        box, mask = proposed(picture, STROKE, 1e6, "grabcut")
+        assert box == (0, 0, 320, 240)
+        assert mask.all()
+
+    def test_runs_say_the_mask(self) -> None:
+        for mask in (np.array([[True, False], [False, True]]), np.array([[False, True, True]]), np.ones((2, 2), bool)):
+            inside = np.repeat(np.arange(len(runs(mask))) % 2, runs(mask))
+            np.testing.assert_array_equal(inside.reshape(mask.shape), mask)
+
+    @pytest.mark.parametrize("points", [[], [[1.0]], [[1.0, 2.0, 3.0]], [[float("nan"), 1.0]], [[1.0, 2.0], []]])
+    def test_what_is_no_stroke_is_said(self, points: list[list[float]]) -> None:
+        with pytest.raises(ConfigError, match="at least one"):
+            as_points(points, (*SHAPE, 3))
+
+
+class TestSnapping:
+    def wobbling(self, around: np.ndarray, by: float) -> np.ndarray:
+        outlines, _ = cv2.findContours(around.astype(np.uint8), cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
+        points = outlines[0][:, 0].astype(float)
+        angle = np.linspace(0, 2 * np.pi, len(points))[:, None]
+        middle = points.mean(0)
+        return middle + (points - middle) * (1 + by * (np.sin(5 * angle) + 0.5 * np.sin(9 * angle)))
+
+    def filled(self, points: np.ndarray, shape: tuple[int, int] = SHAPE) -> np.ndarray:
+        found = np.zeros(shape, np.uint8)
+        cv2.fillPoly(found, [np.round(points).astype(np.int32)], 1)
+        return found.astype(bool)
+
+    @pytest.mark.parametrize("factor", [1, 5])
+    def test_an_outline_comes_to_lie_on_the_edges(self, factor: int) -> None:
+        picture, inside = two_things()
+        outline = self.wobbling(inside, 0.07)
+        assert overlap(self.filled(outline), inside) < 0.93
+        picture = cv2.resize(picture, None, fx=factor, fy=factor, interpolation=cv2.INTER_CUBIC)
+        found = snapped(picture, outline * factor, 12.0 * factor) / factor
+        assert overlap(self.filled(found), inside) > 0.97
+
+    def test_it_moves_no_farther_than_it_may_and_not_at_all_without_edges(self) -> None:
+        picture, inside = two_things()
+        outline = self.wobbling(inside, 0.07)
+        found = snapped(picture, outline, 3.0)
+        far = np.min(np.hypot(*(found[:, None] - outline[None]).transpose(2, 0, 1)), axis=1)
+        assert far.max() < 4.0
+        still = snapped(np.full((*SHAPE, 3), 90, np.uint8), outline, 12.0)
+        far = np.min(np.hypot(*(still[:, None] - outline[None]).transpose(2, 0, 1)), axis=1)
+        assert far.max() < 1.0
+
+    @pytest.mark.parametrize(
+        "points", [[[5, 5]], [[5, 5], [5, 5], [5, 5]], [[0, 0], [319, 0]], [[1, 1], [2, 1], [2, 2]]]
+    )
+    def test_what_is_hardly_an_outline_stays_in_the_picture(self, points: list[list[float]]) -> None:
+        picture, _ = two_things()
+        found = snapped(picture, np.array(points, float), 12.0)
+        assert np.isfinite(found).all()
+        assert (found >= 0).all()
+        assert (found <= [319, 239]).all()
+
+
+def test_jobs_answer_what_json_can_say(tmp_path: Path) -> None:
+    picture, inside = two_things()
+    Image.fromarray(picture).save(tmp_path / "a.png")
+    bench = Bench(tmp_path, lambda event, **told: None)
+    told = {"text": "scene: {photo: a.png}\n", "path": tmp_path / "a.yaml", "sets": []}
+    found = JOBS["parts_propose"].do(bench, **told, points=STROKE.tolist(), width_px=12, kind="grabcut", within=None)
+    x, y, columns, rows = found["box"]
+    mask = np.repeat(np.arange(len(found["runs"])) % 2, found["runs"]).reshape(rows, columns)
+    assert overlap(placed((x, y, columns, rows), mask.astype(bool)), inside) > 0.95
+    assert all(type(each) is int for each in [*found["box"], *found["runs"]])
+    found = JOBS["parts_snap"].do(bench, **told, points=[[80, 60], [240, 60], [240, 180]], reach_px=5)
+    assert all(type(each) is float for point in found["points"] for each in point)

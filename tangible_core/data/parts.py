@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Int32
+from jaxtyping import Bool, Int32, Integer
 
 from ..errors import PictureError
 from .pictures import size_in_words
@@ -38,3 +38,14 @@ class PartMap(Record):
     def count(self) -> int:
         """Number of parts."""
         return len(self.segments)
+
+
+def beside_border(labels: Integer[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
+    """The pixels that share a side with one of another label."""
+    across, along = labels[:, 1:] != labels[:, :-1], labels[1:] != labels[:-1]
+    found = np.zeros(labels.shape, np.bool_)
+    found[:, 1:] |= across
+    found[:, :-1] |= across
+    found[1:] |= along
+    found[:-1] |= along
+    return found

@@ -1,8 +1,10 @@
 """The parts of a picture: found in its segments, given a height each, and made a relief of."""
 
+from .depth import depth_heights as depth_heights
 from .find import find_parts as find_parts
 from .find import part_sizes as part_sizes
 from .find import reduced_parts as reduced_parts
+from .guess import guess_heights as guess_heights
 from .heights import HeightChoice as HeightChoice
 from .heights import PartChoice as PartChoice
 from .heights import PartHeights as PartHeights

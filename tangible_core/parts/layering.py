@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from typing import final
 
 import numpy as np
-from jaxtyping import Bool, Float32
+from jaxtyping import Float32
 
 from ..data import Relief, Views
-from ..data.parts import PartMap
+from ..data.parts import PartMap, beside_border
 from ..data.pictures import check_same_shape, to_grey
 from ..errors import GeometryError
 from ..runtime.opencv import plain_opencv
@@ -79,21 +79,10 @@ def border_distance(parts: PartMap) -> Float32[np.ndarray, "h w"]:
     """Pixels from each pixel's centre to the nearest border of two parts; infinite where there is none."""
     from scipy.ndimage import distance_transform_edt
 
-    beside = _beside_border(parts)
+    beside = beside_border(parts.labels)
     if not beside.any():
         return np.full(beside.shape, np.float32(np.inf))
     return (np.asarray(distance_transform_edt(~beside)) + 0.5).astype(np.float32)
-
-
-def _beside_border(parts: PartMap) -> Bool[np.ndarray, "h w"]:
-    labels = parts.labels
-    across, along = labels[:, 1:] != labels[:, :-1], labels[1:] != labels[:-1]
-    found = np.zeros(labels.shape, np.bool_)
-    found[:, 1:] |= across
-    found[:, :-1] |= across
-    found[1:] |= along
-    found[:-1] |= along
-    return found
 
 
 def _profile(distance_m: Float32[np.ndarray, "h w"], round_m: float) -> Float32[np.ndarray, "h w"]:

@@ -18,8 +18,8 @@ from ..session import EVERY, About, Recording, run_simulated
 from .cache import write_record
 from .engine import Engine
 from .following import felt_device, how_followed
-from .rehearsal import FELT, rehearsal
 from .parts_text import part_heights, to_correct
+from .rehearsal import FELT, rehearsal
 from .run_folder import CONFIG, GUESSED, NO_CONFIG, OUTCOMES, RECORDING, SHEET, check_folder, rewritten
 
 SHOWN = ("disparity", "segments", "parts", "materials", "surface")

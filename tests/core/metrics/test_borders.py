@@ -1,0 +1,119 @@
+"""Which borders are felt as steps: against answers that are known exactly."""
+
+from math import isnan
+from statistics import NormalDist
+
+import numpy as np
+import pytest
+
+from tangible_core.data import Relief
+from tangible_core.errors import PictureError
+from tangible_core.metrics import border_steps, felt_steps
+
+PITCH_M = 0.0001
+SKIN_M = 0.0005
+
+
+def steps_at(*places_m: float, height_m: float, width_m: float = 0.04, rows: int = 60) -> Relief:
+    """Terraces, each so much higher than the one left of it."""
+    columns = round(width_m / PITCH_M)
+    x_m = (np.arange(columns) + 0.5) * PITCH_M
+    profile = height_m * (x_m[:, None] > np.asarray(places_m)).sum(axis=1)
+    return Relief(np.tile(profile, (rows, 1)).astype(np.float32), (width_m, rows * PITCH_M))
+
+
+def halves(relief: Relief, at_m: float) -> np.ndarray:
+    """Two parts with a border from top to bottom."""
+    columns = relief.height_m.shape[1]
+    return np.broadcast_to((np.arange(columns) + 0.5) * PITCH_M > at_m, relief.height_m.shape).astype(np.int32)
+
+
+def half_width_m(height_m: float) -> float:
+    """How far from a step it is felt: where the blurred step rises by 0.5 mm from 1 mm left to 1 mm right of there."""
+    skin = NormalDist(0, SKIN_M)
+    x_m = np.linspace(0, 0.004, 4001)
+    rise = [height_m * (skin.cdf(x + 0.001) - skin.cdf(x - 0.001)) for x in x_m]
+    return float(x_m[np.flatnonzero(np.asarray(rise) >= 0.0005)[-1]])
+
+
+@pytest.mark.parametrize("height_m", [0.00055, 0.001, 0.002, 0.005])
+def test_a_step_at_a_border_is_felt_and_is_that_border(height_m):
+    relief = steps_at(0.02, height_m=height_m)
+    found = border_steps(relief, halves(relief, 0.02))
+    assert found["borders_found"] == 1
+    assert found["area_stepped"] == pytest.approx(2 * half_width_m(height_m) / 0.04, abs=2 * PITCH_M / 0.04)
+    assert found["steps_at_borders"] == 1
+
+
+def test_a_step_too_low_is_not_felt():
+    relief = steps_at(0.02, height_m=0.00049)
+    found = border_steps(relief, halves(relief, 0.02))
+    assert (found["borders_found"], found["area_stepped"]) == (0, 0)
+    assert isnan(found["steps_at_borders"])
+
+
+def test_a_slope_is_a_step_if_it_is_steep_enough():
+    ramp = np.tile(np.arange(400) * PITCH_M, (60, 1))
+    felt, gentle = (felt_steps(Relief((ramp * slope).astype(np.float32), (0.04, 0.006))) for slope in (0.26, 0.24))
+    assert felt[:, 50:-50].all()
+    assert not gentle.any()
+
+
+def test_of_two_steps_alike_one_at_a_border_the_share_is_a_half():
+    relief = steps_at(0.01, 0.03, height_m=0.001)
+    found = border_steps(relief, halves(relief, 0.01))
+    assert found["steps_at_borders"] == pytest.approx(0.5, abs=1e-9)
+    assert found["borders_found"] == 1
+
+
+def test_a_step_further_than_2_mm_from_a_border_is_none_of_it():
+    relief = steps_at(0.02, height_m=0.001)
+    reach = half_width_m(0.001)
+    assert border_steps(relief, halves(relief, 0.02 + 0.002 + reach + 0.0002))["steps_at_borders"] == 0
+    assert border_steps(relief, halves(relief, 0.02 + 0.002 - reach - 0.0002))["steps_at_borders"] == 1
+    assert border_steps(relief, halves(relief, 0.02 + 0.002))["steps_at_borders"] == pytest.approx(0.5, abs=0.06)
+
+
+def test_borders_are_found_by_their_length():
+    """A border of 6 mm with a step, and one of 10 mm without: 60 and 100 sides of cells."""
+    height_m = np.zeros((100, 400), np.float32)
+    height_m[:60, 200:] = 0.002
+    labels = np.zeros(height_m.shape, np.int32)
+    labels[:60, 200:] = 1
+    labels[:, :30] = 2
+    found = border_steps(Relief(height_m, (0.04, 0.01)), labels)
+    assert found["borders_found"] == pytest.approx((60 + 200) / (60 + 200 + 100))
+
+
+def test_cells_that_are_no_squares_are_measured_in_metres():
+    tall = Relief(np.repeat(steps_at(0.02, height_m=0.001).height_m, 1, axis=0), (0.04, 0.06))
+    assert border_steps(tall, halves(tall, 0.02)) == pytest.approx(
+        border_steps(steps_at(0.02, height_m=0.001), halves(tall, 0.02))
+    )
+
+
+def test_the_measure_is_that_of_metres_and_not_of_pixels():
+    relief = steps_at(0.01, 0.03, height_m=0.001)
+    finer = Relief(relief.height_m.repeat(2, axis=0).repeat(2, axis=1), relief.extent_m)
+    labels = halves(relief, 0.01)
+    found = border_steps(finer, labels.repeat(2, axis=0).repeat(2, axis=1))
+    assert found == pytest.approx(border_steps(relief, labels), abs=0.01)
+
+
+@pytest.mark.parametrize("shape", [(1, 1), (1, 9), (9, 1)])
+def test_of_one_part_on_a_flat_surface_nothing_is_felt(shape):
+    found = border_steps(Relief(np.zeros(shape, np.float32), (0.08, 0.08)), np.zeros(shape, np.int32))
+    assert found["area_stepped"] == 0
+    assert isnan(found["borders_found"])
+    assert isnan(found["steps_at_borders"])
+
+
+def test_cells_wider_than_a_fingertip_are_compared_with_those_beside_them():
+    labels = np.arange(4, dtype=np.int32)[None]
+    found = border_steps(Relief(np.float32([[0, 0.001, 0.001, 0.001]]), (0.04, 0.01)), labels)
+    assert (found["borders_found"], found["area_stepped"]) == (pytest.approx(2 / 3), 0.5)
+
+
+def test_labels_of_another_size_are_said():
+    with pytest.raises(PictureError, match=r"\(1, 2\)"):
+        border_steps(Relief(np.zeros((1, 3), np.float32), (0.08, 0.08)), np.zeros((1, 2), np.int32))

@@ -1,0 +1,132 @@
+"""Heights that are guessed: by size, place and whose a border is."""
+
+import numpy as np
+import pytest
+from scipy.stats import spearmanr
+
+from drawn_parts import drawn
+from tangible_core.data import PartMap, SegmentMap
+from tangible_core.parts import find_parts, guess_heights
+from tangible_core.parts.neighbours import in_front, neighbours
+from tangible_core.scene.scene import Scene
+
+
+def parts_of(labels) -> PartMap:
+    return find_parts(SegmentMap(np.asarray(labels, np.int32)))
+
+
+def discs(*centres: tuple[int, int], shape: tuple[int, int] = (200, 300), radius: int = 40) -> np.ndarray:
+    """Discs at [x, y] before a ground, each over those before it."""
+    row, column = np.indices(shape)
+    labels = np.zeros(shape, np.int32)
+    for number, (x, y) in enumerate(centres, 1):
+        labels[(column - x) ** 2 + (row - y) ** 2 < radius**2] = number
+    return labels
+
+
+def guessed(labels: np.ndarray) -> dict[int, float]:
+    """Heights by label."""
+    parts = parts_of(labels)
+    return dict(zip(parts.segments, guess_heights(parts, 0.004).heights_m, strict=True))
+
+
+def sure_of(labels: np.ndarray) -> dict[tuple[int, int], float]:
+    """By pair of labels, how surely the second is in front."""
+    parts = parts_of(labels)
+    beside = neighbours(parts)
+    of = np.asarray(parts.segments)
+    pairs = zip(of[beside.low].tolist(), of[beside.high].tolist(), in_front(parts, beside).tolist(), strict=True)
+    return {tuple(sorted((low, high))): sure if low < high else -sure for low, high, sure in pairs}
+
+
+def test_neighbours_and_the_lengths_of_their_borders():
+    found = neighbours(parts_of([[0, 0, 1], [0, 2, 1], [3, 3, 3]]))
+    assert list(zip(*(each.tolist() for each in found), strict=True)) == [
+        (0, 1, 1), (0, 2, 2), (0, 3, 1), (1, 2, 1), (1, 3, 1), (2, 3, 1),
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("first", "second"), [((120, 100), (170, 100)), ((170, 90), (120, 110)), ((150, 130), (150, 80))]
+)
+def test_of_two_that_overlap_the_one_whose_border_runs_on_is_in_front(first, second):
+    labels = discs(first, second)
+    assert sure_of(labels)[1, 2] > 0.4
+    heights_m = guessed(labels)
+    assert heights_m[0] < heights_m[1] < heights_m[2]
+
+
+def test_corners_of_a_pattern_without_a_front_tell_nothing():
+    """Three parts that meet at equal angles, and four that meet in a cross."""
+    row, column = np.indices((120, 120)) - 59.5
+    thirds = ((np.arctan2(row, column) + np.pi) / (2 * np.pi / 3)).astype(int)
+    assert max(map(abs, sure_of(thirds).values())) < 0.2
+    assert not any(sure_of((row > 0) + 2 * (column > 0)).values())
+
+
+def test_who_is_low_in_the_picture_is_near_and_who_holds_its_rims_is_far():
+    labels = np.zeros((120, 160), np.int32)
+    labels[90:110, 20:60] = 1
+    labels[20:40, 80:120] = 2
+    heights_m = guessed(labels)
+    assert heights_m[0] == 0
+    assert heights_m[2] < heights_m[1] == 0.004
+
+
+def test_what_another_encloses_is_in_front_of_it():
+    labels = discs((150, 100), radius=60)
+    labels[60:75, 140:160] = 2
+    heights_m = guessed(labels)
+    assert heights_m[0] < heights_m[1] < heights_m[2]
+
+
+def test_a_picture_of_twice_the_pixels_is_guessed_alike():
+    few = guess_heights(drawn("coffee").parts, 0.004)
+    labels = drawn("coffee").parts.labels.repeat(2, axis=0).repeat(2, axis=1)  # beyond which it is reduced again
+    assert guess_heights(parts_of(labels), 0.004) == few
+
+
+def test_specks_take_no_step_of_their_own():
+    labels = discs((120, 100), (170, 100))
+    with_specks = labels.copy()
+    with_specks[::20, ::20] = 3
+    plain, found = guessed(labels), guessed(with_specks)
+    assert {label: found[label] for label in plain} == pytest.approx(plain)
+
+
+@pytest.mark.parametrize("shape", [(1, 1), (1, 7), (7, 1), (300, 2)])
+def test_one_part_lies_at_0(shape):
+    assert guess_heights(parts_of(np.zeros(shape)), 0.004).heights_m == (0,)
+
+
+def test_every_pixel_a_part_of_its_own_is_guessed_too():
+    found = guess_heights(parts_of(np.arange(30 * 40).reshape(30, 40)), 0.004)
+    assert len(found.heights_m) == len(found.reasons) == 1200
+    assert (min(found.heights_m), max(found.heights_m)) == (0, 0.004)
+
+
+def test_each_reason_says_where_a_part_is_and_whom_it_hides():
+    found = guess_heights(parts_of(discs((120, 100), (170, 100))), 0.004)
+    assert found.reasons == (
+        "guessed, 1 of 3 from the back: it reaches down to 96 % of the picture's height and has 100 % of its upper and "
+        "side rims; it is behind part 2",
+        "guessed, 2 of 3 from the back: it reaches down to 68 % of the picture's height and has 0 % of its upper and "
+        "side rims; it is behind part 2",
+        "guessed, 3 of 3 from the back: it reaches down to 66 % of the picture's height and has 0 % of its upper and "
+        "side rims; it is in front of parts 0 and 1",
+    )
+
+
+@pytest.mark.parametrize(("name", "least"), [("astronaut", 0.8), ("coffee", 0.8)])
+def test_a_guess_is_near_the_heights_that_a_person_gave(name, least):
+    _, parts, _, heights_m = drawn(name)
+    guess = np.float32(guess_heights(parts, 0.004).heights_m)[parts.labels]
+    assert spearmanr(guess.ravel(), np.float32(heights_m)[parts.labels].ravel())[0] > least
+
+
+def test_a_guess_has_about_the_order_of_the_depth():
+    parts, truth = drawn("motorcycle").parts, Scene.builtin("motorcycle").truth
+    assert truth is not None
+    guess = np.float32(guess_heights(parts, 0.004).heights_m)[parts.labels]
+    known = np.isfinite(truth)
+    assert spearmanr(guess[known], truth[known])[0] > 0.68

@@ -47,7 +47,7 @@ export async function opened(net: Net): Promise<Opened> {
   return { digest, heights, top_m, title, language, picture, parts, labels: { columns, rows, data: new Uint16Array(labels) } };
 }
 
-export const proposed = (net: Net, points: readonly Point[], width_px: number, kind: string): Promise<Proposed> =>
+export const proposed = (net: Net, points: readonly Point[], width_px: number, kind: string): Promise<Proposed | null> =>
   net.ask("parts_propose", { points: whole(points), width_px: Math.max(1, Math.round(width_px)), kind, within: null });
 
 export async function snapped(net: Net, points: readonly Point[], reach_px: number): Promise<Point[]> {

@@ -71,9 +71,11 @@ export class Board {
 
   /** The colours are others. */
   dress(): void {
-    const [css, ink] = [colour("--accent"), colour("--accent-ink")];
+    const css = colour("--accent");
+    const wanted = colour("--accent-ink");
+    const ink = wanted !== css ? wanted : isLight(css) ? DARK : LIGHT; // forced colours are few
     this.accent = { css, ink, accent: asPixel(css, 0xff), against: asPixel(ink, 0xe6), thin: asPixel(css, 0x40) };
-    this.ground = colour("--ground");
+    this.ground = getComputedStyle(this.element).backgroundColor;
     this.look();
   }
 
@@ -270,11 +272,18 @@ export class Board {
   }
 }
 
-/** rgb(...) as four bytes. */
+/** rgb(...), or six digits, as four bytes. */
 function asPixel(css: string, alpha: number): number {
-  const [r, g, b] = css.match(/[\d.]+/g)!.map(Number) as [number, number, number];
+  const [r, g, b] = bytes(css);
   return ((alpha << 24) | (b << 16) | (g << 8) | r) >>> 0;
 }
+
+function bytes(css: string): [number, number, number] {
+  if (css.startsWith("#")) return [1, 3, 5].map((at) => parseInt(css.slice(at, at + 2), 16)) as [number, number, number];
+  return css.match(/[\d.]+/g)!.map(Number) as [number, number, number];
+}
+
+const isLight = (css: string): boolean => bytes(css).reduce((sum, each) => sum + each) > 382;
 
 function hidden(): CanvasRenderingContext2D {
   return document.createElement("canvas").getContext("2d")!;

@@ -114,7 +114,7 @@ class Editor {
     const column = Object.assign(document.createElement("div"), { className: "side" });
     column.append(ends, side.list, side.said, ...this.words.elements, folded(t("keys"), [table()]));
     root.append(stage, column);
-    document.getElementById("main")!.after(root);
+    document.getElementById("main")!.before(root);
     document.body.classList.add("editing");
     board.dress();
   }
@@ -127,7 +127,7 @@ class Editor {
       else this.bar.show();
     };
     pens.failed = (why) => this.complain(why);
-    pens.waits = (on) => on && this.say(t("proposing"));
+    pens.waits = (busy) => (busy ? this.say(t("proposing"), false) : this.help());
     pens.chose = (label) => this.choose(label);
     side.chose = (label) => this.choose(label);
     side.joined = (label) => this.tried(() => drawing.join(label, drawing.selected));

@@ -121,7 +121,8 @@ export class Pens {
   }
 
   private async propose(line: Point[]): Promise<void> {
-    this.drawing.propose(await this.asked(proposed(this.net, line, this.width, this.kind)));
+    const found = await this.asked(proposed(this.net, line, this.width, this.kind));
+    if (found) this.drawing.propose(found); // none, if another stroke came before this one was looked at
   }
 
   private split(line: Point[]): void {

@@ -41,11 +41,11 @@ export class Sight {
   }
 
   resize(width: number, height: number): void {
-    const first = this.width === 1;
+    const fitted = this.width === 1 || Math.abs(this.zoom / this.whole - 1) < 1e-6;
     const middle = this.toPicture([this.width / 2, this.height / 2]);
     this.width = width;
     this.height = height;
-    if (first || this.zoom <= this.whole) return this.fit();
+    if (fitted || this.zoom <= this.whole) return this.fit();
     this.left = middle[0] - width / this.zoom / 2;
     this.top = middle[1] - height / this.zoom / 2;
     this.hold();

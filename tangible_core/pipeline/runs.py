@@ -160,8 +160,16 @@ def _draw(engine: Engine, products: Mapping[str, Any], recording: Recording | No
     title = engine.config.title or (Path(scene.name).name if Path(scene.name).is_absolute() else scene.name)
     if doubts := [each.text.partition(":")[0] for each in engine.outcomes.doubts]:
         title = f"{title} (doubtful: {'; '.join(doubts)})"
-    said = {"title": title, "language": engine.config.language}
-    return draw_sheet(path, views=scene.views, truth=scene.truth, recording=recording, **said, **shown)
+    named = replace(engine.config, title=title)
+    return draw_sheet(
+        path,
+        views=scene.views,
+        truth=scene.truth,
+        recording=recording,
+        title=named.title,
+        language=named.language,
+        **shown,
+    )
 
 
 def _figures(engine: Engine, products: Mapping[str, Any], recording: Recording | None) -> dict[str, Any]:

@@ -127,6 +127,7 @@ class SmallDesk:
         self.desk.tabs.append(self.tab)
         self.felt: list[dict[str, Any]] = []
         monkeypatch.setattr(Desk, "feel", self._feel)
+        monkeypatch.setattr(Desk, "feel_on", self._feel)
 
     async def _feel(self, made: dict[str, Any]) -> None:
         Path(made["parcel"]).unlink()

@@ -11,12 +11,21 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from desks import TEXT, SmallDesk
-from tangible_core.errors import ConfigError
+from desks import TEXT, SmallDesk, small_scene
+from full_disk import files_up_to
+from tangible_core import load_pipeline
+from tangible_core.data import SegmentMap
+from tangible_core.errors import ConfigError, OutputError, TangibleError
+from tangible_core.parts import find_parts
 from tangible_core.scene.picture_files import read_labels
+from tangible_ui.asks import ASKS
+from tangible_ui.desk.desk import Desk
 from tangible_ui.desk.newest import Newest
-from tangible_ui.maker import label_files
+from tangible_ui.maker import label_files, making
+from tangible_ui.maker.bench import Bench
+from tangible_ui.maker.jobs import JOBS
 from tangible_ui.maker.label_files import as_png, is_ours, unpacked
+from tangible_ui.maker.parts import _places
 from tangible_ui.maker.saved_parts import numbered, said_of_parts
 
 SHAPE = (24, 32)
@@ -205,6 +214,344 @@ class TestText:
         assert (scene["focal_px"], scene["segments"]) == (994.978, "parts.png")
         with pytest.raises(ConfigError, match="builtin/nothing"):
             self.said("scene: builtin/nothing\n", path, {})
+
+
+SAVED = [
+    {"label": 0, "name": "wall"},
+    {"label": 7, "name": "hat", "height_m": 0.001, "material": "glass"},
+    {"label": 3, "name": "bag", "height_m": 0.0005},
+]
+GIVEN = {"by": "given", "bulge_m": 0.0005}
+
+
+@pytest.fixture
+def small(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[Check], None]:
+    """Runs a test with a desk on which the small scene is opened."""
+    monkeypatch.setenv("TANGIBLE_DATA_DIR", str(tmp_path / "data"))
+    scene = small_scene(tmp_path)
+
+    def run(check: Check) -> None:
+        async def all_of_it() -> None:
+            small = SmallDesk(tmp_path, monkeypatch)
+
+            async def ask(name: str, **told: Any) -> Any:
+                return await ASKS[name](small.desk, small.tab, **told)
+
+            await ASKS["begin"](small.desk, small.tab, files=[str(scene)], make_it=False)
+            await check(small, ask)
+
+        asyncio.run(all_of_it())
+
+    return run
+
+
+async def sent(small: SmallDesk, ask: Any, data: bytes | None = None) -> str:
+    """The batch in which labels wait."""
+
+    async def body() -> Any:
+        yield packed(drawn()) if data is None else data
+
+    batch = await ask("batch")
+    await small.desk.shelf.put(batch, "labels.gz", body())
+    return batch
+
+
+async def saved(small: SmallDesk, ask: Any, **told: Any) -> Any:
+    return await ask("parts_save", **{"upload": await sent(small, ask), "parts": SAVED, "heights": GIVEN, **told})
+
+
+class TestOpening:
+    def test_a_photo_without_segments_is_one_part(self, small: Callable[[Check], None]) -> None:
+        async def check(small: SmallDesk, ask: Any) -> None:
+            found = await ask("parts_open")
+            assert (found["rows"], found["columns"], found["widthM"]) == (24, 32, 0.06)
+            assert found["heights"]["by"] == "given"
+            assert found["top_m"] == pytest.approx(0.004 - 0.0018)
+            (part,) = found["parts"]
+            assert (part["number"], part["pixels"], part["height_m"], part["name"]) == (0, 24 * 32, None, "")
+            at = small.desk.folder
+            assert not np.fromfile(at / found["labels"], "<u2").any()
+            with Image.open(at / found["picture"]) as picture:
+                assert picture.size == (32, 24)
+
+        small(check)
+
+    def test_what_was_saved_is_opened_again(self, small: Callable[[Check], None]) -> None:
+        async def check(small: SmallDesk, ask: Any) -> None:
+            kept = await saved(small, ask, title="A hat", language="de")
+            found = await ask("parts_open")
+            assert [each["name"] for each in found["parts"]] == ["wall", "hat", "bag"]
+            assert [each["height_m"] for each in found["parts"]] == [None, 0.001, 0.0005]
+            assert [each["material"] for each in found["parts"]] == [None, "glass", None]
+            assert (found["title"], found["language"], found["heights"]["bulge_m"]) == ("A hat", "de", 0.0005)
+            assert found["digest"] == kept["digest"]
+            labels = np.fromfile(small.desk.folder / found["labels"], "<u2").reshape(SHAPE)
+            for number, part in enumerate(found["parts"]):
+                assert labels[part["at"][1], part["at"][0]] == number
+                assert part["pixels"] == (labels == number).sum()
+            np.testing.assert_array_equal(labels, find_parts(SegmentMap(drawn().astype(np.int32) % 5)).labels)
+
+        small(check)
+
+    @pytest.mark.parametrize("scene", ["{height: hill.npy}", "{height: hill.npy, segments: drawn.png}"])
+    def test_heights_are_a_picture_too(self, tmp_path: Path, scene: str) -> None:
+        hill = np.add.outer(np.arange(24.0), np.arange(32.0))
+        hill[0, 0] = np.nan
+        np.save(tmp_path / "hill.npy", hill)
+        Image.fromarray(drawn().astype(np.uint8)).save(tmp_path / "drawn.png")
+        bench = Bench(tmp_path, lambda event, **told: None)
+        found = JOBS["parts_open"].do(bench, text=f"scene: {scene}\n", path=tmp_path / "a.yaml", sets=[])
+        assert len(found["parts"]) == (3 if "segments" in scene else 1)
+        with Image.open(tmp_path / found["picture"]) as picture:
+            grey = np.asarray(picture.convert("L"))
+        assert grey[-1, -1] > 240
+        assert grey[0, 1] < 30
+
+    def test_places_lie_in_their_parts_however_small(self) -> None:
+        labels = np.random.default_rng(0).integers(0, 30, (900, 1100)).astype(np.int32)
+        labels[100:800, 200:900] = 40
+        found = find_parts(SegmentMap(np.unique(labels, return_inverse=True)[1].reshape(labels.shape).astype(np.int32)))
+        for number, (x, y) in enumerate(_places(found)):
+            assert found.labels[y, x] == number
+            if number > 200_000:
+                break
+
+    def test_a_full_disk_leaves_nothing(self, tmp_path: Path) -> None:
+        Image.fromarray(np.random.default_rng(0).integers(0, 255, (90, 90, 3)).astype(np.uint8)).save(
+            tmp_path / "a.png"
+        )
+        bench, told = Bench(tmp_path / "at", lambda event, **told: None), tmp_path / "a.yaml"
+        (tmp_path / "at").mkdir()
+        with files_up_to(1000), pytest.raises(OutputError, match="free some space"):
+            JOBS["parts_open"].do(bench, text="scene: {photo: a.png}\n", path=told, sets=[])
+        assert not list((tmp_path / "at").iterdir())
+
+
+class TestSaving:
+    def test_labels_lie_beside_the_document_which_runs_as_it_stands(
+        self, small: Callable[[Check], None], tmp_path: Path
+    ) -> None:
+        async def check(small: SmallDesk, ask: Any) -> None:
+            found = await saved(small, ask)
+            assert (found["path"], found["saved"]) == (str(tmp_path / "parts.png"), True)
+            assert found["numbers"] == {"0": [0], "7": [1], "3": [2]}
+            assert (tmp_path / "mine.yaml").read_text() == small.desk.text
+            assert small.desk.text.startswith("# a photograph of mine\nscene: {photo: mine.png, segments: parts.png}\n")
+            assert "# bright is near" in small.desk.text
+            await small.tab.until("touch")
+            assert small.tab.last("scene")["parts"] == ["wall", "hat", "bag"]
+            surface = load_pipeline(tmp_path / "mine.yaml").surface
+            assert surface.names == ("wall", "hat", "bag")
+            assert not list((tmp_path / "drawn" / "incoming").iterdir())
+
+        small(check)
+
+    def test_a_picture_that_nobody_saved_yet_keeps_its_parts_on_the_shelf(
+        self, small: Callable[[Check], None], tmp_path: Path
+    ) -> None:
+        async def check(small: SmallDesk, ask: Any) -> None:
+            (tmp_path / "mine.yaml").write_text("# of somebody else\n")
+            found = await saved(small, ask)
+            assert not found["saved"]
+            assert (tmp_path / "mine.yaml").read_text() == "# of somebody else\n"
+            assert Path(found["path"]).is_relative_to(tmp_path / "data")
+            await ask("save", path=str(tmp_path / "other" / "new.yaml"))
+            assert load_pipeline(tmp_path / "other" / "new.yaml").surface.names == ("wall", "hat", "bag")
+
+        small(check)
+
+    def test_nothing_is_written_over_that_is_not_ours(self, small: Callable[[Check], None], tmp_path: Path) -> None:
+        async def check(small: SmallDesk, ask: Any) -> None:
+            (tmp_path / "parts.png").write_bytes(b"of somebody else")
+            assert Path((await saved(small, ask))["path"]).name == "parts-2.png"
+            assert (tmp_path / "parts.png").read_bytes() == b"of somebody else"
+            assert "segments: parts-2.png" in small.desk.text
+            other = drawn()
+            other[0, 0] = 7
+            found = await saved(small, ask, upload=await sent(small, ask, packed(other)))
+            assert Path(found["path"]).name == "parts-2.png"
+            assert read_labels(tmp_path / "parts-2.png")[0, 1] == 1
+
+        small(check)
+
+    def test_other_labels_under_the_same_name_are_made_anew(self, small: Callable[[Check], None]) -> None:
+        async def check(small: SmallDesk, ask: Any) -> None:
+            await saved(small, ask)
+            await small.tab.until("touch")
+            bent = drawn()
+            bent[4:14, 4:14] = 7
+            text = small.desk.text
+            await saved(small, ask, upload=await sent(small, ask, packed(bent)))
+            assert small.desk.text == text
+            await small.tab.until("touch", 2)
+            found = await ask("parts_open")
+            assert found["parts"][1]["pixels"] == (bent == 7).sum()
+
+        small(check)
+
+    def test_a_step_back_finds_the_labels_that_it_had(self, small: Callable[[Check], None]) -> None:
+        async def check(small: SmallDesk, ask: Any) -> None:
+            await saved(small, ask)
+            fewer = drawn()
+            fewer[fewer == 3] = 0
+            await saved(small, ask, upload=await sent(small, ask, packed(fewer)), parts=SAVED[:2])
+            assert len((await ask("parts_open"))["parts"]) == 2
+            await ask("undo")
+            assert [each["name"] for each in (await ask("parts_open"))["parts"]] == ["wall", "hat", "bag"]
+
+        small(check)
+
+    @pytest.mark.parametrize(
+        ("told", "says"),
+        [
+            ({"parts": [{"label": 9, "name": "gone"}]}, "no pixel"),
+            ({"parts": [{"label": 7, "name": "a"}, {"label": 3, "name": "A"}]}, "name of its own"),
+            ({"parts": [{"label": 7, "height_m": 0.5}]}, "the highest can be"),
+            ({"parts": [{"label": 7, "material": "unobtainium"}]}, "unobtainium"),
+            ({"parts": [{"label": 7, "height_m": "high"}]}, "height_m"),
+            ({"heights": {"by": "magic"}}, "by"),
+            ({"heights": None}, "heights: {by: given}"),
+            ({"language": "not a language"}, "tag of a language"),
+            ({"upload": "0" * 16}, "send them again"),
+            ({"of": "of another tab"}, "changed elsewhere meanwhile"),
+        ],
+    )
+    def test_what_cannot_be_said_changes_nothing(
+        self, small: Callable[[Check], None], tmp_path: Path, told: dict[str, Any], says: str
+    ) -> None:
+        async def check(small: SmallDesk, ask: Any) -> None:
+            with pytest.raises(TangibleError, match=says):
+                await saved(small, ask, **told)
+            assert small.desk.text == (tmp_path / "mine.yaml").read_text() == TEXT
+            assert not list(tmp_path.glob("parts*"))
+
+        small(check)
+
+    def test_a_full_disk_changes_nothing(self, small: Callable[[Check], None], tmp_path: Path) -> None:
+        async def check(small: SmallDesk, ask: Any) -> None:
+            await saved(small, ask)
+            await small.tab.until("touch")
+            text, labels = small.desk.text, (tmp_path / "parts.png").read_bytes()
+            noise = np.random.default_rng(0).permuted(drawn().ravel()).reshape(SHAPE)
+            upload = await sent(small, ask, packed(noise))
+            for size in (100, len(labels) + 100):  # the labels themselves do not fit; the text behind them does not
+                with files_up_to(size), pytest.raises(TangibleError, match="free some space"):
+                    await ask("parts_save", upload=upload, parts=[], heights=GIVEN)
+                assert small.desk.text == (tmp_path / "mine.yaml").read_text() == text
+                assert (tmp_path / "parts.png").read_bytes() == labels
+                upload = await sent(small, ask)
+
+        small(check)
+
+    @pytest.mark.parametrize("framing", ["crop: [3, 2, 20, 15]", "rotate: 90", "crop: [3, 2, 20, 15], rotate: 270"])
+    def test_what_is_cut_and_turned_comes_back_as_it_was_drawn(self, tmp_path: Path, framing: str) -> None:
+        path = small_scene(tmp_path)
+        text = TEXT.replace("photo: mine.png", f"photo: mine.png, {framing}")
+        path.write_text(text)
+        bench = Bench(tmp_path, lambda event, **told: None)
+        rows, columns = bench.pipeline_of(text, path, []).scene.shape
+        labels = np.zeros((rows, columns), np.uint16)
+        labels[2:9, 3:8] = 1
+        labels[rows - 3 :, columns - 2 :] = 2
+        (tmp_path / "sent").write_bytes(packed(labels))
+        JOBS["parts_save"].do(
+            bench, text=text, path=path, sets=[], sent=tmp_path / "sent", parts=[{"label": 1, "name": "a"}],
+            heights=GIVEN, words={}, of="", opened=text, shelf=tmp_path,
+        )  # fmt: skip
+        scene = load_pipeline(path).scene
+        assert scene.segments is not None
+        np.testing.assert_array_equal(scene.segments.labels, labels)
+
+
+class TestHeights:
+    def test_what_is_felt_is_what_the_saved_document_gives(
+        self, small: Callable[[Check], None], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        """To the bit: of surfaces, and of all that the force loop is sent."""
+
+        async def check(small: SmallDesk, ask: Any) -> None:
+            sent_to_the_loop: list[bytes] = []
+
+            async def feel(_: Any, made: dict[str, Any]) -> None:
+                sent_to_the_loop.append(Path(made["parcel"]).read_bytes())
+                Path(made["parcel"]).unlink()
+
+            monkeypatch.setattr(Desk, "feel", feel)
+            monkeypatch.setattr(Desk, "feel_on", feel)
+            for render in ("{use: penalty}", "{use: proxy}"):
+                await ask("set", written={"render": render})
+                await saved(small, ask)
+                await ask("parts_heights", heights_m=[0.0002, 0.0008, 0.0011], materials=[None, "sand", "ice"],
+                          heights={"round_m": 0.004})  # fmt: skip
+                felt, surface = sent_to_the_loop[-1], small.maker.bench.kept.seen
+                parts = [{**SAVED[0], "height_m": 0.0002}, {**SAVED[1], "height_m": 0.0008, "material": "sand"},
+                         {**SAVED[2], "height_m": 0.0011, "material": "ice"}]  # fmt: skip
+                await saved(small, ask, parts=parts, heights={**GIVEN, "round_m": 0.004})
+                del surface
+                pipeline = load_pipeline(tmp_path / "mine.yaml", small.desk.felt_sets())
+                made = making.felt(pipeline)
+                assert Path(made["parcel"]).read_bytes() == felt
+                Path(made["parcel"]).unlink()
+
+        small(check)
+
+    def test_the_terrain_follows_and_the_document_stays(self, small: Callable[[Check], None]) -> None:
+        async def check(small: SmallDesk, ask: Any) -> None:
+            await saved(small, ask)
+            await small.tab.until("touch")
+            text, before = small.desk.text, small.tab.last("scene")
+            assert await ask("parts_heights", heights_m=[0.0, 0.002, 0.001]) == {}
+            after = await small.tab.until("scene", small.tab.names().count("scene") + 1)
+            assert after["height_m"][1] > before["height_m"][1] + 0.0005
+            assert after["parts"] == ["wall", "hat", "bag"]
+            assert small.desk.text == text
+
+        small(check)
+
+    def test_a_height_makes_again_nothing_that_does_not_depend_on_it(
+        self, small: Callable[[Check], None], monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        async def check(small: SmallDesk, ask: Any) -> None:
+            await saved(small, ask)
+            await ask("parts_heights", heights_m=[0.0, 0.002, 0.001])
+
+            def never(*_: Any, **__: Any) -> None:
+                raise AssertionError
+
+            monkeypatch.setattr("tangible_ui.maker.felt_parts.Layering", never)
+            monkeypatch.setattr("tangible_core.materials.assignment.assign", never)
+            monkeypatch.setattr("tangible_core.parts.find.find_parts", never)
+            await ask("parts_heights", heights_m=[0.0, 0.001, 0.001])
+            await ask("parts_heights", heights_m=[0.0, 0.001, 0.001], materials=["ice", "ice", None])
+            await ask("set", changes={"title": "another"})
+            await ask("parts_heights", heights_m=[0.0, 0.001, 0.002])
+
+        small(check)
+
+    @pytest.mark.parametrize(
+        ("told", "says"),
+        [
+            ({"heights_m": [0.0, 0.001]}, "3 parts and 2 heights"),
+            ({"heights_m": [0.0, 0.001, 0.5]}, "the highest can be"),
+            ({"heights_m": [0.0, 0.001, -1.0]}, "height_m"),
+            ({"heights_m": [0.0, 0.0, 0.0], "materials": ["unobtainium"]}, "unobtainium"),
+            ({"heights_m": [0.0, 0.0, 0.0], "heights": {"round_m": -1.0}}, "round_m"),
+        ],
+    )
+    def test_what_is_wrong_is_said(self, small: Callable[[Check], None], told: dict[str, Any], says: str) -> None:
+        async def check(small: SmallDesk, ask: Any) -> None:
+            await saved(small, ask)
+            with pytest.raises(TangibleError, match=says):
+                await ask("parts_heights", **told)
+
+        small(check)
+
+    def test_parts_that_were_not_saved_have_no_heights(self, small: Callable[[Check], None]) -> None:
+        async def check(small: SmallDesk, ask: Any) -> None:
+            with pytest.raises(ConfigError, match="save what was drawn"):
+                await ask("parts_heights", heights_m=[0.001])
+
+        small(check)
 
 
 def test_of_asks_that_wait_the_newest_alone_is_done() -> None:

@@ -1,4 +1,4 @@
-"""The parts editor: begin, propose a part, follow the picture's edges, and keep what was drawn."""
+"""The parts editor: begin, propose a part, follow the picture's edges, feel heights, and keep what was drawn."""
 
 import asyncio
 from typing import Any, Literal
@@ -69,6 +69,31 @@ async def parts_snap(desk: Desk, tab: Tab | None, points: list[list[float]], rea
     return await desk.maker.quick("parts_snap", **_document(desk), points=points, reach_px=reach_px)
 
 
+async def parts_heights(
+    desk: Desk,
+    tab: Tab | None,
+    heights_m: list[float],
+    materials: list[str | None] | None = None,
+    heights: dict[str, Any] | None = None,
+) -> dict[str, Any] | None:
+    """Feel the parts at these heights, by number, and see them; the document stays as it is.
+
+    materials, heights: others than the document's. Returns: nothing if newer ones came before this began.
+    Raises: TangibleError, and what was felt before is felt on.
+    """
+    told = {"heights_m": heights_m, "materials": materials, "heights": heights}
+
+    async def felt() -> dict[str, Any]:
+        made = await desk.maker.quick("parts_heights", **{**_document(desk), "sets": desk.felt_sets()}, **told)
+        await desk.feel_on(made)
+        return {}
+
+    done = await desk.heights.do(felt)
+    if done is not None:
+        desk.begin(desk.drawn.do(lambda: desk.maker.quick("parts_shown")))
+    return done
+
+
 def _document(desk: Desk) -> dict[str, Any]:
     return {"text": desk.text, "path": desk.path, "sets": desk.sets}
 
@@ -78,4 +103,5 @@ ASKS = {
     "parts_save": parts_save,
     "parts_propose": parts_propose,
     "parts_snap": parts_snap,
+    "parts_heights": parts_heights,
 }

@@ -53,6 +53,8 @@ class Desk:
         self.makes = Makes()
         self.strokes = Newest()
         """Asks for a part under a stroke."""
+        self.heights, self.drawn = Newest(), Newest()
+        """Asks to feel parts at other heights, and to draw them."""
         self.choice = Choice()
         """Which device is felt."""
         self.drafts = Drafts(user_folder("unsaved"))
@@ -84,6 +86,16 @@ class Desk:
             await asyncio.to_thread(self.laws.rival.close)
             self.tell("touch", law=felt.law, seconds=seconds, how=self.feeling.how)
             self.tell("loop", running=True, why="", device=felt.device_name, own_hand=felt.own_hand)
+
+    async def feel_on(self, made: dict[str, Any]) -> None:
+        """Feel what is hardly another than what is felt: pages hear of it only if that was not felt. Raises: as `put`.
+
+        Many come in a second while somebody drags; what has happened is not to be forgotten for that.
+        """
+        if self.laws.other is not None or not self.feeling.running:
+            await self.feel(made)
+        else:
+            await self.put(Felt.of(made, self.feeling.channel))
 
     async def put(self, felt: Felt) -> float | None:
         """Put a touch under the hand; seconds that took.

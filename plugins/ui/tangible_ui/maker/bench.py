@@ -68,6 +68,8 @@ class Bench:
         """Digest of the surface that pages were told of last."""
         self.opened: Any = None
         """What an editor of parts works on; quick jobs alone look at it."""
+        self.kept: Any = None
+        """What does not depend on the heights of parts; quick jobs alone look at it."""
         self._cache = cache or Cache()
         self._newest, self._work = NEVER, None
         self._parsed: tuple[Any, PipelineConfig] | None = None

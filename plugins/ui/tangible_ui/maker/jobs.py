@@ -3,6 +3,7 @@
 from . import (
     checking,
     devices,
+    felt_parts,
     laws,
     making,
     mapping,
@@ -31,4 +32,5 @@ JOBS = {
     **saved_parts.JOBS,
     **proposals.JOBS,
     **snapping.JOBS,
+    **felt_parts.JOBS,
 }

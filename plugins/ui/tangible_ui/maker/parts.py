@@ -2,6 +2,7 @@
 
 import shutil
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from tempfile import mkdtemp
 from typing import Any, NamedTuple
@@ -13,19 +14,20 @@ from tangible_core.data import SegmentMap
 from tangible_core.data.parts import PartMap
 from tangible_core.data.pictures import to_rgb8
 from tangible_core.data.records import digest_of
-from tangible_core.errors import ConfigError, OutputError
+from tangible_core.errors import OutputError
 from tangible_core.parts import HeightChoice, PartChoice, find_parts, part_sizes
 from tangible_core.pipeline.config import PipelineConfig
+from tangible_core.pipeline.parts_found import parts_of
+from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.scene.scene import Scene
 
 from .bench import Bench, Job
+from .seen import is_there
 from .shown import write_whole
 
 FOLDER = "parts-"
 KEPT = 3
 """Folders of what editors fetch that stay: tabs may still fetch from the one before."""
-MOST_PARTS = 2**16
-"""A page holds two bytes a pixel."""
 MOST_LOOKED_AT = 400_000
 """Pixels among which a place is looked for that is well inside a part."""
 
@@ -41,14 +43,14 @@ class Opened(NamedTuple):
 def parts_open(bench: Bench, text: str, path: Path, sets: list[str]) -> dict[str, Any]:
     """What an editor begins with; the picture, and the number of each pixel's part, are left in files.
 
-    Raises: ConfigError for a document that is wrong, or more parts than an editor can hold; PictureError for a scene
-    that cannot be read; OutputError if there is no room for the files.
+    Raises: ConfigError for a document that is wrong; PictureError for a scene that cannot be read, or has too many
+    parts; OutputError if there is no room for the files.
     """
     pipeline = bench.pipeline_of(text, path, sets)
-    opened, config = opened_of(bench, pipeline.scene), pipeline.config
+    opened, config = opened_of(bench, pipeline), pipeline.config
     at = f"{FOLDER}{digest_of((opened.picture, opened.parts))}"
     _leave(opened, bench.folder / at)
-    heights = config_heights(config)
+    by_parts = replace(config, heights=config_heights(config))
     rows, columns = opened.parts.labels.shape
     return {
         "columns": columns,
@@ -57,19 +59,19 @@ def parts_open(bench: Bench, text: str, path: Path, sets: list[str]) -> dict[str
         "labels": f"{at}/labels.u16",
         "digest": digest(opened.parts, config),
         "parts": listed(opened.parts, config_parts(config)),
-        "heights": heights.model_dump(mode="json"),
-        "top_m": max(0.0, config.size.relief_m - heights.bulge_m - heights.detail_m),
-        "widthM": config.size.width_m,
-        "title": getattr(config, "title", ""),
-        "language": getattr(config, "language", "en"),
+        "heights": config_heights(config).model_dump(mode="json"),
+        "top_m": max(0.0, by_parts.top_m),
+        "widthM": by_parts.size.width_m,
+        "title": config.title,
+        "language": config.language,
     }
 
 
-def opened_of(bench: Bench, scene: Scene) -> Opened:
+def opened_of(bench: Bench, pipeline: Pipeline) -> Opened:
     """A scene's picture and parts; the last one's are kept. Raises: as `parts_open`."""
-    before = bench.opened
+    before, scene = bench.opened, pipeline.scene
     if before is None or before.scene is not scene:
-        before = bench.opened = Opened(scene, to_rgb8(_picture(scene)), _parts(scene))
+        before = bench.opened = Opened(scene, to_rgb8(_picture(scene)), _parts(pipeline))
     return before
 
 
@@ -81,12 +83,12 @@ def digest(parts: PartMap, config: PipelineConfig) -> str:
 
 def config_parts(config: PipelineConfig) -> Mapping[int, PartChoice]:
     """What a document says of its parts, by number."""
-    return getattr(config, "parts", None) or {}
+    return config.parts or {}
 
 
 def config_heights(config: PipelineConfig) -> HeightChoice:
     """How a document makes its relief of parts; how an editor begins, where it does not."""
-    return getattr(config, "heights", None) or HeightChoice(by="given")
+    return config.heights or HeightChoice(by="given")
 
 
 def listed(parts: PartMap, choices: Mapping[int, PartChoice]) -> list[dict[str, Any]]:
@@ -113,16 +115,14 @@ def _picture(scene: Scene) -> np.ndarray:
     return np.where(known, np.round(255 * ((height - low) / ((high - low) or 1))), 0).astype(np.uint8)
 
 
-def _parts(scene: Scene) -> PartMap:
-    """Those of the scene's own segments; one part without any."""
-    segments = scene.segments or SegmentMap(np.zeros(scene.shape, np.int32))
-    parts = find_parts(segments)
-    if parts.count > MOST_PARTS:
-        raise ConfigError(
-            f"{scene.name}: its segments fall into {parts.count} parts, and at most {MOST_PARTS} can be edited; give "
-            "it a label picture of fewer and larger areas (`scene: {segments: ...}`)"
-        )
-    return parts
+def _parts(pipeline: Pipeline) -> PartMap:
+    """Those of the scene's own segments, or of those that a document names parts of; one part without any."""
+    scene = pipeline.scene
+    if scene.segments is not None:
+        return parts_of(scene.segments)
+    if pipeline.config.by_parts and is_there(pipeline, "parts") and (found := pipeline.make("parts")) is not None:
+        return found
+    return find_parts(SegmentMap(np.zeros(scene.shape, np.int32)))
 
 
 def _places(parts: PartMap) -> list[tuple[int, int]]:

@@ -56,7 +56,7 @@ def parts_propose(
 
     Raises: ConfigError for what is no stroke in the picture; otherwise as `parts_open`.
     """
-    picture = opened_of(bench, bench.pipeline_of(text, path, sets).scene).picture
+    picture = opened_of(bench, bench.pipeline_of(text, path, sets)).picture
     box, mask = proposed(picture, as_points(points, picture.shape), width_px, kind, within)
     return {"box": list(box), "runs": runs(mask)}
 
@@ -160,7 +160,7 @@ def _found(small: np.ndarray, stroke: np.ndarray, rim: np.ndarray, width: float,
         return state != cv2.GC_BGD  # all of it is near: nothing tells what is outside
     cv2.setRNGSeed(0)
     lab = cv2.cvtColor(small, cv2.COLOR_RGB2Lab)
-    cv2.grabCut(lab, state, None, np.zeros((1, 65)), np.zeros((1, 65)), ROUNDS, cv2.GC_INIT_WITH_MASK)
+    cv2.grabCut(lab, state, (0, 0, 0, 0), np.zeros((1, 65)), np.zeros((1, 65)), ROUNDS, cv2.GC_INIT_WITH_MASK)
     return (state == cv2.GC_FGD) | (state == cv2.GC_PR_FGD)
 
 

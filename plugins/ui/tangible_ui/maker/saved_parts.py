@@ -19,6 +19,7 @@ from tangible_core.files.writing import atomic_write, write_text
 from tangible_core.parts import find_parts
 from tangible_core.pipeline.config import PipelineConfig, parse_config
 from tangible_core.pipeline.editing import REMOVE, edited, said
+from tangible_core.pipeline.parts_found import check_found
 from tangible_core.scene.scene import Scene, builtin_files
 from tangible_core.scene.scene_files import BUILTINS, SceneFiles
 
@@ -52,7 +53,7 @@ def parts_save(
     must not say; OutputError, and then nothing is changed.
     """
     pipeline = bench.pipeline_of(text, path, sets)
-    if of and of != digest(opened_of(bench, pipeline.scene).parts, pipeline.config):
+    if of and of != digest(opened_of(bench, pipeline).parts, pipeline.config):
         raise ConfigError("the parts were changed elsewhere meanwhile, as in another tab; open the editor again")
     labels = unpacked(sent, pipeline.scene.shape)
     known, segments = _compact(labels)
@@ -63,6 +64,7 @@ def parts_save(
     place = _beside(path) if in_file else shelf / hashlib.sha256(picture).hexdigest()[:16] / NAME
     changed = said_of_parts(text, path, place, choices, heights, words)
     config = parse_config(changed, path, bench.registry, sets)
+    check_found(config, found, labels.shape[1])
     _write(place, picture, path if in_file else None, changed)
     of = digest(found, config)
     return {"text": changed, "path": str(place), "numbers": numbers, "saved": in_file, "digest": of}
@@ -87,7 +89,7 @@ def numbered(
     if gone := sorted(told.keys() - of_label.keys()):
         raise ConfigError(f"label {gone[0]}: has a name or a height, and no pixel; leave it out, or paint it")
     sizes = np.bincount(numbers.ravel(), minlength=len(labels))
-    taken = {str(each.get("name") or "") for each in parts}
+    taken = {str(each.get("name") or "").strip().casefold() for each in parts}
     choices: dict[int, dict[str, Any]] = {}
     for label, each in told.items():
         largest_first = sorted(of_label[label], key=lambda number: (-sizes[number], number))
@@ -142,11 +144,11 @@ def _short(each: Mapping[str, Any]) -> Any:
 
 
 def _another(name: str, taken: set[str]) -> str:
-    number = 2
-    while f"{name} {number}" in taken:
-        number += 1
-    taken.add(f"{name} {number}")
-    return f"{name} {number}"
+    """A name after this one that no part has."""
+    others = (f"{name.strip()} {number}" for number in itertools.count(2))
+    found = next(each for each in others if each.casefold() not in taken)
+    taken.add(found.casefold())
+    return found
 
 
 def _compact(labels: UInt16[np.ndarray, "h w"]) -> tuple[np.ndarray, Int32[np.ndarray, "h w"]]:

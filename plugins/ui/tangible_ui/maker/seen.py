@@ -7,10 +7,10 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 from jaxtyping import Float32, Int32
 
-from tangible_core.data import DisparityMap, Material, Relief, SegmentMap
+from tangible_core.data import DisparityMap, HapticSurface, Material, Relief, SegmentMap
 from tangible_core.data.records import digest_of
 from tangible_core.metrics import absolute_error
-from tangible_core.pipeline.config import Product
+from tangible_core.pipeline.config import PipelineConfig, Product
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.pipeline.rules import fitted
 from tangible_core.scene.geometry import RANGE_PERCENT, flat_relief
@@ -54,12 +54,14 @@ class Seen:
     """By label, as they are felt; empty where there are none."""
     picture: np.ndarray | None
     layers: dict[str, Layer]
+    names: tuple[str, ...] | None = None
+    """By label, of what the labels are parts of; None where they are of no parts."""
 
     @cached_property
     def digest(self) -> str:
         """Of everything that is drawn."""
         layers = tuple((name, *layer) for name, layer in sorted(self.layers.items()))
-        parts = (self.name, self.shows, self.relief, self.labels, self.materials, self.picture, layers)
+        parts = (self.name, self.shows, self.relief, self.labels, self.materials, self.picture, layers, self.names)
         return digest_of(parts)
 
 
@@ -72,11 +74,21 @@ def see(pipeline: Pipeline, product: str) -> Seen:
 
 def see_surface(pipeline: Pipeline) -> Seen:
     """What is touched, its materials as the device holds them."""
-    surface, device = pipeline.surface, pipeline.config.felt_device
-    if device is not None:
-        surface, _ = fitted(surface, pipeline.config, device)
-    seen = _seen(pipeline, "surface", surface.relief)
-    return seen if surface.labels is None else replace(seen, labels=surface.labels, materials=surface.materials or ())
+    return _of(_seen(pipeline, "surface", pipeline.surface.relief), pipeline.surface, pipeline.config)
+
+
+def see_parts(pipeline: Pipeline, surface: HapticSurface, before: Seen | None) -> Seen:
+    """A surface of the pipeline's parts that have other heights or materials. before: what was seen of it so far."""
+    seen = before or _seen(pipeline, "surface", surface.relief)
+    return _of(replace(seen, relief=surface.relief), surface, pipeline.config)
+
+
+def _of(seen: Seen, surface: HapticSurface, config: PipelineConfig) -> Seen:
+    if config.felt_device is not None:
+        surface, _ = fitted(surface, config, config.felt_device)
+    if surface.labels is None:
+        return seen
+    return replace(seen, labels=surface.labels, materials=surface.materials or (), names=surface.names)
 
 
 def see_relief(pipeline: Pipeline) -> Seen:

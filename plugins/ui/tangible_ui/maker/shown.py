@@ -72,6 +72,7 @@ def _about(seen: Seen) -> dict[str, Any]:
         "labels": 0 if seen.labels is None else int(seen.labels.max()) + 1,
         "label_bytes": 2 if seen.labels is None else np.dtype(label_type(seen.labels)).itemsize,
         "materials": [asdict(each) for each in material_of(seen.materials)[0]],
+        "parts": None if seen.names is None else list(seen.names),
         "photo": seen.picture is not None,
         "fine_photo": None if seen.picture is None else _fine_size(seen.picture),
         "layers": {

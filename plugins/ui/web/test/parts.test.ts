@@ -7,6 +7,11 @@ import { Mask, spansOf } from "../src/panels/parts/mask";
 import { fromFront, moved, spread } from "../src/panels/parts/order";
 import { neighboursOf, piecesOf, placesOf } from "../src/panels/parts/pieces";
 import { filled } from "../src/panels/parts/polygon";
+import { borders } from "../src/panels/parts/borders";
+import { KEYS, TOOL_KEYS } from "../src/panels/parts/keys";
+import { type Felt, Live } from "../src/panels/parts/live";
+import { Sight } from "../src/panels/parts/sight";
+import { SHORTCUTS } from "../src/shortcuts";
 
 const part = (label: number, more: Partial<Part> = {}): Part => ({ label, name: "", height_m: 0, material: null, automatic: false, ...more });
 
@@ -322,4 +327,96 @@ test("a mask is what its runs say", () => {
   assert.deepEqual([...mask.spans()], spans);
   mask.clear();
   assert.ok(mask.data.every((each) => !each));
+});
+
+describe("sight", () => {
+  const seen = (): Sight => {
+    const sight = new Sight(400, 300);
+    sight.resize(800, 900);
+    return sight;
+  };
+
+  test("the whole picture is seen at first, in the middle, and still when the board is resized", () => {
+    const sight = seen();
+    assert.deepEqual([sight.zoom, sight.toBoard([0, 0]), sight.toBoard([400, 300])], [2, [0, 150], [800, 750]]);
+    sight.resize(400, 300);
+    assert.deepEqual([sight.zoom, sight.toBoard([0, 0])], [1, [0, 0]]);
+    sight.nearer(4);
+    sight.resize(500, 300);
+    assert.equal(sight.zoom, 4);
+  });
+
+  test("what is under the pointer stays there, and places lead back", () => {
+    const sight = seen();
+    const at = sight.toPicture([200, 400]);
+    sight.nearer(3, [200, 400]);
+    assert.deepEqual(sight.toPicture([200, 400]).map((each) => Math.round(1e6 * each)), at.map((each) => Math.round(1e6 * each)));
+    assert.deepEqual(sight.toBoard(sight.toPicture([5, 7])).map((each) => Math.round(1e6 * each) / 1e6), [5, 7]);
+  });
+
+  test("a crosshair is brought into sight, and one that is seen moves nothing", () => {
+    const sight = seen();
+    assert.ok(!sight.reveal([0.5, 0.5]) && !sight.reveal([399.5, 299.5]));
+    sight.nearer(8, [400, 450]);
+    assert.ok(sight.reveal([399.5, 10.5]));
+    const [x, y] = sight.toBoard([399.5, 10.5]);
+    assert.ok(x > 0 && x < 800 && y > 0 && y < 900, `${x} ${y}`);
+  });
+});
+
+test("borders are a dark line beside a light one, the selected part's in the colour of the theme, proposals are dashed", () => {
+  (globalThis as { ImageData?: unknown }).ImageData = class {
+    data: Uint8ClampedArray;
+    constructor(
+      readonly width: number,
+      readonly height: number,
+    ) {
+      this.data = new Uint8ClampedArray(4 * width * height);
+    }
+  };
+  const labels = picture(...Array<string>(10).fill("aaaaabbbbbccccc"));
+  const sight = new Sight(15, 10);
+  sight.resize(15, 10);
+  const look = { labels, selected: 2, proposed: null as Mask | null, accent: 7, against: 8, thin: 9, ratio: 0.67 };
+  const row = (box = { left: 0, top: 4, right: 15, bottom: 5 }): number[] => [...new Uint32Array(borders(look, sight, box).data.buffer)];
+  const [dark, light] = [0xd0000000, 0xe6ffffff];
+  const whole = row();
+  assert.deepEqual(whole.slice(3, 7), [0, dark, light, 0]);
+  assert.equal(whole[9], 8);
+  assert.ok(whole.slice(10, 12).every((each) => each === 7));
+  assert.deepEqual(row({ left: 4, top: 4, right: 11, bottom: 5 }), whole.slice(4, 11), "a part of it is the same");
+  look.proposed = new Mask(15, 10);
+  look.proposed.put([[4, 1, 4]], true);
+  assert.notDeepEqual(row(), whole);
+});
+
+test("what is dragged is sent one at a time, the newest last, and what is felt already is not", async () => {
+  const sent: number[] = [];
+  const arrive: (() => void)[] = [];
+  const at = (height: number): Felt => ({ heights_m: [height], materials: [null], heights: {} });
+  const live = new Live(({ heights_m }) => {
+    sent.push(heights_m[0]!);
+    return new Promise<void>((done) => arrive.push(done));
+  }, assert.fail);
+  live.feel(at(0), at(0));
+  for (const height of [1, 2, 3]) live.feel(at(height), at(0));
+  assert.deepEqual(sent, [1]);
+  arrive[0]!();
+  await new Promise(setImmediate);
+  assert.deepEqual(sent, [1, 3]);
+  arrive[1]!();
+  await new Promise(setImmediate);
+  live.feel(at(3), at(0));
+  await new Promise(setImmediate);
+  assert.deepEqual(sent, [1, 3]);
+  live.feel(at(0), at(0));
+  assert.deepEqual(sent, [1, 3, 0], "also back to what was opened");
+});
+
+test("no key of the editor is one that means something else wherever the focus is", () => {
+  const theirs = Object.values(SHORTCUTS).filter(({ where }) => where !== "surface").flatMap(({ keys }) => [...keys] as string[]);
+  const own = Object.values(KEYS).flat() as string[];
+  assert.deepEqual(own.filter((key) => theirs.includes(key) && key !== "Escape"), []);
+  const letters = [...Object.values(TOOL_KEYS), ...KEYS.keyFresh, ...KEYS.keyWidth, ...KEYS.keyWhere];
+  assert.equal(new Set(letters).size, letters.length);
 });

@@ -11,7 +11,7 @@ import { Board } from "./board";
 import { Drawing, Full } from "./drawing";
 import { KEYS, TOOL_KEYS, WAYS } from "./keys";
 import { labelAt, type Point } from "./labels";
-import { Live } from "./live";
+import { type Felt, Live } from "./live";
 import { neighboursOf, type Place, placesOf } from "./pieces";
 import { type Fault, Pens, type Tool } from "./pens";
 import { pointers } from "./pointers";
@@ -53,8 +53,9 @@ class Editor {
   private live: Live;
   private places = new Map<number, Place>();
   private order = new Map<number, number>();
-  /** The numbers that labels were opened or saved with, and the heights by these. */
-  private felt: { numbers: Map<number, number>; heights_m: number[] };
+  /** The numbers that labels were opened or saved with, and what was said of them. */
+  private numbers: Map<number, number>;
+  private base: Felt;
   private digest: string;
   private resting = 0;
   private cross: Point | null = null;
@@ -68,14 +69,15 @@ class Editor {
   ) {
     this.digest = scene.digest;
     this.drawing = new Drawing(scene.labels, scene.parts, scene.top_m);
-    this.felt = { numbers: new Map(scene.parts.map(({ label }) => [label, label])), heights_m: scene.parts.map((each) => each.height_m) };
+    this.numbers = new Map(scene.parts.map(({ label }) => [label, label]));
     this.board = new Board(this.drawing, scene.picture);
     this.pens = new Pens(this.drawing, page.net, () => this.board.scale);
     this.pens.width = Math.max(1, Math.round(Math.max(scene.labels.columns, scene.labels.rows) / 40));
     this.pens.fresh = scene.parts.length === 1;
     this.side = new Side(this.drawing, materials);
     this.words = new Words(scene);
-    this.live = new Live((heights_m) => page.net.ask("parts_heights", { heights_m }), (error) => this.say(t("failed", { why: error.message })));
+    this.base = this.feltNow();
+    this.live = new Live((felt) => page.net.ask("parts_heights", { ...felt }), (error) => this.say(t("failed", { why: error.message })));
     this.bar = new Bar(this.drawing, this.pens, {
       use: (tool) => this.use(tool),
       fresh: () => this.toggleFresh(),
@@ -133,7 +135,8 @@ class Editor {
     side.joined = (label) => this.tried(() => drawing.join(label, drawing.selected));
     side.ordered = () => this.tellOrder();
     side.numberOf = (label) => this.order.get(label) ?? label;
-    side.isFelt = (label) => this.felt.numbers.has(label);
+    side.isFelt = (label) => this.numbers.has(label);
+    this.words.shaped = () => this.feel();
     pointers(board, pens, {
       moved: (at, event) => this.pointed(at, event.pointerType !== "touch"),
       lifted: () => this.lifted(),
@@ -418,13 +421,21 @@ class Editor {
 
   // -- felt, saved, closed --
 
-  /** Heights of parts that were opened or saved are felt at once, unless the program has to find some. */
+  /** What is said of parts that were opened or saved is felt at once, unless the program has to find some heights. */
   private feel(): void {
-    const { numbers, heights_m } = this.felt;
-    if (this.drawing.parts.some((each) => each.automatic)) return;
-    const wanted = [...heights_m];
-    for (const { label, height_m } of this.drawing.parts) if (numbers.has(label)) wanted[numbers.get(label)!] = height_m;
-    this.live.feel(wanted, heights_m);
+    if (!this.drawing.parts.some((each) => each.automatic)) this.live.feel(this.feltNow(), this.base);
+  }
+
+  private feltNow(): Felt {
+    const heights_m = [...(this.base?.heights_m ?? [])];
+    const materials = [...(this.base?.materials ?? [])];
+    for (const { label, height_m, material } of this.drawing.parts) {
+      const number = this.numbers.get(label);
+      if (number === undefined) continue;
+      heights_m[number] = height_m;
+      materials[number] = material;
+    }
+    return { heights_m, materials, heights: this.words.said(false).heights };
   }
 
   private async save(): Promise<boolean> {
@@ -440,9 +451,9 @@ class Editor {
       const automatic = parts.some((each) => each.automatic);
       const said = await save(this.page.net, drawing.labels, parts, { ...this.words.said(automatic), of: this.digest });
       this.digest = said.digest;
-      const numbers = new Map(parts.map(({ label }) => [label, said.numbers[label]![0]!]));
-      this.felt = { numbers, heights_m: [] };
-      for (const { label, height_m } of parts) this.felt.heights_m[numbers.get(label)!] = height_m;
+      this.numbers = new Map(parts.map(({ label }) => [label, said.numbers[label]![0]!]));
+      this.base = { heights_m: [], materials: [], heights: {} };
+      this.base = this.feltNow();
       this.live.settled();
       drawing.keep(steps);
       this.words.changed = false;
@@ -480,7 +491,7 @@ class Editor {
       const answers = [["", t("goOn")], ["save", t("save")], ["lose", t("throwAway")]] as const;
       const answer = await question(t("unsaved"), [t("unsavedText")], answers);
       if (!answer || (answer === "save" && !(await this.save()))) return;
-      if (answer === "lose") this.live.feel(this.felt.heights_m, this.felt.heights_m);
+      if (answer === "lose") this.live.feel(this.base, this.base);
     }
     current = null;
     clearTimeout(this.resting);

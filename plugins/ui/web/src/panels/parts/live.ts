@@ -1,19 +1,27 @@
-/** Heights that are dragged are felt: the newest is sent when the one before has arrived. */
+/** What is dragged is felt: the newest is sent when the one before has arrived. */
+
+/** By the number that a part was opened or saved with; and the shape of all. */
+export interface Felt {
+  heights_m: number[];
+  materials: (string | null)[];
+  heights: object;
+}
+
 export class Live {
-  private next: number[] | null = null;
+  private next: Felt | null = null;
   private sending = false;
   /** What was sent last; nothing, while what is felt is what was opened or saved. */
   private sent = "";
 
   constructor(
-    private ask: (heights_m: number[]) => Promise<unknown>,
+    private ask: (felt: Felt) => Promise<unknown>,
     private failed: (error: Error) => void,
   ) {}
 
-  /** Feel these heights, by the number that a part was opened or saved with. base: those that it was with. */
-  feel(heights_m: number[], base: number[]): void {
-    if (!this.sent && !this.sending && String(heights_m) === String(base)) return;
-    this.next = heights_m;
+  /** base: what was opened or saved. */
+  feel(felt: Felt, base: Felt): void {
+    if (!this.sent && !this.sending && JSON.stringify(felt) === JSON.stringify(base)) return;
+    this.next = felt;
     if (!this.sending) void this.go();
   }
 
@@ -27,11 +35,12 @@ export class Live {
     this.sending = true;
     try {
       while (this.next) {
-        const heights_m = this.next;
+        const felt = this.next;
         this.next = null;
-        if (String(heights_m) === this.sent) continue;
-        this.sent = String(heights_m);
-        await this.ask(heights_m);
+        const said = JSON.stringify(felt);
+        if (said === this.sent) continue;
+        this.sent = said;
+        await this.ask(felt);
       }
     } catch (error) {
       this.next = null;

@@ -53,11 +53,10 @@ export class Sight {
 
   /** Move as little as is needed for a place of the picture to be seen; whether it moved. */
   reveal([x, y]: Point): boolean {
-    const rim = Math.min(this.width, this.height) / 12 / this.zoom;
     const before = [this.left, this.top];
-    this.left = Math.max(x + rim - this.width / this.zoom, Math.min(x - rim, this.left));
-    this.top = Math.max(y + rim - this.height / this.zoom, Math.min(y - rim, this.top));
-    this.hold();
+    const rim = Math.min(this.width, this.height) / 12 / this.zoom;
+    this.left = shown(this.left, this.width / this.zoom, x, rim, this.columns);
+    this.top = shown(this.top, this.height / this.zoom, y, rim, this.rows);
     return before[0] !== this.left || before[1] !== this.top;
   }
 
@@ -91,4 +90,9 @@ export class Sight {
     this.left = Math.max(-w, Math.min(this.columns - w, this.left));
     this.top = Math.max(-h, Math.min(this.rows - h, this.top));
   }
+}
+
+/** The beginning of what is seen along an axis, so that a place is in it with a rim where there is more to see. */
+function shown(from: number, length: number, at: number, rim: number, most: number): number {
+  return Math.max(Math.min(most, at + rim) - length, Math.min(Math.max(0, at - rim), from));
 }

@@ -11,6 +11,8 @@ const MOST_MM = { round_m: 100, bulge_m: 10, detail_m: 10 };
 export class Words {
   readonly elements: HTMLElement[];
   changed = false;
+  /** Hears that the shape of the parts is another. */
+  shaped: () => void = () => undefined;
   private title = input("parts-title", "text");
   private language = input("parts-language", "text");
   private shapes = new Map(SHAPES.map((name) => [name, input(`parts-${name}`, "number")]));
@@ -29,6 +31,7 @@ export class Words {
       folded(t("shapes"), shape),
     ];
     for (const each of [this.title, this.language, ...this.shapes.values()]) each.addEventListener("input", () => (this.changed = true));
+    for (const each of this.shapes.values()) each.addEventListener("input", () => each.checkValidity() && this.shaped());
   }
 
   /** A field that cannot be sent as it is: it has the focus then. */

@@ -427,19 +427,24 @@ class TestSaving:
 
         small(check)
 
-    def test_a_full_disk_changes_nothing(self, small: Callable[[Check], None], tmp_path: Path) -> None:
+    @pytest.mark.parametrize("size", [100, 3000])
+    def test_a_full_disk_changes_nothing(self, small: Callable[[Check], None], tmp_path: Path, size: int) -> None:
+        """100: there is no room for the labels; 3000: for the document behind them."""
+
         async def check(small: SmallDesk, ask: Any) -> None:
+            (tmp_path / "mine.yaml").write_text(f"{TEXT}# {4000 * 'x'}\n")
+            await ask("begin", files=[str(tmp_path / "mine.yaml")], make_it=False)
             await saved(small, ask)
             await small.tab.until("touch")
             text, labels = small.desk.text, (tmp_path / "parts.png").read_bytes()
-            noise = np.random.default_rng(0).permuted(drawn().ravel()).reshape(SHAPE)
-            upload = await sent(small, ask, packed(noise))
-            for size in (100, len(labels) + 100):  # the labels themselves do not fit; the text behind them does not
-                with files_up_to(size), pytest.raises(TangibleError, match="free some space"):
-                    await ask("parts_save", upload=upload, parts=[], heights=GIVEN)
-                assert small.desk.text == (tmp_path / "mine.yaml").read_text() == text
-                assert (tmp_path / "parts.png").read_bytes() == labels
-                upload = await sent(small, ask)
+            other = drawn()
+            other[0, 0] = 7
+            upload = await sent(small, ask, packed(other))
+            with files_up_to(size), pytest.raises(TangibleError, match="free some space"):
+                await ask("parts_save", upload=upload, parts=[], heights=GIVEN)
+            assert small.desk.text == (tmp_path / "mine.yaml").read_text() == text
+            assert (tmp_path / "parts.png").read_bytes() == labels
+            assert not list(tmp_path.glob(".*"))
 
         small(check)
 

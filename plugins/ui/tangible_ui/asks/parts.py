@@ -36,11 +36,13 @@ async def parts_save(
             found = await desk.maker.quick(
                 "parts_save", **_document(desk), sent=sent, parts=parts, heights=heights, of=of,
                 words={"title": title, "language": language}, opened=desk.drafts.opened_text,
-                shelf=user_folder("opened"),
+                shelf=user_folder("opened"), earlier=desk.texts.all,
             )  # fmt: skip
         finally:
             await asyncio.to_thread(desk.shelf.drop, upload)
-        text = found.pop("text")
+        text, moved = found.pop("text"), found.pop("moved")
+        desk.texts.rewrite(moved)
+        desk.text = moved.get(desk.text, desk.text)
         if found["saved"]:
             desk.drafts.opened(text)
         await take(desk, Text(text, desk.path))

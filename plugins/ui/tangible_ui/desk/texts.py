@@ -2,6 +2,7 @@
 
 from asyncio import Lock
 from collections import deque
+from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple, final
 
@@ -34,6 +35,17 @@ class Texts:
     def can_redo(self) -> bool:
         """Whether one was undone."""
         return bool(self._after)
+
+    @property
+    def all(self) -> list[str]:
+        """Every text that can be stepped to."""
+        return [each.text for each in (*self._before, *self._after)]
+
+    def rewrite(self, others: Mapping[str, str]) -> None:
+        """Texts that say the same in other words, as a file that they name is elsewhere now."""
+        before = [each._replace(text=others.get(each.text, each.text)) for each in self._before]
+        self._before = deque(before, maxlen=MOST_STEPS)
+        self._after = [each._replace(text=others.get(each.text, each.text)) for each in self._after]
 
     def leave(self, now: Text) -> None:
         """Another text takes the place of this one, and what was undone is lost."""

@@ -1,10 +1,11 @@
 """What lies on the maker's bench, and what a job is."""
 
 from collections.abc import Callable, Generator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from threading import Event, Lock
 from typing import Any, NamedTuple, Protocol, final
+from weakref import WeakKeyDictionary
 
 from tangible_core.errors import Stopped
 from tangible_core.pipeline.cache import Cache
@@ -12,8 +13,25 @@ from tangible_core.pipeline.config import PipelineConfig, parse_config
 from tangible_core.pipeline.engine import Stage
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.plugins.registry import Registry, default_registry
+from tangible_core.scene.scene_files import SceneFiles
 
 NEVER = -1
+
+
+Stamp = tuple[tuple[Path, int, int], ...]
+"""Of files: when each was changed last, and its size."""
+
+
+def stamp_of(config: PipelineConfig) -> Stamp:
+    """Of the files of a scene that are there; none of a built-in one."""
+    named = config.scene if isinstance(config.scene, SceneFiles) else ()
+    paths = [config.folder / value for _, value in named if isinstance(value, Path)]
+    found: list[tuple[Path, int, int]] = []
+    for path in paths:
+        with suppress(OSError, ValueError):
+            told = path.stat()
+            found.append((path, told.st_mtime_ns, told.st_size))
+    return tuple(found)
 
 
 class Tell(Protocol):
@@ -71,6 +89,7 @@ class Bench:
         self.kept: Any = None
         """What does not depend on the heights of parts; quick jobs alone look at it."""
         self._cache = cache or Cache()
+        self._stamps: WeakKeyDictionary[Pipeline, Stamp] = WeakKeyDictionary()
         self._newest, self._work = NEVER, None
         self._parsed: tuple[Any, PipelineConfig] | None = None
         self._lock = Lock()
@@ -86,9 +105,20 @@ class Bench:
 
     def pipeline_of(self, text: str, path: Path, sets: list[str]) -> Pipeline:
         """The pipeline that a text says; what is alike in the last good one is not made again. Raises: ConfigError."""
-        config = self.config_of(text, path, sets)
-        before = self.pipeline
-        return Pipeline.of(config, self.registry, self._cache) if before is None else before.changed(config)
+        config, before = self.config_of(text, path, sets), self.pipeline
+        made = self.after(before, config) if before is not None else None
+        if made is None:
+            made = Pipeline.of(config, self.registry, self._cache)
+            self._stamps[made] = stamp_of(config)
+        return made
+
+    def after(self, before: Pipeline, config: PipelineConfig) -> Pipeline | None:
+        """A pipeline after another one; None if files of its scene are not those that were read for that one."""
+        if (stamp := stamp_of(config)) != self._stamps.get(before):
+            return None
+        made = before.changed(config)
+        self._stamps[made] = stamp
+        return made
 
     @contextmanager
     def work(self, pipeline: Pipeline, number: int) -> Generator[Work]:

@@ -24,7 +24,7 @@ from tangible_core.scene.scene import Scene
 
 from .bench import Bench, Job
 from .making import parcel_of
-from .parts import config_heights
+from .parts import config_heights, edited_of, opened_of
 from .seen import Seen, see_parts
 from .shown import show
 
@@ -65,7 +65,8 @@ def parts_heights(
     the like, where they are not the document's. Raises: ConfigError for a height above the workspace, a part that is
     not there, a document without a law or a device; MaterialError; TangibleError as `Pipeline.make`.
     """
-    pipeline = bench.pipeline_of(text, path, sets)
+    pipeline = edited_of(bench, text, path, sets)
+    opened_of(bench, pipeline)
     config = _of_parts(pipeline.config, heights)
     if config.render is None:
         raise config.missing("render")

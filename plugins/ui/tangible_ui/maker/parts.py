@@ -35,6 +35,8 @@ MOST_LOOKED_AT = 400_000
 class Opened(NamedTuple):
     """What an editor works on."""
 
+    pipeline: Pipeline
+    """The last one; what it read is not read again."""
     scene: Scene
     picture: UInt8[np.ndarray, "h w 3"]
     parts: PartMap
@@ -46,7 +48,7 @@ def parts_open(bench: Bench, text: str, path: Path, sets: list[str]) -> dict[str
     Raises: ConfigError for a document that is wrong; PictureError for a scene that cannot be read, or has too many
     parts; OutputError if there is no room for the files.
     """
-    pipeline = bench.pipeline_of(text, path, sets)
+    pipeline = edited_of(bench, text, path, sets)
     opened, config = opened_of(bench, pipeline), pipeline.config
     at = f"{FOLDER}{digest_of((opened.picture, opened.parts))}"
     _leave(opened, bench.folder / at)
@@ -67,18 +69,26 @@ def parts_open(bench: Bench, text: str, path: Path, sets: list[str]) -> dict[str
     }
 
 
+def edited_of(bench: Bench, text: str, path: Path, sets: list[str]) -> Pipeline:
+    """The pipeline that a text says, after that of the last quick job here. Raises: ConfigError."""
+    config, before = bench.config_of(text, path, sets), bench.opened
+    made = bench.after(before.pipeline, config) if before and before.pipeline.config.scene == config.scene else None
+    return made or bench.pipeline_of(text, path, sets)
+
+
 def opened_of(bench: Bench, pipeline: Pipeline) -> Opened:
     """A scene's picture and parts; the last one's are kept. Raises: as `parts_open`."""
     before, scene = bench.opened, pipeline.scene
     if before is None or before.scene is not scene:
-        before = bench.opened = Opened(scene, to_rgb8(_picture(scene)), _parts(pipeline))
+        before = Opened(pipeline, scene, to_rgb8(_picture(scene)), _parts(pipeline))
+    bench.opened = before._replace(pipeline=pipeline)
     return before
 
 
 def digest(parts: PartMap, config: PipelineConfig) -> str:
     """Of the parts, and of what a document says of them."""
     choices = tuple((number, repr(each)) for number, each in sorted(config_parts(config).items()))
-    return digest_of((parts, choices, repr(config_heights(config))))
+    return digest_of((parts.labels, choices, repr(config_heights(config))))
 
 
 def config_parts(config: PipelineConfig) -> Mapping[int, PartChoice]:

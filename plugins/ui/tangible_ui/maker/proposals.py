@@ -10,7 +10,7 @@ from jaxtyping import Bool, Float64, UInt8
 from tangible_core.errors import ConfigError
 
 from .bench import Bench, Job
-from .parts import opened_of
+from .parts import edited_of, opened_of
 
 Kind = Literal["grabcut", "watershed"]
 MOST_POINTS = 2000
@@ -56,7 +56,7 @@ def parts_propose(
 
     Raises: ConfigError for what is no stroke in the picture; otherwise as `parts_open`.
     """
-    picture = opened_of(bench, bench.pipeline_of(text, path, sets)).picture
+    picture = opened_of(bench, edited_of(bench, text, path, sets)).picture
     box, mask = proposed(picture, as_points(points, picture.shape), width_px, kind, within)
     return {"box": list(box), "runs": runs(mask)}
 

@@ -6,7 +6,7 @@ import os
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from jaxtyping import Int32, Shaped, UInt16
@@ -25,7 +25,7 @@ from tangible_core.scene.scene_files import BUILTINS, SceneFiles
 
 from .bench import Bench, Job
 from .label_files import NAME, as_png, is_ours, unpacked
-from .parts import digest, opened_of
+from .parts import digest, edited_of, opened_of
 
 MOST_EDITED = 200
 """Keys that are changed one by one, each in its place; of more, the whole block is written anew."""
@@ -44,15 +44,18 @@ def parts_save(
     of: str,
     opened: str,
     shelf: Path,
+    earlier: Sequence[str] = (),
 ) -> dict[str, Any]:
     """Keep labels that a page has sent, and what is said of each; a document that stands in its file is saved there.
 
     of: digest of the parts that were edited, or nothing. opened: what the document's file said when it was opened or
-    saved; a file that says something else is left alone. shelf: where the labels of a document go without a file.
+    saved; a file that says something else is left alone. shelf: where the labels of a document go without a file, and
+    those that others take the place of. earlier: texts that the document had.
+    Returns: with `moved`, what earlier texts, and this one, say from now on if they named labels that are elsewhere.
     Raises: ConfigError for labels that are none, parts that were changed elsewhere meanwhile, and what the document
     must not say; OutputError, and then nothing is changed.
     """
-    pipeline = bench.pipeline_of(text, path, sets)
+    pipeline = edited_of(bench, text, path, sets)
     if of and of != digest(opened_of(bench, pipeline).parts, pipeline.config):
         raise ConfigError("the parts were changed elsewhere meanwhile, as in another tab; open the editor again")
     labels = unpacked(sent, pipeline.scene.shape)
@@ -61,13 +64,14 @@ def parts_save(
     choices, numbers = numbered(parts, [int(known[each]) for each in found.segments], found.labels)
     picture = as_png(_unframed(found.labels, pipeline.config), path.name)
     in_file = _stands(path, opened)
-    place = _beside(path) if in_file else shelf / hashlib.sha256(picture).hexdigest()[:16] / NAME
+    place = _beside(path) if in_file else _on(shelf, picture)
     changed = said_of_parts(text, path, place, choices, heights, words)
     config = parse_config(changed, path, bench.registry, sets)
     check_found(config, found, labels.shape[1])
+    moved = _kept_before(place, picture, shelf, [*earlier, text], path)
     _write(place, picture, path if in_file else None, changed)
     of = digest(found, config)
-    return {"text": changed, "path": str(place), "numbers": numbers, "saved": in_file, "digest": of}
+    return {"text": changed, "path": str(place), "numbers": numbers, "saved": in_file, "digest": of, "moved": moved}
 
 
 def numbered(
@@ -198,6 +202,28 @@ def _beside(path: Path) -> Path:
     names = itertools.chain([NAME], (f"{Path(NAME).stem}-{number}.png" for number in itertools.count(2)))
     places = (path.parent / name for name in names)
     return next(each for each in places if not os.path.lexists(each) or is_ours(each, path.name))
+
+
+def _on(shelf: Path, picture: bytes) -> Path:
+    """Where a label picture lies on the shelf: by its content."""
+    return shelf / hashlib.sha256(picture).hexdigest()[:16] / NAME
+
+
+def _kept_before(place: Path, picture: bytes, shelf: Path, texts: Sequence[str], path: Path) -> dict[str, str]:
+    """Keep what another picture is to take the place of, for the texts that name it: a step back finds it there."""
+    before = place.read_bytes() if place.is_file() else picture
+    if before == picture:
+        return {}
+    kept = _on(shelf, before)
+    moved: dict[str, str] = {}
+    for text in dict.fromkeys(texts):
+        scene = said(text, path).get("scene") if place.name in text else None
+        if isinstance(scene, dict) and path.parent / str(cast("dict[str, Any]", scene).get("segments")) == place:
+            moved[text] = edited(text, path, {("scene", "segments"): str(kept)})
+    if moved:
+        with atomic_write(kept) as file:
+            file.write(before)
+    return moved
 
 
 def _write(place: Path, picture: bytes, document: Path | None, text: str) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float32, Float64, Int, UInt8
 
 from .bench import Bench, Job
-from .parts import opened_of
+from .parts import edited_of, opened_of
 from .proposals import as_points
 
 MOST_PLACES = 1500
@@ -28,7 +28,7 @@ def parts_snap(
     bench: Bench, text: str, path: Path, sets: list[str], points: Sequence[Sequence[float]], reach_px: float
 ) -> dict[str, Any]:
     """A closed outline, moved to the strongest edges that are no farther than this. Raises: as `parts_propose`."""
-    picture = opened_of(bench, bench.pipeline_of(text, path, sets)).picture
+    picture = opened_of(bench, edited_of(bench, text, path, sets)).picture
     outline = as_points(points, picture.shape)
     return {"points": np.round(snapped(picture, outline, reach_px), 2).tolist()}
 

@@ -94,6 +94,8 @@ const options = {
   entryPoints: { app: "the page" },
   outdir: out,
   bundle: true,
+  splitting: true, // what a panel imports when it is opened is a file of its own
+  chunkNames: "[name]-[hash]",
   minify: !watching,
   sourcemap: watching && "inline",
   format: "esm",

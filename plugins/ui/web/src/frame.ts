@@ -6,15 +6,17 @@ import { speak, language, LANGUAGES } from "./words/words";
 import { THEMES, type Theme, type Themes } from "./themes";
 
 /** Ids of the regions in the order in which F6 visits them, and of what takes the focus there. */
-const REGIONS = { main: "terrain", left: "left", right: "right", bottom: "bottom", head: "head" } as const;
+const REGIONS = { main: "terrain", left: "left", right: "right", bottom: "bottom", head: "head", "parts-editor": "parts-picture" } as const;
 type Region = keyof typeof REGIONS;
 
 const regions = Object.keys(REGIONS) as Region[];
 const element = (id: string): HTMLElement => document.getElementById(id)!;
+/** Those that are there now: the editor of parts takes the place of the columns. */
+const shown = (): Region[] => regions.filter((each) => document.getElementById(each)?.checkVisibility());
 
 export function frame(page: Page): void {
   const { themes } = page;
-  for (const region of regions) element(region).setAttribute("aria-label", t(region));
+  for (const region of shown()) element(region).setAttribute("aria-label", t(region));
   skipLinks();
   on("next region", () => jump(1));
   on("previous region", () => jump(-1));
@@ -43,6 +45,7 @@ function skipLinks(): void {
 const last = new Map<Region, HTMLElement>();
 
 function jump(by: number): void {
+  const regions = shown();
   const from = regions.findIndex((each) => element(each).contains(document.activeElement));
   if (from >= 0) last.set(regions[from], document.activeElement as HTMLElement);
   const to = regions[from < 0 ? (by > 0 ? 0 : regions.length - 1) : (from + by + regions.length) % regions.length];

@@ -132,7 +132,8 @@ export class Hand {
     this.known.next = (next + step + all.length) % all.length;
     const { at } = all[this.known.next]!;
     this.lift(by, ...at);
-    const name = scene.material(...at)?.name ?? t("noMaterial");
+    const called = scene.part(...at);
+    const name = (called && `${called}, `) + (scene.material(...at)?.name ?? t("noMaterial"));
     this.page.say(t("part", { number: this.known.next + 1, of: all.length, name }));
   }
 

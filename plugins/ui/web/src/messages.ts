@@ -46,6 +46,8 @@ export interface Meta {
   label_bytes: 2 | 4;
   /** Each once; which of them a label has is in materials.u16. */
   materials: Material[];
+  /** Names of the parts, by their labels; null where the parts have none. */
+  parts: string[] | null;
   photo: boolean;
   /** Width and height of the finer picture beside the one that is drawn at once; null where that is the finest. */
   fine_photo: [number, number] | null;

@@ -23,9 +23,10 @@ export const running = (state: State): boolean => (state.status & STATUS.RUNNING
 export const held = (state: State): boolean => running(state) && state.hand[2] < GONE_M;
 export const touching = (state: State): boolean => held(state) && (state.flags & FLAGS.TOUCHING) !== 0;
 
-/** "wood, part 3"; the name alone where there is one part. names: of materials, in the page's language. */
-export function named(name: string | undefined, part: number | null, parts: number, names: Record<string, string>): string {
+/** "door, wood", "wood, part 3"; the material alone where there is one part. names: of materials, in the page's language. */
+export function named(name: string | undefined, called: string, part: number | null, parts: number, names: Record<string, string>): string {
   const said = name === undefined ? t("nameless") : (names[name] ?? name);
+  if (called) return name === undefined ? called : `${called}, ${said}`;
   return part === null || parts < 2 ? said : t("part", { name: said, part });
 }
 
@@ -88,7 +89,7 @@ export class Narrator {
   /** The material and the part at a place. */
   private under(scene: Scene, x: number, y: number): string {
     const names = this.known(scene)?.names[language] ?? {};
-    return named(scene.material(x, y)?.name, scene.label(x, y), scene.meta.labels, names);
+    return named(scene.material(x, y)?.name, scene.part(x, y), scene.label(x, y), scene.meta.labels, names);
   }
 
   private known(scene: Scene): Events["described"] | null {

@@ -54,6 +54,11 @@ export class Scene {
     return labels ? labels[grid.cell(x, y)] : null;
   }
 
+  /** The name of the part there; empty where it has none. */
+  part(x: number, y: number): string {
+    return this.meta.parts?.[this.label(x, y) ?? -1] ?? "";
+  }
+
   material(x: number, y: number): Material | null {
     const label = this.label(x, y);
     return label === null ? null : (this.meta.materials[this.kinds[label]] ?? null);

@@ -2,6 +2,9 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { firstRoot, Grid } from "../src/grid";
 import type { Material, Meta } from "../src/messages";
+import { named } from "../src/narrator";
+import { place } from "../src/overlay/live";
+import { asJson, rows } from "../src/overlay/values";
 import type { Vec } from "../src/protocol";
 import { Scene, type Part } from "../src/scene";
 
@@ -180,4 +183,16 @@ test("the first root of a polynomial", () => {
   assert.equal(firstRoot(0, 0, 1), Infinity);
   assert.equal(firstRoot(1, 3, 2), Infinity);
   assert.ok(Math.abs(firstRoot(-1, 1, 2) - 2) < 1e-12);
+});
+
+test("a part is called by its name, with its material; one without a name by material and number", () => {
+  const made = scene(3, 3, () => 0);
+  const called = (x: number): string => named(made.material(x, 0)?.name, made.part(x, 0), made.label(x, 0), 3, { wood: "Holz" });
+  assert.deepEqual([-0.03, 0, 0.03].map(called), ["Holz, part 0", "ice, part 1", "ice, part 2"]);
+  (made.meta as { parts: string[] }).parts = ["door", "", "pane"];
+  assert.deepEqual([-0.03, 0, 0.03].map(called), ["door, Holz", "ice, part 1", "pane, ice"]);
+  assert.equal(made.part(1, 1), "");
+  const rowOf = (x: number): string => rows(null, place(made, x, 0)).find(([name]) => name === "Material")![1]!;
+  assert.deepEqual([-0.03, 0].map(rowOf), ["door, wood", "ice, part 1"]);
+  assert.equal(JSON.parse(asJson(null, place(made, -0.03, 0))).pointer.part_name, "door");
 });

@@ -32,6 +32,8 @@ export interface Live {
   readonly speedMPerS: number;
   readonly material: Material | null;
   readonly part: number | null;
+  /** Of the part; empty where it has none. */
+  readonly name: string;
   readonly grip: Grip;
 }
 
@@ -42,10 +44,13 @@ export interface Place {
   material: Material | null;
   /** Number of the segment; null beside the surface. */
   part: number | null;
+  /** Its name; empty where it has none. */
+  name: string;
 }
 
 export function place(scene: Scene, x: number, y: number): Place {
-  return { at: [x, y, scene.height(x, y)], normal: scene.normal(x, y), material: scene.material(x, y), part: scene.label(x, y) };
+  const [normal, material] = [scene.normal(x, y), scene.material(x, y)];
+  return { at: [x, y, scene.height(x, y)], normal, material, part: scene.label(x, y), name: scene.part(x, y) };
 }
 
 /** Follows the states, and says what each means on the surface. */
@@ -71,6 +76,7 @@ export class Reading {
       otherN: length(state.other),
       speedMPerS: length(state.velocity),
       part: scene && seen ? scene.label(contact[0], contact[1]) : null,
+      name: scene && seen ? scene.part(contact[0], contact[1]) : "",
       grip: this.rule.next({ touching, atMs: state.sampleMs, contact, normal, force, dynamicFriction }),
     };
   }

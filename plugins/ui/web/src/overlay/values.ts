@@ -39,8 +39,9 @@ export function rows(live: Live | null, pointer: Place | null): Row[] {
   return found;
 }
 
-function made(at: { material: Live["material"]; part: number | null } | null): string {
+function made(at: Pick<Live, "material" | "part" | "name"> | null): string {
   if (!at || at.part === null) return NONE;
+  if (at.name) return at.material ? `${at.name}, ${at.material.name}` : at.name;
   return at.material ? t("part", { name: at.material.name, number: at.part }) : t("noMaterial", { number: at.part });
 }
 
@@ -51,7 +52,7 @@ export const asText = (found: Row[]): string => found.map(([name, ...values]) =>
 /** Metres, newtons, metres per second. */
 export function asJson(live: Live | null, pointer: Place | null): string {
   const held = live?.seen ? live : null;
-  const place = pointer && { at_m: pointer.at, normal: pointer.normal, material: pointer.material?.name ?? null, part: pointer.part };
+  const place = pointer && { at_m: pointer.at, normal: pointer.normal, material: pointer.material?.name ?? null, part: pointer.part, part_name: pointer.name || null };
   const device = held && {
     position_m: held.hand,
     proxy_m: held.proxy,
@@ -66,6 +67,7 @@ export function asJson(live: Live | null, pointer: Place | null): string {
     other_force_n: held.otherN > 0 ? held.state.other : null,
     material: held.material?.name ?? null,
     part: held.part,
+    part_name: held.name || null,
     contact: held.grip,
     limits: LIMITS.filter(({ bit }) => held.state.flags & bit).map(({ name }) => name),
     at_ms: held.state.sampleMs,

@@ -37,7 +37,7 @@ function table(): HTMLTableElement {
 }
 
 /** A key as it is printed on a keyboard. */
-function caps(key: string): HTMLElement {
+export function caps(key: string): HTMLElement {
   const made = document.createElement("kbd");
   made.textContent = key
     .split(/(?<=.)\+/)

@@ -10,6 +10,7 @@ import { materials } from "./materials";
 import { methods } from "./methods";
 import { open } from "./open";
 import { overlay } from "./overlay";
+import { parts } from "./parts";
 import { preflight } from "./preflight";
 import { records } from "./records";
 import { ruler } from "./ruler";
@@ -21,7 +22,7 @@ import { yaml } from "./yaml";
 
 /** Left: what is made. Right: what is seen, heard and felt, settings and help last. Bottom: the log. */
 export const panels: Panel[] = [
-  open, methods, stages, materials, preflight, yaml,
+  open, methods, stages, parts, materials, preflight, yaml,
   view, overlay, ruler, mapping, hand, devices, sound, laws, records, settings, help,
   log,
 ];

@@ -33,6 +33,7 @@ export const t = words({
   right: ["What is seen, heard and felt", "Was zu sehen, zu hören und zu fühlen ist"],
   bottom: ["What happened", "Was geschehen ist"],
   head: ["Head of the page", "Kopf der Seite"],
+  "parts-editor": ["Parts of the picture", "Teile des Bildes"],
   jump: ["Jump to", "Springen zu"],
   sizes: ["Sizes", "Größen"],
   leftSize: ["Width of the left column", "Breite der linken Spalte"],

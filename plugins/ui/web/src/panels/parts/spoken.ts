@@ -1,0 +1,23 @@
+/** Parts in words: their names, heights, sizes and places. */
+import { t } from "../../words/drawing";
+import { decimal } from "../../words/words";
+import type { Part } from "./drawing";
+import type { Labels, Point } from "./labels";
+import type { Place } from "./pieces";
+
+export const called = (part: Part | undefined, number: number): string => part?.name || t("nameless", { number });
+
+export const heightOf = ({ height_m, automatic }: Part): string =>
+  automatic ? t("automatic") : t("mm", { height: decimal(1000 * height_m, 2) });
+
+export const shareOf = (share: number): string => t("percent", { share: decimal(100 * share, share < 0.01 ? 2 : share < 0.1 ? 1 : 0) });
+
+/** In which ninth of the picture. */
+export function placeOf({ at: [x, y] }: Place, { columns, rows }: Labels): string {
+  const third = (part: number, whole: number): number => Math.max(0, Math.min(2, Math.floor((3 * part) / whole)));
+  return t(`place${third(x, columns)}${third(y, rows)}` as Parameters<typeof t>[0]);
+}
+
+export function whereOf([x, y]: Point, { columns, rows }: Labels, name: string): string {
+  return t("where", { x: Math.round((100 * x) / columns), y: Math.round((100 * y) / rows), name });
+}

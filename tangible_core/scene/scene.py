@@ -225,12 +225,6 @@ class Scene:
         return {product: record for product, record in found.items() if record is not None}
 
 
-def builtin_files(name: str) -> SceneFiles:
-    """The files of a scene of `BUILTINS`, where they lie on this machine."""
-    files, folder = BUILTINS[name], _scikit_image_data()
-    return files.model_copy(update={part: folder / path for part, path in files if isinstance(path, Path)})
-
-
 def _check_cameras(calibration: object, rig: object) -> None:
     """Raises: ArgumentError for what describes no camera."""
     if not isinstance(calibration, Calibration | None):

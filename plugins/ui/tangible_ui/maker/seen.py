@@ -7,11 +7,12 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 from jaxtyping import Float32, Int32
 
-from tangible_core.data import DisparityMap, HapticSurface, Material, Relief, SegmentMap
+from tangible_core.data import DisparityMap, HapticSurface, Material, PartMap, Relief, SegmentMap
 from tangible_core.data.records import digest_of
 from tangible_core.metrics import absolute_error
 from tangible_core.parts import reduced_parts
 from tangible_core.pipeline.config import PipelineConfig, Product
+from tangible_core.pipeline.parts_said import names_of
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.pipeline.rules import fitted
 from tangible_core.scene.geometry import RANGE_PERCENT, flat_relief
@@ -118,14 +119,19 @@ def is_there(pipeline: Pipeline, product: Product) -> bool:
 
 
 def _seen(pipeline: Pipeline, shows: Shows, relief: Relief) -> Seen:
-    shape = relief.height_m.shape
-    labels = _labels(pipeline, shape)
+    labels = _labels(pipeline, relief.height_m.shape)
     chosen = _at_hand(pipeline, "materials")
     materials = chosen.materials if chosen is not None and labels is not None else ()
-    views = pipeline.scene.views
-    return Seen(
-        pipeline.scene.name, shows, relief, labels, materials, None if views is None else views.left, _layers(pipeline)
-    )
+    picture = None if pipeline.scene.views is None else pipeline.scene.views.left
+    names = _names(pipeline) if labels is not None else None
+    return Seen(pipeline.scene.name, shows, relief, labels, materials, picture, _layers(pipeline), names)
+
+
+def _names(pipeline: Pipeline) -> tuple[str, ...] | None:
+    """Of the parts, which are there; None where nothing is by parts."""
+    config = pipeline.config
+    parts: PartMap | None = _at_hand(pipeline, "parts") if config.by_parts else None
+    return None if parts is None else names_of(config.parts or {}, parts.count)
 
 
 def _labels(pipeline: Pipeline, shape: tuple[int, int]) -> Int32[np.ndarray, "h w"] | None:

@@ -41,8 +41,8 @@ def fit_surface(surface: HapticSurface, spec: DeviceSpec, safety: Safety) -> tup
     """The surface with its materials as far as this device holds them, and what was taken off them, in words."""
     if surface.materials is None:
         return surface, ""
-    materials = tuple(fit(each, spec, safety) for each in surface.materials)
-    pairs = dict(zip(surface.materials, materials, strict=True))  # a material is said once, however many labels it has
+    pairs = {each: fit(each, spec, safety) for each in dict.fromkeys(surface.materials)}  # however many labels have it
+    materials = tuple(pairs[each] for each in surface.materials)
     if not (said := ", ".join(filter(None, (changes(*pair) for pair in pairs.items())))):
         return surface, ""
     return replace(surface, materials=materials), f"softened to what the device holds: {said}"

@@ -468,6 +468,34 @@ class TestSaving:
         np.testing.assert_array_equal(scene.segments.labels, labels)
 
 
+@pytest.mark.parametrize("want", ["materials", "relief", "surface"])
+def test_pages_know_the_names_of_parts_whatever_is_made(
+    small: Callable[[Check], None], tmp_path: Path, want: str
+) -> None:
+    """Labels that are shown are those that materials are of, though two parts are of one segment."""
+    labels = drawn() % 5
+    labels[0:2, 0:2] = 2  # another piece of the hat's segment
+    Image.fromarray(labels.astype(np.uint8)).save(tmp_path / "drawn.png")
+    said = "parts: {0: corner, 1: wall, 2: {name: hat, material: ice}}\nheights: {by: given}\n"
+    text = TEXT.replace("photo: mine.png", "photo: mine.png, segments: drawn.png") + said
+    (tmp_path / "mine.yaml").write_text(text)
+
+    async def check(small: SmallDesk, ask: Any) -> None:
+        await ask("make", want="relief")
+        await ask("make", want="materials")
+        await ask("make", want=want)
+        shown = await small.tab.until("scene")
+        told = (await small.tab.until("materials"))["segments"]
+        assert shown["parts"] == ["corner", "wall", "hat", ""]
+        assert [each["name"] for each in told] == shown["parts"]
+        assert told[2]["material"] == "ice"
+        assert told[0]["share"] == pytest.approx(4 / labels.size)
+        if want == "surface":
+            assert "hat" in (await small.tab.until("described"))["says"]["en"]
+
+    small(check)
+
+
 class TestHeights:
     def test_what_is_felt_is_what_the_saved_document_gives(
         self, small: Callable[[Check], None], tmp_path: Path, monkeypatch: pytest.MonkeyPatch

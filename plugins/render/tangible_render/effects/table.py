@@ -28,7 +28,7 @@ def effects_table(
     """
     assert surface.labels is not None and surface.materials is not None
     rows = _rows(surface.materials, friction, texture, damping)
-    met = np.unique(surface.labels)
+    met = np.flatnonzero(np.bincount(surface.labels.ravel()))
     rows[np.setdiff1d(np.arange(len(rows)), met)] = 0
     if (rows[met] == rows[met[0]]).all():
         return np.zeros((1, 1), np.int32), rows[met[:1]]

@@ -15,7 +15,9 @@ def described(pipeline: Pipeline, seen: Seen) -> dict[str, Any]:
     """What is said of what is seen, by language; a material that has no name in a language keeps its own."""
     scene = pipeline.scene
     kind = kind_of(scene)
-    surface = HapticSurface(seen.relief, seen.labels, seen.materials) if seen.materials else HapticSurface(seen.relief)
+    surface = HapticSurface(seen.relief)
+    if seen.materials or seen.names:
+        surface = HapticSurface(seen.relief, seen.labels, seen.materials or None, seen.names)
     names = {each.name for each in seen.materials} & MATERIALS.keys()
     languages = get_args(Language)
     return {

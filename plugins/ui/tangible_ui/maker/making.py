@@ -109,15 +109,16 @@ def _show(bench: Bench, pipeline: Pipeline, product: str) -> None:
 
 
 def _segments(pipeline: Pipeline, seen: Seen) -> list[dict[str, Any]]:
-    """Each segment with its material, why it has it, and its share of the area."""
+    """Each segment with its material, why it has it, its share of the area, and its name where it is a part."""
     if seen.labels is None or not seen.materials:
         return []
     chosen = pipeline.make("materials")
     reasons = chosen.reasons if chosen is not None else ("",) * len(seen.materials)
+    names = seen.names or ("",) * len(seen.materials)
     shares = np.bincount(seen.labels.ravel(), minlength=len(seen.materials)) / max(1, seen.labels.size)
     named = enumerate(zip(seen.materials, reasons, shares.tolist(), strict=False))
     return [
-        {"label": label, "material": material.name, "why": why, "share": share}
+        {"label": label, "material": material.name, "why": why, "share": share, "name": names[label]}
         for label, (material, why, share) in named
     ]
 

@@ -7,10 +7,12 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 from jaxtyping import Float32, Int32
 
-from tangible_core.data import DisparityMap, HapticSurface, Material, Relief, SegmentMap
+from tangible_core.data import DisparityMap, HapticSurface, Material, PartMap, Relief, SegmentMap
 from tangible_core.data.records import digest_of
 from tangible_core.metrics import absolute_error
+from tangible_core.parts import reduced_parts
 from tangible_core.pipeline.config import PipelineConfig, Product
+from tangible_core.pipeline.parts_said import names_of
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.pipeline.rules import fitted
 from tangible_core.scene.geometry import RANGE_PERCENT, flat_relief
@@ -117,15 +119,25 @@ def is_there(pipeline: Pipeline, product: Product) -> bool:
 
 
 def _seen(pipeline: Pipeline, shows: Shows, relief: Relief) -> Seen:
-    shape = relief.height_m.shape
-    segments = _at_hand(pipeline, "segments")
-    labels = None if segments is None else reduced_segments(segments, shape).labels
+    labels, names = _labels(pipeline, relief.height_m.shape)
     chosen = _at_hand(pipeline, "materials")
     materials = chosen.materials if chosen is not None and labels is not None else ()
     views = pipeline.scene.views
     return Seen(
-        pipeline.scene.name, shows, relief, labels, materials, None if views is None else views.left, _layers(pipeline)
-    )
+        pipeline.scene.name, shows, relief, labels, materials, None if views is None else views.left, _layers(pipeline),
+        names,
+    )  # fmt: skip
+
+
+def _labels(pipeline: Pipeline, shape: tuple[int, int]) -> tuple[np.ndarray | None, tuple[str, ...] | None]:
+    """Of parts, with their names, where materials are one a part; otherwise of segments."""
+    if pipeline.config.by_parts:
+        parts: PartMap | None = _at_hand(pipeline, "parts")
+        if parts is None:
+            return None, None
+        return reduced_parts(parts, shape).labels, names_of(pipeline.config.parts or {}, parts.count)
+    segments: SegmentMap | None = _at_hand(pipeline, "segments")
+    return None if segments is None else reduced_segments(segments, shape).labels, None
 
 
 def _at_hand(pipeline: Pipeline, product: Product) -> Any:

@@ -1,6 +1,7 @@
 """Where the page, its sources and node are."""
 
 import importlib.util
+import re
 import shutil
 import subprocess
 from pathlib import Path
@@ -34,6 +35,22 @@ def node(*words: object, cwd: Path) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
         [str(program), *map(str, words)], cwd=cwd, capture_output=True, text=True, encoding="utf-8", check=False
     )
+
+
+IMPORTED = re.compile(r'(?:\bfrom|\bimport)\s*"\./([\w-]+\.js)"')
+"""What a script needs before it runs; `import(...)` is asked for when it runs."""
+
+
+def fetched_first(page: Path) -> list[str]:
+    """The scripts and styles that a browser fetches when it opens the page; what comes later is not among them."""
+    scripts: list[str] = []
+    asked = ["app.js"]
+    while asked:
+        name = asked.pop()
+        if name not in scripts:
+            scripts.append(name)
+            asked += IMPORTED.findall(page.joinpath(name).read_text("utf-8"))
+    return [*scripts, "app.css"]
 
 
 def built_page() -> Path:

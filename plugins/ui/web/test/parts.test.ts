@@ -417,6 +417,6 @@ test("no key of the editor is one that means something else wherever the focus i
   const theirs = Object.values(SHORTCUTS).filter(({ where }) => where !== "surface").flatMap(({ keys }) => [...keys] as string[]);
   const own = Object.values(KEYS).flat() as string[];
   assert.deepEqual(own.filter((key) => theirs.includes(key) && key !== "Escape"), []);
-  const letters = [...Object.values(TOOL_KEYS), ...KEYS.keyFresh, ...KEYS.keyWidth, ...KEYS.keyWhere];
+  const letters = [...Object.values(TOOL_KEYS), ...KEYS.keyFresh, ...KEYS.keyWidth, ...KEYS.keyWhere, ...KEYS.keyList];
   assert.equal(new Set(letters).size, letters.length);
 });

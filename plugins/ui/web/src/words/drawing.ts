@@ -121,6 +121,8 @@ export const t = words({
   keyUndo: ["Undo, redo", "Rückgängig, wiederholen"],
   keySave: ["Save", "Speichern"],
   keyWhere: ["Say where the crosshair is", "Sagen, wo das Fadenkreuz ist"],
+  keyList: ["Go to the list of the parts; a tool's key goes to the picture",
+    "Zur Liste der Teile; die Taste eines Werkzeugs führt zum Bild"],
   keyPen: ["On the picture: put the tool down or lift it; finish or accept",
     "Auf dem Bild: das Werkzeug ansetzen oder abheben; abschließen oder annehmen"],
   keyMove: ["On the picture: move the crosshair; by a pixel; far", "Auf dem Bild: das Fadenkreuz bewegen; um einen Bildpunkt; weit"],

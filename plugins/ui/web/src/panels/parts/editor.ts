@@ -44,6 +44,7 @@ export async function edit(page: Page, back: HTMLElement): Promise<void> {
 class Editor {
   private root = document.createElement("section");
   private told = document.createElement("p");
+  private helped = "";
   private drawing: Drawing;
   private board: Board;
   private pens: Pens;
@@ -59,7 +60,8 @@ class Editor {
   private digest: string;
   private resting = 0;
   private cross: Point | null = null;
-  private saving = false;
+  private asking = false;
+  private saving: Promise<boolean> | null = null;
 
   constructor(
     private page: Page,
@@ -191,7 +193,7 @@ class Editor {
     board.name(named.sort((a, b) => b.place.pixels - a.place.pixels));
     this.bar.show();
     side.show();
-    this.help();
+    if (this.told.textContent === this.helped) this.help(); // what was said stays
   }
 
   private named(label: number): string {
@@ -204,7 +206,7 @@ class Editor {
     const paints = ["brush", "lasso", "propose"].includes(pens.tool);
     const what = pens.fresh ? t("intoFresh") : t("into", { name: this.named(drawing.selected) });
     const help = drawing.proposed ? t("proposed") : t(`${pens.tool}Help`);
-    this.told.textContent = paints ? `${help} ${what}` : help;
+    this.told.textContent = this.helped = paints ? `${help} ${what}` : help;
     this.told.classList.remove("bad");
   }
 
@@ -254,6 +256,12 @@ class Editor {
     this.bar.show();
     this.help();
     this.page.say(`${t(tool)}. ${this.told.textContent}`, { topic: "tool", asked: true });
+  }
+
+  /** By a key: what is chosen is used on the picture. */
+  private take(act: () => void): void {
+    this.board.canvas.focus();
+    act();
   }
 
   private toggleFresh(): void {
@@ -376,8 +384,9 @@ class Editor {
   private letter(key: string, target: HTMLElement): (() => void) | undefined {
     if (!letters.everywhere && target !== this.board.canvas) return undefined;
     const tool = (Object.keys(TOOL_KEYS) as Tool[]).find((each) => TOOL_KEYS[each] === key);
-    if (tool) return () => this.use(tool);
-    if (key === "t") return () => this.toggleFresh();
+    if (tool) return () => this.take(() => this.use(tool));
+    if (key === "t") return () => this.take(() => this.toggleFresh());
+    if (key === "o") return () => this.side.list.focus();
     if (key === "[" || key === "]") return () => this.thicken(key === "]" ? 1 : -1);
     if (key === "i") return () => this.tellWhere();
     if (key === "?" || key === "F1") return () => this.showKeys();
@@ -438,11 +447,16 @@ class Editor {
     return { heights_m, materials, heights: this.words.said(false).heights };
   }
 
-  private async save(): Promise<boolean> {
-    if (this.saving || this.pens.down || this.pens.busy || this.words.wrong) return false;
+  /** Whether it was saved; one that goes on is waited for. */
+  private save(): Promise<boolean> {
+    if (this.pens.down || this.pens.busy || this.words.wrong) return Promise.resolve(false);
+    this.saving ??= this.saves().finally(() => (this.saving = null));
+    return this.saving;
+  }
+
+  private async saves(): Promise<boolean> {
     const { drawing } = this;
     drawing.discard();
-    this.saving = true;
     try {
       if (!(await this.settled())) return false;
       this.say(t("saving"), false);
@@ -463,8 +477,6 @@ class Editor {
     } catch (error) {
       this.complain(error as Error);
       return false;
-    } finally {
-      this.saving = false;
     }
   }
 
@@ -485,14 +497,14 @@ class Editor {
     return answer !== "";
   }
 
+  /** After a question, where something would be lost. */
   private async close(): Promise<void> {
-    if (current !== this || this.saving) return;
-    if (!this.isSaved) {
-      const answers = [["", t("goOn")], ["save", t("save")], ["lose", t("throwAway")]] as const;
-      const answer = await question(t("unsaved"), [t("unsavedText")], answers);
-      if (!answer || (answer === "save" && !(await this.save()))) return;
-      if (answer === "lose") this.live.feel(this.base, this.base);
-    }
+    await this.saving;
+    if (current !== this || this.asking) return;
+    this.asking = true;
+    const may = await this.mayClose();
+    this.asking = false;
+    if (!may) return;
     current = null;
     clearTimeout(this.resting);
     window.removeEventListener("beforeunload", this.leaving);
@@ -500,6 +512,15 @@ class Editor {
     this.board.close();
     document.body.classList.remove("editing");
     this.back.focus();
+  }
+
+  private async mayClose(): Promise<boolean> {
+    if (this.isSaved) return true;
+    const answers = [["", t("goOn")], ["save", t("save")], ["lose", t("throwAway")]] as const;
+    const answer = await question(t("unsaved"), [t("unsavedText")], answers);
+    if (answer === "save") return this.save();
+    if (answer === "lose") this.live.feel(this.base, this.base);
+    return answer === "lose";
   }
 }
 

@@ -10,6 +10,7 @@ export const KEYS = {
   keyUndo: ["Ctrl+z", "Ctrl+Shift+z"],
   keySave: ["Ctrl+s"],
   keyWhere: ["i"],
+  keyList: ["o"],
   keyPen: [" ", "Enter"],
   keyMove: ["ArrowLeft", "Shift+ArrowLeft", "Ctrl+ArrowLeft"],
   keyZoom: ["+", "-", "0"],

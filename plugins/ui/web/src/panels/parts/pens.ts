@@ -14,7 +14,7 @@ export type Fault = "notPainted" | "nothingChanged" | "notSplit" | "notJoined";
 
 /** Places of an outline that are nearer to one another than so much of the page are one. */
 const NEAR_PX = 2;
-/** How far an edge snaps, in pixels of the page. */
+/** How far an edge snaps, and a line that cuts goes on beyond its ends, in pixels of the page. */
 const REACH_PX = 10;
 
 export class Pens {
@@ -125,8 +125,9 @@ export class Pens {
     if (found) this.drawing.propose(found); // none, if another stroke came before this one was looked at
   }
 
-  private split(line: Point[]): void {
+  private split(drawn: Point[]): void {
     const { labels, selected } = this.drawing;
+    const line = lengthened(drawn, REACH_PX * this.scale());
     const met = new Map<number, number>();
     for (const at of lineOf(line, labels)) met.set(labels.data[at]!, (met.get(labels.data[at]!) ?? 0) + 1);
     const most = [...met].sort((a, b) => b[1] - a[1])[0]?.[0] ?? selected;
@@ -161,4 +162,14 @@ export class Pens {
       this.waits((this.busy = false));
     }
   }
+}
+
+/** A line that goes on at both ends as it began and ended: nobody hits a rim to the pixel. */
+function lengthened(line: Point[], by: number): Point[] {
+  const beyond = (end: Point, before: Point): Point => {
+    const [dx, dy] = [end[0] - before[0], end[1] - before[1]];
+    const share = by / (Math.hypot(dx, dy) || Infinity);
+    return [end[0] + share * dx, end[1] + share * dy];
+  };
+  return [beyond(line[0]!, line[1] ?? line[0]!), ...line, beyond(line.at(-1)!, line.at(-2) ?? line[0]!)];
 }

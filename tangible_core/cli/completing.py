@@ -46,7 +46,8 @@ def keys(incomplete: str) -> list[str]:
     if use and stage in STAGES:
         return _beginning((f"{stage}.use={name}" for name in default_registry().names(stage)), incomplete)
     found = [f"{name}.{option}=" for name, section in SECTIONS.items() for option in section.model_fields]
-    return _beginning(("scene=", "want=", *(f"{stage}.use=" for stage in STAGES), *found), incomplete)
+    alone = ("scene", "title", "language", "want", "heights")
+    return _beginning((*(f"{key}=" for key in alone), *(f"{stage}.use=" for stage in STAGES), *found), incomplete)
 
 
 def _installed(kind: str | None, incomplete: str) -> list[tuple[str, str]]:

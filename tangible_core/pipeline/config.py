@@ -1,6 +1,6 @@
 """The pipeline file: what it may say, and what it says once it was checked."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from io import StringIO
@@ -176,12 +176,13 @@ class PipelineConfig:
                 plain[kind] = {"use": chosen.name, **chosen.method.model_dump(mode="json")}
         return plain
 
-    def as_yaml(self) -> str:
-        """The completed configuration as a pipeline file. Raises: ConfigError as `completed`."""
+    def as_yaml(self, leave_out: Collection[str] = ()) -> str:
+        """The completed configuration as a pipeline file, without these keys. Raises: ConfigError as `completed`."""
         yaml, text = YAML(typ="safe"), StringIO()
         yaml.default_flow_style = False
         yaml.sort_base_mapping_type_on_output = False  # pyright: ignore[reportAttributeAccessIssue]
-        yaml.dump(self.completed(), text)  # pyright: ignore[reportUnknownMemberType]
+        said = {key: value for key, value in self.completed().items() if key not in leave_out}
+        yaml.dump(said, text)  # pyright: ignore[reportUnknownMemberType]
         return text.getvalue()
 
     def _parts_as_said(self) -> dict[str, Any]:
@@ -189,8 +190,8 @@ class PipelineConfig:
         if self.parts is not None:
             plain = {number: each.model_dump(mode="json", exclude_defaults=True) for number, each in self.parts.items()}
             said["parts"] = plain
-        if self.heights is not None:
-            said["heights"] = self.heights.model_dump(mode="json")
+        if self.heights is not None or self.given_heights_m:  # which nothing is made of, if so it is said
+            said["heights"] = self.heights and self.heights.model_dump(mode="json")
         return said
 
     def _scene_as_said(self) -> str | dict[str, Any]:

@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Bool
 
 from ..data import DisparityMap, PartMap
-from ..parts import HeightChoice, PartHeights
+from ..parts import HeightChoice, PartHeights, depth_heights, guess_heights
 from ..plugins.notes import note
 
 log = logging.getLogger(__name__)
@@ -43,8 +43,6 @@ def heights_of(
 
 
 def _found(parts: PartMap, heights: HeightChoice, top_m: float, disparity: DisparityMap | None) -> PartHeights:
-    from ..parts import depth_heights, guess_heights
-
     if heights.by == "guess":
         return guess_heights(parts, top_m)
     if heights.by == "depth" and disparity is not None:
@@ -70,14 +68,19 @@ def tell(found: PartHeights, heights: HeightChoice, given_m: Mapping[int, float]
     if heights.by == "guess":
         note(
             log,
-            f"the heights of {in_words(left)} are guessed, as a picture does not tell what stands in front of what; "
+            f"the heights of {_of(left, found)} are guessed, as a picture does not tell what stands in front of what; "
             "correct them in parts-guessed.yaml, which a run leaves in its folder, or give them: "
             "`heights: {by: given}`",
             logging.WARNING,
         )
     elif heights.by == "given":
         lies = "lies" if len(left) == 1 else "lie"
-        note(log, f"no height is given for {in_words(left)}, which {lies} at 0")
+        note(log, f"no height is given for {_of(left, found)}, which {lies} at 0")
+
+
+def _of(numbers: list[int], found: PartHeights) -> str:
+    count = len(found.reasons)
+    return f"all {count} parts" if len(numbers) == count > 1 else in_words(numbers)
 
 
 def in_words(numbers: list[int]) -> str:

@@ -6,6 +6,7 @@ from typing import Annotated, Any, cast
 
 from pydantic import AfterValidator, ConfigDict, Field
 
+from ..data import Material
 from ..errors import MOST_QUOTED, MaterialError, did_you_mean, quoted
 from ..files.source import Location, Source
 from ..materials.assignment import find
@@ -112,13 +113,12 @@ def _wrong_name(name: str) -> str:
     return f"{quoted(name)} is over {MOST_QUOTED} characters; say it in fewer" if len(name) > MOST_QUOTED else ""
 
 
-def wrong_of_materials(parts: Mapping[int, PartChoice], library: Iterable[str]) -> Iterator[Said]:
+def wrong_of_materials(parts: Mapping[int, PartChoice], library: Mapping[str, Material]) -> Iterator[Said]:
     """Materials of parts that are not in the library."""
-    known = dict.fromkeys(library)
     for number, choice in parts.items():
         try:
             if choice.material is not None:
-                find(choice.material, cast(Any, known))
+                find(choice.material, library)
         except MaterialError as error:
             yield ("parts", number, "material"), str(error)
 

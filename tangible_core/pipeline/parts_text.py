@@ -2,7 +2,6 @@
 
 import json
 from collections.abc import Iterator
-from dataclasses import replace
 
 from ..data import DisparityMap, PartMap
 from ..errors import ConfigError, shown
@@ -12,6 +11,8 @@ from .config import PipelineConfig
 from .engine import Engine
 from .felt import FeltScene
 
+MOST_REASON = 300
+"""Characters of what is said behind a part."""
 SOURCES = {
     "guess": "The heights are guessed: a picture does not tell what stands in front of what.",
     "depth": "The heights are by depth: each is the median over its part.",
@@ -43,7 +44,7 @@ def to_correct(engine: Engine) -> str:
         raise ConfigError("no part has a height: the relief is not made of parts; say how it is: heights={'by': ...}")
     block = "\n".join(_lines(config, found))
     try:
-        rest = replace(config, parts=None, heights=None).as_yaml()
+        rest = config.as_yaml(leave_out=("parts", "heights"))
     except ConfigError:
         rest = ""
     head = f"# {SOURCES[config.heights.by]} Correct what is wrong, and give names.\n"
@@ -58,6 +59,6 @@ def _lines(config: PipelineConfig, found: PartHeights) -> Iterator[str]:
         said = {"name": choice.name.strip(), "height_m": height_m, "material": choice.material}
         told = ((key, json.dumps(value, ensure_ascii=False)) for key, value in said.items() if value is not None)
         words = ", ".join(f"{key}: {value}" for key, value in told)
-        yield f"  {number}: {{{words}}}  # {shown(why)}"
+        yield f"  {number}: {{{words}}}  # {shown(why, MOST_REASON)}"
     given = config.heights.model_copy(update={"by": "given"}).model_dump(mode="json")
     yield f"heights: {{{', '.join(f'{key}: {value}' for key, value in given.items())}}}"

@@ -18,8 +18,8 @@ from ..session import EVERY, About, Recording, names_text, run_simulated, tellin
 from .cache import write_record
 from .engine import Engine
 from .following import felt_device, how_followed
-from .rehearsal import FELT, rehearsal
 from .parts_text import part_heights, to_correct
+from .rehearsal import FELT, rehearsal
 from .run_folder import CONFIG, GUESSED, NO_CONFIG, OUTCOMES, RECORDING, SHEET, check_folder, rewritten
 
 SHOWN = ("disparity", "segments", "parts", "materials", "surface")
@@ -156,14 +156,15 @@ def _felt(
 
 
 def _draw(engine: Engine, products: Mapping[str, Any], recording: Recording | None, path: Path) -> str:
-    scene, shown = engine.scene, {name: products.get(name) for name in (*SHOWN, "relief")}
+    scene, language = engine.scene, engine.config.language
+    shown: dict[str, Any] = {name: products.get(name) for name in (*SHOWN, "relief")}
     if scene.truth is not None and shown["disparity"] is not None:
         shown["disparity"] = engine.make("disparity")  # pixel by pixel beside its truth
     title = engine.config.title or (Path(scene.name).name if Path(scene.name).is_absolute() else scene.name)
     if doubts := [each.text.partition(":")[0] for each in engine.outcomes.doubts]:
         title = f"{title} (doubtful: {'; '.join(doubts)})"
-    said = {"title": title, "language": engine.config.language}
-    return draw_sheet(path, views=scene.views, truth=scene.truth, recording=recording, **said, **shown)
+    shown |= {"views": scene.views, "truth": scene.truth, "recording": recording}
+    return draw_sheet(path, title=title, language=language, **shown)
 
 
 def _figures(engine: Engine, products: Mapping[str, Any], recording: Recording | None) -> dict[str, Any]:

@@ -86,9 +86,7 @@ def draw_sheet(
     return write_sheet(path, run, title, (*panels, *added_panels()), language)
 
 
-def write_sheet(
-    path: Path, run: Mapping[str, Any], title: str, panels: Sequence[Panel], language: str = "en"
-) -> str:
+def write_sheet(path: Path, run: Mapping[str, Any], title: str, panels: Sequence[Panel], language: str = "en") -> str:
     """Draw what is given in the report's style, whole or not at all, and say what it is. Raises: as `draw_sheet`."""
     from matplotlib import style
 

@@ -182,9 +182,7 @@ def _part_heights_m(
     return np.array([np.median(part) if part.size else np.nan for part in parts])
 
 
-def _part(
-    surface: HapticSurface, there: Bool[np.ndarray, "h w"], number: int, height_m: float, say: _Words
-) -> str:
+def _part(surface: HapticSurface, there: Bool[np.ndarray, "h w"], number: int, height_m: float, say: _Words) -> str:
     assert surface.names is not None
     facts = [] if _place(there) == NOWHERE else [say(_place(there))]
     facts += [say("part high", height=say.number(1000 * height_m))] if height_m > FLAT_M else []

@@ -310,9 +310,10 @@ def _check_sizes(files: SceneFiles, held: Mapping[str, np.ndarray]) -> None:
     size = held[main].shape[1::-1]
     for other in held.keys() - {main}:
         if (its := held[other].shape[1::-1]) != size:
+            cure = "by its nearest neighbours, which mixes no labels" if other == "segments" else "or crop one of them"
             raise PictureError(
                 f"{getattr(files, other)} ({other}) is {its[0]} x {its[1]} and {getattr(files, main)} ({main}) is "
-                f"{size[0]} x {size[1]}; all parts of a scene must be of one size; resize or crop one of them"
+                f"{size[0]} x {size[1]}; all parts of a scene must be of one size; resize {cure}"
             )
 
 

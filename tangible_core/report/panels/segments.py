@@ -46,9 +46,7 @@ def draw_segments(
     return "Segments and their materials" if materials else "Segments"
 
 
-def draw_parts(
-    axes: Axes, parts: PartMap, views: Views | None = None, surface: HapticSurface | None = None
-) -> str:
+def draw_parts(axes: Axes, parts: PartMap, views: Views | None = None, surface: HapticSurface | None = None) -> str:
     """Parts tinted each in its colour, outlined, numbered and named where there is room.
 
     The legend has the parts from near to far where there is a surface, in their order where there is none, each with

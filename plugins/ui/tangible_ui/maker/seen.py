@@ -10,6 +10,7 @@ from jaxtyping import Float32, Int32
 from tangible_core.data import DisparityMap, Material, Relief, SegmentMap
 from tangible_core.data.records import digest_of
 from tangible_core.metrics import absolute_error
+from tangible_core.parts import reduced_parts
 from tangible_core.pipeline.config import Product
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.pipeline.rules import fitted
@@ -106,14 +107,22 @@ def is_there(pipeline: Pipeline, product: Product) -> bool:
 
 def _seen(pipeline: Pipeline, shows: Shows, relief: Relief) -> Seen:
     shape = relief.height_m.shape
-    segments = _at_hand(pipeline, "segments")
-    labels = None if segments is None else reduced_segments(segments, shape).labels
+    labels = _labels(pipeline, shape)
     chosen = _at_hand(pipeline, "materials")
     materials = chosen.materials if chosen is not None and labels is not None else ()
     views = pipeline.scene.views
     return Seen(
         pipeline.scene.name, shows, relief, labels, materials, None if views is None else views.left, _layers(pipeline)
     )
+
+
+def _labels(pipeline: Pipeline, shape: tuple[int, int]) -> Int32[np.ndarray, "h w"] | None:
+    """Of what has materials: of parts where anything is by parts, else of segments; None where they are not there."""
+    product: Product = "parts" if pipeline.config.by_parts else "segments"
+    found = _at_hand(pipeline, product)
+    if found is None:
+        return None
+    return (reduced_parts if product == "parts" else reduced_segments)(found, shape).labels
 
 
 def _at_hand(pipeline: Pipeline, product: Product) -> Any:

@@ -10,7 +10,7 @@ const REFRESH_MS = 200;
 const SHAPES: Record<StateOf, string> = {
   waiting: "○", running: "◐", ran: "●", cached: "◆", given: "▣", skipped: "–", refused: "⊘", failed: "✕", stopped: "■",
 };
-const PRODUCTS = ["views", "disparity", "relief", "segments", "materials", "surface", "touch"] as const;
+const PRODUCTS = ["views", "disparity", "relief", "segments", "parts", "materials", "surface", "touch"] as const;
 
 function build(page: Page, root: HTMLElement): void {
   const table = new StageTable();

@@ -17,6 +17,7 @@ export const t = words({
   depth: ["Depth", "Tiefe"],
   texture: ["Texture", "Textur"],
   materials: ["Materials", "Materialien"],
+  heights: ["Heights of parts", "Höhen der Teile"],
   workspace: ["Size", "Größe"],
   mapping: ["Mapping to the hand", "Abbildung auf die Hand"],
   render: ["Law of force", "Kraftgesetz"],

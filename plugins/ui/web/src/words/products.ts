@@ -5,6 +5,7 @@ const t = words({
   disparity: ["Disparity", "Disparität"],
   relief: ["Relief", "Relief"],
   segments: ["Segments", "Segmente"],
+  parts: ["Parts", "Teile"],
   materials: ["Materials", "Materialien"],
   surface: ["Surface", "Oberfläche"],
   touch: ["Force law", "Kraftgesetz"],

@@ -7,6 +7,7 @@ export const t = words({
   disparity: ["Depth", "Tiefe"],
   relief: ["Relief", "Relief"],
   segments: ["Texture", "Textur"],
+  parts: ["Parts", "Teile"],
   materials: ["Materials", "Materialien"],
   surface: ["Surface", "Oberfläche"],
   touch: ["Law of force", "Kraftgesetz"],

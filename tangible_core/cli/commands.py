@@ -30,6 +30,7 @@ class Command(NamedTuple):
 COMMANDS = {
     "demo": Command("run:demo", "Run the built-in example from picture to force."),
     "new": Command("new:new", "Write a pipeline file for your pictures."),
+    "parts": Command("parts:parts", "Divide a picture into parts, to name and to give heights."),
     "run": Command("run:run", "Run a pipeline file, or a picture, and write a report."),
     "plan": Command("run:plan", "Say what `run` would do, and why; run nothing."),
     "preflight": Command("preflight:preflight", "Check, before a motor moves, what is safe."),

@@ -82,10 +82,12 @@ def feel(
     (report,) = reports
     felt = session.figures(report)
     hand = None if then or wait else pipeline.followed(looks.recording())
+    parts = () if then else pipeline.parts_felt(looks.recording())
     if as_json:
         figures = {"device": device.name, "spec": asdict(device.method.spec()), **felt}
         outcomes = show.as_rows(pipeline.outcomes)
         said = {"guard": session.changed_most(report.flagged), "hand": hand and hand._asdict()}
+        said |= {"part": report.part, "parts": [each._asdict() for each in parts]}
         file = {"file": record and str(record)}
         show.print_json({"outcomes": outcomes, "loop": loop, "figures": figures, **said, **file})
     elif not is_quiet():
@@ -94,6 +96,7 @@ def feel(
         if loop:
             show.say(f"\n{loop['how']}; the first tick came {loop['start_s']:.2f} s after the loop was asked for\n")
         show.table(("figure", "value"), [(name, _text(value)) for name, value in felt.items()])
+        show.parts_felt(parts)
         for said in (session.changed_most(report.flagged), hand and hand.says):
             if said:
                 show.plain(f"\n{said}")

@@ -11,7 +11,9 @@ from .options import Config, Json, NoCache, Record, Sets
 from .run import open_pipeline
 
 if TYPE_CHECKING:
-    from ..session import Recording
+    from collections.abc import Sequence
+
+    from ..session import PartFelt, Recording
 
 
 def replay(
@@ -43,7 +45,8 @@ def replay(
         replace(after, about=replace(after.about, device=f"replay of {recording.name}")).save(record)
     figures = {**session.compared(before, after), "ns_per_tick": 1e9 * seconds / max(1, len(after.rows))}
     law = pipeline.config.render
-    _print(before, figures, record, as_json, law.name if law else "the law")
+    parts = pipeline.parts_felt(after)
+    _print(before, figures, parts, record, as_json, law.name if law else "the law")
 
 
 MEANINGS = {
@@ -63,16 +66,27 @@ MEANINGS = {
 }
 
 
-def _print(before: Recording, figures: dict[str, float], record: Path | None, as_json: bool, law: str) -> None:
+def _print(
+    before: Recording,
+    figures: dict[str, float],
+    parts: Sequence[PartFelt],
+    record: Path | None,
+    as_json: bool,
+    law: str,
+) -> None:
+    from .. import session
     from ..errors import MOST_IN_LINE, shown
     from . import sentences, show
 
     if as_json:
         said: dict[str, Any] = {"device": before.about.device, "renderer": before.about.renderer}
         said |= {"started": before.about.started, "stopped": before.stopped}
-        show.print_json({"recorded": said, "figures": figures, "file": record and str(record)})
+        said["parts"] = session.names_of(before.about.parts)
+        felt = [each._asdict() for each in parts]
+        show.print_json({"recorded": said, "figures": figures, "parts": felt, "file": record and str(record)})
         return
     if before.stopped:
         show.note(f"the recording ended early: {shown(before.stopped, MOST_IN_LINE)}")
     show.sentence(sentences.replayed(law, figures))
     show.table(("figure", "value", ""), [(name, f"{value:.6g}", MEANINGS[name]) for name, value in figures.items()])
+    show.parts_felt(parts)

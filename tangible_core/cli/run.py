@@ -163,7 +163,7 @@ def _print(run: Run, as_json: bool) -> None:
         title, lines = LINES[name]
         show.say(f"\n[bold]{title}[/]")
         for line in lines(values):
-            show.say(f"  {line}")
+            show.plain(f"  {line}")
     show.say("\n[bold]written[/]")
     for path in run.files:
         show.plain(f"  {path}")
@@ -196,6 +196,20 @@ def _material_lines(figures: Mapping[Any, Any]) -> list[str]:
     return [f"{label}: {each['name']} ({each['why']})" for label, each in figures.items()]
 
 
+def _part_lines(figures: Mapping[Any, Any]) -> list[str]:
+    """What is called how, how high it is, and why; a part without a name by its number alone."""
+    return [
+        f"{number}: {', '.join(_said_of(each))}" + (f" ({each['why']})" if each["why"] else "")
+        for number, each in figures.items()
+    ]
+
+
+def _said_of(part: Mapping[Any, Any]) -> list[str]:
+    height_m = part["height_m"]
+    said = (part["name"], "" if height_m is None else f"{1000 * height_m:.3g} mm high", part["material"])
+    return [each for each in said if each]
+
+
 def _force_lines(figures: Mapping[Any, Any]) -> list[str]:
     return [
         f"peak {figures['peak_force_n']:.2f} N, median in contact {figures['median_contact_force_n']:.2f} N, "
@@ -206,6 +220,7 @@ def _force_lines(figures: Mapping[Any, Any]) -> list[str]:
 LINES: dict[str, tuple[str, Callable[[Mapping[Any, Any]], list[str]]]] = {
     "disparity": ("error against the truth", _error_lines),
     "materials": ("materials", _material_lines),
+    "parts": ("parts", _part_lines),
     "force": ("force along the path", _force_lines),
     "guard": ("what the guard changed", lambda figures: [figures["says"]]),
     "hand": ("the hand", lambda figures: [figures["says"]]),

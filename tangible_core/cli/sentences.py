@@ -35,6 +35,11 @@ def _are_made(products: Sequence[str]) -> str:
     return f"its {_and(products)} {'is' if len(products) == 1 else 'are'} made"
 
 
+def divided(name: str, parts: int) -> str:
+    """Into how many parts a picture is divided."""
+    return f"{name} is one part." if parts == 1 else f"{name} is divided into {parts} parts."
+
+
 def planned(steps: Sequence[Outcome]) -> str:
     """How much of a plan is still to be run."""
     to_run = [each.product for each in steps if each.outcome == "ran"]

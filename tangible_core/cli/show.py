@@ -18,6 +18,7 @@ from ..runtime.standard_output import stream
 
 if TYPE_CHECKING:
     from ..data import Outcome
+    from ..session import PartFelt
 
 COLOURS = {"given": "blue", "ran": "green", "cached": "cyan", "skipped": "dim", "failed": "red", "refused": "red"}
 
@@ -104,6 +105,15 @@ def outcomes(found: Iterable[Outcome], title: str | None = None, ran: str = "ran
         for each in found
     ]
     table(("product", "method", "outcome", "why", "seconds"), rows, title)
+
+
+def parts_felt(found: Sequence[PartFelt]) -> None:
+    """Which parts were touched, how long and how hard; nothing where there are none."""
+    if found:
+        say("")
+        rows = [(each.number, each.name, 100 * each.share, each.peak_force_n) for each in found]
+        cells = [(str(number), escape(name), f"{share:.0f}", f"{peak_n:.2f}") for number, name, share, peak_n in rows]
+        table(("part", "name", "% of the contact", "peak N"), cells)
 
 
 def as_rows(found: Iterable[Outcome]) -> list[dict[str, Any]]:

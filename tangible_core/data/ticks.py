@@ -82,3 +82,5 @@ class ServoReport:
     """Share of the ticks in which the device was given a force; none where time is simulated: see the recording."""
     median_contact_force_n: float | None = None
     """Of that force, within half a millinewton; 0 where there was none."""
+    part: str = ""
+    """What the part of the picture under the tip is called; empty where the surface has none."""

@@ -34,4 +34,5 @@ def tangible_stage_finished(outcome: Outcome) -> None:
 @hookimpl
 def tangible_servo_report(report: ServoReport) -> None:
     """Ten lines a second, for who asks for them."""
-    log.debug("servo: %d ticks, %.1f s, force %.2f N", report.ticks, report.time_s, report.peak_force_n)
+    on = f", on {report.part}" if report.part else ""
+    log.debug("servo: %d ticks, %.1f s, force %.2f N%s", report.ticks, report.time_s, report.peak_force_n, on)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING, Any
 
+from ..errors import shown
 from ..plugins.hooks import hookimpl
 
 if TYPE_CHECKING:
@@ -28,22 +29,24 @@ def tangible_stage_finished(outcome: Outcome) -> None:
 
 @hookimpl
 def tangible_servo_report(report: ServoReport) -> None:
-    """Time and force, rewritten in place; gone when the loop stops."""
+    """Time, force and the part under the tip, rewritten in place; gone when the loop stops."""
     if report.stopped:
         _clear()
     else:
-        _show(f"feeling: {report.time_s:5.1f} s, peak {report.peak_force_n:.2f} N")
+        on = f", on {shown(report.part)}" if report.part else ""
+        _show(f"feeling: {report.time_s:5.1f} s, peak {report.peak_force_n:.2f} N{on}")
 
 
 def _show(text: str) -> None:
     if not sys.stderr.isatty():
         return
     from rich.console import Console
+    from rich.text import Text
 
     if _shown:
-        _shown[0].update(text)
+        _shown[0].update(Text(text))  # the name of a part may have brackets
     else:
-        _shown.append(Console(stderr=True).status(text))
+        _shown.append(Console(stderr=True).status(Text(text)))
         _shown[0].start()
 
 

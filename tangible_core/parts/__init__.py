@@ -1,5 +1,6 @@
 """The parts of a picture: found in its segments, given a height each, and made a relief of."""
 
+from .borders import shared_borders as shared_borders
 from .depth import depth_heights as depth_heights
 from .find import find_parts as find_parts
 from .find import part_sizes as part_sizes

@@ -18,7 +18,8 @@ def find_parts(segments: SegmentMap) -> PartMap:
     """
     from skimage.measure import label
 
-    found = np.asarray(label(segments.labels, connectivity=1, background=-1))
+    none = int(segments.labels.min()) - 1
+    found = np.asarray(label(segments.labels, connectivity=1, background=none))
     parts = found.astype(np.int32)
     parts -= 1
     flat = parts.reshape(-1)

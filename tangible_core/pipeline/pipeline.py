@@ -35,7 +35,20 @@ from ..preflight import Flight, Hand, Loop, Preflight, judge, survey
 from ..scene.scene import Scene
 from ..scene.workspace import Workspace
 from ..servo import OVER, Safety, Servo
-from ..session import About, Followed, Recording, Turn, check_record_path, keeping, replay, run_in_turn, run_simulated
+from ..session import (
+    About,
+    Followed,
+    PartFelt,
+    Recording,
+    Turn,
+    check_record_path,
+    keeping,
+    parts_felt,
+    replay,
+    run_in_turn,
+    run_simulated,
+    telling_parts,
+)
 from .cache import Cache
 from .config import MaterialChoice, NamedMethod, PipelineConfig, Product, load_config, wrong_of_parts
 from .engine import Engine, Progress
@@ -329,15 +342,16 @@ class Pipeline:
         if not in_real_time and (then or on_wait):
             raise ConfigError("then, on_wait: are for a session in real time; leave them out, or in_real_time=False")
         if not in_real_time:
-            found = run_simulated(touch, felt, math.inf if seconds is None else seconds, tell, self.config.safety, stop)
+            tell, until_s = telling_parts(self._parts(), tell), math.inf if seconds is None else seconds
+            found = run_simulated(touch, felt, until_s, tell, self.config.safety, stop)
             found = replace(found, about=said.stamped())
             if file is not None:
                 found.save(file)
             return found
 
-        turns = [Turn(touch, self.config.safety), *(each._turn(self, device) for each in then)]
+        turns = [Turn(touch, self.config.safety, self._parts()), *(each._turn(self, device) for each in then)]
         each_s = each_s if then else math.inf
-        said = replace(said, configuration="---\n".join(each._about(None).configuration for each in (self, *then)))
+        said = _in_turn(said, [each._about(None) for each in (self, *then)])
 
         def run(rows: Callable[[np.ndarray], None]) -> str:
             report = run_in_turn(
@@ -429,11 +443,22 @@ class Pipeline:
             )
         if device is None and ours.device is None and theirs.device is not None:
             device = theirs.device.method
-        return Turn(self._touch(device), ours.safety)
+        return Turn(self._touch(device), ours.safety, self._parts())
 
     def _touch(self, device: HapticDevice | None) -> Touch:
         """The law on the surface, whose materials fit this device, or the configured one."""
         return self.touch if device is None else self.engine.touch_on(device)
+
+    def parts_felt(self, seen: Recording) -> tuple[PartFelt, ...]:
+        """How long and how hard each part of the surface was touched, the longest touched first; none without parts.
+
+        seen: what was felt, or one tick of `session.EVERY` of it. Raises: as `make`.
+        """
+        return parts_felt(seen, self.surface)
+
+    def _parts(self) -> HapticSurface | None:
+        """The surface whose parts are told; None where it has none."""
+        return self.surface if self.config.by_parts else None
 
     def _about(self, device: HapticDevice | None) -> About:
         said = about(self.engine)
@@ -540,6 +565,13 @@ def _as_in_yaml(materials: Materials | None) -> MaterialChoice | Mapping[str, An
     ):
         return {"by": materials}
     return materials
+
+
+def _in_turn(said: About, each: Sequence[About]) -> About:
+    """What is said of scenes that are felt in turn."""
+    configuration = "---\n".join(one.configuration for one in each)
+    parts = "\n".join(one.parts for one in each) if any(one.parts for one in each) else ""
+    return replace(said, configuration=configuration, parts=parts)
 
 
 def _both(one: Callable[[T], None], other: Callable[[T], None] | None) -> Callable[[T], None]:

@@ -14,7 +14,7 @@ from ..files.writing import write_text
 from ..plugins.interfaces import Touch
 from ..report import disparity_errors, draw_sheet, write_figures
 from ..report.html import png_html
-from ..session import EVERY, About, Recording, run_simulated
+from ..session import EVERY, About, Recording, names_text, run_simulated, telling_parts
 from .cache import write_record
 from .engine import Engine
 from .following import felt_device, how_followed
@@ -137,7 +137,7 @@ def about(engine: Engine) -> About:
         text = engine.config.as_yaml()
     except ConfigError as error:
         text = f"# {error}"
-    return About(names["device"], names["render"], text)
+    return About(names["device"], names["render"], text, parts=names_text(engine.config.part_names))
 
 
 def _felt(
@@ -149,27 +149,22 @@ def _felt(
     said = about(engine).stamped()
     if engine.beside is not None:
         engine.beside.wait(FELT)
-    recording = run_simulated(touch, device, seconds, on_report, engine.config.safety)
+    parts = engine.felt("surface") if engine.config.by_parts else None
+    told = telling_parts(parts, on_report) if on_report else None
+    recording = run_simulated(touch, device, seconds, told, engine.config.safety)
     return replace(recording, about=said)
 
 
 def _draw(engine: Engine, products: Mapping[str, Any], recording: Recording | None, path: Path) -> str:
-    scene, shown = engine.scene, {name: products.get(name) for name in (*SHOWN, "relief")}
+    scene, language = engine.scene, engine.config.language
+    shown: dict[str, Any] = {name: products.get(name) for name in (*SHOWN, "relief")}
     if scene.truth is not None and shown["disparity"] is not None:
         shown["disparity"] = engine.make("disparity")  # pixel by pixel beside its truth
     title = engine.config.title or (Path(scene.name).name if Path(scene.name).is_absolute() else scene.name)
     if doubts := [each.text.partition(":")[0] for each in engine.outcomes.doubts]:
         title = f"{title} (doubtful: {'; '.join(doubts)})"
-    named = replace(engine.config, title=title)
-    return draw_sheet(
-        path,
-        views=scene.views,
-        truth=scene.truth,
-        recording=recording,
-        title=named.title,
-        language=named.language,
-        **shown,
-    )
+    shown |= {"views": scene.views, "truth": scene.truth, "recording": recording}
+    return draw_sheet(path, title=title, language=language, **shown)
 
 
 def _figures(engine: Engine, products: Mapping[str, Any], recording: Recording | None) -> dict[str, Any]:

@@ -69,7 +69,7 @@ def starter(pictures: Sequence[Path], file: Path) -> Starter:
     parts = _parts(pictures)
     scene = Scene.of(**parts) if parts else Scene.builtin(str(pictures[0]))
     kind: Kind = "heights" if scene.views is None else "pair" if scene.views.right is not None else "photo"
-    named = ", ".join(f"{part}: {_in_yaml(path, file.parent)}" for part, path in parts.items())
+    named = ", ".join(f"{part}: {_path_in_yaml(path, file.parent)}" for part, path in parts.items())
     said = {"scene": f"{{{named}}}" if parts else scene.name, "name": " and ".join(path.name for path in pictures)}
     text = files("tangible_core.pipeline").joinpath(f"starter_{kind}.yaml").read_text(encoding="utf-8")
     return Starter(Template(text).substitute(said, file=file, **_size(scene, kind)), scene)
@@ -135,8 +135,13 @@ def _slope(values: Float32[np.ndarray, "h w"], smooth_mm: float) -> float:
     return float(np.percentile(steep, 95))
 
 
-def _in_yaml(path: Path, folder: Path) -> str:
+def _path_in_yaml(path: Path, folder: Path) -> str:
     """A path as a file in this folder names it; in quotes where YAML would take it for something else."""
     here = path.absolute()
     text = here.relative_to(folder.absolute()).as_posix() if here.is_relative_to(folder.absolute()) else here.as_posix()
+    return in_yaml(text)
+
+
+def in_yaml(text: str) -> str:
+    """A name or a path, in quotes where YAML would take it for something else."""
     return text if re.fullmatch(r"[A-Za-z0-9_./-]+", text) else json.dumps(text, ensure_ascii=False)

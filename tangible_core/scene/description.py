@@ -58,6 +58,16 @@ def language_of(tag: str) -> Language:
     return next((each for each in get_args(Language) if each == spoken), "en")
 
 
+def place_in_words(part: Bool[np.ndarray, "h w"], language: Language = "en") -> str:
+    """Where most of a part of a picture lies; empty where that is on no side.
+
+    >>> place_in_words(np.eye(6) > 0), place_in_words(np.tri(6, dtype=bool) & (np.arange(6) < 2))
+    ('', 'on the left')
+    """
+    place = _place(part)
+    return "" if place == NOWHERE else _Words(language)(place)
+
+
 class _Words:
     """What is said in one language."""
 

@@ -225,12 +225,6 @@ class Scene:
         return {product: record for product, record in found.items() if record is not None}
 
 
-def builtin_files(name: str) -> SceneFiles:
-    """The files of a scene of `BUILTINS`, where they lie on this machine."""
-    files, folder = BUILTINS[name], _scikit_image_data()
-    return files.model_copy(update={part: folder / path for part, path in files if isinstance(path, Path)})
-
-
 def _check_cameras(calibration: object, rig: object) -> None:
     """Raises: ArgumentError for what describes no camera."""
     if not isinstance(calibration, Calibration | None):
@@ -295,6 +289,12 @@ def _disparity(held: Mapping[str, np.ndarray]) -> DisparityMap | None:
     return DisparityMap(held["disparity"]) if "disparity" in held else None
 
 
+def builtin_files(name: str) -> SceneFiles:
+    """The files of a builtin scene, with absolute paths. Raises: PictureError without scikit-image."""
+    files, folder = BUILTINS[name], _scikit_image_data()
+    return files.model_copy(update={part: folder / path for part, path in files if isinstance(path, Path)})
+
+
 def _scikit_image_data() -> Path:
     """The folder itself: scikit-image's own functions download what they miss."""
     from importlib.util import find_spec
@@ -310,9 +310,10 @@ def _check_sizes(files: SceneFiles, held: Mapping[str, np.ndarray]) -> None:
     size = held[main].shape[1::-1]
     for other in held.keys() - {main}:
         if (its := held[other].shape[1::-1]) != size:
+            cure = "by its nearest neighbours, which mixes no labels" if other == "segments" else "or crop one of them"
             raise PictureError(
                 f"{getattr(files, other)} ({other}) is {its[0]} x {its[1]} and {getattr(files, main)} ({main}) is "
-                f"{size[0]} x {size[1]}; all parts of a scene must be of one size; resize or crop one of them"
+                f"{size[0]} x {size[1]}; all parts of a scene must be of one size; resize {cure}"
             )
 
 

@@ -7,6 +7,7 @@ from .keeper import Keeper
 from .limited import changed_most
 from .live import figures, keeping, run_in_real_time
 from .loop import run_simulated
+from .parts_felt import PartFelt, called, names_of, names_text, part_under, parts_felt, telling_parts
 from .recording import INTERRUPTED, STOPPED, Recording, failure
 from .recording_files import check_record_path
 from .replay import compared, replay, undisturbed
@@ -21,10 +22,12 @@ __all__ = [
     "Followed",
     "Keeper",
     "Looks",
+    "PartFelt",
     "Recording",
     "Turn",
     "Writer",
     "beside",
+    "called",
     "changed_most",
     "check_record_path",
     "compared",
@@ -32,9 +35,14 @@ __all__ = [
     "figures",
     "followed",
     "keeping",
+    "names_of",
+    "names_text",
+    "part_under",
+    "parts_felt",
     "replay",
     "run_in_real_time",
     "run_in_turn",
     "run_simulated",
+    "telling_parts",
     "undisturbed",
 ]

@@ -11,13 +11,14 @@ from typing import NamedTuple, final
 
 import numpy as np
 
-from ..data import TICK_COLUMNS, ServoReport, TickFlag
+from ..data import TICK_COLUMNS, HapticSurface, ServoReport, TickFlag
 from ..errors import DeviceError, check_positive
 from ..plugins.interfaces import HapticDevice, Touch
 from ..runtime.stopping import stop_asked, stoppable
 from ..servo import OVER, Safety, Servo
 from ..servo.reports import Counted, report, so_far
 from .live import LOOK_EVERY_S, attended, ignored
+from .parts_felt import with_part
 from .recording import INTERRUPTED, STOPPED
 from .tick_arrays import ARRAYS
 
@@ -33,6 +34,8 @@ class Turn(NamedTuple):
 
     touch: Touch
     limits: Safety
+    parts: HapticSurface | None = None
+    """The surface whose parts reports tell; None for none."""
 
 
 def run_in_turn(
@@ -144,7 +147,7 @@ class _Session:
                 swapped.result()
                 self._at, self._due_s = self._next, time.monotonic() + self._each_s
         elif self._swapping is None and len(self._turns) > 1 and time.monotonic() >= self._due_s:
-            self._swapping = aside.submit(servo.swap, *self._turns[self._next])
+            self._swapping = aside.submit(servo.swap, *self._turns[self._next][:2])
         return self._ended() if self._since_s else ""
 
     @property
@@ -152,7 +155,8 @@ class _Session:
         return (self._at + 1) % len(self._turns)
 
     def _tell(self, servo: Servo, found: ServoReport) -> None:
-        self._last = report(servo.ring, found.stopped, self._before, self._since_s)
+        found = report(servo.ring, found.stopped, self._before, self._since_s)
+        self._last = with_part(found, self._turns[self._at].parts)
         self._hear(self._last)
 
     def _keep(self, rows: np.ndarray) -> None:

@@ -34,6 +34,9 @@ class About:
     """Date and time, ISO 8601."""
     software: str = ""
     """What wrote it, with versions."""
+    parts: str = ""
+    """Names of the surface's parts, a JSON object from number to name; of scenes felt in turn, a line each, which is
+    empty for one without names."""
 
     def stamped(self) -> Self:
         """With date and versions, where they are not said."""

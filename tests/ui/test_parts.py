@@ -5,6 +5,7 @@ import gzip
 import zlib
 from collections.abc import Callable, Coroutine
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -84,6 +85,12 @@ class TestLabels:
         path = tmp_path / "sent"
         path.write_bytes(packed(drawn()))
         np.testing.assert_array_equal(unpacked(path, SHAPE), drawn())
+
+    def test_what_cannot_be_packed_arrives(self, tmp_path: Path) -> None:
+        labels = np.random.default_rng(0).integers(0, 2**16, (600, 800), np.uint16)
+        path = tmp_path / "sent"
+        path.write_bytes(gzip.compress(labels.astype("<u2").tobytes(), 0))
+        np.testing.assert_array_equal(unpacked(path, (600, 800)), labels)
 
     @pytest.mark.parametrize(
         "sent",
@@ -578,6 +585,47 @@ class TestHeights:
                 await ask("parts_heights", **told)
 
         small(check)
+
+    def test_of_heights_that_come_faster_than_they_are_felt_the_newest_are(
+        self, small: Callable[[Check], None]
+    ) -> None:
+        async def check(small: SmallDesk, ask: Any) -> None:
+            await saved(small, ask)
+            await small.tab.until("touch")
+            small.maker.asked.clear()
+            found = await asyncio.gather(*(ask("parts_heights", heights_m=[0.0, k / 1e4, 0.0]) for k in range(20)))
+            assert found == [{}, *[None] * 18, {}]
+            assert small.maker.asked.count("parts_heights") == 2
+            async with asyncio.timeout(30):
+                while small.tab.last("scene")["height_m"][1] < 19 / 1e4:
+                    await asyncio.sleep(0.005)
+            assert small.maker.bench.kept.seen.relief.height_m.max() > 19 / 1e4
+
+        small(check)
+
+    @pytest.mark.parametrize(
+        ("compared", "running", "says"), [(None, True, "put"), (None, False, "feel"), ({}, True, "feel")]
+    )
+    def test_heights_that_are_dragged_fill_no_history(
+        self, monkeypatch: pytest.MonkeyPatch, compared: Any, running: bool, says: str
+    ) -> None:
+        done: list[str] = []
+
+        async def put(_: Any) -> None:
+            done.append("put")
+
+        async def feel(_: Any) -> None:
+            done.append("feel")
+
+        desk: Any = SimpleNamespace(
+            laws=SimpleNamespace(other=compared),
+            feeling=SimpleNamespace(running=running, channel=""),
+            put=put,
+            feel=feel,
+        )
+        monkeypatch.setattr("tangible_ui.desk.desk.Felt.of", lambda made, channel: made)
+        asyncio.run(Desk.feel_on(desk, {}))
+        assert done == [says]
 
     def test_parts_that_were_not_saved_have_no_heights(self, small: Callable[[Check], None]) -> None:
         async def check(small: SmallDesk, ask: Any) -> None:

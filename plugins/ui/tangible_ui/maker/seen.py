@@ -119,25 +119,28 @@ def is_there(pipeline: Pipeline, product: Product) -> bool:
 
 
 def _seen(pipeline: Pipeline, shows: Shows, relief: Relief) -> Seen:
-    labels, names = _labels(pipeline, relief.height_m.shape)
+    labels = _labels(pipeline, relief.height_m.shape)
     chosen = _at_hand(pipeline, "materials")
     materials = chosen.materials if chosen is not None and labels is not None else ()
-    views = pipeline.scene.views
-    return Seen(
-        pipeline.scene.name, shows, relief, labels, materials, None if views is None else views.left, _layers(pipeline),
-        names,
-    )  # fmt: skip
+    picture = None if pipeline.scene.views is None else pipeline.scene.views.left
+    names = _names(pipeline) if labels is not None else None
+    return Seen(pipeline.scene.name, shows, relief, labels, materials, picture, _layers(pipeline), names)
 
 
-def _labels(pipeline: Pipeline, shape: tuple[int, int]) -> tuple[np.ndarray | None, tuple[str, ...] | None]:
-    """Of parts, with their names, where materials are one a part; otherwise of segments."""
-    if pipeline.config.by_parts:
-        parts: PartMap | None = _at_hand(pipeline, "parts")
-        if parts is None:
-            return None, None
-        return reduced_parts(parts, shape).labels, names_of(pipeline.config.parts or {}, parts.count)
-    segments: SegmentMap | None = _at_hand(pipeline, "segments")
-    return None if segments is None else reduced_segments(segments, shape).labels, None
+def _names(pipeline: Pipeline) -> tuple[str, ...] | None:
+    """Of the parts, which are there; None where nothing is by parts."""
+    config = pipeline.config
+    parts: PartMap | None = _at_hand(pipeline, "parts") if config.by_parts else None
+    return None if parts is None else names_of(config.parts or {}, parts.count)
+
+
+def _labels(pipeline: Pipeline, shape: tuple[int, int]) -> Int32[np.ndarray, "h w"] | None:
+    """Of what has materials: of parts where anything is by parts, else of segments; None where they are not there."""
+    product: Product = "parts" if pipeline.config.by_parts else "segments"
+    found = _at_hand(pipeline, product)
+    if found is None:
+        return None
+    return (reduced_parts if product == "parts" else reduced_segments)(found, shape).labels
 
 
 def _at_hand(pipeline: Pipeline, product: Product) -> Any:

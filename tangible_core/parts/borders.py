@@ -1,0 +1,147 @@
+"""The borders between parts as lines: polygons that share them to the bit."""
+# shapely has no types.
+# pyright: reportUnknownVariableType=false, reportUnknownMemberType=false, reportUnknownArgumentType=false
+
+from importlib import import_module
+from typing import Any
+
+import numpy as np
+from jaxtyping import Bool, Float64, Int32, Int64
+
+from ..data import PartMap, SegmentMap
+from ..errors import BrokenMethod, GeometryError
+from .find import find_parts
+
+Sides = Int64[np.ndarray, "n"]
+"""Something of each side of a pixel that lies between two parts."""
+DOWN, RIGHT = np.array([0, 1, 0, -1]), np.array([1, 0, -1, 0])
+"""From one corner of a pixel to the next, by the way that is taken: 0 right, 1 down, 2 left, 3 up."""
+BELOW, BEHIND = np.array([0, 1, 1, 0]), np.array([1, 1, 0, 0])
+"""Of the four pixels around a corner, by the way from it: the one ahead to the left, from the upper left one."""
+
+
+def shared_borders(parts: PartMap, width_m: float, tolerance_m: float) -> tuple[Any, ...]:
+    """A polygon for each part, by its number: two that are neighbours share the line between them to the bit.
+
+    There is no gap and no overlap; holes stay holes; the picture's rim stays a rectangle. Lines run along the sides of
+    pixels, and lose each corner whose triangle with the two beside it is smaller than tolerance_m squared, the smallest
+    first, as long as no line crosses another. So the stairs of pixels become lines about as near as the tolerance, and
+    what is narrower than twice that, such as the tip of a tongue, may be cut off. 0 keeps every corner.
+    Parameters: tolerance_m >= 0; width_m, of the whole picture.
+    Returns: shapely's polygons, in metres, in the frame of the surface: x to the right, y away from the user, origin in
+    the middle. A part of several pieces, of a reduced map, is a multipolygon, and one without a pixel an empty polygon.
+    Raises: GeometryError if width_m is not positive or tolerance_m negative; BrokenMethod without shapely.
+    Source: Visvalingam & Whyatt, Line generalisation by repeated elimination of points, 1993; for shared lines,
+    `shapely.coverage_simplify`.
+    """
+    if not (0 < width_m < np.inf and 0 <= tolerance_m < np.inf):
+        raise GeometryError(f"width_m and tolerance_m are lengths in metres, not {width_m} and {tolerance_m}")
+    shapely = _shapely()
+    rows, columns = parts.labels.shape
+    pieces = find_parts(SegmentMap(parts.labels))
+    at, line, part = _rings(pieces)
+    polygons = shapely.polygons(shapely.linearrings(at, indices=line), indices=part)
+    if tolerance_m:
+        polygons = shapely.coverage_simplify(polygons, tolerance_m * columns / width_m, simplify_boundary=False)
+    middle, pitch_m = np.array([columns, rows]) / 2, width_m / columns * np.array([1, -1])
+
+    def placed(at: Float64[np.ndarray, "k 2"]) -> Float64[np.ndarray, "k 2"]:
+        return (at - middle) * pitch_m
+
+    return _gathered(shapely, shapely.transform(polygons, placed), np.asarray(pieces.segments), parts.count)
+
+
+def _shapely() -> Any:
+    try:
+        return import_module("shapely")
+    except ImportError as error:
+        raise BrokenMethod(f"borders as lines need shapely ({error}); pip install 'tangible-images[export]'") from error
+
+
+def _rings(parts: PartMap) -> tuple[Float64[np.ndarray, "k 2"], Int64[np.ndarray, "k"], Int64[np.ndarray, "m"]]:
+    """Corners (x, y) of closed lines, in pixels from the upper left; the line of each; and the part of each line.
+
+    A line has its part on its right. The lines of a part follow each other, the outer one first.
+    """
+    whole = np.pad(parts.labels, 1, constant_values=-1)  # so that a corner's upper left pixel has the corner's place
+    corners = parts.labels.shape[1] + 1
+    keys, part = _sides(whole, corners)
+    start, way = np.divmod(keys, 4)
+    row, column = np.divmod(start, corners)
+    to_row, to_column = row + DOWN[way], column + RIGHT[way]
+    on = _turned(whole, part, to_row, to_column, way)
+    following = np.searchsorted(keys, (to_row * corners + to_column) * 4 + on)
+    first, left = _along(following)
+    kept = _meet(whole, row, column)
+    kept[following[on != way]] = True
+    order = np.lexsort(
+        (-left, first, part)
+    )  # a part's first side of all, from its topmost corner, is of its outer line
+    order = order[kept[order]]
+    begins = np.diff(first[order], prepend=-1) != 0
+    at = np.stack([column[order], row[order]], axis=1).astype(np.float64)
+    return at, np.cumsum(begins) - 1, part[order][begins]
+
+
+def _sides(whole: Int32[np.ndarray, "r c"], corners: int) -> tuple[Int64[np.ndarray, "n"], Int64[np.ndarray, "n"]]:
+    """The sides of pixels between two parts, once for each: 4 times its first corner + way, in order; and the part."""
+    row, column = np.nonzero(whole[:-1, 1:-1] != whole[1:, 1:-1])
+    corner = row * corners + column
+    keys, parts = [4 * corner, 4 * (corner + 1) + 2], [whole[row + 1, column + 1], whole[row, column + 1]]
+    row, column = np.nonzero(whole[1:-1, :-1] != whole[1:-1, 1:])
+    corner = row * corners + column
+    keys += [4 * corner + 1, 4 * (corner + corners) + 3]
+    parts += [whole[row + 1, column], whole[row + 1, column + 1]]
+    key, part = np.concatenate(keys).astype(np.int64), np.concatenate(parts).astype(np.int64)
+    order = np.argsort(key)
+    order = order[part[order] >= 0]
+    return key[order], part[order]
+
+
+def _turned(whole: Int32[np.ndarray, "r c"], part: Sides, row: Sides, column: Sides, way: Sides) -> Sides:
+    """The way on from a corner: left, straight on or right, the first that has the part on its right.
+
+    So where two pixels of a part touch at a corner alone, a line of the part goes over from one to the other, and none
+    passes a corner twice.
+    """
+    behind = (way + 1) % 4
+    left = whole[row + BELOW[way], column + BEHIND[way]] == part
+    straight = whole[row + BELOW[behind], column + BEHIND[behind]] == part
+    return np.where(left, way + 3, np.where(straight, way, way + 1)) % 4
+
+
+def _along(following: Sides) -> tuple[Sides, Sides]:
+    """Of sides that follow each other in rings: the least of each one's ring, and how far it is to the last before it.
+
+    By doubling: after n rounds 2^n sides are looked over from each.
+    """
+    first, ahead = np.arange(following.size), following
+    while not np.array_equal(nearest := np.minimum(first, first[ahead]), first):
+        first, ahead = nearest, ahead[ahead]
+    ahead = np.where(following == first, np.arange(following.size), following)
+    left = (following != first).astype(np.int64)
+    while (more := left[ahead]).any():
+        left, ahead = left + more, ahead[ahead]
+    return first, left
+
+
+def _meet(whole: Int32[np.ndarray, "r c"], row: Sides, column: Sides) -> Bool[np.ndarray, "n"]:
+    """Whether more than two sides of pixels between parts meet at a corner."""
+    around = [whole[row + down, column + right] for down, right in zip(BELOW, BEHIND, strict=True)]
+    sides = [one != other for one, other in zip(around, around[1:] + around[:1], strict=True)]
+    return np.count_nonzero(sides, axis=0) > 2
+
+
+def _gathered(shapely: Any, polygons: Any, part: Sides, count: int) -> tuple[Any, ...]:
+    """One geometry a part, of all its pieces."""
+    if np.array_equal(part, np.arange(count)):
+        return tuple(polygons)
+    order = np.argsort(part, kind="stable")
+    pieces = np.split(polygons[order], np.searchsorted(part[order], np.arange(1, count)))
+    return tuple(_joined(shapely, each) for each in pieces)
+
+
+def _joined(shapely: Any, pieces: Any) -> Any:
+    if not len(pieces):
+        return shapely.Polygon()
+    return pieces[0] if len(pieces) == 1 else shapely.multipolygons(pieces)

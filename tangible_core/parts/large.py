@@ -1,0 +1,146 @@
+"""Segments of any method made few and large: pieces for a person to name, not hundreds of specks."""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+from jaxtyping import Bool, Float, Int, UInt8
+
+from ..data import SegmentMap
+from ..data.parts import PartMap
+from ..data.pictures import check_same_shape, to_rgb8
+from ..runtime.opencv import plain_opencv
+from .find import find_parts
+
+LIGHTNESS_IN_BYTES = (100 / 255, 1.0, 1.0)
+Each = Float[np.ndarray, "n"]
+
+
+def large_parts(segments: SegmentMap, picture: np.ndarray, least_px: float, most: int) -> PartMap:
+    """The parts of the segments, of which none is a speck, and at most so many.
+
+    A speck, a part that holds no disc least_px wide, is joined to the neighbour that it shares most of its border with
+    and is most like in colour (CIELAB). Then, while there are more than `most`, those two neighbours are joined that
+    add least to the spread of the colours within parts (Ward, Hierarchical grouping to optimize an objective function,
+    1963). One part is left where all of the picture is narrower.
+    Raises: PictureError for what is no picture, or one of another size.
+    """
+    check_same_shape("the picture", picture[..., 0] if picture.ndim == 3 else picture, "its segments", segments.labels)
+    parts, colours = find_parts(segments), _colours(picture)
+    while parts.count > 1 and (specks := disc_widths(parts) < least_px).any():
+        parts = _joined(parts, _with_their_neighbours(parts, colours, specks))
+    if parts.count > most:
+        parts = _joined(parts, _merged(parts, colours, most))
+    return find_parts(SegmentMap(parts.labels))
+
+
+def disc_widths(parts: PartMap) -> Each:
+    """Diameter of the largest disc within each part, in pixels; the picture's rim is a border."""
+    import cv2
+
+    labels = np.pad(parts.labels, 1, constant_values=-1)
+    inside = np.ones(labels.shape, np.uint8)
+    for one, other in ((np.s_[:, 1:], np.s_[:, :-1]), (np.s_[1:], np.s_[:-1])):
+        differ = labels[one] != labels[other]
+        inside[one][differ] = 0
+        inside[other][differ] = 0
+    with plain_opencv():
+        depth = cv2.distanceTransform(inside, cv2.DIST_L2, 5)[1:-1, 1:-1]
+    deepest = np.zeros(parts.count, np.float32)
+    np.maximum.at(deepest, parts.labels.reshape(-1), depth.reshape(-1))
+    return 2 * deepest.astype(np.float64) + 1
+
+
+class _Borders(NamedTuple):
+    """Of each two neighbours: their numbers, the first the lower, and how many pixels they share a side with."""
+
+    first: Int[np.ndarray, "b"]
+    second: Int[np.ndarray, "b"]
+    length_px: Int[np.ndarray, "b"]
+
+
+def _borders(parts: PartMap) -> _Borders:
+    def pairs() -> Iterator[Int[np.ndarray, "k"]]:
+        labels = parts.labels
+        for one, other in ((labels[:, 1:], labels[:, :-1]), (labels[1:], labels[:-1])):
+            differ = one != other
+            low, high = np.minimum(one[differ], other[differ]), np.maximum(one[differ], other[differ])
+            yield low.astype(np.int64) * parts.count + high
+
+    codes, length_px = np.unique(np.concatenate([*pairs()]), return_counts=True)
+    return _Borders(codes // parts.count, codes % parts.count, length_px)
+
+
+def _colours(picture: np.ndarray) -> UInt8[np.ndarray, "h w 3"]:
+    """CIELAB in bytes, as OpenCV packs it: finer differences than these make no part."""
+    import cv2
+
+    with plain_opencv():
+        return cv2.cvtColor(to_rgb8(picture), cv2.COLOR_RGB2LAB).astype(np.uint8, copy=False)
+
+
+class _Means(NamedTuple):
+    size_px: Each
+    colour: Float[np.ndarray, "n 3"]
+
+
+def _means(parts: PartMap, colours: UInt8[np.ndarray, "h w 3"]) -> _Means:
+    flat = parts.labels.reshape(-1)
+    size_px = np.bincount(flat, minlength=parts.count).astype(np.float64)
+    sums = [np.bincount(flat, colours[..., channel].reshape(-1), minlength=parts.count) for channel in range(3)]
+    return _Means(size_px, np.stack(sums, axis=1) / size_px[:, None] * LIGHTNESS_IN_BYTES)
+
+
+def _with_their_neighbours(
+    parts: PartMap, colours: UInt8[np.ndarray, "h w 3"], specks: Bool[np.ndarray, "n"]
+) -> Int[np.ndarray, "n"]:
+    """The part that each becomes one with; specks that choose each other become one, which may be large enough."""
+    first, second, length_px = _borders(parts)
+    first, second = np.concatenate([first, second]), np.concatenate([second, first])
+    length_px = np.concatenate([length_px, length_px])
+    rim_px = np.bincount(first, length_px, minlength=parts.count)
+    colour = _means(parts, colours).colour
+    unlike = 1 + np.linalg.norm(colour[first] - colour[second], axis=1)
+    cost = np.where(specks[first], unlike * rim_px[first] / length_px, np.inf)
+    order = np.lexsort((cost, first))
+    chosen = order[np.searchsorted(first[order], np.flatnonzero(specks))]
+    root = np.arange(parts.count)
+    for speck, neighbour in zip(first[chosen].tolist(), second[chosen].tolist(), strict=True):
+        one, other = _root(root, speck), _root(root, neighbour)
+        root[max(one, other)] = min(one, other)
+    return np.array([_root(root, number) for number in range(parts.count)])
+
+
+def _root(root: Int[np.ndarray, "n"], number: int) -> int:
+    while (above := int(root[number])) != number:
+        root[number] = root[above]
+        number = above
+    return number
+
+
+def _merged(parts: PartMap, colours: UInt8[np.ndarray, "h w 3"], most: int) -> Int[np.ndarray, "n"]:
+    """The part that each belongs to when the most alike neighbours were joined until so many were left."""
+    size_px, colour = _means(parts, colours)
+    near = np.zeros((parts.count, parts.count), np.bool_)
+    first, second, _ = _borders(parts)
+    near[first, second] = near[second, first] = True
+    belongs = np.arange(parts.count)
+    for _ in range(parts.count - max(1, most)):
+        spread = np.square(colour[:, None] - colour).sum(axis=2)
+        cost = np.where(near, spread * size_px[:, None] * size_px / (size_px[:, None] + size_px), np.inf)
+        kept, gone = divmod(int(cost.argmin()), parts.count)
+        both = size_px[kept] + size_px[gone]
+        colour[kept] = (size_px[kept] * colour[kept] + size_px[gone] * colour[gone]) / both
+        size_px[kept] = both
+        near[kept] |= near[gone]
+        near[:, kept] = near[kept]
+        near[kept, kept] = False
+        near[gone] = near[:, gone] = False
+        belongs[belongs == gone] = kept
+    return belongs
+
+
+def _joined(parts: PartMap, belongs: Int[np.ndarray, "n"]) -> PartMap:
+    """The parts when each belongs to another one, in any order."""
+    names, numbers = np.unique(belongs, return_inverse=True)
+    return PartMap(numbers.astype(np.int32)[parts.labels], tuple(range(names.size)))

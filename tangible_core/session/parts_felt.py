@@ -1,0 +1,92 @@
+"""Which part of a picture the tip is on, by the part's name; looked up beside the force loop, never in it."""
+
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+from jaxtyping import Float64, Int32
+
+from ..data import HapticSurface, ServoReport, Vector
+from ..errors import OutputError, quoted
+from .recording import Recording
+
+Places = Float64[np.ndarray, "n 3"]
+
+
+class PartFelt(NamedTuple):
+    """How a part was felt."""
+
+    number: int
+    name: str
+    """Empty where nobody gave it one."""
+    share: float
+    """Of the time in contact, in which the tip was on it."""
+    peak_force_n: float
+
+
+def telling_parts(surface: HapticSurface | None, tell: Callable[[ServoReport], None]) -> Callable[[ServoReport], None]:
+    """`tell`, which then hears of the part under the tip too. surface: None for one without parts."""
+    return lambda report: tell(with_part(report, surface))
+
+
+def with_part(report: ServoReport, surface: HapticSurface | None) -> ServoReport:
+    """A report with what the part under the tip is called."""
+    if surface is None or not report.ticks:
+        return report
+    return replace(report, part=part_under(surface, report.state.position_m))
+
+
+def part_under(surface: HapticSurface, position_m: Vector) -> str:
+    """What the part under a tip is called, touched or not; empty beside the surface, and where that has no parts."""
+    if surface.names is None:
+        return ""
+    number = int(_parts_under(surface, np.array([position_m], np.float64))[0])
+    return "" if number < 0 else called(number, surface.names[number])
+
+
+def names_text(names: Mapping[int, str]) -> str:
+    """The names of parts by number, as the header of a recording has them; empty for none."""
+    return json.dumps({str(number): names[number] for number in sorted(names)}, ensure_ascii=False) if names else ""
+
+
+def names_of(text: str) -> list[dict[int, str]]:
+    """What `names_text` wrote, of each scene that was felt in turn. Raises: OutputError if it is damaged."""
+    try:
+        scenes = [json.loads(line or "{}") for line in text.splitlines()]
+        return [{int(number): str(name) for number, name in names.items()} for names in scenes]
+    except (ValueError, AttributeError, RecursionError) as error:
+        raise OutputError(f"the names of its parts are damaged: {quoted(text)}; record it again") from error
+
+
+def called(number: int, name: str) -> str:
+    """A part by its name, or by its number where it has none."""
+    return name or f"part {number}"
+
+
+def parts_felt(felt: Recording, surface: HapticSurface) -> tuple[PartFelt, ...]:
+    """Every part that was touched, the longest touched first; none where the surface has no parts."""
+    force_n = np.linalg.norm(felt.force_n, axis=1)
+    touching = force_n > 0
+    if surface.names is None or not touching.any():
+        return ()
+    under, force_n = _parts_under(surface, felt.position_m[touching]), force_n[touching]
+    numbers, ticks = np.unique(under[under >= 0], return_counts=True)
+    order = np.argsort(-ticks, kind="stable")
+    return tuple(
+        PartFelt(number, surface.names[number], count / touching.sum(), float(force_n[under == number].max()))
+        for number, count in zip(numbers[order].tolist(), ticks[order].tolist(), strict=True)
+    )
+
+
+def _parts_under(surface: HapticSurface, at_m: Places) -> Int32[np.ndarray, " n"]:
+    """The number of the part under each place, -1 beside the surface."""
+    labels = surface.labels
+    assert labels is not None
+    (rows, columns), (width_m, length_m) = labels.shape, surface.extent_m
+    across, along = 0.5 + at_m[:, 0] / width_m, 0.5 - at_m[:, 1] / length_m
+    over = (across >= 0) & (across <= 1) & (along >= 0) & (along <= 1)
+    column = np.minimum((np.where(over, across, 0) * columns).astype(np.intp), columns - 1)
+    row = np.minimum((np.where(over, along, 0) * rows).astype(np.intp), rows - 1)
+    return np.where(over, labels[row, column], np.int32(-1))

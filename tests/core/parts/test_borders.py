@@ -1,0 +1,167 @@
+"""Borders as lines that two parts share: nothing between them, nothing twice, and near the sides of the pixels."""
+
+import sys
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as arrays
+
+from drawn_parts import drawn
+from tangible_core.data import PartMap, SegmentMap
+from tangible_core.errors import BrokenMethod, GeometryError
+from tangible_core.parts import find_parts, reduced_parts, shared_borders
+
+SMALL = arrays.arrays(np.int32, arrays.array_shapes(min_dims=2, max_dims=2, max_side=8), elements=st.integers(0, 2))
+
+
+def parts_of(labels) -> PartMap:
+    return find_parts(SegmentMap(np.asarray(labels, np.int32)))
+
+
+def in_pixels(labels, tolerance_px: float = 0) -> np.ndarray:
+    """Polygons, a metre a pixel."""
+    parts = parts_of(labels)
+    return np.array(shared_borders(parts, float(parts.labels.shape[1]), tolerance_px))
+
+
+def segments_of(polygons) -> list[bytes]:
+    """Every straight piece of every line, its ends in order, to the bit."""
+    found: list[bytes] = []
+    for ring in shapely.get_rings(shapely.get_parts(polygons)):
+        at = shapely.get_coordinates(ring)
+        ends = np.stack([at[:-1], at[1:]], axis=1)
+        swap = (ends[:, 0, 0] > ends[:, 1, 0]) | ((ends[:, 0, 0] == ends[:, 1, 0]) & (ends[:, 0, 1] > ends[:, 1, 1]))
+        ends[swap] = ends[swap][:, ::-1]
+        found += [each.tobytes() for each in ends]
+    return found
+
+
+def check_whole(polygons, rows: int, columns: int) -> None:
+    """No gap, no overlap, each line between two parts in both to the bit, the rim a rectangle."""
+    assert shapely.is_valid(polygons).all()
+    assert shapely.coverage_is_valid(polygons)
+    assert shapely.area(polygons).sum() == pytest.approx(rows * columns, rel=1e-12)
+    assert shapely.equals(
+        shapely.coverage_union_all(polygons), shapely.box(-columns / 2, -rows / 2, columns / 2, rows / 2)
+    )
+    segments, times = np.unique(segments_of(polygons), return_counts=True)
+    ends = np.frombuffer(b"".join(segments.tolist()), np.float64).reshape(-1, 2, 2)
+    on_rim = (np.abs(ends) == (columns / 2, rows / 2)) & (ends[:, :1] == ends[:, 1:])
+    assert np.array_equal(times, np.where(on_rim.any(axis=(1, 2)), 1, 2))
+
+
+@given(SMALL, st.sampled_from([0, 0.4, 1, 3]))
+def test_parts_lie_side_by_side_without_gap_and_overlap(labels, tolerance_px):
+    polygons = in_pixels(labels, tolerance_px)
+    check_whole(polygons, *labels.shape)
+    sizes = np.bincount(parts_of(labels).labels.reshape(-1))
+    if tolerance_px < 0.5:  # no triangle of the sides of pixels is that small
+        assert shapely.area(polygons).tolist() == sizes.tolist()
+        assert shapely.length(polygons).sum() == np.sum(
+            [_sides(parts_of(labels).labels == part) for part in range(sizes.size)]
+        )
+
+
+def _sides(part: np.ndarray) -> int:
+    around = np.pad(part, 1)
+    return int((around[1:] != around[:-1]).sum() + (around[:, 1:] != around[:, :-1]).sum())
+
+
+@given(SMALL)
+def test_every_pixel_lies_in_the_polygon_of_its_part(labels):
+    polygons = in_pixels(labels)
+    rows, columns = labels.shape
+    row, column = np.indices(labels.shape)
+    middles = shapely.points(column + 0.5 - columns / 2, rows / 2 - row - 0.5)
+    assert shapely.contains(polygons[parts_of(labels).labels], middles).all()
+
+
+def test_metres_run_right_and_away_from_the_user():
+    parts = parts_of([[0, 0, 0, 0], [0, 0, 1, 0], [0, 0, 0, 0]])
+    assert shared_borders(parts, 0.08, 0)[1].bounds == pytest.approx((0, -0.01, 0.02, 0.01))
+    parts = parts_of([[1, 0, 0, 0], [0, 0, 0, 0]])
+    assert shared_borders(parts, 0.08, 0)[0].bounds == pytest.approx((-0.04, 0, -0.02, 0.02))
+
+
+def test_holes_are_kept_and_what_is_in_them():
+    ring = np.zeros((40, 60), np.int32)
+    ring[5:35, 10:50] = 1
+    ring[10:30, 20:30] = ring[10:30, 35:45] = 2
+    for tolerance_px in (0, 2):
+        polygons = in_pixels(ring, tolerance_px)
+        assert shapely.get_num_interior_rings(polygons).tolist() == [1, 2, 0, 0]
+        assert shapely.area(polygons).tolist() == [2400 - 1200, 1200 - 400, 200, 200]
+
+
+def test_a_part_of_one_pixel_is_never_less_than_a_triangle():
+    labels = np.zeros((9, 9), np.int32)
+    labels[4, 4] = 1
+    assert shapely.area(in_pixels(labels)[1]) == 1
+    assert shapely.area(in_pixels(labels, 5)[1]) > 0
+    assert shapely.area(in_pixels([[0]], 5)).tolist() == [1]
+
+
+def test_in_a_pattern_of_a_chessboard_every_square_is_its_own():
+    board = np.indices((6, 7)).sum(axis=0) % 2
+    polygons = in_pixels(board)
+    assert shapely.area(polygons).tolist() == [1] * 42
+    check_whole(polygons, 6, 7)
+
+
+def test_a_part_that_touches_itself_at_a_corner_has_a_hole_there():
+    labels = [[0, 0, 0, 0], [0, 1, 1, 0], [0, 1, 0, 1], [0, 1, 1, 1]]
+    polygons = in_pixels(labels)
+    assert shapely.get_num_interior_rings(polygons).tolist() == [0, 1, 0]
+    check_whole(polygons, 4, 4)
+
+
+def test_stairs_become_lines_within_the_tolerance():
+    row, column = np.indices((200, 200)) - 99.5
+    labels = (column > 0.37 * row).astype(np.int32)
+    labels[column**2 + row**2 < 60**2] = 2
+    plain, simple = in_pixels(labels), in_pixels(labels, 1.5)
+    assert shapely.get_num_coordinates(simple).sum() < shapely.get_num_coordinates(plain).sum() / 4
+    circle = shapely.Point(0, 0).buffer(60, quad_segs=64)
+    disc = simple[np.argmin(np.abs(shapely.area(simple) - circle.area))]
+    assert disc.boundary.hausdorff_distance(circle.boundary) < 1.5 + 0.75
+    for before, after in zip(plain, simple, strict=True):
+        assert before.boundary.hausdorff_distance(after.boundary) < 1.5
+
+
+@pytest.mark.parametrize("name", ["astronaut", "motorcycle"])
+def test_what_is_wider_than_the_tolerance_stays(name):
+    """Of each part, what lies deeper in it than half as much again as the tolerance."""
+    parts = drawn(name).parts
+    plain, simple = (np.array(shared_borders(parts, 0.16, tolerance_m)) for tolerance_m in (0, 0.001))
+    assert shapely.area(shapely.difference(shapely.buffer(plain, -0.0015), simple)).max() < 1e-12
+
+
+def test_parts_of_a_coarser_grid_keep_their_numbers():
+    labels = np.zeros((40, 40), np.int32)
+    labels[:, 19:21] = 1
+    labels[17:23, 19:21] = 2
+    parts = parts_of(labels)
+    few = reduced_parts(parts, (5, 40))
+    polygons = shared_borders(few, 40.0, 0)
+    assert [each.area for each in polygons] == [np.count_nonzero(few.labels == part) * 1 for part in range(few.count)]
+
+
+def test_a_number_of_several_pieces_or_of_none_is_a_geometry_too():
+    parts = PartMap(np.int32([[2, 0, 2]]), (0, 1, 2))
+    one, none, two = shared_borders(parts, 3.0, 0)
+    assert (one.area, none.is_empty, two.geom_type, two.area) == (1, True, "MultiPolygon", 2)
+
+
+@pytest.mark.parametrize(("width_m", "tolerance_m"), [(0, 0), (-1, 0), (np.nan, 0), (0.08, -1), (0.08, np.nan)])
+def test_lengths_that_are_none_are_said(width_m, tolerance_m):
+    with pytest.raises(GeometryError, match="lengths in metres"):
+        shared_borders(parts_of([[0, 1]]), width_m, tolerance_m)
+
+
+def test_without_shapely_it_is_said_how_to_install_it(monkeypatch):
+    monkeypatch.setitem(sys.modules, "shapely", None)
+    with pytest.raises(BrokenMethod, match=r"pip install 'tangible-images\[export\]'"):
+        shared_borders(parts_of([[0, 1]]), 0.08, 0)

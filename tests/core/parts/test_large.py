@@ -1,0 +1,80 @@
+"""Segments made few and large, for a person to name."""
+
+import numpy as np
+import pytest
+
+from tangible_core.data import SegmentMap
+from tangible_core.errors import PictureError
+from tangible_core.parts import find_parts
+from tangible_core.parts.large import disc_widths, large_parts
+
+RED, ROSE, BLUE = (200, 30, 30), (210, 60, 60), (30, 30, 200)
+
+
+def in_three(rows: int = 30, columns: int = 60) -> tuple[SegmentMap, np.ndarray]:
+    """Red, rose and blue from left to right, a third each."""
+    third = np.arange(columns) * 3 // columns
+    labels = np.tile(third.astype(np.int32), (rows, 1))
+    return SegmentMap(labels), np.array((RED, ROSE, BLUE), np.uint8)[labels]
+
+
+def test_a_speck_goes_to_the_neighbour_that_it_is_most_like():
+    segments, picture = in_three()
+    labels = segments.labels.copy()
+    labels[10:13, 38:42] = 3
+    picture[10:13, 38:42] = ROSE
+    found = large_parts(SegmentMap(labels), picture, least_px=6, most=12)
+    assert found.count == 3
+    assert (found.labels[10:13, 38:42] == found.labels[0, 30]).all(), "half of it lies in the blue, all of it is rose"
+    kept = large_parts(SegmentMap(labels), picture, least_px=2, most=12)
+    assert kept.count == 4, "it is as wide as a part must be"
+
+
+def test_specks_become_one_part_where_together_they_are_large_enough():
+    rows, columns = np.indices((40, 40)) // 4
+    mosaic = (rows * 10 + columns).astype(np.int32)
+    picture = np.random.default_rng(1).integers(0, 255, (100, 3)).astype(np.uint8)[mosaic]
+    found = large_parts(SegmentMap(mosaic), picture, least_px=8, most=100)
+    assert 1 < found.count < 100 and (disc_widths(found) >= 8).all()
+
+
+def test_of_too_many_parts_those_most_alike_become_one():
+    segments, picture = in_three()
+    found = large_parts(segments, picture, least_px=2, most=2)
+    assert found.count == 2
+    assert (found.labels == np.array([0, 0, 1])[segments.labels]).all(), "red and rose are one"
+    assert large_parts(segments, picture, least_px=2, most=1).count == 1
+
+
+def test_numbers_are_those_of_first_pixels_and_the_same_in_a_picture_twice_as_large():
+    rng = np.random.default_rng(3)
+    coarse = rng.integers(0, 6, (6, 8)).astype(np.int32)
+    labels = np.repeat(np.repeat(coarse, 5, axis=0), 5, axis=1)
+    picture = rng.integers(0, 255, (6, 8, 3)).astype(np.uint8)[np.arange(30) // 5][:, np.arange(40) // 5]
+    found = large_parts(SegmentMap(labels), picture, least_px=4, most=7)
+    again = find_parts(SegmentMap(found.labels))
+    assert (again.labels == found.labels).all() and again.count == found.count == 7
+
+    def twice(values: np.ndarray) -> np.ndarray:
+        return np.repeat(np.repeat(values, 2, axis=0), 2, axis=1)
+
+    larger = large_parts(SegmentMap(twice(labels)), twice(picture), least_px=8, most=7)
+    assert (larger.labels == twice(found.labels)).all()
+
+
+@pytest.mark.parametrize("shape", [(1, 1), (1, 40), (40, 1), (3, 3)])
+def test_a_picture_narrower_than_a_speck_is_one_part(shape: tuple[int, int]):
+    labels = np.arange(shape[0] * shape[1]).reshape(shape).astype(np.int32)
+    assert large_parts(SegmentMap(labels), np.zeros(shape, np.uint8), least_px=5, most=12).count == 1
+
+
+def test_a_disc_is_as_wide_as_its_part():
+    labels = np.zeros((40, 60), np.int32)
+    labels[:, 20:] = 1
+    assert disc_widths(find_parts(SegmentMap(labels))) == pytest.approx([20, 40], abs=1.5)
+
+
+def test_a_picture_of_another_size_is_refused():
+    segments, picture = in_three()
+    with pytest.raises(PictureError, match="must be of one size"):
+        large_parts(segments, picture[:-1], least_px=5, most=12)

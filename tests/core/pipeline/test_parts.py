@@ -1,0 +1,594 @@
+"""Parts in a pipeline: heights, names and materials of the pieces of a small picture that anybody can check."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, ClassVar
+
+import numpy as np
+import pytest
+
+from tangible_core import Pipeline, Scene
+from tangible_core.data import DisparityMap, Force, HapticState, HapticSurface, Note, SegmentMap, Views
+from tangible_core.errors import ConfigError, MaterialError, PictureError
+from tangible_core.parts import HeightChoice, PartChoice
+from tangible_core.pipeline.cache import Cache
+from tangible_core.pipeline.pipeline import load_pipeline
+from tangible_core.plugins.interfaces import DepthEstimator, ForceRenderer, PlainTouch, Segmenter, Skippable, Touch
+
+ROWS, COLUMNS = 40, 60
+LABELS = np.zeros((ROWS, COLUMNS), np.int32)
+LABELS[5:15, 5:20] = LABELS[5:15, 40:55] = 1
+LABELS[20:35, 20:45] = 2
+"""Part 0 is the wall, of segment 0; 1 and 2 are the two boxes of segment 1; 3 is of segment 2."""
+PICTURE = np.random.default_rng(0).random((ROWS, COLUMNS)).astype(np.float32)
+ran: list[str] = []
+
+
+@pytest.fixture(autouse=True)
+def _forget():
+    ran.clear()
+
+
+class Ramp(DepthEstimator):
+    """Nearer to the right."""
+
+    def estimate(self, views: Views) -> DisparityMap:
+        ran.append("disparity")
+        rows, columns = views.shape
+        nearness = (np.arange(columns, dtype=np.float32) + 0.5) / columns
+        return DisparityMap(np.tile(nearness, (rows, 1)), unit="relative")
+
+
+class Never(Ramp, Skippable):
+    """Not needed by any scene."""
+
+    def skip(self, views: Views) -> str | None:
+        return "the views are identical"
+
+
+class Same(Segmenter):
+    """The labels of above, whatever it sees."""
+
+    def segment(self, picture: np.ndarray) -> SegmentMap:
+        ran.append("segments")
+        return SegmentMap(LABELS)
+
+
+class Nothing(PlainTouch):
+    """Feels nothing."""
+
+    def force(self, state: HapticState) -> Force:
+        return Force(0.0, 0.0, 0.0)
+
+
+class Heights(ForceRenderer):
+    """A law without materials."""
+
+    uses_materials: ClassVar[bool] = False
+
+    def touch(self, surface: HapticSurface) -> Touch:
+        return Nothing()
+
+
+def scene(labels: np.ndarray | None = LABELS, picture: np.ndarray = PICTURE) -> Scene:
+    return Scene.of(photo=picture, segments=labels)
+
+
+def pipeline(labels: np.ndarray | None = LABELS, cached: bool = False, **parts: Any) -> Pipeline:
+    return Pipeline(scene(labels), **parts, cached=cached)
+
+
+def said(made: Pipeline) -> dict[str, str]:
+    return {each.product: each.outcome for each in made.outcomes}
+
+
+def notes(made: Pipeline, product: str) -> tuple[Note, ...]:
+    return next(each.notes for each in made.outcomes if each.product == product)
+
+
+def middle_mm(surface: HapticSurface, number: int) -> float:
+    assert surface.labels is not None
+    return 1000 * float(np.median(surface.height_m[surface.labels == number]))
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    np.save(tmp_path / "photo.npy", PICTURE)
+    np.save(tmp_path / "labels.npy", LABELS)
+    return tmp_path
+
+
+def written(folder: Path, text: str, name: str = "p.yaml") -> Path:
+    path = folder / name
+    path.write_text(f"scene: {{photo: photo.npy, segments: labels.npy}}\n{text}")
+    return path
+
+
+SAID = "parts: {0: wall, 1: {name: left box, height_m: 1 mm}, 3: {name: chest, height_m: 3 mm, material: glass}}\n"
+
+
+class TestHeights:
+    def test_given(self):
+        made = pipeline(
+            parts={0: "wall", 1: PartChoice(height_m=0.001), 3: {"name": "chest", "height_m": 0.003}},
+            heights={"by": "given", "bulge_m": 0, "detail_m": 0},
+            workspace={"smooth_m": 0},
+        )
+        surface = made.surface
+        assert made.parts is not None and made.parts.segments == (0, 1, 1, 2)
+        expected = np.float32([0, 0.001, 0, 0.003])[made.parts.labels]
+        np.testing.assert_array_equal(surface.height_m, expected)
+        np.testing.assert_array_equal(surface.labels, made.parts.labels)
+        assert surface.names == ("wall", "", "", "chest")
+        assert surface.extent_m == pytest.approx((0.08, 0.08 * ROWS / COLUMNS))
+        assert [each.text for each in notes(made, "relief")] == [
+            "no depth is looked for: heights are given",
+            "no height is given for parts 0 and 2, which lie at 0",
+        ]
+
+    def test_by_depth_the_median_of_each_part(self):
+        made = pipeline(heights="depth", depth=Ramp())
+        found = made.part_heights
+        assert found is not None
+        left, wall, chest, right = (found.heights_m[number] for number in (1, 0, 3, 2))
+        assert 0 == left < wall < chest < right == pytest.approx(0.0042)
+        assert middle_mm(made.surface, 1) < middle_mm(made.surface, 3) < middle_mm(made.surface, 2)
+        assert float(made.relief.height_m.max()) <= 0.006 + 1e-9
+
+    def test_a_given_height_wins_in_every_recipe(self):
+        for by in ("given", "depth", "guess"):
+            made = pipeline(heights=by, parts={2: {"height_m": 0.0007}}, depth=Ramp())
+            assert made.part_heights is not None
+            assert (made.part_heights.heights_m[2], made.part_heights.reasons[2]) == (0.0007, "given")
+
+    def test_a_depth_that_no_view_shows_leaves_parts_at_the_bottom(self):
+        made = pipeline(heights={"by": "depth", "detail_m": 0}, depth=Never())
+        assert made.disparity is None and made.part_heights is not None
+        assert set(made.part_heights.heights_m) == {0.0}
+        assert float(made.relief.height_m.max()) == 0
+
+    def test_a_guess_is_never_silent(self, caplog: pytest.LogCaptureFixture):
+        made = pipeline(heights="guess")
+        made.make("relief")
+        (warning,) = [each for each in notes(made, "relief") if each.kind == "warning"]
+        assert warning.text.startswith("the heights of all 4 parts are guessed, as a picture does not tell")
+        assert [each.levelname for each in caplog.records if "guessed" in each.message] == ["WARNING"]
+        made = pipeline(heights="guess", parts={0: {"height_m": 0}, 2: {"height_m": 0}})
+        made.make("relief")
+        assert notes(made, "relief")[-1].text.startswith("the heights of parts 1 and 3 are guessed")
+        made = pipeline(heights="guess", parts={number: {"height_m": 0} for number in range(4)})
+        made.make("relief")
+        assert [each.kind for each in notes(made, "relief")] == ["decision"]
+
+    def test_heights_that_were_found_are_no_finer_than_a_hand_feels(self):
+        found = pipeline(heights="guess").part_heights
+        assert found is not None and found.heights_m == tuple(round(each, 5) for each in found.heights_m)
+
+    def test_transparent_ground_has_no_height(self):
+        picture = np.dstack([PICTURE] * 3 + [np.ones_like(PICTURE)])
+        picture[20:35, 20:45, 3] = 0
+        made = Pipeline(
+            Scene.of(photo=picture, segments=LABELS), heights="guess", materials={"default": "sand"}, cached=False
+        )
+        surface = made.surface
+        assert made.part_heights is not None and surface.labels is not None and surface.materials is not None
+        assert made.part_heights.reasons[3] == "transparent in the picture"
+        assert not surface.height_m[surface.labels == 3].any()
+        assert surface.materials[3].name == "sand"
+
+
+class TestWhatIsNotNeeded:
+    @pytest.mark.parametrize("by", ["given", "guess"])
+    def test_no_depth_and_no_texture_where_segments_are_given(self, by: str):
+        made = pipeline(heights=by, depth=Ramp(), texture=Same())
+        plan = {each.product: (each.outcome, each.why) for each in made.plan("surface").steps}
+        assert "disparity" not in plan and plan["segments"][0] == "given"
+        assert "no depth is looked for: heights are" in plan["relief"][1]
+        assert ran == []
+        made.make("surface")
+        assert ran == []
+        assert said(made)["disparity"] == "skipped"
+
+    def test_nor_of_a_pair(self):
+        pair = Scene.of(left=PICTURE, right=np.roll(PICTURE, 2, axis=1), segments=LABELS)
+        Pipeline(pair, heights="guess", depth=Ramp(), cached=False).make("surface")
+        assert ran == []
+
+    def test_texture_finds_what_no_label_picture_says_and_is_first(self):
+        made = pipeline(None, heights="depth", depth=Ramp(), texture=Same())
+        assert made.surface.labels is not None and made.surface.labels.max() == 3
+        assert ran == ["segments", "disparity"]
+
+    def test_parts_are_found_for_who_asks_and_nobody_else_hears_of_them(self):
+        made = pipeline(depth=Ramp())
+        made.make("surface")
+        assert "parts" not in said(made)
+        assert made.surface.names is None and made.part_heights is None
+        assert made.parts is not None and made.parts.count == 4
+        assert said(made)["parts"] == "ran"
+        assert pipeline(None, depth=Ramp()).parts is None
+
+
+class TestCached:
+    def made(self, folder: Path, text: str) -> Pipeline:
+        found = load_pipeline(written(folder, text), cache=Cache(folder / "cache"))
+        found.make("surface")
+        return found
+
+    def test_another_name_makes_nothing_new(self, folder: Path):
+        self.made(folder, f"{SAID}heights: given\nmaterials: {{rules: [{{part: left box, material: ice}}]}}\n")
+        again = self.made(
+            folder,
+            SAID.replace("left box", "crate") + "heights: given\nmaterials: {rules: [{part: crate, material: ice}]}\n",
+        )
+        assert said(again)["surface"] == "cached"
+        assert again.surface.names == ("wall", "crate", "", "chest")
+        assert again.materials is not None
+        assert again.materials.reasons[1] == "part 1 (crate): rule 1, named -> ice"
+        assert said(again)["materials"] == "cached"
+        assert again.relief is not None and said(again)["relief"] == "cached"
+
+    def test_nor_within_one_program(self, folder: Path):
+        first = load_pipeline(written(folder, f"{SAID}heights: given\n"))
+        first.cache = None
+        first.make("surface")
+        config = replace(first.config, parts={**(first.config.parts or {}), 0: PartChoice(name="sky")})
+        again = first.changed(config)
+        assert again.surface.names is not None and again.surface.names[0] == "sky"
+        assert again.materials is not None and "part 0 (sky)" in again.materials.reasons[0]
+        assert "ran" not in said(again).values()
+        assert first.surface.names is not None and first.surface.names[0] == "wall"
+
+    def test_another_height_makes_another_relief_of_the_same_materials(self, folder: Path):
+        self.made(folder, f"{SAID}heights: given\n")
+        again = self.made(folder, f"{SAID.replace('1 mm', '2 mm')}heights: given\n")
+        assert {each: said(again)[each] for each in ("parts", "relief", "materials", "surface")} == {
+            "parts": "cached", "relief": "ran", "materials": "cached", "surface": "ran",
+        }  # fmt: skip
+
+    def test_another_material_of_a_part_makes_no_other_relief(self, folder: Path):
+        self.made(folder, f"{SAID}heights: given\n")
+        again = self.made(folder, f"{SAID.replace('glass', 'sand')}heights: given\n")
+        assert (said(again)["relief"], said(again)["materials"]) == ("cached", "ran")
+
+    @pytest.mark.parametrize(
+        "heights", ["guess", "{by: given, round_m: 1 mm}", "{by: given, bulge_m: 0}", "{by: given, detail_m: 0}"]
+    )
+    def test_another_recipe_is_another_relief(self, folder: Path, heights: str):
+        self.made(folder, f"{SAID}heights: given\n")
+        assert said(self.made(folder, f"{SAID}heights: {heights}\n"))["relief"] == "ran"
+
+    def test_notes_are_told_again(self, folder: Path):
+        self.made(folder, "heights: guess\n")
+        again = self.made(folder, "heights: guess\n")
+        assert said(again)["surface"] == "cached"
+        assert [each.kind for each in notes(again, "relief")] == ["decision", "warning"]
+
+    def test_what_is_no_part_is_complained_of_whatever_is_kept(self, folder: Path):
+        text = "texture: {use: histogram, segments: 2}\nscene: {photo: photo.npy}\nheights: guess\n"
+        path = folder / "p.yaml"
+        path.write_text(text)
+        load_pipeline(path, cache=Cache(folder / "cache")).make("surface")
+        path.write_text(f"{text}parts: {{99999: nobody}}\n")
+        again = load_pipeline(path, cache=Cache(folder / "cache"))
+        with pytest.raises(ConfigError, match=r"p.yaml:4:9: parts.99999: there is no part 99999 \(nobody\)"):
+            again.make("surface")
+        assert said(again)["surface"] == "failed"
+
+
+class TestMaterials:
+    def test_a_part_s_own_goes_before_rules_and_these_before_the_others(self):
+        made = pipeline(
+            parts={0: "wall", 1: {"name": "left box", "material": "glass"}},
+            materials={
+                "rules": [
+                    {"part": "wall", "material": "ice"},
+                    {"segment": 1, "material": "wood"},
+                    {"part": 2, "material": "stone"},
+                ],
+                "by": {0: "leather", 1: "sand", 2: "cloth"},
+            },
+            depth=Ramp(),
+        )
+        found = made.materials
+        assert found is not None
+        assert [each.name for each in found.materials] == ["ice", "glass", "wood", "cloth"]
+        assert found.reasons == (
+            "part 0 (wall): rule 1, named -> ice",
+            "part 1 (left box): its own -> glass",
+            "part 2: rule 2, of segment 1 -> wood",
+            "part 3: segment 2, named cloth",
+        )
+
+    def test_by_place_and_by_colour(self):
+        colours = np.array([[0.5] * 3, [1, 0, 0], [0, 0, 1]], np.float32)[LABELS]
+        rules = [{"at": [50, 10], "material": "ice"}, {"colour": "red", "material": "brick"}]
+        made = Pipeline(
+            scene(picture=colours), parts={}, materials={"rules": rules, "by": "rules"}, depth=Ramp(), cached=False
+        )
+        assert made.materials is not None
+        assert [each.name for each in made.materials.materials] == ["plain", "brick", "ice", "plain"]
+        assert made.materials.reasons[1] == "part 1: rule 2, 100 % of it red -> brick"
+
+    def test_by_roughness_one_a_part(self):
+        picture = np.full((ROWS, COLUMNS), 0.5, np.float32)
+        picture[5:15, 5:20] = PICTURE[5:15, 5:20]
+        made = Pipeline(scene(picture=picture), parts={0: "wall"}, depth=Ramp(), cached=False)
+        assert made.materials is not None
+        names = [each.name for each in made.materials.materials]
+        assert names[1] == "brick" and names[2] != "brick"  # both are of one segment
+        assert made.materials.reasons[0].startswith("part 0 (wall): roughness rank ")
+
+    def test_a_segment_that_is_not_there(self):
+        made = pipeline(parts={}, materials={"by": "rules", "rules": [{"segment": 7, "material": "ice"}]}, depth=Ramp())
+        with pytest.raises(MaterialError, match=r"rule 1: there is no segment 7; the segments are 0 to 2"):
+            made.make("materials")
+        with pytest.raises(MaterialError, match=r"there is no segment 7; the segments are 0 to 2"):
+            pipeline(parts={}, materials={7: "ice"}, depth=Ramp()).make("materials")
+
+    def test_on_a_map_of_heights(self):
+        heights = Scene.of(height=PICTURE, segments=LABELS)
+        made = Pipeline(
+            heights, parts={1: {"name": "lake", "material": "water"}}, materials={"by": "rules"}, cached=False
+        )
+        surface = made.surface
+        assert surface.materials is not None and surface.names is not None
+        assert (surface.materials[1].name, surface.materials[2].name, surface.names[1]) == ("water", "plain", "lake")
+        assert said(made)["relief"] == "given"
+
+    def test_a_law_without_materials_still_knows_the_names(self):
+        made = pipeline(parts={0: "wall"}, heights="given", render=Heights())
+        assert made.surface.materials is None
+        assert made.surface.names == ("wall", "", "", "")
+        assert "materials" not in {each.product for each in made.plan().steps}
+
+
+class TestComplaints:
+    """Of what only the picture shows to be wrong: each with the part, its place in the file, and the cure."""
+
+    def complaints(self, folder: Path, text: str) -> ConfigError:
+        made = load_pipeline(written(folder, text), cache=Cache(folder / "cache"))
+        with pytest.raises(ConfigError) as error:
+            made.plan("surface")
+        with pytest.raises(ConfigError) as later:
+            made.make("surface")
+        assert str(error.value) == str(later.value)
+        return error.value
+
+    def test_a_number_that_is_no_part(self, folder: Path):
+        error = self.complaints(folder, "parts:\n  0: wall\n  9: {name: ghost}\nheights: given\n")
+        assert str(error) == (
+            f"{folder / 'p.yaml'}:4:3: parts.9: there is no part 9 (ghost); the parts are 0 to 3 "
+            "(`tangible parts` draws them with their numbers)"
+        )
+        (complaint,) = error.complaints
+        assert (complaint.location, complaint.line, complaint.column) == (("parts", 9), 4, 3)
+
+    def test_a_rule_for_one(self, folder: Path):
+        error = self.complaints(folder, "parts: {}\nmaterials: {rules: [{part: 4, material: ice}]}\n")
+        assert error.complaints[0].location == ("materials", "rules", 0, "part")
+        assert "p.yaml:3:22: materials.rules.0.part: there is no part 4; the parts are 0 to 3" in str(error)
+
+    def test_a_height_above_the_workspace(self, folder: Path):
+        error = self.complaints(folder, f"{SAID.replace('3 mm', '4.3 mm')}heights: given\n")
+        assert str(error).endswith(
+            ":2:72: parts.3.height_m: part 3 (chest), at [32, 27] of the picture, is 4.3 mm high, and the highest can "
+            "be 4.2 mm: workspace.relief_m, 6 mm, less bulge_m and detail_m, 1.8 mm; make it lower, or "
+            "workspace.relief_m 6.1 mm"
+        )
+        assert error.complaints[0].location == ("parts", 3, "height_m")
+        made = load_pipeline(
+            written(folder, f"{SAID.replace('3 mm', '4.3 mm')}heights: given\n"), ["workspace.relief_m=6.1 mm"]
+        )
+        assert made.surface.height_m.max() <= 0.0061
+
+    def test_the_highest_part_fits_to_the_last_bit(self, folder: Path):
+        made = load_pipeline(written(folder, f"{SAID.replace('3 mm', '4.2 mm')}heights: given\n"))
+        assert made.config.top_m == pytest.approx(0.0042, abs=1e-12)
+        made.make("surface")
+
+    def test_in_python_without_a_file(self):
+        with pytest.raises(ConfigError) as error:
+            pipeline(parts={9: "ghost", 1: {"height_m": 1}}, heights="given").make("relief")
+        assert [each.location for each in error.value.complaints] == [("parts", 9), ("parts", 1, "height_m")]
+        assert str(error.value).startswith("parts.9: there is no part 9 (ghost)")
+        assert {each.line for each in error.value.complaints} == {None}
+
+    @pytest.mark.parametrize("key", ["heights: given", "parts: {0: wall}"])
+    def test_no_segments(self, folder: Path, key: str):
+        path = folder / "p.yaml"
+        path.write_text(f"scene: {{photo: photo.npy}}\ndepth: luminance\n{key}\n")
+        made = load_pipeline(path)
+        plan = made.plan("surface")
+        assert "p.yaml:3:1: " in plan.refusal and plan.steps[-1].product == "parts"
+        assert plan.refusal.endswith(
+            "parts are pieces of segments, and the scene has none; give it a label picture, `segments:` under "
+            "`scene:`, or name a method under `texture:` that finds segments"
+        )
+        with pytest.raises(ConfigError) as error:
+            made.make("surface")
+        assert error.value.complaints[0].location == (key.partition(":")[0],)
+
+    def test_depth_of_one_photo_without_a_method_for_it(self):
+        plan = pipeline(heights="depth").plan("surface")
+        assert plan.refusal == "the pipeline has no depth; give it one: Pipeline(scene, depth=...)"
+
+    def test_a_map_of_heights_has_its_heights(self):
+        with pytest.raises(ConfigError, match="heights: the scene is a map of heights, which are felt as they are"):
+            Pipeline(Scene.of(height=PICTURE, segments=LABELS), heights="given")
+
+    def test_a_label_picture_of_another_size(self):
+        with pytest.raises(
+            PictureError, match=r"\(segments\) is 30 x 40 and .* is 60 x 40; .* resize by its nearest neighbours"
+        ):
+            scene(LABELS[:, ::2])
+
+    def test_more_parts_than_anybody_feels(self):
+        grain = np.indices((2 * ROWS, 2 * COLUMNS)).sum(axis=0) % 2  # each pixel a part
+        made = Pipeline(scene(grain, np.zeros(grain.shape)), heights="guess", cached=False)
+        with pytest.raises(
+            PictureError, match=r"the segments fall into \d+ parts, and at most 4096 are felt; paint each"
+        ):
+            made.plan("surface")
+
+    @pytest.mark.usefixtures("unchecked_shapes")
+    @pytest.mark.parametrize(
+        ("parts", "says"),
+        [
+            (["wall"], "parts: is the list ['wall']; it must be a mapping from the number of a part"),
+            ({"0": "wall"}, "parts: the number of a part is a whole number from 0, not '0'"),
+            ({0: 3}, "parts.0: takes a PartChoice or a mapping of its options, not 3"),
+            ({0: {"heigth_m": 1}}, "parts.0.heigth_m: "),
+            ({0: {"height_m": np.nan}}, "parts.0.height_m: Input should be a finite number"),
+            ({0: "a", 1: "A"}, "parts.1.name: 'A' is the name of part 0 as well"),
+        ],
+    )
+    def test_nonsense_in_python(self, parts: Any, says: str):
+        with pytest.raises((ConfigError, TypeError)) as error:
+            pipeline(parts=parts, heights="given")
+        assert says in str(error.value)
+
+    def test_a_slip_of_the_brush_is_told_and_keeps_its_number(self):
+        labels = LABELS.copy()
+        labels[2, 50] = labels[30, 2] = 5
+        made = pipeline(labels, heights="given")
+        made.make("surface")
+        assert made.parts is not None and made.parts.count == 6
+        (slip,) = notes(made, "parts")
+        assert slip.kind == "warning"
+        assert slip.text == (
+            "2 parts are hardly there: part 1 at [50, 2] (1 pixel), part 5 at [2, 30] (1 pixel); paint over what is a "
+            "slip of the brush; the numbers of parts behind it then change"
+        )
+
+
+class TestSizes:
+    @pytest.mark.parametrize("heights", ["given", "guess", "depth"])
+    def test_twice_the_pixels_are_the_same_parts_and_the_same_relief(self, heights: str):
+        double = np.kron(PICTURE, np.ones((2, 2), np.float32))
+        said = {0: "wall", 1: {"name": "box", "height_m": 0.001}, 3: {"name": "chest", "height_m": 0.004}}
+        small, large = (
+            Pipeline(
+                scene(labels, picture),
+                parts=said,
+                heights={"by": heights, "detail_m": 0},
+                depth=Ramp(),
+                workspace={"finest_m": 0},
+                cached=False,
+            )
+            for labels, picture in ((LABELS, PICTURE), (np.kron(LABELS, np.ones((2, 2), int)), double))
+        )
+        assert small.parts is not None and large.parts is not None
+        np.testing.assert_array_equal(np.kron(small.parts.labels, np.ones((2, 2), int)), large.parts.labels)
+        assert small.parts.segments == large.parts.segments
+        np.testing.assert_allclose(small.part_heights[0], large.part_heights[0], atol=6e-5)  # type: ignore[index]
+        assert small.surface.names == large.surface.names
+        assert within_one_pixel(small.surface.height_m, large.surface.height_m)
+
+    def test_on_a_coarser_grid_they_keep_their_numbers(self):
+        labels = np.kron(LABELS, np.ones((4, 4), int))
+        picture = np.kron(PICTURE, np.ones((4, 4), np.float32))
+        said = {1: {"height_m": 0.001}, 3: {"name": "chest", "height_m": 0.004}}
+        fine, coarse = (
+            Pipeline(scene(labels, picture), parts=said, heights="given", workspace={"finest_m": each}, cached=False)
+            for each in (0, 0.08 / COLUMNS)
+        )
+        assert coarse.surface.height_m.shape == (ROWS, COLUMNS)
+        assert coarse.parts is not None and coarse.parts.labels.shape == labels.shape
+        np.testing.assert_array_equal(coarse.surface.labels, coarse.parts.labels[2::4, 2::4])
+        assert coarse.surface.names == fine.surface.names
+        for number in range(4):
+            assert middle_mm(coarse.surface, number) == pytest.approx(middle_mm(fine.surface, number), abs=0.15)
+
+    def test_segments_that_were_found_on_the_grid_have_parts_for_every_pixel(self):
+        picture = np.kron(PICTURE, np.ones((2, 2), np.float32))
+        made = Pipeline(
+            scene(None, picture), heights="guess", texture=Same(), workspace={"finest_m": 0.08 / COLUMNS}, cached=False
+        )
+        assert made.parts is not None and made.engine.felt("parts").labels.shape == (ROWS, COLUMNS)
+        np.testing.assert_array_equal(
+            made.parts.labels, np.kron(made.engine.felt("parts").labels, np.ones((2, 2), int))
+        )
+
+    def test_twelve_megapixels(self):
+        rows, columns = 3000, 4000
+        labels = np.zeros((rows, columns), np.uint8)
+        labels[1000:2000, 1000:3000] = 1
+        labels[10, 10] = 2
+        picture = np.broadcast_to(np.linspace(0, 255, columns).astype(np.uint8), (rows, columns))
+        made = pipeline_of(labels, picture, parts={2: {"name": "table", "height_m": 0.004}}, heights="given")
+        assert made.surface.labels is not None
+        assert made.surface.height_m.shape == (2000, 2667)  # of 0.03 mm
+        assert np.bincount(made.surface.labels.ravel()).tolist()[1] == 1
+        assert made.surface.names == ("", "", "table")
+
+
+def pipeline_of(labels: np.ndarray, picture: np.ndarray, **parts: Any) -> Pipeline:
+    return Pipeline(scene(labels, picture), materials={"by": "rules"}, **parts, cached=False)
+
+
+def within_one_pixel(small: np.ndarray, large: np.ndarray) -> bool:
+    """Whether each height of one is between those that the other has around it, but for a hundredth of a millimetre."""
+    rows, columns = small.shape
+    blocks = large.reshape(rows, 2, columns, 2).mean(axis=(1, 3))
+    padded = np.pad(small, 1, mode="edge")
+    around = np.stack([padded[i : i + rows, j : j + columns] for i in range(3) for j in range(3)])
+    return bool(((blocks >= around.min(axis=0) - 2e-5) & (blocks <= around.max(axis=0) + 2e-5)).all())
+
+
+class TestWritten:
+    def test_a_guess_lies_in_the_folder_as_a_file_that_makes_the_same(self, folder: Path):
+        parts = "{0: Wand, 3: {name: Truhe, material: glass}}"
+        text = f"title: Boxes\nlanguage: de\nparts: {parts}\nheights: {{by: guess, bulge_m: 1 mm}}\n"
+        first = load_pipeline(written(folder, text), cache=Cache(folder / "cache"))
+        run = first.run(folder / "out")
+        file = folder / "out" / "parts-guessed.yaml"
+        assert file in run.files
+        assert file.read_text(encoding="utf-8") == first.parts_to_correct()
+        again = load_pipeline(file)
+        assert again.config.heights == HeightChoice(by="given", bulge_m=0.001)
+        assert again.config.part_names == {0: "Wand", 3: "Truhe"}
+        assert (again.config.title, again.config.language) == ("Boxes", "de")
+        assert again.surface.digest() == first.surface.digest()
+        np.testing.assert_array_equal(again.surface.height_m, first.surface.height_m)
+        line = next(each for each in file.read_text(encoding="utf-8").splitlines() if each.startswith("  3: "))
+        assert line.startswith('  3: {name: "Truhe", height_m: 0.00') and 'material: "glass"}  # guessed, ' in line
+        rerun = again.run(folder / "out")
+        assert not file.exists() and file not in rerun.files
+
+    def test_of_arrays_only_the_parts_are_said(self, tmp_path: Path):
+        made = pipeline(heights="guess")
+        made.run(tmp_path / "out")
+        text = (tmp_path / "out" / "parts-guessed.yaml").read_text(encoding="utf-8")
+        assert text == made.parts_to_correct()
+        assert "scene" not in text and "parts:\n  0: {" in text and "heights: {by: given" in text
+        with pytest.raises(ConfigError, match="no part has a height"):
+            pipeline(depth=Ramp()).parts_to_correct()
+
+    def test_a_run_says_its_parts(self, folder: Path):
+        run = load_pipeline(written(folder, f"title: Boxes\n{SAID}heights: given\n")).run(folder / "out")
+        document = json.loads((folder / "out" / "outcomes.json").read_text(encoding="utf-8"))
+        assert (document["title"], document["language"]) == ("Boxes", "en")
+        assert document["figures"]["parts"]["3"] == {
+            "name": "chest", "material": "glass", "height_m": 0.003, "why": "given",
+        }  # fmt: skip
+        assert (folder / "out" / "parts.npz").exists()
+        assert "Boxes. Input" in run.sheet_says and "3 chest: glass" in run.sheet_says
+        assert "Segments" not in run.sheet_says
+        assert "Its parts, from near to far, are chest (" in run.sheet_says
+        assert "heights: {by: guess" not in run.sheet_says and not (folder / "out" / "parts-guessed.yaml").exists()
+
+    def test_a_pipeline_of_objects_is_the_one_of_its_file(self, folder: Path, tmp_path: Path):
+        made = Pipeline(
+            Scene.of(photo=folder / "photo.npy", segments=folder / "labels.npy"),
+            parts={0: "wall", 3: PartChoice(name="chest", height_m=0.003)},
+            heights=HeightChoice(by="given", round_m=0.002),
+            title="Boxes",
+            language="de",
+        )
+        made.to_yaml(tmp_path / "mine.yaml")
+        again = load_pipeline(tmp_path / "mine.yaml")
+        for key in ("parts", "heights", "title", "language"):
+            assert getattr(again.config, key) == getattr(made.config, key)
+        assert again.surface.digest() == made.surface.digest()

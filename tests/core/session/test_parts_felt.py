@@ -1,0 +1,115 @@
+"""Which part of a picture the tip is on: by its place, its name, and in what a recording says of itself."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tangible_core.data import HapticSurface, Relief, ServoReport
+from tangible_core.errors import OutputError
+from tangible_core.servo import Safety
+from tangible_core.session import (
+    About,
+    Recording,
+    Turn,
+    names_of,
+    names_text,
+    part_under,
+    parts_felt,
+    run_in_turn,
+    run_simulated,
+    telling_parts,
+)
+from tangible_core.testing.loop_devices import Failing
+from tangible_devices import Mock
+from tangible_render import Penalty
+
+LABELS = np.array([[0, 1], [2, 2]], np.int32)
+NAMES = ("sky", "", "Gräser [hoch]")
+
+
+def in_parts(labels: np.ndarray = LABELS, names: tuple[str, ...] | None = NAMES) -> HapticSurface:
+    """80 x 40 mm, 5 mm high: upper left, upper right, and all of the lower half."""
+    relief = Relief(np.full(labels.shape, 0.005, np.float32), (0.08, 0.04))
+    return HapticSurface(relief, labels, None, names)
+
+
+@pytest.mark.parametrize(
+    ("x_mm", "y_mm", "called"),
+    [
+        (-20, 10, "sky"),
+        (20, 10, "part 1"),
+        (0, -10, "Gräser [hoch]"),
+        (-40, 20, "sky"),
+        (40, -20, "Gräser [hoch]"),
+        (-41, 10, ""),
+        (0, 20.5, ""),
+        (np.nan, 0, ""),
+    ],
+)
+def test_the_part_under_a_tip_by_its_name(x_mm: float, y_mm: float, called: str):
+    assert part_under(in_parts(), (x_mm / 1000, y_mm / 1000, 0.1)) == called
+    assert part_under(in_parts(names=None), (x_mm / 1000, y_mm / 1000, 0.1)) == "", "its labels are no parts"
+
+
+def test_what_was_felt_of_each_part():
+    places = [(-20, 10, 3.0)] * 5 + [(20, 10, 1.0)] * 3 + [(20, -10, 0.0)] * 9 + [(0, 30, 2.0), (-20, 10, 4.0)]
+    position_m = np.array([(x / 1000, y / 1000, 0.0) for x, y, _ in places])
+    force_n = np.array([(0.0, 0.0, force) for *_, force in places])
+    time_s = np.arange(len(places)) / 1000
+    felt = Recording.of(
+        time_s=time_s, position_m=position_m, velocity_m_per_s=0 * position_m, force_n=force_n, buttons=0 * time_s
+    )
+    assert parts_felt(felt, in_parts()) == ((0, "sky", 0.6, 4.0), (1, "", 0.3, 1.0))
+    assert parts_felt(felt, in_parts(names=None)) == ()
+    assert parts_felt(replace(felt, rows=felt.rows[:0]), in_parts()) == ()
+
+
+def test_reports_name_the_part_of_the_scene_that_is_felt():
+    """The first scene is all door, the second all wall; the loop is told neither."""
+    said: list[str] = []
+    scenes = [in_parts(0 * LABELS, ("door",)), in_parts(0 * LABELS, ("wall",))]
+    turns = [Turn(Penalty().touch(surface), Safety(), surface) for surface in scenes]
+    device = Failing(fault="none")
+    last = run_in_turn(turns, device, 0.8, 0.3, on_report=lambda report: said.append(report.part))
+    assert [*dict.fromkeys(filter(None, said))][:2] == ["door", "wall"]
+    assert last.part in ("door", "wall")
+
+
+def test_reports_of_simulated_time_too_and_none_before_the_first_tick():
+    heard: list[ServoReport] = []
+    told = telling_parts(in_parts(0 * LABELS, ("door",)), heard.append)
+    run_simulated(Penalty().touch(in_parts()), Mock(path="press"), 0.3, told)
+    assert {each.part for each in heard} == {"door"}
+    told(replace(heard[0], ticks=0, part=""))
+    assert heard[-1].part == ""
+
+
+@pytest.mark.parametrize("suffix", [".nc", ".npz"])
+def test_a_recording_says_what_parts_are_called(tmp_path: Path, suffix: str):
+    said = names_text({6: "Gräser [hoch]", 0: 'a "wall"\n'})
+    Recording(np.zeros((2, 16)), "", About("mock", parts=said)).save(tmp_path / f"a{suffix}")
+    about = Recording.load(tmp_path / f"a{suffix}").about
+    assert names_of(about.parts) == [{0: 'a "wall"\n', 6: "Gräser [hoch]"}]
+    assert about.device == "mock"
+
+
+def test_others_read_the_names_and_recordings_from_before_have_none(tmp_path: Path):
+    from scipy.io import netcdf_file
+
+    Recording(np.zeros((2, 16)), "", About(parts=names_text({1: "wall"}))).save(tmp_path / "a.nc")
+    with netcdf_file(tmp_path / "a.nc", mmap=False) as file:
+        assert file.parts == b'{"1": "wall"}'
+    Recording(np.zeros((2, 16)), "", About("mock")).save(tmp_path / "before.nc")
+    with netcdf_file(tmp_path / "before.nc", mmap=False) as file:
+        assert not hasattr(file, "parts"), "nothing is added where there are none"
+    assert names_of(Recording.load(tmp_path / "before.nc").about.parts) == []
+
+
+def test_names_of_scenes_in_turn_and_damaged_ones():
+    assert names_of('{"0": "door"}\n\n{"2": "wall"}') == [{0: "door"}, {}, {2: "wall"}]
+    assert names_text({}) == ""
+    for damaged in ("{", "[1]", '{"a": "b"}', "7"):
+        with pytest.raises(OutputError, match="names of its parts are damaged"):
+            names_of(damaged)

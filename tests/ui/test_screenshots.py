@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from drawn_parts import drawn
 from page_files import ROOT, built_page
 
 if TYPE_CHECKING:
@@ -67,6 +68,42 @@ def test_a_picture_of_each_panel(open_page: Callable[..., Any], url: str, tmp_pa
         picture = Image.open(io.BytesIO(page.screenshot(clip=cut))).convert("RGB")
         keep(picture, tmp_path, f"ui/{name}")
         panel.evaluate("(each) => (each.open = false)")
+
+
+def test_pictures_of_the_editor_of_parts(serve: Callable[..., Any], open_page: Callable[..., Any], tmp_path: Path):
+    """A photograph with parts that were drawn by hand; and one that is proposed."""
+    built_page()
+    astronaut = drawn("astronaut")
+    Image.fromarray(astronaut.picture).save(tmp_path / "astronaut.png")
+    Image.fromarray(astronaut.parts.labels.astype(np.uint8)).save(tmp_path / "parts.png")
+    names = [name if astronaut.names.count(name) == 1 else f"{name} {n}" for n, name in enumerate(astronaut.names)]
+    parts = [f"  {n}: {{name: {name}, height_m: {astronaut.heights_m[n]}}}\n" for n, name in enumerate(names)]
+    text = "scene: {photo: astronaut.png, segments: parts.png}\nworkspace: {width_m: 0.1, relief_m: 0.0064}\n"
+    text += f"render: {{use: penalty, stiffness_n_per_m: 400}}\nheights: {{by: given}}\nparts:\n{''.join(parts)}"
+    (tmp_path / "astronaut.yaml").write_text(text)
+    page = open_page(
+        serve("astronaut.yaml", cwd=tmp_path).url, viewport={"width": 1180, "height": 720}, color_scheme="light"
+    )
+    page.wait_for_function("() => document.querySelector('#status').dataset.state === 'felt'", timeout=120_000)
+    page.locator("#parts-edit").click()
+    page.locator("#parts-list [role=option]", has_text="helmet").first.click()
+    page.wait_for_timeout(500)
+    keep(Image.open(io.BytesIO(page.screenshot())).convert("RGB"), tmp_path, "ui/parts-editor")
+
+    page.keyboard.press("p")
+    page.keyboard.press("t")
+    box = page.locator("#parts-picture").bounding_box()
+    scale = min(box["width"], box["height"]) / 512
+    left, top = box["x"] + (box["width"] - 512 * scale) / 2, box["y"] + (box["height"] - 512 * scale) / 2
+    page.mouse.move(left + 110 * scale, top + 350 * scale)
+    page.mouse.down()
+    page.mouse.move(left + 185 * scale, top + 390 * scale, steps=8)
+    page.mouse.up()
+    page.get_by_role("button", name="Accept").wait_for()
+    page.wait_for_timeout(500)
+    stage = page.locator("#parts-editor > .stage").bounding_box()
+    picture = Image.open(io.BytesIO(page.screenshot(clip=stage))).convert("RGB")
+    keep(picture.resize((picture.width * 3 // 4, picture.height * 3 // 4)), tmp_path, "ui/parts-proposal")
 
 
 def prepare(page: "Page", name: str) -> None:

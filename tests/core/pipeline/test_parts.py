@@ -458,8 +458,8 @@ class TestComplaints:
         (slip,) = notes(made, "parts")
         assert slip.kind == "warning"
         assert slip.text == (
-            "2 parts are hardly there: part 1 at [50, 2] (1 pixel), part 5 at [2, 30] (1 pixel); paint over what is a "
-            "slip of the brush; the numbers of parts behind it then change"
+            "2 parts are hardly there: part 1 at [50, 2] (1 pixel), part 5 at [2, 30] (1 pixel); paint over them, or "
+            "have smoother segments made; the numbers of the parts behind them then change"
         )
 
 

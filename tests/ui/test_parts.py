@@ -22,7 +22,7 @@ from tangible_core.scene.picture_files import read_labels
 from tangible_ui.asks import ASKS
 from tangible_ui.desk.desk import Desk
 from tangible_ui.desk.newest import Newest
-from tangible_ui.maker import label_files, making
+from tangible_ui.maker import making
 from tangible_ui.maker.bench import Bench
 from tangible_ui.maker.jobs import JOBS
 from tangible_ui.maker.label_files import as_png, is_ours, unpacked
@@ -51,7 +51,10 @@ class TestLabels:
         labels = (np.arange(1200, dtype=np.int32) % count).reshape(30, 40)
         path = tmp_path / "parts.png"
         path.write_bytes(as_png(labels, "mine.yaml"))
-        np.testing.assert_array_equal(read_labels(path), labels)
+        with Image.open(path) as image:
+            image.verify()
+        read = find_parts(SegmentMap(read_labels(path)))
+        np.testing.assert_array_equal(read.labels, find_parts(SegmentMap(labels)).labels)
         assert is_ours(path, "mine.yaml")
         assert not is_ours(path, "other.yaml")
 
@@ -71,11 +74,6 @@ class TestLabels:
         assert not is_ours(path, "mine.yaml")
         path.write_bytes(b"no picture")
         assert not is_ours(path, "mine.yaml")
-
-    def test_first_colours_can_be_told_apart(self) -> None:
-        colours = label_files._PALETTE.astype(int)[:24]
-        apart = np.abs(colours[:, None] - colours[None]).sum(-1)
-        assert apart[~np.eye(24, dtype=bool)].min() > 20
 
     def test_more_labels_than_a_file_may_hold_are_said(self) -> None:
         with pytest.raises(ConfigError, match="5000 parts, and at most 4096"):
@@ -532,6 +530,27 @@ class TestHeights:
                 made = making.felt(pipeline)
                 assert Path(made["parcel"]).read_bytes() == felt
                 Path(made["parcel"]).unlink()
+
+        small(check)
+
+    @pytest.mark.parametrize("by", ["guess", "depth", "given"])
+    def test_what_the_recipe_finds_is_felt_where_nothing_is_given(
+        self, small: Callable[[Check], None], tmp_path: Path, by: str
+    ) -> None:
+        async def check(small: SmallDesk, ask: Any) -> None:
+            if by == "depth":
+                await saved(small, ask, parts=SAVED[:1], heights={**GIVEN, "by": "depth"})
+                with pytest.raises(ConfigError, match="not made yet"):
+                    await ask("parts_heights", heights_m=[None, 0.0007, None])
+                await ask("make", want="disparity")
+            parts = [{"label": 7, "height_m": 0.0007}]
+            await saved(small, ask, parts=parts, heights={**GIVEN, "by": by})
+            await ask("parts_heights", heights_m=[None, 0.0007, None])
+            async with asyncio.timeout(30):
+                while (seen := small.maker.bench.kept.seen) is None:
+                    await asyncio.sleep(0.005)
+            wanted = load_pipeline(tmp_path / "mine.yaml").relief.height_m
+            np.testing.assert_array_equal(seen.relief.height_m, wanted)
 
         small(check)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -12,9 +12,10 @@ from .loudness import is_quiet
 from .options import Json, NoCache, Sets
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
     from ..pipeline.listed_parts import ListedPart
+    from ..report.numbered_parts import Before
 
 
 def parts(
@@ -32,6 +33,10 @@ def parts(
     count: Annotated[int, typer.Option("--count", help="As many parts, at most.")] = 12,
     smallest: Annotated[float, typer.Option("--smallest", help="Width of the smallest part, mm, of 80 mm.")] = 5.0,
     sets: Sets = None,
+    renumber: Annotated[
+        bool,
+        typer.Option("--renumber", help="Let what the pipeline file says of parts follow them."),
+    ] = False,
     force: Annotated[bool, typer.Option("--force", help="Write over files that are there.")] = False,
     as_json: Json = False,
     no_cache: NoCache = False,
@@ -46,7 +51,7 @@ def parts(
     if are_pictures(pictures):
         _divide(pictures, out or Path(), method, count, smallest, sets or [], force, as_json, no_cache)
     else:
-        _list(pictures, out, sets or [], force, as_json, no_cache)
+        _list(pictures, out, sets or [], renumber, force, as_json, no_cache)
 
 
 def _divide(
@@ -77,7 +82,7 @@ def _divide(
     )
     files = found.write(force)
     if as_json:
-        said = {"title": found.title, "method": found.method, "parts": _rows(found.listed)}
+        said = {"title": found.title, "method": found.method, "parts": [each._asdict() for each in found.listed]}
         show.print_json({**said, "files": [str(path) for path in files]})
         return
     if is_quiet():
@@ -97,43 +102,43 @@ Next:
 
 
 def _list(
-    files: Sequence[Path], out: Path | None, sets: Sequence[str], force: bool, as_json: bool, no_cache: bool
+    files: Sequence[Path],
+    out: Path | None,
+    sets: Sequence[str],
+    renumber: bool,
+    force: bool,
+    as_json: bool,
+    no_cache: bool,
 ) -> None:
     from ..errors import ConfigError
-    from ..files.writing import atomic_write
-    from ..pipeline.first_parts import NUMBERED, check_free
-    from ..pipeline.listed_parts import list_parts
-    from ..pipeline.pipeline import load_pipeline
-    from ..report.numbered_parts import is_as_drawn
+    from ..pipeline.first_parts import NUMBERED
+    from ..pipeline.renumbering import draw_numbers
     from . import sentences, show
 
     if len(files) > 1:
         raise ConfigError(f"{', '.join(map(str, files))}: name one picture, left and right, or one pipeline file")
-    path = (files[0].parent if out is None else out) / NUMBERED
-    if not is_as_drawn(path):
-        check_free([path], force=force)
-    pipeline = load_pipeline(files[0], sets)
-    if no_cache:
-        pipeline.cache = None
-    found = list_parts(pipeline)
-    with atomic_write(path) as file:
-        file.write(found.numbered)
+    (file,) = files
+    path = (file.parent if out is None else out) / NUMBERED
+    done = draw_numbers(file, path, sets, renumber=renumber, force=force, cached=not no_cache)
+    found = done.listed.parts
     if as_json:
-        show.print_json({"title": pipeline.config.title, "parts": _rows(found.parts), "files": [str(path)]})
+        rows = [{**each._asdict(), "was": was and was.number} for each, was in _beside(found, done.before)]
+        show.print_json({"title": done.title, "parts": rows, "files": [str(each) for each in done.written]})
     elif not is_quiet():
-        show.sentence(sentences.divided(pipeline.scene.name, len(found.parts)))
-        _print(found.parts)
-        show.plain(f"written: {path}")
-    if found.wrong is not None:
+        show.sentence(sentences.divided(done.title, len(found)))
+        _print(found, done.before if done.moved else None)
+        for each in done.written:
+            show.plain(f"written: {each}")
+    if done.wrong is not None:
         show.flush()
-        raise found.wrong
+        raise done.wrong
 
 
-def _rows(found: Sequence[ListedPart]) -> list[dict[str, Any]]:
-    return [each._asdict() for each in found]
+def _beside(found: Sequence[ListedPart], before: Sequence[Before] | None) -> Iterable[tuple[ListedPart, Before | None]]:
+    return zip(found, before or [None] * len(found), strict=True)
 
 
-def _print(found: Sequence[ListedPart]) -> None:
+def _print(found: Sequence[ListedPart], before: Sequence[Before] | None = None) -> None:
     from rich.markup import escape
 
     from . import show
@@ -141,13 +146,15 @@ def _print(found: Sequence[ListedPart]) -> None:
     rows = [
         (
             str(each.number),
+            *([] if was is None else ["new" if was.number is None else str(was.number)]),
             escape(each.name),
             each.place,
             f"{100 * each.share:.1f}",
             "" if each.height_m is None else f"{1000 * each.height_m:.1f}",
             escape(each.material),
         )
-        for each in found
+        for each, was in _beside(found, before)
     ]
-    show.table(("part", "name", "place", "% of the picture", "height mm", "material"), rows)
+    numbers = ("part", "was") if before else ("part",)
+    show.table((*numbers, "name", "place", "% of the picture", "height mm", "material"), rows)
     show.plain("")

@@ -1,6 +1,5 @@
 """Segments of any method made few and large: pieces for a person to name, not hundreds of specks."""
 
-from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -11,6 +10,7 @@ from ..data.parts import PartMap
 from ..data.pictures import check_same_shape, to_rgb8
 from ..runtime.opencv import plain_opencv
 from .find import find_parts
+from .neighbours import neighbours
 
 LIGHTNESS_IN_BYTES = (100 / 255, 1.0, 1.0)
 Each = Float[np.ndarray, "n"]
@@ -51,26 +51,6 @@ def disc_widths(parts: PartMap) -> Each:
     return 2 * deepest.astype(np.float64) + 1
 
 
-class _Borders(NamedTuple):
-    """Of each two neighbours: their numbers, the first the lower, and how many pixels they share a side with."""
-
-    first: Int[np.ndarray, "b"]
-    second: Int[np.ndarray, "b"]
-    length_px: Int[np.ndarray, "b"]
-
-
-def _borders(parts: PartMap) -> _Borders:
-    def pairs() -> Iterator[Int[np.ndarray, "k"]]:
-        labels = parts.labels
-        for one, other in ((labels[:, 1:], labels[:, :-1]), (labels[1:], labels[:-1])):
-            differ = one != other
-            low, high = np.minimum(one[differ], other[differ]), np.maximum(one[differ], other[differ])
-            yield low.astype(np.int64) * parts.count + high
-
-    codes, length_px = np.unique(np.concatenate([*pairs()]), return_counts=True)
-    return _Borders(codes // parts.count, codes % parts.count, length_px)
-
-
 def _colours(picture: np.ndarray) -> UInt8[np.ndarray, "h w 3"]:
     """CIELAB in bytes, as OpenCV packs it: finer differences than these make no part."""
     import cv2
@@ -95,13 +75,13 @@ def _with_their_neighbours(
     parts: PartMap, colours: UInt8[np.ndarray, "h w 3"], specks: Bool[np.ndarray, "n"]
 ) -> Int[np.ndarray, "n"]:
     """The part that each becomes one with; specks that choose each other become one, which may be large enough."""
-    first, second, length_px = _borders(parts)
-    first, second = np.concatenate([first, second]), np.concatenate([second, first])
-    length_px = np.concatenate([length_px, length_px])
-    rim_px = np.bincount(first, length_px, minlength=parts.count)
+    low, high, sides = neighbours(parts)
+    first, second = np.concatenate([low, high]), np.concatenate([high, low])
+    sides = np.concatenate([sides, sides])
+    rim = np.bincount(first, sides, minlength=parts.count)
     colour = _means(parts, colours).colour
     unlike = 1 + np.linalg.norm(colour[first] - colour[second], axis=1)
-    cost = np.where(specks[first], unlike * rim_px[first] / length_px, np.inf)
+    cost = np.where(specks[first], unlike * rim[first] / sides, np.inf)
     order = np.lexsort((cost, first))
     chosen = order[np.searchsorted(first[order], np.flatnonzero(specks))]
     root = np.arange(parts.count)
@@ -122,8 +102,8 @@ def _merged(parts: PartMap, colours: UInt8[np.ndarray, "h w 3"], most: int) -> I
     """The part that each belongs to when the most alike neighbours were joined until so many were left."""
     size_px, colour = _means(parts, colours)
     near = np.zeros((parts.count, parts.count), np.bool_)
-    first, second, _ = _borders(parts)
-    near[first, second] = near[second, first] = True
+    low, high, _ = neighbours(parts)
+    near[low, high] = near[high, low] = True
     belongs = np.arange(parts.count)
     for _ in range(parts.count - max(1, most)):
         spread = np.square(colour[:, None] - colour).sum(axis=2)

@@ -1,6 +1,7 @@
 """The parts of a picture, as a list that a person reads beside the picture with their numbers."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import NamedTuple
 
 from ..data import PartMap
@@ -8,7 +9,7 @@ from ..errors import ConfigError
 from ..parts import PartChoice, PartHeights, part_sizes
 from ..report.numbered_parts import numbered_parts
 from ..scene.description import place_in_words
-from .config import PipelineConfig
+from .config import MaterialChoice, PipelineConfig
 from .layers import heights_of
 from .parts_found import check_found, parts_of
 from .pipeline import Pipeline
@@ -34,13 +35,21 @@ class ListedPart(NamedTuple):
     material: str
     """What is said of it; empty where its material comes by a rule."""
 
+    @property
+    def where(self) -> str:
+        """Its place and its share of the picture, in words."""
+        share = f"{max(0.1, 100 * self.share):.{0 if self.share >= 0.01 else 1}f} % of the picture"
+        return f"{self.place}, {share}" if self.place else share
+
 
 class ListedParts(NamedTuple):
     """The parts of a pipeline's picture, and what is wrong with what the pipeline says of them."""
 
+    found: PartMap
     parts: tuple[ListedPart, ...]
     numbered: bytes
     """The picture with their borders, numbers and names, as PNG."""
+    scene_name: str
     wrong: ConfigError | None
     """What the pipeline says of parts that there are not, or that cannot be so high."""
 
@@ -72,7 +81,8 @@ def list_parts(pipeline: Pipeline) -> ListedParts:
     `Pipeline.make`.
     """
     config, scene = pipeline.config, pipeline.scene
-    segments = pipeline.make("segments")
+    alone = pipeline.changed(replace(config, parts=None, heights=None, materials=MaterialChoice()))
+    segments = alone.make("segments")
     if segments is None or scene.views is None:
         where = f"{config.path}: " if config.path else ""
         raise ConfigError(
@@ -82,11 +92,12 @@ def list_parts(pipeline: Pipeline) -> ListedParts:
     heights = None
     if config.heights is not None:
         given_m = {number: height_m for number, height_m in config.given_heights_m.items() if number < parts.count}
-        disparity = pipeline.make("disparity") if config.heights.by == "depth" else None
+        disparity = alone.make("disparity") if config.heights.by == "depth" else None
         heights = heights_of(parts, config.heights, config.top_m, given_m, disparity, scene.shown)
     found = listed(parts, heights, said)
     names = [each.name for each in found]
-    return ListedParts(found, numbered_parts(scene.views.left, parts, names), _wrong(config, parts))
+    numbered = numbered_parts(scene.views.left, parts, names)
+    return ListedParts(parts, found, numbered, scene.name, _wrong(config, parts))
 
 
 def _wrong(config: PipelineConfig, parts: PartMap) -> ConfigError | None:

@@ -61,12 +61,14 @@ def _lines(found: Sequence[ListedPart]) -> str:
     """A line a part, in columns."""
     heads = [f'  {each.number}: {{name: "", height_m: {1000 * (each.height_m or 0):.1f} mm}}' for each in found]
     wide = max(map(len, heads))
-    return "\n".join(f"{head:<{wide}}   # {_said(each)}" for head, each in zip(heads, found, strict=True))
+    return "\n".join(
+        f"{head:<{wide}}   # {each.where}, {_briefly(each.why)}" for head, each in zip(heads, found, strict=True)
+    )
 
 
-def _said(part: ListedPart) -> str:
-    share = f"{max(0.1, 100 * part.share):.{0 if part.share >= 0.01 else 1}f} % of the picture"
-    return ", ".join(filter(None, [part.place, share, re.split("[:;]", part.why)[0]]))
+def _briefly(why: str) -> str:
+    """What a height comes from, without the details."""
+    return re.split("[:;]", why)[0]
 
 
 def _scene_in_yaml(scene: Scene, folder: Path, labels: str) -> str:

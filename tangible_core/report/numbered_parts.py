@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from base64 import b64decode, b64encode
 from collections.abc import Sequence
 from functools import cache
 from importlib.util import find_spec
@@ -25,12 +26,14 @@ if TYPE_CHECKING:
 SHORTEST_PX, LONGEST_PX = 1200, 2400
 """Between which the longer side of what is drawn lies: a small picture grows, a large one shrinks, and its numbers are
 read alike on a screen."""
-LARGE, SMALL = 1 / 32, 1 / 64
+LARGE, SMALL = 1 / 32, 1 / 52
 """Height of a number, as a share of the longer side, where its part has room for it, and where it has none."""
 ALIKE = 0.95
 """Of discs that are nearly as wide as the largest one, that is taken which lies in the middle of its part."""
-DRAWN = "tangible parts"
-"""The text chunk of a PNG that says which pixels were drawn."""
+DRAWN, NUMBERS = "tangible parts", "tangible numbers"
+"""Text chunks of the PNG: which pixels were drawn, and the numbers of the parts, to tell later which ones changed."""
+COARSE = 256
+"""Longer side of the grid that these are kept on."""
 INK, HALO = (0, 0, 0), (255, 255, 255)
 
 
@@ -54,24 +57,76 @@ def numbered_parts(picture: np.ndarray, parts: PartMap, names: Sequence[str] = (
         _write(draw, _largest_disc(labels == number), texts, longer)
     told = PngInfo()
     told.add_text(DRAWN, _digest(image))
+    told.add_text(NUMBERS, _in_text(_coarse(parts.labels, COARSE)), zip=True)
     file = BytesIO()
     image.save(file, format="PNG", pnginfo=told)
     return file.getvalue()
 
 
-def is_as_drawn(path: Path) -> bool:
-    """Whether a file is what `numbered_parts` drew, and nobody has painted on it since."""
+class Before(NamedTuple):
+    """What a part was when it was drawn."""
+
+    number: int | None
+    """None for one that is new."""
+    cut_from: int
+    """The part that most of it was in."""
+
+
+class Drawn(NamedTuple):
+    """What a picture of numbered parts was drawn of."""
+
+    numbers: Int32[np.ndarray, "r c"]
+    """Of the part at each place of a coarse grid."""
+
+    def before(self, parts: PartMap) -> tuple[Before, ...] | None:
+        """What each of these parts was; None where they are of another picture.
+
+        Two parts are the same if of all parts each covers most of the other.
+        """
+        now = _coarse(parts.labels, max(self.numbers.shape))
+        if now.shape != self.numbers.shape:
+            return None
+        both = np.zeros((int(self.numbers.max()) + 1, parts.count), np.int64)
+        np.add.at(both, (self.numbers, now), 1)
+        of_old, of_new = both.argmax(axis=1), both.argmax(axis=0)
+        same = (of_old[of_new] == np.arange(parts.count)) & both.any(axis=0)
+        found = zip(of_new.tolist(), same.tolist(), strict=True)
+        return tuple(Before(old if alike else None, old) for old, alike in found)
+
+
+def as_drawn(path: Path) -> Drawn | None:
+    """What a file was drawn of; None where `numbered_parts` did not draw it, or somebody has painted on it since."""
     from PIL.Image import open as opened
 
     try:
         with opened(path, formats=("PNG",)) as image:
-            return image.info.get(DRAWN) == _digest(image)
+            if image.info.get(DRAWN) == _digest(image):
+                return Drawn(_out_of_text(image.info[NUMBERS]))
     except Exception:  # noqa: BLE001 - a damaged file can provoke any, and is none of ours
-        return False
+        return None
+    return None
 
 
 def _digest(image: Image) -> str:
     return digest_of(np.asarray(image))
+
+
+def _coarse(labels: Int32[np.ndarray, "h w"], longest: int) -> Int32[np.ndarray, "r c"]:
+    """The labels at the middles of a grid, whose longer side is at most so long."""
+    scale = min(1.0, longest / max(labels.shape))
+    rows, columns = (max(1, round(scale * side)) for side in labels.shape)
+    places = ((np.arange(new) * old + old // 2) // new for new, old in zip((rows, columns), labels.shape, strict=True))
+    return labels[np.ix_(*places)]
+
+
+def _in_text(numbers: Int32[np.ndarray, "r c"]) -> str:
+    rows, columns = numbers.shape
+    return f"{rows} {columns} {b64encode(numbers.astype('<u2').tobytes()).decode()}"
+
+
+def _out_of_text(text: str) -> Int32[np.ndarray, "r c"]:
+    rows, columns, numbers = text.split(" ")
+    return np.frombuffer(b64decode(numbers), "<u2").reshape(int(rows), int(columns)).astype(np.int32)
 
 
 def _at_size(

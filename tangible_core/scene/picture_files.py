@@ -128,7 +128,7 @@ def labels_of(values: np.ndarray, name: str) -> Int32[np.ndarray, "h w"]:
 
 def _ranked(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The values that there are, in order, and which of them each is; sorting millions of small ones takes seconds."""
-    if values.dtype not in (np.uint8, np.uint16):
+    if values.dtype.kind != "u" or values.dtype.itemsize > 2:
         return np.unique(values, return_inverse=True)
     there = np.bincount(values.reshape(-1)) > 0
     return np.flatnonzero(there), (np.cumsum(there, dtype=np.int32) - 1)[values]

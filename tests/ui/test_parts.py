@@ -535,6 +535,27 @@ class TestHeights:
 
         small(check)
 
+    @pytest.mark.parametrize("by", ["guess", "depth", "given"])
+    def test_what_the_recipe_finds_is_felt_where_nothing_is_given(
+        self, small: Callable[[Check], None], tmp_path: Path, by: str
+    ) -> None:
+        async def check(small: SmallDesk, ask: Any) -> None:
+            if by == "depth":
+                await saved(small, ask, parts=SAVED[:1], heights={**GIVEN, "by": "depth"})
+                with pytest.raises(ConfigError, match="not made yet"):
+                    await ask("parts_heights", heights_m=[None, 0.0007, None])
+                await ask("make", want="disparity")
+            parts = [{"label": 7, "height_m": 0.0007}]
+            await saved(small, ask, parts=parts, heights={**GIVEN, "by": by})
+            await ask("parts_heights", heights_m=[None, 0.0007, None])
+            async with asyncio.timeout(30):
+                while (seen := small.maker.bench.kept.seen) is None:
+                    await asyncio.sleep(0.005)
+            wanted = load_pipeline(tmp_path / "mine.yaml").relief.height_m
+            np.testing.assert_array_equal(seen.relief.height_m, wanted)
+
+        small(check)
+
     def test_the_terrain_follows_and_the_document_stays(self, small: Callable[[Check], None]) -> None:
         async def check(small: SmallDesk, ask: Any) -> None:
             await saved(small, ask)

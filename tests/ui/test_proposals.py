@@ -41,7 +41,7 @@ def overlap(one: np.ndarray, other: np.ndarray) -> float:
 def things(name: str) -> list[tuple[str, np.ndarray]]:
     """Parts that were drawn by hand, but specks."""
     found = drawn(name)
-    masks = [(part, found.parts.labels == number) for number, part in enumerate(found.names)]
+    masks = [(part, np.asarray(found.parts.labels == number)) for number, part in enumerate(found.names)]
     return [(part, mask) for part, mask in masks if mask.sum() > 400]
 
 
@@ -51,15 +51,18 @@ def stroke_along(mask: np.ndarray) -> tuple[np.ndarray, float]:
     row, column = np.unravel_index(int(depth.argmax()), depth.shape)
     rows, columns = np.nonzero(mask)
     along = np.linalg.eigh(np.cov(columns, rows))[1][:, 1]
-    ends = []
+    ends: list[list[float]] = []
     for way in (-along, along):
-        steps = np.arange(1, sum(mask.shape))
-        x, y = (np.round(start + steps * each).astype(int) for start, each in zip((column, row), way, strict=True))
-        inside = (x >= 0) & (y >= 0) & (x < mask.shape[1]) & (y < mask.shape[0])
-        inside[inside] = mask[y[inside], x[inside]]
-        length = 0.6 * float(np.argmin(inside))
-        ends.append([column + length * way[0], row + length * way[1]])
+        steps = 0
+        while _holds(mask, column + (steps + 1) * way[0], row + (steps + 1) * way[1]):
+            steps += 1
+        ends.append([float(column + 0.6 * steps * way[0]), float(row + 0.6 * steps * way[1])])
     return np.array(ends), max(3.0, 0.35 * float(depth.max()))
+
+
+def _holds(mask: np.ndarray, x: float, y: float) -> bool:
+    column, row = round(x), round(y)
+    return 0 <= row < mask.shape[0] and 0 <= column < mask.shape[1] and bool(mask[row, column])
 
 
 STROKE = np.array([[120.0, 97.0], [160.0, 120.0], [200.0, 143.0]])

@@ -43,10 +43,40 @@ def test_it_accepts_the_sample_configurations(validator: Draft202012Validator, p
         {"scene": "builtin/brick", "materials": {"one": "ice"}},
         {"scene": "builtin/brick", "materials": {"rules": [{"colour": "bleu", "material": "ice"}]}},
         {"scene": "builtin/brick", "workspace": {"width_m": 0}},
+        {"scene": "builtin/brick", "parts": ["wall"]},
+        {"scene": "builtin/brick", "parts": {"one": "wall"}},
+        {"scene": "builtin/brick", "parts": {"0": {"nam": "wall"}}},
+        {"scene": "builtin/brick", "parts": {"0": {"height_m": -1}}},
+        {"scene": "builtin/brick", "heights": {"round_m": 0.001}},
+        {"scene": "builtin/brick", "heights": "gess"},
+        {"scene": "builtin/brick", "title": ["a"]},
+        {"scene": "builtin/brick", "language": "?"},
     ],
 )
 def test_it_refuses_what_the_program_refuses(validator: Draft202012Validator, wrong: dict):
     assert not validator.is_valid(wrong)
+
+
+@pytest.mark.parametrize(
+    "right",
+    [
+        {"parts": {"0": "wall", "6": {"name": "helmet", "height_m": "4.2 mm", "material": "glass"}, "7": None}},
+        {"heights": {"by": "given", "round_m": "6 mm", "detail_m": 0}, "title": "Astronaut", "language": "pt-BR"},
+        {"heights": "guess", "parts": None},
+        {
+            "heights": None,
+            "materials": {"rules": [{"part": "helmet", "material": "ice"}, {"part": 3, "material": "ice"}]},
+        },
+    ],
+)
+def test_it_accepts_parts(validator: Draft202012Validator, right: dict):
+    validator.validate({"scene": {"photo": "a.png", "segments": "parts.png"}, **right})
+
+
+def test_parts_and_heights_are_on_the_page():
+    page = markdown(json_schema())
+    for key in ("| `name` | string |", "| `height_m` |", "| `bulge_m` |", "| `title` | string |", "| `rules.part` |"):
+        assert f"\n{key}" in page
 
 
 def test_every_shipped_method_is_in_it_and_on_the_page():

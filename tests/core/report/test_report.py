@@ -3,6 +3,7 @@ import math
 import subprocess
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from itertools import combinations, pairwise
 from math import log
 from pathlib import Path
@@ -27,6 +28,7 @@ from tangible_core.data import (
     Material,
     MaterialMap,
     Outcome,
+    PartMap,
     Relief,
     SegmentMap,
     Views,
@@ -44,6 +46,7 @@ from tangible_core.report.material_sheet import draw_material, spectra
 from tangible_core.report.panels import PANELS
 from tangible_core.report.panels.force import round_number, spread
 from tangible_core.report.sheet import DPI, WIDTH_IN, draw_figure
+from tangible_core.report.showing import show
 from tangible_core.report.style import colours
 from tangible_core.scene.description import describe
 from tangible_core.session import Recording
@@ -616,6 +619,36 @@ def scene(rows: int, columns: int, count: int = 14) -> dict[str, Any]:
         "relief": HapticSurface.from_heights(heights_m).relief,
         "recording": record(),
     }
+
+
+class TestParts:
+    def test_they_are_drawn_in_place_of_their_segments_from_near_to_far(self, tmp_path: Path) -> None:
+        labels = np.zeros(SHAPE, np.int32)
+        labels[10:30, 5:25], labels[10:30, 35:55] = 1, 2
+        parts, segments = PartMap(labels, (0, 1, 1)), SegmentMap(np.minimum(labels, 1))
+        materials = tuple(Material(name, 900.0, 1.0, 0.5, 0.4) for name in ("stone", "ice", "ice"))
+        flat = HapticSurface.from_heights(np.float32([0.001, 0.002, 0.003])[labels], 0.08, labels, materials)
+        surface = replace(flat, names=("wall", "", "a very long name"))
+        says = draw_sheet(
+            tmp_path / "sheet.svg", views=Views(np.zeros(SHAPE, np.uint8)), segments=segments, parts=parts,
+            surface=surface, title="Haus", language="de-AT",
+        )  # fmt: skip
+        assert (
+            "Parts, from near to far: 3 parts; 2 a very lo...: ice, 17 %; 1: ice, 17 %; 0 wall: stone, 67 %. " in says
+        )
+        assert "Segments" not in says and says.startswith("A sheet of 3 pictures of Haus.")
+        assert "Ihre Teile sind, von nah nach fern, a very long name (rechts" in says
+
+    def test_alone_they_are_in_their_order(self, tmp_path: Path) -> None:
+        parts = PartMap(np.int32([[0, 0, 0, 1]]), (0, 1))
+        assert draw_sheet(tmp_path / "parts.png", parts=parts).endswith("Parts: 2 parts; 0, 75 %; 1, 25 %.")
+        assert show(parts).get_title() == "Parts"
+        assert parts._repr_html_().startswith("<img alt='PartMap'")  # pyright: ignore[reportPrivateUsage]
+
+    def test_their_materials_are_a_table_of_parts(self) -> None:
+        chosen = Material("ice", 900.0, 1.0, 0.5, 0.4)
+        html = MaterialMap((chosen,), ("part 0 (wall): its own -> ice",))._repr_html_()  # pyright: ignore[reportPrivateUsage]
+        assert ">part</th>" in html and ">segment</th>" not in html
 
 
 class TestEveryShape:

@@ -1,6 +1,7 @@
 """A surface in words, of surfaces whose every word can be checked."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,7 +9,7 @@ import pytest
 from tangible_core.data import HapticSurface
 from tangible_core.errors import ArgumentError
 from tangible_core.materials.assignment import library
-from tangible_core.scene.description import describe
+from tangible_core.scene.description import describe, language_of
 from tangible_core.scene.description_words import MATERIALS, WORDS
 
 Y, X = np.mgrid[0:60, 0:80] / np.array([60, 80]).reshape(2, 1, 1)
@@ -75,6 +76,48 @@ def test_materials_how_much_of_each_and_where():
     many = (np.arange(4800) % 7).reshape(60, 80).astype(np.int32)
     names = ("ice", "wood", "sand", "foam", "glass", "metal", "skin")
     assert re.search(r"7 materials: .* and 3 others on 43 %\.$", describe(surface(flat, *names, labels=many), "it"))
+
+
+def in_parts(names: tuple[str, ...], *materials: str) -> HapticSurface:
+    """A wall, in front of it a table at the bottom, and on that a cup on the right."""
+    labels = np.where(Y > 0.6, 1, 0).astype(np.int32)
+    labels[(X > 0.7) & (Y > 0.3) & (Y < 0.8)] = 2
+    height = np.array([0.0, 2.0, 4.25])[labels]
+    return replace(surface(height, *materials, labels=labels), names=names)
+
+
+def test_parts_by_name_from_near_to_far():
+    found = in_parts(("wall", "", "cup\n"), "stone", "wood", "glass")
+    assert describe(found, "it").endswith(
+        " Its parts, from near to far, are cup\\n (on the right, halfway down, 4.3 mm high, feels like glass), "
+        "wall (along the top, feels like stone) and one that has no name."
+    )
+    assert describe(in_parts(("Wand", "Tisch", "Tasse"), "stone", "wood", "glass"), "es", "de").endswith(
+        " Ihre Teile sind, von nah nach fern, Tasse (rechts auf halber Höhe, 4,3 mm hoch, fühlt sich an wie Glas), "
+        "Tisch (am unteren Rand entlang, 2 mm hoch, fühlt sich an wie Holz) "
+        "und Wand (am oberen Rand entlang, fühlt sich an wie Stein)."
+    )
+    assert describe(in_parts(("", "", "cup")), "it").endswith(
+        "are cup (on the right, halfway down, 4.3 mm high) and 2 that have no name."
+    )
+    assert "It has 3 materials" in describe(in_parts(("", "", ""), "stone", "wood", "glass"), "it")
+
+
+def test_of_many_parts_the_nearest():
+    labels = np.repeat(np.arange(30, dtype=np.int32), 160).reshape(60, 80)
+    many = replace(surface(labels / 10.0, labels=labels), names=tuple(f"step {each}" for each in range(30)))
+    said = describe(many, "it")
+    assert "are step 29 (along the bottom, 2.9 mm high), step 28 (" in said
+    assert said.endswith("step 18 (across the middle, from left to right, 1.8 mm high) and 18 others.")
+    one = replace(surface(np.zeros((4, 4)), labels=np.zeros((4, 4), np.int32)), names=("plate",))
+    assert describe(one, "it").endswith("It is of one part, plate.")
+
+
+@pytest.mark.parametrize(
+    ("tag", "language"), [("en", "en"), ("de-CH", "de"), ("DE", "de"), ("fr", "en"), ("den", "en")]
+)
+def test_a_tag_has_the_language_of_its_words(tag: str, language: str):
+    assert language_of(tag) == language
 
 
 def test_the_same_in_german():

@@ -74,14 +74,14 @@ async def parts_snap(desk: Desk, tab: Tab | None, points: list[list[float]], rea
 async def parts_heights(
     desk: Desk,
     tab: Tab | None,
-    heights_m: list[float],
+    heights_m: list[float | None],
     materials: list[str | None] | None = None,
     heights: dict[str, Any] | None = None,
 ) -> dict[str, Any] | None:
     """Feel the parts at these heights, by number, and see them; the document stays as it is.
 
-    materials, heights: others than the document's. Returns: nothing if newer ones came before this began.
-    Raises: TangibleError, and what was felt before is felt on.
+    heights_m: nothing for what the document's recipe finds. materials, heights: others than the document's.
+    Returns: nothing if newer ones came before this began. Raises: TangibleError, and what was felt before is felt on.
     """
     told = {"heights_m": heights_m, "materials": materials, "heights": heights}
 

@@ -5,7 +5,7 @@ says these heights: the same steps make it (`felt.layered`, `fitted`, the law's 
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -19,13 +19,13 @@ from tangible_core.pipeline import felt as on_grid
 from tangible_core.pipeline import parts_found
 from tangible_core.pipeline.config import PipelineConfig, wrong_of_parts
 from tangible_core.pipeline.pipeline import Pipeline
-from tangible_core.pipeline.rules import fitted
+from tangible_core.pipeline.rules import fitted, part_heights
 from tangible_core.scene.scene import Scene
 
 from .bench import Bench, Job
 from .making import parcel_of
 from .parts import config_heights, edited_of, opened_of
-from .seen import Seen, see_parts
+from .seen import Seen, at_hand, see_parts
 from .shown import show
 
 S = TypeVar("S", bound=BaseModel)
@@ -45,6 +45,8 @@ class Kept:
     materials: tuple[Material, ...] | None
     """By part, of those that say none themselves; None where the law uses none."""
     layering: Layering
+    found_m: dict[str, tuple[float, ...]] = field(default_factory=dict[str, tuple[float, ...]])
+    """What recipes find, by part; those that were asked for."""
     seen: Seen | None = None
     """What was seen last, and the surface that is felt now, if it is another."""
     surface: HapticSurface | None = None
@@ -55,15 +57,16 @@ def parts_heights(
     text: str,
     path: Path,
     sets: list[str],
-    heights_m: Sequence[float],
+    heights_m: Sequence[float | None],
     materials: Sequence[str | None] | None = None,
     heights: Mapping[str, Any] | None = None,
 ) -> dict[str, Any]:
     """What the force loop needs of the document with these heights of its parts; the document stays as it is.
 
-    heights_m, materials: by the number of a part; None for those that the document says. heights: widths of rims and
-    the like, where they are not the document's. Raises: ConfigError for a height above the workspace, a part that is
-    not there, a document without a law or a device; MaterialError; TangibleError as `Pipeline.make`.
+    heights_m: by the number of a part; None for what the recipe finds, by guess or by depth. materials: the same; None
+    for those that the document says. heights: the recipe, widths of rims and the like, where they are not the
+    document's. Raises: ConfigError for a height above the workspace, a part that is not there, a depth that was not
+    made yet, a document without a law or a device; MaterialError; TangibleError as `Pipeline.make`.
     """
     pipeline = edited_of(bench, text, path, sets)
     opened_of(bench, pipeline)
@@ -75,7 +78,8 @@ def parts_heights(
     kept = _kept(bench, pipeline.changed(config))
     said = {number: _checked(PartChoice, {"height_m": height_m}) for number, height_m in enumerate(heights_m)}
     parts_found.check_found(replace(config, parts=said), kept.parts, kept.grid.scene.shape[1])
-    relief = on_grid.layered(kept.layering, heights_m, config.size, kept.grid.shown)
+    known = _known(kept, heights_m, (heights or {}).get("by", config_heights(pipeline.config).by))
+    relief = on_grid.layered(kept.layering, known, config.size, kept.grid.shown)
     own = parts_found.own_materials(config) if materials is None else dict(enumerate(materials))
     made = None if kept.materials is None else _materials(kept.materials, own, config)
     names = parts_found.surface_with_names
@@ -90,15 +94,15 @@ def parts_shown(bench: Bench) -> None:
     kept: Kept | None = bench.kept
     if kept is None or kept.surface is None:
         return
-    kept.seen = see_parts(kept.pipeline, kept.surface, kept.seen)
-    kept.surface = None
+    surface, kept.surface = kept.surface, None
+    kept.seen = see_parts(kept.pipeline, surface, kept.seen)
     if kept.seen.digest != bench.shown:
         bench.tell("scene", **show(kept.seen, bench.folder))
         bench.shown = kept.seen.digest
 
 
 def _of_parts(config: PipelineConfig, heights: Mapping[str, Any] | None) -> PipelineConfig:
-    """The configuration with a relief of parts, all of whose heights are given."""
+    """The configuration with a relief of parts, as it is once all their heights are given."""
     choice = config_heights(config)
     told = {**choice.model_dump(), **(heights or {}), "by": "given"}
     return replace(config, heights=_checked(HeightChoice, told), parts=config.parts or {})
@@ -111,6 +115,20 @@ def _checked(section: type[S], said: Mapping[str, Any]) -> S:
     except ValidationError as error:
         first = error.errors()[0]
         raise ConfigError(f"{'.'.join(map(str, first['loc']))}: {first['msg']}") from error
+
+
+def _known(kept: Kept, heights_m: Sequence[float | None], by: str) -> list[float]:
+    """With what the recipe finds where nothing is given. Raises: ConfigError for a depth that was not made yet."""
+    if None in heights_m and by not in kept.found_m:
+        assert kept.config.heights is not None
+        disparity = at_hand(kept.pipeline, "disparity") if by == "depth" else None
+        if by == "depth" and disparity is None:
+            raise ConfigError("the picture's depth is not made yet; make it, and heights by depth are felt")
+        recipe = replace(kept.config, heights=_checked(HeightChoice, {**kept.config.heights.model_dump(), "by": by}))
+        kept.found_m[by] = part_heights(recipe, kept.grid, kept.parts, disparity).heights_m
+    found_m = kept.found_m.get(by, ())
+    return [found_m[number] if each is None and number < len(found_m) else each or 0.0
+            for number, each in enumerate(heights_m)]  # fmt: skip
 
 
 def _kept(bench: Bench, pipeline: Pipeline) -> Kept:

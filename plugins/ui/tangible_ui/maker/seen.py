@@ -120,7 +120,7 @@ def is_there(pipeline: Pipeline, product: Product) -> bool:
 
 def _seen(pipeline: Pipeline, shows: Shows, relief: Relief) -> Seen:
     labels = _labels(pipeline, relief.height_m.shape)
-    chosen = _at_hand(pipeline, "materials")
+    chosen = at_hand(pipeline, "materials")
     materials = chosen.materials if chosen is not None and labels is not None else ()
     picture = None if pipeline.scene.views is None else pipeline.scene.views.left
     names = _names(pipeline) if labels is not None else None
@@ -130,33 +130,33 @@ def _seen(pipeline: Pipeline, shows: Shows, relief: Relief) -> Seen:
 def _names(pipeline: Pipeline) -> tuple[str, ...] | None:
     """Of the parts, which are there; None where nothing is by parts."""
     config = pipeline.config
-    parts: PartMap | None = _at_hand(pipeline, "parts") if config.by_parts else None
+    parts: PartMap | None = at_hand(pipeline, "parts") if config.by_parts else None
     return None if parts is None else names_of(config.parts or {}, parts.count)
 
 
 def _labels(pipeline: Pipeline, shape: tuple[int, int]) -> Int32[np.ndarray, "h w"] | None:
     """Of what has materials: of parts where anything is by parts, else of segments; None where they are not there."""
     product: Product = "parts" if pipeline.config.by_parts else "segments"
-    found = _at_hand(pipeline, product)
+    found = at_hand(pipeline, product)
     if found is None:
         return None
     return (reduced_parts if product == "parts" else reduced_segments)(found, shape).labels
 
 
-def _at_hand(pipeline: Pipeline, product: Product) -> Any:
+def at_hand(pipeline: Pipeline, product: Product) -> Any:
     """The product on the grid that is felt; None where it would have to be made."""
     return pipeline.engine.felt(product) if is_there(pipeline, product) else None
 
 
 def _layers(pipeline: Pipeline) -> dict[str, Layer]:
     found: dict[str, Layer] = {}
-    disparity: DisparityMap | None = _at_hand(pipeline, "disparity")
+    disparity: DisparityMap | None = at_hand(pipeline, "disparity")
     if disparity is not None:
         unit = "px" if disparity.unit == "px" else ""
         found["disparity"] = Layer.of(disparity.disparity_px, unit)
         found["confidence"] = Layer.of(disparity.confidence, "", (0.0, 1.0))
         found |= _error(pipeline, disparity)
-    segments: SegmentMap | None = _at_hand(pipeline, "segments")
+    segments: SegmentMap | None = at_hand(pipeline, "segments")
     if segments is not None and float(segments.confidence.min()) < 1:
         found["certainty"] = Layer.of(segments.confidence, "", (0.0, 1.0))
     return found

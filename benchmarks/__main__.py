@@ -19,6 +19,7 @@ SECTIONS = {
     "depth": "Depth",
     "texture": "Texture",
     "photos": "Photographs",
+    "parts": "Parts of a picture",
     "render": "Force laws",
     "methods": "Every method with its defaults",
     "servo": "The force loop",

@@ -15,15 +15,34 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from shapely import get_coordinates
 
 from tangible_core import load_method
 from tangible_core.compiled import threads
-from tangible_core.data import HapticSurface, SegmentMap, Views, digest_of
+from tangible_core.data import DisparityMap, HapticSurface, SegmentMap, Views, digest_of
 from tangible_core.data.pictures import to_grey, to_rgb8
 from tangible_core.haptic_textures import compile_textures, radial_spectrum, sample_tile, stroke
 from tangible_core.materials.assignment import library, relative_roughness
 from tangible_core.materials.colours import segment_colours
-from tangible_core.metrics import disparity_errors, force_errors, force_steps, loop_works, proxy_lag, segment_errors
+from tangible_core.metrics import (
+    border_steps,
+    disparity_errors,
+    force_errors,
+    force_steps,
+    loop_works,
+    proxy_lag,
+    segment_errors,
+)
+from tangible_core.parts import (
+    HeightChoice,
+    Layering,
+    depth_heights,
+    find_parts,
+    guess_heights,
+    reduced_parts,
+    shared_borders,
+)
+from tangible_core.parts.large import large_parts
 from tangible_core.plugins.registry import default_registry
 from tangible_core.preflight.bumps import feature_m
 from tangible_core.scene.geometry import make_relief, normals, resample, slopes, smooth
@@ -163,6 +182,25 @@ def reliefs() -> Found:
     yield "relative roughness", relative_roughness(segments, mosaic())
 
 
+def layers() -> Found:
+    left, truth = pair().left, scene("motorcycle").truth
+    assert truth is not None
+    segments = SegmentMap((to_grey(left) * 6).astype(np.int32))
+    parts = find_parts(segments)
+    few = large_parts(segments, left, 12, 10)
+    yield "parts", parts
+    yield "parts, few and large", few
+    yield "parts, reduced", reduced_parts(parts, (100, 131))
+    yield "parts, borders", tuple(get_coordinates(each) for each in shared_borders(few, 0.08, 0.0005))
+    for name, each in (("all", parts), ("few", few)):
+        guess = guess_heights(each, 0.004)
+        yield f"parts, {name}: heights guessed", guess
+        yield f"parts, {name}: heights by depth", depth_heights(each, DisparityMap(truth[SIZE]), 0.004)
+        relief = Layering(each, 0.08, HeightChoice(by="guess"), left).relief(guess.heights_m)
+        yield f"parts, {name}: relief", relief
+        yield f"parts, {name}: steps at borders", tuple(border_steps(relief, each.labels).items())
+
+
 def render() -> Found:
     for name, cls, options in ours("render"):
         for of, felt in (("plain", surface(False)), ("covered", surface())):
@@ -190,7 +228,7 @@ def metrics() -> Found:
 
 
 PARTS: dict[str, Callable[[], Found]] = {
-    each.__name__: each for each in (pictures, depth, texture, reliefs, render, haptic_textures, metrics)
+    each.__name__: each for each in (pictures, depth, texture, reliefs, layers, render, haptic_textures, metrics)
 }
 
 

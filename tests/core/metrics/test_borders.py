@@ -74,22 +74,16 @@ def test_a_step_further_than_2_mm_from_a_border_is_none_of_it():
     assert border_steps(relief, halves(relief, 0.02 + 0.002))["steps_at_borders"] == pytest.approx(0.5, abs=0.06)
 
 
-def test_borders_are_found_by_their_length():
-    """A border of 6 mm with a step, and one of 10 mm without: 60 and 100 sides of cells."""
+@pytest.mark.parametrize("tall", [1, 10])
+def test_borders_are_found_by_their_length(tall):
+    """One around a step, 60 cells high and 200 wide, and one without a step, 100 cells high; cells may be no squares."""
     height_m = np.zeros((100, 400), np.float32)
     height_m[:60, 200:] = 0.002
     labels = np.zeros(height_m.shape, np.int32)
     labels[:60, 200:] = 1
     labels[:, :30] = 2
-    found = border_steps(Relief(height_m, (0.04, 0.01)), labels)
-    assert found["borders_found"] == pytest.approx((60 + 200) / (60 + 200 + 100))
-
-
-def test_cells_that_are_no_squares_are_measured_in_metres():
-    tall = Relief(np.repeat(steps_at(0.02, height_m=0.001).height_m, 1, axis=0), (0.04, 0.06))
-    assert border_steps(tall, halves(tall, 0.02)) == pytest.approx(
-        border_steps(steps_at(0.02, height_m=0.001), halves(tall, 0.02))
-    )
+    found = border_steps(Relief(height_m, (0.04, 0.01 * tall)), labels)
+    assert found["borders_found"] == pytest.approx((60 * tall + 200) / (60 * tall + 200 + 100 * tall))
 
 
 def test_the_measure_is_that_of_metres_and_not_of_pixels():

@@ -22,7 +22,7 @@ class HeightChoice(Section):
     """How far the middle of a part rises above its rim, at most; never more than the part's height, so that what lies
     at 0 is flat."""
     detail_m: Length = 0.0003
-    """How far the picture's own light and dark rise above that, away from the borders."""
+    """How far the picture's light rises above its dark, away from the borders; nothing sinks below 0."""
 
 
 class PartChoice(Section):

@@ -28,8 +28,9 @@ class Layering:
 
     A part rises from its border to its middle by a quarter of a circle, `round_m` wide, by at most `bulge_m` and at
     most its own height: what lies at 0 is ground and stays flat, and nothing jumps when a height is changed. The
-    picture's own rim is no border. The detail lies between 0 and `detail_m`, and fades out towards the borders. So the
-    highest place is no higher than the highest part, bulge and detail together.
+    picture's own rim is no border. Of the detail, light rises and dark sinks by up to half of `detail_m`, but nothing
+    below 0; it fades out towards the borders, where a part is at its height. So the highest place is no higher than the
+    highest part, bulge and detail together.
     """
 
     def __init__(
@@ -54,7 +55,7 @@ class Layering:
                 "the picture", picture[..., 0] if picture.ndim == 3 else picture, "the map of its parts", parts.labels
             )
             fade = np.clip(distance_m / QUIET_M, np.float32(0), np.float32(1))
-            self._detail_m = _detail(picture, width_m) * fade * np.float32(heights.detail_m)
+            self._detail_m = _detail(picture, width_m) * fade * np.float32(heights.detail_m / 2)
 
     def relief(self, heights_m: Sequence[float]) -> Relief:
         """The relief with these heights of the parts, in their order.
@@ -72,6 +73,7 @@ class Layering:
         found += np.take(heights, labels, mode="clip")
         if self._detail_m is not None:
             found += self._detail_m
+            np.maximum(found, 0, out=found)
         return Relief(found, self._extent_m)
 
 
@@ -94,7 +96,7 @@ def _profile(distance_m: Float32[np.ndarray, "h w"], round_m: float) -> Float32[
 
 
 def _detail(picture: np.ndarray, width_m: float) -> Float32[np.ndarray, "h w"]:
-    """Light and dark of a size that a fingertip feels, from 0 to 1; a picture of one shade is 0.
+    """Light and dark of a size that a fingertip feels, from -1 to 1; a picture of one shade is 0.
 
     On a grid no finer than it needs, so that a picture of more pixels says the same.
     """
@@ -112,5 +114,5 @@ def _detail(picture: np.ndarray, width_m: float) -> Float32[np.ndarray, "h w"]:
         most = np.float32(3 * fine.std(dtype=np.float64))
         if most <= 16 * np.finfo(np.float32).eps:
             return np.zeros((rows, columns), np.float32)
-        found = (np.clip(fine / most, -1, 1) + 1) / 2
+        found = np.clip(fine / most, -1, 1)
         return np.asarray(cv2.resize(found, (columns, rows), interpolation=cv2.INTER_LINEAR))

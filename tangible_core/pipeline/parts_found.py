@@ -46,7 +46,7 @@ def tell_slips(parts: PartMap) -> None:
     said = [f"part {each} at {place_of(parts, each)} ({_pixels(int(sizes[each]))})" for each in small[:MOST_SLIPS]]
     more = f", and {len(small) - MOST_SLIPS} more" if len(small) > MOST_SLIPS else ""
     few = "one part is hardly there" if len(small) == 1 else f"{len(small)} parts are hardly there"
-    cure = "paint over what is a slip of the brush; the numbers of parts behind it then change"
+    cure = "paint over them, or have smoother segments made; the numbers of the parts behind them then change"
     note(log, f"{few}: {', '.join(said)}{more}; {cure}", logging.WARNING)
 
 

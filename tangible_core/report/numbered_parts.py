@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 SHORTEST_PX, LONGEST_PX = 1200, 2400
 """Between which the longer side of what is drawn lies: a small picture grows, a large one shrinks, and its numbers are
 read alike on a screen."""
-LARGE, SMALL = 1 / 32, 1 / 64
+LARGE, SMALL = 1 / 32, 1 / 52
 """Height of a number, as a share of the longer side, where its part has room for it, and where it has none."""
 ALIKE = 0.95
 """Of discs that are nearly as wide as the largest one, that is taken which lies in the middle of its part."""

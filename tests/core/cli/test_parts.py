@@ -15,6 +15,7 @@ from tangible_core.pipeline.first_parts import first_parts
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.pipeline.renumbering import draw_numbers
 from tangible_core.scene.picture_files import read_labels
+from tangible_core.session import Recording, names_of
 
 WALL, FLOOR, VASE = (90, 120, 200), (120, 80, 40), (200, 200, 60)
 HERE = "parts.png", "parts-numbered.png", "still.yaml"
@@ -277,3 +278,30 @@ def test_on_a_full_disk_files_are_whole_or_not_there(folder: Path):
     with files_up_to(sizes[0] + 100), pytest.raises(OutputError, match="cannot be written"):
         draw_numbers(file, folder / "parts-numbered.png", renumber=True)
     assert {name: (folder / name).read_bytes() for name in HERE} == before, "numbers are not moved twice"
+
+
+@pytest.mark.slow
+def test_names_go_from_the_file_through_a_session_to_its_replay(folder: Path):
+    well(tangible("parts", "still.png", cwd=folder))
+    file = folder / "still.yaml"
+    file.write_text(
+        file.read_text().replace('0: {name: ""', "0: {name: '[wall]'").replace("path: raster", "path: press")
+    )
+    felt = well(tangible("feel", "still.yaml", "--seconds", 0.8, "--record", "hand.nc", "--json", cwd=folder))
+    said = json.loads(felt.stdout)
+    assert said["part"] in ("[wall]", "part 1", "part 2")
+    assert sum(each["share"] for each in said["parts"]) == pytest.approx(1)
+    assert names_of(Recording.load(folder / "hand.nc").about.parts) == [{0: "[wall]"}]
+    again = json.loads(well(tangible("replay", "hand.nc", "still.yaml", "--json", cwd=folder)).stdout)
+    assert again["recorded"]["parts"] == [{"0": "[wall]"}]
+    assert [each["number"] for each in again["parts"]] == [each["number"] for each in said["parts"]]
+    table = well(tangible("replay", "hand.nc", "still.yaml", cwd=folder)).stdout
+    assert "% of the contact" in table
+
+
+def test_a_run_says_what_its_parts_are(folder: Path):
+    well(tangible("parts", "still.png", cwd=folder))
+    file = folder / "still.yaml"
+    file.write_text(file.read_text().replace('0: {name: ""', "0: {material: glass, name: '[wall]'"))
+    ran = well(tangible("run", "still.yaml", "--set", "want=surface", cwd=folder))
+    assert "\nparts\n  0: [wall], 0 mm high, glass (given)\n  1: " in ran.stdout

@@ -155,6 +155,9 @@ test("every option of every installed method has a control that can say its defa
   }
   assert.deepEqual([...inYaml].sort(), ["render.with-materials.law"]); // any law with any option of its own
   for (const [name, schema] of Object.entries(file.properties)) bounds(name, schema, file, found);
+  const of = (section: string) => all.find(({ path: at }) => at === section)?.options.map(({ name, kind }) => [name, kind.kind]);
+  assert.deepEqual(of("heights"), [["by", "choice"], ["round_m", "number"], ["bulge_m", "number"], ["detail_m", "number"]]);
+  for (const elsewhere of ["parts", "title", "language"]) assert.equal(of(elsewhere), undefined); // in a panel of their own
 });
 
 function roundTrip(at: string, byDefault: Plain | undefined, kind: Kind & { kind: "number" }): void {

@@ -49,6 +49,7 @@ export class SectionForm {
   private block({ said }: Document): Plain | undefined {
     const block = at(said, [this.section.name]);
     if (this.section.name === "materials" && isLabels(block)) return { by: block! };
+    if (this.section.name === "heights" && typeof block === "string") return { by: block };
     return typeof block === "string" && this.section.methods.length ? { use: block } : block;
   }
 

@@ -388,6 +388,14 @@ class TestComplaints:
         assert made.config.top_m == pytest.approx(0.0042, abs=1e-12)
         made.make("surface")
 
+    @pytest.mark.parametrize("parts", [{}, {"heights": "depth"}], ids=["materials alone", "heights"])
+    def test_of_segments_that_are_found_it_is_said_before_a_depth_is_looked_for(self, parts: dict):
+        made = pipeline(None, parts={9: "ghost"}, depth=Ramp(), texture=Same(), **parts)
+        with pytest.raises(ConfigError, match="there is no part 9"):
+            made.make("surface")
+        assert ran == ["segments"]
+        assert said(made)["parts"] == "failed"
+
     def test_in_python_without_a_file(self):
         with pytest.raises(ConfigError) as error:
             pipeline(parts={9: "ghost", 1: {"height_m": 1}}, heights="given").make("relief")

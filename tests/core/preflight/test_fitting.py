@@ -69,7 +69,9 @@ def test_a_device_that_holds_nothing_takes_nothing_off():
 def test_what_was_taken_off_is_said_once():
     hard = material("hard", stiffness_n_per_m=9000.0)
     labels = np.tile(np.array([0, 1], np.int32), (32, 16))
-    surface, said = fit_surface(level(labels=labels, materials=(hard, hard)), SPEC, Safety())
+    named = replace(level(labels=labels, materials=(hard, hard)), names=("wall", "cup"))
+    surface, said = fit_surface(named, SPEC, Safety())
+    assert surface.names == ("wall", "cup")
     assert said == "softened to what the device holds: hard (stiffness 9000 to 3200 N/m)"
     assert [each.stiffness_n_per_m for each in surface.materials] == [3200, 3200]
     plain = level()

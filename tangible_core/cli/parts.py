@@ -31,7 +31,9 @@ def parts(
     out: Annotated[Path | None, typer.Option("--out", help="Folder for the files [default: the current one].")] = None,
     method: Annotated[str, typer.Option("--method", help="Texture method [default: that of `tangible new`].")] = "",
     count: Annotated[int, typer.Option("--count", help="As many parts, at most.")] = 12,
-    smallest: Annotated[float, typer.Option("--smallest", help="Width of the smallest part, mm, of 80 mm.")] = 5.0,
+    smallest: Annotated[
+        float, typer.Option("--smallest", help="Width of the smallest part, mm, on a surface of 80 mm.")
+    ] = 5.0,
     sets: Sets = None,
     renumber: Annotated[
         bool,

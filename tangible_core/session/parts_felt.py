@@ -3,13 +3,14 @@
 import json
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import NamedTuple
+from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 from jaxtyping import Float64, Int32
 
 from ..data import HapticSurface, ServoReport, Vector
-from ..errors import OutputError, quoted
+from ..errors import OutputError, TangibleError, quoted
 from .recording import Recording
 
 Places = Float64[np.ndarray, "n 3"]
@@ -49,6 +50,18 @@ def part_under(surface: HapticSurface, position_m: Vector) -> str:
 def names_text(names: Mapping[int, str]) -> str:
     """The names of parts by number, as the header of a recording has them; empty for none."""
     return json.dumps({str(number): names[number] for number in sorted(names)}, ensure_ascii=False) if names else ""
+
+
+def names_in(configuration: str) -> str:
+    """`names_text` of the parts that the text of a pipeline file names; empty where it is none that can be read."""
+    from ..files.source import parse_source, plain
+
+    try:
+        parts: Any = plain(parse_source(configuration, Path(), "a mapping", empty=True).tree).get("parts")
+        names = {int(number): getattr(each, "get", {"name": each}.get)("name") for number, each in parts.items()}
+        return names_text({number: str(name).strip() for number, name in names.items() if name})
+    except (TangibleError, AttributeError, TypeError, ValueError):  # whoever runs it complains of it
+        return ""
 
 
 def names_of(text: str) -> list[dict[int, str]]:

@@ -1,8 +1,10 @@
 """What is felt is kept while the loop goes on, and shown, compared and felt again as it was."""
 
+import asyncio
 import errno
 import time
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -13,6 +15,7 @@ from tangible_core.data import TICK_COLUMNS
 from tangible_core.errors import OutputError
 from tangible_core.servo import Servo
 from tangible_core.session import About, Recording, Writer
+from tangible_ui.asks.records import record
 from tangible_ui.feeling.recorder import BY_HAND, Recorder
 from tangible_ui.maker import records
 from tangible_ui.maker.bench import Bench
@@ -117,6 +120,18 @@ class TestShown:
         assert found[0]["trouble"]
         assert found[1]["figures"]["ticks"] == 5
         assert records.records(bench, tmp_path / "missing") == []
+
+
+def test_a_recording_of_the_page_holds_the_names_of_the_parts(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    kept: list[About] = []
+    monkeypatch.setattr("tangible_ui.asks.records.Recorder", lambda servo, path, about, ended: kept.append(about))
+    monkeypatch.setenv("TANGIBLE_DATA_DIR", str(tmp_path))
+    felt = SimpleNamespace(law="penalty", device_name="mouse")
+    feeling = SimpleNamespace(servo=SimpleNamespace(running=True), felt=felt)
+    text = "scene: {photo: a.png, segments: parts.png}\nparts: {1: {name: wall}}\n"
+    desk: Any = SimpleNamespace(feeling=feeling, recorder=None, text=text, tell=lambda *said, **told: None)
+    asyncio.run(record(desk, None))
+    assert [(each.device, each.configuration, each.parts) for each in kept] == [("mouse", text, '{"1": "wall"}')]
 
 
 def test_two_are_compared_place_by_place(bench: Bench, tmp_path: Path) -> None:

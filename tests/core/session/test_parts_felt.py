@@ -13,6 +13,7 @@ from tangible_core.session import (
     About,
     Recording,
     Turn,
+    names_in,
     names_of,
     names_text,
     part_under,
@@ -105,6 +106,21 @@ def test_others_read_the_names_and_recordings_from_before_have_none(tmp_path: Pa
     with netcdf_file(tmp_path / "before.nc", mmap=False) as file:
         assert not hasattr(file, "parts"), "nothing is added where there are none"
     assert names_of(Recording.load(tmp_path / "before.nc").about.parts) == []
+
+
+@pytest.mark.parametrize(
+    ("text", "names"),
+    [
+        ("parts: {0: wall, '6': {name: helmet}, 2: {height_m: 1 mm}, 3: '', 4: null}", {0: "wall", 6: "helmet"}),
+        ("scene: builtin/coins", None),
+        ("parts: [wall]", None),
+        ("parts: {wall: 0}", None),
+        ("parts: {0: [", None),
+        ("", None),
+    ],
+)
+def test_names_by_the_text_of_a_pipeline_file(text: str, names: dict[int, str] | None):
+    assert names_of(names_in(text)) == ([] if names is None else [names])
 
 
 def test_names_of_scenes_in_turn_and_damaged_ones():

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from tangible_core.errors import ConfigError, DeviceError
-from tangible_core.session import About
+from tangible_core.session import About, names_in
 
 from ..desk.desk import Desk, Tab
 from ..desk.shelf import user_folder
@@ -30,7 +30,8 @@ async def record(desk: Desk, tab: Tab | None) -> str:
         told = {"recording": False, "path": str(path), "ticks": ticks, "why": why}
         loop.call_soon_threadsafe(lambda: desk.tell("recorder", **told))
 
-    about = About(felt.device_name, felt.law, desk.text)
+    text = desk.text
+    about = About(felt.device_name, felt.law, text, parts=await asyncio.to_thread(names_in, text))
     desk.recorder = await asyncio.to_thread(Recorder, servo, path, about, ended)
     desk.tell("recorder", recording=True, path=str(path), ticks=0, why="")
     return str(path)

@@ -21,7 +21,9 @@ from tangible_core.parts import (
     shared_borders,
 )
 from tangible_core.parts.large import large_parts
+from tangible_core.scene.geometry import smooth
 from tangible_core.scene.scene import Scene
+from tangible_core.scene.workspace import SUITS, Workspace
 
 from .figures import Figure, judged, part, table
 from .tests_path import drawn_parts
@@ -58,6 +60,7 @@ def _borders() -> tuple[list[str], list[Figure]]:
         drawn, automatic = drawn_parts.drawn(name), _automatic(name)
         flat = Relief(_luminance(name) * np.float32(TALL_M), _extent_m(drawn.parts))
         given = _layers(name, drawn.parts, drawn.heights_m, GIVEN)
+        felt = smooth(_layers(name, drawn.parts, drawn.heights_m, GIVEN, Workspace().width_m), SUITS["parts"][1])
         guessed = _layers(name, automatic, guess_heights(automatic, TOP_M).heights_m, GUESS)
         reliefs = (
             ("`luminance`", flat, "drawn", drawn.parts),
@@ -65,6 +68,7 @@ def _borders() -> tuple[list[str], list[Figure]]:
             ("layers, drawn, `given`", given, "drawn", drawn.parts),
             ("layers, automatic, `guess`", guessed, "automatic", automatic),
             ("layers, automatic, `guess`", guessed, "drawn", drawn.parts),
+            ("layers, drawn, `given`, as a pipeline makes them: 80 mm wide, smoothed", felt, "drawn", drawn.parts),
         )
         shares = [border_steps(relief, parts.labels) for _, relief, _, parts in reliefs]
         for (relief, _, of, _), found in zip(reliefs, shares, strict=True):
@@ -74,6 +78,9 @@ def _borders() -> tuple[list[str], list[Figure]]:
             told, bound = f"{was:.2f} -> {share:.2f}", f">= {LEAST_SHARE}"
             what = f"{name}: felt steps that are borders of {made} parts, by luminance -> by layers"
             figures.append(Figure(what, bound, told, share >= LEAST_SHARE))
+        share = shares[5]["steps_at_borders"]
+        what = f"{name}: the same, drawn, as a pipeline makes them by default"
+        figures.append(Figure(what, f">= {LEAST_SHARE}", f"{share:.2f}", share >= LEAST_SHARE))
     return table(("picture", "relief", "borders of", "found", "of felt steps", "area stepped"), rows), figures
 
 
@@ -157,8 +164,10 @@ def _automatic(name: str) -> PartMap:
     return large_parts(segments, picture, LEAST_WIDTH * max(picture.shape[:2]), MOST_PARTS)
 
 
-def _layers(name: str, parts: PartMap, heights_m: tuple[float, ...], choice: HeightChoice) -> Relief:
-    return Layering(parts, WIDTH_M, choice, drawn_parts.drawn(name).picture).relief(heights_m)
+def _layers(
+    name: str, parts: PartMap, heights_m: tuple[float, ...], choice: HeightChoice, width_m: float = WIDTH_M
+) -> Relief:
+    return Layering(parts, width_m, choice, drawn_parts.drawn(name).picture).relief(heights_m)
 
 
 def _extent_m(parts: PartMap) -> tuple[float, float]:

@@ -25,9 +25,9 @@ MOST_SLIPS = 3
 """Small parts whose places are said."""
 
 
-@lru_cache(maxsize=2)
+@lru_cache(maxsize=1)
 def parts_of(segments: SegmentMap) -> PartMap:
-    """The parts of segments; those of the last ones are kept. Raises: PictureError if there are too many to be felt."""
+    """The parts of segments; the last ones are kept. Raises: PictureError if there are too many to be felt."""
     found = find_parts(segments)
     if found.count > MOST_PARTS:
         raise PictureError(

@@ -412,6 +412,7 @@ class Pipeline:
             size=self.config.size,
             safety=self.config.safety,
             scene_relief_m=self.scene.relief_m,
+            of_parts=self.config.heights is not None,
             smoothed=self.scene.height is None,
             law_name=law.name,
             fitted=self.config.materials.fit == "device",

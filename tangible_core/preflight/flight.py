@@ -89,7 +89,7 @@ class Flight:
     spec: DeviceSpec
     size: FeltSize
     relief_key: str
-    """Where the configuration says how high the relief is,"""
+    """Where the configuration says how high the relief is, empty where each part has a height of its own;"""
     relief_m: float
     """and what it says there."""
     smoothed: bool

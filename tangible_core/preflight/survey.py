@@ -27,6 +27,7 @@ def survey(
     size: FeltSize | None = None,
     safety: Safety | None = None,
     scene_relief_m: float | None = None,
+    of_parts: bool = False,
     smoothed: bool = True,
     law_name: str = "",
     fitted: bool = False,
@@ -35,7 +36,8 @@ def survey(
 ) -> Flight:
     """What there is to know of this surface and its touch under a law, on a device that is not opened for it.
 
-    scene_relief_m: height of the relief, where the scene says it and not the workspace. smoothed: whether
+    scene_relief_m: height of the relief, where the scene says it and not the workspace. of_parts: whether it
+    is made of parts, each of its own height. smoothed: whether
     `workspace.smooth_m` rounds the relief; one that the scene brings stays as it is. law_name: what the configuration
     calls the law. fitted: whether the materials were made to fit the device.
     Takes `loop.seconds`, in which this machine's lateness is measured, and a moment more. Raises: BrokenMethod if the
@@ -53,7 +55,7 @@ def survey(
         stiffness_n_per_m=stiffness,
         spec=spec,
         size=size,
-        relief_key="workspace.relief_m" if scene_relief_m is None else "scene.relief_m",
+        relief_key="" if of_parts else "workspace.relief_m" if scene_relief_m is None else "scene.relief_m",
         relief_m=scene_relief_m or size.relief_m,
         smoothed=smoothed,
         law_name=law_name,

@@ -31,7 +31,7 @@ def clipping(flight: Flight) -> Iterator[Verdict]:
     )
 
 
-def _gentler(flight: Flight, reached_n: float) -> Sequence[Change]:
+def _gentler(flight: Flight, reached_n: float) -> Sequence[str | Change]:
     """By smoothing, where that makes the slopes gentle enough and they are not yet; otherwise by a lower relief."""
     most_n, press_n = flight.max_force_n, flight.hand.press_n
     steepest = math.sqrt((most_n / press_n) ** 2 - 1)

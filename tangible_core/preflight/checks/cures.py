@@ -47,9 +47,18 @@ def soften_materials(flight: Flight, materials: Iterable[Material], most_n_per_m
     return f"in a file for `materials.library`, {', '.join(softer)}"
 
 
-def flatten(flight: Flight, share: float) -> Change:
+def flatten(flight: Flight, share: float) -> Change | str:
     """How all slopes come down to this share of what they are."""
+    if not flight.relief_key:
+        return "lower parts (`height_m` under `parts:`)"
     return Change(flight.relief_key, under(flight.relief_m * share), "at most")
+
+
+def heighten(flight: Flight, times: float) -> Change | str:
+    """How the relief becomes so many times as high."""
+    if not flight.relief_key:
+        return "higher parts (`height_m` under `parts:`)"
+    return Change(flight.relief_key, over(flight.relief_m * times), "at least")
 
 
 def round_off(flight: Flight, gentle: Callable[[Relief], bool]) -> Change | None:

@@ -5,7 +5,8 @@ from itertools import pairwise
 
 from ..bumps import WIDTHS_M, feature_m, left_over, threshold_m
 from ..flight import Flight
-from ..verdict import Change, Verdict, held, over
+from ..verdict import Verdict, held
+from .cures import heighten
 
 SOURCE = "Louw, Kappers & Koenderink 2000 (bare hand)"
 NOTHING_M = 1e-7
@@ -32,13 +33,12 @@ def features(flight: Flight) -> Iterator[Verdict]:
     any_felt = any(found[width] >= bound for width, bound in bounds.items())
     for width, bound in bounds.items():
         source = SOURCE if bound > resolution_m else "the device's resolution"
-        higher = Change(flight.relief_key, over(flight.relief_m * bound / found[width]), "at least")
         yield held(
             *("features", f"{1e3 * width:g} mm wide", found[width], ">=", bound, "m", source),
             worse="ok" if any_felt else "warn",
             note="" if found[width] >= bound else "too low to be felt",
             says="the relief is too low to be felt",
-            cure="" if any_felt else [higher],
+            cure="" if any_felt else [heighten(flight, bound / found[width])],
         )
 
 

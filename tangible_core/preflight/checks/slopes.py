@@ -100,7 +100,9 @@ def _gentle(flight: Flight, steep: Slopes, of: str, bound: float, few: float, so
 def _gentler(flight: Flight, steep: Slopes, bound: float, few: float) -> Cure:
     lower = flatten(flight, bound / float(np.quantile(steep, 1 - few, method="higher")))
     rounder = round_off(flight, lambda relief: float(np.mean(slopes(relief) > bound)) <= few)
-    return [rounder, f", or a lower `{lower.key}`"] if rounder else [lower]
+    if rounder is None:
+        return [lower]
+    return [rounder, f", or {lower}" if isinstance(lower, str) else f", or a lower `{lower.key}`"]
 
 
 def slopes(relief: Relief) -> Slopes:

@@ -13,8 +13,10 @@ from tangible_core.data import DisparityMap, Force, HapticState, HapticSurface, 
 from tangible_core.errors import ConfigError, MaterialError, PictureError
 from tangible_core.parts import HeightChoice, PartChoice
 from tangible_core.pipeline.cache import Cache
+from tangible_core.pipeline.fixing import fix
 from tangible_core.pipeline.pipeline import load_pipeline
 from tangible_core.plugins.interfaces import DepthEstimator, ForceRenderer, PlainTouch, Segmenter, Skippable, Touch
+from tangible_core.preflight import Hand, Loop
 
 ROWS, COLUMNS = 40, 60
 LABELS = np.zeros((ROWS, COLUMNS), np.int32)
@@ -543,6 +545,16 @@ def within_one_pixel(small: np.ndarray, large: np.ndarray) -> bool:
     padded = np.pad(small, 1, mode="edge")
     around = np.stack([padded[i : i + rows, j : j + columns] for i in range(3) for j in range(3)])
     return bool(((blocks >= around.min(axis=0) - 2e-5) & (blocks <= around.max(axis=0) + 2e-5)).all())
+
+
+def test_a_cure_for_steep_borders_leaves_heights_that_fit(folder: Path):
+    """A lower workspace would be too low for them."""
+    text = "parts: {3: {height_m: 4.2 mm}}\nheights: given\nmaterials: {by: rules}\nworkspace: {width_m: 20 mm}\n"
+    path = written(folder, f"{text}render: penalty-gradient\ndevice: mock\n")
+    assert not load_pipeline(path).preflight(loop=Loop(seconds=0.01)).safe
+    fixed = fix(path, [], Hand(), Loop(seconds=0.01), path)
+    assert fixed.verdicts.safe
+    assert "workspace.smooth_m" in fixed.changes and "workspace.relief_m" not in fixed.changes
 
 
 class TestWritten:

@@ -313,6 +313,11 @@ class TestSlopes:
         lower = advised(given, "workspace.relief_m") / 0.02
         assert np.mean(slopes(HapticSurface.from_heights(lower * surface.height_m).relief) > 1) <= 0.1
         assert "smooth_m" not in given.cure
+        of_parts = of(cliffs(fly(surface, smoothed=False, relief_key="")), "a wall")
+        assert (of_parts.cure, of_parts.changes) == ("lower parts (`height_m` under `parts:`)", ())
+        both = of(cliffs(fly(surface, relief_key="")), "a wall")
+        assert both.cure.endswith(", or lower parts (`height_m` under `parts:`)")
+        assert [each.key for each in both.changes] == ["workspace.smooth_m"]
 
     def test_the_greater_slope_to_either_side(self):
         step = HapticSurface.from_heights(np.array([[0, 0, 0.01, 0.01]], np.float32), 0.04)

@@ -46,6 +46,13 @@ def test_of_too_many_parts_those_most_alike_become_one():
     assert large_parts(segments, picture, least_px=2, most=1).count == 1
 
 
+def test_colour_counts_as_much_as_lightness():
+    segments, _ = in_three()
+    picture = np.array([(208, 68, 68), (119, 119, 119), (144, 144, 144)], np.uint8)[segments.labels]
+    found = large_parts(segments, picture, least_px=2, most=2)
+    assert (found.labels == np.array([0, 1, 1])[segments.labels]).all(), "a red and a grey of one lightness stay apart"
+
+
 def test_numbers_are_those_of_first_pixels_and_the_same_in_a_picture_twice_as_large():
     rng = np.random.default_rng(3)
     coarse = rng.integers(0, 6, (6, 8)).astype(np.int32)

@@ -432,6 +432,19 @@ class TestSaving:
 
         small(check)
 
+    def test_a_disk_that_holds_the_document_and_not_the_labels_changes_nothing(
+        self, small: Callable[[Check], None], tmp_path: Path
+    ) -> None:
+        async def check(small: SmallDesk, ask: Any) -> None:
+            noise = np.random.default_rng(0).permutation(drawn().size).reshape(SHAPE)
+            upload = await sent(small, ask, packed(noise))
+            with files_up_to(1000), pytest.raises(TangibleError, match="free some space"):
+                await ask("parts_save", upload=upload, parts=[], heights=GIVEN)
+            assert small.desk.text == (tmp_path / "mine.yaml").read_text() == TEXT
+            assert not list(tmp_path.glob("*parts*"))
+
+        small(check)
+
     @pytest.mark.parametrize("size", [100, 3000])
     def test_a_full_disk_changes_nothing(self, small: Callable[[Check], None], tmp_path: Path, size: int) -> None:
         """100: there is no room for the labels; 3000: for the document behind them."""
@@ -578,11 +591,14 @@ class TestHeights:
                 raise AssertionError
 
             monkeypatch.setattr("tangible_ui.maker.felt_parts.Layering", never)
-            monkeypatch.setattr("tangible_core.materials.assignment.assign", never)
-            monkeypatch.setattr("tangible_core.parts.find.find_parts", never)
-            await ask("parts_heights", heights_m=[0.0, 0.001, 0.001])
-            await ask("parts_heights", heights_m=[0.0, 0.001, 0.001], materials=["ice", "ice", None])
-            await ask("set", changes={"title": "another"})
+            with pytest.MonkeyPatch.context() as within:
+                within.setattr("tangible_core.materials.assignment.assign", never)
+                within.setattr("tangible_core.parts.find.find_parts", never)
+                await ask("parts_heights", heights_m=[0.0, 0.001, 0.001])
+                await ask("parts_heights", heights_m=[0.0, 0.001, 0.001], materials=["ice", "ice", None])
+                await ask("set", changes={"title": "another"})
+                await ask("parts_heights", heights_m=[0.0, 0.001, 0.002])
+            await ask("set", changes={"materials.default": "ice"})
             await ask("parts_heights", heights_m=[0.0, 0.001, 0.002])
 
         small(check)

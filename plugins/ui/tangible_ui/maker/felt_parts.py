@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, TypeVar
 
+import numpy as np
 from pydantic import BaseModel, ValidationError
 
 from tangible_core.data import HapticSurface, Material, PartMap
@@ -157,7 +158,11 @@ def _kept(bench: Bench, pipeline: Pipeline) -> Kept:
 def _same_layering(before: Kept, config: PipelineConfig, parts: PartMap, grid: on_grid.FeltScene) -> Layering | None:
     """The one that is there, if it is of the same parts."""
     same = before.config.heights == config.heights and before.config.size == config.size
-    return before.layering if same and before.parts is parts and before.grid.scene is grid.scene else None
+    return (
+        before.layering
+        if same and before.grid.scene is grid.scene and np.array_equal(before.parts.labels, parts.labels)
+        else None
+    )
 
 
 def _materials(

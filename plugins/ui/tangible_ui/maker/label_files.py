@@ -1,25 +1,26 @@
 """Label pictures as a page sends them, and as files: `parts.png`, which paint programs open and pipelines read."""
 
 import hashlib
+import struct
 import zlib
-from io import BytesIO
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 from jaxtyping import Int32, UInt16
-from PIL import Image
-from PIL.PngImagePlugin import PngInfo
 
 from tangible_core.errors import ConfigError
 from tangible_core.files.reading import MOST_PIXELS
+from tangible_core.parts.label_picture import label_picture
 from tangible_core.scene.picture_files import MAX_LABELS
 
 NAME = "parts.png"
 GZIP = 31
 """What zlib is told so that it takes a gzip file and nothing else."""
-TURN = 0.618034
-"""Of the circle of hues, from one label's colour to the next one's: neighbours in number are far apart in colour."""
-_DOCUMENT, _CONTENT = "Pipeline file", "Labels"
+PNG = b"\x89PNG\r\n\x1a\n"
+AFTER_SIZE = len(PNG) + 4 + 4 + 13 + 4
+"""Where a PNG's second chunk begins: the first one says its size."""
+_TEXT, _PIXELS = b"tEXt", b"IDAT"
 
 
 def unpacked(path: Path, shape: tuple[int, int]) -> UInt16[np.ndarray, "h w"]:
@@ -43,49 +44,43 @@ def unpacked(path: Path, shape: tuple[int, int]) -> UInt16[np.ndarray, "h w"]:
 
 
 def as_png(labels: Int32[np.ndarray, "h w"], document: str) -> bytes:
-    """A picture that `read_labels` takes for the same labels, in colours where there are few enough.
+    """A picture of labels that says whose it is.
 
     document: the name of the pipeline file that it belongs to. Raises: ConfigError for more labels than one may hold.
     """
     count = int(labels.max(initial=0)) + 1
     if count > MAX_LABELS:
         raise ConfigError(f"these are {count} parts, and at most {MAX_LABELS} are allowed; join some of them")
-    if count <= len(_PALETTE):
-        image = Image.fromarray(labels.astype(np.uint8))
-        image.putpalette(_PALETTE.tobytes())
-    else:
-        image = Image.fromarray(labels.astype(np.uint16))
-    said = PngInfo()
-    said.add_text("Software", "Tangible Images")
-    said.add_text(_DOCUMENT, document)
-    said.add_text(_CONTENT, _digest(np.asarray(image)))
-    written = BytesIO()
-    image.save(written, "PNG", pnginfo=said, compress_level=3)
-    return written.getvalue()
+    picture = label_picture(np.ascontiguousarray(labels))
+    return picture[:AFTER_SIZE] + _chunk(_TEXT, _mark(picture, document)) + picture[AFTER_SIZE:]
 
 
 def is_ours(path: Path, document: str) -> bool:
     """Whether a file is as `as_png` made it for this pipeline file: nobody has painted in it since."""
     try:
-        with Image.open(path, formats=("PNG",)) as image:
-            said = getattr(image, "text", {})
-            return said.get(_DOCUMENT) == document and said.get(_CONTENT) == _digest(np.asarray(image))
-    except (OSError, ValueError, SyntaxError, Image.DecompressionBombError):
+        picture = path.read_bytes()
+    except OSError:
         return False
+    return (_TEXT, _mark(picture, document)) in _chunks(picture)
 
 
-def _digest(values: np.ndarray) -> str:
-    return hashlib.sha256(f"{values.shape}".encode() + np.ascontiguousarray(values).tobytes()).hexdigest()[:32]
+def _mark(picture: bytes, document: str) -> bytes:
+    """Of a PNG's pixels, and of the file that it belongs to."""
+    digest = hashlib.sha256(document.encode(errors="surrogateescape"))
+    for kind, data in _chunks(picture):
+        if kind == _PIXELS:
+            digest.update(data)
+    return b"Tangible Images\0parts " + digest.hexdigest().encode()
 
 
-def _colours() -> np.ndarray:
-    """Of 256 labels, (256, 3) bytes: the first one dark, the others bright, each of another hue."""
-    numbers = np.arange(256)
-    hue, value = numbers * TURN % 1, np.where(numbers % 2 == 0, 0.95, 0.7)
-    ramps = np.clip(np.abs((hue[:, None] + np.array([0, 2 / 3, 1 / 3])) % 1 * 6 - 3) - 1, 0, 1)
-    colours = np.round(255 * value[:, None] * (0.35 + 0.65 * ramps)).astype(np.uint8)
-    colours[0] = 40
-    return colours
+def _chunks(picture: bytes) -> Iterator[tuple[bytes, bytes]]:
+    """Kind and data of each of a PNG's chunks; none of what is no PNG."""
+    at = len(PNG) if picture.startswith(PNG) else len(picture)
+    while at + 8 <= len(picture):
+        size, kind = struct.unpack_from(">I4s", picture, at)
+        yield kind, picture[at + 8 : at + 8 + size]
+        at += 12 + size
 
 
-_PALETTE = _colours()
+def _chunk(kind: bytes, data: bytes) -> bytes:
+    return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))

@@ -298,7 +298,9 @@ class TestPage:
         assert later == {"editor.js"}
 
     def test_it_asks_no_other_machine_for_anything(self):
-        text = "".join(each.read_text("utf-8") for each in built_page().iterdir() if each.suffix in (".js", ".css", ".html"))
+        text = "".join(
+            each.read_text("utf-8") for each in built_page().iterdir() if each.suffix in (".js", ".css", ".html")
+        )
         assert set(re.findall(r"(?:https?|wss?)://[\w.-]+[^\s\"'`)\\]*", text)) <= NAMES
         assert not re.search(r"""["'(]//[\w-]+\.\w""", text)
 

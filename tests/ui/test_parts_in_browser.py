@@ -1,7 +1,7 @@
 """The editor of parts: from a photograph to a felt relief of five named parts, by mouse and by keyboard alone."""
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,10 +11,11 @@ from PIL import Image
 
 from browser_tabs import OpenPage
 from page_files import built_page
-from tangible_core.parts import find_parts
-from tangible_core.pipeline.config import PipelineConfig, load_config
+from tangible_core.parts import PartChoice, find_parts
+from tangible_core.pipeline.config import load_config
 from tangible_core.plugins.registry import default_registry
 from tangible_core.scene.scene import Scene
+from tangible_core.scene.scene_files import SceneFiles
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -87,11 +88,13 @@ def names(page: "Page") -> list[str]:
     return page.locator("#parts-list .name").all_inner_texts()
 
 
-def labels_of(config: PipelineConfig) -> Any:
-    assert config.scene is not None
+def kept(path: Path) -> tuple[Mapping[int, PartChoice], Any]:
+    """What a pipeline file says of its parts, and the number of each pixel's."""
+    config = load_config(path, default_registry())
+    assert isinstance(config.scene, SceneFiles) and config.parts is not None
     segments = Scene.read(config.scene, config.folder).segments
     assert segments is not None
-    return find_parts(segments).labels
+    return config.parts, find_parts(segments).labels
 
 
 def high(page: "Page", x: float, y: float) -> float:
@@ -174,11 +177,10 @@ def test_from_a_photograph_to_five_parts_by_mouse(serve: Callable[..., Any], ope
     until(lambda: page.locator("#parts-editor").count() == 0, "closed without a question")
     assert page.evaluate("document.activeElement.id") == "parts-edit"
 
-    config = load_config(photo.parent / "ball.yaml", default_registry())
-    labels = labels_of(config)
-    found = {config.parts[int(labels[y, x])].name for x, y in [(150, 90), (120, 160), (60, 50), (10, 20), (220, 20)]}
+    parts, labels = kept(photo.parent / "ball.yaml")
+    found = {parts[int(labels[y, x])].name for x, y in [(150, 90), (120, 160), (60, 50), (10, 20), (220, 20)]}
     assert found == {"wall", "ball", "table", "lamp", "door"}
-    ball = config.parts[int(labels[90, 150])]
+    ball = parts[int(labels[90, 150])]
     assert (ball.height_m, ball.material) == (0.0038, "glass")
     true = (np.mgrid[:HEIGHT, :WIDTH][1] - 150) ** 2 + (np.mgrid[:HEIGHT, :WIDTH][0] - 90) ** 2 < 40**2
     drawn = labels == labels[90, 150]
@@ -259,7 +261,8 @@ def test_from_a_photograph_to_five_parts_by_keyboard(serve: Callable[..., Any], 
     press(page, "Escape")
     page.wait_for_selector("dialog[open]")
     press(page, "Enter")
-    assert page.locator("dialog").count() == 0 and page.locator("#parts-editor").count() == 1, "it goes on"
+    until(lambda: page.locator("dialog").count() == 0, "answered")
+    assert page.locator("#parts-editor").count() == 1, "it goes on"
     page.locator("#parts-list").focus()
     press(page, "Control+s")
     until(lambda: "Saved: " in page.locator("#parts-told").inner_text(), "saved")
@@ -273,11 +276,10 @@ def test_from_a_photograph_to_five_parts_by_keyboard(serve: Callable[..., Any], 
     keys.type(str(photo.parent / "kept.yaml"))
     enter(page, "#yaml button:text-is('Save')")
     until((photo.parent / "kept.yaml").is_file, "the file is kept")
-    config = load_config(photo.parent / "kept.yaml", default_registry())
-    labels = labels_of(config)
-    assert {each.name for each in config.parts.values()} == {"wall", "ball", "table", "lamp", "door"}
-    assert config.parts[int(labels[90, 150])].name == "ball"
-    assert config.parts[int(labels[170, 20])].name == "table"
+    parts, labels = kept(photo.parent / "kept.yaml")
+    assert {each.name for each in parts.values()} == {"wall", "ball", "table", "lamp", "door"}
+    assert parts[int(labels[90, 150])].name == "ball"
+    assert parts[int(labels[170, 20])].name == "table"
 
 
 def press(page: "Page", *keys: str) -> None:
@@ -316,7 +318,8 @@ def step_to(page: "Page", name: str) -> bool:
 
 
 def selected(page: "Page") -> int:
-    return page.evaluate("[...document.querySelectorAll('#parts-list > li')].findIndex((li) => li.ariaSelected === 'true')")
+    rows = page.locator("#parts-list > li")
+    return rows.evaluate_all("(all) => all.findIndex((each) => each.ariaSelected === 'true')")
 
 
 def focus_on(page: "Page", region: str) -> bool:

@@ -265,7 +265,7 @@ class Editor {
   }
 
   private toggleFresh(): void {
-    this.pens.fresh = !this.pens.fresh;
+    this.pens.fresh = !this.pens.fresh || this.drawing.parts.length === 1; // there is nothing else to paint
     if (this.pens.tool === "select") this.pens.tool = "brush";
     this.bar.show();
     this.help();
@@ -430,21 +430,22 @@ class Editor {
 
   // -- felt, saved, closed --
 
-  /** What is said of parts that were opened or saved is felt at once, unless the program has to find some heights. */
+  /** What is said of parts that were opened or saved is felt at once. */
   private feel(): void {
-    if (!this.drawing.parts.some((each) => each.automatic)) this.live.feel(this.feltNow(), this.base);
+    this.live.feel(this.feltNow(), this.base);
   }
 
   private feltNow(): Felt {
     const heights_m = [...(this.base?.heights_m ?? [])];
     const materials = [...(this.base?.materials ?? [])];
-    for (const { label, height_m, material } of this.drawing.parts) {
+    const { parts } = this.drawing;
+    for (const { label, height_m, material, automatic } of parts) {
       const number = this.numbers.get(label);
       if (number === undefined) continue;
-      heights_m[number] = height_m;
+      heights_m[number] = automatic ? null : height_m;
       materials[number] = material;
     }
-    return { heights_m, materials, heights: this.words.said(false).heights };
+    return { heights_m, materials, heights: this.words.said(parts.some((each) => each.automatic)).heights };
   }
 
   /** Whether it was saved; one that goes on is waited for. */

@@ -1,8 +1,8 @@
 /** What is dragged is felt: the newest is sent when the one before has arrived. */
 
-/** By the number that a part was opened or saved with; and the shape of all. */
+/** By the number that a part was opened or saved with, no height where the program finds it; and the shape of all. */
 export interface Felt {
-  heights_m: number[];
+  heights_m: (number | null)[];
   materials: (string | null)[];
   heights: object;
 }

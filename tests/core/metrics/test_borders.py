@@ -76,7 +76,7 @@ def test_a_step_further_than_2_mm_from_a_border_is_none_of_it():
 
 @pytest.mark.parametrize("tall", [1, 10])
 def test_borders_are_found_by_their_length(tall):
-    """One around a step, 60 cells high and 200 wide, and one without a step, 100 cells high; cells may be no squares."""
+    """One around a step, 60 cells high and 200 wide, one without a step, 100 cells high; cells may be no squares."""
     height_m = np.zeros((100, 400), np.float32)
     height_m[:60, 200:] = 0.002
     labels = np.zeros(height_m.shape, np.int32)

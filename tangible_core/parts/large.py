@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Int, UInt8
 
 from ..data import SegmentMap
-from ..data.parts import PartMap
+from ..data.parts import PartMap, beside_border
 from ..data.pictures import check_same_shape, to_rgb8
 from ..runtime.opencv import plain_opencv
 from .find import find_parts
@@ -38,14 +38,9 @@ def disc_widths(parts: PartMap) -> Each:
     """Diameter of the largest disc within each part, in pixels; the picture's rim is a border."""
     import cv2
 
-    labels = np.pad(parts.labels, 1, constant_values=-1)
-    inside = np.ones(labels.shape, np.uint8)
-    for one, other in ((np.s_[:, 1:], np.s_[:, :-1]), (np.s_[1:], np.s_[:-1])):
-        differ = labels[one] != labels[other]
-        inside[one][differ] = 0
-        inside[other][differ] = 0
+    inside = ~beside_border(np.pad(parts.labels, 1, constant_values=-1))
     with plain_opencv():
-        depth = cv2.distanceTransform(inside, cv2.DIST_L2, 5)[1:-1, 1:-1]
+        depth = cv2.distanceTransform(inside.view(np.uint8), cv2.DIST_L2, 5)[1:-1, 1:-1]
     deepest = np.zeros(parts.count, np.float32)
     np.maximum.at(deepest, parts.labels.reshape(-1), depth.reshape(-1))
     return 2 * deepest.astype(np.float64) + 1

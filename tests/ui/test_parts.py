@@ -580,6 +580,24 @@ class TestHeights:
 
         small(check)
 
+    def test_a_large_surface_is_felt_coarsely_until_it_is_saved(
+        self, small: Callable[[Check], None], monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        async def check(small: SmallDesk, ask: Any) -> None:
+            await saved(small, ask)
+            await small.tab.until("touch")
+            monkeypatch.setattr("tangible_ui.maker.felt_parts.MOST_CELLS", 200)
+            await ask("parts_heights", heights_m=[0.0, 0.002, 0.001])
+            kept = small.maker.bench.kept
+            assert kept.grid.shape == (12, 16)
+            coarse = await small.tab.until("scene", small.tab.names().count("scene") + 1)
+            assert (coarse["rows"], coarse["columns"]) == (12, 16)
+            assert coarse["parts"] == ["wall", "hat", "bag"]
+            monkeypatch.undo()
+            assert load_pipeline(small.desk.path).surface.height_m.shape == SHAPE
+
+        small(check)
+
     def test_a_height_makes_again_nothing_that_does_not_depend_on_it(
         self, small: Callable[[Check], None], monkeypatch: pytest.MonkeyPatch
     ) -> None:

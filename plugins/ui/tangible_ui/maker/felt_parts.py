@@ -1,11 +1,13 @@
 """Jobs that make heights and materials of parts felt while they are changed, and that show them.
 
 What does not depend on the heights is made once and kept. What is felt is, to the bit, what the document gives once it
-says these heights: the same steps make it (`felt.layered`, `fitted`, the law's own `touch`).
+says these heights: the same steps make it (`felt.layered`, `fitted`, the law's own `touch`). Only where that has more
+than MOST_CELLS it is felt on a coarser grid until it is saved: a hand that drags a height waits for nothing.
 """
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from math import ceil, sqrt
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -21,6 +23,7 @@ from tangible_core.pipeline import parts_found
 from tangible_core.pipeline.config import PipelineConfig, wrong_of_parts
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.pipeline.rules import fitted, part_heights
+from tangible_core.scene.scaling import felt_factor
 from tangible_core.scene.scene import Scene
 
 from .bench import Bench, Job
@@ -30,6 +33,8 @@ from .seen import Seen, at_hand, see_parts
 from .shown import show
 
 S = TypeVar("S", bound=BaseModel)
+MOST_CELLS = 500_000
+"""Of a surface that is felt while it is changed."""
 
 
 @dataclass
@@ -71,7 +76,7 @@ def parts_heights(
     """
     pipeline = edited_of(bench, text, path, sets)
     opened_of(bench, pipeline)
-    config = _of_parts(pipeline.config, heights)
+    config = _coarse(_of_parts(pipeline.config, heights), pipeline.scene.shape)
     if config.render is None:
         raise config.missing("render")
     if pipeline.scene.segments is None and not pipeline.config.by_parts:
@@ -107,6 +112,16 @@ def _of_parts(config: PipelineConfig, heights: Mapping[str, Any] | None) -> Pipe
     choice = config_heights(config)
     told = {**choice.model_dump(), **(heights or {}), "by": "given"}
     return replace(config, heights=_checked(HeightChoice, told), parts=config.parts or {})
+
+
+def _coarse(config: PipelineConfig, shape: tuple[int, int]) -> PipelineConfig:
+    """With a grid of at most about MOST_CELLS, in steps of half a pixel of the pictures as every felt grid."""
+    size, (rows, columns) = config.size, shape
+    factor = ceil(2 * sqrt(rows * columns / MOST_CELLS)) / 2
+    if factor <= felt_factor(columns, size.width_m, size.finest_m):
+        return config
+    finest_m = (factor + 0.01) * size.width_m / columns
+    return replace(config, workspace=config.workspace.model_copy(update={"finest_m": finest_m}))
 
 
 def _checked(section: type[S], said: Mapping[str, Any]) -> S:

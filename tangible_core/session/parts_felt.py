@@ -88,7 +88,7 @@ def parts_felt(felt: Recording, surface: HapticSurface) -> tuple[PartFelt, ...]:
     numbers, ticks = np.unique(under[under >= 0], return_counts=True)
     order = np.argsort(-ticks, kind="stable")
     return tuple(
-        PartFelt(number, surface.names[number], count / touching.sum(), float(force_n[under == number].max()))
+        PartFelt(number, surface.names[number], count / len(under), float(force_n[under == number].max()))
         for number, count in zip(numbers[order].tolist(), ticks[order].tolist(), strict=True)
     )
 

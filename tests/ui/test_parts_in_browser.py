@@ -75,6 +75,16 @@ class Mouse:
             self.page.mouse.move(*self.at(*place), steps=4)
         self.page.mouse.up()
 
+    def fingers(self, *places: list[tuple[float, float]]) -> None:
+        """Touch with as many fingers as there are places, and go on from list to list."""
+        devtools = self.page.context.new_cdp_session(self.page)
+        for n, each in enumerate(places):
+            kind = "touchStart" if not n or len(each) > len(places[n - 1]) else "touchMove"
+            touched = [{"x": x, "y": y, "id": i} for i, (x, y) in enumerate(self.at(*place) for place in each)]
+            devtools.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": touched})
+        devtools.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
+        devtools.detach()
+
     def click(self, x: float, y: float) -> None:
         self.page.mouse.click(*self.at(x, y))
 
@@ -108,7 +118,7 @@ def high(page: "Page", x: float, y: float) -> float:
 def test_from_a_photograph_to_five_parts_by_mouse(serve: Callable[..., Any], open_page: OpenPage, photo: Path):
     built_page()
     (photo.parent / "ball.yaml").write_text(f"scene: {{photo: ball.png}}\ndepth: {{use: luminance}}\n{RELIEF}")
-    page = open_page(serve("ball.yaml", cwd=photo.parent).url + "&measure")
+    page = open_page(serve("ball.yaml", cwd=photo.parent).url + "&measure", has_touch=True)
     felt(page)
     fetched: list[str] = []
     page.on("request", lambda request: fetched.append(request.url))
@@ -148,11 +158,20 @@ def test_from_a_photograph_to_five_parts_by_mouse(serve: Callable[..., Any], ope
     name.fill("door")
     until(lambda: set(names(page)) == {"wall", "ball", "table", "lamp", "door"}, "five names")
 
+    # two fingers move the picture, and what the first one began to paint is given up; one finger paints
+    tool(page, "Brush")
+    mouse.fingers([(150, 60)], [(150, 60), (180, 90)], [(120, 40), (200, 120)])
+    page.locator("#parts-editor .bar").first.get_by_role("button", name="Whole", exact=True).click()
+    door = page.locator("#parts-list [aria-selected=true]").inner_text()
+    assert "door" in door and len(names(page)) == 5
+    mouse.fingers([(15, 20)], [(20, 30)])
+    page.wait_for_timeout(300)
+
     # taken back and done again
-    for _ in range(2):
+    for _ in range(3):
         tool(page, "Undo")
     until(lambda: len(names(page)) == 4, "undone")
-    for _ in range(2):
+    for _ in range(3):
         tool(page, "Redo")
     until(lambda: "door" in names(page), "done again")
 

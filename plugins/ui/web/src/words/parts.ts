@@ -8,5 +8,4 @@ export const t = words({
   edit: ["Edit the parts", "Teile bearbeiten"],
   opening: ["The parts are being opened.", "Die Teile werden geöffnet."],
   failed: ["The parts could not be opened: {why}", "Die Teile konnten nicht geöffnet werden: {why}"],
-  noScene: ["Open a picture first.", "Öffnen Sie zuerst ein Bild."],
 });

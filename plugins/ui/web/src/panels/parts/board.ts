@@ -49,6 +49,7 @@ export class Board {
   /** Where marks were drawn last. */
   private marked: Box = EMPTY;
   private due = false;
+  private closed = false;
   private since = 0;
   private selected = -1;
   private accent = { css: LIGHT, ink: DARK, accent: 0, against: 0, thin: 0 };
@@ -65,6 +66,7 @@ export class Board {
   }
 
   close(): void {
+    this.closed = true; // a frame may be due
     this.watching.disconnect();
     this.picture.close();
   }
@@ -140,6 +142,7 @@ export class Board {
 
   /** Only what changed, in the middle of a stroke. */
   private draw(): void {
+    if (this.closed) return;
     const { sight, drawing } = this;
     const whole = { left: 0, top: 0, right: sight.width, bottom: sight.height };
     const anew = this.moved || this.selected !== drawing.selected;

@@ -1,6 +1,7 @@
 """The maker as a process: stopping it leaves the loop as it is; one that does not start is not started for ever."""
 
 import asyncio
+import subprocess
 import sys
 import time
 from pathlib import Path
@@ -114,3 +115,26 @@ def test_the_one_that_was_started_beforehand_is_taken_once_and_otherwise_ended()
     for each in (first, second):
         with each:
             each.kill()
+
+
+@pytest.mark.skipif(not Path("/proc/self/task").is_dir(), reason="only Linux has a niceness for each thread")
+def test_only_long_jobs_let_others_go_first():
+    code = (
+        "import os, queue, threading; from tangible_ui.maker import process, messages\n"
+        "process.answer = lambda bench, ask: ask\n"
+        "class Voice:\n    def say(self, said): heard.put(said)\n"
+        "heard, lanes = queue.Queue(), {True: queue.SimpleQueue(), False: queue.SimpleQueue()}\n"
+        "work = [threading.Thread(target=process._work, args=(None, lane, Voice(), quick), daemon=True)"
+        " for quick, lane in lanes.items()]\n"
+        "[each.start() for each in work]\n"
+        "for _ in range(3):\n    lanes[True].put(1); heard.get(); lanes[False].put(2); heard.get()\n"
+        "import time\n"
+        "nice = lambda each: os.getpriority(os.PRIO_PROCESS, each.native_id)\n"
+        "end = time.monotonic() + 20\n"
+        "while nice(work[1]) < process.NICENESS and time.monotonic() < end: time.sleep(0.01)\n"
+        "print(nice(work[0]), nice(work[1]), os.getpriority(os.PRIO_PROCESS, 0))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False)
+    quick, long, main = map(int, done.stdout.split() or [0, 0, 0])
+    assert (long, main) == (10, 10), done.stderr
+    assert quick < 10

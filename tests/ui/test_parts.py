@@ -704,3 +704,22 @@ def test_of_asks_that_wait_the_newest_alone_is_done() -> None:
         assert done == [0, 4]
 
     asyncio.run(check())
+
+
+def test_what_is_drawn_leaves_time_for_what_is_felt_and_the_last_is_drawn():
+    async def check() -> None:
+        drawn, done = Newest(0.2), []
+
+        async def draw(number: int) -> int:
+            done.append((number, asyncio.get_running_loop().time()))
+            return number
+
+        found = await asyncio.gather(*(drawn.do(lambda k=k: draw(k)) for k in range(5)))
+        assert found == [0, None, None, None, 4]
+        first = await drawn.do(lambda: draw(5)), await drawn.do(lambda: draw(6))
+        assert first == (5, 6)
+        times = [at for _, at in done]
+        assert [number for number, _ in done] == [0, 4, 5, 6]
+        assert min(np.diff(times)) > 0.19
+
+    asyncio.run(check())

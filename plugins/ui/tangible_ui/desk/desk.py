@@ -25,6 +25,8 @@ from .texts import Texts
 
 MOST_HISTORY, MOST_LOGGED = 500, 200
 """Events, and lines that were logged, that a tab which is opened later hears of."""
+DRAWN_PAUSE_S = 0.4
+"""Between two surfaces that are drawn while a height is dragged: a browser draws one while the hand feels five."""
 LAST_ALONE = frozenset({"restored", "document", "plan", "materials", "preflight"})
 """Events of which only the last one counts."""
 
@@ -53,7 +55,7 @@ class Desk:
         self.makes = Makes()
         self.strokes = Newest()
         """Asks for a part under a stroke."""
-        self.heights, self.drawn = Newest(), Newest()
+        self.heights, self.drawn = Newest(), Newest(DRAWN_PAUSE_S)
         """Asks to feel parts at other heights, and to draw them."""
         self.choice = Choice()
         """Which device is felt."""

@@ -20,6 +20,7 @@ from .messages import Answer, Ask, Event, Refused
 FULL = {getattr(errno, name, -1) for name in ("ENOSPC", "EDQUOT", "EFBIG", "EROFS")}
 NICENESS = 10
 """After the first long job: pictures can then wait, the loop and the page cannot. Before it, nothing is felt."""
+_keep_precedence: set[int] = set()
 
 
 @final
@@ -52,30 +53,33 @@ def main() -> None:
     folder: Path = receive(commands)
     tell_pages(lambda **told: voice.say(Event("log", told)), information=True)
     bench = Bench(folder, lambda event, **told: voice.say(Event(event, told)))
-    for lane in lanes.values():
-        threading.Thread(target=_work, args=(bench, lane, voice), daemon=True).start()
+    for quick, lane in lanes.items():
+        threading.Thread(target=_work, args=(bench, lane, voice, quick), daemon=True).start()
     voice.say(Event("maker", {}))
     while (ask := receive(commands)) is not None:
         lanes[JOBS[ask.job].quick].put(ask)
     os._exit(0)  # no thread is waited for: the server is gone
 
 
-def _work(bench: Any, asks: "queue.SimpleQueue[Ask]", voice: Voice) -> None:
-    from .jobs import JOBS
-
+def _work(bench: Any, asks: "queue.SimpleQueue[Ask]", voice: Voice, quick: bool) -> None:
+    if quick:
+        _keep_precedence.add(threading.get_native_id())
     while True:
-        ask = asks.get()
-        voice.say(answer(bench, ask))
-        if not JOBS[ask.job].quick:
+        voice.say(answer(bench, asks.get()))
+        if not quick:
             give_precedence()
 
 
 def give_precedence() -> None:
-    """Let others go first, with every thread: in Linux each has a niceness of its own."""
+    """Let others go first, with every thread but that of the quick jobs, for which somebody waits.
+
+    In Linux each thread has a niceness of its own.
+    """
     tasks = Path("/proc/self/task")
-    with suppress(OSError, AttributeError):  # a thread that has ended; a system that knows no niceness
-        for thread in tasks.iterdir() if tasks.is_dir() else [Path("0")]:
-            os.setpriority(os.PRIO_PROCESS, int(thread.name), NICENESS)
+    threads = {int(each.name) for each in tasks.iterdir()} if tasks.is_dir() else {0}
+    for thread in threads - _keep_precedence:
+        with suppress(OSError, AttributeError):  # a thread that has ended; a system that knows no niceness
+            os.setpriority(os.PRIO_PROCESS, thread, NICENESS)
 
 
 def answer(bench: Any, ask: Ask) -> Answer | Refused:

@@ -19,6 +19,8 @@ import type { Scene } from "./scene";
 import { type Looks, Terrain } from "./terrain/terrain";
 
 const REST_MS = 140;
+/** Surfaces that follow each other sooner, as while a height is dragged, are drawn coarsely until the last one stays. */
+const FOLLOWING_MS = 800;
 /** A terrain that takes longer is drawn coarser while the camera moves. */
 const SLOW_MS = 22;
 /** One that takes as long is drawn with a pixel of the page, however fine the screen is. */
@@ -59,6 +61,7 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
   private none = new Camera();
   private pixel = new Uint8Array(4);
   private resting = 0;
+  private putMs = -Infinity;
   /** To draw all of the terrain; infinite until that was measured. */
   private takesMs = Infinity;
   /** Pixels that are drawn for one of the page, to the side. */
@@ -89,7 +92,9 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
     }
     if (before?.rows !== scene.meta.rows || before.columns !== scene.meta.columns) this.takesMs = Infinity;
     if (String(before?.extent_m) !== String(scene.meta.extent_m)) this.frame(...scene.meta.extent_m);
-    this.moved();
+    const now = performance.now();
+    this.moved(now - this.putMs < FOLLOWING_MS ? FOLLOWING_MS : REST_MS);
+    this.putMs = now;
   }
 
   /** What lies behind the surface, as styles say a colour. */
@@ -186,11 +191,11 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
     return t > 0 ? [o[0] + t * d[0], o[1] + t * d[1], o[2] + t * d[2]] : null;
   }
 
-  private moved(): void {
+  private moved(restMs = REST_MS): void {
     this.dirty = true;
     if (this.terrain && this.takesMs > SLOW_MS) this.terrain.moving = true;
     clearTimeout(this.resting);
-    this.resting = window.setTimeout(() => this.rest(), REST_MS);
+    this.resting = window.setTimeout(() => this.rest(), restMs);
   }
 
   private rest(): void {

@@ -365,6 +365,32 @@ class TestSaving:
 
         small(check)
 
+    @pytest.mark.parametrize(
+        ("materials", "says"),
+        [
+            ("{rules: [{segment: 1, material: ice}]}", "by number for 1"),
+            ("{rules: [{part: 2, material: ice}, {part: hat, material: ice}]}", "by number for 2"),
+            ("{by: {0: ice, 2: sand}}", "by number for 2"),
+            ("{rules: [{part: hat, material: ice}]}", ""),
+        ],
+    )
+    def test_materials_by_number_that_are_others_now_are_told(
+        self, small: Callable[[Check], None], caplog: pytest.LogCaptureFixture, materials: str, says: str
+    ) -> None:
+        async def check(small: SmallDesk, ask: Any) -> None:
+            await saved(small, ask)
+            await ask("set", written={"materials": materials})
+            await saved(small, ask)
+            assert "by number" not in caplog.text  # as they were
+            moved = drawn()
+            moved[moved == 3] = 0
+            moved[0, 1] = 3  # the third part is the second now
+            await saved(small, ask, upload=await sent(small, ask, packed(moved)))
+            assert ("by number" in caplog.text) == bool(says)
+            assert says in caplog.text
+
+        small(check)
+
     def test_nothing_is_written_over_that_is_not_ours(self, small: Callable[[Check], None], tmp_path: Path) -> None:
         async def check(small: SmallDesk, ask: Any) -> None:
             (tmp_path / "parts.png").write_bytes(b"of somebody else")

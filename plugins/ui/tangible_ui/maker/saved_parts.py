@@ -2,6 +2,7 @@
 
 import hashlib
 import itertools
+import logging
 import os
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
@@ -11,7 +12,7 @@ from typing import Any, cast
 import numpy as np
 from jaxtyping import Int32, Shaped, UInt16
 
-from tangible_core.data import SegmentMap
+from tangible_core.data import PartMap, SegmentMap
 from tangible_core.errors import ConfigError, quoted
 from tangible_core.files.editing import on_one_line
 from tangible_core.files.source import read_text
@@ -25,8 +26,9 @@ from tangible_core.scene.scene_files import BUILTINS, SceneFiles
 
 from .bench import Bench, Job
 from .label_files import NAME, as_png, is_ours, unpacked
-from .parts import digest, edited_of, opened_of
+from .parts import Opened, digest, edited_of, opened_of
 
+log = logging.getLogger(__name__)
 MOST_EDITED = 200
 """Keys that are changed one by one, each in its place; of more, the whole block is written anew."""
 SAID = ("name", "height_m", "material")
@@ -70,8 +72,31 @@ def parts_save(
     check_found(config, found, labels.shape[1])
     moved = _kept_before(place, picture, shelf, [*earlier, text], path)
     _write(place, picture, path if in_file else None, changed)
+    _warn_of_numbers(config, opened_of(bench, pipeline), found)
     of = digest(found, config)
     return {"text": changed, "path": str(place), "numbers": numbers, "saved": in_file, "digest": of, "moved": moved}
+
+
+def _warn_of_numbers(config: PipelineConfig, before: Opened, found: PartMap) -> None:
+    """Say whose materials are others now: those that are for a segment or a part by a number that lies elsewhere."""
+    rules, by = config.materials.rules, config.materials.by
+    segments = {each.segment for each in rules if each.segment is not None} | set(by if isinstance(by, dict) else ())
+    named = {each.part for each in rules if isinstance(each.part, int)}
+    labels = np.array(before.parts.segments)[before.parts.labels]
+    there = before.scene.segments is not None  # else a method found others
+
+    def is_elsewhere(number: int, before: Int32[np.ndarray, "h w"]) -> bool:
+        now = found.labels[before == number]  # a border that was moved a little makes no other part of it
+        return not now.size or int(np.bincount(now).argmax()) != number
+
+    moved = {each for each in segments if not there or is_elsewhere(each, labels)}
+    moved |= {each for each in named if is_elsewhere(each, before.parts.labels)}
+    if moved:
+        log.warning(
+            "materials: are chosen by number for %s, which is now another part or none; name the parts, and choose by "
+            "name ({part: NAME, material: ...})",
+            ", ".join(map(str, sorted(moved))),
+        )
 
 
 def numbered(

@@ -10,6 +10,7 @@ from .figures import Figure, MissedError, judged, part, table
 from .ui_drive import browser, drag, felt, opened, painted, percentile, scene_640, served
 from .ui_install import installing
 from .ui_late import lateness, stale_ticks
+from .ui_parts import editor
 from .ui_tasks import large_relief, memory, stopped, swapped
 
 STATIC = Path(__file__).parents[1] / "plugins/ui/tangible_ui/static"
@@ -20,7 +21,7 @@ DRAG_S = 8.0
 
 def section() -> str:
     """The section of RESULTS.md, as Markdown."""
-    found = [*smoothness(), *start(), *tasks(), *size(), *installing(), *lasting()]
+    found = [*smoothness(), *start(), *tasks(), *editor(), *size(), *installing(), *lasting()]
     late, rows = lateness()
     text = "\n".join(
         [

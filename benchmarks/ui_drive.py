@@ -136,9 +136,9 @@ def felt(page: "Page") -> float:
     return until(page, "figures.feltMs") / 1e3
 
 
-def drag(page: "Page", seconds: float, hz: float = 60.0) -> None:
+def drag(page: "Page", seconds: float, hz: float = 60.0, where: str = "#terrain") -> None:
     """A mouse, held down, on a curve that crosses the whole surface."""
-    box = page.locator("#terrain").bounding_box()
+    box = page.locator(where).bounding_box()
     assert box is not None
     middle = box["x"] + box["width"] / 2, box["y"] + box["height"] * 0.55
     page.mouse.move(*middle)

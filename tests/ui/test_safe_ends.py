@@ -28,8 +28,11 @@ scene: {height: level.npy}
 render: {use: penalty, stiffness_n_per_m: 500}
 safety: {ramp_s: 0}
 """
-HEARING = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler); "
-"""Whatever runs the tests may ignore Ctrl-C."""
+HEARING = (
+    "import signal; signal.signal(signal.SIGINT, signal.default_int_handler);"
+    "signal.signal(signal.SIGHUP, signal.SIG_DFL); "
+)
+"""Whatever runs the tests may ignore Ctrl-C, and nohup ignores the end of a terminal."""
 FORCE = slice(TICK_COLUMNS.index("fx_n"), TICK_COLUMNS.index("fx_n") + 3)
 IN_TIME_S = 60.0
 AT_ONCE_S = 2.0

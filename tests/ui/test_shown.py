@@ -18,7 +18,7 @@ from tangible_core.scene.scene import Scene
 from tangible_ui.maker import levels, making, textures
 from tangible_ui.maker.bench import Bench
 from tangible_ui.maker.seen import Layer, Seen, is_there, see
-from tangible_ui.maker.shown import KEPT, show
+from tangible_ui.maker.shown import ABOUT, KEPT, _put, show
 from tangible_ui.serving.windows import read_window
 
 RANDOM = np.random.default_rng(3)
@@ -141,6 +141,15 @@ class TestShow:
         assert about["fine_photo"] == (1500, 1000)
         assert (folder / "photo-fine.jpg").is_file()
         assert (folder / "photo.jpg").stat().st_size < (folder / "photo-fine.jpg").stat().st_size
+
+    def test_two_threads_may_show_the_same(self, tmp_path: Path):
+        for name in ("sooner", "later", "torn", "another"):
+            (tmp_path / name).mkdir()
+            (tmp_path / name / ("height-0.f32" if name == "torn" else ABOUT)).write_text(name)
+        _put(tmp_path / "later", tmp_path / "sooner")
+        assert (tmp_path / "sooner" / ABOUT).read_text() == "sooner"
+        with pytest.raises(OSError, match="not empty"):
+            _put(tmp_path / "another", tmp_path / "torn")
 
 
 class TestLayer:

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from command_line import tangible
+from ctrl_c import HEARING
 from tangible_core.data import TickFlag
 from tangible_core.session import INTERRUPTED, Recording
 
@@ -75,9 +76,14 @@ def test_a_pointer_that_nobody_moves_says_so_once(folder: Path):
 @pytest.mark.parametrize(("asked_by", "group"), [(signal.SIGTERM, False), (signal.SIGHUP, True)])
 def test_it_goes_on_until_it_is_asked_to_end(folder: Path, asked_by: signal.Signals, group: bool):
     """The program alone, as `kill` does, and with its loop's process, as systemd and a closed terminal do."""
-    words = [TANGIBLE, "feel", "a.yaml", "b.yaml", "--each", "0.2", "--seconds", "inf", "--wait", "--record", "hand.nc"]
+    words = ["feel", "a.yaml", "b.yaml", "--each", "0.2", "--seconds", "inf", "--wait", "--record", "hand.nc"]
     program = subprocess.Popen(
-        words, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True
+        [*HEARING, TANGIBLE, *words],
+        cwd=folder,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
     )
     grown, end = folder / "hand.nc", time.monotonic() + 60
     try:

@@ -95,9 +95,18 @@ def _write(seen: Seen, about: dict[str, Any], folder: Path, at: Path) -> None:
         if seen.picture is not None:
             _write_picture(seen.picture, part)
         (part / ABOUT).write_text(json.dumps(about))
-        part.rename(at)
+        _put(part, at)
     finally:
         shutil.rmtree(part, ignore_errors=True)
+
+
+def _put(part: Path, at: Path) -> None:
+    """In its place; if another thread put the same there first, that stays."""
+    try:
+        part.rename(at)
+    except OSError:
+        if not (at / ABOUT).is_file():
+            raise
 
 
 def _write_arrays(seen: Seen, count: int, part: Path) -> None:

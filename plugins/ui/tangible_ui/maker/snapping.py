@@ -64,10 +64,8 @@ def _spaced(outline: Float64[np.ndarray, "n 2"]) -> Float64[np.ndarray, "m 2"]:
 
 def _normals(places: Float64[np.ndarray, "m 2"]) -> Float64[np.ndarray, "m 2"]:
     """Across the outline, smoothed along it, so that those of neighbours do not cross at every corner."""
-    near = np.array([places] * 3).reshape(-1, 2)
-    width = 5
-    smooth = np.stack([np.convolve(near[:, axis], np.ones(width) / width, "same") for axis in (0, 1)], axis=1)
-    tangents = (np.roll(smooth, -1, 0) - np.roll(smooth, 1, 0))[len(places) : 2 * len(places)]
+    smooth = np.mean([np.roll(places, shift, 0) for shift in range(-2, 3)], axis=0)
+    tangents = np.roll(smooth, -1, 0) - np.roll(smooth, 1, 0)
     lengths = np.maximum(np.hypot(*tangents.T), 1e-9)[:, None]
     return np.stack([-tangents[:, 1], tangents[:, 0]], axis=1) / lengths
 

@@ -48,8 +48,12 @@ def _swap(page: object, law: str) -> float:
 def stopped() -> tuple[float, int]:
     """Seconds from stop to the end of a stage that would take long, and periods without a tick meanwhile."""
     with tempfile.TemporaryDirectory() as cache, scene_640() as config:
-        text = config.read_text().replace("use: semi-global", "use: report")
-        config.write_text(text)
+        from PIL import Image
+
+        config.write_text(config.read_text().replace("use: semi-global", "use: report"))
+        for name in ("left.png", "right.png"):
+            with Image.open(config.parent / name) as picture:
+                picture.resize((3 * picture.width, 3 * picture.height)).save(config.parent / name)
         with served(config, TANGIBLE_CACHE_DIR=cache) as server, browser() as chromium:
             page = opened(chromium, server.url)
             ring = ring_of(server.process.pid)

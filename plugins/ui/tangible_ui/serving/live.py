@@ -27,7 +27,7 @@ from .connection import cut_off
 
 IN_FLIGHT = 2
 """States that a tab has not drawn yet; more would only queue up in the browser."""
-PAUSE_S = 0.008
+PAUSE_S = 0.01
 """From what was drawn to the next state: sent at once, it would wait in a busy browser until the frame after next, and
 show the hand where it was; a screen draws every 17 ms."""
 SPACING_S = 0.012

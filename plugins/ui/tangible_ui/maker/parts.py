@@ -4,7 +4,6 @@ import shutil
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from tempfile import mkdtemp
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,7 +13,6 @@ from tangible_core.data import SegmentMap
 from tangible_core.data.parts import PartMap
 from tangible_core.data.pictures import to_rgb8
 from tangible_core.data.records import digest_of
-from tangible_core.errors import OutputError
 from tangible_core.parts import HeightChoice, PartChoice, find_parts, part_sizes
 from tangible_core.pipeline.config import PipelineConfig
 from tangible_core.pipeline.parts_found import parts_of
@@ -23,7 +21,7 @@ from tangible_core.scene.scene import Scene
 
 from .bench import Bench, Job
 from .seen import is_there
-from .shown import write_whole
+from .shown import leave, write_whole
 
 FOLDER = "parts-"
 KEPT = 3
@@ -164,22 +162,14 @@ def _places(parts: PartMap) -> list[tuple[int, int]]:
 
 def _leave(opened: Opened, at: Path) -> None:
     """Write what an editor fetches, whole or not at all."""
-    folder = at.parent
-    if not at.exists():
-        part = None
-        try:
-            part = Path(mkdtemp(prefix=".part-", dir=folder))
-            (part / "labels.u16").write_bytes(opened.parts.labels.astype("<u2").data)
-            write_whole(opened.picture, part / "picture.jpg")
-            part.rename(at)
-        except OSError as error:
-            why = error.strerror or error
-            raise OutputError(f"{folder}: the parts cannot be written: {why}; free some space") from error
-        finally:
-            if part is not None:
-                shutil.rmtree(part, ignore_errors=True)
+
+    def write(part: Path) -> None:
+        (part / "labels.u16").write_bytes(opened.parts.labels.astype("<u2").data)
+        write_whole(opened.picture, part / "picture.jpg")
+
+    leave(at, "the parts", write)
     (at / "labels.u16").touch()
-    left = sorted(folder.glob(f"{FOLDER}*/labels.u16"), key=lambda each: each.stat().st_mtime_ns)
+    left = sorted(at.parent.glob(f"{FOLDER}*/labels.u16"), key=lambda each: each.stat().st_mtime_ns)
     for each in left[:-KEPT]:
         shutil.rmtree(each.parent, ignore_errors=True)
 

@@ -2,7 +2,9 @@
 
 import json
 import shutil
+from collections.abc import Callable
 from dataclasses import asdict
+from functools import partial
 from pathlib import Path
 from tempfile import mkdtemp
 from typing import Any
@@ -34,16 +36,30 @@ def show(seen: Seen, folder: Path) -> dict[str, Any]:
     """
     at = folder / seen.digest
     about = _about(seen)
-    if not at.exists():
-        try:
-            _write(seen, about, folder, at)
-        except OSError as error:
-            raise OutputError(
-                f"{folder}: what is to be drawn cannot be written: {error.strerror}; free some space"
-            ) from error
+    leave(at, "what is to be drawn", partial(_write, seen, about))
     (at / ABOUT).touch()
     _sweep(folder)
     return about
+
+
+def leave(at: Path, what: str, write: Callable[[Path], None]) -> None:
+    """Have a folder filled that pages fetch from: it is there whole or not at all, and one that is there stays.
+
+    what: it holds, for people. Raises: OutputError if it cannot be written.
+    """
+    if at.exists():
+        return
+    part = None
+    try:
+        part = Path(mkdtemp(prefix=".part-", dir=at.parent))
+        write(part)
+        _put(part, at)
+    except OSError as error:
+        why = error.strerror or error
+        raise OutputError(f"{at.parent}: {what} cannot be written: {why}; free some space") from error
+    finally:
+        if part is not None:
+            shutil.rmtree(part, ignore_errors=True)
 
 
 def material_of(materials: tuple[Material, ...]) -> tuple[list[Material], np.ndarray]:
@@ -88,16 +104,11 @@ def _about(seen: Seen) -> dict[str, Any]:
     }
 
 
-def _write(seen: Seen, about: dict[str, Any], folder: Path, at: Path) -> None:
-    part = Path(mkdtemp(prefix=".part-", dir=folder))
-    try:
-        _write_arrays(seen, len(about["levels"]), part)
-        if seen.picture is not None:
-            _write_picture(seen.picture, part)
-        (part / ABOUT).write_text(json.dumps(about))
-        _put(part, at)
-    finally:
-        shutil.rmtree(part, ignore_errors=True)
+def _write(seen: Seen, about: dict[str, Any], part: Path) -> None:
+    _write_arrays(seen, len(about["levels"]), part)
+    if seen.picture is not None:
+        _write_picture(seen.picture, part)
+    (part / ABOUT).write_text(json.dumps(about))
 
 
 def _put(part: Path, at: Path) -> None:
@@ -105,7 +116,7 @@ def _put(part: Path, at: Path) -> None:
     try:
         part.rename(at)
     except OSError:
-        if not (at / ABOUT).is_file():
+        if not all((at / each.name).is_file() for each in part.iterdir()):
             raise
 
 

@@ -58,7 +58,7 @@ class PageServer:
 
     def _serve(self) -> None:
         with Address.of(0) as address:
-            self.port = address.listening.getsockname()[1]
+            self.port = address.port
             self.host = f"{HOST}:{self.port}"
             app = application(lambda: self.desk, KEY, frozenset({self.host}), self._lifespan)
             self.server = Server(settings(app), lambda: None)

@@ -46,14 +46,18 @@ class Address:
             yield cls(listening, new_key())
 
     @property
+    def port(self) -> int:
+        """The one that was asked for, or was free."""
+        return self.listening.getsockname()[1]
+
+    @property
     def hosts(self) -> frozenset[str]:
         """What a browser may call it."""
-        port = self.listening.getsockname()[1]
-        return frozenset({f"{HOST}:{port}", f"localhost:{port}"})
+        return frozenset({f"{HOST}:{self.port}", f"localhost:{self.port}"})
 
     def announce(self, browser: bool) -> None:
         """Print it; and open it."""
-        url = f"http://{HOST}:{self.listening.getsockname()[1]}/?token={self.key}"
+        url = f"http://{HOST}:{self.port}/?token={self.key}"
         print(url, flush=True)  # noqa: T201 - what the command is called for
         if browser:  # in a thread of its own: one that needs the terminal is waited for until it ends
             threading.Thread(target=webbrowser.open, args=(url,), daemon=True).start()

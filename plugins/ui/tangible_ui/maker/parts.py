@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import UInt8
 
 from tangible_core.data import SegmentMap
-from tangible_core.data.parts import PartMap
+from tangible_core.data.parts import PartMap, beside_border
 from tangible_core.data.pictures import to_rgb8
 from tangible_core.data.records import digest_of
 from tangible_core.parts import HeightChoice, PartChoice, find_parts, part_sizes
@@ -139,10 +139,7 @@ def _places(parts: PartMap) -> list[tuple[int, int]]:
 
     step = max(1, round((parts.labels.size / MOST_LOOKED_AT) ** 0.5))
     labels = np.pad(parts.labels[::step, ::step], 1, constant_values=-1)
-    inside = np.ones(labels.shape, np.uint8)
-    for axis in (0, 1):
-        for shift in (-1, 1):
-            inside &= labels == np.roll(labels, shift, axis)
+    inside = (~beside_border(labels)).view(np.uint8)
     far = np.asarray(cv2.distanceTransform(inside, cv2.DIST_L2, 3)) + inside
     order = np.argsort(far, axis=None)
     best = np.full(parts.count + 1, -1, np.int64)

@@ -30,7 +30,7 @@ def test_what_was_edited_when_the_program_was_killed_is_offered_once(serve, open
     page = open_page(f"{first.url}&measure")
     page.wait_for_function("() => window.page?.document?.text", timeout=SHOWN_MS)
     page.evaluate("text => window.page.net.ask('edit', { text })", TEXT)
-    page.wait_for_function("text => window.page.document.text === text", arg=TEXT, timeout=SHOWN_MS)
+    page.wait_for_function("text => window.page.document?.text === text", arg=TEXT, timeout=SHOWN_MS)
     drafts = tmp_path / "data/unsaved"
     page.wait_for_timeout(50)
     while not any("431" in each.read_text() for each in drafts.glob("*.json")):
@@ -44,5 +44,5 @@ def test_what_was_edited_when_the_program_was_killed_is_offered_once(serve, open
     offered = page.get_by_text("mine.yaml was edited and not saved when the program ended")
     offered.first.wait_for(state="attached", timeout=SHOWN_MS)
     page.get_by_role("button", name="Open it again").click(timeout=SHOWN_MS)
-    page.wait_for_function("text => window.page.document.text === text", arg=TEXT, timeout=SHOWN_MS)
+    page.wait_for_function("text => window.page.document?.text === text", arg=TEXT, timeout=SHOWN_MS)
     page.get_by_role("button", name="Open it again").wait_for(state="hidden", timeout=SHOWN_MS)

@@ -321,7 +321,9 @@ for i in range(200):
 @pytest.mark.parametrize("max_bytes", [20_000, 10_000_000], ids=["always full", "roomy"])
 def test_four_processes_share_a_folder(tmp_path: Path, max_bytes: int):
     users = [
-        subprocess.Popen([sys.executable, "-c", USER, tmp_path, start, str(max_bytes)], stderr=subprocess.PIPE, text=True)
+        subprocess.Popen(
+            [sys.executable, "-c", USER, tmp_path, start, str(max_bytes)], stderr=subprocess.PIPE, text=True
+        )
         for start in "0257"
     ]
     said = [user.communicate(timeout=60)[1] for user in users]

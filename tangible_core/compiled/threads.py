@@ -12,7 +12,7 @@ from itertools import pairwise
 from typing import Any, TypeVar
 
 from ..runtime.stopping import check_stopped
-from ..runtime.thread_limit import processors, thread_limit
+from ..runtime.threads import processors, thread_limit
 from . import compiling as compiling  # says so while the kernels are compiled
 
 T = TypeVar("T")

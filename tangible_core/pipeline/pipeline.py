@@ -32,7 +32,7 @@ from ..plugins import hooks
 from ..plugins.interfaces import KINDS, DepthEstimator, ForceRenderer, HapticDevice, Method, Segmenter, Touch
 from ..plugins.registry import Registry, default_registry
 from ..preflight import Flight, Hand, Loop, Preflight, judge, survey
-from ..runtime.thread_limit import check_threads
+from ..runtime.threads import check_threads
 from ..scene.scene import Scene
 from ..scene.workspace import Workspace
 from ..servo import OVER, Safety, Servo

@@ -5,6 +5,8 @@ from contextlib import contextmanager
 from threading import Lock
 from typing import Any
 
+from .threads import limiters
+
 _LOCK = Lock()
 _users = 0
 _limits: list[int] = []
@@ -55,6 +57,9 @@ def opencv_at_most(threads: int) -> Generator[None]:
         with _LOCK:
             _limits.remove(threads)
             _switch(cv2)
+
+
+limiters.append(opencv_at_most)
 
 
 def _remember(cv2: Any) -> None:

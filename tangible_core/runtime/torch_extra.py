@@ -8,7 +8,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Literal
 
 from ..errors import BrokenMethod
-from .thread_limit import thread_limit
+from .threads import limiters, thread_limit
 
 if TYPE_CHECKING:
     import torch
@@ -50,6 +50,9 @@ def torch_at_most(threads: int) -> Generator[None]:
     finally:
         if (loaded := sys.modules.get("torch")) and (before or _own_threads):
             loaded.set_num_threads(before or _own_threads)
+
+
+limiters.append(torch_at_most)
 
 
 def pick_device(wanted: TorchDevice) -> "torch.device":

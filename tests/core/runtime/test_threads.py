@@ -15,8 +15,7 @@ from tangible_core.compiled.threads import in_blocks, in_turns, thread_count
 from tangible_core.errors import ArgumentError, ConfigError
 from tangible_core.plugins.interfaces import Segmenter
 from tangible_core.runtime.opencv import plain_opencv
-from tangible_core.runtime.thread_limit import check_threads, processors
-from tangible_core.runtime.threads import limited_threads
+from tangible_core.runtime.threads import check_threads, limited_threads, processors
 
 
 @pytest.fixture

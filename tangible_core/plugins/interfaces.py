@@ -6,6 +6,7 @@ Methods are stateless; what keeps state is a session: `Touch` for a renderer, `L
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
 from functools import partial
+from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
@@ -39,6 +40,10 @@ class Method(Quantities, ABC):
     """Raise it when results change: it is part of the cache key."""
     expected_failures: ClassVar[Mapping[str, str]] = {}
     """Checks of the conformance kit that it does not keep, by name, each with the reason; they must then fail."""
+
+    def reads(self) -> tuple[Path, ...]:
+        """Files whose content its results depend on: those that its options name, unless it says more."""
+        return tuple(value for _, value in self if isinstance(value, Path))
 
 
 class DepthEstimator(Method):

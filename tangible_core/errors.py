@@ -89,6 +89,10 @@ class ModelAbsent(TangibleError):
     """A trained network that a method needs is not there: nothing can be asked of it."""
 
 
+class BatchError(TangibleError):
+    """Rows that make no scenes, or a farm that cannot be worked on."""
+
+
 class OutputError(TangibleError):
     """Results that cannot be written."""
 

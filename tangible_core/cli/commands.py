@@ -36,6 +36,7 @@ COMMANDS = {
     "preflight": Command("preflight:preflight", "Check, before a motor moves, what is safe."),
     "feel": Command("feel:feel", "Feel the surface on the configured device, in real time."),
     "replay": Command("replay:replay", "Feel a recording again with another law."),
+    "batch": Command("batch:batch", "Run many pictures, or many settings, through one pipeline file."),
     "compare": Command("compare:compare", "Compare methods by time, memory and error."),
     "plugins": Command("plugins:app", "List the installed methods and devices; show one of them."),
     "check": Command("check:check", "Test an installed method with the conformance kit."),

@@ -299,6 +299,11 @@ def made_key(rule: Rule, inputs: Mapping[str, str]) -> str:
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()
 
 
+def method_identities(config: PipelineConfig) -> str:
+    """What results depend on of the code and the options of all methods, in one text."""
+    return "\n".join(" ".join(_identity(each)) for each in (config.depth, config.texture, config.render))
+
+
 def _identity(chosen: NamedMethod[Any] | None) -> tuple[str, str]:
     """A method's name, and everything its results depend on: where it comes from, its code, version and options."""
     if chosen is None:

@@ -1,0 +1,373 @@
+"""Many scenes through one pipeline; each failure is a row, and nothing that was made is made twice."""
+
+import csv
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from contextlib import suppress
+from pathlib import Path
+from threading import Event
+
+import numpy as np
+import pytest
+
+from command_line import tangible
+from full_disk import files_up_to
+from pictures import write_png
+from tangible_core import Pipeline, Scene
+from tangible_core.batch import batch as batches
+from tangible_core.batch.batch import batch
+from tangible_core.batch.farm import Done
+from tangible_core.batch.job import Job, make_scene
+from tangible_core.errors import BatchError, OutputError, Stopped
+
+CONFIG = "scene: builtin/brick\nwant: relief\ndepth: luminance\nworkspace: {width_m: 0.04}\n"
+
+
+class Here:
+    """A farm without processes: for what does not depend on them."""
+
+    def __init__(self, *_: object) -> None:
+        self.workers = 1
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        pass
+
+    def map(self, work, jobs, chunk=1):
+        for job in jobs:
+            yield Done(job, work(job))
+
+
+@pytest.fixture
+def here(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(batches, "Farm", Here)
+
+
+@pytest.fixture
+def archive(tmp_path: Path) -> Path:
+    folder = tmp_path / "archive"
+    folder.mkdir()
+    for number in range(4):
+        write_png(folder / f"p{number}.png", picture(number))
+    (tmp_path / "mine.yaml").write_text(CONFIG)
+    return folder
+
+
+def picture(seed: int, shape: tuple[int, ...] = (24, 32)) -> np.ndarray:
+    return np.random.default_rng(seed).integers(0, 256, shape, np.uint8)
+
+
+def rows_in(out: Path) -> list[dict]:
+    return [json.loads(line) for line in (out / "rows.jsonl").read_text().splitlines()]
+
+
+def by_id(rows) -> dict[str, dict]:
+    return {row["id"]: row for row in rows}
+
+
+class TestScenes:
+    @pytest.fixture(autouse=True)
+    def one_process(self, here):
+        pass
+
+    def run(self, cwd: Path, *words: object):
+        return tangible("batch", "mine.yaml", "--over", "archive", *words, cwd=cwd)
+
+    def test_a_folder_becomes_rows_files_a_table_and_a_gallery(self, archive: Path):
+        import pyarrow.parquet as pq
+
+        done = self.run(archive.parent)
+        assert done.returncode == 0, done.stderr
+        assert "4 of 4 scenes are made." in done.stdout
+        out = archive.parent / "out/mine-batch"
+        rows = by_id(rows_in(out))
+        assert sorted(rows) == ["p0", "p1", "p2", "p3"]
+        assert all(row["outcome"] == "ok" and row["seconds"] > 0 and "relief" in row["stages"] for row in rows.values())
+        for row in rows.values():
+            assert sorted(path.name for path in (out / row["folder"]).iterdir()) == sorted(row["files"])
+        table = pq.read_table(out / "index.parquet").to_pydict()
+        assert sorted(table["id"]) == sorted(rows)
+        assert set(table["outcome"]) == {"ok"}
+        page = (out / "gallery.html").read_text()
+        assert all(f'src="scenes/p{number}/card.jpg"' in page for number in range(4))
+
+    def test_each_scene_is_what_a_run_makes_of_it(self, archive: Path, tmp_path: Path):
+        from tangible_core.pipeline.cache import read_record
+
+        self.run(archive.parent, "--set", "workspace.width_m=0.06")
+        found = read_record(tmp_path / "out/mine-batch/scenes/p2/relief.npz")
+        scene = Scene.of(photo=archive / "p2.png")
+        from tangible_depth import Luminance
+
+        same = Pipeline(scene, depth=Luminance(), workspace={"width_m": 0.06}, cached=False).relief
+        assert found.digest() == same.digest()
+
+    def test_five_kinds_of_bad_picture_are_rows_with_the_usual_words(self, tmp_path: Path):
+        folder = tmp_path / "archive"
+        folder.mkdir()
+        (tmp_path / "mine.yaml").write_text(CONFIG.replace("luminance", "semi-global"))
+        pair = picture(1, (48, 90))
+        for name in ("good", "cut", "empty", "sizes", "none", "alone"):
+            write_png(folder / f"{name}_left.png", pair)
+            write_png(folder / f"{name}_right.png", np.roll(pair, -3, axis=1))
+        whole = (folder / "cut_left.png").read_bytes()
+        (folder / "cut_left.png").write_bytes(whole[: len(whole) // 2])
+        (folder / "empty_left.png").write_bytes(b"")
+        write_png(folder / "sizes_right.png", pair[:20])
+        (folder / "none_right.png").write_text("not a picture")
+        (folder / "alone_right.png").unlink()
+        done = self.run(tmp_path)
+        assert done.returncode == 1
+        rows = by_id(rows_in(tmp_path / "out/mine-batch"))
+        errors = {name: row["error"] for name, row in rows.items()}
+        assert errors["good"] is None
+        assert set(rows) == {"good", "cut", "empty", "sizes", "none", "alone_left"}
+        for name, said in {
+            "cut": "cut_left.png",
+            "empty": "empty_left.png",
+            "sizes": "must be of one size",
+            "none": "none_right.png",
+            "alone_left": "two views",
+        }.items():
+            assert said in errors[name]
+            assert f"{name}: " in done.stderr
+        assert "5 failed: --retry makes these again" in done.stdout
+
+    def test_rows_of_a_manifest_set_keys_and_name_files_beside_it(self, archive: Path):
+        with (archive / "rows.csv").open("w", newline="") as file:
+            table = csv.writer(file)
+            table.writerow(["id", "scene.photo", "workspace.width_m", "depth.smoothing_px"])
+            table.writerows([["wide", "p0.png", "0.1", ""], ["rough", "p0.png", "", 0], ["own", "", "0.03", ""]])
+        done = tangible("batch", "mine.yaml", "--over", archive / "rows.csv", "--json", cwd=archive.parent)
+        assert done.returncode == 0, done.stderr
+        assert json.loads(done.stdout)["made"] == 3
+        rows = by_id(rows_in(archive.parent / "out/mine-batch"))
+        assert rows["own"]["scene"] == "builtin/brick"
+        assert rows["wide"]["scene"] == rows["rough"]["scene"] == str(archive / "p0.png")
+        assert rows["wide"]["key"] != rows["rough"]["key"]
+
+    def test_a_table_in_parquet_is_a_manifest(self, archive: Path):
+        import pyarrow as pa
+        import pyarrow.parquet as pq
+
+        table = {"id": ["a", "b"], "scene.photo": ["p1.png", "p2.png"], "workspace.width_m": [0.05, None]}
+        pq.write_table(pa.table(table), archive / "rows.parquet")
+        done = tangible("batch", "mine.yaml", "--over", archive / "rows.parquet", cwd=archive.parent)
+        assert done.returncode == 0, done.stderr
+        assert sorted(by_id(rows_in(archive.parent / "out/mine-batch"))) == ["a", "b"]
+
+    def test_what_is_made_is_kept_what_changed_is_made_again(self, archive: Path):
+        tally = [json.loads(self.run(archive.parent, "--json").stdout) for _ in range(2)]
+        assert [(each["made"], each["kept"]) for each in tally] == [(4, 0), (0, 4)]
+        write_png(archive / "p1.png", picture(9, (30, 30)))
+        assert json.loads(self.run(archive.parent, "--json").stdout)["made"] == 1
+        assert json.loads(self.run(archive.parent, "--json", "--set", "want=surface").stdout)["made"] == 4
+
+    def test_failures_are_made_again_when_asked_for(self, archive: Path):
+        whole = (archive / "p1.png").read_bytes()
+        (archive / "p1.png").write_bytes(b"no")
+        stamp = (archive / "p1.png").stat()
+        self.run(archive.parent)
+        assert json.loads(self.run(archive.parent, "--json").stdout)["failed"] == 1
+        (archive / "p1.png").write_bytes(whole)
+        os.utime(archive / "p1.png", ns=(stamp.st_atime_ns, stamp.st_mtime_ns))
+        done = json.loads(self.run(archive.parent, "--json", "--retry").stdout)
+        assert (done["made"], done["failed"]) == (1, 0)
+
+    def test_a_torn_last_line_is_cut_off_and_its_scene_made_again(self, archive: Path):
+        out = archive.parent / "out/mine-batch"
+        self.run(archive.parent)
+        text = (out / "rows.jsonl").read_text()
+        (out / "rows.jsonl").write_text(text[:-20])
+        assert json.loads(self.run(archive.parent, "--json").stdout)["made"] == 1
+        assert sorted(by_id(rows_in(out))) == ["p0", "p1", "p2", "p3"]
+
+    def test_a_full_disk_ends_the_batch_which_then_goes_on(self, archive: Path, monkeypatch: pytest.MonkeyPatch):
+        from tangible_core.batch import job
+
+        def full(*_: object) -> None:
+            raise OutputError("relief.npz: cannot be written") from OSError(28, "No space left on device")
+
+        with monkeypatch.context() as patch:
+            patch.setattr(job, "write_record", full)
+            done = self.run(archive.parent)
+        assert done.returncode == 2
+        assert "the batch ends here, and the same command goes on from there" in done.stderr
+        out = archive.parent / "out/mine-batch"
+        assert rows_in(out) == []
+        assert json.loads(self.run(archive.parent, "--json").stdout)["made"] == 4
+
+    def test_rows_that_find_no_room_end_it_too(self, archive: Path, tmp_path: Path):
+        from tangible_core.files.json_lines import JsonLines
+
+        with JsonLines(tmp_path / "rows.jsonl") as file:
+            file.add({"id": "a"})
+            with files_up_to(20), pytest.raises(OutputError, match=r"rows\.jsonl: cannot be written"):
+                file.add({"id": "b" * 100})
+            file.add({"id": "c"})
+        assert (tmp_path / "rows.jsonl").read_text() == '{"id": "a"}\n{"id": "c"}\n'
+
+    @pytest.mark.parametrize(
+        ("over", "said"),
+        [
+            ("nowhere/*.png", "holds no picture and no row"),
+            ("rows.csv", "cannot be read: No such file"),
+            ("twice.csv", "two rows are called 'a'"),
+            ("broken.parquet", "is no Parquet file"),
+            ("cells.csv", "more cells than there are columns"),
+        ],
+    )
+    def test_mistakes_are_one_line(self, archive: Path, over: str, said: str):
+        folder = archive.parent
+        (folder / "twice.csv").write_text("id,scene.photo\na,archive/p0.png\na,archive/p1.png\n")
+        (folder / "broken.parquet").write_text("PAR?")
+        (folder / "cells.csv").write_text("id,scene.photo\na,archive/p0.png,more\n")
+        done = tangible("batch", "mine.yaml", "--over", over, cwd=folder)
+        assert done.returncode == 2
+        [line] = done.stderr.splitlines()
+        assert said in line
+
+    def test_from_python_rows_come_as_they_are_made_and_it_can_be_stopped(self, archive: Path, tmp_path: Path):
+        from tangible_depth import Luminance
+
+        pipeline = Pipeline.from_yaml(tmp_path / "mine.yaml")
+        assert pipeline.config.depth is not None
+        assert isinstance(pipeline.config.depth.method, Luminance)
+        rows = [{"id": each.stem, "scene.photo": str(each)} for each in sorted(archive.glob("*.png"))]
+        stop = Event()
+        seen = []
+        with pytest.raises(Stopped):
+            for row in batch(pipeline, rows, tmp_path / "out", stop=stop):
+                seen.append(row["id"])
+                stop.set()
+        assert seen == ["p0"]
+        assert [row["id"] for row in batch(pipeline, rows, tmp_path / "out")] == ["p0", "p1", "p2", "p3"]
+
+    def test_a_name_is_a_folder_s_on_any_system(self, archive: Path, tmp_path: Path):
+        rows = [
+            {"id": name, "scene.photo": str(archive / "p0.png")} for name in ("a/b", "a_b", "..", "ä:*?", "x" * 300)
+        ]
+        made = list(batch(Pipeline.from_yaml(tmp_path / "mine.yaml"), rows, tmp_path / "out"))
+        folders = {row["folder"] for row in made}
+        assert len(folders) == len(rows)
+        assert all(Path(tmp_path / "out", each).resolve().parent == tmp_path / "out/scenes" for each in folders)
+
+
+def test_workers_times_threads_are_the_cores_unless_both_are_said(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(batches, "processors", lambda: 8)
+    shares = {(None, None): (8, 1), (2, None): (2, 4), (None, 4): (2, 4), (16, None): (16, 1), (3, 9): (3, 9)}
+    assert {said: batches.Workforce(*said).shares for said in shares} == shares
+
+
+def test_a_plugin_that_raises_anything_is_a_row(tmp_path: Path):
+    row = make_scene(Job("a", "k", "scene: {photo: no.png}\ndepth: luminance\n", str(tmp_path / "m.yaml"), (), "f"))
+    assert row["outcome"] == "failed"
+    assert "no.png" in row["error"]
+
+
+@pytest.mark.slow
+class TestFarm:
+    @pytest.fixture(autouse=True)
+    def importable(self, monkeypatch: pytest.MonkeyPatch):
+        helpers = str(Path(__file__).parents[2] / "helpers")
+        monkeypatch.setenv("PYTHONPATH", os.pathsep.join(filter(None, [helpers, os.environ.get("PYTHONPATH")])))
+
+    def test_a_job_that_kills_its_worker_fails_alone_and_the_others_are_done_once(self):
+        import farm_work
+        from tangible_core.batch.farm import Farm
+
+        with Farm(2) as farm:
+            done = list(farm.map(farm_work.square, range(24), chunk=4))
+            assert sorted(each.job for each in done) == list(range(24))
+            assert [each.job for each in done if each.death] == [7]
+            assert all(each.result == each.job**2 for each in done if not each.death)
+            workers = {each.result for each in farm.map(farm_work.slow, range(12)) if each.result}
+            assert len(workers) == 2
+            flow = farm.map(farm_work.slow, range(30))
+            os.kill(next(flow).result or 0, signal.SIGKILL)
+            for worker in workers:
+                with_suppressed_kill(worker)
+            assert not any(each.death for each in flow)
+
+    def test_a_scheduler_that_is_not_there(self):
+        from tangible_core.batch import farm
+
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(farm, "CONNECT_S", 1)
+            with pytest.raises(BatchError, match=r"--scheduler tcp://127.0.0.1:9: nobody answers there"):
+                farm.Farm(1, scheduler="tcp://127.0.0.1:9")
+
+    def test_workers_of_another_version_are_said(self, monkeypatch: pytest.MonkeyPatch):
+        from tangible_core.batch import farm
+
+        monkeypatch.setattr(farm, "installed", lambda: "0.0.1")
+        with pytest.raises(BatchError, match=r"has tangible-images .*, and this is 0\.0\.1; install the same"):
+            farm.Farm(1)
+
+    def test_after_a_kill_nobody_is_left_and_the_rest_is_made(self, tmp_path: Path):
+        """The program that hands out the scenes gets a SIGKILL; its workers end by themselves."""
+        folder = tmp_path / "archive"
+        folder.mkdir()
+        for number in range(60):
+            write_png(folder / f"p{number}.png", picture(number))
+        (tmp_path / "mine.yaml").write_text(CONFIG)
+        words = [
+            sys.executable,
+            "-c",
+            "from tangible_core.cli import main; main()",
+            "batch",
+            "mine.yaml",
+            "--over",
+            "archive",
+            "--workers",
+            "2",
+        ]
+        rows = tmp_path / "out/mine-batch/rows.jsonl"
+        first = subprocess.Popen(words, cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        waited(lambda: rows.exists() and rows.read_text().count("\n") >= 3, 60)
+        family = children(first.pid)
+        assert len(family) >= 2
+        first.kill()
+        first.wait()
+        waited(lambda: not any(map(is_alive, family)), 20)
+        kept = rows.read_text().count("\n")
+        with rows.open("a") as file:
+            file.write('{"id": "torn')
+        second = subprocess.run([*words, "--json"], cwd=tmp_path, capture_output=True, text=True, timeout=200)
+        assert second.returncode == 0, second.stderr
+        found = rows_in(rows.parent)
+        assert len(found) == len(by_id(found)) == 60
+        assert json.loads(second.stdout)["made"] == 60 - kept
+
+
+def with_suppressed_kill(process: int) -> None:
+    with suppress(ProcessLookupError):
+        os.kill(process, signal.SIGKILL)
+
+
+def waited(what, seconds: float = 90.0) -> None:
+    end = time.monotonic() + seconds
+    while not what():
+        assert time.monotonic() < end
+        time.sleep(0.05)
+
+
+def is_alive(process: int) -> bool:
+    """One that ended, and whose parent has not looked yet, is none."""
+    import psutil
+
+    with suppress(psutil.NoSuchProcess):
+        return psutil.Process(process).status() != psutil.STATUS_ZOMBIE
+    return False
+
+
+def children(process: int) -> list[int]:
+    import psutil
+
+    return [each.pid for each in psutil.Process(process).children(recursive=True)]

@@ -24,6 +24,7 @@ SECTIONS = {
     "methods": "Every method with its defaults",
     "servo": "The force loop",
     "servo_faults": "Faults around the force loop",
+    "batch": "Many scenes",
     "record": "Recordings",
     "devices": "Devices",
     "ui": "The page",

@@ -1,4 +1,4 @@
-"""A small picture of a scene: what was seen, and what is felt. A whole sheet takes ten times as long as the making."""
+"""A small picture of a scene: what was seen, and what was made. A whole sheet takes ten times as long as the making."""
 
 import io
 from pathlib import Path
@@ -18,10 +18,10 @@ LIGHT = np.array([-1.0, 1.0, 1.2])
 
 
 def write_card(pipeline: Pipeline, folder: Path) -> str:
-    """Write the picture and the lit relief beside each other; the name of the file. Raises: OutputError."""
+    """Write the picture and what was made of it beside each other; the name of the file. Raises: OutputError."""
     from PIL import Image
 
-    parts = [_lit(pipeline.relief.height_m, pipeline.relief.pitch_m)]
+    parts = [_made(pipeline)]
     if pipeline.views is not None:
         parts.insert(0, _small(to_rgb8(pipeline.views.left)))
     height = max(part.shape[0] for part in parts)
@@ -35,6 +35,27 @@ def write_card(pipeline: Pipeline, folder: Path) -> str:
     with atomic_write(folder / CARD) as file:
         file.write(packed.getvalue())
     return CARD
+
+
+def _made(pipeline: Pipeline) -> UInt8[np.ndarray, "r c 3"]:
+    """What is wanted, where that is a map of the picture; else the relief."""
+    want = pipeline.config.want
+    if want in ("views", "disparity") and pipeline.disparity is not None:
+        return _grey(pipeline.disparity.disparity_px)
+    if want == "parts" and pipeline.parts is not None:
+        return _grey(pipeline.parts.labels)
+    if want in ("segments", "materials") and pipeline.segments is not None:
+        return _grey(pipeline.segments.labels)
+    return _lit(pipeline.relief.height_m, pipeline.relief.pitch_m)
+
+
+def _grey(values: np.ndarray) -> UInt8[np.ndarray, "r c 3"]:
+    """From the lowest, black, to the highest, white; what is unknown is black."""
+    values = np.asarray(values, np.float32)
+    known = np.isfinite(values)
+    low, high = (float(values[known].min()), float(values[known].max())) if known.any() else (0.0, 0.0)
+    share = np.where(known, (values - low) / max(high - low, 1e-9), 0).astype(np.float32)
+    return np.repeat(np.rint(255 * np.clip(_small(share), 0, 1)).astype(np.uint8)[..., None], 3, axis=2)
 
 
 def _small(picture: np.ndarray) -> np.ndarray:

@@ -1,6 +1,7 @@
 """The optional extra `batch`: its import, or the words to install it."""
 
 from importlib import import_module
+from importlib.util import find_spec
 from types import ModuleType
 
 from ..errors import BatchError
@@ -11,4 +12,15 @@ def need(name: str) -> ModuleType:
     try:
         return import_module(name)
     except ImportError as error:
-        raise BatchError(f"this needs {name} ({error}); pip install 'tangible-images[batch]'") from error
+        raise _missing(name, error) from error
+
+
+def need_all() -> None:
+    """Before hours of work, look for what is needed at their end. Raises: BatchError saying how to install it."""
+    for name in ("distributed", "pyarrow"):
+        if find_spec(name) is None:
+            raise _missing(name, "which is not there")
+
+
+def _missing(name: str, why: object) -> BatchError:
+    return BatchError(f"this needs {name} ({why}); pip install 'tangible-images[batch]'")

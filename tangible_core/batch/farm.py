@@ -4,8 +4,8 @@
 
 import logging
 import os
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import suppress
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from importlib import metadata
 from itertools import islice
@@ -20,10 +20,12 @@ LIMITS = ("TANGIBLE_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NU
 """Environment variables that limit the threads of a worker's libraries, before it imports them."""
 AHEAD = 4
 """Jobs with the scheduler for each worker: enough that none waits; no more, so that nothing grows with their number."""
+FRESH_AFTER = 2000
+"""Jobs of a worker, about, after which it begins anew: Dask keeps some 10 kB of each for itself."""
 CONNECT_S = 10
 DISTRIBUTION = "tangible-images"
 LOUD = ("distributed", "tornado", "bokeh")
-"""They log what is no news here: that workers come and go."""
+"""Loggers."""
 
 
 @dataclass(frozen=True)
@@ -40,29 +42,27 @@ class Done(Generic[J, R]):
 class Farm:
     """A cluster on this machine, or the scheduler at an address. Ended by `close`, or by leaving its block."""
 
-    def __init__(self, workers: int, threads: int = 1, scheduler: str = "", preload: str = "") -> None:
-        """preload: a module that each worker imports before it is given a job.
+    def __init__(self, workers: int, threads: int = 1, scheduler: str = "") -> None:
+        """workers: processes of this machine, whose libraries have so many threads each; both for no scheduler alone.
 
         Raises: BatchError without the extra, if nobody answers at the address, or workers have another version.
         """
-        distributed = need("distributed")  # puts its own settings there, so that they are there again afterwards
-        self._settings = need("dask").config.set(SETTINGS)
-        self._settings.__enter__()
-        for name in LOUD:
-            logging.getLogger(name).setLevel(logging.CRITICAL)
-        self._cluster: Any = None
-        try:
+        distributed = need("distributed")  # puts its own settings there, so that ours hold
+        self._leaving, self._is_own, self._worked = ExitStack(), not scheduler, 0
+        with ExitStack() as failing:
+            failing.callback(self.close)
+            self._leaving.enter_context(need("dask").config.set(SETTINGS))
+            self._leaving.enter_context(_quiet())
             if scheduler:
                 self._client: Any = _client(distributed, scheduler)
             else:
-                self._cluster = _cluster(distributed, workers, threads, preload)
-                self._client = distributed.Client(self._cluster)
+                cluster = _cluster(distributed, workers, threads)
+                self._leaving.callback(cluster.close, timeout=10)
+                self._client = distributed.Client(cluster)
+            self._leaving.callback(_close_client, self._client)
             self._as_completed = distributed.as_completed
-            self.workers = len(self._client.scheduler_info(n_workers=-1)["workers"])
-            self._check(scheduler)
-        except BaseException:
-            self.close()
-            raise
+            self.workers = self._checked(scheduler)
+            failing.pop_all()
 
     def __enter__(self) -> Self:
         return self
@@ -72,20 +72,24 @@ class Farm:
 
     def close(self) -> None:
         """End the workers that this one started."""
-        with suppress(Exception):
-            if getattr(self, "_client", None) is not None:
-                self._client.close(timeout=5)
-        if self._cluster is not None:
-            self._cluster.close(timeout=10)
-            self._cluster = None
-        self._settings.__exit__(None, None, None)
+        self._leaving.close()
 
     def map(self, work: Callable[[J], R], jobs: Iterable[J], chunk: int = 1) -> Iterator[Done[J, R]]:
         """work(job) for each, as they are done, on any worker; a result comes once.
 
         chunk: jobs that are sent together: less to do for the scheduler where each is short. A job whose worker dies is
-        tried again by itself, when all others are done: so it alone fails, and none that was beside it.
+        tried again by itself, when those beside it are done: so it alone fails, and none that was beside it. Workers of
+        this machine begin anew after some thousand jobs each.
         """
+        todo = iter(jobs)
+        while part := list(islice(todo, FRESH_AFTER * self.workers)):
+            if self._is_own and self._worked >= FRESH_AFTER * self.workers:
+                self._client.restart_workers(list(self._client.scheduler_info(n_workers=-1)["workers"]))
+                self._worked = 0
+            self._worked += len(part)
+            yield from self._mapped(work, part, chunk)
+
+    def _mapped(self, work: Callable[[J], R], jobs: Iterable[J], chunk: int) -> Iterator[Done[J, R]]:
         todo = iter(jobs)
         waiting: dict[str, list[J]] = {}
 
@@ -100,13 +104,13 @@ class Farm:
         flow, suspects = self._as_completed(first), list[J]()
         for future in flow:
             part = waiting.pop(future.key)
-            if future.status == "finished":
-                yield from (Done(job, result) for job, result in zip(part, future.result(), strict=True))
-            else:
-                suspects += part
-            future.release()
+            results = _result(future)
             if (more := send()) is not None:
                 flow.add(more)
+            if results is None:
+                suspects += part
+            else:
+                yield from (Done(job, result) for job, result in zip(part, results, strict=True))
         for job in suspects:
             yield self._alone(work, job)
 
@@ -115,20 +119,45 @@ class Farm:
         try:
             return Done(job, future.result()[0])
         except Exception as error:  # noqa: BLE001 - of Dask, which says in many ways that a worker is gone
-            return Done(job, None, f"its worker died of it, twice ({type(error).__name__})")
+            return Done(job, None, _death(error))
         finally:
             future.release()
 
-    def _check(self, scheduler: str) -> None:
-        if not self.workers:
-            raise BatchError(f"{scheduler}: has no workers; start some: dask worker {scheduler}")
-        mine = installed()
-        for address, theirs in self._client.run(metadata.version, DISTRIBUTION).items():
-            if theirs != mine:
+    def _checked(self, scheduler: str) -> int:
+        """How many workers there are. Raises: BatchError if there is none, or one that cannot do the work."""
+        workers = self._client.scheduler_info(n_workers=-1)["workers"]
+        if not workers:
+            raise BatchError(f"{scheduler}: has no workers; start some: dask worker {scheduler} --nthreads 1")
+        for address, each in workers.items():
+            if each["nthreads"] != 1:
                 raise BatchError(
-                    f"the worker {address} has {DISTRIBUTION} {theirs}, and this is {mine}; install "
-                    "the same on all machines"
+                    f"the worker {address} works on {each['nthreads']} scenes at once in one process; start it with "
+                    "--nthreads 1, and several with --nworkers"
                 )
+        theirs = self._client.run(metadata.version, DISTRIBUTION, on_error="return")
+        for address, version in theirs.items():
+            if version != installed():
+                what = f"has {DISTRIBUTION} {version}" if isinstance(version, str) else f"has no {DISTRIBUTION}"
+                raise BatchError(
+                    f"the worker {address} {what}, and this is {installed()}; install the same on all machines"
+                )
+        return len(workers)
+
+
+def _result(future: Any) -> Any:
+    """What became of it; None where its worker died, or the one that kept the result did."""
+    try:
+        return future.result()
+    except Exception:  # noqa: BLE001 - of Dask, which says in many ways that a worker is gone
+        return None
+    finally:
+        future.release()
+
+
+def _death(error: Exception) -> str:
+    if type(error).__name__ == "KilledWorker":
+        return "its worker died of it, twice; it may need more memory than there is, or crash in a library"
+    return f"{type(error).__name__}: {error}"
 
 
 def installed() -> str:
@@ -145,11 +174,22 @@ SETTINGS = {
 }
 
 
-def _cluster(distributed: Any, workers: int, threads: int, preload: str) -> Any:
-    environment = {name: str(threads) for name in LIMITS}
-    before = {name: os.environ.get(name) for name in environment}
-    os.environ.update(environment)  # the workers inherit it
+@contextmanager
+def _quiet() -> Generator[None]:
+    """That workers come and go is no news here."""
+    loggers = [logging.getLogger(name) for name in LOUD]
+    levels = [each.level for each in loggers]
+    for each in loggers:
+        each.setLevel(logging.CRITICAL)
     try:
+        yield
+    finally:
+        for each, level in zip(loggers, levels, strict=True):
+            each.setLevel(level)
+
+
+def _cluster(distributed: Any, workers: int, threads: int) -> Any:
+    with _environment({name: str(threads) for name in LIMITS}):  # the workers inherit it
         return distributed.LocalCluster(
             n_workers=workers,
             threads_per_worker=1,
@@ -157,15 +197,28 @@ def _cluster(distributed: Any, workers: int, threads: int, preload: str) -> Any:
             host="127.0.0.1",
             dashboard_address=None,
             memory_limit=0,
-            silence_logs=50,
-            preload=[preload] if preload else [],
+            silence_logs=logging.CRITICAL,
+            preload=[f"{__package__}.deaf"],
         )
+
+
+@contextmanager
+def _environment(values: Mapping[str, str]) -> Generator[None]:
+    before = {name: os.environ.get(name) for name in values}
+    os.environ.update(values)
+    try:
+        yield
     finally:
         for name, value in before.items():
             if value is None:
                 os.environ.pop(name, None)
             else:
                 os.environ[name] = value
+
+
+def _close_client(client: Any) -> None:
+    with suppress(Exception):
+        client.close(timeout=5)
 
 
 def _client(distributed: Any, address: str) -> Any:

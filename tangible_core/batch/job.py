@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter
-from typing import Any
+from typing import Any, cast
 
 from ..data import Outcome, Record
 from ..errors import TangibleError, shown
@@ -42,7 +42,8 @@ class Job:
     sets: tuple[str, ...]
     folder: str
     """For the files of this scene."""
-    threads: int = 1
+    threads: int | None = None
+    """None: as the worker's own environment limits them."""
     sheet: bool = False
     """Whether a whole report is drawn, not a card alone."""
     cache: str = ""
@@ -51,7 +52,7 @@ class Job:
 
 def make_scene(job: Job) -> Row:
     """Make the scene, and write what was wanted of it. Never raises but for what ends the process."""
-    begun, row = perf_counter(), {"id": job.id, "key": job.key, "outcome": "ok", "error": None}
+    begun, row = perf_counter(), _named(job, "ok", None)
     try:
         with limited_threads(job.threads):
             row |= _made(job)
@@ -64,6 +65,15 @@ def make_scene(job: Job) -> Row:
         row |= {"outcome": "failed", "error": shown(" ".join(said.split()), MOST_IN_ERROR)}
     row["seconds"] = round(perf_counter() - begun, 4)
     return row
+
+
+def dead_row(job: Job, death: str) -> Row:
+    """The row of a scene whose worker could not say anything any more."""
+    return _named(job, "failed", death)
+
+
+def _named(job: Job, outcome: str, error: str | None) -> Row:
+    return {"id": job.id, "key": job.key, "outcome": outcome, "error": error, "seconds": None, "folder": job.folder}
 
 
 def _made(job: Job) -> Row:
@@ -113,7 +123,7 @@ def _plain(figures: Mapping[Any, Any]) -> dict[str, Any]:
 
     def plain(value: Any) -> Any:
         if isinstance(value, Mapping):
-            return _plain(value)
+            return _plain(cast("Mapping[Any, Any]", value))
         return None if isinstance(value, float) and not math.isfinite(value) else value
 
     return {str(name): plain(value) for name, value in figures.items()}

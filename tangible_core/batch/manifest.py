@@ -28,8 +28,10 @@ class SceneRow(NamedTuple):
     """`key.key=value` each, as `--set` takes them."""
 
 
-def rows_of(over: str) -> Iterator[SceneRow]:
+def rows_of(over: str, besides: Path | None = None) -> Iterator[SceneRow]:
     """The rows of a .csv or .parquet file, or one for each picture or pair of a folder or a glob, in order.
+
+    besides: a folder of which no picture is taken: that of the results.
 
     In a manifest, the column `id` names the row, its number if there is none, and each other column is a key of the
     pipeline file (`scene.left`, `workspace.width_m`); what is empty changes nothing. Of a folder and a glob, two
@@ -40,18 +42,15 @@ def rows_of(over: str) -> Iterator[SceneRow]:
     if path.suffix.lower() in MANIFESTS:
         found = _manifest(path)
     elif path.is_dir():
-        found = _pictures(sorted(each for each in path.rglob("*") if each.is_file()), path)
+        found = _pictures(_files(path.rglob("*"), besides), path)
     else:
-        found_names = sorted(glob.glob(str(path), recursive=True))  # noqa: PTH207 - of an absolute pattern as well
-        files = [Path(each) for each in found_names if Path(each).is_file()]
-        found = _pictures(files, _base(path))
-    seen: set[str] = set()
-    for row in found:
-        if row.id in seen:
-            raise BatchError(f"{over}: two rows are called {quoted(row.id)}; give each an `id` of its own")
-        seen.add(row.id)
+        names = map(Path, glob.glob(str(path), recursive=True))  # noqa: PTH207 - of an absolute pattern as well
+        found = _pictures(_files(names, besides), _base(path))
+    empty = True
+    for row in _told_apart(found, f"{over}: "):
+        empty = False
         yield row
-    if not seen:
+    if empty:
         raise BatchError(
             f"{over}: holds no picture and no row; name a folder or a glob of pictures ('archive/*.jpg', in quotes), "
             "or a .csv or .parquet file whose columns are keys of the pipeline file"
@@ -59,7 +58,29 @@ def rows_of(over: str) -> Iterator[SceneRow]:
 
 
 def rows_from(rows: Iterable[Mapping[str, Any]], base: Path) -> Iterator[SceneRow]:
-    """Rows as mappings from key to value. base: what relative files are relative to."""
+    """Rows as mappings from key to value. base: what relative files are relative to.
+
+    Raises: BatchError if two have one name.
+    """
+    return _told_apart(_rows(rows, base), "")
+
+
+def file_of(setting: str) -> Path | None:
+    """The file that a setting of a row names, if it names one."""
+    key, _, value = setting.partition("=")
+    return Path(json.loads(value)) if key in FILES else None
+
+
+def _told_apart(rows: Iterable[SceneRow], over: str) -> Iterator[SceneRow]:
+    seen: set[str] = set()
+    for row in rows:
+        if row.id in seen:
+            raise BatchError(f"{over}two rows are called {quoted(row.id)}; give each an `id` of its own")
+        seen.add(row.id)
+        yield row
+
+
+def _rows(rows: Iterable[Mapping[str, Any]], base: Path) -> Iterator[SceneRow]:
     for number, row in enumerate(rows):
         told = {str(key): value for key, value in row.items() if value is not None and value != ""}
         name = str(told.pop(ID, number))
@@ -70,14 +91,26 @@ def rows_from(rows: Iterable[Mapping[str, Any]], base: Path) -> Iterator[SceneRo
 def _text(key: str, value: Any, base: Path) -> str:
     """A value as YAML reads it; a file with its whole path."""
     if key in FILES:
-        return json.dumps(str((base / as_path(value, key)).absolute()))
-    return value if isinstance(value, str) else json.dumps(value)
+        return _file_text(base / as_path(value, key))
+    return value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
+
+
+def _file_text(path: Path) -> str:
+    return json.dumps(str(path.absolute()), ensure_ascii=False)
+
+
+def _files(found: Iterable[Path], besides: Path | None) -> list[Path]:
+    """Those of them that are files, in order."""
+    left_out = None if besides is None else besides.absolute()
+    return sorted(
+        each for each in found if each.is_file() and not (left_out and each.absolute().is_relative_to(left_out))
+    )
 
 
 def _manifest(path: Path) -> Iterator[SceneRow]:
     try:
         read = _csv if path.suffix.lower() == ".csv" else _parquet
-        yield from rows_from(read(path), path.absolute().parent)
+        yield from _rows(read(path), path.absolute().parent)
     except OSError as error:
         raise BatchError(f"{path}: cannot be read: {error.strerror or error}; name a manifest that is there") from error
     except (UnicodeDecodeError, csv.Error) as error:
@@ -118,7 +151,7 @@ def _pictures(files: list[Path], base: Path) -> Iterator[SceneRow]:
 
 
 def _row(name: str, files: Mapping[str, Path]) -> SceneRow:
-    return SceneRow(name, tuple(f"{key}={json.dumps(str(path.absolute()))}" for key, path in files.items()))
+    return SceneRow(name, tuple(f"{key}={_file_text(path)}" for key, path in files.items()))
 
 
 def _right_of(left: Path) -> Path | None:

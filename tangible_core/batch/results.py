@@ -1,9 +1,10 @@
 """What a batch leaves: rows as they came, and of all of them a table and a gallery."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from html import escape
+from itertools import islice
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from ..files.json_lines import read_rows
 from ..files.writing import atomic_write, write_text
@@ -12,6 +13,7 @@ from .job import Row
 
 ROWS, INDEX, GALLERY = "rows.jsonl", "index.parquet", "gallery"
 PER_PAGE = 500
+PER_PART = 1000
 
 
 def kept_rows(out: Path) -> dict[str, Row]:
@@ -19,44 +21,65 @@ def kept_rows(out: Path) -> dict[str, Row]:
     return {str(row.get("id")): row for _, row in read_rows(out / ROWS)}
 
 
-def write_index(out: Path, rows: Iterable[Row]) -> Path:
-    """All rows as one table, a column for each figure. Raises: BatchError without the extra, OutputError."""
+def rows_of_scenes(out: Path, names: Iterable[str]) -> Iterator[Row]:
+    """The last row of each of these scenes, in the order of the file; one at a time, for there may be many."""
+    wanted = set(names)
+    last = {str(row.get("id")): number for number, row in read_rows(out / ROWS)}
+    lines = {number for name, number in last.items() if name in wanted}
+    return (row for number, row in read_rows(out / ROWS) if number in lines)
+
+
+def write_index(out: Path, names: Iterable[str]) -> Path:
+    """Rows of these scenes as a table, a column for each figure. Raises: BatchError without the extra, OutputError."""
     arrow, parquet = need("pyarrow"), need("pyarrow.parquet")
-    flat = [_flat(row) for row in rows]
-    names = list(dict.fromkeys(name for row in flat for name in row))
-    table = arrow.table({name: [row.get(name) for row in flat] for name in names})
-    with atomic_write(out / INDEX) as file:
-        parquet.write_table(table, file, compression="zstd")
+    names = list(names)
+    types: dict[str, Any] = {}
+    for row in rows_of_scenes(out, names):
+        for name, value in _flat("", row):
+            is_text = isinstance(value, str) or types.get(name) == arrow.string()
+            types[name] = arrow.string() if is_text else arrow.float64()
+    schema = arrow.schema(list(types.items()))
+    rows = (dict(_flat("", row)) for row in rows_of_scenes(out, names))
+    with atomic_write(out / INDEX) as file, parquet.ParquetWriter(file, schema, compression="zstd") as writer:
+        while part := list(islice(rows, PER_PART)):
+            columns = {
+                name: [_as(row.get(name), kind == arrow.string()) for row in part] for name, kind in types.items()
+            }
+            writer.write_table(arrow.table(columns, schema=schema))
     return out / INDEX
 
 
-def write_gallery(out: Path, rows: Iterable[Row]) -> tuple[Path, ...]:
-    """Pages of cards, failures first said in words. Raises: OutputError."""
-    every = list(rows)
-    pages = [every[at : at + PER_PAGE] for at in range(0, len(every), PER_PAGE)] or [[]]
-    paths = tuple(out / f"{GALLERY}{number or ''}.html" for number in range(len(pages)))
-    for path, page in zip(paths, pages, strict=True):
-        write_text(path, _page(out.name, page, paths, path))
+def write_gallery(out: Path, names: Iterable[str]) -> tuple[Path, ...]:
+    """Pages of cards of these scenes; beside each that failed stands why. Raises: OutputError."""
+    names = list(names)
+    paths = tuple(out / f"{GALLERY}{number or ''}.html" for number in range(max(1, -(-len(names) // PER_PAGE))))
+    rows = rows_of_scenes(out, names)
+    for path in paths:
+        write_text(path, _page(out.name, islice(rows, PER_PAGE), paths, path))
     return paths
 
 
-def _flat(row: Row) -> dict[str, Any]:
+def _flat(name: str, value: Any) -> Iterator[tuple[str, Any]]:
     """One level of columns, `figures.disparity.bad2`; lists as text."""
-    found: dict[str, Any] = {}
+    if isinstance(value, Mapping):
+        for key, each in cast("Mapping[str, Any]", value).items():
+            yield from _flat(f"{name}.{key}" if name else key, each)
+    elif isinstance(value, list):
+        yield name, "; ".join(map(str, cast("list[Any]", value)))
+    elif isinstance(value, str):
+        yield name, printable(value)
+    else:
+        yield name, None if value is None else float(value)
 
-    def put(name: str, value: Any) -> None:
-        if isinstance(value, Mapping):
-            for key, each in value.items():
-                put(f"{name}.{key}" if name else str(key), each)
-        elif isinstance(value, list):
-            found[name] = "; ".join(map(str, value))
-        elif isinstance(value, bool | int | float):
-            found[name] = float(value)
-        else:
-            found[name] = value
 
-    put("", row)
-    return found
+def _as(value: Any, text: bool) -> Any:
+    """A column is of one type: text, where some of it is."""
+    return str(value) if text and value is not None else value
+
+
+def printable(text: str) -> str:
+    """Text that a file in UTF-8 can hold: names of files may hold bytes that are no characters."""
+    return text.encode(errors="replace").decode()
 
 
 def _page(title: str, rows: Iterable[Row], pages: Iterable[Path], own: Path) -> str:
@@ -73,7 +96,7 @@ def _page(title: str, rows: Iterable[Row], pages: Iterable[Path], own: Path) -> 
 
 
 def _figure(row: Row) -> str:
-    name, error = escape(str(row["id"])), escape(row.get("error") or "")
+    name, error = escape(printable(row["id"])), escape(printable(row.get("error") or ""))
     image = (
         f'<img loading="lazy" src="{escape(row["folder"])}/{escape(row["card"])}" alt="">' if row.get("card") else ""
     )

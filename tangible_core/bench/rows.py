@@ -1,8 +1,6 @@
 """Results as JSON Lines: one row a process, whole or not there at all."""
 
-import json
-import os
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from functools import cache
 from pathlib import Path
@@ -10,8 +8,8 @@ from typing import Any, ClassVar
 
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 
-from ..errors import OutputError, ResultsError, shown
-from ..files.reading import read_bytes
+from ..errors import ResultsError, shown
+from ..files.json_lines import JsonLines, read_lines
 
 
 @dataclass(frozen=True)
@@ -58,14 +56,13 @@ def read_rows(path: Path) -> dict[str, Row]:
     Raises: ResultsError for a file that cannot be read, or a damaged line within it.
     """
     try:
-        *lines, torn = read_bytes(path).decode().split("\n")
+        lines = read_lines(path)
     except (OSError, UnicodeDecodeError) as error:
         why = getattr(error, "strerror", None) or error
         raise ResultsError(
             f"{path}: cannot be read as results: {why}; name a .jsonl file of `tangible compare`"
         ) from error
-    del torn  # a whole line ends with a newline
-    rows = (_row(path, number, line) for number, line in enumerate(lines, 1) if line)
+    rows = (_row(path, number, line) for number, line in lines)
     return {row.key: row for row in rows}
 
 
@@ -74,11 +71,7 @@ def mend(path: Path) -> None:
 
     Raises: OutputError if the file cannot be written.
     """
-
-    def cut(file: int) -> None:
-        os.ftruncate(file, path.read_bytes().rfind(b"\n") + 1)
-
-    _write(path, cut)
+    JsonLines(path).close()
 
 
 def append(path: Path, row: Row) -> None:
@@ -86,22 +79,8 @@ def append(path: Path, row: Row) -> None:
 
     Raises: OutputError if the file cannot be written.
     """
-    line = json.dumps(asdict(row), ensure_ascii=False, allow_nan=False) + "\n"
-    _write(path, lambda file: (os.write(file, line.encode()), os.fsync(file)))
-
-
-def _write(path: Path, work: Callable[[int], object]) -> None:
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        file = os.open(path, os.O_RDWR | os.O_CREAT | os.O_APPEND, 0o666)
-        try:
-            work(file)
-        finally:
-            os.close(file)
-    except OSError as error:
-        raise OutputError(
-            f"{path}: cannot be written: {error.strerror}; free some space or choose another folder"
-        ) from error
+    with JsonLines(path, sync_every_s=0.0) as file:
+        file.add(asdict(row))
 
 
 def _row(path: Path, number: int, line: str) -> Row:

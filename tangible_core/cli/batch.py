@@ -12,10 +12,11 @@ from .loudness import is_quiet
 from .options import FAILED, Config, Json, Sets
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
-    from ..batch.batch import Tally
     from ..batch.job import Row
+    from ..batch.manifest import SceneRow
+    from ..batch.running import Tally
 
 
 def batch(
@@ -51,9 +52,10 @@ def batch(
     Each scene becomes a row, whatever goes wrong with it. What was interrupted goes on where it stopped. Exit 1 if a
     scene failed.
     """
-    from ..batch.batch import BatchOptions, Tally, Workforce, run_batch
+    from ..batch.jobs import BatchOptions
     from ..batch.manifest import rows_of
-    from ..batch.results import ROWS, kept_rows, write_gallery, write_index
+    from ..batch.results import ROWS, write_gallery, write_index
+    from ..batch.running import Tally, Workforce, run_batch
     from ..files.source import read_text
     from ..pipeline.editing import with_overrides
     from ..pipeline.run_folder import default_name
@@ -64,7 +66,9 @@ def batch(
     text = with_overrides(read_text(config), config, sets or [])
     tally, who = Tally(), Workforce(workers, threads, scheduler)
     options = BatchOptions(retry, sheets, cache, chunk)
-    rows = run_batch(text, config.absolute(), rows_of(over), place, who, options, tally)
+    wanted: list[str] = []
+    scenes = _noted(rows_of(over, besides=place), wanted)
+    rows = run_batch(text, config.absolute(), scenes, place, who, options, tally)
     try:
         for row in _watched(rows, tally, name):
             if row["outcome"] != "ok" and not (as_json or is_quiet()):
@@ -72,11 +76,16 @@ def batch(
     except KeyboardInterrupt:
         show.note(f"interrupted; what was made is kept in {place}, and the same command goes on from there")
         raise
-    every = list(kept_rows(place).values())
-    written = [place / ROWS, write_index(place, every), *write_gallery(place, every)]
+    written = [place / ROWS, write_index(place, wanted), *write_gallery(place, wanted)]
     _print(tally, [str(path) for path in written], as_json)
     if tally.failed:
         raise typer.Exit(FAILED)
+
+
+def _noted(scenes: Iterable[SceneRow], names: list[str]) -> Iterator[SceneRow]:
+    for scene in scenes:
+        names.append(scene.id)
+        yield scene
 
 
 def _watched(rows: Iterator[Row], tally: Tally, name: str) -> Iterator[Row]:

@@ -1,14 +1,17 @@
 """Files of rows, one JSON document a line, that grow under one writer: a line is whole or not there at all."""
 
+import errno
 import json
 import os
 from collections.abc import Iterator, Mapping
+from io import FileIO
 from pathlib import Path
 from time import monotonic
-from typing import Any, Self
+from typing import Any, Self, cast
 
 from ..errors import OutputError, ResultsError
 from .reading import read_bytes
+from .writing import BINARY, lock
 
 SYNC_EVERY_S = 1.0
 
@@ -16,15 +19,28 @@ SYNC_EVERY_S = 1.0
 class JsonLines:
     """Such a file, open for adding to it. What was left torn at its end by a kill is cut off when it is opened."""
 
-    def __init__(self, path: Path) -> None:
-        """Missing parent folders are made. Raises: OutputError if the place cannot be written."""
+    def __init__(self, path: Path, sync_every_s: float = SYNC_EVERY_S, alone: bool = False) -> None:
+        """sync_every_s: a row is on the disk after that time at most. alone: nobody else may have it open so.
+
+        Missing parent folders are made. Raises: OutputError if the place cannot be written, or is held.
+        """
         self.path = path
-        self._synced_s = monotonic()
+        self._sync_every_s, self._synced_s = sync_every_s, monotonic()
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
-            self._file = os.open(path, os.O_RDWR | os.O_CREAT | os.O_APPEND, 0o666)
-            os.ftruncate(self._file, path.read_bytes().rfind(b"\n") + 1)
+            self._file = FileIO(os.open(path, os.O_RDWR | os.O_CREAT | os.O_APPEND | BINARY, 0o666), "a+")
         except OSError as error:
+            raise self._wrong(error) from error
+        try:
+            if alone:
+                lock(self._file)
+            self._file.truncate(path.read_bytes().rfind(b"\n") + 1)
+        except OSError as error:
+            self._file.close()
+            if isinstance(error, BlockingIOError | PermissionError):
+                raise OutputError(
+                    f"{path}: another program is writing to it; wait for that one or choose another folder"
+                ) from error
             raise self._wrong(error) from error
 
     def __enter__(self) -> Self:
@@ -34,23 +50,31 @@ class JsonLines:
         self.close()
 
     def add(self, row: Mapping[str, Any]) -> None:
-        """Add a row in one write; it is on the disk within a second. Raises: OutputError if it cannot be written."""
-        line = (json.dumps(row, ensure_ascii=False, allow_nan=False) + "\n").encode()
-        before = os.fstat(self._file).st_size
+        """Add a row in one write. Raises: OutputError if it cannot be written; the file is as before then."""
+        line = json.dumps(row, ensure_ascii=False, allow_nan=False) + "\n"
+        text = line.encode(errors="backslashreplace")  # half a character, as names of files may hold, is JSON so
+        before = os.fstat(self._file.fileno()).st_size
         try:
-            if os.write(self._file, line) < len(line):
-                raise OSError(28, os.strerror(28))
-            if monotonic() - self._synced_s > SYNC_EVERY_S:
-                os.fsync(self._file)
-                self._synced_s = monotonic()
+            if self._file.write(text) < len(text):
+                raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+            if monotonic() - self._synced_s >= self._sync_every_s:
+                self._sync()
         except OSError as error:
-            os.ftruncate(self._file, before)
+            self._file.truncate(before)
             raise self._wrong(error) from error
 
     def close(self) -> None:
-        """What was added is on the disk."""
-        os.fsync(self._file)
-        os.close(self._file)
+        """What was added is on the disk. Raises: OutputError if the disk does not take it."""
+        try:
+            self._sync()
+        except OSError as error:
+            raise self._wrong(error) from error
+        finally:
+            self._file.close()
+
+    def _sync(self) -> None:
+        os.fsync(self._file.fileno())
+        self._synced_s = monotonic()
 
     def _wrong(self, error: OSError) -> OutputError:
         return OutputError(
@@ -58,25 +82,32 @@ class JsonLines:
         )
 
 
+def read_lines(path: Path) -> Iterator[tuple[int, str]]:
+    """Number of the line, from 1, and the line; without empty ones, and a torn last one, as a kill leaves it.
+
+    Raises: OSError, UnicodeDecodeError.
+    """
+    *lines, _ = read_bytes(path).decode().split("\n")
+    return ((number, line) for number, line in enumerate(lines, 1) if line)
+
+
 def read_rows(path: Path) -> Iterator[tuple[int, dict[str, Any]]]:
-    """Number of the line, from 1, and its row; without a torn last line, as a kill leaves it. Of no file, nothing.
+    """Number of the line, from 1, and its row. Of no file, nothing.
 
     Raises: ResultsError for a file that cannot be read, or a damaged line within it.
     """
     try:
-        *lines, _ = read_bytes(path).decode().split("\n")
+        lines = read_lines(path)
     except FileNotFoundError:
         return
     except (OSError, UnicodeDecodeError) as error:
         why = getattr(error, "strerror", None) or error
         raise ResultsError(f"{path}: cannot be read as rows: {why}; name another folder") from error
-    for number, line in enumerate(lines, 1):
-        if not line:
-            continue
+    for number, line in lines:
         try:
             row = json.loads(line)
-        except ValueError:
+        except (ValueError, RecursionError):
             row = None
         if not isinstance(row, dict):
             raise ResultsError(f"{path}:{number}: is not a row; remove the line")
-        yield number, row
+        yield number, cast("dict[str, Any]", row)

@@ -11,6 +11,9 @@ from typing import IO
 
 from ..errors import OutputError
 
+BINARY = getattr(os, "O_BINARY", 0)
+"""Of a file opened by `os.open`, on the one system that knows another kind."""
+
 
 @contextmanager
 def atomic_write(path: Path) -> Generator[IO[bytes]]:
@@ -53,11 +56,11 @@ def open_alone(path: Path) -> FileIO:
     """
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        file = FileIO(os.open(path, os.O_RDWR | os.O_CREAT | getattr(os, "O_BINARY", 0), 0o666), "r+")
+        file = FileIO(os.open(path, os.O_RDWR | os.O_CREAT | BINARY, 0o666), "r+")
     except OSError as error:
         raise OutputError(f"{path}: cannot be written: {error.strerror}; choose another folder") from error
     try:
-        _lock(file)
+        lock(file)
         file.truncate(0)
     except OSError as error:
         file.close()
@@ -69,8 +72,8 @@ def open_alone(path: Path) -> FileIO:
     return file
 
 
-def _lock(file: FileIO) -> None:
-    """Raises: OSError if another one has it."""
+def lock(file: FileIO) -> None:
+    """Hold an open file until it is closed, or this process ends. Raises: OSError if another one has it."""
     if sys.platform == "win32":
         import msvcrt
 

@@ -3,11 +3,6 @@
 import csv
 import json
 import os
-import signal
-import subprocess
-import sys
-import time
-from contextlib import suppress
 from pathlib import Path
 from threading import Event
 
@@ -18,11 +13,10 @@ from command_line import tangible
 from full_disk import files_up_to
 from pictures import write_png
 from tangible_core import Pipeline, Scene
-from tangible_core.batch import batch as batches
-from tangible_core.batch.batch import batch
+from tangible_core.batch import batch, running
 from tangible_core.batch.farm import Done
 from tangible_core.batch.job import Job, make_scene
-from tangible_core.errors import BatchError, OutputError, Stopped
+from tangible_core.errors import ArgumentError, BatchError, OutputError, Stopped
 
 CONFIG = "scene: builtin/brick\nwant: relief\ndepth: luminance\nworkspace: {width_m: 0.04}\n"
 
@@ -46,7 +40,7 @@ class Here:
 
 @pytest.fixture
 def here(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(batches, "Farm", Here)
+    monkeypatch.setattr(running, "Farm", Here)
 
 
 @pytest.fixture
@@ -249,6 +243,113 @@ class TestScenes:
         assert seen == ["p0"]
         assert [row["id"] for row in batch(pipeline, rows, tmp_path / "out")] == ["p0", "p1", "p2", "p3"]
 
+    def test_from_python_mistakes_are_one_line(self, archive: Path, tmp_path: Path):
+        pipeline, out = Pipeline.from_yaml(tmp_path / "mine.yaml"), tmp_path / "out"
+        photo = {"scene.photo": str(archive / "p0.png")}
+        with pytest.raises(BatchError, match="two rows are called 'a'; give each an `id` of its own"):
+            list(batch(pipeline, [{"id": "a", **photo}, {"id": "a", **photo}], out))
+        with pytest.raises(ArgumentError, match="workers: is the int 0"):
+            list(batch(pipeline, [photo], out, workers=0))
+        assert list(batch(pipeline, [], out)) == []
+
+    def test_a_mistake_in_the_file_itself_ends_it_before_the_first_scene(self, archive: Path):
+        (archive.parent / "mine.yaml").write_text(CONFIG + "textur: gabor\n")
+        done = self.run(archive.parent)
+        assert done.returncode == 2
+        [line] = done.stderr.splitlines()
+        assert "mine.yaml" in line
+        assert "textur" in line
+        assert rows_in(archive.parent / "out/mine-batch") == []
+
+    def test_a_mistake_in_a_row_is_that_row_s(self, archive: Path):
+        (archive / "rows.csv").write_text("id,scene.photo,workspace.width_m\na,p0.png,-1\nb,p1.png,0.1\n")
+        done = tangible("batch", "mine.yaml", "--over", archive / "rows.csv", cwd=archive.parent)
+        assert done.returncode == 1
+        rows = by_id(rows_in(archive.parent / "out/mine-batch"))
+        assert "workspace.width_m" in rows["a"]["error"]
+        assert rows["b"]["outcome"] == "ok"
+
+    def test_a_sweep_sees_that_the_file_s_own_picture_changed(self, archive: Path):
+        (archive.parent / "mine.yaml").write_text(CONFIG.replace("builtin/brick", "{photo: archive/p0.png}"))
+        (archive / "rows.csv").write_text("workspace.width_m\n0.05\n0.1\n")
+        words = ("batch", "mine.yaml", "--over", archive / "rows.csv", "--json")
+        made = []
+        for seed in (None, None, 5):
+            if seed:
+                write_png(archive / "p0.png", picture(seed, (20, 20)))
+            made.append(json.loads(tangible(*words, cwd=archive.parent).stdout)["made"])
+        assert made == [2, 0, 2]
+
+    @pytest.mark.parametrize("name", ["Krug ä", "\N{AMPHORA}", 'a "quoted" one', "two\nlines", "b\udcff"])
+    def test_a_picture_may_have_any_name(self, archive: Path, name: str):
+        for each in archive.iterdir():
+            each.unlink()
+        write_png(archive / f"{name}.png", picture(0))
+        tally = []
+        for seed in (0, 0, 3):
+            if seed:
+                write_png(archive / f"{name}.png", picture(seed, (16, 16)))
+            tally.append(json.loads(self.run(archive.parent, "--json").stdout))
+        assert [each["made"] for each in tally] == [1, 0, 1]
+        [row] = rows_in(archive.parent / "out/mine-batch")[1:]
+        assert row["id"] == name
+        if name != "b\udcff":  # no YAML holds half a character
+            assert row["outcome"] == "ok", row["error"]
+
+    def test_pictures_that_it_wrote_itself_are_no_scenes(self, archive: Path):
+        words = ("batch", "mine.yaml", "--over", ".", "--json")
+        tally = [json.loads(tangible(*words, cwd=archive.parent).stdout) for _ in range(2)]
+        assert [each["wanted"] for each in tally] == [4, 4]
+
+    def test_what_is_no_longer_wanted_is_in_no_table(self, archive: Path):
+        import pyarrow.parquet as pq
+
+        out = archive.parent / "out/mine-batch"
+        self.run(archive.parent)
+        (archive / "p0.png").unlink()
+        self.run(archive.parent)
+        assert sorted(by_id(rows_in(out))) == ["p0", "p1", "p2", "p3"]
+        assert pq.read_table(out / "index.parquet")["id"].to_pylist() == ["p1", "p2", "p3"]
+        assert "p0" not in (out / "gallery.html").read_text()
+
+    def test_a_scene_whose_files_were_deleted_is_made_again(self, archive: Path):
+        import shutil
+
+        self.run(archive.parent)
+        shutil.rmtree(archive.parent / "out/mine-batch/scenes/p2")
+        assert json.loads(self.run(archive.parent, "--json").stdout)["made"] == 1
+
+    @pytest.mark.parametrize("want", ["segments", "disparity", "materials", "surface"])
+    def test_whatever_is_wanted_has_a_card(self, archive: Path, want: str):
+        from PIL import Image
+
+        (archive.parent / "mine.yaml").write_text(
+            f"scene: builtin/brick\nwant: {want}\ntexture: {{use: histogram, segments: 2}}\n"
+            + ("" if want in ("segments", "materials") else "depth: luminance\n")
+        )
+        done = self.run(archive.parent)
+        assert done.returncode == 0, done.stderr
+        with Image.open(archive.parent / "out/mine-batch/scenes/p1/card.jpg") as card:
+            assert card.width == 2 * 160
+
+    def test_a_second_one_in_the_same_folder_is_told(self, archive: Path):
+        from tangible_core.files.json_lines import JsonLines
+
+        with JsonLines(archive.parent / "out/mine-batch/rows.jsonl", alone=True) as file:
+            file.add({"id": "other"})
+            done = self.run(archive.parent)
+        assert done.returncode == 2
+        assert "another program is writing to it; wait for that one or choose another folder" in done.stderr
+        assert len(rows_in(archive.parent / "out/mine-batch")) == 1
+
+    def test_without_the_extra_it_says_so_before_the_work(self, archive: Path, monkeypatch: pytest.MonkeyPatch):
+        from tangible_core.batch import extra
+
+        monkeypatch.setattr(extra, "find_spec", lambda name: None)
+        done = self.run(archive.parent)
+        assert done.returncode == 2
+        assert "pip install 'tangible-images[batch]'" in done.stderr
+
     def test_a_name_is_a_folder_s_on_any_system(self, archive: Path, tmp_path: Path):
         rows = [
             {"id": name, "scene.photo": str(archive / "p0.png")} for name in ("a/b", "a_b", "..", "ä:*?", "x" * 300)
@@ -260,114 +361,15 @@ class TestScenes:
 
 
 def test_workers_times_threads_are_the_cores_unless_both_are_said(monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(batches, "processors", lambda: 8)
+    monkeypatch.setattr(running, "processors", lambda: 8)
     shares = {(None, None): (8, 1), (2, None): (2, 4), (None, 4): (2, 4), (16, None): (16, 1), (3, 9): (3, 9)}
-    assert {said: batches.Workforce(*said).shares for said in shares} == shares
+    who = {said: running.Workforce(*said) for said in shares}
+    assert {said: (each.workers_here, each.threads_each) for said, each in who.items()} == shares
+    elsewhere = running.Workforce(scheduler="tcp://host:8786")
+    assert elsewhere.threads_each is None  # of cores that are not here
 
 
 def test_a_plugin_that_raises_anything_is_a_row(tmp_path: Path):
     row = make_scene(Job("a", "k", "scene: {photo: no.png}\ndepth: luminance\n", str(tmp_path / "m.yaml"), (), "f"))
     assert row["outcome"] == "failed"
     assert "no.png" in row["error"]
-
-
-@pytest.mark.slow
-class TestFarm:
-    @pytest.fixture(autouse=True)
-    def importable(self, monkeypatch: pytest.MonkeyPatch):
-        helpers = str(Path(__file__).parents[2] / "helpers")
-        monkeypatch.setenv("PYTHONPATH", os.pathsep.join(filter(None, [helpers, os.environ.get("PYTHONPATH")])))
-
-    def test_a_job_that_kills_its_worker_fails_alone_and_the_others_are_done_once(self):
-        import farm_work
-        from tangible_core.batch.farm import Farm
-
-        with Farm(2) as farm:
-            done = list(farm.map(farm_work.square, range(24), chunk=4))
-            assert sorted(each.job for each in done) == list(range(24))
-            assert [each.job for each in done if each.death] == [7]
-            assert all(each.result == each.job**2 for each in done if not each.death)
-            workers = {each.result for each in farm.map(farm_work.slow, range(12)) if each.result}
-            assert len(workers) == 2
-            flow = farm.map(farm_work.slow, range(30))
-            os.kill(next(flow).result or 0, signal.SIGKILL)
-            for worker in workers:
-                with_suppressed_kill(worker)
-            assert not any(each.death for each in flow)
-
-    def test_a_scheduler_that_is_not_there(self):
-        from tangible_core.batch import farm
-
-        with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(farm, "CONNECT_S", 1)
-            with pytest.raises(BatchError, match=r"--scheduler tcp://127.0.0.1:9: nobody answers there"):
-                farm.Farm(1, scheduler="tcp://127.0.0.1:9")
-
-    def test_workers_of_another_version_are_said(self, monkeypatch: pytest.MonkeyPatch):
-        from tangible_core.batch import farm
-
-        monkeypatch.setattr(farm, "installed", lambda: "0.0.1")
-        with pytest.raises(BatchError, match=r"has tangible-images .*, and this is 0\.0\.1; install the same"):
-            farm.Farm(1)
-
-    def test_after_a_kill_nobody_is_left_and_the_rest_is_made(self, tmp_path: Path):
-        """The program that hands out the scenes gets a SIGKILL; its workers end by themselves."""
-        folder = tmp_path / "archive"
-        folder.mkdir()
-        for number in range(60):
-            write_png(folder / f"p{number}.png", picture(number))
-        (tmp_path / "mine.yaml").write_text(CONFIG)
-        words = [
-            sys.executable,
-            "-c",
-            "from tangible_core.cli import main; main()",
-            "batch",
-            "mine.yaml",
-            "--over",
-            "archive",
-            "--workers",
-            "2",
-        ]
-        rows = tmp_path / "out/mine-batch/rows.jsonl"
-        first = subprocess.Popen(words, cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        waited(lambda: rows.exists() and rows.read_text().count("\n") >= 3, 60)
-        family = children(first.pid)
-        assert len(family) >= 2
-        first.kill()
-        first.wait()
-        waited(lambda: not any(map(is_alive, family)), 20)
-        kept = rows.read_text().count("\n")
-        with rows.open("a") as file:
-            file.write('{"id": "torn')
-        second = subprocess.run([*words, "--json"], cwd=tmp_path, capture_output=True, text=True, timeout=200)
-        assert second.returncode == 0, second.stderr
-        found = rows_in(rows.parent)
-        assert len(found) == len(by_id(found)) == 60
-        assert json.loads(second.stdout)["made"] == 60 - kept
-
-
-def with_suppressed_kill(process: int) -> None:
-    with suppress(ProcessLookupError):
-        os.kill(process, signal.SIGKILL)
-
-
-def waited(what, seconds: float = 90.0) -> None:
-    end = time.monotonic() + seconds
-    while not what():
-        assert time.monotonic() < end
-        time.sleep(0.05)
-
-
-def is_alive(process: int) -> bool:
-    """One that ended, and whose parent has not looked yet, is none."""
-    import psutil
-
-    with suppress(psutil.NoSuchProcess):
-        return psutil.Process(process).status() != psutil.STATUS_ZOMBIE
-    return False
-
-
-def children(process: int) -> list[int]:
-    import psutil
-
-    return [each.pid for each in psutil.Process(process).children(recursive=True)]

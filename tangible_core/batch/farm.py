@@ -195,7 +195,7 @@ def _cluster(distributed: Any, workers: int, threads: int) -> Any:
             threads_per_worker=1,
             processes=True,
             host="127.0.0.1",
-            dashboard_address=None,
+            dashboard_address="127.0.0.1:0",  # with None, a port is open to everybody
             memory_limit=0,
             silence_logs=logging.CRITICAL,
             preload=[f"{__package__}.deaf"],

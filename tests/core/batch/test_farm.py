@@ -66,6 +66,9 @@ def rows_in(out: Path) -> list[dict]:
 
 def test_workers_that_die_take_no_job_along_and_begin_anew_in_time(monkeypatch: pytest.MonkeyPatch):
     with Farm(2) as two:
+        assert {port.laddr.ip for each in family() for port in each.net_connections() if port.status == "LISTEN"} == {
+            "127.0.0.1"
+        }
         done = list(two.map(farm_work.square, range(24), chunk=4))
         assert sorted(each.job for each in done) == list(range(24))
         assert [each.job for each in done if each.death] == [7]
@@ -164,6 +167,10 @@ def test_the_workers_of_a_scheduler_make_the_scenes_and_stay(tmp_path: Path, mon
             assert own.poll() is None
             with running(*worker, "2"):
                 waited(lambda: "works on 2 scenes at once" in complaint(address))
+
+
+def family() -> list[psutil.Process]:
+    return [psutil.Process(), *psutil.Process().children(recursive=True)]
 
 
 def without_workers(address: str) -> bool:

@@ -9,6 +9,7 @@ from typing import NamedTuple
 from ..errors import ResultsError
 from . import against as verdicts
 from .config import Comparison
+from .errors_only import run_side_by_side
 from .plan import measurements
 from .plot import draw_plot
 from .rows import Row, read_rows
@@ -51,12 +52,14 @@ def compare(
     progress: Callable[[Step], None] | None = None,
     on_outlook: Callable[[Outlook], None] | None = None,
     stop: Event | None = None,
+    workers: int | None = None,
 ) -> ComparisonOutcome:
     """Measure what a comparison names, into `comparison.out`; rows that are there already are kept.
 
     earlier: rows of an earlier comparison, to be held against. retry: measure once more what failed before. progress:
     hears of every measurement as it begins and ends. on_outlook: hears first what is known and what is to be measured.
     stop: set from another thread, it ends the measurement under way, which is lost; the others are kept.
+    workers: processes for a comparison of `errors_only`, whose measurements end in any order; one a core if not said.
     Raises: ConfigError, ResultsError, OutputError for files that are wrong or cannot be written; Stopped after `stop`.
     """
     path = comparison.out / ROWS
@@ -69,14 +72,16 @@ def compare(
         if progress is not None:
             progress(Step(number, count, row, done))
 
-    rows = run(
-        outlook,
-        path,
-        comparison.protocol.timeout_s,
-        lambda number, row: tell(number, row, False),
-        lambda number, row: tell(number, row, True),
-        stop,
-    )
+    def begun(number: int, row: Row) -> None:
+        tell(number, row, False)
+
+    def done(number: int, row: Row) -> None:
+        tell(number, row, True)
+
+    if comparison.protocol.calls:
+        rows = run(outlook, path, comparison.protocol.timeout_s, begun, done, stop)
+    else:
+        rows = run_side_by_side(outlook, path, workers, done, stop)
     return _summed(rows, path, earlier)
 
 

@@ -19,6 +19,8 @@ class Forecast:
     """What each of several measurements is guessed to take, in order."""
 
     guessed_s: tuple[float, ...]
+    is_of_times: bool = True
+    """False where errors alone are wanted, of which nothing is known."""
 
     @property
     def whole_s(self) -> float:
@@ -38,7 +40,8 @@ class Forecast:
 
 def forecast(waiting: Sequence[Measurement]) -> Forecast:
     """A guess for these."""
-    return Forecast(tuple(_guessed_s(each) for each in waiting))
+    timed = all(each.job.calls for each in waiting)
+    return Forecast(tuple(_guessed_s(each) for each in waiting), timed)
 
 
 def _guessed_s(each: Measurement) -> float:

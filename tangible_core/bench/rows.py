@@ -56,7 +56,7 @@ def read_rows(path: Path) -> dict[str, Row]:
     Raises: ResultsError for a file that cannot be read, or a damaged line within it.
     """
     try:
-        lines = read_lines(path)
+        lines = list(read_lines(path))
     except (OSError, UnicodeDecodeError) as error:
         why = getattr(error, "strerror", None) or error
         raise ResultsError(

@@ -31,6 +31,11 @@ class Cell:
     error: str | None = None
 
     @property
+    def is_measured(self) -> bool:
+        """Whether any repeat has a result; one without a time has errors alone."""
+        return bool(self.seconds or self.measures)
+
+    @property
     def key(self) -> Key:
         """What tells it from the other cells."""
         return self.method, self.scene, self.perturb
@@ -119,7 +124,7 @@ def _known(values: Iterable[float | None]) -> list[float]:
 
 
 def _line(method: str, perturb: str, found: Sequence[Cell | None], told: Set[tuple[str, str]]) -> Line:
-    done = [cell for cell in found if cell is not None and cell.error is None and cell.seconds]
+    done = [cell for cell in found if cell is not None and cell.error is None and cell.is_measured]
     whole = done if len(done) == len(found) else []
     names = dict.fromkeys(name for cell in whole for name in cell.measures)
     ratios = [median(cell.ratios) for cell in whole]

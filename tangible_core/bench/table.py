@@ -49,7 +49,7 @@ class Results:
     @property
     def failed(self) -> list[str]:
         """Methods without a result on any scene, in order."""
-        done = {cell.method for cell in self.cells.values() if cell.seconds}
+        done = {cell.method for cell in self.cells.values() if cell.is_measured}
         return [name for name in dict.fromkeys(cell.method for cell in self.cells.values()) if name not in done]
 
     @property

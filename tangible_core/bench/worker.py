@@ -20,7 +20,7 @@ from typing import Any, NamedTuple
 from ..data import Kind
 from ..errors import TangibleError
 from ..plugins.registry import load_method
-from ..runtime.child_process import imported
+from ..runtime.child_process import Place, imported
 from ..runtime.failure_log import where_kept
 from .memory import start_peak
 from .task import Task, load_task
@@ -41,15 +41,16 @@ class Job:
     finishes: tuple[str, ...]
     warmups: int
     calls: int
+    """Timed ones; 0 where errors alone are wanted."""
 
 
 @dataclass(frozen=True)
 class Result:
     """Fields of a row, as far as the process knows them."""
 
-    seconds: float
-    """Of one piece of work."""
-    first_seconds: float
+    seconds: float | None
+    """Of one piece of work; None where nothing was timed."""
+    first_seconds: float | None
     peak_memory_bytes: int | None
     measures: dict[str, float | None]
     """None where a measure is not finite: JSON has no NaN."""
@@ -60,6 +61,8 @@ def measure(job: Job) -> Result:
     task = load_task(job.kind)
     method = load_method(job.kind, job.use).model_validate(job.options)
     scene = _damaged(task, job)
+    if not job.calls:
+        return Result(None, None, None, _errors(task, job, scene, task.work(task.prepare(method, scene), scene)))
     warm = [_timed(task, method, scene).whole_s for _ in range(job.warmups)]
     gc.collect()
     gc.freeze()  # imports and compiled code are no garbage: each collection would look through them again
@@ -67,12 +70,14 @@ def measure(job: Job) -> Result:
     first = _timed(task, method, scene)
     peak = growth()
     times = [first.piece_s, *(_timed(task, method, scene).piece_s for _ in range(job.calls - 1))]
-    result = first.result
+    return Result(statistics.median(times), [*warm, first.whole_s][0], peak, _errors(task, job, scene, first.result))
+
+
+def _errors(task: Task, job: Job, scene: Any, result: Any) -> dict[str, float | None]:
     for name in job.finishes:
         result = task.finishes[name](result)
     found = task.measure(result, scene)
-    plain = {name: float(value) if math.isfinite(value) else None for name, value in found.items()}
-    return Result(statistics.median(times), [*warm, first.whole_s][0], peak, plain)
+    return {name: float(value) if math.isfinite(value) else None for name, value in found.items()}
 
 
 def _damaged(task: Task, job: Job) -> Any:
@@ -103,13 +108,18 @@ def main() -> None:
     os.dup2(2, 1)
     place, job = json.loads(sys.stdin.buffer.readline())
     threading.Thread(target=_end_with_parent, daemon=True).start()
+    found = answer(Place(*place), Job(**job))
+    os.write(answers, (json.dumps(found, allow_nan=False) + "\n").encode())
+
+
+def answer(place: Place, job: Job) -> dict[str, Any]:
+    """Fields of the job's row. place: where its method is from. Raises: nothing."""
     try:
         imported(*place)
-        answer: dict[str, Any] = asdict(measure(Job(**job)))
+        return asdict(measure(job))
     except Exception as error:  # noqa: BLE001 - a method's failure is a result
         rest = "" if isinstance(error, TangibleError) else f"; {where_kept(error)}"
-        answer = {"error": f"{type(error).__name__}: {error}{rest}"}
-    os.write(answers, (json.dumps(answer, allow_nan=False) + "\n").encode())
+        return {"error": f"{type(error).__name__}: {error}{rest}"}
 
 
 def _end_with_parent() -> None:

@@ -35,6 +35,12 @@ def compare(
     quick: Annotated[
         bool, typer.Option("--quick", help="A first look: one round, one call, nothing perturbed.")
     ] = False,
+    errors: Annotated[
+        bool, typer.Option("--errors-only", help="Errors without times: all cores work, in a fraction of the time.")
+    ] = False,
+    workers: Annotated[
+        int | None, typer.Option(min=1, help="With --errors-only, processes [default: one a core].")
+    ] = None,
     retry: Annotated[bool, typer.Option("--retry", help="Measure again what failed before.")] = False,
     as_json: Json = False,
 ) -> None:
@@ -49,21 +55,27 @@ def compare(
     from ..bench.comparing import compare as measured
     from ..bench.config import load_comparison
     from ..bench.config import quick as shortened
+    from ..bench.errors_only import errors_only
     from ..bench.rows import read_rows
+    from ..errors import ArgumentError
     from ..plugins.registry import default_registry
     from . import show
 
+    if workers is not None and not errors:
+        raise ArgumentError("--workers: goes with --errors-only; side by side, methods would spoil each other's times")
     earlier = None if against is None else list(read_rows(against).values())
     if config.suffix == ".jsonl":
         found = read_comparison(config, earlier)
     else:
         comparison = load_comparison(config, default_registry(), sets or [])
         comparison = shortened(comparison) if quick else comparison
+        comparison = errors_only(comparison) if errors else comparison
         comparison = replace(comparison, out=out or comparison.out)
         path = comparison.out / ROWS
         watch = _Watch(path)
         try:
-            found = measured(comparison, earlier, retry=retry, progress=watch.tell, on_outlook=watch.say)
+            how: dict[str, Any] = {"retry": retry, "workers": workers}
+            found = measured(comparison, earlier, progress=watch.tell, on_outlook=watch.say, **how)
         except KeyboardInterrupt:
             show.note(f"interrupted; what was measured is kept in {path}, and the same command goes on from there")
             raise
@@ -100,7 +112,9 @@ class _Watch:
             again = f", {failed} of them failed: --retry measures these once more" if failed else ""
             wanted = len(outlook.kept) + count
             show.note(f"{len(outlook.kept)} of {wanted} measurements are in {self._path} already and are kept{again}")
-        if count:
+        if count and not self._forecast.is_of_times:
+            show.note(f"{count} measurements, side by side and without times; what is done is kept if you interrupt it")
+        elif count:
             takes = in_words(self._forecast.whole_s)
             show.note(f"{count} measurements, which will take {takes}; what is done is kept if you interrupt it")
 
@@ -147,6 +161,8 @@ def _print(results: Results, files: Sequence[Path], verdict: verdicts.Verdict | 
 
     for table in tables(results, detail):
         _print_table(table)
+    if not any(cell.seconds for cell in results.cells.values()):
+        show.say("errors alone were measured: times and memory are left empty")
     unit = results.task.clock.unit
     show.say(f"{FRONT} Pareto-optimal: no other method is both faster and better")
     show.say(f"{unit}: median of the rounds; peak MB: on top of the scene")

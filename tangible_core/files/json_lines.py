@@ -10,7 +10,7 @@ from time import monotonic
 from typing import Any, Self, cast
 
 from ..errors import OutputError, ResultsError
-from .reading import read_bytes
+from .reading import check_file
 from .writing import BINARY, lock
 
 SYNC_EVERY_S = 1.0
@@ -87,8 +87,11 @@ def read_lines(path: Path) -> Iterator[tuple[int, str]]:
 
     Raises: OSError, UnicodeDecodeError.
     """
-    *lines, _ = read_bytes(path).decode().split("\n")
-    return ((number, line) for number, line in enumerate(lines, 1) if line)
+    check_file(path)
+    with path.open("rb") as file:
+        for number, line in enumerate(file, 1):
+            if line.endswith(b"\n") and line != b"\n":
+                yield number, line[:-1].decode()
 
 
 def read_rows(path: Path) -> Iterator[tuple[int, dict[str, Any]]]:
@@ -97,17 +100,20 @@ def read_rows(path: Path) -> Iterator[tuple[int, dict[str, Any]]]:
     Raises: ResultsError for a file that cannot be read, or a damaged line within it.
     """
     try:
-        lines = read_lines(path)
+        for number, line in read_lines(path):
+            yield number, _row(path, number, line)
     except FileNotFoundError:
         return
     except (OSError, UnicodeDecodeError) as error:
         why = getattr(error, "strerror", None) or error
         raise ResultsError(f"{path}: cannot be read as rows: {why}; name another folder") from error
-    for number, line in lines:
-        try:
-            row = json.loads(line)
-        except (ValueError, RecursionError):
-            row = None
-        if not isinstance(row, dict):
-            raise ResultsError(f"{path}:{number}: is not a row; remove the line")
-        yield number, cast("dict[str, Any]", row)
+
+
+def _row(path: Path, number: int, line: str) -> dict[str, Any]:
+    try:
+        row = json.loads(line)
+    except (ValueError, RecursionError):
+        row = None
+    if not isinstance(row, dict):
+        raise ResultsError(f"{path}:{number}: is not a row; remove the line")
+    return cast("dict[str, Any]", row)

@@ -7,6 +7,7 @@ from .records import Record, digest_of
 from .surface import TEXTURES, HapticSurface, Material, MaterialMap, Relief, Texture
 from .ticks import TICK_COLUMNS, UNTOUCHED, ServoReport, Spread, TickFlag
 from .views import Calibration, DisparityMap, SegmentMap, Views
+from .work import Work
 
 __all__ = [
     "Calibration",
@@ -40,6 +41,7 @@ __all__ = [
     "Unit",
     "Vector",
     "Views",
+    "Work",
     "digest_of",
     "limited",
 ]

@@ -3,9 +3,16 @@
 Each is imported when it is first used.
 """
 
+from typing import TYPE_CHECKING
+
 from tangible_core.lazily import lazily
+
+if TYPE_CHECKING:
+    from .heights import Heights as Heights
 
 __all__, __getattr__ = lazily(  # pyright: ignore[reportUnsupportedDunderAll]
     __name__,
-    {},
+    {
+        "heights": ["Heights"],
+    },
 )

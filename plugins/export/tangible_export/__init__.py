@@ -9,10 +9,12 @@ from tangible_core.lazily import lazily
 
 if TYPE_CHECKING:
     from .heights import Heights as Heights
+    from .text import Text as Text
 
 __all__, __getattr__ = lazily(  # pyright: ignore[reportUnsupportedDunderAll]
     __name__,
     {
         "heights": ["Heights"],
+        "text": ["Text"],
     },
 )

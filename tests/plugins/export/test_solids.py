@@ -314,7 +314,7 @@ class TestGlb:
         mesh = read_glb(path)
         texture = np.asarray(mesh.visual.material.baseColorTexture).astype(int)
         across, up = np.asarray(mesh.visual.uv).T
-        column, row = across * texture.shape[1], (1 - up) * texture.shape[0]  # trimesh's v runs up
+        column, row = across * (texture.shape[1] - 1e-3), (1 - up) * (texture.shape[0] - 1e-3)  # trimesh's v runs up
         solid = read(path)
         x, y = solid.vertices[:, :2].T
         across, down = (x - RIM_MM) / 60, 1 - (y - RIM_MM - BAND_MM) / 40
@@ -325,7 +325,7 @@ class TestGlb:
         rim = (x > 0) & (y > 0) & (y < RIM_MM + BAND_MM - 2)  # its braille
         assert np.abs(texture[row[rim].astype(int), column[rim].astype(int)] - 225).max() < 6
         edge = np.isclose(x, RIM_MM, atol=1e-3)  # exactly where the picture begins
-        assert np.ptp(column[edge]) < 1e-3 and column[edge][0] == pytest.approx(round(column[edge][0]), abs=1e-2)
+        assert np.ptp(column[edge]) < 1e-3 and column[edge][0] == pytest.approx(round(column[edge][0]), abs=2e-2)
 
     @pytest.mark.parametrize("shape", [(7, 9), (7, 9, 3), (7, 9, 4), (1, 1), (5000, 20, 3)])
     def test_any_picture_is_a_texture(self, tmp_path: Path, shape: tuple[int, ...]):

@@ -210,6 +210,12 @@ class TestBraille:
         assert "\n" not in str(raised.value) and not list(tmp_path.iterdir())
         assert ThreeMF(braille=False).write(made, tmp_path / "x")
 
+    def test_a_picture_that_is_too_narrow_for_it_says_what_helps(self, tmp_path: Path):
+        made = work(np.full((9, 9), 0.002), 0.016, "I")
+        with pytest.raises(OutputError, match="16 mm wide, too narrow .* longer_side_m larger, or say braille: false"):
+            Stl().write(made, tmp_path / "x")
+        assert Stl().write(replace(made, title=""), tmp_path / "x")
+
     def test_its_language_may_be_another_than_the_title_s(self, tmp_path: Path):
         made = work(np.full((9, 9), 0.002), 0.06, "Öl", language="de-AT")
         files = [

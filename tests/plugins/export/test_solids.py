@@ -212,7 +212,7 @@ class TestBraille:
 
     def test_a_picture_that_is_too_narrow_for_it_says_what_helps(self, tmp_path: Path):
         made = work(np.full((9, 9), 0.002), 0.016, "I")
-        with pytest.raises(OutputError, match="16 mm wide, too narrow .* longer_side_m larger, or say braille: false"):
+        with pytest.raises(OutputError, match=r"16 mm wide, too narrow .* longer_side_m larger, or say braille: false"):
             Stl().write(made, tmp_path / "x")
         assert Stl().write(replace(made, title=""), tmp_path / "x")
 

@@ -81,8 +81,8 @@ def _title(options: SolidOptions, work: Work) -> tuple[Cells, ...]:
     language, room_m = options.braille_language or work.language, work.relief.extent_m[0]
     if room_m < LEAST_LINE_M:
         raise OutputError(
-            f"the picture is {1000 * room_m:.3g} mm wide, too narrow for its title in braille; make longer_side_m larger, "
-            "or say braille: false"
+            f"the picture is {1000 * room_m:.3g} mm wide, too narrow for its title in braille; make longer_side_m "
+            "larger, or say braille: false"
         )
     lines = tuple(wrapped(work.title, language, room_m))
     if len(lines) > MOST_LINES:

@@ -3,7 +3,7 @@
 import logging
 from importlib.util import find_spec
 
-from tangible_core.braille import Cells, wrapped, written_by
+from tangible_core.braille import Cells, width_m, wrapped, written_by
 from tangible_core.data import Relief, Work
 from tangible_core.errors import GeometryError, OutputError, quoted
 from tangible_core.plugins.notes import note
@@ -20,6 +20,8 @@ log = logging.getLogger(__name__)
 INSTALL = "pip install 'tangible-images[export]'"
 MOST_NODES, MOST_IN_GRID = 24_000_000, 1_000_000
 """5333 x 4500 nodes, which take a gibibyte; and two million triangles, which slicers read."""
+LEAST_LINE_M = width_m((0,) * 3)
+"""A letter, its capital sign, and a hyphen."""
 NARROWEST_M = 1e-4
 """A rim that is narrower is none."""
 MOST_LINES = 6
@@ -64,20 +66,24 @@ def _check_height(relief: Relief, error_m: float) -> None:
 def _layout(options: SolidOptions, work: Work) -> Layout:
     picture_m = work.relief.extent_m
     rim_m = options.rim_m if options.rim_m >= NARROWEST_M else 0.0
-    wanted = [what for what, said in (("title", options.braille), ("corner mark", options.corner_mark)) if said]
+    has_title = options.braille and bool(work.title.strip())
+    wanted = [what for what, said in (("title", has_title), ("corner mark", options.corner_mark)) if said]
     if options.rim_m < LEAST_RIM_M:
         if wanted:
             told = f"a rim of {1000 * options.rim_m:.2g} mm has no room for the {' and the '.join(wanted)}"
             note(log, f"{told}; make rim_m {1000 * LEAST_RIM_M:.0f} mm or more", logging.WARNING)
         return Layout(picture_m, rim_m)
-    return Layout(picture_m, rim_m, _title(options, work), options.corner_mark)
+    return Layout(picture_m, rim_m, _title(options, work) if has_title else (), options.corner_mark)
 
 
 def _title(options: SolidOptions, work: Work) -> tuple[Cells, ...]:
-    """In lines of braille, none where there is no title."""
-    if not options.braille or not work.title.strip():
-        return ()
+    """In lines of braille."""
     language, room_m = options.braille_language or work.language, work.relief.extent_m[0]
+    if room_m < LEAST_LINE_M:
+        raise OutputError(
+            f"the picture is {1000 * room_m:.3g} mm wide, too narrow for its title in braille; make longer_side_m "
+            "larger, or say braille: false"
+        )
     lines = tuple(wrapped(work.title, language, room_m))
     if len(lines) > MOST_LINES:
         raise OutputError(

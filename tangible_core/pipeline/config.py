@@ -9,9 +9,10 @@ from typing import Annotated, Any, Generic, Literal, TypeVar, cast, get_args
 
 from pydantic import BaseModel, Discriminator, Tag
 from ruamel.yaml import YAML
+from ruamel.yaml.comments import CommentedMap, CommentedSeq
 
-from ..errors import ConfigError, MaterialError, TangibleError, did_you_mean, quoted
-from ..files.source import Location, Source, parse_source, read_text
+from ..errors import ConfigError, MaterialError, PictureError, TangibleError, did_you_mean, quoted
+from ..files.source import Location, Source, parse_override, parse_source, read_text
 from ..legibility.choice import SimplifyChoice
 from ..mapping import WorkspaceMapping, mapped
 from ..materials.assignment import NEUTRAL, find, load_library
@@ -19,6 +20,8 @@ from ..materials.rules import MaterialRule
 from ..parts import HeightChoice, PartChoice
 from ..plugins.interfaces import DepthEstimator, Exporter, ForceRenderer, HapticDevice, Method, Segmenter
 from ..plugins.registry import Registry
+from ..scene.framing import measured
+from ..scene.height_files import Measured
 from ..scene.scene import Scene
 from ..scene.scene_files import BUILTINS, SceneFiles, unknown_scene
 from ..scene.workspace import FeltSize, Section, Workspace, kind_of
@@ -96,6 +99,8 @@ class PipelineConfig:
     """How parts are made legible before anything is made of them; None where they stay as they are."""
     export: tuple[NamedMethod[Exporter], ...] = ()
     """What writes files of it for others."""
+    measured: Measured | None = None
+    """The size that the scene's heights have by their own account."""
     title: str = ""
     language: str = "en"
     source: Source | None = field(default=None, repr=False, compare=False)
@@ -154,7 +159,12 @@ class PipelineConfig:
     @property
     def size(self) -> FeltSize:
         """The workspace, with what suits the scene, or its parts, where it says nothing."""
-        return self.workspace.size("parts" if self.heights else kind_of(self.scene))
+        size = self.workspace.size("parts" if self.heights else kind_of(self.scene))
+        if self.measured is None:
+            return size
+        width_m = size.width_m if "width_m" in self.workspace.model_fields_set else self.measured.width_m
+        relief_m = self.workspace.relief_m or self.measured.high_m or size.relief_m
+        return size._replace(width_m=width_m, relief_m=relief_m)
 
     @property
     def felt_device(self) -> HapticDevice | None:
@@ -245,7 +255,8 @@ def load_config(path: Path, registry: Registry, overrides: Iterable[str] = ()) -
     """Read and check a pipeline file.
 
     overrides: `key.key=value` each, the value in YAML, as `--set` takes them; another method (`depth.use=...`)
-    starts with its own defaults.
+    starts with its own defaults. `export.NAME.key=value` is of the exporter of that name, which is listed if it is not
+    yet.
     Raises: ConfigError with every complaint, one a line.
     """
     return parse_config(read_text(path), path, registry, overrides)
@@ -254,10 +265,12 @@ def load_config(path: Path, registry: Registry, overrides: Iterable[str] = ()) -
 def parse_config(text: str, path: Path, registry: Registry, overrides: Iterable[str] = ()) -> PipelineConfig:
     """`load_config` for a text; `path` is what complaints name and what relative files are relative to."""
     what = "a configuration is a mapping that starts with `scene:`"
-    source = parse_source(text, path, what, overrides, shorthand=shorthand)
+    source = parse_source(text, path, what)
+    for override in overrides:
+        _override(source, override)
     source.check_keys(KEYS)
     values: dict[str, Any] = {"scene": _scene(source), "want": _want(source), **_sections(source), **_parts(source)}
-    values["export"] = _exporters(source, registry)
+    values |= {"export": _exporters(source, registry), "measured": _measured(source, values["scene"])}
     for kind in STAGES:
         if kind in source.tree:
             values[kind] = choose(source, (kind,), kind, source.tree[kind], registry)
@@ -316,6 +329,32 @@ def choose(source: Source, location: Location, kind: str, block: Any, registry: 
     return None if method is None else NamedMethod(name, listing.origin, method)
 
 
+def _override(source: Source, text: str) -> None:
+    """Apply `key.key=value`, in which an exporter's name stands for its place in the list."""
+    parts, _ = parse_override(text)
+    place: Location = ()
+    if parts[0] == "export" and len(parts) > 1:
+        listed = source.tree.setdefault("export", CommentedSeq())
+        if isinstance(listed, list) and len(parts) > 2:
+            place = ("export", exporter_at(cast("list[Any]", listed), parts[1]), *parts[2:])
+    source.override(text, shorthand, place)
+
+
+def exporter_at(listed: list[Any], name: str) -> int:
+    """Where in a list an exporter is, by its name, or its number from 0; one that is not there is added.
+
+    >>> exporter_at(["stl", {"use": "swell"}], "swell")
+    1
+    """
+    if name.isdecimal() and int(name) < len(listed):
+        return int(name)
+    for index, each in enumerate(listed):
+        if name == (cast("dict[Any, Any]", each).get("use") if isinstance(each, dict) else each):
+            return index
+    listed.append(CommentedMap(use=name))
+    return len(listed) - 1
+
+
 def _exporters(source: Source, registry: Registry) -> tuple[NamedMethod[Exporter], ...]:
     """What the file's `export:` lists; complains of what is no list."""
     block = source.tree.get("export")
@@ -338,6 +377,13 @@ def _scene(source: Source) -> Any:
     if not isinstance(block, str):
         return source.model(("scene",), SceneFiles, block)
     return block if block in BUILTINS else source.complain(("scene",), unknown_scene(block))
+
+
+def _measured(source: Source, scene: Any) -> Measured | None:
+    try:
+        return measured(scene) if isinstance(scene, SceneFiles) else None
+    except PictureError as error:
+        return source.complain(("scene", "height"), str(error))
 
 
 def _parts(source: Source) -> dict[str, Any]:

@@ -10,7 +10,10 @@ from tangible_core.lazily import lazily
 if TYPE_CHECKING:
     from .glb import Glb as Glb
     from .heights import Heights as Heights
+    from .pins import Pins as Pins
     from .stl import Stl as Stl
+    from .swell import Swell as Swell
+    from .text import Text as Text
     from .three_mf import ThreeMF as ThreeMF
 
 __all__, __getattr__ = lazily(  # pyright: ignore[reportUnsupportedDunderAll]
@@ -18,7 +21,10 @@ __all__, __getattr__ = lazily(  # pyright: ignore[reportUnsupportedDunderAll]
     {
         "glb": ["Glb"],
         "heights": ["Heights"],
+        "pins": ["Pins"],
         "stl": ["Stl"],
+        "swell": ["Swell"],
+        "text": ["Text"],
         "three_mf": ["ThreeMF"],
     },
 )

@@ -1,6 +1,7 @@
 """Everything the maker can be asked, by name."""
 
 from . import (
+    beacons,
     checking,
     devices,
     felt_parts,
@@ -33,4 +34,5 @@ JOBS = {
     **proposals.JOBS,
     **snapping.JOBS,
     **felt_parts.JOBS,
+    **beacons.JOBS,
 }

@@ -1,0 +1,33 @@
+import { words } from "./words";
+
+/** Whether fingers can read it. */
+export const t = words({
+  about: ["Whether fingers can read it, by the rules of tactile graphics: gaps, sizes of parts, steps, textures.",
+    "Ob Finger es lesen können, nach den Regeln für taktile Grafiken: Abstände, Größe der Teile, Stufen, Texturen."],
+  medium: ["Read on", "Gelesen auf"],
+  swell: ["swell paper", "Schwellpapier"],
+  print: ["a 3D print", "einem 3D-Druck"],
+  pins: ["a pin display", "einem Stiftdisplay"],
+  force: ["a force device", "einem Kraftgerät"],
+  width: ["Width, mm", "Breite, mm"],
+  widthHint: ["Of the whole picture as it is made; without one, as “Size” says.",
+    "Die des ganzen Bildes, wie es hergestellt wird; ohne Angabe gilt, was unter „Größe“ steht."],
+  check: ["Check now", "Jetzt prüfen"],
+  again: ["Check again", "Noch einmal prüfen"],
+  checking: ["Checking …", "Prüfung läuft …"],
+  stopped: ["The check was stopped.", "Die Prüfung wurde abgebrochen."],
+  stale: ["The document changed since this check.", "Seit dieser Prüfung hat sich das Dokument geändert."],
+  of: ["Judged for {medium}, {width} mm wide.", "Geprüft für {medium}, {width} mm breit."],
+  marks: ["Show the places on the surface", "Die Stellen auf der Oberfläche zeigen"],
+  places: ["Places", "Stellen"],
+  place: ["{number}: {where}", "{number}: {where}"],
+  placeIn: ["{number}: {where}, {part}", "{number}: {where}, {part}"],
+  placeSaid: ["Place {number}: {x} % from the left, {y} % from the top, {part}.",
+    "Stelle {number}: {x} % von links, {y} % von oben, {part}."],
+  noPart: ["no named part", "kein benannter Teil"],
+  more: ["And {count} more places.", "Und {count} weitere Stellen."],
+  swellOf: ["swell paper", "Schwellpapier"],
+  printOf: ["a 3D print", "einen 3D-Druck"],
+  pinsOf: ["a pin display", "ein Stiftdisplay"],
+  forceOf: ["a force device", "ein Kraftgerät"],
+});

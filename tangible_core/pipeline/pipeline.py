@@ -26,10 +26,11 @@ from ..data import (
 from ..errors import Complaint, ConfigError, quoted, wrong_argument
 from ..files.paths import as_path
 from ..files.writing import write_text
+from ..legibility.choice import SimplifyChoice
 from ..mapping import WorkspaceMapping
 from ..parts import HeightChoice, PartChoice, PartHeights
 from ..plugins import hooks
-from ..plugins.interfaces import KINDS, DepthEstimator, ForceRenderer, HapticDevice, Method, Segmenter, Touch
+from ..plugins.interfaces import KINDS, DepthEstimator, Exporter, ForceRenderer, HapticDevice, Method, Segmenter, Touch
 from ..plugins.registry import Registry, default_registry
 from ..preflight import Flight, Hand, Loop, Preflight, judge, survey
 from ..scene.scene import Scene
@@ -52,6 +53,7 @@ from ..session import (
 from .cache import Cache
 from .config import MaterialChoice, NamedMethod, PipelineConfig, Product, load_config, wrong_of_parts
 from .engine import Engine, Progress
+from .exporting import Export, chosen_exporters, export
 from .following import felt_device, how_followed
 from .parts_said import Inscription
 from .parts_text import part_heights, to_correct
@@ -100,6 +102,8 @@ class Pipeline:
         safety: Safety | Mapping[str, Any] | None = None,
         parts: Parts | None = None,
         heights: Heights | None = None,
+        simplify: SimplifyChoice | Mapping[str, Any] | None = None,
+        export: Sequence[Exporter] = (),
         title: str = "",
         language: str = "en",
         cached: bool = True,
@@ -107,8 +111,9 @@ class Pipeline:
         """Methods are objects, of installed plugins or of classes of one's own; blocks may be mappings, as in YAML.
 
         parts: what the parts of the segments are called, how high they stand and what they are of, by number.
-        heights: makes the relief of these parts. title, language: of the whole. cached: False neither reads nor writes
-        the user's cache.
+        heights: makes the relief of these parts. simplify: makes the parts legible first; `{}` by the usual rules.
+        export: what `export` writes. title, language: of the whole. cached: False neither reads nor writes the user's
+        cache.
         Raises: ConfigError for a block that says nonsense.
         """
         if not isinstance(scene, cast(Any, Scene)):
@@ -127,6 +132,8 @@ class Pipeline:
             safety=_block("safety", Safety, safety),
             parts=None if parts is None else _parts(parts),
             heights=None if heights is None else _block("heights", HeightChoice, _by(heights)),
+            simplify=None if simplify is None else _block("simplify", SimplifyChoice, simplify),
+            export=tuple(_chosen("export", each, registry) for each in export),
             **_block((), Inscription, {"title": title, "language": language}).model_dump(),
         )
         if wrong := list(wrong_of_parts(config)):
@@ -216,6 +223,10 @@ class Pipeline:
     ) -> PartMap | None: ...
     @overload
     def make(
+        self, want: Literal["simplified"], progress: Progress | None = None, stop: Event | None = None
+    ) -> PartMap | None: ...
+    @overload
+    def make(
         self, want: Literal["materials"], progress: Progress | None = None, stop: Event | None = None
     ) -> MaterialMap | None: ...
     @overload
@@ -262,6 +273,11 @@ class Pipeline:
         return self.make("parts")
 
     @property
+    def simplified(self) -> PartMap | None:
+        """The parts as fingers can read them, on a grid of their own, with the numbers of `parts`."""
+        return self.make("simplified")
+
+    @property
     def part_heights(self) -> PartHeights | None:
         """The height of each part, and why; None where `heights` does not make the relief of parts."""
         return part_heights(self.engine)
@@ -305,6 +321,27 @@ class Pipeline:
         """
         with self.engine.watched(progress, stop):
             return make_run(self.engine, as_path(out, "out"), want or self.config.want, seconds, self._tell, sheet)
+
+    def export(
+        self,
+        out: str | PathLike[str],
+        to: Sequence[str | Exporter] | None = None,
+        progress: Progress | None = None,
+        stop: Event | None = None,
+        *,
+        force: bool = False,
+    ) -> Export:
+        """Write it as files for others: a printer, swell paper, a pin display, a reader.
+
+        to: names of exporters, or objects of them; what the pipeline's `export` lists where nothing is said. A name
+        that is listed there has the options that it has there. Only what they need is made, of the width that each
+        writes. One that fails does not keep the others from being written: see `Export.outcomes`.
+        progress, stop: as `make`. force: over files that are no earlier export of this pipeline, too.
+        Raises: ConfigError if nothing is named; UnknownMethod, BrokenMethod; OutputError if the folder cannot be
+        written; Stopped after `stop`.
+        """
+        chosen = chosen_exporters(self.config, to, self.engine.registry)
+        return export(self.engine, as_path(out, "out"), chosen, progress, stop, force=force)
 
     def feel(
         self,

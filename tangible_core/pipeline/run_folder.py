@@ -111,11 +111,11 @@ def check_folder(folder: Path, source: Path | None) -> None:
 
 def _own(folder: Path) -> dict[str, str]:
     """Files that are as an earlier run left them, with their digests."""
-    manifest, there = read_manifest(folder), {name: _digest(folder / name) for name in NAMES}
+    manifest, there = read_manifest(folder), {name: file_digest(folder / name) for name in NAMES}
     if manifest is None:
         own = there if _is_of_before_manifests(folder) else {}
     elif manifest.complete:
-        own = {name: digest for name, digest in manifest.files.items() if _digest(folder / name) == digest}
+        own = {name: digest for name, digest in manifest.files.items() if file_digest(folder / name) == digest}
     else:  # nobody else's were there when that run began
         own = {**manifest.files, **there}
     return {name: digest for name, digest in own.items() if digest}
@@ -147,7 +147,7 @@ def rewritten(folder: Path, source: Path | None) -> Generator[Callable[[str], Pa
         return folder / name
 
     yield place
-    Manifest(said, {name: _digest(folder / name) for name in names}).write(folder)
+    Manifest(said, {name: file_digest(folder / name) for name in names}).write(folder)
 
 
 def _remove(path: Path) -> None:
@@ -157,7 +157,7 @@ def _remove(path: Path) -> None:
         raise OutputError(f"{path}: cannot be removed: {error.strerror}; choose another folder") from error
 
 
-def _digest(path: Path) -> str:
+def file_digest(path: Path) -> str:
     """XXH3-128 of a file's content; empty where there is no such file."""
     if not path.is_file():
         return ""

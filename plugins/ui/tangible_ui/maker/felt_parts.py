@@ -17,7 +17,7 @@ from pydantic import BaseModel, ValidationError
 from tangible_core.data import HapticSurface, Material, PartMap
 from tangible_core.errors import ConfigError
 from tangible_core.materials.assignment import find, load_library
-from tangible_core.parts import HeightChoice, Layering, PartChoice, reduced_parts
+from tangible_core.parts import HeightChoice, Layering, PartChoice
 from tangible_core.pipeline import felt as on_grid
 from tangible_core.pipeline import parts_found
 from tangible_core.pipeline.config import PipelineConfig, wrong_of_parts
@@ -29,7 +29,7 @@ from tangible_core.scene.scene import Scene
 from .bench import Bench, Job
 from .making import parcel_of
 from .parts import config_heights, edited_of, opened_of
-from .seen import Seen, at_hand, see_parts
+from .seen import Seen, at_hand, parts_on_grid, see_parts
 from .shown import show
 
 S = TypeVar("S", bound=BaseModel)
@@ -158,7 +158,7 @@ def _kept(bench: Bench, pipeline: Pipeline) -> Kept:
         raise config.complained(*wrong)
     made = pipeline.changed(bare)
     grid = on_grid.FeltScene(made.scene, bare.size)
-    parts = reduced_parts(made.engine.felt("parts"), grid.shape)
+    parts = parts_on_grid(bare, made.engine.felt(bare.felt_parts), grid.shape)
     uses = bare.render is None or bare.render.method.uses_materials
     chosen = made.make("materials") if uses else None
     layering = None if before is None else _same_layering(before, bare, parts, grid)

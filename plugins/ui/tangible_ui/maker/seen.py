@@ -16,7 +16,7 @@ from tangible_core.pipeline.parts_said import names_of
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.pipeline.rules import fitted
 from tangible_core.scene.geometry import RANGE_PERCENT, flat_relief
-from tangible_core.scene.scaling import reduced_map, reduced_segments, reduced_shape
+from tangible_core.scene.scaling import enlarged_parts, reduced_map, reduced_segments, reduced_shape
 
 Shows = Literal["surface", "relief", "segments"]
 MOST_LAYER_CELLS = 1_000_000
@@ -130,17 +130,22 @@ def _seen(pipeline: Pipeline, shows: Shows, relief: Relief) -> Seen:
 def _names(pipeline: Pipeline) -> tuple[str, ...] | None:
     """Of the parts, which are there; None where nothing is by parts."""
     config = pipeline.config
-    parts: PartMap | None = at_hand(pipeline, "parts") if config.by_parts else None
+    parts: PartMap | None = at_hand(pipeline, config.felt_parts) if config.by_parts else None
     return None if parts is None else names_of(config.parts or {}, parts.count)
 
 
 def _labels(pipeline: Pipeline, shape: tuple[int, int]) -> Int32[np.ndarray, "h w"] | None:
     """Of what has materials: of parts where anything is by parts, else of segments; None where they are not there."""
-    product: Product = "parts" if pipeline.config.by_parts else "segments"
-    found = at_hand(pipeline, product)
+    config = pipeline.config
+    found = at_hand(pipeline, config.felt_parts if config.by_parts else "segments")
     if found is None:
         return None
-    return (reduced_parts if product == "parts" else reduced_segments)(found, shape).labels
+    return (parts_on_grid(config, found, shape) if config.by_parts else reduced_segments(found, shape)).labels
+
+
+def parts_on_grid(config: PipelineConfig, parts: PartMap, shape: tuple[int, int]) -> PartMap:
+    """`felt_parts` on the grid that is felt; simplified ones are finer or coarser than the picture."""
+    return reduced_parts(parts, shape) if config.simplify is None else enlarged_parts(parts, shape)
 
 
 def at_hand(pipeline: Pipeline, product: Product) -> Any:

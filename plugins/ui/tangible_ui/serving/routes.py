@@ -40,6 +40,8 @@ ASK_AGAIN = "no-cache"
 NEVER = "no-store"
 READING = ("GET", "HEAD")
 WRONG_KEY = 4401
+EXPORTS = "export-"
+"""How the maker names folders of files that it exported."""
 NOT_YOURS = "the key in the address is not this program's; open the address it printed"
 
 Answer = Callable[[Request], Awaitable[Response]]
@@ -124,6 +126,14 @@ def routes(desk: Callable[[], Desk], key: str) -> list[BaseRoute]:
             return await window_of(path, request)
         return FileResponse(path, headers={"cache-control": FOREVER})
 
+    async def exported(request: Request) -> Response:
+        """A file to keep: it is never shown as a page of this address, whatever is in it."""
+        folder, name = request.path_params["folder"], request.path_params["name"]
+        path = _lying(desk().folder, folder, name) if folder.startswith(EXPORTS) else None
+        if path is None:
+            return PlainTextResponse("this file is not there any more; export it again", 404)
+        return FileResponse(path, filename=name)
+
     async def window_of(path: Path, request: Request) -> Response:
         try:
             found = await asyncio.to_thread(read_window, path, {key: int(request.query_params[key]) for key in WINDOW})
@@ -158,6 +168,7 @@ def routes(desk: Callable[[], Desk], key: str) -> list[BaseRoute]:
 
     return [
         Route("/scene/{digest}/{name}", keyed(scene)),
+        Route("/export/{folder}/{name}", keyed(exported)),
         Route("/upload/{batch}/{name}", keyed(upload), methods=["PUT"]),
         Route("/stop", keyed(stop), methods=["POST"]),
         WebSocketRoute("/live", live),

@@ -6,6 +6,7 @@ import type { Page } from "../page";
 import type { Panel } from "../panel";
 import { t } from "../words/preflight";
 import { type Cure, sentence, verdicts } from "./verdicts";
+import "./verdicts.css";
 
 type Fixed = { changes: Record<string, string | number>; safe: boolean; sentence: string } | null;
 

@@ -2,7 +2,6 @@
 import { button, headed, paragraph } from "../elements";
 import type { Grade, Verdict } from "../messages";
 import { t } from "../words/verdicts";
-import "./verdicts.css";
 
 const SHAPES: Record<Grade, string> = { ok: "✓", warn: "▲", unsafe: "✕", illegible: "✕" };
 

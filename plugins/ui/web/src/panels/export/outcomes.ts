@@ -1,5 +1,5 @@
 /** What became of each exporter: its files, what was decided, and whether fingers can read it. */
-import { button, paragraph } from "../../elements";
+import { paragraph } from "../../elements";
 import { token } from "../../key";
 import type { Exported, Outcome } from "../../messages";
 import { t } from "../../words/export";
@@ -8,7 +8,7 @@ import { type Cure, sentence, verdicts } from "../verdicts";
 import { called } from "./choices";
 
 const SHAPES: Partial<Record<Outcome["outcome"], string>> = { ran: "✓", refused: "⊘", failed: "✕" };
-const UNITS = [["bytes", 1, 0], ["kilobytes", 1e3, 0], ["megabytes", 1e6, 1]] as const;
+const UNITS = [["megabytes", 1e6, 1], ["kilobytes", 1e3, 0], ["bytes", 1, 0]] as const;
 
 export function outcomes(said: Exported, cure: Cure): HTMLElement[] {
   return said.exports.map((each) => outcome(said.folder, each, cure));
@@ -89,6 +89,6 @@ function shape(known: Outcome["outcome"]): HTMLElement {
 }
 
 export function sized(bytes: number): string {
-  const [unit, of, digits] = UNITS.findLast((each) => bytes >= each[1]) ?? UNITS[0];
+  const [unit, of, digits] = UNITS.find((each) => bytes >= each[1]) ?? UNITS[2];
   return t(unit, { size: decimal(bytes / of, digits) });
 }

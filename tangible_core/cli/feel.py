@@ -87,7 +87,7 @@ def feel(
         figures = {"device": device.name, "spec": asdict(device.method.spec()), **felt}
         outcomes = show.as_rows(pipeline.outcomes)
         said = {"guard": session.changed_most(report.flagged), "hand": hand and hand._asdict()}
-        said |= {"part": report.part, "parts": [each._asdict() for each in parts]}
+        said |= {"part": report.part, "material": report.material, "parts": [each._asdict() for each in parts]}
         file = {"file": record and str(record)}
         show.print_json({"outcomes": outcomes, "loop": loop, "figures": figures, **said, **file})
     elif not is_quiet():

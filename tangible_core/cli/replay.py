@@ -82,6 +82,7 @@ def _print(
         said: dict[str, Any] = {"device": before.about.device, "renderer": before.about.renderer}
         said |= {"started": before.about.started, "stopped": before.stopped}
         said["parts"] = session.names_of(before.about.parts)
+        said["materials"] = session.names_of(before.about.materials)
         felt = [each._asdict() for each in parts]
         show.print_json({"recorded": said, "figures": figures, "parts": felt, "file": record and str(record)})
         return

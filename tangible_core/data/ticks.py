@@ -84,3 +84,5 @@ class ServoReport:
     """Of that force, within half a millinewton; 0 where there was none."""
     part: str = ""
     """What the part of the picture under the tip is called; empty where the surface has none."""
+    material: str = ""
+    """The name of the material under the tip, of parts or of segments; empty where the surface has none."""

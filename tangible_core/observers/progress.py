@@ -29,11 +29,12 @@ def tangible_stage_finished(outcome: Outcome) -> None:
 
 @hookimpl
 def tangible_servo_report(report: ServoReport) -> None:
-    """Time, force and the part under the tip, rewritten in place; gone when the loop stops."""
+    """Time, force, and the part and material under the tip, rewritten in place; gone when the loop stops."""
     if report.stopped:
         _clear()
     else:
-        on = f", on {shown(report.part)}" if report.part else ""
+        under = ", ".join(shown(each) for each in (report.part, report.material) if each)
+        on = f", on {under}" if under else ""
         _show(f"feeling: {report.time_s:5.1f} s, peak {report.peak_force_n:.2f} N{on}")
 
 

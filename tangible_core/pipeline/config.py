@@ -9,9 +9,10 @@ from typing import Annotated, Any, Generic, Literal, TypeVar, cast, get_args
 
 from pydantic import BaseModel, Discriminator, Tag
 from ruamel.yaml import YAML
+from ruamel.yaml.comments import CommentedMap, CommentedSeq
 
 from ..errors import ConfigError, MaterialError, TangibleError, did_you_mean, quoted
-from ..files.source import Location, Source, parse_source, read_text
+from ..files.source import Location, Source, parse_override, parse_source, read_text
 from ..legibility.choice import SimplifyChoice
 from ..mapping import WorkspaceMapping, mapped
 from ..materials.assignment import NEUTRAL, find, load_library
@@ -245,7 +246,8 @@ def load_config(path: Path, registry: Registry, overrides: Iterable[str] = ()) -
     """Read and check a pipeline file.
 
     overrides: `key.key=value` each, the value in YAML, as `--set` takes them; another method (`depth.use=...`)
-    starts with its own defaults.
+    starts with its own defaults. `export.NAME.key=value` is of the exporter of that name, which is listed if it is not
+    yet.
     Raises: ConfigError with every complaint, one a line.
     """
     return parse_config(read_text(path), path, registry, overrides)
@@ -254,7 +256,9 @@ def load_config(path: Path, registry: Registry, overrides: Iterable[str] = ()) -
 def parse_config(text: str, path: Path, registry: Registry, overrides: Iterable[str] = ()) -> PipelineConfig:
     """`load_config` for a text; `path` is what complaints name and what relative files are relative to."""
     what = "a configuration is a mapping that starts with `scene:`"
-    source = parse_source(text, path, what, overrides, shorthand=shorthand)
+    source = parse_source(text, path, what)
+    for override in overrides:
+        _override(source, override)
     source.check_keys(KEYS)
     values: dict[str, Any] = {"scene": _scene(source), "want": _want(source), **_sections(source), **_parts(source)}
     values["export"] = _exporters(source, registry)
@@ -314,6 +318,32 @@ def choose(source: Source, location: Location, kind: str, block: Any, registry: 
         return source.complain((*location, "use"), str(error))
     method = source.model(location, cls, options)
     return None if method is None else NamedMethod(name, listing.origin, method)
+
+
+def _override(source: Source, text: str) -> None:
+    """Apply `key.key=value`, in which an exporter's name stands for its place in the list."""
+    parts, _ = parse_override(text)
+    place: Location = ()
+    if parts[0] == "export" and len(parts) > 1:
+        listed = source.tree.setdefault("export", CommentedSeq())
+        if isinstance(listed, list) and len(parts) > 2:
+            place = ("export", exporter_at(cast("list[Any]", listed), parts[1]), *parts[2:])
+    source.override(text, shorthand, place)
+
+
+def exporter_at(listed: list[Any], name: str) -> int:
+    """Where in a list an exporter is, by its name, or its number from 0; one that is not there is added.
+
+    >>> exporter_at(["stl", {"use": "swell"}], "swell")
+    1
+    """
+    if name.isdecimal() and int(name) < len(listed):
+        return int(name)
+    for index, each in enumerate(listed):
+        if name == (cast("dict[Any, Any]", each).get("use") if isinstance(each, dict) else each):
+            return index
+    listed.append(CommentedMap(use=name))
+    return len(listed) - 1
 
 
 def _exporters(source: Source, registry: Registry) -> tuple[NamedMethod[Exporter], ...]:

@@ -374,19 +374,19 @@ class Pipeline:
         file = None if record is None else as_path(record, "record")
         if file is not None:
             check_record_path(file, seconds is None)
-        felt, said, touch = self._device(device), self._about(device), self._touch(device)
+        felt, touch, said = self._device(device), self._touch(device), self._about(device)
         tell = _both(self._tell, on_report)
         if not in_real_time and (then or on_wait):
             raise ConfigError("then, on_wait: are for a session in real time; leave them out, or in_real_time=False")
         if not in_real_time:
-            tell, until_s = telling_parts(self._parts(), tell), math.inf if seconds is None else seconds
+            tell, until_s = telling_parts(self.surface, tell), math.inf if seconds is None else seconds
             found = run_simulated(touch, felt, until_s, tell, self.config.safety, stop)
             found = replace(found, about=said.stamped())
             if file is not None:
                 found.save(file)
             return found
 
-        turns = [Turn(touch, self.config.safety, self._parts()), *(each._turn(self, device) for each in then)]
+        turns = [Turn(touch, self.config.safety, self.surface), *(each._turn(self, device) for each in then)]
         each_s = each_s if then else math.inf
         said = _in_turn(said, [each._about(None) for each in (self, *then)])
 
@@ -481,7 +481,7 @@ class Pipeline:
             )
         if device is None and ours.device is None and theirs.device is not None:
             device = theirs.device.method
-        return Turn(self._touch(device), ours.safety, self._parts())
+        return Turn(self._touch(device), ours.safety, self.surface)
 
     def _touch(self, device: HapticDevice | None) -> Touch:
         """The law on the surface, whose materials fit this device, or the configured one."""
@@ -493,10 +493,6 @@ class Pipeline:
         seen: what was felt, or one tick of `session.EVERY` of it. Raises: as `make`.
         """
         return parts_felt(seen, self.surface)
-
-    def _parts(self) -> HapticSurface | None:
-        """The surface whose parts are told; None where it has none."""
-        return self.surface if self.config.by_parts else None
 
     def _about(self, device: HapticDevice | None) -> About:
         said = about(self.engine)
@@ -608,8 +604,9 @@ def _as_in_yaml(materials: Materials | None) -> MaterialChoice | Mapping[str, An
 def _in_turn(said: About, each: Sequence[About]) -> About:
     """What is said of scenes that are felt in turn."""
     configuration = "---\n".join(one.configuration for one in each)
-    parts = "\n".join(one.parts for one in each) if any(one.parts for one in each) else ""
-    return replace(said, configuration=configuration, parts=parts)
+    names = (tuple(getattr(one, which) for one in each) for which in ("parts", "materials"))
+    parts, materials = ("\n".join(lines) if any(lines) else "" for lines in names)
+    return replace(said, configuration=configuration, parts=parts, materials=materials)
 
 
 def _both(one: Callable[[T], None], other: Callable[[T], None] | None) -> Callable[[T], None]:

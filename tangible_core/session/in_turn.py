@@ -35,7 +35,7 @@ class Turn(NamedTuple):
     touch: Touch
     limits: Safety
     parts: HapticSurface | None = None
-    """The surface whose parts reports tell; None for none."""
+    """The surface whose parts and materials reports tell; None for none."""
 
 
 def run_in_turn(

@@ -1,4 +1,4 @@
-"""Which part of a picture the tip is on, by the part's name; looked up beside the force loop, never in it."""
+"""Which part and material the tip is on, by their names; looked up beside the force loop, never in it."""
 
 import json
 from collections.abc import Callable, Mapping
@@ -25,31 +25,47 @@ class PartFelt(NamedTuple):
     share: float
     """Of the time in contact, in which the tip was on it."""
     peak_force_n: float
+    material: str = ""
+    """The name of its material; empty where the surface has none."""
 
 
 def telling_parts(surface: HapticSurface | None, tell: Callable[[ServoReport], None]) -> Callable[[ServoReport], None]:
-    """`tell`, which then hears of the part under the tip too. surface: None for one without parts."""
+    """`tell`, which then hears of the part and the material under the tip too. surface: None for one without either."""
     return lambda report: tell(with_part(report, surface))
 
 
 def with_part(report: ServoReport, surface: HapticSurface | None) -> ServoReport:
-    """A report with what the part under the tip is called."""
+    """A report with what the part under the tip is called, and its material."""
     if surface is None or not report.ticks:
         return report
-    return replace(report, part=part_under(surface, report.state.position_m))
+    at_m = report.state.position_m
+    return replace(report, part=part_under(surface, at_m), material=material_under(surface, at_m))
 
 
 def part_under(surface: HapticSurface, position_m: Vector) -> str:
     """What the part under a tip is called, touched or not; empty beside the surface, and where that has no parts."""
     if surface.names is None:
         return ""
-    number = int(_parts_under(surface, np.array([position_m], np.float64))[0])
+    number = _under(surface, position_m)
     return "" if number < 0 else called(number, surface.names[number])
+
+
+def material_under(surface: HapticSurface, position_m: Vector) -> str:
+    """The name of the material under a tip, touched or not; empty beside the surface, and where that has none."""
+    if not surface.materials:
+        return ""
+    number = _under(surface, position_m)
+    return "" if number < 0 else surface.materials[number].name
 
 
 def names_text(names: Mapping[int, str]) -> str:
     """The names of parts by number, as the header of a recording has them; empty for none."""
     return json.dumps({str(number): names[number] for number in sorted(names)}, ensure_ascii=False) if names else ""
+
+
+def materials_text(surface: HapticSurface) -> str:
+    """The names of a surface's materials by the number of their label, as `names_text`; empty where it has none."""
+    return names_text({number: each.name for number, each in enumerate(surface.materials or ())})
 
 
 def names_in(configuration: str) -> str:
@@ -88,9 +104,22 @@ def parts_felt(felt: Recording, surface: HapticSurface) -> tuple[PartFelt, ...]:
     numbers, ticks = np.unique(under[under >= 0], return_counts=True)
     order = np.argsort(-ticks, kind="stable")
     return tuple(
-        PartFelt(number, surface.names[number], count / len(under), float(force_n[under == number].max()))
+        PartFelt(
+            number,
+            surface.names[number],
+            count / len(under),
+            float(force_n[under == number].max()),
+            surface.materials[number].name if surface.materials else "",
+        )
         for number, count in zip(numbers[order].tolist(), ticks[order].tolist(), strict=True)
     )
+
+
+def _under(surface: HapticSurface, position_m: Vector) -> int:
+    """The label under a place, -1 beside the surface and where that has no labels."""
+    if surface.labels is None:
+        return -1
+    return int(_parts_under(surface, np.array([position_m], np.float64))[0])
 
 
 def _parts_under(surface: HapticSurface, at_m: Places) -> Int32[np.ndarray, " n"]:

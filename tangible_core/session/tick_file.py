@@ -37,6 +37,8 @@ class About:
     parts: str = ""
     """Names of the surface's parts, a JSON object from number to name; of scenes felt in turn, a line each, which is
     empty for one without names."""
+    materials: str = ""
+    """Names of the surface's materials in the same form, by the number of the part or segment that is made of it."""
 
     def stamped(self) -> Self:
         """With date and versions, where they are not said."""

@@ -290,18 +290,24 @@ def test_names_go_from_the_file_through_a_session_to_its_replay(folder: Path):
     well(tangible("parts", "still.png", cwd=folder))
     file = folder / "still.yaml"
     file.write_text(
-        file.read_text().replace('0: {name: ""', "0: {name: '[wall]'").replace("path: raster", "path: press")
+        file.read_text()
+        .replace('0: {name: ""', "0: {material: glass, name: '[wall]'")
+        .replace("path: raster", "path: press")
     )
     felt = well(tangible("feel", "still.yaml", "--seconds", 0.8, "--record", "hand.nc", "--json", cwd=folder))
     said = json.loads(felt.stdout)
     assert said["part"] in ("[wall]", "part 1", "part 2")
     assert sum(each["share"] for each in said["parts"]) == pytest.approx(1)
-    assert names_of(Recording.load(folder / "hand.nc").about.parts) == [{0: "[wall]"}]
+    about = Recording.load(folder / "hand.nc").about
+    (materials,) = names_of(about.materials)
+    assert names_of(about.parts) == [{0: "[wall]"}] and materials[0] == "glass"
+    assert said["material"] in materials.values()
+    assert [each["material"] for each in said["parts"]] == [materials[each["number"]] for each in said["parts"]]
     again = json.loads(well(tangible("replay", "hand.nc", "still.yaml", "--json", cwd=folder)).stdout)
-    assert again["recorded"]["parts"] == [{"0": "[wall]"}]
+    assert again["recorded"]["parts"] == [{"0": "[wall]"}] and again["recorded"]["materials"][0]["0"] == "glass"
     assert [each["number"] for each in again["parts"]] == [each["number"] for each in said["parts"]]
     table = well(tangible("replay", "hand.nc", "still.yaml", cwd=folder)).stdout
-    assert "% of the contact" in table
+    assert "% of the contact" in table and "material" in table
 
 
 def test_a_run_says_what_its_parts_are(folder: Path):

@@ -42,6 +42,8 @@ class Felt(NamedTuple):
     """Whether that is the page's own pointer."""
     mapping: WorkspaceMapping
     safety: Safety
+    materials: str = ""
+    """Their names by label, as a recording has them."""
 
     @classmethod
     def of(cls, made: dict[str, Any], channel: str) -> "Felt":
@@ -50,7 +52,7 @@ class Felt(NamedTuple):
         parts = (pickle.loads(made[name]) for name in ("device", "mapping", "safety"))
         device, mapping, safety = parts
         own_hand = getattr(unmapped(device), "channel", None) == channel
-        return cls(touch, made["law"], made["device_name"], device, own_hand, mapping, safety)
+        return cls(touch, made["law"], made["device_name"], device, own_hand, mapping, safety, made["materials"])
 
     @property
     def held(self) -> HapticDevice:

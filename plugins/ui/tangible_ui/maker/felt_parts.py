@@ -92,7 +92,7 @@ def parts_heights(
     kept.surface = names(config, HapticSurface(relief, kept.parts.labels, made, ("",) * kept.parts.count))
     device = config.felt_device
     surface = kept.surface if device is None else fitted(kept.surface, config, device)[0]
-    return parcel_of(config.render.method.touch(surface), surface.extent_m, config)
+    return parcel_of(config.render.method.touch(surface), surface, config)
 
 
 def parts_shown(bench: Bench) -> None:

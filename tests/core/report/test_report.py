@@ -33,6 +33,7 @@ from tangible_core.data import (
     SegmentMap,
     Views,
 )
+from tangible_core.description import describe
 from tangible_core.errors import OutputError, PictureError
 from tangible_core.haptic_textures import peak_wavelength_m
 from tangible_core.materials.assignment import library
@@ -48,7 +49,6 @@ from tangible_core.report.panels.force import round_number, spread
 from tangible_core.report.sheet import DPI, WIDTH_IN, draw_figure
 from tangible_core.report.showing import show
 from tangible_core.report.style import colours
-from tangible_core.scene.description import describe
 from tangible_core.session import Recording
 
 NAN = np.nan

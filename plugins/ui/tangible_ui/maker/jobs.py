@@ -2,6 +2,7 @@
 
 from . import (
     checking,
+    describing,
     devices,
     exporting,
     felt_parts,
@@ -24,6 +25,7 @@ JOBS = {
     **checking.JOBS,
     **mapping.JOBS,
     **opening.JOBS,
+    **describing.JOBS,
     **preflight.JOBS,
     **exporting.JOBS,
     **legible.JOBS,

@@ -59,6 +59,13 @@ class Seen:
     names: tuple[str, ...] | None = None
     """By label, of what the labels are parts of; None where they are of no parts."""
 
+    @property
+    def surface(self) -> HapticSurface:
+        """What is described of it."""
+        if self.materials or self.names:
+            return HapticSurface(self.relief, self.labels, self.materials or None, self.names)
+        return HapticSurface(self.relief)
+
     @cached_property
     def digest(self) -> str:
         """Of everything that is drawn."""

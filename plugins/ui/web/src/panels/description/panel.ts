@@ -8,16 +8,21 @@ import { language as ours } from "../../words/words";
 const LANGUAGES = ["en", "de", "fr"] as const;
 type Language = (typeof LANGUAGES)[number];
 
-/** What the program says; an empty digest while there is nothing to describe. */
+/** What the program says of the surface with this digest; text and html say all of it. */
 interface Description {
   digest: string;
-  name: string;
-  lines: string[];
+  title: string;
+  overview: string;
+  heading: string;
+  parts: { label: string; says: string }[];
+  left_out: string;
+  text: string;
   html: string;
 }
 
 export function build(page: Page, root: HTMLElement): void {
   const text = region();
+  text.append(paragraph(t("waiting")));
   const told = document.createElement("p");
   told.setAttribute("role", "status");
   const language = choice();
@@ -29,24 +34,23 @@ export function build(page: Page, root: HTMLElement): void {
     if (!chosen) language.value = languageOf(page);
     const asked = language.value;
     try {
-      const found = await page.net.ask<Description>("description", { language: asked });
-      if (asked === language.value) show(found, asked);
+      const found = await page.net.ask<Description | null>("description", { language: asked });
+      if (found && asked === language.value) show(found, asked);
     } catch (error) {
       told.textContent = t("failed", { why: (error as Error).message });
     }
   };
   const show = (found: Description, lang: string): void => {
     told.textContent = "";
-    if (said?.digest && said.digest !== found.digest) page.say(t("fresh"), { topic: "description" });
+    if (said && said.digest !== found.digest) page.say(t("fresh"), { topic: "description" });
     said = found;
-    text.lang = found.digest ? lang : ours;
-    text.replaceChildren(...(found.digest ? found.lines.map((line) => paragraph(line)) : [paragraph(t("waiting"))]));
-    buttons.hidden = !found.digest;
+    text.lang = lang;
+    text.replaceChildren(...inElements(found));
+    buttons.hidden = false;
   };
-  const all = (): string => said!.lines.join("\n");
   const read = button(t("read"), () => {
     if (page.speech.reading) page.speech.hush();
-    else if (!page.speech.read(said!.lines, language.value, spoken)) told.textContent = t("noVoice");
+    else if (!page.speech.read(said!.text.split("\n").filter(Boolean), language.value, spoken)) told.textContent = t("noVoice");
     spoken();
   });
   const spoken = (): void => void (read.textContent = t(page.speech.reading ? "quiet" : "read"));
@@ -56,11 +60,11 @@ export function build(page: Page, root: HTMLElement): void {
   buttons.append(
     read,
     button(t("copy"), async () => {
-      await copy(all());
+      await copy(said!.text);
       page.say(t("copied"), { asked: true });
     }),
-    button(t("asText"), () => download(`${all()}\n`, `${said!.name}.txt`, "text/plain")),
-    button(t("asHtml"), () => download(said!.html, `${said!.name}.html`, "text/html")),
+    button(t("asText"), () => download(`${said!.text}\n`, `${said!.title}.txt`, "text/plain")),
+    button(t("asHtml"), () => download(said!.html, `${said!.title}.html`, "text/html")),
   );
   language.onchange = () => {
     chosen = true;
@@ -84,6 +88,24 @@ function choice(): HTMLSelectElement {
   made.id = "description-language";
   for (const each of LANGUAGES) made.add(new Option(t(each), each));
   return made;
+}
+
+function inElements({ title, overview, heading, parts, left_out }: Description): HTMLElement[] {
+  const head = document.createElement("h3");
+  head.textContent = title;
+  const made = [head, paragraph(overview)];
+  if (!parts.length) return made;
+  const second = document.createElement("h4");
+  second.textContent = heading;
+  const list = document.createElement("ol");
+  for (const { label, says } of parts) {
+    const item = document.createElement("li");
+    const name = document.createElement("strong");
+    name.textContent = label;
+    item.append(name, `. ${says}`);
+    list.append(item);
+  }
+  return [...made, second, list, ...(left_out ? [paragraph(left_out)] : [])];
 }
 
 /** It scrolls, so that it takes the focus; it is no live region: a new text is announced, not read out. */

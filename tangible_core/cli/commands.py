@@ -33,6 +33,7 @@ COMMANDS = {
     "parts": Command("parts:parts", "Divide a picture into parts, to name and to give heights."),
     "run": Command("run:run", "Run a pipeline file, or a picture, and write a report."),
     "plan": Command("run:plan", "Say what `run` would do, and why; run nothing."),
+    "export": Command("export:export", "Write files for others: a printer, swell paper, pins, a reader."),
     "preflight": Command("preflight:preflight", "Check, before a motor moves, what is safe."),
     "feel": Command("feel:feel", "Feel the surface on the configured device, in real time."),
     "replay": Command("replay:replay", "Feel a recording again with another law."),

@@ -16,6 +16,12 @@ def devices(incomplete: str) -> list[tuple[str, str]]:
     return _installed("device", incomplete)
 
 
+def exporters(incomplete: str) -> list[tuple[str, str]]:
+    """Exporters, with what they write; behind a comma, one more."""
+    before, comma, begun = incomplete.rpartition(",")
+    return [(f"{before}{comma}{name}", summary) for name, summary in _installed("export", begun)]
+
+
 def kinds(incomplete: str) -> list[str]:
     """Kinds of methods."""
     from ..plugins.registry import KIND_NAMES
@@ -39,15 +45,35 @@ def scenes(incomplete: str) -> list[str]:
 
 def keys(incomplete: str) -> list[str]:
     """Keys of a pipeline file, as `--set` takes them; after `use=`, the methods."""
+    from ..legibility.choice import SimplifyChoice
     from ..pipeline.config import SECTIONS, STAGES
     from ..plugins.registry import default_registry
 
+    if incomplete.startswith("export."):
+        return _of_exporters(incomplete)
     stage, use, _ = incomplete.partition(".use=")
     if use and stage in STAGES:
         return _beginning((f"{stage}.use={name}" for name in default_registry().names(stage)), incomplete)
     found = [f"{name}.{option}=" for name, section in SECTIONS.items() for option in section.model_fields]
-    alone = ("scene", "title", "language", "want", "heights")
+    alone = ("scene", "title", "language", "want", "heights", "export")
+    found += [f"simplify.{option}=" for option in SimplifyChoice.model_fields]
     return _beginning((*(f"{key}=" for key in alone), *(f"{stage}.use=" for stage in STAGES), *found), incomplete)
+
+
+def _of_exporters(incomplete: str) -> list[str]:
+    """`export.NAME.`, and behind that the options of this one alone: no other is imported."""
+    from ..errors import TangibleError
+    from ..plugins.registry import default_registry
+
+    names = default_registry().names("export")
+    name, dot, _ = incomplete.removeprefix("export.").partition(".")
+    if not dot or name not in names:
+        return _beginning((f"export.{each}." for each in names), incomplete)
+    try:
+        options = default_registry().load("export", name).model_fields
+    except TangibleError:
+        return []
+    return _beginning((f"export.{name}.{option}=" for option in options), incomplete)
 
 
 def _installed(kind: str | None, incomplete: str) -> list[tuple[str, str]]:

@@ -1,18 +1,20 @@
 """Handing on: exporters get what they need, and their files come into a folder, each whole or not at all."""
 
 import errno
+import logging
 import re
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass, field, replace
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from threading import Event
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, final
+from typing import Any, final
 
-from ..data import Note, Outcome, Outcomes, PartMap, Record, Work
+from ..data import Note, Outcome, Outcomes, Record, Work
 from ..data.outcome import HEADINGS, OutcomeKind, html_table, text_table
 from ..errors import BrokenMethod, ConfigError, Stopped, TangibleError, exited, quoted, wrong_argument
+from ..legibility import Legibility
 from ..plugins import failures, hooks
 from ..plugins.interfaces import Exporter
 from ..plugins.naming import named
@@ -21,16 +23,13 @@ from ..plugins.registry import Registry
 from ..runtime.stopping import check_stopped, stoppable
 from ..scene.scene import Scene
 from ..scene.scene_files import SceneFiles
-from ..scene.workspace import Workspace
 from .config import PRODUCTS, NamedMethod, PipelineConfig
 from .engine import Engine, Progress, Stage
 from .export_folder import check_writable, check_written, move, scratch
-from .felt import FeltScene
-from .parts_said import names_of
+from .legible import judged, names, of_width
 from .run_folder import default_name, relative_source
 
-if TYPE_CHECKING:
-    from ..legibility import Legibility
+log = logging.getLogger(__name__)
 
 PREFIX = "export: "
 """Of an exporter's name, in what is said of its outcome."""
@@ -38,8 +37,6 @@ EXPORTABLE = tuple(each for each in PRODUCTS if each != "touch")
 """Products that an exporter may need: a touch is no record."""
 MOST_STEM_BYTES = 120
 """Of a file's name before its ending: systems take 255, and endings are added."""
-ROUNDING = 1e-9
-"""A share by which a product of floating-point numbers may be off, and more."""
 NO_ROOM = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO}
 """What the disk says, whoever writes."""
 
@@ -56,7 +53,7 @@ class Exported:
     files: tuple[Path, ...] = ()
     made: Outcomes = field(default_factory=Outcomes)
     """What became of the products that it needs."""
-    legible: "Legibility | None" = None
+    legible: Legibility | None = None
     """Whether fingers can read it; None for what is not felt."""
 
 
@@ -176,11 +173,11 @@ class _Desk:
         self.force = force
         self.progress = progress
         self.source = relative_source(engine.config.path, folder)
-        self.of_width: dict[float, Engine] = {engine.config.size.width_m: engine}
+        self.of_width: dict[float | None, Engine] = {None: engine, engine.config.size.width_m: engine}
 
     def serve(self, name: str, stem: str, chosen: NamedMethod[Exporter]) -> Exported:
         """Make what this exporter needs, and have it write."""
-        made, product, start = Outcomes(), f"{PREFIX}{name}", perf_counter()
+        made, product, seconds = Outcomes(), f"{PREFIX}{name}", 0.0
         files, legible, notes = (), None, list[Note]()
 
         def told(stage: Stage) -> None:
@@ -192,20 +189,22 @@ class _Desk:
             engine = self._engine(chosen)
             with engine.watched(told):
                 work = work_for(engine, chosen.method)
-                legible = None
+                legible = legible_for(engine, chosen.method)
             check_stopped()
             self.progress(Stage(product, chosen.name))
             hooks.tell(self.engine.registry.plugins, "tangible_stage_started", product=product, method=chosen.name)
             start = perf_counter()
             with scratch(self.folder) as place, noted() as notes:
                 files = self._written(chosen, work, place / stem)
+            seconds = perf_counter() - start
             became: OutcomeKind = "ran"
+            notes = [*_illegible(legible), *notes]
             why = "; ".join(["asked for", *(each.text for each in notes)])
         except Stopped:
             raise
         except (Exception, SystemExit) as error:  # noqa: BLE001 - whatever a plugin raises, the others still write
             became, why = _fault(error, self.folder)
-        outcome = Outcome(product, became, why, chosen.name, perf_counter() - start, tuple(notes))
+        outcome = Outcome(product, became, why, chosen.name, seconds, tuple(notes))
         self.progress(Stage(product, chosen.name, outcome))
         hooks.tell(self.engine.registry.plugins, "tangible_stage_finished", outcome=outcome)
         return Exported(name, outcome, files, made, legible)
@@ -214,10 +213,8 @@ class _Desk:
         """The one that makes products as wide as this exporter writes them."""
         rows, columns = self.engine.scene.shape
         width_m = chosen.method.width_m(columns / rows)
-        if width_m is None:
-            return self.engine
         if width_m not in self.of_width:
-            self.of_width[width_m] = self.engine.changed(config_of_width(self.engine, width_m))
+            self.of_width[width_m] = of_width(self.engine, width_m)
         return self.of_width[width_m]
 
     def _written(self, chosen: NamedMethod[Exporter], work: Work, stem: Path) -> tuple[Path, ...]:
@@ -243,23 +240,23 @@ def work_for(engine: Engine, exporter: Exporter) -> Work:
         engine.config.language,
         products,
         None if views is None else views.left,
-        _names(engine.config, products),
+        names(engine.config, products),
     )
 
 
-def config_of_width(engine: Engine, width_m: float) -> PipelineConfig:
-    """The same, so wide. What is found in the picture stays the same: it is looked at no finer than before.
+def legible_for(engine: Engine, exporter: Exporter) -> Legibility | None:
+    """Whether fingers can read what it writes, by what is made for it anyway; None for what is not felt."""
+    if exporter.medium is None:
+        return None
+    parts = "simplified" if "simplified" in exporter.needs else engine.config.felt_parts
+    return judged(engine, exporter.medium, parts, set[str]().union(*map(engine.needed, exporter.needs)))
 
-    Raises: BrokenMethod for what is no width.
-    """
-    config, columns = engine.config, engine.scene.shape[1]
-    factor = FeltScene(engine.scene, config.size).factor
-    finest_m = 0.0 if factor == 1 else factor * width_m / columns * (1 + ROUNDING)
-    try:
-        workspace = Workspace.model_validate({**dict(config.workspace), "width_m": width_m, "finest_m": finest_m})
-    except ValueError as error:
-        raise BrokenMethod(f"an exporter wants a width of {quoted(width_m)} m; a width is from 1e-6 to 10 m") from error
-    return replace(config, workspace=workspace)
+
+def _illegible(legible: Legibility | None) -> list[Note]:
+    if legible is None or legible.readable:
+        return []
+    log.warning("%s", legible.sentence)
+    return [Note(legible.sentence, "warning")]
 
 
 def title_of(config: PipelineConfig, scene: Scene) -> str:
@@ -280,14 +277,6 @@ def stem_of(config: PipelineConfig, scene: Scene) -> str:
     name = title_of(config, scene) if config.path is None else default_name(config.path)
     plain = re.sub(r"[^\w -]+", "-", name).strip("- ")
     return plain.encode()[:MOST_STEM_BYTES].decode(errors="ignore") or "export"
-
-
-def _names(config: PipelineConfig, products: Mapping[str, Record | None]) -> tuple[str, ...]:
-    """Names of all parts, as far as it is known how many there are."""
-    if not config.parts:
-        return ()
-    counts = [made.count for made in products.values() if isinstance(made, PartMap)]
-    return names_of(config.parts, max(counts, default=max(config.parts) + 1))
 
 
 def _fault(error: BaseException, folder: Path) -> tuple[OutcomeKind, str]:

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from os import PathLike
 from threading import Event
-from typing import Any, Literal, Self, TypeVar, cast, final, overload
+from typing import Any, Literal, Self, TypeVar, cast, final, get_args, overload
 
 import numpy as np
 from pydantic import BaseModel, ValidationError
@@ -23,14 +23,24 @@ from ..data import (
     ServoReport,
     Views,
 )
-from ..errors import Complaint, ConfigError, quoted, wrong_argument
+from ..errors import Complaint, ConfigError, did_you_mean, quoted, wrong_argument
 from ..files.paths import as_path
 from ..files.writing import write_text
-from ..legibility.choice import SimplifyChoice
+from ..legibility import Legibility, SimplifyChoice
 from ..mapping import WorkspaceMapping
 from ..parts import HeightChoice, PartChoice, PartHeights
 from ..plugins import hooks
-from ..plugins.interfaces import KINDS, DepthEstimator, Exporter, ForceRenderer, HapticDevice, Method, Segmenter, Touch
+from ..plugins.interfaces import (
+    KINDS,
+    DepthEstimator,
+    Exporter,
+    ForceRenderer,
+    HapticDevice,
+    Medium,
+    Method,
+    Segmenter,
+    Touch,
+)
 from ..plugins.registry import Registry, default_registry
 from ..preflight import Flight, Hand, Loop, Preflight, judge, survey
 from ..scene.scene import Scene
@@ -55,6 +65,7 @@ from .config import MaterialChoice, NamedMethod, PipelineConfig, Product, load_c
 from .engine import Engine, Progress
 from .exporting import Export, chosen_exporters, export
 from .following import felt_device, how_followed
+from .legible import legible, of_width
 from .parts_said import Inscription
 from .parts_text import part_heights, to_correct
 from .rehearsal import rehearsal
@@ -434,6 +445,19 @@ class Pipeline:
         Raises: ConfigError if there is no device or law; TangibleError as `make`.
         """
         return judge(self.flight(device, hand, loop))
+
+    def legible(self, medium: Medium, width_m: float | None = None) -> Legibility:
+        """Whether fingers can read its parts: on swell paper, as a print, on pins, or on a force device.
+
+        width_m: of the whole picture; that of the workspace where nothing is said. The parts are those that `simplify`
+        makes legible, where the pipeline has them made so.
+        Raises: ConfigError for what is no medium or no width; TangibleError as `make`.
+        """
+        if medium not in (media := get_args(Medium)):
+            raise ConfigError(
+                f"medium: is {quoted(medium)}{did_you_mean(str(medium), media)}; it is {', '.join(media)}"
+            )
+        return legible(of_width(self.engine, width_m), medium)
 
     def flight(self, device: HapticDevice | None = None, hand: Hand | None = None, loop: Loop | None = None) -> Flight:
         """What the checks of `preflight` know. Raises: as `preflight`."""

@@ -23,7 +23,7 @@ from ..data import (
     digest_of,
 )
 from ..errors import BrokenMethod, ConfigError, PictureError, TangibleError
-from ..legibility import SimplifyChoice
+from ..legibility import SimplifyChoice, simplify
 from ..materials import assignment
 from ..parts import Layering, PartHeights, reduced_parts
 from ..parts import find as part_finding
@@ -216,14 +216,12 @@ def _simplified(config: PipelineConfig, grid: FeltScene, unsegmented: str | None
     choice, width_m, names = config.simplify or SimplifyChoice(), config.size.width_m, config.part_names
 
     def make(inputs: Inputs) -> PartMap:
-        from ..legibility import simplify
-
         parts: PartMap = inputs["parts"]
         called = parts_said.names_of(config.parts or {}, parts.count)
         return simplify(parts, width_m, choice, called, grid.views.left if grid.views else None)
 
     skip = f"there are no segments: {unsegmented}" if unsegmented and not config.by_parts else None
-    key = f"{_core(SimplifyChoice.__module__)} {width_m} {choice!r} {sorted(names.items())} {grid.key}"
+    key = f"{_core(simplify.__module__)} {width_m} {choice!r} {sorted(names.items())} {grid.key}"
     return Rule(
         "simplified", "core", key, ("views", "parts"), make, skip=skip,
         finish=_check(config, grid),

@@ -2,8 +2,8 @@ import { words } from "./words";
 
 /** The description of what is felt. */
 export const t = words({
-  about: ["What is felt, in words: for who reads it before, and for who does not feel it. The same text goes into an export as “text”.",
-    "Was zu fühlen ist, in Worten: für alle, die es vorher lesen oder nicht fühlen. Derselbe Text kommt in eine Ausgabe als „text“."],
+  about: ["What there is to feel, in words: to read before, or in its place. “Export” writes the same text into files.",
+    "Was zu fühlen ist, in Worten: zum Lesen davor oder statt dessen. „Weitergeben“ schreibt denselben Text in Dateien."],
   language: ["Language", "Sprache"],
   en: ["English", "Englisch"],
   de: ["German", "Deutsch"],
@@ -16,8 +16,8 @@ export const t = words({
     "Der Browser hat keine Stimme für diese Sprache. Ein Screenreader liest den Text oben."],
   copy: ["Copy", "Kopieren"],
   copied: ["The description is in the clipboard.", "Die Beschreibung ist in der Zwischenablage."],
-  asText: ["Download as text", "Als Text herunterladen"],
-  asHtml: ["Download as HTML", "Als HTML herunterladen"],
+  asText: ["Save as text", "Als Text sichern"],
+  asHtml: ["Save as HTML", "Als HTML sichern"],
   fresh: ["The description is another one now.", "Die Beschreibung ist jetzt eine andere."],
   failed: ["There is no description: {why}", "Es gibt keine Beschreibung: {why}"],
 });

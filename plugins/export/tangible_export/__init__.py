@@ -3,9 +3,20 @@
 Each is imported when it is first used.
 """
 
+from typing import TYPE_CHECKING
+
 from tangible_core.lazily import lazily
+
+if TYPE_CHECKING:
+    from .glb import Glb as Glb
+    from .stl import Stl as Stl
+    from .three_mf import ThreeMF as ThreeMF
 
 __all__, __getattr__ = lazily(  # pyright: ignore[reportUnsupportedDunderAll]
     __name__,
-    {},
+    {
+        "glb": ["Glb"],
+        "stl": ["Stl"],
+        "three_mf": ["ThreeMF"],
+    },
 )

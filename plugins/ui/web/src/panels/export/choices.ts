@@ -5,7 +5,6 @@ import { FIELD, rows } from "../../forms/rows";
 import type { Plain } from "../../forms/schema";
 import { put, type Said } from "../../forms/values";
 import { t } from "../../words/export";
-import { t as forms } from "../../words/methods";
 import { blocksOf, entriesOf, type Entry } from "./entries";
 
 export interface Exporter {
@@ -55,7 +54,7 @@ export class Choices {
     const label = document.createElement("label");
     label.append(input, called(entry.use));
     box.append(label);
-    const known = this.exporters.find(({ name }) => name === entry.use);
+    const known = this.exporters.find(({ name }) => name === entry.use); // a file may name one that is not installed
     if (known) box.append(this.options(entry, at, known, input));
     return box;
   }
@@ -66,13 +65,12 @@ export class Choices {
     const heading = document.createElement("summary");
     const name = document.createElement("span");
     name.className = "visually-hidden";
-    name.textContent = `: ${called(entry.use)}`;
+    name.textContent = t("optionsOf", { name: called(entry.use) });
     const about = paragraph(known.about.split("\n")[0], "hint");
     about.lang = "en";
     const count = (): void => {
       const set = Object.keys(entry.options).length;
-      const said = set ? forms("moreSet", { count: known.options.length, set }) : forms("more", { count: known.options.length });
-      heading.replaceChildren(said, name);
+      heading.replaceChildren(set ? t("optionsSet", { set }) : t("options"), name);
     };
     const row = rows(() => undefined);
     const made = known.options.map((option) => {

@@ -30,7 +30,7 @@ function outcome(folder: string, said: Exported["exports"][number], cure: Cure):
   const seconds = known === "ran" ? t("seconds", { seconds: decimal(said.seconds, 1) }) : "";
   became.append(shape(known), [t(known), seconds].filter(Boolean).join(", "));
   box.append(heading, became);
-  if (said.why) box.append(english(said.why, known === "ran" ? "hint" : "bad"));
+  if (known !== "ran") box.append(english(said.why, "bad"));
   if (said.files.length) box.append(files(folder, said.files));
   if (said.legible) box.append(legible(said.legible, cure));
   if (said.notes.length) box.append(notes(said.notes));

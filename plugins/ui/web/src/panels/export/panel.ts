@@ -87,16 +87,21 @@ export function build(page: Page, root: HTMLElement): void {
   if (before) show(before);
 }
 
+/** What most look for comes first; exporters that are not known here follow. */
+const ORDER = ["stl", "3mf", "glb", "swell", "pins", "text", "heights"];
+
 /** Exporters that are installed, with their options, of the file's schema. */
 function exportersOf({ properties, $defs }: FileSchema): Exporter[] {
   const lists = properties.export ? alternatives(properties.export, $defs) : [];
   const items = lists.flatMap((each) => (each.items ? alternatives(each.items, $defs) : [each]));
   const blocks = items.filter((each) => each.properties?.use);
-  return blocks.map((each) => ({
+  const found = blocks.map((each) => ({
     name: String(each.properties!.use.const),
     about: (each.description ?? "").trim(),
     options: options(each, $defs),
   }));
+  const place = ({ name }: Exporter): number => (ORDER.includes(name) ? ORDER.indexOf(name) : ORDER.length);
+  return found.sort((one, other) => place(one) - place(other));
 }
 
 /** It ends what is being made, as everywhere. */

@@ -11,7 +11,7 @@ from pydantic import BaseModel, Discriminator, Tag
 from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap, CommentedSeq
 
-from ..errors import ConfigError, MaterialError, TangibleError, did_you_mean, quoted
+from ..errors import ConfigError, MaterialError, PictureError, TangibleError, did_you_mean, quoted
 from ..files.source import Location, Source, parse_override, parse_source, read_text
 from ..legibility.choice import SimplifyChoice
 from ..mapping import WorkspaceMapping, mapped
@@ -20,6 +20,8 @@ from ..materials.rules import MaterialRule
 from ..parts import HeightChoice, PartChoice
 from ..plugins.interfaces import DepthEstimator, Exporter, ForceRenderer, HapticDevice, Method, Segmenter
 from ..plugins.registry import Registry
+from ..scene.framing import measured
+from ..scene.height_files import Measured
 from ..scene.scene import Scene
 from ..scene.scene_files import BUILTINS, SceneFiles, unknown_scene
 from ..scene.workspace import FeltSize, Section, Workspace, kind_of
@@ -97,6 +99,8 @@ class PipelineConfig:
     """How parts are made legible before anything is made of them; None where they stay as they are."""
     export: tuple[NamedMethod[Exporter], ...] = ()
     """What writes files of it for others."""
+    measured: Measured | None = None
+    """The size that the scene's heights have by their own account."""
     title: str = ""
     language: str = "en"
     source: Source | None = field(default=None, repr=False, compare=False)
@@ -155,7 +159,12 @@ class PipelineConfig:
     @property
     def size(self) -> FeltSize:
         """The workspace, with what suits the scene, or its parts, where it says nothing."""
-        return self.workspace.size("parts" if self.heights else kind_of(self.scene))
+        size = self.workspace.size("parts" if self.heights else kind_of(self.scene))
+        if self.measured is None:
+            return size
+        width_m = size.width_m if "width_m" in self.workspace.model_fields_set else self.measured.width_m
+        relief_m = self.workspace.relief_m or self.measured.high_m or size.relief_m
+        return size._replace(width_m=width_m, relief_m=relief_m)
 
     @property
     def felt_device(self) -> HapticDevice | None:
@@ -261,7 +270,7 @@ def parse_config(text: str, path: Path, registry: Registry, overrides: Iterable[
         _override(source, override)
     source.check_keys(KEYS)
     values: dict[str, Any] = {"scene": _scene(source), "want": _want(source), **_sections(source), **_parts(source)}
-    values["export"] = _exporters(source, registry)
+    values |= {"export": _exporters(source, registry), "measured": _measured(source, values["scene"])}
     for kind in STAGES:
         if kind in source.tree:
             values[kind] = choose(source, (kind,), kind, source.tree[kind], registry)
@@ -368,6 +377,13 @@ def _scene(source: Source) -> Any:
     if not isinstance(block, str):
         return source.model(("scene",), SceneFiles, block)
     return block if block in BUILTINS else source.complain(("scene",), unknown_scene(block))
+
+
+def _measured(source: Source, scene: Any) -> Measured | None:
+    try:
+        return measured(scene) if isinstance(scene, SceneFiles) else None
+    except PictureError as error:
+        return source.complain(("scene", "height"), str(error))
 
 
 def _parts(source: Source) -> dict[str, Any]:

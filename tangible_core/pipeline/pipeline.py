@@ -132,6 +132,7 @@ class Pipeline:
         registry = default_registry()
         config = PipelineConfig(
             scene=scene,
+            measured=scene.measured,
             want="surface" if render is None else "touch",
             depth=_chosen("depth", depth, registry),
             texture=_chosen("texture", texture, registry),

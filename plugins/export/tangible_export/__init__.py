@@ -9,6 +9,7 @@ from tangible_core.lazily import lazily
 
 if TYPE_CHECKING:
     from .glb import Glb as Glb
+    from .heights import Heights as Heights
     from .stl import Stl as Stl
     from .three_mf import ThreeMF as ThreeMF
 
@@ -16,6 +17,7 @@ __all__, __getattr__ = lazily(  # pyright: ignore[reportUnsupportedDunderAll]
     __name__,
     {
         "glb": ["Glb"],
+        "heights": ["Heights"],
         "stl": ["Stl"],
         "three_mf": ["ThreeMF"],
     },

@@ -57,7 +57,8 @@ def export_zip(bench: Bench, folder: str) -> str:
     names = sorted(read_list(at)) if NAMED.fullmatch(folder) else []
     if not names:
         raise ConfigError("these files are not there any more; export them again")
-    whole = at / f"{os.path.commonprefix(names).rstrip('-._ ') or 'export'}.zip"
+    stem = os.path.commonprefix([name.partition(".")[0] for name in names]).rstrip("-_ ")
+    whole = at / f"{stem or 'export'}.zip"
     if not whole.exists():
         part = at / f".{secrets.token_hex(8)}"
         try:

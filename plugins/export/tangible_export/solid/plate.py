@@ -87,7 +87,7 @@ def _rim(layout: Layout, raised: Block) -> Iterator[Patch]:
     )
 
 
-def _around(raised: Block, edges: Sequence[Float64[np.ndarray, "n 3"]]) -> Iterator[Patch]:
+def _around(raised: Block, edges: Sequence[Float64[np.ndarray, "_ 3"]]) -> Iterator[Patch]:
     """Flat strips from the foot of the block to four edges, counter-clockwise from the front one."""
     foot = raised.ring_m * (1, 1, 0)
     foot = np.concatenate([foot, foot[:1]])

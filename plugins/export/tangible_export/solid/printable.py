@@ -18,7 +18,7 @@ LARGEST_BED_M = 0.25
 """Most printers for the home and for schools print no further. A convention of ours."""
 NOZZLE_M, LAYER_M = 0.0004, 0.00015
 """What most printers come with. A convention of ours."""
-LEAST_AREA_M2, LEAST_SHARE = 1e-6, 0.001
+LEAST_AREA_M2, LEAST_SHARE = 2.5e-7, 0.001
 """Of what is said."""
 STEEPEST_DEG = 45
 """Of a face that hangs over, from the upright: so far, plastic holds without support."""
@@ -54,7 +54,7 @@ def _say_thin(picture: Relief) -> None:
     if area_m2 < LEAST_AREA_M2:
         return
     told = f"what is thinner than a nozzle of {1000 * NOZZLE_M:.1g} mm may be left out by the printer"
-    where = f"{1e6 * area_m2:,.0f} square mm of the picture, up to {1000 * lost_m.max():.2g} mm high"
+    where = f"{1e6 * area_m2:,.1f} square mm of the picture, up to {1000 * lost_m.max():.2g} mm high"
     note(log, f"{told}: {where}; smooth it with workspace.smooth_m, or print it larger", logging.WARNING)
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TypeVar, cast
+from typing import cast
 
 import numpy as np
 
@@ -11,7 +11,8 @@ from .parts import PartMap
 from .records import Record
 from .surface import HapticSurface, MaterialMap, Relief
 
-R = TypeVar("R", bound=Record)
+EXPORTABLE = ("disparity", "relief", "segments", "parts", "simplified", "materials", "surface")
+"""Products that an exporter may need: all that are records."""
 
 
 @dataclass(frozen=True, eq=False)

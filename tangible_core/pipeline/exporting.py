@@ -13,6 +13,7 @@ from typing import Any, final
 
 from ..data import Note, Outcome, Outcomes, Record, Work
 from ..data.outcome import HEADINGS, OutcomeKind, html_table, text_table
+from ..data.work import EXPORTABLE
 from ..errors import BrokenMethod, ConfigError, Stopped, TangibleError, exited, quoted, wrong_argument
 from ..legibility import Legibility
 from ..plugins import failures, hooks
@@ -23,7 +24,7 @@ from ..plugins.registry import Registry
 from ..runtime.stopping import check_stopped, stoppable
 from ..scene.scene import Scene
 from ..scene.scene_files import SceneFiles
-from .config import PRODUCTS, NamedMethod, PipelineConfig
+from .config import NamedMethod, PipelineConfig
 from .engine import Engine, Progress, Stage
 from .export_folder import check_writable, check_written, move, scratch
 from .legible import judged, names, of_width
@@ -33,8 +34,6 @@ log = logging.getLogger(__name__)
 
 PREFIX = "export: "
 """Of an exporter's name, in what is said of its outcome."""
-EXPORTABLE = tuple(each for each in PRODUCTS if each != "touch")
-"""Products that an exporter may need: a touch is no record."""
 MOST_STEM_BYTES = 120
 """Of a file's name before its ending: systems take 255, and endings are added."""
 NO_ROOM = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO}

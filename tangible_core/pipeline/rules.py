@@ -25,7 +25,7 @@ from ..data import (
 from ..errors import BrokenMethod, ConfigError, PictureError, TangibleError
 from ..legibility import SimplifyChoice, simplify
 from ..materials import assignment
-from ..parts import Layering, PartHeights, reduced_parts
+from ..parts import Layering, PartHeights
 from ..parts import find as part_finding
 from ..plugins.interfaces import HapticDevice, Method, Skippable, Touch
 from ..plugins.notes import doubt, note
@@ -230,8 +230,7 @@ def _simplified(config: PipelineConfig, grid: FeltScene, unsegmented: str | None
 
 
 def _on_grid(config: PipelineConfig, parts: PartMap, grid: FeltScene) -> PartMap:
-    """The parts as they are felt, with the same numbers; of those that are simplified away, no cell is left."""
-    return reduced_parts(parts, grid.shape) if config.simplify is None else scaling.enlarged_parts(parts, grid.shape)
+    return felt.parts_on_grid(parts, grid.shape, config.felt_parts)
 
 
 def _no_parts(config: PipelineConfig) -> ConfigError:

@@ -3,7 +3,21 @@
 from collections.abc import Awaitable, Callable, Mapping
 from typing import Any
 
-from . import devices, document, drafts, exporting, feeling, laws, making, mapping, opening, parts, preflight, records, seeing
+from . import (
+    devices,
+    document,
+    drafts,
+    exporting,
+    feeling,
+    laws,
+    making,
+    mapping,
+    opening,
+    parts,
+    preflight,
+    records,
+    seeing,
+)
 
 Ask = Callable[..., Awaitable[Any]]
 """Called with the desk, the tab, and what the tab says by name; the tab is answered with what it returns, as JSON."""

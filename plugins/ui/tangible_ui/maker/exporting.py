@@ -1,7 +1,6 @@
 """Jobs that write files for others, where pages fetch them, and pack them into one."""
 
 import json
-import os
 import re
 import secrets
 import shutil
@@ -26,9 +25,7 @@ KEPT = 2
 """Folders that stay: tabs may still fetch from the one before."""
 
 
-def export(
-    bench: Bench, number: int, text: str, path: Path, sets: list[str], exports: list[Any]
-) -> dict[str, Any]:
+def export(bench: Bench, number: int, text: str, path: Path, sets: list[str], exports: list[Any]) -> dict[str, Any]:
     """Have exporters write their files, into a folder that pages fetch from; what became of each.
 
     exports: as `export:` of a pipeline file has them. Raises: ConfigError for what none can be; TangibleError as
@@ -57,8 +54,7 @@ def export_zip(bench: Bench, folder: str) -> str:
     names = sorted(read_list(at)) if NAMED.fullmatch(folder) else []
     if not names:
         raise ConfigError("these files are not there any more; export them again")
-    stem = os.path.commonprefix([name.partition(".")[0] for name in names]).rstrip("-_ ")
-    whole = at / f"{stem or 'export'}.zip"
+    whole = at / f"{min(names, key=len).partition('.')[0]}.zip"
     if not whole.exists():
         part = at / f".{secrets.token_hex(8)}"
         try:

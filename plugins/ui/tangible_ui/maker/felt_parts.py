@@ -29,7 +29,7 @@ from tangible_core.scene.scene import Scene
 from .bench import Bench, Job
 from .making import parcel_of
 from .parts import config_heights, edited_of, opened_of
-from .seen import Seen, at_hand, parts_on_grid, see_parts
+from .seen import Seen, at_hand, see_parts
 from .shown import show
 
 S = TypeVar("S", bound=BaseModel)
@@ -158,7 +158,7 @@ def _kept(bench: Bench, pipeline: Pipeline) -> Kept:
         raise config.complained(*wrong)
     made = pipeline.changed(bare)
     grid = on_grid.FeltScene(made.scene, bare.size)
-    parts = parts_on_grid(bare, made.engine.felt(bare.felt_parts), grid.shape)
+    parts = on_grid.parts_on_grid(made.engine.felt(bare.felt_parts), grid.shape, bare.felt_parts)
     uses = bare.render is None or bare.render.method.uses_materials
     chosen = made.make("materials") if uses else None
     layering = None if before is None else _same_layering(before, bare, parts, grid)

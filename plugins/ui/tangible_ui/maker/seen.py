@@ -10,13 +10,13 @@ from jaxtyping import Float32, Int32
 from tangible_core.data import DisparityMap, HapticSurface, Material, PartMap, Relief, SegmentMap
 from tangible_core.data.records import digest_of
 from tangible_core.metrics import absolute_error
-from tangible_core.parts import reduced_parts
 from tangible_core.pipeline.config import PipelineConfig, Product
+from tangible_core.pipeline.felt import parts_on_grid
 from tangible_core.pipeline.parts_said import names_of
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.pipeline.rules import fitted
 from tangible_core.scene.geometry import RANGE_PERCENT, flat_relief
-from tangible_core.scene.scaling import enlarged_parts, reduced_map, reduced_segments, reduced_shape
+from tangible_core.scene.scaling import reduced_map, reduced_segments, reduced_shape
 
 Shows = Literal["surface", "relief", "segments"]
 MOST_LAYER_CELLS = 1_000_000
@@ -143,16 +143,12 @@ def _names(pipeline: Pipeline) -> tuple[str, ...] | None:
 
 def _labels(pipeline: Pipeline, shape: tuple[int, int]) -> Int32[np.ndarray, "h w"] | None:
     """Of what has materials: of parts where anything is by parts, else of segments; None where they are not there."""
-    config = pipeline.config
-    found = at_hand(pipeline, config.felt_parts if config.by_parts else "segments")
+    parts = pipeline.config.felt_parts
+    product: Product = parts if pipeline.config.by_parts else "segments"
+    found = at_hand(pipeline, product)
     if found is None:
         return None
-    return (parts_on_grid(config, found, shape) if config.by_parts else reduced_segments(found, shape)).labels
-
-
-def parts_on_grid(config: PipelineConfig, parts: PartMap, shape: tuple[int, int]) -> PartMap:
-    """`felt_parts` on the grid that is felt; simplified ones are finer or coarser than the picture."""
-    return reduced_parts(parts, shape) if config.simplify is None else enlarged_parts(parts, shape)
+    return (reduced_segments(found, shape) if product == "segments" else parts_on_grid(found, shape, parts)).labels
 
 
 def at_hand(pipeline: Pipeline, product: Product) -> Any:

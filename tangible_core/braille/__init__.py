@@ -6,6 +6,7 @@ from .cells import DOT_HEIGHT_M as DOT_HEIGHT_M
 from .cells import DOT_PITCH_M as DOT_PITCH_M
 from .cells import LINE_PITCH_M as LINE_PITCH_M
 from .cells import Cells as Cells
+from .cells import as_ascii as as_ascii
 from .cells import as_unicode as as_unicode
 from .cells import dots as dots
 from .cells import height_m as height_m

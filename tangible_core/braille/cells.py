@@ -24,6 +24,8 @@ LINE_PITCH_M = 0.010
 """From the centre of a dot to the same dot of the next line."""
 
 _UNICODE = 0x2800
+_ASCII = " A1B'K2L@CIF/MSP\"E3H9O6R^DJG>NTQ,*5<-U8V.%[$+X!&;:4\\0Z7(_?W]#Y)="
+"""By the number of a cell: North American Braille Computer Code, by which embossers print."""
 
 
 def dots(cells: Cells, at_m: tuple[float, float] = (0.0, 0.0)) -> Float64[np.ndarray, "n 2"]:
@@ -61,3 +63,12 @@ def as_unicode(cells: Cells) -> str:
     '⠁⠃'
     """
     return "".join(chr(_UNICODE + cell) for cell in cells)
+
+
+def as_ascii(cells: Cells) -> str:
+    """Cells as the characters that embossers and files named `.brf` have for them.
+
+    >>> as_ascii((0b000001, 0b111100, 0))
+    'A# '
+    """
+    return "".join(_ASCII[cell] for cell in cells)

@@ -6,6 +6,7 @@ which marks no capitals. French: Code braille français uniformisé pour la tran
 2008: digits are Antoine's, behind dot 6.
 """
 
+import re
 import unicodedata
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
@@ -51,22 +52,34 @@ class Code:
     signs: Mapping[str, Cells]
     """Letters that are no plain ones, and punctuation."""
     quotes: tuple[Cells, Cells]
-    """Of `"` before a word, and behind it."""
+    """Before a word, and behind it."""
+    quoting: str
+    """Marks that open or close by where they stand."""
     number: Cells
     """Stands before the first digit."""
     digits: Cells
     """From 0 to 9."""
-    within_number: Mapping[str, Cells]
-    """Between digits; the number goes on."""
+    within_number: str
+    """Signs between digits with which the number goes on."""
+    before_number: str
+    """Signs before a digit that belong to the number: its sign stands before them."""
     after_number: tuple[Cells, str] = ((), "")
     """Stands between a number and one of these characters, which would be read as a digit."""
+    thousands: Cells = (0,)
+    """A space between groups of three digits."""
     capital: Cells = ()
     capital_word: Cells = ()
     capital_end: Cells = ()
+    capital_passage: Cells = ()
+    """Stands before three words or more in capitals; the end of capitals behind them."""
+    no_space_before: str = ""
     marks: Mapping[str, Cells] = field(default_factory=dict[str, Cells])
     """Accents, as combining characters; they stand before their letter."""
 
 
+_UPPER = "A-ZÀ-ÖØ-Þ"
+_PASSAGE = re.compile(rf"(?<![^ ])[{_UPPER}]+(?: [{_UPPER}]+){{2,}}(?![^ ])")
+"""Three words or more in capitals."""
 _A_TO_J = _cells("245 1 12 14 145 15 124 1245 125 24")
 _ANTOINE = _cells("3456 16 126 146 1456 156 1246 12456 1256 246")
 
@@ -91,9 +104,17 @@ CODES: Mapping[str, Code] = {
             & 4 12346
             + 5 235
             = 5 2356
+            * 5 35
+            @ 4 1
+            § 45 234
+            € 4 15
+            £ 4 123
+            $ 4 234
             … 256 256 256
             “ 236
             ” 356
+            « 456 236
+            » 456 356
             ß 46 2346
             æ 1 45 235 15
             œ 135 45 235 15
@@ -102,13 +123,17 @@ CODES: Mapping[str, Code] = {
             ° 45 245
         """),
         quotes=(_cells("236"), _cells("356")),
+        quoting='"',
         number=_cells("3456"),
         digits=_A_TO_J,
-        within_number=_table(", 2\n. 256"),
+        within_number=",.",
+        before_number=",.",
         after_number=(_cells("56"), "abcdefghij"),
         capital=_cells("6"),
         capital_word=_cells("6 6"),
         capital_end=_cells("6 3"),
+        capital_passage=_cells("6 6 6"),
+        thousands=_cells("5"),
         marks={
             "\u0300": _cells("45 16"),
             "\u0301": _cells("45 34"),
@@ -140,11 +165,13 @@ CODES: Mapping[str, Code] = {
             / 5 2
             + 4 235
             = 4 2356
+            % 3456 245 356
+            & 5 136
+            § 346
+            € 4 15
+            ° 4 356
             … 3 3 3
             „ 236
-            “ 356
-            » 236
-            « 356
             ä 345
             ö 246
             ü 1256
@@ -155,10 +182,13 @@ CODES: Mapping[str, Code] = {
             ł 4 123
         """),
         quotes=(_cells("236"), _cells("356")),
+        quoting='"“”«»',
         number=_cells("3456"),
         digits=_A_TO_J,
-        within_number=_table(", 2\n. 3"),
-        after_number=(_cells("6"), "abcdefghij"),
+        within_number=",.",
+        before_number=",.",
+        after_number=(_cells("6"), 'abcdefghij:;!?)"“”«»'),
+        no_space_before="%",
         marks=dict.fromkeys(
             "\u0300\u0301\u0302\u0303\u0304\u0306\u0307\u0308\u030a\u030b\u030c\u0327\u0328", _cells("4")
         ),
@@ -180,6 +210,12 @@ CODES: Mapping[str, Code] = {
             ) 356
             / 34
             % 5 346
+            & 5 123456
+            § 5 1234
+            € 45 15
+            ° 5 135
+            * 35
+            @ 345
             + 6 235
             = 6 2356
             … 256 256 256
@@ -200,11 +236,15 @@ CODES: Mapping[str, Code] = {
             ù 23456
             û 156
             ü 1256
+            ä 345
+            ö 246
         """),
         quotes=(_cells("2356"), _cells("2356")),
+        quoting='"“”',
         number=_cells("6"),
         digits=_ANTOINE,
-        within_number=_table(", 2\n. 256"),
+        within_number=",.-/",
+        before_number="(,.",
         capital=_cells("46"),
         capital_word=_cells("46 46"),
         capital_end=_cells("6 3"),
@@ -219,47 +259,58 @@ def translated(text: str, language: str) -> Cells:
     True
     """
     code, cells = CODES[language], list[int]()
+    if code.no_space_before:
+        text = re.sub(f" +([{code.no_space_before}])", r"\1", text)
     capitals = _capitals(text, code)
     for place, each in enumerate(text):
         cells += capitals.get(place, ())
-        if each.isascii() and each.isdigit():
-            cells += () if _in_number(text, place, code) else code.number
-            cells.append(code.digits[int(each)])
-        else:
-            cells += _between(text, place, code)
-            cells += _sign(text, place, code)
-    return tuple(cells)
+        cells += _number_sign(text, place, code)
+        cells.append(code.digits[int(each)]) if _digit(text, place) else cells.extend(_sign(text, place, code))
+    return (*cells, *capitals.get(len(text), ()))
 
 
 def _digit(text: str, place: int) -> bool:
     return 0 <= place < len(text) and text[place] in "0123456789"
 
 
-def _in_number(text: str, place: int, code: Code) -> bool:
-    """Whether the digit here goes on with a number, behind a digit or behind what stands within numbers."""
-    return _digit(text, place - 1) or (place > 0 and text[place - 1] in code.within_number and _digit(text, place - 2))
+def _number_sign(text: str, place: int, code: Code) -> Cells:
+    """What stands before a character because a number begins with it, or has ended before it."""
+    each, behind_digit = text[place], _digit(text, place - 1)
+    if behind_digit:
+        cells, mistaken = code.after_number
+        return cells if (each if code.capital else each.lower()) in mistaken else ()
+    if each in code.before_number and _digit(text, place + 1):
+        return code.number
+    if not _digit(text, place) or (place and text[place - 1] in code.before_number):
+        return ()
+    goes_on = _digit(text, place - 2) and (text[place - 1] in code.within_number or _thousands(text, place - 1, code))
+    return () if goes_on else code.number
 
 
-def _between(text: str, place: int, code: Code) -> Cells:
-    cells, mistaken = code.after_number
-    return cells if _digit(text, place - 1) and text[place] in mistaken else ()
+def _thousands(text: str, place: int, code: Code) -> bool:
+    """Whether there is a space here before a group of three digits that belongs to the number before it."""
+    three = re.match(r" [0-9]{3}(?![0-9])", text[place:])
+    return code.thousands != (0,) and _digit(text, place - 1) and three is not None
 
 
 def _sign(text: str, place: int, code: Code) -> Cells:
     each = text[place]
-    if each in code.within_number and _digit(text, place - 1) and _digit(text, place + 1):
-        return code.within_number[each]
-    if each == '"':
-        return code.quotes[place > 0 and text[place - 1] not in " (["]
+    if each in code.quoting:
+        return code.quotes[_closes(text, place)]
     if each == " ":
-        return (0,)
-    if (cells := _letter(each.lower(), code)) is None:
+        return code.thousands if _thousands(text, place, code) else (0,)
+    if (cells := _letter(each, code)) is None:
         raise BrailleError(f"{not_written(each, place + 1, text, code.title)}, or install liblouis")
     return cells
 
 
-def _letter(lower: str, code: Code) -> Cells | None:
-    if lower in code.signs:
+def _closes(text: str, place: int) -> bool:
+    """Whether a quotation mark here stands behind what is quoted."""
+    return place > 0 and (text[place - 1] not in " ([" or text[place + 1 : place + 2] in ("", " "))
+
+
+def _letter(each: str, code: Code) -> Cells | None:
+    if (lower := each.lower()) in code.signs:
         return code.signs[lower]
     if lower in LETTERS:
         return (LETTERS[lower],)
@@ -270,11 +321,16 @@ def _letter(lower: str, code: Code) -> Cells | None:
 
 
 def _capitals(text: str, code: Code) -> dict[int, Cells]:
-    """By place, what stands before a letter that is a capital, or before the first small one behind a run of them."""
+    """By place, what stands before a letter that is a capital, or behind the last of a run of them."""
     if not code.capital:
         return {}
     placed: dict[int, Cells] = {}
+    passages = [(found.start(), found.end()) for found in _PASSAGE.finditer(text)] if code.capital_passage else []
+    for start, end in passages:
+        placed[start], placed[end] = code.capital_passage, code.capital_end
     for start, end in _runs(text):
+        if any(first <= start < last for first, last in passages):
+            continue
         placed[start] = code.capital_word if end - start > 1 else code.capital
         if end - start > 1 and end < len(text) and text[end].isalpha():
             placed[end] = code.capital_end

@@ -34,7 +34,7 @@ _turn = Lock()
 class Louis(NamedTuple):
     """A library that was found and tried."""
 
-    library: ctypes.CDLL
+    library: Any
     version: str
     character: Any
     """The type of its characters: of 2 bytes or of 4."""
@@ -94,7 +94,7 @@ def louis() -> Louis | str:
     return "liblouis is not installed"
 
 
-def _tried(library: ctypes.CDLL) -> Louis:
+def _tried(library: Any) -> Louis:
     """It writes three letters in each language as each of them does. Raises: OSError, AttributeError."""
     library.lou_version.restype = ctypes.c_char_p
     library.lou_setLogLevel(_SILENT)

@@ -1,6 +1,7 @@
 """Text as uncontracted braille, by liblouis where it is installed and else by tables of our own."""
 
 import logging
+import re
 import unicodedata
 
 from ..errors import BrailleError, quoted
@@ -13,6 +14,14 @@ log = logging.getLogger(__name__)
 
 LANGUAGES = tuple(CODES)
 """Those whose braille is written; any other is written by the English code."""
+_APOSTROPHE = re.compile("(?<=\\w)\u2019(?=\\w)")
+"""As print has it between letters: no closing quotation mark."""
+_OPENING = re.compile(r'(?<![^\s(\[])"(?=\S)')
+"""Straight quotation marks that open: the English code tells them from those that close."""
+_GERMAN_QUOTES = re.compile("[„\u201c\u201d]")
+"""What closes in German opens in English; by where they stand, straight ones are either."""
+_FRENCH_SPACE = re.compile("(«) +| +([:;!?»])")
+"""Print sets a space there; braille has none."""
 _LEFT_OUT = "\u00ad\u200b\u2060\ufeff"
 """Characters that say where a line may break, and have no form of their own."""
 
@@ -27,7 +36,8 @@ def translate(text: str, language: str = "en") -> Cells:
     >>> translate("a cab") == (1, 0, 9, 1, 3)
     True
     """
-    spoken, text = _language_of(language), _plain(text)
+    spoken = _language_of(language)
+    text = _plain(text, spoken)
     library = louis()
     if isinstance(library, str):
         return translated(text, spoken)
@@ -44,7 +54,7 @@ def written_by(language: str = "en") -> str:
     What writes braille into a file says it once, by `note`.
     """
     library, spoken = louis(), _language_of(language)
-    other = "" if language.lower().startswith(spoken) else f", for want of one for {quoted(language)}"
+    other = "" if language.partition("-")[0].lower() == spoken else f", for want of one for {quoted(language)}"
     if isinstance(library, str):
         return f"{CODES[spoken].title}{other} ({library})"
     return f"liblouis {library.version}, {TABLES[spoken]}{other}"
@@ -52,15 +62,20 @@ def written_by(language: str = "en") -> str:
 
 def _language_of(tag: str) -> str:
     spoken = tag.partition("-")[0].lower()
-    if spoken in CODES:
-        return spoken
-    return "en"
+    return spoken if spoken in CODES else "en"
 
 
-def _plain(text: str) -> str:
+def _plain(text: str, language: str) -> str:
     """Composed letters and plain spaces. Raises: BrailleError for what is no character of a line."""
     composed = unicodedata.normalize("NFC", text)
     plain = "".join(" " if each.isspace() else each for each in composed if each not in _LEFT_OUT)
+    plain = _APOSTROPHE.sub("'", plain)
+    if language == "en":
+        plain = _OPENING.sub("\u201c", plain).replace('"', "\u201d")
+    elif language == "de":
+        plain = _GERMAN_QUOTES.sub('"', plain)
+    elif language == "fr":
+        plain = _FRENCH_SPACE.sub(lambda found: found[1] or found[2], plain)
     for place, each in enumerate(plain, 1):
         if unicodedata.category(each) in ("Cc", "Cs", "Co", "Cn"):
             raise BrailleError(not_written(each, place, plain, "any braille"))

@@ -8,9 +8,10 @@ from .translation import translate
 _HYPHEN = "-"
 
 
-def wrapped(text: str, language: str, width_m: float) -> list[Cells]:
+def wrapped(text: str, language: str, width_m: float, indent: int = 0) -> list[Cells]:
     """Lines of cells, each at most so wide: they break at spaces, and a word that is wider breaks behind a hyphen.
 
+    indent: empty cells before every line but the first.
     Raises: BrailleError as `translate`, and where not even one letter has room.
 
     >>> [len(line) for line in wrapped("a cab is here", "en", 0.05)]
@@ -19,29 +20,34 @@ def wrapped(text: str, language: str, width_m: float) -> list[Cells]:
     check_positive("width_m", width_m)
     lines, line = list[Cells](), ""
     for word in text.split():
-        if _fits(longer := f"{line} {word}".strip(), language, width_m):
+        if _fits(longer := f"{line} {word}".strip(), language, width_m, indent if lines else 0):
             line = longer
             continue
-        lines += [translate(line, language)] if line else []
-        *starts, line = _broken(word, language, width_m)
-        lines += [translate(start, language) for start in starts]
-    return [*lines, translate(line, language)] if line else lines
+        if line:
+            lines.append(_indented(line, language, indent if lines else 0))
+        while (count := _beginning(word, language, width_m, indent if lines else 0)) < len(word):
+            lines.append(_indented(word[:count] + _HYPHEN, language, indent if lines else 0))
+            word = word[count:]
+        line = word
+    return [*lines, _indented(line, language, indent if lines else 0)] if line else lines
 
 
-def _fits(text: str, language: str, width_m: float) -> bool:
-    return width_of_m(translate(text, language)) <= width_m
+def _indented(text: str, language: str, indent: int) -> Cells:
+    return (0,) * indent + translate(text, language)
 
 
-def _broken(word: str, language: str, width_m: float) -> list[str]:
-    """A word as pieces that have room, all but the last with a hyphen."""
-    pieces = list[str]()
-    while not _fits(word, language, width_m):
-        count = next((n for n in range(len(word) - 1, 0, -1) if _fits(word[:n] + _HYPHEN, language, width_m)), 0)
-        if not count:
-            raise BrailleError(
-                f"{quoted(word)} in braille is wider than {1000 * width_m:.4g} mm, and so is its first letter; "
-                "make the place wider"
-            )
-        pieces.append(word[:count] + _HYPHEN)
-        word = word[count:]
-    return [*pieces, word]
+def _fits(text: str, language: str, width_m: float, indent: int) -> bool:
+    return width_of_m(_indented(text, language, indent)) <= width_m
+
+
+def _beginning(word: str, language: str, width_m: float, indent: int) -> int:
+    """How many characters of a word have room, with a hyphen behind them where that is not all of it."""
+    if _fits(word, language, width_m, indent):
+        return len(word)
+    for count in range(len(word) - 1, 0, -1):
+        if _fits(word[:count] + _HYPHEN, language, width_m, indent):
+            return count
+    raise BrailleError(
+        f"{quoted(word)}: not even its first letter and a hyphen have room in {1000 * width_m:.4g} mm of braille; "
+        "make the place wider"
+    )

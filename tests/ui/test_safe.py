@@ -123,7 +123,8 @@ class TestWhoIsLetIn:
             "/scene/../secret", "/scene/%2e%2e/secret", "/scene/abc/..%2f..%2fsecret", "/scene/abc%2f../x",
             "/scene/link/secret", "/scene/abc/%00", f"/scene/abc/{'x' * 5000}", "/scene/abc/", "/scene/incoming/x",
             "/export/abc/%2e%2e", "/export/export-1/..%2f..%2fsecret", "/export/export-link/secret",
-            "/export/export-1/", "/export/../secret", "/export/abc/a.stl", f"/export/export-{'x' * 5000}/a", "/export/export-1/%00",
+            "/export/export-1/", "/export/../secret", "/export/abc/a.stl", "/export/export-1/%00",
+            f"/export/export-{'x' * 5000}/a",
             "/scene//secret", "/../secret", "/%2e%2e/secret", "/..%2fsecret", "//secret", "/scene", "/scene/",
         ],
     )  # fmt: skip

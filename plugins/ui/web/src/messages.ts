@@ -207,8 +207,8 @@ export interface Events {
     device?: string;
     own_hand?: boolean;
   };
-  /** To which part a device guides the hand; null for none, and why no more. */
-  beacon: Said & { part: number | null; why?: string };
+  /** To which part a device guides the hand; null for none. */
+  beacon: Said & { part: number | null; name: string; why: "asked" | "button" | "scene" | "ended" };
   /** Another device was chosen. */
   device: Said & { kind: "hand" | "document" | "other"; name: string };
   error: Said & { text: string };

@@ -54,7 +54,7 @@ export function named(page: Page): HTMLElement {
     show();
   });
   page.hub.on("beacon", (said: Events["beacon"]) => {
-    if (said.part !== guided) page.say(inWords(said, parts, guided), { topic: "beacon", asked: true });
+    if (said.part !== guided) page.say(inWords(said), { topic: "beacon", asked: true });
     guided = said.part;
     show();
   });
@@ -62,9 +62,9 @@ export function named(page: Page): HTMLElement {
   return box;
 }
 
-function inWords({ part, why }: Events["beacon"], parts: Named[], before: number | null): string {
-  const called = (number: number | null): string => parts.find((each) => each.number === number)?.name ?? "";
-  return part === null ? t(why === "button" ? "letGo" : "guideEnded", { name: called(before) }) : t("guiding", { name: called(part) });
+function inWords({ part, name, why }: Events["beacon"]): string {
+  if (part !== null) return t("guiding", { name });
+  return t(why === "button" ? "letGo" : "guideEnded");
 }
 
 function item(): HTMLLIElement {

@@ -1,0 +1,177 @@
+"""The page hands a picture on: files that are whole, what fingers cannot read and its cure, words, and a way to a part."""
+
+import io
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+from zipfile import ZipFile
+
+import pytest
+import trimesh
+
+from browser_tabs import OpenPage
+from desks import small_scene
+from page_files import built_page
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Download, Page
+
+LONGEST_S = 60
+SPY = """
+window.heard = [];
+new MutationObserver((seen) => {
+  for (const each of seen) if (each.target.closest?.("#said, #alerted")) heard.push(each.target.textContent);
+}).observe(document, { childList: true, subtree: true });
+"""
+VOICES = """
+window.spoken = [];
+const spy = {
+  getVoices: () => [{ name: "Anne", lang: "fr-FR", localService: true }], addEventListener: () => {},
+  cancel: () => spoken.push("cancel"), speak: ({ text, lang }) => spoken.push({ text, lang }),
+};
+Object.defineProperty(window, "speechSynthesis", { value: spy });
+window.SpeechSynthesisUtterance = function (text) { this.text = text; };
+"""
+
+
+def until(holds: Callable[[], Any], what: str = "") -> None:
+    end_s = time.monotonic() + LONGEST_S
+    while not holds():
+        assert time.monotonic() < end_s, what
+        time.sleep(0.05)
+
+
+@pytest.fixture
+def show(serve: Callable[..., Any], open_page: OpenPage, tmp_path: Path) -> Callable[..., "Page"]:
+    """The page with the small scene felt; `before` runs in it first, what is `said` more stands in its file."""
+    built_page()
+
+    def show(said: str = "", before: str = "", **options: Any) -> "Page":
+        file = small_scene(tmp_path)
+        file.write_text(file.read_text() + said)
+        page = open_page("about:blank", **options)
+        page.add_init_script(SPY + before)
+        page.goto(serve(file, cwd=tmp_path).url + "&measure")
+        until(lambda: page.locator("#status").get_attribute("data-state") == "felt", "felt")
+        return page
+
+    return show
+
+
+def opened(page: "Page", panel: str) -> Any:
+    """A panel, opened by the keyboard; what comes then is there."""
+    page.locator(f"#{panel} > summary").press("Enter")
+    until(lambda: page.locator(f"#{panel} > .inside > *").count() > 0, panel)
+    return page.locator(f"#{panel}")
+
+
+def kept(download: "Download") -> bytes:
+    path = download.path()
+    return Path(path).read_bytes()
+
+
+def text_of(page: "Page") -> str:
+    return page.evaluate("page.document.text")
+
+
+class TestExport:
+    def test_a_solid_and_all_files_in_one_by_the_keyboard(self, show: Callable[..., "Page"]) -> None:
+        page = show()
+        panel = opened(page, "export")
+        panel.get_by_label("Solid to print (STL)").press(" ")
+        panel.get_by_label("Solid to print (3MF)").press(" ")
+        panel.locator("summary", has_text="Solid to print (STL)").press("Enter")
+        longer = panel.get_by_label("Longer side").first
+        longer.fill("5 cm")
+        longer.press("Enter")
+        panel.get_by_role("button", name="Export", exact=True).press("Enter")
+        until(lambda: "2 files are ready." in panel.inner_text(), "files")
+        assert panel.locator(".outcome h3").all_inner_texts() == ["Solid to print (STL)", "Solid to print (3MF)"]
+        assert panel.locator(".outcome .sentence").count() == 2
+        with page.expect_download() as waited:
+            panel.get_by_role("link", name="mine.stl").press("Enter")
+        assert waited.value.suggested_filename == "mine.stl"
+        solid = trimesh.load(io.BytesIO(kept(waited.value)), file_type="stl")
+        assert solid.is_volume
+        rim_mm = 2 * 6.0
+        assert solid.extents[0] == pytest.approx(50.0 + rim_mm, abs=1e-3)
+
+        with page.expect_download() as waited:
+            panel.get_by_role("button", name="Download all as ZIP").press("Enter")
+        assert waited.value.suggested_filename == "mine.zip"
+        with ZipFile(io.BytesIO(kept(waited.value))) as packed:
+            assert packed.namelist() == ["mine.3mf", "mine.stl"]
+            assert packed.testzip() is None
+
+    def test_what_was_chosen_goes_into_the_file_and_comes_from_it(self, show: Callable[..., "Page"]) -> None:
+        page = show("export: [{use: stl, rim_m: 0.01}, 3mf]\n")
+        panel = opened(page, "export")
+        until(lambda: panel.get_by_label("Solid to print (STL)").is_checked(), "what the file says")
+        assert panel.get_by_label("Solid to print (3MF)").is_checked()
+        assert not panel.get_by_label("Heights as data (PNG, TIFF)").is_checked()
+        assert "1 set" in panel.locator("summary", has_text="Solid to print (STL)").inner_text()
+        write = panel.get_by_role("button", name="Write into the pipeline file")
+        write.press("Enter")
+        until(lambda: "says this already" in panel.inner_text(), "nothing to say")
+        panel.get_by_label("Solid to print (3MF)").press(" ")
+        panel.get_by_label("Heights as data (PNG, TIFF)").press(" ")
+        write.press("Enter")
+        until(lambda: "heights" in text_of(page), "written")
+        assert page.evaluate("page.document.said.export") == [{"use": "stl", "rim_m": 0.01}, "heights"]
+        assert page.evaluate("page.document.complaints") == []
+        page.locator("#undo").press("Enter")
+        until(lambda: panel.get_by_label("Solid to print (3MF)").is_checked(), "undone")
+
+    def test_what_cannot_be_written_is_said_and_leads_nowhere(self, show: Callable[..., "Page"]) -> None:
+        page = show()
+        panel = opened(page, "export")
+        panel.get_by_role("button", name="Export", exact=True).press("Enter")
+        until(lambda: "Choose at least one." in panel.inner_text(), "nothing chosen")
+        panel.locator("summary", has_text="Solid to print (STL)").press("Enter")
+        base = panel.get_by_label("Base").first
+        base.fill("-1")
+        base.press("Enter")
+        until(lambda: panel.get_by_label("Solid to print (STL)").is_checked(), "who sets an option wants it")
+        panel.get_by_role("button", name="Export", exact=True).press("Enter")
+        until(lambda: "base_m" in panel.locator("p.bad[role=status]").inner_text(), "why")
+        assert panel.locator(".outcome").count() == 0
+
+    def test_a_file_that_says_an_exporter_twice_is_shown_twice(self, show: Callable[..., "Page"]) -> None:
+        page = show("export: [stl, {use: stl, rim_m: 0.01}]\n")
+        panel = opened(page, "export")
+        until(lambda: panel.locator(".exporters > li").count() == 5, "both")
+        panel.locator("summary", has_text="Solid to print (STL)").nth(1).press("Enter")
+        panel.get_by_role("button", name="Remove Solid to print (STL)").press("Enter")
+        until(lambda: panel.locator(".exporters > li").count() == 4, "one")
+        assert page.evaluate("document.activeElement.type") == "checkbox"
+
+
+class TestDescription:
+    def test_it_is_read_heard_and_taken_along(self, show: Callable[..., "Page"]) -> None:
+        page = show("language: de\n", VOICES, permissions=["clipboard-read", "clipboard-write"])
+        panel = opened(page, "description")
+        region = panel.get_by_role("region", name="Description")
+        until(lambda: "Eine Fläche" in region.inner_text(), "in the language of the document")
+        assert region.get_attribute("lang") == "de"
+        assert region.locator("li").count() > 0
+        panel.get_by_role("button", name="Read aloud").press("Enter")
+        until(lambda: "no voice for this language" in panel.inner_text(), "no voice")
+        panel.get_by_label("Language").select_option("fr")
+        until(lambda: region.get_attribute("lang") == "fr", "French")
+        panel.get_by_role("button", name="Read aloud").press("Enter")
+        lines = [each for each in page.evaluate("spoken") if each != "cancel"]
+        assert {each["lang"] for each in lines} == {"fr-FR"}
+        said = region.inner_text()
+        assert all(each["text"].removesuffix(".").split(". ")[-1] in said for each in lines)
+        panel.get_by_role("button", name="Stop reading").press("Enter")
+        assert page.evaluate("spoken.at(-1)") == "cancel"
+        panel.get_by_role("button", name="Copy").press("Enter")
+        until(lambda: page.evaluate("heard.includes('The description is in the clipboard.')"), "copied")
+        copied = page.evaluate("navigator.clipboard.readText()")
+        assert all(each["text"] in copied for each in lines)
+        with page.expect_download() as waited:
+            panel.get_by_role("button", name="Save as HTML").press("Enter")
+        assert waited.value.suggested_filename == "mine.html"
+        assert '<html lang="fr">' in kept(waited.value).decode()
+        assert not [each for each in page.evaluate("heard") if said[:40] in each], "it is not read out unasked"

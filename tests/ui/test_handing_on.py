@@ -1,4 +1,4 @@
-"""The page hands a picture on: files that are whole, what fingers cannot read and its cure, words, and a way to a part."""
+"""The page hands a picture on: whole files, what fingers cannot read and its cure, words, and a way to a part."""
 
 import io
 import time

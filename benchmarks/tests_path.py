@@ -8,4 +8,5 @@ sys.path.append(str(Path(__file__).parents[1] / "tests" / "helpers"))
 import drawn_parts as drawn_parts
 import falcon_bus as falcon_bus
 import falcon_streams as falcon_streams
+import solids as solids
 import two_cameras as two_cameras

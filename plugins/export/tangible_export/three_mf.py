@@ -95,7 +95,7 @@ def _model(solid: "Solid", title: str, language: str) -> Iterator[str]:
     yield f'{_XML}<model unit="millimeter"{spoken} xmlns="{core}">'
     yield f'<metadata name="Title">{escape(title)}</metadata><metadata name="Application">tangible-images</metadata>'
     yield f'<resources><object id="1" type="model" name={quoteattr(title)}><mesh>\n<vertices>\n'
-    yield from _rows('<vertex x="%.4f" y="%.4f" z="%.4f"/>\n', solid.vertices_mm)
+    yield from _rows('<vertex x="%.5f" y="%.5f" z="%.5f"/>\n', solid.vertices_mm)
     yield "</vertices>\n<triangles>\n"
     yield from _rows('<triangle v1="%d" v2="%d" v3="%d"/>\n', solid.triangles)
     yield '</triangles>\n</mesh></object></resources><build><item objectid="1"/></build></model>\n'

@@ -9,8 +9,8 @@ from tangible_core.data.records import Record
 
 from .patches import Patch
 
-STEPS_PER_MM = 10_000
-"""Files say coordinates to a ten-thousandth of a millimetre."""
+STEPS_PER_MM = 100_000
+"""Coordinates are whole hundred-thousandths of a millimetre, as a file of text can say them."""
 
 
 @dataclass(frozen=True, eq=False)

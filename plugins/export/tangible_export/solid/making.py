@@ -44,7 +44,8 @@ def made_solid(options: SolidOptions, work: Work) -> tuple[Solid, Layout]:
         surface = sampled(relief, MOST_IN_GRID, INSTALL)
     layout = _layout(options, work)
     say_what_prints(surface, layout.size_m, options.base_m)
-    triangles = few_triangles(surface.height_m, options.error_m) if few else all_triangles(surface.height_m)
+    heights = surface.height_m
+    triangles = few_triangles(heights, surface.pitch_m, options.error_m) if few else all_triangles(heights)
     solid = closed(plate(surface, triangles, layout), options.base_m)
     size = " x ".join(f"{side:.1f}" for side in solid.vertices_mm.max(axis=0))
     note(log, f"the plate is {size} mm, of {len(solid.triangles):,} triangles")

@@ -10,8 +10,8 @@ from jaxtyping import Float32, Float64, Int32
 
 from tangible_core.data.records import Record
 
-ROUNDING_M = 2e-7
-"""What is left of the error for the rounding of coordinates in files."""
+ROUNDING_M = 2.5e-8
+"""By which a coordinate in a file may be off: half a step of `closed`, and half a step of STL's floating point."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,15 +24,21 @@ class Triangles(Record):
     corners: Int32[np.ndarray, "m 3"]
 
 
-def few_triangles(heights: Float32[np.ndarray, "h w"], error_m: float) -> Triangles:
+def few_triangles(heights: Float32[np.ndarray, "h w"], pitch_m: tuple[float, float], error_m: float) -> Triangles:
     """Nodes are added where the error is largest until it is nowhere above `error_m`. At least 2 x 2 nodes.
+
+    Something is left of the error for the rounding of coordinates in files, which tells most where it is steep.
 
     Raises: ImportError without pydelatin.
     Source: Garland & Heckbert, Fast polygonal approximation of terrains and height fields, 1995, sec. 4.
     """
     from pydelatin import Delatin
 
-    made = Delatin(np.ascontiguousarray(heights, np.float32), max_error=error_m - ROUNDING_M)
+    steepest = sum(
+        float(np.abs(np.diff(heights, axis=axis)).max()) / pitch for axis, pitch in zip((1, 0), pitch_m, strict=True)
+    )
+    allowed_m = max(error_m / 2, error_m - ROUNDING_M * (1 + 2 * steepest))
+    made = Delatin(np.ascontiguousarray(heights, np.float32), max_error=allowed_m)
     nodes = np.asarray(made.vertices)  # whose rows count from below
     column, row = (nodes[:, axis].astype(np.int32) for axis in (0, 1))
     return Triangles(column, row, nodes[:, 2].astype(np.float64), np.asarray(made.triangles).astype(np.int32))

@@ -9,9 +9,9 @@ from ..data import PartMap
 from ..errors import GeometryError
 from ..parts import reduced_parts
 
-FINEST_M, COARSEST_M = 0.05e-3, 0.2e-3
+FINEST_M, COARSEST_M = 0.0625e-3, 0.25e-3
 """Cells are of a size between these: a finger tells no tenth of a millimetre."""
-MOST_CELLS, MOST_COARSE_CELLS = 2560, 1600
+MOST_CELLS, MOST_COARSE_CELLS = 2560, 1280
 """A side, of the finest and of the coarsest cells: what is larger has larger cells."""
 
 

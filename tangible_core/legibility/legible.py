@@ -55,7 +55,7 @@ def legibility(
     if parts is None:
         return Legibility()
     grid = on_grid(parts, width_m)
-    wide = measure(grid.parts, grid.pitch_m, 0.0032)
+    wide = measure(grid.parts.labels, grid.pitch_m, 0.0032)
     narrow, disc = min((p.width_m for p in wide.places), default=0.0032), float(wide.disc_m.min())
     count = textures_of(parts, names) if textures is None else textures
     return Legibility(

@@ -4,16 +4,16 @@ Borders are seen as the middles of the sides of pixels between two parts, on a g
 pixels is n pixels wide, be n even or odd. The rim of the picture is a border too.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from jaxtyping import Bool, Float32, Float64, Int, Int32, UInt8
 
-from ..data import PartMap, SegmentMap
-from ..parts import find_parts
 from ..runtime.opencv import plain_opencv
 
 ROUND_OFF = 1e-6
+SLACK_M = 0.2e-3
+"""By so much, and at least a cell, discs reach further than they are: stairs of pixels are no place of their own."""
 
 
 class Widths(NamedTuple):
@@ -31,6 +31,8 @@ class Widths(NamedTuple):
     """Cells of places that are too narrow."""
     places: "tuple[Place, ...]"
     """These places."""
+    depth: Float32[np.ndarray, "r c"]
+    """Half cells to the nearest border, on the grid of half cells."""
 
 
 class Place(NamedTuple):
@@ -45,121 +47,192 @@ class Place(NamedTuple):
     """Row and column of a cell in it: one where it is widest."""
 
 
-def measure(parts: PartMap, pitch_m: float, gap_m: float) -> Widths:
+class Rims(NamedTuple):
+    """Which sides of a map are a rim, which is a border; a map that is cut out of another goes on there."""
+
+    top: bool = True
+    bottom: bool = True
+    left: bool = True
+    right: bool = True
+
+    def open_sides(self) -> list[Any]:
+        """Where the map goes on, as an index."""
+        sides = (np.s_[0], np.s_[-1], np.s_[:, 0], np.s_[:, -1])
+        return [side for side, rim in zip(sides, self, strict=True) if not rim]
+
+
+WHOLE = Rims()
+
+
+def measure(
+    labels: Int32[np.ndarray, "h w"], pitch_m: float, gap_m: float, rims: Rims = WHOLE, *, quick: bool = False
+) -> Widths:
     """Widths of the parts, of which each place that is narrower than gap_m is one.
 
-    A place is what no disc of that diameter reaches within its piece. Of these, the tip of a corner is let be: it hangs
-    together with the rest on one side alone and is no longer than gap_m, as those of corners down to 39 degrees are.
-    """
-    found = find_parts(SegmentMap(parts.labels))
-    pieces, of = found.labels, np.array(found.segments)
-    depth = _depth(pieces)
-    half_m = pitch_m / 2
-    disc_m = 2 * half_m * _most(depth, pieces, of.size).astype(np.float64)
-    size = np.bincount(pieces.reshape(-1), minlength=of.size)
-    left = _unreached(depth, gap_m / 2 / half_m, pitch_m / half_m)
-    places = _places(pieces, left, depth, disc_m, pitch_m, gap_m)
-    narrow = np.zeros(pieces.shape, np.bool_)
-    if places.kept.any():
-        narrow = np.append(False, places.kept)[places.labels]
-    return Widths(pieces, of, size, disc_m, narrow, places.said)
-
-
-def _depth(pieces: Int32[np.ndarray, "h w"]) -> Float32[np.ndarray, "r c"]:
-    """Half cells to the nearest border, at each point of the grid of half cells; cell (r, c) is at (2 r + 1, 2 c + 1).
-
-    0 on a border.
+    A place is what no disc of that diameter reaches within its piece. Of these, two are let be: what is within an
+    eighth of gap_m of such a disc, and the tip of a corner, which hangs together with the rest of its piece on one side
+    alone and is no longer than gap_m, as those of corners down to 39 degrees are.
+    quick: widths are right to 2 %.
     """
     import cv2
 
-    rows, columns = pieces.shape
-    inside = np.ones((2 * rows + 1, 2 * columns + 1), np.uint8)
-    inside[[0, -1]] = 0
-    inside[:, [0, -1]] = 0
-    inside[1::2, 2:-1:2] = pieces[:, 1:] == pieces[:, :-1]
-    inside[2:-1:2, 1::2] = pieces[1:] == pieces[:-1]
-    with plain_opencv():
-        return np.asarray(cv2.distanceTransform(inside, cv2.DIST_L2, cv2.DIST_MASK_PRECISE), np.float32)
+    sides = _Sides.of(labels)
+    pieces = sides.components(np.ones(labels.shape, np.bool_)) - 1
+    count = int(pieces.max()) + 1
+    of = np.zeros(count, np.int64)
+    of[pieces.reshape(-1)] = labels.reshape(-1)
+    depth = sides.depth(rims, cv2.DIST_MASK_5 if quick else cv2.DIST_MASK_PRECISE)
+    disc_m = pitch_m * _most(depth, pieces, count).astype(np.float64)
+    beyond_m = _beyond(depth, gap_m / pitch_m) * np.float32(pitch_m / 2)
+    narrow, places = _places(sides, pieces, beyond_m, depth, disc_m, pitch_m, gap_m, rims)
+    size = np.bincount(pieces.reshape(-1), minlength=count)
+    return Widths(pieces, of, size, disc_m, narrow, places, depth)
 
 
-def _most(depth: Float32[np.ndarray, "r c"], pieces: Int[np.ndarray, "h w"], count: int) -> Float32[np.ndarray, "n"]:
+def connected(labels: Int32[np.ndarray, "h w"]) -> Int32[np.ndarray, "h w"]:
+    """The connected piece of each cell, from 0 on."""
+    return _Sides.of(labels).components(np.ones(labels.shape, np.bool_)) - 1
+
+
+def around(wide: Widths, pitch_m: float, gap_m: float) -> Bool[np.ndarray, "h w"]:
+    """The narrow places with all that hangs together with them and no disc of a larger gap reaches."""
+    hardly = _beyond(wide.depth, gap_m / pitch_m) > _slack_m(pitch_m) / (pitch_m / 2)
+    components = _Sides.of(wide.pieces).components(hardly | wide.narrow)
+    there = np.zeros(int(components.max()) + 1, np.bool_)
+    there[components[wide.narrow]] = True
+    there[0] = False
+    return there[components]
+
+
+class _Sides(NamedTuple):
+    """Which sides of cells are no border."""
+
+    upright: Bool[np.ndarray, "h w1"]
+    """Between a cell and the one right of it."""
+    level: Bool[np.ndarray, "h1 w"]
+    """Between a cell and the one below it."""
+
+    @classmethod
+    def of(cls, labels: Int32[np.ndarray, "h w"]) -> "_Sides":
+        return cls(labels[:, 1:] == labels[:, :-1], labels[1:] == labels[:-1])
+
+    def _drawn(
+        self, cells: Bool[np.ndarray, "h w"], upright: Bool[np.ndarray, "h w1"], level: Bool[np.ndarray, "h1 w"]
+    ) -> UInt8[np.ndarray, "r c"]:
+        """On the grid of half cells, on which cell (r, c) is at (2 r + 1, 2 c + 1)."""
+        rows, columns = cells.shape
+        found = np.zeros((2 * rows + 1, 2 * columns + 1), np.uint8)
+        found[1::2, 1::2] = cells
+        found[1::2, 2:-1:2] = upright
+        found[2:-1:2, 1::2] = level
+        return found
+
+    def depth(self, rims: Rims, mask: int) -> Float32[np.ndarray, "r c"]:
+        """Half cells to the nearest border, at each point of the grid of half cells; 0 on a border."""
+        import cv2
+
+        inside = self._drawn(np.ones((len(self.upright), self.level.shape[1]), np.bool_), self.upright, self.level)
+        inside[2:-1:2, 2:-1:2] = 1
+        inside[0, :], inside[-1, :] = not rims.top, not rims.bottom
+        inside[:, 0] &= not rims.left
+        inside[:, -1] &= not rims.right
+        if not rims.left:
+            inside[1:-1, 0] = 1
+        if not rims.right:
+            inside[1:-1, -1] = 1
+        if not (inside == 0).any():
+            return np.full(inside.shape, np.float32(np.inf))
+        with plain_opencv():
+            return np.asarray(cv2.distanceTransform(inside, cv2.DIST_L2, mask), np.float32)
+
+    def components(self, cells: Bool[np.ndarray, "h w"]) -> Int32[np.ndarray, "h w"]:
+        """The connected pieces of these cells, from 1 on; 0 elsewhere. No piece crosses a border."""
+        import cv2
+
+        upright, level = cells[:, 1:] & cells[:, :-1] & self.upright, cells[1:] & cells[:-1] & self.level
+        _, found = cv2.connectedComponents(self._drawn(cells, upright, level), connectivity=4)
+        return np.ascontiguousarray(found[1::2, 1::2])
+
+
+def _most(depth: Float32[np.ndarray, "r c"], pieces: Int32[np.ndarray, "h w"], count: int) -> Float32[np.ndarray, "n"]:
     """The greatest depth in each piece: at its cells, and between two of them."""
-    most = np.zeros(count, np.float32)
-    for down, right in ((1, 1), (1, 2), (2, 1), (2, 2)):
+    deepest = depth[1::2, 1::2].copy()
+    for down, right in ((1, 2), (2, 1), (2, 2)):
         here = depth[down:-1:2, right:-1:2]
-        np.maximum.at(most, pieces[: here.shape[0], : here.shape[1]].reshape(-1), here.reshape(-1))
+        at = deepest[: here.shape[0], : here.shape[1]]
+        np.maximum(at, here, out=at)  # beside a border what lies between cells is no deeper than they are
+    most = np.zeros(count, np.float32)
+    np.maximum.at(most, pieces.reshape(-1), deepest.reshape(-1))
     return most
 
 
-def _unreached(depth: Float32[np.ndarray, "r c"], radius: float, slack: float) -> Float32[np.ndarray, "h w"]:
-    """How far each cell is beyond the discs of this radius that lie within pieces; 0 for what they reach. Half cells."""
+def _beyond(depth: Float32[np.ndarray, "r c"], radius: float) -> Float32[np.ndarray, "h w"]:
+    """How far each cell is from the discs of this radius that lie within pieces; 0 or less in them. Half cells."""
     import cv2
 
     outside: UInt8[np.ndarray, "r c"] = (depth < radius * (1 - ROUND_OFF)).view(np.uint8)
     if outside.all():
         return np.full((depth.shape[0] // 2, depth.shape[1] // 2), np.float32(np.inf))
     with plain_opencv():
-        far = np.asarray(cv2.distanceTransform(outside, cv2.DIST_L2, cv2.DIST_MASK_5), np.float32)[1::2, 1::2]
-    beyond = far - np.float32(radius)
-    beyond[beyond <= slack] = 0
-    return beyond
-
-
-class _Found(NamedTuple):
-    labels: Int[np.ndarray, "h w"]
-    """From 1 on, where a disc does not reach."""
-    kept: Bool[np.ndarray, "m"]
-    said: tuple[Place, ...]
+        far = np.asarray(cv2.distanceTransform(outside, cv2.DIST_L2, cv2.DIST_MASK_5), np.float32)
+    return far[1::2, 1::2] - np.float32(radius)
 
 
 def _places(
+    sides: _Sides,
     pieces: Int32[np.ndarray, "h w"],
-    left: Float32[np.ndarray, "h w"],
+    beyond_m: Float32[np.ndarray, "h w"],
     depth: Float32[np.ndarray, "r c"],
     disc_m: Float64[np.ndarray, "n"],
     pitch_m: float,
     gap_m: float,
-) -> _Found:
-    from skimage.measure import label
-
-    there = left > 0
-    labels = np.asarray(label(np.where(there, pieces + 1, 0), connectivity=1, background=0))
-    count = int(labels.max())
-    flat = labels.reshape(-1)
-    longest = np.zeros(count + 1, np.float32)
-    np.maximum.at(longest, flat, left.reshape(-1))
-    first = np.zeros(count + 1, np.int64)
-    first[flat[::-1]] = np.arange(flat.size)[::-1]
-    piece = pieces.reshape(-1)[first]
-    kept = (longest * (pitch_m / 2) > gap_m) | (disc_m[piece] < gap_m * (1 - ROUND_OFF)) | _necks(labels, pieces, count)
-    widest, cells = _most(depth, labels, count + 1), depth[1::2, 1::2].reshape(-1)
-    deepest = np.zeros(count + 1, np.float32)
-    np.maximum.at(deepest, flat, cells)
-    middle = np.zeros(count + 1, np.int64)
-    on = np.flatnonzero((flat > 0) & (cells == deepest[flat]))
-    middle[flat[on]] = on
-    size = np.bincount(flat, minlength=count + 1)
-    rows, columns = np.divmod(middle, pieces.shape[1])
-    said = tuple(
-        Place(int(piece[n]), float(widest[n]) * pitch_m, int(size[n]), (int(rows[n]), int(columns[n])))
-        for n in (np.flatnonzero(kept[1:]) + 1).tolist()
+    rims: Rims,
+) -> tuple[Bool[np.ndarray, "h w"], tuple[Place, ...]]:
+    """Where it is too narrow, and the places of it."""
+    left = beyond_m > _slack_m(pitch_m)
+    if not left.any():
+        return left, ()
+    labels = sides.components(left)
+    count = int(labels.max()) + 1
+    on = np.flatnonzero(left)
+    at = labels.reshape(-1)[on]
+    longest_m = np.zeros(count, np.float32)
+    np.maximum.at(longest_m, at, beyond_m.reshape(-1)[on])
+    piece = np.zeros(count, np.int64)
+    piece[at] = pieces.reshape(-1)[on]
+    necks = _necks(sides, labels, count) & (longest_m > gap_m / 8)
+    wrong = necks | (longest_m > gap_m) | (disc_m[piece] < gap_m * (1 - ROUND_OFF))
+    wrong[0] = False
+    for side in rims.open_sides():
+        wrong[labels[side]] = False  # how it goes on there is not seen
+    deepest = depth[1::2, 1::2].reshape(-1)[on]
+    width_m = _most(depth, labels, count).astype(np.float64) * pitch_m
+    middle = np.zeros(count, np.int64)
+    order = np.argsort(deepest, kind="stable")
+    middle[at[order]] = on[order]
+    size = np.bincount(at, minlength=count)
+    found = tuple(
+        Place(int(piece[n]), float(width_m[n]), int(size[n]), divmod(int(middle[n]), pieces.shape[1]))
+        for n in np.flatnonzero(wrong).tolist()
     )
-    return _Found(labels, kept[1:], said)
+    return wrong[labels], found
 
 
-def _necks(labels: Int[np.ndarray, "h w"], pieces: Int32[np.ndarray, "h w"], count: int) -> Bool[np.ndarray, "m"]:
+def _slack_m(pitch_m: float) -> float:
+    return max(SLACK_M, pitch_m)
+
+
+def _necks(sides: _Sides, labels: Int32[np.ndarray, "h w"], count: int) -> Bool[np.ndarray, "m"]:
     """Whether each of these places hangs together with the rest of its piece on more than one side."""
-    from skimage.measure import label
+    import cv2
 
-    beside = np.zeros(labels.shape, labels.dtype)
-    for one, other in (
-        ((slice(None), slice(1, None)), (slice(None), slice(None, -1))),
-        ((slice(1, None), slice(None)), (slice(None, -1), slice(None))),
-    ):
-        same = pieces[one] == pieces[other]
+    beside = np.zeros(labels.shape, np.int32)
+    right, left, below, above = np.s_[:, 1:], np.s_[:, :-1], np.s_[1:], np.s_[:-1]
+    for one, other, same in ((right, left, sides.upright), (below, above, sides.level)):
         for here, there in ((one, other), (other, one)):
             met = same & (labels[here] == 0) & (labels[there] > 0)
             beside[here][met] = labels[there][met]
-    sides = np.asarray(label(beside, connectivity=2, background=0))
-    met = np.unique(np.stack([sides[beside > 0], beside[beside > 0]]), axis=1)
-    return np.bincount(met[1], minlength=count + 1) > 1
+    on = np.flatnonzero(beside)
+    _, ends = cv2.connectedComponents((beside > 0).view(np.uint8), connectivity=8)
+    met = np.unique(ends.reshape(-1)[on].astype(np.int64) * count + beside.reshape(-1)[on]) % count
+    return np.bincount(met, minlength=count) > 1

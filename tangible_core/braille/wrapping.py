@@ -1,15 +1,19 @@
 """Text in lines of braille that are no wider than there is room."""
 
+import re
+
 from ..errors import BrailleError, check_positive, quoted
 from .cells import Cells
 from .cells import width_m as width_of_m
 from .translation import translate
 
 _HYPHEN = "-"
+_BREAK = re.compile("[^\\S\u00a0\u202f]+(?!%)")
+"""Spaces, but for those that print keeps on one line, and before a per cent sign."""
 
 
 def wrapped(text: str, language: str, width_m: float, indent: int = 0) -> list[Cells]:
-    """Lines of cells, each at most so wide: they break at spaces, and a word that is wider breaks behind a hyphen.
+    """Lines of cells, each at most so wide: they break at spaces that may break, and a word that is wider breaks behind a hyphen.
 
     indent: empty cells before every line but the first.
     Raises: BrailleError as `translate`, and where not even one letter has room.
@@ -19,7 +23,7 @@ def wrapped(text: str, language: str, width_m: float, indent: int = 0) -> list[C
     """
     check_positive("width_m", width_m)
     lines, line = list[Cells](), ""
-    for word in text.split():
+    for word in filter(None, _BREAK.split(text)):
         if _fits(longer := f"{line} {word}".strip(), language, width_m, indent if lines else 0):
             line = longer
             continue

@@ -6,15 +6,16 @@ from typing import NamedTuple
 import numpy as np
 
 from ..data import HapticSurface
-from ..errors import shown
 from ..scene.workspace import SceneKind
-from .describing import FLAT_M, heights_in_words, materials_in_words, percent
+from .describing import FLAT_M, heights_in_words, materials_in_words
 from .facts import PartFacts
-from .languages import Language, Words
+from .languages import Language, Words, written
 from .places import NOWHERE
 
 MOST_PARTS = 60
 """Parts that are described, the largest; of the others, how many they are."""
+LEAST_SHARE = 0.001
+"""Of the picture: a smaller part that has no name is one of those that are left out."""
 MOST_BESIDE = 4
 """Neighbours of a part that are named, those of the longest borders."""
 SHARES = (0.5, 0.25, 0.08, 0.0)
@@ -71,18 +72,18 @@ def tell(
     language: Language,
     parts: Sequence[PartFacts],
     kind: SceneKind | None,
-    given: Callable[[str], str] = shown,
+    given: Callable[[str], str] = written,
 ) -> Told:
     """A description in words. given: writes what somebody named: the title, parts, materials of their own."""
     say = Words(language)
     told = _largest(parts)
     labels = {each.number: _label(each, say, given) for each in parts}
     left = [each for each in parts if each not in told]
-    share = percent(sum(each.share for each in left))
+    share = _percent(sum(each.share for each in left), say)
     left_out = say("small part" if len(left) == 1 else "small parts", count=len(left), share=share) if left else ""
     materials = "" if any(each.material for each in told) else materials_in_words(surface, say)
     return Told(
-        given(title),
+        given(title) if title.strip() else say("nameless"),
         tuple(filter(None, [_size(surface, say), heights_in_words(surface, say), materials])),
         say("part list heights" if kind == "heights" else "part list") if told else "",
         tuple(ToldPart(labels[each.number], _sentences(each, labels, say, given)) for each in told),
@@ -92,7 +93,8 @@ def tell(
 
 def _largest(parts: Sequence[PartFacts]) -> list[PartFacts]:
     """Those that have a name and then the largest, in the order they come in."""
-    ranked = sorted(parts, key=lambda each: (not each.name, -each.share))
+    large = [each for each in parts if each.name or each.share >= LEAST_SHARE]
+    ranked = sorted(large, key=lambda each: (not each.name, -each.share))
     kept = {each.number for each in ranked[:MOST_PARTS]}
     return [each for each in parts if each.number in kept]
 
@@ -113,13 +115,18 @@ def _sentences(part: PartFacts, labels: dict[int, str], say: Words, given: Calla
     width, length = (say.number(1000 * each) for each in part.size_m)
     share = say(f"part share {next(round(100 * least) for least in SHARES if part.share >= least)}")
     high = say("part size high", height=say.number(1000 * part.height_m)) if part.height_m > FLAT_M else ""
-    size = say("part size", share=share, percent=percent(part.share), width=width, length=length, high=high)
+    size = say("part size", share=share, percent=_percent(part.share, say), width=width, length=length, high=high)
     said = [_sentence(say(part.place)) if part.place != NOWHERE else "", size]
     if part.material:
         said.append(say("part feels alone", material=say.felt(part.material, given)))
     if beside := [labels[each] for each in part.neighbours[:MOST_BESIDE]]:
         said.append(say("part beside", parts=", ".join(beside)))
     return tuple(filter(None, said))
+
+
+def _percent(share: float, say: Words) -> str:
+    """Whole ones, and tenths where it is less than one."""
+    return say.number(round(100 * share) if share >= 0.01 else max(0.1, round(100 * share, 1)))
 
 
 def ended(text: str) -> str:

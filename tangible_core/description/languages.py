@@ -4,6 +4,7 @@ import logging
 import re
 from collections.abc import Callable, Mapping
 from typing import Literal, NamedTuple, get_args
+from unicodedata import category
 
 from ..errors import quoted, shown
 from ..plugins.notes import note
@@ -68,8 +69,17 @@ def part_label(part: str | int, language: str = "en") -> str:
     ('helmet', 'part 3', 'Teil 3')
     """
     if isinstance(part, str):
-        return shown(part.strip())
+        return written(part)
     return Words(language_of(language))("part number", number=part)
+
+
+def written(text: str) -> str:
+    """Somebody's words as a page has them: all of them on one line, without what is no character of a text.
+
+    >>> written(" two\\n lines\\x07")
+    'two lines'
+    """
+    return " ".join("".join(each for each in text if each.isspace() or category(each) not in ("Cc", "Cs")).split())
 
 
 class Words:

@@ -4,11 +4,10 @@ from collections.abc import Sequence
 from html import escape
 
 from ..data import HapticSurface
-from ..errors import shown
 from ..scene.workspace import SceneKind
 from .at_length import ended, tell
 from .facts import PartFacts
-from .languages import Language
+from .languages import Language, written
 
 _STYLE = """
 :root { color-scheme: light dark; }
@@ -47,7 +46,7 @@ def page_of(
 <meta charset="utf-8">
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'">
-<title>{escape(shown(title))}</title>
+<title>{escape(written(title)) or told.title}</title>
 <style>
 {_STYLE}
 </style>
@@ -64,5 +63,5 @@ def page_of(
 
 def _given(text: str, language: str) -> str:
     """Somebody's words in a page: what they are written in is said where it is not the page's language."""
-    written = escape(shown(text))
-    return f'<span lang="{escape(language)}">{written}</span>' if language else written
+    said = escape(written(text))
+    return f'<span lang="{escape(language)}">{said}</span>' if language else said

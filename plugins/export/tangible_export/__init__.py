@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from .glb import Glb as Glb
     from .heights import Heights as Heights
     from .stl import Stl as Stl
+    from .text import Text as Text
     from .three_mf import ThreeMF as ThreeMF
 
 __all__, __getattr__ = lazily(  # pyright: ignore[reportUnsupportedDunderAll]
@@ -19,6 +20,7 @@ __all__, __getattr__ = lazily(  # pyright: ignore[reportUnsupportedDunderAll]
         "glb": ["Glb"],
         "heights": ["Heights"],
         "stl": ["Stl"],
+        "text": ["Text"],
         "three_mf": ["ThreeMF"],
     },
 )

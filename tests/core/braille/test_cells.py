@@ -46,6 +46,12 @@ def test_lines_break_at_spaces_and_lose_nothing():
     assert wrapped("", "en", WIDE_M) == wrapped(" \n", "en", WIDE_M) == []
 
 
+@pytest.mark.parametrize("text", ["noted 15 %", "noted 15\u00a0%", "noted 15\u202fmm"])
+def test_a_number_stays_with_its_sign(text: str):
+    first, second = wrapped(text, "en", width_m((0,) * 9))
+    assert (first, second) == (translate("noted", "en"), translate(text[6:], "en"))
+
+
 def test_later_lines_are_indented():
     first, *others = wrapped(TEXT, "en", WIDE_M, indent=2)
     assert first[:2] == translate("In", "en")[:2]

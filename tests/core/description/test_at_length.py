@@ -47,7 +47,7 @@ def test_facts_of_parts_that_lie_on_another_grid():
         (5, "cup", "glass"),
         (3, "table", "stone"),
     ]
-    assert cup.size_m == pytest.approx((0.024, 0.032))
+    assert cup.size_m == pytest.approx((0.024, 0.028))
     assert cup.height_m == pytest.approx(0.00425)
     fine = PartMap(np.kron(LABELS, np.ones((9, 9), np.int32)), (0, 1, 2))
     assert [each._replace(name="") for each in facts(surface, parts=fine)] == [

@@ -50,5 +50,5 @@ def test_english_stands_in_with_a_note():
 
 
 def test_a_part_is_called_by_its_name_or_its_number():
-    labels = part_label(" helmet\n"), part_label("a\tb"), part_label(0), part_label(3, "fr"), part_label(3, "pt")
-    assert labels == ("helmet", "a\\tb", "part 0", "partie 3", "part 3")
+    labels = part_label(" helmet\n"), part_label("a\tb\ud800"), part_label(0), part_label(3, "fr"), part_label(3, "pt")
+    assert labels == ("helmet", "a b", "part 0", "partie 3", "part 3")

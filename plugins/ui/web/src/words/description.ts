@@ -2,8 +2,8 @@ import { words } from "./words";
 
 /** The description of what is felt. */
 export const t = words({
-  about: ["What there is to feel, in words: to read before, or in its place. “Export” writes the same text into files.",
-    "Was zu fühlen ist, in Worten: zum Lesen davor oder statt dessen. „Weitergeben“ schreibt denselben Text in Dateien."],
+  about: ["What there is to feel, in words: to be read before it is felt, or instead. “Export” writes it into files.",
+    "Was zu fühlen ist, in Worten: um es vorher zu lesen oder stattdessen. „Weitergeben“ schreibt den Text in Dateien."],
   language: ["Language", "Sprache"],
   en: ["English", "Englisch"],
   de: ["German", "Deutsch"],

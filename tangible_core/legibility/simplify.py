@@ -52,10 +52,10 @@ def simplify(
     """The parts as fingers can read them, on a grid of its own, with the numbers that they have.
 
     Parts that pass stay as they are, on the grid of `on_grid`: so twice is the same as once. Else, on cells of an
-    eighth to a quarter of a millimetre, parts without a name that are most alike in colour become one texture until there are `choice.textures`;
-    then places narrower than `choice.gap_m` and parts that hold no disc of `choice.part_m` go to the parts around
-    them, again and again until all passes. A part that vanished has no pixel. Of segments, those that became one
-    texture have one number.
+    eighth to a quarter of a millimetre, parts without a name that are most alike in colour become one texture until
+    there are `choice.textures`; then places narrower than `choice.gap_m` and parts that hold no disc of
+    `choice.part_m` go to the parts around them, again and again until all passes. A part that vanished has no pixel.
+    Parts that became one texture have one segment.
     names: of parts, by number; those that have one stay apart. picture: of the parts' size, for its colours.
     Notes tell which named parts vanished, which are of several pieces, and, where it cannot pass, what would help.
     Raises: GeometryError if width_m is not positive.

@@ -52,7 +52,6 @@ def mesher(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> s
 
 
 def without_pydelatin(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(making, "find_spec", lambda _: None)
     monkeypatch.setitem(sys.modules, "pydelatin", None)
 
 

@@ -227,6 +227,9 @@ export interface Events {
   shown: Scene;
   /** Something about this page's hand changed: what moves it, how, whether it is felt. */
   hand: Hand;
+  /** What is to be shown of the surface, and what is: the picture, heights, segments ... */
+  "look at": { look: string };
+  look: { look: string };
   /** Something finer of the surface on the screen has come. */
   finer: Scene;
   /** A recording was opened, a file of this machine. */

@@ -31,11 +31,14 @@ export function sentence(grade: Grade, text: string): HTMLElement {
 function table(caption: string, all: Verdict[], cure: Cure, more: More): HTMLElement {
   const made = headed(caption, [t("verdict"), t("what"), t("stands")], "verdicts");
   const body = made.createTBody();
-  for (const each of all) row(body, each, cure, more);
+  const said = new Set<string>();
+  /** A source, a cure or its button that several verdicts have stands at the first of them. */
+  const fresh = (text: string): boolean => said.size !== said.add(text).size;
+  for (const each of all) row(body, each, cure, more, fresh);
   return made;
 }
 
-function row(body: HTMLTableSectionElement, said: Verdict, cure: Cure, more: More): void {
+function row(body: HTMLTableSectionElement, said: Verdict, cure: Cure, more: More, fresh: (text: string) => boolean): void {
   const made = body.insertRow();
   made.className = said.verdict;
   const verdict = made.insertCell();
@@ -47,9 +50,10 @@ function row(body: HTMLTableSectionElement, said: Verdict, cure: Cure, more: Mor
   what.textContent = `${said.check}: ${said.of}`;
   made.append(what);
   made.insertCell().append(said.stands);
-  const texts = [said.note, said.source, said.verdict === "ok" ? "" : said.cure].filter(Boolean);
+  const texts = [said.note, said.source, said.verdict === "ok" ? "" : said.cure].filter((text) => text && fresh(`${said.check} ${text}`));
+  const changes = said.changes.filter((each) => fresh(JSON.stringify(each)));
   const also = more(said);
-  if (!texts.length && !said.changes.length && !also) return;
+  if (!texts.length && !changes.length && !also) return;
   const below = body.insertRow().insertCell();
   below.colSpan = 3;
   below.className = "below";
@@ -58,7 +62,7 @@ function row(body: HTMLTableSectionElement, said: Verdict, cure: Cure, more: Mor
     below.append(each);
   }
   if (also) below.append(also);
-  for (const { key, value } of said.changes) below.append(button(t("set", { key, value: written(value) }), () => cure(key, value)));
+  for (const { key, value } of changes) below.append(button(t("set", { key, value: written(value) }), () => cure(key, value)));
 }
 
 /** A value as the pipeline file writes it. */

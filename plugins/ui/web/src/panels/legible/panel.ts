@@ -10,6 +10,7 @@ import { Marks } from "./marks";
 import { faults, places } from "./places";
 
 const MEDIA: Medium[] = ["swell", "print", "pins", "force"];
+const SIMPLIFY = "simplify";
 const WIDTH_MM = { least: 10, most: 2000 };
 
 export function build(page: Page, root: HTMLElement): void {
@@ -24,7 +25,12 @@ export function build(page: Page, root: HTMLElement): void {
   stale.hidden = true;
   const found = document.createElement("div");
   const marked = ticked(t("marks"), () => age());
+  marked.input.checked = true;
   marked.root.hidden = true;
+  const coloured = ticked(t("parts"), (on) => page.hub.tell("look at", { look: on ? "segments" : "photo" }));
+  coloured.root.hidden = true;
+  page.hub.on("look", ({ look }) => (coloured.input.checked = look === "segments"));
+  coloured.input.checked = page.hub.last("look")?.look === "segments";
   let judged: Legible | null = null;
 
   const work = async (): Promise<void> => {
@@ -46,7 +52,7 @@ export function build(page: Page, root: HTMLElement): void {
   buttons.append(check);
   const widthBox = field(t("width"), width);
   widthBox.append(Object.assign(hint(t("widthHint")), { id: "legible-width-hint" }));
-  root.append(hint(t("about")), field(t("medium"), medium), widthBox, buttons, told, stale, marked.root, found);
+  root.append(hint(t("about")), field(t("medium"), medium), widthBox, buttons, told, stale, found, marked.root, coloured.root);
 
   const age = (): void => {
     stale.hidden = !judged || judged.digest === page.document?.digest;
@@ -63,9 +69,10 @@ export function build(page: Page, root: HTMLElement): void {
     const more = (each: Legible["verdicts"][number]): HTMLElement | null =>
       failing.has(each) ? places(page, each, failing.get(each)!, marks) : null;
     const of = paragraph(t("of", { medium: t(`${said.medium}Of`), width: decimal(1000 * said.width_m, 0) }), "hint");
-    found.replaceChildren(sentence(said.grade, said.sentence), of, ...verdicts(said.verdicts, cure, more));
+    found.replaceChildren(sentence(said.grade, said.sentence), of, ...simplifying(said, editor, work), ...verdicts(said.verdicts, cure, more));
     const all = [...failing.values()].flat();
     marked.root.hidden = !all.length;
+    coloured.root.hidden = false;
     marks.put(all);
     age();
   };
@@ -73,6 +80,21 @@ export function build(page: Page, root: HTMLElement): void {
   page.hub.on("document", age);
   const before = page.hub.last("legible");
   if (before) show(before);
+}
+
+/** Everything that would make parts legible, as one edit; nothing where that is no cure. */
+function simplifying({ verdicts: all }: Legible, editor: Editor, check: () => Promise<void>): HTMLElement[] {
+  const wanted = all.flatMap((each) => each.changes).filter(({ key }) => key === SIMPLIFY || key.startsWith(`${SIMPLIFY}.`));
+  if (!wanted.length) return [];
+  const changes = Object.fromEntries(wanted.reverse().map(({ key, value }) => [key, value])); // the first of a key counts
+  const written = Object.entries(changes).map(([key, value]) => `${key}: ${JSON.stringify(value)}`);
+  const cure = button(t("simplify"), () => void editor.changed({ changes }).then((done) => (done ? check() : undefined)));
+  cure.id = "legible-simplify";
+  cure.className = "primary";
+  const about = hint(t("simplifyHint", { changes: written.join(", ") }));
+  about.id = "legible-simplify-hint";
+  cure.setAttribute("aria-describedby", about.id);
+  return [cure, about];
 }
 
 function choice(): HTMLSelectElement {
@@ -89,12 +111,11 @@ function widthField(): HTMLInputElement {
   return made;
 }
 
-function ticked(text: string, change: () => void): { root: HTMLLabelElement; input: HTMLInputElement } {
+function ticked(text: string, change: (on: boolean) => void): { root: HTMLLabelElement; input: HTMLInputElement } {
   const root = document.createElement("label");
   const input = document.createElement("input");
   input.type = "checkbox";
-  input.checked = true;
-  input.onchange = change;
+  input.onchange = () => change(input.checked);
   root.append(input, text);
   return { root, input };
 }

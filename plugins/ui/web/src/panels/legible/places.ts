@@ -32,12 +32,15 @@ function line(page: Page, fault: Fault, marks: Marks): HTMLElement {
   const { number, at } = fault;
   const where = ninth(...at);
   const part = partAt(page, at);
-  const go = button(part ? t("placeIn", { number, where, part }) : t("place", { number, where }), () => {
+  const go = button(`${number}`, () => {
     marks.look(at);
     const [x, y] = at.map((share) => Math.round(100 * share));
     page.say(t("placeSaid", { number, x, y, part: part || t("noPart") }), { topic: "place", asked: true });
   });
-  go.className = "quiet";
+  const words = part ? t("placeIn", { number, where, part }) : t("place", { number, where });
+  go.className = "chip";
+  go.title = words;
+  go.setAttribute("aria-label", words);
   for (const name of ["mouseenter", "focus"]) go.addEventListener(name, () => marks.point(number));
   for (const name of ["mouseleave", "blur"]) go.addEventListener(name, () => marks.point(null));
   const item = document.createElement("li");

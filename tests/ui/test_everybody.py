@@ -49,6 +49,7 @@ SMALL = """
   .map((each) => [each.outerHTML.slice(0, 90), each.getBoundingClientRect()])
   .filter(([, box]) => box.height < 24 || box.width < 24).map(([html]) => html)
 """
+FILLED = "() => [...document.querySelectorAll('.panel > .inside')].every((each) => each.childElementCount)"
 LOOK = """(each) => {
   const { backgroundColor, outlineStyle, outlineWidth } = getComputedStyle(each);
   return [backgroundColor, outlineStyle, outlineWidth];
@@ -87,7 +88,7 @@ def show(open_page: Callable[..., Any], server: UiServer) -> Show:
 
 def open_all(page: "Page") -> None:
     page.evaluate("document.querySelectorAll('details').forEach((each) => (each.open = true))")
-    page.wait_for_function("() => [...document.querySelectorAll('.panel > .inside')].every((each) => each.childElementCount)")
+    page.wait_for_function(FILLED)
     page.evaluate("document.querySelectorAll('details').forEach((each) => (each.open = true))")  # what came meanwhile
     page.wait_for_timeout(300)  # until their marks have turned
 

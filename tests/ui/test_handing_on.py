@@ -147,6 +147,51 @@ class TestExport:
         assert page.evaluate("document.activeElement.type") == "checkbox"
 
 
+class TestLegible:
+    def test_what_fails_is_marked_and_said_and_its_cure_makes_it_pass(self, show: Callable[..., "Page"]) -> None:
+        page = show()
+        panel = opened(page, "legible")
+        panel.get_by_label("Read on").select_option("swell")
+        panel.get_by_role("button", name="Check now").press("Enter")
+        until(lambda: panel.locator(".sentence.illegible").count() == 1, "judged")
+        until(lambda: page.evaluate("heard.some((each) => each.startsWith('Illegible'))"), "said")
+        places = panel.locator(".places button")
+        marks = page.locator(".overlay .fault")
+        assert marks.all_inner_texts() == places.all_inner_texts() == [str(n + 1) for n in range(marks.count())]
+        until(lambda: marks.first.is_visible(), "marked")
+        at, surface = marks.first.bounding_box(), page.locator("#terrain").bounding_box()
+        assert at and surface
+        assert surface["x"] < at["x"] < surface["x"] + surface["width"]
+        places.first.focus()
+        until(lambda: "pointed" in (marks.first.get_attribute("class") or ""), "which one")
+        places.first.press("Enter")
+        until(lambda: page.evaluate("heard.some((each) => /^Place 1: [0-9]+ % from the left/.test(each))"), "where")
+        assert places.first.get_attribute("aria-label").startswith("1: ")
+        panel.get_by_label("Show the places").press(" ")
+        until(lambda: not marks.first.is_visible(), "hidden")
+        panel.get_by_label("Show the places").press(" ")
+
+        before = text_of(page)
+        panel.get_by_role("button", name="Simplify the parts").press("Enter")
+        until(lambda: panel.locator(".sentence.ok").count() == 1, "cured")
+        assert page.evaluate("page.document.said.simplify.gap_m") == 0.0032
+        assert marks.count() == places.count() == 0
+        page.locator("#undo").press("Enter")
+        until(lambda: text_of(page) == before, "undone in one step")
+        until(lambda: "changed since this check" in panel.inner_text(), "stale")
+
+    def test_another_width_is_judged(self, show: Callable[..., "Page"]) -> None:
+        page = show()
+        panel = opened(page, "legible")
+        panel.get_by_label("Width, mm").fill("400")
+        panel.get_by_label("Read on").select_option("print")
+        panel.get_by_role("button", name="Check now").press("Enter")
+        until(lambda: "Judged for a 3D print, 400 mm wide." in panel.inner_text(), "judged")
+        panel.get_by_label("Width, mm").fill("5")
+        panel.get_by_role("button", name="Check again").press("Enter")
+        assert page.evaluate("document.activeElement.id") == "legible-width", "the browser says what is wrong"
+
+
 class TestDescription:
     def test_it_is_read_heard_and_taken_along(self, show: Callable[..., "Page"]) -> None:
         page = show("language: de\n", VOICES, permissions=["clipboard-read", "clipboard-write"])

@@ -10,7 +10,9 @@ from tangible_core.lazily import lazily
 if TYPE_CHECKING:
     from .glb import Glb as Glb
     from .heights import Heights as Heights
+    from .pins import Pins as Pins
     from .stl import Stl as Stl
+    from .swell import Swell as Swell
     from .text import Text as Text
     from .three_mf import ThreeMF as ThreeMF
 
@@ -19,7 +21,9 @@ __all__, __getattr__ = lazily(  # pyright: ignore[reportUnsupportedDunderAll]
     {
         "glb": ["Glb"],
         "heights": ["Heights"],
+        "pins": ["Pins"],
         "stl": ["Stl"],
+        "swell": ["Swell"],
         "text": ["Text"],
         "three_mf": ["ThreeMF"],
     },

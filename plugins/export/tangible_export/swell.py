@@ -1,7 +1,7 @@
 """Pages for swell paper."""
 
 from pathlib import Path
-from typing import Annotated, ClassVar
+from typing import Annotated, ClassVar, final
 
 from pydantic import Field
 
@@ -9,9 +9,10 @@ from tangible_core.data import PartMap, Work
 from tangible_core.errors import BrokenMethod, PictureError
 from tangible_core.plugins.interfaces import Exporter, Medium
 
-from .paper.sheet import Page, sheet_for
+from .paper.sheet import Page, check_readable, sheet_for
 
 
+@final
 class Swell(Exporter):
     """A page for swell paper and its key: outlines, fills and braille in black shapes alone, as SVG and as PDF.
 
@@ -24,18 +25,18 @@ class Swell(Exporter):
 
     page: Page = "a4"
     """Size of the paper; it lies on its side where the picture is larger so."""
-    picture_m: Annotated[float, Field(gt=0, le=1, allow_inf_nan=False)] | None = None
+    wide_m: Annotated[float, Field(gt=0, le=1, allow_inf_nan=False)] | None = None
     """Width of the picture; as large as the page allows where it is not said."""
 
     def width_m(self, aspect: float) -> float:
-        """Of the picture on the page. Raises: GeometryError where it has no room, or is too narrow for a finger."""
-        return sheet_for(self.page, aspect, self.picture_m).picture_mm[0] / 1000
+        """Of the picture on the page."""
+        return sheet_for(self.page, aspect, self.wide_m).wide_mm[0] / 1000
 
     def write(self, work: Work, stem: Path) -> tuple[Path, ...]:
         """The page and each page of the key as an SVG of its own, and all of them as one PDF.
 
-        Raises: PictureError where there are no parts, or a page could not be read; BrailleError for a title or a name
-        that has no braille; GeometryError as `width_m`; BrokenMethod without shapely.
+        Raises: PictureError where there are no parts, or a page could not be read; GeometryError where it has no room;
+        BrailleError for a title or a name that has no braille; BrokenMethod without shapely.
         """
         try:
             from .paper.figures import write_pdf
@@ -46,8 +47,9 @@ class Swell(Exporter):
             raise BrokenMethod(f"swell: pages need shapely ({error}); pip install 'tangible-images[export]'") from error
         if (parts := work.simplified) is None:
             raise PictureError("swell: this scene has no parts to outline; it needs a picture, or `parts:` of its own")
-        sheet = sheet_for(self.page, _aspect(work, parts), self.picture_m)
-        texts = drawn_pages(work, parted(work, parts, sheet.picture_mm[0] / 1000), sheet, self.page)
+        sheet = sheet_for(self.page, _aspect(work, parts), self.wide_m)
+        check_readable(self.page, sheet)
+        texts = drawn_pages(work, parted(work, parts, sheet.wide_mm[0] / 1000), sheet, self.page)
         files = {f"{stem.name}-swell{'-key' * (n > 0)}{f'-{n}' * (n > 1)}.svg": text for n, text in enumerate(texts)}
         paths = [stem.with_name(name) for name in files]
         for path, text in zip(paths, texts, strict=True):

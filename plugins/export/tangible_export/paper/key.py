@@ -32,7 +32,7 @@ class Entry:
 
 def key_pages(entries: list[Entry], title: str, language: str, page: Page, like: Sheet) -> list[Drawing]:
     """As many pages as it takes, in the order of the letters. Raises: BrailleError as `wrapped`."""
-    heading = f"{title}: {words(language).key}"
+    heading = f"{title}: {words(language).key}" if title else words(language).key
     sheet = empty_sheet(page, like)
     lines = wrapped(heading, language, sheet.title_width_mm / 1000)[:MOST_LINES]
     below = MARGIN_MM + 1000 * height_m(len(lines)) + BESIDE_MM

@@ -14,9 +14,11 @@ from jaxtyping import Float64
 from tangible_core.braille import Cells, height_m, translate, written_by
 from tangible_core.data import PartMap, Work
 from tangible_core.errors import PictureError
+from tangible_core.errors import shown as shown_text
 from tangible_core.parts import shared_borders
 from tangible_core.plugins.notes import note
 
+from ..labels import some
 from .colouring import coloured
 from .drawing import NO_DOTS, Area, Braille, Drawing, svg
 from .fills import BLANK, KINDS, filled
@@ -27,7 +29,6 @@ from .reading import read
 from .sheet import CLEAR_MM, GAP_MM, Page, Sheet
 from .things import Thing, key_letters, things_of
 from .titles import title_at, title_lines
-from .wording import some
 from .words import words
 
 log = logging.getLogger(__name__)
@@ -68,7 +69,7 @@ def drawn_pages(work: Work, parts: PartMap, sheet: Sheet, page: Page) -> list[st
         note(log, f"the title has more lines of braille than room above the picture: {len(lines)} of it, all in the key")
     blank = Drawing(
         sheet=sheet,
-        title=work.title,
+        title=shown_text(work.title),
         description="",
         language=work.language,
         corner=words(work.language).corner,

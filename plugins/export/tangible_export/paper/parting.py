@@ -12,9 +12,8 @@ from tangible_core.legibility.widths import measure
 from tangible_core.parts import find_parts, reduced_parts
 from tangible_core.plugins.notes import note
 
+from ..labels import label_of, some
 from .sheet import GAP_MM, LINE_MM
-from .things import name_of
-from .wording import some
 
 log = logging.getLogger(__name__)
 
@@ -49,9 +48,8 @@ def parted(work: Work, parts: PartMap, width_m: float) -> PartMap:
 
 
 def _opened(labels: Int32[np.ndarray, "h w"], pitch_m: float) -> Int32[np.ndarray, "h w"]:
-    segments = tuple(range(int(labels.max()) + 1))
     for turn in range(ROUNDS):
-        widths = measure(PartMap(labels, segments), pitch_m, AMPLE * GAP_M)
+        widths = measure(labels, pitch_m, AMPLE * GAP_M)
         narrow = widths.narrow | (widths.disc_m < GAP_M)[widths.pieces]
         if not narrow.any() or narrow.all():
             break
@@ -93,5 +91,5 @@ def _without_crumbs(labels: Int32[np.ndarray, "h w"], pitch_m: float) -> Int32[n
 
 def _say_gone(work: Work, before: Int32[np.ndarray, "h w"], after: Int32[np.ndarray, "h w"], count: int) -> None:
     there, left = (np.bincount(each.ravel(), minlength=count) > 0 for each in (before, after))
-    if gone := [name_of(number, work) for number in np.flatnonzero(there & ~left).tolist()]:
+    if gone := [label_of(number, work) for number in np.flatnonzero(there & ~left).tolist()]:
         note(log, f"no room for {some(gone)}: narrower than {1000 * GAP_M:.1f} mm between the middles of outlines")

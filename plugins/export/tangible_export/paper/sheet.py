@@ -52,27 +52,38 @@ class Sheet:
         return replace(self, top_mm=self.top_mm + down, spare_mm=self.spare_mm - down)
 
 
-def sheet_for(page: Page, aspect: float, width_m: float | None) -> Sheet:
-    """The sheet, upright or on its side, on which the picture is largest; or where it has this width.
+def sheet_for(page: Page, aspect: float, wide_m: float | None) -> Sheet:
+    """The sheet, upright or on its side, on which the picture is largest; or where it is so wide.
 
     aspect: width through length of the picture.
-    Raises: GeometryError where it has no room, or would be too narrow to be felt.
     """
+    size, wide = _largest(page, aspect)
+    wide = wide if wide_m is None else 1000 * wide_m
+    return _placed(size, (wide, wide / aspect))
+
+
+def check_readable(page: Page, sheet: Sheet) -> None:
+    """Raises: GeometryError for a picture that has no room, or is too narrow for a finger."""
+    width, length = sheet.picture_mm
+    _, most = _largest(page, width / length)
+    if width > most + 1e-6:
+        raise GeometryError(
+            f"swell: wide_m: a picture {width:.4g} mm wide has no room on {page}, which takes {most:.4g} mm; make it "
+            "smaller or the page larger"
+        )
+    if min(width, length) < LEAST_MM:
+        raise GeometryError(
+            f"swell: the picture would be {width:.3g} mm wide and {length:.3g} mm long on {page}, and a finger needs "
+            f"{LEAST_MM} mm; take a part of the picture that is less long and narrow, or make it larger"
+        )
+
+
+def _largest(page: Page, aspect: float) -> tuple[tuple[float, float], float]:
+    """The size of the sheet as it lies, and the width of the largest picture on it."""
     upright = SIZES_MM[page]
     rooms = {size: min(_room(size)[0], _room(size)[1] * aspect) for size in (upright, upright[::-1])}
     size = max(rooms, key=lambda each: rooms[each])
-    wide = rooms[size] if width_m is None else 1000 * width_m
-    if wide > rooms[size] + 1e-6:
-        raise GeometryError(
-            f"width_m: a picture {wide:.4g} mm wide has no room on {page}, which takes {rooms[size]:.4g} mm; "
-            "make it smaller or the page larger"
-        )
-    if min(wide, wide / aspect) < LEAST_MM:
-        raise GeometryError(
-            f"the picture would be {wide:.4g} mm wide and {wide / aspect:.3g} mm long on {page}, and a finger needs "
-            f"{LEAST_MM} mm; take a part of the picture, or make it larger"
-        )
-    return _placed(size, (wide, wide / aspect))
+    return size, rooms[size]
 
 
 def empty_sheet(page: Page, like: Sheet) -> Sheet:

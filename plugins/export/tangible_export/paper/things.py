@@ -9,6 +9,8 @@ import numpy as np
 
 from tangible_core.data import PartMap, Work
 
+from ..labels import label_of
+
 LETTERS = ascii_lowercase[1:] + ascii_lowercase[0]
 """In the order in which they are given. The last is a single dot, which a finger takes for a stray one."""
 
@@ -27,7 +29,7 @@ def things_of(work: Work, parts: PartMap) -> list[Thing]:
     sizes = np.bincount(parts.labels.ravel(), minlength=parts.count)
     found: dict[str, list[int]] = {}
     for number in np.flatnonzero(sizes).tolist():
-        found.setdefault(name_of(number, work), []).append(number)
+        found.setdefault(label_of(number, work), []).append(number)
     things = [Thing(name, tuple(numbers)) for name, numbers in found.items()]
     return sorted(things, key=lambda thing: -int(sizes[list(thing.numbers)].sum()))
 
@@ -64,9 +66,3 @@ def _letters_in(name: str) -> list[str]:
 def _pairs_in(name: str) -> list[str]:
     letters = _letters_in(name)
     return [letters[0] + each for each in letters[1:]] if letters else []
-
-
-def name_of(number: int, work: Work) -> str:
-    """Of a part, or its number in words."""
-    named = work.names[number] if number < len(work.names) else ""
-    return named or f"part {number}"

@@ -45,7 +45,7 @@ from ..plugins.registry import Registry, default_registry
 from ..preflight import Flight, Hand, Loop, Preflight, judge, survey
 from ..scene.scene import Scene
 from ..scene.workspace import Workspace
-from ..servo import OVER, Safety, Servo
+from ..servo import OVER, Beacon, Safety, Servo, beacon_to
 from ..session import (
     About,
     Followed,
@@ -369,6 +369,7 @@ class Pipeline:
         then: "Sequence[Pipeline]" = (),
         each_s: float = 60.0,
         on_wait: Callable[[str], None] | None = None,
+        beacon: str | int | None = None,
     ) -> Recording:
         """Feel the surface on a device, this or the configured one, and return what was felt.
 
@@ -380,8 +381,10 @@ class Pipeline:
         as long as the disk has room. on_report: called ten times a second, and at the end. on_start: called once a loop
         in real time runs. then: what is felt after this, each for each_s, and then this again. on_wait: waits for a
         device that is not there or goes, and is told so in words (`session.run_in_turn`); both in real time alone.
-        Raises: ConfigError if there is no device or law, or others of `then` have another device; DeviceError if it
-        cannot be opened; OutputError for the file.
+        beacon: the name or the number of a part to which the hand is pulled gently, with 1 N at most, until a button of
+        the device releases it; of every scene of `then`, too.
+        Raises: ConfigError if there is no device or law, or no such part, or others of `then` have another device;
+        DeviceError if it cannot be opened; OutputError for the file.
         """
         file = None if record is None else as_path(record, "record")
         if file is not None:
@@ -392,13 +395,14 @@ class Pipeline:
             raise ConfigError("then, on_wait: are for a session in real time; leave them out, or in_real_time=False")
         if not in_real_time:
             tell, until_s = telling_parts(self.surface, tell), math.inf if seconds is None else seconds
-            found = run_simulated(touch, felt, until_s, tell, self.config.safety, stop)
+            found = run_simulated(touch, felt, until_s, tell, self.config.safety, stop, self._beacon(beacon))
             found = replace(found, about=said.stamped())
             if file is not None:
                 found.save(file)
             return found
 
-        turns = [Turn(touch, self.config.safety, self.surface), *(each._turn(self, device) for each in then)]
+        first = Turn(touch, self.config.safety, self.surface, self._beacon(beacon))
+        turns = [first, *(each._turn(self, device, beacon) for each in then)]
         each_s = each_s if then else math.inf
         said = _in_turn(said, [each._about(None) for each in (self, *then)])
 
@@ -494,7 +498,11 @@ class Pipeline:
             raise self.config.missing("device")
         return felt
 
-    def _turn(self, first: "Pipeline", device: HapticDevice | None) -> Turn:
+    def _beacon(self, part: str | int | None) -> Beacon | None:
+        """To a part of the surface, by its name or number. Raises: ConfigError if there is none such."""
+        return None if part is None else beacon_to(self.surface, part)
+
+    def _turn(self, first: "Pipeline", device: HapticDevice | None, beacon: str | int | None = None) -> Turn:
         """This one, felt on the device of a first one. Raises: ConfigError if that is another than its own."""
         ours, theirs = self.config, first.config
         own = device is None and ours.device is not None
@@ -506,7 +514,7 @@ class Pipeline:
             )
         if device is None and ours.device is None and theirs.device is not None:
             device = theirs.device.method
-        return Turn(self._touch(device), ours.safety, self.surface)
+        return Turn(self._touch(device), ours.safety, self.surface, self._beacon(beacon))
 
     def _touch(self, device: HapticDevice | None) -> Touch:
         """The law on the surface, whose materials fit this device, or the configured one."""

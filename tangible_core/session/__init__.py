@@ -8,7 +8,9 @@ from .limited import changed_most
 from .live import figures, keeping, run_in_real_time
 from .loop import run_simulated
 from .parts_felt import (
+    BeaconFelt,
     PartFelt,
+    beacons_felt,
     called,
     material_under,
     materials_text,
@@ -30,6 +32,7 @@ __all__ = [
     "INTERRUPTED",
     "STOPPED",
     "About",
+    "BeaconFelt",
     "Followed",
     "Keeper",
     "Looks",
@@ -37,6 +40,7 @@ __all__ = [
     "Recording",
     "Turn",
     "Writer",
+    "beacons_felt",
     "beside",
     "called",
     "changed_most",

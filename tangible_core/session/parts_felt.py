@@ -9,11 +9,26 @@ from typing import Any, NamedTuple
 import numpy as np
 from jaxtyping import Float64, Int32
 
-from ..data import HapticSurface, ServoReport, Vector
+from ..data import HapticSurface, ServoReport, TickFlag, Vector
 from ..errors import OutputError, TangibleError, quoted
 from .recording import Recording
 
 Places = Float64[np.ndarray, "n 3"]
+
+
+class BeaconFelt(NamedTuple):
+    """How long a beacon was on."""
+
+    number: int
+    """Of its part."""
+    name: str
+    """Of its part; empty where nobody gave it one, or the surface is another one."""
+    ticks: int
+    share: float
+    """Of all ticks."""
+
+    def __str__(self) -> str:
+        return f"A beacon pulled to {called(self.number, self.name)} for {100 * self.share:.0f} % of the time"
 
 
 class PartFelt(NamedTuple):
@@ -97,7 +112,8 @@ def called(number: int, name: str) -> str:
 def parts_felt(felt: Recording, surface: HapticSurface) -> tuple[PartFelt, ...]:
     """Every part that was touched, the longest touched first; none where the surface has no parts."""
     force_n = np.linalg.norm(felt.force_n, axis=1)
-    touching = force_n > 0
+    pulled_in_air = (felt.flags & (TickFlag.BEACON | TickFlag.TOUCHING)) == TickFlag.BEACON
+    touching = (force_n > 0) & ~pulled_in_air
     if surface.names is None or not touching.any():
         return ()
     under, force_n = _parts_under(surface, felt.position_m[touching]), force_n[touching]
@@ -113,6 +129,18 @@ def parts_felt(felt: Recording, surface: HapticSurface) -> tuple[PartFelt, ...]:
         )
         for number, count in zip(numbers[order].tolist(), ticks[order].tolist(), strict=True)
     )
+
+
+def beacons_felt(felt: Recording, surface: HapticSurface) -> tuple[BeaconFelt, ...]:
+    """Every part that a beacon pulled to, the longest first; by the names of this surface."""
+    on = felt.beacon[felt.beacon >= 0]
+    numbers, ticks = np.unique(on, return_counts=True)
+    names = surface.names or ()
+    found = [
+        BeaconFelt(number, names[number] if number < len(names) else "", count, count / len(felt.rows))
+        for number, count in zip(numbers.tolist(), ticks.tolist(), strict=True)
+    ]
+    return tuple(sorted(found, key=lambda each: -each.ticks))
 
 
 def _under(surface: HapticSurface, position_m: Vector) -> int:

@@ -4,6 +4,7 @@ from collections.abc import Awaitable, Callable, Mapping
 from typing import Any
 
 from . import (
+    beacons,
     devices,
     document,
     drafts,
@@ -31,6 +32,7 @@ ASKS: Mapping[str, Ask] = {
     **exporting.ASKS,
     **mapping.ASKS,
     **feeling.ASKS,
+    **beacons.ASKS,
     **opening.ASKS,
     **records.ASKS,
     **devices.ASKS,

@@ -1,6 +1,7 @@
 """Everything the maker can be asked, by name."""
 
 from . import (
+    beacons,
     checking,
     describing,
     devices,
@@ -39,4 +40,5 @@ JOBS = {
     **proposals.JOBS,
     **snapping.JOBS,
     **felt_parts.JOBS,
+    **beacons.JOBS,
 }

@@ -1,8 +1,11 @@
 """The page hands a picture on: whole files, what fingers cannot read and its cure, words, and a way to a part."""
 
 import io
+import os
+import threading
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from zipfile import ZipFile
@@ -13,6 +16,8 @@ import trimesh
 from browser_tabs import OpenPage
 from desks import small_scene
 from page_files import built_page
+from tangible_core.errors import DeviceError
+from tangible_devices.pointer import PointerClient
 
 if TYPE_CHECKING:
     from playwright.sync_api import Download, Page
@@ -52,7 +57,7 @@ def show(serve: Callable[..., Any], open_page: OpenPage, tmp_path: Path) -> Call
         file.write_text(file.read_text() + said)
         page = open_page("about:blank", **options)
         page.add_init_script(SPY + before)
-        page.goto(serve(file, cwd=tmp_path).url + "&measure")
+        page.goto(serve(file, cwd=tmp_path, TANGIBLE_RUNTIME_DIR=str(tmp_path)).url + "&measure")
         until(lambda: page.locator("#status").get_attribute("data-state") == "felt", "felt")
         return page
 
@@ -220,3 +225,66 @@ class TestDescription:
         assert waited.value.suggested_filename == "mine.html"
         assert '<html lang="fr">' in kept(waited.value).decode()
         assert not [each for each in page.evaluate("heard") if said[:40] in each], "it is not read out unasked"
+
+
+class TestBeacon:
+    def test_a_device_guides_to_a_named_part_until_a_button_or_escape(
+        self, show: Callable[..., "Page"], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        """The page's own hand has no motor: it is asked for a device. Another program moves a pointer in its place."""
+        monkeypatch.setenv("TANGIBLE_RUNTIME_DIR", str(tmp_path))
+        channel = f"guided-{os.getpid()}"
+        page = show(f"parts: {{0: {{name: wall}}}}\ndevice: {{use: pointer, channel: {channel}}}\n")
+        panel = page.locator("#parts")
+        assert panel.get_by_text("choose one under “Devices”").is_visible()
+        assert panel.get_by_role("button", name="guide me there").count() == 0
+        page.evaluate("document.querySelector('#devices').open = true")
+        page.locator("#use-document").press("Enter")
+        guide = panel.get_by_role("button", name="wall: guide me there")
+        until(guide.is_visible, "a device is felt")
+
+        def over(what: str) -> None:
+            until(lambda: page.evaluate("(what) => heard.some((each) => each.startsWith(what))", what), what)
+            until(guide.is_visible, what)
+            assert guide.get_attribute("aria-pressed") == "false"
+            page.evaluate("heard.length = 0")
+
+        with PointerClient(channel, 5.0) as hand:
+            moving = threading.Event()
+
+            def move() -> None:
+                with suppress(DeviceError):  # the stop closes it
+                    while not moving.wait(0.005):
+                        hand.send((0.0, 0.0, 0.02), buttons[0])
+
+            buttons = [0]
+            mover = threading.Thread(target=move)
+            mover.start()
+            try:
+                guide.press("Enter")
+                until(lambda: page.evaluate("heard.includes('You are guided to: wall.')"), "said")
+                let_go = panel.get_by_role("button", name="wall: let me go")
+                assert let_go.get_attribute("aria-pressed") == "true"
+                assert page.evaluate("document.activeElement.textContent") == "Let me go", "the focus stays"
+                let_go.press("Enter")
+                over("You are not guided any more.")
+                guide.press("Enter")
+                until(let_go.is_visible, "again")
+                buttons[0] = 1
+                over("A button of the device let you go.")
+                buttons[0] = 0
+                guide.press("Enter")
+                until(let_go.is_visible, "once more")
+                page.keyboard.press("Escape")
+                until(lambda: page.locator("#status").get_attribute("data-state") == "stopped", "no force")
+                until(lambda: not let_go.is_visible(), "stopped")
+            finally:
+                moving.set()
+                mover.join()
+
+    def test_what_is_touched_is_said_with_its_part_and_material(self, show: Callable[..., "Page"]) -> None:
+        page = show("parts: {0: {name: wall, material: ice}}\nmaterials: {by: {1: ice}, default: ice}\n")
+        page.locator("#terrain").focus()
+        page.keyboard.press("Home")
+        page.keyboard.press(" ")
+        until(lambda: page.evaluate("heard.some((each) => /^Touching .*ice/.test(each))"), "said")

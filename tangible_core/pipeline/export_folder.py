@@ -79,11 +79,11 @@ def move(written: Sequence[Path], folder: Path, source: str, exporter: str, forc
                 + ("" if place.is_dir() else ", --force writes over it")
             )
     new = {place.name: Listed(source, exporter, file_digest(path)) for path, place in places.items()}
-    try:
-        for path, place in places.items():
+    for path, place in places.items():
+        try:
             path.replace(place)
-    except OSError as error:
-        raise OutputError(f"{place}: cannot be written: {error.strerror}; choose another folder") from error
+        except OSError as error:
+            raise OutputError(f"{place}: cannot be written: {error.strerror}; choose another folder") from error
     _write_list(folder, {**read_list(folder), **new})
     return tuple(places.values())
 

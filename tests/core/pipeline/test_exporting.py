@@ -11,8 +11,19 @@ import pytest
 
 from command_line import tangible
 from full_disk import files_up_to
-from tangible_core import DepthEstimator, DisparityMap, Exporter, Pipeline, Scene, Segmenter, SegmentMap, Views, Work
-from tangible_core.data import PartMap
+from tangible_core import (
+    DepthEstimator,
+    DisparityMap,
+    Exporter,
+    Pipeline,
+    Recording,
+    Scene,
+    Segmenter,
+    SegmentMap,
+    Views,
+    Work,
+)
+from tangible_core.data import TICK_COLUMNS, PartMap
 from tangible_core.errors import ConfigError, OutputError, PictureError, Stopped, UnknownMethod
 from tangible_core.pipeline.cache import Cache
 from tangible_core.pipeline.config import PRODUCTS, parse_config
@@ -486,6 +497,18 @@ class TestCommand:
         assert [each["outcome"]["outcome"] for each in said["exports"]] == ["ran"]
         assert said["exports"][0]["files"] == [f"here/map-heights.{end}" for end in ("json", "png", "tif")]
         assert said["exports"][0]["legible"] is None
+
+    def test_a_recording_is_written_as_csv(self, place: Path):
+        rows = np.arange(3.0 * len(TICK_COLUMNS)).reshape(3, -1)
+        Recording(rows).save(place / "felt.nc")
+        ran = tangible("export", "felt.nc", "--to", "csv", "--out", "here", cwd=place)
+        assert ran.returncode == 0, ran.stderr
+        np.testing.assert_allclose(Recording.load(place / "here/felt.csv").rows, Recording.load(place / "felt.nc").rows)
+        again = tangible("export", "felt.nc", "--to", "csv", "--out", "here", cwd=place)
+        assert (again.returncode, again.stderr.splitlines()) == (2, [
+            "here/felt.csv: is there already; --out FOLDER writes to another folder, --force writes over it"
+        ])  # fmt: skip
+        assert tangible("export", "map.npy", "--to", "csv", cwd=place).returncode == 2
 
     def test_exit_codes(self, place: Path, monkeypatch: pytest.MonkeyPatch):
         from tangible_export.heights import Heights

@@ -27,7 +27,6 @@ def shape(labels: np.ndarray) -> PartMap:
     return PartMap(labels.astype(np.int32), tuple(range(int(labels.max()) + 1)))
 
 
-
 @pytest.mark.parametrize("pitch_m", [5e-5, 8e-5, 1e-4])
 @pytest.mark.parametrize("angle_deg", [0, 7, 20, 33, 45, 90])
 def test_a_strip_of_3_1_mm_is_too_narrow_and_one_of_3_3_mm_is_not(pitch_m, angle_deg):

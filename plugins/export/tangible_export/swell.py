@@ -30,7 +30,7 @@ class Swell(Exporter):
 
     def width_m(self, aspect: float) -> float:
         """Of the picture on the page."""
-        return sheet_for(self.page, aspect, self.wide_m).wide_mm[0] / 1000
+        return sheet_for(self.page, aspect, self.wide_m).picture_mm[0] / 1000
 
     def write(self, work: Work, stem: Path) -> tuple[Path, ...]:
         """The page and each page of the key as an SVG of its own, and all of them as one PDF.
@@ -49,7 +49,7 @@ class Swell(Exporter):
             raise PictureError("swell: this scene has no parts to outline; it needs a picture, or `parts:` of its own")
         sheet = sheet_for(self.page, _aspect(work, parts), self.wide_m)
         check_readable(self.page, sheet)
-        texts = drawn_pages(work, parted(work, parts, sheet.wide_mm[0] / 1000), sheet, self.page)
+        texts = drawn_pages(work, parted(work, parts, sheet.picture_mm[0] / 1000), sheet, self.page)
         files = {f"{stem.name}-swell{'-key' * (n > 0)}{f'-{n}' * (n > 1)}.svg": text for n, text in enumerate(texts)}
         paths = [stem.with_name(name) for name in files]
         for path, text in zip(paths, texts, strict=True):

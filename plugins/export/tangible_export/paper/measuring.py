@@ -45,7 +45,7 @@ def too_near(page: Marks) -> list[Near]:
     Outlines touch each other, and what touches is one; those that do not, such as one around a part within another,
     are marks of their own.
     """
-    ink = black(page, PIXELS_PER_MM)
+    ink = _down_to_the_last(black(page, PIXELS_PER_MM))
     far, nearest = cv2.distanceTransformWithLabels(
         (~ink).astype(np.uint8), cv2.DIST_L2, 5, labelType=cv2.DIST_LABEL_CCOMP
     )
@@ -60,6 +60,12 @@ def too_near(page: Marks) -> list[Near]:
     is_line[[number for number, marks in of.items() if marks[0].what == "outline"]] = True
     lines = is_line[nearest[::2, ::2]] & ink[::2, ::2]
     return touching + list(_gaps(ink, far, nearest, of)) + list(_narrow(page, lines))
+
+
+def _down_to_the_last(ink: Bool[np.ndarray, "r c"]) -> Bool[np.ndarray, "k c"]:
+    """Without the empty rows at the end."""
+    rows = np.flatnonzero(ink.any(axis=1))
+    return ink[: rows[-1] + 1] if rows.size else ink
 
 
 def _marks_of(page: Marks, nearest: Int32[np.ndarray, "r c"]) -> dict[int, list[Mark]]:
@@ -89,18 +95,20 @@ def _gaps(
     of: Mapping[int, list[Mark]],
 ) -> Iterator[Near]:
     """Those that do not touch. `far` and `nearest` say how far the nearest blot is from a pixel, and which it is."""
-    places, blots = dict[tuple[int, int], tuple[float, int, int]](), np.where(ink, nearest, 0)
+    places = dict[tuple[int, int], tuple[float, int, int]]()
     for down, right in ((0, 1), (1, 0)):
         rows, columns = ink.shape[0] - down, ink.shape[1] - right
-        one, other = nearest[:rows, :columns], nearest[down:, right:]
-        between = far[:rows, :columns] + far[down:, right:]
-        at = np.nonzero((one != other) & (between < GAP_MM * PIXELS_PER_MM * _INEXACT))
-        _keep_least(places, at, one[at], other[at], between[at])
+        row, column = np.nonzero(nearest[:rows, :columns] != nearest[down:, right:])
+        between = far[row, column] + far[row + down, column + right]
+        close = between < GAP_MM * PIXELS_PER_MM * _INEXACT
+        row, column = row[close], column[close]
+        one, other = nearest[row, column], nearest[row + down, column + right]
+        _keep_least(places, (row, column), one, other, between[close])
     for (one, other), (_, row, column) in places.items():
         pair = of[one][0], of[other][0]
         if pair[0].what == "braille" and _belong(*pair):
             continue
-        if (gap_mm := _gap_mm(blots, one, other, row, column)) < GAP_MM - 1e-6:
+        if (gap_mm := _gap_mm(ink, nearest, one, other, row, column)) < GAP_MM - 1e-6:
             yield Near(pair, gap_mm, (column / PIXELS_PER_MM, row / PIXELS_PER_MM))
 
 
@@ -118,14 +126,16 @@ def _keep_least(
             places[pair] = (float(between[i]), int(at[0][i]), int(at[1][i]))
 
 
-def _gap_mm(blots: Int32[np.ndarray, "r c"], one: int, other: int, row: int, column: int) -> float:
+def _gap_mm(
+    ink: Bool[np.ndarray, "r c"], nearest: Int32[np.ndarray, "r c"], one: int, other: int, row: int, column: int
+) -> float:
     """Between the edges of two blots, exactly, around this place."""
     reach = 2 * int(GAP_MM * PIXELS_PER_MM)
-    window = blots[max(0, row - reach) : row + reach, max(0, column - reach) : column + reach]
-    there = window == other
-    if not there.any() or not (window == one).any():
+    window = slice(max(0, row - reach), row + reach), slice(max(0, column - reach), column + reach)
+    here, there = (ink[window] & (nearest[window] == number) for number in (one, other))
+    if not here.any() or not there.any():
         return np.inf
-    return (float(distance_transform_edt(~there)[window == one].min()) - 1) / PIXELS_PER_MM
+    return (float(distance_transform_edt(~there)[here].min()) - 1) / PIXELS_PER_MM
 
 
 def _narrow(page: Marks, lines: Bool[np.ndarray, "r c"]) -> Iterator[Near]:

@@ -25,6 +25,7 @@ from .fills import BLANK, KINDS, filled
 from .key import Entry, key_pages
 from .letters import around, placed
 from .measuring import Near, too_near
+from .parting import opened_at
 from .reading import read
 from .sheet import CLEAR_MM, GAP_MM, Page, Sheet
 from .things import Thing, key_letters, things_of
@@ -33,8 +34,8 @@ from .words import words
 
 log = logging.getLogger(__name__)
 
-SMOOTH_MM = (0.8, 0.4, 0.2)
-"""Tolerances of borders, by which the stairs of pixels become lines: the next where they run too near to each other."""
+SMOOTH_MM = 0.8
+"""Tolerance of borders, by which the stairs of pixels become lines."""
 ROUNDS = 4
 """Of measuring and putting right."""
 APART_MM = 0.15
@@ -83,19 +84,29 @@ def drawn_pages(work: Work, parts: PartMap, sheet: Sheet, page: Page) -> list[st
 
 
 def _smoothed(blank: Drawing, parts: PartMap, things: Sequence[Thing]) -> tuple[list[Shown], Drawing]:
-    """The page with the smoothest borders that keep apart. Raises: PictureError if none do."""
-    near, beside = list[Near](), _beside(parts, things)
-    for tolerance_mm in SMOOTH_MM:
-        shapes = _on_page(parts, blank.sheet, tolerance_mm)
-        shown = _shown(things, shapes, beside, blank.language)
+    """The page, once no outlines run too near to each other: where they do, parts are opened.
+
+    Raises: PictureError where that does not help.
+    """
+    near, sheet = list[Near](), blank.sheet
+    wide_mm = sheet.picture_mm[0]
+    for turn in range(ROUNDS):
+        shapes = _on_page(parts, sheet)
+        shown = _shown(things, shapes, _beside(parts, things), blank.language)
         described = "; ".join(f"{each.letter} {each.thing.name}" for each in shown)
         drawing, near = _measured(replace(blank, description=described), shown, shapes)
         if not near:
             return shown, drawing
+        parts = opened_at(parts, _on_picture([each.place_mm for each in near], sheet), wide_mm / 1000, turn + 1)
     raise PictureError(f"swell: {near[0]}, and {GAP_MM} mm must be between them; make the picture larger or simpler")
 
 
-def _on_page(parts: PartMap, sheet: Sheet, tolerance_mm: float) -> tuple[Any, ...]:
+def _on_picture(places_mm: Sequence[tuple[float, float]], sheet: Sheet) -> Float64[np.ndarray, "n 2"]:
+    """Places on the page as shares of the picture's width, from its upper left corner."""
+    return np.subtract(places_mm, (sheet.left_mm, sheet.top_mm)) / sheet.picture_mm[0]
+
+
+def _on_page(parts: PartMap, sheet: Sheet) -> tuple[Any, ...]:
     """The shapes of parts in millimetres on the page, y down."""
     rows, columns = parts.labels.shape
     width, length = sheet.picture_mm
@@ -106,7 +117,7 @@ def _on_page(parts: PartMap, sheet: Sheet, tolerance_mm: float) -> tuple[Any, ..
     def moved(at: Float64[np.ndarray, "k 2"]) -> Float64[np.ndarray, "k 2"]:
         return at * scale + middle
 
-    shapes = shared_borders(parts, 1.0, tolerance_mm / width)
+    shapes = shared_borders(parts, 1.0, SMOOTH_MM / width)
     return tuple(shapely.transform(each, moved) for each in shapes)
 
 

@@ -4,7 +4,7 @@ import logging
 
 import cv2
 import numpy as np
-from jaxtyping import Bool, Int32
+from jaxtyping import Bool, Float64, Int32
 from scipy.ndimage import distance_transform_edt, find_objects
 
 from tangible_core.data import PartMap, SegmentMap, Work
@@ -38,18 +38,33 @@ def parted(work: Work, parts: PartMap, width_m: float) -> PartMap:
     rows, columns = parts.labels.shape
     step = max(1, round(PITCH_M / (width_m / columns)))
     fine = reduced_parts(parts, (-(-rows // step), -(-columns // step))).labels
+    pitch_m = step * width_m / columns
     before = np.ascontiguousarray(fine[::COARSE, ::COARSE])
-    after = _opened(before, width_m / before.shape[1])
+    after = _opened(before, COARSE * pitch_m)
     changed, given = (each.repeat(COARSE, 0).repeat(COARSE, 1) for each in (before != after, after))
     found = np.where(*(each[: fine.shape[0], : fine.shape[1]] for each in (changed, given)), fine)
-    found = _without_crumbs(found, step * width_m / columns)
+    found = _without_crumbs(found, pitch_m)
     _say_gone(work, fine, found, parts.count)
     return PartMap(found, parts.segments)
 
 
+def opened_at(parts: PartMap, places: Float64[np.ndarray, "n 2"], width_m: float, further: int) -> PartMap:
+    """The parts, without what is too narrow at these places.
+
+    places: as shares of the width, from the upper left corner. further: from 1 on, by how much more than that.
+    """
+    pitch_m = width_m / parts.labels.shape[1]
+    narrow = np.zeros(parts.labels.shape, np.bool_)
+    column, row = (places * parts.labels.shape[1]).astype(np.int64).T
+    narrow[row.clip(0, narrow.shape[0] - 1), column.clip(0, narrow.shape[1] - 1)] = True
+    around = (0.5 + FURTHER * further) * GAP_M / pitch_m
+    found = _given_away(parts.labels, narrow, around, VOTING * GAP_M / pitch_m)
+    return PartMap(_without_crumbs(found, pitch_m), parts.segments)
+
+
 def _opened(labels: Int32[np.ndarray, "h w"], pitch_m: float) -> Int32[np.ndarray, "h w"]:
     for turn in range(ROUNDS):
-        widths = measure(labels, pitch_m, AMPLE * GAP_M)
+        widths = measure(labels, pitch_m, AMPLE * GAP_M, quick=True)
         narrow = widths.narrow | (widths.disc_m < GAP_M)[widths.pieces]
         if not narrow.any() or narrow.all():
             break

@@ -2,7 +2,6 @@
 
 from typing import Any
 
-from tangible_core.data import HapticSurface
 from tangible_core.description import LANGUAGES, describe
 from tangible_core.description.languages import TABLES
 from tangible_core.pipeline.pipeline import Pipeline
@@ -15,13 +14,10 @@ def described(pipeline: Pipeline, seen: Seen) -> dict[str, Any]:
     """What is said of what is seen, by language; a material that has no name in a language keeps its own."""
     scene = pipeline.scene
     kind = kind_of(scene)
-    surface = HapticSurface(seen.relief)
-    if seen.materials or seen.names:
-        surface = HapticSurface(seen.relief, seen.labels, seen.materials or None, seen.names)
     names = {each.name for each in seen.materials}
     return {
         "digest": seen.digest,
-        "says": {each: describe(surface, scene.name, each, kind) for each in LANGUAGES},
+        "says": {each: describe(seen.surface, scene.name, each, kind) for each in LANGUAGES},
         "names": {
             each: {name: said for name, said in TABLES[each].materials.items() if name in names} for each in LANGUAGES
         },

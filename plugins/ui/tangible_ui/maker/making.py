@@ -105,6 +105,7 @@ def _show(bench: Bench, pipeline: Pipeline, product: str) -> None:
     if (seen := see(pipeline, product)).digest != bench.shown:
         bench.tell("scene", **show(seen, bench.folder))
         bench.shown = seen.digest
+        bench.described = pipeline, seen
         bench.tell("described", **described(pipeline, seen))
     bench.tell("materials", segments=_segments(pipeline, seen))
 

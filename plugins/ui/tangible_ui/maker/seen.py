@@ -59,6 +59,13 @@ class Seen:
     names: tuple[str, ...] | None = None
     """By label, of what the labels are parts of; None where they are of no parts."""
 
+    @property
+    def surface(self) -> HapticSurface:
+        """What is described of it."""
+        if self.materials or self.names:
+            return HapticSurface(self.relief, self.labels, self.materials or None, self.names)
+        return HapticSurface(self.relief)
+
     @cached_property
     def digest(self) -> str:
         """Of everything that is drawn."""
@@ -130,7 +137,7 @@ def _seen(pipeline: Pipeline, shows: Shows, relief: Relief) -> Seen:
 def _names(pipeline: Pipeline) -> tuple[str, ...] | None:
     """Of the parts, which are there; None where nothing is by parts."""
     config = pipeline.config
-    parts: PartMap | None = at_hand(pipeline, "parts") if config.by_parts else None
+    parts: PartMap | None = at_hand(pipeline, config.felt_parts) if config.by_parts else None
     return None if parts is None else names_of(config.parts or {}, parts.count)
 
 

@@ -135,7 +135,7 @@ class TestWhatAnExporterGets:
         scene = Scene.of(photo=PHOTO)
         said = {**SAID, "workspace": {"width_m": 0.0096, "finest_m": 3e-4}}
         done = Pipeline(scene, texture=Counted(), cached=False, **said).export(
-            tmp_path, [Report(), Report(wide_m=0.16), Report(wide_m=0.001)]
+            tmp_path, [Report(wide_m=0.16), Report(wide_m=0.001), Report()]
         )
         cells = {tuple(json.loads(each.files[0].read_text())["cells"]) for each in done.exports}
         assert cells == {(24, 36)}

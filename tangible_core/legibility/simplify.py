@@ -76,7 +76,7 @@ def simplify(
     changed = _fine(rough != kinds[coarse], found.shape)
     found, after = opening.opened(np.where(changed, _fine(rough, found.shape), found), grid.pitch_m, picture)
     made = Grid(_numbered(grid.parts, found, kinds), grid.pitch_m)
-    _tell(grid.parts, before, made, after, width_m, choice, names)
+    _tell(grid.parts, made, after, width_m, choice, names)
     return made.parts
 
 
@@ -287,7 +287,6 @@ def _numbered(parts: PartMap, found: Int32[np.ndarray, "h w"], kinds: Int32[np.n
 
 def _tell(
     whole: PartMap,
-    before: Widths,
     found: Grid,
     after: Widths,
     width_m: float,
@@ -299,7 +298,7 @@ def _tell(
     was, left = (np.bincount(each.labels.reshape(-1), minlength=count) for each in (whole, found.parts))
     gone = [n for n in np.flatnonzero((was > 0) & (left == 0)).tolist() if n < len(names) and names[n]]
     if gone:
-        note(log, _vanished(gone, before, width_m, choice, names), logging.WARNING)
+        note(log, _vanished(gone, Grid(whole, found.pitch_m), width_m, choice, names), logging.WARNING)
     there = found.parts.labels.reshape(-1)[np.unique(after.pieces.reshape(-1), return_index=True)[1]]
     pieces = np.bincount(there, minlength=count)
     if split := [f"{called(n, names)} of {pieces[n]}" for n in np.flatnonzero(pieces > 1).tolist()]:
@@ -308,15 +307,16 @@ def _tell(
         note(log, _failed(wrong, found, width_m, choice), logging.WARNING)
 
 
-def _vanished(gone: Sequence[int], before: Widths, width_m: float, choice: SimplifyChoice, names: Sequence[str]) -> str:
-    disc_m = np.zeros(int(before.part.max()) + 1)
+def _vanished(gone: Sequence[int], whole: Grid, width_m: float, choice: SimplifyChoice, names: Sequence[str]) -> str:
+    before = measure(whole.parts.labels, whole.pitch_m, choice.gap_m)
+    disc_m = np.zeros(whole.parts.count)
     np.maximum.at(disc_m, before.part, before.disc_m)
     said = [f"{called(n, names)}, in which a disc of {mm(float(disc_m[n]))} fits" for n in gone]
     wider = max(1.05, choice.part_m / float(disc_m[list(gone)].min()))
     return (
         f"too small or too narrow for a finger, and given to what is around: {listed(said)}; a disc of "
         f"{mm(choice.part_m)} must fit, and {mm(choice.gap_m)} are needed everywhere: make the whole "
-        f"{mm(wider * width_m)} wide (`workspace.width_m`), or have fewer and larger parts"
+        f"{ceil(1e3 * wider * width_m)} mm wide (`workspace.width_m`), or have fewer and larger parts"
     )
 
 

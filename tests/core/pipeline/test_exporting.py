@@ -135,7 +135,7 @@ class TestWhatAnExporterGets:
         scene = Scene.of(photo=PHOTO)
         said = {**SAID, "workspace": {"width_m": 0.0096, "finest_m": 3e-4}}
         done = Pipeline(scene, texture=Counted(), cached=False, **said).export(
-            tmp_path, [Report(), Report(wide_m=0.16), Report(wide_m=0.001)]
+            tmp_path, [Report(wide_m=0.16), Report(wide_m=0.001), Report()]
         )
         cells = {tuple(json.loads(each.files[0].read_text())["cells"]) for each in done.exports}
         assert cells == {(24, 36)}
@@ -167,14 +167,14 @@ class TestWhatAnExporterGets:
         )
         assert one.outcome.outcome == "ran"
 
-    def test_without_segments_there_are_no_parts_and_no_complaint(self, tmp_path: Path):
+    def test_without_segments_there_are_no_parts(self, tmp_path: Path):
         class Parts(Fingers):
             def write(self, work: Work, stem: Path) -> tuple[Path, ...]:
                 return written(stem.with_suffix(".txt"), str(work.simplified))
 
         (one,) = Pipeline(Scene.of(height=np.eye(8)), cached=False).export(tmp_path, [Parts()]).exports
         assert one.files[0].read_text() == "None"
-        assert list(one.legible) == []
+        assert one.legible.sentence == "Illegible, because the picture is not divided into parts."
 
     def test_whether_fingers_read_it_is_said_at_the_width_of_the_files(self, tmp_path: Path):
         class Small(Fingers):
@@ -318,7 +318,7 @@ class TestWhatGoesWrong:
         assert "\n" not in first.outcome.why
         assert other.files
         assert {path.name for path in (tmp_path / "out").iterdir()} - {"x.txt"} == {
-            "exports.json",
+            ".exports.json",
             "still life.report",
         }
 
@@ -361,12 +361,19 @@ class TestWhatGoesWrong:
         assert first.outcome.outcome == "refused"
         assert "free some space or choose another folder" in first.outcome.why
         assert other.files
-        assert sorted(path.name for path in tmp_path.iterdir()) == ["exports.json", "still life.report"]
+        assert sorted(path.name for path in tmp_path.iterdir()) == [".exports.json", "still life.report"]
 
     def test_a_folder_that_cannot_be_written(self, tmp_path: Path):
         (tmp_path / "file").write_text("")
         with pytest.raises(OutputError, match="choose another folder"):
             pipeline().export(tmp_path / "file" / "out", [Report()])
+
+    @pytest.mark.parametrize("content", ["", "{}", '{"files": {"a": 1}}', "[[", '{"files": {"a": {"b": 1}}}'])
+    def test_a_list_that_is_somebody_elses(self, tmp_path: Path, content: str):
+        (tmp_path / ".exports.json").write_text(content)
+        with pytest.raises(OutputError, match="is no list of exports; take it away, or choose another folder"):
+            pipeline(**SAID).export(tmp_path, [Report()])
+        assert (tmp_path / ".exports.json").read_text() == content
 
     def test_names(self, tmp_path: Path):
         with pytest.raises(UnknownMethod, match=r"no export method is named 'hights' \(did you mean 'heights'\?\)"):
@@ -386,7 +393,7 @@ class TestEnding:
         done = [Report(), Does(do=halfway), Report()]
         with pytest.raises(error):
             pipeline(**SAID).export(tmp_path, done)
-        assert sorted(path.name for path in tmp_path.iterdir()) == ["exports.json", "still life.report"]
+        assert sorted(path.name for path in tmp_path.iterdir()) == [".exports.json", "still life.report"]
 
     def test_it_can_be_stopped_from_another_thread(self, tmp_path: Path):
         stop = Event()
@@ -534,4 +541,4 @@ class TestCommand:
         assert "a fault; the traceback is in" in ran.stderr
         monkeypatch.setattr(Heights, "write", raising(KeyboardInterrupt()))
         assert tangible("export", "map.yaml", cwd=place).returncode == 130
-        assert not list((place / "out/map").glob(".*"))
+        assert not list((place / "out/map").iterdir())

@@ -294,6 +294,15 @@ class TestNotes:
         assert ("% of the picture is steeper than 45 degrees: print the plate lying flat" in told) == said
         assert not said or "24 %" in told or "23 %" in told
 
+    def test_noise_does_not_make_a_gigantic_file(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+        monkeypatch.setattr(making, "MOST_TRIANGLES", 500)
+        made = work(rough(), 0.05)
+        with collected() as notes:
+            mesh = written(bare(Stl), made, tmp_path)
+        off = np.abs(from_above(mesh, *nodes(made))[::-1] - 1.5 - 1000 * made.relief.height_m).max()
+        assert is_closed(mesh) and len(mesh.triangles) < 1000
+        assert any(f"the solid is off by up to {off:.2g} mm, as it would take more than 500" in each for each in notes)
+
     def test_more_nodes_than_there_is_room_for_are_averaged(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
         monkeypatch.setattr(making, "MOST_IN_GRID", 500)
         without_pydelatin(monkeypatch)

@@ -89,6 +89,10 @@ class DeviceAbsent(DeviceError):
     """No such device is connected, or what it is reached by is not installed: nothing can be asked of it."""
 
 
+class ModelAbsent(TangibleError):
+    """A trained network that a method needs is not there: nothing can be asked of it."""
+
+
 class OutputError(TangibleError):
     """Results that cannot be written."""
 

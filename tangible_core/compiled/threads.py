@@ -12,19 +12,21 @@ from itertools import pairwise
 from typing import Any, TypeVar
 
 from ..runtime.stopping import check_stopped
+from ..runtime.threads import processors, thread_limit
 from . import compiling as compiling  # says so while the kernels are compiled
 
 T = TypeVar("T")
 
 
 def thread_count() -> int:
-    """How many processors this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    """How many threads to work on: one a processor, within the limit of `runtime.threads`."""
+    return min(processors(), thread_limit() or processors())
 
 
 def run_all(jobs: Iterable[Callable[[], Any]]) -> None:
     """Run every job and wait; the calling thread does the first. A job must not call `run_all` itself.
 
+    There are no more jobs than `thread_count` says: each gets a thread.
     Raises: Stopped before any job if the caller's work shall end; a job sees that as well as its caller does.
     """
     check_stopped()
@@ -63,4 +65,4 @@ def _while_wanted(tasks: Iterable[T]) -> Iterator[T]:
 @cache
 def _pool(process: int) -> ThreadPoolExecutor:
     """A pool a process: threads do not survive a fork."""
-    return ThreadPoolExecutor(thread_count(), thread_name_prefix="tangible")
+    return ThreadPoolExecutor(processors(), thread_name_prefix="tangible")

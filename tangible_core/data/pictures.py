@@ -116,12 +116,15 @@ def to_rgb8(picture: np.ndarray) -> UInt8[np.ndarray, "h w 3"]:
     """Eight bits a channel, transparency over white, for drawing and for libraries that read nothing else."""
     if picture.dtype == np.uint8 and picture.ndim == 3 and picture.shape[2] == 3:
         return picture
+    return np.rint(np.clip(to_rgb(picture), 0, 1) * 255).astype(np.uint8)
+
+
+def to_rgb(picture: np.ndarray) -> Float32[np.ndarray, "h w 3"]:
+    """Red, green and blue in 0..1, transparency over white. Raises: PictureError as `check_picture`."""
     values = _scaled(picture)
     if values.ndim == 2:
-        values = np.repeat(values[..., None], 3, axis=2)
-    elif values.shape[2] == 4:
-        values = 1 - values[..., 3:] * (1 - values[..., :3])
-    return np.rint(np.clip(values, 0, 1) * 255).astype(np.uint8)
+        return np.repeat(values[..., None], 3, axis=2)
+    return values if values.shape[2] == 3 else 1 - values[..., 3:] * (1 - values[..., :3])
 
 
 def _scaled(picture: np.ndarray) -> Float32[np.ndarray, "..."]:

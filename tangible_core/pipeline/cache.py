@@ -2,7 +2,8 @@
 
 One file an entry, `<key>.npz`: readable by numpy.load, checked by the archive's CRC when it is read. It holds what was
 noticed when the record was made, and when all that it is made from was. Files appear whole
-(written beside and renamed), so two processes can share a folder; a damaged entry is deleted and made again.
+(written beside and renamed), so two processes can share a folder; a damaged entry is deleted and made again. Beside
+them lies a tally of their bytes, so that the folder is listed only where it may be full.
 """
 
 import json
@@ -24,10 +25,14 @@ from ..files.arrays import Archive, write_arrays
 from ..files.paths import as_path
 from ..files.reading import check_file
 from ..files.writing import atomic_write
+from .tally import Tally
 
 log = logging.getLogger(__name__)
 
 DEFAULT_BYTES = 2 << 30
+LEFT = 7 / 8
+"""Of what a cache may hold, so much is left once it was full: the next so many results fit without counting."""
+TALLY = ".tally"
 NOTES = "notes"
 _OURS = re.compile(r"[0-9a-f]{32,64}\.npz|\.[0-9a-f]{32,64}\.npz\..+")
 """Names of entries, and of what is not whole yet: the folder may hold files of somebody else."""
@@ -54,6 +59,7 @@ class Cache:
     def __init__(self, folder: Path | None = None, max_bytes: int = DEFAULT_BYTES) -> None:
         self.folder = default_folder() if folder is None else folder
         self.max_bytes = max_bytes
+        self._tally = Tally(self.folder / TALLY)
 
     def __contains__(self, key: str) -> bool:
         try:
@@ -94,7 +100,9 @@ class Cache:
         """Keep a record; a cache that cannot be written costs a warning, never the result."""
         try:
             write_record(self._path(key), record, notes or {})
-            self._prune()
+            held = self._tally.add(_used(self._path(key))[1])
+            if held is None or held > self.max_bytes:
+                self._prune()
         except (OutputError, OSError) as error:
             if self.folder not in _unwritable:
                 _unwritable.add(self.folder)
@@ -125,6 +133,7 @@ class Cache:
             except OSError as error:
                 raise OutputError(f"{path}: cannot be deleted: {error.strerror}") from error
             freed.append(size)
+        self._tally.path.unlink(missing_ok=True)
         return len(freed), sum(freed)
 
     def _files(self) -> list[Path]:
@@ -134,14 +143,16 @@ class Cache:
         return self.folder / f"{key}.npz"
 
     def _prune(self) -> None:
-        entries = sorted((_used(path), path) for path in self.folder.glob("*.npz"))
-        excess = sum(size for (_, size), _ in entries) - self.max_bytes
-        for (_, size), path in entries:
-            if excess <= 0:
-                return
-            log.info("cache is over %d MiB: %s is dropped", self.max_bytes >> 20, path.name)
-            path.unlink(missing_ok=True)
-            excess -= size
+        entries = [(*_used(path), path) for path in self.folder.glob("*.npz")]
+        held = sum(size for _, size, _ in entries)
+        if held > self.max_bytes:
+            for _, size, path in sorted(entries):
+                log.info("cache is over %d MiB: %s is dropped", self.max_bytes >> 20, path.name)
+                path.unlink(missing_ok=True)
+                held -= size
+                if held <= LEFT * self.max_bytes:
+                    break
+        self._tally.begin(held)
 
 
 def default_folder() -> Path:

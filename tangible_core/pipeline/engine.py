@@ -18,6 +18,7 @@ from ..plugins.interfaces import HapticDevice
 from ..plugins.notes import noted
 from ..plugins.registry import Registry
 from ..runtime.stopping import check_stopped, stoppable
+from ..runtime.threads import limited_threads
 from ..scene.scene import Scene
 from .cache import Cache, Notes
 from .config import PRODUCTS, NamedMethod, PipelineConfig
@@ -46,6 +47,8 @@ class Engine:
         self.config = config
         self.registry = registry
         self.cache = cache
+        self.threads: int | None = None
+        """The most that work at once; None for no limit but that of `TANGIBLE_THREADS`."""
         self.beside: Beside | None = None
         """What compiles meanwhile; a stage waits for what it compiles for it."""
         self.begun: set[str] = set()
@@ -156,6 +159,7 @@ class Engine:
     def changed(self, config: PipelineConfig) -> "Engine":
         """Another configuration of the same; products that it makes alike are those of this one."""
         other = Engine(config, self.registry, self.cache)
+        other.threads = self.threads
         if config.scene == self.config.scene:
             other._read = self._read
         other.adopt(self)
@@ -224,7 +228,7 @@ class Engine:
             self.beside.wait(rule.product)
         start = perf_counter()
         try:
-            with noted() as notes:
+            with noted() as notes, limited_threads(self.threads):
                 value = rule.make(inputs)
         except BaseException as error:
             failure = f"{type(error).__name__}: {error}"

@@ -16,7 +16,7 @@ from typing import Any, cast
 from ..errors import BrokenMethod, OutputError, quoted
 from ..files.reading import read_bytes
 from ..files.writing import write_text
-from .run_folder import file_digest
+from ..files.content import content_digest
 
 LISTED = ".exports.json"
 """What an export leaves beside its files: no file of an exporter begins with a dot."""
@@ -81,7 +81,7 @@ def move(written: Sequence[Path], folder: Path, source: str, exporter: str, forc
                 f"{place}: is there already, and no export of this left it so; --out FOLDER writes to another folder"
                 + ("" if place.is_dir() else ", --force writes over it")
             )
-    new = {place.name: Listed(source, exporter, file_digest(path)) for path, place in places.items()}
+    new = {place.name: Listed(source, exporter, content_digest(path)) for path, place in places.items()}
     for path, place in places.items():
         try:
             path.replace(place)
@@ -111,4 +111,4 @@ def _write_list(folder: Path, files: Mapping[str, Listed]) -> None:
 
 def _is_ours(place: Path, before: Mapping[str, Listed], source: str, exporter: str) -> bool:
     """Whether an earlier export of the same left the file as it is."""
-    return before.get(place.name) == Listed(source, exporter, file_digest(place))
+    return before.get(place.name) == Listed(source, exporter, content_digest(place))

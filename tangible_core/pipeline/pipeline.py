@@ -43,6 +43,7 @@ from ..plugins.interfaces import (
 )
 from ..plugins.registry import Registry, default_registry
 from ..preflight import Flight, Hand, Loop, Preflight, judge, survey
+from ..runtime.threads import check_threads
 from ..scene.scene import Scene
 from ..scene.workspace import Workspace
 from ..servo import OVER, Beacon, Safety, Servo, beacon_to
@@ -118,13 +119,14 @@ class Pipeline:
         title: str = "",
         language: str = "en",
         cached: bool = True,
+        threads: int | None = None,
     ) -> None:
         """Methods are objects, of installed plugins or of classes of one's own; blocks may be mappings, as in YAML.
 
         parts: what the parts of the segments are called, how high they stand and what they are of, by number.
         heights: makes the relief of these parts. simplify: makes the parts legible first; `{}` by the usual rules.
         export: what `export` writes. title, language: of the whole. cached: False neither reads nor writes the user's
-        cache.
+        cache. threads: the most that work at once; see the property.
         Raises: ConfigError for a block that says nonsense.
         """
         if not isinstance(scene, cast(Any, Scene)):
@@ -151,6 +153,7 @@ class Pipeline:
         if wrong := list(wrong_of_parts(config)):
             raise config.complained(*wrong)
         self.engine = Engine(config, registry, Cache() if cached else None)
+        self.threads = threads
 
     @classmethod
     def from_yaml(
@@ -201,6 +204,18 @@ class Pipeline:
     @cache.setter
     def cache(self, cache: Cache | None) -> None:
         self.engine.cache = cache
+
+    @property
+    def threads(self) -> int | None:
+        """The most threads that work at once, of kernels, OpenCV and torch; None for one a processor, or what the
+        environment variable `TANGIBLE_THREADS` says. No result depends on it.
+        """
+        return self.engine.threads
+
+    @threads.setter
+    def threads(self, most: int | None) -> None:
+        check_threads(most)
+        self.engine.threads = most
 
     @property
     def scene(self) -> Scene:

@@ -36,7 +36,7 @@ def _work(engine: Engine, want: str) -> Work | None:
     views, config = engine.scene.views, engine.config
     segments = config.texture is not None and "segments" not in {*engine.begun, *engine.brought}
     touch = want == "touch" and config.render is not None and "touch" not in engine.begun
-    if views is None or thread_count() < 2 or not (segments or touch):
+    if views is None or min(thread_count(), engine.threads or 2) < 2 or not (segments or touch):
         return None
     rows, columns = (slice(max(0, (size - MOST_PX) // 2), (size + MOST_PX) // 2) for size in views.shape)
     part = Views(np.ascontiguousarray(views.left[rows, columns]))

@@ -24,6 +24,7 @@ from ..data import (
 )
 from ..errors import BrokenMethod, ConfigError, PictureError, TangibleError
 from ..legibility import SimplifyChoice, simplify
+from ..files.content import content_digest
 from ..materials import assignment
 from ..parts import Layering, PartHeights
 from ..parts import find as part_finding
@@ -340,7 +341,8 @@ def _identity(chosen: NamedMethod[Any] | None) -> tuple[str, str]:
     code = closure(cls.__module__)
     digest = code.digest if code.modules else source_digest(cls) or uuid4().hex
     options = method.model_dump()  # not as JSON, to which infinity and nothing are the same
-    return chosen.name, f"{chosen.origin} {cls.__module__}:{cls.__qualname__} {digest} v{cls.version} {options}"
+    read = "".join(f" {content_digest(path)}" for path in method.reads())
+    return chosen.name, f"{chosen.origin} {cls.__module__}:{cls.__qualname__} {digest} v{cls.version} {options}{read}"
 
 
 @cache

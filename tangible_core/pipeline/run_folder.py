@@ -15,9 +15,8 @@ from itertools import count
 from pathlib import Path
 from typing import Any, cast
 
-import xxhash
-
 from ..errors import OutputError
+from ..files.content import content_digest
 from ..files.reading import MOST_TEXT_BYTES, read_bytes
 from ..files.writing import write_text
 from .config import PRODUCTS
@@ -32,7 +31,6 @@ GUESSED = "parts-guessed.yaml"
 SHEETS = tuple(f"{SHEET}.{drawn_as}" for drawn_as in ("png", "svg", "pdf"))
 NAMES = (*CLAIMS, *(f"{product}.npz" for product in PRODUCTS), RECORDING, GUESSED, *SHEETS)
 """What a run may write."""
-CHUNK = 1 << 20
 
 
 @dataclass(frozen=True)
@@ -111,11 +109,11 @@ def check_folder(folder: Path, source: Path | None) -> None:
 
 def _own(folder: Path) -> dict[str, str]:
     """Files that are as an earlier run left them, with their digests."""
-    manifest, there = read_manifest(folder), {name: file_digest(folder / name) for name in NAMES}
+    manifest, there = read_manifest(folder), {name: content_digest(folder / name) for name in NAMES}
     if manifest is None:
         own = there if _is_of_before_manifests(folder) else {}
     elif manifest.complete:
-        own = {name: digest for name, digest in manifest.files.items() if file_digest(folder / name) == digest}
+        own = {name: digest for name, digest in manifest.files.items() if content_digest(folder / name) == digest}
     else:  # nobody else's were there when that run began
         own = {**manifest.files, **there}
     return {name: digest for name, digest in own.items() if digest}
@@ -147,7 +145,7 @@ def rewritten(folder: Path, source: Path | None) -> Generator[Callable[[str], Pa
         return folder / name
 
     yield place
-    Manifest(said, {name: file_digest(folder / name) for name in names}).write(folder)
+    Manifest(said, {name: content_digest(folder / name) for name in names}).write(folder)
 
 
 def _remove(path: Path) -> None:
@@ -155,17 +153,3 @@ def _remove(path: Path) -> None:
         path.unlink(missing_ok=True)
     except OSError as error:
         raise OutputError(f"{path}: cannot be removed: {error.strerror}; choose another folder") from error
-
-
-def file_digest(path: Path) -> str:
-    """XXH3-128 of a file's content; empty where there is no such file."""
-    if not path.is_file():
-        return ""
-    state = xxhash.xxh3_128()
-    try:
-        with path.open("rb") as file:
-            while chunk := file.read(CHUNK):
-                state.update(chunk)
-    except OSError:  # whoever writes there says it
-        return ""
-    return state.hexdigest()

@@ -42,6 +42,10 @@ class Method(Quantities, ABC):
     expected_failures: ClassVar[Mapping[str, str]] = {}
     """Checks of the conformance kit that it does not keep, by name, each with the reason; they must then fail."""
 
+    def reads(self) -> tuple[Path, ...]:
+        """Files whose content its results depend on: those that its options name, unless it says more."""
+        return tuple(value for _, value in self if isinstance(value, Path))
+
 
 class DepthEstimator(Method):
     """Makes a disparity map from one picture or two."""

@@ -10,6 +10,7 @@ from typing import Any
 from ..data.arguments import as_force, as_state
 from ..data.device import Force, HapticState
 from ..errors import BrokenMethod, what_is, wrong_argument
+from ..runtime.threads import limited_threads
 from .naming import named
 
 Convert = Callable[[Any], Any]
@@ -39,7 +40,8 @@ def guard_verb(cls: type, kind: str, verb: str, gives: type, take: Convert | Non
     def guarded(self: Any, *given: Any, **by_name: Any) -> Any:
         if take is not None:
             given, by_name = tuple(map(take, given)), {name: take(value) for name, value in by_name.items()}
-        found = own(self, *given, **by_name)
+        with limited_threads():
+            found = own(self, *given, **by_name)
         if not isinstance(found, gives):
             raise _unexpected(self, kind, verb, found, gives)
         return found

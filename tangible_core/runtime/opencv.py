@@ -3,9 +3,13 @@
 from collections.abc import Generator
 from contextlib import contextmanager
 from threading import Lock
+from typing import Any
+
+from .threads import limiters
 
 _LOCK = Lock()
 _users = 0
+_limits: list[int] = []
 _before = (True, 1)
 """Whether OpenCV was optimised, and its threads, before the first of them came."""
 
@@ -20,23 +24,52 @@ def plain_opencv() -> Generator[None]:
     switched for one thread alone: so this stands where the call is, inside a thread's own work, and OpenCV has no
     threads meanwhile, of which some would use IPP and others not. A Gaussian takes 15 % longer.
     """
-    global _users, _before
+    global _users
     import cv2
 
     ipp = cv2.ipp.useIPP()
     with _LOCK:
-        if not _users:
-            _before = cv2.useOptimized(), cv2.getNumThreads()
-            cv2.setUseOptimized(False)
-            cv2.setNumThreads(1)
+        _remember(cv2)
         _users += 1
+        _switch(cv2)
     cv2.ipp.setUseIPP(False)
     try:
         yield
     finally:
         with _LOCK:
             _users -= 1
-            if not _users:
-                cv2.setUseOptimized(_before[0])
-                cv2.setNumThreads(_before[1])
+            _switch(cv2)
         cv2.ipp.setUseIPP(ipp)
+
+
+@contextmanager
+def opencv_at_most(threads: int) -> Generator[None]:
+    """OpenCV with no more threads than these, for the whole process."""
+    import cv2
+
+    with _LOCK:
+        _remember(cv2)
+        _limits.append(threads)
+        _switch(cv2)
+    try:
+        yield
+    finally:
+        with _LOCK:
+            _limits.remove(threads)
+            _switch(cv2)
+
+
+limiters.append(opencv_at_most)
+
+
+def _remember(cv2: Any) -> None:
+    global _before
+    if not _users and not _limits:
+        _before = cv2.useOptimized(), cv2.getNumThreads()
+
+
+def _switch(cv2: Any) -> None:
+    """To what all who are in a block need together."""
+    optimised, threads = _before
+    cv2.setUseOptimized(optimised and not _users)
+    cv2.setNumThreads(1 if _users else min([threads, *_limits]))

@@ -1,16 +1,22 @@
 """The optional torch extra: its import, or the words to install it, and the device to compute on."""
 
+import sys
+from collections.abc import Generator
+from contextlib import contextmanager
 from importlib import import_module
 from types import ModuleType
 from typing import TYPE_CHECKING, Literal
 
 from ..errors import BrokenMethod
+from .threads import limiters, thread_limit
 
 if TYPE_CHECKING:
     import torch
 
 TorchDevice = Literal["auto", "cpu", "cuda"]
 """Where to compute; `auto` takes a GPU when there is one."""
+_own_threads = 0
+"""Torch's threads before a limit was put on it as it was imported."""
 
 
 def need(name: str) -> ModuleType:
@@ -18,11 +24,35 @@ def need(name: str) -> ModuleType:
 
     Raises: BrokenMethod saying how to install them.
     """
+    global _own_threads
+    fresh = "torch" not in sys.modules
     try:
-        return import_module(name)
+        module = import_module(name)
+        if fresh and (limit := thread_limit()) is not None:
+            torch = import_module("torch")
+            _own_threads = torch.get_num_threads()
+            torch.set_num_threads(min(limit, _own_threads))
+        return module
     except ImportError as error:
         package = name.partition(".")[0]
         raise BrokenMethod(f"this method needs {package} ({error}); pip install 'tangible-images[torch]'") from error
+
+
+@contextmanager
+def torch_at_most(threads: int) -> Generator[None]:
+    """Torch with no more threads than these; if it is imported within the block, from then on."""
+    torch = sys.modules.get("torch")
+    before = torch.get_num_threads() if torch else None
+    if torch and before:
+        torch.set_num_threads(min(threads, before))
+    try:
+        yield
+    finally:
+        if (loaded := sys.modules.get("torch")) and (before or _own_threads):
+            loaded.set_num_threads(before or _own_threads)
+
+
+limiters.append(torch_at_most)
 
 
 def pick_device(wanted: TorchDevice) -> "torch.device":

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from ..data import DisparityMap, Views
-from ..errors import PictureError, TangibleError
+from ..errors import ModelAbsent, PictureError, TangibleError
 from ..plugins.interfaces import DepthEstimator
 from ..synthetic.scenes import wall
 from .checks import Check, demand, refuses
@@ -101,6 +101,8 @@ def one_view_is_answered(method: DepthEstimator) -> None:
     """Without a right view there is a relative map; or a TangibleError, which `needs_pair` foretells to a plan."""
     try:
         found = method.estimate(Views(wall().left))
+    except ModelAbsent:
+        raise
     except TangibleError:
         demand(
             method.needs_pair, "it raises without a right view; write `needs_pair: ClassVar[bool] = True` in its class"

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple, cast
 
-from ..errors import BrokenMethod, DeviceAbsent, TangibleError, UnknownMethod, did_you_mean
+from ..errors import BrokenMethod, DeviceAbsent, ModelAbsent, TangibleError, UnknownMethod, did_you_mean
 from ..plugins.interfaces import HapticDevice
 from ..plugins.registry import Registry, default_registry
 from . import (
@@ -90,7 +90,7 @@ def conforms(
             if check in checks_device.WITH_MOTORS and _would_push(name, options):
                 pytest.skip(f"a real device is there, and this pushes: let its grip hang free, and set {MOTORS}=1")
             _run(default_registry(), check, kind, name, options)
-        except DeviceAbsent as absent:  # that it is said is a check of its own, and passes
+        except (DeviceAbsent, ModelAbsent) as absent:  # that it is said is a check of its own, and passes
             pytest.skip(f"nothing to ask: {absent}")
         except Exception:
             if declared:
@@ -122,7 +122,7 @@ def run_checks(kind: str, name: str, registry: Registry | None = None, **options
         reason = declared.get(check.__name__, "")
         try:
             _run(installed, check, kind, name, options)
-        except DeviceAbsent as absent:
+        except (DeviceAbsent, ModelAbsent) as absent:
             yield CheckResult(check.__name__, not reason, f"not asked: {absent}", reason)
         except Exception as error:
             log.debug("%s %s fails in %s", kind, name, check.__name__, exc_info=True)

@@ -121,6 +121,8 @@ def ours(kind: Any) -> Iterator[tuple[str, type[Any], dict[str, Any]]]:
     for each in default_registry().listings:
         if each.kind == kind and each.distribution == "tangible-images":
             cls: Any = load_method(kind, each.name)
+            if each.name in ("auto", "onnx"):  # another one's, or those of a network that the user brings
+                continue
             yield each.name, cls, {"torch_device": "cpu"} if "torch_device" in cls.model_fields else {}
 
 

@@ -80,7 +80,7 @@ def test_a_miss_is_none(tmp_path: Path, caplog: pytest.LogCaptureFixture):
 
 def test_the_folder_is_the_one_that_is_asked_for(cache_dir: Path):
     Cache().put("k", RECORDS[1])
-    assert [each.name for each in cache_dir.iterdir()] == ["k.npz"]
+    assert [each.name for each in cache_dir.glob("*.npz")] == ["k.npz"]
 
 
 @pytest.mark.parametrize("damage", [lambda b: b[: len(b) // 2], lambda b: b"", lambda b: b"PK" + bytes(len(b))])
@@ -162,7 +162,7 @@ def test_the_entries_used_longest_ago_go_first(tmp_path: Path):
         os.utime(tmp_path / f"{key}.npz", (1e9 - age, 1e9 - age))
     assert kept.get("oldest") is not None  # used now, so it stays
     size = (tmp_path / "old.npz").stat().st_size
-    Cache(tmp_path, max_bytes=int(2.5 * size)).put("new", RECORDS[1])
+    Cache(tmp_path, max_bytes=int(2.9 * size)).put("new", RECORDS[1])
     assert {path.stem for path in tmp_path.glob("*.npz")} == {"oldest", "new"}
 
 
@@ -173,16 +173,16 @@ def test_of_many_entries_exactly_those_used_last_stay(tmp_path: Path):
     for age in ages:
         cache.put(f"{age * 5 % 12:x}{age}", RECORDS[1])
         os.utime(tmp_path / f"{age * 5 % 12:x}{age}.npz", (1e9 - age, 1e9 - age))
-    size = next(tmp_path.iterdir()).stat().st_size
-    Cache(tmp_path, max_bytes=6 * size).put("new", RECORDS[1])
-    assert {path.stem for path in tmp_path.iterdir()} == {"new", *(f"{age * 5 % 12:x}{age}" for age in range(5))}
+    size = next(tmp_path.glob("*.npz")).stat().st_size
+    Cache(tmp_path, max_bytes=7 * size).put("new", RECORDS[1])
+    assert {path.stem for path in tmp_path.glob("*.npz")} == {"new", *(f"{age * 5 % 12:x}{age}" for age in range(5))}
 
 
 def test_a_cache_that_is_just_full_keeps_all(tmp_path: Path):
     Cache(tmp_path).put("a", RECORDS[1])
     size = (tmp_path / "a.npz").stat().st_size
     Cache(tmp_path, max_bytes=2 * size).put("b", RECORDS[1])
-    assert len(list(tmp_path.iterdir())) == 2
+    assert len(list(tmp_path.glob("*.npz"))) == 2
 
 
 @pytest.mark.parametrize("counted", [False, True])
@@ -199,7 +199,7 @@ def test_entries_that_another_process_drops_meanwhile(
     monkeypatch.setattr(cache, "_used", used)
     Cache(tmp_path, max_bytes=0).put("new", RECORDS[1])
     assert not caplog.text
-    assert not list(tmp_path.iterdir())
+    assert not list(tmp_path.glob("*.npz"))
 
 
 def test_entries_that_cannot_be_dropped_cost_a_warning(
@@ -261,6 +261,46 @@ def test_a_full_disk_leaves_nothing_behind(tmp_path: Path, monkeypatch: pytest.M
     assert list(tmp_path.iterdir()) == []
 
 
+def held(folder: Path) -> int:
+    return sum(path.stat().st_size for path in folder.glob("*.npz"))
+
+
+def test_the_folder_is_listed_only_where_it_may_be_full(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    looked_at: list[Path] = []
+    real = cache._used
+    monkeypatch.setattr(cache, "_used", lambda path: looked_at.append(path) or real(path))
+    kept = Cache(tmp_path)
+    for number in range(40):
+        kept.put(f"k{number}", RECORDS[1])
+    assert len(looked_at) <= 40 + 1  # each itself, and the first one once more, as nothing is known of a new folder
+    size = real(tmp_path / "k0.npz")[1]
+    full = Cache(tmp_path, max_bytes=32 * size)
+    for number in range(40, 80):
+        full.put(f"k{number}", RECORDS[1])
+        assert held(tmp_path) <= full.max_bytes
+    looked_at.clear()
+    for number in range(80, 120):
+        full.put(f"k{number}", RECORDS[1])
+    assert len(looked_at) < 40 * 32 / 3
+
+
+@pytest.mark.parametrize(
+    "tally", [None, b"", b"torn", b"\xff" * 8, bytes(8 * (1 << 17))], ids=["none", "empty", "torn", "negative", "long"]
+)
+def test_a_folder_whose_tally_tells_nothing_is_counted(tmp_path: Path, tally: bytes | None):
+    kept = Cache(tmp_path)
+    for number in range(4):
+        kept.put(f"k{number}", RECORDS[1])
+        os.utime(tmp_path / f"k{number}.npz", (1e9 + number, 1e9 + number))
+    size = (tmp_path / "k0.npz").stat().st_size
+    (tmp_path / ".tally").unlink()
+    if tally is not None:
+        (tmp_path / ".tally").write_bytes(tally)
+    Cache(tmp_path, max_bytes=3 * size).put("new", RECORDS[1])
+    assert {path.stem for path in tmp_path.glob("*.npz")} == {"k3", "new"}
+    assert held(tmp_path) == int.from_bytes((tmp_path / ".tally").read_bytes(), "little")
+
+
 USER = """
 import sys
 from pathlib import Path
@@ -269,7 +309,7 @@ from tangible_core.pipeline import cache
 from tangible_core.pipeline.cache import Cache
 from tangible_core.data import SegmentMap
 
-cache, record = Cache(Path(sys.argv[1]), max_bytes=20_000), SegmentMap(np.zeros((20, 20), np.int32))
+cache, record = Cache(Path(sys.argv[1]), max_bytes=int(sys.argv[3])), SegmentMap(np.zeros((20, 20), np.int32))
 for i in range(200):
     key = f"k{(int(sys.argv[2]) + i) % 10}"
     cache.put(key, record)
@@ -278,12 +318,17 @@ for i in range(200):
 """
 
 
-def test_two_processes_share_a_folder(tmp_path: Path):
+@pytest.mark.parametrize("max_bytes", [20_000, 10_000_000], ids=["always full", "roomy"])
+def test_four_processes_share_a_folder(tmp_path: Path, max_bytes: int):
     users = [
-        subprocess.Popen([sys.executable, "-c", USER, tmp_path, start], stderr=subprocess.PIPE, text=True)
-        for start in ("0", "5")
+        subprocess.Popen(
+            [sys.executable, "-c", USER, tmp_path, start, str(max_bytes)], stderr=subprocess.PIPE, text=True
+        )
+        for start in "0257"
     ]
     said = [user.communicate(timeout=60)[1] for user in users]
-    assert said == ["", ""]
-    assert [user.returncode for user in users] == [0, 0]
-    assert not [path for path in tmp_path.iterdir() if path.suffix != ".npz"]
+    assert said == [""] * 4
+    assert [user.returncode for user in users] == [0] * 4
+    assert [path.name for path in tmp_path.iterdir() if path.suffix != ".npz"] == [".tally"]
+    assert held(tmp_path) <= max_bytes + 4 * 2_000  # what each may have written while another one counted
+    assert (tmp_path / ".tally").stat().st_size % 8 == 0

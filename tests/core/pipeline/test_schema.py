@@ -107,7 +107,7 @@ def test_a_form_has_words_and_units():
     assert {name: option.get("unit") for name, option in workspace.items()} == {
         "width_m": "m", "relief_m": "m", "smooth_m": "m", "finest_m": "m", "holes": None,
     }  # fmt: skip
-    assert schema["properties"]["depth"]["anyOf"][1]["title"] == "contour"
+    assert schema["properties"]["depth"]["anyOf"][1]["title"] == "auto"
     assert schema["$defs"]["VirtualHand"]["title"] == "Virtual hand"
     titles = [option["title"] for name, option in _options(schema) if name != "use"]
     assert len(titles) > 150 and all(title.strip() and "_" not in title for title in titles)

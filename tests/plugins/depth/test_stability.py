@@ -37,8 +37,12 @@ HALF = SHAPE[0] // 2
 WINDOWS_PX = 12
 """How far a border of texture reaches into what a method says."""
 FROM_ONE_PICTURE = ("contour", "luminance")
+OTHERS_ANSWERS = ("auto", "onnx")
+"""Those of another method, or of a network that the user brings."""
 METHODS = [
-    each.name for each in default_registry().listings if (each.kind, each.distribution) == ("depth", "tangible-images")
+    each.name
+    for each in default_registry().listings
+    if (each.kind, each.distribution) == ("depth", "tangible-images") and each.name not in OTHERS_ANSWERS
 ]
 MATCHERS = [name for name in METHODS if name not in FROM_ONE_PICTURE]
 

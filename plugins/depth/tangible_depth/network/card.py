@@ -1,0 +1,184 @@
+"""A network's card: which file it is, what it takes, and what its numbers mean."""
+
+import hashlib
+from functools import lru_cache
+from pathlib import Path
+from typing import Annotated, Literal, Self
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+from tangible_core.errors import ConfigError, ModelAbsent, did_you_mean
+from tangible_core.files.source import parse_source, read_text
+
+Three = tuple[float, float, float]
+Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+Means = Literal["disparity-px", "inverse-depth", "depth", "depth-m"]
+"""`disparity-px`: pixels of the picture that goes in. `inverse-depth`: larger is nearer, in no unit. `depth`: larger is
+farther, in no unit. `depth-m`: metres."""
+
+
+class _Part(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+
+
+class NetworkInput(_Part):
+    """What goes in: float32 (1, 3, h, w) of each picture, (value of 0..1 times `white` - mean) / std."""
+
+    left: str = ""
+    """Name of the input for the picture, or the left view; empty for the only one."""
+    right: str = ""
+    """Name of the input for the right view; empty for a network of one picture."""
+    order: Literal["rgb", "bgr"] = "rgb"
+    """Order of the colours."""
+    white: Positive = 1.0
+    """The number that stands for white before the mean is taken off: 1 or 255."""
+    mean: Three = (0.0, 0.0, 0.0)
+    """Taken off each colour, in the order of the colours."""
+    std: tuple[Positive, Positive, Positive] = (1.0, 1.0, 1.0)
+    """Each colour is divided by it."""
+    multiple: Annotated[int, Field(ge=1, le=1024)] = 1
+    """Height and width must be multiples of it."""
+    fit: Literal["pad", "resize"] = "pad"
+    """How they become so: `pad` repeats the last row and column, `resize` changes the picture's size a little."""
+    size_px: tuple[Annotated[int, Field(ge=1, le=20_000)], Annotated[int, Field(ge=1, le=20_000)]] | None = None
+    """Height and width of a network that takes one size alone: each picture is resized to it."""
+
+    @model_validator(mode="after")
+    def _two_inputs(self) -> Self:
+        if self.right and not self.left:
+            raise ValueError("a network of two views names both inputs; give `left` beside `right`")
+        return self
+
+
+class NetworkOutput(_Part):
+    """What comes out: numbers (h, w), or with one or two dimensions of 1 before."""
+
+    name: str = ""
+    """Name of the output; empty for the first."""
+    means: Means
+    """What the numbers are."""
+    confidence: str = ""
+    """Name of an output from 0 to 1 that says how sure the network is; empty where there is none."""
+
+
+class Card(_Part):
+    """What must be known of a network to use it."""
+
+    title: str = ""
+    """What it is called."""
+    file: str = ""
+    """Name of the file where it is published."""
+    source: str = ""
+    """Address to fetch it from."""
+    sha256: Annotated[str, Field(pattern="^([0-9a-f]{64})?$")] = ""
+    """Digest of the file, which is then checked; empty where it is not known."""
+    licence: str = ""
+    """What its makers allow."""
+    verified: bool = True
+    """False for a card that was written from what is published, without the network being run."""
+    input: NetworkInput = NetworkInput()
+    output: NetworkOutput
+
+    @property
+    def is_stereo(self) -> bool:
+        """Whether it takes two views."""
+        return bool(self.input.right)
+
+    @property
+    def fetched_from(self) -> str:
+        """What to fetch, in words."""
+        digest = f" (SHA-256 {self.sha256})" if self.sha256 else ""
+        what = " ".join(filter(None, [self.title or "the network", self.file and f"as {self.file}"]))
+        return f"fetch {what} from {self.source}{digest}" if self.source else f"put {what} there"
+
+
+MEAN, STD = (0.485, 0.456, 0.406), (0.229, 0.224, 0.225)
+"""Of the colours of ImageNet, with which most networks are trained."""
+
+
+def _preset(title: str, file: str, source: str, licence: str, takes: NetworkInput, means: Means) -> Card:
+    return Card(
+        title=title, file=file, source=source, licence=licence, verified=False, input=takes,
+        output=NetworkOutput(means=means),
+    )  # fmt: skip
+
+
+PRESETS = {
+    "c-fast-foundationstereo": _preset(
+        "C-Fast-FoundationStereo",
+        "the ONNX file of the model page",
+        "https://huggingface.co/nvidia/c-fast-foundationstereo",
+        "NVIDIA Open Model Agreement",
+        NetworkInput(left="left_image", right="right_image", multiple=32, mean=MEAN, std=STD),
+        "disparity-px",
+    ),
+    "depth-anything-v2-small": _preset(
+        "Depth Anything V2 Small",
+        "depth_anything_v2_vits_dynamic.onnx",
+        "https://github.com/fabio-sim/Depth-Anything-ONNX/releases/tag/v2.0.0",
+        "Apache-2.0 (larger ones: CC-BY-NC-4.0)",
+        NetworkInput(multiple=14, fit="resize", mean=MEAN, std=STD),
+        "inverse-depth",
+    ),
+    "depth-anything-3-small": _preset(
+        "Depth Anything 3 Small",
+        "an export of it to ONNX",
+        "https://github.com/ByteDance-Seed/Depth-Anything-3",
+        "Apache-2.0 (larger ones differ)",
+        NetworkInput(multiple=14, fit="resize", mean=MEAN, std=STD),
+        "depth",
+    ),
+    "midas-v2.1-small": _preset(
+        "MiDaS v2.1 Small",
+        "model-small.onnx",
+        "https://github.com/isl-org/MiDaS/releases/tag/v2_1",
+        "MIT",
+        NetworkInput(fit="resize", size_px=(256, 256), mean=MEAN, std=STD),
+        "inverse-depth",
+    ),
+}
+"""Cards that come with the program, written from what their makers publish; no network comes with it."""
+
+
+def read_card(card: str | Path) -> Card:
+    """A preset by its name, or the card in a YAML file.
+
+    Raises: ConfigError with every complaint, or for a name that is neither.
+    """
+    if str(card) in PRESETS:
+        return PRESETS[str(card)]
+    path = Path(card)
+    if not path.is_file():
+        raise ConfigError(
+            f"card: {card} is neither a file nor one of {', '.join(PRESETS)}{did_you_mean(str(card), PRESETS)}; name "
+            "one of these, or a YAML file that says what the network takes and gives (docs/learned-depth.md)"
+        )
+    found = path.stat()
+    return _read(path, found.st_mtime_ns, found.st_size)
+
+
+@lru_cache(maxsize=16)
+def _read(path: Path, changed_ns: int, size: int) -> Card:
+    source = parse_source(read_text(path), path, "a card is a mapping that says `output: {means: ...}`")
+    card = source.model((), Card, dict(source.tree))
+    source.settle()
+    assert card is not None
+    return card
+
+
+def check_file(model: Path, card: Card) -> None:
+    """Raises: ModelAbsent if the network is not there, ConfigError if it is another file than the card is of."""
+    if not model.is_file():
+        raise ModelAbsent(f"model: {model} is not there, and nothing is downloaded; {card.fetched_from}")
+    found = model.stat()
+    if card.sha256 and (digest := _sha256(model, found.st_mtime_ns, found.st_size)) != card.sha256:
+        raise ConfigError(
+            f"model: {model} is not the file that its card is of: its SHA-256 is {digest}, not {card.sha256}; "
+            f"{card.fetched_from}, or correct the card"
+        )
+
+
+@lru_cache(maxsize=16)
+def _sha256(path: Path, changed_ns: int, size: int) -> str:
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()

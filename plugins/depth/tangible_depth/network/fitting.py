@@ -1,0 +1,113 @@
+"""Pictures as a network takes them, and its maps in the size of the picture."""
+
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
+
+import numpy as np
+from jaxtyping import Float32
+
+from tangible_core.runtime.opencv import plain_opencv
+
+from .card import NetworkInput
+
+Map = Float32[np.ndarray, "h w"]
+Colours = Float32[np.ndarray, "h w 3"]
+OVERLAP = 0.25
+"""Share of a strip that it has in common with the next: there one map fades into the other."""
+LEAST_ROWS = 64
+"""Of a strip: a network needs some surroundings."""
+
+
+class Fit(NamedTuple):
+    """The size that a picture gets, and how much of it is the picture."""
+
+    resized: tuple[int, int]
+    padded: tuple[int, int]
+
+
+def fit_for(shape: tuple[int, int], takes: NetworkInput, most_px: int) -> Fit:
+    """The size for a network: at most so many pixels, its multiples, its one size."""
+    if takes.size_px is not None:
+        return Fit(takes.size_px, takes.size_px)
+    shrink = min(1.0, (most_px / (shape[0] * shape[1])) ** 0.5)
+    height, width = (max(1, round(side * shrink)) for side in shape)
+    if takes.fit == "resize":
+        near = tuple(max(1, round(side / takes.multiple)) * takes.multiple for side in (height, width))
+        return Fit((near[0], near[1]), (near[0], near[1]))
+    up = tuple(-(-side // takes.multiple) * takes.multiple for side in (height, width))
+    return Fit((height, width), (up[0], up[1]))
+
+
+def tensor(picture: Colours, takes: NetworkInput, fit: Fit) -> Float32[np.ndarray, "1 3 rows columns"]:
+    """A picture as the network takes it."""
+    picture = resized(picture, fit.resized)
+    down, right = (whole - part for whole, part in zip(fit.padded, fit.resized, strict=True))
+    if down or right:
+        picture = np.pad(picture, ((0, down), (0, right), (0, 0)), mode="edge")
+    if takes.order == "bgr":
+        picture = picture[..., ::-1]
+    mean, std = np.asarray(takes.mean, np.float32), np.asarray(takes.std, np.float32)
+    normal = (picture * np.float32(takes.white) - mean) / std
+    return np.ascontiguousarray(normal.transpose(2, 0, 1)[None])
+
+
+def cut_back(found: np.ndarray, fit: Fit, shape: tuple[int, int]) -> Map | None:
+    """What a network gave, without padding, in the size of the picture; None if it is no map.
+
+    A map of a half or a quarter of the size stands for the whole.
+    """
+    values = np.asarray(found, np.float32)
+    while values.ndim > 2 and values.shape[0] == 1:
+        values = values[0]
+    if values.ndim == 3 and values.shape[2] == 1:
+        values = values[..., 0]
+    if values.ndim != 2 or values.size == 0:
+        return None
+    if values.shape != fit.padded:
+        values = resized(values, fit.padded)
+    return resized(np.ascontiguousarray(values[: fit.resized[0], : fit.resized[1]]), shape)
+
+
+def resized(values: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
+    """Bilinear, and the mean where it gets smaller; the same array where it has this size."""
+    import cv2
+
+    if values.shape[:2] == shape:
+        return values
+    shrinks = shape[0] * shape[1] < values.shape[0] * values.shape[1]
+    with plain_opencv():
+        return cv2.resize(values, shape[::-1], interpolation=cv2.INTER_AREA if shrinks else cv2.INTER_LINEAR)
+
+
+def in_strips(shape: tuple[int, int], most_px: int, multiple: int, work: Callable[[slice], list[Map]]) -> list[Map]:
+    """Maps of rows that are made a strip at a time, each of at most so many pixels; one fades into the next.
+
+    Only for what means the same in every strip, such as pixels of disparity.
+    """
+    rows = max(LEAST_ROWS, most_px // shape[1] // multiple * multiple)
+    if rows >= shape[0]:
+        return work(slice(0, shape[0]))
+    total: list[Map] = []
+    weight = np.zeros((shape[0], 1), np.float32)
+    for strip in _strips(shape[0], rows):
+        ramp = _ramp(strip, shape[0], max(1, round(OVERLAP * rows)))
+        found = work(strip)
+        total = total or [np.zeros(shape, np.float32) for _ in found]
+        for whole, part in zip(total, found, strict=True):
+            whole[strip] += ramp * part
+        weight[strip] += ramp
+    return [whole / weight for whole in total]
+
+
+def _strips(height: int, rows: int) -> Iterator[slice]:
+    step = max(1, rows - round(OVERLAP * rows))
+    starts = list(range(0, height - rows, step))
+    for start in [*starts, height - rows]:
+        yield slice(start, start + rows)
+
+
+def _ramp(strip: slice, height: int, fade: int) -> Float32[np.ndarray, "r 1"]:
+    count = strip.stop - strip.start
+    up = np.ones(count) if strip.start == 0 else np.minimum(1, np.arange(1, count + 1) / (fade + 1))
+    down = np.ones(count) if strip.stop == height else np.minimum(1, np.arange(count, 0, -1) / (fade + 1))
+    return np.minimum(up, down).astype(np.float32)[:, None]

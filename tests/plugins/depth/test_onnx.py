@@ -1,0 +1,305 @@
+"""Depth by a network that the user brings; here, networks whose answer is known."""
+
+import hashlib
+import logging
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import onnx_models
+from tangible_core import Pipeline, Scene
+from tangible_core.data import Calibration, Views
+from tangible_core.errors import BrokenMethod, ConfigError, ModelAbsent, PictureError
+from tangible_core.pipeline.cache import Cache
+from tangible_core.synthetic.scenes import wall
+from tangible_core.testing import run_checks
+from tangible_depth import Auto, Luminance, Onnx, SemiGlobal
+
+RUNTIMES = ("opencv", "onnxruntime")
+STEREO = "input: {left: left, right: right}\noutput: {means: disparity-px}\n"
+
+
+@pytest.fixture(scope="module")
+def networks(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("networks")
+    onnx_models.mono(folder / "mono.onnx")
+    folder.joinpath("mono.yaml").write_text("output: {means: inverse-depth}\n")
+    onnx_models.stereo(folder / "stereo.onnx")
+    folder.joinpath("stereo.yaml").write_text(STEREO)
+    return folder
+
+
+@pytest.fixture
+def card(tmp_path: Path):
+    """Writes a card for a network, and gives the method."""
+
+    def made(model: Path, text: str, **options) -> Onnx:
+        (tmp_path / "card.yaml").write_text(text)
+        return Onnx(model=model, card=str(tmp_path / "card.yaml"), **options)
+
+    return made
+
+
+def picture(rows: int = 40, columns: int = 50, seed: int = 0) -> np.ndarray:
+    return np.random.default_rng(seed).random((rows, columns, 3), np.float32)
+
+
+def nearness(values: np.ndarray) -> np.ndarray:
+    return (values - values.min()) / (values.max() - values.min())
+
+
+@pytest.mark.parametrize("runtime", RUNTIMES)
+def test_inverse_depth_is_nearness(networks: Path, runtime):
+    seen = picture()
+    found = Onnx(model=networks / "mono.onnx", runtime=runtime).estimate(Views(seen))
+    assert found.unit == "relative"
+    np.testing.assert_allclose(found.disparity_px, nearness(seen.mean(axis=2)), atol=1e-5)
+    assert (found.confidence == 1).all()
+
+
+@pytest.mark.parametrize("runtime", RUNTIMES)
+def test_a_pair_is_matched_in_pixels(networks: Path, runtime):
+    found = Onnx(model=networks / "stereo.onnx", runtime=runtime).estimate(wall(6.0))
+    assert found.unit == "px"
+    assert np.median(np.abs(found.disparity_px - 6)) < 0.2
+
+
+@pytest.mark.parametrize("name", ["vit_like", "raft_like"])
+def test_both_runtimes_run_what_transformers_and_rafts_have(tmp_path: Path, card, name: str):
+    model = getattr(onnx_models, name)(tmp_path / f"{name}.onnx")
+    mono = name == "vit_like"
+    text = "input: {size_px: [56, 70]}\noutput: {means: inverse-depth}" if mono else (
+        "input: {left: left, right: right, size_px: [48, 64]}\noutput: {means: disparity-px}"
+    )  # fmt: skip
+    one, other = (card(model, text, runtime=runtime).estimate(wall(4.0)) for runtime in RUNTIMES)
+    assert np.ptp(one.disparity_px) > 0
+    np.testing.assert_allclose(one.disparity_px, other.disparity_px, atol=1e-3 * np.ptp(one.disparity_px))
+
+
+def test_what_goes_in_is_as_the_card_says(tmp_path: Path, card):
+    """The network gives the mean of what it gets."""
+    model, seen = onnx_models.mono(tmp_path / "m.onnx"), picture()
+    plain = "output: {means: disparity-px}"
+    told = card(model, f"input: {{white: 255, mean: [100, 0, 0], std: [2, 4, 1], order: bgr}}\n{plain}")
+    blue_first = seen[..., ::-1] * 255
+    wanted = ((blue_first - [100, 0, 0]) / [2, 4, 1]).mean(axis=2)
+    np.testing.assert_allclose(told.estimate(Views(seen)).disparity_px, wanted, rtol=1e-4)
+    eight = np.rint(seen * 255).astype(np.uint8)
+    alike = card(model, plain).estimate(Views(eight)).disparity_px
+    np.testing.assert_allclose(alike, (eight / 255).mean(axis=2), atol=1e-5)
+
+
+@pytest.mark.parametrize("shape", [(40, 50), (1, 1), (3, 200), (32, 64)])
+def test_a_padded_picture_comes_back_in_its_size(networks: Path, card, shape: tuple[int, int]):
+    seen = picture(*shape)
+    text = "input: {multiple: 32}\noutput: {means: disparity-px}"
+    found = card(networks / "mono.onnx", text).estimate(Views(seen))
+    np.testing.assert_allclose(found.disparity_px, seen.mean(axis=2), atol=1e-5)
+
+
+@pytest.mark.parametrize("text", ["multiple: 32, fit: resize", "size_px: [32, 160]"])
+def test_a_resized_pair_is_matched_in_pixels_of_the_picture(tmp_path: Path, card, text: str):
+    """6 pixels of 320 are 3 of 160."""
+    model = onnx_models.stereo(tmp_path / "s.onnx")
+    told = card(model, f"input: {{left: left, right: right, {text}}}\noutput: {{means: disparity-px}}")
+    found = told.estimate(wall(6.0))
+    assert found.disparity_px.shape == wall(6.0).shape
+    assert abs(np.median(found.disparity_px) - 6) < 1
+
+
+def test_strips_keep_memory_in_bounds_and_meet(networks: Path, monkeypatch: pytest.MonkeyPatch):
+    from tangible_depth import onnx as method
+
+    sizes: list[int] = []
+
+    def run(model, runtime, inputs, outputs):
+        sizes.extend(each.shape[2] * each.shape[3] for each in inputs.values())
+        return real(model, runtime, inputs, outputs)
+
+    real = method.run
+    monkeypatch.setattr(method, "run", run)
+    views = wall(6.0, (400, 90))
+    whole = Onnx(model=networks / "stereo.onnx").estimate(views).disparity_px
+    assert sizes == [36_000, 36_000]
+    sizes.clear()
+    parts = Onnx(model=networks / "stereo.onnx", most_px=9_000).estimate(views).disparity_px
+    assert len(sizes) > 6
+    assert max(sizes) <= 9_000
+    assert np.median(np.abs(parts - whole)) < 0.02
+    assert np.abs(parts - whole).max() < 0.5
+    sizes.clear()
+    near = Onnx(model=networks / "mono.onnx", most_px=9_000).estimate(Views(views.left))
+    assert near.disparity_px.shape == (400, 90)
+    assert max(sizes) <= 9_000 * 1.02
+
+
+class TestMeaning:
+    DEPTH = np.linspace(1, 5, 2000).reshape(40, 50).astype(np.float32)
+
+    def estimate(self, card, networks: Path, means: str, calibration: Calibration | None = None):
+        """The network gives what is in the picture."""
+        seen = np.repeat(self.DEPTH[..., None] / 5, 3, axis=2)
+        text = f"input: {{white: 5}}\noutput: {{means: {means}}}"
+        return card(networks / "mono.onnx", text).estimate(Views(seen, None, calibration))
+
+    def test_depth_is_turned_round(self, card, networks: Path):
+        found = self.estimate(card, networks, "depth")
+        assert found.unit == "relative"
+        np.testing.assert_allclose(found.disparity_px, nearness(1 / self.DEPTH), atol=1e-4)
+
+    def test_metres_are_a_disparity_where_the_cameras_are_known(self, card, networks: Path):
+        found = self.estimate(card, networks, "depth-m", Calibration(900.0, 0.2, 31.0))
+        assert found.unit == "px"
+        np.testing.assert_allclose(found.disparity_px, 900 * 0.2 / self.DEPTH - 31, rtol=1e-4)
+        assert self.estimate(card, networks, "depth-m").unit == "relative"
+
+    def test_what_is_no_distance_is_unknown(self, card, networks: Path):
+        text = "input: {mean: [0.5, 0.5, 0.5]}\noutput: {means: depth-m}"
+        seen = picture()
+        found = card(networks / "mono.onnx", text).estimate(Views(seen))
+        unknown = seen.mean(axis=2) - 0.5 <= 0
+        assert (np.isnan(found.disparity_px) == unknown).mean() > 0.999
+        assert (found.confidence[np.isnan(found.disparity_px)] == 0).all()
+
+    def test_a_network_says_how_sure_it_is(self, card, tmp_path: Path):
+        model = onnx_models.mono(tmp_path / "c.onnx", confidence=True)
+        text = "output: {name: inverse_depth, means: inverse-depth, confidence: sure}"
+        seen = picture()
+        found = card(model, text).estimate(Views(seen))
+        np.testing.assert_allclose(found.confidence, seen.mean(axis=2) / 2, atol=1e-5)
+
+    def test_a_flat_answer_is_flat(self, card, networks: Path):
+        found = card(networks / "mono.onnx", "output: {means: depth}").estimate(Views(np.full((9, 9), 0.5, np.float32)))
+        assert (found.disparity_px == 0).all()
+
+
+class TestMistakes:
+    def test_no_network(self):
+        with pytest.raises(ModelAbsent, match=r"^onnx needs a network of your own: .*nothing is downloaded"):
+            Onnx().estimate(wall())
+
+    def test_a_network_that_was_not_fetched_is_said_with_its_address(self, tmp_path: Path):
+        with pytest.raises(ModelAbsent, match="is not there, and nothing is downloaded; fetch Depth Anything V2 Small"):
+            Onnx(model=tmp_path / "no.onnx", card="depth-anything-v2-small").estimate(wall())
+
+    def test_another_file_than_the_card_is_of(self, networks: Path, card):
+        digest = hashlib.sha256((networks / "mono.onnx").read_bytes()).hexdigest()
+        text = "sha256: {}\noutput: {{means: inverse-depth}}"
+        card(networks / "mono.onnx", text.format(digest)).estimate(Views(picture()))
+        with pytest.raises(ConfigError, match=f"its SHA-256 is {digest}, not {'f' * 64}"):
+            card(networks / "mono.onnx", text.format("f" * 64)).estimate(Views(picture()))
+
+    def test_a_card_that_is_not_there(self, networks: Path):
+        with pytest.raises(ConfigError, match=r"depth-anythin-v2-small is neither a file .*did you mean"):
+            Onnx(model=networks / "mono.onnx", card="depth-anythin-v2-small").estimate(wall())
+
+    @pytest.mark.parametrize(
+        ("text", "said"),
+        [
+            ("output: {means: nearness}", r"card.yaml:1:.*means"),
+            ("input: {right: r}\noutput: {means: depth}", "names both inputs"),
+            ("input: {std: [0, 1, 1]}\noutput: {means: depth}", r"card.yaml:1:.*std"),
+            ("outptu: {means: depth}", "outptu"),
+            ("output: [", "card.yaml"),
+        ],
+    )
+    def test_a_card_that_says_nonsense_is_told_with_the_place(self, networks: Path, card, text: str, said: str):
+        with pytest.raises(ConfigError, match=said):
+            card(networks / "mono.onnx", text).estimate(wall())
+
+    @pytest.mark.parametrize("runtime", RUNTIMES)
+    def test_a_file_that_is_no_network(self, tmp_path: Path, card, runtime):
+        (tmp_path / "no.onnx").write_bytes(b"not a network at all")
+        method = card(tmp_path / "no.onnx", "output: {means: depth}", runtime=runtime)
+        with pytest.raises(ConfigError, match=rf"cannot be run by {runtime} on .*; check the card's inputs") as told:
+            method.estimate(wall())
+        assert "\n" not in str(told.value)
+
+    @pytest.mark.parametrize("runtime", RUNTIMES)
+    def test_an_input_or_output_that_there_is_not(self, networks: Path, card, runtime):
+        for text in ("input: {left: nothing}\noutput: {means: depth}", "output: {name: nothing, means: depth}"):
+            with pytest.raises(ConfigError, match="cannot be run"):
+                card(networks / "mono.onnx", text, runtime=runtime).estimate(wall())
+
+    def test_a_pair_is_needed_and_foretold(self, networks: Path):
+        method = Onnx(model=networks / "stereo.onnx")
+        assert method.needs_pair
+        assert not Onnx(model=networks / "mono.onnx").needs_pair
+        with pytest.raises(PictureError, match="compares two views, and this scene has one"):
+            method.estimate(Views(picture()))
+        plan = Pipeline(Scene.of(photo=picture()), depth=method, cached=False).plan("disparity")
+        assert [step.outcome for step in plan.steps if step.product == "disparity"] == ["refused"]
+
+    def test_no_onnxruntime(self, networks: Path, monkeypatch: pytest.MonkeyPatch):
+        monkeypatch.setitem(__import__("sys").modules, "onnxruntime", None)
+        from tangible_depth.network import running
+
+        running._loaded.cache_clear()
+        with pytest.raises(BrokenMethod, match=r"pip install 'tangible-images\[onnx\]'"):
+            Onnx(model=networks / "mono.onnx", runtime="onnxruntime").estimate(wall())
+
+
+def test_identical_views_are_skipped(networks: Path):
+    views = wall()
+    same = Views(views.left, views.left)
+    assert Onnx(model=networks / "stereo.onnx").skip(same)
+    assert Onnx(model=networks / "stereo.onnx").skip(views) is None
+    assert Onnx(model=networks / "mono.onnx").skip(same) is None
+
+
+def test_another_network_or_card_in_the_same_file_is_another_result(tmp_path: Path):
+    onnx_models.mono(tmp_path / "m.onnx")
+    (tmp_path / "m.yaml").write_text("output: {means: inverse-depth}")
+    seen, cache = picture(), Cache(tmp_path / "cache")
+
+    def made() -> tuple[str, np.ndarray]:
+        pipeline = Pipeline(Scene.of(photo=seen), depth=Onnx(model=tmp_path / "m.onnx"), workspace={"finest_m": 0})
+        pipeline.cache = cache
+        disparity = pipeline.disparity
+        assert disparity is not None
+        outcome = {each.product: each.outcome for each in pipeline.outcomes}["disparity"]
+        return outcome, disparity.disparity_px
+
+    assert made()[0] == "ran"
+    assert made()[0] == "cached"
+    (tmp_path / "m.yaml").write_text("output: {means: depth}\n")
+    outcome, found = made()
+    assert outcome == "ran"
+    np.testing.assert_allclose(found, nearness(1 / seen.mean(axis=2)), atol=1e-4)
+
+
+class TestAuto:
+    @pytest.fixture(autouse=True)
+    def folder(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+        monkeypatch.setenv("TANGIBLE_MODELS_DIR", str(tmp_path / "models"))
+        return tmp_path / "models"
+
+    def test_a_pair_is_matched(self):
+        assert Auto().estimate(wall(6.0)).digest() == SemiGlobal().estimate(wall(6.0)).digest()
+
+    def test_without_a_network_lighter_is_nearer_and_that_is_said(self, caplog: pytest.LogCaptureFixture):
+        with caplog.at_level(logging.WARNING):
+            found = Auto().estimate(Views(picture()))
+        assert found.digest() == Luminance().estimate(Views(picture())).digest()
+        assert "one picture holds no depth" in caplog.text
+
+    def test_the_first_network_for_one_picture_is_taken(self, folder: Path, caplog: pytest.LogCaptureFixture):
+        folder.mkdir()
+        for name, text in (("a", STEREO), ("b", ""), ("c", "output: {means: inverse-depth}"), ("d", "output: [")):
+            onnx_models.mono(folder / f"{name}.onnx")
+            if text:
+                (folder / f"{name}.yaml").write_text(text)
+        with caplog.at_level(logging.INFO):
+            found = Auto().estimate(Views(picture()))
+        np.testing.assert_allclose(found.disparity_px, nearness(picture().mean(axis=2)), atol=1e-5)
+        assert f"the network {folder / 'c.onnx'}" in caplog.text
+        assert {path.name for path in Auto().reads()} == {"c.onnx", "c.yaml"}
+
+
+@pytest.mark.parametrize(("name", "kept"), [("mono", []), ("stereo", ["flat_pair_claims_nothing"])])
+def test_networks_conform(networks: Path, name: str, kept: list[str]):
+    """But a network that does not say how sure it is claims to know all of a picture without any texture."""
+    results = list(run_checks("depth", "onnx", model=networks / f"{name}.onnx"))
+    assert [each.name for each in results if not each.passed] == kept
+    assert not any("not asked" in each.message for each in results)

@@ -10,6 +10,7 @@ from typing import Annotated, Any, Generic, Literal, TypeVar, cast
 from pydantic import BaseModel, Discriminator, Tag
 from ruamel.yaml import YAML
 
+from ..datasets import SetScene
 from ..errors import ConfigError, MaterialError, TangibleError, did_you_mean, quoted
 from ..files.source import Location, Source, parse_source, read_text
 from ..mapping import WorkspaceMapping, mapped
@@ -299,9 +300,20 @@ def _scene(source: Source) -> Any:
         said = "`scene:` is missing; name a builtin (builtin/motorcycle) or files {left:, right:}"
         return source.complain((), said)
     block = source.tree["scene"]
+    if isinstance(block, dict) and "set" in block:
+        return _pair_of_set(source, block)
     if not isinstance(block, str):
         return source.model(("scene",), SceneFiles, block)
     return block if block in BUILTINS else source.complain(("scene",), unknown_scene(block))
+
+
+def _pair_of_set(source: Source, block: Any) -> SceneFiles | None:
+    """The files that a pair of a standard set stands for; None after a complaint."""
+    chosen = source.model(("scene",), SetScene, block)
+    try:
+        return chosen and chosen.files()
+    except TangibleError as error:
+        return source.complain(("scene",), f"scene: {error}")
 
 
 def _parts(source: Source) -> dict[str, Any]:

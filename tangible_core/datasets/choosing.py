@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, Literal, cast
+from typing import Any, Literal, cast, get_args
 
 from pydantic import ConfigDict, model_validator
 
@@ -25,8 +25,8 @@ def pairs(
     name: str,
     folder: Path | str,
     *,
-    resolution: Resolution | None = None,
-    split: Split | None = None,
+    resolution: str | None = None,
+    split: str | None = None,
     variant: str | None = None,
     only: Sequence[str | int] = (),
 ) -> tuple[StandardPair, ...]:
@@ -42,12 +42,16 @@ def pairs(
     if name not in SETS:
         raise ConfigError(f"no set is named {quoted(name)}{did_you_mean(str(name), SETS)}; known: {', '.join(SETS)}")
     known, root = SETS[name], as_path(folder, "folder")
-    if resolution is not None and resolution not in known.sizes:
+    sizes: dict[str, Resolution] = {each: each for each in known.sizes}
+    size = sizes.get(resolution or "")
+    if resolution is not None and size is None:
         there = f"one of {', '.join(known.sizes)}" if known.sizes else "left out, for it has one size"
         raise ConfigError(f"resolution: {name} has none called {quoted(resolution)}; it is {there}")
     if (variant is not None and variant not in known.read) or variant == "":
         variants = " and ".join(each for each in known.read if each)
         raise ConfigError(f"variant: {name} has none called {quoted(variant)}; {_variants(variants)}")
+    if split not in (None, *get_args(Split)):
+        raise ConfigError(f"split: there is none called {quoted(split)}; it is {' or '.join(get_args(Split))}")
     if not root.is_dir():
         raise PictureError(f"{root}: there is no such folder; {known.fetch(root)}")
     read = known.read[next(iter(known.read)) if variant is None else variant]
@@ -55,7 +59,7 @@ def pairs(
     if not found:
         part = f" for {split}" if split else ""
         raise PictureError(f"{root}: holds no pair of {known.title}{part}; {known.fetch(root)}")
-    sized = _sized(found, resolution, known, root)
+    sized = _sized(found, size, known, root)
     return _chosen(sized, only, root)
 
 
@@ -63,7 +67,7 @@ def _variants(names: str) -> str:
     return f"there are {names}" if names else "leave `variant:` out"
 
 
-def _of_split(found: Iterable[StandardPair], split: Split | None) -> list[StandardPair]:
+def _of_split(found: Iterable[StandardPair], split: str | None) -> list[StandardPair]:
     pairs_of = {True: list[StandardPair](), False: list[StandardPair]()}
     for each in found:
         pairs_of[each.test].append(each)
@@ -146,6 +150,8 @@ class SetScene(Quantities):
 
 def with_folder(said: Any) -> Any:
     """What is said of a set, with a folder of its name where none is."""
-    block = cast("dict[str, Any]", said) if isinstance(said, dict) else dict[str, Any]()
+    if not isinstance(said, dict):
+        return said
+    block = cast("dict[str, Any]", said)
     name = block.get("set")
-    return {**block, "folder": Path(name)} if isinstance(name, str) and block.get("folder") is None else block or said
+    return {**block, "folder": Path(name)} if isinstance(name, str) and block.get("folder") is None else block

@@ -55,7 +55,7 @@ def of_2005_and_2006(root: Path) -> Iterator[StandardPair]:
         lit = any(name.startswith("Illum") for name in each.within)
         if lit or not (own or ("disp1.png" in each.files and (views / "view1.png").exists())):
             continue
-        size = next((_SIZES[name.lower()] for name in each.within[::-1] if name.lower() in _SIZES), _SIZES["fullsize"])
+        size = _stated_size(each)
         by = FULL_PX[size]
         yield StandardPair(
             name=each.path.name,
@@ -67,6 +67,13 @@ def of_2005_and_2006(root: Path) -> Iterator[StandardPair]:
             resolution=size,
             test="disp1.png" not in each.files,
         )
+
+
+def _stated_size(folder: Folder) -> Resolution:
+    for name in reversed(folder.within):
+        if size := _SIZES.get(name.lower()):
+            return size
+    return "F"
 
 
 def of_2003(root: Path) -> Iterator[StandardPair]:

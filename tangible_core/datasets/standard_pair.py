@@ -36,7 +36,8 @@ class MarkedPair(Record):
 
     truth_px: true disparity in px, NaN where unknown; None for a pair to submit results of.
     noc: pixels that both views show; None where nobody knows. foreground: pixels of moving objects.
-    full_px: how many pixels of the full size one pixel is wide: the benchmark's thresholds count those.
+    full_px: how many pixels of the full size one pixel is wide, which the benchmark's thresholds count; None of a set
+    that has one size.
     most_px: the largest disparity that methods are told, in pixels of these pictures.
     """
 
@@ -44,7 +45,7 @@ class MarkedPair(Record):
     truth_px: Float32[np.ndarray, "h w"] | None = None
     noc: Bool[np.ndarray, "h w"] | None = None
     foreground: Bool[np.ndarray, "h w"] | None = None
-    full_px: float = 1.0
+    full_px: float | None = None
     most_px: float | None = None
 
 
@@ -100,7 +101,7 @@ class StandardPair:
             None if truth_px is None else smaller_truth(truth_px, by),
             None if noc is None else smaller_mask(noc, by),
             None if foreground is None else smaller_mask(foreground, by),
-            float(FULL_PX[self.resolution]),
+            None if self.resolution is None else float(FULL_PX[self.resolution]),
             None if cameras.most_px is None else cameras.most_px / by,
         )
 

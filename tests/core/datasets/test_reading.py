@@ -63,9 +63,10 @@ CAMERAS = {
     "middlebury-2014": (Calibration(3000.0, 0.193001, 10.0), 20, 1.0),
     "middlebury-2021": (Calibration(3000.0, 0.193001, 10.0), 20, 1.0),
     "middlebury-eval3": (Calibration(3000.0, 0.193001, 10.0), 20, 4.0),
-    "kitti-2012": (Calibration(700.0, 0.545), None, 1.0),
-    "kitti-2015": (Calibration(700.0, 0.545), None, 1.0),
-    "eth3d": (Calibration(3000.0, 0.193001, 10.0), 20, 1.0),
+    "kitti-2012": (Calibration(700.0, 0.545), None, None),
+    "kitti-2015": (Calibration(700.0, 0.545), None, None),
+    "eth3d": (Calibration(3000.0, 0.193001, 10.0), 20, None),
+    "booster": (None, None, 1.0),
     "middlebury-2003": (None, None, 4.0),
     "middlebury-2005": (None, None, 2.0),
 }
@@ -74,7 +75,7 @@ CAMERAS = {
 @EACH
 def test_cameras_range_and_size(name: str, tmp_path: Path, k: Known):
     made(name, tmp_path, k)
-    calibration, most_px, full_px = CAMERAS.get(name, (None, None, 1.0))
+    calibration, most_px, full_px = CAMERAS.get(name, (None, None, None))
     pair = only(name, tmp_path).open()
     assert (pair.most_px, pair.full_px) == (most_px, full_px)
     found = pair.views.calibration
@@ -207,6 +208,7 @@ def test_a_folder_that_may_not_be_listed_is_said(tmp_path: Path, monkeypatch: py
     [
         ({"name": "kitty-2015"}, "no set is named 'kitty-2015' (did you mean 'kitti-2015'?)"),
         ({"resolution": "Q"}, "resolution: kitti-2015 has none called 'Q'; it is left out, for it has one size"),
+        ({"split": "validation"}, "split: there is none called 'validation'; it is training or test"),
         ({"variant": "clean"}, "variant: kitti-2015 has none called 'clean'; leave `variant:` out"),
         ({"only": ["000000_01"]}, "no pair in it is named '000000_01' (did you mean '000000_10'?); there are:"),
     ],

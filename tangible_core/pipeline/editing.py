@@ -8,7 +8,9 @@ from typing import Any, cast
 
 from pydantic import BaseModel
 
+from ..datasets.choosing import with_folder
 from ..files.editing import REMOVE, Changes, change_text
+from ..files.paths import as_path
 from ..files.source import parse_override, parse_source, plain
 from .config import STAGES, PipelineConfig, shorthand
 
@@ -67,7 +69,18 @@ def moved(text: str, path: Path, config: PipelineConfig, out: Path) -> str:
         return text
     methods = {kind: chosen.method for kind in STAGES if (chosen := getattr(config, kind))}
     blocks = {"scene": config.scene, "materials": config.materials, **methods}
-    return edited(text, path, dict(_lead_elsewhere(said(text, path), blocks, out.parent.resolve())))
+    tree, folder = said(text, path), out.parent.resolve()
+    return edited(text, path, {**dict(_lead_elsewhere(tree, blocks, folder)), **_set_elsewhere(tree, path, folder)})
+
+
+def _set_elsewhere(tree: Mapping[str, Any], path: Path, folder: Path) -> Mapping[tuple[str, str], str]:
+    """Where a standard set lies, from this folder: one of its name beside the file if nothing was said."""
+    scene = tree.get("scene")
+    if not isinstance(scene, dict) or "set" not in scene:
+        return {}
+    lies = as_path(with_folder(scene)["folder"])
+    there = path.parent.resolve() / lies
+    return {} if lies.is_absolute() else {("scene", "folder"): os.path.relpath(there, folder)}
 
 
 def _lead_elsewhere(

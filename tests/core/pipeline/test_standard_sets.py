@@ -8,6 +8,7 @@ import pytest
 from standard_sets import LAYOUTS, known
 from tangible_core.errors import ConfigError
 from tangible_core.pipeline.config import PipelineConfig, parse_config
+from tangible_core.pipeline.editing import moved
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.plugins.registry import default_registry
 from tangible_core.scene.scene_files import SceneFiles
@@ -55,6 +56,16 @@ def test_the_command_line_sets_it(folder: Path):
         folder, "builtin/brick", "scene={set: sintel, folder: films, name: alley_1/frame_0001}", "scene.variant=clean"
     )
     assert isinstance(config.scene, SceneFiles) and "clean_left" in str(config.scene.left)
+
+
+@pytest.mark.parametrize("said", ["set: sintel, folder: films", "set: kitti-2015"])
+def test_a_file_that_is_saved_elsewhere_leads_to_the_same_pair(said: str, folder: Path):
+    name = "alley_1/frame_0001" if "sintel" in said else "000000_10"
+    text, here, there = f"scene: {{{said}, name: {name}}}\n", folder / "p.yaml", folder / "other" / "q.yaml"
+    config = parse_config(text, here, default_registry())
+    there.parent.mkdir()
+    again = moved(text, here, config, there)
+    assert parse_config(again, there, default_registry()).scene.left.resolve() == config.scene.left.resolve()
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from .config import NONE
 from .pareto import front
 from .summary import Cell, Line, lines
-from .task import Task
+from .task import Measure, Task
 
 FRONT = "*"
 """Marks a method that no other one beats in time and error at once."""
@@ -46,6 +46,11 @@ class Results:
         value = line.measures.get(measure, math.nan)
         return value if self.task.measures[measure].best == "low" else -value
 
+    def measured(self, scene: str) -> tuple[str, ...]:
+        """The measures of a scene, in order: all of them, but for those of standard sets that no method has there."""
+        there = {name for cell in self.cells.values() if cell.scene == scene for name in cell.measures}
+        return tuple(name for name, each in self.task.measures.items() if not each.of_sets or name in there)
+
     @property
     def failed(self) -> list[str]:
         """Methods without a result on any scene, in order."""
@@ -75,7 +80,7 @@ def tables(results: Results, detail: bool = False) -> list[Table]:
     """The mean over the scenes; what perturbations do; with `detail`, each scene and every measure; what failed."""
     count = len(results.scenes)
     title = (f"mean of {count} scenes" if count > 1 else results.scenes[0]) + _damaged(results.perturbs[0])
-    found = [_figures(results, results.means(), title, results.task.columns)]
+    found = [_figures(results, results.means(), title, results.task.columns, results.scenes)]
     if len(results.perturbs) > 1:
         found.append(_perturbed(results))
     if detail:
@@ -84,7 +89,8 @@ def tables(results: Results, detail: bool = False) -> list[Table]:
                 results,
                 results.ranked(lines(results.cells, perturb, [scene])),
                 scene + _damaged(perturb),
-                tuple(results.task.measures),
+                results.measured(scene),
+                [scene],
             )
             for scene in results.scenes
             for perturb in results.perturbs
@@ -93,13 +99,23 @@ def tables(results: Results, detail: bool = False) -> list[Table]:
     return [*found, failures] if failures.rows else found
 
 
+def _at(measure: Measure, size: str) -> str:
+    """A heading: bad2 of a quarter of the size is `bad2@Q`, for tables of the full size call it bad8."""
+    name, _, unit = measure.title.partition(" ")
+    return f"{name}@{size} {unit}" if measure.at_size and size else measure.title
+
+
 def _damaged(perturb: str) -> str:
     return "" if perturb == NONE else f", {perturb}"
 
 
-def _figures(results: Results, found: Sequence[Line], title: str, measures: Sequence[str]) -> Table:
+def _figures(
+    results: Results, found: Sequence[Line], title: str, measures: Sequence[str], scenes: Sequence[str]
+) -> Table:
     known, clock = results.task.measures, results.task.clock
     best = results.on_front(found, results.judged)
+    sizes = {results.task.size_of(scene) for scene in scenes}
+    size = sizes.pop() if len(sizes) == 1 else ""
     ratio = ("time / baseline",) if results.baseline else ()
     rows = [
         (
@@ -112,7 +128,7 @@ def _figures(results: Results, found: Sequence[Line], title: str, measures: Sequ
         )
         for index, line in enumerate(found)
     ]
-    measured = (known[name].title for name in measures)
+    measured = (_at(known[name], size) for name in measures)
     return Table(title, ("method", FRONT, clock.unit, *ratio, "peak MB", *measured), tuple(rows))
 
 

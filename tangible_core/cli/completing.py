@@ -37,6 +37,13 @@ def scenes(incomplete: str) -> list[str]:
     return _beginning(BUILTINS, incomplete) if incomplete else []
 
 
+def comparisons(incomplete: str) -> list[tuple[str, str]]:
+    """Standard sets, once a word looks like one: a shell completes names of files where nothing is offered."""
+    from ..datasets import SETS
+
+    return [(name, each.title) for name, each in SETS.items() if incomplete and name.startswith(incomplete)]
+
+
 def keys(incomplete: str) -> list[str]:
     """Keys of a pipeline file, as `--set` takes them; after `use=`, the methods."""
     from ..pipeline.config import SECTIONS, STAGES
@@ -45,8 +52,12 @@ def keys(incomplete: str) -> list[str]:
     stage, use, _ = incomplete.partition(".use=")
     if use and stage in STAGES:
         return _beginning((f"{stage}.use={name}" for name in default_registry().names(stage)), incomplete)
+    if incomplete.startswith("scene.set="):
+        from ..datasets import SETS
+
+        return _beginning((f"scene.set={name}" for name in SETS), incomplete)
     found = [f"{name}.{option}=" for name, section in SECTIONS.items() for option in section.model_fields]
-    alone = ("scene", "title", "language", "want", "heights")
+    alone = ("scene", "scene.set", "scene.folder", "scene.name", "title", "language", "want", "heights")
     return _beginning((*(f"{key}=" for key in alone), *(f"{stage}.use=" for stage in STAGES), *found), incomplete)
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from .config import NONE
 from .pareto import front
 from .summary import Cell, Line, lines
-from .task import Measure, Task
+from .task import Task
 
 FRONT = "*"
 """Marks a method that no other one beats in time and error at once."""
@@ -50,6 +50,17 @@ class Results:
         """The measures of a scene, in order: all of them, but for those of standard sets that no method has there."""
         there = {name for cell in self.cells.values() if cell.scene == scene for name in cell.measures}
         return tuple(name for name, each in self.task.measures.items() if not each.of_sets or name in there)
+
+    def heading(self, measure: str, scenes: Sequence[str] | None = None) -> str:
+        """Of a column: bad2 of scenes at a quarter of their size is `bad2@Q`, for tables of the full size call it bad8.
+
+        scenes: those that the column is of; all of them if left out.
+        """
+        known = self.task.measures[measure]
+        name, _, unit = known.title.partition(" ")
+        sizes = {self.task.size_of(scene) for scene in scenes or self.scenes}
+        size = sizes.pop() if len(sizes) == 1 else ""
+        return f"{name}@{size} {unit}" if known.at_size and size else known.title
 
     @property
     def failed(self) -> list[str]:
@@ -99,12 +110,6 @@ def tables(results: Results, detail: bool = False) -> list[Table]:
     return [*found, failures] if failures.rows else found
 
 
-def _at(measure: Measure, size: str) -> str:
-    """A heading: bad2 of a quarter of the size is `bad2@Q`, for tables of the full size call it bad8."""
-    name, _, unit = measure.title.partition(" ")
-    return f"{name}@{size} {unit}" if measure.at_size and size else measure.title
-
-
 def _damaged(perturb: str) -> str:
     return "" if perturb == NONE else f", {perturb}"
 
@@ -114,8 +119,6 @@ def _figures(
 ) -> Table:
     known, clock = results.task.measures, results.task.clock
     best = results.on_front(found, results.judged)
-    sizes = {results.task.size_of(scene) for scene in scenes}
-    size = sizes.pop() if len(sizes) == 1 else ""
     ratio = ("time / baseline",) if results.baseline else ()
     rows = [
         (
@@ -128,12 +131,12 @@ def _figures(
         )
         for index, line in enumerate(found)
     ]
-    measured = (_at(known[name], size) for name in measures)
+    measured = (results.heading(name, scenes) for name in measures)
     return Table(title, ("method", FRONT, clock.unit, *ratio, "peak MB", *measured), tuple(rows))
 
 
 def _perturbed(results: Results) -> Table:
-    measure = results.task.measures[results.judged]
+    measure, heading = results.task.measures[results.judged], results.heading(results.judged)
     by_name = {name: {line.method: line for line in results.means(name)} for name in results.perturbs}
     rows = [
         (
@@ -146,7 +149,9 @@ def _perturbed(results: Results) -> Table:
         for line in results.means()
     ]
     return Table(
-        f"{measure.title} under perturbations, mean of {len(results.scenes)} scenes", ("method", *by_name), tuple(rows)
+        f"{heading} under perturbations, mean of {len(results.scenes)} scenes",
+        ("method", *by_name),
+        tuple(rows),
     )
 
 

@@ -22,7 +22,7 @@ from tangible_core.bench.table import Results, tables
 from tangible_core.bench.texture_scenes import TextureScene
 from tangible_core.data import DisparityMap
 from tangible_core.datasets import MarkedPair, StandardPair
-from tangible_core.datasets.submissions import write_png16, write_submission
+from tangible_core.datasets.submissions import write_pfm, write_png16, write_submission
 from tangible_core.errors import ConfigError, OutputError, PictureError
 from tangible_core.plugins.registry import Registry
 from tangible_core.scene.picture_files import read_map
@@ -229,6 +229,7 @@ def test_headings_say_of_which_size_the_pixels_are():
 
     assert "bad2@Q %" in headings("builtin/motorcycle")
     assert "bad2@H noc %" in headings("middlebury-2014@H/a", "middlebury-2014@H/b")
+    assert results(row("m", "builtin/motorcycle")).heading("bad2") == "bad2@Q %"
     for scenes in (["kitti-2015/a"], ["builtin/motorcycle", "synthetic"], ["middlebury-2014/a"]):
         assert "bad2 %" in headings(*scenes)
 
@@ -277,6 +278,14 @@ class TestSubmissions:
         assert (read_map(found)[:, :48] == 4).all()
         word, seconds = time.read_text().split()
         assert word == "runtime" and float(seconds) > 0
+
+    @pytest.mark.parametrize("shape", [(1, 1), (3, 5)])
+    def test_a_float_map_returns_as_it_was(self, shape: tuple[int, int], tmp_path: Path):
+        values = np.random.default_rng(3).normal(0, 1e3, shape).astype(np.float32)
+        values[-1, 0] = np.nan
+        write_pfm(tmp_path / "d.pfm", values)
+        np.testing.assert_array_equal(read_map(tmp_path / "d.pfm"), values)
+        assert (tmp_path / "d.pfm").read_bytes().startswith(f"Pf\n{shape[1]} {shape[0]}\n-1.0\n".encode())
 
     def test_what_16_bits_cannot_hold_is_the_nearest_that_they_can(self, tmp_path: Path):
         values = np.float32([[0, -3, 1e-4, 255.99, 300, np.nan, np.inf]])

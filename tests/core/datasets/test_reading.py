@@ -160,6 +160,16 @@ def test_extra_files_nested_folders_and_links_do_no_harm(name: str, tmp_path: Pa
     assert only(name, linked).open().truth_px is not None
 
 
+def test_no_folder_is_listed_twice(tmp_path: Path):
+    """Links that lead back would otherwise be followed as deep as folders may lie, in every order."""
+    (tmp_path / "a" / "b").mkdir(parents=True)
+    for folder in (tmp_path, tmp_path / "a", tmp_path / "a" / "b"):
+        for number in range(3):
+            (folder / f"back{number}").symlink_to(tmp_path, target_is_directory=True)
+    found = [each.path for each in walking.folders(tmp_path)]
+    assert found == [tmp_path, tmp_path / "a", tmp_path / "a" / "b"]
+
+
 def test_ten_thousand_pairs_are_listed_at_once_and_none_is_opened(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     for number in range(2500):
         folder = tmp_path / "trainingQ" / f"scene{number:04}"

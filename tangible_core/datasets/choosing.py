@@ -53,12 +53,12 @@ def pairs(
     if split not in (None, *get_args(Split)):
         raise ConfigError(f"split: there is none called {quoted(split)}; it is {' or '.join(get_args(Split))}")
     if not root.is_dir():
-        raise PictureError(f"{root}: there is no such folder; {known.fetch(root)}")
+        raise PictureError(f"{root}: there is no such folder; {known.fetch}")
     read = known.read[next(iter(known.read)) if variant is None else variant]
     found = _of_split(read(root), split)
     if not found:
         part = f" for {split}" if split else ""
-        raise PictureError(f"{root}: holds no pair of {known.title}{part}; {known.fetch(root)}")
+        raise PictureError(f"{root}: holds no pair of {known.title}{part}; {known.fetch}")
     sized = _sized(found, size, known, root)
     return _chosen(sized, only, root)
 
@@ -94,7 +94,7 @@ def _at(same: list[StandardPair], wanted: Resolution | None, known: StandardSet,
     if not larger:
         raise PictureError(
             f"{root}: {largest.name} lies there at {largest.resolution}, of which {wanted} cannot be made; "
-            f"{known.fetch(root)}, at {wanted}"
+            f"{known.fetch}, at {wanted}"
         )
     best = min(larger, key=lambda each: FULL_PX[each.resolution])
     return replace(best, resolution=wanted, shrink=FULL_PX[wanted] // FULL_PX[best.resolution])

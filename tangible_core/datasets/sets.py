@@ -30,8 +30,9 @@ class StandardSet:
     sizes: tuple[Resolution, ...] = ()
     """At which it can be had, the largest one first: smaller ones that do not lie there are made."""
 
-    def fetch(self, folder: Path) -> str:
-        """What to say where it is not there."""
+    @property
+    def fetch(self) -> str:
+        """What to do where it is not there."""
         return f"fetch {self.archive} from {self.page} and unpack it there, so that it holds {self.lies}"
 
 

@@ -124,7 +124,8 @@ def compared(results: Results) -> str:
     value = best.measures.get(results.judged, nan)
     if not isfinite(value):
         return f"On {scenes}, {fast}."
-    return f"On {scenes}, {best.method} is the most exact ({measure.title} {value:.{measure.digits}f}), and {fast}."
+    exact = f"{results.heading(results.judged)} {value:.{measure.digits}f}"
+    return f"On {scenes}, {best.method} is the most exact ({exact}), and {fast}."
 
 
 def connected(rows: Sequence[Mapping[str, Any]]) -> str:

@@ -11,6 +11,7 @@ from pydantic import BaseModel, Discriminator, Tag
 from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap, CommentedSeq
 
+from ..datasets import SetScene
 from ..errors import ConfigError, MaterialError, PictureError, TangibleError, did_you_mean, quoted
 from ..files.source import Location, Source, parse_override, parse_source, read_text
 from ..legibility.choice import SimplifyChoice
@@ -378,6 +379,8 @@ def _scene(source: Source) -> Any:
         said = "`scene:` is missing; name a builtin (builtin/motorcycle) or files {left:, right:}"
         return source.complain((), said)
     block = source.tree["scene"]
+    if isinstance(block, dict) and "set" in block:
+        return _pair_of_set(source, block)
     if not isinstance(block, str):
         return source.model(("scene",), SceneFiles, block)
     return block if block in BUILTINS else source.complain(("scene",), unknown_scene(block))
@@ -388,6 +391,15 @@ def _measured(source: Source, scene: Any) -> Measured | None:
         return measured(scene) if isinstance(scene, SceneFiles) else None
     except PictureError as error:
         return source.complain(("scene", "height"), str(error))
+
+
+def _pair_of_set(source: Source, block: Any) -> SceneFiles | None:
+    """The files that a pair of a standard set stands for; None after a complaint."""
+    chosen = source.model(("scene",), SetScene, block)
+    try:
+        return chosen and chosen.files()
+    except TangibleError as error:
+        return source.complain(("scene",), f"scene: {error}")
 
 
 def _parts(source: Source) -> dict[str, Any]:

@@ -8,8 +8,10 @@ from typing import Any, cast
 
 from pydantic import BaseModel
 
+from ..datasets.choosing import with_folder
 from ..errors import ConfigError, quoted
 from ..files.editing import REMOVE, Changes, change_text
+from ..files.paths import as_path
 from ..files.source import Location, parse_override, parse_source, plain
 from .config import STAGES, PipelineConfig, exporter_at, shorthand
 
@@ -102,7 +104,18 @@ def moved(text: str, path: Path, config: PipelineConfig, out: Path) -> str:
     methods = {(kind,): chosen.method for kind in STAGES if (chosen := getattr(config, kind))}
     exporters = {("export", index): each.method for index, each in enumerate(config.export)}
     blocks = {("scene",): config.scene, ("materials",): config.materials, **methods, **exporters}
-    return edited(text, path, dict(_lead_elsewhere(said(text, path), blocks, out.parent.resolve())))
+    tree, folder = said(text, path), out.parent.resolve()
+    return edited(text, path, {**dict(_lead_elsewhere(tree, blocks, folder)), **_set_elsewhere(tree, path, folder)})
+
+
+def _set_elsewhere(tree: Mapping[str, Any], path: Path, folder: Path) -> Mapping[tuple[str, str], str]:
+    """Where a standard set lies, from this folder: one of its name beside the file if nothing was said."""
+    scene = tree.get("scene")
+    if not isinstance(scene, dict) or "set" not in scene:
+        return {}
+    lies = as_path(with_folder(scene)["folder"])
+    there = path.parent.resolve() / lies
+    return {} if lies.is_absolute() else {("scene", "folder"): os.path.relpath(there, folder)}
 
 
 def _lead_elsewhere(

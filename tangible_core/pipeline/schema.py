@@ -6,6 +6,7 @@ from typing import Any, NamedTuple, cast
 from pydantic import BaseModel
 
 from ..data.quantities import title_of, unit_of
+from ..datasets import SetScene
 from ..errors import TangibleError, UnknownMethod
 from ..legibility.choice import SimplifyChoice
 from ..materials.assignment import library
@@ -35,7 +36,9 @@ def json_schema(registry: Registry | None = None, distribution: str | None = "ta
         "required": ["scene"],
         "additionalProperties": False,
         "properties": {
-            "scene": {"anyOf": [{"enum": sorted(BUILTINS)}, _schema(SceneFiles, definitions)]},
+            "scene": {
+                "anyOf": [{"enum": sorted(BUILTINS)}, _schema(SceneFiles, definitions), _schema(SetScene, definitions)]
+            },
             **_schema(Inscription, definitions)["properties"],
             "want": {"enum": list(PRODUCTS), "default": "surface"},
             "parts": _parts(definitions),
@@ -180,6 +183,8 @@ def markdown(schema: dict[str, Any]) -> str:
     properties, blocks = schema["properties"], schema["$defs"]
     lines += ["## scene", "", f"A builtin name ({_names(properties['scene']['anyOf'][0]['enum'])}), or files:", ""]
     lines += _table(properties["scene"]["anyOf"][1], blocks)
+    lines += ["Or a pair of a standard set ([which there are](datasets.md)):", ""]
+    lines += _table(properties["scene"]["anyOf"][2], blocks)
     lines += ["## title, language", "", "What the whole is called, and in which language its parts are named.", ""]
     inscription = {"properties": {name: properties[name] for name in Inscription.model_fields}}
     lines += _table(inscription, blocks)

@@ -28,6 +28,7 @@ from .rig import StereoRig, turned
 from .rig_files import read_rig
 from .scaling import felt_factor, reduced_map, reduced_shape
 from .scene_files import BUILTINS, SceneFiles, unknown_scene
+from .truth_files import TruthScale, read_truth, truth_of
 
 log = logging.getLogger(__name__)
 
@@ -44,9 +45,9 @@ def _read_heights(path: Path, say: Say = unsaid) -> Float32[np.ndarray, "h w"]:
     return in_metres(read_map(picture, say), said, picture)
 
 
-_READERS = {"height": _read_heights, "disparity": read_map, "segments": read_labels, "truth": read_map}
+_READERS = {"height": _read_heights, "disparity": read_map, "segments": read_labels}
 _PHONE_DEPTH = "phone depth"
-_CONVERTERS = {"height": map_of, "disparity": map_of, "segments": labels_of, "truth": map_of}
+_CONVERTERS = {"height": map_of, "disparity": map_of, "segments": labels_of}
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,6 +93,7 @@ class Scene:
         disparity: File | ArrayLike | None = None,
         segments: File | ArrayLike | None = None,
         truth: File | ArrayLike | None = None,
+        truth_scale: TruthScale | None = None,
         calibration: Calibration | None = None,
         rig: "StereoRig | File | None" = None,
         relief_m: float | None = None,
@@ -125,7 +127,8 @@ class Scene:
         files = _checked(
             paths | {part: Path(f"the array given as {part}") for part in parts.keys() - paths.keys()},
             calibration,
-            {"relief_m": relief_m, "layout": layout, "photo_depth": photo_depth, "crop": crop, "rotate": rotate,
+            {"relief_m": relief_m, "truth_scale": truth_scale, "layout": layout, "photo_depth": photo_depth,
+             "crop": crop, "rotate": rotate,
              "invert": invert, "nodata": nodata, "clip": clip, "non_finite": non_finite},
         )  # fmt: skip
         if paths.keys() == parts.keys():
@@ -291,6 +294,8 @@ def _read(part: str, path: Path, files: SceneFiles, say: Say = unsaid) -> dict[s
     """What a file of a scene holds, by what it is: two views, or a photo and its depth, or what it was given for."""
     if part == "stereo":
         return read_pair(path, files.layout, files.non_finite, say)._asdict()
+    if part == "truth":
+        return {part: read_truth(path, files.truth_scale, say)}
     if part not in _PICTURES:
         return {part: _READERS[part](path, say)}
     picture = read_picture(path, files.non_finite, say)
@@ -303,6 +308,8 @@ def _read(part: str, path: Path, files: SceneFiles, say: Say = unsaid) -> dict[s
 def _converted(part: str, values: np.ndarray, files: SceneFiles) -> dict[str, np.ndarray]:
     """A copy, as what it was given for."""
     name = str(getattr(files, part))
+    if part == "truth":
+        return {part: truth_of(values.copy(), name, files.truth_scale)}
     if part not in _PICTURES:
         return {part: _CONVERTERS[part](values.copy(), name)}
     picture = picture_of(values.copy(), name, files.non_finite)

@@ -137,7 +137,11 @@ baseline: constat
         (GOOD.replace("synthetic/steps", "motorcycle"), "3:10", "no scene is named 'motorcycle'"),
         (GOOD.replace("synthetic/steps", "{folder: nowhere}"), "3:10", "neither it nor a folder in it holds left.png"),
         (GOOD.replace("synthetic/steps", "synthetic/steps, synthetic/steps"), "3:27", "two scenes are called"),
-        (GOOD.replace("synthetic/steps", "{builtin: a, folder: b}"), "3:10", "one of builtin, synthetic and folder"),
+        (
+            GOOD.replace("synthetic/steps", "{builtin: a, folder: b}"),
+            "3:10",
+            "one of builtin, synthetic, folder, set",
+        ),
     ],
 )
 def test_one_mistake_one_line(registry: Registry, text: str, place: str, what: str):

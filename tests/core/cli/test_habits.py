@@ -7,13 +7,15 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from command_line import tangible
 from pictures import write_png
-from tangible_core.cli import loudness, sentences, show
+from standard_sets import LAYOUTS, known
+from tangible_core.cli import completing, loudness, sentences, show
 from tangible_core.cli.commands import COMMANDS, made
 from tangible_core.data import Outcome, Relief
 from tangible_core.pipeline.cache import Cache
@@ -59,10 +61,24 @@ def completed(words: str) -> list[str]:
         ("tangible run builtin/m", ["builtin/motorcycle"]),
         ("tangible run p.yaml --set workspace.wid", ["workspace.width_m="]),
         ("tangible run p.yaml --set render.use=prox", ["render.use=proxy"]),
+        ("tangible run p.yaml --set scene.set=kitti-2015", ["scene.set=kitti-2015"]),
+        ("tangible compare kitti-2015", ["kitti-2015"]),
     ],
 )
 def test_a_shell_completes_commands_methods_scenes_and_keys(words: str, offered: list[str]):
     assert [word for word in completed(words) if word] == offered
+
+
+def test_a_shell_completes_pairs_of_a_standard_set(tmp_path: Path):
+    LAYOUTS["eth3d"].make(tmp_path, known())
+    words = ["scene.set=eth3d", f"scene.folder={tmp_path}"]
+    found = completing.keys(SimpleNamespace(params={"sets": words}), "scene.name=deli")
+    assert found == ["scene.name=delivery_area_1l"]
+    assert completing.keys(SimpleNamespace(params={"sets": words}), "scene.name=deli") == [
+        "scene.name=delivery_area_1l"
+    ]
+    for unfinished in ([], words[:1], ["scene=3"], [*words, "scene.split=no"]):
+        assert completing.keys(SimpleNamespace(params={"sets": unfinished}), "scene.name=") == []
 
 
 def test_completion_is_installed_where_the_shell_looks(tmp_path: Path):

@@ -130,7 +130,7 @@ def _seen(pipeline: Pipeline, shows: Shows, relief: Relief) -> Seen:
 def _names(pipeline: Pipeline) -> tuple[str, ...] | None:
     """Of the parts, which are there; None where nothing is by parts."""
     config = pipeline.config
-    parts: PartMap | None = at_hand(pipeline, "parts") if config.by_parts else None
+    parts: PartMap | None = at_hand(pipeline, config.felt_parts) if config.by_parts else None
     return None if parts is None else names_of(config.parts or {}, parts.count)
 
 

@@ -25,9 +25,11 @@ from tangible_core import (
 )
 from tangible_core.data import TICK_COLUMNS, PartMap
 from tangible_core.errors import ConfigError, OutputError, PictureError, Stopped, UnknownMethod
+from tangible_core.parts import reduced_parts
 from tangible_core.pipeline.cache import Cache
 from tangible_core.pipeline.config import PRODUCTS, parse_config
 from tangible_core.pipeline.exporting import EXPORTABLE, MOST_STEM_BYTES, stem_of
+from tangible_core.pipeline.felt import parts_on_grid
 from tangible_core.plugins.registry import default_registry
 
 LABELS = np.kron(np.int32([[0, 1, 1], [0, 2, 2]]), np.ones((24, 24), np.int32))
@@ -210,6 +212,14 @@ class TestSimplify:
         assert len(simple.materials.materials) == simple.parts.count == simple.simplified.count == 3
         assert simple.part_heights.heights_m == plain.part_heights.heights_m
 
+    def test_simplified_parts_are_felt_where_they_are(self):
+        """Cell by cell of the nearest, though their grid is another one; and no more of them than are there."""
+        parts = PartMap(np.int32([[0, 3, 2]]), (0, 1, 2, 3))
+        felt = parts_on_grid(parts, (1, 8), "simplified")
+        assert felt.labels.tolist() == [[0, 0, 0, 3, 3, 2, 2, 2]]
+        assert parts_on_grid(parts, (1, 2), "parts").labels.tolist() == [[0, 2]]
+        assert reduced_parts(PartMap(np.int32([[0, 0, 0, 2]]), (0, 1, 2)), (1, 2)).labels.tolist() == [[0, 2]]
+
     def test_it_needs_parts(self):
         with pytest.raises(ConfigError, match=r"simplify: parts are pieces of segments, and the scene has none"):
             Pipeline(Scene.of(photo=PHOTO), simplify={}, cached=False).make("simplified")
@@ -217,7 +227,7 @@ class TestSimplify:
     def test_what_is_said_of_parts_is_checked_though_they_come_from_the_cache(self, tmp_path: Path):
         def made(height_m: float) -> Pipeline:
             said = {**SAID, "parts": {1: {"height_m": height_m}}}
-            found = Pipeline(LABELLED, simplify={}, cached=False, **said)
+            found = Pipeline(Scene.of(photo=PHOTO), texture=Counted(), simplify={}, cached=False, **said)
             found.cache = Cache(tmp_path)
             return found
 
@@ -402,6 +412,13 @@ class TestEnding:
             pipeline(**SAID).export(tmp_path, [halfway, Report()], stop=stop)
         assert list(tmp_path.iterdir()) == []
 
+    def test_nothing_is_written_after_a_stop(self, tmp_path: Path):
+        stop, begun = Event(), list[Path]()
+        stop.set()
+        with pytest.raises(Stopped):
+            pipeline().export(tmp_path, [Does(do=begun.append)], stop=stop)
+        assert begun == []
+
     def test_its_progress_is_heard(self, tmp_path: Path):
         heard = list[tuple[str, str | None]]()
         pipeline(**SAID).export(
@@ -480,7 +497,9 @@ class TestDocument:
         assert json.loads((tmp_path / "p-heights.json").read_text())["width_mm"] == 160
 
     def test_a_pipeline_made_in_python_lists_them_too(self, tmp_path: Path):
-        pipeline(**SAID, export=[Report(wide_m=0.1)]).export(tmp_path)
+        done = pipeline(**SAID, export=[Report(wide_m=0.1)]).export(tmp_path)
+        assert "still life.report" in repr(done)
+        assert "still life.report</td>" in done._repr_html_()
         assert report_of(tmp_path)["extent_m"][0] == 0.1
 
 

@@ -20,6 +20,7 @@ SECTIONS = {
     "texture": "Texture",
     "photos": "Photographs",
     "parts": "Parts of a picture",
+    "export": "Handing it on",
     "render": "Force laws",
     "methods": "Every method with its defaults",
     "servo": "The force loop",

@@ -66,7 +66,7 @@ def _arguments(ring: Ring) -> tuple[Any, ...]:
     of_link = tuple(_buffers(calibration))
     link = of_link, Address(tick.read), Address(tick.write)
     law = touch.fixed, touch.address(), touch.memory
-    return link, law, (settings, ring.guard), sections(ring), np.zeros(cycle.STATE), np.zeros(16)
+    return link, law, (settings, ring.guard, ring.beacon.arrays), sections(ring), np.zeros(cycle.STATE), np.zeros(16)
 
 
 def _buffers(calibration: Calibration) -> tick.Buffers:

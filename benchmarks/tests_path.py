@@ -5,7 +5,9 @@ from pathlib import Path
 
 sys.path.append(str(Path(__file__).parents[1] / "tests" / "helpers"))
 
+import colour_parts as colour_parts
 import drawn_parts as drawn_parts
 import falcon_bus as falcon_bus
 import falcon_streams as falcon_streams
+import solids as solids
 import two_cameras as two_cameras

@@ -24,12 +24,14 @@ if TYPE_CHECKING:
     from .data import Relief as Relief
     from .data import SegmentMap as SegmentMap
     from .data import Views as Views
+    from .data import Work as Work
     from .errors import TangibleError as TangibleError
     from .pipeline.pipeline import Pipeline as Pipeline
     from .pipeline.pipeline import load_pipeline as load_pipeline
     from .pipeline.runs import Run as Run
     from .plugins.hooks import hookimpl as hookimpl
     from .plugins.interfaces import DepthEstimator as DepthEstimator
+    from .plugins.interfaces import Exporter as Exporter
     from .plugins.interfaces import ForceRenderer as ForceRenderer
     from .plugins.interfaces import HapticDevice as HapticDevice
     from .plugins.interfaces import Link as Link
@@ -51,14 +53,15 @@ __all__, __getattr__ = lazily(  # pyright: ignore[reportUnsupportedDunderAll]
         "compiled.touch": ["CompiledTouch"],
         "data": [
             "Calibration", "DeviceSpec", "DisparityMap", "Force", "HapticState", "HapticSurface", "Material",
-            "MaterialMap", "Outcome", "Plan", "Relief", "SegmentMap", "Views",
+            "MaterialMap", "Outcome", "Plan", "Relief", "SegmentMap", "Views", "Work",
         ],
         "errors": ["TangibleError"],
         "pipeline.pipeline": ["Pipeline", "load_pipeline"],
         "pipeline.runs": ["Run"],
         "plugins.hooks": ["hookimpl"],
         "plugins.interfaces": [
-            "DepthEstimator", "ForceRenderer", "HapticDevice", "Link", "PlainTouch", "Segmenter", "Skippable", "Touch",
+            "DepthEstimator", "Exporter", "ForceRenderer", "HapticDevice", "Link", "PlainTouch", "Segmenter",
+            "Skippable", "Touch",
         ],
         "plugins.registry": ["load_method"],
         "report.showing": ["show"],

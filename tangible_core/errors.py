@@ -77,6 +77,10 @@ class MaterialError(TangibleError):
     """A material, or a mapping of segments to materials, that makes no sense."""
 
 
+class BrailleError(TangibleError):
+    """A text that cannot be written in braille, or not where it should stand."""
+
+
 class DeviceError(TangibleError):
     """A device that is not there, is in use, or stopped answering."""
 

@@ -29,7 +29,7 @@ def test_the_architecture_page_draws_the_floors_as_they_are():
     page = ROOT.joinpath("docs/architecture.md").read_text(encoding="utf-8")
     contracts = tomllib.loads(ROOT.joinpath("pyproject.toml").read_text("utf-8"))["tool"]["importlinter"]["contracts"]
     floors = [contract["layers"] for contract in contracts if contract["type"] == "layers"]
-    assert len(floors) == 6
+    assert len(floors) == 7
     assert not [layers for layers in floors if "```text\n" + "\n".join(layers) + "\n```" not in page]
 
 
@@ -58,9 +58,12 @@ def test_the_plugin_page_shows_the_example_as_it_is(name):
         ("write-a-device.md", "device/acme_handle/handle.py"),
         ("write-a-device.md", "device/handle.yaml"),
         ("write-a-device.md", "device/tests/test_acme_handle.py"),
+        ("write-an-exporter.md", "exporter/acme_contours/contours.py"),
+        ("write-an-exporter.md", "exporter/contours.yaml"),
+        ("write-an-exporter.md", "exporter/tests/test_acme_contours.py"),
     ],
 )
-def test_the_pages_on_laws_and_devices_show_their_examples_as_they_are(page, name):
+def test_the_pages_on_single_kinds_show_their_examples_as_they_are(page, name):
     shown = ROOT.joinpath("docs", page).read_text(encoding="utf-8")
     assert ROOT.joinpath("examples", name).read_text(encoding="utf-8").strip() in shown
 
@@ -80,6 +83,17 @@ def test_the_page_on_materials_shows_what_the_program_takes(tmp_path: Path):
     assert len(files) == 5
     for text in files:
         parse_config(f"scene: builtin/brick\n{text}", tmp_path / "p.yaml", default_registry())
+
+
+def test_the_page_on_handing_on_shows_what_the_program_takes(tmp_path: Path):
+    from tangible_core.pipeline.config import parse_config
+    from tangible_core.plugins.registry import default_registry
+
+    blocks = re.findall(r"```yaml\n(.*?)```", ROOT.joinpath("docs/export.md").read_text(encoding="utf-8"), re.DOTALL)
+    assert len(blocks) > 1
+    for text in blocks:
+        scene = "" if re.search("^scene:", text, re.MULTILINE) else "scene: builtin/coins\n"
+        parse_config(scene + text, tmp_path / "p.yaml", default_registry())
 
 
 def test_the_page_on_recordings_reads_and_writes_them(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):

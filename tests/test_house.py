@@ -28,6 +28,7 @@ PACKAGES = {
     "texture": ROOT / "plugins/texture/tangible_texture",
     "render": ROOT / "plugins/render/tangible_render",
     "device": ROOT / "plugins/devices/tangible_devices",
+    "export": ROOT / "plugins/export/tangible_export",
 }
 MOMENTS = sorted(name for name in vars(hooks.Specs) if name.startswith("tangible_"))
 
@@ -51,7 +52,9 @@ def test_listing_is_light(words):
     imported = set(run("-c", code).stderr.split())
     assert "tangible_core" in imported
     assert not imported & {*HEAVY, "pandas", "PIL"}
-    assert not {name for name in imported if re.match(r"tangible_(depth|texture|render|devices)\.(?!commands)", name)}
+    assert not {
+        name for name in imported if re.match(r"tangible_(depth|texture|render|devices|export)\.(?!commands)", name)
+    }
 
 
 @pytest.mark.parametrize(

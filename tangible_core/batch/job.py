@@ -10,7 +10,7 @@ from time import perf_counter
 from typing import Any, cast
 
 from ..data import Outcome, Record
-from ..errors import TangibleError, shown
+from ..errors import OutputError, TangibleError, shown
 from ..metrics import disparity_errors
 from ..pipeline.cache import Cache, write_record
 from ..pipeline.config import parse_config
@@ -89,6 +89,7 @@ def _made(job: Job) -> Row:
         files = _written(pipeline, folder)
         figures = _figures(pipeline)
     card = write_card(pipeline, folder)
+    files += _exported(pipeline, folder)
     return {
         "scene": pipeline.scene.name,
         "figures": _plain(figures),
@@ -106,6 +107,16 @@ def _written(pipeline: Pipeline, folder: Path) -> list[str]:
     name, record = (want, value) if isinstance(value, Record) else ("surface", pipeline.surface)
     write_record(folder / f"{name}.npz", record)
     return [f"{name}.npz"]
+
+
+def _exported(pipeline: Pipeline, folder: Path) -> list[str]:
+    """Files of the exporters that the pipeline file lists. Raises: OutputError for one that could not write its own."""
+    if not pipeline.config.export:
+        return []
+    done = pipeline.export(folder, force=True)
+    if failed := [each for each in done.outcomes if each.outcome != "ran"]:
+        raise OutputError("; ".join(f"export {each.product}: {each.why}" for each in failed))
+    return [path.relative_to(folder).as_posix() for paths in done.files.values() for path in paths]
 
 
 def _figures(pipeline: Pipeline) -> dict[str, Any]:

@@ -14,6 +14,7 @@ from .plan import measurements
 from .plot import draw_plot
 from .rows import Row, read_rows
 from .run import Outlook, look, run
+from .set_tables import write_set_tables
 from .summary import cells
 from .table import Results
 from .task import TASKS, load_task
@@ -94,7 +95,8 @@ def _summed(rows: Mapping[str, Row], path: Path, earlier: Sequence[Row] | None) 
     found = list(rows.values())
     results = _results(found, path)
     plot = path.with_name(PLOT)
-    files = (path, *write_tables(path.parent, results), *((plot,) if draw_plot(plot, results) else ()))
+    tables = (*write_tables(path.parent, results), *write_set_tables(path.parent, results))
+    files = (path, *tables, *((plot,) if draw_plot(plot, results) else ()))
     return ComparisonOutcome(results, files, None if earlier is None else verdicts.compare(earlier, found))
 
 

@@ -15,6 +15,10 @@ from .entries import Entry, read_methods
 from .task import TASKS, SceneSpec, Task, load_task
 
 NONE = "none"
+UNCOMPARED = {
+    "device": "devices are not compared; `tangible devices stress NAME` measures how fast one is",
+    "export": "exporters are not compared, as there is no truth that files could be held against",
+}
 Place = tuple[Any, ...]
 
 
@@ -108,8 +112,12 @@ def _task(source: Source) -> Task:
     kind = source.tree.get("compare")
     if kind in TASKS:
         return load_task(kind)
-    hint = did_you_mean(str(kind), TASKS) if "compare" in source.tree else ""
-    source.complain(("compare",), f"`compare:` names what kind of method to compare{hint}; known: {', '.join(TASKS)}")
+    if kind in UNCOMPARED:
+        said = f"{UNCOMPARED[kind]}; what is compared are methods for {', '.join(TASKS)}"
+    else:
+        hint = did_you_mean(str(kind), TASKS) if "compare" in source.tree else ""
+        said = f"`compare:` names what kind of method to compare{hint}; known: {', '.join(TASKS)}"
+    source.complain(("compare",), said)
     source.settle()
     raise AssertionError("a complaint was settled")
 

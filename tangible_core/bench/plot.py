@@ -76,7 +76,7 @@ def _panel(axes: Axes, results: Results, found: list[Line], measure: str) -> Non
     axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
     axes.xaxis.set_major_formatter("{x:g}")
     axes.xaxis.set_minor_formatter(NullFormatter())
-    axes.set(xlabel=f"time, {results.task.clock.unit}", ylabel=results.task.measures[measure].title)
+    axes.set(xlabel=f"time, {results.task.clock.unit}", ylabel=results.heading(measure))
     axes.grid(color="#dddddd", linewidth=0.5)
     axes.set_axisbelow(True)
 

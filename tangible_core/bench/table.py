@@ -46,6 +46,22 @@ class Results:
         value = line.measures.get(measure, math.nan)
         return value if self.task.measures[measure].best == "low" else -value
 
+    def measured(self, scene: str) -> tuple[str, ...]:
+        """The measures of a scene, in order: all of them, but for those of standard sets that no method has there."""
+        there = {name for cell in self.cells.values() if cell.scene == scene for name in cell.measures}
+        return tuple(name for name, each in self.task.measures.items() if not each.of_sets or name in there)
+
+    def heading(self, measure: str, scenes: Sequence[str] | None = None) -> str:
+        """Of a column: bad2 of scenes at a quarter of their size is `bad2@Q`, for tables of the full size call it bad8.
+
+        scenes: those that the column is of; all of them if left out.
+        """
+        known = self.task.measures[measure]
+        name, _, unit = known.title.partition(" ")
+        sizes = {self.task.size_of(scene) for scene in scenes or self.scenes}
+        size = sizes.pop() if len(sizes) == 1 else ""
+        return f"{name}@{size} {unit}" if known.at_size and size else known.title
+
     @property
     def failed(self) -> list[str]:
         """Methods without a result on any scene, in order."""
@@ -75,7 +91,7 @@ def tables(results: Results, detail: bool = False) -> list[Table]:
     """The mean over the scenes; what perturbations do; with `detail`, each scene and every measure; what failed."""
     count = len(results.scenes)
     title = (f"mean of {count} scenes" if count > 1 else results.scenes[0]) + _damaged(results.perturbs[0])
-    found = [_figures(results, results.means(), title, results.task.columns)]
+    found = [_figures(results, results.means(), title, results.task.columns, results.scenes)]
     if len(results.perturbs) > 1:
         found.append(_perturbed(results))
     if detail:
@@ -84,7 +100,8 @@ def tables(results: Results, detail: bool = False) -> list[Table]:
                 results,
                 results.ranked(lines(results.cells, perturb, [scene])),
                 scene + _damaged(perturb),
-                tuple(results.task.measures),
+                results.measured(scene),
+                [scene],
             )
             for scene in results.scenes
             for perturb in results.perturbs
@@ -97,7 +114,9 @@ def _damaged(perturb: str) -> str:
     return "" if perturb == NONE else f", {perturb}"
 
 
-def _figures(results: Results, found: Sequence[Line], title: str, measures: Sequence[str]) -> Table:
+def _figures(
+    results: Results, found: Sequence[Line], title: str, measures: Sequence[str], scenes: Sequence[str]
+) -> Table:
     known, clock = results.task.measures, results.task.clock
     best = results.on_front(found, results.judged)
     ratio = ("time / baseline",) if results.baseline else ()
@@ -112,12 +131,12 @@ def _figures(results: Results, found: Sequence[Line], title: str, measures: Sequ
         )
         for index, line in enumerate(found)
     ]
-    measured = (known[name].title for name in measures)
+    measured = (results.heading(name, scenes) for name in measures)
     return Table(title, ("method", FRONT, clock.unit, *ratio, "peak MB", *measured), tuple(rows))
 
 
 def _perturbed(results: Results) -> Table:
-    measure = results.task.measures[results.judged]
+    measure, heading = results.task.measures[results.judged], results.heading(results.judged)
     by_name = {name: {line.method: line for line in results.means(name)} for name in results.perturbs}
     rows = [
         (
@@ -130,7 +149,9 @@ def _perturbed(results: Results) -> Table:
         for line in results.means()
     ]
     return Table(
-        f"{measure.title} under perturbations, mean of {len(results.scenes)} scenes", ("method", *by_name), tuple(rows)
+        f"{heading} under perturbations, mean of {len(results.scenes)} scenes",
+        ("method", *by_name),
+        tuple(rows),
     )
 
 

@@ -46,6 +46,10 @@ class Measure:
     best: Literal["low", "high"] = "low"
     tolerance: float = 0.005
     """The most by which it may get worse between two files and count as the same."""
+    at_size: bool = False
+    """Whether it counts pixels, so that a heading says of which size they are where that is not the full one."""
+    of_sets: bool = False
+    """Whether scenes of standard sets alone have it: a table of others leaves it out."""
 
 
 @dataclass(frozen=True)
@@ -95,6 +99,8 @@ class Task:
     """Options that a method may be told from what is known of a scene: name -> (scene) -> value."""
     finishes: Mapping[str, Callable[[Any], Any]] = field(default_factory=dict[str, Callable[[Any], Any]])
     """Steps that a comparison may add to the results of chosen methods, untimed, under these keys of its file."""
+    size_of: Callable[[str], str] = lambda scene: ""
+    """(name of a scene) -> such as Q, where its pixels are not those of the full size; empty where they are."""
 
 
 TASKS = {"depth": "depth", "texture": "texture", "render": "render"}

@@ -58,13 +58,13 @@ def as_latex(results: Results) -> str:
 
 
 def _rows(rows: Iterable[tuple[str, ...]]) -> list[str]:
-    return [" & ".join(_escaped(cell) for cell in row) + r" \\" for row in rows]
+    return [" & ".join(escaped(cell) for cell in row) + r" \\" for row in rows]
 
 
-def _escaped(text: str) -> str:
+def escaped(text: str) -> str:
     r"""A text that LaTeX prints as it stands.
 
-    >>> _escaped("bad2 %"), _escaped("a_b & c")
+    >>> escaped("bad2 %"), escaped("a_b & c")
     ('bad2 \\%', 'a\\_b \\& c')
     """
     return re.sub(r"[\\~^&%$#_{}]", lambda found: _LATEX.get(found[0], f"\\{found[0]}"), text)

@@ -5,10 +5,11 @@ from __future__ import annotations
 from os import environ
 from pathlib import Path
 from time import monotonic
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
+from . import completing
 from .loudness import is_quiet
 from .options import FAILED, Json, Sets
 
@@ -17,16 +18,26 @@ if TYPE_CHECKING:
 
     from ..bench import against as verdicts
     from ..bench.comparing import Step
+    from ..bench.config import Comparison
     from ..bench.forecast import Forecast
     from ..bench.run import Outlook
+    from ..bench.submitting import Submitted
     from ..bench.table import Results, Table
 
 
 def compare(
     config: Annotated[
-        Path, typer.Argument(help="Comparison file (YAML), or results (.jsonl) to show again.", show_default=False)
+        Path,
+        typer.Argument(
+            help="Comparison file (YAML), results (.jsonl) to show again, or a standard set, such as kitti-2015.",
+            show_default=False,
+            autocompletion=completing.comparisons,
+        ),
     ],
     sets: Sets = None,
+    folder: Annotated[
+        Path | None, typer.Option(help="Where a standard set lies [default: a folder of its name].")
+    ] = None,
     out: Annotated[Path | None, typer.Option("--out", help="Folder for results [default: as the file says].")] = None,
     against: Annotated[
         Path | None, typer.Option(help="Earlier results (.jsonl); exit 1 if something got worse.")
@@ -42,6 +53,12 @@ def compare(
         int | None, typer.Option(min=1, help="With --errors-only, processes [default: one a core].")
     ] = None,
     retry: Annotated[bool, typer.Option("--retry", help="Measure again what failed before.")] = False,
+    table: Annotated[
+        Literal["latex", "csv"] | None, typer.Option(help="Print the table that papers print, and nothing else.")
+    ] = None,
+    submission: Annotated[
+        Path | None, typer.Option(help="Measure nothing; write a folder to submit to the benchmark.")
+    ] = None,
     as_json: Json = False,
 ) -> None:
     """Compare methods by time, memory and error.
@@ -53,21 +70,23 @@ def compare(
 
     from ..bench.comparing import ROWS, read_comparison
     from ..bench.comparing import compare as measured
-    from ..bench.config import load_comparison
     from ..bench.config import quick as shortened
     from ..bench.errors_only import errors_only
     from ..bench.rows import read_rows
     from ..errors import ArgumentError
-    from ..plugins.registry import default_registry
     from . import show
 
     if workers is not None and not errors:
         raise ArgumentError("--workers: goes with --errors-only; side by side, methods would spoil each other's times")
+    _check_options(config, folder, table, submission, as_json)
+    if submission is not None:
+        _submit(_comparison(config, folder, sets or []), submission, as_json)
+        return
     earlier = None if against is None else list(read_rows(against).values())
     if config.suffix == ".jsonl":
         found = read_comparison(config, earlier)
     else:
-        comparison = load_comparison(config, default_registry(), sets or [])
+        comparison = _comparison(config, folder, sets or [])
         comparison = shortened(comparison) if quick else comparison
         comparison = errors_only(comparison) if errors else comparison
         comparison = replace(comparison, out=out or comparison.out)
@@ -81,6 +100,8 @@ def compare(
             raise
     if as_json:
         show.print_json(_document(found.results, found.files, found.verdict))
+    elif table is not None:
+        _print_for_papers(found.results, table)
     elif not is_quiet():
         _print(found.results, found.files, found.verdict, detail)
     if failed := found.results.failed:
@@ -88,6 +109,83 @@ def compare(
         show.note(f"no result on any scene: {', '.join(failed)}")
     if failed or (found.verdict is not None and found.verdict.worse):
         raise typer.Exit(FAILED)
+
+
+def _is_set(config: Path) -> bool:
+    from ..datasets import SETS
+
+    return str(config).partition("@")[0] in SETS and not config.is_file()
+
+
+def _check_options(config: Path, folder: Path | None, table: str | None, submission: Path | None, json: bool) -> None:
+    """Raises: ConfigError for options that do not go together."""
+    from ..errors import ConfigError
+
+    if folder is not None and not _is_set(config):
+        raise ConfigError(f"--folder: says where a standard set lies, and {config} is none; leave it out")
+    if submission is not None and config.suffix == ".jsonl":
+        raise ConfigError(f"--submission: {config} holds figures alone; name the comparison file that they are of")
+    if table is not None and (json or submission is not None):
+        raise ConfigError("--table: says what is printed, as --json and --submission do; leave one of them out")
+
+
+def _comparison(config: Path, folder: Path | None, sets: Sequence[str]) -> Comparison:
+    """Of a file, or of a standard set that has none."""
+    from ..bench.config import load_comparison, parse_comparison
+    from ..bench.of_set import comparison_of_set
+    from ..plugins.registry import default_registry
+
+    if not _is_set(config):
+        return load_comparison(config, default_registry(), sets)
+    return parse_comparison(comparison_of_set(str(config), folder), config, default_registry(), sets)
+
+
+def _submit(comparison: Comparison, folder: Path, as_json: bool) -> None:
+    """Raises: Exit with 1 if a method has no result on a pair."""
+    from dataclasses import asdict
+
+    from ..bench.submitting import submit
+    from ..data import Outcome
+    from ..plugins import hooks
+    from ..plugins.registry import default_registry
+    from . import show
+
+    plugins = default_registry().plugins
+
+    def started(method: str, scene: str) -> None:
+        hooks.tell(plugins, "tangible_stage_started", product=scene, method=method)
+
+    done: list[Submitted] = []
+    for each in submit(comparison, folder, started):
+        done.append(each)
+        kind, why = ("failed", each.error) if each.error else ("ran", "written")
+        hooks.tell(
+            plugins, "tangible_stage_finished", outcome=Outcome(each.scene, kind, why, each.method, each.seconds)
+        )
+    failed = [each for each in done if each.error]
+    if as_json:
+        show.print_json([{**asdict(each), "files": [str(path) for path in each.files]} for each in done])
+    elif not is_quiet():
+        for method in dict.fromkeys(each.method for each in done):
+            files = [path for each in done if each.method == method for path in each.files]
+            show.plain(f"{method}: {len(files)} files in {folder}")
+    for each in failed:
+        show.flush()
+        show.note(f"no result of {each.method} on {each.scene}: {each.error}")
+    if failed:
+        raise typer.Exit(FAILED)
+
+
+def _print_for_papers(results: Results, form: str) -> None:
+    """The tables of the sets, or, of scenes that are of none, the means."""
+    from ..bench import set_tables, writing
+    from . import show
+
+    ways = {"latex": (set_tables.as_latex, writing.as_latex), "csv": (set_tables.as_csv, writing.as_csv)}
+    of_set, of_all = ways[form]
+    texts = [of_set(each) for each in set_tables.set_tables(results)] or [of_all(results)]
+    for text in texts:
+        show.plain(text.rstrip("\n"))
 
 
 class _Watch:
@@ -154,6 +252,7 @@ def _document(results: Results, files: Sequence[Path], verdict: verdicts.Verdict
 
 
 def _print(results: Results, files: Sequence[Path], verdict: verdicts.Verdict | None, detail: bool) -> None:
+    from ..bench.set_tables import set_tables, shown
     from ..bench.table import FRONT, tables
     from . import sentences, show
 
@@ -163,6 +262,8 @@ def _print(results: Results, files: Sequence[Path], verdict: verdicts.Verdict | 
         _print_table(table)
     if not any(cell.seconds for cell in results.cells.values()):
         show.say("errors alone were measured: times and memory are left empty")
+    for each in set_tables(results):
+        _print_table(shown(each))
     unit = results.task.clock.unit
     show.say(f"{FRONT} Pareto-optimal: no other method is both faster and better")
     show.say(f"{unit}: median of the rounds; peak MB: on top of the scene")

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from pathlib import Path
 from typing import Any
 
 
@@ -14,6 +15,12 @@ def methods(ctx: Any, incomplete: str) -> list[tuple[str, str]]:
 def devices(incomplete: str) -> list[tuple[str, str]]:
     """Devices, with what they are."""
     return _installed("device", incomplete)
+
+
+def exporters(incomplete: str) -> list[tuple[str, str]]:
+    """Exporters, with what they write; behind a comma, one more."""
+    before, comma, begun = incomplete.rpartition(",")
+    return [(f"{before}{comma}{name}", summary) for name, summary in _installed("export", begun)]
 
 
 def kinds(incomplete: str) -> list[str]:
@@ -37,17 +44,66 @@ def scenes(incomplete: str) -> list[str]:
     return _beginning(BUILTINS, incomplete) if incomplete else []
 
 
-def keys(incomplete: str) -> list[str]:
-    """Keys of a pipeline file, as `--set` takes them; after `use=`, the methods."""
+def comparisons(incomplete: str) -> list[tuple[str, str]]:
+    """Standard sets, once a word looks like one: a shell completes names of files where nothing is offered."""
+    from ..datasets import SETS
+
+    return [(name, each.title) for name, each in SETS.items() if incomplete and name.startswith(incomplete)]
+
+
+def keys(ctx: Any, incomplete: str) -> list[str]:
+    """Keys of a pipeline file, as `--set` takes them; after `use=`, the methods; of a standard set that
+    was named before, its pairs."""
+    from ..legibility.choice import SimplifyChoice
     from ..pipeline.config import SECTIONS, STAGES
     from ..plugins.registry import default_registry
 
+    if incomplete.startswith("export."):
+        return _of_exporters(incomplete)
     stage, use, _ = incomplete.partition(".use=")
     if use and stage in STAGES:
         return _beginning((f"{stage}.use={name}" for name in default_registry().names(stage)), incomplete)
+    if incomplete.startswith("scene.set="):
+        from ..datasets import SETS
+
+        return _beginning((f"scene.set={name}" for name in SETS), incomplete)
+    if incomplete.startswith("scene.name="):
+        return _beginning((f"scene.name={name}" for name in _pairs_of_set(ctx.params.get("sets") or ())), incomplete)
     found = [f"{name}.{option}=" for name, section in SECTIONS.items() for option in section.model_fields]
-    alone = ("scene", "title", "language", "want", "heights")
+    alone = ("scene", "scene.set", "scene.folder", "scene.name", "title", "language", "want", "heights", "export")
+    found += [f"simplify.{option}=" for option in SimplifyChoice.model_fields]
     return _beginning((*(f"{key}=" for key in alone), *(f"{stage}.use=" for stage in STAGES), *found), incomplete)
+
+
+def _pairs_of_set(words: Sequence[str]) -> list[str]:
+    """Of the set that earlier words of `--set` name; none where they name none, or it does not lie there."""
+    from ..datasets.choosing import pairs, with_folder
+    from ..errors import TangibleError
+    from ..files.source import parse_source, plain
+
+    try:
+        said = parse_source("{}", Path("here.yaml"), "", [each for each in words if each.startswith("scene")])
+        scene = with_folder(plain(said.tree.get("scene")))
+        chosen = {key: scene[key] for key in ("resolution", "split", "variant") if key in scene}
+        return [each.name for each in pairs(scene["set"], scene["folder"], **chosen)]
+    except (TangibleError, KeyError, TypeError):  # of what is not finished, nothing can be told
+        return []
+
+
+def _of_exporters(incomplete: str) -> list[str]:
+    """`export.NAME.`, and behind that the options of this one alone: no other is imported."""
+    from ..errors import TangibleError
+    from ..plugins.registry import default_registry
+
+    names = default_registry().names("export")
+    name, dot, _ = incomplete.removeprefix("export.").partition(".")
+    if not dot or name not in names:
+        return _beginning((f"export.{each}." for each in names), incomplete)
+    try:
+        options = default_registry().load("export", name).model_fields
+    except TangibleError:
+        return []
+    return _beginning((f"export.{name}.{option}=" for option in options), incomplete)
 
 
 def _installed(kind: str | None, incomplete: str) -> list[tuple[str, str]]:

@@ -30,6 +30,10 @@ def feel(
     ] = None,
     each: Annotated[float, typer.Option(help="How long each of several files, s.")] = 60.0,
     wait: Annotated[bool, typer.Option("--wait", help="Wait for a device that is not there, or goes.")] = False,
+    beacon: Annotated[
+        str | None,
+        typer.Option(metavar="PART", help="Pull the hand gently to this part, by name or number; a button lets go."),
+    ] = None,
     record: Record = None,
     as_json: Json = False,
     no_cache: NoCache = False,
@@ -78,16 +82,19 @@ def feel(
         then=then,
         each_s=each,
         on_wait=show.note if wait else None,
+        beacon=beacon,
     )
     (report,) = reports
     felt = session.figures(report)
     hand = None if then or wait else pipeline.followed(looks.recording())
     parts = () if then else pipeline.parts_felt(looks.recording())
+    pulled = session.beacons_felt(looks.recording(), pipeline.surface)
     if as_json:
         figures = {"device": device.name, "spec": asdict(device.method.spec()), **felt}
         outcomes = show.as_rows(pipeline.outcomes)
         said = {"guard": session.changed_most(report.flagged), "hand": hand and hand._asdict()}
-        said |= {"part": report.part, "parts": [each._asdict() for each in parts]}
+        said |= {"part": report.part, "material": report.material, "parts": [each._asdict() for each in parts]}
+        said |= {"beacon": report.beacon, "beacons": [each._asdict() for each in pulled]}
         file = {"file": record and str(record)}
         show.print_json({"outcomes": outcomes, "loop": loop, "figures": figures, **said, **file})
     elif not is_quiet():
@@ -97,6 +104,8 @@ def feel(
             show.say(f"\n{loop['how']}; the first tick came {loop['start_s']:.2f} s after the loop was asked for\n")
         show.table(("figure", "value"), [(name, _text(value)) for name, value in felt.items()])
         show.parts_felt(parts)
+        for beacon_felt in pulled:
+            show.plain(f"\n{beacon_felt}.")
         for said in (session.changed_most(report.flagged), hand and hand.says):
             if said:
                 show.plain(f"\n{said}")

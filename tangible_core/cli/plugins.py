@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..errors import ConfigError
+from ..plugins.registry import KIND_NAMES
 from . import completing
 from .options import Json
 
@@ -49,7 +50,7 @@ def plugins(context: typer.Context, as_json: Json = False) -> None:
 def show_one(
     kind: Annotated[
         str,
-        typer.Argument(help="depth | texture | render | device", show_default=False, autocompletion=completing.kinds),
+        typer.Argument(help=" | ".join(KIND_NAMES), show_default=False, autocompletion=completing.kinds),
     ],
     name: Annotated[
         str,
@@ -81,7 +82,7 @@ def show_one(
         said = {column: getattr(listing, column) for column in (*COLUMNS, "target")}
         show.print_json({**said, "text": text, "options": [each._asdict() for each in options], "measured": figures})
         return
-    show.plain(f"{listing.name} is a {WORDS[kind]} of {listing.origin}.\n\n{text}\n")
+    show.plain(f"{listing.name} is {WORDS[kind]} of {listing.origin}.\n\n{text}\n")
     show.say("[bold]options[/]" if options else "It has no options.")
     for each in options:
         bounds = ", ".join(filter(None, (each.unit, each.values)))
@@ -91,7 +92,13 @@ def show_one(
 
 
 OURS = "tangible-images"
-WORDS = {"depth": "depth method", "texture": "texture method", "render": "force law", "device": "device"}
+WORDS = {
+    "depth": "a depth method",
+    "texture": "a texture method",
+    "render": "a force law",
+    "device": "a device",
+    "export": "an exporter",
+}
 
 
 def _figures(found: Measured, name: str) -> dict[str, Any]:
@@ -106,6 +113,8 @@ def _measured_in_words(listing: Listing, found: Measured | None) -> str:
 
     if listing.kind == "device":
         return f"`tangible devices stress {listing.name}` measures how fast it can be read and written."
+    if listing.kind == "export":
+        return "How long it takes is said with each export."
     if found is None or listing.name not in (*found.methods, *found.failed):
         file = f"configs/compare-{listing.kind}.yaml"
         return f"No figures of it come with the program: `tangible compare` measures it, with a file such as {file}."

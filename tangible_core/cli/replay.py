@@ -13,7 +13,7 @@ from .run import open_pipeline
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ..session import PartFelt, Recording
+    from ..session import BeaconFelt, PartFelt, Recording
 
 
 def replay(
@@ -46,12 +46,13 @@ def replay(
     figures = {**session.compared(before, after), "ns_per_tick": 1e9 * seconds / max(1, len(after.rows))}
     law = pipeline.config.render
     parts = pipeline.parts_felt(after)
-    _print(before, figures, parts, record, as_json, law.name if law else "the law")
+    pulled = session.beacons_felt(before, pipeline.surface)
+    _print(before, figures, parts, pulled, record, as_json, law.name if law else "the law")
 
 
 MEANINGS = {
     "ticks": "",
-    "compared": "all but those whose recorded force was limited, faded in, damped or none for a fault",
+    "compared": "all but those whose recorded force was limited, faded in, damped, with a beacon or none for a fault",
     "error_n": "root mean square, over ticks in contact",
     "error_percent": "of the recorded force",
     "direction_deg": "mean angle",
@@ -70,6 +71,7 @@ def _print(
     before: Recording,
     figures: dict[str, float],
     parts: Sequence[PartFelt],
+    pulled: Sequence[BeaconFelt],
     record: Path | None,
     as_json: bool,
     law: str,
@@ -82,6 +84,8 @@ def _print(
         said: dict[str, Any] = {"device": before.about.device, "renderer": before.about.renderer}
         said |= {"started": before.about.started, "stopped": before.stopped}
         said["parts"] = session.names_of(before.about.parts)
+        said["beacons"] = [each._asdict() for each in pulled]
+        said["materials"] = session.names_of(before.about.materials)
         felt = [each._asdict() for each in parts]
         show.print_json({"recorded": said, "figures": figures, "parts": felt, "file": record and str(record)})
         return
@@ -90,3 +94,5 @@ def _print(
     show.sentence(sentences.replayed(law, figures))
     show.table(("figure", "value", ""), [(name, f"{value:.6g}", MEANINGS[name]) for name, value in figures.items()])
     show.parts_felt(parts)
+    for each in pulled:
+        show.plain(f"\n{each}. Its ticks are not compared: the law alone is replayed.")

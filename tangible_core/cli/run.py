@@ -43,7 +43,7 @@ def demo(
     text = files("tangible_core").joinpath("demo.yaml").read_text(encoding="utf-8")
     config = parse_config(text, DEMO, default_registry())
     pipeline = Pipeline.of(config, default_registry(), None if no_cache else Cache())
-    out = out or _folder(DEMO)
+    out = out or default_place(DEMO)
     done = pipeline.run(out, seconds=seconds)
     _print(done, as_json)
     _say_if_ended_early(done)
@@ -77,7 +77,7 @@ def run(
     A simulated device feels the surface; a real one is never moved: see `feel`.
     """
     pipeline = open_pipeline(config, sets or [], not no_cache)
-    done = pipeline.run(out or _folder(config[0]), seconds=seconds, sheet=sheet)
+    done = pipeline.run(out or default_place(config[0]), seconds=seconds, sheet=sheet)
     _print(done, as_json)
     _say_if_ended_early(done)
 
@@ -136,7 +136,7 @@ def device_of(pipeline: Pipeline) -> NamedMethod[HapticDevice]:
     return replace(device, method=felt)
 
 
-def _folder(source: Path) -> Path:
+def default_place(source: Path) -> Path:
     """Where results go that nobody named a folder for."""
     from ..pipeline.run_folder import default_folder, default_name
     from . import show

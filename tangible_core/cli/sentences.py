@@ -10,6 +10,7 @@ if TYPE_CHECKING:
 
     from ..bench.table import Results
     from ..data import Outcome
+    from ..pipeline.exporting import Export
     from ..pipeline.runs import Run
     from ..testing import CheckResult
 
@@ -33,6 +34,17 @@ def _are_made(products: Sequence[str]) -> str:
     if not products:
         return "nothing of it had to be made"
     return f"its {_and(products)} {'is' if len(products) == 1 else 'are'} made"
+
+
+def exported(scene: str, done: Export) -> str:
+    """What a scene was written as, what could not be, and what fingers will not read of it."""
+    written = [each.name for each in done.exports if each.files]
+    left = [each.name for each in done.exports if not each.files]
+    said = f"{scene} is written as {_and(written)}." if written else f"Nothing of {scene} was written."
+    if written and left:
+        said += f" {_and(left)} could not be written."
+    unread = [each for each in done.exports if each.files and each.legible is not None and not each.legible.readable]
+    return " ".join([said, *(f"{each.name}: {each.legible.sentence}" for each in unread if each.legible)])
 
 
 def divided(name: str, parts: int) -> str:
@@ -112,7 +124,8 @@ def compared(results: Results) -> str:
     value = best.measures.get(results.judged, nan)
     if not isfinite(value):
         return f"On {scenes}, {fast}."
-    return f"On {scenes}, {best.method} is the most exact ({measure.title} {value:.{measure.digits}f}), and {fast}."
+    exact = f"{results.heading(results.judged)} {value:.{measure.digits}f}"
+    return f"On {scenes}, {best.method} is the most exact ({exact}), and {fast}."
 
 
 def _compared_untimed(results: Results) -> str:

@@ -111,9 +111,17 @@ def parts_felt(found: Sequence[PartFelt]) -> None:
     """Which parts were touched, how long and how hard; nothing where there are none."""
     if found:
         say("")
-        rows = [(each.number, each.name, 100 * each.share, each.peak_force_n) for each in found]
-        cells = [(str(number), escape(name), f"{share:.0f}", f"{peak_n:.2f}") for number, name, share, peak_n in rows]
-        table(("part", "name", "% of the contact", "peak N"), cells)
+        cells = [
+            (
+                str(each.number),
+                escape(each.name),
+                escape(each.material),
+                f"{100 * each.share:.0f}",
+                f"{each.peak_force_n:.2f}",
+            )
+            for each in found
+        ]
+        table(("part", "name", "material", "% of the contact", "peak N"), cells)
 
 
 def as_rows(found: Iterable[Outcome]) -> list[dict[str, Any]]:

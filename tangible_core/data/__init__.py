@@ -5,8 +5,9 @@ from .outcome import Kind, Note, NoteKind, Outcome, OutcomeKind, Outcomes, Plan
 from .parts import PartMap
 from .records import Record, digest_of
 from .surface import TEXTURES, HapticSurface, Material, MaterialMap, Relief, Texture
-from .ticks import TICK_COLUMNS, UNTOUCHED, ServoReport, Spread, TickFlag
+from .ticks import TICK_COLUMNS, UNTOUCHED, ServoReport, Spread, TickFlag, beacon_part
 from .views import Calibration, DisparityMap, SegmentMap, Views
+from .work import Work
 
 __all__ = [
     "Calibration",
@@ -40,6 +41,8 @@ __all__ = [
     "Unit",
     "Vector",
     "Views",
+    "Work",
+    "beacon_part",
     "digest_of",
     "limited",
 ]

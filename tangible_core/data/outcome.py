@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from html import escape
 from typing import Literal
 
-Kind = Literal["depth", "texture", "render", "device"]
+Kind = Literal["depth", "texture", "render", "device", "export"]
 
 
 OutcomeKind = Literal["given", "ran", "cached", "skipped", "failed", "refused"]

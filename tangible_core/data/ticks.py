@@ -31,6 +31,23 @@ class TickFlag(IntFlag):
     """The tick began more than a period late."""
     SWAPPED = 512
     """The first tick on a new scene."""
+    BEACON = 1024
+    """A beacon pulled, or was about to; the number of its part stands in the bits above this one (`beacon_part`)."""
+
+
+BEACON_SHIFT = 11
+"""Where the number of a beacon's part begins among the flags of a tick."""
+MOST_BEACON_PARTS = 1 << 20
+"""Numbers from here on do not fit there."""
+
+
+def beacon_part(flags: int) -> int | None:
+    """The number of the part that a beacon pulled to in a tick with these flags; None for no beacon.
+
+    >>> beacon_part(TickFlag.TOUCHING | TickFlag.BEACON | 6 << BEACON_SHIFT), beacon_part(TickFlag.TOUCHING)
+    (6, None)
+    """
+    return flags >> BEACON_SHIFT if flags & TickFlag.BEACON else None
 
 
 UNTOUCHED = TickFlag.TOUCHING | TickFlag.OVERRUN | TickFlag.SWAPPED
@@ -84,3 +101,7 @@ class ServoReport:
     """Of that force, within half a millinewton; 0 where there was none."""
     part: str = ""
     """What the part of the picture under the tip is called; empty where the surface has none."""
+    beacon: int | None = None
+    """Number of the part that a beacon pulls to; none where no beacon is on."""
+    material: str = ""
+    """The name of the material under the tip, of parts or of segments; empty where the surface has none."""

@@ -40,21 +40,26 @@ class Source:
     """Each as a sentence that begins with its place, and for a program."""
     overridden: dict[tuple[str, ...], str] = field(default_factory=dict[tuple[str, ...], str])
 
-    def override(self, text: str, shorthand: Shorthand = no_shorthand) -> None:
-        """Apply `key.key=value`; a block with another `use` starts without the options of the method before."""
-        parts, loaded = parse_override(text)
+    def override(self, text: str, shorthand: Shorthand = no_shorthand, place: Location = ()) -> None:
+        """Apply `key.key=value`; a block with another `use` starts without the options of the method before.
+
+        place: where that is, if it leads through an entry of a list, whose number is then an int.
+        """
+        keys, loaded = parse_override(text)
+        parts: Location = place or keys
         node: Any = self.tree
         for depth, part in enumerate(parts[:-1], 1):
-            key = key_of(part, node)
-            if isinstance(node.get(key), list):
-                raise _refused(text, parts, f"{part} is a list; set it as a whole: {part}=[...]")
-            if not isinstance(node.get(key), dict):
-                node[key] = CommentedMap(spelt_out(node.get(key), shorthand(parts[:depth])))
-            node = node[key]
+            key = part if isinstance(node, list) else key_of(part, node)
+            below = cast(Any, node)[key] if _has(node, key) else None
+            if isinstance(below, list) and not _has(below, parts[depth]):
+                raise _refused(text, keys, f"{part} is a list; set it as a whole: {part}=[...]")
+            if not isinstance(below, dict | list):
+                cast(Any, node)[key] = CommentedMap(spelt_out(below, shorthand(parts[:depth])))
+            node = cast(Any, node)[key]
         if parts[-1] == "use" and node.get("use") != loaded:
             node.clear()
         node[key_of(parts[-1], node)] = loaded
-        self.overridden[parts] = text
+        self.overridden[tuple(map(str, parts))] = text
 
     def place(self, location: Location) -> str:
         """file:line:column of the deepest part of the location that the file has."""

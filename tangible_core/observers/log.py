@@ -34,5 +34,6 @@ def tangible_stage_finished(outcome: Outcome) -> None:
 @hookimpl
 def tangible_servo_report(report: ServoReport) -> None:
     """Ten lines a second, for who asks for them."""
-    on = f", on {report.part}" if report.part else ""
+    under = ", ".join(filter(None, (report.part, report.material)))
+    on = f", on {under}" if under else ""
     log.debug("servo: %d ticks, %.1f s, force %.2f N%s", report.ticks, report.time_s, report.peak_force_n, on)

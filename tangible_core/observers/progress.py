@@ -11,14 +11,16 @@ from ..plugins.hooks import hookimpl
 if TYPE_CHECKING:
     from ..data import Outcome, ServoReport
 
+EXPORT = "export: "
+"""How the outcome of an exporter is called, before its name."""
 _shown: list[Any] = []
 """The one spinner on the screen, if any."""
 
 
 @hookimpl
 def tangible_stage_started(product: str, method: str) -> None:
-    """A spinner with the product's name."""
-    _show(f"making {product} with {method}")
+    """A spinner with the product's name, or what is written."""
+    _show(f"writing {method}" if product.startswith(EXPORT) else f"making {product} with {method}")
 
 
 @hookimpl
@@ -29,11 +31,12 @@ def tangible_stage_finished(outcome: Outcome) -> None:
 
 @hookimpl
 def tangible_servo_report(report: ServoReport) -> None:
-    """Time, force and the part under the tip, rewritten in place; gone when the loop stops."""
+    """Time, force, and the part and material under the tip, rewritten in place; gone when the loop stops."""
     if report.stopped:
         _clear()
     else:
-        on = f", on {shown(report.part)}" if report.part else ""
+        under = ", ".join(shown(each) for each in (report.part, report.material) if each)
+        on = f", on {under}" if under else ""
         _show(f"feeling: {report.time_s:5.1f} s, peak {report.peak_force_n:.2f} N{on}")
 
 

@@ -31,7 +31,7 @@ def find_parts(segments: SegmentMap) -> PartMap:
 def reduced_parts(parts: PartMap, shape: tuple[int, int]) -> PartMap:
     """The parts of a picture on a coarser grid of (r, c), with the same numbers: those of the middle pixels.
 
-    A part that would be lost, as it lies between these, keeps one cell.
+    A part that would be lost, as it lies between these, keeps one cell; one that has no pixel has none here.
     """
     whole = parts.labels
     if whole.shape == shape:
@@ -39,6 +39,7 @@ def reduced_parts(parts: PartMap, shape: tuple[int, int]) -> PartMap:
     rows, columns = (np.arange(new) * old // new + old // new // 2 for new, old in zip(shape, whole.shape, strict=True))
     labels = whole[np.ix_(rows, columns)]
     lost = np.flatnonzero(np.bincount(labels.reshape(-1), minlength=parts.count) == 0)
+    lost = lost[part_sizes(parts)[lost] > 0] if lost.size else lost
     row, column = np.divmod(_first_pixels(parts)[lost], whole.shape[1])
     labels[row * shape[0] // whole.shape[0], column * shape[1] // whole.shape[1]] = lost
     return PartMap(labels, parts.segments)

@@ -5,19 +5,24 @@ from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from io import StringIO
 from pathlib import Path
-from typing import Annotated, Any, Generic, Literal, TypeVar, cast
+from typing import Annotated, Any, Generic, Literal, TypeVar, cast, get_args
 
 from pydantic import BaseModel, Discriminator, Tag
 from ruamel.yaml import YAML
+from ruamel.yaml.comments import CommentedMap, CommentedSeq
 
-from ..errors import ConfigError, MaterialError, TangibleError, did_you_mean, quoted
-from ..files.source import Location, Source, parse_source, read_text
+from ..datasets import SetScene
+from ..errors import ConfigError, MaterialError, PictureError, TangibleError, did_you_mean, quoted
+from ..files.source import Location, Source, parse_override, parse_source, read_text
+from ..legibility.choice import SimplifyChoice
 from ..mapping import WorkspaceMapping, mapped
 from ..materials.assignment import NEUTRAL, find, load_library
 from ..materials.rules import MaterialRule
 from ..parts import HeightChoice, PartChoice
-from ..plugins.interfaces import DepthEstimator, ForceRenderer, HapticDevice, Method, Segmenter
+from ..plugins.interfaces import DepthEstimator, Exporter, ForceRenderer, HapticDevice, Method, Segmenter
 from ..plugins.registry import Registry
+from ..scene.framing import measured
+from ..scene.height_files import Measured
 from ..scene.scene import Scene
 from ..scene.scene_files import BUILTINS, SceneFiles, unknown_scene
 from ..scene.workspace import FeltSize, Section, Workspace, kind_of
@@ -28,6 +33,7 @@ from .parts_said import (
     read_heights,
     read_inscription,
     read_parts,
+    read_simplify,
     wrong_of_materials,
     wrong_of_names,
     wrong_of_rules,
@@ -35,8 +41,8 @@ from .parts_said import (
 
 M = TypeVar("M", bound=Method, covariant=True)
 
-Product = Literal["disparity", "relief", "segments", "parts", "materials", "surface", "touch"]
-PRODUCTS: tuple[Product, ...] = ("disparity", "relief", "segments", "parts", "materials", "surface", "touch")
+Product = Literal["disparity", "relief", "segments", "parts", "simplified", "materials", "surface", "touch"]
+PRODUCTS: tuple[Product, ...] = get_args(Product)
 
 
 class MaterialChoice(Section):
@@ -90,6 +96,12 @@ class PipelineConfig:
     """What is said of each part, by its number; None where nothing is."""
     heights: HeightChoice | None = None
     """How the relief is made of parts; None where it is made of depth."""
+    simplify: SimplifyChoice | None = None
+    """How parts are made legible before anything is made of them; None where they stay as they are."""
+    export: tuple[NamedMethod[Exporter], ...] = ()
+    """What writes files of it for others."""
+    measured: Measured | None = None
+    """The size that the scene's heights have by their own account."""
     title: str = ""
     language: str = "en"
     source: Source | None = field(default=None, repr=False, compare=False)
@@ -98,7 +110,12 @@ class PipelineConfig:
     @property
     def by_parts(self) -> bool:
         """Whether materials are one a part, and labels of the surface the numbers of parts."""
-        return self.parts is not None or self.heights is not None
+        return self.parts is not None or self.heights is not None or self.simplify is not None
+
+    @property
+    def felt_parts(self) -> Literal["parts", "simplified"]:
+        """The product of whose parts relief, materials and labels are made, where anything is by parts."""
+        return "parts" if self.simplify is None else "simplified"
 
     @property
     def part_names(self) -> dict[int, str]:
@@ -143,7 +160,12 @@ class PipelineConfig:
     @property
     def size(self) -> FeltSize:
         """The workspace, with what suits the scene, or its parts, where it says nothing."""
-        return self.workspace.size("parts" if self.heights else kind_of(self.scene))
+        size = self.workspace.size("parts" if self.heights else kind_of(self.scene))
+        if self.measured is None:
+            return size
+        width_m = size.width_m if "width_m" in self.workspace.model_fields_set else self.measured.width_m
+        relief_m = self.workspace.relief_m or self.measured.high_m or size.relief_m
+        return size._replace(width_m=width_m, relief_m=relief_m)
 
     @property
     def felt_device(self) -> HapticDevice | None:
@@ -168,12 +190,9 @@ class PipelineConfig:
         }
         for kind in STAGES:
             if (chosen := getattr(self, kind)) is not None:
-                if not chosen.origin:
-                    raise ConfigError(
-                        f"{kind}: {chosen.name} is no installed plugin, and a file names its methods; install it with "
-                        f"an entry point tangible.{kind} (docs/write-a-plugin.md)"
-                    )
-                plain[kind] = {"use": chosen.name, **chosen.method.model_dump(mode="json")}
+                plain[kind] = _as_said(kind, chosen)
+        if self.export:
+            plain["export"] = [_as_said("export", each) for each in self.export]
         return plain
 
     def as_yaml(self, leave_out: Collection[str] = ()) -> str:
@@ -192,6 +211,8 @@ class PipelineConfig:
             said["parts"] = plain
         if self.heights is not None or self.given_heights_m:  # which nothing is made of, if so it is said
             said["heights"] = self.heights and self.heights.model_dump(mode="json")
+        if self.simplify is not None:
+            said["simplify"] = self.simplify.model_dump(mode="json")
         return said
 
     def _scene_as_said(self) -> str | dict[str, Any]:
@@ -203,28 +224,40 @@ class PipelineConfig:
         return said if isinstance(said, str) else said.model_dump(mode="json", exclude_none=True)
 
 
+def _as_said(kind: str, chosen: NamedMethod[Any]) -> dict[str, Any]:
+    """A method as a file says it. Raises: ConfigError for one that no file can name."""
+    if not chosen.origin:
+        raise ConfigError(
+            f"{kind}: {chosen.name} is no installed plugin, and a file names its methods; install it with "
+            f"an entry point tangible.{kind} (docs/write-a-plugin.md)"
+        )
+    return {"use": chosen.name, **chosen.method.model_dump(mode="json")}
+
+
 STAGES = ("depth", "texture", "render", "device")
+"""Of which a pipeline has one method each; of exporters it has a list."""
 SECTIONS: dict[str, type[BaseModel]] = {
     "workspace": Workspace,
     "mapping": WorkspaceMapping,
     "materials": MaterialChoice,
     "safety": Safety,
 }
-KEYS = ("scene", *Inscription.model_fields, "want", "parts", "heights", *STAGES, *SECTIONS)
+KEYS = ("scene", *Inscription.model_fields, "want", "parts", "heights", "simplify", *STAGES, "export", *SECTIONS)
 
 
 def shorthand(place: Location) -> str:
     """The option that a word alone stands for in a pipeline file: a method's name, or a part's."""
     if len(place) == 1 and place[0] in STAGES:
         return "use"
-    return {("parts", 2): "name", ("heights", 1): "by"}.get((place[0], len(place)), "")
+    return {("parts", 2): "name", ("heights", 1): "by", ("export", 2): "use"}.get((place[0], len(place)), "")
 
 
 def load_config(path: Path, registry: Registry, overrides: Iterable[str] = ()) -> PipelineConfig:
     """Read and check a pipeline file.
 
     overrides: `key.key=value` each, the value in YAML, as `--set` takes them; another method (`depth.use=...`)
-    starts with its own defaults.
+    starts with its own defaults. `export.NAME.key=value` is of the exporter of that name, which is listed if it is not
+    yet.
     Raises: ConfigError with every complaint, one a line.
     """
     return parse_config(read_text(path), path, registry, overrides)
@@ -233,9 +266,12 @@ def load_config(path: Path, registry: Registry, overrides: Iterable[str] = ()) -
 def parse_config(text: str, path: Path, registry: Registry, overrides: Iterable[str] = ()) -> PipelineConfig:
     """`load_config` for a text; `path` is what complaints name and what relative files are relative to."""
     what = "a configuration is a mapping that starts with `scene:`"
-    source = parse_source(text, path, what, overrides, shorthand=shorthand)
+    source = parse_source(text, path, what)
+    for override in overrides:
+        _override(source, override)
     source.check_keys(KEYS)
     values: dict[str, Any] = {"scene": _scene(source), "want": _want(source), **_sections(source), **_parts(source)}
+    values |= {"export": _exporters(source, registry), "measured": _measured(source, values["scene"])}
     for kind in STAGES:
         if kind in source.tree:
             values[kind] = choose(source, (kind,), kind, source.tree[kind], registry)
@@ -294,19 +330,82 @@ def choose(source: Source, location: Location, kind: str, block: Any, registry: 
     return None if method is None else NamedMethod(name, listing.origin, method)
 
 
+def _override(source: Source, text: str) -> None:
+    """Apply `key.key=value`, in which an exporter's name stands for its place in the list."""
+    parts, _ = parse_override(text)
+    place: Location = ()
+    if parts[0] == "export" and len(parts) > 1:
+        listed = source.tree.setdefault("export", CommentedSeq())
+        if isinstance(listed, list) and len(parts) > 2:
+            before = len(cast("list[Any]", listed))
+            index = exporter_at(cast("list[Any]", listed), parts[1])
+            place = ("export", index, *parts[2:])
+            if index == before:  # it says the name, too
+                source.overridden["export", str(index)] = text
+    source.override(text, shorthand, place)
+
+
+def exporter_at(listed: list[Any], name: str) -> int:
+    """Where in a list an exporter is, by its name, or its number from 0; one that is not there is added.
+
+    >>> exporter_at(["stl", {"use": "swell"}], "swell")
+    1
+    """
+    if name.isdecimal() and int(name) < len(listed):
+        return int(name)
+    for index, each in enumerate(listed):
+        if name == (cast("dict[Any, Any]", each).get("use") if isinstance(each, dict) else each):
+            return index
+    listed.append(CommentedMap(use=name))
+    return len(listed) - 1
+
+
+def _exporters(source: Source, registry: Registry) -> tuple[NamedMethod[Exporter], ...]:
+    """What the file's `export:` lists; complains of what is no list."""
+    block = source.tree.get("export")
+    if block is None:
+        return ()
+    if not isinstance(block, list):
+        known = ", ".join(registry.names("export"))
+        said = f"export: takes a list of exporters, such as [{{use: ...}}], not {quoted(block)}; installed: {known}"
+        return source.complain(("export",), said) or ()
+    listed = enumerate(cast("list[Any]", block))
+    found = [choose(source, ("export", index), "export", each, registry) for index, each in listed]
+    return tuple(each for each in found if each is not None)
+
+
 def _scene(source: Source) -> Any:
     if "scene" not in source.tree:
         said = "`scene:` is missing; name a builtin (builtin/motorcycle) or files {left:, right:}"
         return source.complain((), said)
     block = source.tree["scene"]
+    if isinstance(block, dict) and "set" in block:
+        return _pair_of_set(source, block)
     if not isinstance(block, str):
         return source.model(("scene",), SceneFiles, block)
     return block if block in BUILTINS else source.complain(("scene",), unknown_scene(block))
 
 
+def _measured(source: Source, scene: Any) -> Measured | None:
+    try:
+        return measured(scene) if isinstance(scene, SceneFiles) else None
+    except PictureError as error:
+        return source.complain(("scene", "height"), str(error))
+
+
+def _pair_of_set(source: Source, block: Any) -> SceneFiles | None:
+    """The files that a pair of a standard set stands for; None after a complaint."""
+    chosen = source.model(("scene",), SetScene, block)
+    try:
+        return chosen and chosen.files()
+    except TangibleError as error:
+        return source.complain(("scene",), f"scene: {error}")
+
+
 def _parts(source: Source) -> dict[str, Any]:
     inscription = read_inscription(source) or Inscription()
-    return {"parts": read_parts(source), "heights": read_heights(source), **inscription.model_dump()}
+    said = {"parts": read_parts(source), "heights": read_heights(source), "simplify": read_simplify(source)}
+    return {**said, **inscription.model_dump()}
 
 
 def _want(source: Source) -> Any:

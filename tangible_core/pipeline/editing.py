@@ -8,9 +8,12 @@ from typing import Any, cast
 
 from pydantic import BaseModel
 
+from ..datasets.choosing import with_folder
+from ..errors import ConfigError, quoted
 from ..files.editing import REMOVE, Changes, change_text
-from ..files.source import parse_override, parse_source, plain
-from .config import STAGES, PipelineConfig, shorthand
+from ..files.paths import as_path
+from ..files.source import Location, parse_override, parse_source, plain
+from .config import STAGES, PipelineConfig, exporter_at, shorthand
 
 __all__ = ["REMOVE", "Changes", "edited", "moved", "said", "with_overrides"]
 
@@ -18,16 +21,49 @@ __all__ = ["REMOVE", "Changes", "edited", "moved", "said", "with_overrides"]
 def edited(text: str, path: Path, changes: Changes) -> str:
     """A pipeline file's text in which these keys say that; comments elsewhere, and the order, stay.
 
-    Another `depth.use` clears the options of the method before. A stage that is None goes, as with `REMOVE`.
+    Another `depth.use` clears the options of the method before. A stage that is None goes, as with `REMOVE`. The key
+    `export.NAME.key` is of the exporter of that name, which is listed if it is not yet.
     path: what complaints name. Nothing is checked but that it is YAML: see `parse_config`.
     Raises: ConfigError if the text is no YAML, or a key leads into a list; ArgumentError for what JSON cannot say.
     """
     changes = {key: REMOVE if value is None and _is_stage(key) else value for key, value in changes.items()}
-    return change_text(text, path, changes, shorthand)
+    within = {key: value for key, value in changes.items() if _is_within_exporter(key)}
+    text = change_text(text, path, {key: value for key, value in changes.items() if key not in within}, shorthand)
+    for key, value in within.items():
+        text = change_text(text, path, {("export",): _exporters_with(text, path, _parts_of(key), value)})
+    return text
+
+
+def _parts_of(key: str | Location) -> Location:
+    return tuple(key.split(".")) if isinstance(key, str) else tuple(key)
+
+
+def _is_within_exporter(key: str | Location) -> bool:
+    parts = _parts_of(key)
+    return len(parts) > 2 and parts[0] == "export"
+
+
+def _exporters_with(text: str, path: Path, parts: Location, value: Any) -> list[Any]:
+    """The whole list of exporters in which an option of one says that."""
+    listed = plain(parse_source(text, path, "it is a mapping", empty=True).tree.get("export") or [])
+    if not isinstance(listed, list):
+        raise ConfigError(f"{path}: export: takes a list of exporters, not {quoted(listed)}")
+    found = cast("list[Any]", listed)
+    index, keys = exporter_at(found, str(parts[1])), parts[2:]
+    block = found[index] = {"use": found[index]} if isinstance(found[index], str) else dict(found[index])
+    if keys == ("use",) and block.get("use") != value:
+        block.clear()
+    for key in keys[:-1]:
+        block = block.setdefault(key, {})
+    if value is REMOVE:
+        block.pop(keys[-1], None)
+    else:
+        block[keys[-1]] = value
+    return found
 
 
 def _is_stage(key: Any) -> bool:
-    return (key if isinstance(key, str) else ".".join(map(str, key))) in STAGES
+    return ".".join(map(str, _parts_of(key))) in STAGES
 
 
 def with_overrides(text: str, path: Path, overrides: Iterable[str]) -> str:
@@ -65,18 +101,32 @@ def moved(text: str, path: Path, config: PipelineConfig, out: Path) -> str:
     """
     if out.parent.absolute() == path.parent.absolute():
         return text
-    methods = {kind: chosen.method for kind in STAGES if (chosen := getattr(config, kind))}
-    blocks = {"scene": config.scene, "materials": config.materials, **methods}
-    return edited(text, path, dict(_lead_elsewhere(said(text, path), blocks, out.parent.resolve())))
+    methods = {(kind,): chosen.method for kind in STAGES if (chosen := getattr(config, kind))}
+    exporters = {("export", index): each.method for index, each in enumerate(config.export)}
+    blocks = {("scene",): config.scene, ("materials",): config.materials, **methods, **exporters}
+    tree, folder = said(text, path), out.parent.resolve()
+    return edited(text, path, {**dict(_lead_elsewhere(tree, blocks, folder)), **_set_elsewhere(tree, path, folder)})
+
+
+def _set_elsewhere(tree: Mapping[str, Any], path: Path, folder: Path) -> Mapping[tuple[str, str], str]:
+    """Where a standard set lies, from this folder: one of its name beside the file if nothing was said."""
+    scene = tree.get("scene")
+    if not isinstance(scene, dict) or "set" not in scene:
+        return {}
+    lies = as_path(with_folder(scene)["folder"])
+    there = path.parent.resolve() / lies
+    return {} if lies.is_absolute() else {("scene", "folder"): os.path.relpath(there, folder)}
 
 
 def _lead_elsewhere(
-    tree: Mapping[str, Any], blocks: Mapping[str, Any], folder: Path
-) -> Iterable[tuple[tuple[str, str], str]]:
+    tree: Mapping[str, Any], blocks: Mapping[Location, Any], folder: Path
+) -> Iterable[tuple[Location, str]]:
     """Keys of relative paths, and what they are from this folder."""
     for key, model in blocks.items():
-        block = tree.get(key)
+        block: Any = tree
+        for part in key:
+            block = cast(Any, block).get(part) if isinstance(block, dict) else block[part]
         for name, value in model if isinstance(model, BaseModel) and isinstance(block, dict) else ():
             written = cast("dict[str, Any]", block).get(name)
             if isinstance(value, Path) and isinstance(written, str) and not Path(written).is_absolute():
-                yield (key, name), os.path.relpath(value.parent.resolve() / value.name, folder)
+                yield (*key, name), os.path.relpath(value.parent.resolve() / value.name, folder)

@@ -2,14 +2,14 @@
 
 from collections.abc import Sequence
 from functools import cached_property
-from typing import final
+from typing import Literal, final
 
 import numpy as np
 from jaxtyping import Bool
 
 from ..data import DisparityMap, PartMap, Relief, SegmentMap, Views
 from ..data.records import digest_of
-from ..parts import Layering
+from ..parts import Layering, reduced_parts
 from ..scene import scaling
 from ..scene.geometry import smooth
 from ..scene.scene import Scene
@@ -86,6 +86,14 @@ def layered(
 ) -> Relief:
     """The relief of parts of these heights, smoothed, and flat where the picture is transparent."""
     return grounded(smooth(layering.relief(heights_m), size.smooth_m), shown)
+
+
+def parts_on_grid(parts: PartMap, shape: tuple[int, int], product: Literal["parts", "simplified"]) -> PartMap:
+    """The parts as they are felt, with the same numbers.
+
+    Each of the picture's own parts has a cell at least; of one that was simplified away, none is left.
+    """
+    return reduced_parts(parts, shape) if product == "parts" else scaling.enlarged_parts(parts, shape)
 
 
 def with_ground(found: SegmentMap, shown: Bool[np.ndarray, "h w"] | None) -> SegmentMap:

@@ -5,10 +5,10 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from ..data import PartMap
+from ..description import place_in_words
 from ..errors import ConfigError
 from ..parts import PartChoice, PartHeights, part_sizes
 from ..report.numbered_parts import numbered_parts
-from ..scene.description import place_in_words
 from .config import MaterialChoice, PipelineConfig
 from .layers import heights_of
 from .parts_found import check_found, parts_of

@@ -9,6 +9,7 @@ from pydantic import AfterValidator, ConfigDict, Field
 from ..data import Material
 from ..errors import MOST_QUOTED, MaterialError, did_you_mean, quoted
 from ..files.source import Location, Source
+from ..legibility.choice import SimplifyChoice
 from ..materials.assignment import find
 from ..parts import HeightChoice, PartChoice
 from ..scene.workspace import Section
@@ -66,6 +67,12 @@ def read_heights(source: Source) -> HeightChoice | None:
     if isinstance(block, str):
         block = {"by": block}
     return None if block is None else source.model(("heights",), HeightChoice, block)
+
+
+def read_simplify(source: Source) -> SimplifyChoice | None:
+    """How the file has its parts simplified; None where it does not."""
+    block = source.tree.get("simplify")
+    return None if block is None else source.model(("simplify",), SimplifyChoice, block)
 
 
 def read_inscription(source: Source) -> Inscription | None:

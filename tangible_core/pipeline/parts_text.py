@@ -28,7 +28,7 @@ def part_heights(engine: Engine) -> PartHeights | None:
     config = engine.config
     if config.heights is None:
         return None
-    found: PartMap = engine.felt("parts")
+    found: PartMap = engine.felt(config.felt_parts)
     disparity: DisparityMap | None = engine.felt("disparity") if config.heights.by == "depth" else None
     return rules.part_heights(config, FeltScene(engine.scene, config.size), found, disparity)
 

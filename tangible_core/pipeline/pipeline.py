@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from os import PathLike
 from threading import Event
-from typing import Any, Literal, Self, TypeVar, cast, final, overload
+from typing import Any, Literal, Self, TypeVar, cast, final, get_args, overload
 
 import numpy as np
 from pydantic import BaseModel, ValidationError
@@ -23,19 +23,30 @@ from ..data import (
     ServoReport,
     Views,
 )
-from ..errors import Complaint, ConfigError, quoted, wrong_argument
+from ..errors import Complaint, ConfigError, did_you_mean, quoted, wrong_argument
 from ..files.paths import as_path
 from ..files.writing import write_text
+from ..legibility import Legibility, SimplifyChoice
 from ..mapping import WorkspaceMapping
 from ..parts import HeightChoice, PartChoice, PartHeights
 from ..plugins import hooks
-from ..plugins.interfaces import KINDS, DepthEstimator, ForceRenderer, HapticDevice, Method, Segmenter, Touch
+from ..plugins.interfaces import (
+    KINDS,
+    DepthEstimator,
+    Exporter,
+    ForceRenderer,
+    HapticDevice,
+    Medium,
+    Method,
+    Segmenter,
+    Touch,
+)
 from ..plugins.registry import Registry, default_registry
 from ..preflight import Flight, Hand, Loop, Preflight, judge, survey
 from ..runtime.threads import check_threads
 from ..scene.scene import Scene
 from ..scene.workspace import Workspace
-from ..servo import OVER, Safety, Servo
+from ..servo import OVER, Beacon, Safety, Servo, beacon_to
 from ..session import (
     About,
     Followed,
@@ -53,7 +64,9 @@ from ..session import (
 from .cache import Cache
 from .config import MaterialChoice, NamedMethod, PipelineConfig, Product, load_config, wrong_of_parts
 from .engine import Engine, Progress
+from .exporting import Export, chosen_exporters, export
 from .following import felt_device, how_followed
+from .legible import legible, of_width
 from .parts_said import Inscription
 from .parts_text import part_heights, to_correct
 from .rehearsal import rehearsal
@@ -101,6 +114,8 @@ class Pipeline:
         safety: Safety | Mapping[str, Any] | None = None,
         parts: Parts | None = None,
         heights: Heights | None = None,
+        simplify: SimplifyChoice | Mapping[str, Any] | None = None,
+        export: Sequence[Exporter] = (),
         title: str = "",
         language: str = "en",
         cached: bool = True,
@@ -109,8 +124,9 @@ class Pipeline:
         """Methods are objects, of installed plugins or of classes of one's own; blocks may be mappings, as in YAML.
 
         parts: what the parts of the segments are called, how high they stand and what they are of, by number.
-        heights: makes the relief of these parts. title, language: of the whole. cached: False neither reads nor writes
-        the user's cache. threads: the most that work at once; see the property.
+        heights: makes the relief of these parts. simplify: makes the parts legible first; `{}` by the usual rules.
+        export: what `export` writes. title, language: of the whole. cached: False neither reads nor writes the user's
+        cache. threads: the most that work at once; see the property.
         Raises: ConfigError for a block that says nonsense.
         """
         if not isinstance(scene, cast(Any, Scene)):
@@ -118,6 +134,7 @@ class Pipeline:
         registry = default_registry()
         config = PipelineConfig(
             scene=scene,
+            measured=scene.measured,
             want="surface" if render is None else "touch",
             depth=_chosen("depth", depth, registry),
             texture=_chosen("texture", texture, registry),
@@ -129,6 +146,8 @@ class Pipeline:
             safety=_block("safety", Safety, safety),
             parts=None if parts is None else _parts(parts),
             heights=None if heights is None else _block("heights", HeightChoice, _by(heights)),
+            simplify=None if simplify is None else _block("simplify", SimplifyChoice, simplify),
+            export=tuple(_chosen("export", each, registry) for each in export),
             **_block((), Inscription, {"title": title, "language": language}).model_dump(),
         )
         if wrong := list(wrong_of_parts(config)):
@@ -231,6 +250,10 @@ class Pipeline:
     ) -> PartMap | None: ...
     @overload
     def make(
+        self, want: Literal["simplified"], progress: Progress | None = None, stop: Event | None = None
+    ) -> PartMap | None: ...
+    @overload
+    def make(
         self, want: Literal["materials"], progress: Progress | None = None, stop: Event | None = None
     ) -> MaterialMap | None: ...
     @overload
@@ -277,6 +300,11 @@ class Pipeline:
         return self.make("parts")
 
     @property
+    def simplified(self) -> PartMap | None:
+        """The parts as fingers can read them, on a grid of their own, with the numbers of `parts`."""
+        return self.make("simplified")
+
+    @property
     def part_heights(self) -> PartHeights | None:
         """The height of each part, and why; None where `heights` does not make the relief of parts."""
         return part_heights(self.engine)
@@ -321,6 +349,27 @@ class Pipeline:
         with self.engine.watched(progress, stop):
             return make_run(self.engine, as_path(out, "out"), want or self.config.want, seconds, self._tell, sheet)
 
+    def export(
+        self,
+        out: str | PathLike[str],
+        to: Sequence[str | Exporter] | None = None,
+        progress: Progress | None = None,
+        stop: Event | None = None,
+        *,
+        force: bool = False,
+    ) -> Export:
+        """Write it as files for others: a printer, swell paper, a pin display, a reader.
+
+        to: names of exporters, or objects of them; what the pipeline's `export` lists where nothing is said. A name
+        that is listed there has the options that it has there. Only what they need is made, of the width that each
+        writes. One that fails does not keep the others from being written: see `Export.outcomes`.
+        progress, stop: as `make`. force: over files that are no earlier export of this pipeline, too.
+        Raises: ConfigError if nothing is named; UnknownMethod, BrokenMethod; OutputError if the folder cannot be
+        written; Stopped after `stop`.
+        """
+        chosen = chosen_exporters(self.config, to, self.engine.registry)
+        return export(self.engine, as_path(out, "out"), chosen, progress, stop, force=force)
+
     def feel(
         self,
         device: HapticDevice | None = None,
@@ -335,6 +384,7 @@ class Pipeline:
         then: "Sequence[Pipeline]" = (),
         each_s: float = 60.0,
         on_wait: Callable[[str], None] | None = None,
+        beacon: str | int | None = None,
     ) -> Recording:
         """Feel the surface on a device, this or the configured one, and return what was felt.
 
@@ -346,25 +396,28 @@ class Pipeline:
         as long as the disk has room. on_report: called ten times a second, and at the end. on_start: called once a loop
         in real time runs. then: what is felt after this, each for each_s, and then this again. on_wait: waits for a
         device that is not there or goes, and is told so in words (`session.run_in_turn`); both in real time alone.
-        Raises: ConfigError if there is no device or law, or others of `then` have another device; DeviceError if it
-        cannot be opened; OutputError for the file.
+        beacon: the name or the number of a part to which the hand is pulled gently, with 1 N at most, until a button of
+        the device releases it; of every scene of `then`, too.
+        Raises: ConfigError if there is no device or law, or no such part, or others of `then` have another device;
+        DeviceError if it cannot be opened; OutputError for the file.
         """
         file = None if record is None else as_path(record, "record")
         if file is not None:
             check_record_path(file, seconds is None)
-        felt, said, touch = self._device(device), self._about(device), self._touch(device)
+        felt, touch, said = self._device(device), self._touch(device), self._about(device)
         tell = _both(self._tell, on_report)
         if not in_real_time and (then or on_wait):
             raise ConfigError("then, on_wait: are for a session in real time; leave them out, or in_real_time=False")
         if not in_real_time:
-            tell, until_s = telling_parts(self._parts(), tell), math.inf if seconds is None else seconds
-            found = run_simulated(touch, felt, until_s, tell, self.config.safety, stop)
+            tell, until_s = telling_parts(self.surface, tell), math.inf if seconds is None else seconds
+            found = run_simulated(touch, felt, until_s, tell, self.config.safety, stop, self._beacon(beacon))
             found = replace(found, about=said.stamped())
             if file is not None:
                 found.save(file)
             return found
 
-        turns = [Turn(touch, self.config.safety, self._parts()), *(each._turn(self, device) for each in then)]
+        first = Turn(touch, self.config.safety, self.surface, self._beacon(beacon))
+        turns = [first, *(each._turn(self, device, beacon) for each in then)]
         each_s = each_s if then else math.inf
         said = _in_turn(said, [each._about(None) for each in (self, *then)])
 
@@ -413,6 +466,19 @@ class Pipeline:
         """
         return judge(self.flight(device, hand, loop))
 
+    def legible(self, medium: Medium, width_m: float | None = None) -> Legibility:
+        """Whether fingers can read its parts: on swell paper, as a print, on pins, or on a force device.
+
+        width_m: of the whole picture; that of the workspace where nothing is said. The parts are those that `simplify`
+        makes legible, where the pipeline has them made so.
+        Raises: ConfigError for what is no medium or no width; TangibleError as `make`.
+        """
+        if medium not in (media := get_args(Medium)):
+            raise ConfigError(
+                f"medium: is {quoted(medium)}{did_you_mean(str(medium), media)}; it is {', '.join(media)}"
+            )
+        return legible(of_width(self.engine, width_m), medium)
+
     def flight(self, device: HapticDevice | None = None, hand: Hand | None = None, loop: Loop | None = None) -> Flight:
         """What the checks of `preflight` know. Raises: as `preflight`."""
         felt, law = self._device(device), self.config.render
@@ -447,7 +513,11 @@ class Pipeline:
             raise self.config.missing("device")
         return felt
 
-    def _turn(self, first: "Pipeline", device: HapticDevice | None) -> Turn:
+    def _beacon(self, part: str | int | None) -> Beacon | None:
+        """To a part of the surface, by its name or number. Raises: ConfigError if there is none such."""
+        return None if part is None else beacon_to(self.surface, part)
+
+    def _turn(self, first: "Pipeline", device: HapticDevice | None, beacon: str | int | None = None) -> Turn:
         """This one, felt on the device of a first one. Raises: ConfigError if that is another than its own."""
         ours, theirs = self.config, first.config
         own = device is None and ours.device is not None
@@ -459,7 +529,7 @@ class Pipeline:
             )
         if device is None and ours.device is None and theirs.device is not None:
             device = theirs.device.method
-        return Turn(self._touch(device), ours.safety, self._parts())
+        return Turn(self._touch(device), ours.safety, self.surface, self._beacon(beacon))
 
     def _touch(self, device: HapticDevice | None) -> Touch:
         """The law on the surface, whose materials fit this device, or the configured one."""
@@ -471,10 +541,6 @@ class Pipeline:
         seen: what was felt, or one tick of `session.EVERY` of it. Raises: as `make`.
         """
         return parts_felt(seen, self.surface)
-
-    def _parts(self) -> HapticSurface | None:
-        """The surface whose parts are told; None where it has none."""
-        return self.surface if self.config.by_parts else None
 
     def _about(self, device: HapticDevice | None) -> About:
         said = about(self.engine)
@@ -586,8 +652,9 @@ def _as_in_yaml(materials: Materials | None) -> MaterialChoice | Mapping[str, An
 def _in_turn(said: About, each: Sequence[About]) -> About:
     """What is said of scenes that are felt in turn."""
     configuration = "---\n".join(one.configuration for one in each)
-    parts = "\n".join(one.parts for one in each) if any(one.parts for one in each) else ""
-    return replace(said, configuration=configuration, parts=parts)
+    names = (tuple(getattr(one, which) for one in each) for which in ("parts", "materials"))
+    parts, materials = ("\n".join(lines) if any(lines) else "" for lines in names)
+    return replace(said, configuration=configuration, parts=parts, materials=materials)
 
 
 def _both(one: Callable[[T], None], other: Callable[[T], None] | None) -> Callable[[T], None]:

@@ -24,8 +24,9 @@ from ..data import (
 )
 from ..errors import BrokenMethod, ConfigError, PictureError, TangibleError
 from ..files.content import content_digest
+from ..legibility import SimplifyChoice, simplify
 from ..materials import assignment
-from ..parts import Layering, PartHeights, reduced_parts
+from ..parts import Layering, PartHeights
 from ..parts import find as part_finding
 from ..plugins.interfaces import HapticDevice, Method, Skippable, Touch
 from ..plugins.notes import doubt, note
@@ -35,7 +36,7 @@ from ..provenance.source import source_digest
 from ..scene import geometry, scaling, unmatched, view_order
 from ..scene.scene import Scene
 from ..scene.scene_files import SceneFiles
-from . import felt, layers, parts_found
+from . import felt, layers, parts_found, parts_said
 from .cache import Cache
 from .config import NamedMethod, PipelineConfig
 from .felt import FeltScene
@@ -89,6 +90,7 @@ def rules(config: PipelineConfig, scene: Scene, brought: Mapping[str, Record]) -
         _relief_of_parts(config, grid) if config.heights else _relief(config, grid),
         segments,
         _parts(config, grid, unsegmented),
+        _simplified(config, grid, unsegmented),
         _materials(config, grid, unsegmented, known is None),
         _surface(config, grid),
         _touch(config),
@@ -140,8 +142,8 @@ def _relief_of_parts(config: PipelineConfig, grid: FeltScene) -> Rule:
     assert heights is not None
 
     def make(inputs: Inputs) -> Relief:
-        views, parts = _views(grid), reduced_parts(inputs["parts"], grid.shape)
-        found = part_heights(config, grid, inputs["parts"], inputs.get("disparity"))
+        views, parts = _views(grid), _on_grid(config, inputs[config.felt_parts], grid)
+        found = part_heights(config, grid, inputs[config.felt_parts], inputs.get("disparity"))
         layers.tell(found, heights, given_m)
         layering = Layering(parts, size.width_m, heights, views.left)
         return felt.layered(layering, found.heights_m, size, grid.shown)
@@ -149,9 +151,11 @@ def _relief_of_parts(config: PipelineConfig, grid: FeltScene) -> Rule:
     code = " ".join(_core(each) for each in (layers.__name__, Layering.__module__, geometry.__name__))
     key = f"{code} {size!r} {heights!r} {sorted(given_m.items())}{_reduction(grid)}"
     if heights.by == "depth":
-        return Rule("relief", "core", key, ("views", "parts", "disparity"), make)
+        return Rule("relief", "core", key, ("views", config.felt_parts, "disparity"), make)
     said = "given" if heights.by == "given" else "guessed"
-    return Rule("relief", "core", key, ("views", "parts"), make, note=f"no depth is looked for: heights are {said}")
+    return Rule(
+        "relief", "core", key, ("views", config.felt_parts), make, note=f"no depth is looked for: heights are {said}"
+    )
 
 
 def part_heights(
@@ -161,7 +165,7 @@ def part_heights(
     assert config.heights is not None
     if disparity is not None:
         disparity = scaling.reduced_disparity(disparity, grid.shape)
-    on_grid = reduced_parts(parts, grid.shape)
+    on_grid = _on_grid(config, parts, grid)
     return layers.heights_of(on_grid, config.heights, config.top_m, config.given_heights_m, disparity, grid.shown)
 
 
@@ -188,23 +192,51 @@ def _parts(config: PipelineConfig, grid: FeltScene, unsegmented: str | None) -> 
         parts_found.tell_slips(found)
         return found
 
-    def checked(found: PartMap) -> PartMap:
-        parts_found.check_found(config, found, grid.scene.shape[1])
-        return found
-
     by_parts = config.by_parts
     skip = f"there are no segments: {unsegmented}" if unsegmented and not by_parts else None
     return Rule(
         "parts", "core", _core(part_finding.__name__), ("segments",), make, grid.whole_parts, skip,
         refusal=_no_parts(config) if unsegmented and by_parts else None,
-        finish=checked if by_parts else None,
+        finish=_check(config, grid),
         usual=by_parts,
     )  # fmt: skip
 
 
+def _check(config: PipelineConfig, grid: FeltScene) -> Callable[[PartMap], PartMap] | None:
+    """What is said of parts is held against those that are there, whenever they are handed on."""
+
+    def checked(found: PartMap) -> PartMap:
+        parts_found.check_found(config, found, grid.scene.shape[1])
+        return found
+
+    return checked if config.by_parts else None
+
+
+def _simplified(config: PipelineConfig, grid: FeltScene, unsegmented: str | None) -> Rule:
+    """On a grid of its own, and with the numbers of the parts."""
+    choice, width_m, names = config.simplify or SimplifyChoice(), config.size.width_m, config.part_names
+
+    def make(inputs: Inputs) -> PartMap:
+        parts: PartMap = inputs["parts"]
+        called = parts_said.names_of(config.parts or {}, parts.count)
+        return simplify(parts, width_m, choice, called, grid.views.left if grid.views else None)
+
+    skip = f"there are no segments: {unsegmented}" if unsegmented and not config.by_parts else None
+    key = f"{_core(simplify.__module__)} {width_m} {choice!r} {sorted(names.items())} {grid.key}"
+    return Rule(
+        "simplified", "core", key, ("views", "parts"), make, skip=skip,
+        finish=_check(config, grid),
+        usual=config.simplify is not None,
+    )  # fmt: skip
+
+
+def _on_grid(config: PipelineConfig, parts: PartMap, grid: FeltScene) -> PartMap:
+    return felt.parts_on_grid(parts, grid.shape, config.felt_parts)
+
+
 def _no_parts(config: PipelineConfig) -> ConfigError:
     """Why a scene without segments has no parts."""
-    key = "heights" if config.heights else "parts"
+    key = "heights" if config.heights else "parts" if config.parts is not None else "simplify"
     cure = "give it a label picture, `segments:` under `scene:`, or name a method under `texture:` that finds segments"
     return config.complained(((key,), f"parts are pieces of segments, and the scene has none; {cure}"))
 
@@ -218,7 +250,7 @@ def _materials(config: PipelineConfig, grid: FeltScene, unsegmented: str | None,
     def make(inputs: Inputs) -> MaterialMap:
         picture = grid.views.left if grid.views else None
         if by_parts:
-            segments = reduced_parts(inputs["parts"], grid.shape)
+            segments = _on_grid(config, inputs[config.felt_parts], grid)
             ground = layers.hidden(segments, grid.shown)
         else:
             segments = scaling.reduced_segments(inputs["segments"], grid.shape)
@@ -232,7 +264,7 @@ def _materials(config: PipelineConfig, grid: FeltScene, unsegmented: str | None,
     if by_parts:
         key = f"{key} {sorted(own.items())} {_core(part_finding.__name__)}"
         return Rule(
-            "materials", "core", key, ("views", "parts"), make,
+            "materials", "core", key, ("views", config.felt_parts), make,
             finish=lambda made: parts_found.reasons_with_names(config, made),
         )  # fmt: skip
     skip = f"there are no segments: {unsegmented}" if unsegmented else None
@@ -261,10 +293,11 @@ def _surface_of_parts(config: PipelineConfig, grid: FeltScene, key: str, with_ma
     """Its labels are the numbers of parts, and there for their names alone where the law uses no materials."""
 
     def make(inputs: Inputs) -> HapticSurface:
-        parts, chosen = reduced_parts(inputs["parts"], grid.shape), inputs.get("materials")
+        parts, chosen = _on_grid(config, inputs[config.felt_parts], grid), inputs.get("materials")
         return HapticSurface(inputs["relief"], parts.labels, chosen.materials if chosen else None, ("",) * parts.count)
 
-    first = ("relief", "parts") if config.heights else ("parts", "relief")  # what is wrong of parts, before a depth
+    parts = config.felt_parts
+    first = ("relief", parts) if config.heights else (parts, "relief")  # what is wrong of parts, before a depth
     needs = (*first, "materials") if with_materials else first
     return Rule("surface", "core", key, needs, make, finish=lambda made: parts_found.surface_with_names(config, made))
 

@@ -14,7 +14,7 @@ from ..files.writing import write_text
 from ..plugins.interfaces import Touch
 from ..report import disparity_errors, draw_sheet, write_figures
 from ..report.html import png_html
-from ..session import EVERY, About, Recording, names_text, run_simulated, telling_parts
+from ..session import EVERY, About, Recording, materials_text, names_text, run_simulated, telling_parts
 from .cache import write_record
 from .engine import Engine
 from .following import felt_device, how_followed
@@ -137,7 +137,8 @@ def about(engine: Engine) -> About:
         text = engine.config.as_yaml()
     except ConfigError as error:
         text = f"# {error}"
-    return About(names["device"], names["render"], text, parts=names_text(engine.config.part_names))
+    parts, materials = names_text(engine.config.part_names), materials_text(engine.felt("surface"))
+    return About(names["device"], names["render"], text, parts=parts, materials=materials)
 
 
 def _felt(
@@ -149,8 +150,7 @@ def _felt(
     said = about(engine).stamped()
     if engine.beside is not None:
         engine.beside.wait(FELT)
-    parts = engine.felt("surface") if engine.config.by_parts else None
-    told = telling_parts(parts, on_report) if on_report else None
+    told = telling_parts(engine.felt("surface"), on_report) if on_report else None
     recording = run_simulated(touch, device, seconds, told, engine.config.safety)
     return replace(recording, about=said)
 

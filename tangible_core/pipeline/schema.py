@@ -6,7 +6,9 @@ from typing import Any, NamedTuple, cast
 from pydantic import BaseModel
 
 from ..data.quantities import title_of, unit_of
+from ..datasets import SetScene
 from ..errors import TangibleError, UnknownMethod
+from ..legibility.choice import SimplifyChoice
 from ..materials.assignment import library
 from ..materials.files import MaterialBlock
 from ..parts import HeightChoice, PartChoice
@@ -34,15 +36,19 @@ def json_schema(registry: Registry | None = None, distribution: str | None = "ta
         "required": ["scene"],
         "additionalProperties": False,
         "properties": {
-            "scene": {"anyOf": [{"enum": sorted(BUILTINS)}, _schema(SceneFiles, definitions)]},
+            "scene": {
+                "anyOf": [{"enum": sorted(BUILTINS)}, _schema(SceneFiles, definitions), _schema(SetScene, definitions)]
+            },
             **_schema(Inscription, definitions)["properties"],
             "want": {"enum": list(PRODUCTS), "default": "surface"},
             "parts": _parts(definitions),
             "heights": _heights(definitions),
+            "simplify": {"anyOf": [_schema(SimplifyChoice, definitions), {"type": "null"}]},
             "workspace": _schema(SECTIONS["workspace"], definitions),
             "mapping": _schema(SECTIONS["mapping"], definitions),
             "materials": _materials(definitions),
             **{kind: _stage(kind, registry, distribution, definitions) for kind in STAGES},
+            "export": _exporters(registry, distribution, definitions),
             "safety": _schema(SECTIONS["safety"], definitions),
         },
         "$defs": definitions,
@@ -52,14 +58,19 @@ def json_schema(registry: Registry | None = None, distribution: str | None = "ta
 def stage_schema(
     kind: str, registry: Registry | None = None, distribution: str | None = "tangible-images"
 ) -> dict[str, Any]:
-    """The schema of one stage alone (depth, texture, render, device): what `json_schema` says of it, a whole schema.
+    """The schema of one stage alone (depth, texture, render, device), or of the list of exporters (export): what
+    `json_schema` says of it, a whole schema.
 
     Raises: UnknownMethod for a stage that there is not.
     """
-    if kind not in STAGES:
-        raise UnknownMethod("stage", kind, STAGES)
+    if kind not in (known := (*STAGES, "export")):
+        raise UnknownMethod("stage", kind, known)
     definitions: dict[str, Any] = {}
-    stage = _stage(kind, registry or default_registry(), distribution, definitions)
+    registry = registry or default_registry()
+    if kind == "export":
+        stage = _exporters(registry, distribution, definitions)
+    else:
+        stage = _stage(kind, registry, distribution, definitions)
     return {"$schema": _DIALECT, "title": title_of(kind), **stage, "$defs": definitions}
 
 
@@ -106,6 +117,12 @@ def _heights(definitions: dict[str, Any]) -> dict[str, Any]:
 def _stage(kind: str, registry: Registry, distribution: str | None, definitions: dict[str, Any]) -> dict[str, Any]:
     forms = [_method_form(name, cls, definitions) for name, cls in _methods(kind, registry, distribution)]
     return {"anyOf": [{"enum": _stage_names(kind, registry, distribution)}, *forms]}
+
+
+def _exporters(registry: Registry, distribution: str | None, definitions: dict[str, Any]) -> dict[str, Any]:
+    """A list: of one picture, several things are written."""
+    each = _stage("export", registry, distribution, definitions)
+    return {"anyOf": [{"type": "array", "items": each}, {"type": "null"}], "description": EXPORT}
 
 
 def _method_form(name: str, cls: type[BaseModel], definitions: dict[str, Any]) -> dict[str, Any]:
@@ -166,6 +183,8 @@ def markdown(schema: dict[str, Any]) -> str:
     properties, blocks = schema["properties"], schema["$defs"]
     lines += ["## scene", "", f"A builtin name ({_names(properties['scene']['anyOf'][0]['enum'])}), or files:", ""]
     lines += _table(properties["scene"]["anyOf"][1], blocks)
+    lines += ["Or a pair of a standard set ([which there are](datasets.md)):", ""]
+    lines += _table(properties["scene"]["anyOf"][2], blocks)
     lines += ["## title, language", "", "What the whole is called, and in which language its parts are named.", ""]
     inscription = {"properties": {name: properties[name] for name in Inscription.model_fields}}
     lines += _table(inscription, blocks)
@@ -174,18 +193,28 @@ def markdown(schema: dict[str, Any]) -> str:
     lines += _table(properties["parts"]["anyOf"][0]["patternProperties"]["^[0-9]+$"]["anyOf"][2], blocks)
     lines += ["## heights", "", f"{HEIGHTS} A word alone is `by` (`heights: given`), or:", ""]
     lines += _table(properties["heights"]["anyOf"][0], blocks)
+    lines += ["## simplify", "", f"{SIMPLIFY} `simplify: {{}}` takes the usual rules ([more](legibility.md)):", ""]
+    lines += _table(properties["simplify"]["anyOf"][0], blocks)
     lines += ["## workspace", "", *_table(properties["workspace"], blocks)]
     lines += ["## mapping", "", *_table(properties["mapping"], blocks)]
     lines += ["## materials", "", "A map from label to material (`{0: ice, 1: sand}`), or:", ""]
     lines += _table(properties["materials"]["anyOf"][0], blocks)
     for kind in STAGES:
-        lines += [f"## {kind}", ""]
-        for form in properties[kind]["anyOf"][1:]:
-            summary = form.get("description", "").split("\n")[0]
-            lines += [f"### {form['properties']['use']['const']}", "", summary, "", *_table(form, blocks)]
+        lines += [f"## {kind}", "", *_forms(properties[kind], blocks)]
+    lines += ["## export", "", f"{EXPORT} [More](export.md).", ""]
+    lines += _forms(properties["export"]["anyOf"][0]["items"], blocks)
     lines += ["## safety", "", "Between every law and every device ([why](safety.md)).", ""]
     lines += _table(properties["safety"], blocks)
     return "\n".join(lines).rstrip() + "\n"
+
+
+def _forms(stage: dict[str, Any], blocks: dict[str, Any]) -> list[str]:
+    """Every method of a kind, with its options."""
+    lines: list[str] = []
+    for form in stage["anyOf"][1:]:
+        summary = form.get("description", "").split("\n")[0]
+        lines += [f"### {form['properties']['use']['const']}", "", summary, "", *_table(form, blocks)]
+    return lines
 
 
 PARTS = (
@@ -195,6 +224,14 @@ PARTS = (
 HEIGHTS = (
     "The relief is made of parts, each of one height, with rounded rims and a little of the picture's light, in place "
     "of depth or brightness; `null` switches it off."
+)
+SIMPLIFY = (
+    "Parts that are too narrow or too small for fingers go to those beside them, before relief, materials and labels "
+    "are made of the parts; each keeps its number."
+)
+EXPORT = (
+    "What `tangible export` writes: a list of names of exporters, `[stl, swell]`, or of blocks with options, "
+    "`[{use: pins, display: monarch}]`."
 )
 PREFACE = (
     "Generated by `tangible schema --markdown` from the classes themselves; `tangible schema` prints the same as JSON "

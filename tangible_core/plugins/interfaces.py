@@ -7,7 +7,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 from jaxtyping import Float64, Int64
@@ -22,6 +22,7 @@ from ..data import (
     SegmentMap,
     Unit,
     Views,
+    Work,
 )
 from ..data.arguments import as_picture
 from ..data.quantities import Quantities
@@ -109,6 +110,38 @@ class HapticDevice(Method):
         """Raises: DeviceError if it is not there, not permitted or in use."""
 
 
+Medium = Literal["swell", "print", "pins", "force"]
+"""What a finger reads: swell paper, a solid that was printed, pins that rise, or a force device."""
+
+
+class Exporter(Method):
+    """Writes what was made as files for others: a printer, a pin display, a reader."""
+
+    needs: ClassVar[tuple[str, ...]] = ()
+    """Products that it writes or reads, such as `relief`: these are made for it, and no others."""
+    medium: ClassVar[Medium | None] = None
+    """What a finger reads of it, by whose rules it is checked before it is written; None for what is not felt."""
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
+        guard_verb(cls, "export", "write", tuple)
+
+    def width_m(self, aspect: float) -> float | None:
+        """The width of the whole picture in the files, for which the products are made; None for the workspace's.
+
+        aspect: width through length of the picture.
+        """
+        return None
+
+    @abstractmethod
+    def write(self, work: Work, stem: Path) -> tuple[Path, ...]:
+        """Write the files, and return their paths: `stem` with endings of its own, such as `stem.with_suffix`.
+
+        It writes into a folder of its own; the files are moved to their place once all are there.
+        Raises: TangibleError for what cannot be written of this work.
+        """
+
+
 class Skippable(ABC):
     """For a depth or texture method that can tell that a scene does not need it."""
 
@@ -173,5 +206,6 @@ KINDS: dict[Kind, type[Method]] = {
     "texture": Segmenter,
     "render": ForceRenderer,
     "device": HapticDevice,
+    "export": Exporter,
 }
 """What each kind of plugin must be."""

@@ -4,7 +4,7 @@ from importlib.metadata import EntryPoint, entry_points
 
 from .origin import origin
 
-KIND_NAMES = ("depth", "texture", "render", "device")
+KIND_NAMES = ("depth", "texture", "render", "device", "export")
 GROUPS = "tangible."
 """How the groups of entry points begin; what follows is a kind, or `hooks`."""
 

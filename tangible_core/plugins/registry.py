@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     import pluggy
 
     from ..data import Kind
-    from .interfaces import DepthEstimator, ForceRenderer, HapticDevice, Method, Segmenter
+    from .interfaces import DepthEstimator, Exporter, ForceRenderer, HapticDevice, Method, Segmenter
 
 
 log = logging.getLogger(__name__)
@@ -143,6 +143,8 @@ def load_method(kind: Literal["texture"], name: str) -> type[Segmenter]: ...
 def load_method(kind: Literal["render"], name: str) -> type[ForceRenderer]: ...
 @overload
 def load_method(kind: Literal["device"], name: str) -> type[HapticDevice]: ...
+@overload
+def load_method(kind: Literal["export"], name: str) -> type[Exporter]: ...
 @overload
 def load_method(kind: Kind, name: str) -> type[Method]: ...
 def load_method(kind: str, name: str) -> type[Any]:

@@ -6,12 +6,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal, NamedTuple
 
-Grade = Literal["ok", "warn", "unsafe"]
-"""`warn`: it will not feel as it should. `unsafe`: the device may buzz, or be driven too late."""
+Grade = Literal["ok", "warn", "unsafe", "illegible"]
+"""`warn`: it will not feel as it should. `unsafe`: the device may buzz, or be driven too late. `illegible`: fingers
+cannot read it."""
 FEW = 0.01
 """Share of the surface up to which a place is called the exception."""
 
-Unit = Literal["m", "s", "N", "N/m", "N s/m", "share"]
+Unit = Literal["m", "s", "N", "N/m", "N s/m", "share", "pins", "parts", "textures", "JND"]
 
 
 class Change(NamedTuple):
@@ -73,6 +74,8 @@ class Verdict:
     """What is wrong, as the end of a plain sentence; empty where all is well."""
     changes: tuple[Change, ...] = ()
     """What of the cure a configuration can say, the first that does first."""
+    at: tuple[tuple[float, float], ...] = ()
+    """Where it is in the picture: shares of its width from the left and of its length from the top."""
 
     @property
     def keeps(self) -> bool:

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import count, product
 from pathlib import Path
@@ -13,9 +14,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..data import DisparityMap, HapticSurface, MaterialMap, PartMap, Relief, SegmentMap, Views
+from ..description import describe, spoken_language
 from ..errors import OutputError
 from ..files.writing import atomic_write
-from ..scene.description import describe, language_of
 from .layout import Cell, arrange
 from .sheet_files import described, writer
 
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
     from ..plugins.panel import Panel
     from ..session import Recording
     from .layout import Box
+
+log = logging.getLogger(__name__)
 
 WIDTH_IN = 12.0
 TITLE_IN = 0.3
@@ -97,7 +100,7 @@ def write_sheet(path: Path, run: Mapping[str, Any], title: str, panels: Sequence
         figure = draw_figure(run, title, panels)
         says = described(figure)
         if isinstance(surface := run.get("surface"), HapticSurface):
-            says = f"{says} {describe(surface, '', language_of(language))}"
+            says = f"{says} {describe(surface, '', spoken_language(language, log))}"
         with atomic_write(path) as file:
             write(figure, file, title, says)
     return says

@@ -7,6 +7,7 @@ from jaxtyping import Float32
 
 from ..data.pictures import luma, opaque, size_in_words
 from ..errors import PictureError
+from .height_files import Measured, said_of
 from .picture_files import without
 from .scene_files import SceneFiles
 
@@ -25,6 +26,22 @@ def framed(held: Mapping[str, np.ndarray], files: SceneFiles) -> dict[str, np.nd
     elif files.main == "photo":
         found["photo"] = _tones(found["photo"], files)
     return found
+
+
+def measured(files: SceneFiles) -> Measured | None:
+    """The size that a height map says it has, of the part that is felt; None for a map of any other numbers.
+
+    One that is turned upside down (`invert`) is a map of any other numbers, too.
+    Raises: PictureError if what it says is nonsense.
+    """
+    said = None if files.height is None or files.invert else said_of(files.height)
+    if said is None:
+        return None
+    whole = said.measured
+    _, _, columns, rows = files.crop or (0, 0, said.columns, said.rows)
+    size_m = whole.width_m * columns / said.columns, whole.length_m * rows / said.rows
+    width_m, length_m = size_m[::-1] if files.rotate in (90, 270) else size_m
+    return Measured(width_m, length_m, whole.high_m)
 
 
 def _cropped(values: np.ndarray, files: SceneFiles) -> np.ndarray:

@@ -12,14 +12,15 @@ from jaxtyping import Bool, Float32
 from numpy.typing import ArrayLike
 from pydantic import ValidationError
 
-from ..data import Calibration, DisparityMap, Record, SegmentMap, Views
+from ..data import Calibration, DisparityMap, Record, Relief, SegmentMap, Views
 from ..data.arguments import as_picture
 from ..data.pictures import fill_non_finite, filled, opaque
 from ..errors import ConfigError, PictureError, wrong_argument
 from ..files.paths import as_path
 from .frames import Say, unsaid
-from .framing import framed
-from .geometry import Holes, scale_heights
+from .framing import framed, measured
+from .geometry import Holes, fill_rows, scale_heights
+from .height_files import Measured, in_metres, picture_said, said_of
 from .pair_files import Layout, halves, read_pair
 from .phone_depth import read_phone_depth
 from .picture_files import NonFinite, labels_of, map_of, picture_of, read_labels, read_map, read_picture
@@ -27,14 +28,26 @@ from .rig import StereoRig, turned
 from .rig_files import read_rig
 from .scaling import felt_factor, reduced_map, reduced_shape
 from .scene_files import BUILTINS, SceneFiles, unknown_scene
+from .truth_files import TruthScale, read_truth, truth_of
 
 log = logging.getLogger(__name__)
 
 File = str | PathLike[str]
 _PICTURES = {"left", "right", "photo", "stereo"}
-_READERS = {"height": read_map, "disparity": read_map, "segments": read_labels, "truth": read_map}
+
+
+def _read_heights(path: Path, say: Say = unsaid) -> Float32[np.ndarray, "h w"]:
+    """A height map, in metres where its file says what its numbers mean. Raises: PictureError."""
+    said = said_of(path)
+    if said is None:
+        return read_map(path, say)
+    picture, said = picture_said(path, said)
+    return in_metres(read_map(picture, say), said, picture)
+
+
+_READERS = {"height": _read_heights, "disparity": read_map, "segments": read_labels}
 _PHONE_DEPTH = "phone depth"
-_CONVERTERS = {"height": map_of, "disparity": map_of, "segments": labels_of, "truth": map_of}
+_CONVERTERS = {"height": map_of, "disparity": map_of, "segments": labels_of}
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,6 +68,8 @@ class Scene:
     """Heights in any unit, NaN where unknown: no depth is estimated."""
     relief_m: float | None = None
     """Height of the relief that `height` becomes; the workspace's where it is None."""
+    measured: Measured | None = None
+    """The size that its heights have by their own account: they are metres, and keep their lowest."""
     truth: Float32[np.ndarray, "h w"] | None = None
     """True disparity in pixels, NaN where unknown."""
     known: Bool[np.ndarray, "h w"] | None = None
@@ -78,6 +93,7 @@ class Scene:
         disparity: File | ArrayLike | None = None,
         segments: File | ArrayLike | None = None,
         truth: File | ArrayLike | None = None,
+        truth_scale: TruthScale | None = None,
         calibration: Calibration | None = None,
         rig: "StereoRig | File | None" = None,
         relief_m: float | None = None,
@@ -111,7 +127,8 @@ class Scene:
         files = _checked(
             paths | {part: Path(f"the array given as {part}") for part in parts.keys() - paths.keys()},
             calibration,
-            {"relief_m": relief_m, "layout": layout, "photo_depth": photo_depth, "crop": crop, "rotate": rotate,
+            {"relief_m": relief_m, "truth_scale": truth_scale, "layout": layout, "photo_depth": photo_depth,
+             "crop": crop, "rotate": rotate,
              "invert": invert, "nodata": nodata, "clip": clip, "non_finite": non_finite},
         )  # fmt: skip
         if paths.keys() == parts.keys():
@@ -192,6 +209,7 @@ class Scene:
             segments=SegmentMap(held["segments"]) if "segments" in held else None,
             height=_frozen(held.get("height")),
             relief_m=files.relief_m,
+            measured=measured(files),
             truth=_frozen(held.get("truth")),
             known=_frozen(known),
             shown=_frozen(shown),
@@ -220,9 +238,20 @@ class Scene:
         if self.height is not None:
             factor = felt_factor(self.height.shape[1], width_m, finest_m)
             height = reduced_map(self.height, reduced_shape(self.shape, factor))
-            relief = scale_heights(height, width_m, self.relief_m or relief_m, holes)
+            relief_m = self.relief_m or relief_m
+            if self.measured is None:
+                relief = scale_heights(height, width_m, relief_m, holes)
+            else:
+                relief = _as_measured(height, self.measured, width_m, relief_m)
         found = {"views": self.views, "relief": relief, "disparity": self.disparity, "segments": self.segments}
         return {product: record for product, record in found.items() if record is not None}
+
+
+def _as_measured(height_m: np.ndarray, measured: Measured, width_m: float, relief_m: float) -> Relief:
+    """Heights in metres, so wide and so high; the lowest stay as much above the base as they are."""
+    scale = np.float32(relief_m / measured.high_m) if measured.high_m else np.float32(1)
+    found = fill_rows(height_m) if scale == 1 else fill_rows(height_m) * scale
+    return Relief(np.maximum(found, np.float32(0)), (width_m, width_m * measured.length_m / measured.width_m))
 
 
 def _check_cameras(calibration: object, rig: object) -> None:
@@ -265,6 +294,8 @@ def _read(part: str, path: Path, files: SceneFiles, say: Say = unsaid) -> dict[s
     """What a file of a scene holds, by what it is: two views, or a photo and its depth, or what it was given for."""
     if part == "stereo":
         return read_pair(path, files.layout, files.non_finite, say)._asdict()
+    if part == "truth":
+        return {part: read_truth(path, files.truth_scale, say)}
     if part not in _PICTURES:
         return {part: _READERS[part](path, say)}
     picture = read_picture(path, files.non_finite, say)
@@ -277,6 +308,8 @@ def _read(part: str, path: Path, files: SceneFiles, say: Say = unsaid) -> dict[s
 def _converted(part: str, values: np.ndarray, files: SceneFiles) -> dict[str, np.ndarray]:
     """A copy, as what it was given for."""
     name = str(getattr(files, part))
+    if part == "truth":
+        return {part: truth_of(values.copy(), name, files.truth_scale)}
     if part not in _PICTURES:
         return {part: _CONVERTERS[part](values.copy(), name)}
     picture = picture_of(values.copy(), name, files.non_finite)

@@ -11,6 +11,7 @@ from ..data.quantities import Quantities
 from ..errors import did_you_mean, quoted
 from .pair_files import Layout
 from .picture_files import NonFinite
+from .truth_files import TruthScale
 
 Length = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 Start = Annotated[int, Field(ge=0)]
@@ -21,9 +22,10 @@ Number = Annotated[float, Field(allow_inf_nan=False)]
 _NEEDS = {
     **{"focal_px": "baseline_m", "baseline_m": "focal_px", "offset_px": "focal_px"},
     **{"relief_m": "height", "rig": "left", "rig_unit_m": "rig", "nodata": "height", "layout": "stereo"},
+    "truth_scale": "truth",
 }
 _ALONE = ("rotate", "invert", "clip")
-_OF_VIEWS = ("disparity", "truth", "focal_px", "baseline_m", "offset_px")
+_OF_VIEWS = ("disparity", "truth", "truth_scale", "focal_px", "baseline_m", "offset_px")
 
 
 class SceneFiles(Quantities):
@@ -47,8 +49,9 @@ class SceneFiles(Quantities):
     photo_depth: bool = True
     """Whether the depth that a phone kept in the photo is taken, where there is one; no depth is estimated then."""
     height: Path | None = None
-    """A height map in any unit, larger values standing higher: a grey picture, .npy, .pfm or .tif. No depth is
-    estimated."""
+    """A height map in any unit, larger values standing higher: a grey picture, .npy, .pfm or .tif; or heights in
+    millimetres as the exporter `heights` writes them, which keep their size: .json, or the picture beside it. No depth
+    is estimated."""
     disparity: Path | None = None
     """A disparity map of the left view or the photo, in pixels, NaN where unknown. No depth is estimated."""
     segments: Path | None = None
@@ -56,6 +59,9 @@ class SceneFiles(Quantities):
     truth: Path | None = None
     """Ground-truth disparity of the left view, in pixels, NaN or infinite where unknown; used for error figures
     only."""
+    truth_scale: TruthScale | None = None
+    """What a pixel of disparity is in the file `truth`, 0 being unknown there: 256 in KITTI's, 4 in Middlebury's of
+    2003, `sintel` for Sintel's three channels. When left out, its numbers are pixels."""
     focal_px: Length | None = None
     """Focal length of the rectified cameras, in pixels; with `baseline_m`, the relief is proportional to depth."""
     baseline_m: Length | None = None

@@ -3,6 +3,7 @@
 import struct
 from collections.abc import Iterator
 from contextlib import suppress
+from mmap import mmap
 from typing import Any, NamedTuple
 
 TIFF = (b"II*\0", b"MM\0*", b"MM*\0", b"II\0*", b"MM\0+", b"II+\0")
@@ -10,10 +11,12 @@ TIFF = (b"II*\0", b"MM\0*", b"MM*\0", b"II\0*", b"MM\0+", b"II+\0")
 TAG_TYPES = {1: "B", 3: "H", 4: "I", 16: "Q"}
 """Of a TIFF's whole numbers, as `struct` calls them."""
 GDAL_NODATA, LONGEST_NUMBER = 42113, 64
+DESCRIPTION, LONGEST_TEXT = 270, 250_000
 MOST_TAGS, MOST_SAMPLES = 65_535, 16
 """Of a TIFF and of a pixel in one that are looked at; four samples are read."""
 
 Shape = tuple[int, int, int]
+Buffer = bytes | mmap
 
 
 class _Tag(NamedTuple):
@@ -39,7 +42,7 @@ def tiff_size(data: bytes) -> tuple[Shape, int]:
     return (rows, columns, said[277]), -(-said[258] // 8)
 
 
-def _tiff_tags(data: bytes) -> Iterator[_Tag]:
+def _tiff_tags(data: Buffer) -> Iterator[_Tag]:
     """Those of the first directory. Source: TIFF 6.0, section 2; BigTIFF, whose numbers have 8 bytes."""
     order, big = _order(data)
     first, many, place = ("Q", "Q", "Q") if big else ("I", "H", "I")
@@ -55,7 +58,7 @@ def _tiff_tags(data: bytes) -> Iterator[_Tag]:
         at += struct.calcsize(place)
 
 
-def _tag_values(data: bytes, tag: _Tag, values: str) -> tuple[Any, ...]:
+def _tag_values(data: Buffer, tag: _Tag, values: str) -> tuple[Any, ...]:
     """What `struct` reads at a tag; short values stand in the directory itself."""
     order, big = _order(data)
     place = "Q" if big else "I"
@@ -65,7 +68,7 @@ def _tag_values(data: bytes, tag: _Tag, values: str) -> tuple[Any, ...]:
     )
 
 
-def _order(data: bytes) -> tuple[str, bool]:
+def _order(data: Buffer) -> tuple[str, bool]:
     return "<" if data[:2] == b"II" else ">", b"+" in data[2:4]
 
 
@@ -77,3 +80,13 @@ def stated_nodata(data: bytes) -> float | None:
                 (text,) = _tag_values(data, tag, f"{min(tag.length, LONGEST_NUMBER)}s")
                 return float(text.split(b"\0")[0])
     return None
+
+
+def stated_description(data: Buffer) -> bytes:
+    """The text of a TIFF on what it shows, without its end; empty where there is none. Source: TIFF 6.0, section 8."""
+    with suppress(ValueError, struct.error):
+        for tag in _tiff_tags(data):
+            if tag.number == DESCRIPTION:
+                (text,) = _tag_values(data, tag, f"{min(tag.length, LONGEST_TEXT)}s")
+                return text.split(b"\0")[0]
+    return b""

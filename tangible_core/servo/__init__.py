@@ -1,5 +1,6 @@
 """The force loop in its own process: a thousand ticks a second, and no force when anything goes wrong."""
 
+from .beacon import Beacon, BeaconState, beacon_to
 from .child import TERMINATED
 from .guard.safety import Safety
 from .host import OVER, Servo
@@ -7,4 +8,16 @@ from .packed import Packed, packed
 from .ring import Ring
 from .still import still
 
-__all__ = ["OVER", "TERMINATED", "Packed", "Ring", "Safety", "Servo", "packed", "still"]
+__all__ = [
+    "OVER",
+    "TERMINATED",
+    "Beacon",
+    "BeaconState",
+    "Packed",
+    "Ring",
+    "Safety",
+    "Servo",
+    "beacon_to",
+    "packed",
+    "still",
+]

@@ -8,12 +8,13 @@ A tick: where is the tip, what does the law say, what of it may pass, to the dev
 
 import math
 
-from numba import njit, types
+from numba import int64, njit, types
 from numba.extending import intrinsic
 
 from ..compiled.compiling import KERNEL
 from ..data import TICK_COLUMNS, TickFlag
 from . import schedule
+from .beacon_kernels import pull
 from .clock import SECOND_NS, wait_ns
 from .guard.coupling import couple
 from .guard.guard import guard, wait
@@ -83,23 +84,26 @@ def publish(header, sums, late, period, contact, stamps, ticks, row, at_ns, late
 
 
 @njit(**KERNEL)
-def allowed(law, limits, period_s, x, y, z, vx, vy, vz):
-    """What may leave of the law's force for a fresh state of the device, and flags."""
+def allowed(law, limits, period_s, x, y, z, vx, vy, vz, buttons):
+    """What may leave of the law's force and the beacon's for a fresh state of the device, and flags."""
     of_law, tick, _ = law
-    settings, memory = limits
-    force_n = tick(*of_law, *couple(settings, memory, period_s, x, y, z, vx, vy, vz))
-    return guard(settings, memory, period_s, x, y, z, vx, vy, vz, *force_n)
+    settings, memory, beacon = limits
+    felt = couple(settings, memory, period_s, x, y, z, vx, vy, vz)
+    force_n = tick(*of_law, *felt)
+    pulled = pull(*beacon, memory, period_s, felt[0], felt[1], felt[3], felt[4], int64(buttons))
+    fx, fy, fz, flags = guard(settings, memory, period_s, x, y, z, vx, vy, vz, *force_n)
+    return fx, fy, fz, flags | pulled
 
 
 @njit(**KERNEL)
 def cycle(link, law, limits, state, row, time_s, late_s, period_s):
     """One tick of a device and a law that are kernels; the row says what it was."""
     of_link, read, write = link
-    settings, memory = limits
+    settings, memory, _ = limits
     fresh = read(*of_link, state) != 0
     x, y, z, vx, vy, vz = state[0], state[1], state[2], state[3], state[4], state[5]
     if fresh:
-        fx, fy, fz, flags = allowed(law, limits, period_s, x, y, z, vx, vy, vz)
+        fx, fy, fz, flags = allowed(law, limits, period_s, x, y, z, vx, vy, vz, state[6])
     else:
         fx, fy, fz, flags = wait(settings, memory, period_s)
     write(*of_link, fx, fy, fz)

@@ -16,6 +16,7 @@ from ..errors import DeviceError, check_positive
 from ..plugins.interfaces import HapticDevice, Touch
 from ..runtime.child_process import command
 from . import parcel
+from .beacon import ALL_BUTTONS, ASKED, SEEN, Beacon, BeaconState
 from .guard.safety import Safety
 from .guard.stiffness import stiffness_of
 from .packed import Packed
@@ -117,6 +118,31 @@ class Servo:
             self._felt_now(self._answer(SwapReply))
         finally:
             self._remove_sent()
+
+    def pull_to(self, beacon: Beacon | None, buttons: int = ALL_BUTTONS) -> None:
+        """Pull the hand gently to a part of the surface that is felt, from now on; or let go of it at once.
+
+        The pull fades in over half a second, ends where the hand is on the part, and begins again where it leaves it. A
+        button that is pressed releases it within the tick, until this is called again; so does another scene.
+        buttons: bits of those that do. A second call takes the place of the first.
+        Raises: DeviceError if the loop has ended, or there is no room for the beacon.
+        """
+        memory = self.ring.beacon
+        memory.words[ASKED] = 0
+        if beacon is None:
+            return
+        self.ring.room_for_a_beacon()
+        until_s = time.monotonic() + STOPPING_S
+        while memory.words[SEEN]:  # until then, the loop may read the field of the one before
+            if not self.running or time.monotonic() > until_s:
+                raise self._failure()
+            time.sleep(self._period_s)
+        memory.put(beacon, buttons)
+
+    @property
+    def beacon(self) -> BeaconState:
+        """Whether a beacon pulls, and why not; of a loop that has ended, none does."""
+        return self.ring.beacon.state if self.running else BeaconState(None)
 
     @property
     def ring(self) -> Ring:

@@ -10,6 +10,7 @@ from ..compiled.touch import CompiledLink, CompiledTouch
 from ..data import TICK_COLUMNS, HapticState, TickFlag
 from ..plugins.interfaces import Link, Touch
 from .guard.guarded import guarded
+from .pulling import pulling
 from .ring import (
     COUNT,
     LEAD_NS,
@@ -28,6 +29,8 @@ from .schedule import begin_tick, going
 SECOND_NS = 1_000_000_000
 Sections = tuple[np.ndarray, ...]
 """Of a ring, as the kernels take them: header, sums, late, period, contact, stamps, ticks."""
+Limits = tuple[np.ndarray, np.ndarray, tuple[np.ndarray, ...]]
+"""Settings and memory of a guard, and the arrays of a `BeaconMemory`."""
 Timed = Callable[[int, int], None]
 """(at_ns, late_ns): one tick, which began then and so late."""
 FAR = HapticState((0.0, 0.0, 1.0))
@@ -63,7 +66,7 @@ def prepare(link: Link, touch: Touch, ring: Ring, settings: np.ndarray) -> Loop:
     cast(Any, guard).restart(np.zeros_like(ring.guard))  # `take_over` needs it between two ticks
     kernels = cast(Any, cycle)
     row = np.full(len(TICK_COLUMNS), np.nan)
-    shared, limits = sections(ring), (settings, ring.guard)
+    shared, limits = sections(ring), (settings, ring.guard, ring.beacon.arrays)
     if not isinstance(link, CompiledLink) or not isinstance(touch, CompiledTouch):
         return Loop(_timed(*_plain(link, touch, limits, shared, row), shared[0]), "the tick is Python's")
     fixed = (*_kernels(link, touch), limits)
@@ -95,10 +98,11 @@ def start_clock(header: np.ndarray, real_time: bool) -> None:
 
 
 def take_over(ring: Ring) -> None:
-    """Go on with a new scene, whose force fades in."""
+    """Go on with a new scene, whose force fades in; a beacon was to a part of the one before."""
     from .guard import guard
 
     cast(Any, guard).restart(ring.guard)
+    ring.beacon.leave()
     ring.header[MARKS] |= int(TickFlag.SWAPPED)
     ring.header[SWAP] = 0
 
@@ -125,13 +129,18 @@ def _begun(generator: Callable[..., Iterator[bool]], *arguments: Any) -> Kernel:
 
 
 def _plain(
-    link: Link, touch: Touch, limits: tuple[np.ndarray, np.ndarray], shared: Sections, row: np.ndarray
+    link: Link,
+    touch: Touch,
+    limits: Limits,
+    shared: Sections,
+    row: np.ndarray,
 ) -> tuple[Timed, Kernel]:
     """A tick for a device or a law that is no kernel. A law that compiles something does so now, asked in free air."""
     from . import cycle
 
     proxy = touch.memory[:3] if isinstance(touch, CompiledTouch) else np.full(3, np.nan)
-    header, allowed = shared[0], guarded(touch, *limits)
+    settings, memory, beacon = limits
+    header, allowed = shared[0], guarded(touch, settings, memory, pulling(beacon, memory))
     touch.force(FAR)
     kernel = _begun(cast(Any, cycle).finished, shared, row)
 

@@ -10,7 +10,8 @@ from typing import NamedTuple, Self
 import numpy as np
 from jaxtyping import Float64, Int64
 
-from ..data import TICK_COLUMNS, Force, HapticState, ServoReport, Spread, Vector
+from ..data import TICK_COLUMNS, Force, HapticState, ServoReport, Spread, TickFlag, Vector, beacon_part
+from .beacon import TICKS
 from .guard import safety
 from .ring import LONGEST_S, MOST_LATE_S, PEAK_N, WORK_J, Ring
 
@@ -46,7 +47,7 @@ class Counted(NamedTuple):
             late=ring.late.copy(),
             period=ring.period.copy(),
             contact=ring.contact.copy(),
-            flagged=Counter({flag.name or "": count for flag, count in safety.counts(ring.guard).items()}),
+            flagged=_flagged(ring),
         )
 
     def then(self, later: Self) -> Self:
@@ -86,6 +87,14 @@ def report(ring: Ring, stopped: str = "", before: Counted | None = None, since_s
     )
 
 
+def _flagged(ring: Ring) -> Counter[str]:
+    """Ticks by the flags of the guard, and by that of a beacon."""
+    flags = safety.counts(ring.guard)
+    if pulled := int(ring.beacon.words[TICKS]):
+        flags[TickFlag.BEACON] = pulled
+    return Counter({flag.name or "": count for flag, count in flags.items()})
+
+
 def _median_n(contact: Counts, touching: int) -> float:
     """The middle of the millinewton that half of the ticks with a force are in or under."""
     return (int(np.searchsorted(np.cumsum(contact), touching / 2)) + 0.5) / 1000 if touching else 0.0
@@ -105,6 +114,7 @@ def so_far(
         peak_force_n=peak_force_n,
         work_j=work_j,
         stopped=stopped,
+        beacon=beacon_part(int(last[AT["flags"]])),
     )
 
 

@@ -12,8 +12,12 @@ All numbers are in the machine's own byte order, one section after the other, ea
 | contact | int64 (32768,) | ticks with a force, by whole millinewtons of it; the last for all that were stronger |
 | stamps | int64 (n,) | number of the tick that lies in each slot, -1 while it is written |
 | ticks | float64 (n, 16) | `data.TICK_COLUMNS`; tick k lies in slot k modulo n |
+| asked | int64 (16,) | which beacon is asked for, and which is felt (`beacon`) |
+| pull | float64 (16,) | where the beacon's grid lies, and how far its pull has faded in (`beacon`) |
+| field | float32 (1048576,) | the beacon's potential; without memory of its own until one is asked for |
 
-The loop alone writes, but for the word STOP, which anybody may set and nobody clears. Who reads a slot looks at its
+The loop alone writes, but for the word STOP, which anybody may set and nobody clears, and what asks for a beacon, which
+the program writes that started the loop. Who reads a slot looks at its
 stamp before and after: if it is not the same, the slot was overwritten meanwhile, and is read again or given up.
 """
 
@@ -33,8 +37,9 @@ from jaxtyping import Float64
 from ..data import TICK_COLUMNS
 from ..errors import DeviceError
 from ..runtime.child_process import is_alive
+from .beacon import HELD, MOST_CELLS, BeaconMemory
 
-MAGIC, LAYOUT = 0x54414E47_49424C45, 3
+MAGIC, LAYOUT = 0x54414E47_49424C45, 4
 """The word that begins every ring, and the version of this layout."""
 (
     IS_MAGIC,
@@ -80,6 +85,7 @@ class Ring:
         self.header, self.sums, self.guard = arrays["header"], arrays["sums"], arrays["guard"]
         self.late, self.period, self.contact = arrays["late"], arrays["period"], arrays["contact"]
         self.stamps, self.ticks = arrays["stamps"], arrays["ticks"]
+        self.beacon = BeaconMemory(arrays["asked"], arrays["pull"], arrays["field"])
 
     @classmethod
     def create(cls, slots: int = 8192) -> Self:
@@ -94,6 +100,7 @@ class Ring:
         except OSError as error:
             raise DeviceError(f"{folder}: no room for the loop's shared memory: {error.strerror or error}") from error
         ring.header[[IS_MAGIC, IS_LAYOUT, SLOTS]] = MAGIC, LAYOUT, slots
+        ring.beacon.words[HELD] = -1
         return ring
 
     @classmethod
@@ -108,6 +115,20 @@ class Ring:
         if magic != MAGIC or layout != LAYOUT or len(mapped) != _size(slots):
             raise DeviceError(f"{path}: is not a ring of layout {LAYOUT}; watch it with the version that wrote it")
         return cls(path, mapped, slots)
+
+    def room_for_a_beacon(self) -> None:
+        """Have memory under the field: a file without it ends whoever writes there when the memory is full.
+
+        Raises: DeviceError if there is no room.
+        """
+        if not hasattr(os, "posix_fallocate"):
+            return
+        size = self.beacon.field.nbytes
+        try:
+            with self.path.open("r+b") as file:
+                os.posix_fallocate(file.fileno(), _size(len(self.stamps)) - size, size)
+        except OSError as error:
+            raise DeviceError(f"{self.path.parent}: no room for a beacon: {error.strerror or error}") from error
 
     def remove(self) -> None:
         """Take the file away; who has it mapped may go on reading."""
@@ -176,6 +197,9 @@ def _sections(slots: int) -> dict[str, tuple[type, tuple[int, ...]]]:
         "contact": (np.int64, (STRONGEST_MN,)),
         "stamps": (np.int64, (slots,)),
         "ticks": (np.float64, (slots, len(TICK_COLUMNS))),
+        "asked": (np.int64, (16,)),
+        "pull": (np.float64, (16,)),
+        "field": (np.float32, (MOST_CELLS,)),
     }
 
 
@@ -184,7 +208,7 @@ def _padded(size: int) -> int:
 
 
 def _size(slots: int) -> int:
-    return sum(_padded(8 * int(np.prod(shape))) for _, shape in _sections(slots).values())
+    return sum(_padded(np.dtype(kind).itemsize * int(np.prod(shape))) for kind, shape in _sections(slots).values())
 
 
 def _sweep() -> None:

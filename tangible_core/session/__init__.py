@@ -7,7 +7,20 @@ from .keeper import Keeper
 from .limited import changed_most
 from .live import figures, keeping, run_in_real_time
 from .loop import run_simulated
-from .parts_felt import PartFelt, called, names_in, names_of, names_text, part_under, parts_felt, telling_parts
+from .parts_felt import (
+    BeaconFelt,
+    PartFelt,
+    beacons_felt,
+    called,
+    material_under,
+    materials_text,
+    names_in,
+    names_of,
+    names_text,
+    part_under,
+    parts_felt,
+    telling_parts,
+)
 from .recording import INTERRUPTED, STOPPED, Recording, failure
 from .recording_files import check_record_path
 from .replay import compared, replay, undisturbed
@@ -19,6 +32,7 @@ __all__ = [
     "INTERRUPTED",
     "STOPPED",
     "About",
+    "BeaconFelt",
     "Followed",
     "Keeper",
     "Looks",
@@ -26,6 +40,7 @@ __all__ = [
     "Recording",
     "Turn",
     "Writer",
+    "beacons_felt",
     "beside",
     "called",
     "changed_most",
@@ -35,6 +50,8 @@ __all__ = [
     "figures",
     "followed",
     "keeping",
+    "material_under",
+    "materials_text",
     "names_in",
     "names_of",
     "names_text",

@@ -15,7 +15,8 @@ from ..data import TICK_COLUMNS, HapticSurface, ServoReport, TickFlag
 from ..errors import DeviceError, check_positive
 from ..plugins.interfaces import HapticDevice, Touch
 from ..runtime.stopping import stop_asked, stoppable
-from ..servo import OVER, Safety, Servo
+from ..servo import OVER, Beacon, Safety, Servo
+from ..servo.beacon import BUTTON
 from ..servo.reports import Counted, report, so_far
 from .live import LOOK_EVERY_S, attended, ignored
 from .parts_felt import with_part
@@ -35,7 +36,9 @@ class Turn(NamedTuple):
     touch: Touch
     limits: Safety
     parts: HapticSurface | None = None
-    """The surface whose parts reports tell; None for none."""
+    """The surface whose parts and materials reports tell; None for none."""
+    beacon: Beacon | None = None
+    """Pulls to a part of this scene whenever it is felt, until a button has released one."""
 
 
 def run_in_turn(
@@ -92,6 +95,8 @@ class _Session:
         self._last = so_far(np.empty((0, len(TICK_COLUMNS))), 0, 0.0, 0.0, "")
         self._row: np.ndarray | None = None
         self._told, self._pause_s = "", FIRST_PAUSE_S
+        self._released = False
+        """Whether a button has released a beacon: nobody asks for another one."""
 
     def run(self) -> ServoReport:
         """Until something ends it that is not the device."""
@@ -134,6 +139,7 @@ class _Session:
         self._first_ns = self._first_ns or began_ns
         self._since_s = (began_ns - self._first_ns) / 1e9
         self._due_s = time.monotonic() + self._each_s
+        self._pull(servo)
         self._begin(servo)
 
     def _look(self, servo: Servo, aside: ThreadPoolExecutor) -> str:
@@ -146,9 +152,20 @@ class _Session:
             if servo.running:  # else it fails for what ended the loop
                 swapped.result()
                 self._at, self._due_s = self._next, time.monotonic() + self._each_s
+                self._pull(servo)
         elif self._swapping is None and len(self._turns) > 1 and time.monotonic() >= self._due_s:
+            self._look_at_beacon(servo)
             self._swapping = aside.submit(servo.swap, *self._turns[self._next][:2])
         return self._ended() if self._since_s else ""
+
+    def _pull(self, servo: Servo) -> None:
+        """To the part that this scene has a beacon to; not after a button has released one."""
+        self._look_at_beacon(servo)
+        if not self._released:
+            servo.pull_to(self._turns[self._at].beacon)
+
+    def _look_at_beacon(self, servo: Servo) -> None:
+        self._released = self._released or servo.ring.beacon.state.why == BUTTON
 
     @property
     def _next(self) -> int:
@@ -166,6 +183,7 @@ class _Session:
 
     def _let_go(self, servo: Servo) -> None:
         """What this loop counted is kept, and the recording says that no force is left."""
+        self._look_at_beacon(servo)
         counted = Counted.of(servo.ring)
         self._before = counted if self._before is None else self._before.then(counted)
         if self._row is not None:

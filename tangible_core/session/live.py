@@ -13,7 +13,7 @@ import numpy as np
 from ..data import UNTOUCHED, ServoReport, TickFlag
 from ..plugins.interfaces import HapticDevice, Touch
 from ..runtime.stopping import stop_asked, stoppable
-from ..servo import Safety, Servo
+from ..servo import Beacon, Safety, Servo
 from .keeper import Keeper
 from .recording import INTERRUPTED, STOPPED, Recording
 from .tick_file import About
@@ -33,18 +33,25 @@ def run_in_real_time(
     keep: Callable[[np.ndarray], None] | None = None,
     on_start: Callable[[Servo], None] | None = None,
     stop: Event | None = None,
+    beacon: Beacon | None = None,
 ) -> ServoReport:
     """Feel in real time, until time is over, Ctrl-C, `stop` or what else ends a `Servo`; then no force is left.
 
     on_report: called ten times a second, and at the end. keep: given all ticks, as rows of `data.TICK_COLUMNS`, in a
     thread of its own. on_start: called once the loop runs. What these raise ends the session, such as a full disk.
-    stop: set from another thread, it ends the session within a tenth of a second.
+    stop: set from another thread, it ends the session within a tenth of a second. beacon: pulls from the start, until a
+    button releases it (`Servo.pull_to`).
     Raises: ConfigError if seconds is not positive and finite, DeviceError if the device cannot be opened, and what a
     plugin raises.
     """
     with stoppable(stop):
         servo = Servo(touch, device, limits, seconds)
-        return attended(servo, on_report or ignored, keep or ignored, on_start or ignored)
+
+        def begun(servo: Servo) -> None:
+            servo.pull_to(beacon)
+            (on_start or ignored)(servo)
+
+        return attended(servo, on_report or ignored, keep or ignored, begun)
 
 
 def attended(

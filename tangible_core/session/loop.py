@@ -13,9 +13,11 @@ from ..data import NO_FORCE, TICK_COLUMNS, Force, HapticState, ServoReport
 from ..errors import DeviceError, check_positive
 from ..plugins.interfaces import HapticDevice, Link, Touch
 from ..runtime.stopping import stop_asked, stoppable
-from ..servo import Safety
+from ..servo import Beacon, Safety
+from ..servo.beacon import BeaconMemory
 from ..servo.guard.guarded import Guarded, guarded
 from ..servo.guard.stiffness import stiffness_of
+from ..servo.pulling import pulling
 from ..servo.reports import so_far
 from .recording import INTERRUPTED, STOPPED, Recording
 from .replay import proxy_of
@@ -35,8 +37,11 @@ def run_simulated(
     on_report: Callable[[ServoReport], None] | None = None,
     limits: Safety | None = None,
     stop: Event | None = None,
+    beacon: Beacon | None = None,
 ) -> Recording:
     """Feel for a while, in the device's own time: until its clock has gone on by so many seconds.
+
+    beacon: pulls from the first tick on, until a button releases it (`Servo.pull_to`).
 
     The guard of these limits lets no force through that they forbid. `on_report` is called ten times a second of the
     device's time, and at the end. Ctrl-C, `stop` set from another thread, a device that stops answering or whose clock
@@ -47,7 +52,9 @@ def run_simulated(
     """
     check_positive("seconds", seconds)
     spec = device.spec()
-    allowed = guarded(touch, *(limits or Safety()).arrays(spec, stiffness_of(touch, spec).n_per_m))
+    settings, memory = (limits or Safety()).arrays(spec, stiffness_of(touch, spec).n_per_m)
+    pull = None if beacon is None else pulling(BeaconMemory.of(beacon).arrays, memory)
+    allowed = guarded(touch, settings, memory, pull)
     tape = _Tape(touch, on_report or _ignore)
     link = device.open()
     try:

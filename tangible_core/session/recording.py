@@ -8,6 +8,7 @@ import numpy as np
 from jaxtyping import Float64, Int64
 
 from ..data import TICK_COLUMNS, Record, TickFlag
+from ..data.ticks import BEACON_SHIFT
 from ..errors import DeviceError, OutputError
 from ..files.paths import as_path
 from . import recording_files
@@ -83,8 +84,14 @@ class Recording(Record):
 
     @property
     def flags(self) -> Bits:
-        """What happened, sums of `TickFlag`."""
+        """What happened, sums of `TickFlag`; above its bits stands the part of a beacon (`beacon`)."""
         return self.rows[:, ARRAYS["flags"]].astype(np.int64)
+
+    @property
+    def beacon(self) -> Bits:
+        """The number of the part that a beacon pulled to, -1 in ticks without one."""
+        flags = self.flags
+        return np.where(flags & TickFlag.BEACON, flags >> BEACON_SHIFT, np.int64(-1))
 
     @property
     def buttons(self) -> Bits:

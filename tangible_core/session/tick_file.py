@@ -12,6 +12,7 @@ import numpy as np
 from jaxtyping import Float64
 
 from ..data import TICK_COLUMNS, TickFlag
+from ..data.ticks import BEACON_SHIFT
 from . import netcdf
 from .netcdf import Variable
 
@@ -37,6 +38,8 @@ class About:
     parts: str = ""
     """Names of the surface's parts, a JSON object from number to name; of scenes felt in turn, a line each, which is
     empty for one without names."""
+    materials: str = ""
+    """Names of the surface's materials in the same form, by the number of the part or segment that is made of it."""
 
     def stamped(self) -> Self:
         """With date and versions, where they are not said."""
@@ -60,7 +63,8 @@ def _variables() -> Iterator[Variable]:
     ):
         yield from (_variable(dtype, units, f"{axis} of the {what}") for axis in "xyz")
     flags = np.array(list(TickFlag), ">i4"), " ".join(str(each.name).lower() for each in TickFlag)
-    yield _variable(">i4", "1", "what happened in the tick", flag_masks=flags[0], flag_meanings=flags[1])
+    what = f"what happened in the tick; from bit {BEACON_SHIFT} on the number of the part that a beacon pulls to"
+    yield _variable(">i4", "1", what, flag_masks=flags[0], flag_meanings=flags[1])
     yield _variable(">i4", "1", "buttons held, one bit each")
 
 

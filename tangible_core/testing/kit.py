@@ -10,7 +10,16 @@ from typing import Any, NamedTuple, cast
 from ..errors import BrokenMethod, DeviceAbsent, ModelAbsent, TangibleError, UnknownMethod, did_you_mean
 from ..plugins.interfaces import HapticDevice
 from ..plugins.registry import Registry, default_registry
-from . import checks_depth, checks_device, checks_listing, checks_options, checks_render, checks_texture, checks_touch
+from . import (
+    checks_depth,
+    checks_device,
+    checks_export,
+    checks_listing,
+    checks_options,
+    checks_render,
+    checks_texture,
+    checks_touch,
+)
 from .checks import Check, CheckFailure
 
 log = logging.getLogger(__name__)
@@ -20,6 +29,7 @@ FAMILIES: dict[str, tuple[Check, ...]] = {
     "texture": checks_texture.CHECKS,
     "render": (*checks_render.CHECKS, *checks_touch.CHECKS),
     "device": checks_device.CHECKS,
+    "export": checks_export.CHECKS,
 }
 """What each kind is asked on top of what every method is asked."""
 

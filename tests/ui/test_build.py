@@ -22,7 +22,7 @@ from hatchling.builders.wheel import WheelBuilder
 from command_line import tangible
 from page_files import ROOT, STATIC, WEB, built_page, fetched_first, hook, node
 
-PAGE = {"app.css", "app.js", "built.json", "chunk.js", "editor.js", "index.html", "LICENSES.txt"}
+PAGE = {"app.css", "app.js", "built.json", "chunk.js", "editor.js", "index.html", "LICENSES.txt", "panel.js"}
 DIGEST = re.compile(r"-[A-Z0-9]{8}(?=\.js$)")
 """In the name of a script that another one imports."""
 UNREACHABLE = "npm error code ECONNREFUSED\nnpm error syscall connect\n"

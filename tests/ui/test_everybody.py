@@ -49,6 +49,7 @@ SMALL = """
   .map((each) => [each.outerHTML.slice(0, 90), each.getBoundingClientRect()])
   .filter(([, box]) => box.height < 24 || box.width < 24).map(([html]) => html)
 """
+FILLED = "() => [...document.querySelectorAll('.panel > .inside')].every((each) => each.childElementCount)"
 LOOK = """(each) => {
   const { backgroundColor, outlineStyle, outlineWidth } = getComputedStyle(each);
   return [backgroundColor, outlineStyle, outlineWidth];
@@ -87,6 +88,8 @@ def show(open_page: Callable[..., Any], server: UiServer) -> Show:
 
 def open_all(page: "Page") -> None:
     page.evaluate("document.querySelectorAll('details').forEach((each) => (each.open = true))")
+    page.wait_for_function(FILLED)
+    page.evaluate("document.querySelectorAll('details').forEach((each) => (each.open = true))")  # what came meanwhile
     page.wait_for_timeout(300)  # until their marks have turned
 
 
@@ -135,6 +138,30 @@ class TestSeen:
             assert picture and stop
             assert picture["width"] >= 300 and picture["height"] >= 150, name
             assert stop["x"] >= 0 and stop["x"] + stop["width"] <= width, name
+            assert page.evaluate(SMALL) == [], name
+
+    def test_axe_finds_nothing_in_what_is_handed_on_and_nothing_is_lost(self, show: Show):
+        """In German: verdicts with places and cures, files with what was decided, a refusal, the description."""
+        if not AXE.is_file():
+            lacking("axe-core is not installed: npm ci in plugins/ui/web")
+        page = show(locale="de-DE")
+        felt(page)
+        open_all(page)
+        page.get_by_label("Körper zum Drucken (STL)").check()
+        page.get_by_label("Körper zum Drucken (3MF)").check()
+        page.locator("#export-run").click()
+        page.wait_for_selector("#export .outcome", timeout=120_000)
+        page.locator("#legible-check").click()
+        page.wait_for_selector("#legible .sentence", timeout=120_000)
+        open_all(page)
+        assert page.locator("#legible .places button").count() > 0
+        assert axe_finds(page, every_theme=True) == []
+        for name, (width, height) in SIZES.items():
+            page.set_viewport_size({"width": width, "height": height})
+            page.wait_for_timeout(100)
+            assert page.evaluate("document.documentElement.scrollWidth") <= width, name
+            sides = page.locator("#left").evaluate("(each) => [each.scrollWidth, each.clientWidth]")
+            assert sides[0] <= sides[1], name
             assert page.evaluate(SMALL) == [], name
 
     def test_nothing_is_lost_from_a_phone_to_a_wall(self, show: Show):

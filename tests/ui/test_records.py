@@ -122,16 +122,19 @@ class TestShown:
         assert records.records(bench, tmp_path / "missing") == []
 
 
-def test_a_recording_of_the_page_holds_the_names_of_the_parts(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_a_recording_of_the_page_holds_the_names_of_the_parts_and_materials(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
     kept: list[About] = []
     monkeypatch.setattr("tangible_ui.asks.records.Recorder", lambda servo, path, about, ended: kept.append(about))
     monkeypatch.setenv("TANGIBLE_DATA_DIR", str(tmp_path))
-    felt = SimpleNamespace(law="penalty", device_name="mouse")
+    felt = SimpleNamespace(law="penalty", device_name="mouse", materials='{"1": "wood"}')
     feeling = SimpleNamespace(servo=SimpleNamespace(running=True), felt=felt)
     text = "scene: {photo: a.png, segments: parts.png}\nparts: {1: {name: wall}}\n"
     desk: Any = SimpleNamespace(feeling=feeling, recorder=None, text=text, tell=lambda *said, **told: None)
     asyncio.run(record(desk, None))
     assert [(each.device, each.configuration, each.parts) for each in kept] == [("mouse", text, '{"1": "wall"}')]
+    assert [each.materials for each in kept] == ['{"1": "wood"}']
 
 
 def test_two_are_compared_place_by_place(bench: Bench, tmp_path: Path) -> None:

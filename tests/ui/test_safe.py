@@ -7,6 +7,7 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
+from urllib.parse import quote
 
 import pytest
 from starlette.routing import Mount, Route, WebSocketRoute
@@ -21,7 +22,7 @@ from tangible_ui.serving.live import IN_FLIGHT, MOST_ASKS
 from tangible_ui.serving.routes import HEADERS, WRONG_KEY
 from tangible_ui.wire import ACK, ACK_FRAME, POINTER, POINTER_FRAME
 
-NAMES = {"digest": "abc", "name": "a.f32", "batch": "0" * 16}
+NAMES = {"digest": "abc", "name": "a.f32", "batch": "0" * 16, "folder": "export-1"}
 
 
 @pytest.fixture
@@ -121,14 +122,32 @@ class TestWhoIsLetIn:
         [
             "/scene/../secret", "/scene/%2e%2e/secret", "/scene/abc/..%2f..%2fsecret", "/scene/abc%2f../x",
             "/scene/link/secret", "/scene/abc/%00", f"/scene/abc/{'x' * 5000}", "/scene/abc/", "/scene/incoming/x",
+            "/export/abc/%2e%2e", "/export/export-1/..%2f..%2fsecret", "/export/export-link/secret",
+            "/export/export-1/", "/export/../secret", "/export/abc/a.stl", "/export/export-1/%00",
+            f"/export/export-{'x' * 5000}/a",
             "/scene//secret", "/../secret", "/%2e%2e/secret", "/..%2fsecret", "//secret", "/scene", "/scene/",
         ],
     )  # fmt: skip
     def test_no_path_leads_elsewhere(self, page: PageServer, tmp_path: Path, path: str) -> None:
         (tmp_path / "secret").write_text("secret")
         (page.folder / "abc").mkdir()
-        (page.folder / "link").symlink_to(tmp_path)
+        (page.folder / "abc" / "a.stl").write_text("of no export")
+        (page.folder / "export-1").mkdir()
+        for name in ("link", "export-link"):
+            (page.folder / name).symlink_to(tmp_path)
         assert page.ask(keyed(path)).status == 404
+
+    @pytest.mark.parametrize("name", ["a.stl", "a.html", "ä b.svg"])
+    def test_what_was_exported_is_kept_as_a_file_and_never_shown(self, page: PageServer, name: str) -> None:
+        """A page that an exporter wrote would otherwise be one of this address, with its key."""
+        (page.folder / "export-1").mkdir()
+        (page.folder / "export-1" / name).write_text("<script>")
+        answer = page.ask(keyed(f"/export/export-1/{quote(name)}"))
+        assert (answer.status, answer.text) == (200, "<script>")
+        assert answer.headers["content-disposition"].startswith("attachment; filename")
+        assert answer.headers["cache-control"] == "no-store"
+        assert page.ask(f"/export/export-1/{quote(name)}").status == 403
+        assert page.ask(keyed(f"/scene/export-1/{quote(name)}")).status == 404
 
     def test_methods(self, page: PageServer) -> None:
         for method in ("POST", "DELETE", "PUT", "OPTIONS", "TRACE"):

@@ -114,6 +114,15 @@ def prepare(page: "Page", name: str) -> None:
     elif name == "preflight":
         page.locator("#preflight-check").click()
         page.wait_for_function("() => document.querySelector('#preflight').textContent.includes('Judged for')")
+    elif name == "legible":
+        page.locator("#legible-check").click()
+        page.wait_for_selector("#legible .sentence", timeout=60_000)
+    elif name == "export":
+        page.get_by_label("Solid to print (STL)").check()
+        page.locator("#export-run").click()
+        page.wait_for_selector("#export .outcome", timeout=60_000)
+    elif name == "description":
+        page.wait_for_selector("#description li")
     elif name == "yaml":  # without the place of this machine where the test runs
         page.evaluate(HERE)
     elif name == "materials":

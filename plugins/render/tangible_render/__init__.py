@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 from tangible_core.lazily import lazily
 
 if TYPE_CHECKING:
+    from .engraved import Engraved as Engraved
     from .force_shading import ForceShading as ForceShading
     from .grey_level import GreyLevel as GreyLevel
     from .lateral_gradient import LateralGradient as LateralGradient
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 __all__, __getattr__ = lazily(  # pyright: ignore[reportUnsupportedDunderAll]
     __name__,
     {
+        "engraved": ["Engraved"],
         "force_shading": ["ForceShading"],
         "grey_level": ["GreyLevel"],
         "lateral_gradient": ["LateralGradient"],

@@ -3,7 +3,7 @@
 from typing import Annotated, Any, ClassVar, final
 
 import numpy as np
-from pydantic import AfterValidator, Field, ValidationError
+from pydantic import AfterValidator, Field
 
 from tangible_core.compiled.touch import CompiledTouch
 from tangible_core.data import Force, HapticState, HapticSurface
@@ -13,32 +13,15 @@ from tangible_core.materials.assignment import find, library
 from tangible_core.plugins.interfaces import ForceRenderer, PlainTouch, Touch
 
 from .effects.table import ACTING, effects_table, nowhere
+from .inner_law import Law, checked, made
 
 
-def _law(law: str | dict[str, Any]) -> tuple[str, ForceRenderer]:
-    """Name and method. Raises: ValueError if it has no name or has materials itself, TangibleError if it is none."""
-    from tangible_core.plugins.registry import load_method
-
-    options: dict[str, Any] = {"use": law} if isinstance(law, str) else dict(law)
-    name = options.pop("use", None)
-    if not isinstance(name, str):
-        raise ValueError("a law has a name, {use: ...}")
-    cls = load_method("render", name)
-    if cls.renders_materials:
-        raise ValueError(f"{name} renders materials itself; use it as it is")
-    return name, cls(**options)
+def _refusal(cls: type[ForceRenderer]) -> str:
+    return "renders materials itself; use it as it is" if cls.renders_materials else ""
 
 
-def _checked(law: str | dict[str, Any]) -> dict[str, Any]:
-    """The law's name and all of its options. Raises: ValueError if it is none, or one of them is wrong."""
-    try:
-        name, method = _law(law)
-    except ValidationError as error:
-        wrong = (f"{'.'.join(map(str, each['loc']))}: {each['msg']}" for each in error.errors())
-        raise ValueError("; ".join(wrong)) from error
-    except TangibleError as error:
-        raise ValueError(str(error)) from error
-    return {"use": name, **method.model_dump(mode="json")}
+def _checked(law: Law) -> dict[str, Any]:
+    return checked(law, _refusal)
 
 
 def _known(material: str) -> str:
@@ -66,7 +49,7 @@ class WithMaterials(ForceRenderer):
     version: ClassVar[int] = 2
     renders_materials: ClassVar[bool] = True
 
-    law: Annotated[str | dict[str, Any], AfterValidator(_checked), Field(validate_default=True)] = "penalty-gradient"
+    law: Annotated[Law, AfterValidator(_checked), Field(validate_default=True)] = "penalty-gradient"
     """The force law: its name, or {use: its name} with its options."""
     friction: bool = True
     """Render friction."""
@@ -82,7 +65,7 @@ class WithMaterials(ForceRenderer):
 
         Compiled on the first use of a law on a machine, then loaded. Around a law in plain Python it is Python's too.
         """
-        _, law = _law(self.law)
+        _, law = made(self.law, _refusal)
         surface = self._covered(surface)
         touch = law.touch(surface)
         if surface.labels is None or not surface.materials:

@@ -2,6 +2,8 @@
 
 import struct
 
+from tangible_core.data.ticks import BEACON_SHIFT
+
 VERSION = 1
 """Of frames and messages; a page of another one is told to load again."""
 STATE, POINTER, ACK, RELEASE = 1, 2, 3, 4
@@ -20,3 +22,5 @@ RUNNING, HOLDING, RECORDING = 1, 2, 4
 TAG_BITS, BUTTON_BITS = 22, 8
 """A pointer's buttons travel through the loop's ring; the bits above the real ones say which message was acted on."""
 TAGS = (1 << TAG_BITS) - 1
+FLAG_BITS = (1 << BEACON_SHIFT) - 1
+"""Of a tick's flags, those that say what happened; above them stands the part of a beacon, which an event tells."""

@@ -70,7 +70,8 @@ def _softness(settings, memory, elapsed_s):
     memory[at.MEAN_S2] += (elapsed_s * elapsed_s - memory[at.MEAN_S2]) / REMEMBERED
     held = settings[at.STIFFNESS_TIMES_PERIOD] * memory[at.MEAN_S] / memory[at.MEAN_S2]
     held = min(held, settings[at.MAX_STIFFNESS])
-    wanted = held / settings[at.STIFFNESS] if settings[at.STIFFNESS] > held else 1.0
+    stiffness = settings[at.STIFFNESS] + memory[at.PULL_STIFFNESS]
+    wanted = held / stiffness if stiffness > held else 1.0
     share = memory[at.SOFTNESS]
     if wanted < share:
         memory[at.SOFTNESS] = max(wanted, share - elapsed_s / SOFTER_IN_S)
@@ -124,7 +125,8 @@ def guard(settings, memory, period_s, x, y, z, vx, vy, vz, fx, fy, fz):
     """What may leave of the law's force at a fresh position of the device, and the flags of this tick.
 
     period_s: since the last `guard` or `wait`. Always finite, never over the maximum, and never more than a step from
-    the last force, except that a state that is not finite or came too late is zero force at once.
+    the last force, except that a state that is not finite or came too late is zero force at once. A beacon's pull,
+    which `beacon_kernels.pull` left in the memory, joins the law's force; TOUCHING tells of the law alone.
     """
     elapsed_s = memory[at.AGE_S] + period_s
     memory[at.AGE_S] = 0.0
@@ -134,12 +136,15 @@ def guard(settings, memory, period_s, x, y, z, vx, vy, vz, fx, fy, fz):
         return _stop(memory, STALE)
     elapsed_s = max(elapsed_s, SHORTEST_S)
     touching = fx != 0.0 or fy != 0.0 or fz != 0.0
+    acts = touching
+    if memory[at.PULL] != 0.0 or memory[at.PULL + 1] != 0.0:
+        fx, fy, acts = fx + memory[at.PULL], fy + memory[at.PULL + 1], True
     if settings[at.COUPLING] > 0.0:
         fx, fy, fz = pull(settings, memory, x, y, z, vx, vy, vz, fx, fy, fz)
-    fx, fy, fz, soft = _safe(settings, memory, elapsed_s, touching, fx, fy, fz)
+    fx, fy, fz, soft = _safe(settings, memory, elapsed_s, acts, fx, fy, fz)
     braked = False
     if settings[at.BRAKE] > 0.0:
-        fx, fy, fz, braked = passive(settings, memory, elapsed_s, touching, x, y, z, vx, vy, vz, fx, fy, fz)
+        fx, fy, fz, braked = passive(settings, memory, elapsed_s, acts, x, y, z, vx, vy, vz, fx, fy, fz)
     fx, fy, fz, late = _gentle(settings, memory, elapsed_s, fx, fy, fz)
     _keep(settings, memory, fx, fy, fz)
     return fx, fy, fz, _count(memory, touching * TOUCHING | soft | braked * DAMPED | late)

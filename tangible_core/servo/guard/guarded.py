@@ -12,8 +12,16 @@ Guarded = Callable[[HapticState, float], tuple[Force, int]]
 """(state, seconds since the one before) -> the force that may leave, and the sum of its `TickFlag`s."""
 
 
-def guarded(touch: Touch, settings: np.ndarray, memory: np.ndarray) -> Guarded:
-    """What asks a law for its force and lets through what its guard, with the arrays of `Safety.arrays`, allows."""
+def guarded(
+    touch: Touch,
+    settings: np.ndarray,
+    memory: np.ndarray,
+    pull: Callable[[float, float, float, float, float, int], int] | None = None,
+) -> Guarded:
+    """What asks a law for its force and lets through what its guard, with the arrays of `Safety.arrays`, allows.
+
+    pull: what a beacon does in a tick (`pulling`), whose force joins the law's.
+    """
     from . import guard
 
     couple, allow = cast(Any, guard).couple, cast(Any, guard).guard
@@ -22,7 +30,8 @@ def guarded(touch: Touch, settings: np.ndarray, memory: np.ndarray) -> Guarded:
         device = *state.position_m, *state.velocity_m_per_s
         x, y, z, vx, vy, vz = couple(settings, memory, period_s, *device)
         wanted = touch.force(HapticState((x, y, z), (vx, vy, vz), state.time_s, state.buttons))
+        pulled = pull(period_s, x, y, vx, vy, state.buttons) if pull is not None else 0
         fx, fy, fz, flags = allow(settings, memory, period_s, *device, *wanted)
-        return Force(fx, fy, fz), flags
+        return Force(fx, fy, fz), flags | pulled
 
     return allowed

@@ -40,5 +40,8 @@ TOOL = HELD + 3 * (MOST_DELAY + 1)
 COUNTS = TOOL + 9
 """Ticks of each flag that a guard gives, by the flag's bit."""
 FLAGS = 8
-MEMORY = COUNTS + FLAGS
+PULL = COUNTS + FLAGS
+"""The beacon's force along x and y, which joins the law's; and its stiffness, which joins the law's as well."""
+PULL_STIFFNESS = PULL + 2
+MEMORY = PULL_STIFFNESS + 1
 """How many numbers a guard remembers."""

@@ -34,6 +34,8 @@ def _brake(settings, memory, elapsed_s, vx, vy, vz, fx, fy, fz):
     v2 = vx * vx + vy * vy + vz * vz
     if not SLOWEST_M_PER_S**2 < v2 < FASTEST_M_PER_S**2:
         return 0.0
+    share = memory[at.SOFTNESS]  # the pull of a beacon has an account of its own
+    fx, fy = fx - share * memory[at.PULL], fy - share * memory[at.PULL + 1]
     owed = (fx * vx + fy * vy + fz * vz - settings[at.CREDIT] * v2) * elapsed_s - memory[at.ENERGY_J]
     return min(owed / (elapsed_s * v2), settings[at.BRAKE]) if owed > 0.0 else 0.0
 

@@ -332,6 +332,33 @@ class TestScenes:
         with Image.open(archive.parent / "out/mine-batch/scenes/p1/card.jpg") as card:
             assert card.width == 2 * 160
 
+    def test_what_the_file_exports_is_beside_each_scene_s_files(self, archive: Path):
+        (archive.parent / "mine.yaml").write_text(CONFIG + "texture: {use: histogram, segments: 2}\nexport: [text]\n")
+        (archive / "p3.png").write_bytes(b"no")
+        assert self.run(archive.parent).returncode == 1
+        out = archive.parent / "out/mine-batch"
+        for row in rows_in(out):
+            if row["outcome"] == "ok":
+                exported = {Path(name).suffix for name in row["files"]}
+                assert {".txt", ".html"} <= exported, row
+                assert all((out / row["folder"] / name).is_file() for name in row["files"])
+        (archive / "p2.png").touch()
+        os.utime(archive / "p2.png", (1, 1))
+        write_png(archive / "p3.png", picture(3))
+        assert json.loads(self.run(archive.parent, "--json").stdout)["made"] == 2
+
+    def test_an_exporter_that_fails_is_the_scene_s_failure(self, archive: Path, monkeypatch: pytest.MonkeyPatch):
+        from tangible_export import Text
+
+        def fails(*_: object) -> None:
+            raise OutputError("the ink is dry")
+
+        monkeypatch.setattr(Text, "write", fails)
+        (archive.parent / "mine.yaml").write_text(CONFIG + "texture: {use: histogram, segments: 2}\nexport: [text]\n")
+        done = self.run(archive.parent)
+        assert done.returncode == 1
+        assert "the ink is dry" in rows_in(archive.parent / "out/mine-batch")[0]["error"]
+
     def test_a_second_one_in_the_same_folder_is_told(self, archive: Path):
         from tangible_core.files.json_lines import JsonLines
 

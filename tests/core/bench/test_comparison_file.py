@@ -114,6 +114,8 @@ baseline: constat
         ("", "1:1", "starts with `compare:`"),
         ("methods: [constant]\n", "1:1", "`compare:` names what kind"),
         ("compare: dept\n", "1:1", "did you mean 'depth'?"),
+        ("compare: export\n", "1:1", "exporters are not compared"),
+        ("compare: device\n", "1:1", "`tangible devices stress NAME`"),
         ("compare: depth\nscenes: [synthetic/bars]\n", "1:1", "`methods:` is missing"),
         ("compare: depth\nmethods: constant\nscenes: [synthetic/bars]\n", "2:1", "is a list"),
         ("compare: depth\nmethods: []\nscenes: [synthetic/bars]\n", "2:1", "is a list"),
@@ -137,7 +139,11 @@ baseline: constat
         (GOOD.replace("synthetic/steps", "motorcycle"), "3:10", "no scene is named 'motorcycle'"),
         (GOOD.replace("synthetic/steps", "{folder: nowhere}"), "3:10", "neither it nor a folder in it holds left.png"),
         (GOOD.replace("synthetic/steps", "synthetic/steps, synthetic/steps"), "3:27", "two scenes are called"),
-        (GOOD.replace("synthetic/steps", "{builtin: a, folder: b}"), "3:10", "one of builtin, synthetic and folder"),
+        (
+            GOOD.replace("synthetic/steps", "{builtin: a, folder: b}"),
+            "3:10",
+            "one of builtin, synthetic, folder, set",
+        ),
     ],
 )
 def test_one_mistake_one_line(registry: Registry, text: str, place: str, what: str):

@@ -51,7 +51,7 @@ def test_scenes_by_name(registry: Registry):
         ("mosaic", "no scene is named 'mosaic'; write mosaic/4, smooth/14"),
         ("tiles/4", "no scene is named 'tiles/4'"),
         ("mosaic/0", "greater than or equal to 1"),
-        ("{mosaic: 2, smooth: 3}", "one of mosaic, smooth and folder; this one is mosaic and smooth"),
+        ("{mosaic: 2, smooth: 3}", "one of mosaic, smooth, folder and pairs; this one is mosaic and smooth"),
         ("{smooth: 3, textures: here}", "textures are what a mosaic is made of; leave them out of smooth"),
         ("{folder: nowhere}", "neither it nor a folder in it holds picture.png and labels.png"),
     ],
@@ -77,7 +77,7 @@ def test_a_folder_of_pictures_with_labels(tmp_path: Path):
     assert list(several) == ["one", "two"]
     np.testing.assert_array_equal(several["two"].open().labels, SCENE.labels)
     Image.fromarray(SCENE.picture[1:]).save(tmp_path / "one" / "picture.png")
-    with pytest.raises(PictureError, match=r"picture\.png is \(39, 60\) and labels\.png \(40, 60\)"):
+    with pytest.raises(PictureError, match=r"picture\.png is 60 x 39 and .*labels\.png 60 x 40"):
         TextureScene(folder=tmp_path / "one").open()
 
 

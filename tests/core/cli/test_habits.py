@@ -7,13 +7,15 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from command_line import tangible
 from pictures import write_png
-from tangible_core.cli import loudness, sentences, show
+from standard_sets import LAYOUTS, known
+from tangible_core.cli import completing, loudness, sentences, show
 from tangible_core.cli.commands import COMMANDS, made
 from tangible_core.data import Outcome, Relief
 from tangible_core.pipeline.cache import Cache
@@ -59,10 +61,24 @@ def completed(words: str) -> list[str]:
         ("tangible run builtin/m", ["builtin/motorcycle"]),
         ("tangible run p.yaml --set workspace.wid", ["workspace.width_m="]),
         ("tangible run p.yaml --set render.use=prox", ["render.use=proxy"]),
+        ("tangible run p.yaml --set scene.set=kitti-2015", ["scene.set=kitti-2015"]),
+        ("tangible compare kitti-2015", ["kitti-2015"]),
     ],
 )
 def test_a_shell_completes_commands_methods_scenes_and_keys(words: str, offered: list[str]):
     assert [word for word in completed(words) if word] == offered
+
+
+def test_a_shell_completes_pairs_of_a_standard_set(tmp_path: Path):
+    LAYOUTS["eth3d"].make(tmp_path, known())
+    words = ["scene.set=eth3d", f"scene.folder={tmp_path}"]
+    found = completing.keys(SimpleNamespace(params={"sets": words}), "scene.name=deli")
+    assert found == ["scene.name=delivery_area_1l"]
+    assert completing.keys(SimpleNamespace(params={"sets": words}), "scene.name=deli") == [
+        "scene.name=delivery_area_1l"
+    ]
+    for unfinished in ([], words[:1], ["scene=3"], [*words, "scene.split=no"]):
+        assert completing.keys(SimpleNamespace(params={"sets": unfinished}), "scene.name=") == []
 
 
 def test_completion_is_installed_where_the_shell_looks(tmp_path: Path):
@@ -177,3 +193,23 @@ def test_sentences_stand_above_the_tables(folder: Path):
     assert tangible("devices", "doctor", "mock", cwd=folder).stdout.startswith("Nothing was found that keeps mock from")
     stress = tangible("devices", "stress", "mock", "--seconds", 0.01, cwd=folder).stdout
     assert re.match(r"mock can be read and written \d+ times a second", stress)
+
+
+def test_a_shell_is_offered_exporters_and_their_options():
+    from tangible_core.cli import completing
+
+    assert ("text,heights", True) in [(name, bool(says)) for name, says in completing.exporters("text,hei")]
+    assert [name for name, _ in completing.exporters("hei")] == ["heights"]
+    assert completing.keys("export.hei") == ["export.heights."]
+    assert completing.keys("export.heights.w") == ["export.heights.wide_m="]
+    assert completing.keys("export.nothing.") == []
+    assert "simplify.gap_m=" in completing.keys("simplify")
+    assert "export" in completing.kinds("ex")
+
+
+def test_an_exporter_is_shown_with_its_options(tmp_path: Path):
+    ran = tangible("plugins", "show", "export", "heights", cwd=tmp_path)
+    assert ran.returncode == 0, ran.stderr
+    assert ran.stdout.startswith("heights is an exporter of tangible-images")
+    assert "wide_m = null" in ran.stdout
+    assert re.search("^export +heights", tangible("plugins", cwd=tmp_path).stdout, re.MULTILINE)

@@ -290,18 +290,42 @@ def test_names_go_from_the_file_through_a_session_to_its_replay(folder: Path):
     well(tangible("parts", "still.png", cwd=folder))
     file = folder / "still.yaml"
     file.write_text(
-        file.read_text().replace('0: {name: ""', "0: {name: '[wall]'").replace("path: raster", "path: press")
+        file.read_text()
+        .replace('0: {name: ""', "0: {material: glass, name: '[wall]'")
+        .replace("path: raster", "path: press")
     )
     felt = well(tangible("feel", "still.yaml", "--seconds", 0.8, "--record", "hand.nc", "--json", cwd=folder))
     said = json.loads(felt.stdout)
     assert said["part"] in ("[wall]", "part 1", "part 2")
     assert sum(each["share"] for each in said["parts"]) == pytest.approx(1)
-    assert names_of(Recording.load(folder / "hand.nc").about.parts) == [{0: "[wall]"}]
+    about = Recording.load(folder / "hand.nc").about
+    (materials,) = names_of(about.materials)
+    assert names_of(about.parts) == [{0: "[wall]"}] and materials[0] == "glass"
+    assert said["material"] in materials.values()
+    assert [each["material"] for each in said["parts"]] == [materials[each["number"]] for each in said["parts"]]
     again = json.loads(well(tangible("replay", "hand.nc", "still.yaml", "--json", cwd=folder)).stdout)
-    assert again["recorded"]["parts"] == [{"0": "[wall]"}]
+    assert again["recorded"]["parts"] == [{"0": "[wall]"}] and again["recorded"]["materials"][0]["0"] == "glass"
     assert [each["number"] for each in again["parts"]] == [each["number"] for each in said["parts"]]
     table = well(tangible("replay", "hand.nc", "still.yaml", cwd=folder)).stdout
-    assert "% of the contact" in table
+    assert "% of the contact" in table and "material" in table
+
+
+@pytest.mark.slow
+def test_a_beacon_is_asked_for_by_name_and_said_by_the_recording_and_its_replay(folder: Path):
+    well(tangible("parts", "still.png", cwd=folder))
+    file = folder / "still.yaml"
+    file.write_text(file.read_text().replace('1: {name: ""', "1: {name: vase").replace("path: raster", "path: press"))
+    words = ("feel", "still.yaml", "--seconds", 0.8, "--record", "hand.nc", "--json", "--beacon")
+    said = json.loads(well(tangible(*words, "vase", cwd=folder)).stdout)
+    assert said["beacon"] == 1 and said["figures"]["beacon"] > 700
+    ((number, name, share),) = (each.values() for each in said["beacons"])
+    assert (number, name) == (1, "vase") and share > 0.9
+    assert np.isin(Recording.load(folder / "hand.nc").beacon, (1, -1)).all()
+    again = tangible("replay", "hand.nc", "still.yaml", cwd=folder)
+    assert "A beacon pulled to vase for " in well(again).stdout and "the law alone is replayed" in again.stdout
+    wrong = tangible("feel", "still.yaml", "--beacon", "vas", cwd=folder)
+    assert (wrong.returncode, wrong.stdout) == (2, "")
+    assert "no part is called 'vas' (did you mean 'vase'?); the parts are 1: 'vase'" in wrong.stderr
 
 
 def test_a_run_says_what_its_parts_are(folder: Path):

@@ -210,8 +210,8 @@ class TestCode:
     @pytest.mark.parametrize(
         ("module", "products"),
         [
-            ("tangible_core.scene.scaling", {"disparity", "segments"}),
-            ("tangible_core.scene.geometry", {"relief"}),
+            ("tangible_core.scene.scaling", {"disparity", "segments", "simplified"}),
+            ("tangible_core.scene.geometry", {"relief", "simplified"}),
             ("tangible_core.materials.rules", {"materials"}),
             ("tangible_core.data.surface", set(KEPT) - {"parts"}),
             ("tangible_core.pipeline.rules", set(KEPT)),

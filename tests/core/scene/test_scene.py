@@ -6,6 +6,7 @@ import pytest
 from pydantic import ValidationError
 
 from pictures import write_png
+from standard_sets import put
 from tangible_core.data import DisparityMap, Relief, SegmentMap
 from tangible_core.errors import ConfigError, GeometryError, PictureError
 from tangible_core.scene.scene import Scene
@@ -228,3 +229,24 @@ def test_two_sizes_are_named_with_their_files(folder, files, named):
 def test_a_file_that_is_not_there_is_named(folder, key):
     with pytest.raises(PictureError, match="there is no such file"):
         Scene.read(SceneFiles(**{key: "nothing.png"}), folder)
+
+
+@pytest.mark.parametrize("as_file", [True, False])
+def test_a_truth_in_the_encoding_of_its_kit(as_file: bool, tmp_path: Path):
+    """A scale, with 0 unknown; or Sintel's three channels."""
+    grey = np.uint16([[0, 256, 640]])
+    packed = np.uint8([[[0, 0, 0], [1, 32, 0], [2, 0, 64]]])
+    given = {"grey": grey, "packed": packed}
+    for name, values in given.items():
+        put(tmp_path / f"{name}.png", values)
+    grey_of, packed_of = ((tmp_path / f"{name}.png" if as_file else given[name]) for name in given)
+    view = np.zeros((1, 3), np.uint8)
+    scene = Scene.of(left=view, right=view, truth=grey_of, truth_scale=256)
+    np.testing.assert_array_equal(scene.truth, [[np.nan, 1, 2.5]])
+    np.testing.assert_array_equal(Scene.of(left=view, right=view, truth=grey_of).truth, grey)
+    scene = Scene.of(left=view, right=view, truth=packed_of, truth_scale="sintel")
+    np.testing.assert_array_equal(scene.truth, [[0, 4.5, 8 + 64 / 16384]])
+    with pytest.raises(PictureError, match="three channels of 8 bits, not"):
+        Scene.of(left=view, right=view, truth=grey_of, truth_scale="sintel")
+    with pytest.raises(ConfigError, match="truth_scale needs truth beside it"):
+        Scene.of(left=view, right=view, truth_scale=4)

@@ -322,7 +322,7 @@ class TestFile:
 
     def test_the_table_in_the_documentation_is_the_layout(self) -> None:
         """Name, type and shape of each section, for readers in other languages."""
-        types = {np.int64: "int64", np.float64: "float64"}
+        types = {np.int64: "int64", np.float64: "float64", np.float32: "float32"}
         for name, (kind, shape) in ring._sections(12345).items():
             said = ", ".join(map(str, shape)).replace("12345", "n") + ("," if len(shape) == 1 else "")
             assert f"| {name} | {types[kind]} ({said}) |" in (ring.__doc__ or "")

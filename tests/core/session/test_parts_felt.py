@@ -6,13 +6,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tangible_core.data import HapticSurface, Relief, ServoReport
+from tangible_core.data import HapticSurface, Material, Relief, ServoReport
 from tangible_core.errors import OutputError
 from tangible_core.servo import Safety
 from tangible_core.session import (
     About,
     Recording,
     Turn,
+    material_under,
+    materials_text,
     names_in,
     names_of,
     names_text,
@@ -54,6 +56,24 @@ def test_the_part_under_a_tip_by_its_name(x_mm: float, y_mm: float, called: str)
     assert part_under(in_parts(names=None), (x_mm / 1000, y_mm / 1000, 0.1)) == "", "its labels are no parts"
 
 
+def made_of(*materials: str, names: tuple[str, ...] | None = NAMES) -> HapticSurface:
+    """`in_parts`, each of a material."""
+    found = tuple(Material(name, 500.0, 0.0, 0.0, 0.0) for name in materials)
+    return replace(in_parts(names=names), materials=found)
+
+
+@pytest.mark.parametrize("names", [NAMES, None], ids=["parts", "segments"])
+def test_the_material_under_a_tip_of_parts_and_of_segments(names: tuple[str, ...] | None):
+    surface = made_of("glass", "wood", "moss", names=names)
+    places = [(-0.02, 0.01), (0.02, 0.01), (0.0, -0.01), (-0.041, 0.01), (np.nan, 0.0)]
+    assert [material_under(surface, (x, y, 0.1)) for x, y in places] == ["glass", "wood", "moss", "", ""]
+    assert material_under(in_parts(), (0.0, -0.01, 0.1)) == "", "it has parts and no materials"
+    assert names_of(materials_text(surface)) == [{0: "glass", 1: "wood", 2: "moss"}]
+    heard: list[ServoReport] = []
+    run_simulated(Penalty().touch(surface), Mock(path="press"), 0.2, telling_parts(surface, heard.append))
+    assert {each.material for each in heard} == {"moss"}
+
+
 def test_what_was_felt_of_each_part():
     places = [(-20, 10, 3.0)] * 5 + [(20, 10, 1.0)] * 3 + [(20, -10, 0.0)] * 9 + [(0, 30, 2.0), (-20, 10, 4.0)]
     position_m = np.array([(x / 1000, y / 1000, 0.0) for x, y, _ in places])
@@ -62,7 +82,8 @@ def test_what_was_felt_of_each_part():
     felt = Recording.of(
         time_s=time_s, position_m=position_m, velocity_m_per_s=0 * position_m, force_n=force_n, buttons=0 * time_s
     )
-    assert parts_felt(felt, in_parts()) == ((0, "sky", 0.6, 4.0), (1, "", 0.3, 1.0))
+    assert parts_felt(felt, in_parts()) == ((0, "sky", 0.6, 4.0, ""), (1, "", 0.3, 1.0, ""))
+    assert [each.material for each in parts_felt(felt, made_of("a", "b", "c"))] == ["a", "b"]
     assert parts_felt(felt, in_parts(names=None)) == ()
     assert parts_felt(replace(felt, rows=felt.rows[:0]), in_parts()) == ()
 
@@ -89,10 +110,11 @@ def test_reports_of_simulated_time_too_and_none_before_the_first_tick():
 
 @pytest.mark.parametrize("suffix", [".nc", ".npz"])
 def test_a_recording_says_what_parts_are_called(tmp_path: Path, suffix: str):
-    said = names_text({6: "Gräser [hoch]", 0: 'a "wall"\n'})
-    Recording(np.zeros((2, 16)), "", About("mock", parts=said)).save(tmp_path / f"a{suffix}")
+    said, of = names_text({6: "Gräser [hoch]", 0: 'a "wall"\n'}), names_text({6: "moss"})
+    Recording(np.zeros((2, 16)), "", About("mock", parts=said, materials=of)).save(tmp_path / f"a{suffix}")
     about = Recording.load(tmp_path / f"a{suffix}").about
     assert names_of(about.parts) == [{0: 'a "wall"\n', 6: "Gräser [hoch]"}]
+    assert names_of(about.materials) == [{6: "moss"}]
     assert about.device == "mock"
 
 

@@ -1,7 +1,9 @@
 """Every check of every family holds for a method that is right, and fails for one that is wrong in just its way."""
 
 from collections.abc import Callable
+from datetime import datetime
 from itertools import count
+from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
@@ -11,6 +13,7 @@ from tangible_core import (
     DepthEstimator,
     DeviceSpec,
     DisparityMap,
+    Exporter,
     Force,
     ForceRenderer,
     HapticDevice,
@@ -21,11 +24,21 @@ from tangible_core import (
     SegmentMap,
     Touch,
     Views,
+    Work,
 )
 from tangible_core.data import NO_FORCE
 from tangible_core.data.pictures import to_grey
-from tangible_core.errors import DeviceAbsent, DeviceError, PictureError
-from tangible_core.testing import CheckFailure, checks_depth, checks_device, checks_render, checks_texture, checks_touch
+from tangible_core.errors import BrokenMethod, DeviceAbsent, DeviceError, PictureError
+from tangible_core.testing import (
+    CheckFailure,
+    checks_depth,
+    checks_device,
+    checks_export,
+    checks_render,
+    checks_texture,
+    checks_touch,
+)
+from tangible_core.testing.whole_files import demand_whole
 
 ticket = count()
 """What a method must not have: a memory of its own."""
@@ -246,11 +259,54 @@ class Gadget(HapticDevice):
 the_only_one = GadgetLink("openers_do_not_share")
 
 
+class Note(Exporter):
+    """A line of text of what there is; wrong in the way that `fault` names."""
+
+    needs: ClassVar[tuple[str, ...]] = ("relief", "simplified")
+    fault: str = ""
+
+    def width_m(self, aspect: float) -> float | None:
+        return float("nan") if self.fault == "width_is_a_length" else 0.1 * aspect if 0.1 < aspect < 10 else None
+
+    def write(self, work: Work, stem: Path) -> tuple[Path, ...]:
+        text, path = f"{work.title}: {work.relief.height_m.max()} {work.names}", stem.with_suffix(".txt")
+        if self.fault == "reads_more":
+            text += str(work.parts)
+        if self.fault == "nothing_else_is_left":
+            Path("notes.txt").write_text("outside")
+        if self.fault == "leaves_a_draft":
+            stem.with_suffix(".draft").write_text("inside")
+        if self.fault == "same_work_same_files":
+            text += str(next(ticket))
+        if self.fault == "says_the_day":
+            text += f"{datetime.now():%Y-%m-%d}"
+        if self.fault == "work_is_not_written_to":
+            work.picture[0, 0] = 255 - work.picture[0, 0]
+        if self.fault == "every_work_is_answered" and work.simplified is None:
+            raise AttributeError("labels")
+        if self.fault == "every_picture_type_is_taken" and work.picture.dtype == np.uint16:
+            return ()
+        path.write_text("" if self.fault == "is_empty" else text, "ascii" if self.fault == "ascii" else "utf-8")
+        return (path,)
+
+
+class NeedsATouch(Note):
+    needs: ClassVar[tuple[str, ...]] = ("relief", "simplified", "touch")
+
+
+EXPORT: dict[str, Exporter] = {
+    **{check.__name__: Note(fault=check.__name__) for check in checks_export.CHECKS},
+    "needs_are_products": NeedsATouch(),
+    "plain_scene_is_written": Note(fault="reads_more"),
+}
+
+
 FAMILIES: list[tuple[Any, Any, dict[str, Any]]] = [
     (checks_depth.CHECKS, Depth(), {name: Depth(twist=twist) for name, twist in DEPTH.items()}),
     (checks_texture.CHECKS, Texture(), {name: Texture(twist=twist) for name, twist in TEXTURE.items()}),
     ((*checks_render.CHECKS, *checks_touch.CHECKS), Render(), RENDER),
     (checks_device.CHECKS, Gadget(), {check.__name__: Gadget(fault=check.__name__) for check in checks_device.CHECKS}),
+    (checks_export.CHECKS, Note(), EXPORT),
 ]
 RIGHT = [pytest.param(check, right, id=check.__name__) for checks, right, _ in FAMILIES for check in checks]
 WRONG = [
@@ -285,5 +341,39 @@ def test_a_method_that_raises_without_a_right_view_says_so_in_its_class():
 @pytest.mark.parametrize(("check", "method"), WRONG)
 @pytest.mark.usefixtures("unchecked_shapes")
 def test_a_method_that_is_wrong(check, method):
-    with pytest.raises((CheckFailure, DeviceError)):
+    with pytest.raises((CheckFailure, DeviceError, BrokenMethod)):
         check(method)
+
+
+@pytest.mark.parametrize(
+    ("fault", "check"),
+    [
+        ("is_empty", checks_export.plain_scene_is_written),
+        ("leaves_a_draft", checks_export.nothing_else_is_left),
+        ("says_the_day", checks_export.same_work_same_files),
+        ("ascii", checks_export.every_work_is_answered),
+    ],
+)
+def test_an_exporter_that_is_wrong_in_another_way(fault, check):
+    with pytest.raises(CheckFailure):
+        check(Note(fault=fault))
+
+
+CUT = {
+    ".json": b'{"low_mm": NaN}',
+    ".svg": b"<svg><path/>",
+    ".png": b"\x89PNG\r\n\x1a\n",
+    ".3mf": b"PK\x03\x04",
+    ".stl": bytes(80) + b"\x02\0\0\0" + bytes(50),
+    ".glb": b"glTF\x02\0\0\0\xff\0\0\0",
+    ".pdf": b"%PDF-1.7 ...",
+    ".txt": b"\xff",
+}
+
+
+@pytest.mark.parametrize("ending", CUT)
+def test_a_file_that_is_cut_short_is_noticed(tmp_path, ending):
+    path = tmp_path / f"cut{ending}"
+    path.write_bytes(CUT[ending])
+    with pytest.raises(Exception, match=r"."):
+        demand_whole(path)

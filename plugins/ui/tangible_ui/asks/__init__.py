@@ -3,7 +3,22 @@
 from collections.abc import Awaitable, Callable, Mapping
 from typing import Any
 
-from . import devices, document, drafts, feeling, laws, making, mapping, opening, parts, preflight, records, seeing
+from . import (
+    beacons,
+    devices,
+    document,
+    drafts,
+    exporting,
+    feeling,
+    laws,
+    making,
+    mapping,
+    opening,
+    parts,
+    preflight,
+    records,
+    seeing,
+)
 
 Ask = Callable[..., Awaitable[Any]]
 """Called with the desk, the tab, and what the tab says by name; the tab is answered with what it returns, as JSON."""
@@ -14,8 +29,10 @@ ASKS: Mapping[str, Ask] = {
     **making.ASKS,
     **seeing.ASKS,
     **preflight.ASKS,
+    **exporting.ASKS,
     **mapping.ASKS,
     **feeling.ASKS,
+    **beacons.ASKS,
     **opening.ASKS,
     **records.ASKS,
     **devices.ASKS,

@@ -31,7 +31,8 @@ async def record(desk: Desk, tab: Tab | None) -> str:
         loop.call_soon_threadsafe(lambda: desk.tell("recorder", **told))
 
     text = desk.text
-    about = About(felt.device_name, felt.law, text, parts=await asyncio.to_thread(names_in, text))
+    parts = await asyncio.to_thread(names_in, text)
+    about = About(felt.device_name, felt.law, text, parts=parts, materials=felt.materials)
     desk.recorder = await asyncio.to_thread(Recorder, servo, path, about, ended)
     desk.tell("recorder", recording=True, path=str(path), ticks=0, why="")
     return str(path)

@@ -1,6 +1,6 @@
-"""What a tab looks at: a fine texture at a place."""
+"""What a tab looks at or reads: a fine texture at a place, the surface in words."""
 
-from typing import Any
+from typing import Any, Literal
 
 from ..desk.desk import Desk, Tab
 
@@ -12,4 +12,9 @@ async def texture_patch(
     return await desk.maker.ask("texture_patch", digest=digest, x_m=x_m, y_m=y_m, side_m=side_m, pixels=pixels)
 
 
-ASKS = {"texture_patch": texture_patch}
+async def description(desk: Desk, tab: Tab | None, language: Literal["en", "de", "fr"]) -> dict[str, Any] | None:
+    """The surface on the screen at length, in words, as text and as HTML; None while there is no surface."""
+    return await desk.maker.quick("description", language=language)
+
+
+ASKS = {"texture_patch": texture_patch, "description": description}

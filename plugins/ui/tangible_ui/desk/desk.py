@@ -27,7 +27,7 @@ MOST_HISTORY, MOST_LOGGED = 500, 200
 """Events, and lines that were logged, that a tab which is opened later hears of."""
 DRAWN_PAUSE_S = 0.4
 """Between two surfaces that are drawn while a height is dragged: a browser draws one while the hand feels five."""
-LAST_ALONE = frozenset({"restored", "document", "plan", "materials", "preflight"})
+LAST_ALONE = frozenset({"restored", "document", "plan", "materials", "preflight", "legible", "exported", "beacon"})
 """Events of which only the last one counts."""
 
 

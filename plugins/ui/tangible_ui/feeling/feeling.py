@@ -14,10 +14,10 @@ from tangible_core.errors import DeviceError, TangibleError
 from tangible_core.mapping import MappedDevice, WorkspaceMapping, placement_of
 from tangible_core.plugins.failures import sentence
 from tangible_core.plugins.interfaces import HapticDevice
-from tangible_core.servo import Packed, Safety, Servo, still
+from tangible_core.servo import Beacon, Packed, Safety, Servo, still
 from tangible_core.servo.ring import STOP
 
-from ..wire import BUTTON_BITS, STATE, STATE_FRAME
+from ..wire import BUTTON_BITS, FLAG_BITS, STATE, STATE_FRAME
 from .hand import HIGH_M, Hand
 
 NOBODY: Vector = (0.0, 0.0, 0.0)
@@ -28,6 +28,8 @@ waiting for a quarter of a second. A page's silence is `hand.SILENT_S`."""
 FOLLOW_S = 0.012
 """A mouse moves 60 times a second, the loop looks a thousand times: the hand follows smoothly."""
 STOPPED = "stopped"
+BUTTONS, PRESSED = (1 << BUTTON_BITS) - 1, 1
+"""A device's buttons; and that of the page's own hand by which it is pressed down, and which lets go of no beacon."""
 
 
 class Felt(NamedTuple):
@@ -42,6 +44,8 @@ class Felt(NamedTuple):
     """Whether that is the page's own pointer."""
     mapping: WorkspaceMapping
     safety: Safety
+    materials: str = ""
+    """Their names by label, as a recording has them."""
 
     @classmethod
     def of(cls, made: dict[str, Any], channel: str) -> "Felt":
@@ -50,7 +54,7 @@ class Felt(NamedTuple):
         parts = (pickle.loads(made[name]) for name in ("device", "mapping", "safety"))
         device, mapping, safety = parts
         own_hand = getattr(unmapped(device), "channel", None) == channel
-        return cls(touch, made["law"], made["device_name"], device, own_hand, mapping, safety)
+        return cls(touch, made["law"], made["device_name"], device, own_hand, mapping, safety, made["materials"])
 
     @property
     def held(self) -> HapticDevice:
@@ -98,6 +102,8 @@ class Feeling:
         self._device: HapticDevice | None = None
         self._told: Servo | None = None
         """The loop whose end is known."""
+        self._pulling: Servo | None = None
+        """The loop in which a beacon was asked for, and is not known to be over."""
         self._lock = Lock()
 
     @property
@@ -163,6 +169,29 @@ class Feeling:
                 felt.touch.discard()
         return None if stopped() else time.monotonic() - begun_s
 
+    def pull_to(self, beacon: Beacon | None) -> None:
+        """Pull the hand to a part of what is felt, or let go of it. Raises: DeviceError if nothing is felt."""
+        if beacon is None:
+            self._pulling, servo = None, self._servo
+            if servo is not None:
+                servo.pull_to(None)
+            return
+        with self._lock:
+            servo = self._servo
+            if servo is None or not self.running:
+                raise DeviceError("nothing is felt, so nothing can be pulled; make and feel a surface first")
+            own_hand = self.felt is not None and self.felt.own_hand
+            servo.pull_to(beacon, BUTTONS & ~PRESSED if own_hand else BUTTONS)
+            self._pulling = servo
+
+    def beacon_over(self) -> str:
+        """Why a beacon ended by itself: `button`, `scene` or `ended`, of the loop; said once. To be asked often."""
+        servo = self._pulling
+        if servo is None or (self.running and servo is self._servo and servo.beacon.part is not None):
+            return ""
+        self._pulling = None
+        return servo.ring.beacon.state.why or "ended"
+
     def cut(self) -> Callable[[], None]:
         """No force from the next tick on, and none until `allow`. Waits for nothing and nobody.
 
@@ -212,7 +241,7 @@ class Feeling:
         sample_ms = 1e3 * (servo.ring.start_ns / 1e9 + t + time.time() - time.monotonic())
         tag = int(buttons) >> BUTTON_BITS
         return STATE_FRAME.pack(
-            STATE, status, int(flags), seq & 0xFFFFFFFF, tag, servo.ring.overruns, sample_ms,
+            STATE, status, int(flags) & FLAG_BITS, seq & 0xFFFFFFFF, tag, servo.ring.overruns, sample_ms,
             x, y, z, *(UNKNOWN if beside.blind else (px, py, pz)), fx, fy, fz, vx, vy, vz, *beside.force_n, 1e6 * late,
         )  # fmt: skip
 

@@ -84,6 +84,8 @@ class Bench:
         self.pipeline: Pipeline | None = None
         self.shown = ""
         """Digest of the surface that pages were told of last."""
+        self.described: Any = None
+        """The pipeline and what is seen of it, of which pages were told in words last."""
         self.opened: Any = None
         """What an editor of parts works on; quick jobs alone look at it."""
         self.kept: Any = None

@@ -17,7 +17,7 @@ from pydantic import BaseModel, ValidationError
 from tangible_core.data import HapticSurface, Material, PartMap
 from tangible_core.errors import ConfigError
 from tangible_core.materials.assignment import find, load_library
-from tangible_core.parts import HeightChoice, Layering, PartChoice, reduced_parts
+from tangible_core.parts import HeightChoice, Layering, PartChoice
 from tangible_core.pipeline import felt as on_grid
 from tangible_core.pipeline import parts_found
 from tangible_core.pipeline.config import PipelineConfig, wrong_of_parts
@@ -92,7 +92,7 @@ def parts_heights(
     kept.surface = names(config, HapticSurface(relief, kept.parts.labels, made, ("",) * kept.parts.count))
     device = config.felt_device
     surface = kept.surface if device is None else fitted(kept.surface, config, device)[0]
-    return parcel_of(config.render.method.touch(surface), surface.extent_m, config)
+    return parcel_of(config.render.method.touch(surface), surface, config)
 
 
 def parts_shown(bench: Bench) -> None:
@@ -158,7 +158,7 @@ def _kept(bench: Bench, pipeline: Pipeline) -> Kept:
         raise config.complained(*wrong)
     made = pipeline.changed(bare)
     grid = on_grid.FeltScene(made.scene, bare.size)
-    parts = reduced_parts(made.engine.felt("parts"), grid.shape)
+    parts = on_grid.parts_on_grid(made.engine.felt(bare.felt_parts), grid.shape, bare.felt_parts)
     uses = bare.render is None or bare.render.method.uses_materials
     chosen = made.make("materials") if uses else None
     layering = None if before is None else _same_layering(before, bare, parts, grid)

@@ -1,10 +1,14 @@
 """Everything the maker can be asked, by name."""
 
 from . import (
+    beacons,
     checking,
+    describing,
     devices,
+    exporting,
     felt_parts,
     laws,
+    legible,
     making,
     mapping,
     opening,
@@ -22,7 +26,10 @@ JOBS = {
     **checking.JOBS,
     **mapping.JOBS,
     **opening.JOBS,
+    **describing.JOBS,
     **preflight.JOBS,
+    **exporting.JOBS,
+    **legible.JOBS,
     **records.JOBS,
     **devices.JOBS,
     **textures.JOBS,
@@ -33,4 +40,5 @@ JOBS = {
     **proposals.JOBS,
     **snapping.JOBS,
     **felt_parts.JOBS,
+    **beacons.JOBS,
 }

@@ -8,7 +8,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from tangible_core.data import Outcome, Plan
+from tangible_core.data import HapticSurface, Outcome, Plan
 from tangible_core.errors import TangibleError
 from tangible_core.mapping import over
 from tangible_core.pipeline.config import PRODUCTS, PipelineConfig
@@ -17,6 +17,7 @@ from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.plugins.interfaces import Touch
 from tangible_core.runtime.child_process import dumps
 from tangible_core.servo import packed
+from tangible_core.session import materials_text
 
 from .bench import Bench, Job, Work
 from .checking import digest_of
@@ -104,6 +105,7 @@ def _show(bench: Bench, pipeline: Pipeline, product: str) -> None:
     if (seen := see(pipeline, product)).digest != bench.shown:
         bench.tell("scene", **show(seen, bench.folder))
         bench.shown = seen.digest
+        bench.described = pipeline, seen
         bench.tell("described", **described(pipeline, seen))
     bench.tell("materials", segments=_segments(pipeline, seen))
 
@@ -126,14 +128,14 @@ def _segments(pipeline: Pipeline, seen: Seen) -> list[dict[str, Any]]:
 def felt(pipeline: Pipeline, heard: Progress | None = None, stop: Event | None = None) -> dict[str, Any]:
     """What the force loop needs of a touch, which is made. Raises: ConfigError without a device; as `Pipeline.make`."""
     touch, config = pipeline.make("touch", heard, stop), pipeline.config
-    return parcel_of(touch, pipeline.make("surface").extent_m, config)
+    return parcel_of(touch, pipeline.make("surface"), config)
 
 
-def parcel_of(touch: Touch, extent_m: tuple[float, float], config: PipelineConfig) -> dict[str, Any]:
+def parcel_of(touch: Touch, surface: HapticSurface, config: PipelineConfig) -> dict[str, Any]:
     """What the force loop needs of a touch. Raises: ConfigError without a device; DeviceError if there is no room."""
     if config.device is None or config.felt_device is None:
         raise config.missing("device")
-    device = over(config.felt_device, extent_m)
+    device = over(config.felt_device, surface.extent_m)
     sent = packed(touch, device.spec())
     return {
         "parcel": str(sent.parcel),
@@ -143,6 +145,7 @@ def parcel_of(touch: Touch, extent_m: tuple[float, float], config: PipelineConfi
         "device": dumps(device),
         "mapping": dumps(config.mapping),
         "safety": dumps(config.safety),
+        "materials": materials_text(surface),
     }
 
 

@@ -11,11 +11,13 @@ from tangible_core.errors import OutputError
 from tangible_core.session import Recording, beside, compared
 from tangible_core.session.recording_files import SUFFIXES
 
+from ..wire import FLAG_BITS
 from .bench import Bench, Job
 
 MOST_ROWS = 120_000
 """Of a recording as pages have it, 8 MB; of a longer one, every second tick, or third..."""
 MOST_LISTED = 500
+AT_FLAGS = TICK_COLUMNS.index("flags")
 
 
 def records(bench: Bench, folder: Path) -> list[dict[str, Any]]:
@@ -61,6 +63,7 @@ def _shown(bench: Bench, found: Recording, path: str) -> dict[str, Any]:
     every = -(-len(found.rows) // MOST_ROWS) or 1
     rows = found.rows[::every].copy()
     start_s = float(found.time_s[0]) if len(rows) else 0.0
+    rows[:, AT_FLAGS] = found.flags[::every] & FLAG_BITS
     rows[:, 0] -= start_s  # what float32 holds of a clock that has run for days
     digest = digest_of(found.rows)
     at = bench.folder / digest

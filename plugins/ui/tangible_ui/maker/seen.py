@@ -10,8 +10,8 @@ from jaxtyping import Float32, Int32
 from tangible_core.data import DisparityMap, HapticSurface, Material, PartMap, Relief, SegmentMap
 from tangible_core.data.records import digest_of
 from tangible_core.metrics import absolute_error
-from tangible_core.parts import reduced_parts
 from tangible_core.pipeline.config import PipelineConfig, Product
+from tangible_core.pipeline.felt import parts_on_grid
 from tangible_core.pipeline.parts_said import names_of
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.pipeline.rules import fitted
@@ -58,6 +58,13 @@ class Seen:
     layers: dict[str, Layer]
     names: tuple[str, ...] | None = None
     """By label, of what the labels are parts of; None where they are of no parts."""
+
+    @property
+    def surface(self) -> HapticSurface:
+        """What is described of it."""
+        if self.materials or self.names:
+            return HapticSurface(self.relief, self.labels, self.materials or None, self.names)
+        return HapticSurface(self.relief)
 
     @cached_property
     def digest(self) -> str:
@@ -130,17 +137,18 @@ def _seen(pipeline: Pipeline, shows: Shows, relief: Relief) -> Seen:
 def _names(pipeline: Pipeline) -> tuple[str, ...] | None:
     """Of the parts, which are there; None where nothing is by parts."""
     config = pipeline.config
-    parts: PartMap | None = at_hand(pipeline, "parts") if config.by_parts else None
+    parts: PartMap | None = at_hand(pipeline, config.felt_parts) if config.by_parts else None
     return None if parts is None else names_of(config.parts or {}, parts.count)
 
 
 def _labels(pipeline: Pipeline, shape: tuple[int, int]) -> Int32[np.ndarray, "h w"] | None:
     """Of what has materials: of parts where anything is by parts, else of segments; None where they are not there."""
-    product: Product = "parts" if pipeline.config.by_parts else "segments"
+    parts = pipeline.config.felt_parts
+    product: Product = parts if pipeline.config.by_parts else "segments"
     found = at_hand(pipeline, product)
     if found is None:
         return None
-    return (reduced_parts if product == "parts" else reduced_segments)(found, shape).labels
+    return (reduced_segments(found, shape) if product == "segments" else parts_on_grid(found, shape, parts)).labels
 
 
 def at_hand(pipeline: Pipeline, product: Product) -> Any:

@@ -40,6 +40,8 @@ ASK_AGAIN = "no-cache"
 NEVER = "no-store"
 READING = ("GET", "HEAD")
 WRONG_KEY = 4401
+EXPORTS = "export-"
+"""How the maker names folders of files that it exported."""
 NOT_YOURS = "the key in the address is not this program's; open the address it printed"
 
 Answer = Callable[[Request], Awaitable[Response]]
@@ -117,12 +119,21 @@ def routes(desk: Callable[[], Desk], key: str) -> list[BaseRoute]:
         return checked
 
     async def scene(request: Request) -> Response:
-        path = _lying(desk().folder, request.path_params["digest"], request.path_params["name"])
+        digest, name = request.path_params["digest"], request.path_params["name"]
+        path = None if digest.startswith(EXPORTS) else _lying(desk().folder, digest, name)
         if path is None:
             return PlainTextResponse("there is no such thing any more", 404)
         if request.query_params.keys() & WINDOW:
             return await window_of(path, request)
         return FileResponse(path, headers={"cache-control": FOREVER})
+
+    async def exported(request: Request) -> Response:
+        """A file to keep: it is never shown as a page of this address, whatever is in it."""
+        folder, name = request.path_params["folder"], request.path_params["name"]
+        path = _lying(desk().folder, folder, name) if folder.startswith(EXPORTS) else None
+        if path is None:
+            return PlainTextResponse("this file is not there any more; export it again", 404)
+        return FileResponse(path, filename=name)
 
     async def window_of(path: Path, request: Request) -> Response:
         try:
@@ -158,6 +169,7 @@ def routes(desk: Callable[[], Desk], key: str) -> list[BaseRoute]:
 
     return [
         Route("/scene/{digest}/{name}", keyed(scene)),
+        Route("/export/{folder}/{name}", keyed(exported)),
         Route("/upload/{batch}/{name}", keyed(upload), methods=["PUT"]),
         Route("/stop", keyed(stop), methods=["POST"]),
         WebSocketRoute("/live", live),

@@ -15,6 +15,8 @@ async def watch(desk: "Desk") -> None:
     while True:
         desk.feeling.hand.keep()
         desk.laws.follow(desk.feeling)
+        if why := desk.feeling.beacon_over():
+            desk.tell("beacon", part=None, name="", why=why)
         if (ended := desk.feeling.ended()) is not None:
             desk.tell("loop", running=False, why=ended.why, lost=ended.lost)
         await asyncio.sleep(KEEP_S)

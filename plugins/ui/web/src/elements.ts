@@ -19,9 +19,13 @@ export function field(name: string, control: HTMLElement): HTMLDivElement {
   return box;
 }
 
+export function paragraph(text: string, className = ""): HTMLParagraphElement {
+  return Object.assign(document.createElement("p"), { className, textContent: text });
+}
+
 /** What helps to understand a control, in small letters. */
 export function hint(text: string): HTMLParagraphElement {
-  return Object.assign(document.createElement("p"), { className: "hint", textContent: text });
+  return paragraph(text, "hint");
 }
 
 /** A table with its headings and no rows; its title is for who does not see where it stands. */

@@ -1,4 +1,5 @@
 /** What the server says, by the name of the event; `at_s` is the Unix time. */
+import type { Plain } from "./forms/schema";
 import type { Hand } from "./hand";
 import type { State } from "./protocol";
 import type { Scene } from "./scene";
@@ -94,17 +95,22 @@ export interface Segment {
   share: number;
 }
 
+/** `unsafe` is preflight's worst, `illegible` that of legibility. */
+export type Grade = "ok" | "warn" | "unsafe" | "illegible";
+
 export interface Verdict {
   check: string;
   of: string;
-  verdict: "ok" | "warn" | "unsafe";
+  verdict: Grade;
   /** How the value stands to its bound, in words. */
   stands: string;
   source: string;
   note: string;
   cure: string;
   says: string;
-  changes: { key: string; value: number | string }[];
+  changes: { key: string; value: Plain }[];
+  /** Places that fail, as shares of the picture from the left and from the top. */
+  at?: [number, number][];
 }
 
 /** Plain values of a pipeline file. */
@@ -113,7 +119,7 @@ export type Values = Record<string, unknown>;
 /** A preflight of the text with this digest. */
 export interface Judged {
   digest: string;
-  grade: "ok" | "warn" | "unsafe";
+  grade: Grade;
   sentence: string;
   /** Empty for the page's own hand. */
   device: string;
@@ -121,6 +127,31 @@ export interface Judged {
   /** Whether lateness is that of the loop that gives the forces, and not of the process that judged. */
   of_loop: boolean;
   verdicts: Verdict[];
+}
+
+/** What a finger reads. */
+export type Medium = "swell" | "print" | "pins" | "force";
+
+/** Whether fingers can read the text with this digest. */
+export interface Legible {
+  digest: string;
+  medium: Medium;
+  width_m: number;
+  grade: Grade;
+  sentence: string;
+  verdicts: Verdict[];
+}
+
+/** What was exported of the text with this digest; the files lie at /export/<folder>/. */
+export interface Exported {
+  digest: string;
+  folder: string;
+  exports: (Pick<Outcome, "outcome" | "why" | "seconds" | "notes"> & {
+    name: string;
+    files: { name: string; bytes: number }[];
+    /** Null for what is not felt. */
+    legible: Pick<Legible, "grade" | "sentence" | "verdicts"> | null;
+  })[];
 }
 
 export interface Document {
@@ -158,6 +189,8 @@ export interface Events {
   plan: Said & Plan;
   materials: Said & { segments: Segment[] };
   preflight: Said & Judged;
+  legible: Said & Legible;
+  exported: Said & Exported;
   stage: Said & { product: string; method: string; done: Partial<Outcome> };
   scene: Said & Meta;
   /** The surface with this digest in words, and its materials' names, by language. */
@@ -174,6 +207,8 @@ export interface Events {
     device?: string;
     own_hand?: boolean;
   };
+  /** To which part a device guides the hand; null for none. */
+  beacon: Said & { part: number | null; name: string; why: "asked" | "button" | "scene" | "ended" };
   /** Another device was chosen. */
   device: Said & { kind: "hand" | "document" | "other"; name: string };
   error: Said & { text: string };
@@ -192,6 +227,9 @@ export interface Events {
   shown: Scene;
   /** Something about this page's hand changed: what moves it, how, whether it is felt. */
   hand: Hand;
+  /** What is to be shown of the surface, and what is: the picture, heights, segments ... */
+  "look at": { look: string };
+  look: { look: string };
   /** Something finer of the surface on the screen has come. */
   finer: Scene;
   /** A recording was opened, a file of this machine. */

@@ -23,6 +23,7 @@ export const FLAGS = {
   STALE: 128,
   OVERRUN: 256,
   SWAPPED: 512,
+  BEACON: 1024,
 } as const;
 
 /** x right, y away, z up; metres, newtons, metres per second. */

@@ -8,6 +8,8 @@ export const RATES = { least: 0.5, most: 3, step: 0.25 };
 
 export class Speech {
   private on = recall<boolean>("aloud", false);
+  /** What is being read, until its last line was spoken or something else is. */
+  private reads: object | null = null;
 
   constructor(private hub: Hub) {
     window.speechSynthesis?.addEventListener("voiceschanged", () => this.tell()); // they come late
@@ -15,7 +17,11 @@ export class Speech {
 
   /** The voice that speaks: of this machine before one that needs a network. None: null. */
   get voice(): SpeechSynthesisVoice | null {
-    const voices = window.speechSynthesis?.getVoices().filter((each) => each.lang.toLowerCase().startsWith(language)) ?? [];
+    return this.voiceOf(language);
+  }
+
+  private voiceOf(tongue: string): SpeechSynthesisVoice | null {
+    const voices = window.speechSynthesis?.getVoices().filter((each) => each.lang.toLowerCase().startsWith(tongue)) ?? [];
     return voices.find((each) => each.localService) ?? voices[0] ?? null;
   }
 
@@ -42,12 +48,40 @@ export class Speech {
   speak({ text }: Said): void {
     const voice = this.voice;
     if (!this.on || !voice) return;
-    const words = new SpeechSynthesisUtterance(text);
-    words.voice = voice;
-    words.lang = voice.lang;
-    words.rate = this.rate;
     speechSynthesis.cancel();
-    speechSynthesis.speak(words);
+    speechSynthesis.speak(this.utterance(text, voice));
+  }
+
+  /** Read lines in a language, whether or not speech is switched on; false where there is no voice for it.
+   * ended: once nothing of it is spoken any more. */
+  read(lines: string[], tongue: string, ended: () => void): boolean {
+    const voice = this.voiceOf(tongue);
+    if (!voice || !lines.length) return false;
+    speechSynthesis.cancel();
+    const reads = (this.reads = {});
+    const all = lines.map((line) => this.utterance(line, voice));
+    const end = (): void => {
+      if (this.reads === reads) this.reads = null;
+      ended();
+    };
+    all.at(-1)!.onend = end;
+    for (const each of all) each.onerror = end; // something else was spoken
+    for (const each of all) speechSynthesis.speak(each);
+    return true;
+  }
+
+  get reading(): boolean {
+    return this.reads !== null;
+  }
+
+  /** Read no further. */
+  hush(): void {
+    this.reads = null;
+    window.speechSynthesis?.cancel();
+  }
+
+  private utterance(text: string, voice: SpeechSynthesisVoice): SpeechSynthesisUtterance {
+    return Object.assign(new SpeechSynthesisUtterance(text), { voice, lang: voice.lang, rate: this.rate });
   }
 
   private tell(): void {

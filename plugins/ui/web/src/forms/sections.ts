@@ -3,7 +3,7 @@ import { type Option, options } from "./kinds";
 import { alternatives, type FileSchema, type Schema } from "./schema";
 
 export const STAGES = ["depth", "texture", "render", "device"] as const;
-export const ORDER = ["depth", "texture", "heights", "materials", "workspace", "mapping", "render", "device", "safety"] as const;
+export const ORDER = ["depth", "texture", "heights", "simplify", "materials", "workspace", "mapping", "render", "device", "safety"] as const;
 export type SectionName = (typeof ORDER)[number];
 
 /** So many options are seen at once; the others are folded. */

@@ -1,9 +1,12 @@
 /** All panels, in the order in which they stand. */
 import type { Panel } from "../panel";
+import { description } from "./description";
 import { devices } from "./devices";
+import { handOn } from "./export";
 import { hand } from "./hand";
 import { help } from "./help";
 import { laws } from "./laws";
+import { legible } from "./legible";
 import { log } from "./log";
 import { mapping } from "./mapping";
 import { materials } from "./materials";
@@ -22,7 +25,7 @@ import { yaml } from "./yaml";
 
 /** Left: what is made. Right: what is seen, heard and felt, settings and help last. Bottom: the log. */
 export const panels: Panel[] = [
-  open, methods, stages, parts, materials, preflight, yaml,
+  open, methods, stages, parts, materials, preflight, legible, description, handOn, yaml,
   view, overlay, ruler, mapping, hand, devices, sound, laws, records, settings, help,
   log,
 ];

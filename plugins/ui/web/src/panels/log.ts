@@ -1,5 +1,6 @@
 /** The log: what happened, with filters and search. */
 import { button } from "../elements";
+import { download } from "../files";
 import type { Events } from "../messages";
 import type { Page } from "../page";
 import type { Panel } from "../panel";
@@ -155,11 +156,7 @@ class Log {
   }
 
   private save(): void {
-    const link = document.createElement("a");
-    link.href = URL.createObjectURL(new Blob([asText(this.shown)], { type: "text/plain" }));
-    link.download = "tangible-log.txt";
-    link.click();
-    setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+    download(asText(this.shown), "tangible-log.txt", "text/plain");
   }
 
   private clear(): void {

@@ -3,6 +3,7 @@ import { button, hint } from "../elements";
 import type { Page } from "../page";
 import type { Panel } from "../panel";
 import { t } from "../words/parts";
+import { named } from "./parts/named";
 import "./parts.css";
 
 function build(page: Page, root: HTMLElement): void {
@@ -24,7 +25,7 @@ function build(page: Page, root: HTMLElement): void {
   });
   edit.id = "parts-edit";
   edit.className = "primary";
-  root.append(hint(t("about")), edit, told);
+  root.append(hint(t("about")), edit, told, named(page));
 }
 
 export const parts: Panel = { id: "parts", title: t("title"), place: "left", open: true, build };

@@ -1,6 +1,7 @@
 /** All products of the pipeline: which method makes each, what became of it, why, and how long it took. */
 import type { Page } from "../page";
 import type { Panel } from "../panel";
+import { made } from "../words/products";
 import { t } from "../words/stages";
 import { type Row, share, StageTable, type StateOf } from "./stages/table";
 import "./stages.css";
@@ -10,7 +11,7 @@ const REFRESH_MS = 200;
 const SHAPES: Record<StateOf, string> = {
   waiting: "○", running: "◐", ran: "●", cached: "◆", given: "▣", skipped: "–", refused: "⊘", failed: "✕", stopped: "■",
 };
-const PRODUCTS = ["views", "disparity", "relief", "segments", "parts", "materials", "surface", "touch"] as const;
+const PRODUCTS = ["views", "disparity", "relief", "segments", "parts", "simplified", "materials", "surface", "touch"] as const;
 
 function build(page: Page, root: HTMLElement): void {
   const table = new StageTable();
@@ -112,7 +113,7 @@ function time(row: Row, nowMs: number): string {
 
 function named(product: string): string {
   const known = PRODUCTS.find((each) => each === product);
-  return known ? t(known) : product;
+  return known ? t(known) : made(product);
 }
 
 function part(name: string, said: string, hidden = false): HTMLElement {

@@ -27,6 +27,7 @@ function build(page: Page, root: HTMLElement): void {
   const controls = controlsOf(showing.settings, set);
   root.append(looks(page, showing, set, controls.slider), ...controls.boxes, camera(page));
   page.hub.on("shown", () => showing.begin());
+  page.hub.on("look at", ({ look }) => page.scene && looksOf(page.scene.meta).includes(look) && set({ look }));
   const grounded = (): void => void (page.view.ground = colour("--ground"));
   page.hub.on("theme", grounded);
   grounded();

@@ -1,5 +1,6 @@
 /** The pipeline file on the screen, as text: to read, edit, copy, download and save. */
 import { button, field } from "../elements";
+import { copy, download } from "../files";
 import { Editor } from "../forms/editor";
 import type { Complaint } from "../messages";
 import type { Page } from "../page";
@@ -64,10 +65,10 @@ function build(page: Page, root: HTMLElement): void {
     field(t("text"), text),
     state,
     button(t("copy"), async () => {
-      await copy(text);
+      await copy(text.value);
       say(t("copied"));
     }),
-    button(t("download"), () => download(text.value, path.value)),
+    button(t("download"), () => download(text.value, path.value.split(/[/\\]/).at(-1) || "pipeline.yaml", "application/yaml")),
     field(t("path"), path),
     field(t("replace"), instead),
     button(t("save"), save),
@@ -97,23 +98,6 @@ function complaints(found: Complaint[]): HTMLElement[] {
     list.append(line);
   }
   return [heading, list];
-}
-
-async function copy(area: HTMLTextAreaElement): Promise<void> {
-  try {
-    await navigator.clipboard.writeText(area.value);
-  } catch {
-    area.select(); // where the browser forbids it, the keys still work
-    document.execCommand("copy");
-  }
-}
-
-function download(text: string, path: string): void {
-  const link = document.createElement("a");
-  link.href = URL.createObjectURL(new Blob([text], { type: "application/yaml" }));
-  link.download = path.split(/[/\\]/).at(-1) || "pipeline.yaml";
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 1000);
 }
 
 export const yaml: Panel = { id: "yaml", title: t("title"), place: "left", open: false, build };

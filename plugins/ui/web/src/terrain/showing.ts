@@ -68,6 +68,7 @@ export class Showing {
     view.eyeDome = this.settings.eyeDome;
     view.terrain?.show({ ...this.settings, look }, this.layer);
     view.dirty = true;
+    hub.tell("look", { look });
     this.changed();
   }
 }

@@ -18,6 +18,7 @@ export const t = words({
   texture: ["Texture", "Textur"],
   materials: ["Materials", "Materialien"],
   heights: ["Heights of parts", "Höhen der Teile"],
+  simplify: ["Legible parts", "Lesbare Teile"],
   workspace: ["Size", "Größe"],
   mapping: ["Mapping to the hand", "Abbildung auf die Hand"],
   render: ["Law of force", "Kraftgesetz"],

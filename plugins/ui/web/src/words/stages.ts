@@ -8,6 +8,7 @@ export const t = words({
   relief: ["Relief", "Relief"],
   segments: ["Texture", "Textur"],
   parts: ["Parts", "Teile"],
+  simplified: ["Legible parts", "Lesbare Teile"],
   materials: ["Materials", "Materialien"],
   surface: ["Surface", "Oberfläche"],
   touch: ["Law of force", "Kraftgesetz"],

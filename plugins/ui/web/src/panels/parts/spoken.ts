@@ -1,5 +1,6 @@
 /** Parts in words: their names, heights, sizes and places. */
 import { t } from "../../words/drawing";
+import { ninth } from "../../words/places";
 import { decimal } from "../../words/words";
 import type { Part } from "./drawing";
 import type { Labels, Point } from "./labels";
@@ -12,11 +13,7 @@ export const heightOf = ({ height_m, automatic }: Part): string =>
 
 export const shareOf = (share: number): string => t("percent", { share: decimal(100 * share, share < 0.01 ? 2 : share < 0.1 ? 1 : 0) });
 
-/** In which ninth of the picture. */
-export function placeOf({ at: [x, y] }: Place, { columns, rows }: Labels): string {
-  const third = (part: number, whole: number): number => Math.max(0, Math.min(2, Math.floor((3 * part) / whole)));
-  return t(`place${third(x, columns)}${third(y, rows)}` as Parameters<typeof t>[0]);
-}
+export const placeOf = ({ at: [x, y] }: Place, { columns, rows }: Labels): string => ninth(x / columns, y / rows);
 
 export function whereOf([x, y]: Point, { columns, rows }: Labels, name: string): string {
   return t("where", { x: Math.round((100 * x) / columns), y: Math.round((100 * y) / rows), name });

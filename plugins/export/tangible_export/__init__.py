@@ -1,0 +1,30 @@
+"""Exporters: what was made of a picture, as files for printers, swell paper, pin displays and readers.
+
+Each is imported when it is first used.
+"""
+
+from typing import TYPE_CHECKING
+
+from tangible_core.lazily import lazily
+
+if TYPE_CHECKING:
+    from .glb import Glb as Glb
+    from .heights import Heights as Heights
+    from .pins import Pins as Pins
+    from .stl import Stl as Stl
+    from .swell import Swell as Swell
+    from .text import Text as Text
+    from .three_mf import ThreeMF as ThreeMF
+
+__all__, __getattr__ = lazily(  # pyright: ignore[reportUnsupportedDunderAll]
+    __name__,
+    {
+        "glb": ["Glb"],
+        "heights": ["Heights"],
+        "pins": ["Pins"],
+        "stl": ["Stl"],
+        "swell": ["Swell"],
+        "text": ["Text"],
+        "three_mf": ["ThreeMF"],
+    },
+)

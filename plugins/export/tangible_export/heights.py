@@ -1,0 +1,79 @@
+"""Heights in millimetres, for programs that work on height maps; this one reads them back as they are."""
+
+import json
+import logging
+from pathlib import Path
+from typing import Annotated, ClassVar, final
+
+import numpy as np
+from pydantic import Field
+
+from tangible_core.data import Relief, Work
+from tangible_core.files.writing import atomic_write, write_text
+from tangible_core.plugins.interfaces import Exporter
+from tangible_core.plugins.notes import note
+from tangible_core.scene.height_files import MM, HeightsSaid, levels
+
+log = logging.getLogger(__name__)
+
+FINE_MM = 2e-4
+"""A step by which half a number of 16 bits is a tenth of a micrometre."""
+
+
+@final
+class Heights(Exporter):
+    """Heights: a PNG of 16 bits with a JSON of millimetres, and a TIFF of floating-point millimetres.
+
+    `scene: {height: NAME-heights.json}` reads them back within 0.1 um, as wide and as high as they are; the picture
+    files alone do, too, the PNG as exactly as 65,535 steps are.
+    """
+
+    needs: ClassVar[tuple[str, ...]] = ("relief",)
+
+    wide_m: Annotated[float, Field(ge=0.001, le=10, allow_inf_nan=False)] | None = None
+    """Width of the whole map; null for that of the workspace."""
+
+    def width_m(self, aspect: float) -> float | None:
+        """That of `wide_m`."""
+        return self.wide_m
+
+    def write(self, work: Work, stem: Path) -> tuple[Path, ...]:
+        """The text comes first: it is what is read back."""
+        png, tiff, text = (stem.with_name(f"{stem.name}-heights.{end}") for end in ("png", "tif", "json"))
+        numbers, low_mm, step_mm = levels(work.relief)
+        said = _said(work, png.name).model_copy(update={"exact": tiff.name, "low_mm": low_mm, "step_mm": step_mm})
+        if step_mm > FINE_MM:
+            note(
+                log,
+                f"{png.name} holds heights in steps of {1e3 * step_mm:.2g} um, as 16 bits have no finer ones for "
+                f"{said.high_mm - low_mm:.3g} mm; {tiff.name} holds them exactly",
+            )
+        _write_png(png, numbers)
+        _write_tiff(tiff, work.relief, _said(work, tiff.name))
+        write_text(text, said.model_dump_json(indent=2) + "\n")
+        return text, png, tiff
+
+
+def _said(work: Work, file: str) -> HeightsSaid:
+    (rows, columns), (width_m, length_m) = work.relief.height_m.shape, work.relief.extent_m
+    return HeightsSaid(
+        title=work.title, language=work.language, file=file, columns=columns, rows=rows,
+        width_mm=width_m * MM, length_mm=length_m * MM,
+        high_mm=float(work.relief.height_m.max()) * MM, low_mm=0, step_mm=1,
+    )  # fmt: skip
+
+
+def _write_png(path: Path, numbers: np.ndarray) -> None:
+    from PIL import Image
+
+    with atomic_write(path) as file:
+        Image.fromarray(numbers).save(file, "PNG")
+
+
+def _write_tiff(path: Path, relief: Relief, said: HeightsSaid) -> None:
+    from PIL import Image
+
+    text = json.dumps(said.model_dump(), ensure_ascii=True)  # a tag of plain letters
+    with atomic_write(path) as file:
+        heights_mm = (relief.height_m.astype(np.float64) * MM).astype(np.float32)
+        Image.fromarray(heights_mm).save(file, "TIFF", compression="tiff_adobe_deflate", description=text)

@@ -1,0 +1,83 @@
+"""Key pages: of each thing its letter, a sample of its fill, and its name."""
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import shapely
+
+from tangible_core.braille import CELL_PITCH_M, Cells, height_m, translate, wrapped
+
+from .drawing import Area, Braille, Drawing
+from .fills import filled
+from .sheet import CLEAR_MM, LINE_MM, MARGIN_MM, Page, Sheet, empty_sheet
+from .titles import MOST_LINES, lines_at, title_at
+from .words import words
+
+SAMPLE_MM = (36.0, 22.0)
+"""Width and length of a sample: what shows three elements of each fill across."""
+BESIDE_MM = 6.0
+"""Between the letter, the sample and the name."""
+
+
+@dataclass(frozen=True)
+class Entry:
+    """What the key says of a thing."""
+
+    name: str
+    letter: str
+    """Empty where it has none on the page."""
+    fill: str
+    """Its kind."""
+
+
+def key_pages(entries: list[Entry], title: str, language: str, page: Page, like: Sheet) -> list[Drawing]:
+    """As many pages as it takes, in the order of the letters. Raises: BrailleError as `wrapped`."""
+    heading = f"{title}: {words(language).key}" if title else words(language).key
+    sheet = empty_sheet(page, like)
+    lines = wrapped(heading, language, sheet.title_width_mm / 1000)[:MOST_LINES]
+    below = MARGIN_MM + 1000 * height_m(len(lines)) + BESIDE_MM
+    rows = sorted(entries, key=lambda each: (not each.letter, each.letter, each.name))
+    described = "; ".join(f"{each.letter} {each.name}".strip() for each in rows)
+    blank = Drawing(sheet, heading, described, language, words(language).corner, (), (title_at(heading, lines),))
+    columns = 2 if sheet.width_mm > sheet.length_mm else 1
+    width = (sheet.width_mm - 2 * MARGIN_MM - (columns - 1) * 2 * BESIDE_MM) / columns
+    letters = max(len(translate(each.letter, language)) for each in rows)
+    pages, column, top = [blank], 0, max(below, sheet.top_mm)
+    for each in rows:
+        row = _Row(each, language, width, letters)
+        if top + row.height_mm > sheet.length_mm - MARGIN_MM:
+            column, top = column + 1, max(below, sheet.top_mm)
+        if column == columns:
+            pages, column = [*pages, blank], 0
+        pages[-1] = _with(pages[-1], row, MARGIN_MM + column * (width + 2 * BESIDE_MM), top)
+        top += row.height_mm + CLEAR_MM + LINE_MM
+    return pages
+
+
+class _Row:
+    """An entry with its lines."""
+
+    def __init__(self, entry: Entry, language: str, width_mm: float, letters: int) -> None:
+        """letters: cells for which there is room before all samples of the key."""
+        self.entry = entry
+        self.letter: Cells = translate(entry.letter, language)
+        self.sample_mm = BESIDE_MM + 1000 * ((letters - 1) * CELL_PITCH_M + CELL_PITCH_M / 2) if letters else 0.0
+        self.name_mm = self.sample_mm + SAMPLE_MM[0] + BESIDE_MM
+        self.lines = wrapped(entry.name, language, (width_mm - self.name_mm) / 1000)
+        self.height_mm = max(SAMPLE_MM[1], 1000 * height_m(len(self.lines)))
+
+
+def _with(page: Drawing, row: _Row, left: float, top: float) -> Drawing:
+    """The page with one more row, whose upper left corner is there."""
+    middle, entry = top + row.height_mm / 2, row.entry
+    beside = middle - 500 * height_m(len(row.lines))
+    box = _box(left + row.sample_mm, middle - SAMPLE_MM[1] / 2)
+    texts: list[Braille] = [lines_at(entry.name, row.lines, left + row.name_mm, beside)]
+    texts += [lines_at(entry.letter, [row.letter], left, beside)] if entry.letter else []
+    area = Area(f"{entry.name}: {entry.fill}", box, filled(box, entry.fill))
+    return replace(page, areas=(*page.areas, area), texts=(*page.texts, *texts))
+
+
+def _box(left: float, top: float) -> Any:
+    half = LINE_MM / 2
+    return shapely.box(left + half, top + half, left + SAMPLE_MM[0] - half, top + SAMPLE_MM[1] - half)

@@ -1,0 +1,178 @@
+"""A drawn page measured in pixels: what lies nearer to what than a finger can part."""
+
+from collections import defaultdict
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from itertools import combinations
+
+import cv2
+import numpy as np
+from jaxtyping import Bool, Float32, Int32, Int64
+from scipy.ndimage import distance_transform_edt
+
+from .figures import black
+from .reading import Mark, Marks
+from .sheet import GAP_MM
+
+PIXELS_PER_MM = 10
+"""254 to the inch."""
+_INEXACT = 1.04
+"""OpenCV's distances to the nearest mark are off by 2 % at most, and each gap is the sum of two."""
+
+
+@dataclass(frozen=True, eq=False)
+class Near:
+    """Two marks with less between them than GAP_MM; 0 where they touch."""
+
+    marks: tuple[Mark, Mark]
+    gap_mm: float
+    place_mm: tuple[float, float]
+
+    @property
+    def between_outlines(self) -> bool:
+        """Whether nothing but outlines is too near: neither moving a letter nor leaving out an element of a fill helps."""
+        return all(mark.what == "outline" for mark in self.marks)
+
+    def __str__(self) -> str:
+        one, other = (f"the {mark.what} of {mark.label}" for mark in self.marks)
+        x, y = self.place_mm
+        return f"{one} and {other} are {self.gap_mm:.2g} mm apart at {x:.0f}, {y:.0f} mm"
+
+
+def too_near(page: Marks) -> list[Near]:
+    """Every two marks that are too near to each other, but for the dots of one text.
+
+    Outlines touch each other, and what touches is one; those that do not, such as one around a part within another,
+    are marks of their own.
+    """
+    ink = _down_to_the_last(black(page, PIXELS_PER_MM))
+    far, nearest = cv2.distanceTransformWithLabels(
+        (~ink).astype(np.uint8), cv2.DIST_L2, 5, labelType=cv2.DIST_LABEL_CCOMP
+    )
+    of = _marks_of(page, nearest)
+    touching = [
+        Near(pair, 0.0, pair[0].place_mm)
+        for marks in of.values()
+        for pair in combinations(_apart(marks), 2)
+        if not _belong(*pair)
+    ]
+    is_line = np.zeros(int(nearest.max()) + 1, np.bool_)
+    is_line[[number for number, marks in of.items() if marks[0].what == "outline"]] = True
+    lines = is_line[nearest[::2, ::2]] & ink[::2, ::2]
+    return touching + list(_gaps(ink, far, nearest, of)) + list(_narrow(page, lines))
+
+
+def _down_to_the_last(ink: Bool[np.ndarray, "r c"]) -> Bool[np.ndarray, "k c"]:
+    """Without the empty rows at the end."""
+    rows = np.flatnonzero(ink.any(axis=1))
+    return ink[: rows[-1] + 1] if rows.size else ink
+
+
+def _marks_of(page: Marks, nearest: Int32[np.ndarray, "r c"]) -> dict[int, list[Mark]]:
+    """The marks that each blot is made of."""
+    of = defaultdict[int, list[Mark]](list)
+    for mark in page.marks:
+        x, y = (int(PIXELS_PER_MM * at) for at in mark.place_mm)
+        if 0 <= y < nearest.shape[0] and 0 <= x < nearest.shape[1]:
+            of[int(nearest[y, x])].append(mark)
+    return dict(of)
+
+
+def _apart(marks: list[Mark]) -> list[Mark]:
+    """One for all that may touch each other."""
+    return list({("outline" if mark.what == "outline" else id(mark)): mark for mark in marks}.values())
+
+
+def _belong(one: Mark, other: Mark) -> bool:
+    """Dots of one text; outlines of parts that touch."""
+    return one.what == other.what and (one.what == "outline" or (one.what == "braille" and one.group == other.group))
+
+
+def _gaps(
+    ink: Bool[np.ndarray, "r c"],
+    far: Float32[np.ndarray, "r c"],
+    nearest: Int32[np.ndarray, "r c"],
+    of: Mapping[int, list[Mark]],
+) -> Iterator[Near]:
+    """Those that do not touch. `far` and `nearest` say how far the nearest blot is from a pixel, and which it is."""
+    places = dict[tuple[int, int], tuple[float, int, int]]()
+    for down, right in ((0, 1), (1, 0)):
+        rows, columns = ink.shape[0] - down, ink.shape[1] - right
+        row, column = np.nonzero(nearest[:rows, :columns] != nearest[down:, right:])
+        between = far[row, column] + far[row + down, column + right]
+        close = between < GAP_MM * PIXELS_PER_MM * _INEXACT
+        row, column = row[close], column[close]
+        one, other = nearest[row, column], nearest[row + down, column + right]
+        _keep_least(places, (row, column), one, other, between[close])
+    for (one, other), (_, row, column) in places.items():
+        pair = of[one][0], of[other][0]
+        if pair[0].what == "braille" and _belong(*pair):
+            continue
+        if (gap_mm := _gap_mm(ink, nearest, one, other, row, column)) < GAP_MM - 1e-6:
+            yield Near(pair, gap_mm, (column / PIXELS_PER_MM, row / PIXELS_PER_MM))
+
+
+def _keep_least(
+    places: dict[tuple[int, int], tuple[float, int, int]],
+    at: tuple[Int64[np.ndarray, " n"], ...],
+    one: Int32[np.ndarray, " n"],
+    other: Int32[np.ndarray, " n"],
+    between: Float32[np.ndarray, " n"],
+) -> None:
+    order = np.argsort(-between)
+    for i in order.tolist():
+        pair = (min(int(one[i]), int(other[i])), max(int(one[i]), int(other[i])))
+        if pair not in places or between[i] < places[pair][0]:
+            places[pair] = (float(between[i]), int(at[0][i]), int(at[1][i]))
+
+
+def _gap_mm(
+    ink: Bool[np.ndarray, "r c"], nearest: Int32[np.ndarray, "r c"], one: int, other: int, row: int, column: int
+) -> float:
+    """Between the edges of two blots, exactly, around this place."""
+    reach = 2 * int(GAP_MM * PIXELS_PER_MM)
+    window = slice(max(0, row - reach), row + reach), slice(max(0, column - reach), column + reach)
+    here, there = (ink[window] & (nearest[window] == number) for number in (one, other))
+    if not here.any() or not there.any():
+        return np.inf
+    return (float(distance_transform_edt(~there)[here].min()) - 1) / PIXELS_PER_MM
+
+
+def _narrow(page: Marks, lines: Bool[np.ndarray, "r c"]) -> Iterator[Near]:
+    """Where two lines of one net run too near to each other: what no disc GAP_MM wide reaches between them.
+
+    The tip of a corner is let be: it hangs together with the rest on one side alone, and is no longer than GAP_MM.
+    lines: in pixels twice as large; two of them are let be.
+    """
+    pixel_mm = 2 / PIXELS_PER_MM
+    free = (~lines).astype(np.uint8)
+    far = pixel_mm * (cv2.distanceTransform(free, cv2.DIST_L2, cv2.DIST_MASK_PRECISE) - 0.5)
+    middles = far >= GAP_MM / 2 - pixel_mm
+    beyond = pixel_mm * cv2.distanceTransform((~middles).astype(np.uint8), cv2.DIST_L2, 5) - GAP_MM / 2
+    left = (free > 0) & (beyond > pixel_mm)
+    count, places = cv2.connectedComponents(left.astype(np.uint8), connectivity=4)
+    if count == 1:
+        return
+    numbers, longest = np.arange(count), np.zeros(count, np.float32)
+    np.maximum.at(longest, places[left], beyond[left])
+    wrong = (longest > GAP_MM) | (_sides(places, (free > 0) & ~left, count) > 1)
+    for number in numbers[1:][wrong[1:]].tolist():
+        row, column = (int(at) for at in np.unravel_index(np.where(places == number, far, -1).argmax(), far.shape))
+        place = (column * pixel_mm, row * pixel_mm)
+        mark = _outline_around(page, place)
+        yield Near((mark, mark), max(0.0, 2 * float(far[row, column])), place)
+
+
+def _sides(places: Int32[np.ndarray, "r c"], rest: Bool[np.ndarray, "r c"], count: int) -> Int64[np.ndarray, " n"]:
+    """On how many sides each of the places hangs together with the rest."""
+    beside = np.where(rest, cv2.dilate(places.astype(np.float32), np.ones((3, 3), np.uint8)), 0).astype(np.int32)
+    _, sides = cv2.connectedComponents((beside > 0).astype(np.uint8), connectivity=8)
+    pairs = np.unique(np.stack([sides[beside > 0], beside[beside > 0]]), axis=1)
+    return np.bincount(pairs[1], minlength=count)
+
+
+def _outline_around(page: Marks, place_mm: tuple[float, float]) -> Mark:
+    """Of those that go around a place, the one of the least extent."""
+    outlines = [mark for mark in page.marks if mark.what == "outline"]
+    around = [mark for mark in outlines if mark.shape.contains_point(place_mm)] or outlines
+    return min(around, key=lambda mark: float(np.prod(np.ptp(mark.shape.vertices, axis=0))))

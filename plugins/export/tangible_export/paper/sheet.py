@@ -1,0 +1,109 @@
+"""Where on a sheet of paper the picture, the title and the corner mark lie, in millimetres from its upper left corner."""
+
+from dataclasses import dataclass, replace
+from typing import Literal
+
+from tangible_core.braille import height_m
+from tangible_core.errors import GeometryError
+
+Page = Literal["a4", "letter", "a3"]
+SIZES_MM: dict[Page, tuple[float, float]] = {"a4": (210, 297), "letter": (215.9, 279.4), "a3": (297, 420)}
+"""Width and length, upright."""
+MARGIN_MM = 10.0
+"""Free on all sides: what printers leave white, and where a hand holds the sheet."""
+LINE_MM = 1.0
+"""Width of outlines. A convention of ours, within the 0.5 to 1.5 mm that tactile graphics use."""
+GAP_MM = 3.2
+"""Between marks, so that a finger parts them. Source: tactilegraphics.org."""
+CLEAR_MM = GAP_MM + 0.15
+"""What the drawing keeps between marks: more than GAP_MM by a pixel and a half of those in which it is measured."""
+CORNER_MM = 8.0
+"""Legs of the triangle that says which corner is the upper right one."""
+LOWERED_MM = 10.0
+"""By which a picture that leaves room is lower than it could be, and no more: a hand that comes from the title finds
+it."""
+LEAST_MM = 12.7
+"""The shorter side of a picture. Source for the least size of a shape that is recognised: APH, 1997."""
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """A sheet with the place of its picture."""
+
+    width_mm: float
+    length_mm: float
+    left_mm: float
+    top_mm: float
+    picture_mm: tuple[float, float]
+    """Width and length."""
+    spare_mm: float = 0
+    """By which the picture can be moved down, for a title of several lines."""
+
+    @property
+    def title_width_mm(self) -> float:
+        """Of the lines above the picture, beside the corner mark."""
+        return self.width_mm - 2 * MARGIN_MM - CORNER_MM - 2 * GAP_MM
+
+    def below(self, title_mm: float) -> "Sheet":
+        """The same with its picture below a title of this height, as far as there is room, and nearer to the middle."""
+        least = MARGIN_MM + title_mm + CLEAR_MM + LINE_MM / 2
+        down = max(least - self.top_mm, min(self.spare_mm / 2, LOWERED_MM))
+        down = min(max(down, 0), self.spare_mm)
+        return replace(self, top_mm=self.top_mm + down, spare_mm=self.spare_mm - down)
+
+
+def sheet_for(page: Page, aspect: float, wide_m: float | None) -> Sheet:
+    """The sheet, upright or on its side, on which the picture is largest; or where it is so wide.
+
+    aspect: width through length of the picture.
+    """
+    size, wide = _largest(page, aspect)
+    wide = wide if wide_m is None else 1000 * wide_m
+    return _placed(size, (wide, wide / aspect))
+
+
+def check_readable(page: Page, sheet: Sheet) -> None:
+    """Raises: GeometryError for a picture that has no room, or is too narrow for a finger."""
+    width, length = sheet.picture_mm
+    _, most = _largest(page, width / length)
+    if width > most + 1e-6:
+        raise GeometryError(
+            f"swell: wide_m: a picture {width:.4g} mm wide has no room on {page}, which takes {most:.4g} mm; make it "
+            "smaller or the page larger"
+        )
+    if min(width, length) < LEAST_MM:
+        raise GeometryError(
+            f"swell: the picture would be {width:.3g} mm wide and {length:.3g} mm long on {page}, and a finger needs "
+            f"{LEAST_MM} mm; take a part of the picture that is less long and narrow, or make it larger"
+        )
+
+
+def _largest(page: Page, aspect: float) -> tuple[tuple[float, float], float]:
+    """The size of the sheet as it lies, and the width of the largest picture on it."""
+    upright = SIZES_MM[page]
+    rooms = {size: min(_room(size)[0], _room(size)[1] * aspect) for size in (upright, upright[::-1])}
+    size = max(rooms, key=lambda each: rooms[each])
+    return size, rooms[size]
+
+
+def empty_sheet(page: Page, like: Sheet) -> Sheet:
+    """A sheet that lies as the other one does, for a key: its picture is all that lies below the title."""
+    upright = SIZES_MM[page]
+    size = upright if like.width_mm < like.length_mm else upright[::-1]
+    return Sheet(*size, MARGIN_MM, _top_mm(), _room(size))
+
+
+def _top_mm() -> float:
+    return MARGIN_MM + max(CORNER_MM, 1000 * height_m()) + CLEAR_MM + LINE_MM / 2
+
+
+def _room(size: tuple[float, float]) -> tuple[float, float]:
+    """Width and length of the largest picture, to the middle of its outline."""
+    width, length = size
+    return width - 2 * MARGIN_MM - LINE_MM, length - _top_mm() - MARGIN_MM - LINE_MM / 2
+
+
+def _placed(size: tuple[float, float], picture: tuple[float, float]) -> Sheet:
+    """In the middle of what is left below the title."""
+    left = (size[0] - picture[0]) / 2
+    return Sheet(*size, left, _top_mm(), picture, spare_mm=_room(size)[1] - picture[1])

@@ -1,0 +1,117 @@
+"""Pictures for displays of pins."""
+
+import logging
+from pathlib import Path
+from typing import ClassVar, final
+
+import numpy as np
+
+from tangible_core.data import PartMap, Work
+from tangible_core.errors import PictureError, shown
+from tangible_core.plugins.interfaces import Exporter, Medium
+from tangible_core.plugins.notes import note
+
+from .labels import label_of, some
+from .pin_display.displays import DISPLAYS, HEXADECIMAL, PITCH_M, Display, Named
+
+log = logging.getLogger(__name__)
+
+LEAST_PINS = 3
+"""A side of a picture; in fewer, there is nothing between two borders."""
+
+
+@final
+class Pins(Exporter):
+    """Pins that rise along the borders of parts: PNG, JSON, Unicode braille, and an SVG for the IMAGE services.
+
+    A display whose pins have heights shows those of the relief between the borders, which stand above them.
+    """
+
+    medium: ClassVar[Medium | None] = "pins"
+
+    display: Named | Display = "monarch"
+    """A display by name, or how many columns and rows of pins it has, and how many heights."""
+
+    @property
+    def needs(self) -> tuple[str, ...]:  # pyright: ignore[reportIncompatibleVariableOverride]
+        """Heights only where pins have them: what makes them may take long, or not do for this scene."""
+        return ("simplified", "relief") if self._array.levels > 1 else ("simplified",)
+
+    @property
+    def _array(self) -> Display:
+        return self.display if isinstance(self.display, Display) else DISPLAYS[self.display]
+
+    def width_m(self, aspect: float) -> float:
+        """Of the picture on the display."""
+        return PITCH_M * min(self._array.columns, self._array.rows * aspect)
+
+    def write(self, work: Work, stem: Path) -> tuple[Path, ...]:
+        """A file each way; hexadecimal digits for a display that takes them.
+
+        Raises: PictureError where there is no border to show, or no room for one.
+        """
+        from .pin_display import drawing, raising, writing
+
+        array, parts = self._array, _parts(work, self._array)
+        place = raising.place_of(array, parts.labels.shape)
+        rows, columns = (each.stop - each.start for each in place)
+        if min(rows, columns) < LEAST_PINS:
+            raise PictureError(
+                f"pins: the picture would be {columns} pins wide and {rows} long; take a part of it that is less long "
+                "and narrow"
+            )
+        most = raising.most_of(parts, rows, columns)
+        labels = _labels(work, parts, most)
+        area = raising.heights(work.relief, rows, columns, array.levels - 1) if array.levels > 1 else None
+        pins = raising.raised(array, raising.borders(most), area, place)
+        if not pins.any():
+            raise PictureError("pins: no pin would rise, as one part fills the display; have more parts, and larger ones")
+        title = shown(work.title)
+        svg = drawing.svg(pins, array.levels, raising.whole(array, most, place), labels, title)
+        said = {"title": title, "language": work.language, "display": self._name, **array.model_dump()}
+        texts = {
+            ".json": writing.numbers(pins, {**said, "parts": list(labels.values())}),
+            ".txt": writing.patterns(pins),
+            ".svg": svg,
+            "-graphic.json": drawing.graphic(svg),
+        }
+        if self.display in HEXADECIMAL:
+            texts[".hex"] = writing.hexadecimal(pins)
+        note(log, f"{columns} x {rows} of {array.columns} x {array.rows} pins; {100 * (pins > 0).mean():.0f} % are up")
+        return _written(stem, self._name, writing.png(pins, array.levels), texts)
+
+    @property
+    def _name(self) -> str:
+        return self.display if isinstance(self.display, str) else f"pins-{self._array.columns}x{self._array.rows}"
+
+
+def _parts(work: Work, display: Display) -> PartMap:
+    """Raises: PictureError for a scene of one part, unless pins have heights."""
+    if (parts := work.simplified) is None:
+        raise PictureError("pins: this scene has no parts to show; it needs a picture, or `parts:` of its own")
+    if display.levels == 1 and (parts.labels == parts.labels.flat[0]).all():
+        raise PictureError(
+            "pins: the picture is one part, and has no border to show; name or draw its parts (`parts:`), or choose "
+            "another texture method"
+        )
+    return parts
+
+
+def _labels(work: Work, parts: PartMap, most: np.ndarray) -> dict[int, str]:
+    """What the parts are called that have a pin; a note names those that have none."""
+    sizes = np.bincount(parts.labels.ravel(), minlength=parts.count)
+    pins = np.bincount(most.ravel(), minlength=parts.count)
+    labels = {number: label_of(number, work) for number in np.flatnonzero(sizes).tolist()}
+    if lost := [label for number, label in labels.items() if not pins[number]]:
+        note(log, f"too small for a pin: {some(lost)}")
+    return {number: label for number, label in labels.items() if pins[number]}
+
+
+def _written(stem: Path, name: str, png: bytes, texts: dict[str, str]) -> tuple[Path, ...]:
+    picture = stem.with_name(f"{stem.name}-{name}.png")
+    picture.write_bytes(png)
+    paths = [picture]
+    for ending, text in texts.items():
+        paths.append(stem.with_name(f"{stem.name}-{name}{ending}"))
+        paths[-1].write_text(text, encoding="utf-8", newline="\n")
+    return tuple(paths)

@@ -1,0 +1,70 @@
+"""Patches of a surface: points in metres, and triangles that run counter-clockwise as seen from outside.
+
+Patches that are laid side by side have the same points along their common edge; `closed` makes one surface of them.
+"""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float64, Int64
+
+from tangible_core.data.records import Record
+
+
+@dataclass(frozen=True, eq=False)
+class Patch(Record):
+    """x to the right, y to the back, z up from the upper side of the plate."""
+
+    points_m: Float64[np.ndarray, "n 3"]
+    triangles: Int64[np.ndarray, "m 3"]
+
+
+def joined(patches: Iterable[Patch]) -> Patch:
+    """One patch of all, with the points that each of them has."""
+    points, triangles, count = list[np.ndarray](), list[np.ndarray](), 0
+    for patch in patches:
+        points.append(patch.points_m)
+        triangles.append(patch.triangles + count)
+        count += len(patch.points_m)
+    return Patch(np.concatenate(points), np.concatenate(triangles))
+
+
+def strip(inner: Float64[np.ndarray, "n 3"], outer: Float64[np.ndarray, "k 3"]) -> Patch:
+    """The surface between two chains of points that run the same way, `outer` to the right or below.
+
+    At each end of a piece of one chain, both have come equally far, each as a share of its whole length.
+    """
+    along_inner, along_outer = _shares(inner), _shares(outer)
+    near_outer = len(inner) + np.searchsorted(along_outer, along_inner, "left")
+    near_inner = np.searchsorted(along_inner, along_outer, "right")
+    i, j = np.arange(len(inner) - 1), len(inner) + np.arange(len(outer) - 1)
+    triangles = [np.stack([i + 1, i, near_outer], axis=1), np.stack([near_inner, j, j + 1], axis=1)]
+    return Patch(np.concatenate([inner, outer]), np.concatenate(triangles).astype(np.int64))
+
+
+def _shares(chain: Float64[np.ndarray, "n 3"]) -> Float64[np.ndarray, " m"]:
+    """How far along the chain each of its points but the first lies, 1 for the last."""
+    lengths = np.linalg.norm(np.diff(chain[:, :2], axis=0), axis=1).cumsum()
+    return lengths / lengths[-1]
+
+
+def wall(ring: Float64[np.ndarray, "n 3"], foot_m: float = 0.0) -> Patch:
+    """From a ring that runs counter-clockwise straight down."""
+    count, lower = len(ring), ring.copy()
+    lower[:, 2] = foot_m
+    upper = np.arange(count)
+    after = np.roll(upper, -1)
+    sides = [np.stack([after, upper, count + upper], axis=1), np.stack([after, count + upper, count + after], axis=1)]
+    return Patch(np.concatenate([ring, lower]), np.concatenate(sides).astype(np.int64))
+
+
+def rectangle(left_m: float, front_m: float, right_m: float, back_m: float) -> Patch:
+    """A flat one, at the upper side of the plate, without points between its corners."""
+    corners = flat([(left_m, front_m), (right_m, front_m), (right_m, back_m), (left_m, back_m)])
+    return Patch(corners, np.array([[0, 1, 2], [0, 2, 3]]))
+
+
+def flat(places_m: Sequence[tuple[float, float]], height_m: float = 0.0) -> Float64[np.ndarray, "n 3"]:
+    """Points at one height."""
+    return np.array([(x_m, y_m, height_m) for x_m, y_m in places_m], np.float64)

@@ -1,0 +1,65 @@
+"""Pages for swell paper."""
+
+from pathlib import Path
+from typing import Annotated, ClassVar, final
+
+from pydantic import Field
+
+from tangible_core.data import PartMap, Work
+from tangible_core.errors import BrokenMethod, PictureError
+from tangible_core.plugins.interfaces import Exporter, Medium
+
+from .paper.sheet import Page, check_readable, sheet_for
+
+
+@final
+class Swell(Exporter):
+    """A page for swell paper and its key: outlines, fills and braille in black shapes alone, as SVG and as PDF.
+
+    Sources: Guidelines and Standards for Tactile Graphics, Braille Authority of North America, 2010, for a key of
+    letters, outlines that stand clear of fills, and a mark at the upper right corner; the sizes have their own.
+    """
+
+    needs: ClassVar[tuple[str, ...]] = ("simplified",)
+    medium: ClassVar[Medium | None] = "swell"
+
+    page: Page = "a4"
+    """Size of the paper; it lies on its side where the picture is larger so."""
+    wide_m: Annotated[float, Field(gt=0, le=1, allow_inf_nan=False)] | None = None
+    """Width of the picture; as large as the page allows where it is not said."""
+
+    def width_m(self, aspect: float) -> float:
+        """Of the picture on the page."""
+        return sheet_for(self.page, aspect, self.wide_m).picture_mm[0] / 1000
+
+    def write(self, work: Work, stem: Path) -> tuple[Path, ...]:
+        """The page and each page of the key as an SVG of its own, and all of them as one PDF.
+
+        Raises: PictureError where there are no parts, or a page could not be read; GeometryError where it has no room;
+        BrailleError for a title or a name that has no braille; BrokenMethod without shapely.
+        """
+        try:
+            from .paper.figures import write_pdf
+            from .paper.page import drawn_pages
+            from .paper.parting import parted
+            from .paper.reading import read
+        except ImportError as error:
+            raise BrokenMethod(f"swell: pages need shapely ({error}); pip install 'tangible-images[export]'") from error
+        if (parts := work.simplified) is None:
+            raise PictureError("swell: this scene has no parts to outline; it needs a picture, or `parts:` of its own")
+        sheet = sheet_for(self.page, _aspect(work, parts), self.wide_m)
+        check_readable(self.page, sheet)
+        texts = drawn_pages(work, parted(work, parts, sheet.picture_mm[0] / 1000), sheet, self.page)
+        files = {f"{stem.name}-swell{'-key' * (n > 0)}{f'-{n}' * (n > 1)}.svg": text for n, text in enumerate(texts)}
+        paths = [stem.with_name(name) for name in files]
+        for path, text in zip(paths, texts, strict=True):
+            path.write_text(text, encoding="utf-8", newline="\n")
+        pdf = stem.with_name(f"{stem.name}-swell.pdf")
+        write_pdf(pdf, [read(text) for text in texts])
+        return (*paths, pdf)
+
+
+def _aspect(work: Work, parts: PartMap) -> float:
+    """Width through length of the picture: of its own pixels, for parts lie on a grid that may be half a cell off."""
+    rows, columns = parts.labels.shape if work.picture is None else work.picture.shape[:2]
+    return columns / rows

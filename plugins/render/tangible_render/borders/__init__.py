@@ -1,0 +1,1 @@
+"""The borders between labels as lines without stairs, and the distance to them."""

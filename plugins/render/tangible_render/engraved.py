@@ -1,0 +1,87 @@
+"""Contours as felt valleys: a groove along each border between parts, carved into what another law feels."""
+
+import logging
+from typing import Annotated, Any, ClassVar
+
+import numpy as np
+from jaxtyping import Float32
+from pydantic import AfterValidator, Field
+
+from tangible_core.data import HapticSurface, Relief
+from tangible_core.plugins.interfaces import ForceRenderer, Touch
+from tangible_core.plugins.notes import note
+
+from .borders.distance import border_distance
+from .inner_law import Law, checked, made
+
+log = logging.getLogger(__name__)
+FEWEST_CELLS = 6
+"""Across a groove: of fewer, a cubic spline makes another section."""
+
+
+def _refusal(cls: type[ForceRenderer]) -> str:
+    return "is around a law already; give the law itself" if cls is Engraved else ""
+
+
+def _checked(law: Law) -> dict[str, Any]:
+    return checked(law, _refusal)
+
+
+class Engraved(ForceRenderer):
+    """A groove along every border between the parts of a surface, or its segments, under any other law.
+
+    The heights that the law feels are h - D (1 + cos(2 pi d / W)) / 2 where the distance d to the nearest border is
+    less than W / 2, D the depth and W the width of the groove: a valley that begins and ends without an edge, and is as
+    conservative as the law is, as it is nothing but its surface. The borders are lines without stairs within half a
+    cell of the labels' own (see `borders.lines`), so that a surface of twice the cells feels the same.
+
+    No height may be less than 0: where the ground is too low for a groove, the whole surface is lifted by what is
+    missing, at most D, and that is said. Where several borders are near, the nearest counts: a part narrower than W is
+    all groove. Friction, texture and damping are those that the law within renders; around a law that renders none,
+    {use: with-materials, law: ...} does.
+    Source: the raised cosine as an engraved line is a convention of ours; that valleys guide a finger along a contour,
+    Yu & Brewster, Multimodal virtual reality versus printed medium in visualization for blind people, ASSETS 2002.
+    """
+
+    renders_materials: ClassVar[bool] = True
+
+    law: Annotated[Law, AfterValidator(_checked), Field(validate_default=True)] = "proxy"
+    """The force law that feels the grooves: its name, or {use: its name} with its options."""
+    width_m: Annotated[float, Field(gt=0, le=0.05, allow_inf_nan=False)] = 0.003
+    """Width of a groove, from edge to edge."""
+    depth_m: Annotated[float, Field(gt=0, le=0.01, allow_inf_nan=False)] = 0.0006
+    """Depth of a groove in its middle."""
+
+    def touch(self, surface: HapticSurface) -> Touch:
+        """The law's own touch on the surface with its grooves; on the surface as it is where that has no borders."""
+        _, law = made(self.law, _refusal)
+        return law.touch(self.carved(surface))
+
+    def carved(self, surface: HapticSurface) -> HapticSurface:
+        """The surface with a groove along each border between its labels, as the law within feels it."""
+        labels = surface.labels
+        if labels is None or (labels == labels[0, 0]).all():
+            note(log, "no groove is engraved: the surface has no parts or segments with a border between them")
+            return surface
+        self._tell_coarse(max(surface.relief.pitch_m))
+        lower_m = self.section(border_distance(labels, surface.relief.pitch_m, self.width_m / 2))
+        height_m = surface.height_m - lower_m
+        lift_m = max(0.0, -float(height_m.min()))
+        if lift_m > 0:
+            note(log, f"the surface is lifted by {1000 * lift_m:.2g} mm, so that its grooves end over the base")
+        carved_m = np.maximum(height_m + np.float32(lift_m), np.float32(0.0))
+        return HapticSurface(Relief(carved_m, surface.extent_m), labels, surface.materials, surface.names)
+
+    def section(self, distance_m: Float32[np.ndarray, "h w"]) -> Float32[np.ndarray, "h w"]:
+        """How far the ground is lowered at these distances from a border."""
+        turn = 2 * np.pi * np.minimum(distance_m / self.width_m, 0.5)
+        return np.float32(0.5 * self.depth_m) * (1 + np.cos(turn, dtype=np.float32))
+
+    def _tell_coarse(self, pitch_m: float) -> None:
+        if self.width_m < FEWEST_CELLS * pitch_m:
+            note(
+                log,
+                f"a groove of {1000 * self.width_m:.2g} mm is {self.width_m / pitch_m:.2g} cells wide, and is felt "
+                f"shallower than it is said; from {1000 * FEWEST_CELLS * pitch_m:.2g} mm on these cells hold it",
+                logging.WARNING,
+            )

@@ -1,0 +1,122 @@
+/** Which exporters, each with its options: a form that belongs to the panel until it is written into the file. */
+import { button, paragraph } from "../../elements";
+import type { Option } from "../../forms/kinds";
+import { FIELD, rows } from "../../forms/rows";
+import type { Plain } from "../../forms/schema";
+import { put, type Said } from "../../forms/values";
+import { t } from "../../words/export";
+import { blocksOf, entriesOf, type Entry } from "./entries";
+
+export interface Exporter {
+  name: string;
+  about: string;
+  options: Option[];
+}
+
+/** What an exporter is called; one that is not known says what it does. */
+export const called = (name: string): string => (t.has(name) ? t(name) : name);
+
+export class Choices {
+  readonly root = document.createElement("ul");
+  /** Hears that another one is chosen, or another option. */
+  changed: () => void = () => undefined;
+  private entries: Entry[] = [];
+
+  constructor(private exporters: Exporter[]) {
+    this.root.className = "exporters";
+    this.root.setAttribute("aria-label", t("what"));
+  }
+
+  get blocks(): Plain[] {
+    return blocksOf(this.entries);
+  }
+
+  /** Show what the file says. */
+  show(said: Plain | undefined): void {
+    this.build(entriesOf(said, this.exporters.map(({ name }) => name)));
+  }
+
+  private build(entries: Entry[]): void {
+    this.entries = entries;
+    this.root.replaceChildren(...entries.map((entry, at) => this.line(entry, at)));
+  }
+
+  private line(entry: Entry, at: number): HTMLElement {
+    const box = document.createElement("li");
+    const input = document.createElement("input");
+    input.type = "checkbox";
+    input.checked = entry.on;
+    input.id = `export-${at}-${entry.use}`;
+    input.onchange = () => {
+      entry.on = input.checked;
+      this.changed();
+    };
+    const label = document.createElement("label");
+    label.append(input, called(entry.use));
+    box.append(label);
+    const known = this.exporters.find(({ name }) => name === entry.use); // a file may name one that is not installed
+    if (known) box.append(this.options(entry, at, known, input));
+    return box;
+  }
+
+  private options(entry: Entry, at: number, known: Exporter, on: HTMLInputElement): HTMLElement {
+    const box = document.createElement("details");
+    box.className = "more";
+    const heading = document.createElement("summary");
+    const name = document.createElement("span");
+    name.className = "visually-hidden";
+    name.textContent = t("optionsOf", { name: called(entry.use) });
+    const about = paragraph(known.about.split("\n")[0], "hint");
+    about.lang = "en";
+    const count = (): void => {
+      const set = Object.keys(entry.options).length;
+      heading.replaceChildren(set ? t("optionsSet", { set }) : t("options"), name);
+    };
+    const row = rows(() => undefined);
+    const made = known.options.map((option) => {
+      const one = row(option, `${FIELD}export-${at}-${entry.use}.${option.name}`, (said: Said, inside: string[] = []) => {
+        entry.options = put(entry.options, [option.name, ...inside], said) as Entry["options"];
+        if (!entry.on) on.click(); // who sets its options wants it
+        show();
+        this.changed();
+      });
+      return { root: one.root, show: () => one.show(entry.options[option.name], option.name in entry.options) };
+    });
+    const show = (): void => {
+      count();
+      for (const each of made) each.show();
+    };
+    show();
+    box.append(heading, about, ...made.map(({ root }) => root), this.more(entry, at));
+    return box;
+  }
+
+  /** Two pin displays want two pictures. */
+  private more(entry: Entry, at: number): HTMLElement {
+    const box = document.createElement("div");
+    box.className = "buttons";
+    const again = button(t("another"), () => {
+      this.build([...this.entries.slice(0, at + 1), { ...entry, on: true }, ...this.entries.slice(at + 1)]);
+      this.open(at + 1);
+    });
+    again.className = "quiet";
+    box.append(again);
+    if (this.entries.filter(({ use }) => use === entry.use).length > 1) {
+      const remove = button(t("remove"), () => {
+        this.build(this.entries.filter((each) => each !== entry));
+        this.open(at - 1);
+      });
+      remove.className = "quiet";
+      remove.setAttribute("aria-label", t("removeThis", { name: called(entry.use) }));
+      box.append(remove);
+    }
+    return box;
+  }
+
+  private open(at: number): void {
+    const line = this.root.children[Math.max(0, at)]!;
+    line.querySelector("details")!.open = true;
+    line.querySelector("input")!.focus();
+    this.changed();
+  }
+}

@@ -1,0 +1,15 @@
+"""The benchmarks of the field: standard sets of pairs, read as their kits lay them out; nothing is downloaded.
+
+>>> from tangible_core import datasets
+>>> [name for name in datasets.SETS if name.startswith("kitti")]
+['kitti-2012', 'kitti-2015']
+"""
+
+from .choosing import SetScene as SetScene
+from .choosing import pairs as pairs
+from .globs import matched as matched
+from .sets import SETS as SETS
+from .sets import StandardSet as StandardSet
+from .standard_pair import FULL_PX as FULL_PX
+from .standard_pair import MarkedPair as MarkedPair
+from .standard_pair import StandardPair as StandardPair

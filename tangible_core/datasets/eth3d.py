@@ -1,0 +1,32 @@
+"""ETH3D's pairs, as their archives unpack: truth beside the pictures, or in a folder of its own."""
+
+from collections.abc import Iterator
+from functools import partial
+from pathlib import Path
+
+from .cameras import if_there, middlebury_cameras
+from .standard_pair import Mask, StandardPair
+from .walking import folders
+
+TRUTH, NOC = "disp0GT.pfm", "mask0nocc.png"
+
+
+def eth3d(root: Path) -> Iterator[StandardPair]:
+    """NAME/im0.png, im1.png, calib.txt; of the same NAME, disp0GT.pfm (infinite: unknown) and mask0nocc.png (255)."""
+    held = list(folders(root))
+    truths = {each.path.name: each for each in reversed(held) if TRUTH in each.files}
+    for each in held:
+        if not each.has("im0.png", "im1.png"):
+            continue
+        truth = truths.get(each.path.name)
+        masked = truth is not None and NOC in truth.files
+        yield StandardPair(
+            name=each.path.name,
+            left=each.path / "im0.png",
+            right=each.path / "im1.png",
+            truth=truth and truth.path / TRUTH,
+            noc=Mask((truth.path / NOC,), "at 255") if truth is not None and masked else None,
+            sparse=True,
+            cameras=partial(if_there, middlebury_cameras, each.path / "calib.txt"),
+            test=truth is None and not {"two_view_test", "test"}.isdisjoint(each.within),
+        )

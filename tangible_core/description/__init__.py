@@ -1,0 +1,15 @@
+"""A surface in words, for somebody who does not see it: facts, and a language's words for them."""
+
+from .at_length import Told as Told
+from .at_length import describe_at_length as describe_at_length
+from .at_length import tell as tell
+from .describing import describe as describe
+from .facts import PartFacts as PartFacts
+from .facts import facts as facts
+from .languages import LANGUAGES as LANGUAGES
+from .languages import Language as Language
+from .languages import language_of as language_of
+from .languages import part_label as part_label
+from .languages import spoken_language as spoken_language
+from .page import page_of as page_of
+from .places import place_in_words as place_in_words

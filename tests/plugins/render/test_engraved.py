@@ -1,0 +1,211 @@
+"""Engraved contours: a groove of the section that is said, at any angle and on any grid, and as passive as its law."""
+
+import logging
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from pydantic import ValidationError
+
+from tangible_core.data import HapticState, HapticSurface, Relief
+from tangible_core.materials.assignment import library
+from tangible_core.plugins.notes import collected
+from tangible_core.plugins.registry import load_method
+from tangible_render.borders import lines
+from tangible_render.engraved import Engraved
+from tangible_render.proxy import Proxy
+from tangible_render.with_materials import WithMaterials
+
+SIDE_M, HIGH_M, K = 0.08, 0.004, 600.0
+GROOVE = Engraved(law={"use": "penalty-gradient", "stiffness_n_per_m": K}, width_m=0.003, depth_m=0.0006)
+
+
+def grid(cells: int) -> tuple[np.ndarray, np.ndarray]:
+    """x and y of the cells' centres."""
+    rows, columns = np.indices((cells, cells))
+    return ((columns + 0.5) / cells - 0.5) * SIDE_M, (0.5 - (rows + 0.5) / cells) * SIDE_M
+
+
+def level(labels: np.ndarray, height_m: float = HIGH_M) -> HapticSurface:
+    relief = Relief(np.full(labels.shape, height_m, np.float32), (SIDE_M, SIDE_M))
+    return HapticSurface(relief, labels.astype(np.int32))
+
+
+def section(distance_m: np.ndarray, method: Engraved = GROOVE) -> np.ndarray:
+    """The formula: a raised cosine."""
+    within = np.abs(distance_m) < method.width_m / 2
+    return np.where(within, method.depth_m / 2 * (1 + np.cos(2 * np.pi * distance_m / method.width_m)), 0.0)
+
+
+def straight(cells: int, degrees: float) -> tuple[HapticSurface, np.ndarray, np.ndarray]:
+    """Two halves; the distance of each cell from the line between them; the cells whose nearest point is in sight.
+
+    A line along the cells runs between them, any other one past their centres: at 45 degrees no grid can tell apart
+    lines that are as far from each other as its diagonals.
+    """
+    turn, (x, y) = np.radians(degrees), grid(cells)
+    aside_m = 0.0 if degrees % 90 == 0 else 0.31 * SIDE_M / cells
+    distance_m = y * np.cos(turn) - x * np.sin(turn) - aside_m
+    inner = np.maximum(np.abs(x), np.abs(y)) < SIDE_M / 2 - 0.003
+    return level(distance_m > 0), distance_m, inner
+
+
+class TestTheSection:
+    @pytest.mark.parametrize("cells", [400, 800])
+    @pytest.mark.parametrize("degrees", [0, 3, 11, 22.5, 30, 45, 60, 77, 90, 130])
+    def test_it_is_the_formula_on_a_straight_border_at_any_angle(self, cells: int, degrees: float):
+        """Within 4 um on the average and 17 um at most on cells of 0.2 mm, half of that on cells half as wide."""
+        surface, distance_m, inner = straight(cells, degrees)
+        near = inner & (np.abs(distance_m) < GROOVE.width_m / 2)
+        error_m = np.abs(HIGH_M - GROOVE.carved(surface).height_m - section(distance_m))
+        assert error_m[near].mean() < 4e-6 * 400 / cells
+        assert error_m[inner].max() < 17e-6 * 400 / cells
+
+    @pytest.mark.parametrize("degrees", [1, 89, 134])
+    def test_a_border_that_hardly_slants_is_known_to_half_a_cell_and_no_worse(self, degrees: float):
+        """Or hardly off the diagonal: its stairs are longer than what is seen of the line at once."""
+        surface, distance_m, inner = straight(400, degrees)
+        error_m = np.abs(HIGH_M - GROOVE.carved(surface).height_m - section(distance_m))[inner]
+        steepest = np.pi * GROOVE.depth_m / GROOVE.width_m
+        assert error_m.max() < 0.5 * SIDE_M / 400 * steepest
+
+    def test_a_circle_keeps_its_radius(self):
+        x, y = grid(400)
+        distance_m = np.hypot(x, y) - 0.0203
+        error_m = np.abs(HIGH_M - GROOVE.carved(level(distance_m < 0)).height_m - section(distance_m))
+        assert error_m.max() < 5e-5 and error_m.mean() < 1e-6
+
+    def test_cells_that_are_not_square_and_borders_that_meet(self):
+        """A cross: at its middle no deeper than anywhere on it."""
+        x, y = grid(400)
+        labels = ((x > 0) + 2 * (y > 0)).astype(np.int32)
+        carved = GROOVE.carved(level(labels)).height_m
+        away = np.minimum(np.abs(x), np.abs(y))
+        assert np.abs(HIGH_M - carved - section(away)).max() < 2e-5
+        wide = HapticSurface(Relief(np.full((400, 200), HIGH_M, np.float32), (SIDE_M, SIDE_M)), labels[:, ::2])
+        assert np.abs(GROOVE.carved(wide).height_m - carved[:, ::2])[5:-5, 10:-10].max() < 1e-4
+
+    def test_twice_the_cells_feel_the_same(self):
+        def bodies(cells: int) -> HapticSurface:
+            x, y = grid(cells)
+            labels = (np.hypot(x - 0.01, y) < 0.015) + 2 * (y > 0.4 * x + 0.015) + 4 * (x < -0.021)
+            return level(labels)
+
+        path = np.column_stack(
+            [*(0.03 * np.sin([[3.0], [2.0]] * np.linspace(0, 6, 3000))), np.full(3000, HIGH_M - 1e-3)]
+        )
+        coarse, fine = (GROOVE.touch(bodies(cells)).path(path) for cells in (300, 600))
+        assert np.abs(coarse[:, 2] - K * 1e-3).max() > 0.5 * K * GROOVE.depth_m
+        apart_n = np.abs(coarse - fine)
+        assert apart_n[:, 2].mean() < 0.01 * K * GROOVE.depth_m and apart_n[:, 2].max() < 0.16 * K * GROOVE.depth_m
+
+    def test_lines_leave_the_half_cells_of_the_labels_nowhere(self):
+        """Of noise, which no smooth line follows; each side of a cell between two labels has its point."""
+        labels = np.random.default_rng(0).integers(0, 2, (40, 50)).astype(np.int32)
+        at, beside = lines.border_lines(labels)
+        assert len(at) == sum(np.count_nonzero(np.diff(labels, axis=axis)) for axis in (0, 1))
+        away = np.abs(at - lines._sides(labels)[0])
+        assert 0.49 < away.max() <= 0.5 and beside.min() >= 0 and beside.max() < len(at)
+
+    def test_a_grid_that_is_too_coarse_is_said(self):
+        surface = straight(100, 30)[0]
+        with collected() as notes:
+            GROOVE.carved(surface)
+        (said,) = notes
+        assert "3 mm is 3.8 cells wide" in said and "from 4.8 mm on" in said
+
+
+class TestWhatIsFelt:
+    def test_a_hand_sinks_into_the_groove_by_its_section(self):
+        surface, *_ = straight(400, 0)
+        y = np.linspace(-0.003, 0.003, 400)
+        path = np.column_stack([0 * y + 0.001, y, np.full_like(y, HIGH_M - 0.001)])
+        depth_m = GROOVE.touch(surface).path(path)[:, 2] / K
+        assert np.allclose(depth_m, 0.001 - section(y), atol=8e-6)
+
+    @pytest.mark.parametrize("law", ["proxy", "penalty-gradient"])
+    def test_no_closed_path_over_grooves_gains_energy(self, law: str):
+        """Around and across them, pressed and lifted, so finely that what sampling adds is small; without damping."""
+        x, y = grid(300)
+        surface = level((np.hypot(x, y) < 0.012) + 2 * (x > 0.003) + 4 * (y > 0.2 * x))
+        turn = np.linspace(0, 2 * np.pi, 60_000)
+        path = np.column_stack(
+            [0.012 * np.sin(2 * turn), 0.013 * np.sin(3 * turn), HIGH_M - 0.0004 + 0.0008 * np.cos(5 * turn)]
+        )
+        force = Engraved(law=law, depth_m=0.0008).touch(surface).path(path)
+        steps = np.diff(path, axis=0)
+        work, most = np.sum(force[:-1] * steps), np.sum(np.abs(np.sum(force[:-1] * steps, axis=1)))
+        assert work < 1e-3 * most
+        assert law == "proxy" or abs(work) < 1e-3 * most
+        assert np.abs(np.sum(force[:, :2] ** 2, axis=1)).max() > 1e-3, "its sides push"
+
+    @pytest.mark.parametrize("law", ["proxy", {"use": "with-materials", "law": "penalty"}, "lateral-shape"])
+    def test_it_is_the_law_on_the_carved_surface_materials_included(self, law: str | dict[str, str]):
+        surface = straight(200, 30)[0]
+        surface = replace(surface, materials=(library()["sand"], library()["rubber"]), names=("a", "b"))
+        method = Engraved(law=law)
+        carved = method.carved(surface)
+        assert carved.labels is not None and surface.labels is not None and carved.names == surface.names
+        assert np.array_equal(carved.labels, surface.labels)
+        assert carved.materials == surface.materials
+        use = dict(method.law) if isinstance(method.law, dict) else {}
+        own = load_method("render", use.pop("use"))(**use).touch(carved)
+        path = np.random.default_rng(2).uniform(-0.01, 0.01, (2000, 3)).cumsum(axis=0) / 40 + [0, 0, HIGH_M]
+        found = method.touch(surface)
+        assert found.path(path).tobytes() == own.path(path).tobytes() and found.path(path).any()
+        assert found.stiffness_n_per_m == own.stiffness_n_per_m
+
+    @pytest.mark.parametrize("labels", [None, np.zeros((50, 50), np.int32), np.full((50, 50), 3, np.int32)])
+    def test_without_borders_it_is_the_law_itself_and_says_so_once(self, labels: np.ndarray | None):
+        surface = HapticSurface(Relief(np.full((50, 50), HIGH_M, np.float32), (SIDE_M, SIDE_M)), labels)
+        path = np.column_stack([np.linspace(-0.05, 0.05, 200), np.zeros(200), np.full(200, HIGH_M - 0.001)])
+        with collected() as notes:
+            found = Engraved().touch(surface).path(path)
+        assert found.tobytes() == Proxy().touch(surface).path(path).tobytes()
+        assert notes == ["no groove is engraved: the surface has no parts or segments with a border between them"]
+
+
+class TestTheBase:
+    def test_where_the_ground_is_too_low_all_of_it_is_lifted_and_that_is_said(self):
+        halves = straight(400, 30)[0]
+        surface = HapticSurface(Relief(np.full((400, 400), 0.0002, np.float32), (SIDE_M, SIDE_M)), halves.labels)
+        with collected() as notes:
+            carved = GROOVE.carved(surface)
+        assert carved.height_m.min() == 0
+        assert carved.height_m.max() == pytest.approx(GROOVE.depth_m, abs=2e-6)
+        assert notes == ["the surface is lifted by 0.4 mm, so that its grooves end over the base"]
+        deep = GROOVE.carved(straight(400, 30)[0])
+        assert np.allclose(deep.height_m - deep.height_m.min(), carved.height_m, atol=1e-8)
+
+    def test_where_it_is_high_enough_nothing_is_lifted_or_said(self):
+        with collected() as notes:
+            carved = GROOVE.carved(straight(400, 30)[0])
+        assert notes == [] and carved.height_m.max() == np.float32(HIGH_M)
+
+
+class TestOptions:
+    @pytest.mark.parametrize(
+        ("options", "said"),
+        [
+            ({"law": "engraved"}, "engraved is around a law already"),
+            ({"law": {"use": "proxy", "stifness": 3}}, "stifness"),
+            ({"law": {}}, "a law has a name"),
+            ({"law": "no-such-law"}, "no-such-law"),
+            ({"width_m": 0}, "width_m"),
+            ({"depth_m": np.inf}, "depth_m"),
+        ],
+    )
+    def test_what_makes_no_sense_is_refused(self, options: dict[str, object], said: str):
+        with pytest.raises(ValidationError, match=said):
+            Engraved(**options)  # pyright: ignore[reportArgumentType]
+
+    def test_materials_go_within_it_and_not_around(self):
+        with pytest.raises(ValidationError, match="engraved renders materials itself"):
+            WithMaterials(law="engraved")
+        assert Engraved(law={"use": "with-materials"}).touch(straight(50, 30)[0]) is not None
+
+    def test_free_air_and_broken_states(self, caplog: pytest.LogCaptureFixture):
+        caplog.set_level(logging.ERROR)
+        touch = Engraved().touch(straight(200, 30)[0])
+        assert not any(touch.force(HapticState((0.0, 0.0, HIGH_M + 1e-6))))
+        assert not any(touch.force(HapticState((np.nan, 0.0, 0.0))))

@@ -1,0 +1,200 @@
+"""Handing on: files that pages fetch, whether fingers can read it, and the surface in words."""
+
+import asyncio
+import threading
+from collections.abc import Callable, Coroutine
+from pathlib import Path
+from typing import Any
+from zipfile import ZipFile
+
+import pytest
+import trimesh
+
+from desks import TEXT, SmallDesk, small_scene
+from tangible_core.errors import ConfigError, TangibleError
+from tangible_export.stl import Stl
+from tangible_ui.asks import ASKS
+from tangible_ui.maker.exporting import KEPT
+
+Ask = Callable[..., Coroutine[Any, Any, Any]]
+STL = {"use": "stl", "longer_side_m": 0.06}
+
+
+@pytest.fixture
+def small(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
+    """Runs a test with a desk on which the small scene is opened and felt."""
+
+    def run(check: Callable[[SmallDesk, Ask], Coroutine[Any, Any, None]]) -> None:
+        async def all_of_it() -> None:
+            small = SmallDesk(tmp_path, monkeypatch)
+
+            async def ask(name: str, **told: Any) -> Any:
+                return await ASKS[name](small.desk, small.tab, **told)
+
+            await ask("begin", files=[str(small_scene(tmp_path))])
+            await small.tab.until("touch")
+            await check(small, ask)
+
+        asyncio.run(all_of_it())
+
+    return run
+
+
+def folders(small: SmallDesk) -> list[Path]:
+    return sorted(small.desk.folder.glob("export-*"))
+
+
+class TestExport:
+    def test_a_solid_of_what_is_on_the_screen_and_every_tab_hears_of_it(self, small: Any) -> None:
+        async def check(small: SmallDesk, ask: Ask) -> None:
+            await ask("edit", text=TEXT.replace("relief_m: 0.004", "relief_m: 0.003"))  # and it is not saved
+            found = await ask("export", exports=[STL])
+            told = small.tab.last("exported")
+            assert {key: told[key] for key in found} == found
+            assert (told["digest"], small.tab.last("made")["want"]) == (small.desk.digest, "export")
+            (only,) = found["exports"]
+            assert (only["name"], only["outcome"]) == ("stl", "ran")
+            assert only["legible"]["sentence"]
+            (file,) = only["files"]
+            path = small.desk.folder / found["folder"] / file["name"]
+            assert (path.name, path.stat().st_size) == ("mine.stl", file["bytes"])
+            solid = trimesh.load(path)
+            assert solid.is_volume
+            assert solid.extents[2] == pytest.approx(3.0 + 1.5, abs=1.5)  # relief and base; braille may stand higher
+
+        small(check)
+
+    def test_one_that_fails_says_so_and_the_others_are_written(self, small: Any, monkeypatch) -> None:
+        def fail(self: Stl, work: Any, stem: Path) -> Any:
+            raise TangibleError("the relief has no height; raise workspace.relief_m")
+
+        async def check(small: SmallDesk, ask: Ask) -> None:
+            monkeypatch.setattr(Stl, "write", fail)
+            found = await ask("export", exports=[STL, "3mf"])
+            wrong, fine = found["exports"]
+            assert (wrong["outcome"], wrong["files"]) == ("refused", [])
+            assert wrong["why"] == "the relief has no height; raise workspace.relief_m"
+            assert [each["name"] for each in fine["files"]] == ["mine.3mf"]
+
+        small(check)
+
+    @pytest.mark.parametrize(
+        ("exports", "says"),
+        [
+            ([{"use": "stl", "base_m": -1}], "base_m"),
+            ([{"use": "stone"}], "stone"),
+            ([{"base_m": 0.001}], "export"),
+            ([], "exporter"),
+        ],
+    )
+    def test_what_cannot_be_is_refused_and_leaves_nothing(self, small: Any, exports: list[Any], says: str) -> None:
+        async def check(small: SmallDesk, ask: Ask) -> None:
+            with pytest.raises(ConfigError, match=says):
+                await ask("export", exports=exports)
+            assert small.tab.last("made")["outcome"] == "failed"
+            assert folders(small) == []
+
+        small(check)
+
+    def test_a_stopped_one_is_none_and_gives_no_files(self, small: Any, monkeypatch) -> None:
+        begun, go_on = threading.Event(), threading.Event()
+        write = Stl.write
+
+        def waits(self: Stl, work: Any, stem: Path) -> Any:
+            begun.set()
+            assert go_on.wait(30)
+            return write(self, work, stem)
+
+        async def check(small: SmallDesk, ask: Ask) -> None:
+            monkeypatch.setattr(Stl, "write", waits)
+            asked = asyncio.ensure_future(ask("export", exports=[STL]))
+            await asyncio.to_thread(begun.wait, 30)
+            await ask("stop_making")
+            assert await asked is None
+            assert small.tab.last("made")["outcome"] == "stopped"
+            assert "exported" not in small.tab.names()
+            go_on.set()
+
+        small(check)
+
+    def test_files_of_long_ago_go(self, small: Any) -> None:
+        async def check(small: SmallDesk, ask: Ask) -> None:
+            kept = [(await ask("export", exports=[STL]))["folder"] for _ in range(KEPT + 2)]
+            assert sorted(kept[-KEPT:]) == [each.name for each in folders(small)]
+
+        small(check)
+
+    def test_all_files_in_one(self, small: Any) -> None:
+        async def check(small: SmallDesk, ask: Ask) -> None:
+            found = await ask("export", exports=[STL, "3mf"])
+            for _ in range(2):  # the second time it is there already
+                name = await ask("export_zip", folder=found["folder"])
+            at = small.desk.folder / found["folder"]
+            assert name == "mine.zip"
+            with ZipFile(at / name) as packed:
+                assert packed.testzip() is None
+                assert {each: packed.read(each) for each in packed.namelist()} == {
+                    each: (at / each).read_bytes() for each in ("mine.3mf", "mine.stl")
+                }
+            assert not [each for each in at.iterdir() if each.name.startswith(".")]
+
+        small(check)
+
+    @pytest.mark.parametrize("folder", ["", "..", "export-0000000000000000", "export-x/../../secret", "drawn"])
+    def test_nothing_but_an_export_is_packed(self, small: Any, folder: str) -> None:
+        async def check(small: SmallDesk, ask: Ask) -> None:
+            with pytest.raises(ConfigError, match="export them again"):
+                await ask("export_zip", folder=folder)
+
+        small(check)
+
+
+class TestLegible:
+    def test_verdicts_are_told_and_a_cure_makes_them_pass(self, small: Any) -> None:
+        async def check(small: SmallDesk, ask: Ask) -> None:
+            found = await ask("legible", medium="swell")
+            assert small.tab.last("legible")["verdicts"] == found["verdicts"]
+            assert (found["medium"], found["width_m"], found["grade"]) == ("swell", 0.06, "illegible")
+            wider = await ask("legible", medium="swell", width_m=0.2)
+            assert wider["width_m"] == 0.2
+            changes = {each["key"]: each["value"] for verdict in found["verdicts"] for each in verdict["changes"]}
+            cures = {key: value for key, value in changes.items() if key.startswith("simplify")}
+            assert cures and "simplify" not in small.desk.text
+            await ask("set", changes=cures)
+            assert "simplify:" in small.desk.text
+            again = await ask("legible", medium="swell")
+            assert (again["grade"], again["digest"]) == ("ok", small.desk.digest)
+            await ask("undo")
+            assert "simplify" not in small.desk.text
+
+        small(check)
+
+    def test_places_that_fail_are_shares_of_the_picture(self, small: Any) -> None:
+        async def check(small: SmallDesk, ask: Ask) -> None:
+            found = await ask("legible", medium="print")
+            places = [at for each in found["verdicts"] if each["verdict"] != "ok" for at in each["at"]]
+            assert places
+            assert all(0 <= share <= 1 for at in places for share in at)
+
+        small(check)
+
+
+class TestDescription:
+    def test_in_the_language_that_is_asked_for(self, small: Any) -> None:
+        async def check(small: SmallDesk, ask: Ask) -> None:
+            said = {each: await ask("description", language=each) for each in ("en", "de", "fr")}
+            assert len({each["text"] for each in said.values()}) == 3
+            for language, each in said.items():
+                assert each["digest"] == small.tab.last("scene")["digest"]
+                assert each["parts"] and all(part["says"] for part in each["parts"])
+                assert f'<html lang="{language}">' in each["html"]
+                assert each["parts"][0]["label"] in each["text"]
+
+        small(check)
+
+    def test_there_is_none_before_a_surface(self, tmp_path: Path, monkeypatch) -> None:
+        async def check() -> None:
+            small = SmallDesk(tmp_path, monkeypatch)
+            assert await ASKS["description"](small.desk, small.tab, language="en") is None
+
+        asyncio.run(check())

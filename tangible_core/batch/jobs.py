@@ -42,6 +42,7 @@ class JobMaker:
     def __init__(self, text: str, path: Path, out: Path, threads: int | None, options: BatchOptions) -> None:
         """Raises: ConfigError for a text that is no YAML."""
         self._text, self._path, self._out, self._threads, self._options = text, path, out, threads, options
+        self._place = str(path)
         self._other = _without_files(text, path)
         self._own = _own_files(text, path)
         self._head = hashlib.sha256(f"{text}\n{path.parent}\n{_code(text, path)} {options.sheets}".encode())
@@ -56,7 +57,7 @@ class JobMaker:
             key.update(_state(own).encode())
         cache = str(self._options.cache.absolute()) if self._options.cache else ""
         return Job(
-            row.id, key.hexdigest()[:16], self._other if brings else self._text, str(self._path), row.sets,
+            row.id, key.hexdigest()[:16], self._other if brings else self._text, self._place, row.sets,
             str(self._out / SCENES / folder_name(row.id)), self._threads, self._options.sheets, cache,
         )  # fmt: skip
 

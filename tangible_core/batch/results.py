@@ -13,7 +13,7 @@ from .job import Row
 
 ROWS, INDEX, GALLERY = "rows.jsonl", "index.parquet", "gallery"
 PER_PAGE = 500
-PER_PART = 1000
+PER_PART = 200
 
 
 def kept_rows(out: Path) -> dict[str, Row]:

@@ -29,7 +29,16 @@ from ..files.writing import write_text
 from ..mapping import WorkspaceMapping
 from ..parts import HeightChoice, PartChoice, PartHeights
 from ..plugins import hooks
-from ..plugins.interfaces import KINDS, DepthEstimator, ForceRenderer, HapticDevice, Method, Segmenter, Touch
+from ..plugins.interfaces import (
+    KINDS,
+    DepthEstimator,
+    ForceRenderer,
+    HapticDevice,
+    Method,
+    Reshaping,
+    Segmenter,
+    Touch,
+)
 from ..plugins.registry import Registry, default_registry
 from ..preflight import Flight, Hand, Loop, Preflight, judge, survey
 from ..scene.scene import Scene
@@ -407,9 +416,9 @@ class Pipeline:
         felt, law = self._device(device), self.config.render
         if law is None:
             raise self.config.missing("render")
-        touch = self._touch(device)
+        touch, surface = self._touch(device), fitted(self.surface, self.config, felt)[0]
         return survey(
-            fitted(self.surface, self.config, felt)[0],
+            law.method.felt(surface) if isinstance(law.method, Reshaping) else surface,
             touch,
             law.method,
             felt,

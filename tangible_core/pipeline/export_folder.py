@@ -14,9 +14,9 @@ from pathlib import Path
 from typing import Any, cast
 
 from ..errors import BrokenMethod, OutputError, quoted
+from ..files.content import content_digest
 from ..files.reading import read_bytes
 from ..files.writing import write_text
-from ..files.content import content_digest
 
 LISTED = ".exports.json"
 """What an export leaves beside its files: no file of an exporter begins with a dot."""

@@ -23,8 +23,8 @@ from ..data import (
     digest_of,
 )
 from ..errors import BrokenMethod, ConfigError, PictureError, TangibleError
-from ..legibility import SimplifyChoice, simplify
 from ..files.content import content_digest
+from ..legibility import SimplifyChoice, simplify
 from ..materials import assignment
 from ..parts import Layering, PartHeights
 from ..parts import find as part_finding

@@ -29,7 +29,7 @@ def test_the_architecture_page_draws_the_floors_as_they_are():
     page = ROOT.joinpath("docs/architecture.md").read_text(encoding="utf-8")
     contracts = tomllib.loads(ROOT.joinpath("pyproject.toml").read_text("utf-8"))["tool"]["importlinter"]["contracts"]
     floors = [contract["layers"] for contract in contracts if contract["type"] == "layers"]
-    assert len(floors) == 6
+    assert len(floors) == 7
     assert not [layers for layers in floors if "```text\n" + "\n".join(layers) + "\n```" not in page]
 
 
@@ -58,9 +58,12 @@ def test_the_plugin_page_shows_the_example_as_it_is(name):
         ("write-a-device.md", "device/acme_handle/handle.py"),
         ("write-a-device.md", "device/handle.yaml"),
         ("write-a-device.md", "device/tests/test_acme_handle.py"),
+        ("write-an-exporter.md", "exporter/acme_contours/contours.py"),
+        ("write-an-exporter.md", "exporter/contours.yaml"),
+        ("write-an-exporter.md", "exporter/tests/test_acme_contours.py"),
     ],
 )
-def test_the_pages_on_laws_and_devices_show_their_examples_as_they_are(page, name):
+def test_the_pages_on_single_kinds_show_their_examples_as_they_are(page, name):
     shown = ROOT.joinpath("docs", page).read_text(encoding="utf-8")
     assert ROOT.joinpath("examples", name).read_text(encoding="utf-8").strip() in shown
 

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from tangible_core.plugins.registry import KIND_NAMES
+
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
 FAULTS = {
@@ -53,7 +55,7 @@ def entry_points(kind: str) -> dict[str, str]:
     return tomllib.loads(ROOT.joinpath("pyproject.toml").read_text("utf-8"))["project"]["entry-points"][kind]
 
 
-@pytest.mark.parametrize("kind", ["depth", "texture", "render", "device"])
+@pytest.mark.parametrize("kind", KIND_NAMES)
 def test_the_reference_has_every_method(kind):
     page = DOCS.joinpath("reference/methods.md").read_text("utf-8").splitlines()
     classes = [place.replace(":", ".") for place in entry_points(f"tangible.{kind}").values()]

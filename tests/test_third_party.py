@@ -9,12 +9,14 @@ import venv
 from importlib.util import find_spec
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from distributions import distribution
 
 ROOT = Path(__file__).parents[1]
-EXAMPLE, LAW, DEVICE = (ROOT / "examples" / name for name in ("third_party", "force_law", "device"))
+EXAMPLES = tuple(ROOT / "examples" / name for name in ("third_party", "force_law", "device", "exporter"))
+EXAMPLE, LAW, DEVICE, EXPORTER = EXAMPLES
 HERE = {sysconfig.get_path("purelib"), sysconfig.get_path("platlib")}
 """Where the environment that runs the tests keeps what is installed."""
 
@@ -56,7 +58,7 @@ def environment(tmp_path_factory: pytest.TempPathFactory) -> Environment:
     folder = tmp_path_factory.mktemp("fresh")
     environment = Environment(folder / "venv")
     environment.install(build(ROOT, folder / "ours"))
-    for example in (EXAMPLE, LAW, DEVICE):
+    for example in EXAMPLES:
         environment.install(build(example, folder / example.name))
     return environment
 
@@ -77,7 +79,7 @@ def test_it_conforms(environment, tmp_path):
     assert "0 failed" in ran.stdout
 
 
-@pytest.mark.parametrize("example", [EXAMPLE, LAW, DEVICE], ids=lambda example: example.name)
+@pytest.mark.parametrize("example", EXAMPLES, ids=lambda example: example.name)
 def test_its_own_tests_pass(environment, tmp_path, example):
     command = [environment.python, "-m", "pytest", "-q", "-p", "no:cacheprovider", example / "tests"]
     ran = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
@@ -92,6 +94,14 @@ def test_a_law_and_a_device_work_together(environment, tmp_path):
     assert "acme-cushion-compiled" in ran.stdout
     figures = dict(line.split() for line in ran.stdout.partition("figure ")[2].splitlines()[1:])
     assert float(figures["peak_force_n"]) > 0
+
+
+def test_a_pipeline_is_exported_with_it(environment, tmp_path):
+    tmp_path.joinpath("map.yaml").write_text("scene: {height: map.npy}\nexport: [acme-contours]\n")
+    np.save(tmp_path / "map.npy", np.hypot(*np.indices((12, 20))))
+    ran = environment.run("export", "map.yaml", "--out", "out", cwd=tmp_path)
+    assert ran.returncode == 0, ran.stdout + ran.stderr
+    assert 'width="80.000mm" height="48.000mm"' in tmp_path.joinpath("out/map.svg").read_text()
 
 
 def test_a_pipeline_uses_it_and_its_observer_hears(environment, tmp_path):
@@ -134,7 +144,7 @@ def test_a_broken_plugin_beside_it_harms_nobody(environment, tmp_path):
 
 
 def test_the_example_is_short():
-    for example, most in ((EXAMPLE, 60), (LAW, 150), (DEVICE, 180)):
+    for example, most in zip(EXAMPLES, (60, 150, 180, 90), strict=True):
         lines = [line for path in example.rglob("*.py") for line in path.read_text().splitlines()]
         assert len(lines) < most
         assert len(example.joinpath("README.md").read_text().splitlines()) <= 12

@@ -13,9 +13,9 @@ _BREAK = re.compile("[^\\S\u00a0\u202f]+(?!%)")
 
 
 def wrapped(text: str, language: str, width_m: float, indent: int = 0) -> list[Cells]:
-    """Lines of cells, each at most so wide: they break at spaces that may break, and a word that is wider breaks behind a hyphen.
+    """Lines of cells, each at most so wide: they break at spaces, and a word that is wider breaks behind a hyphen.
 
-    indent: empty cells before every line but the first.
+    Spaces that print keeps on a line are kept here too. indent: empty cells before every line but the first.
     Raises: BrailleError as `translate`, and where not even one letter has room.
 
     >>> [len(line) for line in wrapped("a cab is here", "en", 0.05)]

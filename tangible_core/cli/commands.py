@@ -35,6 +35,7 @@ COMMANDS = {
     "plan": Command("run:plan", "Say what `run` would do, and why; run nothing."),
     "export": Command("export:export", "Write files for others: a printer, swell paper, pins, a reader."),
     "preflight": Command("preflight:preflight", "Check, before a motor moves, what is safe."),
+    "legible": Command("legible:legible", "Check whether fingers can read it, on paper, print, pins or a device."),
     "feel": Command("feel:feel", "Feel the surface on the configured device, in real time."),
     "replay": Command("replay:replay", "Feel a recording again with another law."),
     "compare": Command("compare:compare", "Compare methods by time, memory and error."),

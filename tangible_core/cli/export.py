@@ -18,6 +18,10 @@ if TYPE_CHECKING:
     from ..pipeline.exporting import Export, Exported
 
 
+CSV = "csv"
+"""What a recording is written as: no exporter's name."""
+
+
 def export(
     config: Felt,
     to: Annotated[
@@ -38,12 +42,15 @@ def export(
 ) -> None:
     """Write files for others: a printer, swell paper, pins, a reader.
 
-    `--set export.NAME.OPTION=VALUE` sets an option of an exporter. Exit 2 if something cannot be written of this, 1 if
-    an exporter failed; the others write all the same.
+    `--set export.NAME.OPTION=VALUE` sets an option of an exporter. A recording (.nc, .npz) is written with `--to csv`.
+    Exit 2 if something cannot be written of this, 1 if an exporter failed; the others write all the same.
     """
     from . import show
 
     names = [name.strip() for each in to or [] for name in each.split(",") if name.strip()]
+    if names == [CSV]:
+        _print_recording(_as_csv(config, out or Path("out") / config[0].stem, force), as_json)
+        return
     pipeline = open_pipeline(config, sets or [], not no_cache)
     done = pipeline.export(out or default_place(config[0]), names or None, force=force)
     if as_json:
@@ -56,6 +63,29 @@ def export(
             show.note(f"{each.name}: {each.outcome.why}")
     if code := _code(done.exports):
         raise typer.Exit(code)
+
+
+def _as_csv(files: Sequence[Path], folder: Path, force: bool) -> Path:
+    """A recording as text, a tick a line. Raises: ConfigError for several; OutputError for what is no recording."""
+    from ..errors import ConfigError, OutputError
+    from ..session import Recording
+
+    if len(files) > 1:
+        raise ConfigError(f"{', '.join(map(str, files))}: name one recording, which is written as CSV")
+    place = folder / f"{files[0].stem}.{CSV}"
+    if place.exists() and not force:
+        raise OutputError(f"{place}: is there already; --out FOLDER writes to another folder, --force writes over it")
+    Recording.load(files[0]).save(place)
+    return place
+
+
+def _print_recording(place: Path, as_json: bool) -> None:
+    from . import show
+
+    if as_json:
+        show.print_json({"files": [str(place)]})
+    elif not is_quiet():
+        show.plain(f"written\n  {place}")
 
 
 def _code(exports: Sequence[Exported]) -> int:

@@ -16,6 +16,8 @@ MOST_PARTS = 60
 """Parts that are described, the largest; of the others, how many they are."""
 LEAST_SHARE = 0.001
 """Of the picture: a smaller part that has no name is one of those that are left out."""
+LEAST_HIGH_M = 5e-5
+"""Lower parts are those of the ground: their height is not said."""
 MOST_BESIDE = 4
 """Neighbours of a part that are named, those of the longest borders."""
 SHARES = (0.5, 0.25, 0.08, 0.0)
@@ -114,7 +116,7 @@ def _sentences(part: PartFacts, labels: dict[int, str], say: Words, given: Calla
     """Where it is, how large and how high, of what, and what it borders on."""
     width, length = (say.number(1000 * each) for each in part.size_m)
     share = say(f"part share {next(round(100 * least) for least in SHARES if part.share >= least)}")
-    high = say("part size high", height=say.number(1000 * part.height_m)) if part.height_m > FLAT_M else ""
+    high = say("part size high", height=say.number(1000 * part.height_m)) if part.height_m >= LEAST_HIGH_M else ""
     size = say("part size", share=share, percent=_percent(part.share, say), width=width, length=length, high=high)
     said = [_sentence(say(part.place)) if part.place != NOWHERE else "", size]
     if part.material:

@@ -64,4 +64,4 @@ def page_of(
 def _given(text: str, language: str) -> str:
     """Somebody's words in a page: what they are written in is said where it is not the page's language."""
     said = escape(written(text))
-    return f'<span lang="{escape(language)}">{said}</span>' if language else said
+    return f'<span lang="{escape(language)}" dir="auto">{said}</span>' if language else said

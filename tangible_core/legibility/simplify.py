@@ -13,6 +13,7 @@ from ..parts import find_parts
 from ..parts.large import large_parts
 from ..plugins.notes import note
 from .alike import kinds_of
+from .cells import Box, boxes
 from .choice import SimplifyChoice
 from .grid import Grid, on_grid
 from .votes import filled, voted
@@ -52,10 +53,10 @@ def simplify(
     """The parts as fingers can read them, on a grid of its own, with the numbers that they have.
 
     Parts that pass stay as they are, on the grid of `on_grid`: so twice is the same as once. Else, on cells of an
-    eighth to a quarter of a millimetre, parts without a name that are most alike in colour become one texture until there are `choice.textures`;
-    then places narrower than `choice.gap_m` and parts that hold no disc of `choice.part_m` go to the parts around
-    them, again and again until all passes. A part that vanished has no pixel. Of segments, those that became one
-    texture have one number.
+    eighth to a quarter of a millimetre, parts without a name that are most alike in colour become one texture until
+    there are `choice.textures`; then places narrower than `choice.gap_m` and parts that hold no disc of
+    `choice.part_m` go to the parts around them, again and again until all passes. A part that vanished has no pixel.
+    Parts that became one texture have one segment.
     names: of parts, by number; those that have one stay apart. picture: of the parts' size, for its colours.
     Notes tell which named parts vanished, which are of several pieces, and, where it cannot pass, what would help.
     Raises: GeometryError if width_m is not positive.
@@ -76,7 +77,7 @@ def simplify(
     changed = _fine(rough != kinds[coarse], found.shape)
     found, after = opening.opened(np.where(changed, _fine(rough, found.shape), found), grid.pitch_m, picture)
     made = Grid(_numbered(grid.parts, found, kinds), grid.pitch_m)
-    _tell(grid.parts, before, made, after, width_m, choice, names)
+    _tell(grid.parts, made, after, width_m, choice, names)
     return made.parts
 
 
@@ -137,11 +138,13 @@ class _Opening(NamedTuple):
         """
         whole = np.s_[0 : found.shape[0], 0 : found.shape[1]]
         windows, exactly, found = [whole], False, found.copy()
+        wide = measure(found, pitch_m, self.choice.gap_m, quick=True)
         for turn in range(ROUNDS):
             changed = np.zeros(found.shape, np.bool_)
             for window in windows:
                 rims = Rims(*(at == to for at, to in zip(_ends(window), _ends(whole), strict=True)))
-                wide = measure(found[window], pitch_m, self.choice.gap_m, rims, quick=not exactly)
+                if turn:
+                    wide = measure(found[window], pitch_m, self.choice.gap_m, rims, quick=not exactly)
                 if window == whole and _small(wide, self.choice).all():
                     found = _joined(found, self.choice.part_m / pitch_m, picture)
                     changed[:] = len(wide.part) > 1
@@ -214,19 +217,17 @@ class _Opening(NamedTuple):
         large[np.concatenate([pieces[0], pieces[-1], pieces[:, 0], pieces[:, -1]])] = True
         return found if large.all() else filled(found, ~large[pieces])
 
-    def _windows(self, changed: Bool[np.ndarray, "h w"], pitch_m: float) -> list[tuple[slice, slice]]:
+    def _windows(self, changed: Bool[np.ndarray, "h w"], pitch_m: float) -> list[Box]:
         """Boxes around what has changed; those that meet are one."""
-        from scipy.ndimage import find_objects
-
         cells = ceil(WINDOW * max(self.choice.gap_m, self.choice.part_m) / pitch_m)
         near = changed
-        boxes: list[tuple[slice, slice]] = []
+        found: list[Box] = []
         while True:
-            before, boxes = boxes, [_grown(box, cells, changed.shape) for box in find_objects(_blobs(near))]
-            if len(boxes) == len(before):
-                return boxes
+            before, found = found, [_grown(box, cells, near) for box in boxes(_blobs(near)) if box is not None]
+            if len(found) == len(before):
+                return found
             near, cells = np.zeros_like(changed), 0
-            for box in boxes:
+            for box in found:
                 near[box] = True
 
 
@@ -236,14 +237,15 @@ def _blobs(there: Bool[np.ndarray, "h w"]) -> Int32[np.ndarray, "h w"]:
     return cv2.connectedComponents(there.view(np.uint8), connectivity=8)[1]
 
 
-def _grown(box: tuple[slice, slice], cells: int, shape: tuple[int, int]) -> tuple[slice, slice]:
+def _grown(box: Box, cells: int, within: Bool[np.ndarray, "h w"]) -> Box:
     down, right = (
-        slice(max(0, each.start - cells), min(size, each.stop + cells)) for each, size in zip(box, shape, strict=True)
+        slice(max(0, each.start - cells), min(size, each.stop + cells))
+        for each, size in zip(box, within.shape, strict=True)
     )
     return down, right
 
 
-def _ends(window: tuple[slice, slice]) -> tuple[int, int, int, int]:
+def _ends(window: Box) -> tuple[int, int, int, int]:
     down, right = window
     return down.start, down.stop, right.start, right.stop
 
@@ -281,13 +283,13 @@ def _numbered(parts: PartMap, found: Int32[np.ndarray, "h w"], kinds: Int32[np.n
     order = np.lexsort((-part, shared))
     number = largest[np.array(pieces.segments)]
     number[piece[order]] = part[order]
-    segments = tuple(parts.segments[each] for each in largest[kinds].tolist())
+    of: list[int] = largest[kinds].tolist()
+    segments = tuple(parts.segments[each] for each in of)
     return PartMap(number.astype(np.int32)[pieces.labels], segments)
 
 
 def _tell(
     whole: PartMap,
-    before: Widths,
     found: Grid,
     after: Widths,
     width_m: float,
@@ -299,7 +301,7 @@ def _tell(
     was, left = (np.bincount(each.labels.reshape(-1), minlength=count) for each in (whole, found.parts))
     gone = [n for n in np.flatnonzero((was > 0) & (left == 0)).tolist() if n < len(names) and names[n]]
     if gone:
-        note(log, _vanished(gone, before, width_m, choice, names), logging.WARNING)
+        note(log, _vanished(gone, Grid(whole, found.pitch_m), width_m, choice, names), logging.WARNING)
     there = found.parts.labels.reshape(-1)[np.unique(after.pieces.reshape(-1), return_index=True)[1]]
     pieces = np.bincount(there, minlength=count)
     if split := [f"{called(n, names)} of {pieces[n]}" for n in np.flatnonzero(pieces > 1).tolist()]:
@@ -308,15 +310,21 @@ def _tell(
         note(log, _failed(wrong, found, width_m, choice), logging.WARNING)
 
 
-def _vanished(gone: Sequence[int], before: Widths, width_m: float, choice: SimplifyChoice, names: Sequence[str]) -> str:
-    disc_m = np.zeros(int(before.part.max()) + 1)
+def _vanished(gone: Sequence[int], whole: Grid, width_m: float, choice: SimplifyChoice, names: Sequence[str]) -> str:
+    before = measure(whole.parts.labels, whole.pitch_m, choice.gap_m)
+    disc_m = np.zeros(whole.parts.count)
     np.maximum.at(disc_m, before.part, before.disc_m)
-    said = [f"{called(n, names)}, in which a disc of {mm(float(disc_m[n]))} fits" for n in gone]
+    small = disc_m < choice.part_m * (1 - ROUND_OFF)
+    said = [
+        f"{called(n, names)}, "
+        + (f"in which a disc of {mm(float(disc_m[n]))} fits" if small[n] else "which is too narrow in places")
+        for n in gone
+    ]
     wider = max(1.05, choice.part_m / float(disc_m[list(gone)].min()))
     return (
         f"too small or too narrow for a finger, and given to what is around: {listed(said)}; a disc of "
         f"{mm(choice.part_m)} must fit, and {mm(choice.gap_m)} are needed everywhere: make the whole "
-        f"{mm(wider * width_m)} wide (`workspace.width_m`), or have fewer and larger parts"
+        f"{ceil(1e3 * wider * width_m)} mm wide (`workspace.width_m`), or have fewer and larger parts"
     )
 
 

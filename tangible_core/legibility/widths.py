@@ -10,6 +10,7 @@ import numpy as np
 from jaxtyping import Bool, Float32, Float64, Int, Int32, UInt8
 
 from ..runtime.opencv import plain_opencv
+from .cells import nearest
 
 ROUND_OFF = 1e-6
 SLACK_M = 0.2e-3
@@ -83,8 +84,8 @@ def measure(
     of[pieces.reshape(-1)] = labels.reshape(-1)
     depth = sides.depth(rims, cv2.DIST_MASK_5 if quick else cv2.DIST_MASK_PRECISE)
     disc_m = pitch_m * _most(depth, pieces, count).astype(np.float64)
-    beyond_m = _beyond(depth, gap_m / pitch_m) * np.float32(pitch_m / 2)
-    narrow, places = _places(sides, pieces, beyond_m, depth, disc_m, pitch_m, gap_m, rims)
+    left = ~_reached(sides, pieces, depth, gap_m / 2 / pitch_m, pitch_m)
+    narrow, places = _places(sides, pieces, left, depth, disc_m, pitch_m, gap_m, rims)
     size = np.bincount(pieces.reshape(-1), minlength=count)
     return Widths(pieces, of, size, disc_m, narrow, places, depth)
 
@@ -96,8 +97,9 @@ def connected(labels: Int32[np.ndarray, "h w"]) -> Int32[np.ndarray, "h w"]:
 
 def around(wide: Widths, pitch_m: float, gap_m: float) -> Bool[np.ndarray, "h w"]:
     """The narrow places with all that hangs together with them and no disc of a larger gap reaches."""
-    hardly = _beyond(wide.depth, gap_m / pitch_m) > _slack_m(pitch_m) / (pitch_m / 2)
-    components = _Sides.of(wide.pieces).components(hardly | wide.narrow)
+    sides = _Sides.of(wide.pieces)
+    hardly = ~_reached(sides, wide.pieces, wide.depth, gap_m / 2 / pitch_m, pitch_m)
+    components = sides.components(hardly | wide.narrow)
     there = np.zeros(int(components.max()) + 1, np.bool_)
     there[components[wide.narrow]] = True
     there[0] = False
@@ -145,6 +147,15 @@ class _Sides(NamedTuple):
         with plain_opencv():
             return np.asarray(cv2.distanceTransform(inside, cv2.DIST_L2, mask), np.float32)
 
+    def grown(self, cells: Bool[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
+        """With the cells beside them, but none over a border."""
+        found = cells.copy()
+        found[:, 1:] |= cells[:, :-1] & self.upright
+        found[:, :-1] |= cells[:, 1:] & self.upright
+        found[1:] |= cells[:-1] & self.level
+        found[:-1] |= cells[1:] & self.level
+        return found
+
     def components(self, cells: Bool[np.ndarray, "h w"]) -> Int32[np.ndarray, "h w"]:
         """The connected pieces of these cells, from 1 on; 0 elsewhere. No piece crosses a border."""
         import cv2
@@ -166,22 +177,25 @@ def _most(depth: Float32[np.ndarray, "r c"], pieces: Int32[np.ndarray, "h w"], c
     return most
 
 
-def _beyond(depth: Float32[np.ndarray, "r c"], radius: float) -> Float32[np.ndarray, "h w"]:
-    """How far each cell is from the discs of this radius that lie within pieces; 0 or less in them. Half cells."""
-    import cv2
-
-    outside: UInt8[np.ndarray, "r c"] = (depth < radius * (1 - ROUND_OFF)).view(np.uint8)
-    if outside.all():
-        return np.full((depth.shape[0] // 2, depth.shape[1] // 2), np.float32(np.inf))
-    with plain_opencv():
-        far = np.asarray(cv2.distanceTransform(outside, cv2.DIST_L2, cv2.DIST_MASK_5), np.float32)
-    return far[1::2, 1::2] - np.float32(radius)
+def _reached(
+    sides: _Sides, pieces: Int32[np.ndarray, "h w"], depth: Float32[np.ndarray, "r c"], radius: float, pitch_m: float
+) -> Bool[np.ndarray, "h w"]:
+    """Cells that a disc of this radius, in cells, reaches within their piece, or all but reaches."""
+    deep = depth >= 2 * radius * (1 - ROUND_OFF)
+    middles = deep[1::2, 1::2] | deep[1::2, 2::2] | deep[2::2, 1::2] | deep[2::2, 2::2]
+    if not middles.any():
+        return middles
+    far, at = nearest(middles)
+    reached = (far <= radius + 1) & (pieces.reshape(-1)[at] == pieces)
+    for _ in range(max(0, round(SLACK_M / pitch_m - 1))):
+        reached = sides.grown(reached)
+    return reached
 
 
 def _places(
     sides: _Sides,
     pieces: Int32[np.ndarray, "h w"],
-    beyond_m: Float32[np.ndarray, "h w"],
+    left: Bool[np.ndarray, "h w"],
     depth: Float32[np.ndarray, "r c"],
     disc_m: Float64[np.ndarray, "n"],
     pitch_m: float,
@@ -189,41 +203,40 @@ def _places(
     rims: Rims,
 ) -> tuple[Bool[np.ndarray, "h w"], tuple[Place, ...]]:
     """Where it is too narrow, and the places of it."""
-    left = beyond_m > _slack_m(pitch_m)
     if not left.any():
         return left, ()
     labels = sides.components(left)
     count = int(labels.max()) + 1
     on = np.flatnonzero(left)
     at = labels.reshape(-1)[on]
-    longest_m = np.zeros(count, np.float32)
-    np.maximum.at(longest_m, at, beyond_m.reshape(-1)[on])
     piece = np.zeros(count, np.int64)
     piece[at] = pieces.reshape(-1)[on]
-    necks = _necks(sides, labels, count) & (longest_m > gap_m / 8)
-    wrong = necks | (longest_m > gap_m) | (disc_m[piece] < gap_m * (1 - ROUND_OFF))
+    ends, middle = _ends(sides, labels, count)
+    far = np.hypot(on // pieces.shape[1] - middle[at, 0], on % pieces.shape[1] - middle[at, 1])
+    longest_m = np.zeros(count)
+    np.maximum.at(longest_m, at, far * pitch_m)
+    wrong = (ends > 1) & (longest_m > gap_m / 8) | (ends > 0) & (longest_m > gap_m)
+    wrong |= disc_m[piece] < gap_m * (1 - ROUND_OFF)
     wrong[0] = False
     for side in rims.open_sides():
         wrong[labels[side]] = False  # how it goes on there is not seen
     deepest = depth[1::2, 1::2].reshape(-1)[on]
     width_m = _most(depth, labels, count).astype(np.float64) * pitch_m
-    middle = np.zeros(count, np.int64)
+    cell = np.zeros(count, np.int64)
     order = np.argsort(deepest, kind="stable")
-    middle[at[order]] = on[order]
+    cell[at[order]] = on[order]
     size = np.bincount(at, minlength=count)
     found = tuple(
-        Place(int(piece[n]), float(width_m[n]), int(size[n]), divmod(int(middle[n]), pieces.shape[1]))
+        Place(int(piece[n]), float(width_m[n]), int(size[n]), divmod(int(cell[n]), pieces.shape[1]))
         for n in np.flatnonzero(wrong).tolist()
     )
     return wrong[labels], found
 
 
-def _slack_m(pitch_m: float) -> float:
-    return max(SLACK_M, pitch_m)
-
-
-def _necks(sides: _Sides, labels: Int32[np.ndarray, "h w"], count: int) -> Bool[np.ndarray, "m"]:
-    """Whether each of these places hangs together with the rest of its piece on more than one side."""
+def _ends(
+    sides: _Sides, labels: Int32[np.ndarray, "h w"], count: int
+) -> tuple[Int[np.ndarray, "m"], Float64[np.ndarray, "m 2"]]:
+    """On how many sides each of these places hangs together with the rest of its piece; the middle of these sides."""
     import cv2
 
     beside = np.zeros(labels.shape, np.int32)
@@ -233,6 +246,10 @@ def _necks(sides: _Sides, labels: Int32[np.ndarray, "h w"], count: int) -> Bool[
             met = same & (labels[here] == 0) & (labels[there] > 0)
             beside[here][met] = labels[there][met]
     on = np.flatnonzero(beside)
-    _, ends = cv2.connectedComponents((beside > 0).view(np.uint8), connectivity=8)
-    met = np.unique(ends.reshape(-1)[on].astype(np.int64) * count + beside.reshape(-1)[on]) % count
-    return np.bincount(met, minlength=count) > 1
+    of = beside.reshape(-1)[on]
+    _, groups = cv2.connectedComponents((beside > 0).view(np.uint8), connectivity=8)
+    met = np.unique(groups.reshape(-1)[on].astype(np.int64) * count + of) % count
+    cells = np.maximum(np.bincount(of, minlength=count), 1)
+    rows, columns = np.divmod(on, labels.shape[1])
+    middle = np.stack([np.bincount(of, each, count) / cells for each in (rows, columns)], axis=1)
+    return np.bincount(met, minlength=count), middle

@@ -5,7 +5,6 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..description import place_in_words
-from ..errors import quoted
 
 MOST_NAMED = 4
 PLACES = 9
@@ -16,10 +15,10 @@ def called(number: int, names: Sequence[str] = ()) -> str:
     """A part with its name, where it has one.
 
     >>> called(3), called(1, ["wall", "helmet"])
-    ('part 3', "part 1 ('helmet')")
+    ('part 3', 'part 1 (helmet)')
     """
     name = names[number] if number < len(names) else ""
-    return f"part {number} ({quoted(name)})" if name else f"part {number}"
+    return f"part {number} ({name})" if name else f"part {number}"
 
 
 def listed(texts: Sequence[str]) -> str:

@@ -11,14 +11,16 @@ from ..plugins.hooks import hookimpl
 if TYPE_CHECKING:
     from ..data import Outcome, ServoReport
 
+EXPORT = "export: "
+"""How the outcome of an exporter is called, before its name."""
 _shown: list[Any] = []
 """The one spinner on the screen, if any."""
 
 
 @hookimpl
 def tangible_stage_started(product: str, method: str) -> None:
-    """A spinner with the product's name."""
-    _show(f"making {product} with {method}")
+    """A spinner with the product's name, or what is written."""
+    _show(f"writing {method}" if product.startswith(EXPORT) else f"making {product} with {method}")
 
 
 @hookimpl

@@ -336,7 +336,11 @@ def _override(source: Source, text: str) -> None:
     if parts[0] == "export" and len(parts) > 1:
         listed = source.tree.setdefault("export", CommentedSeq())
         if isinstance(listed, list) and len(parts) > 2:
-            place = ("export", exporter_at(cast("list[Any]", listed), parts[1]), *parts[2:])
+            before = len(cast("list[Any]", listed))
+            index = exporter_at(cast("list[Any]", listed), parts[1])
+            place = ("export", index, *parts[2:])
+            if index == before:  # it says the name, too
+                source.overridden["export", str(index)] = text
     source.override(text, shorthand, place)
 
 

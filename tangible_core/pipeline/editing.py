@@ -112,7 +112,7 @@ def _lead_elsewhere(
     for key, model in blocks.items():
         block: Any = tree
         for part in key:
-            block = block[part] if isinstance(block, list) else block.get(part)
+            block = cast(Any, block).get(part) if isinstance(block, dict) else block[part]
         for name, value in model if isinstance(model, BaseModel) and isinstance(block, dict) else ():
             written = cast("dict[str, Any]", block).get(name)
             if isinstance(value, Path) and isinstance(written, str) and not Path(written).is_absolute():

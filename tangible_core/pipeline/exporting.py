@@ -9,7 +9,7 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from threading import Event
 from time import perf_counter
-from typing import Any, final
+from typing import Any, cast, final
 
 from ..data import Note, Outcome, Outcomes, Record, Work
 from ..data.outcome import HEADINGS, OutcomeKind, html_table, text_table
@@ -120,11 +120,11 @@ def chosen_exporters(
 def _chosen(config: PipelineConfig, each: str | Exporter, registry: Registry) -> tuple[NamedMethod[Exporter], ...]:
     if isinstance(each, Exporter):
         return (NamedMethod(type(each).__qualname__, "", each),)
-    if not isinstance(each, str):
+    if not isinstance(each, cast(Any, str)):
         raise wrong_argument("to", each, "the name of an exporter, or an object of one")
     if own := tuple(chosen for chosen in config.export if chosen.name == each):
         return own
-    listing, cls = registry.find("export", each), registry.load("export", each)
+    listing, cls = registry.find("export", each), cast("type[Exporter]", registry.load("export", each))
     try:
         return (NamedMethod(each, listing.origin, cls()),)
     except ValueError as error:
@@ -214,7 +214,10 @@ class _Desk:
         width_m = chosen.method.width_m(columns / rows)
         if width_m not in self.of_width:
             self.of_width[width_m] = of_width(self.engine, width_m)
-        return self.of_width[width_m]
+        found = self.of_width[width_m]
+        for other in self.of_width.values():
+            found.adopt(other)
+        return found
 
     def _written(self, chosen: NamedMethod[Exporter], work: Work, stem: Path) -> tuple[Path, ...]:
         cls = type(chosen.method)

@@ -17,6 +17,7 @@ from ..data.pictures import to_grey
 from ..errors import ConfigError
 from ..plugins.registry import default_registry
 from ..runtime.opencv import plain_opencv
+from ..scene.height_files import said_of
 from ..scene.scene import Scene
 from .cache import Cache
 from .config import parse_config
@@ -46,7 +47,7 @@ Kind = Literal["photo", "pair", "heights"]
 
 def are_pictures(paths: Iterable[Path]) -> bool:
     """Whether these are to be felt as they are, and not the name of one pipeline file."""
-    return all(_is_builtin(path) or path.suffix.lower() in PICTURES | MAPS for path in paths)
+    return all(_is_builtin(path) or path.suffix.lower() in PICTURES or _is_map(path) for path in paths)
 
 
 class Starter(NamedTuple):
@@ -71,7 +72,8 @@ def starter(pictures: Sequence[Path], file: Path) -> Starter:
     kind: Kind = "heights" if scene.views is None else "pair" if scene.views.right is not None else "photo"
     named = ", ".join(f"{part}: {_path_in_yaml(path, file.parent)}" for part, path in parts.items())
     said = {"scene": f"{{{named}}}" if parts else scene.name, "name": " and ".join(path.name for path in pictures)}
-    text = files("tangible_core.pipeline").joinpath(f"starter_{kind}.yaml").read_text(encoding="utf-8")
+    template = kind if scene.measured is None else "measured"
+    text = files("tangible_core.pipeline").joinpath(f"starter_{template}.yaml").read_text(encoding="utf-8")
     return Starter(Template(text).substitute(said, file=file, **_size(scene, kind)), scene)
 
 
@@ -89,12 +91,17 @@ def _is_builtin(path: Path) -> bool:
     return path.parts[:1] == ("builtin",) and not path.suffix and not path.exists()
 
 
+def _is_map(path: Path) -> bool:
+    """By its name, or by what it says of itself. Raises: PictureError if that is nonsense."""
+    return path.suffix.lower() in MAPS or said_of(path) is not None
+
+
 def _parts(pictures: Sequence[Path]) -> Mapping[str, Any]:
     """Which part of a scene each is; none for a builtin one. Raises: ConfigError."""
     if len(pictures) == 1:
         (path,) = pictures
-        return {} if _is_builtin(path) else {"height" if path.suffix.lower() in MAPS else "photo": path}
-    if odd := next((path for path in pictures if _is_builtin(path) or path.suffix.lower() in MAPS), None):
+        return {} if _is_builtin(path) else {"height" if _is_map(path) else "photo": path}
+    if odd := next((path for path in pictures if _is_builtin(path) or _is_map(path)), None):
         raise ConfigError(f"{odd}: left and right are two pictures; name this one alone")
     return dict(zip(("left", "right"), pictures, strict=True))
 
@@ -109,6 +116,9 @@ def _size(scene: Scene, kind: Kind) -> dict[str, object]:
     found |= {"width_mm": f"{SIDE_MM * columns / longer:.3g}", "length_mm": f"{SIDE_MM * rows / longer:.3g}"}
     if kind == "pair":
         return found
+    if (own := scene.measured) is not None:
+        named = zip(("width_mm", "length_mm", "relief_mm"), own, strict=True)
+        return found | {name: f"{1e3 * length_m:.3g}" for name, length_m in named}
     slope = _slope(values, SMOOTH_MM[kind])
     least, most = LEAST_MM, MOST_MM[kind]
     relief_mm = max(least, min(most, floor(2 * STEEPEST / slope) / 2)) if slope > 0 else most

@@ -22,16 +22,12 @@ class Preflight(tuple[Verdict, ...]):
 
         A change that would undo that of another verdict is left out.
         """
-        found = list(verdicts)
-        wanted: dict[str, Change] = {}
-        for change in (change for each in sorted(found, key=_rank) for change in each.changes):
-            wanted[change.key] = wanted[change.key].stricter(change) if change.key in wanted else change
-        return cls(_agreed(each, wanted) for each in found)
+        return cls(agreed(verdicts))
 
     @property
     def grade(self) -> Grade:
         """The worst of them."""
-        return GRADES[min(map(_rank, self), default=-1)]
+        return worst(self)
 
     @property
     def safe(self) -> bool:
@@ -45,14 +41,9 @@ class Preflight(tuple[Verdict, ...]):
         >>> Preflight().sentence
         'Safe: nothing is wrong.'
         """
-        worst = self.grade
-        reasons = list(dict.fromkeys(each.says for each in self if each.verdict == worst and each.says))
-        if worst == "ok":
+        if self.grade == "ok":
             return "Safe: nothing is wrong."
-        more = len(reasons) - SAID
-        named = reasons[:SAID] + ([f"{more} more thing{'s' * (more > 1)}"] if more > 0 else [])
-        said = " and ".join(filter(None, [", ".join(named[:-1]), named[-1]]))
-        return f"{'Safe, but' if worst == 'warn' else 'Unsafe, because'} {said}."
+        return f"{'Safe, but' if self.safe else 'Unsafe, because'} {reasons(self)}."
 
     def as_data(self) -> dict[str, Any]:
         """All of it as JSON says it, for a program that shows it: see `wording.as_data`."""
@@ -65,7 +56,31 @@ class Preflight(tuple[Verdict, ...]):
         return "\n".join([self.sentence, *lines])
 
 
-GRADES: tuple[Grade, ...] = ("unsafe", "warn", "ok")
+GRADES: tuple[Grade, ...] = ("unsafe", "illegible", "warn", "ok")
+
+
+def agreed(verdicts: Iterable[Verdict]) -> list[Verdict]:
+    """With one value for each key that several change; a change that would undo that of another is left out."""
+    found = list(verdicts)
+    wanted: dict[str, Change] = {}
+    for change in (change for each in sorted(found, key=_rank) for change in each.changes):
+        wanted[change.key] = wanted[change.key].stricter(change) if change.key in wanted else change
+    return [_agreed(each, wanted) for each in found]
+
+
+def worst(verdicts: Iterable[Verdict]) -> Grade:
+    """The worst grade of them; `ok` of none."""
+    return GRADES[min(map(_rank, verdicts), default=-1)]
+
+
+def reasons(verdicts: Iterable[Verdict]) -> str:
+    """What the worst of them say, as the end of a sentence."""
+    found = list(verdicts)
+    grade = worst(found)
+    said = list(dict.fromkeys(each.says for each in found if each.verdict == grade and each.says))
+    more = len(said) - SAID
+    named = said[:SAID] + ([f"{more} more thing{'s' * (more > 1)}"] if more > 0 else [])
+    return " and ".join(filter(None, [", ".join(named[:-1]), named[-1]]))
 
 
 def _rank(verdict: Verdict) -> int:

@@ -12,7 +12,7 @@ cannot read it."""
 FEW = 0.01
 """Share of the surface up to which a place is called the exception."""
 
-Unit = Literal["m", "s", "N", "N/m", "N s/m", "share", "pins", "JND", ""]
+Unit = Literal["m", "s", "N", "N/m", "N s/m", "share", "pins", "parts", "textures", "JND"]
 
 
 class Change(NamedTuple):

@@ -40,7 +40,8 @@ def measured(files: SceneFiles) -> Measured | None:
     whole = said.measured
     _, _, columns, rows = files.crop or (0, 0, said.columns, said.rows)
     size_m = whole.width_m * columns / said.columns, whole.length_m * rows / said.rows
-    return Measured(*(size_m[::-1] if files.rotate in (90, 270) else size_m), whole.high_m)
+    width_m, length_m = size_m[::-1] if files.rotate in (90, 270) else size_m
+    return Measured(width_m, length_m, whole.high_m)
 
 
 def _cropped(values: np.ndarray, files: SceneFiles) -> np.ndarray:

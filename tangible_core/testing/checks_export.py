@@ -1,7 +1,7 @@
 """Checks of an exporter."""
 
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Generator, Mapping, Sequence
 from contextlib import chdir, contextmanager
 from dataclasses import replace
 from datetime import UTC, datetime
@@ -124,7 +124,7 @@ def _answered(method: Exporter, work: Work, what: str) -> None:
 
 
 @contextmanager
-def _written(method: Exporter, work: Work) -> Iterator[Sequence[Path]]:
+def _written(method: Exporter, work: Work) -> Generator[Sequence[Path]]:
     """The files of a work, each of which is whole, while they are there."""
     with TemporaryDirectory() as place:
         stem = Path(place) / STEM
@@ -160,7 +160,7 @@ def _today() -> list[bytes]:
 
 
 @contextmanager
-def _within(folder: Path) -> Iterator[None]:
+def _within(folder: Path) -> Generator[None]:
     """With this folder as the current one."""
     with chdir(folder):
         yield

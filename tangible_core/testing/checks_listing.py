@@ -13,8 +13,9 @@ HEAVY = ("torch", "kornia", "cv2", "skimage", "numba", "usb", "scipy", "matplotl
 
 def name_is_plain(listing: Listing) -> None:
     """The name is lower-case words joined by hyphens: it is typed in YAML and at the command line."""
+    word = r"([a-z]|[1-9][a-z]{2})[a-z0-9]*"  # a file format may be called 3mf; 1e3 and 0xff are numbers in YAML
     demand(
-        re.fullmatch(r"[a-z][a-z0-9]*(-[a-z0-9]+)*", listing.name),
+        re.fullmatch(rf"{word}(-[a-z0-9]+)*", listing.name),
         f"the name is {listing.name!r}; write it as lower-case words joined by hyphens",
     )
 

@@ -71,7 +71,7 @@ def _products(
     rows, columns = shape
     heights_m = np.linspace(0, 0.003, columns, dtype=np.float32)[None].repeat(rows, 0)
     if labels is not None:
-        heights_m = np.float32(HEIGHTS_M)[labels]
+        heights_m = np.array(HEIGHTS_M, np.float32)[labels]
     relief = Relief(heights_m, (width_m, width_m * rows / columns))
     found: dict[str, Any] = dict.fromkeys(EXPORTABLE)
     found |= {"relief": relief, "surface": HapticSurface(relief), "disparity": DisparityMap(heights_m * 1000)}

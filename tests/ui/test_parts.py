@@ -535,7 +535,9 @@ def test_pages_know_the_names_of_parts_whatever_is_made(
         assert told[2]["material"] == "ice"
         assert told[0]["share"] == pytest.approx(4 / labels.size)
         if want == "surface":
-            assert "hat" in (await small.tab.until("described"))["says"]["en"]
+            told = await small.tab.until("described")
+            assert all("hat" in told["says"][language] for language in ("en", "de", "fr"))
+            assert [told["names"][language]["ice"] for language in ("en", "de", "fr")] == ["ice", "Eis", "glace"]
 
     small(check)
 

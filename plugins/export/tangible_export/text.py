@@ -31,10 +31,10 @@ RUNOVER_CELLS = 2
 
 @final
 class Text(Exporter):
-    """A description: size and heights of the whole, then its parts from near to far; plain text, an accessible page of
-    HTML and, where it is asked for, braille for an embosser.
+    """Words on what there is to feel: plain text, an accessible page of HTML and, where it is asked for, braille.
 
-    Parts that somebody named are described as they are felt; where none is, those that fingers can read.
+    They say size and heights of the whole, and then of each part, from near to far. Parts that somebody named are
+    described as they are felt; where none is, those that fingers can read.
     """
 
     needs: ClassVar[tuple[str, ...]] = ("surface", "simplified", "materials")

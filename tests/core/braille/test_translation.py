@@ -2,15 +2,17 @@
 
 import ctypes
 import os
+import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from itertools import product
 from threading import Barrier
+from typing import Any
 
 import pytest
 
 from tangible_core.braille import as_ascii, as_unicode, translate, translation, written_by
-from tangible_core.braille.latin import CODES, translated
+from tangible_core.braille.latin import CODES, LETTERS, translated
 from tangible_core.braille.louis import NAMES, TABLES, Louis, louis
 from tangible_core.errors import BrailleError
 from tangible_core.plugins.notes import collected
@@ -65,6 +67,18 @@ def without(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[object], None
 def test_liblouis_and_our_tables_agree(installed: Louis, language: str, text: str):
     plain = translation._plain(text, language)
     assert as_unicode(translate(text, language)) == as_unicode(translated(plain, language))
+
+
+@pytest.mark.parametrize("language", CODES)
+def test_they_agree_on_every_letter_and_digit(installed: Louis, language: str):
+    """Small and capital, within words; accents of all languages where theirs stand before the letter."""
+    letters = [*LETTERS, *filter(str.isalpha, CODES[language].signs), *("éèêñčōŭïåç" if CODES[language].marks else "")]
+    for word in (word for each in letters for word in (f"a{each}a", f"{each.upper()}a", f"m{each}")):
+        if language == "en" and word[0] in "ÆŒ":  # liblouis repeats the sign of capitals within the ligature
+            continue
+        assert as_unicode(translate(word, language)) == as_unicode(translated(word, language)), word
+    for number in range(1100):
+        assert translate(str(number), language) == translated(str(number), language), number
 
 
 @pytest.mark.parametrize(("language", "text", "braille"), [
@@ -177,6 +191,25 @@ def test_threads_do_not_disturb_one_another(installed: Louis):
 
     with ThreadPoolExecutor(8) as pool:
         assert all(each == alone for each in pool.map(all_of_them, range(8)))
+
+
+def test_one_thread_at_a_time_is_with_the_library(without: Callable[[object], None]):
+    """Seen from within a library, as liblouis itself ends the process where it is disturbed."""
+    library, inside, most = odd(), list[None](), list[int]()
+    write: Any = library.lou_translateString  # pyright: ignore[reportAttributeAccessIssue]
+
+    def watched(*given: Any) -> int:
+        inside.append(None)
+        time.sleep(1e-3)
+        most.append(len(inside))
+        inside.pop()
+        return write(*given)
+
+    library.lou_translateString = watched  # pyright: ignore[reportAttributeAccessIssue]
+    without(library)
+    with ThreadPoolExecutor(4) as pool:
+        assert set(pool.map(translate, ["abc"] * 40)) == {(1, 3, 9)}
+    assert set(most) == {1}
 
 
 def test_nothing_is_printed(installed: Louis, capfd: pytest.CaptureFixture[str]):

@@ -140,11 +140,11 @@ def test_of_very_many_parts_the_named_and_the_largest(extra: int, says: str | No
     count = MOST_PARTS + extra
     labels = np.repeat(np.arange(count, dtype=np.int32), 160).reshape(-1, 80)
     surface = replace(
-        HapticSurface.from_heights(labels * 1e-4, 0.08, labels), names=(*[""] * (count - 1), "the last, and nearest")
+        HapticSurface.from_heights(labels * 1e-4, 0.08, labels), names=("the lowest", *[""] * (count - 1))
     )
     lines = describe_at_length(surface, "x", "en", facts(surface))
-    assert sum(". part " in line or "the last" in line for line in lines if line[:1].isdigit()) == MOST_PARTS
-    assert any(line.startswith("1. the last, and nearest. ") for line in lines)
+    assert sum(". part " in line or "the lowest" in line for line in lines if line[:1].isdigit()) == MOST_PARTS
+    assert any(line.startswith(f"{MOST_PARTS}. the lowest. ") for line in lines)
     assert (lines[-1] if says else None) == says
 
 

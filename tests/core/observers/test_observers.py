@@ -4,6 +4,7 @@ import pytest
 
 from tangible_core.data import NO_FORCE, HapticState, Outcome, Plan, ServoReport
 from tangible_core.observers import log, progress
+from tangible_core.pipeline.exporting import PREFIX
 
 
 def report(stopped: str = "", part: str = "") -> ServoReport:
@@ -34,6 +35,14 @@ def test_progress_writes_to_a_terminal_alone(capsys: pytest.CaptureFixture[str])
     progress.tangible_stage_started("relief", "core")
     progress.tangible_stage_finished(Outcome("relief", "ran", "asked for"))
     assert capsys.readouterr() == ("", "")
+
+
+def test_progress_says_what_is_written(monkeypatch: pytest.MonkeyPatch):
+    heard = list[str]()
+    monkeypatch.setattr(progress, "_show", heard.append)
+    progress.tangible_stage_started(product=f"{PREFIX}swell", method="swell")
+    progress.tangible_stage_started(product="relief", method="core")
+    assert heard == ["writing swell", "making relief with core"]
 
 
 def test_progress_shows_one_spinner_and_takes_it_away(monkeypatch: pytest.MonkeyPatch):

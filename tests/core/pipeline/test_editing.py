@@ -105,6 +105,54 @@ def test_a_file_that_says_nothing_yet():
     assert edited("# mine\nscene: builtin/brick\n", PATH, {"scene": REMOVE}) == "# mine\n"
 
 
+LISTED = "scene: builtin/coins  # mine\nexport: [heights, {use: text, language: de}]  # for others\n"
+
+
+@pytest.mark.parametrize(
+    ("changes", "exporters"),
+    [
+        ({"export.heights.wide_m": 0.1}, "[{use: heights, wide_m: 0.1}, {use: text, language: de}]"),
+        ({"export.text.language": "fr"}, "[heights, {use: text, language: fr}]"),
+        ({"export.1.language": "fr"}, "[heights, {use: text, language: fr}]"),
+        ({"export.text.language": REMOVE}, "[heights, {use: text}]"),
+        ({("export", 1, "use"): "heights"}, "[heights, {use: heights}]"),
+        ({"export": ["text"]}, "[text]"),
+        ({"export.swell.page": "a3"}, "[heights, {use: text, language: de}, {use: swell, page: a3}]"),
+    ],
+)  # fmt: skip
+def test_an_exporter_is_changed_by_its_name(changes: dict, exporters: str):
+    text = edited(LISTED, PATH, {"scene": "builtin/brick", **changes})
+    assert text == f"scene: builtin/brick  # mine\nexport: {exporters}  # for others\n"
+
+
+def test_exporters_stay_where_something_else_changes():
+    assert edited(LISTED, PATH, {"workspace.width_m": 0.1}).startswith(LISTED)
+    assert edited("scene: builtin/coins\n", PATH, {"export.heights.wide_m": 0.1}).endswith(
+        "export: [{use: heights, wide_m: 0.1}]\n"
+    )
+
+
+def test_relative_files_of_an_exporter_lead_to_the_same_from_elsewhere(tmp_path: Path):
+    from tangible_core import Exporter
+    from tangible_core.pipeline.config import NamedMethod, PipelineConfig
+    from tangible_core.pipeline.editing import moved
+
+    class Framed(Exporter):
+        frame: Path = Path()
+
+        def write(self, work, stem):
+            raise NotImplementedError
+
+    text = "scene: builtin/coins\nexport: [heights, {use: framed, frame: frames/oak.svg}]\n"
+    exporters = (
+        NamedMethod("heights", "", Framed()),
+        NamedMethod("framed", "", Framed(frame=tmp_path / "frames/oak.svg")),
+    )
+    config = PipelineConfig("builtin/coins", export=exporters)
+    found = moved(text, tmp_path / "p.yaml", config, tmp_path / "sub" / "p.yaml")
+    assert found == text.replace("frames/", "../frames/")
+
+
 def test_what_an_alias_shares_changes_in_one_place():
     text = "scene: builtin/brick  # mine\nmapping: &m {scale: 2}\nworkspace: {width_m: &w 0.1, relief_m: *w}\n"
     assert said(edited(text, PATH, {"workspace.relief_m": 0.2}), PATH)["workspace"] == {"width_m": 0.1, "relief_m": 0.2}

@@ -45,6 +45,16 @@ def test_the_values_suit_the_picture(folder: Path):
     assert all(line.count("#") for line in made.text.splitlines() if " mm " in line), "each length is explained"
 
 
+def test_heights_in_millimetres_are_taken_at_their_word(folder: Path):
+    tangible("export", "map.npy", "--to", "heights", "--out", ".", cwd=folder)
+    for name in ("map-heights.json", "map-heights.tif", "map-heights.png"):
+        assert are_pictures([Path(name)])
+        config = parse_config(starter([Path(name)], Path("p.yaml")).text, Path("p.yaml"), default_registry())
+        assert isinstance(config.scene, SceneFiles) and config.scene.height == folder / name
+        assert config.size.width_m == pytest.approx(0.08)
+        assert config.size.relief_m == pytest.approx(0.015)
+
+
 def test_a_map_and_a_pair_and_a_builtin_scene(folder: Path):
     assert "scene: {height: map.npy}" in starter([Path("map.npy")], Path("p.yaml")).text
     pair = starter([folder / "calm.png", folder / "calm.png"], folder / "sub" / "p.yaml").text

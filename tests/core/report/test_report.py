@@ -39,6 +39,7 @@ from tangible_core.haptic_textures import peak_wavelength_m
 from tangible_core.materials.assignment import library
 from tangible_core.plugins import hooks
 from tangible_core.plugins.hooks import hookimpl
+from tangible_core.plugins.notes import collected
 from tangible_core.plugins.panel import Panel
 from tangible_core.plugins.registry import Registry
 from tangible_core.report import block, disparity_errors, draw_sheet, write_figures
@@ -638,6 +639,21 @@ class TestParts:
         )
         assert "Segments" not in says and says.startswith("A sheet of 3 pictures of Haus.")
         assert "Ihre Teile sind, von nah nach fern, a very long name (rechts" in says
+
+    @pytest.mark.parametrize(
+        ("language", "said", "noted"),
+        [
+            ("fr-CA", " La scène se touche comme une surface de 8 cm de large", []),
+            ("pt", " The scene is felt as a surface 8 cm wide", ["described in English: there are no words for the "]),
+        ],
+    )
+    def test_a_surface_is_described_in_the_language_of_its_names(
+        self, tmp_path: Path, language: str, said: str, noted: list[str]
+    ) -> None:
+        surface = HapticSurface.from_heights(np.eye(8) * 1e-3, 0.08)
+        with collected() as notes:
+            assert said in draw_sheet(tmp_path / "sheet.svg", surface=surface, title="x", language=language)
+        assert [each[:46] for each in notes] == [each[:46] for each in noted]
 
     def test_alone_they_are_in_their_order(self, tmp_path: Path) -> None:
         parts = PartMap(np.int32([[0, 0, 0, 1]]), (0, 1))

@@ -184,13 +184,13 @@ def test_a_module_that_cannot_be_imported_is_not_light(install):
         checks_listing.import_is_light(Registry().find("depth", "mine"))
 
 
-@pytest.mark.parametrize("name", ["gabor", "opencv-sgbm", "zncc-7x7", "a1"])
+@pytest.mark.parametrize("name", ["gabor", "opencv-sgbm", "zncc-7x7", "a1", "3mf"])
 def test_names_that_are_plain(install, name):
     install("acme", {"tangible.depth": {name: "acme:Mine"}}, acme=SOURCE)
     checks_listing.name_is_plain(Registry().find("depth", name))
 
 
-@pytest.mark.parametrize("name", ["Gabor", "two words", "a_b", "-a", "a-", "a--b", "1a", "a.b"])
+@pytest.mark.parametrize("name", ["Gabor", "two words", "a_b", "-a", "a-", "a--b", "1a", "1e3", "0xff", "a.b"])
 def test_names_that_are_not(install, name):
     install("acme", {"tangible.depth": {name: "acme:Mine"}}, acme=SOURCE)
     with pytest.raises(CheckFailure, match="lower-case words joined by hyphens"):

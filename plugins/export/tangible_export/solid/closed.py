@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Bool, Float64, Int64
+from jaxtyping import Float64, Int64
 
 from tangible_core.data.records import Record
 
@@ -32,7 +32,7 @@ def closed(upper: Patch, base_m: float) -> Solid:
     raised_m = upper.points_m + np.array([0.0, 0.0, base_m])
     points = np.rint(1000 * STEPS_PER_MM * raised_m).astype(np.int64)
     vertices, triangles = _welded(points, upper.triangles)
-    start, end = _edges(triangles)[_single(triangles, len(vertices))].T  # each start is once, and so is each end
+    start, end = _outline(vertices, triangles)
     count, rim = len(vertices), len(start)
     foot = np.zeros(count, np.int64)
     foot[start] = count + np.arange(rim)
@@ -56,11 +56,15 @@ def _welded(
     return ordered[first], corners[(a != b) & (b != c) & (c != a)]
 
 
-def _edges(triangles: Int64[np.ndarray, "m 3"]) -> Int64[np.ndarray, "e 2"]:
-    return np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
-
-
-def _single(triangles: Int64[np.ndarray, "m 3"], count: int) -> Bool[np.ndarray, " e"]:
-    """Which edges no other triangle has the other way round."""
-    start, end = _edges(triangles).T
-    return ~np.isin(start * count + end, end * count + start)
+def _outline(
+    vertices: Int64[np.ndarray, "v 3"], triangles: Int64[np.ndarray, "t 3"]
+) -> tuple[Int64[np.ndarray, " e"], Int64[np.ndarray, " e"]]:
+    """Starts and ends of the edges that run along one of the four sides: each vertex is one start, and one end."""
+    far = vertices.max(axis=0)
+    sides = np.stack([vertices[:, axis] == limit for axis in (0, 1) for limit in (0, far[axis])])
+    found = list[np.ndarray]()
+    for a, b in ((0, 1), (1, 2), (2, 0)):
+        start, end = triangles[:, a], triangles[:, b]
+        found.append(np.stack([start, end])[:, (sides[:, start] & sides[:, end]).any(axis=0)])
+    start, end = np.concatenate(found, axis=1)
+    return start, end

@@ -1,0 +1,1 @@
+"""Acme's exporter for Tangible Images."""

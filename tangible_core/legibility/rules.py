@@ -1,0 +1,152 @@
+"""The rules of tactile graphics, in one table: value, unit, source, and whether it is a convention of ours."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal, NamedTuple
+
+from ..braille import CELL_PITCH_M, DOT_DIAMETER_M, DOT_HEIGHT_M, DOT_PITCH_M, LINE_PITCH_M
+from ..plugins.interfaces import Medium
+from ..preflight.verdict import Grade, Unit
+from ..preflight.wording import quantity
+
+GRAPHICS = "tactilegraphics.org"
+ROUND_TABLE = "Round Table on Information Access for People with Print Disabilities"
+APH = "American Printing House, 1997"
+WIKI = "the wiki of tactile-graphics"
+NLS = "NLS Specification 800"
+JND = "differences that hands notice: friction 20 %, stiffness 45 %, grain and roughness 10 %"
+OURS = "a convention of ours"
+
+
+@dataclass(frozen=True)
+class Rule:
+    """What one thing must be, in one medium."""
+
+    check: str
+    """What is looked at, such as `gap`."""
+    says: str
+    """What is to be so, in words."""
+    bound: float
+    unit: Unit
+    relation: Literal["<=", ">="]
+    source: str
+    ours: bool = False
+    """Whether the value is a convention of ours: then nobody else is to blame, and the source says what it leans on."""
+    worse: Grade = "illegible"
+    """What it is if the rule is not kept."""
+
+    @property
+    def cited(self) -> str:
+        """The source, and whether it is ours."""
+        return ", ".join(filter(None, [OURS if self.ours else "", self.source]))
+
+
+class Profile(NamedTuple):
+    """The rules of one medium, by what they look at."""
+
+    medium: Medium
+    said: str
+    """The medium in words."""
+    rules: Mapping[str, Rule]
+
+
+def _gap(source: str, ours: bool = False, worse: Grade = "illegible") -> Rule:
+    return Rule("gap", "a part is nowhere narrower than", 0.0032, "m", ">=", source, ours, worse)
+
+
+def _part(source: str, ours: bool = False, worse: Grade = "illegible") -> Rule:
+    return Rule("part", "a part holds a disc of a diameter of", 0.0064, "m", ">=", source, ours, worse)
+
+
+_SHAPE = Rule("shape", "the longer side of a part that is to be recognised", 0.0127, "m", ">=", APH, worse="warn")
+_TEXTURES = Rule("textures", "textures that are to be told apart", 5, "textures", "<=", WIKI)
+_PARTS = Rule("parts", "parts of the picture", 2, "parts", ">=", "one part has no border to feel", True)
+_STEP = Rule("step", "height from a part to the one beside it", 0.0005, "m", ">=", f"{ROUND_TABLE}: felt")
+_IMPORTANT = Rule(
+    "named step", "the same, where both have a name", 0.001, "m", ">=", f"{ROUND_TABLE}: important", worse="warn"
+)
+_HEIGHT = Rule("height", "height of the relief", 0.0005, "m", ">=", f"{ROUND_TABLE}: felt")
+_UNFELT = Rule(
+    "unfelt borders",
+    "length of borders without a step that is felt",
+    0.2,
+    "share",
+    "<=",
+    "no number found",
+    True,
+    "warn",
+)
+_BRAILLE = (
+    Rule("braille dot", "diameter of a dot of braille", DOT_DIAMETER_M, "m", ">=", NLS),
+    Rule("braille height", "height of a dot of braille", DOT_HEIGHT_M, "m", ">=", NLS),
+    Rule("braille dots", "from dot to dot in a cell of braille", DOT_PITCH_M, "m", ">=", NLS),
+    Rule("braille cells", "from cell to cell of braille", CELL_PITCH_M, "m", ">=", NLS),
+    Rule("braille lines", "from line to line of braille", LINE_PITCH_M, "m", ">=", NLS),
+)
+
+
+def _profile(medium: Medium, said: str, *rules: Rule) -> Profile:
+    return Profile(medium, said, {each.check: each for each in rules})
+
+
+PROFILES: dict[Medium, Profile] = {
+    "swell": _profile(
+        "swell",
+        "swell paper",
+        _PARTS,
+        _gap(f"{GRAPHICS}, which advises 6.4 mm on capsule paper"),
+        _part(GRAPHICS),
+        _SHAPE,
+        _TEXTURES,
+        Rule("line", "width of an outline", 0.001, "m", ">=", "none found for swell paper", True),
+        *(each for each in _BRAILLE if each.check != "braille height"),
+    ),
+    "print": _profile(
+        "print",
+        "a solid that was printed",
+        _PARTS,
+        _HEIGHT,
+        _gap(f"as on swell paper; {ROUND_TABLE}: 2 mm in a double line, 5 mm between lines", ours=True),
+        _part("as on swell paper", ours=True),
+        _SHAPE,
+        _TEXTURES,
+        _STEP,
+        _IMPORTANT,
+        _UNFELT,
+        Rule("line", "width of a raised line", 0.0011, "m", ">=", f"{ROUND_TABLE}, tactiles.eu: 1.1 to 3 mm"),
+        Rule("base", "thickness of the plate below", 0.0008, "m", ">=", f"{ROUND_TABLE}; better 1.5 mm"),
+        *_BRAILLE,
+    ),
+    "pins": _profile(
+        "pins",
+        "pins that rise",
+        _PARTS,
+        Rule("pins", "pins that a part has", 4, "pins", ">=", "two by two are the least that is no line", True),
+        Rule("kept borders", "length of borders that lie within a pin of one that is shown", 0.99, "share", ">=",
+             "what stands between two parts must be there", True),
+    ),
+    "force": _profile(
+        "force",
+        "a force device",
+        _PARTS,
+        _gap("as on swell paper, though a tip is finer than a finger", ours=True, worse="warn"),
+        _part("as on swell paper, though a tip is finer than a finger", ours=True, worse="warn"),
+        _SHAPE,
+        Rule("materials", "difference between the materials of neighbours without a step", 1, "JND", ">=", JND),
+        _UNFELT,
+    ),
+}  # fmt: skip
+"""The rules by medium."""
+
+
+def table() -> str:
+    """The rules as a table in Markdown: what, which value for which medium, and its source.
+
+    The page on legibility shows it.
+    """
+    rows = ["| medium | what | value | if not | source |", "|---|---|---|---|---|"]
+    for profile in PROFILES.values():
+        for rule in profile.rules.values():
+            bound = f"{'at most' if rule.relation == '<=' else 'at least'} {quantity(rule.bound, rule.unit)}"
+            rows.append(f"| `{profile.medium}` | {rule.says} | {bound} | {rule.worse} | {rule.cited} |")
+    return "\n".join(rows)

@@ -1,0 +1,68 @@
+"""Heights beside the borders of parts."""
+
+from typing import NamedTuple
+
+import numpy as np
+from jaxtyping import Float64, Int64
+
+from ..data import PartMap, Relief
+
+BESIDE_M = 0.001
+"""A step is from so far on one side of a border to so far on the other."""
+
+
+class Steps(NamedTuple):
+    """Pairs of neighbours, and how much higher one is than the other along their border."""
+
+    low: Int64[np.ndarray, "m"]
+    high: Int64[np.ndarray, "m"]
+    """Numbers of the parts, `low` being the smaller number."""
+    step_m: Float64[np.ndarray, "m"]
+    """The median along the border, without its sign."""
+    length_m: Float64[np.ndarray, "m"]
+    """Of the border."""
+    at: Int64[np.ndarray, "m 2"]
+    """Row and column of a cell beside it."""
+
+
+def sampled(relief: Relief, shape: tuple[int, int]) -> Relief:
+    """The relief on a grid of another size: the heights that are nearest to its cells."""
+    if relief.height_m.shape == shape:
+        return relief
+    index = [
+        ((np.arange(new) + 0.5) * old / new).astype(int) for new, old in zip(shape, relief.height_m.shape, strict=True)
+    ]
+    return Relief(np.ascontiguousarray(relief.height_m[np.ix_(*index)]), relief.extent_m)
+
+
+def steps_between(parts: PartMap, pitch_m: float, relief: Relief | None) -> Steps:
+    """The steps between all neighbours; NaN where no relief is known. relief: on the grid of the parts."""
+    found = [_across(parts, pitch_m, relief, axis) for axis in (0, 1)]
+    pair, step, row, column = (np.concatenate(each) for each in zip(*found, strict=True))
+    order = np.lexsort((step, pair))
+    pair, step, row, column = pair[order], step[order], row[order], column[order]
+    starts = np.flatnonzero(np.diff(pair, prepend=-1))
+    counts = np.diff(np.append(starts, pair.size))
+    low, high = np.divmod(pair[starts], parts.count)
+    known = np.add.reduceat(np.isfinite(step), starts) if starts.size else np.zeros(0, np.int64)
+    middle = starts + np.maximum(known - 1, 0) // 2  # what is not known is last
+    at = np.stack([row[starts + counts // 2], column[starts + counts // 2]], axis=1).astype(np.int64)
+    return Steps(low, high, np.abs(step[middle]), counts * pitch_m, at)
+
+
+def _across(
+    parts: PartMap, pitch_m: float, relief: Relief | None, axis: int
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Of each side of a cell between two parts: the pair, the step over it, and the cell."""
+    labels = parts.labels if axis == 0 else parts.labels.T
+    row, column = np.nonzero(labels[1:] != labels[:-1])
+    one, other = labels[row, column].astype(np.int64), labels[row + 1, column].astype(np.int64)
+    step = np.full(row.size, np.nan)
+    if relief is not None:
+        heights = relief.height_m if axis == 0 else relief.height_m.T
+        reach = max(1, round(BESIDE_M / pitch_m))
+        before, after = np.maximum(row + 1 - reach, 0), np.minimum(row + reach, len(labels) - 1)
+        step = (heights[after, column] - heights[before, column]).astype(np.float64)
+        step = np.where(one < other, step, -step)
+    cell = (row, column) if axis == 0 else (column, row)
+    return np.minimum(one, other) * parts.count + np.maximum(one, other), step, *cell

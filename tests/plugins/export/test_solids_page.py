@@ -1,0 +1,66 @@
+"""What docs/export.md tells of solids is done here; with TANGIBLE_DOCS_PICTURES=1 its picture is written."""
+
+import os
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from command_line import tangible
+from drawn_parts import drawn
+from pictures import write_png
+from solids import FORMATS, from_above, is_closed, read
+from tangible_core.parts.label_picture import label_picture
+
+ROOT = Path(__file__).parents[3]
+PAGES = {name: ROOT.joinpath("docs", f"{name}.md").read_text(encoding="utf-8") for name in ("parts", "export")}
+SECTION = re.findall(r"^## Solids\n(.*?)^## ", PAGES["export"], re.DOTALL | re.MULTILINE)[0]
+STEP_MM, MOST_BYTES = 0.3, 150_000
+
+
+@pytest.mark.slow
+def test_the_page_s_portrait_becomes_a_plate(tmp_path: Path):
+    (parts,), (added,) = (re.findall(r"```yaml\n(.*?)```", text, re.DOTALL) for text in (PAGES["parts"], SECTION))
+    astronaut = drawn("astronaut")
+    write_png(tmp_path / "astronaut.png", astronaut.picture)
+    (tmp_path / "parts.png").write_bytes(label_picture(astronaut.parts.labels))
+    (tmp_path / "astronaut.yaml").write_text(f"{parts}\n{added}")
+    words = re.findall(r"^\$ tangible (.*)$", SECTION, re.MULTILINE)[0].split()
+    done = tangible(*words, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    meshes = [read(path) for path in sorted(tmp_path.joinpath("print").glob("astronaut.[3s]*"))]
+    assert len(meshes) == 2 and all(is_closed(mesh) for mesh in meshes)
+    keep(seen_from_above(meshes[1]), tmp_path)
+
+
+def test_the_page_names_every_option_with_its_default():
+    (table,) = re.findall(r"\| option \|.*?\n\n", SECTION, re.DOTALL)
+    rows = dict(re.findall(r"^\| `(\w+)` \| (\S+(?: mm)?) \|", table, re.MULTILINE))
+    for cls in FORMATS.values():
+        fields = cls.model_fields.items()
+        assert rows == {
+            name: f"{1000 * field.default:g} mm"
+            if name.endswith("_m")
+            else str(field.default).lower().replace("none", "null")
+            for name, field in fields
+        }
+
+
+def seen_from_above(mesh) -> Image.Image:
+    """Lit from the upper left, by the heights that the file has."""
+    width, length, _ = mesh.vertices.max(axis=0)
+    heights = from_above(mesh, np.arange(STEP_MM / 2, width, STEP_MM), np.arange(STEP_MM / 2, length, STEP_MM))[::-1]
+    down, right = np.gradient(heights, STEP_MM)
+    light = (right + down + 1.2) / np.sqrt(3.44 * (1 + right**2 + down**2))
+    return Image.fromarray(np.rint(255 * np.clip(light, 0, 1)).astype(np.uint8))
+
+
+def keep(picture: Image.Image, folder: Path) -> None:
+    """Write it, small, where it is asked for; something is on it, and the page shows it."""
+    assert "](export/solid.png)" in SECTION and np.asarray(picture).std() > 5
+    path = (ROOT / "docs" if os.environ.get("TANGIBLE_DOCS_PICTURES") else folder) / "export" / "solid.png"
+    path.parent.mkdir(exist_ok=True)
+    picture.quantize(64, Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE).save(path, optimize=True)
+    assert path.stat().st_size < MOST_BYTES

@@ -15,8 +15,8 @@ LINE_MM = 1.0
 """Width of outlines. A convention of ours, within the 0.5 to 1.5 mm that tactile graphics use."""
 GAP_MM = 3.2
 """Between marks, so that a finger parts them. Source: tactilegraphics.org."""
-CLEAR_MM = GAP_MM + 0.15
-"""What the drawing keeps between marks: more than GAP_MM by a pixel and a half of those in which it is measured."""
+CLEAR_MM = GAP_MM + 0.2
+"""What the drawing keeps between marks: more than GAP_MM by two pixels of those in which it is measured."""
 CORNER_MM = 8.0
 """Legs of the triangle that says which corner is the upper right one."""
 LOWERED_MM = 10.0

@@ -118,9 +118,10 @@ def prepare(page: "Page", name: str) -> None:
         page.locator("#legible-check").click()
         page.wait_for_selector("#legible .sentence", timeout=60_000)
     elif name == "export":
-        page.get_by_label("Solid to print (STL)").check()
+        for each in ("3D print (STL)", "Swell paper (SVG, PDF)"):
+            page.get_by_label(each).check()
         page.locator("#export-run").click()
-        page.wait_for_selector("#export .outcome", timeout=60_000)
+        page.wait_for_selector("#export .outcome", timeout=120_000)
     elif name == "description":
         page.wait_for_selector("#description li")
     elif name == "yaml":  # without the place of this machine where the test runs

@@ -158,10 +158,15 @@ class Engine:
         other = Engine(config, self.registry, self.cache)
         if config.scene == self.config.scene:
             other._read = self._read
-        if config.scene == self.config.scene and "_rules" in self.__dict__:
-            alike = (name for name in self._made if name in self._rules and self._rules[name].cached)
-            other._made |= {name: self._made[name] for name in alike if other.key(name) == self.key(name)}
+        other.adopt(self)
         return other
+
+    def adopt(self, other: "Engine") -> None:
+        """Products that another configuration of the same scene made alike need not be made again."""
+        if other.config.scene == self.config.scene and "_rules" in other.__dict__:
+            alike = [name for name in other._made if name in other._rules and other._rules[name].cached]
+            new = (name for name in alike if name not in self._made)
+            self._made |= {name: other._made[name] for name in new if self.key(name) == other.key(name)}
 
     def needed(self, want: str) -> set[str]:
         """The product and everything that it is made from, by the rules."""

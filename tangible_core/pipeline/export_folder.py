@@ -5,6 +5,7 @@ their place, and that of no other file.
 """
 
 import json
+import os
 import tempfile
 from collections.abc import Generator, Mapping, Sequence
 from contextlib import contextmanager
@@ -13,12 +14,12 @@ from pathlib import Path
 from typing import Any, cast
 
 from ..errors import BrokenMethod, OutputError, quoted
-from ..files.reading import MOST_TEXT_BYTES, read_bytes
+from ..files.reading import read_bytes
 from ..files.writing import write_text
 from .run_folder import file_digest
 
-LISTED = "exports.json"
-"""What an export leaves beside its files."""
+LISTED = ".exports.json"
+"""What an export leaves beside its files: no file of an exporter begins with a dot."""
 
 
 @dataclass(frozen=True)
@@ -32,13 +33,15 @@ class Listed:
 
 
 def check_writable(folder: Path) -> None:
-    """Make the folder. Raises: OutputError if it cannot be written."""
+    """Make the folder. Raises: OutputError if it cannot be written, or if its list is somebody else's file."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):
             pass
     except OSError as error:
         raise OutputError(f"{folder}: cannot be written: {error.strerror}; choose another folder") from error
+    if os.path.lexists(folder / LISTED) and _listed(folder) is None:
+        raise OutputError(f"{folder / LISTED}: is no list of exports; take it away, or choose another folder")
 
 
 @contextmanager
@@ -90,11 +93,15 @@ def move(written: Sequence[Path], folder: Path, source: str, exporter: str, forc
 
 def read_list(folder: Path) -> dict[str, Listed]:
     """The files that were exported into a folder, by name; none where no list of them can be read."""
+    return _listed(folder) or {}
+
+
+def _listed(folder: Path) -> dict[str, Listed] | None:
     try:
-        plain = json.loads(read_bytes(folder / LISTED, MOST_TEXT_BYTES))
+        plain = json.loads(read_bytes(folder / LISTED))
         return {str(name): Listed(**said) for name, said in cast("dict[Any, Any]", plain["files"]).items()}
     except (OSError, ValueError, TypeError, KeyError, AttributeError, RecursionError):
-        return {}
+        return None
 
 
 def _write_list(folder: Path, files: Mapping[str, Listed]) -> None:

@@ -214,7 +214,10 @@ class _Desk:
         width_m = chosen.method.width_m(columns / rows)
         if width_m not in self.of_width:
             self.of_width[width_m] = of_width(self.engine, width_m)
-        return self.of_width[width_m]
+        found = self.of_width[width_m]
+        for other in self.of_width.values():
+            found.adopt(other)
+        return found
 
     def _written(self, chosen: NamedMethod[Exporter], work: Work, stem: Path) -> tuple[Path, ...]:
         cls = type(chosen.method)

@@ -188,7 +188,7 @@ def markdown(schema: dict[str, Any]) -> str:
     lines += _table(properties["parts"]["anyOf"][0]["patternProperties"]["^[0-9]+$"]["anyOf"][2], blocks)
     lines += ["## heights", "", f"{HEIGHTS} A word alone is `by` (`heights: given`), or:", ""]
     lines += _table(properties["heights"]["anyOf"][0], blocks)
-    lines += ["## simplify", "", f"{SIMPLIFY} `simplify: {{}}` takes the usual rules ([more](export.md)):", ""]
+    lines += ["## simplify", "", f"{SIMPLIFY} `simplify: {{}}` takes the usual rules ([more](legibility.md)):", ""]
     lines += _table(properties["simplify"]["anyOf"][0], blocks)
     lines += ["## workspace", "", *_table(properties["workspace"], blocks)]
     lines += ["## mapping", "", *_table(properties["mapping"], blocks)]

@@ -47,8 +47,9 @@ class SceneFiles(Quantities):
     photo_depth: bool = True
     """Whether the depth that a phone kept in the photo is taken, where there is one; no depth is estimated then."""
     height: Path | None = None
-    """A height map in any unit, larger values standing higher: a grey picture, .npy, .pfm or .tif. No depth is
-    estimated."""
+    """A height map in any unit, larger values standing higher: a grey picture, .npy, .pfm or .tif; or heights in
+    millimetres as the exporter `heights` writes them, which keep their size: .json, or the picture beside it. No depth
+    is estimated."""
     disparity: Path | None = None
     """A disparity map of the left view or the photo, in pixels, NaN where unknown. No depth is estimated."""
     segments: Path | None = None

@@ -67,6 +67,9 @@ def test_a_picture_of_each_panel(open_page: Callable[..., Any], url: str, tmp_pa
         cut = {"x": box["x"], "y": box["y"], "width": box["width"], "height": min(box["height"], 640)}
         picture = Image.open(io.BytesIO(page.screenshot(clip=cut))).convert("RGB")
         keep(picture, tmp_path, f"ui/{name}")
+        if name == "legible":
+            marked = io.BytesIO(page.locator("main").screenshot())
+            keep(Image.open(marked).convert("RGB"), tmp_path, "ui/legible-marks")
         panel.evaluate("(each) => (each.open = false)")
 
 

@@ -25,9 +25,11 @@ from tangible_core import (
 )
 from tangible_core.data import TICK_COLUMNS, PartMap
 from tangible_core.errors import ConfigError, OutputError, PictureError, Stopped, UnknownMethod
+from tangible_core.parts import reduced_parts
 from tangible_core.pipeline.cache import Cache
 from tangible_core.pipeline.config import PRODUCTS, parse_config
 from tangible_core.pipeline.exporting import EXPORTABLE, MOST_STEM_BYTES, stem_of
+from tangible_core.pipeline.felt import parts_on_grid
 from tangible_core.plugins.registry import default_registry
 
 LABELS = np.kron(np.int32([[0, 1, 1], [0, 2, 2]]), np.ones((24, 24), np.int32))
@@ -135,7 +137,7 @@ class TestWhatAnExporterGets:
         scene = Scene.of(photo=PHOTO)
         said = {**SAID, "workspace": {"width_m": 0.0096, "finest_m": 3e-4}}
         done = Pipeline(scene, texture=Counted(), cached=False, **said).export(
-            tmp_path, [Report(), Report(wide_m=0.16), Report(wide_m=0.001)]
+            tmp_path, [Report(wide_m=0.16), Report(wide_m=0.001), Report()]
         )
         cells = {tuple(json.loads(each.files[0].read_text())["cells"]) for each in done.exports}
         assert cells == {(24, 36)}
@@ -167,14 +169,14 @@ class TestWhatAnExporterGets:
         )
         assert one.outcome.outcome == "ran"
 
-    def test_without_segments_there_are_no_parts_and_no_complaint(self, tmp_path: Path):
+    def test_without_segments_there_are_no_parts(self, tmp_path: Path):
         class Parts(Fingers):
             def write(self, work: Work, stem: Path) -> tuple[Path, ...]:
                 return written(stem.with_suffix(".txt"), str(work.simplified))
 
         (one,) = Pipeline(Scene.of(height=np.eye(8)), cached=False).export(tmp_path, [Parts()]).exports
         assert one.files[0].read_text() == "None"
-        assert list(one.legible) == []
+        assert one.legible.sentence == "Illegible, because the picture is not divided into parts."
 
     def test_whether_fingers_read_it_is_said_at_the_width_of_the_files(self, tmp_path: Path):
         class Small(Fingers):
@@ -210,6 +212,14 @@ class TestSimplify:
         assert len(simple.materials.materials) == simple.parts.count == simple.simplified.count == 3
         assert simple.part_heights.heights_m == plain.part_heights.heights_m
 
+    def test_simplified_parts_are_felt_where_they_are(self):
+        """Cell by cell of the nearest, though their grid is another one; and no more of them than are there."""
+        parts = PartMap(np.int32([[0, 3, 2]]), (0, 1, 2, 3))
+        felt = parts_on_grid(parts, (1, 8), "simplified")
+        assert felt.labels.tolist() == [[0, 0, 0, 3, 3, 2, 2, 2]]
+        assert parts_on_grid(parts, (1, 2), "parts").labels.tolist() == [[0, 2]]
+        assert reduced_parts(PartMap(np.int32([[0, 0, 0, 2]]), (0, 1, 2)), (1, 2)).labels.tolist() == [[0, 2]]
+
     def test_it_needs_parts(self):
         with pytest.raises(ConfigError, match=r"simplify: parts are pieces of segments, and the scene has none"):
             Pipeline(Scene.of(photo=PHOTO), simplify={}, cached=False).make("simplified")
@@ -217,7 +227,7 @@ class TestSimplify:
     def test_what_is_said_of_parts_is_checked_though_they_come_from_the_cache(self, tmp_path: Path):
         def made(height_m: float) -> Pipeline:
             said = {**SAID, "parts": {1: {"height_m": height_m}}}
-            found = Pipeline(LABELLED, simplify={}, cached=False, **said)
+            found = Pipeline(Scene.of(photo=PHOTO), texture=Counted(), simplify={}, cached=False, **said)
             found.cache = Cache(tmp_path)
             return found
 
@@ -318,7 +328,7 @@ class TestWhatGoesWrong:
         assert "\n" not in first.outcome.why
         assert other.files
         assert {path.name for path in (tmp_path / "out").iterdir()} - {"x.txt"} == {
-            "exports.json",
+            ".exports.json",
             "still life.report",
         }
 
@@ -361,12 +371,19 @@ class TestWhatGoesWrong:
         assert first.outcome.outcome == "refused"
         assert "free some space or choose another folder" in first.outcome.why
         assert other.files
-        assert sorted(path.name for path in tmp_path.iterdir()) == ["exports.json", "still life.report"]
+        assert sorted(path.name for path in tmp_path.iterdir()) == [".exports.json", "still life.report"]
 
     def test_a_folder_that_cannot_be_written(self, tmp_path: Path):
         (tmp_path / "file").write_text("")
         with pytest.raises(OutputError, match="choose another folder"):
             pipeline().export(tmp_path / "file" / "out", [Report()])
+
+    @pytest.mark.parametrize("content", ["", "{}", '{"files": {"a": 1}}', "[[", '{"files": {"a": {"b": 1}}}'])
+    def test_a_list_that_is_somebody_elses(self, tmp_path: Path, content: str):
+        (tmp_path / ".exports.json").write_text(content)
+        with pytest.raises(OutputError, match="is no list of exports; take it away, or choose another folder"):
+            pipeline(**SAID).export(tmp_path, [Report()])
+        assert (tmp_path / ".exports.json").read_text() == content
 
     def test_names(self, tmp_path: Path):
         with pytest.raises(UnknownMethod, match=r"no export method is named 'hights' \(did you mean 'heights'\?\)"):
@@ -386,7 +403,7 @@ class TestEnding:
         done = [Report(), Does(do=halfway), Report()]
         with pytest.raises(error):
             pipeline(**SAID).export(tmp_path, done)
-        assert sorted(path.name for path in tmp_path.iterdir()) == ["exports.json", "still life.report"]
+        assert sorted(path.name for path in tmp_path.iterdir()) == [".exports.json", "still life.report"]
 
     def test_it_can_be_stopped_from_another_thread(self, tmp_path: Path):
         stop = Event()
@@ -394,6 +411,13 @@ class TestEnding:
         with pytest.raises(Stopped):
             pipeline(**SAID).export(tmp_path, [halfway, Report()], stop=stop)
         assert list(tmp_path.iterdir()) == []
+
+    def test_nothing_is_written_after_a_stop(self, tmp_path: Path):
+        stop, begun = Event(), list[Path]()
+        stop.set()
+        with pytest.raises(Stopped):
+            pipeline().export(tmp_path, [Does(do=begun.append)], stop=stop)
+        assert begun == []
 
     def test_its_progress_is_heard(self, tmp_path: Path):
         heard = list[tuple[str, str | None]]()
@@ -534,4 +558,4 @@ class TestCommand:
         assert "a fault; the traceback is in" in ran.stderr
         monkeypatch.setattr(Heights, "write", raising(KeyboardInterrupt()))
         assert tangible("export", "map.yaml", cwd=place).returncode == 130
-        assert not list((place / "out/map").glob(".*"))
+        assert not list((place / "out/map").iterdir())

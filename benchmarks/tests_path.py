@@ -5,6 +5,7 @@ from pathlib import Path
 
 sys.path.append(str(Path(__file__).parents[1] / "tests" / "helpers"))
 
+import colour_parts as colour_parts
 import drawn_parts as drawn_parts
 import falcon_bus as falcon_bus
 import falcon_streams as falcon_streams

@@ -8,6 +8,7 @@ import numpy as np
 from ..data import Material
 from ..metrics import border_steps
 from ..preflight.verdict import Change, Cure, Verdict, over
+from .cells import boxes
 from .looked import Found, Looked, deepest
 from .materials import apart
 from .pins import PIN_PITCH_M, pins_of
@@ -90,10 +91,10 @@ def shape(looked: Looked) -> Iterator[Verdict]:
 
 def _sides(pieces: np.ndarray, count: int) -> np.ndarray:
     """The longer side of the box of each piece, in cells."""
-    from scipy.ndimage import find_objects
-
-    boxes = find_objects(pieces + 1, max_label=count)
-    return np.array([max(each.stop - each.start for each in box) if box else 0 for box in boxes], np.float64)
+    found = np.zeros(count)
+    for piece, box in enumerate(boxes(pieces + 1)):
+        found[piece] = max(each.stop - each.start for each in box) if box else 0
+    return found
 
 
 def textures(looked: Looked) -> Iterator[Verdict]:
@@ -197,16 +198,17 @@ def pins(looked: Looked) -> Iterator[Verdict]:
         for number, count, (row, column) in shown.parts
     ]
 
-    def cure(_: float) -> Cure:
+    def cure(pins: float) -> Cure:
         return [Change("simplify.part_m", over(2 * PIN_PITCH_M * 1.5), "at least"), ", ", NOT_ALONE]
 
     yield from looked.judged("pins", found, cure, none=0, of="parts", worse="is hardly a pin or two")
     kept = [Found("the borders of parts", shown.kept)]
-    gaps = Change("simplify.gap_m", over(2 * PIN_PITCH_M), "at least")
-    yield from looked.judged(
-        *("kept borders", kept, lambda _: [gaps, ", ", "a larger display, or fewer and larger parts"]),
-        none=1, of="the borders of parts", worse="are partly shown by no pin",
-    )  # fmt: skip
+
+    def finer(share: float) -> Cure:
+        return [Change("simplify.gap_m", over(2 * PIN_PITCH_M), "at least"), ", a larger display, " + NOT_ALONE]
+
+    worse = "are partly shown by no pin"
+    yield from looked.judged("kept borders", kept, finer, none=1, of="the borders of parts", worse=worse)
 
 
 Check = Callable[[Looked], Iterator[Verdict]]

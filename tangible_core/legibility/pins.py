@@ -25,8 +25,9 @@ def pins_of(parts: PartMap, pitch_m: float) -> Shown:
     labels = parts.labels
     cell = max(1.0, PIN_PITCH_M / pitch_m)
     rows, columns = (max(1, round(size / cell)) for size in labels.shape)
-    down, right = (np.arange(size) * pins // size for size, pins in zip(labels.shape, (rows, columns), strict=True))
-    pin = (down[:, None] * columns + right).astype(np.int64)
+    down = np.arange(labels.shape[0], dtype=np.int64) * rows // labels.shape[0]
+    right = np.arange(labels.shape[1], dtype=np.int64) * columns // labels.shape[1]
+    pin = np.add.outer(down * columns, right)
     pairs, votes = np.unique(pin * parts.count + labels, return_counts=True)
     order = np.argsort(votes, kind="stable")
     at, part = np.divmod(pairs[order], parts.count)

@@ -13,6 +13,7 @@ from ..parts import find_parts
 from ..parts.large import large_parts
 from ..plugins.notes import note
 from .alike import kinds_of
+from .cells import Box, boxes
 from .choice import SimplifyChoice
 from .grid import Grid, on_grid
 from .votes import filled, voted
@@ -137,11 +138,13 @@ class _Opening(NamedTuple):
         """
         whole = np.s_[0 : found.shape[0], 0 : found.shape[1]]
         windows, exactly, found = [whole], False, found.copy()
+        wide = measure(found, pitch_m, self.choice.gap_m, quick=True)
         for turn in range(ROUNDS):
             changed = np.zeros(found.shape, np.bool_)
             for window in windows:
                 rims = Rims(*(at == to for at, to in zip(_ends(window), _ends(whole), strict=True)))
-                wide = measure(found[window], pitch_m, self.choice.gap_m, rims, quick=not exactly)
+                if turn:
+                    wide = measure(found[window], pitch_m, self.choice.gap_m, rims, quick=not exactly)
                 if window == whole and _small(wide, self.choice).all():
                     found = _joined(found, self.choice.part_m / pitch_m, picture)
                     changed[:] = len(wide.part) > 1
@@ -214,19 +217,17 @@ class _Opening(NamedTuple):
         large[np.concatenate([pieces[0], pieces[-1], pieces[:, 0], pieces[:, -1]])] = True
         return found if large.all() else filled(found, ~large[pieces])
 
-    def _windows(self, changed: Bool[np.ndarray, "h w"], pitch_m: float) -> list[tuple[slice, slice]]:
+    def _windows(self, changed: Bool[np.ndarray, "h w"], pitch_m: float) -> list[Box]:
         """Boxes around what has changed; those that meet are one."""
-        from scipy.ndimage import find_objects
-
         cells = ceil(WINDOW * max(self.choice.gap_m, self.choice.part_m) / pitch_m)
         near = changed
-        boxes: list[tuple[slice, slice]] = []
+        found: list[Box] = []
         while True:
-            before, boxes = boxes, [_grown(box, cells, changed.shape) for box in find_objects(_blobs(near))]
-            if len(boxes) == len(before):
-                return boxes
+            before, found = found, [_grown(box, cells, near) for box in boxes(_blobs(near)) if box is not None]
+            if len(found) == len(before):
+                return found
             near, cells = np.zeros_like(changed), 0
-            for box in boxes:
+            for box in found:
                 near[box] = True
 
 
@@ -236,14 +237,15 @@ def _blobs(there: Bool[np.ndarray, "h w"]) -> Int32[np.ndarray, "h w"]:
     return cv2.connectedComponents(there.view(np.uint8), connectivity=8)[1]
 
 
-def _grown(box: tuple[slice, slice], cells: int, shape: tuple[int, int]) -> tuple[slice, slice]:
+def _grown(box: Box, cells: int, within: Bool[np.ndarray, "h w"]) -> Box:
     down, right = (
-        slice(max(0, each.start - cells), min(size, each.stop + cells)) for each, size in zip(box, shape, strict=True)
+        slice(max(0, each.start - cells), min(size, each.stop + cells))
+        for each, size in zip(box, within.shape, strict=True)
     )
     return down, right
 
 
-def _ends(window: tuple[slice, slice]) -> tuple[int, int, int, int]:
+def _ends(window: Box) -> tuple[int, int, int, int]:
     down, right = window
     return down.start, down.stop, right.start, right.stop
 
@@ -281,7 +283,8 @@ def _numbered(parts: PartMap, found: Int32[np.ndarray, "h w"], kinds: Int32[np.n
     order = np.lexsort((-part, shared))
     number = largest[np.array(pieces.segments)]
     number[piece[order]] = part[order]
-    segments = tuple(parts.segments[each] for each in largest[kinds].tolist())
+    of: list[int] = largest[kinds].tolist()
+    segments = tuple(parts.segments[each] for each in of)
     return PartMap(number.astype(np.int32)[pieces.labels], segments)
 
 
@@ -311,7 +314,12 @@ def _vanished(gone: Sequence[int], whole: Grid, width_m: float, choice: Simplify
     before = measure(whole.parts.labels, whole.pitch_m, choice.gap_m)
     disc_m = np.zeros(whole.parts.count)
     np.maximum.at(disc_m, before.part, before.disc_m)
-    said = [f"{called(n, names)}, in which a disc of {mm(float(disc_m[n]))} fits" for n in gone]
+    small = disc_m < choice.part_m * (1 - ROUND_OFF)
+    said = [
+        f"{called(n, names)}, "
+        + (f"in which a disc of {mm(float(disc_m[n]))} fits" if small[n] else "which is too narrow in places")
+        for n in gone
+    ]
     wider = max(1.05, choice.part_m / float(disc_m[list(gone)].min()))
     return (
         f"too small or too narrow for a finger, and given to what is around: {listed(said)}; a disc of "

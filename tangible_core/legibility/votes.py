@@ -4,6 +4,7 @@ import numpy as np
 from jaxtyping import Bool, Int32
 
 from ..runtime.opencv import plain_opencv
+from .cells import boxes, nearest
 
 FEW = 1e-3
 """Of the votes on a cell: fewer, and it is the nearest that decides."""
@@ -20,14 +21,12 @@ def voted(labels: Labels, away: Cells, voters: Cells, sigma: float) -> Labels:
     sigma: its standard deviation, in cells.
     """
     import cv2
-    from scipy.ndimage import find_objects
 
     found, best = filled(labels, away), np.full(labels.shape, np.float32(FEW))
     margin = int(np.ceil(REACH * sigma))
     rows, columns = labels.shape
-    boxes = find_objects(np.where(voters, labels + 1, 0))
     with plain_opencv():
-        for label, box in enumerate(boxes):
+        for label, box in enumerate(boxes(np.where(voters, labels + 1, 0).astype(np.int32))):
             if box is None:
                 continue
             down, right = box
@@ -38,7 +37,7 @@ def voted(labels: Labels, away: Cells, voters: Cells, sigma: float) -> Labels:
             if not away[there].any():
                 continue
             own = ((labels[there] == label) & voters[there]).astype(np.float32)
-            votes = np.asarray(cv2.GaussianBlur(own, (0, 0), sigma, borderType=cv2.BORDER_REPLICATE))
+            votes = np.asarray(cv2.GaussianBlur(own, (0, 0), sigma, borderType=cv2.BORDER_REPLICATE), np.float32)
             more = away[there] & (votes > best[there])
             best[there][more] = votes[more]
             found[there][more] = label
@@ -47,15 +46,6 @@ def voted(labels: Labels, away: Cells, voters: Cells, sigma: float) -> Labels:
 
 def filled(labels: Labels, away: Cells) -> Labels:
     """What is away gets the label of the nearest cell that stays; nothing changes where none does."""
-    import cv2
-
-    stays = ~away
-    if stays.all() or away.all():
+    if away.all() or not away.any():
         return labels.copy()
-    with plain_opencv():
-        _, nearest = cv2.distanceTransformWithLabels(
-            away.view(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_5, labelType=cv2.DIST_LABEL_PIXEL
-        )
-    of = np.zeros(int(nearest.max()) + 1, np.int32)
-    of[nearest[stays]] = labels[stays]
-    return of[nearest]
+    return labels.reshape(-1)[nearest(~away).at]

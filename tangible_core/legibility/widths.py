@@ -10,6 +10,7 @@ import numpy as np
 from jaxtyping import Bool, Float32, Float64, Int, Int32, UInt8
 
 from ..runtime.opencv import plain_opencv
+from .cells import nearest
 
 ROUND_OFF = 1e-6
 SLACK_M = 0.2e-3
@@ -180,19 +181,12 @@ def _reached(
     sides: _Sides, pieces: Int32[np.ndarray, "h w"], depth: Float32[np.ndarray, "r c"], radius: float, pitch_m: float
 ) -> Bool[np.ndarray, "h w"]:
     """Cells that a disc of this radius, in cells, reaches within their piece, or all but reaches."""
-    import cv2
-
     deep = depth >= 2 * radius * (1 - ROUND_OFF)
     middles = deep[1::2, 1::2] | deep[1::2, 2::2] | deep[2::2, 1::2] | deep[2::2, 2::2]
     if not middles.any():
         return middles
-    with plain_opencv():
-        far, nearest = cv2.distanceTransformWithLabels(
-            (~middles).view(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_5, labelType=cv2.DIST_LABEL_PIXEL
-        )
-    of = np.zeros(int(nearest.max()) + 1, np.int32)
-    of[nearest[middles]] = pieces[middles]
-    reached = (far <= radius + 1) & (of[nearest] == pieces)
+    far, at = nearest(middles)
+    reached = (far <= radius + 1) & (pieces.reshape(-1)[at] == pieces)
     for _ in range(max(0, round(SLACK_M / pitch_m - 1))):
         reached = sides.grown(reached)
     return reached

@@ -1,7 +1,7 @@
 """A solid as STL, the format that every slicer reads."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar
+from typing import IO, TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -45,19 +45,23 @@ class Stl(Exporter):
 
         solid, _ = made_solid(self, work)
         path = stem.with_name(f"{stem.name}.stl")
-        path.write_bytes(as_stl(solid))
+        with path.open("wb") as file:
+            write_stl(file, solid)
         return (path,)
 
 
+FACETS_AT_ONCE = 65_536
 HEAD = b"tangible-images; unit: millimetre"
 _FACET = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attributes", "<u2")])
 
 
-def as_stl(solid: "Solid") -> bytes:
-    """The file."""
-    corners = solid.vertices_mm[solid.triangles]
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    facets = np.zeros(len(corners), _FACET)
-    facets["normal"] = normals / np.linalg.norm(normals, axis=1, keepdims=True)
-    facets["corners"] = corners
-    return HEAD.ljust(80) + np.uint32(len(facets)).tobytes() + facets.tobytes()
+def write_stl(file: IO[bytes], solid: "Solid") -> None:
+    """Some facets at a time: there may be millions."""
+    file.write(HEAD.ljust(80) + np.uint32(len(solid.triangles)).tobytes())
+    for first in range(0, len(solid.triangles), FACETS_AT_ONCE):
+        corners = solid.vertices_mm[solid.triangles[first : first + FACETS_AT_ONCE]]
+        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        facets = np.zeros(len(corners), _FACET)
+        facets["normal"] = normals / np.linalg.norm(normals, axis=1, keepdims=True)
+        facets["corners"] = corners
+        file.write(facets.tobytes())

@@ -33,7 +33,8 @@ RUNOVER_CELLS = 2
 class Text(Exporter):
     """Words on what there is to feel: plain text, an accessible page of HTML and, where it is asked for, braille.
 
-    They say size and heights of the whole, and then of each part, from near to far. Parts that somebody named are described as they are felt; where none is, those that fingers can read.
+    They say size and heights of the whole, and then of each part, from near to far. Parts that somebody named are
+    described as they are felt; where none is, those that fingers can read.
     """
 
     needs: ClassVar[tuple[str, ...]] = ("surface", "simplified", "materials")

@@ -2,10 +2,12 @@
 
 import ctypes
 import os
+import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from itertools import product
 from threading import Barrier
+from typing import Any
 
 import pytest
 
@@ -189,6 +191,25 @@ def test_threads_do_not_disturb_one_another(installed: Louis):
 
     with ThreadPoolExecutor(8) as pool:
         assert all(each == alone for each in pool.map(all_of_them, range(8)))
+
+
+def test_one_thread_at_a_time_is_with_the_library(without: Callable[[object], None]):
+    """Seen from within a library, as liblouis itself ends the process where it is disturbed."""
+    library, inside, most = odd(), list[None](), list[int]()
+    write: Any = library.lou_translateString  # pyright: ignore[reportAttributeAccessIssue]
+
+    def watched(*given: Any) -> int:
+        inside.append(None)
+        time.sleep(1e-3)
+        most.append(len(inside))
+        inside.pop()
+        return write(*given)
+
+    library.lou_translateString = watched  # pyright: ignore[reportAttributeAccessIssue]
+    without(library)
+    with ThreadPoolExecutor(4) as pool:
+        assert set(pool.map(translate, ["abc"] * 40)) == {(1, 3, 9)}
+    assert set(most) == {1}
 
 
 def test_nothing_is_printed(installed: Louis, capfd: pytest.CaptureFixture[str]):

@@ -79,6 +79,17 @@ def test_every_node_is_within_the_error(tmp_path: Path, error_mm: float):
     assert off.max() > error_mm / 2 or error_mm < 0.05, "fewer triangles would do"
 
 
+def test_cliffs_keep_the_error_where_floating_point_is_coarse(tmp_path: Path):
+    """A coordinate that is rounded by so little as STL does it tells on a cliff of 8 mm."""
+    cliffs = 0.004 * np.random.default_rng(2).integers(0, 3, (6, 700)) + 1e-5 * np.random.default_rng(3).random(
+        (6, 700)
+    )
+    made = work(cliffs, 0.12)
+    mesh = written(Stl(error_m=5e-6, rim_m=0.1, corner_mark=False, braille=False), made, tmp_path)
+    off = from_above(mesh, *nodes(made, 100, 100))[::-1] - 1.5 - 1000 * made.relief.height_m
+    assert np.abs(off).max() <= 0.005
+
+
 def test_without_pydelatin_every_node_is_met(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     without_pydelatin(monkeypatch)
     made = work(rough(), 0.05)
@@ -165,6 +176,7 @@ class TestBraille:
         assert heights.max() == pytest.approx(0.48, abs=6e-3)
         for level in (0.02, 0.2, 0.45):
             assert label(heights > level)[1] == 4
+        assert (heights > 0.24).sum() / (heights > 0.001).sum() == pytest.approx(0.61, abs=0.04)  # of a ball's cap
         centres = [(6.72, 16.4), (12.92, 16.4), (12.92, 14.06), (12.92, 11.72)]
         for column, row in centres:
             assert heights[np.abs(y - (row - 5)).argmin(), np.abs(x - column).argmin()] > 0.47
@@ -172,7 +184,7 @@ class TestBraille:
         assert 1.3 < wide <= 1.44 + 0.05
 
     def test_a_long_title_takes_lines_that_reach_no_further_than_the_picture(self, tmp_path: Path):
-        short, long = (work(np.full((9, 9), 0.002), 0.06, "coffee " * count) for count in (1, 4))
+        short, long = (work(np.full((9, 9), 0.002), 0.06, title) for title in ("coffee", "coffee milk " * 2))
         with collected() as notes:
             meshes = [written(Stl(), each, tmp_path) for each in (short, long)]
         assert any("4 lines" in each for each in notes)
@@ -197,6 +209,12 @@ class TestBraille:
             ThreeMF().write(made, tmp_path / "x")
         assert "\n" not in str(raised.value) and not list(tmp_path.iterdir())
         assert ThreeMF(braille=False).write(made, tmp_path / "x")
+
+    def test_a_picture_that_is_too_narrow_for_it_says_what_helps(self, tmp_path: Path):
+        made = work(np.full((9, 9), 0.002), 0.016, "I")
+        with pytest.raises(OutputError, match=r"16 mm wide, too narrow .* longer_side_m larger, or say braille: false"):
+            Stl().write(made, tmp_path / "x")
+        assert Stl().write(replace(made, title=""), tmp_path / "x")
 
     def test_its_language_may_be_another_than_the_title_s(self, tmp_path: Path):
         made = work(np.full((9, 9), 0.002), 0.06, "Öl", language="de-AT")
@@ -262,8 +280,10 @@ class TestNotes:
 
     def test_a_slope_is_not_thin(self, tmp_path: Path):
         """Kernels of an even side have no middle: a slope is off by a node, if they are laid askew."""
-        ramp = np.tile(np.linspace(0, 0.01, 60), (60, 1))
-        assert "thinner" not in self.of(Stl(), work(ramp, 60 * 0.0003), tmp_path)
+        up = np.linspace(0, 0.01, 60)
+        roof = np.tile(np.concatenate([up, up[::-1]]), (120, 1))
+        for each in (roof, roof.T):
+            assert "thinner" not in self.of(Stl(), work(each, 120 * 0.0003), tmp_path)
 
     @pytest.mark.parametrize(("steepness", "said"), [(0.9, False), (1.1, True)])
     def test_what_is_steeper_than_45_degrees(self, tmp_path: Path, steepness: float, said: bool):
@@ -273,6 +293,15 @@ class TestNotes:
         told = self.of(Stl(), work(heights, 0.02), tmp_path)
         assert ("% of the picture is steeper than 45 degrees: print the plate lying flat" in told) == said
         assert not said or "24 %" in told or "23 %" in told
+
+    def test_noise_does_not_make_a_gigantic_file(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+        monkeypatch.setattr(making, "MOST_TRIANGLES", 500)
+        made = work(rough(), 0.05)
+        with collected() as notes:
+            mesh = written(bare(Stl), made, tmp_path)
+        off = np.abs(from_above(mesh, *nodes(made))[::-1] - 1.5 - 1000 * made.relief.height_m).max()
+        assert is_closed(mesh) and len(mesh.triangles) < 1000
+        assert any(f"the solid is off by up to {off:.2g} mm, as it would take more than 500" in each for each in notes)
 
     def test_more_nodes_than_there_is_room_for_are_averaged(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
         monkeypatch.setattr(making, "MOST_IN_GRID", 500)

@@ -3,7 +3,7 @@
 import logging
 from importlib.util import find_spec
 
-from tangible_core.braille import Cells, wrapped, written_by
+from tangible_core.braille import Cells, width_m, wrapped, written_by
 from tangible_core.data import Relief, Work
 from tangible_core.errors import GeometryError, OutputError, quoted
 from tangible_core.plugins.notes import note
@@ -13,13 +13,18 @@ from .options import SolidOptions
 from .plate import LEAST_RIM_M, Layout, plate
 from .printable import say_what_prints
 from .sampling import sampled
-from .triangles import all_triangles, few_triangles
+from .triangles import Triangles, all_triangles, few_triangles
 
 log = logging.getLogger(__name__)
 
 INSTALL = "pip install 'tangible-images[export]'"
-MOST_NODES, MOST_IN_GRID = 24_000_000, 1_000_000
-"""5333 x 4500 nodes, which take a gibibyte; and two million triangles, which slicers read."""
+MOST_NODES = 24_000_000
+"""5333 x 4500 take a gibibyte."""
+MOST_TRIANGLES = 2_000_000
+"""Slicers read so many, in files of 100 MB."""
+MOST_IN_GRID = MOST_TRIANGLES // 2
+LEAST_LINE_M = width_m((0,) * 3)
+"""A letter, its capital sign, and a hyphen."""
 NARROWEST_M = 1e-4
 """A rim that is narrower is none."""
 MOST_LINES = 6
@@ -44,12 +49,22 @@ def made_solid(options: SolidOptions, work: Work) -> tuple[Solid, Layout]:
         surface = sampled(relief, MOST_IN_GRID, INSTALL)
     layout = _layout(options, work)
     say_what_prints(surface, layout.size_m, options.base_m)
-    heights = surface.height_m
-    triangles = few_triangles(heights, surface.pitch_m, options.error_m) if few else all_triangles(heights)
+    triangles = _few(surface, options.error_m) if few else all_triangles(surface.height_m)
     solid = closed(plate(surface, triangles, layout), options.base_m)
     size = " x ".join(f"{side:.1f}" for side in solid.vertices_mm.max(axis=0))
     note(log, f"the plate is {size} mm, of {len(solid.triangles):,} triangles")
     return solid, layout
+
+
+def _few(surface: Relief, error_m: float) -> Triangles:
+    made = few_triangles(surface.height_m, surface.pitch_m, error_m, MOST_TRIANGLES)
+    if made.off_m > error_m:
+        told = f"the solid is off by up to {1000 * made.off_m:.2g} mm"
+        why = f"it would take more than {MOST_TRIANGLES:,} triangles"
+        note(
+            log, f"{told}, as {why}; smooth the relief with workspace.smooth_m, or make error_m larger", logging.WARNING
+        )
+    return made
 
 
 def _check_height(relief: Relief, error_m: float) -> None:
@@ -64,20 +79,24 @@ def _check_height(relief: Relief, error_m: float) -> None:
 def _layout(options: SolidOptions, work: Work) -> Layout:
     picture_m = work.relief.extent_m
     rim_m = options.rim_m if options.rim_m >= NARROWEST_M else 0.0
-    wanted = [what for what, said in (("title", options.braille), ("corner mark", options.corner_mark)) if said]
+    has_title = options.braille and bool(work.title.strip())
+    wanted = [what for what, said in (("title", has_title), ("corner mark", options.corner_mark)) if said]
     if options.rim_m < LEAST_RIM_M:
         if wanted:
             told = f"a rim of {1000 * options.rim_m:.2g} mm has no room for the {' and the '.join(wanted)}"
             note(log, f"{told}; make rim_m {1000 * LEAST_RIM_M:.0f} mm or more", logging.WARNING)
         return Layout(picture_m, rim_m)
-    return Layout(picture_m, rim_m, _title(options, work), options.corner_mark)
+    return Layout(picture_m, rim_m, _title(options, work) if has_title else (), options.corner_mark)
 
 
 def _title(options: SolidOptions, work: Work) -> tuple[Cells, ...]:
-    """In lines of braille, none where there is no title."""
-    if not options.braille or not work.title.strip():
-        return ()
+    """In lines of braille."""
     language, room_m = options.braille_language or work.language, work.relief.extent_m[0]
+    if room_m < LEAST_LINE_M:
+        raise OutputError(
+            f"the picture is {1000 * room_m:.3g} mm wide, too narrow for its title in braille; make longer_side_m "
+            "larger, or say braille: false"
+        )
     lines = tuple(wrapped(work.title, language, room_m))
     if len(lines) > MOST_LINES:
         raise OutputError(

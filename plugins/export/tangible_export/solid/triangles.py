@@ -22,11 +22,16 @@ class Triangles(Record):
     row: Int32[np.ndarray, " n"]
     height_m: Float64[np.ndarray, " n"]
     corners: Int32[np.ndarray, "m 3"]
+    off_m: float = 0.0
+    """How far they are from the height of a node at most."""
 
 
-def few_triangles(heights: Float32[np.ndarray, "h w"], pitch_m: tuple[float, float], error_m: float) -> Triangles:
-    """Nodes are added where the error is largest until it is nowhere above `error_m`. At least 2 x 2 nodes.
+def few_triangles(
+    heights: Float32[np.ndarray, "h w"], pitch_m: tuple[float, float], error_m: float, most: int
+) -> Triangles:
+    """Nodes are added where the error is largest until it is nowhere above `error_m`, or there are `most` triangles.
 
+    heights: at least 2 x 2 nodes.
     Something is left of the error for the rounding of coordinates in files, which tells most where it is steep.
 
     Raises: ImportError without pydelatin.
@@ -38,10 +43,11 @@ def few_triangles(heights: Float32[np.ndarray, "h w"], pitch_m: tuple[float, flo
         float(np.abs(np.diff(heights, axis=axis)).max()) / pitch for axis, pitch in zip((1, 0), pitch_m, strict=True)
     )
     allowed_m = max(error_m / 2, error_m - ROUNDING_M * (1 + 2 * steepest))
-    made = Delatin(np.ascontiguousarray(heights, np.float32), max_error=allowed_m)
+    made = Delatin(np.ascontiguousarray(heights, np.float32), max_error=allowed_m, max_triangles=most)
     nodes = np.asarray(made.vertices)  # whose rows count from below
     column, row = (nodes[:, axis].astype(np.int32) for axis in (0, 1))
-    return Triangles(column, row, nodes[:, 2].astype(np.float64), np.asarray(made.triangles).astype(np.int32))
+    corners = np.asarray(made.triangles).astype(np.int32)
+    return Triangles(column, row, nodes[:, 2].astype(np.float64), corners, made.error)
 
 
 def all_triangles(heights: Float32[np.ndarray, "h w"]) -> Triangles:

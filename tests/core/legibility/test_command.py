@@ -1,0 +1,68 @@
+"""`tangible legible`: what it prints, and how it ends."""
+
+import json
+
+import numpy as np
+import pytest
+
+from command_line import tangible
+from pictures import write_png
+from tangible_core.parts.label_picture import label_picture
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """Two halves, and a window of 4 mm in a picture of 60 mm."""
+    labels = np.zeros((100, 150), np.int32)
+    labels[:, 75:], labels[40:50, 30:40] = 1, 2
+    (tmp_path / "parts.png").write_bytes(label_picture(labels))
+    write_png(tmp_path / "photo.png", np.full((100, 150, 3), 128, np.uint8))
+    scene = "scene: {photo: photo.png, segments: parts.png}\nworkspace: {width_m: 60 mm}\ndepth: luminance\n"
+    (tmp_path / "house.yaml").write_text(f"{scene}parts: {{2: window}}\n")
+    return tmp_path
+
+
+def test_what_is_too_small_is_said_with_its_cure_and_ends_with_1(folder):
+    found = tangible("legible", "house.yaml", "--for", "swell", cwd=folder)
+    assert found.returncode == 1
+    lines = found.stdout.splitlines()
+    assert "60 mm wide, on swell paper: Illegible, because part 2 (window) is smaller than a" in lines[0]
+    wrong = next(line for line in lines if line.startswith("illegible"))
+    assert "part 2 (window), on the left, halfway down: 4 mm < 6.4 mm; tactilegraphics.org" in wrong
+    assert (
+        lines[lines.index(wrong) + 1]
+        .split("cure: ")[1]
+        .startswith("`simplify.part_m: 0.0064`, `workspace.width_m: 0.0")
+    )
+
+
+def test_json_says_the_same_and_where(folder):
+    found = tangible("legible", "house.yaml", "--for", "swell", "--json", cwd=folder)
+    assert found.returncode == 1
+    said = json.loads(found.stdout)
+    assert (said["medium"], said["width_m"], said["grade"], said["readable"]) == ("swell", 0.06, "illegible", False)
+    (wrong,) = [each for each in said["verdicts"] if each["verdict"] == "illegible"]
+    assert wrong["changes"][0] == {"key": "simplify.part_m", "value": 0.0064, "towards": "at least"}
+    ((x, y),) = wrong["at"]
+    assert (x, y) == (pytest.approx(35 / 150, abs=0.03), pytest.approx(45 / 100, abs=0.03))
+
+
+@pytest.mark.parametrize("words", [["--width-m", "0.12"], ["--set", "simplify.part_m=0.0064"]])
+def test_with_a_cure_it_is_legible(folder, words):
+    found = tangible("legible", "house.yaml", "--for", "swell", *words, cwd=folder)
+    assert (found.returncode, "Illegible" in found.stdout) == (0, False), found.stdout
+
+
+@pytest.mark.parametrize(
+    ("words", "complaint"),
+    [
+        (["--for", "paper"], "'paper'"),
+        ([], "--for"),
+        (["--for", "swell", "--width-m", "-1"], "width"),
+        (["--for", "swell", "--width-m", "nan"], "width"),
+    ],
+)
+def test_a_mistake_is_one_line_and_ends_with_2(folder, words, complaint):
+    found = tangible("legible", "house.yaml", *words, cwd=folder)
+    assert found.returncode == 2
+    assert complaint in found.stderr

@@ -1,6 +1,6 @@
 """Touch: every promise about the force laws with its bound, and what stands behind the figures."""
 
-from . import render_guard, render_stiffness, render_ticks, render_waves
+from . import render_beacon, render_guard, render_stiffness, render_ticks, render_waves
 from .figures import judged
 from .render_waves import AMPLITUDE_M, DEPTH_M
 
@@ -18,6 +18,7 @@ def section() -> str:
                     *render_stiffness.figures(),
                     *render_ticks.figures(),
                     *render_guard.figures(),
+                    *render_beacon.figures(),
                 ]
             ),
             "",

@@ -104,8 +104,8 @@ def feel(
             show.say(f"\n{loop['how']}; the first tick came {loop['start_s']:.2f} s after the loop was asked for\n")
         show.table(("figure", "value"), [(name, _text(value)) for name, value in felt.items()])
         show.parts_felt(parts)
-        for each in pulled:
-            show.plain(f"\n{each}")
+        for beacon_felt in pulled:
+            show.plain(f"\n{beacon_felt}.")
         for said in (session.changed_most(report.flagged), hand and hand.says):
             if said:
                 show.plain(f"\n{said}")

@@ -5,9 +5,10 @@ than F far away. D is the distance to the nearest point of the part, zero within
 equally long, are rounded off. The potential is sampled on a grid, and a quadratic B-spline between: its gradient is
 exact and steady, so that no closed path gains energy. `beacon_kernels` has what happens in a tick.
 """
+# pyright: reportMissingTypeStubs=false
 
 from dataclasses import dataclass
-from typing import Any, NamedTuple, Self, final
+from typing import Any, NamedTuple, Self, cast, final
 
 import numpy as np
 from jaxtyping import Float32, Float64
@@ -214,8 +215,9 @@ def _distance(cells: np.ndarray, across_m: float, down_m: float) -> Float64[np.n
     """
     from scipy import ndimage
 
-    exact: Any = ndimage.distance_transform_edt(~cells, sampling=(down_m, across_m))
-    smooth: Any = ndimage.gaussian_filter(exact, (ROUNDED_M / down_m, ROUNDED_M / across_m), mode="nearest")
+    filters = cast(Any, ndimage)
+    exact: np.ndarray = filters.distance_transform_edt(~cells, sampling=(down_m, across_m))
+    smooth: np.ndarray = filters.gaussian_filter(exact, (ROUNDED_M / down_m, ROUNDED_M / across_m), mode="nearest")
     return np.maximum(np.minimum(exact, smooth) - 1.0001 * np.hypot(across_m, down_m), 0.0)
 
 

@@ -10,6 +10,7 @@ from ..compiled.touch import CompiledLink, CompiledTouch
 from ..data import TICK_COLUMNS, HapticState, TickFlag
 from ..plugins.interfaces import Link, Touch
 from .guard.guarded import guarded
+from .pulling import pulling
 from .ring import (
     COUNT,
     LEAD_NS,
@@ -138,7 +139,8 @@ def _plain(
     from . import cycle
 
     proxy = touch.memory[:3] if isinstance(touch, CompiledTouch) else np.full(3, np.nan)
-    header, allowed = shared[0], guarded(touch, *limits)
+    settings, memory, beacon = limits
+    header, allowed = shared[0], guarded(touch, settings, memory, pulling(beacon, memory))
     touch.force(FAR)
     kernel = _begun(cast(Any, cycle).finished, shared, row)
 

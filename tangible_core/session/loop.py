@@ -17,6 +17,7 @@ from ..servo import Beacon, Safety
 from ..servo.beacon import BeaconMemory
 from ..servo.guard.guarded import Guarded, guarded
 from ..servo.guard.stiffness import stiffness_of
+from ..servo.pulling import pulling
 from ..servo.reports import so_far
 from .recording import INTERRUPTED, STOPPED, Recording
 from .replay import proxy_of
@@ -52,8 +53,8 @@ def run_simulated(
     check_positive("seconds", seconds)
     spec = device.spec()
     settings, memory = (limits or Safety()).arrays(spec, stiffness_of(touch, spec).n_per_m)
-    pulling = None if beacon is None else BeaconMemory.of(beacon).arrays
-    allowed = guarded(touch, settings, memory, pulling)
+    pull = None if beacon is None else pulling(BeaconMemory.of(beacon).arrays, memory)
+    allowed = guarded(touch, settings, memory, pull)
     tape = _Tape(touch, on_report or _ignore)
     link = device.open()
     try:

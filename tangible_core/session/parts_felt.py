@@ -1,6 +1,7 @@
 """Which part and material the tip is on, by their names; looked up beside the force loop, never in it."""
 
 import json
+from collections import Counter
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -23,7 +24,6 @@ class BeaconFelt(NamedTuple):
     """Of its part."""
     name: str
     """Of its part; empty where nobody gave it one, or the surface is another one."""
-    ticks: int
     share: float
     """Of all ticks."""
 
@@ -119,13 +119,14 @@ def parts_felt(felt: Recording, surface: HapticSurface) -> tuple[PartFelt, ...]:
     under, force_n = _parts_under(surface, felt.position_m[touching]), force_n[touching]
     numbers, ticks = np.unique(under[under >= 0], return_counts=True)
     order = np.argsort(-ticks, kind="stable")
+    materials = [each.name for each in surface.materials or ()]
     return tuple(
         PartFelt(
             number,
             surface.names[number],
             count / len(under),
             float(force_n[under == number].max()),
-            surface.materials[number].name if surface.materials else "",
+            materials[number] if materials else "",
         )
         for number, count in zip(numbers[order].tolist(), ticks[order].tolist(), strict=True)
     )
@@ -133,14 +134,10 @@ def parts_felt(felt: Recording, surface: HapticSurface) -> tuple[PartFelt, ...]:
 
 def beacons_felt(felt: Recording, surface: HapticSurface) -> tuple[BeaconFelt, ...]:
     """Every part that a beacon pulled to, the longest first; by the names of this surface."""
-    on = felt.beacon[felt.beacon >= 0]
-    numbers, ticks = np.unique(on, return_counts=True)
-    names = surface.names or ()
-    found = [
-        BeaconFelt(number, names[number] if number < len(names) else "", count, count / len(felt.rows))
-        for number, count in zip(numbers.tolist(), ticks.tolist(), strict=True)
-    ]
-    return tuple(sorted(found, key=lambda each: -each.ticks))
+    ticks = Counter[int](felt.beacon[felt.beacon >= 0].tolist())
+    names = dict(enumerate(surface.names or ()))
+    found = [BeaconFelt(number, names.get(number, ""), count / len(felt.rows)) for number, count in ticks.items()]
+    return tuple(sorted(found, key=lambda each: -each.share))
 
 
 def _under(surface: HapticSurface, position_m: Vector) -> int:

@@ -13,23 +13,24 @@ Guarded = Callable[[HapticState, float], tuple[Force, int]]
 
 
 def guarded(
-    touch: Touch, settings: np.ndarray, memory: np.ndarray, beacon: tuple[np.ndarray, ...] | None = None
+    touch: Touch,
+    settings: np.ndarray,
+    memory: np.ndarray,
+    pull: Callable[[float, float, float, float, float, int], int] | None = None,
 ) -> Guarded:
     """What asks a law for its force and lets through what its guard, with the arrays of `Safety.arrays`, allows.
 
-    beacon: of `BeaconMemory`, whose pull joins the law's force.
+    pull: what a beacon does in a tick (`pulling`), whose force joins the law's.
     """
-    from .. import beacon_kernels
     from . import guard
 
     couple, allow = cast(Any, guard).couple, cast(Any, guard).guard
-    pull = cast(Any, beacon_kernels).pull
 
     def allowed(state: HapticState, period_s: float) -> tuple[Force, int]:
         device = *state.position_m, *state.velocity_m_per_s
         x, y, z, vx, vy, vz = couple(settings, memory, period_s, *device)
         wanted = touch.force(HapticState((x, y, z), (vx, vy, vz), state.time_s, state.buttons))
-        pulled = pull(*beacon, memory, period_s, x, y, vx, vy, state.buttons) if beacon is not None else 0
+        pulled = pull(period_s, x, y, vx, vy, state.buttons) if pull is not None else 0
         fx, fy, fz, flags = allow(settings, memory, period_s, *device, *wanted)
         return Force(fx, fy, fz), flags | pulled
 

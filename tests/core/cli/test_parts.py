@@ -310,6 +310,24 @@ def test_names_go_from_the_file_through_a_session_to_its_replay(folder: Path):
     assert "% of the contact" in table and "material" in table
 
 
+@pytest.mark.slow
+def test_a_beacon_is_asked_for_by_name_and_said_by_the_recording_and_its_replay(folder: Path):
+    well(tangible("parts", "still.png", cwd=folder))
+    file = folder / "still.yaml"
+    file.write_text(file.read_text().replace('1: {name: ""', "1: {name: vase").replace("path: raster", "path: press"))
+    words = ("feel", "still.yaml", "--seconds", 0.8, "--record", "hand.nc", "--json", "--beacon")
+    said = json.loads(well(tangible(*words, "vase", cwd=folder)).stdout)
+    assert said["beacon"] == 1 and said["figures"]["beacon"] > 700
+    ((number, name, share),) = (each.values() for each in said["beacons"])
+    assert (number, name) == (1, "vase") and share > 0.9
+    assert np.isin(Recording.load(folder / "hand.nc").beacon, (1, -1)).all()
+    again = tangible("replay", "hand.nc", "still.yaml", cwd=folder)
+    assert "A beacon pulled to vase for " in well(again).stdout and "the law alone is replayed" in again.stdout
+    wrong = tangible("feel", "still.yaml", "--beacon", "vas", cwd=folder)
+    assert (wrong.returncode, wrong.stdout) == (2, "")
+    assert "no part is called 'vas' (did you mean 'vase'?); the parts are 1: 'vase'" in wrong.stderr
+
+
 def test_a_run_says_what_its_parts_are(folder: Path):
     well(tangible("parts", "still.png", cwd=folder))
     file = folder / "still.yaml"

@@ -1,5 +1,7 @@
 """How far each cell of a surface is from the nearest border between its labels."""
 
+from typing import Any
+
 import numpy as np
 from jaxtyping import Float32, Float64, Int32
 
@@ -34,7 +36,7 @@ def _near(labels: Int32[np.ndarray, "h w"], pitch_m: tuple[float, float], most_m
     if not beside.any():
         return beside
     reach_m = most_m + 1.5 * float(np.hypot(*pitch_m))
-    found = ndimage.distance_transform_edt(~beside, sampling=pitch_m[::-1])
+    found: Any = ndimage.distance_transform_edt(~beside, sampling=pitch_m[::-1])
     return np.asarray(found <= reach_m)
 
 

@@ -72,7 +72,7 @@ def _amid(start: float, end: float, pitch: float) -> Float64[np.ndarray, " n"]:
     return (start + end - count * pitch) / 2 + pitch * np.arange(count + 1)
 
 
-def _in_company(at: Float64[np.ndarray, "n 2"]) -> Float64[np.ndarray, "n 2"]:
+def _in_company(at: Float64[np.ndarray, "n 2"]) -> Float64[np.ndarray, "k 2"]:
     """Without those that have no other beside them: a single dot is a letter to a finger."""
     one, other = shapely.STRtree(points := shapely.points(at)).query(
         points, predicate="dwithin", distance=1.1 * DOTS_APART_MM

@@ -47,7 +47,7 @@ def too_near(page: Marks) -> list[Near]:
     """
     ink = _down_to_the_last(black(page, PIXELS_PER_MM))
     far, nearest = cv2.distanceTransformWithLabels(
-        (~ink).astype(np.uint8), cv2.DIST_L2, 5, labelType=cv2.DIST_LABEL_CCOMP
+        (~ink).view(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_5, labelType=cv2.DIST_LABEL_CCOMP
     )
     of = _marks_of(page, nearest)
     touching = [
@@ -98,7 +98,8 @@ def _gaps(
     places = dict[tuple[int, int], tuple[float, int, int]]()
     for down, right in ((0, 1), (1, 0)):
         rows, columns = ink.shape[0] - down, ink.shape[1] - right
-        row, column = np.nonzero(nearest[:rows, :columns] != nearest[down:, right:])
+        meet = np.flatnonzero(nearest[:rows, :columns] != nearest[down:, right:])
+        row, column = np.divmod(meet, columns)
         between = far[row, column] + far[row + down, column + right]
         close = between < GAP_MM * PIXELS_PER_MM * _INEXACT
         row, column = row[close], column[close]

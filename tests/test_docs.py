@@ -85,6 +85,17 @@ def test_the_page_on_materials_shows_what_the_program_takes(tmp_path: Path):
         parse_config(f"scene: builtin/brick\n{text}", tmp_path / "p.yaml", default_registry())
 
 
+def test_the_page_on_handing_on_shows_what_the_program_takes(tmp_path: Path):
+    from tangible_core.pipeline.config import parse_config
+    from tangible_core.plugins.registry import default_registry
+
+    blocks = re.findall(r"```yaml\n(.*?)```", ROOT.joinpath("docs/export.md").read_text(encoding="utf-8"), re.DOTALL)
+    assert len(blocks) > 1
+    for text in blocks:
+        scene = "" if re.search("^scene:", text, re.MULTILINE) else "scene: builtin/coins\n"
+        parse_config(scene + text, tmp_path / "p.yaml", default_registry())
+
+
 def test_the_page_on_recordings_reads_and_writes_them(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     blocks = re.findall(r"```python\n(.*?)```", ROOT.joinpath("docs/recordings.md").read_text("utf-8"), re.DOTALL)
     write, *read = sorted(blocks, key=lambda block: "Writer" not in block)

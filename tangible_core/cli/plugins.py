@@ -82,7 +82,7 @@ def show_one(
         said = {column: getattr(listing, column) for column in (*COLUMNS, "target")}
         show.print_json({**said, "text": text, "options": [each._asdict() for each in options], "measured": figures})
         return
-    show.plain(f"{listing.name} is a {WORDS[kind]} of {listing.origin}.\n\n{text}\n")
+    show.plain(f"{listing.name} is {WORDS[kind]} of {listing.origin}.\n\n{text}\n")
     show.say("[bold]options[/]" if options else "It has no options.")
     for each in options:
         bounds = ", ".join(filter(None, (each.unit, each.values)))
@@ -93,11 +93,11 @@ def show_one(
 
 OURS = "tangible-images"
 WORDS = {
-    "depth": "depth method",
-    "texture": "texture method",
-    "render": "force law",
-    "device": "device",
-    "export": "exporter",
+    "depth": "a depth method",
+    "texture": "a texture method",
+    "render": "a force law",
+    "device": "a device",
+    "export": "an exporter",
 }
 
 

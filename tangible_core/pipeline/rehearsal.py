@@ -41,7 +41,8 @@ def _work(engine: Engine, want: str) -> Work | None:
     rows, columns = (slice(max(0, (size - MOST_PX) // 2), (size + MOST_PX) // 2) for size in views.shape)
     part = Views(np.ascontiguousarray(views.left[rows, columns]))
     names = frozenset(["segments"] * segments + ["touch", FELT] * touch)
-    return Work(names, rehearse, (replace(config, scene=Scene("rehearsal", part)), part, segments, touch))
+    said = replace(config, scene=Scene("rehearsal", part), simplify=None)
+    return Work(names, rehearse, (said, part, segments, touch))
 
 
 def rehearse(config: PipelineConfig, views: Views, segments: bool, touch: bool) -> Iterator[str]:

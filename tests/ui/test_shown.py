@@ -294,3 +294,16 @@ class TestWindow:
     def test_there_is_none_beyond_the_file(self, path: Path, wrong: dict):
         with pytest.raises(ValueError, match="no such window"):
             read_window(path, ASKED | wrong)
+
+
+def test_parts_that_were_simplified_away_are_not_shown():
+    labels = np.zeros((60, 80), np.int32)
+    labels[10:40, 10:40], labels[20:24, 60:64] = 1, 2
+    scene = Scene.of(photo=labels.astype(np.uint8), segments=labels)
+    said = {"parts": {0: "ground", 1: "box"}, "heights": "given", "cached": False}
+    for more, there in (({}, [0, 1, 2]), ({"simplify": {}}, [0, 1])):
+        pipeline = Pipeline(scene, **said, **more)
+        pipeline.make("surface")
+        found = see(pipeline, "relief")
+        assert found.labels is not None and np.unique(found.labels).tolist() == there
+        assert found.names == ("ground", "box", "")

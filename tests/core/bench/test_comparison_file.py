@@ -114,6 +114,8 @@ baseline: constat
         ("", "1:1", "starts with `compare:`"),
         ("methods: [constant]\n", "1:1", "`compare:` names what kind"),
         ("compare: dept\n", "1:1", "did you mean 'depth'?"),
+        ("compare: export\n", "1:1", "exporters are not compared"),
+        ("compare: device\n", "1:1", "`tangible devices stress NAME`"),
         ("compare: depth\nscenes: [synthetic/bars]\n", "1:1", "`methods:` is missing"),
         ("compare: depth\nmethods: constant\nscenes: [synthetic/bars]\n", "2:1", "is a list"),
         ("compare: depth\nmethods: []\nscenes: [synthetic/bars]\n", "2:1", "is a list"),

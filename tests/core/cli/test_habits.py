@@ -189,3 +189,11 @@ def test_a_shell_is_offered_exporters_and_their_options():
     assert completing.keys("export.nothing.") == []
     assert "simplify.gap_m=" in completing.keys("simplify")
     assert "export" in completing.kinds("ex")
+
+
+def test_an_exporter_is_shown_with_its_options(tmp_path: Path):
+    ran = tangible("plugins", "show", "export", "heights", cwd=tmp_path)
+    assert ran.returncode == 0, ran.stderr
+    assert ran.stdout.startswith("heights is an exporter of tangible-images")
+    assert "wide_m = null" in ran.stdout
+    assert re.search("^export +heights", tangible("plugins", cwd=tmp_path).stdout, re.MULTILINE)

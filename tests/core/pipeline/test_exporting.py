@@ -497,7 +497,9 @@ class TestDocument:
         assert json.loads((tmp_path / "p-heights.json").read_text())["width_mm"] == 160
 
     def test_a_pipeline_made_in_python_lists_them_too(self, tmp_path: Path):
-        pipeline(**SAID, export=[Report(wide_m=0.1)]).export(tmp_path)
+        done = pipeline(**SAID, export=[Report(wide_m=0.1)]).export(tmp_path)
+        assert "still life.report" in repr(done)
+        assert "still life.report</td>" in done._repr_html_()
         assert report_of(tmp_path)["extent_m"][0] == 0.1
 
 

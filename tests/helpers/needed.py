@@ -1,4 +1,4 @@
-"""What a test of the page needs beyond Python's packages: a browser, npm's packages, the page itself."""
+"""What a test needs beyond Python's packages: a browser, npm's packages, the page itself, programs that read files."""
 
 import os
 from typing import NoReturn

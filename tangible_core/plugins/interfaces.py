@@ -146,6 +146,14 @@ class Skippable(ABC):
         """A reason, in words, not to run on these views; None to run. Cheap: it is asked for every plan."""
 
 
+class Reshaping(ABC):
+    """For a force law that feels another surface than the one that it is given: `preflight` judges the one felt."""
+
+    @abstractmethod
+    def felt(self, surface: HapticSurface) -> HapticSurface:
+        """The surface as it is felt, of the same extent."""
+
+
 class Serviceable(ABC):
     """For a device that can be looked for and examined without being opened for use."""
 

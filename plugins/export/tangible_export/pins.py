@@ -65,7 +65,9 @@ class Pins(Exporter):
         area = raising.heights(work.relief, rows, columns, array.levels - 1) if array.levels > 1 else None
         pins = raising.raised(array, raising.borders(most), area, place)
         if not pins.any():
-            raise PictureError("pins: no pin would rise, as one part fills the display; have more parts, and larger ones")
+            raise PictureError(
+                "pins: no pin would rise, as one part fills the display; have more parts, and larger ones"
+            )
         title = shown(work.title)
         svg = drawing.svg(pins, array.levels, raising.whole(array, most, place), labels, title)
         said = {"title": title, "language": work.language, "display": self._name, **array.model_dump()}

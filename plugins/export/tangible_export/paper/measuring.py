@@ -30,7 +30,7 @@ class Near:
 
     @property
     def between_outlines(self) -> bool:
-        """Whether nothing but outlines is too near: neither moving a letter nor leaving out an element of a fill helps."""
+        """Whether only outlines are too near: neither moving a letter nor leaving out a part of a fill helps."""
         return all(mark.what == "outline" for mark in self.marks)
 
     def __str__(self) -> str:
@@ -46,9 +46,10 @@ def too_near(page: Marks) -> list[Near]:
     are marks of their own.
     """
     ink = _down_to_the_last(black(page, PIXELS_PER_MM))
-    far, nearest = cv2.distanceTransformWithLabels(
+    measured = cv2.distanceTransformWithLabels(
         (~ink).view(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_5, labelType=cv2.DIST_LABEL_CCOMP
     )
+    far, nearest = np.asarray(measured[0], np.float32), np.asarray(measured[1], np.int32)
     of = _marks_of(page, nearest)
     touching = [
         Near(pair, 0.0, pair[0].place_mm)
@@ -60,6 +61,11 @@ def too_near(page: Marks) -> list[Near]:
     is_line[[number for number, marks in of.items() if marks[0].what == "outline"]] = True
     lines = is_line[nearest[::2, ::2]] & ink[::2, ::2]
     return touching + list(_gaps(ink, far, nearest, of)) + list(_narrow(page, lines))
+
+
+def narrow_places(page: Marks) -> list[Near]:
+    """Where outlines run too near to each other, of a page of nothing else: seen on half as many pixels, and sooner."""
+    return list(_narrow(page, black(page, PIXELS_PER_MM // 2)))
 
 
 def _down_to_the_last(ink: Bool[np.ndarray, "r c"]) -> Bool[np.ndarray, "k c"]:
@@ -136,7 +142,7 @@ def _gap_mm(
     here, there = (ink[window] & (nearest[window] == number) for number in (one, other))
     if not here.any() or not there.any():
         return np.inf
-    return (float(distance_transform_edt(~there)[here].min()) - 1) / PIXELS_PER_MM
+    return (float(np.asarray(distance_transform_edt(~there))[here].min()) - 1) / PIXELS_PER_MM
 
 
 def _narrow(page: Marks, lines: Bool[np.ndarray, "r c"]) -> Iterator[Near]:
@@ -155,7 +161,7 @@ def _narrow(page: Marks, lines: Bool[np.ndarray, "r c"]) -> Iterator[Near]:
     if count == 1:
         return
     numbers, longest = np.arange(count), np.zeros(count, np.float32)
-    np.maximum.at(longest, places[left], beyond[left])
+    np.maximum.at(longest, np.asarray(places, np.int64)[left], beyond[left])
     wrong = (longest > GAP_MM) | (_sides(places, (free > 0) & ~left, count) > 1)
     for number in numbers[1:][wrong[1:]].tolist():
         row, column = (int(at) for at in np.unravel_index(np.where(places == number, far, -1).argmax(), far.shape))
@@ -169,7 +175,7 @@ def _sides(places: Int32[np.ndarray, "r c"], rest: Bool[np.ndarray, "r c"], coun
     beside = np.where(rest, cv2.dilate(places.astype(np.float32), np.ones((3, 3), np.uint8)), 0).astype(np.int32)
     _, sides = cv2.connectedComponents((beside > 0).astype(np.uint8), connectivity=8)
     pairs = np.unique(np.stack([sides[beside > 0], beside[beside > 0]]), axis=1)
-    return np.bincount(pairs[1], minlength=count)
+    return np.bincount(np.asarray(pairs[1], np.int64), minlength=count)
 
 
 def _outline_around(page: Marks, place_mm: tuple[float, float]) -> Mark:

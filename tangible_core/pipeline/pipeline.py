@@ -38,6 +38,7 @@ from ..plugins.interfaces import (
     HapticDevice,
     Medium,
     Method,
+    Reshaping,
     Segmenter,
     Touch,
 )

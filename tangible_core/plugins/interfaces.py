@@ -126,7 +126,7 @@ class Exporter(Method):
         super().__init_subclass__(**options)
         guard_verb(cls, "export", "write", tuple)
 
-    def width_m(self, aspect: float) -> float | None:
+    def picture_width_m(self, aspect: float) -> float | None:
         """The width of the whole picture in the files, for which the products are made; None for the workspace's.
 
         aspect: width through length of the picture.

@@ -26,7 +26,7 @@ def work_of(name: str, exporter: Exporter) -> Work:
     """With the products that this exporter needs, made for its width."""
     made = drawn(name)
     rows, columns = made.parts.labels.shape
-    width_m = exporter.width_m(columns / rows)
+    width_m = exporter.picture_width_m(columns / rows)
     heights = np.float32(made.heights_m)[made.parts.labels]
     products = {
         "simplified": simplified(name, width_m),

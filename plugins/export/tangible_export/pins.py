@@ -41,7 +41,7 @@ class Pins(Exporter):
     def _array(self) -> Display:
         return self.display if isinstance(self.display, Display) else DISPLAYS[self.display]
 
-    def width_m(self, aspect: float) -> float:
+    def picture_width_m(self, aspect: float) -> float:
         """Of the picture on the display."""
         return PITCH_M * min(self._array.columns, self._array.rows * aspect)
 

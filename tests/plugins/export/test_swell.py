@@ -166,8 +166,8 @@ def test_the_pdf_is_the_pages_true_to_size(written):
 
 @pytest.mark.parametrize(("paper", "shape"), [("a4", (300, 450)), ("letter", (450, 300)), ("a3", (300, 450))])
 def test_the_picture_is_as_large_as_the_page_allows_or_as_is_said(tmp_path, paper, shape):
-    for wide_m in (None, 0.1):
-        swell = Swell(page=paper, wide_m=wide_m)
+    for width_m in (None, 0.1):
+        swell = Swell(page=paper, width_m=width_m)
         svg = swell.write(labels_work(halves(shape=shape)), tmp_path / "map")[0]
         root = ElementTree.parse(svg).getroot()
         size = [float(root.get(side).removesuffix("mm")) for side in ("width", "height")]
@@ -176,11 +176,11 @@ def test_the_picture_is_as_large_as_the_page_allows_or_as_is_said(tmp_path, pape
         at = np.array(re.findall(r"[ML]([\d.]+) ([\d.]+)", " ".join(
             each.get("d") for each in root.iterfind(".//*[@data-mark='outline']"))), float)  # fmt: skip
         width, length = np.ptp(at, axis=0)
-        assert width == pytest.approx(1000 * swell.width_m(shape[1] / shape[0]), abs=0.011)
+        assert width == pytest.approx(1000 * swell.picture_width_m(shape[1] / shape[0]), abs=0.011)
         assert length == pytest.approx(width * shape[0] / shape[1], abs=0.011)
         assert at.min() >= 10
         assert (at.max(axis=0) <= np.array(size) - 10).all()
-        if wide_m:
+        if width_m:
             assert width == pytest.approx(100, abs=0.011)
         else:
             assert min(size[0] - 20 - width, size[1] - 20 - length) < 13  # the title takes 12 mm
@@ -271,8 +271,8 @@ HUNDREDS = np.arange(900, dtype=np.int32).reshape(30, 30).repeat(20, 0).repeat(2
         (np.zeros((1, 1), np.int32), {}, "one part", PictureError),
         (halves(shape=(3, 600)), {}, "a finger needs 12.7 mm", GeometryError),
         (halves(shape=(600, 3)), {}, "a finger needs 12.7 mm", GeometryError),
-        (halves(), {"wide_m": 0.4}, "has no room on a4", GeometryError),
-        (halves(), {"wide_m": 0.005}, "a finger needs 12.7 mm", GeometryError),
+        (halves(), {"width_m": 0.4}, "has no room on a4", GeometryError),
+        (halves(), {"width_m": 0.005}, "a finger needs 12.7 mm", GeometryError),
         (HUNDREDS, {}, "900 parts are more than anybody keeps apart", PictureError),
         (
             np.arange(101, dtype=np.int32)[:, None].repeat(90, 1),

@@ -52,13 +52,13 @@ class Sheet:
         return replace(self, top_mm=self.top_mm + down, spare_mm=self.spare_mm - down)
 
 
-def sheet_for(page: Page, aspect: float, wide_m: float | None) -> Sheet:
+def sheet_for(page: Page, aspect: float, width_m: float | None) -> Sheet:
     """The sheet, upright or on its side, on which the picture is largest; or where it is so wide.
 
     aspect: width through length of the picture.
     """
     size, wide = _largest(page, aspect)
-    wide = wide if wide_m is None else 1000 * wide_m
+    wide = wide if width_m is None else 1000 * width_m
     return _placed(size, (wide, wide / aspect))
 
 
@@ -68,7 +68,7 @@ def check_readable(page: Page, sheet: Sheet) -> None:
     _, most = _largest(page, width / length)
     if width > most + 1e-6:
         raise GeometryError(
-            f"swell: wide_m: a picture {width:.4g} mm wide has no room on {page}, which takes {most:.4g} mm; make it "
+            f"swell: width_m: a picture {width:.4g} mm wide has no room on {page}, which takes {most:.4g} mm; make it "
             "smaller or the page larger"
         )
     if min(width, length) < LEAST_MM:

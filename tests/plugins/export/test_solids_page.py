@@ -22,7 +22,7 @@ STEP_MM, MOST_BYTES = 0.3, 150_000
 
 @pytest.mark.slow
 def test_the_page_s_portrait_becomes_a_plate(tmp_path: Path):
-    (parts,), (added,) = (re.findall(r"```yaml\n(.*?)```", text, re.DOTALL) for text in (PAGES["parts"], SECTION))
+    parts, added = (re.findall(r"```yaml\n(.*?)```", text, re.DOTALL)[0] for text in (PAGES["parts"], SECTION))
     astronaut = drawn("astronaut")
     write_png(tmp_path / "astronaut.png", astronaut.picture)
     (tmp_path / "parts.png").write_bytes(label_picture(astronaut.parts.labels))

@@ -11,13 +11,13 @@ from PIL import Image
 from command_line import tangible
 from drawn_parts import drawn
 from pictures import write_png
-from solids import FORMATS, from_above, is_closed, read
+from solids import FORMATS, is_closed, read, seen_from_above
 from tangible_core.parts.label_picture import label_picture
 
 ROOT = Path(__file__).parents[3]
 PAGES = {name: ROOT.joinpath("docs", f"{name}.md").read_text(encoding="utf-8") for name in ("parts", "export")}
 SECTION = re.findall(r"^## Solids\n(.*?)^## ", PAGES["export"], re.DOTALL | re.MULTILINE)[0]
-STEP_MM, MOST_BYTES = 0.3, 150_000
+MOST_BYTES = 150_000
 
 
 @pytest.mark.slow
@@ -46,15 +46,6 @@ def test_the_page_names_every_option_with_its_default():
             else str(field.default).lower().replace("none", "null")
             for name, field in fields
         }
-
-
-def seen_from_above(mesh) -> Image.Image:
-    """Lit from the upper left, by the heights that the file has."""
-    width, length, _ = mesh.vertices.max(axis=0)
-    heights = from_above(mesh, np.arange(STEP_MM / 2, width, STEP_MM), np.arange(STEP_MM / 2, length, STEP_MM))[::-1]
-    down, right = np.gradient(heights, STEP_MM)
-    light = (right + down + 1.2) / np.sqrt(3.44 * (1 + right**2 + down**2))
-    return Image.fromarray(np.rint(255 * np.clip(light, 0, 1)).astype(np.uint8))
 
 
 def keep(picture: Image.Image, folder: Path) -> None:

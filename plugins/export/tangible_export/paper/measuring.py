@@ -7,8 +7,8 @@ from itertools import combinations
 
 import cv2
 import numpy as np
-from jaxtyping import Bool, Float32, Int32, Int64
-from scipy.ndimage import distance_transform_edt
+from jaxtyping import Bool, Float32, Int32, Int64, UInt8
+from scipy.ndimage import distance_transform_edt, find_objects
 
 from .figures import black
 from .reading import Mark, Marks
@@ -154,8 +154,7 @@ def _narrow(page: Marks, lines: Bool[np.ndarray, "r c"]) -> Iterator[Near]:
     pixel_mm = 2 / PIXELS_PER_MM
     free = (~lines).astype(np.uint8)
     far = pixel_mm * (cv2.distanceTransform(free, cv2.DIST_L2, cv2.DIST_MASK_PRECISE) - 0.5)
-    middles = far >= GAP_MM / 2 - pixel_mm
-    beyond = pixel_mm * cv2.distanceTransform((~middles).astype(np.uint8), cv2.DIST_L2, 5) - GAP_MM / 2
+    beyond = pixel_mm * _to_middles(free, far >= GAP_MM / 2 - pixel_mm) - GAP_MM / 2
     left = (free > 0) & (beyond > pixel_mm)
     count, places = cv2.connectedComponents(left.astype(np.uint8), connectivity=4)
     if count == 1:
@@ -168,6 +167,17 @@ def _narrow(page: Marks, lines: Bool[np.ndarray, "r c"]) -> Iterator[Near]:
         place = (column * pixel_mm, row * pixel_mm)
         mark = _outline_around(page, place)
         yield Near((mark, mark), max(0.0, 2 * float(far[row, column])), place)
+
+
+def _to_middles(free: UInt8[np.ndarray, "r c"], middles: Bool[np.ndarray, "r c"]) -> Float32[np.ndarray, "r c"]:
+    """How far each pixel is from the nearest middle of a disc that is in the same room as it, in pixels."""
+    rooms = cv2.connectedComponents(free, connectivity=4)[1]
+    found = np.zeros(free.shape, np.float32)
+    for number, box in enumerate(find_objects(rooms), 1):
+        room = rooms[box] == number
+        outside = (~(middles[box] & room)).view(np.uint8)
+        found[box][room] = cv2.distanceTransform(outside, cv2.DIST_L2, 5)[room]
+    return found
 
 
 def _sides(places: Int32[np.ndarray, "r c"], rest: Bool[np.ndarray, "r c"], count: int) -> Int64[np.ndarray, " n"]:

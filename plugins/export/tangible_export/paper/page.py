@@ -36,7 +36,7 @@ log = logging.getLogger(__name__)
 
 SMOOTH_MM = 0.8
 """Tolerance of borders, by which the stairs of pixels become lines."""
-ROUNDS = 4
+ROUNDS = 6
 """Of measuring and putting right."""
 APART_MM = 0.15
 """By which a letter is moved farther than it was too near."""

@@ -29,6 +29,8 @@ ROUNDS = 16
 FURTHER = 0.1
 """Of the gap: so far around a narrow place all is given anew, and in each round from the third on as much farther, for
 two parts may take a place from each other in turns."""
+WIDER = 0.25
+"""The same, where a drawn page was found too narrow at a place."""
 VOTING = 0.25
 """Standard deviation of the Gaussian in which the cells around have a say, of the gap."""
 
@@ -61,8 +63,8 @@ def opened_at(parts: PartMap, places: Float64[np.ndarray, "n 2"], width_m: float
     pitch_m, narrow = width_m / columns, np.zeros((rows, columns), np.bool_)
     at = (places * columns).astype(np.int64)
     narrow[at[:, 1].clip(0, rows - 1), at[:, 0].clip(0, columns - 1)] = True
-    around = (0.5 + FURTHER * further) * GAP_M / pitch_m
-    found = _given_away(parts.labels, narrow, around, VOTING * GAP_M / pitch_m)
+    around = (0.5 + WIDER * further) * GAP_M / pitch_m
+    found = _given_away(parts.labels, narrow, around, around / 2)  # so that all around has a say in the middle
     return PartMap(_without_crumbs(found, pitch_m), parts.segments)
 
 

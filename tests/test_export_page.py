@@ -3,7 +3,6 @@
 import os
 import re
 import shlex
-import subprocess
 from collections.abc import Callable
 from pathlib import Path
 
@@ -13,7 +12,7 @@ from PIL import Image
 
 from command_line import tangible
 from drawn_parts import drawn
-from needed import program
+from exported_pictures import pixels
 from pictures import write_png
 from solids import is_closed, read, seen_from_above
 from tangible_core import Scene
@@ -69,10 +68,7 @@ def test_a_photograph_of_a_museum_is_legible_and_becomes_a_page_and_a_plate(tmp_
     assert "Legible" in for_swell
     assert is_closed(read(tmp_path / "portrait/plate.3mf"))
     assert "helmet" in (tmp_path / "portrait/plate.txt").read_text()
-    picture = tmp_path / "page.png"
-    page = tmp_path / "portrait/plate-swell.svg"
-    subprocess.run([program("rsvg-convert"), "-b", "white", "-w", "900", page, "-o", picture], check=True)
-    keep("portrait", Image.open(picture))
+    keep("portrait", Image.fromarray(pixels(tmp_path / "portrait/plate-swell.svg", 90)))
 
 
 @pytest.mark.slow

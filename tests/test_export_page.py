@@ -1,4 +1,4 @@
-"""What docs/export.md tells from the first file to the print; with TANGIBLE_DOCS_PICTURES=1 its pictures are written."""
+"""What docs/export.md tells from the first file to the print; TANGIBLE_DOCS_PICTURES=1 writes its pictures."""
 
 import os
 import re
@@ -99,5 +99,5 @@ def hills(rows: int, columns: int) -> np.ndarray:
     noise = np.fft.rfft2(np.random.default_rng(4).standard_normal((rows, columns)))
     squared = np.fft.fftfreq(rows)[:, None] ** 2 + np.fft.rfftfreq(columns) ** 2
     squared[0, 0] = np.inf
-    found = np.fft.irfft2(noise * squared**-1.15 * (squared > 2e-5), s=(rows, columns))
+    found = np.fft.irfft2(noise * squared**-1.6 * (squared > 2e-5), s=(rows, columns))
     return (400 + 900 * (found - found.min()) / np.ptp(found)).astype(np.float32)

@@ -61,12 +61,12 @@ def drawn_pages(work: Work, parts: PartMap, sheet: Sheet, page: Page) -> list[st
     things = things_of(work, parts)
     if sum(len(thing.numbers) for thing in things) < 2:
         raise PictureError(
-            "swell: the picture is one part, and a page of it would be a frame and nothing in it; "
+            "the picture is one part, and a page of it would be a frame and nothing in it; "
             "choose another texture method, say `parts:` by hand, or make smaller parts fit with `simplify:`"
         )
     if len(things) > MOST_THINGS:
         raise PictureError(
-            f"swell: {len(things)} parts are more than anybody keeps apart on a page, which takes {MOST_THINGS}; have "
+            f"{len(things)} parts are more than anybody keeps apart on a page, which takes {MOST_THINGS}; have "
             "fewer, by a texture method with fewer segments or by one name for several in `parts:`"
         )
     lines, whole = title_lines(work.title, work.language, sheet)
@@ -107,7 +107,7 @@ def _smoothed(blank: Drawing, parts: PartMap, things: Sequence[Thing]) -> tuple[
             if not near:
                 return shown, drawing
         parts = opened_at(parts, _on_picture([each.place_mm for each in near], sheet), wide_mm / 1000, turn + 1)
-    raise PictureError(f"swell: {near[0]}, and {GAP_MM} mm must be between them; make the picture larger or simpler")
+    raise PictureError(f"{near[0]}, and {GAP_MM} mm must be between them; make the picture larger or simpler")
 
 
 def _on_picture(places_mm: Sequence[tuple[float, float]], sheet: Sheet) -> Float64[np.ndarray, "n 2"]:
@@ -218,7 +218,7 @@ def _checked(key: Drawing) -> str:
     """Raises: PictureError if something in it is too near to something."""
     text = svg(key)
     if near := too_near(read(text)):
-        raise PictureError(f"swell: in the key, {near[0]}, and {GAP_MM} mm must be between them")
+        raise PictureError(f"in the key, {near[0]}, and {GAP_MM} mm must be between them")
     return text
 
 

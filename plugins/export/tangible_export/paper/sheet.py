@@ -68,12 +68,12 @@ def check_readable(page: Page, sheet: Sheet) -> None:
     _, most = _largest(page, width / length)
     if width > most + 1e-6:
         raise GeometryError(
-            f"swell: width_m: a picture {width:.4g} mm wide has no room on {page}, which takes {most:.4g} mm; make it "
+            f"width_m: a picture {width:.4g} mm wide has no room on {page}, which takes {most:.4g} mm; make it "
             "smaller or the page larger"
         )
     if min(width, length) < LEAST_MM:
         raise GeometryError(
-            f"swell: the picture would be {width:.3g} mm wide and {length:.3g} mm long on {page}, and a finger needs "
+            f"the picture would be {width:.3g} mm wide and {length:.3g} mm long on {page}, and a finger needs "
             f"{LEAST_MM} mm; take a part of the picture that is less long and narrow, or make it larger"
         )
 

@@ -134,7 +134,7 @@ def _strip(width_m: float, angle_deg: float, pitch_m: float) -> PartMap:
     y, x = (np.indices((round(0.040 / pitch_m), round(0.030 / pitch_m))) + 0.5) * pitch_m - [[[0.020]], [[0.015]]]
     far_m = y * cos(radians(angle_deg)) - x * sin(radians(angle_deg))
     side = np.where(far_m < 0, 0, 2)
-    return PartMap(np.where(np.abs(far_m) < width_m / 2, 1, side).astype(np.int32), (0, 1, 2))
+    return PartMap(np.where(np.abs(far_m) < width_m / 2 - 1e-9, 1, side).astype(np.int32), (0, 1, 2))
 
 
 def _scale() -> list[Figure]:

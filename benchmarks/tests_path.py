@@ -7,6 +7,7 @@ sys.path.append(str(Path(__file__).parents[1] / "tests" / "helpers"))
 
 import colour_parts as colour_parts
 import drawn_parts as drawn_parts
+import exported_pictures as exported_pictures
 import falcon_bus as falcon_bus
 import falcon_streams as falcon_streams
 import solids as solids

@@ -113,8 +113,10 @@ def test_the_page_on_recordings_names_every_column():
 
 
 def test_the_page_on_the_force_loop_feels(capsys: pytest.CaptureFixture[str]):
-    (block,) = re.findall(r"```python\n(.*?)```", ROOT.joinpath("docs/servo.md").read_text("utf-8"), re.DOTALL)
-    exec(block, {})
+    pulled, felt = re.findall(r"```python\n(.*?)```", ROOT.joinpath("docs/servo.md").read_text("utf-8"), re.DOTALL)
+    exec(pulled, {})
+    assert capsys.readouterr().out == "BeaconState(part=1, why='')\n"
+    exec(felt, {})
     assert capsys.readouterr().out.startswith("200 ")
 
 

@@ -211,7 +211,7 @@ class _Desk:
     def _engine(self, chosen: NamedMethod[Exporter]) -> Engine:
         """The one that makes products as wide as this exporter writes them."""
         rows, columns = self.engine.scene.shape
-        width_m = chosen.method.width_m(columns / rows)
+        width_m = chosen.method.picture_width_m(columns / rows)
         if width_m not in self.of_width:
             self.of_width[width_m] = of_width(self.engine, width_m)
         found = self.of_width[width_m]

@@ -38,6 +38,7 @@ from ..plugins.interfaces import (
     HapticDevice,
     Medium,
     Method,
+    Reshaping,
     Segmenter,
     Touch,
 )
@@ -484,9 +485,9 @@ class Pipeline:
         felt, law = self._device(device), self.config.render
         if law is None:
             raise self.config.missing("render")
-        touch = self._touch(device)
+        touch, surface = self._touch(device), fitted(self.surface, self.config, felt)[0]
         return survey(
-            fitted(self.surface, self.config, felt)[0],
+            law.method.felt(surface) if isinstance(law.method, Reshaping) else surface,
             touch,
             law.method,
             felt,

@@ -126,7 +126,7 @@ class Exporter(Method):
         super().__init_subclass__(**options)
         guard_verb(cls, "export", "write", tuple)
 
-    def width_m(self, aspect: float) -> float | None:
+    def picture_width_m(self, aspect: float) -> float | None:
         """The width of the whole picture in the files, for which the products are made; None for the workspace's.
 
         aspect: width through length of the picture.
@@ -148,6 +148,14 @@ class Skippable(ABC):
     @abstractmethod
     def skip(self, views: Views) -> str | None:
         """A reason, in words, not to run on these views; None to run. Cheap: it is asked for every plan."""
+
+
+class Reshaping(ABC):
+    """For a force law that feels another surface than the one that it is given: `preflight` judges the one felt."""
+
+    @abstractmethod
+    def felt(self, surface: HapticSurface) -> HapticSurface:
+        """The surface as it is felt, of the same extent."""
 
 
 class Serviceable(ABC):

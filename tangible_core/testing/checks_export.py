@@ -39,7 +39,7 @@ def width_is_a_length(method: Exporter) -> None:
     """For a picture of any shape, `width_m` is None or a length of 1e-6 to 10 m."""
     low, high = WIDTHS_M
     for aspect in ASPECTS:
-        found = method.width_m(aspect)
+        found = method.picture_width_m(aspect)
         fine = found is None or (isfinite(found) and low <= found <= high)
         demand(fine, f"width_m({aspect:g}) is {found!r}; a width is from {low:g} to {high:g} m, or None")
 

@@ -58,7 +58,7 @@ def work_of(
     simplified: np.ndarray | None = None,
 ) -> Work:
     """What this exporter is given, and nothing that it does not need. labels: of parts; None for a scene without."""
-    width_m = exporter.width_m(shape[1] / shape[0]) or WIDE_M
+    width_m = exporter.picture_width_m(shape[1] / shape[0]) or WIDE_M
     made = _products(shape, width_m, labels, simplified)
     names = () if labels is None else NAMES
     products: dict[str, Record | None] = {name: made[name] for name in exporter.needs if name in EXPORTABLE}
@@ -102,7 +102,7 @@ def _flat(exporter: Exporter, plain: Work) -> Work:
 
 def plain_relief(exporter: Exporter) -> Relief:
     """The relief of the plain work, whether the exporter needs it or not."""
-    width_m = exporter.width_m(COLUMNS / ROWS) or WIDE_M
+    width_m = exporter.picture_width_m(COLUMNS / ROWS) or WIDE_M
     return _products((ROWS, COLUMNS), width_m, _labels((ROWS, COLUMNS)), None)["relief"]
 
 

@@ -36,6 +36,18 @@ def small_scene(folder: Path) -> Path:
     return folder / "mine.yaml"
 
 
+def striped_scene(folder: Path) -> Path:
+    """A pipeline file of two parts on 80 mm, and between them a stripe of 2 mm: too narrow for fingers."""
+    labels = np.zeros((60, 80), np.uint8)
+    labels[:, 40:] = 1
+    labels[:, 40:42] = 2
+    Image.fromarray(labels).save(folder / "labels.png")
+    Image.fromarray(80 * labels + 20).save(folder / "mine.png")
+    text = TEXT.replace("{photo: mine.png}", "{photo: mine.png, segments: labels.png}").replace("0.06", "0.08")
+    (folder / "mine.yaml").write_text(text.replace("texture: {use: gabor, segments: 3}\n", ""))
+    return folder / "mine.yaml"
+
+
 class InlineMaker:
     """The maker's jobs without its process; `kill` makes those that somebody waits for raise, as the real one does."""
 

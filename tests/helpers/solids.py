@@ -8,11 +8,13 @@ from typing import Any, NamedTuple
 import lib3mf
 import numpy as np
 import trimesh
+from PIL import Image
 
 from tangible_core.data import Relief, Work
 from tangible_core.plugins.interfaces import Exporter
 from tangible_export import Glb, Stl, ThreeMF
 
+SEEN_STEP_MM = 0.3
 FORMATS: dict[str, type[Exporter]] = {"stl": Stl, "3mf": ThreeMF, "glb": Glb}
 
 
@@ -151,3 +153,14 @@ def rough(rows: int = 40, columns: int = 56) -> np.ndarray:
 
 
 LETTER_F = np.array([[1, 1, 1, 1], [1, 0, 0, 0], [1, 1, 1, 0], [1, 0, 0, 0], [1, 0, 0, 0], [1, 0, 0, 0]])
+
+
+def seen_from_above(mesh) -> Image.Image:
+    """A picture of a solid from above, lit from the upper left, by the heights that its file has."""
+    width, length, _ = mesh.vertices.max(axis=0)
+    heights = from_above(
+        mesh, np.arange(SEEN_STEP_MM / 2, width, SEEN_STEP_MM), np.arange(SEEN_STEP_MM / 2, length, SEEN_STEP_MM)
+    )[::-1]
+    down, right = np.gradient(heights, SEEN_STEP_MM)
+    light = (right + down + 1.2) / np.sqrt(3.44 * (1 + right**2 + down**2))
+    return Image.fromarray(np.rint(255 * np.clip(light, 0, 1)).astype(np.uint8))

@@ -4,6 +4,7 @@ import asyncio
 import time
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -21,6 +22,7 @@ from tangible_ui.asks.document import take
 from tangible_ui.asks.making import make
 from tangible_ui.desk.texts import Text
 from tangible_ui.feeling.feeling import Feeling, Felt
+from tangible_ui.serving.watching import watch
 from tangible_ui.wire import STATE_FRAME
 
 IN_TIME_S = 20.0
@@ -35,7 +37,7 @@ def until(condition: Callable[[], Any]) -> None:
 
 
 def test_a_tab_asks_for_a_part_and_all_tabs_hear_of_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    file = small_scene(tmp_path)
+    file, before = small_scene(tmp_path), set(shared_folder().glob("*.parcel"))
     pulled: list[Beacon | None] = []
     runs = [False]
     monkeypatch.setattr(Feeling, "running", property(lambda _: runs[0]))
@@ -63,7 +65,7 @@ def test_a_tab_asks_for_a_part_and_all_tabs_hear_of_it(tmp_path: Path, monkeypat
         desk.desk.maker.close()
 
     asyncio.run(asked())
-    assert not list(shared_folder().glob("*.parcel")), "nothing is left of what was handed on"
+    assert set(shared_folder().glob("*.parcel")) <= before, "nothing is left of what was handed on"
 
 
 @pytest.mark.slow
@@ -118,3 +120,28 @@ def test_a_button_of_the_page_s_hand_releases_it_and_a_scene_and_a_stop_end_it()
         assert feeling.beacon_over() == "ended"
     finally:
         feeling.stop()
+
+
+def test_the_server_tells_all_tabs_why_it_ended() -> None:
+    """What watches over the loop asks a hundred times a second, and says each end once."""
+    told: list[dict[str, Any]] = []
+    ends = iter(["", "button", "", "ended"])
+    feeling = SimpleNamespace(
+        hand=SimpleNamespace(keep=lambda: None), beacon_over=lambda: next(ends, ""), ended=lambda: None
+    )
+    desk: Any = SimpleNamespace(
+        feeling=feeling,
+        laws=SimpleNamespace(follow=lambda _: None),
+        tell=lambda event, **said: told.append({"event": event, **said}),
+    )
+
+    async def watched() -> None:
+        task = asyncio.ensure_future(watch(desk))
+        async with asyncio.timeout(IN_TIME_S):
+            while len(told) < 2:
+                await asyncio.sleep(0.005)
+        task.cancel()
+
+    asyncio.run(watched())
+    off = {"event": "beacon", "part": None, "name": ""}
+    assert told == [{**off, "why": "button"}, {**off, "why": "ended"}]

@@ -56,15 +56,15 @@ def test_a_key_is_changed_and_nothing_else(run: Run):
 
 def test_what_the_page_has_no_form_for_stays(run: Run):
     async def check(small: SmallDesk, ask: Any) -> None:
-        more = "simplify: {gap_m: 4 mm}\nexport: [text, {use: heights, wide_m: 160 mm}]  # for others\n"
+        more = "simplify: {gap_m: 4 mm}\nexport: [text, {use: heights, width_m: 160 mm}]  # for others\n"
         await ask("edit", text=TEXT + more)
         await ask("set", changes={"render.stiffness_n_per_m": 500})
         assert small.desk.text == (TEXT + more).replace("400", "500")
         said = small.tab.last("document")
         assert said["values"]["simplify"]["gap_m"] == 0.004
         assert [each["use"] for each in said["values"]["export"]] == ["text", "heights"]
-        await ask("set", changes={"export.heights.wide_m": "120 mm"})
-        assert "export: [text, {use: heights, wide_m: 120 mm}]  # for others" in small.desk.text
+        await ask("set", changes={"export.heights.width_m": "120 mm"})
+        assert "export: [text, {use: heights, width_m: 120 mm}]  # for others" in small.desk.text
 
     run(check)
 

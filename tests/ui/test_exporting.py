@@ -7,11 +7,13 @@ from pathlib import Path
 from typing import Any
 from zipfile import ZipFile
 
+import numpy as np
 import pytest
 import trimesh
 
-from desks import TEXT, SmallDesk, small_scene
+from desks import TEXT, SmallDesk, small_scene, striped_scene
 from tangible_core.errors import ConfigError, TangibleError
+from tangible_core.pipeline.export_folder import LISTED
 from tangible_export.stl import Stl
 from tangible_ui.asks import ASKS
 from tangible_ui.maker.exporting import KEPT
@@ -24,14 +26,16 @@ STL = {"use": "stl", "longer_side_m": 0.06}
 def small(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
     """Runs a test with a desk on which the small scene is opened and felt."""
 
-    def run(check: Callable[[SmallDesk, Ask], Coroutine[Any, Any, None]]) -> None:
+    def run(
+        check: Callable[[SmallDesk, Ask], Coroutine[Any, Any, None]], scene: Callable[[Path], Path] = small_scene
+    ) -> None:
         async def all_of_it() -> None:
             small = SmallDesk(tmp_path, monkeypatch)
 
             async def ask(name: str, **told: Any) -> Any:
                 return await ASKS[name](small.desk, small.tab, **told)
 
-            await ask("begin", files=[str(small_scene(tmp_path))])
+            await ask("begin", files=[str(scene(tmp_path))])
             await small.tab.until("touch")
             await check(small, ask)
 
@@ -47,7 +51,7 @@ def folders(small: SmallDesk) -> list[Path]:
 class TestExport:
     def test_a_solid_of_what_is_on_the_screen_and_every_tab_hears_of_it(self, small: Any) -> None:
         async def check(small: SmallDesk, ask: Ask) -> None:
-            await ask("edit", text=TEXT.replace("relief_m: 0.004", "relief_m: 0.003"))  # and it is not saved
+            await ask("edit", text=TEXT.replace("relief_m: 0.004", "relief_m: 0.001"))  # and it is not saved
             found = await ask("export", exports=[STL])
             told = small.tab.last("exported")
             assert {key: told[key] for key in found} == found
@@ -58,9 +62,10 @@ class TestExport:
             (file,) = only["files"]
             path = small.desk.folder / found["folder"] / file["name"]
             assert (path.name, path.stat().st_size) == ("mine.stl", file["bytes"])
-            solid = trimesh.load(path)
+            solid: Any = trimesh.load(path)
             assert solid.is_volume
-            assert solid.extents[2] == pytest.approx(3.0 + 1.5, abs=1.5)  # relief and base; braille may stand higher
+            base_mm, braille_mm = 1.5, 0.5
+            assert base_mm < solid.extents[2] < base_mm + 1.0 + braille_mm + 0.2, "the file's relief is 4 mm"
 
         small(check)
 
@@ -127,8 +132,8 @@ class TestExport:
     def test_all_files_in_one(self, small: Any) -> None:
         async def check(small: SmallDesk, ask: Ask) -> None:
             found = await ask("export", exports=[STL, "3mf"])
-            for _ in range(2):  # the second time it is there already
-                name = await ask("export_zip", folder=found["folder"])
+            name = await ask("export_zip", folder=found["folder"])
+            assert name == await ask("export_zip", folder=found["folder"]), "it is there already"
             at = small.desk.folder / found["folder"]
             assert name == "mine.zip"
             with ZipFile(at / name) as packed:
@@ -136,7 +141,7 @@ class TestExport:
                 assert {each: packed.read(each) for each in packed.namelist()} == {
                     each: (at / each).read_bytes() for each in ("mine.3mf", "mine.stl")
                 }
-            assert not [each for each in at.iterdir() if each.name.startswith(".")]
+            assert {each.name for each in at.iterdir()} == {"mine.3mf", "mine.stl", "mine.zip", LISTED}
 
         small(check)
 
@@ -154,11 +159,11 @@ class TestLegible:
         async def check(small: SmallDesk, ask: Ask) -> None:
             found = await ask("legible", medium="swell")
             assert small.tab.last("legible")["verdicts"] == found["verdicts"]
-            assert (found["medium"], found["width_m"], found["grade"]) == ("swell", 0.06, "illegible")
-            wider = await ask("legible", medium="swell", width_m=0.2)
-            assert wider["width_m"] == 0.2
-            changes = {each["key"]: each["value"] for verdict in found["verdicts"] for each in verdict["changes"]}
-            cures = {key: value for key, value in changes.items() if key.startswith("simplify")}
+            assert (found["medium"], found["width_m"], found["grade"]) == ("swell", 0.08, "illegible")
+            (gap,) = (each for each in found["verdicts"] if each["check"] == "gap")
+            (place,) = gap["at"]
+            assert place[0] == pytest.approx(41 / 80, abs=0.02)
+            cures = {each["key"]: each["value"] for each in gap["changes"] if each["key"].startswith("simplify")}
             assert cures and "simplify" not in small.desk.text
             await ask("set", changes=cures)
             assert "simplify:" in small.desk.text
@@ -167,16 +172,26 @@ class TestLegible:
             await ask("undo")
             assert "simplify" not in small.desk.text
 
-        small(check)
+        small(check, striped_scene)
 
-    def test_places_that_fail_are_shares_of_the_picture(self, small: Any) -> None:
+    def test_a_wider_picture_is_judged_as_such(self, small: Any) -> None:
         async def check(small: SmallDesk, ask: Ask) -> None:
-            found = await ask("legible", medium="print")
-            places = [at for each in found["verdicts"] if each["verdict"] != "ok" for at in each["at"]]
-            assert places
-            assert all(0 <= share <= 1 for at in places for share in at)
+            found = await ask("legible", medium="swell", width_m=0.4)
+            assert (found["width_m"], found["grade"]) == (0.4, "ok"), "the stripe is 1 cm wide then"
+            with pytest.raises(ConfigError):
+                await ask("legible", medium="swell", width_m=-1.0)
 
-        small(check)
+        small(check, striped_scene)
+
+    def test_what_is_seen_and_felt_is_simplified_where_the_file_says_so(self, small: Any) -> None:
+        async def check(small: SmallDesk, ask: Ask) -> None:
+            before = small.tab.last("scene")["labels"]
+            await ask("set", changes={"simplify": {}})
+            await ask("make", want="touch")
+            seen = small.maker.bench.described[1]
+            assert before == 3 and set(np.unique(seen.labels)) == {0, 2}, "the stripe is gone, and numbers stay"
+
+        small(check, striped_scene)
 
 
 class TestDescription:

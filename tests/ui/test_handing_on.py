@@ -14,7 +14,7 @@ import pytest
 import trimesh
 
 from browser_tabs import OpenPage
-from desks import small_scene
+from desks import small_scene, striped_scene
 from page_files import built_page
 from tangible_core.errors import DeviceError
 from tangible_devices.pointer import PointerClient
@@ -52,8 +52,8 @@ def show(serve: Callable[..., Any], open_page: OpenPage, tmp_path: Path) -> Call
     """The page with the small scene felt; `before` runs in it first, what is `said` more stands in its file."""
     built_page()
 
-    def show(said: str = "", before: str = "", **options: Any) -> "Page":
-        file = small_scene(tmp_path)
+    def show(said: str = "", before: str = "", scene: Callable[[Path], Path] = small_scene, **options: Any) -> "Page":
+        file = scene(tmp_path)
         file.write_text(file.read_text() + said)
         page = open_page("about:blank", **options)
         page.add_init_script(SPY + before)
@@ -84,20 +84,20 @@ class TestExport:
     def test_a_solid_and_all_files_in_one_by_the_keyboard(self, show: Callable[..., "Page"]) -> None:
         page = show()
         panel = opened(page, "export")
-        panel.get_by_label("Solid to print (STL)").press(" ")
-        panel.get_by_label("Solid to print (3MF)").press(" ")
-        panel.locator("summary", has_text="Solid to print (STL)").press("Enter")
+        panel.get_by_label("3D print (STL)").press(" ")
+        panel.get_by_label("3D print (3MF)").press(" ")
+        panel.locator("summary", has_text="3D print (STL)").press("Enter")
         longer = panel.get_by_label("Longer side").first
         longer.fill("5 cm")
         longer.press("Enter")
         panel.get_by_role("button", name="Export", exact=True).press("Enter")
         until(lambda: "2 files are ready." in panel.inner_text(), "files")
-        assert panel.locator(".outcome h3").all_inner_texts() == ["Solid to print (STL)", "Solid to print (3MF)"]
+        assert panel.locator(".outcome h3").all_inner_texts() == ["3D print (STL)", "3D print (3MF)"]
         assert panel.locator(".outcome .sentence").count() == 2
         with page.expect_download() as waited:
             panel.get_by_role("link", name="mine.stl").press("Enter")
         assert waited.value.suggested_filename == "mine.stl"
-        solid = trimesh.load(io.BytesIO(kept(waited.value)), file_type="stl")
+        solid: Any = trimesh.load(io.BytesIO(kept(waited.value)), file_type="stl")
         assert solid.is_volume
         rim_mm = 2 * 6.0
         assert solid.extents[0] == pytest.approx(50.0 + rim_mm, abs=1e-3)
@@ -112,32 +112,32 @@ class TestExport:
     def test_what_was_chosen_goes_into_the_file_and_comes_from_it(self, show: Callable[..., "Page"]) -> None:
         page = show("export: [{use: stl, rim_m: 0.01}, 3mf]\n")
         panel = opened(page, "export")
-        until(lambda: panel.get_by_label("Solid to print (STL)").is_checked(), "what the file says")
-        assert panel.get_by_label("Solid to print (3MF)").is_checked()
-        assert not panel.get_by_label("Heights as data (PNG, TIFF)").is_checked()
-        assert "1 set" in panel.locator("summary", has_text="Solid to print (STL)").inner_text()
+        until(lambda: panel.get_by_label("3D print (STL)").is_checked(), "what the file says")
+        assert panel.get_by_label("3D print (3MF)").is_checked()
+        assert not panel.get_by_label("Heights (PNG, TIFF)").is_checked()
+        assert "Options: 1" in panel.locator("summary", has_text="3D print (STL)").inner_text()
         write = panel.get_by_role("button", name="Write into the pipeline file")
         write.press("Enter")
         until(lambda: "says this already" in panel.inner_text(), "nothing to say")
-        panel.get_by_label("Solid to print (3MF)").press(" ")
-        panel.get_by_label("Heights as data (PNG, TIFF)").press(" ")
+        panel.get_by_label("3D print (3MF)").press(" ")
+        panel.get_by_label("Heights (PNG, TIFF)").press(" ")
         write.press("Enter")
         until(lambda: "heights" in text_of(page), "written")
         assert page.evaluate("page.document.said.export") == [{"use": "stl", "rim_m": 0.01}, "heights"]
         assert page.evaluate("page.document.complaints") == []
         page.locator("#undo").press("Enter")
-        until(lambda: panel.get_by_label("Solid to print (3MF)").is_checked(), "undone")
+        until(lambda: panel.get_by_label("3D print (3MF)").is_checked(), "undone")
 
     def test_what_cannot_be_written_is_said_and_leads_nowhere(self, show: Callable[..., "Page"]) -> None:
         page = show()
         panel = opened(page, "export")
         panel.get_by_role("button", name="Export", exact=True).press("Enter")
         until(lambda: "Choose at least one." in panel.inner_text(), "nothing chosen")
-        panel.locator("summary", has_text="Solid to print (STL)").press("Enter")
+        panel.locator("summary", has_text="3D print (STL)").press("Enter")
         base = panel.get_by_label("Base").first
         base.fill("-1")
         base.press("Enter")
-        until(lambda: panel.get_by_label("Solid to print (STL)").is_checked(), "who sets an option wants it")
+        until(lambda: panel.get_by_label("3D print (STL)").is_checked(), "who sets an option wants it")
         panel.get_by_role("button", name="Export", exact=True).press("Enter")
         until(lambda: "base_m" in panel.locator("p.bad[role=status]").inner_text(), "why")
         assert panel.locator(".outcome").count() == 0
@@ -146,17 +146,17 @@ class TestExport:
         page = show("export: [stl, {use: stl, rim_m: 0.01}]\n")
         panel = opened(page, "export")
         lines = panel.locator(".exporters > li")
-        until(lambda: lines.get_by_label("Solid to print (STL)", exact=True).count() == 2, "both")
+        until(lambda: lines.get_by_label("3D print (STL)", exact=True).count() == 2, "both")
         count = lines.count()
-        panel.locator("summary", has_text="Solid to print (STL)").nth(1).press("Enter")
-        panel.get_by_role("button", name="Remove Solid to print (STL)").press("Enter")
+        panel.locator("summary", has_text="3D print (STL)").nth(1).press("Enter")
+        panel.get_by_role("button", name="Remove 3D print (STL)").press("Enter")
         until(lambda: lines.count() == count - 1, "one")
         assert page.evaluate("document.activeElement.type") == "checkbox"
 
 
 class TestLegible:
     def test_what_fails_is_marked_and_said_and_its_cure_makes_it_pass(self, show: Callable[..., "Page"]) -> None:
-        page = show()
+        page = show(scene=striped_scene)
         panel = opened(page, "legible")
         panel.get_by_label("Read on").select_option("swell")
         panel.get_by_role("button", name="Check now").press("Enter")

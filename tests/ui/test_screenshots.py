@@ -67,6 +67,9 @@ def test_a_picture_of_each_panel(open_page: Callable[..., Any], url: str, tmp_pa
         cut = {"x": box["x"], "y": box["y"], "width": box["width"], "height": min(box["height"], 640)}
         picture = Image.open(io.BytesIO(page.screenshot(clip=cut))).convert("RGB")
         keep(picture, tmp_path, f"ui/{name}")
+        if name == "legible":
+            marked = io.BytesIO(page.locator("main").screenshot())
+            keep(Image.open(marked).convert("RGB"), tmp_path, "ui/legible-marks")
         panel.evaluate("(each) => (each.open = false)")
 
 
@@ -118,9 +121,10 @@ def prepare(page: "Page", name: str) -> None:
         page.locator("#legible-check").click()
         page.wait_for_selector("#legible .sentence", timeout=60_000)
     elif name == "export":
-        page.get_by_label("Solid to print (STL)").check()
+        for each in ("3D print (STL)", "Swell paper (SVG, PDF)"):
+            page.get_by_label(each).check()
         page.locator("#export-run").click()
-        page.wait_for_selector("#export .outcome", timeout=60_000)
+        page.wait_for_selector("#export .outcome", timeout=120_000)
     elif name == "description":
         page.wait_for_selector("#description li")
     elif name == "yaml":  # without the place of this machine where the test runs

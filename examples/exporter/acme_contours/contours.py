@@ -21,12 +21,12 @@ class Contours(Exporter):
     needs: ClassVar[tuple[str, ...]] = ("relief",)
     step_m: Annotated[float, Field(gt=0, le=1, allow_inf_nan=False)] = 0.001
     """Height from one line to the next."""
-    wide_m: Annotated[float, Field(gt=0, le=10, allow_inf_nan=False)] | None = None
+    width_m: Annotated[float, Field(gt=0, le=10, allow_inf_nan=False)] | None = None
     """Width of the drawing; null for that of the workspace."""
 
-    def width_m(self, aspect: float) -> float | None:
+    def picture_width_m(self, aspect: float) -> float | None:
         """The relief is made so wide: nothing is scaled here."""
-        return self.wide_m
+        return self.width_m
 
     def write(self, work: Work, stem: Path) -> tuple[Path, ...]:
         """One file. Raises: GeometryError where there is no line to draw."""

@@ -30,12 +30,12 @@ class Heights(Exporter):
 
     needs: ClassVar[tuple[str, ...]] = ("relief",)
 
-    wide_m: Annotated[float, Field(ge=0.001, le=10, allow_inf_nan=False)] | None = None
+    width_m: Annotated[float, Field(ge=0.001, le=10, allow_inf_nan=False)] | None = None
     """Width of the whole map; null for that of the workspace."""
 
-    def width_m(self, aspect: float) -> float | None:
-        """That of `wide_m`."""
-        return self.wide_m
+    def picture_width_m(self, aspect: float) -> float | None:
+        """That of `width_m`."""
+        return self.width_m
 
     def write(self, work: Work, stem: Path) -> tuple[Path, ...]:
         """The text comes first: it is what is read back."""

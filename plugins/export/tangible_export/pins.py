@@ -41,7 +41,7 @@ class Pins(Exporter):
     def _array(self) -> Display:
         return self.display if isinstance(self.display, Display) else DISPLAYS[self.display]
 
-    def width_m(self, aspect: float) -> float:
+    def picture_width_m(self, aspect: float) -> float:
         """Of the picture on the display."""
         return PITCH_M * min(self._array.columns, self._array.rows * aspect)
 
@@ -57,7 +57,7 @@ class Pins(Exporter):
         rows, columns = (each.stop - each.start for each in place)
         if min(rows, columns) < LEAST_PINS:
             raise PictureError(
-                f"pins: the picture would be {columns} pins wide and {rows} long; take a part of it that is less long "
+                f"the picture would be {columns} pins wide and {rows} long; take a part of it that is less long "
                 "and narrow"
             )
         most = raising.most_of(parts, rows, columns)
@@ -65,7 +65,7 @@ class Pins(Exporter):
         area = raising.heights(work.relief, rows, columns, array.levels - 1) if array.levels > 1 else None
         pins = raising.raised(array, raising.borders(most), area, place)
         if not pins.any():
-            raise PictureError("pins: no pin would rise, as one part fills the display; have more parts, and larger ones")
+            raise PictureError("no pin would rise, as one part fills the display; have more parts, and larger ones")
         title = shown(work.title)
         svg = drawing.svg(pins, array.levels, raising.whole(array, most, place), labels, title)
         said = {"title": title, "language": work.language, "display": self._name, **array.model_dump()}
@@ -88,10 +88,10 @@ class Pins(Exporter):
 def _parts(work: Work, display: Display) -> PartMap:
     """Raises: PictureError for a scene of one part, unless pins have heights."""
     if (parts := work.simplified) is None:
-        raise PictureError("pins: this scene has no parts to show; it needs a picture, or `parts:` of its own")
+        raise PictureError("this scene has no parts to show; it needs a picture, or `parts:` of its own")
     if display.levels == 1 and (parts.labels == parts.labels.flat[0]).all():
         raise PictureError(
-            "pins: the picture is one part, and has no border to show; name or draw its parts (`parts:`), or choose "
+            "the picture is one part, and has no border to show; name or draw its parts (`parts:`), or choose "
             "another texture method"
         )
     return parts

@@ -32,7 +32,7 @@ class Stl(Exporter):
     braille: said.Braille = True
     braille_language: said.BrailleLanguage = None
 
-    def width_m(self, aspect: float) -> float:
+    def picture_width_m(self, aspect: float) -> float:
         """Of the picture, whose longer side is `longer_side_m`."""
         return said.width_of(self.longer_side_m, aspect)
 

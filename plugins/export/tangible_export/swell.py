@@ -25,12 +25,12 @@ class Swell(Exporter):
 
     page: Page = "a4"
     """Size of the paper; it lies on its side where the picture is larger so."""
-    wide_m: Annotated[float, Field(gt=0, le=1, allow_inf_nan=False)] | None = None
+    width_m: Annotated[float, Field(gt=0, le=1, allow_inf_nan=False)] | None = None
     """Width of the picture; as large as the page allows where it is not said."""
 
-    def width_m(self, aspect: float) -> float:
+    def picture_width_m(self, aspect: float) -> float:
         """Of the picture on the page."""
-        return sheet_for(self.page, aspect, self.wide_m).picture_mm[0] / 1000
+        return sheet_for(self.page, aspect, self.width_m).picture_mm[0] / 1000
 
     def write(self, work: Work, stem: Path) -> tuple[Path, ...]:
         """The page and each page of the key as an SVG of its own, and all of them as one PDF.
@@ -44,10 +44,10 @@ class Swell(Exporter):
             from .paper.parting import parted
             from .paper.reading import read
         except ImportError as error:
-            raise BrokenMethod(f"swell: pages need shapely ({error}); pip install 'tangible-images[export]'") from error
+            raise BrokenMethod(f"pages need shapely ({error}); pip install 'tangible-images[export]'") from error
         if (parts := work.simplified) is None:
-            raise PictureError("swell: this scene has no parts to outline; it needs a picture, or `parts:` of its own")
-        sheet = sheet_for(self.page, _aspect(work, parts), self.wide_m)
+            raise PictureError("this scene has no parts to outline; it needs a picture, or `parts:` of its own")
+        sheet = sheet_for(self.page, _aspect(work, parts), self.width_m)
         check_readable(self.page, sheet)
         texts = drawn_pages(work, parted(work, parts, sheet.picture_mm[0] / 1000), sheet, self.page)
         files = {f"{stem.name}-swell{'-key' * (n > 0)}{f'-{n}' * (n > 1)}.svg": text for n, text in enumerate(texts)}

@@ -44,7 +44,7 @@ class Text(Exporter):
     are."""
     materials: bool = True
     """Whether it says what each part feels like; false beside paper and prints, which have no materials."""
-    wide_m: Annotated[float, Field(ge=0.001, le=10, allow_inf_nan=False)] | None = None
+    width_m: Annotated[float, Field(ge=0.001, le=10, allow_inf_nan=False)] | None = None
     """Width of the whole picture as it is described, such as that on a page; null for that of the workspace."""
     braille: bool = False
     """Whether NAME.brf is written too: uncontracted braille in the characters that embossers take."""
@@ -53,9 +53,9 @@ class Text(Exporter):
     lines: Annotated[int, Field(ge=5, le=200)] = 25
     """Of a page of braille."""
 
-    def width_m(self, aspect: float) -> float | None:
-        """That of `wide_m`."""
-        return self.wide_m
+    def picture_width_m(self, aspect: float) -> float | None:
+        """That of `width_m`."""
+        return self.width_m
 
     def write(self, work: Work, stem: Path) -> tuple[Path, ...]:
         """Raises: BrailleError for a name that has no braille, where braille is asked for."""
@@ -87,14 +87,14 @@ class Text(Exporter):
 
     def _embossed(self, lines: Sequence[str], language: Language) -> str:
         """Lines and pages as embossers take them, in plain ASCII."""
-        wide_m = width_m((0,) * self.cells)
-        cells = chain.from_iterable(_paragraph(line, language, wide_m) for line in lines)
+        line_m = width_m((0,) * self.cells)
+        cells = chain.from_iterable(_paragraph(line, language, line_m) for line in lines)
         rows = [f"{as_ascii(line).rstrip()}\r\n" for line in cells]
         return "\f".join("".join(rows[at : at + self.lines]) for at in range(0, len(rows), self.lines))
 
 
-def _paragraph(line: str, language: Language, wide_m: float) -> list[Cells]:
-    return wrapped(line, language, wide_m, RUNOVER_CELLS) or [()]
+def _paragraph(line: str, language: Language, line_m: float) -> list[Cells]:
+    return wrapped(line, language, line_m, RUNOVER_CELLS) or [()]
 
 
 def _write(path: Path, text: str) -> Path:

@@ -8,7 +8,7 @@ from jaxtyping import Float32
 from pydantic import AfterValidator, Field
 
 from tangible_core.data import HapticSurface, Relief
-from tangible_core.plugins.interfaces import ForceRenderer, Touch
+from tangible_core.plugins.interfaces import ForceRenderer, Reshaping, Touch
 from tangible_core.plugins.notes import note
 
 from .borders.distance import border_distance
@@ -27,7 +27,7 @@ def _checked(law: Law) -> dict[str, Any]:
     return checked(law, _refusal)
 
 
-class Engraved(ForceRenderer):
+class Engraved(ForceRenderer, Reshaping):
     """A groove along every border between the parts of a surface, or its segments, under any other law.
 
     The heights that the law feels are h - D (1 + cos(2 pi d / W)) / 2 where the distance d to the nearest border is
@@ -55,9 +55,9 @@ class Engraved(ForceRenderer):
     def touch(self, surface: HapticSurface) -> Touch:
         """The law's own touch on the surface with its grooves; on the surface as it is where that has no borders."""
         _, law = made(self.law, _refusal)
-        return law.touch(self.carved(surface))
+        return law.touch(self.felt(surface))
 
-    def carved(self, surface: HapticSurface) -> HapticSurface:
+    def felt(self, surface: HapticSurface) -> HapticSurface:
         """The surface with a groove along each border between its labels, as the law within feels it."""
         labels = surface.labels
         if labels is None or (labels == labels[0, 0]).all():

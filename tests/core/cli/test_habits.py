@@ -195,15 +195,18 @@ def test_sentences_stand_above_the_tables(folder: Path):
     assert re.match(r"mock can be read and written \d+ times a second", stress)
 
 
+NOTHING = SimpleNamespace(params={})
+
+
 def test_a_shell_is_offered_exporters_and_their_options():
     from tangible_core.cli import completing
 
     assert ("text,heights", True) in [(name, bool(says)) for name, says in completing.exporters("text,hei")]
     assert [name for name, _ in completing.exporters("hei")] == ["heights"]
-    assert completing.keys("export.hei") == ["export.heights."]
-    assert completing.keys("export.heights.w") == ["export.heights.wide_m="]
-    assert completing.keys("export.nothing.") == []
-    assert "simplify.gap_m=" in completing.keys("simplify")
+    assert completing.keys(NOTHING, "export.hei") == ["export.heights."]
+    assert completing.keys(NOTHING, "export.heights.w") == ["export.heights.width_m="]
+    assert completing.keys(NOTHING, "export.nothing.") == []
+    assert "simplify.gap_m=" in completing.keys(NOTHING, "simplify")
     assert "export" in completing.kinds("ex")
 
 
@@ -211,5 +214,5 @@ def test_an_exporter_is_shown_with_its_options(tmp_path: Path):
     ran = tangible("plugins", "show", "export", "heights", cwd=tmp_path)
     assert ran.returncode == 0, ran.stderr
     assert ran.stdout.startswith("heights is an exporter of tangible-images")
-    assert "wide_m = null" in ran.stdout
+    assert "width_m = null" in ran.stdout
     assert re.search("^export +heights", tangible("plugins", cwd=tmp_path).stdout, re.MULTILINE)

@@ -323,6 +323,8 @@ def test_a_beacon_is_asked_for_by_name_and_said_by_the_recording_and_its_replay(
     assert np.isin(Recording.load(folder / "hand.nc").beacon, (1, -1)).all()
     again = tangible("replay", "hand.nc", "still.yaml", cwd=folder)
     assert "A beacon pulled to vase for " in well(again).stdout and "the law alone is replayed" in again.stdout
+    alone = Pipeline.from_yaml(file).feel(seconds=0.2, in_real_time=False, beacon=1)
+    assert (alone.beacon == 1).all()
     wrong = tangible("feel", "still.yaml", "--beacon", "vas", cwd=folder)
     assert (wrong.returncode, wrong.stdout) == (2, "")
     assert "no part is called 'vas' (did you mean 'vase'?); the parts are 1: 'vase'" in wrong.stderr

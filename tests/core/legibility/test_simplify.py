@@ -77,10 +77,9 @@ def test_whatever_parts_there_are_pass_or_are_said_not_to(seed, count, width_m):
 
 
 def test_what_passes_stays_as_it_is():
-    labels = np.zeros((160, 320), np.int32)
-    labels[:, 160:] = 1
-    parts = PartMap(labels, (0, 1))
-    found = simplify(parts, 0.064, CHOICE)
+    labels = np.zeros((300, 400), np.int32)
+    labels[:, 201:] = 1
+    found = simplify(PartMap(labels, (0, 1)), 0.028, CHOICE)
     assert np.array_equal(found.labels, labels)
 
 
@@ -151,6 +150,14 @@ def test_textures_that_are_alike_become_one_but_named_parts_stay():
     named = simplify(parts, 0.16, SimplifyChoice(textures=4), ("", "", "cup", "plate"), picture)
     assert {2, 3} <= set(np.unique(named.labels).tolist())
     assert len({named.segments[n] for n in np.unique(named.labels).tolist() if n not in (2, 3)}) == 4
+
+
+def test_parts_of_one_texture_that_do_not_touch_keep_their_numbers_and_share_a_segment():
+    labels = np.repeat(np.arange(3), 200)[None].repeat(200, 0).astype(np.int32)
+    picture = np.array([10, 200, 20], np.uint8)[labels][..., None].repeat(3, 2)
+    found = simplify(PartMap(labels, (4, 7, 5)), 0.09, SimplifyChoice(textures=2), (), picture)
+    assert np.unique(found.labels).tolist() == [0, 1, 2]
+    assert found.segments[0] == found.segments[2] != found.segments[1]
 
 
 def test_a_part_that_is_opened_into_two_is_told_to_be_of_two_pieces():

@@ -74,6 +74,15 @@ def test_right_corners_are_no_places_but_tongues_and_necks_are():
     assert 140 <= place.at[0] < 160
 
 
+@pytest.mark.parametrize("pixels", [1, 2, 3, 5])
+def test_a_slit_however_thin_is_a_place(pixels):
+    labels = np.zeros((300, 500), np.int32)
+    labels[50:250, 50:200] = 1
+    labels[140 : 140 + pixels, 200:290] = 1
+    (place,) = measure(labels, 1e-4, GAP_M).places
+    assert place.size > 80 * pixels
+
+
 def test_a_ring_that_is_thin_in_one_place_has_a_place_there():
     y, x = np.indices((400, 400)) - 200
     ring = (np.hypot(x, y) < 150) & (np.hypot(x - 35, y) > 90)

@@ -111,7 +111,7 @@ LISTED = "scene: builtin/coins  # mine\nexport: [heights, {use: text, language: 
 @pytest.mark.parametrize(
     ("changes", "exporters"),
     [
-        ({"export.heights.wide_m": 0.1}, "[{use: heights, wide_m: 0.1}, {use: text, language: de}]"),
+        ({"export.heights.width_m": 0.1}, "[{use: heights, width_m: 0.1}, {use: text, language: de}]"),
         ({"export.text.language": "fr"}, "[heights, {use: text, language: fr}]"),
         ({"export.1.language": "fr"}, "[heights, {use: text, language: fr}]"),
         ({"export.text.language": REMOVE}, "[heights, {use: text}]"),
@@ -127,8 +127,8 @@ def test_an_exporter_is_changed_by_its_name(changes: dict, exporters: str):
 
 def test_exporters_stay_where_something_else_changes():
     assert edited(LISTED, PATH, {"workspace.width_m": 0.1}).startswith(LISTED)
-    assert edited("scene: builtin/coins\n", PATH, {"export.heights.wide_m": 0.1}).endswith(
-        "export: [{use: heights, wide_m: 0.1}]\n"
+    assert edited("scene: builtin/coins\n", PATH, {"export.heights.width_m": 0.1}).endswith(
+        "export: [{use: heights, width_m: 0.1}]\n"
     )
 
 

@@ -42,10 +42,10 @@ class Report(Exporter):
     """What it was given, as JSON."""
 
     needs: ClassVar[tuple[str, ...]] = ("relief",)
-    wide_m: float | None = None
+    width_m: float | None = None
 
-    def width_m(self, aspect: float) -> float | None:
-        return self.wide_m
+    def picture_width_m(self, aspect: float) -> float | None:
+        return self.width_m
 
     def write(self, work: Work, stem: Path) -> tuple[Path, ...]:
         path = stem.with_suffix(".report")
@@ -124,7 +124,7 @@ class TestWhatAnExporterGets:
         assert (tmp_path / "out/old harbour-v2.report").is_file()
 
     def test_products_are_made_as_wide_as_it_writes_them(self, tmp_path: Path):
-        exporters = [Report(), Report(wide_m=0.16), Report(wide_m=0.16)]
+        exporters = [Report(), Report(width_m=0.16), Report(width_m=0.16)]
         done = pipeline(**SAID).export(tmp_path, exporters)
         widths = [json.loads(each.files[0].read_text())["extent_m"][0] for each in done.exports]
         assert widths == [0.08, 0.16, 0.16]
@@ -137,7 +137,7 @@ class TestWhatAnExporterGets:
         scene = Scene.of(photo=PHOTO)
         said = {**SAID, "workspace": {"width_m": 0.0096, "finest_m": 3e-4}}
         done = Pipeline(scene, texture=Counted(), cached=False, **said).export(
-            tmp_path, [Report(wide_m=0.16), Report(wide_m=0.001), Report()]
+            tmp_path, [Report(width_m=0.16), Report(width_m=0.001), Report()]
         )
         cells = {tuple(json.loads(each.files[0].read_text())["cells"]) for each in done.exports}
         assert cells == {(24, 36)}
@@ -180,10 +180,10 @@ class TestWhatAnExporterGets:
 
     def test_whether_fingers_read_it_is_said_at_the_width_of_the_files(self, tmp_path: Path):
         class Small(Fingers):
-            wide_m: float | None = 0.01
+            width_m: float | None = 0.01
 
         thing = pipeline(**SAID)
-        small, large = thing.export(tmp_path, [Small(), Fingers(wide_m=0.16)]).exports
+        small, large = thing.export(tmp_path, [Small(), Fingers(width_m=0.16)]).exports
         assert not small.legible.readable
         assert small.files
         assert [each.kind for each in small.outcome.notes] == ["warning"]
@@ -277,7 +277,7 @@ class TestFiles:
         assert sorted(path.name for path in tmp_path.iterdir()) == ["still life.b"]
 
     def test_two_of_one_name_do_not_write_over_each_other(self, tmp_path: Path):
-        done = pipeline(**SAID).export(tmp_path, [Report(), Report(wide_m=0.1)])
+        done = pipeline(**SAID).export(tmp_path, [Report(), Report(width_m=0.1)])
         assert {name: files[0].name for name, files in done.files.items()} == {
             "Report": "still life.report",
             "Report-2": "still life-2.report",
@@ -358,9 +358,9 @@ class TestWhatGoesWrong:
             "the pipeline has no depth; give it one: Pipeline(scene, depth=...)",
         )
 
-    @pytest.mark.parametrize("wide_m", [0.0, -1.0, float("nan"), 1e9])
-    def test_a_width_that_is_none(self, tmp_path: Path, wide_m: float):
-        (one,) = pipeline(**SAID).export(tmp_path, [Report(wide_m=wide_m)]).exports
+    @pytest.mark.parametrize("width_m", [0.0, -1.0, float("nan"), 1e9])
+    def test_a_width_that_is_none(self, tmp_path: Path, width_m: float):
+        (one,) = pipeline(**SAID).export(tmp_path, [Report(width_m=width_m)]).exports
         assert one.outcome.outcome == "refused"
         assert "a width is from" in one.outcome.why
 
@@ -430,10 +430,10 @@ class TestEnding:
 class TestDocument:
     def test_the_list_of_a_file(self, tmp_path: Path):
         config = parse_config(
-            "scene: builtin/coins\nsimplify: {gap_m: 4 mm}\nexport: [heights, {use: heights, wide_m: 160 mm}]",
+            "scene: builtin/coins\nsimplify: {gap_m: 4 mm}\nexport: [heights, {use: heights, width_m: 160 mm}]",
             tmp_path / "p.yaml", default_registry(),
         )  # fmt: skip
-        assert [each.method.wide_m for each in config.export] == [None, 0.16]
+        assert [each.method.width_m for each in config.export] == [None, 0.16]
         assert config.simplify.gap_m == 0.004
         again = parse_config(config.as_yaml(), tmp_path / "q.yaml", default_registry())
         assert again.export == config.export
@@ -444,7 +444,7 @@ class TestDocument:
         [
             ("export: stl", r"p.yaml:2:1: export: takes a list of exporters, such as \[\{use: ...\}\], not 'stl'"),
             ("export: [hights]", r"p.yaml:2:10: no export method is named 'hights' \(did you mean 'heights'\?\)"),
-            ("export: [{wide_m: 1}]", r"p.yaml:2:10: export needs the name of a method"),
+            ("export: [{width_m: 1}]", r"p.yaml:2:10: export needs the name of a method"),
             ("export: [7]", r"p.yaml:2:10: export needs the name of a method"),
             ("export: [{use: heights, wid_m: 1}]", r"p.yaml:2:25: export.0.wid_m: unknown option \(did you mean"),
             ("simplify: yes", r"p.yaml:2:1: simplify: Input should be a mapping"),
@@ -464,25 +464,25 @@ class TestDocument:
     @pytest.mark.parametrize(
         ("before", "sets", "after"),
         [
-            ("", ["export.heights.wide_m=0.1"], [0.1]),
-            ("export: [heights]", ["export.heights.wide_m=0.1"], [0.1]),
-            ("export: [{use: heights, wide_m: 1}, heights]", ["export.1.wide_m=0.1"], [1, 0.1]),
-            ("export: [heights]", ["export=[heights, heights]", "export.1.wide_m=0.1"], [None, 0.1]),
+            ("", ["export.heights.width_m=0.1"], [0.1]),
+            ("export: [heights]", ["export.heights.width_m=0.1"], [0.1]),
+            ("export: [{use: heights, width_m: 1}, heights]", ["export.1.width_m=0.1"], [1, 0.1]),
+            ("export: [heights]", ["export=[heights, heights]", "export.1.width_m=0.1"], [None, 0.1]),
             ("export: [heights]", ["export=[]"], []),
         ],
     )
     def test_an_option_is_set_by_the_name_of_its_exporter(self, tmp_path: Path, before: str, sets: list[str], after):
         text = f"scene: builtin/coins\n{before}"
         config = parse_config(text, tmp_path / "p.yaml", default_registry(), sets)
-        assert [each.method.wide_m for each in config.export] == after
+        assert [each.method.width_m for each in config.export] == after
 
     @pytest.mark.parametrize(
         ("override", "says"),
         [
-            ("export.hights.wide_m=1", "--set export.hights.wide_m=1: no export method is named 'hights'"),
+            ("export.hights.width_m=1", "--set export.hights.width_m=1: no export method is named 'hights'"),
             ("export.heights.wid_m=1", "--set export.heights.wid_m=1: export.0.wid_m: unknown option"),
             ("export.heights=1", r"--set export.heights=1: export is a list; set it as a whole: export=\[...\]"),
-            ("export.9.wide_m=1", "no export method is named '9'"),
+            ("export.9.width_m=1", "no export method is named '9'"),
         ],
     )
     def test_what_is_wrong_in_an_override_is_said_with_it(self, tmp_path: Path, override: str, says: str):
@@ -491,13 +491,13 @@ class TestDocument:
 
     def test_a_name_has_the_options_of_the_list(self, tmp_path: Path):
         np.save(tmp_path / "map.npy", np.eye(8))
-        text = "scene: {height: map.npy}\nexport: [{use: heights, wide_m: 0.16}]"
+        text = "scene: {height: map.npy}\nexport: [{use: heights, width_m: 0.16}]"
         config = parse_config(text, tmp_path / "p.yaml", default_registry())
         Pipeline.of(config, default_registry(), None).export(tmp_path, ["heights"])
         assert json.loads((tmp_path / "p-heights.json").read_text())["width_mm"] == 160
 
     def test_a_pipeline_made_in_python_lists_them_too(self, tmp_path: Path):
-        done = pipeline(**SAID, export=[Report(wide_m=0.1)]).export(tmp_path)
+        done = pipeline(**SAID, export=[Report(width_m=0.1)]).export(tmp_path)
         assert "still life.report" in repr(done)
         assert "still life.report</td>" in done._repr_html_()
         assert report_of(tmp_path)["extent_m"][0] == 0.1

@@ -265,7 +265,7 @@ class Note(Exporter):
     needs: ClassVar[tuple[str, ...]] = ("relief", "simplified")
     fault: str = ""
 
-    def width_m(self, aspect: float) -> float | None:
+    def picture_width_m(self, aspect: float) -> float | None:
         return float("nan") if self.fault == "width_is_a_length" else 0.1 * aspect if 0.1 < aspect < 10 else None
 
     def write(self, work: Work, stem: Path) -> tuple[Path, ...]:

@@ -155,7 +155,7 @@ def test_the_same_again_is_the_same_bytes(tmp_path: Path, cls: type[Exporter]):
 @EVERY
 @pytest.mark.parametrize(("aspect", "width_m"), [(2.0, 0.12), (0.5, 0.06)])
 def test_the_longer_side_is_as_long_as_it_is_said(cls: type[Exporter], aspect: float, width_m: float):
-    assert cls.model_validate({"longer_side_m": "12 cm"}).width_m(aspect) == pytest.approx(width_m)
+    assert cls.model_validate({"longer_side_m": "12 cm"}).picture_width_m(aspect) == pytest.approx(width_m)
 
 
 def test_a_pipeline_makes_the_relief_as_wide_as_the_print(tmp_path: Path):

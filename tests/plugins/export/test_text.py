@@ -116,7 +116,7 @@ def test_a_pipeline_exports_its_words(tmp_path: Path):
         scene, depth=Luminance(), workspace=Workspace(width_m=0.08), title="Rampe", language="de",
         parts={0: "oben", 1: "unten"},
     )  # fmt: skip
-    export = pipeline.export(tmp_path, [Text(wide_m=0.24)])
+    export = pipeline.export(tmp_path, [Text(width_m=0.24)])
     [[text, _]] = [each.files for each in export.exports]
     lines = text.read_text().splitlines()
     assert lines[0] == "Rampe"

@@ -7,10 +7,12 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
+from tangible_core import ForceRenderer, Pipeline, Scene
 from tangible_core.data import HapticState, HapticSurface, Relief
 from tangible_core.materials.assignment import library
 from tangible_core.plugins.notes import collected
 from tangible_core.plugins.registry import load_method
+from tangible_devices import Mock
 from tangible_render.borders import lines
 from tangible_render.engraved import Engraved
 from tangible_render.proxy import Proxy
@@ -57,7 +59,7 @@ class TestTheSection:
         """Within 4 um on the average and 17 um at most on cells of 0.2 mm, half of that on cells half as wide."""
         surface, distance_m, inner = straight(cells, degrees)
         near = inner & (np.abs(distance_m) < GROOVE.width_m / 2)
-        error_m = np.abs(HIGH_M - GROOVE.carved(surface).height_m - section(distance_m))
+        error_m = np.abs(HIGH_M - GROOVE.felt(surface).height_m - section(distance_m))
         assert error_m[near].mean() < 4e-6 * 400 / cells
         assert error_m[inner].max() < 17e-6 * 400 / cells
 
@@ -65,25 +67,25 @@ class TestTheSection:
     def test_a_border_that_hardly_slants_is_known_to_half_a_cell_and_no_worse(self, degrees: float):
         """Or hardly off the diagonal: its stairs are longer than what is seen of the line at once."""
         surface, distance_m, inner = straight(400, degrees)
-        error_m = np.abs(HIGH_M - GROOVE.carved(surface).height_m - section(distance_m))[inner]
+        error_m = np.abs(HIGH_M - GROOVE.felt(surface).height_m - section(distance_m))[inner]
         steepest = np.pi * GROOVE.depth_m / GROOVE.width_m
         assert error_m.max() < 0.5 * SIDE_M / 400 * steepest
 
     def test_a_circle_keeps_its_radius(self):
         x, y = grid(400)
         distance_m = np.hypot(x, y) - 0.0203
-        error_m = np.abs(HIGH_M - GROOVE.carved(level(distance_m < 0)).height_m - section(distance_m))
+        error_m = np.abs(HIGH_M - GROOVE.felt(level(distance_m < 0)).height_m - section(distance_m))
         assert error_m.max() < 5e-5 and error_m.mean() < 1e-6
 
     def test_cells_that_are_not_square_and_borders_that_meet(self):
         """A cross: at its middle no deeper than anywhere on it."""
         x, y = grid(400)
         labels = ((x > 0) + 2 * (y > 0)).astype(np.int32)
-        carved = GROOVE.carved(level(labels)).height_m
+        carved = GROOVE.felt(level(labels)).height_m
         away = np.minimum(np.abs(x), np.abs(y))
         assert np.abs(HIGH_M - carved - section(away)).max() < 2e-5
         wide = HapticSurface(Relief(np.full((400, 200), HIGH_M, np.float32), (SIDE_M, SIDE_M)), labels[:, ::2])
-        assert np.abs(GROOVE.carved(wide).height_m - carved[:, ::2])[5:-5, 10:-10].max() < 1e-4
+        assert np.abs(GROOVE.felt(wide).height_m - carved[:, ::2])[5:-5, 10:-10].max() < 1e-4
 
     def test_twice_the_cells_feel_the_same(self):
         def bodies(cells: int) -> HapticSurface:
@@ -110,7 +112,7 @@ class TestTheSection:
     def test_a_grid_that_is_too_coarse_is_said(self):
         surface = straight(100, 30)[0]
         with collected() as notes:
-            GROOVE.carved(surface)
+            GROOVE.felt(surface)
         (said,) = notes
         assert "3 mm is 3.8 cells wide" in said and "from 4.8 mm on" in said
 
@@ -144,7 +146,7 @@ class TestWhatIsFelt:
         surface = straight(200, 30)[0]
         surface = replace(surface, materials=(library()["sand"], library()["rubber"]), names=("a", "b"))
         method = Engraved(law=law)
-        carved = method.carved(surface)
+        carved = method.felt(surface)
         assert carved.labels is not None and surface.labels is not None and carved.names == surface.names
         assert np.array_equal(carved.labels, surface.labels)
         assert carved.materials == surface.materials
@@ -170,17 +172,39 @@ class TestTheBase:
         halves = straight(400, 30)[0]
         surface = HapticSurface(Relief(np.full((400, 400), 0.0002, np.float32), (SIDE_M, SIDE_M)), halves.labels)
         with collected() as notes:
-            carved = GROOVE.carved(surface)
+            carved = GROOVE.felt(surface)
         assert carved.height_m.min() == 0
         assert carved.height_m.max() == pytest.approx(GROOVE.depth_m, abs=2e-6)
         assert notes == ["the surface is lifted by 0.4 mm, so that its grooves end over the base"]
-        deep = GROOVE.carved(straight(400, 30)[0])
+        deep = GROOVE.felt(straight(400, 30)[0])
         assert np.allclose(deep.height_m - deep.height_m.min(), carved.height_m, atol=1e-8)
 
     def test_where_it_is_high_enough_nothing_is_lifted_or_said(self):
         with collected() as notes:
-            carved = GROOVE.carved(straight(400, 30)[0])
+            carved = GROOVE.felt(straight(400, 30)[0])
         assert notes == [] and carved.height_m.max() == np.float32(HIGH_M)
+
+
+def test_preflight_judges_the_grooves():
+    """On level ground: of two parts that are equally high, the one slope is the groove's."""
+    labels = (np.indices((80, 80))[1] > 40).astype(np.int32)
+    scene = Scene.of(photo=np.full((80, 80, 3), 128, np.uint8), segments=labels)
+    level_m = {number: {"height_m": 0.004} for number in (0, 1)}
+
+    def steepest(law: ForceRenderer) -> float:
+        pipeline = Pipeline(
+            scene,
+            render=law,
+            device=Mock(),
+            parts=level_m,
+            heights={"by": "given", "round_m": 0, "bulge_m": 0, "detail_m": 0},
+            workspace={"width_m": 0.04, "relief_m": 0.006, "smooth_m": 0},
+            cached=False,
+        )
+        return max(each.value for each in pipeline.preflight() if each.of == "a wall")
+
+    assert steepest(Proxy()) == 0
+    assert steepest(Engraved(width_m=0.004, depth_m=0.003)) > 0
 
 
 class TestOptions:

@@ -99,9 +99,7 @@ def _fill(fill: Fill) -> str:
 
 
 def _braille(text: Braille) -> str:
-    return (
-        f'<g data-mark="braille" role="img" aria-label={quoteattr(text.text)}>{_discs(text.dots_mm, DOT_MM)}</g>'
-    )
+    return f'<g data-mark="braille" role="img" aria-label={quoteattr(text.text)}>{_discs(text.dots_mm, DOT_MM)}</g>'
 
 
 def _discs(at_mm: Iterable[Float64[np.ndarray, " 2"]], diameter_mm: float) -> str:

@@ -1,4 +1,4 @@
-"""What fills a part, so that a finger tells it from its neighbours: five kinds that differ in element, pitch and direction.
+"""What fills a part, so that a finger tells it from its neighbours: five kinds, of other elements, pitch, direction.
 
 Each element is whole: none is cut by the outline. All elements keep the clear distance from each other.
 """
@@ -72,11 +72,10 @@ def _amid(start: float, end: float, pitch: float) -> Float64[np.ndarray, " n"]:
     return (start + end - count * pitch) / 2 + pitch * np.arange(count + 1)
 
 
-def _in_company(at: Float64[np.ndarray, "n 2"]) -> Float64[np.ndarray, "n 2"]:
+def _in_company(at: Float64[np.ndarray, "n 2"]) -> Float64[np.ndarray, "k 2"]:
     """Without those that have no other beside them: a single dot is a letter to a finger."""
-    one, other = shapely.STRtree(points := shapely.points(at)).query(
-        points, predicate="dwithin", distance=1.1 * DOTS_APART_MM
-    )
+    points: Any = shapely.points(at)
+    one, other = shapely.STRtree(points).query(points, predicate="dwithin", distance=1.1 * DOTS_APART_MM)
     return at[np.unique(one[one != other])]
 
 
@@ -100,7 +99,8 @@ def _ruled(bounds: tuple[float, ...], kind: Lines) -> Any:
     cosine, sine = np.cos(np.radians(kind.angle_deg)), np.sin(np.radians(kind.angle_deg))
     turned = np.array([[cosine, -sine], [sine, cosine]])
     middle = np.array([(left + right) / 2, (top + bottom) / 2])
-    return shapely.multilinestrings([shapely.linestrings(each @ turned.T + middle) for each in ruled])
+    lines: Any = [shapely.linestrings(each @ turned.T + middle) for each in ruled]
+    return shapely.multilinestrings(lines)
 
 
 def _apart(strokes: Any, kind: Lines) -> list[Any]:

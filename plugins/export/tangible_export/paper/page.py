@@ -24,11 +24,11 @@ from .drawing import NO_DOTS, Area, Braille, Drawing, svg
 from .fills import BLANK, KINDS, filled
 from .key import Entry, key_pages
 from .letters import around, placed
-from .measuring import Near, too_near
+from .measuring import Near, narrow_places, too_near
 from .parting import opened_at
 from .reading import read
 from .sheet import CLEAR_MM, GAP_MM, Page, Sheet
-from .things import Thing, key_letters, things_of
+from .things import LETTERS, MOST_THINGS, Thing, key_letters, things_of
 from .titles import title_at, title_lines
 from .words import words
 
@@ -36,7 +36,7 @@ log = logging.getLogger(__name__)
 
 SMOOTH_MM = 0.8
 """Tolerance of borders, by which the stairs of pixels become lines."""
-ROUNDS = 4
+ROUNDS = 6
 """Of measuring and putting right."""
 APART_MM = 0.15
 """By which a letter is moved farther than it was too near."""
@@ -61,13 +61,20 @@ def drawn_pages(work: Work, parts: PartMap, sheet: Sheet, page: Page) -> list[st
     things = things_of(work, parts)
     if sum(len(thing.numbers) for thing in things) < 2:
         raise PictureError(
-            "swell: the picture is one part, and a page of it would be a frame and nothing in it; "
+            "the picture is one part, and a page of it would be a frame and nothing in it; "
             "choose another texture method, say `parts:` by hand, or make smaller parts fit with `simplify:`"
+        )
+    if len(things) > MOST_THINGS:
+        raise PictureError(
+            f"{len(things)} parts are more than anybody keeps apart on a page, which takes {MOST_THINGS}; have "
+            "fewer, by a texture method with fewer segments or by one name for several in `parts:`"
         )
     lines, whole = title_lines(work.title, work.language, sheet)
     sheet = sheet.below(1000 * height_m(len(lines)))
     if not whole:
-        note(log, f"the title has more lines of braille than room above the picture: {len(lines)} of it, all in the key")
+        note(
+            log, f"the title has more lines of braille than room above the picture: {len(lines)} of it, all in the key"
+        )
     blank = Drawing(
         sheet=sheet,
         title=shown_text(work.title),
@@ -92,13 +99,15 @@ def _smoothed(blank: Drawing, parts: PartMap, things: Sequence[Thing]) -> tuple[
     wide_mm = sheet.picture_mm[0]
     for turn in range(ROUNDS):
         shapes = _on_page(parts, sheet)
-        shown = _shown(things, shapes, _beside(parts, things), blank.language)
-        described = "; ".join(f"{each.letter} {each.thing.name}" for each in shown)
-        drawing, near = _measured(replace(blank, description=described), shown, shapes)
-        if not near:
-            return shown, drawing
+        outlines = [Area(thing.name, shapes[number]) for thing in things for number in thing.numbers]
+        if not (near := narrow_places(read(svg(replace(blank, areas=tuple(outlines), texts=()))))):
+            shown = _shown(things, shapes, _beside(parts, things), blank.language)
+            described = "; ".join(f"{each.letter} {each.thing.name}" for each in shown)
+            drawing, near = _measured(replace(blank, description=described), shown, shapes)
+            if not near:
+                return shown, drawing
         parts = opened_at(parts, _on_picture([each.place_mm for each in near], sheet), wide_mm / 1000, turn + 1)
-    raise PictureError(f"swell: {near[0]}, and {GAP_MM} mm must be between them; make the picture larger or simpler")
+    raise PictureError(f"{near[0]}, and {GAP_MM} mm must be between them; make the picture larger or simpler")
 
 
 def _on_picture(places_mm: Sequence[tuple[float, float]], sheet: Sheet) -> Float64[np.ndarray, "n 2"]:
@@ -135,25 +144,26 @@ def _beside(parts: PartMap, things: Sequence[Thing]) -> list[set[int]]:
     return found
 
 
-def _shown(
-    things: Sequence[Thing], shapes: Sequence[Any], beside: list[set[int]], language: str
-) -> list[Shown]:
+def _shown(things: Sequence[Thing], shapes: Sequence[Any], beside: list[set[int]], language: str) -> list[Shown]:
     letters = key_letters([thing.name for thing in things])
-    if letters is None:
-        raise PictureError(
-            f"swell: {len(things)} parts are more than there are letters for, and than anybody can keep apart; "
-            "join them, by `parts:` of one name or by a texture method with fewer segments"
-        )
-    plain = [Shown(thing, letter, translate(letter, language), BLANK) for thing, letter in zip(things, letters, strict=True)]
-    allowed = [[kind for kind in KINDS if kind == BLANK or _has_room(replace(each, kind=kind), shapes)] for each in plain]
+    plain = [
+        Shown(thing, letter, translate(letter, language), BLANK) for thing, letter in zip(things, letters, strict=True)
+    ]
+    allowed = [
+        [kind for kind in KINDS if kind == BLANK or _has_room(replace(each, kind=kind), shapes)] for each in plain
+    ]
     sizes = [sum(shapes[number].area for number in thing.numbers) for thing in things]
     kinds, alike = coloured(beside, allowed, sizes)
     shown = [replace(each, kind=kind) for each, kind in zip(plain, kinds, strict=True)]
     if alike:
         pairs = [f"{things[one].name} and {things[other].name}" for one, other in alike]
         note(log, f"neighbours with one fill, for want of another: {some(pairs)}", logging.WARNING)
-    if len(things) > 26:
-        note(log, f"{len(things)} parts have letters, two each: many for one page; fewer are read sooner", logging.WARNING)
+    if len(things) > len(LETTERS):
+        note(
+            log,
+            f"{len(things)} parts have letters, two each: many for one page; fewer are read sooner",
+            logging.WARNING,
+        )
     return shown
 
 
@@ -177,6 +187,7 @@ def _measured(blank: Drawing, shown: Sequence[Shown], shapes: Sequence[Any]) -> 
     """
     pieces = [(each, shapes[number]) for each in shown for number in each.thing.numbers]
     away, clear_mm = NO_DOTS, [CLEAR_MM] * len(pieces)
+    drawing, near = blank, list[Near]()
     for turn in range(ROUNDS):
         areas = [_area(each, shape, clear) for (each, shape), clear in zip(pieces, clear_mm, strict=True)]
         areas = [replace(area, fill=area.fill.without(away)) if len(away) else area for area in areas]
@@ -207,7 +218,7 @@ def _checked(key: Drawing) -> str:
     """Raises: PictureError if something in it is too near to something."""
     text = svg(key)
     if near := too_near(read(text)):
-        raise PictureError(f"swell: in the key, {near[0]}, and {GAP_MM} mm must be between them")
+        raise PictureError(f"in the key, {near[0]}, and {GAP_MM} mm must be between them")
     return text
 
 

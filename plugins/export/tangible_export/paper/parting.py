@@ -4,7 +4,7 @@ import logging
 
 import cv2
 import numpy as np
-from jaxtyping import Bool, Float64, Int32
+from jaxtyping import Bool, Float64, Int32, Integer
 from scipy.ndimage import distance_transform_edt, find_objects
 
 from tangible_core.data import PartMap, SegmentMap, Work
@@ -29,6 +29,8 @@ ROUNDS = 16
 FURTHER = 0.1
 """Of the gap: so far around a narrow place all is given anew, and in each round from the third on as much farther, for
 two parts may take a place from each other in turns."""
+WIDER = 0.25
+"""The same, where a drawn page was found too narrow at a place."""
 VOTING = 0.25
 """Standard deviation of the Gaussian in which the cells around have a say, of the gap."""
 
@@ -41,11 +43,15 @@ def parted(work: Work, parts: PartMap, width_m: float) -> PartMap:
     pitch_m = step * width_m / columns
     before = np.ascontiguousarray(fine[::COARSE, ::COARSE])
     after = _opened(before, COARSE * pitch_m)
-    changed, given = (each.repeat(COARSE, 0).repeat(COARSE, 1) for each in (before != after, after))
-    found = np.where(*(each[: fine.shape[0], : fine.shape[1]] for each in (changed, given)), fine)
+    changed, given = (_enlarged(each, fine.shape) for each in (before != after, after))
+    found = np.where(changed, given, fine)
     found = _without_crumbs(found, pitch_m)
     _say_gone(work, fine, found, parts.count)
     return PartMap(found, parts.segments)
+
+
+def _enlarged(cells: Integer[np.ndarray, "r c"] | Bool[np.ndarray, "r c"], shape: tuple[int, ...]) -> np.ndarray:
+    return cells.repeat(COARSE, 0).repeat(COARSE, 1)[: shape[0], : shape[1]]
 
 
 def opened_at(parts: PartMap, places: Float64[np.ndarray, "n 2"], width_m: float, further: int) -> PartMap:
@@ -53,12 +59,12 @@ def opened_at(parts: PartMap, places: Float64[np.ndarray, "n 2"], width_m: float
 
     places: as shares of the width, from the upper left corner. further: from 1 on, by how much more than that.
     """
-    pitch_m = width_m / parts.labels.shape[1]
-    narrow = np.zeros(parts.labels.shape, np.bool_)
-    column, row = (places * parts.labels.shape[1]).astype(np.int64).T
-    narrow[row.clip(0, narrow.shape[0] - 1), column.clip(0, narrow.shape[1] - 1)] = True
-    around = (0.5 + FURTHER * further) * GAP_M / pitch_m
-    found = _given_away(parts.labels, narrow, around, VOTING * GAP_M / pitch_m)
+    rows, columns = parts.labels.shape
+    pitch_m, narrow = width_m / columns, np.zeros((rows, columns), np.bool_)
+    at = (places * columns).astype(np.int64)
+    narrow[at[:, 1].clip(0, rows - 1), at[:, 0].clip(0, columns - 1)] = True
+    around = (0.5 + WIDER * further) * GAP_M / pitch_m
+    found = _given_away(parts.labels, narrow, around, around / 2)  # so that all around has a say in the middle
     return PartMap(_without_crumbs(found, pitch_m), parts.segments)
 
 
@@ -84,16 +90,14 @@ def _given_away(
     return given
 
 
-def _voted(
-    labels: Int32[np.ndarray, "h w"], away: Bool[np.ndarray, "h w"], sigma: float
-) -> Int32[np.ndarray, "h w"]:
+def _voted(labels: Int32[np.ndarray, "h w"], away: Bool[np.ndarray, "h w"], sigma: float) -> Int32[np.ndarray, "h w"]:
     numbers = np.unique(labels[~away])
     if not numbers.size:
         return labels
     says = [cv2.GaussianBlur(((labels == each) & ~away).astype(np.float32), (0, 0), sigma) for each in numbers]
     most = np.stack(says)
-    row, column = distance_transform_edt(away, return_distances=False, return_indices=True)
-    voted = np.where(most.max(axis=0) > 1e-4, numbers[most.argmax(axis=0)], labels[row, column])
+    nearest = np.asarray(distance_transform_edt(away, return_distances=False, return_indices=True))
+    voted = np.where(most.max(axis=0) > 1e-4, numbers[most.argmax(axis=0)], labels[nearest[0], nearest[1]])
     return np.where(away, voted, labels).astype(np.int32)
 
 

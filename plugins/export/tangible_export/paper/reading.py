@@ -32,7 +32,7 @@ class Mark:
     @property
     def place_mm(self) -> tuple[float, float]:
         """A place that is black: the middle of a disc, or the middle corner of a line."""
-        at = self.shape.vertices
+        at = np.asarray(self.shape.vertices, np.float64)
         at = at.mean(axis=0) if self.stroke_mm == 0 else at[len(at) // 2]
         return float(at[0]), float(at[1])
 

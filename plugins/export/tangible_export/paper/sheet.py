@@ -1,4 +1,4 @@
-"""Where on a sheet of paper the picture, the title and the corner mark lie, in millimetres from its upper left corner."""
+"""Where on a sheet of paper the picture, the title and the corner mark lie: millimetres from its upper left corner."""
 
 from dataclasses import dataclass, replace
 from typing import Literal
@@ -15,8 +15,8 @@ LINE_MM = 1.0
 """Width of outlines. A convention of ours, within the 0.5 to 1.5 mm that tactile graphics use."""
 GAP_MM = 3.2
 """Between marks, so that a finger parts them. Source: tactilegraphics.org."""
-CLEAR_MM = GAP_MM + 0.15
-"""What the drawing keeps between marks: more than GAP_MM by a pixel and a half of those in which it is measured."""
+CLEAR_MM = GAP_MM + 0.2
+"""What the drawing keeps between marks: more than GAP_MM by two pixels of those in which it is measured."""
 CORNER_MM = 8.0
 """Legs of the triangle that says which corner is the upper right one."""
 LOWERED_MM = 10.0
@@ -52,13 +52,13 @@ class Sheet:
         return replace(self, top_mm=self.top_mm + down, spare_mm=self.spare_mm - down)
 
 
-def sheet_for(page: Page, aspect: float, wide_m: float | None) -> Sheet:
+def sheet_for(page: Page, aspect: float, width_m: float | None) -> Sheet:
     """The sheet, upright or on its side, on which the picture is largest; or where it is so wide.
 
     aspect: width through length of the picture.
     """
     size, wide = _largest(page, aspect)
-    wide = wide if wide_m is None else 1000 * wide_m
+    wide = wide if width_m is None else 1000 * width_m
     return _placed(size, (wide, wide / aspect))
 
 
@@ -68,12 +68,12 @@ def check_readable(page: Page, sheet: Sheet) -> None:
     _, most = _largest(page, width / length)
     if width > most + 1e-6:
         raise GeometryError(
-            f"swell: wide_m: a picture {width:.4g} mm wide has no room on {page}, which takes {most:.4g} mm; make it "
+            f"width_m: a picture {width:.4g} mm wide has no room on {page}, which takes {most:.4g} mm; make it "
             "smaller or the page larger"
         )
     if min(width, length) < LEAST_MM:
         raise GeometryError(
-            f"swell: the picture would be {width:.3g} mm wide and {length:.3g} mm long on {page}, and a finger needs "
+            f"the picture would be {width:.3g} mm wide and {length:.3g} mm long on {page}, and a finger needs "
             f"{LEAST_MM} mm; take a part of the picture that is less long and narrow, or make it larger"
         )
 
@@ -81,7 +81,8 @@ def check_readable(page: Page, sheet: Sheet) -> None:
 def _largest(page: Page, aspect: float) -> tuple[tuple[float, float], float]:
     """The size of the sheet as it lies, and the width of the largest picture on it."""
     upright = SIZES_MM[page]
-    rooms = {size: min(_room(size)[0], _room(size)[1] * aspect) for size in (upright, upright[::-1])}
+    level = upright[1], upright[0]
+    rooms = {size: min(_room(size)[0], _room(size)[1] * aspect) for size in (upright, level)}
     size = max(rooms, key=lambda each: rooms[each])
     return size, rooms[size]
 
@@ -89,8 +90,8 @@ def _largest(page: Page, aspect: float) -> tuple[tuple[float, float], float]:
 def empty_sheet(page: Page, like: Sheet) -> Sheet:
     """A sheet that lies as the other one does, for a key: its picture is all that lies below the title."""
     upright = SIZES_MM[page]
-    size = upright if like.width_mm < like.length_mm else upright[::-1]
-    return Sheet(*size, MARGIN_MM, _top_mm(), _room(size))
+    size = upright if like.width_mm < like.length_mm else (upright[1], upright[0])
+    return Sheet(size[0], size[1], MARGIN_MM, _top_mm(), _room(size))
 
 
 def _top_mm() -> float:
@@ -106,4 +107,4 @@ def _room(size: tuple[float, float]) -> tuple[float, float]:
 def _placed(size: tuple[float, float], picture: tuple[float, float]) -> Sheet:
     """In the middle of what is left below the title."""
     left = (size[0] - picture[0]) / 2
-    return Sheet(*size, left, _top_mm(), picture, spare_mm=_room(size)[1] - picture[1])
+    return Sheet(size[0], size[1], left, _top_mm(), picture, spare_mm=_room(size)[1] - picture[1])

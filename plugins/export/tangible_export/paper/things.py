@@ -15,6 +15,10 @@ LETTERS = ascii_lowercase[1:] + ascii_lowercase[0]
 """In the order in which they are given. The last is a single dot, which a finger takes for a stray one."""
 
 
+MOST_THINGS = 100
+"""On a page. Their key has nine pages; nobody keeps more apart. A convention of ours."""
+
+
 @dataclass(frozen=True)
 class Thing:
     """One or several parts that have one name."""
@@ -34,15 +38,13 @@ def things_of(work: Work, parts: PartMap) -> list[Thing]:
     return sorted(things, key=lambda thing: -int(sizes[list(thing.numbers)].sum()))
 
 
-def key_letters(names: Sequence[str]) -> list[str] | None:
+def key_letters(names: Sequence[str]) -> list[str]:
     """A text for each name, of which no two are alike: its first letter, else another of its own, else any.
 
-    One letter each where there are letters enough, else two. None where there are more names than pairs of letters.
+    One letter each where there are letters enough, else two: for no more than MOST_THINGS.
     """
     if len(names) <= len(LETTERS):
         return _chosen([_letters_in(name) for name in names], list(LETTERS))
-    if len(names) > len(LETTERS) ** 2:
-        return None
     pairs = [first + second for first in LETTERS for second in LETTERS]
     return _chosen([_pairs_in(name) for name in names], pairs)
 

@@ -20,7 +20,7 @@ class Display(Quantities):
     rows: Annotated[int, Field(ge=3, le=1000)]
     """Pins from top to bottom."""
     levels: Annotated[int, Field(ge=1, le=255)] = 1
-    """Heights above that of a pin that is down: 1 for pins that are up or down, 4 for those that have heights 0 to 4."""
+    """Heights above that of a pin that is down: 1 for pins that are up or down, 4 for heights of 0 to 4."""
 
     def fitted(self, aspect: float) -> tuple[int, int]:
         """Columns and rows of a picture of this width through length, as large as there is room for."""

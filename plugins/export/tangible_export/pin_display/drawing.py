@@ -25,7 +25,8 @@ def svg(pins: Pins, levels: int, parts: Int32[np.ndarray, "r c"], labels: Mappin
               enumerate(labels.items(), 1)]  # fmt: skip
     return "\n".join(
         [
-            f'<svg xmlns="http://www.w3.org/2000/svg" width="{columns}" height="{rows}" viewBox="0 0 {columns} {rows}">',
+            f'<svg xmlns="http://www.w3.org/2000/svg" width="{columns}" height="{rows}" '
+            f'viewBox="0 0 {columns} {rows}">',
             f"<title>{escape(title)}</title>",
             *layers,
             "</svg>\n",

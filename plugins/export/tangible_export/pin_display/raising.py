@@ -1,4 +1,4 @@
-"""Which pins rise: the borders of parts at the pins' own grid, so that none is lost; and heights, where pins have them."""
+"""Which pins rise: borders of parts, found at the pins' own grid, so that none is lost; and heights between them."""
 
 import numpy as np
 from jaxtyping import Bool, Float32, Int32, UInt8
@@ -10,7 +10,6 @@ from .displays import Display
 LEAST_CELLS = 4
 """Pixels a pin and side of the map that is counted: a smaller one is enlarged."""
 
-Pins = UInt8[np.ndarray, "r c"]
 Place = tuple[slice, slice]
 """Rows and columns of the display on which the picture lies, in its middle."""
 
@@ -64,14 +63,16 @@ def heights(relief: Relief, rows: int, columns: int, top: int) -> UInt8[np.ndarr
     return np.rint(mean * (top / highest) if highest > 0 else mean * 0).astype(np.uint8)
 
 
-def raised(display: Display, border: Bool[np.ndarray, "r c"], area: Pins | None, place: Place) -> Pins:
+def raised(
+    display: Display, border: Bool[np.ndarray, "r c"], area: UInt8[np.ndarray, "r c"] | None, place: Place
+) -> UInt8[np.ndarray, "rows columns"]:
     """The heights of all pins: borders at the top, areas below them."""
     pins = np.zeros((display.rows, display.columns), np.uint8)
     pins[place] = np.where(border, display.levels, 0 if area is None else area)
     return pins
 
 
-def whole(display: Display, parts: Int32[np.ndarray, "h w"], place: Place) -> Int32[np.ndarray, "r c"]:
+def whole(display: Display, parts: Int32[np.ndarray, "h w"], place: Place) -> Int32[np.ndarray, "rows columns"]:
     """The part of each pin of the display; -1 beside the picture."""
     found = np.full((display.rows, display.columns), -1, np.int32)
     found[place] = parts

@@ -54,7 +54,9 @@ class Felt(NamedTuple):
         parts = (pickle.loads(made[name]) for name in ("device", "mapping", "safety"))
         device, mapping, safety = parts
         own_hand = getattr(unmapped(device), "channel", None) == channel
-        return cls(touch, made["law"], made["device_name"], device, own_hand, mapping, safety, made["materials"])
+        return cls(
+            touch, made["law"], made["device_name"], device, own_hand, mapping, safety, made.get("materials", "")
+        )
 
     @property
     def held(self) -> HapticDevice:

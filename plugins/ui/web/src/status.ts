@@ -16,6 +16,7 @@ export class Status {
     this.give("again", t("feelAgain"), () => void this.page.net.feel().catch((error: Error) => this.show("error", error.message)));
     this.stopButton();
     this.line.textContent = t("starting");
+    new ResizeObserver(() => this.reach()).observe(this.line);
     hub.on("gone", () => this.show("error", t("gone"), "gone"));
     hub.on("refused", ({ why }) => this.show("error", t(why === "key" ? "wrongKey" : "loadAgain"), "gone"));
     hub.on("hello", () => page.forget("gone"));
@@ -65,5 +66,13 @@ export class Status {
     this.line.textContent = text;
     this.line.lang = what === "error" && topic !== "gone" ? "en" : language; // the program's own words are English
     this.page.say(text, { topic, urgent: what === "error" || what === "stopped" });
+    this.reach();
+  }
+
+  /** A text that is longer than its place is scrolled, by the keyboard as well. */
+  private reach(): void {
+    const { line } = this;
+    if (line.scrollHeight > line.clientHeight) line.tabIndex = 0;
+    else line.removeAttribute("tabindex");
   }
 }

@@ -5,11 +5,11 @@ import { round } from "../src/overlay/settings";
 import { fixed } from "../src/overlay/values";
 import { FLAGS } from "../src/protocol";
 
-test("each flag that changes a force is a limit; touching and a swap are none", () => {
+test("each flag that changes a force is a limit; touching, a swap and a beacon are none", () => {
   const bits = LIMITS.map(({ bit }) => bit as number);
-  const { TOUCHING, SWAPPED, ...limits } = FLAGS;
+  const { TOUCHING, SWAPPED, BEACON, ...limits } = FLAGS;
   assert.deepEqual([...bits].sort((a, b) => a - b), Object.values(limits).sort((a, b) => a - b));
-  assert.ok(!limited(TOUCHING | SWAPPED));
+  assert.ok(!limited(TOUCHING | SWAPPED | BEACON));
   assert.ok(bits.every((bit) => limited(bit | TOUCHING)));
 });
 

@@ -1,0 +1,218 @@
+"""Pins, held against borders that were found by other code, and read by programs of others."""
+
+import base64
+import json
+import re
+from pathlib import Path
+from xml.etree import ElementTree
+
+import cv2
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from exported_pictures import PICTURES, alpha, labels_work, work_of
+from tangible_core.data import Relief
+from tangible_core.errors import PictureError, TangibleError
+from tangible_core.plugins.notes import collected
+from tangible_export.pins import Pins
+
+SIZES = {"monarch": (96, 40, 1), "graphiti": (60, 40, 4), "dotpad": (60, 40, 1)}
+
+
+def heights_in(files) -> np.ndarray:
+    [path] = [each for each in files if each.suffix == ".json" and "graphic" not in each.name]
+    return np.array(json.loads(path.read_text())["heights"])
+
+
+def wanted(labels: np.ndarray, columns: int, rows: int) -> np.ndarray:
+    """Pins on which a border of the map itself lies: each side between two pixels, one after the other."""
+    height, width = labels.shape
+    scale = min(columns / width, rows / height)
+    wide, long = max(1, round(width * scale)), max(1, round(height * scale))
+    left, top = (columns - wide) // 2, (rows - long) // 2
+    found = np.zeros((rows, columns), bool)
+    row, column = np.nonzero(labels[:, 1:] != labels[:, :-1])
+    found[top + (2 * row + 1) * long // (2 * height), left + np.minimum(wide - 1, (column + 1) * wide // width)] = True
+    row, column = np.nonzero(labels[1:] != labels[:-1])
+    found[top + np.minimum(long - 1, (row + 1) * long // height), left + (2 * column + 1) * wide // (2 * width)] = True
+    return found
+
+
+def near(pins: np.ndarray) -> np.ndarray:
+    return cv2.dilate(pins.astype(np.uint8), np.ones((3, 3), np.uint8)) > 0
+
+
+def shares(up: np.ndarray, want: np.ndarray) -> tuple[float, float]:
+    """Of borders that have a pin within one pin, and of pins that have no border within one."""
+    return float((want & near(up)).sum() / want.sum()), float((up & ~near(want)).sum() / up.sum())
+
+
+@pytest.mark.parametrize("display", SIZES)
+@pytest.mark.parametrize("name", PICTURES)
+def test_no_border_is_lost_and_none_is_made_up(tmp_path, name, display):
+    pins = Pins(display=display)
+    work = work_of(name, pins)
+    heights = heights_in(pins.write(work, tmp_path / name))
+    columns, rows, levels = SIZES[display]
+    assert heights.shape == (rows, columns)
+    kept, false = shares(heights == levels, wanted(work.simplified.labels, columns, rows))
+    assert kept >= 0.99
+    assert false == 0
+    assert 0.03 < (heights == levels).mean() < 0.25
+
+
+@settings(max_examples=25)
+@given(st.data())
+def test_no_border_of_a_map_of_fields_is_lost(tmp_path_factory, data):
+    """Fields at least three pins wide, on displays of any size."""
+    columns, rows = data.draw(st.integers(12, 90)), data.draw(st.integers(12, 60))
+    fields = np.random.default_rng(data.draw(st.integers(0, 99))).integers(0, 9, (rows // 4, columns // 4))
+    grain = data.draw(st.integers(3, 9))
+    labels = fields.repeat(4 * grain, 0).repeat(4 * grain, 1)
+    if len(np.unique(labels)) == 1:
+        return
+    folder = tmp_path_factory.mktemp("pins")
+    heights = heights_in(Pins(display={"columns": columns, "rows": rows}).write(labels_work(labels), folder / "fields"))
+    kept, false = shares(heights > 0, wanted(labels, columns, rows))
+    assert (kept, false) == (1, 0)
+
+
+def test_the_picture_lies_in_the_middle_the_right_way_up(tmp_path):
+    labels = np.zeros((60, 60), np.int32)
+    labels[:30, :30] = 1  # the upper left quarter
+    heights = heights_in(Pins().write(labels_work(labels), tmp_path / "quarter"))
+    expected = np.zeros((40, 96), int)
+    expected[:20, 28 + 19] = expected[19, 28 : 28 + 20] = 1
+    assert np.array_equal(heights, expected)
+
+
+def test_heights_lie_below_the_borders(tmp_path):
+    labels = np.zeros((40, 60), np.int32)
+    labels[:, 30:] = 1
+    pins = Pins(display="graphiti")
+    work = labels_work(labels)
+    work.products["relief"] = Relief(np.float32([0, 0.006])[labels], (0.15, 0.1))
+    assert pins.needs == ("simplified", "relief")
+    assert Pins().needs == ("simplified",)
+    heights = heights_in(pins.write(work, tmp_path / "step"))
+    assert set(heights[:, :29].ravel()) == {0}
+    assert set(heights[:, 29]) == {4}
+    assert set(heights[:, 30:].ravel()) == {3}
+
+
+def test_the_picture_has_a_pixel_a_pin(tmp_path):
+    pins = Pins(display="graphiti")
+    files = pins.write(work_of("coffee", pins), tmp_path / "coffee")
+    picture = cv2.imread(str(files[0]), cv2.IMREAD_UNCHANGED)
+    assert np.array_equal(np.rint((255 - picture) / 255 * 4), heights_in(files))
+
+
+def test_braille_patterns_are_the_pins(tmp_path):
+    pins = Pins(display={"columns": 31, "rows": 22})  # neither is a multiple of a cell
+    files = pins.write(work_of("coffee", pins), tmp_path / "coffee")
+    [text] = [each.read_text() for each in files if each.suffix == ".txt"]
+    up, lines = heights_in(files) > 0, text.splitlines()
+    assert (len(lines), {len(line) for line in lines}) == (6, {16})
+    dots = {(0, 0): 1, (1, 0): 2, (2, 0): 3, (0, 1): 4, (1, 1): 5, (2, 1): 6, (3, 0): 7, (3, 1): 8}
+    for row in range(22):
+        for column in range(31):
+            bit = dots[row % 4, column % 2] - 1
+            assert bool(ord(lines[row // 4][column // 2]) - 0x2800 >> bit & 1) == up[row, column]
+
+
+def test_hexadecimal_digits_are_as_dot_pad_takes_them(tmp_path):
+    """Written again from the description of the community's toolkit: a digit a half cell, neighbours swapped."""
+    pins = Pins(display="dotpad")
+    files = pins.write(work_of("motorcycle", pins), tmp_path / "motorcycle")
+    up = heights_in(files) > 0
+    nibbles = np.zeros(60 * 10, int)
+    for row, column in np.argwhere(up):
+        nibbles[(column ^ 1) + row // 4 * 60] |= 1 << row % 4
+    [digits] = [each.read_text() for each in files if each.suffix == ".hex"]
+    assert digits == "".join(f"{each:X}" for each in nibbles)
+    assert not [each for each in Pins().write(work_of("coffee", Pins()), tmp_path / "b") if each.suffix == ".hex"]
+
+
+@pytest.mark.parametrize("display", [*SIZES, {"columns": 33, "rows": 21, "levels": 2}])
+def test_alpha_is_the_pins_and_nothing_else(tmp_path, display):
+    pins = Pins(display=display)
+    files = pins.write(work_of("astronaut", pins), tmp_path / "astronaut")
+    heights = heights_in(files)
+    [svg] = [each for each in files if each.suffix == ".svg"]
+    assert np.array_equal(alpha(svg, *heights.shape[::-1]) > 0, heights > 0)
+
+
+def test_layers_are_parts_with_their_names(tmp_path):
+    """By the rules of the IMAGE services: layers and their labels, one title, and nothing outside of a layer."""
+    labels = np.zeros((40, 60), np.int32)
+    labels[:, 30:] = 1
+    files = Pins().write(labels_work(labels, ("sea & <sky>", "")), tmp_path / "map")
+    [svg] = [each for each in files if each.suffix == ".svg"]
+    root = ElementTree.parse(svg).getroot()
+    assert root.get("viewBox") == "0 0 96 40"
+    assert [each.tag.rpartition("}")[2] for each in root] == ["title", "g", "g"]
+    assert [each.get("data-image-layer") for each in root[1:]] == ["layer-1", "layer-2"]
+    assert [each.get("aria-label") for each in root[1:]] == ["sea & <sky>", "part 1"]
+    assert all(len(each) for each in root[1:])  # both sides of a border have it
+    [said] = [json.loads(each.read_text()) for each in files if each.name.endswith("-graphic.json")]
+    assert list(said) == ["graphic"]
+    head, data = said["graphic"].split(",")
+    assert head == "data:image/svg+xml;base64"
+    assert base64.b64decode(data) == svg.read_bytes()
+
+
+def test_a_part_without_a_pin_is_named(tmp_path):
+    labels = np.zeros((400, 600), np.int32)
+    labels[:, 300:], labels[10:12, 10:12] = 1, 2
+    with collected() as notes:
+        Pins().write(labels_work(labels, ("left", "right", "speck")), tmp_path / "map")
+    assert any(note.endswith("speck") for note in notes)
+
+
+FLAT = np.zeros((40, 60), np.int32)
+STRIP = np.zeros((3, 600), np.int32)
+STRIP[:, 300:] = 1
+HUNDREDS = np.arange(900, dtype=np.int32).reshape(30, 30).repeat(10, 0).repeat(10, 1)
+
+
+@pytest.mark.parametrize(
+    ("labels", "said"),
+    [
+        (FLAT, "one part"),
+        (FLAT[:1, :1], "one part"),
+        (STRIP, "96 pins wide and 1 long"),
+        (STRIP.T.copy(), "1 pins? wide and 40 long"),
+        (HUNDREDS, None),
+    ],
+)
+def test_what_has_no_border_is_refused_in_one_line(tmp_path: Path, labels, said):
+    if said is None:
+        assert Pins().write(labels_work(labels), tmp_path / "map")
+        return
+    with pytest.raises(TangibleError) as refusal:
+        Pins().write(labels_work(labels), tmp_path / "map")
+    assert re.search(said, str(refusal.value))
+    assert "\n" not in str(refusal.value)
+    assert not list(tmp_path.iterdir())
+
+
+def test_no_parts_at_all_is_said(tmp_path):
+    work = labels_work(FLAT)
+    work.products["simplified"] = None
+    with pytest.raises(PictureError, match="no parts"):
+        Pins().write(work, tmp_path / "map")
+
+
+@pytest.mark.parametrize(
+    "display", ["braillex", {"columns": 2, "rows": 40}, {"columns": 60, "rows": 40, "levels": 0}, 7]
+)
+def test_a_display_that_is_none_is_refused(display):
+    with pytest.raises(ValueError):
+        Pins(display=display)
+
+
+def test_the_same_work_gives_the_same_bytes(tmp_path):
+    first, second = (Pins().write(work_of("coffee", Pins()), tmp_path / each) for each in ("a", "b"))
+    assert [each.read_bytes() for each in first] == [each.read_bytes() for each in second]

@@ -1,0 +1,313 @@
+"""Pages for swell paper, read and measured again by programs that did not draw them."""
+
+import re
+import sys
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from scipy import ndimage
+
+from exported_pictures import PICTURES, labels_work, pdf_pixels, pixels, work_of
+from tangible_core.braille import DOT_PITCH_M
+from tangible_core.errors import BrailleError, BrokenMethod, GeometryError, PictureError, TangibleError
+from tangible_core.plugins.notes import collected
+from tangible_export.paper import fills, page
+from tangible_export.swell import Swell
+
+PER_MM = 10
+GAP_MM = 3.2
+SIZES_MM = {"a4": (210, 297), "letter": (215.9, 279.4), "a3": (297, 420)}
+
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture(scope="module", params=PICTURES)
+def written(request, tmp_path_factory) -> tuple[str, tuple[Path, ...], list[str]]:
+    swell, folder = Swell(), tmp_path_factory.mktemp("swell")
+    with collected() as notes:
+        files = swell.write(work_of(request.param, swell), folder / request.param)
+    return request.param, files, notes
+
+
+def svgs(files) -> list[Path]:
+    return [each for each in files if each.suffix == ".svg"]
+
+
+def halves(labels=(0, 1), shape=(300, 400)) -> np.ndarray:
+    found = np.full(shape, labels[0], np.int32)
+    found[:, shape[1] // 2 :] = labels[1]
+    return found
+
+
+def braille_dots(root) -> list[np.ndarray]:
+    """The dots of each text, in millimetres."""
+    groups = root.iterfind(".//*[@data-mark='braille']")
+    return [np.array([(float(dot.get("cx")), float(dot.get("cy"))) for dot in group]) for group in groups]
+
+
+def least_gap_mm(svg: Path) -> float:
+    """Between any two blots of ink but the dots of one text. Outlines that touch are one."""
+    root = ElementTree.parse(svg).getroot()
+    ink = pixels(svg, 25.4 * PER_MM) < 128
+    blots, count = ndimage.label(ink, np.ones((3, 3)))
+    text_of = np.zeros(count + 1, int)
+    for number, dots in enumerate(braille_dots(root), 1):
+        text_of[[blots[int(y * PER_MM), int(x * PER_MM)] for x, y in dots]] = number
+    least = np.inf
+    reach = int(GAP_MM * PER_MM) + 5
+    for number, box in enumerate(ndimage.find_objects(blots), 1):
+        window = tuple(slice(max(0, each.start - reach), each.stop + reach) for each in box)
+        if np.ptp([box[0].start, box[0].stop]) * np.ptp([box[1].start, box[1].stop]) > 1e6:
+            continue  # the net of outlines: each of the others is measured to it
+        here = blots[window]
+        others = (here > 0) & (here != number)
+        if text_of[number]:
+            others &= text_of[here] != text_of[number]
+        if others.any():
+            far = ndimage.distance_transform_edt(~others)[here == number].min()
+            least = min(least, (far - 1) / PER_MM)
+    return least
+
+
+def test_nothing_is_nearer_than_a_finger_can_part(written):
+    _, files, _ = written
+    for svg in svgs(files):
+        assert least_gap_mm(svg) >= GAP_MM - 1e-9, svg.name
+
+
+def test_outlines_leave_room_between_them(written):
+    """A disc as wide as the gap reaches nearly all between the lines; what is left are tips of corners."""
+    _, files, _ = written
+    root = ElementTree.parse(files[0]).getroot()
+    for element in root.iter():
+        for child in list(element):
+            if child.get("data-mark") in ("fill", "braille", "corner"):
+                element.remove(child)
+    alone = files[0].with_name("outlines.svg")
+    ElementTree.ElementTree(root).write(alone)
+    free = pixels(alone, 25.4 * PER_MM) >= 128
+    room = ndimage.distance_transform_edt(free) >= GAP_MM / 2 * PER_MM
+    beyond = ndimage.distance_transform_edt(~room) / PER_MM - GAP_MM / 2
+    assert beyond[free].max() <= GAP_MM + 0.5
+    assert (beyond[free] > 0.2).mean() < 0.02
+
+
+def test_every_part_has_its_outline_and_its_name(written):
+    name, files, notes = written
+    work = work_of(name, Swell())
+    root = ElementTree.parse(files[0]).getroot()
+    areas = [each for each in root if each.find("./*[@data-mark='outline']") is not None]
+    assert all(each.find("./*[@data-mark='outline']").get("d") for each in areas)
+    there = set(np.unique(work.simplified.labels).tolist())
+    assert {each.get("aria-label") for each in areas} == {work.names[number] for number in there}
+    unlettered = [each.get("aria-label") for each in areas if each.find("./*[@data-mark='braille']") is None]
+    said = next((note for note in notes if note.startswith("no room for a letter")), "")
+    assert not unlettered or all(each in said for each in list(dict.fromkeys(unlettered))[:6])
+
+
+def test_shapes_are_black_and_alone(written):
+    _, files, _ = written
+    for svg in svgs(files):
+        root = ElementTree.parse(svg).getroot()
+        assert {each.tag.rpartition("}")[2] for each in root.iter()} <= {"svg", "title", "desc", "g", "path", "circle"}
+        assert {each.get("fill") for each in root.iter()} <= {None, "none"}
+        assert {each.get("stroke") for each in root.iter()} <= {None, "#000"}
+        assert root.get("lang") == "en"
+        assert root.findtext("{*}title")
+        assert root.findtext("{*}desc")
+
+
+def test_a_key_names_every_part_beside_its_letter_and_its_fill(written):
+    _, files, _ = written
+    picture, *keys = (ElementTree.parse(each).getroot() for each in svgs(files))
+    letters, fill_of = {}, {}
+    for area in picture:
+        if (letter := area.find("./*[@data-mark='braille']")) is not None:
+            letters[area.get("aria-label")] = letter.get("aria-label")
+    said = [each.get("aria-label") for key in keys for each in key.iterfind(".//*[@data-mark='braille']")]
+    for key in keys:
+        fill_of |= dict(
+            each.get("aria-label").split(": ") for each in key if each.find("./*[@data-mark='outline']") is not None
+        )
+    parts = {each.get("aria-label") for each in picture if each.find("./*[@data-mark='outline']") is not None}
+    assert parts <= set(said)
+    assert set(letters.values()) <= set(said)
+    assert len(set(letters.values())) == len(letters)
+    assert fill_of.keys() == parts
+    assert len({*fill_of.values()}) <= 5
+
+
+def test_neighbours_differ_in_their_fills(written):
+    _, _, notes = written
+    assert not any("neighbours with one fill" in note for note in notes)
+
+
+def test_the_pdf_is_the_pages_true_to_size(written):
+    _, files, _ = written
+    pdf, pages = files[-1], svgs(files)
+    data = pdf.read_bytes()
+    assert b"/Image" not in data.replace(b"/ImageB", b"").replace(b"/ImageC", b"").replace(b"/ImageI", b"")
+    assert b"/BaseFont" not in data
+    boxes = re.findall(rb"/MediaBox \[ ?0 0 ([\d.]+) ([\d.]+) ?\]", data)
+    assert len(boxes) == len(pages)
+    for number, (svg, box) in enumerate(zip(pages, boxes, strict=True), 1):
+        root = ElementTree.parse(svg).getroot()
+        sides_mm = [float(root.get(side).removesuffix("mm")) for side in ("width", "height")]
+        assert sorted(sides_mm) == list(SIZES_MM["a4"])
+        assert [float(side) / 72 * 25.4 for side in box] == pytest.approx(sides_mm, abs=0.01)
+        drawn, printed = pixels(svg, 100), pdf_pixels(pdf, number, 100)
+        rows, columns = (min(sides) for sides in zip(drawn.shape, printed.shape, strict=True))
+        differ = (drawn[:rows, :columns] < 128) != (printed[:rows, :columns] < 128)
+        assert differ.mean() < 0.01
+
+
+@pytest.mark.parametrize(("paper", "shape"), [("a4", (300, 450)), ("letter", (450, 300)), ("a3", (300, 450))])
+def test_the_picture_is_as_large_as_the_page_allows_or_as_is_said(tmp_path, paper, shape):
+    for width_m in (None, 0.1):
+        swell = Swell(page=paper, width_m=width_m)
+        svg = swell.write(labels_work(halves(shape=shape)), tmp_path / "map")[0]
+        root = ElementTree.parse(svg).getroot()
+        size = [float(root.get(side).removesuffix("mm")) for side in ("width", "height")]
+        assert (size[0] > size[1]) == (shape[1] > shape[0])
+        assert sorted(size) == sorted(SIZES_MM[paper])
+        at = np.array(re.findall(r"[ML]([\d.]+) ([\d.]+)", " ".join(
+            each.get("d") for each in root.iterfind(".//*[@data-mark='outline']"))), float)  # fmt: skip
+        width, length = np.ptp(at, axis=0)
+        assert width == pytest.approx(1000 * swell.picture_width_m(shape[1] / shape[0]), abs=0.011)
+        assert length == pytest.approx(width * shape[0] / shape[1], abs=0.011)
+        assert at.min() >= 10
+        assert (at.max(axis=0) <= np.array(size) - 10).all()
+        if width_m:
+            assert width == pytest.approx(100, abs=0.011)
+        else:
+            assert min(size[0] - 20 - width, size[1] - 20 - length) < 13  # the title takes 12 mm
+
+
+def test_an_f_is_neither_mirrored_nor_upside_down(tmp_path):
+    labels = np.zeros((70, 50), np.int32)
+    labels[10:60, 10:20] = labels[10:20, 10:40] = labels[30:40, 10:32] = 1
+    svg = Swell().write(labels_work(labels.repeat(8, 0).repeat(8, 1), ("ground", "letter")), tmp_path / "f")[0]
+    ink = pixels(svg, 254) < 128
+    root = ElementTree.parse(svg).getroot()
+    rim = np.array(re.findall(r"[ML]([\d.]+) ([\d.]+)", root.find(".//*[@aria-label='ground']/*").get("d")), float)
+    (left, top), (right, bottom) = rim.min(axis=0), rim.max(axis=0)
+    row, column = np.mgrid[0:70, 0:50]
+    inner = ndimage.binary_erosion(labels == 1, iterations=3)
+    x = ((left + (column[inner] + 0.5) / 50 * (right - left)) * 10).astype(int)
+    y = ((top + (row[inner] + 0.5) / 70 * (bottom - top)) * 10).astype(int)
+    places = ndimage.label(~ink)[0]
+    outside = places[int((top + 2) * 10), int((right - 2) * 10)]
+    assert (places[y, x] != outside).all()
+
+
+def test_the_same_work_gives_the_same_bytes(tmp_path):
+    first, second = (Swell().write(labels_work(halves()), tmp_path / each) for each in ("a", "b"))
+    assert [each.read_bytes() for each in first] == [each.read_bytes() for each in second]
+
+
+def test_parts_of_one_name_have_one_letter_and_one_fill(tmp_path):
+    labels = np.zeros((300, 600), np.int32)
+    labels[:, 200:400], labels[:, 400:] = 1, 2
+    svg = Swell().write(labels_work(labels, ("sea", "land", "sea")), tmp_path / "map")[0]
+    root = ElementTree.parse(svg).getroot()
+    said = [each.get("aria-label") for each in root if each.find("./*[@data-mark='outline']") is not None]
+    assert sorted(said) == ["land", "sea", "sea"]
+    letters = [each.get("aria-label") for each in root.iterfind("./{*}g/*[@data-mark='braille']")]
+    assert sorted(letters) == ["l", "s", "s"]
+
+
+def test_a_letter_is_the_cells_of_its_name_in_true_size(tmp_path):
+    svg = Swell().write(labels_work(halves(), ("land", "sea")), tmp_path / "map")[0]
+    root = ElementTree.parse(svg).getroot()
+    dots = {each.get("aria-label"): each for each in root.iterfind("./{*}g/*[@data-mark='braille']")}
+    at = np.array([(float(dot.get("cx")), float(dot.get("cy"))) for dot in dots["l"]])  # dots 1, 2, 3
+    assert np.diff(at, axis=0) == pytest.approx(np.array([[0, 1000 * DOT_PITCH_M]] * 2), abs=0.011)
+    assert {dot.get("r") for dot in dots["l"]} == {"0.72"}
+
+
+@pytest.mark.parametrize("clear_mm", [0.5, 2.0])
+def test_what_is_drawn_too_near_is_moved_or_left_out(tmp_path, monkeypatch, clear_mm):
+    """The drawing keeps too little from outlines; the page that is measured does not pass until it is put right."""
+    monkeypatch.setattr(fills, "CLEAR_MM", clear_mm)
+    monkeypatch.setattr(page, "CLEAR_MM", clear_mm)
+    monkeypatch.setattr(fills.filled, "__defaults__", (None, clear_mm))
+    labels = np.zeros((300, 450), np.int32)
+    labels[:, 260:], labels[100:200, 100:180] = 1, 2
+    svg = Swell().write(labels_work(labels, ("land", "sea", "isle")), tmp_path / "map")[0]
+    assert least_gap_mm(svg) >= GAP_MM - 1e-9
+
+
+def test_a_long_title_is_told_in_full_on_the_key(tmp_path):
+    title = "A map of the harbour and of all the islands before it as they were in the year of the great flood"
+    with collected() as notes:
+        files = Swell().write(labels_work(halves(shape=(300, 460)), title=title), tmp_path / "map")
+    assert any("title" in note for note in notes)
+    above = [ElementTree.parse(svg).getroot().find("./*[@data-mark='braille']") for svg in svgs(files)]
+    assert len(above[1]) > len(above[0])
+
+
+def test_more_parts_than_letters_get_two_each(tmp_path):
+    labels = np.arange(30, dtype=np.int32).reshape(5, 6).repeat(60, 0).repeat(60, 1)
+    with collected() as notes:
+        files = Swell(page="a3").write(labels_work(labels), tmp_path / "map")
+    assert any("30 parts" in note for note in notes)
+    root = ElementTree.parse(files[0]).getroot()
+    letters = [each.get("aria-label") for each in root.iterfind("./{*}g/*[@data-mark='braille']")]
+    assert len(set(letters)) == len(letters) > 0
+    assert all(len(each) == 2 for each in letters)
+    assert len(svgs(files)) > 2
+
+
+HUNDREDS = np.arange(900, dtype=np.int32).reshape(30, 30).repeat(20, 0).repeat(20, 1)
+
+
+@pytest.mark.parametrize(
+    ("labels", "options", "said", "error"),
+    [
+        (np.zeros((40, 60), np.int32), {}, "one part", PictureError),
+        (np.zeros((1, 1), np.int32), {}, "one part", PictureError),
+        (halves(shape=(3, 600)), {}, "a finger needs 12.7 mm", GeometryError),
+        (halves(shape=(600, 3)), {}, "a finger needs 12.7 mm", GeometryError),
+        (halves(), {"width_m": 0.4}, "has no room on a4", GeometryError),
+        (halves(), {"width_m": 0.005}, "a finger needs 12.7 mm", GeometryError),
+        (HUNDREDS, {}, "900 parts are more than anybody keeps apart", PictureError),
+        (
+            np.arange(101, dtype=np.int32)[:, None].repeat(90, 1),
+            {"page": "a3"},
+            "narrower|apart|one part",
+            TangibleError,
+        ),
+    ],
+)
+def test_what_cannot_be_read_is_refused_in_one_line(tmp_path, labels, options, said, error):
+    with pytest.raises(error) as refusal:
+        Swell(**options).write(labels_work(labels), tmp_path / "map")
+    assert re.search(said, str(refusal.value))
+    assert "\n" not in str(refusal.value)
+    assert not list(tmp_path.iterdir())
+
+
+def test_no_parts_at_all_is_said(tmp_path):
+    work = labels_work(halves())
+    work.products["simplified"] = None
+    with pytest.raises(PictureError, match="no parts"):
+        Swell().write(work, tmp_path / "map")
+
+
+@pytest.mark.parametrize(("title", "names"), [("東京", ()), ("Map", ("地", "海"))])
+def test_what_has_no_braille_is_refused_before_anything_is_written(tmp_path, title, names):
+    with pytest.raises(BrailleError):
+        Swell().write(labels_work(halves(), names, title=title), tmp_path / "map")
+    assert not list(tmp_path.iterdir())
+
+
+def test_without_shapely_one_line_says_what_to_install(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "shapely", None)
+    for name in [name for name in sys.modules if name.startswith("tangible_export.paper.")]:
+        monkeypatch.delitem(sys.modules, name)
+    with pytest.raises(BrokenMethod, match=r"pip install 'tangible-images\[export\]'"):
+        Swell().write(labels_work(halves()), tmp_path / "map")
+    assert not list(tmp_path.iterdir())

@@ -45,7 +45,7 @@ def where(x: float, y: float) -> str:
     """A place that is given by shares of the picture: from the left and from the top.
 
     >>> where(0.1, 0.1), where(0.5, 0.9)
-    ('at the top left', 'at the bottom')
+    ('at the upper left', 'at the bottom in the middle')
     """
     cells = np.zeros((PLACES, PLACES), np.bool_)
     cells[min(PLACES - 1, int(PLACES * y)), min(PLACES - 1, int(PLACES * x))] = True

@@ -44,4 +44,5 @@ def _unpacked(values: np.ndarray, name: str) -> Float32[np.ndarray, "h w"]:
             f"{name}: Sintel's disparities are pictures of three channels of 8 bits, not {values.shape} of "
             f"{values.dtype}; leave `truth_scale: sintel` out"
         )
-    return values.astype(np.float32) @ np.array([4, 1 / 64, 1 / 16384], np.float32)
+    red, green, blue = np.moveaxis(values.astype(np.float32), 2, 0)
+    return 4 * red + green / 64 + blue / 16384

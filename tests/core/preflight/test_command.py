@@ -59,7 +59,21 @@ def test_1_where_something_is_and_json_says_all_of_it(folder: Path):
     assert found["hand"] == {"speed_m_per_s": 0.12, "press_n": 3.0}
     assert 0 < found["tick"]["p50_s"] <= found["tick"]["max_s"]
     assert set(found["jitter"]) == {"p50_s", "p99_s", "p99.9_s", "max_s", "ticks", "overruns", "real_time"}
-    keys = {"check", "of", "verdict", "value", "unit", "relation", "bound", "source", "note", "cure", "says", "changes"}
+    keys = {
+        "check",
+        "of",
+        "verdict",
+        "value",
+        "unit",
+        "relation",
+        "bound",
+        "source",
+        "note",
+        "cure",
+        "says",
+        "changes",
+        "at",
+    }
     assert all(set(each) == keys and each["verdict"] in GRADES for each in found["verdicts"])
     checks = {"device", "stiffness", "damping", "slope", "clipping", "contact", "texture", "features", "workspace"}
     assert {each["check"] for each in found["verdicts"]} == checks | {"quantisation", "jitter", "tick"}

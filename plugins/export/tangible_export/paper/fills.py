@@ -99,7 +99,7 @@ def _ruled(bounds: tuple[float, ...], kind: Lines) -> Any:
     cosine, sine = np.cos(np.radians(kind.angle_deg)), np.sin(np.radians(kind.angle_deg))
     turned = np.array([[cosine, -sine], [sine, cosine]])
     middle = np.array([(left + right) / 2, (top + bottom) / 2])
-    lines: Any = [shapely.linestrings(each @ turned.T + middle) for each in ruled]
+    lines: Any = [shapely.linestrings(np.einsum("ij,kj->ki", turned, each) + middle) for each in ruled]
     return shapely.multilinestrings(lines)
 
 

@@ -9,6 +9,8 @@ type What = "idle" | "busy" | "felt" | "stopped" | "error";
 
 export class Status {
   private line = document.getElementById("status")!;
+  /** What is so while nothing is made: forces are given, or not. */
+  private rest: "idle" | "felt" = "idle";
 
   constructor(private page: Page) {
     const { hub } = page;
@@ -26,12 +28,13 @@ export class Status {
     });
     hub.on("made", ({ want, outcome, why }) => {
       if (outcome === "failed") this.show("error", why);
-      else if (outcome === "stopped") this.show("idle", t("makingStopped"));
-      else if (want !== "touch") this.show("idle", t("made"));
+      else if (outcome === "stopped") this.show(this.rest, t("makingStopped"));
+      else if (want !== "touch") this.show(this.rest, t("made"));
     });
     hub.on("maker_gone", ({ why }) => this.show("error", why));
-    hub.on("touch", ({ law }) => this.show("felt", t("feeling", { law })));
+    hub.on("touch", ({ law }) => this.show((this.rest = "felt"), t("feeling", { law })));
     hub.on("loop", ({ running, stopped, why, waiting }) => {
+      if (!running) this.rest = "idle";
       if (!running) this.show("stopped", stopped ? t("stopped") : t(waiting ? "waiting" : "ended", { why }));
     });
     hub.on("holding", ({ holding, free }) => {

@@ -4,8 +4,8 @@ import io
 import os
 import threading
 import time
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from zipfile import ZipFile
@@ -48,20 +48,26 @@ def until(holds: Callable[[], Any], what: str = "") -> None:
 
 
 @pytest.fixture
-def show(serve: Callable[..., Any], open_page: OpenPage, tmp_path: Path) -> Callable[..., "Page"]:
-    """The page with the small scene felt; `before` runs in it first, what is `said` more stands in its file."""
+def show(serve: Callable[..., Any], open_page: OpenPage, tmp_path: Path) -> Iterator[Callable[..., "Page"]]:
+    """The page with the small scene felt; `before` runs in it first, what is `said` more stands in its file.
+
+    Its server ends with the test: nine that feel at once leave no processor for the page.
+    """
     built_page()
+    servers = ExitStack()
 
     def show(said: str = "", before: str = "", scene: Callable[[Path], Path] = small_scene, **options: Any) -> "Page":
         file = scene(tmp_path)
         file.write_text(file.read_text() + said)
         page = open_page("about:blank", **options)
         page.add_init_script(SPY + before)
-        page.goto(serve(file, cwd=tmp_path, TANGIBLE_RUNTIME_DIR=str(tmp_path)).url + "&measure")
+        server = servers.enter_context(serve(file, cwd=tmp_path, TANGIBLE_RUNTIME_DIR=str(tmp_path)))
+        page.goto(server.url + "&measure")
         until(lambda: page.locator("#status").get_attribute("data-state") == "felt", "felt")
         return page
 
-    return show
+    with servers:
+        yield show
 
 
 def opened(page: "Page", panel: str) -> Any:

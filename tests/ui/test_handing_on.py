@@ -244,7 +244,7 @@ class TestBeacon:
         channel = f"guided-{os.getpid()}"
         page = show(f"parts: {{0: {{name: wall}}}}\ndevice: {{use: pointer, channel: {channel}}}\n")
         panel = page.locator("#parts")
-        assert panel.get_by_text("choose one under “Devices”").is_visible()
+        panel.get_by_text("choose one under “Devices”").wait_for()
         assert panel.get_by_role("button", name="guide me there").count() == 0
         page.evaluate("document.querySelector('#devices').open = true")
         page.locator("#use-document").press("Enter")

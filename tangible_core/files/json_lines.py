@@ -34,7 +34,7 @@ class JsonLines:
         try:
             if alone:
                 lock(self._file)
-            self._file.truncate(path.read_bytes().rfind(b"\n") + 1)
+            self._cut_torn_end()
         except OSError as error:
             self._file.close()
             if isinstance(error, BlockingIOError | PermissionError):
@@ -71,6 +71,14 @@ class JsonLines:
             raise self._wrong(error) from error
         finally:
             self._file.close()
+
+    def _cut_torn_end(self) -> None:
+        """Of a file whose last byte ends a line, no more than that byte is read: it is opened anew for each row."""
+        if not self._file.seek(0, os.SEEK_END):
+            return
+        self._file.seek(-1, os.SEEK_END)
+        if self._file.read(1) != b"\n":
+            self._file.truncate(self.path.read_bytes().rfind(b"\n") + 1)
 
     def _sync(self) -> None:
         os.fsync(self._file.fileno())

@@ -13,7 +13,6 @@ import numpy as np
 from jaxtyping import Float32
 
 from tangible_core.errors import BrokenMethod, ConfigError, shown
-from tangible_core.runtime.threads import processors, thread_limit
 
 Runtime = Literal["opencv", "onnxruntime"]
 OLDEST_OPENCV = 5
@@ -81,6 +80,8 @@ class _OpenCV:
 
 class _OnnxRuntime:
     def __init__(self, model: Path) -> None:
+        from tangible_core.compiled.threads import thread_count  # imports numba
+
         try:
             library: Any = import_module("onnxruntime")
         except ImportError as error:
@@ -89,7 +90,7 @@ class _OnnxRuntime:
                 "onnxruntime-gpu for a graphics card"
             ) from error
         options = library.SessionOptions()
-        options.intra_op_num_threads = min(processors(), thread_limit() or processors())
+        options.intra_op_num_threads = thread_count()
         options.add_session_config_entry("session.intra_op.allow_spinning", "0")
         options.log_severity_level = 3
         self._session: Any = library.InferenceSession(str(model), options, providers=library.get_available_providers())

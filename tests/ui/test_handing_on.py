@@ -13,14 +13,14 @@ from zipfile import ZipFile
 import pytest
 import trimesh
 
-from browser_tabs import OpenPage
+from browser_tabs import tabs
 from desks import small_scene, striped_scene
 from page_files import built_page
 from tangible_core.errors import DeviceError
 from tangible_devices.pointer import PointerClient
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Download, Page
+    from playwright.sync_api import Browser, Download, Page
 
 LONGEST_S = 60
 SPY = """
@@ -48,10 +48,13 @@ def until(holds: Callable[[], Any], what: str = "") -> None:
 
 
 @pytest.fixture
-def show(serve: Callable[..., Any], open_page: OpenPage, tmp_path: Path) -> Iterator[Callable[..., "Page"]]:
+def show(
+    serve: Callable[..., Any], browser: "Browser", complaints: list[str], tmp_path: Path
+) -> Iterator[Callable[..., "Page"]]:
     """The page with the small scene felt; `before` runs in it first, what is `said` more stands in its file.
 
-    Its server ends with the test: nine that feel at once leave no processor for the page.
+    Its server ends with the test, after the page: nine that feel at once leave no processor for a page, and a page
+    whose server ended before it complains that nobody answers.
     """
     built_page()
     servers = ExitStack()
@@ -66,7 +69,7 @@ def show(serve: Callable[..., Any], open_page: OpenPage, tmp_path: Path) -> Iter
         until(lambda: page.locator("#status").get_attribute("data-state") == "felt", "felt")
         return page
 
-    with servers:
+    with servers, tabs(browser, complaints) as open_page:
         yield show
 
 

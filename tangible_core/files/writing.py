@@ -4,7 +4,7 @@ import os
 import sys
 import tempfile
 from collections.abc import Generator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from io import FileIO
 from pathlib import Path
 from typing import IO
@@ -84,6 +84,27 @@ def lock(file: FileIO) -> None:
         import fcntl
 
         fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+
+
+@contextmanager
+def alone_in(folder: Path) -> Generator[None]:
+    """In a block, one program at a time; the others wait. Where a file system knows no locks, nobody waits."""
+    if sys.platform == "win32":
+        with FileIO(os.open(folder / ".alone", os.O_RDWR | os.O_CREAT | os.O_TEMPORARY), "r+") as file:
+            import msvcrt
+
+            msvcrt.locking(file.fileno(), msvcrt.LK_LOCK, 1)
+            yield
+    else:
+        import fcntl
+
+        number = os.open(folder, os.O_RDONLY)
+        try:
+            with suppress(OSError):
+                fcntl.flock(number, fcntl.LOCK_EX)
+            yield
+        finally:
+            os.close(number)
 
 
 def _umask() -> int:

@@ -16,7 +16,7 @@ from typing import Any, cast
 from ..errors import BrokenMethod, OutputError, quoted
 from ..files.content import content_digest
 from ..files.reading import read_bytes
-from ..files.writing import write_text
+from ..files.writing import alone_in, write_text
 
 LISTED = ".exports.json"
 """What an export leaves beside its files: no file of an exporter begins with a dot."""
@@ -73,6 +73,11 @@ def move(written: Sequence[Path], folder: Path, source: str, exporter: str, forc
 
     Raises: OutputError if one would be written over, before any is moved.
     """
+    with alone_in(folder):
+        return _moved(written, folder, source, exporter, force)
+
+
+def _moved(written: Sequence[Path], folder: Path, source: str, exporter: str, force: bool) -> tuple[Path, ...]:
     before = read_list(folder)
     places = {each: folder / each.name for each in written}
     for place in places.values():
@@ -87,7 +92,7 @@ def move(written: Sequence[Path], folder: Path, source: str, exporter: str, forc
             path.replace(place)
         except OSError as error:
             raise OutputError(f"{place}: cannot be written: {error.strerror}; choose another folder") from error
-    _write_list(folder, {**read_list(folder), **new})
+    _write_list(folder, {**before, **new})
     return tuple(places.values())
 
 

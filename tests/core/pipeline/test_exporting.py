@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from threading import Event
 from typing import Any, ClassVar
@@ -28,6 +29,7 @@ from tangible_core.errors import ConfigError, OutputError, PictureError, Stopped
 from tangible_core.parts import reduced_parts
 from tangible_core.pipeline.cache import Cache
 from tangible_core.pipeline.config import PRODUCTS, parse_config
+from tangible_core.pipeline.export_folder import move, read_list
 from tangible_core.pipeline.exporting import EXPORTABLE, MOST_STEM_BYTES, stem_of
 from tangible_core.pipeline.felt import parts_on_grid
 from tangible_core.plugins.registry import default_registry
@@ -282,6 +284,21 @@ class TestFiles:
             "Report": "still life.report",
             "Report-2": "still life-2.report",
         }
+
+    def test_exports_into_one_folder_at_once_lose_nothing_of_its_list(self, tmp_path: Path):
+        names = [f"{letter}{number}" for letter in "ab" for number in range(20)]
+        for folder in ("from", "to"):
+            (tmp_path / folder).mkdir()
+        for name in names:
+            written(tmp_path / "from" / name)
+
+        def bring(letter: str) -> None:
+            for number in range(20):
+                move([tmp_path / "from" / f"{letter}{number}"], tmp_path / "to", "mine.yaml", "report", False)
+
+        with ThreadPoolExecutor(2) as both:
+            list(both.map(bring, "ab"))
+        assert sorted(read_list(tmp_path / "to")) == sorted(names)
 
     def test_files_are_as_open_to_others_as_any_new_file(self, tmp_path: Path):
         (one,) = pipeline(**SAID).export(tmp_path, [Report()]).exports

@@ -2,13 +2,17 @@
 # Dask has no types.
 # pyright: reportUnknownVariableType=false, reportUnknownMemberType=false, reportUnknownArgumentType=false
 
+import faulthandler
 import logging
 import os
+import time
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
+from functools import partial
 from importlib import metadata
 from itertools import islice
+from pathlib import Path
 from typing import Any, Generic, Self, TypeVar
 
 from ..errors import BatchError
@@ -23,6 +27,8 @@ AHEAD = 4
 FRESH_AFTER = 2000
 """Jobs of a worker, about, after which it begins anew: Dask keeps some 10 kB of each for itself."""
 CONNECT_S = 10
+LONGEST_S = 3600.0
+"""A job that takes longer is ended, where nothing else is said."""
 DISTRIBUTION = "tangible-images"
 LOUD = ("distributed", "tornado", "bokeh")
 """Loggers."""
@@ -47,21 +53,26 @@ class Farm:
 
         Raises: BatchError without the extra, if nobody answers at the address, or workers have another version.
         """
+        self._threads, self._scheduler = threads, scheduler
+        self._leaving = ExitStack()
+        self._begin(workers)
+
+    def _begin(self, workers: int) -> None:
         distributed = need("distributed")  # puts its own settings there, so that ours hold
-        self._leaving, self._is_own, self._worked = ExitStack(), not scheduler, 0
+        self._worked = 0
         with ExitStack() as failing:
             failing.callback(self.close)
             self._leaving.enter_context(need("dask").config.set(SETTINGS))
             self._leaving.enter_context(_quiet())
-            if scheduler:
-                self._client: Any = _client(distributed, scheduler)
+            if self._scheduler:
+                self._client: Any = _client(distributed, self._scheduler)
             else:
-                cluster = _cluster(distributed, workers, threads)
+                cluster = _cluster(distributed, workers, self._threads)
                 self._leaving.callback(cluster.close, timeout=10)
                 self._client = distributed.Client(cluster)
             self._leaving.callback(_close_client, self._client)
             self._as_completed = distributed.as_completed
-            self.workers = self._checked(scheduler)
+            self.workers = self._checked(self._scheduler)
             failing.pop_all()
 
     def __enter__(self) -> Self:
@@ -74,22 +85,26 @@ class Farm:
         """End the workers that this one started."""
         self._leaving.close()
 
-    def map(self, work: Callable[[J], R], jobs: Iterable[J], chunk: int = 1) -> Iterator[Done[J, R]]:
+    def map(
+        self, work: Callable[[J], R], jobs: Iterable[J], chunk: int = 1, timeout_s: float = LONGEST_S
+    ) -> Iterator[Done[J, R]]:
         """work(job) for each, as they are done, on any worker; a result comes once.
 
         chunk: jobs that are sent together: less to do for the scheduler where each is short. A job whose worker dies is
-        tried again by itself, when those beside it are done: so it alone fails, and none that was beside it. Workers of
-        this machine begin anew after some thousand jobs each.
+        tried again by itself, when those beside it are done: so it alone fails, and none that was beside it. A worker
+        whose job takes longer than timeout_s dies of it, whatever it is held up by. Workers of this machine begin anew
+        after some thousand jobs each.
         """
+        work = partial(_in_time, work, timeout_s)
         todo = iter(jobs)
         while part := list(islice(todo, FRESH_AFTER * self.workers)):
-            if self._is_own and self._worked >= FRESH_AFTER * self.workers:
-                self._client.restart_workers(list(self._client.scheduler_info(n_workers=-1)["workers"]))
-                self._worked = 0
+            if not self._scheduler and self._worked >= FRESH_AFTER * self.workers:
+                self.close()
+                self._begin(self.workers)  # `restart_workers` may lose one for ever that is just coming back
             self._worked += len(part)
-            yield from self._mapped(work, part, chunk)
+            yield from self._mapped(work, part, chunk, timeout_s)
 
-    def _mapped(self, work: Callable[[J], R], jobs: Iterable[J], chunk: int) -> Iterator[Done[J, R]]:
+    def _mapped(self, work: Callable[[J], R], jobs: Iterable[J], chunk: int, timeout_s: float) -> Iterator[Done[J, R]]:
         todo = iter(jobs)
         waiting: dict[str, list[J]] = {}
 
@@ -112,14 +127,16 @@ class Farm:
             else:
                 yield from (Done(job, result) for job, result in zip(part, results, strict=True))
         for job in suspects:
-            yield self._alone(work, job)
+            yield self._alone(work, job, timeout_s)
 
-    def _alone(self, work: Callable[[J], R], job: J) -> Done[J, R]:
+    def _alone(self, work: Callable[[J], R], job: J, timeout_s: float) -> Done[J, R]:
+        begun_s = time.monotonic()
         future = self._client.submit(_each, work, [job], pure=False)
         try:
             return Done(job, future.result()[0])
         except Exception as error:  # noqa: BLE001 - of Dask, which says in many ways that a worker is gone
-            return Done(job, None, _death(error))
+            over = time.monotonic() - begun_s >= timeout_s
+            return Done(job, None, f"took longer than {timeout_s:g} s, twice, and was ended" if over else _death(error))
         finally:
             future.release()
 
@@ -233,3 +250,13 @@ def _client(distributed: Any, address: str) -> Any:
 
 def _each(work: Callable[[J], R], jobs: list[J]) -> list[R]:
     return [work(job) for job in jobs]
+
+
+def _in_time(work: Callable[[J], R], timeout_s: float, job: J) -> R:
+    """In a worker, which does one job at a time: it ends with a job that takes longer, even one that holds Python."""
+    with Path(os.devnull).open("w") as nobody:
+        faulthandler.dump_traceback_later(timeout_s, exit=True, file=nobody)
+        try:
+            return work(job)
+        finally:
+            faulthandler.cancel_dump_traceback_later()

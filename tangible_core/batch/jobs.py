@@ -12,6 +12,7 @@ from ..pipeline.config import parse_config
 from ..pipeline.editing import REMOVE, edited, said
 from ..pipeline.rules import method_identities
 from ..plugins.registry import default_registry
+from .farm import LONGEST_S
 from .job import Job
 from .manifest import FILES, SceneRow, file_of
 
@@ -34,6 +35,8 @@ class BatchOptions:
     """Folder for what scenes have in common; None for none."""
     chunk: int = CHUNK
     """Scenes that are handed out together, at most."""
+    timeout_s: float = LONGEST_S
+    """One that takes longer is ended, and fails."""
 
 
 class JobMaker:

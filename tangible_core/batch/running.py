@@ -6,14 +6,14 @@ from pathlib import Path
 from threading import Event
 from typing import Any
 
-from ..errors import OutputError, wrong_argument
+from ..errors import OutputError, check_positive, wrong_argument
 from ..files.json_lines import JsonLines
 from ..files.paths import as_path
 from ..pipeline.pipeline import Pipeline
 from ..runtime.stopping import check_stopped, stoppable
 from ..runtime.threads import check_threads, processors
 from .extra import need_all
-from .farm import Farm
+from .farm import LONGEST_S, Farm
 from .job import FULL, Job, Row, dead_row, make_scene
 from .jobs import BatchOptions, JobMaker
 from .manifest import SceneRow, rows_from
@@ -64,6 +64,7 @@ def batch(
     retry: bool = False,
     sheets: bool = False,
     cache: str | Path | None = None,
+    timeout_s: float = LONGEST_S,
     stop: Event | None = None,
 ) -> Iterator[Row]:
     """Each scene's row as soon as it is known: `id`, `outcome` (ok or failed), `error`, `seconds`, `figures`, `files`.
@@ -72,21 +73,23 @@ def batch(
     are relative to the current folder. out: where files and `rows.jsonl` go; what is there of an earlier batch and
     would be the same is not made again, and yielded first. workers, threads: how many processes of this machine with
     how many threads each; together the cores where nothing is said. scheduler: the address of a Dask scheduler, whose
-    workers make the scenes instead. retry: make again what failed before. sheets: draw a whole report of each. cache: a
-    folder for results that scenes have in common. stop: set from another thread, it ends the batch with the next scene.
+    workers make the scenes instead. retry: make again what failed before. sheets: draw a whole report of each. cache:
+    a folder for results that scenes have in common. timeout_s: a scene that takes longer is ended, and fails. stop:
+    set from another thread, it ends the batch with the next scene.
     Raises: ConfigError for a pipeline that no file can say, BatchError for rows or workers, OutputError if the folder
     cannot be written, Stopped after `stop`. A scene that fails is a row.
     """
     if not isinstance(pipeline, Pipeline):  # pyright: ignore[reportUnnecessaryIsInstance] - not all callers are typed
         raise wrong_argument("pipeline", pipeline, "a Pipeline")
     check_threads(threads)
+    check_positive("timeout_s", timeout_s)
     if workers is not None and workers < 1:
         raise wrong_argument("workers", workers, "a whole number from 1, or None for as many as there are cores")
     path = pipeline.config.path or Path("pipeline.yaml")
     scenes = rows_from(rows, Path.cwd())
     text = pipeline.config.as_yaml()
     who = Workforce(workers, threads, scheduler)
-    options = BatchOptions(retry, sheets, None if cache is None else as_path(cache, "cache"))
+    options = BatchOptions(retry, sheets, None if cache is None else as_path(cache, "cache"), timeout_s=timeout_s)
     yield from run_batch(text, path.absolute(), scenes, as_path(out, "out"), who, options, stop=stop)
 
 
@@ -118,7 +121,7 @@ def run_batch(
             else:
                 waiting.append(job)
         del held
-        for row in _made(waiting, who, options.chunk) if waiting else ():
+        for row in _made(waiting, who, options) if waiting else ():
             if full := row.get(FULL):
                 raise OutputError(f"{full}; the batch ends here, and the same command goes on from there")
             row["folder"] = Path(row["folder"]).relative_to(out.absolute()).as_posix()
@@ -135,11 +138,11 @@ def _is_current(row: Row, job: Job, retry: bool) -> bool:
     return Path(job.folder).is_dir() if row["outcome"] == "ok" else not retry
 
 
-def _made(jobs: list[Job], who: Workforce, chunk: int) -> Iterator[Row]:
+def _made(jobs: list[Job], who: Workforce, options: BatchOptions) -> Iterator[Row]:
     """A row for each, as they are made."""
     workers = min(who.workers_here, len(jobs))
     with Farm(workers, who.threads_each or 1, who.scheduler) as farm:
-        fitting = max(1, min(chunk, len(jobs) // (4 * farm.workers)))
-        for done in farm.map(make_scene, jobs, fitting):
+        fitting = max(1, min(options.chunk, len(jobs) // (4 * farm.workers)))
+        for done in farm.map(make_scene, jobs, fitting, options.timeout_s):
             check_stopped()
             yield done.result or dead_row(done.job, done.death)

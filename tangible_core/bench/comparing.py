@@ -82,7 +82,7 @@ def compare(
     if comparison.protocol.calls:
         rows = run(outlook, path, comparison.protocol.timeout_s, begun, done, stop)
     else:
-        rows = run_side_by_side(outlook, path, workers, done, stop)
+        rows = run_side_by_side(outlook, path, workers, done, stop, comparison.protocol.timeout_s)
     return _summed(rows, path, earlier)
 
 

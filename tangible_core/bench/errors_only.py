@@ -6,7 +6,7 @@ from pathlib import Path
 from threading import Event
 from typing import Any
 
-from ..batch.farm import Done, Farm
+from ..batch.farm import LONGEST_S, Done, Farm
 from ..batch.running import Workforce
 from ..files.json_lines import JsonLines
 from ..runtime.stopping import check_stopped, stoppable
@@ -25,7 +25,12 @@ def errors_only(comparison: Comparison) -> Comparison:
 
 
 def run_side_by_side(
-    outlook: Outlook, path: Path, workers: int | None, finished: Callable[[int, Row], None], stop: Event | None = None
+    outlook: Outlook,
+    path: Path,
+    workers: int | None,
+    finished: Callable[[int, Row], None],
+    stop: Event | None = None,
+    timeout_s: float = LONGEST_S,
 ) -> dict[str, Row]:
     """Measure what is waiting on all cores, or so many workers, and add it to the file; returns all rows by key.
 
@@ -39,7 +44,7 @@ def run_side_by_side(
         JsonLines(path) as file,
         Farm(min(who.workers_here, len(outlook.waiting)), who.threads_each or 1) as farm,
     ):
-        for number, done in enumerate(farm.map(_cell, outlook.waiting)):
+        for number, done in enumerate(farm.map(_cell, outlook.waiting, timeout_s=timeout_s)):
             check_stopped()
             row = replace(done.job.row, **_outcome(done))
             file.add(asdict(row))

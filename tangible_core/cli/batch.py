@@ -44,6 +44,9 @@ def batch(
     cache: Annotated[
         Path | None, typer.Option("--cache", help="Keep results of stages here, for scenes that share them.")
     ] = None,
+    timeout: Annotated[
+        float | None, typer.Option(help="A scene that takes longer, s, is ended and fails [default: 3600].")
+    ] = None,
     chunk: Annotated[int, typer.Option(min=1, help="Scenes that are handed out together, at most.")] = 4,
     as_json: Json = False,
 ) -> None:
@@ -52,20 +55,24 @@ def batch(
     Each scene becomes a row, whatever goes wrong with it. What was interrupted goes on where it stopped. Exit 1 if a
     scene failed.
     """
+    from ..batch.farm import LONGEST_S
     from ..batch.jobs import BatchOptions
     from ..batch.manifest import rows_of
     from ..batch.results import ROWS, write_gallery, write_index
     from ..batch.running import Tally, Workforce, run_batch
+    from ..errors import check_positive
     from ..files.source import read_text
     from ..pipeline.editing import with_overrides
     from ..pipeline.run_folder import default_name
     from . import show
 
+    timeout_s = LONGEST_S if timeout is None else timeout
+    check_positive("--timeout", timeout_s)
     name = default_name(config)
     place = out or Path("out", f"{name}-batch")
     text = with_overrides(read_text(config), config, sets or [])
     tally, who = Tally(), Workforce(workers, threads, scheduler)
-    options = BatchOptions(retry, sheets, cache, chunk)
+    options = BatchOptions(retry, sheets, cache, chunk, timeout_s)
     wanted: list[str] = []
     scenes = _noted(rows_of(over, besides=place), wanted)
     rows = run_batch(text, config.absolute(), scenes, place, who, options, tally)

@@ -12,6 +12,13 @@ def square(number: int) -> int:
     return number * number
 
 
+def stuck(number: int) -> int:
+    """Never comes back of 2, and lets no other thread run."""
+    if number == 2:
+        max(iter(int, 1))
+    return number
+
+
 def slow(number: int) -> int:
     """The process that worked."""
     time.sleep(0.05)

@@ -33,7 +33,7 @@ class Here:
     def __exit__(self, *_: object) -> None:
         pass
 
-    def map(self, work, jobs, chunk=1):
+    def map(self, work, jobs, chunk=1, timeout_s=1.0):
         for job in jobs:
             yield Done(job, work(job))
 

@@ -88,10 +88,14 @@ def test_workers_that_die_take_no_job_along_and_begin_anew_in_time(monkeypatch: 
         assert sorted(each.job for each in seen) == list(range(40))
         assert not any(each.death for each in seen)
 
-        monkeypatch.setattr(farm, "FRESH_AFTER", 10)
-        anew = list(two.map(farm_work.slow, range(40)))
+        with monkeypatch.context() as soon:
+            soon.setattr(farm, "FRESH_AFTER", 10)
+            anew = list(two.map(farm_work.slow, range(40)))
         assert sorted(each.job for each in anew) == list(range(40))
         assert len({each.result for each in anew}) == 4
+
+        held = {each.job: each.death for each in two.map(farm_work.stuck, range(6), chunk=2, timeout_s=1.5)}
+        assert held == {0: "", 1: "", 2: "took longer than 1.5 s, twice, and was ended", 3: "", 4: "", 5: ""}
 
 
 def test_a_scheduler_that_is_not_there(monkeypatch: pytest.MonkeyPatch):

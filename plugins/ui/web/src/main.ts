@@ -6,6 +6,7 @@ import { Frames } from "./frames";
 import { Hand } from "./hand";
 import { Hub } from "./hub";
 import { Instrument } from "./instrument";
+import { leisure } from "./leisure";
 import { measure, measuring } from "./measure";
 import { Narrator } from "./narrator";
 import { Net } from "./net";
@@ -52,6 +53,7 @@ const page: Page = {
   sound: new Sound(hub, () => page.scene),
   speech,
   themes: new Themes(hub),
+  leisure: leisure(hub),
   say: (text, how) => announcer.say(text, how),
   forget: (topic) => announcer.forget(topic),
 };

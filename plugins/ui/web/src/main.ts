@@ -23,6 +23,7 @@ import { Speech } from "./speech";
 import { splits } from "./splits";
 import { Status } from "./status";
 import { loadScene } from "./terrain/fetching";
+import { remembered } from "./terrain/settings";
 import { Themes } from "./themes";
 import { View } from "./view";
 import { language } from "./words/words";
@@ -91,4 +92,5 @@ notice(page);
 build(page, panels);
 dataCursor(page);
 new Frames(page);
+requestAnimationFrame(() => setTimeout(() => view.prepare(remembered()))); // once the page itself is to be seen
 if (measuring) Object.assign(window, { Instrument, stroke }); // what tests look into

@@ -98,13 +98,13 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
   put(scene: Scene, looks: Looks): void {
     const before = this.scene?.meta;
     this.scene = scene;
+    if (before?.rows !== scene.meta.rows || before.columns !== scene.meta.columns) this.takesMs = Infinity;
     if (this.renderer) {
       this.terrain?.dispose();
       this.fixed.clear();
-      this.terrain = new Terrain(scene, looks);
+      this.terrain = new Terrain(scene, looks, this.takesMs > SLOW_MS);
       this.fixed.add(this.terrain.group);
     }
-    if (before?.rows !== scene.meta.rows || before.columns !== scene.meta.columns) this.takesMs = Infinity;
     if (String(before?.extent_m) !== String(scene.meta.extent_m)) this.frame(...scene.meta.extent_m);
     const now = performance.now();
     this.moved(!before ? FIRST_MS : now - this.putMs < FOLLOWING_MS ? FOLLOWING_MS : REST_MS);

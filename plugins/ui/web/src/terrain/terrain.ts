@@ -54,11 +54,11 @@ export class Terrain {
   private detail: Sheet | null = null;
   private needles: Needles;
   private looks: Looks;
-  private coarse = false;
 
   constructor(
     private scene: Drawable,
     looks: Looks,
+    private coarse = false,
   ) {
     const [w, l] = scene.meta.extent_m;
     this.common = {
@@ -75,7 +75,7 @@ export class Terrain {
       period: { value: w / 60 },
       ...Object.fromEntries(["raking", "steep", "cut", "look", "cover"].map((name) => [name, { value: 0 }])),
     };
-    this.whole = new Sheet(scene.whole, this.common, scene.photo, [-w / 2, l / 2, w, l]);
+    this.whole = new Sheet(scene.whole, this.common, scene.photo, [-w / 2, l / 2, w, l], coarse);
     this.needles = new Needles(this.whole);
     this.group.add(this.whole.mesh, this.needles.lines);
     this.looks = looks;

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from .figures import Figure, MissedError, judged, part, table
-from .ui_drive import browser, drag, felt, opened, painted, percentile, scene_640, served
+from .ui_drive import browser, drag, felt, opened, painted, percentile, scene_640, served, window
 from .ui_install import installing
 from .ui_late import lateness, stale_ticks
 from .ui_parts import editor
@@ -85,12 +85,10 @@ def start() -> Iterator[Figure]:
 
 def _started() -> tuple[float, float]:
     with scene_640() as config, browser() as chromium:
-        blank = chromium.new_page()  # the browser itself is warm, as it is on a desk
+        desk = window(chromium)  # the browser is warm and has a window, in which a tab is opened
         with served(config) as server:
-            page = opened(chromium, server.url)
-            result = painted(page) - server.begun_s, felt(page) - server.begun_s
-        blank.close()
-        return result
+            page = opened(chromium, server.url, desk)
+            return painted(page) - server.begun_s, felt(page) - server.begun_s
 
 
 def tasks() -> Iterator[Figure]:

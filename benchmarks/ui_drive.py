@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Browser, Page
+    from playwright.sync_api import Browser, BrowserContext, Page
 
 KEY = "measured"
 FLAGS = [
@@ -109,9 +109,17 @@ def browser() -> "Generator[Browser]":
             chromium.close()
 
 
-def opened(chromium: "Browser", url: str) -> "Page":
-    """A tab with the page, which keeps figures."""
-    page = chromium.new_page(viewport=SIZE, locale="en-GB")  # pyright: ignore[reportArgumentType]
+def window(chromium: "Browser") -> "BrowserContext":
+    """A window of the browser with an empty tab, at rest. To make one takes the browser a second of processor time."""
+    found = chromium.new_context(viewport=SIZE, locale="en-GB")  # pyright: ignore[reportArgumentType]
+    found.new_page()
+    time.sleep(1.0)
+    return found
+
+
+def opened(chromium: "Browser", url: str, within: "BrowserContext | None" = None) -> "Page":
+    """A tab with the page, which keeps figures; in a window that is there, or in one of its own."""
+    page = (within or chromium.new_context(viewport=SIZE, locale="en-GB")).new_page()  # pyright: ignore[reportArgumentType]
     page.goto(f"{url}&measure")
     return page
 

@@ -72,6 +72,7 @@ def _dragged() -> list[float]:
     """Milliseconds from each height to its force, one after the other, while the page draws what is felt."""
     with scene_640() as config, _editor(config.parent / "left.png") as page:
         count = page.locator("#parts-list [role=option]").count()
+        page.evaluate("figures.waits = false")  # a page that nobody measures draws beside what it sends and hears
         page.evaluate(DRAG_HEIGHT, [count, 3])  # what is made once for all heights
         return page.evaluate(DRAG_HEIGHT, [count, HEIGHTS])
 

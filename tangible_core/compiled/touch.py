@@ -13,6 +13,9 @@ from ..plugins.touch import Touch, path_arrays
 from ..runtime.child_process import imported, place
 
 Tick = Callable[..., tuple[float, float, float]]
+RISE_M, FRAME = 0, 1
+"""Where, of what a touch tells of a surface that moves, stand: by how much it rose under the proxy in this tick, and
+the number of the frame that it goes to."""
 
 
 @final
@@ -21,7 +24,9 @@ class CompiledTouch(Touch):
 
     The kernel is a module's function under `numba.njit` with one signature given, `nogil=True` and `cache=True`. What
     a touch remembers from tick to tick is `memory`, one of the fixed arguments, which the kernel writes to; its first
-    three numbers are the proxy, with z NaN where nothing is touched. A touch without memory has no proxy.
+    three numbers are the proxy, with z NaN where nothing is touched. A touch without memory has no proxy. Of a surface
+    that moves, the kernel tells in `moving` (`RISE_M`, `FRAME`), another of the fixed arguments; one that stands still
+    has risen by 0, and is of frame NaN.
 
     Along a path the velocity is the step from the position before divided by the period: 0 at the first one.
     """
@@ -32,17 +37,19 @@ class CompiledTouch(Touch):
         fixed: tuple[Any, ...],
         memory: Float64[np.ndarray, "n"] | None = None,
         stiffness: float | None = None,
+        moving: Float64[np.ndarray, "2"] | None = None,
     ) -> None:
         self.tick = tick
         self.fixed = fixed
         self.memory = np.full(3, np.nan) if memory is None else memory
         self.stiffness_n_per_m = stiffness
+        self.moving = np.array([0.0, np.nan]) if moving is None else moving
         self._address: Any = None
 
     def __reduce__(self) -> tuple[Any, ...]:
         function = self.tick.py_func  # pyright: ignore[reportFunctionMemberAccess]
         kernel = place(function.__module__, function.__qualname__)
-        return _revive, (*kernel, self.fixed, self.memory, self.stiffness_n_per_m)
+        return _revive, (*kernel, self.fixed, self.memory, self.stiffness_n_per_m, self.moving)
 
     def force(self, state: HapticState) -> Force:
         """Newtons on the hand, always finite; zero in free air, and zero for a state that is not finite."""
@@ -69,9 +76,15 @@ class CompiledTouch(Touch):
 
 
 def _revive(
-    module: str, name: str, file: str, fixed: tuple[Any, ...], memory: np.ndarray, stiffness: float | None
+    module: str,
+    name: str,
+    file: str,
+    fixed: tuple[Any, ...],
+    memory: np.ndarray,
+    stiffness: float | None,
+    moving: np.ndarray,
 ) -> CompiledTouch:
-    return CompiledTouch(imported(module, name, file), fixed, memory, stiffness)
+    return CompiledTouch(imported(module, name, file), fixed, memory, stiffness, moving)
 
 
 class LinkKernels(NamedTuple):

@@ -26,6 +26,8 @@ from ..data import (
 )
 from ..data.arguments import as_picture
 from ..data.quantities import Quantities
+from .film import Film as Film
+from .film import Filming as Filming
 from .link import Link as Link
 from .touch import PlainTouch as PlainTouch
 from .touch import Touch as Touch

@@ -298,6 +298,12 @@ class TestPage:
         assert later >= {"editor.js", "panel.js"}, "what comes when it is opened"
         assert later <= {"editor.js", "panel.js", "chunk.js"}
 
+    def test_all_that_it_is_opened_with_is_asked_for_together(self):
+        page = built_page()
+        html = page.joinpath("index.html").read_text("utf-8")
+        preloaded = re.findall(r'<link rel="modulepreload" href="([^"]+)">', html)
+        assert sorted(preloaded) == sorted(set(fetched_first(page)) - {"app.js", "app.css"}) != []
+
     def test_it_asks_no_other_machine_for_anything(self):
         text = "".join(
             each.read_text("utf-8") for each in built_page().iterdir() if each.suffix in (".js", ".css", ".html")

@@ -20,6 +20,7 @@ def test_an_option_from_the_form_to_the_file(serve, open_page: OpenPage, tmp_pat
     built_page()
     server = serve(small_scene(tmp_path), cwd=tmp_path)
     page, other = open_page(server.url), open_page(server.url)
+    until(lambda: page.locator("#status").get_attribute("data-state") == "felt")  # the loop too has started
     until(lambda: state(page, "touch") == "ran" and page.locator("#section-render").count() == 1)
 
     page.locator("#section-render > summary").focus()

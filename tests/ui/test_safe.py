@@ -252,6 +252,15 @@ class TestFloods:
             tab.next(0.3)
             assert tab.frames <= 2 * IN_FLIGHT + 1
 
+    def test_while_no_force_is_given_states_are_few(self, page: PageServer) -> None:
+        with page.tab() as tab:
+            end_s, count = time.monotonic() + 1.0, 0
+            while time.monotonic() < end_s:
+                if isinstance(tab.socket.recv(5), bytes):
+                    count += 1
+                    tab.socket.send(ack(count))
+        assert 1 < count <= 12
+
     def test_a_tab_that_reads_nothing_is_cut_off(self, page: PageServer) -> None:
         raw = handshake(page, page.host)
         with page.tab() as other:

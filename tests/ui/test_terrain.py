@@ -11,6 +11,7 @@ from matplotlib import colormaps
 from PIL import Image
 
 from page_files import built_page
+from page_server import KEY, PageServer
 
 BEFORE, BEHIND = (0.016, 0.0), (-0.02, 0.0)
 """On the raised part and on the ground."""
@@ -163,6 +164,53 @@ def test_a_large_relief_is_drawn_at_once_and_finer_where_one_looks(serve, open_p
         assert page.evaluate("([x, y]) => window.page.scene.height(x, y)", [x, y]) == pytest.approx(wanted, abs=1e-9)
     page.keyboard.press("Control+Home")
     page.wait_for_function("() => window.page.scene.detail === null", timeout=20_000)
+
+
+LINKED = """(() => {
+  const { linkProgram, drawElements } = WebGL2RenderingContext.prototype;
+  window.linked = 0;
+  window.drawn = [];
+  WebGL2RenderingContext.prototype.linkProgram = function (...told) { linked++; return linkProgram.apply(this, told); };
+  WebGL2RenderingContext.prototype.drawElements = function (...told) {
+    drawn.push([told[1], performance.now()]);
+    return drawElements.apply(this, told);
+  };
+})()"""
+"""Counts programs that are linked, and notes how many indices are drawn when."""
+
+
+def test_the_first_surface_needs_no_program_compiled_and_is_drawn_coarsely_for_a_while(
+    open_page, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    """While it is drawn first, what is felt of it is being made, on the same processor."""
+    built_page()
+    rows, columns = 300, 400
+    with PageServer(tmp_path, monkeypatch) as server:
+        page = open_page("about:blank")
+        page.add_init_script(LINKED)
+        page.goto(f"http://{server.host}/?token={KEY}&measure")
+        page.wait_for_function("() => window.page?.view.prepared", timeout=60_000)
+        linked = page.evaluate("() => linked")
+        surface = server.folder / "surface"
+        surface.mkdir()
+        np.zeros((rows, columns), "<f4").tofile(surface / "height-0.f32")
+        np.zeros(1, "<u2").tofile(surface / "materials.u16")
+        levels = [{"step": 1, "rows": rows, "columns": columns}]
+        meta = {
+            "digest": "surface", "name": "level", "shows": "surface", "rows": rows, "columns": columns,
+            "extent_m": [0.08, 0.06], "height_m": [0, 0], "levels": levels, "labels": 0, "label_bytes": 2,
+            "materials": [], "parts": None, "photo": False, "fine_photo": None, "layers": {},
+        }  # fmt: skip
+        server.done(lambda: server.desk.tell("scene", **meta))
+        whole = 6 * (rows + 1) * (columns + 1)
+        page.wait_for_function("whole => window.drawn.some(([count]) => count === whole)", arg=whole, timeout=60_000)
+        assert page.evaluate("() => [linked, page.view.prepared]") == [linked, None]
+        drawn = page.evaluate("() => drawn")
+    coarse_ms, fine_ms = (
+        next(at_ms for count, at_ms in drawn if fewest <= count < most)
+        for fewest, most in ((whole // 20, whole), (whole, whole + 1))
+    )
+    assert fine_ms - coarse_ms > 800
 
 
 def test_graphics_that_are_taken_away_and_come_back(url: str, open_page, complaints: list[str]):

@@ -55,12 +55,20 @@ function replace(files) {
   }
 }
 
+/** The page with what its script imports at once: a browser asks for all of it together, not for one after the other. */
+function preloading(html, outputs) {
+  const app = Object.entries(outputs).find(([path]) => path.endsWith("app.js"))[1];
+  const needed = app.imports.filter(({ kind }) => kind === "import-statement").map(({ path }) => path.split("/").at(-1));
+  const links = needed.map((name) => `<link rel="modulepreload" href="${name}">\n`);
+  return html.replace("</head>", `${links.join("")}</head>`);
+}
+
 function finish({ outputFiles, metafile }) {
   const made = Object.fromEntries(outputFiles.map(({ path, contents }) => [relative(out, path), contents]));
   const legal = Object.keys(made).filter((name) => name.endsWith(".LEGAL.txt"));
   const texts = [...licences(metafile.inputs), ...legal.map((name) => Buffer.from(made[name]).toString())];
   for (const name of legal) delete made[name];
-  made["index.html"] = readFileSync(join(WEB, "index.html"));
+  made["index.html"] = preloading(readFileSync(join(WEB, "index.html"), "utf8"), metafile.outputs);
   made["LICENSES.txt"] = texts.join(`\n${"-".repeat(80)}\n\n`);
   made["built.json"] = JSON.stringify(watching ? {} : digests(), null, 1);
   replace(made);

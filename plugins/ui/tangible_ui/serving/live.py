@@ -32,6 +32,8 @@ PAUSE_S = 0.01
 show the hand where it was; a screen draws every 17 ms."""
 SPACING_S = 0.012
 """Between two states: a screen draws sixty a second."""
+IDLE_SPACING_S = 0.1
+"""While no force is given nothing moves, and the processor has a loop and a surface to start."""
 MOST_WAITING, MOST_WAITING_CHARACTERS = 2000, 16_000_000
 """Events that a tab may leave unread; one that reads none is cut off."""
 MOST_ASKS = 32
@@ -132,16 +134,17 @@ class LiveTab:
 
     async def _send_states(self) -> None:
         """The newest tick soon after one before was drawn: as late as it still comes before the page draws again."""
-        loop, sent_s = asyncio.get_running_loop(), 0.0
+        loop, sent_s, idle = asyncio.get_running_loop(), 0.0, False
         with suppress(WebSocketDisconnect, RuntimeError):
             while True:
                 while self._seq - self._drawn >= IN_FLIGHT:
                     self._acked.clear()
                     await self._acked.wait()
                     await asyncio.sleep(PAUSE_S)
-                if (early_s := sent_s + SPACING_S - loop.time()) > 0:
-                    await asyncio.sleep(early_s)
-                sent_s = loop.time()
+                await asyncio.sleep(sent_s + SPACING_S - loop.time())
+                while idle and not self._desk.feeling.running and loop.time() < sent_s + IDLE_SPACING_S:
+                    await asyncio.sleep(SPACING_S)
+                sent_s, idle = loop.time(), not self._desk.feeling.running
                 if frame := self._desk.feeling.frame(self._seq + 1, self._status(), self._desk.laws.beside()):
                     self._seq += 1
                     await self._socket.send_bytes(frame)

@@ -23,7 +23,7 @@ export class Frames {
     const moved = view.dirty;
     if (moved || overlay.wants(state)) {
       overlay.put(state);
-      view.draw(first || (measuring && view.terrain !== null));
+      view.draw(first || (measuring && figures.waits && view.terrain !== null));
       overlay.changed ||= moved; // a camera that flies moves in `draw`: what stays at a place follows it
     }
     const at = now();

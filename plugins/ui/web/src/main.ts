@@ -6,6 +6,7 @@ import { Frames } from "./frames";
 import { Hand } from "./hand";
 import { Hub } from "./hub";
 import { Instrument } from "./instrument";
+import { leisure } from "./leisure";
 import { measure, measuring } from "./measure";
 import { Narrator } from "./narrator";
 import { Net } from "./net";
@@ -22,6 +23,7 @@ import { Speech } from "./speech";
 import { splits } from "./splits";
 import { Status } from "./status";
 import { loadScene } from "./terrain/fetching";
+import { remembered } from "./terrain/settings";
 import { Themes } from "./themes";
 import { View } from "./view";
 import { language } from "./words/words";
@@ -52,6 +54,7 @@ const page: Page = {
   sound: new Sound(hub, () => page.scene),
   speech,
   themes: new Themes(hub),
+  leisure: leisure(hub),
   say: (text, how) => announcer.say(text, how),
   forget: (topic) => announcer.forget(topic),
 };
@@ -89,4 +92,5 @@ notice(page);
 build(page, panels);
 dataCursor(page);
 new Frames(page);
+requestAnimationFrame(() => setTimeout(() => view.prepare(remembered()))); // once the page itself is to be seen
 if (measuring) Object.assign(window, { Instrument, stroke }); // what tests look into

@@ -17,6 +17,8 @@ export const figures = {
   touches: [] as number[],
   /** The product that is being made, and when making was last stopped. */
   stage: "",
+  /** Whether each frame waits for its pixels, so that `drawn` says when they were there. */
+  waits: true,
   stoppedMs: 0,
 };
 

@@ -30,6 +30,8 @@ export interface Page {
   readonly sound: Sound;
   readonly speech: Speech;
   readonly themes: Themes;
+  /** Kept when there is time to ask for what nobody waits for (leisure.ts). */
+  readonly leisure: Promise<void>;
   /** Say something to who listens, when its turn comes (announcer.ts): in a live region, and aloud where asked for. */
   say(text: string, how?: How): void;
   /** What a topic said no longer holds. */

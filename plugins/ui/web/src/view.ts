@@ -16,11 +16,13 @@ import { Eye, steer } from "./camera";
 import { EyeDome, screen } from "./eyedome";
 import type { Vec } from "./protocol";
 import type { Scene } from "./scene";
-import { type Looks, Terrain } from "./terrain/terrain";
+import { flat, type Looks, Terrain } from "./terrain/terrain";
 
 const REST_MS = 140;
 /** Surfaces that follow each other sooner, as while a height is dragged, are drawn coarsely until the last one stays. */
 const FOLLOWING_MS = 800;
+/** So is the first surface meanwhile: what is felt of it is being made, and to draw all of it takes as much. */
+const FIRST_MS = 1200;
 /** A terrain that takes longer is drawn coarser while the camera moves. */
 const SLOW_MS = 22;
 /** One that takes as long is drawn with a pixel of the page, however fine the screen is. */
@@ -60,6 +62,8 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
   private stage = new Stage();
   private none = new Camera();
   private pixel = new Uint8Array(4);
+  /** Keeps what `prepare` compiled until a surface uses it. */
+  private prepared: Terrain | null = null;
   private resting = 0;
   private putMs = -Infinity;
   /** To draw all of the terrain; infinite until that was measured. */
@@ -80,20 +84,30 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
     this.size();
   }
 
+  /** Compile what any surface is drawn with, while there is none yet: that takes a fifth of a second in software. */
+  prepare(looks: Looks): void {
+    const { renderer, drawn } = this;
+    if (!renderer || !drawn || this.trouble || this.terrain || this.prepared) return;
+    this.prepared = new Terrain(flat(), looks);
+    renderer.setRenderTarget(drawn);
+    renderer.render(this.prepared.group, this.camera);
+    this.dirty = true;
+  }
+
   /** Draw this surface from now on; where the size is another one, the whole of it is looked at. */
   put(scene: Scene, looks: Looks): void {
     const before = this.scene?.meta;
     this.scene = scene;
+    if (before?.rows !== scene.meta.rows || before.columns !== scene.meta.columns) this.takesMs = Infinity;
     if (this.renderer) {
       this.terrain?.dispose();
       this.fixed.clear();
-      this.terrain = new Terrain(scene, looks);
+      this.terrain = new Terrain(scene, looks, this.takesMs > SLOW_MS);
       this.fixed.add(this.terrain.group);
     }
-    if (before?.rows !== scene.meta.rows || before.columns !== scene.meta.columns) this.takesMs = Infinity;
     if (String(before?.extent_m) !== String(scene.meta.extent_m)) this.frame(...scene.meta.extent_m);
     const now = performance.now();
-    this.moved(now - this.putMs < FOLLOWING_MS ? FOLLOWING_MS : REST_MS);
+    this.moved(!before ? FIRST_MS : now - this.putMs < FOLLOWING_MS ? FOLLOWING_MS : REST_MS);
     this.putMs = now;
   }
 
@@ -161,6 +175,7 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
     renderer.setRenderTarget(drawn);
     renderer.clear();
     renderer.render(this.fixed, this.camera);
+    if (this.terrain) this.unprepare();
     let colours = drawn.texture;
     if (this.eyeDome > 0 && this.shaded) {
       this.stage.clear();
@@ -177,6 +192,11 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
     if (this.takesMs <= VERY_SLOW_MS || this.ratio === 1) return;
     this.size();
     this.drawFixed(renderer, this.drawn!);
+  }
+
+  private unprepare(): void {
+    this.prepared?.dispose();
+    this.prepared = null;
   }
 
   /** Width of a pixel at the place that is looked at. */

@@ -54,7 +54,7 @@ function build(page: Page, root: HTMLElement): void {
   page.hub.on("materials", (said) => {
     segments = said.segments;
     refused.textContent = "";
-    void load();
+    void page.leisure.then(load);
     show();
   });
   body.onchange = ({ target }) => {

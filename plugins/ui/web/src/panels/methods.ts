@@ -11,9 +11,6 @@ import { t } from "../words/methods";
 import { running } from "./methods/running";
 import "./methods.css";
 
-/** The methods are all loaded for their schema: not while the first scene is read. */
-const SCHEMA_AFTER_MS = 1200;
-
 function build(page: Page, root: HTMLElement): void {
   const editor = new Editor(page);
   const complaints = document.createElement("div");
@@ -23,7 +20,7 @@ function build(page: Page, root: HTMLElement): void {
   const forms = document.createElement("div");
   forms.textContent = t("waiting");
   let shown: SectionForm[] = [];
-  let timer = 0;
+  let loading = false;
   const refused = document.createElement("p");
   refused.className = "bad";
   refused.setAttribute("role", "status");
@@ -36,9 +33,9 @@ function build(page: Page, root: HTMLElement): void {
     complain(root, complaints, page.document.complaints);
   };
   const load = async (): Promise<void> => {
-    if (shown.length) return;
-    const schema = await page.net.ask<FileSchema>("schema");
-    if (shown.length) return;
+    if (shown.length || loading) return;
+    loading = true;
+    const schema = await page.net.ask<FileSchema>("schema").finally(() => (loading = false));
     shown = sections(schema).map((each) => new SectionForm(each, (edit) => editor.change(edit)));
     forms.replaceChildren(...shown.map((each) => each.root));
     show();
@@ -50,8 +47,7 @@ function build(page: Page, root: HTMLElement): void {
   root.append(running(page, editor), refused, complaints, steps(page, editor), forms, compare);
   page.hub.on("document", () => {
     show();
-    if (shown.length || timer) return;
-    timer = window.setTimeout(() => void load().catch(() => undefined).finally(() => (timer = 0)), SCHEMA_AFTER_MS);
+    void page.leisure.then(load).catch(() => undefined); // all methods are loaded for their schema
   });
 }
 

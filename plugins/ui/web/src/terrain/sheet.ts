@@ -12,7 +12,8 @@ const NO_LABELS = new Uint16Array(1);
 export class Sheet {
   readonly mesh: Mesh<BufferGeometry, RawShaderMaterial>;
   readonly own: Uniforms;
-  private finest: BufferAttribute;
+  /** All triangles, and fewer; each is made when it is first drawn. */
+  private finest: BufferAttribute | null = null;
   private coarse: BufferAttribute | null = null;
 
   /** common: uniforms that all sheets share. picture: where it lies, x of its left, y of its far rim, width, length. */
@@ -21,6 +22,7 @@ export class Sheet {
     common: Uniforms,
     picture: ImageBitmap | null,
     pictured: [number, number, number, number],
+    moving = false,
   ) {
     const { grid, labels } = part;
     const { rows, columns, place } = grid;
@@ -40,17 +42,17 @@ export class Sheet {
       side: 2,
       uniforms: { ...common, ...this.own },
     });
-    this.finest = new BufferAttribute(triangles(rows, columns, 1), 1);
-    this.mesh = new Mesh(new BufferGeometry().setIndex(this.finest), material);
+    this.mesh = new Mesh(new BufferGeometry(), material);
     this.mesh.frustumCulled = false;
+    this.moving = moving;
   }
 
   /** Fewer triangles, while the camera moves; the shading stays as fine. */
   set moving(moving: boolean) {
     const { rows, columns } = this.part.grid;
-    const stride = strideOf(rows, columns);
-    if (moving && stride > 1) this.coarse ??= new BufferAttribute(triangles(rows, columns, stride), 1);
-    this.mesh.geometry.setIndex((moving && this.coarse) || this.finest);
+    const stride = moving ? strideOf(rows, columns) : 1;
+    const made = (): BufferAttribute => new BufferAttribute(triangles(rows, columns, stride), 1);
+    this.mesh.geometry.setIndex(stride > 1 ? (this.coarse ??= made()) : (this.finest ??= made()));
   }
 
   /** Where another sheet is drawn instead; none where it is empty. */

@@ -1,5 +1,7 @@
 /** The surface as it is drawn: the whole of it, and something finer of where the camera looks. */
 import { Group, Vector2, Vector3, Vector4, type Texture } from "three";
+import { Grid } from "../grid";
+import type { Meta } from "../messages";
 import type { Part, Scene } from "../scene";
 import type { Layer } from "./fetching";
 import { Needles } from "./needles";
@@ -35,6 +37,16 @@ export interface FinePatch {
   heights: Float32Array;
 }
 
+/** What is drawn of a surface. */
+export type Drawable = Pick<Scene, "whole" | "kinds" | "photo"> & { meta: Pick<Meta, "extent_m" | "labels" | "height_m"> };
+
+/** A surface of no use but to have the programs compiled with which any other is drawn. */
+export function flat(): Drawable {
+  const grid = new Grid(new Float32Array(4), 2, 2, { left: -0.5, far: 0.5, dx: 0.5, dy: 0.5 });
+  const meta: Drawable["meta"] = { extent_m: [1, 1], labels: 0, height_m: [0, 0] };
+  return { meta, whole: { grid, labels: null }, kinds: new Uint16Array(1), photo: null };
+}
+
 export class Terrain {
   readonly group = new Group();
   private common: Uniforms;
@@ -42,11 +54,11 @@ export class Terrain {
   private detail: Sheet | null = null;
   private needles: Needles;
   private looks: Looks;
-  private coarse = false;
 
   constructor(
-    private scene: Scene,
+    private scene: Drawable,
     looks: Looks,
+    private coarse = false,
   ) {
     const [w, l] = scene.meta.extent_m;
     this.common = {
@@ -63,7 +75,7 @@ export class Terrain {
       period: { value: w / 60 },
       ...Object.fromEntries(["raking", "steep", "cut", "look", "cover"].map((name) => [name, { value: 0 }])),
     };
-    this.whole = new Sheet(scene.whole, this.common, scene.photo, [-w / 2, l / 2, w, l]);
+    this.whole = new Sheet(scene.whole, this.common, scene.photo, [-w / 2, l / 2, w, l], coarse);
     this.needles = new Needles(this.whole);
     this.group.add(this.whole.mesh, this.needles.lines);
     this.looks = looks;

@@ -74,6 +74,23 @@ class Spread(NamedTuple):
     most: float
 
 
+class FilmFelt(NamedTuple):
+    """How a film was played to a loop."""
+
+    shown: int
+    """Frames that the surface was sent to."""
+    dropped: int
+    """Of these, those that the loop never went to, as a later one took their place."""
+    skipped: int
+    """Frames that were over before they could be looked at."""
+    damaged: int
+    """Frames that could not be read, or showed no depth."""
+    per_s: float
+    """Frames shown a second."""
+    age_ms: float | None
+    """From when a frame is due to when it is shown, the median of the last thousand; none where time is simulated."""
+
+
 @dataclass(frozen=True)
 class ServoReport:
     """How a force loop is doing since it started."""
@@ -105,3 +122,5 @@ class ServoReport:
     """Number of the part that a beacon pulls to; none where no beacon is on."""
     material: str = ""
     """The name of the material under the tip, of parts or of segments; empty where the surface has none."""
+    film: FilmFelt | None = None
+    """How the film is played that is felt; none where the surface stands."""

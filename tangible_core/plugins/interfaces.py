@@ -152,6 +152,19 @@ class Skippable(ABC):
         """A reason, in words, not to run on these views; None to run. Cheap: it is asked for every plan."""
 
 
+class Following(ABC):
+    """For a depth method that looks for something before it matches, such as the range: a film has it found once."""
+
+    @abstractmethod
+    def follow(self, views: Views) -> Callable[[Views], DisparityMap]:
+        """`estimate` for the frames of a film that these views begin.
+
+        What they show of the cameras is kept for all that follow, which is quicker, and steadier: what is called may
+        remember what it saw. It is called for the first frame as well.
+        Raises: TangibleError as `estimate`.
+        """
+
+
 class Reshaping(ABC):
     """For a force law that feels another surface than the one that it is given: `preflight` judges the one felt."""
 

@@ -18,17 +18,14 @@ from ..errors import ConfigError
 from ..plugins.registry import default_registry
 from ..runtime.opencv import plain_opencv
 from ..scene.height_files import said_of
+from ..scene.picture_files import PICTURES as PICTURES
 from ..scene.scene import Scene
 from .cache import Cache
 from .config import parse_config
 from .pipeline import Pipeline
 
-PICTURES = frozenset(
-    (".png", ".jpg", ".jpeg", ".jp2", ".webp", ".bmp", ".gif", ".tif", ".tiff", ".ppm", ".pgm", ".heic", ".avif")
-)
-"""Ends of names that are taken for a picture's; any other one is a pipeline file's."""
 MAPS = frozenset({".npy", ".npz", ".pfm"})
-"""And for those of a map of heights."""
+"""Ends of names that are taken for those of a map of heights."""
 
 SIDE_MM = 80
 """The longer side of the surface: what a small desktop device reaches."""

@@ -10,9 +10,10 @@ import time
 from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
+from dataclasses import replace
 from typing import Protocol, final
 
-from ..data import FilmFelt, Relief
+from ..data import FilmFelt, Relief, ServoReport
 from ..errors import BrokenMethod, DeviceError, Stopped, TangibleError
 from ..runtime.stopping import stoppable
 from ..runtime.threads import limited_threads, processors, thread_limit
@@ -20,7 +21,7 @@ from ..scene.video_frames import VideoFrame
 from .reliefs import FrameRelief, Reliefs
 
 log = logging.getLogger(__name__)
-STOPPING_S = 0.9
+STOPPING_S = 0.5
 """A player is waited for so long when it is to end; one that computes still is left to itself."""
 OPEN_AGAIN_S = 1.0
 """A source that could not be opened is tried again so often."""
@@ -231,6 +232,12 @@ class ByClock:
             self._again_s = time_s + self._frame_s
             if self._screen.waits:
                 self._screen.again()
+            if self._next is None and not self._reliefs.frames.ended:
+                self._next = self._read()
+
+    def told(self, tell: Callable[[ServoReport], None]) -> Callable[[ServoReport], None]:
+        """What passes reports on, how the film is played in them."""
+        return lambda report: tell(replace(report, film=self.felt))
 
     @property
     def felt(self) -> FilmFelt:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ..data import UNTOUCHED, ServoReport, TickFlag
+from ..data import UNTOUCHED, FilmFelt, ServoReport, TickFlag
 from ..plugins.interfaces import HapticDevice, Touch
 from ..runtime.stopping import stop_asked, stoppable
 from ..servo import Beacon, Safety, Servo
@@ -122,7 +122,12 @@ def figures(report: ServoReport) -> dict[str, float]:
         },
         "overruns": report.overruns,
         **{name.lower(): report.flagged.get(name, 0) for name in LIMITS},
+        **({} if report.film is None else _of_film(report.film)),
     }
+
+
+def _of_film(film: FilmFelt) -> dict[str, float]:
+    return {f"frames_{name}": value for name, value in film._asdict().items() if value is not None}
 
 
 LIMITS = [flag.name or "" for flag in TickFlag if not flag & UNTOUCHED]

@@ -2,6 +2,6 @@
 
 from .player import ByClock, Player
 from .reliefs import FrameMaker, FrameRelief, Reliefs
-from .steady import Steady, Steadied
+from .steady import Steadied, Steady
 
 __all__ = ["ByClock", "FrameMaker", "FrameRelief", "Player", "Reliefs", "Steadied", "Steady"]

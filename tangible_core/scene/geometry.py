@@ -15,6 +15,9 @@ Holes = Literal["fill", "cut"]
 RANGE_PERCENT = (0.5, 99.5)
 """The part of a measured map that spans the relief; what lies beyond, mostly wrong matches, is clipped."""
 
+TINY, HUGE = 1e-30, 1e30
+"""Beyond these, what is done with a float32 may leave its range."""
+
 Coordinate = TypeVar("Coordinate", float, np.ndarray)
 
 
@@ -153,8 +156,11 @@ def _relief(
         raise GeometryError(f"width_m and relief_m must be positive lengths in metres, not {width_m} and {relief_m}")
     rows, columns = values.shape
     whole = fill_rows(values) if holes == "fill" else values
-    heights = relief_m * _unit_range(whole, spans)
-    return Relief(np.nan_to_num(heights, nan=0.0).astype(np.float32), (width_m, width_m * rows / columns))
+    heights = _unit_range(whole, spans)
+    heights *= relief_m
+    if holes == "cut":
+        heights = np.nan_to_num(heights, nan=0.0)
+    return Relief(heights.astype(np.float32, copy=False), (width_m, width_m * rows / columns))
 
 
 def _range_of(values: Float[np.ndarray, "h w"], percent: tuple[float, float]) -> ValueRange:
@@ -170,14 +176,17 @@ def _range_of(values: Float[np.ndarray, "h w"], percent: tuple[float, float]) ->
     return ValueRange(float(low * size), float(high * size))
 
 
-def _unit_range(values: Float[np.ndarray, "h w"], spans: ValueRange) -> Float64[np.ndarray, "h w"]:
+def _unit_range(values: Float[np.ndarray, "h w"], spans: ValueRange) -> Float[np.ndarray, "h w"]:
     """Values clipped to a range and mapped to 0..1; 0 where that is empty."""
     size = max(abs(spans.low), abs(spans.high)) or 1.0
     low, high = spans.low / size, spans.high / size
     if not low < high:
         return np.zeros(values.shape)
+    if not (TINY < spans.high - spans.low and size < HUGE):  # whose difference, or whose share, is no float32
+        values, spans = values.astype(np.float64) / size, ValueRange(low, high)
     with np.errstate(over="ignore"):
-        return np.clip((values.astype(np.float64) / size - low) / (high - low), 0, 1)
+        part = (values - values.dtype.type(spans.low)) * values.dtype.type(1 / (spans.high - spans.low))
+        return np.clip(part, 0, 1, out=part)
 
 
 def picture_to_workspace(

@@ -173,7 +173,7 @@ class _Session:
 
     def _play(self, servo: Servo) -> None:
         """The film of this scene, from its first frame."""
-        reliefs, film = self._turns[self._at].reliefs, servo.film
+        self._player, reliefs, film = None, self._turns[self._at].reliefs, servo.film
         if reliefs is not None and film is not None:
             self._player = Player(reliefs(), film, self._threads)
             self._player.start()

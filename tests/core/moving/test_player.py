@@ -4,8 +4,8 @@ from collections import defaultdict
 
 import numpy as np
 import pytest
-from films import GivenFrames, NearnessOfGrey, Seen, greys
 
+from films import GivenFrames, NearnessOfGrey, Seen, greys
 from tangible_core.data import NO_FORCE, HapticState, ServoReport
 from tangible_core.errors import BrokenMethod, PictureError
 from tangible_core.moving import ByClock, FrameMaker, Player, Reliefs

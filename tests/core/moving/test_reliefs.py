@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
-from films import GivenFrames, NearnessOfGrey, greys
 
+from films import GivenFrames, NearnessOfGrey, greys
 from tangible_core.errors import GeometryError
 from tangible_core.moving import Reliefs
 from tangible_core.moving.scale import ADAPTS_S, Scale

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
-from films import layered, true_disparity
 
+from films import layered, true_disparity
 from tangible_core.data import DisparityMap
 from tangible_core.moving import Steady
 from tangible_core.moving.steady import MOST_DOUBTS, MOST_MISSING

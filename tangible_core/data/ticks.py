@@ -60,9 +60,11 @@ TICK_COLUMNS = (
     *("proxy_x_m", "proxy_y_m", "proxy_z_m"),
     *("fx_n", "fy_n", "fz_n"),
     *("flags", "buttons"),
+    "frame",
 )
 """What is kept of a tick, each a float64: when it began and how late, the tip, the proxy (NaN where there is none), the
-force that the device was given, and the sum of its `TickFlag`s."""
+force that the device was given, the sum of its `TickFlag`s, the buttons, and the number of the frame that a surface
+which moves went to (NaN of one that stands still)."""
 
 
 class Spread(NamedTuple):
@@ -105,3 +107,5 @@ class ServoReport:
     """Number of the part that a beacon pulls to; none where no beacon is on."""
     material: str = ""
     """The name of the material under the tip, of parts or of segments; empty where the surface has none."""
+    frame: int | None = None
+    """Number of the frame that a surface which moves goes to; none where it stands still."""

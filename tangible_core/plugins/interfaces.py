@@ -28,6 +28,7 @@ from ..data.arguments import as_picture
 from ..data.quantities import Quantities
 from .film import Film as Film
 from .film import Filming as Filming
+from .film import touch_of as touch_of
 from .link import Link as Link
 from .touch import PlainTouch as PlainTouch
 from .touch import Touch as Touch

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from ..data import UNTOUCHED, ServoReport, TickFlag
-from ..plugins.interfaces import HapticDevice, Touch
+from ..plugins.interfaces import Film, HapticDevice, Touch
 from ..runtime.stopping import stop_asked, stoppable
 from ..servo import Beacon, Safety, Servo
 from .keeper import Keeper
@@ -25,7 +25,7 @@ REPORT_EVERY_S = 0.1
 
 
 def run_in_real_time(
-    touch: Touch,
+    touch: Touch | Film,
     device: HapticDevice,
     seconds: float | None = None,
     limits: Safety | None = None,

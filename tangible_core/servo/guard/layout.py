@@ -43,5 +43,8 @@ FLAGS = 8
 PULL = COUNTS + FLAGS
 """The beacon's force along x and y, which joins the law's; and its stiffness, which joins the law's as well."""
 PULL_STIFFNESS = PULL + 2
-MEMORY = PULL_STIFFNESS + 1
+RISE_M, ROSE_M, LIFT_N, SURFACE_J = range(PULL_STIFFNESS + 1, PULL_STIFFNESS + 5)
+"""Of a surface that moves: by how much it rose under the proxy in this tick, which whoever asks the law writes before
+the guard, and in the one before; the law's part along z in the force that left; and what work it may yet do."""
+MEMORY = SURFACE_J + 1
 """How many numbers a guard remembers."""

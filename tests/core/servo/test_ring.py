@@ -85,7 +85,7 @@ class TestReading:
         small.ticks = Overwritten(small)
         rows, following = small.since(0)
         whole = np.delete(rows, cycle.FLAGS, axis=1)
-        assert whole.tolist() == [[number] * 15 for number in range(1, 16)]
+        assert whole.tolist() == [[number] * 16 for number in range(1, 16)]
         assert following == 16
 
     def test_of_a_ring_that_is_not_full_nothing_is_made_up(self, small: Ring) -> None:

@@ -23,9 +23,10 @@ ABOUT = About("mock", "proxy", "scene: x\nwörds: 1\n", "2026-01-02T03:04:05+00:
 
 def some(count: int = 5, **more) -> Recording:
     """A recording of numbers that float32 holds."""
-    rows = np.random.default_rng(1).normal(size=(count, 16)).astype(np.float32).astype(float)
+    rows = np.random.default_rng(1).normal(size=(count, 17)).astype(np.float32).astype(float)
     rows[:, 0] = 1e5 + np.arange(count) * 0.001
-    rows[:, 14:] = np.arange(2 * count).reshape(count, 2)
+    rows[:, 14:] = np.arange(3 * count).reshape(count, 3)
+    rows[2:, 16] = np.nan  # from the third tick on, another surface, that stands still
     rows[1:, 8:11] = np.nan
     return Recording(rows, **more)
 

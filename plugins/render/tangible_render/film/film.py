@@ -9,7 +9,8 @@ from tangible_core.data.arguments import as_number
 from tangible_core.errors import ConfigError, GeometryError
 from tangible_core.plugins.interfaces import Film
 
-from ..surface.coefficients import BORDER, spline_coefficients
+from ..surface.coefficients import BORDER
+from .coefficients import Scratch, quick_coefficients
 from .slots import DROPPED, Slots
 
 SPEED_M_PER_S = 0.1
@@ -41,6 +42,7 @@ class SplineFilm(Film):
     def __init__(self, touch: CompiledTouch, slots: Slots, extent_m: tuple[float, float], most_m: float) -> None:
         """most_m: how far any place of the surface may go in the time of a frame."""
         self._touch, self._slots, self._extent_m, self._most_m = touch, slots, extent_m, most_m
+        self._scratch: Scratch | None = None
 
     def __reduce__(self) -> tuple[Any, ...]:
         return SplineFilm, (self._touch, self._slots, self._extent_m, self._most_m)
@@ -56,7 +58,10 @@ class SplineFilm(Film):
         Raises: GeometryError for a relief of another grid or extent than the first.
         """
         self._check(relief)
-        self._slots.show(spline_coefficients(relief.height_m), frame, self._most_m)
+        if self._scratch is None:
+            self._scratch = Scratch.of(*relief.height_m.shape)
+        coefficients = quick_coefficients(relief.height_m, self._scratch)
+        self._slots.show(coefficients, frame, self._most_m, self._scratch.ends)
 
     @property
     def arrived(self) -> bool:

@@ -37,29 +37,32 @@ class Slots(NamedTuple):
         shared = np.array([0, count], np.int64)
         return cls(pairs, tiles_m, tiles_m.copy(), np.zeros(SLOTS), shared, np.zeros(SHORT + SLOTS, np.int64))
 
-    def show(self, coefficients: Float32[np.ndarray, "h4 w4"], frame: int, most_m: float) -> None:
-        """Go to this surface next, from where the slot that is played ends, by at most so much anywhere."""
+    def show(self, wanted: Float32[np.ndarray, "h4 w4"], frame: int, most_m: float, ends: np.ndarray) -> None:
+        """Go to this surface next, from where the slot that is played ends, by at most so much anywhere.
+
+        ends: scratch of the same shape.
+        """
         from .playing import publish
 
         while True:
             played, published = slots_of(self.shared)
             free = next(slot for slot in range(SLOTS) if slot not in (played, published))
-            self._fill(free, played, coefficients, most_m)
-            waited = played != published and self.frames[published] != frame
+            np.copyto(ends, wanted)
+            self._fill(free, played, ends, most_m)
             self.frames[free] = frame
             if publish(self.shared, played, published, free):
-                self.told[DROPPED] += waited
+                self.told[DROPPED] += played != published and self.frames[published] != frame
                 return
 
-    def _fill(self, free: int, played: int, coefficients: np.ndarray, most_m: float) -> None:
-        begins = self.pairs[played, ..., 1]
-        way = coefficients - begins
-        ends = np.where(np.abs(way) <= most_m, coefficients, begins + np.clip(way, -most_m, most_m))
-        self.pairs[free, ..., 0], self.pairs[free, ..., 1] = begins, ends
-        self.told[SHORT + free] = not np.array_equal(ends, coefficients)
-        self.ends_m[free] = tile_bounds(ends)
-        self.tiles_m[free, ..., 0] = np.maximum(self.ends_m[free, ..., 0], self.ends_m[played, ..., 0])
-        self.tiles_m[free, ..., 1] = np.minimum(self.ends_m[free, ..., 1], self.ends_m[played, ..., 1])
+    def _fill(self, free: int, played: int, ends: np.ndarray, most_m: float) -> None:
+        """A slot that begins where another ends. `ends` are the wanted coefficients, and become what it ends with."""
+        from .filter_kernels import go_on
+
+        self.told[SHORT + free] = go_on(ends, self.pairs[played], self.pairs[free], most_m)
+        self.ends_m[free] = bounds = tile_bounds(ends)
+        begins, both = self.ends_m[played], self.tiles_m[free]
+        np.maximum(bounds[..., 0], begins[..., 0], out=both[..., 0])
+        np.minimum(bounds[..., 1], begins[..., 1], out=both[..., 1])
 
     @property
     def arrived(self) -> bool:

@@ -79,6 +79,8 @@ class CameraFrames(VideoFrames):
 
     def close(self) -> None:
         """Within a second, also while the camera's driver hangs: then it is given back when that goes on."""
+        if self._closed.is_set():
+            return
         self._closed.set()
         with self._changed:
             self._changed.notify_all()

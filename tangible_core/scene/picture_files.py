@@ -33,6 +33,9 @@ PICTURES = frozenset(
 )
 """Ends of names that are taken for a picture's; any other one is a pipeline file's."""
 
+VIDEOS = frozenset((".mp4", ".m4v", ".mov", ".avi", ".mkv", ".webm", ".mpg", ".mpeg", ".wmv", ".ogv", ".3gp", ".mts"))
+"""And for a video's."""
+
 NonFinite = Literal["error", "mask"]
 T = TypeVar("T")
 
@@ -206,9 +209,8 @@ def _said_of(path: Path) -> Generator[None]:
             warnings.simplefilter("error", Image.DecompressionBombWarning)
             yield
     except UnidentifiedImageError as error:
-        raise PictureError(
-            f"{path}: is not a picture that this program can read; use PNG, JPEG, TIFF, PFM or NPY"
-        ) from error
+        cure = "write `video:` for a video" if path.suffix.lower() in VIDEOS else "use PNG, JPEG, TIFF, PFM or NPY"
+        raise PictureError(f"{path}: is not a picture that this program can read; {cure}") from error
     except (Image.DecompressionBombError, Image.DecompressionBombWarning) as error:  # Pillow's limit is above ours
         raise _too_large(path, TOO_MANY_PIXELS) from error
     except TooLargeError as error:

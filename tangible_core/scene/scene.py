@@ -120,25 +120,26 @@ class Scene:
         Pictures are (h, w) or (h, w, 3|4), uint8, uint16, bool or float (white is 1). All are of one size.
         Raises: ConfigError for parts that make no scene, PictureError for one that cannot be read or is no picture.
         """
+        if not isinstance(cast(object, video), str | PathLike | int | None):
+            raise wrong_argument("video", video, "the path of a file or a folder, or the number of a camera")
+        said_whole = {"video": video} if isinstance(video, int) or "://" in str(video) else {}
         parts: dict[str, Any] = {
             "left": left, "right": right, "stereo": stereo, "photo": photo, "height": height,
             "disparity": disparity, "segments": segments, "truth": truth, "rig": rig,
+            "video": None if said_whole else video,
         }  # fmt: skip
         parts = {part: value for part, value in parts.items() if value is not None}
         _check_cameras(calibration, rig)
-        numbered = {"video": video} if isinstance(video, int) else {}
-        if video is not None and not numbered:
-            parts["video"] = as_path(video, "video")
         paths = {
             part: as_path(cast(Any, value), part).absolute()
             for part, value in parts.items()
             if isinstance(value, str | PathLike)
         }
         files = _checked(
-            paths | numbered | {part: Path(f"the array given as {part}") for part in parts.keys() - paths.keys()},
+            paths | {part: Path(f"the array given as {part}") for part in parts.keys() - paths.keys()},
             calibration,
-            {"relief_m": relief_m, "truth_scale": truth_scale, "layout": layout, "photo_depth": photo_depth,
-             "fps": fps, "repeat": repeat, "crop": crop, "rotate": rotate,
+            {**said_whole, "relief_m": relief_m, "truth_scale": truth_scale, "layout": layout,
+             "photo_depth": photo_depth, "fps": fps, "repeat": repeat, "crop": crop, "rotate": rotate,
              "invert": invert, "nodata": nodata, "clip": clip, "non_finite": non_finite},
         )  # fmt: skip
         if paths.keys() == parts.keys():

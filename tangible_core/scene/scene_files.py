@@ -24,7 +24,7 @@ Number = Annotated[float, Field(allow_inf_nan=False)]
 _NEEDS = {
     **{"focal_px": "baseline_m", "baseline_m": "focal_px", "offset_px": "focal_px"},
     **{"relief_m": "height", "rig": "left", "rig_unit_m": "rig", "nodata": "height"},
-    **{"truth_scale": "truth", "fps": "video"},
+    **{"truth_scale": "truth", "fps": "video", "repeat": "video"},
 }
 _ALONE = ("rotate", "invert", "clip")
 _BESIDE_VIDEO = ("video", "layout", "fps", "segments", "crop", "repeat")
@@ -36,17 +36,17 @@ _OF_VIEWS = ("disparity", "truth", "truth_scale", "focal_px", "baseline_m", "off
 def _video(value: object) -> object:
     """Raises: ValueError for what names no video."""
     if isinstance(value, str) and re.match(r"[A-Za-z][A-Za-z0-9+.-]+://", value):
-        raise ValueError("addresses are not opened: save the video as a file first")
-    if value is not None and (isinstance(value, bool) or not isinstance(value, str | Path | int) or value in ("", -1)):
+        raise ValueError("no address is opened; save the video as a file")
+    if isinstance(value, bool) or value == "" or not isinstance(value, str | Path | int | None):
         raise ValueError(_WHAT_VIDEO)
-    if isinstance(value, int) and not 0 <= value <= MOST_CAMERAS:
+    if isinstance(value, int) and not 0 <= value <= LAST_CAMERA:
         raise ValueError(_WHAT_VIDEO)
     return value
 
 
-MOST_CAMERAS = 99
-_WHAT_VIDEO = "a video is the path of a file, a folder of pictures, or the number of a camera, from 0"
-Video = Annotated[Path | Annotated[int, Field(ge=0, le=MOST_CAMERAS)], BeforeValidator(_video)]
+LAST_CAMERA = 99
+_WHAT_VIDEO = "a video is the path of a file or of a folder of pictures, or the number of a camera, from 0"
+VideoSource = Annotated[Path | Annotated[int, Field(ge=0, le=LAST_CAMERA)], BeforeValidator(_video)]
 
 
 class SceneFiles(Quantities):
@@ -61,7 +61,7 @@ class SceneFiles(Quantities):
     """Right view of a rectified pair, of the same size."""
     stereo: Path | None = None
     """A rectified pair in one file: two halves of a picture, a .jps file, or the two pictures of an .mpo file."""
-    video: Video | None = None
+    video: VideoSource | None = None
     """A video file, a folder of pictures in the order of their numbers, or the number of a camera, from 0.
     `tangible feel` plays it; everything else takes its first frame."""
     fps: Fps | None = None
@@ -131,6 +131,7 @@ class SceneFiles(Quantities):
         given += ["video"] if isinstance(self.video, int) else []
         given += [] if self.repeat else ["repeat"]
         if "video" in given:
+            given += [] if self.non_finite == "error" else ["non_finite"]
             self._check_video([*given, *(name for name in ("crop", *_ALONE) if getattr(self, name))])
             return self
         kinds = [kind for kind in (("left", "right"), ("stereo",), ("photo",), ("height",)) if set(kind) & set(given)]

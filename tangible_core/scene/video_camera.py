@@ -1,6 +1,5 @@
 """A camera, frame by frame: a thread keeps the newest picture, so that nobody waits for the camera's own pace."""
 
-import logging
 import sys
 from pathlib import Path
 from threading import Condition, Event, Thread
@@ -10,12 +9,10 @@ from typing import NamedTuple, final
 import numpy as np
 from jaxtyping import UInt8
 
-from ..errors import PictureError
+from ..errors import PictureError, shown
 from . import video_capture
 from .video_capture import USUAL_FPS, Capture, OpenCamera, grabbed, retrieved, stated_fps
 from .video_frames import VideoFrame, VideoFrames, ViewsOf
-
-log = logging.getLogger(__name__)
 
 FIRST_S = 15.0
 """For a camera to give its first picture; some take seconds to find their exposure."""
@@ -23,6 +20,10 @@ NEXT_S = 5.0
 """For each one after that."""
 AGAIN_S = 0.5
 """Between two attempts to reach a camera that was unplugged."""
+SLICE_S = 0.2
+"""Of waiting for it: in between, a signal is heard, which some systems do not let through to who waits."""
+MOST_DAMAGED = 30
+"""Pictures in a row, before a camera counts as lost."""
 ENDED_S = 0.8
 """That an end waits for the thread; one that hangs in the camera's driver ends when it comes back."""
 
@@ -62,18 +63,24 @@ class CameraFrames(VideoFrames):
 
     @property
     def ended(self) -> bool:
+        """Whether it was closed: a camera has no end."""
         return self._closed.is_set()
 
     def next(self) -> VideoFrame | None:
+        """Waits for the next picture. Raises: PictureError if none comes for seconds, or, once, if it is lost."""
         self._wait(NEXT_S)
         return None if self.ended else self._newer()
 
     def at(self, time_s: float) -> VideoFrame | None:
+        """The newest picture, whatever the time. Raises: PictureError, once, if the camera is lost."""
         with self._changed:
             self._raise_lost()
         return None if self.ended else self._newer()
 
     def close(self) -> None:
+        """Within a second, also while the camera's driver hangs: then it is given back when that goes on."""
+        if self._closed.is_set():
+            return
         self._closed.set()
         with self._changed:
             self._changed.notify_all()
@@ -81,10 +88,11 @@ class CameraFrames(VideoFrames):
 
     def _wait(self, most_s: float) -> None:
         """Until there is a newer picture. Raises: PictureError if none comes, or the camera is lost."""
+        until_s = monotonic() + most_s
         with self._changed:
-            if self._changed.wait_for(lambda: self._is_newer() or self._lost or self.ended, most_s):
-                self._raise_lost()
-                return
+            while monotonic() < until_s:
+                if self._changed.wait_for(lambda: self._is_newer() or self._lost or self.ended, SLICE_S):
+                    return self._raise_lost()
         raise PictureError(
             f"camera {self._camera}: gives no picture; check its cable, and that no other program uses it"
         )
@@ -107,39 +115,47 @@ class CameraFrames(VideoFrames):
         return self._frame(shot.number, shot.taken_s - self._first_s, shot.picture, f"camera {self._camera}")
 
     def _watch(self) -> None:
-        """The thread: as long as it is not closed, the newest picture, or what is wrong."""
-        was_there = True
+        """The thread: as long as it is not closed, the newest picture, or, once, what is wrong."""
+        said = False
         while not self._closed.is_set():
-            was_there = self._follow(was_there)
+            taken = self._taken
+            lost = self._follow()
+            said &= self._taken == taken
+            if not said:
+                with self._changed:
+                    self._lost, said = lost, True
+                    self._changed.notify_all()
             self._closed.wait(AGAIN_S)
 
-    def _follow(self, was_there: bool) -> bool:
-        """Until the camera is lost; whether that was said, or there is nothing to say."""
+    def _follow(self) -> PictureError:
+        """Take pictures until that fails; why it did."""
         taken, capture = self._taken, None
         try:
             capture = self._open(self._camera, self._asked_fps)
             if capture.isOpened():
                 self.fps = self._asked_fps or stated_fps(capture) or USUAL_FPS
                 self._take_all(capture)
-            lost = self._absent() if self._taken == taken else PictureError(
-                f"camera {self._camera}: was unplugged, or another program took it; plug it in again"
-            )  # fmt: skip
+        except PictureError as error:
+            return error
         except Exception as error:  # noqa: BLE001 - a driver can provoke any, and the reader is to hear of it
-            lost = error if isinstance(error, PictureError) else PictureError(f"camera {self._camera}: {error}")
+            return PictureError(f"camera {self._camera}: {shown(str(error))}; check its cable")
         finally:
             if capture is not None:
                 capture.release()
-        if was_there or self._taken > taken:
-            with self._changed:
-                self._lost = lost
-                self._changed.notify_all()
-        return False
+        if self._taken == taken:
+            return self._absent()
+        return PictureError(
+            f"camera {self._camera}: was unplugged, or another program took it; plug it in again, and it goes on"
+        )
 
     def _take_all(self, capture: Capture) -> None:
-        while not self._closed.is_set() and grabbed(capture):
+        damaged = 0
+        while damaged < MOST_DAMAGED and not self._closed.is_set() and grabbed(capture):
             taken_s = monotonic()
             if (picture := retrieved(capture, f"camera {self._camera}")) is None:
+                damaged += 1
                 continue
+            damaged = 0
             with self._changed:
                 self._first_s = self._first_s if self._taken else taken_s
                 self._newest = _Shot(self._taken, taken_s, picture)

@@ -14,6 +14,7 @@ from ..data.pictures import to_rgb8
 from ..errors import PictureError, did_you_mean
 from ..files.reading import TooLargeError, check_size
 from ..runtime.opencv import silent_opencv
+from ..runtime.threads import processors, thread_limit
 
 USUAL_FPS = 30.0
 """Of a folder, and where nothing that makes sense is said."""
@@ -21,14 +22,32 @@ LEAST_FPS, MOST_FPS = 0.1, 480.0
 """Between these, a rate that a file or a camera says of itself is believed; some say 0, or the ticks of their clock."""
 
 
+MOST_THREADS = 4
+"""Of a decoder: each holds frames of its own."""
+
+
 class Capture(Protocol):
     """What is used of cv2.VideoCapture."""
 
-    def isOpened(self) -> bool: ...  # noqa: N802, D102 - OpenCV's names
-    def grab(self) -> bool: ...  # noqa: D102
-    def retrieve(self) -> tuple[bool, Any]: ...  # noqa: D102
-    def get(self, propId: int, /) -> float: ...  # noqa: N803, D102
-    def release(self) -> None: ...  # noqa: D102
+    def isOpened(self) -> bool:
+        """Whether there is anything to play."""
+        ...
+
+    def grab(self) -> bool:
+        """Go to the next frame; whether there is one."""
+        ...
+
+    def retrieve(self) -> tuple[bool, Any]:
+        """Whether the frame is whole, and its picture in BGR."""
+        ...
+
+    def get(self, propId: int, /) -> float:
+        """What is known of it, by a number of OpenCV's."""
+        ...
+
+    def release(self) -> None:
+        """Give it back."""
+        ...
 
 
 OpenCamera = Callable[[int, float | None], Capture]
@@ -44,7 +63,8 @@ def open_file(path: Path) -> Capture:
 
     _check_is_file(path)
     with silent_opencv():
-        capture = cast(Capture, cv2.VideoCapture(str(path.absolute()), cv2.CAP_FFMPEG))
+        threads = [cv2.CAP_PROP_N_THREADS, min(thread_limit() or processors(), MOST_THREADS)]
+        capture = cast(Capture, cv2.VideoCapture(str(path.absolute()), cv2.CAP_FFMPEG, threads))
     if not capture.isOpened():
         raise PictureError(
             f"{path}: is no video that this program can play, or has no pictures; convert it to an .mp4 with H.264"
@@ -60,7 +80,7 @@ def open_camera(number: int, fps: float | None) -> Capture:
 
     with silent_opencv():
         capture = cv2.VideoCapture(number)
-        if fps is not None and capture.isOpened():
+        if fps is not None:
             capture.set(cv2.CAP_PROP_FPS, fps)
     return cast(Capture, capture)
 

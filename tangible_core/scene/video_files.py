@@ -3,7 +3,7 @@
 import warnings
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, NamedTuple, cast
+from typing import Any, NamedTuple, cast, final
 
 import numpy as np
 
@@ -12,9 +12,9 @@ from ..data.pictures import filled, opaque
 from ..errors import PictureError
 from .frames import Say, unsaid
 from .framing import framed
-from .pair_files import Layout, halves
+from .pair_files import halves
 from .picture_files import FORMATS
-from .rig import StereoRig, turned
+from .rig import StereoRig, Turning
 from .scene_files import SceneFiles, VideoLayout
 from .video_camera import CameraFrames
 from .video_frames import VideoFrame as VideoFrame
@@ -48,18 +48,29 @@ class Video:
 
     def open(self) -> VideoFrames:
         """Its frames, from the first one. Raises: PictureError if it cannot be played."""
-        fps = None if self.timed and not isinstance(self.source, int) else self.fps
-        frames = _opened(self.source, fps, self.repeat, self.views_of)
+        frames = _opened(self.source, None if self.timed else self.fps, self.repeat, FrameViews(self))
         frames.size = self.size
         return frames
 
-    def views_of(self, picture: np.ndarray) -> Views:
-        """The view, or the two, of one frame as it is stored."""
-        files = still(self.files)
-        held = framed(parts_of(picture, self.files, self.name), files)
-        held = {part: _solid(values, self.name) for part, values in held.items()}
-        views = Views(held[files.main], held.get("right"), self.files.calibration)
-        return views if self.rig is None else turned(views, self.rig).views
+
+@final
+class FrameViews:
+    """What becomes of each frame of a video: its view, or the two, as a scene would read them from files."""
+
+    def __init__(self, video: Video) -> None:
+        self._video, self._files = video, still(video.files)
+        self._turning: Turning | None = None
+
+    def __call__(self, picture: np.ndarray) -> Views:
+        """picture: as it is stored. Raises: PictureError if nothing of it is to be seen."""
+        video, files = self._video, self._files
+        held = framed(parts_of(picture, video.files, video.name), files)
+        held = {part: _solid(values, video.name) for part, values in held.items()}
+        views = Views(held[files.main], held.get("right"), files.calibration)
+        if video.rig is None:
+            return views
+        self._turning = self._turning or Turning(video.rig, views.shape)
+        return self._turning.of(views).views
 
 
 class FirstFrame(NamedTuple):
@@ -76,7 +87,7 @@ def read_video(source: Path | int, files: SceneFiles, rig: StereoRig | None, say
     Raises: PictureError if it is none, or cannot be played.
     """
     name = _name(source)
-    with _opened(source, files.fps, False, cast(ViewsOf, lambda picture: picture)) as frames:
+    with _opened(source, files.fps, False, cast(ViewsOf, _as_stored)) as frames:
         first = frames.next()
         if first is None or (isinstance(frames, FileFrames) and _is_picture(source, frames)):
             raise PictureError(f"{source}: is one picture and no video; write `photo:` instead of `video:`")
@@ -85,7 +96,7 @@ def read_video(source: Path | int, files: SceneFiles, rig: StereoRig | None, say
     video = Video(
         source, files.layout or "mono", fps, name, files.repeat, files.fps is None, count, picture.shape[:2], files, rig
     )
-    say(f"{name} is a video, of which this is {_which(source, count)}; `tangible feel` plays it")
+    say(f"{_short(source)} is a video, of which this is {_which(source, count)}; `tangible feel` plays it")
     return FirstFrame(video, picture)
 
 
@@ -101,7 +112,7 @@ def parts_of(picture: np.ndarray, files: SceneFiles, name: str) -> dict[str, np.
     """The parts of a scene that one frame of a video holds: a photo, or left and right."""
     if files.layout in (None, "mono"):
         return {"photo": picture}
-    return halves(picture, cast("Layout", files.layout), name)._asdict()
+    return halves(picture, files.layout, name)._asdict()
 
 
 def _opened(
@@ -112,8 +123,16 @@ def _opened(
     return (FolderFrames if source.is_dir() else FileFrames)(source, fps, repeat, views_of)
 
 
+def _as_stored(picture: np.ndarray) -> np.ndarray:
+    return picture
+
+
 def _name(source: Path | int) -> str:
     return f"camera {source}" if isinstance(source, int) else str(source)
+
+
+def _short(source: Path | int) -> str:
+    return _name(source) if isinstance(source, int) else source.name or str(source)
 
 
 def _which(source: Path | int, count: int | None) -> str:
@@ -123,16 +142,16 @@ def _which(source: Path | int, count: int | None) -> str:
 
 
 def _is_picture(source: Path | int, frames: FileFrames) -> bool:
-    """Whether a file is a picture that can be played as a video of one frame. Raises: PictureError as `next`."""
-    if frames.next() is not None:
-        return False
+    """Whether a file is a picture that can be played as a video of one frame."""
     from PIL import Image, UnidentifiedImageError
 
     with warnings.catch_warnings(action="ignore"):
         try:
+            if frames.next() is not None:
+                return False
             with Image.open(cast(Path, source), formats=FORMATS):
                 return True
-        except (UnidentifiedImageError, OSError, ValueError, Image.DecompressionBombError):
+        except (PictureError, UnidentifiedImageError, OSError, ValueError, Image.DecompressionBombError):
             return False
 
 

@@ -39,7 +39,12 @@ SHORT = 0.1
 
 @final
 class FileFrames(VideoFrames):
-    """The frames of a video file. One that is skipped is decoded, as the next ones are made of it, but not converted."""
+    """The frames of a video file.
+
+    One that is skipped is decoded, as the next ones are made of it, but not converted to colours, which takes as long,
+    where it is certain that the next one is due as well: by a rate that was said, or by time stamps that were even in a
+    whole round before. A frame that stands for seconds is never missed.
+    """
 
     def __init__(self, path: Path, fps: float | None, repeat: bool, views_of: ViewsOf) -> None:
         """fps: frames a second, instead of when the file says that they are due.
@@ -50,23 +55,28 @@ class FileFrames(VideoFrames):
         super().__init__(fps or stated_fps(self._capture) or USUAL_FPS, views_of)
         self.count = stated_count(self._capture)
         self._path, self._repeat, self._timed = path, repeat, fps is None
-        self._grabbed = self._in_round = self._good = 0
+        self._grabbed = self._in_round = self._damaged = 0
         self._waiting = False
         self._due_s = self._stamp_s = self._late_s = 0.0
-        self._even = True
+        self._even, self._known_even = True, fps is not None
         self._ended = False
 
     @property
     def ended(self) -> bool:
+        """Whether the last frame was had, and it does not begin again."""
         return self._ended
 
     def next(self) -> VideoFrame | None:
+        """The next frame that is whole. Raises: PictureError, once, for a damaged one, or a file that is cut short."""
         while self._waiting or self._advance():
             if (frame := self._take()) is not None:
                 return frame
         return None
 
     def at(self, time_s: float) -> VideoFrame | None:
+        """The latest that is due; where there are too many to skip in a tenth of a second, a former one, and from there
+        on all come later. Raises: PictureError as `next`.
+        """
         found: VideoFrame | None = None
         began_s = monotonic()
         while self._waiting or self._advance():
@@ -87,13 +97,14 @@ class FileFrames(VideoFrames):
         return found
 
     def close(self) -> None:
+        """Close the file."""
         self._ended, self._waiting = True, False
         self._release()
 
     def _another_by(self, time_s: float) -> bool:
         """Whether the frame after the one that was grabbed is due by then, too."""
         last = self.count is not None and self._in_round >= self.count and not self._repeat
-        return self._even and not last and self._due_s + self._late_s + (1 + UNEVEN) / self.fps <= time_s
+        return self._known_even and not last and self._due_s + self._late_s + (1 + UNEVEN) / self.fps <= time_s
 
     def _advance(self) -> bool:
         """Grab the next frame; False at the end. Raises: PictureError if the file ends before it should."""
@@ -122,22 +133,23 @@ class FileFrames(VideoFrames):
     def _take(self) -> VideoFrame | None:
         """What was grabbed, as a frame; None for a damaged one. Raises: PictureError, once, for a damaged one."""
         self._waiting = False
-        picture = self._capture and retrieved(self._capture, self._path)
+        picture = None if self._capture is None else retrieved(self._capture, self._path)
         if picture is None:
             self.skipped += 1
+            self._damaged += 1
             said = f"{self._path}: frame {self._in_round - 1} is damaged and left out; copy or download the file again"
             self._say_once("damaged", PictureError(said))
             return None
-        self._good += 1
         return self._frame(self._grabbed - 1, self._due_s, picture, self._path)
 
     def _end_round(self) -> None:
         """Behind the last frame. Raises: PictureError if there was none; once, if there should be more."""
-        held, good = self._in_round, self._good
-        self._in_round = self._good = 0
+        held, damaged = self._in_round, self._damaged
+        self._known_even = self._even
+        self._in_round = self._damaged = 0
         self._release()
         self._ended = not self._repeat
-        if not held or (not good and self._repeat and not self.skipped):
+        if held == damaged:
             raise PictureError(f"{self._path}: no frame of it can be played; convert it to an .mp4 with H.264")
         if self.count is not None and held + 2 < self.count * (1 - SHORT):
             said = f"{self._path}: is damaged or cut short after {held} of {self.count} frames; copy it again"
@@ -163,9 +175,11 @@ class FolderFrames(VideoFrames):
 
     @property
     def ended(self) -> bool:
+        """Whether the last picture was had, and it does not begin again."""
         return self._number >= len(self._pictures) and not self._repeat
 
     def next(self) -> VideoFrame | None:
+        """The next picture that is whole. Raises: PictureError, once, for a damaged one; if none of them is whole."""
         for _ in self._pictures:
             if self.ended:
                 return None
@@ -174,6 +188,7 @@ class FolderFrames(VideoFrames):
         raise PictureError(f"{self._folder}: none of its {len(self._pictures)} pictures can be read; copy them again")
 
     def at(self, time_s: float) -> VideoFrame | None:
+        """The latest that is due; None if that one is damaged. Raises: PictureError as `next`."""
         due = floor((time_s + EARLY_S) * self.fps)
         due = due if self._repeat else min(due, len(self._pictures) - 1)
         if due < self._number:
@@ -183,6 +198,7 @@ class FolderFrames(VideoFrames):
         return self._read()
 
     def close(self) -> None:
+        """Nothing comes any more; no file is open."""
         self._number, self._repeat = len(self._pictures), False
 
     def _read(self) -> VideoFrame | None:

@@ -22,29 +22,24 @@ def step(new, kept, waiting, doubts, out, averaged, gate, most_doubts, most_miss
     for y in range(new.shape[0]):
         for x in range(new.shape[1]):
             value, held = new[y, x], kept[y, x]
-            if np.isnan(value):
-                if not np.isnan(held):
-                    doubts[y, x] += 1
-                    if doubts[y, x] > most_missing:
-                        held = np.float32(np.nan)
-                        doubts[y, x] = 0
-                waiting[y, x] = np.float32(np.nan)
-            elif abs(value - held) <= gate:
+            if abs(value - held) <= gate:  # never for NaN; the usual case first
                 held += averaged * (value - held)
-                doubts[y, x] = 0
-                waiting[y, x] = np.float32(np.nan)
-                known += 1
-            else:
-                seen = waiting[y, x]
-                doubts[y, x] += 1
-                known += 1
-                changed += not np.isnan(held)
-                if abs(value - seen) <= gate or doubts[y, x] > most_doubts:
-                    held = value
+                if doubts[y, x]:
                     doubts[y, x] = 0
                     waiting[y, x] = np.float32(np.nan)
-                else:
-                    waiting[y, x] = value
+                known += 1
+            elif np.isnan(value):
+                waiting[y, x] = np.float32(np.nan)
+                doubts[y, x] += not np.isnan(held)
+                if doubts[y, x] > most_missing:
+                    held, doubts[y, x] = np.float32(np.nan), 0
+            else:
+                known += 1
+                changed += not np.isnan(held)
+                doubts[y, x] += 1
+                if abs(value - waiting[y, x]) <= gate or doubts[y, x] > most_doubts:
+                    held, doubts[y, x] = value, 0
+                waiting[y, x] = np.float32(np.nan) if doubts[y, x] == 0 else value
             kept[y, x] = held
             out[y, x] = held
     return changed, known

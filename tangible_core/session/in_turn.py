@@ -85,7 +85,7 @@ class _Session:
         keep: Callable[[np.ndarray], None] | None,
         on_start: Callable[[Servo], None] | None,
         on_wait: Callable[[str], None] | None,
-        threads: int | None,
+        threads: int | None = None,
     ) -> None:
         self._turns, self._device, self._seconds, self._each_s = turns, device, seconds, each_s
         self._hear, self._keep_rows, self._begin = on_report or ignored, keep or ignored, on_start or ignored

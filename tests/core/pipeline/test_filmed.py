@@ -1,4 +1,5 @@
 import threading
+import time
 
 import cv2
 import numpy as np
@@ -179,3 +180,18 @@ def test_a_plugins_fault_ends_the_session(filmed, monkeypatch, in_real_time):
     monkeypatch.setitem(globals(), "FIRST_MEAN", pipeline.views.left.mean())
     with pytest.raises(BrokenMethod, match="made disparity of 4 x 3"):
         pipeline.feel(Mock(path="circle"), 5.0, in_real_time=in_real_time)
+
+
+@pytest.mark.slow
+def test_stop_ends_it_soon_and_leaves_no_thread(filmed):
+    stop, began = threading.Event(), time.monotonic()
+
+    def heard(report):
+        nonlocal began
+        if not stop.is_set() and report.film and report.film.shown:
+            began = time.monotonic()
+            stop.set()
+
+    recording = filmed().feel(Mock(path="circle"), 60.0, stop=stop, on_report=heard)
+    assert recording.stopped and time.monotonic() - began < 10
+    assert not [each for each in threading.enumerate() if each.name == "film"]

@@ -90,20 +90,13 @@ class Proxy(ForceRenderer, Filming):
         a hand at rest changes by 0.08 N a tick. Friction holds the proxy's place, on a surface that rises and falls;
         damping is that of the hand alone. Heights in steps are not smoothed.
         """
-        from .film.coefficients import Scratch, quick_coefficients
-        from .film.film import SplineFilm, checked, most_m
-        from .film.slots import Slots
+        from .film.film import begun, checked
 
         period_s, frame_s = checked(period_s, frame_s)
         law = self._law(surface)
-        (rows, columns), (width_m, length_m) = surface.height_m.shape, surface.extent_m
-        extent = width_m, length_m, columns / width_m, rows / length_m
-        coefficients = quick_coefficients(surface.height_m, Scratch.of(rows, columns))
-        count = max(1, round(frame_s / period_s))
-        slots, moving = Slots.still(coefficients, count), np.array([0.0, 0.0])
-        fixed = (slots.pairs, slots.tiles_m, slots.frames, slots.shared, float(count), *extent, *law.arguments, moving)
-        touch = CompiledTouch(_moving(law.kind), fixed, law.memory, law.stiffness_n_per_m, moving)
-        return SplineFilm(touch, slots, surface.extent_m, most_m(law.stiffness_n_per_m, period_s, count))
+        damping_n_s_per_m = float(law.arguments[1][:, 1].max()) if law.kind != "spring" else 0.0
+        spring = law.stiffness_n_per_m, damping_n_s_per_m
+        return begun(surface, _moving(law.kind), law.arguments, law.memory, spring, period_s, frame_s)
 
     def _law(self, surface: HapticSurface) -> _Law:
         from .contact import contact

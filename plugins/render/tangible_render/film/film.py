@@ -3,8 +3,11 @@
 import math
 from typing import Any, final
 
-from tangible_core.compiled.touch import CompiledTouch
-from tangible_core.data import Relief
+import numpy as np
+from jaxtyping import Float64
+
+from tangible_core.compiled.touch import CompiledTouch, Tick
+from tangible_core.data import HapticSurface, Relief
 from tangible_core.data.arguments import as_number
 from tangible_core.errors import ConfigError, GeometryError
 from tangible_core.plugins.interfaces import Film
@@ -16,7 +19,7 @@ from .slots import DROPPED, Slots
 SPEED_M_PER_S = 0.1
 """No place of a surface moves faster: a hand does not."""
 STEP_N = 0.08
-"""Nor so fast that the spring on a hand at rest changes by more in a tick, which a hand would feel as a knock."""
+"""Nor so fast that the spring on a hand at rest changes by more in a tick, which it would feel as a knock."""
 
 
 def checked(period_s: float, frame_s: float) -> tuple[float, float]:
@@ -25,11 +28,6 @@ def checked(period_s: float, frame_s: float) -> tuple[float, float]:
         if not 0 < as_number(name, value) < math.inf:
             raise ConfigError(f"{name} is {value}; a film needs a positive number of seconds")
     return float(period_s), float(frame_s)
-
-
-def most_m(stiffness_n_per_m: float, period_s: float, count: int) -> float:
-    """How far any place of a surface may go in this many ticks, under a spring of this stiffness."""
-    return min(SPEED_M_PER_S, STEP_N / (stiffness_n_per_m * period_s)) * count * period_s
 
 
 @final
@@ -80,6 +78,29 @@ class SplineFilm(Film):
             return
         given, first = _grid(relief.height_m.shape, relief.extent_m), _grid(shape, self._extent_m)
         raise GeometryError(f"a frame has {given}, the first one {first}; all frames of a film need the same grid")
+
+
+def begun(
+    surface: HapticSurface,
+    tick: Tick,
+    arguments: tuple[Any, ...],
+    memory: Float64[np.ndarray, "n"],
+    spring: tuple[float, float],
+    period_s: float,
+    frame_s: float,
+) -> SplineFilm:
+    """A film that stands still on this surface. arguments, memory: of the law; spring: its stiffness and damping."""
+    from .steady import beginning
+
+    (rows, columns), (width_m, length_m) = surface.height_m.shape, map(float, surface.extent_m)
+    coefficients = quick_coefficients(surface.height_m, Scratch.of(rows, columns))
+    count = max(1, round(frame_s / period_s))
+    slots, moving = Slots.still(coefficients, count), np.zeros(2)
+    shape = width_m, length_m, columns / width_m, rows / length_m
+    shown = slots.pairs, slots.tiles_m, slots.frames, slots.shared, float(count)
+    touch = CompiledTouch(tick, (*shown, *shape, *arguments, beginning(*spring), moving), memory, spring[0], moving)
+    speed_m_per_s = min(SPEED_M_PER_S, STEP_N / (spring[0] * period_s))
+    return SplineFilm(touch, slots, surface.extent_m, speed_m_per_s * count * period_s)
 
 
 def _grid(shape: tuple[int, ...], extent_m: tuple[float, float]) -> str:

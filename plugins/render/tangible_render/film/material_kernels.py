@@ -12,16 +12,17 @@ from tangible_core.compiled.compiling import KERNEL
 from ..contact.held import MATERIALS, MEMORY, spring_and_damper
 from ..surface.bilinear import LABELS, NEWTONS
 from .playing import MOVING, MOVING_SURFACE, play, risen
+from .steady import STEADY, steady
 
 
-@njit(NEWTONS(*MOVING_SURFACE, LABELS, MATERIALS, MEMORY, MOVING, *[float64] * 6), **KERNEL)
+@njit(NEWTONS(*MOVING_SURFACE, LABELS, MATERIALS, MEMORY, STEADY, MOVING, *[float64] * 6), **KERNEL)
 def moving_tick(
-    pairs, tiles_m, frames, shared, count, width_m, length_m, across_per_m, down_per_m, labels, table, memory, moving,
-    x, y, z, vx, vy, vz,
+    pairs, tiles_m, frames, shared, count, width_m, length_m, across_per_m, down_per_m, labels, table, memory, felt,
+    moving, x, y, z, vx, vy, vz,
 ):  # fmt: skip
     """As `proxy_kernels.tick`, on the surface as it is at the end of this tick."""
     slot, share, passed = play(frames, shared, count, moving)
     shape = (pairs[slot], 1.0 - share, share), width_m, length_m, across_per_m, down_per_m
-    force_n = spring_and_damper(shape, tiles_m[slot], labels, table, memory, x, y, z, vx, vy, vz)
+    fx, fy, fz = spring_and_damper(shape, tiles_m[slot], labels, table, memory, x, y, z, vx, vy, vz)
     risen(pairs[slot], across_per_m, down_per_m, passed, memory, moving)
-    return force_n
+    return steady(felt, passed, x, y, z, vx, vy, vz, fx, fy, fz)

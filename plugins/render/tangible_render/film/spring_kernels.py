@@ -12,16 +12,17 @@ from tangible_core.compiled.compiling import KERNEL
 from ..contact.held import MEMORY, spring
 from ..surface.bilinear import NEWTONS
 from .playing import MOVING, MOVING_SURFACE, play, risen
+from .steady import STEADY, steady
 
 
-@njit(NEWTONS(*MOVING_SURFACE, float64, MEMORY, MOVING, *[float64] * 6), **KERNEL)
+@njit(NEWTONS(*MOVING_SURFACE, float64, MEMORY, STEADY, MOVING, *[float64] * 6), **KERNEL)
 def moving_spring_tick(
-    pairs, tiles_m, frames, shared, count, width_m, length_m, across_per_m, down_per_m, stiffness, memory, moving,
+    pairs, tiles_m, frames, shared, count, width_m, length_m, across_per_m, down_per_m, stiffness, memory, felt, moving,
     x, y, z, vx, vy, vz,
 ):  # fmt: skip
     """As `proxy_spring_kernels.spring_tick`, on the surface as it is at the end of this tick."""
     slot, share, passed = play(frames, shared, count, moving)
     shape = (pairs[slot], 1.0 - share, share), width_m, length_m, across_per_m, down_per_m
-    force_n = spring(shape, tiles_m[slot], stiffness, memory, x, y, z, vx, vy, vz)
+    fx, fy, fz = spring(shape, tiles_m[slot], stiffness, memory, x, y, z, vx, vy, vz)
     risen(pairs[slot], across_per_m, down_per_m, passed, memory, moving)
-    return force_n
+    return steady(felt, passed, x, y, z, vx, vy, vz, fx, fy, fz)

@@ -410,9 +410,14 @@ def _no_depth(config: PipelineConfig, scene: Scene) -> TangibleError | None:
     if config.depth is None:
         return config.missing("depth")
     if config.depth.method.needs_pair and scene.views.right is None:
+        give = (
+            "say how they lie in it, such as `layout: side-by-side`"
+            if scene.video
+            else "give both, `left:` and `right:`"
+        )
         return PictureError(
-            f"depth method {config.depth.name} needs two views, and the scene {scene.name} has one: give both, `left:` "
-            "and `right:`, or name a method for one picture (`tangible plugins` lists them)"
+            f"depth method {config.depth.name} needs two views, and the scene {scene.name} has one: {give}, "
+            "or name a method for one picture (`tangible plugins` lists them)"
         )
     return None
 

@@ -36,7 +36,7 @@ _OF_VIEWS = ("disparity", "truth", "truth_scale", "focal_px", "baseline_m", "off
 def _video(value: object) -> object:
     """Raises: ValueError for what names no video."""
     if isinstance(value, str) and re.match(r"[A-Za-z][A-Za-z0-9+.-]+://", value):
-        raise ValueError("no address is opened; save the video as a file")
+        raise ValueError("no address is opened: save the video, and name its file")
     if isinstance(value, bool) or value == "" or not isinstance(value, str | Path | int | None):
         raise ValueError(_WHAT_VIDEO)
     if isinstance(value, int) and not 0 <= value <= LAST_CAMERA:
@@ -111,9 +111,9 @@ class SceneFiles(Quantities):
     """The part that is felt, [x, y, width, height] in pixels of the upright picture, x and y from its upper left
     corner. All files of the scene are cropped alike; points of materials count from the part's corner."""
     rotate: Literal[0, 90, 180, 270] = 0
-    """Turn a photo or a height map so many degrees clockwise, after cropping."""
+    """Turn a photo, a video of one view, or a height map so many degrees clockwise, after cropping."""
     invert: bool = False
-    """Turn light and dark of a photo round, or high and low of a height map."""
+    """Turn light and dark of a photo or a video round, or high and low of a height map."""
     nodata: Number | tuple[Number, ...] | None = None
     """Values of a height map that mean that nothing is known there, such as -9999. One that the file states itself
     (GDAL's tag of a GeoTIFF) needs no mention."""
@@ -164,8 +164,10 @@ class SceneFiles(Quantities):
         idle = [name for name in given if name not in fitting]
         if mono and idle and set(idle) <= set(_BESIDE_PAIRS):
             raise ValueError(f"{', '.join(idle)} is for two views; say how they lie in the video: layout: side-by-side")
+        if not mono and idle and set(idle) <= {"rotate", "invert"}:
+            raise ValueError(f"{' and '.join(idle)} is for one view: the rows of a pair's views belong together")
         if idle:
-            raise ValueError(f"every frame of a video is felt as it is; leave out {', '.join(idle)}")
+            raise ValueError(f"a video gives all that is seen; leave out {', '.join(idle)}")
         if self.rig and (idle := [name for name in given if name in (*_OF_VIEWS, "segments", "crop")]):
             raise ValueError(f"rig says what the cameras are, and turns the pictures; leave out {', '.join(idle)}")
 

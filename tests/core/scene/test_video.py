@@ -2,6 +2,7 @@
 
 import struct
 import wave
+from functools import partial
 from pathlib import Path
 
 import cv2
@@ -10,13 +11,16 @@ import pytest
 from pydantic import ValidationError
 
 from pictures import write_png
-from tangible_core import Scene
+from tangible_core import Pipeline, Scene
 from tangible_core.errors import ConfigError, PictureError
 from tangible_core.files import reading
+from tangible_core.pipeline.config import parse_config
+from tangible_core.plugins.registry import default_registry
 from tangible_core.scene import video_capture, video_readers
 from tangible_core.scene.rig import Camera, StereoRig
 from tangible_core.scene.scene_files import SceneFiles
 from tangible_core.scene.workspace import kind_of
+from tangible_depth.semi_global import SemiGlobal
 from videos import Played, grey, greys, jpegs, shown, write_video
 
 
@@ -349,6 +353,42 @@ def test_a_video_in_place_of_a_photo_is_told_the_key(tmp_path: Path):
         Scene.of(photo=write_video(tmp_path / "film.mp4", [grey(1)], codec="mp4v"))
 
 
+class TestPipelineFile:
+    def test_paths_start_at_the_file_and_a_number_is_a_camera(self, film: Path, folder: Path):
+        read = partial(parse_config, "scene: {video: film.avi}", film.parent / "p.yaml", default_registry())
+        for sets, video in (
+            ([], film),
+            (["scene.video=pictures"], folder),
+            (["scene.video=3"], 3),
+            (["scene.video='3'"], film.with_name("3")),
+        ):
+            config = read(sets)
+            again = parse_config(config.as_yaml(), Path("/elsewhere/p.yaml"), default_registry())
+            assert config.scene.video == again.scene.video == video
+
+    @pytest.mark.parametrize(
+        "value", ["video=-1", "video=[1]", "fps=0", "fps=.nan", "layout=diagonal", "video=http://a/b.ts"]
+    )
+    def test_what_is_wrong_is_one_line_with_its_place(self, film: Path, value: str):
+        with pytest.raises(ConfigError) as said:
+            parse_config("scene: {video: film.avi}", film.parent / "p.yaml", default_registry(), [f"scene.{value}"])
+        assert len(said.value.args) == 1 and str(said.value).startswith(f"--set scene.{value}: scene.")
+
+    def test_what_it_is_made_of_depends_on_the_first_frame_alone(self, tmp_path: Path):
+        text = "scene: {video: film.avi}\nwant: relief\ndepth: luminance\n"
+        keys: list[str] = []
+        for first, second in ((1, 2), (1, 3), (2, 3)):
+            write_video(tmp_path / "film.avi", [grey(first), grey(second), grey(second)])
+            config = parse_config(text, tmp_path / "p.yaml", default_registry())
+            keys.append(Pipeline.of(config, default_registry(), None).engine.key("disparity"))
+        assert keys[0] == keys[1] != keys[2]
+
+    def test_a_method_for_pairs_is_told_how_they_may_lie(self, film: Path):
+        pipeline = Pipeline(Scene.of(video=film), depth=SemiGlobal())
+        with pytest.raises(PictureError, match="say how they lie in it, such as `layout: side-by-side`, or name"):
+            pipeline.make("disparity")
+
+
 class TestWhatStandsBeside:
     @pytest.mark.parametrize("fps", [0, -1, float("nan"), float("inf"), 1001, "fast"])
     def test_a_rate_is_positive_and_finite(self, fps: object):
@@ -376,7 +416,7 @@ class TestWhatStandsBeside:
             ({"focal_px": 100, "baseline_m": 0.1}, "say how they lie in the video: layout: side-by-side"),
             ({"focal_px": 100, "layout": "side-by-side"}, "focal_px needs baseline_m beside it"),
             ({"rig": "rig.yaml"}, "say how they lie in the video: layout: side-by-side"),
-            ({"rotate": 90, "layout": "side-by-side"}, "leave out rotate"),
+            ({"rotate": 90, "layout": "side-by-side"}, "rotate is for one view"),
             ({"rig": "r.yaml", "layout": "top-bottom", "crop": [0, 0, 1, 1]}, "turns the pictures; leave out crop"),
         ],
     )

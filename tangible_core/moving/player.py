@@ -25,7 +25,7 @@ STOPPING_S = 0.5
 """A player is waited for so long when it is to end; one that computes still is left to itself."""
 OPEN_AGAIN_S = 1.0
 """A source that could not be opened is tried again so often."""
-NICENESS = 10
+NICENESS = 5
 """By which the thread goes behind the force loop's process, where the system can do that for a thread."""
 AGES = 1000
 

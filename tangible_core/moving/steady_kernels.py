@@ -4,6 +4,7 @@ Imports numba: imported inside the verb.
 """
 
 # ruff: noqa: ANN001, ANN201 -- numba finds the types of what it compiles; the docstrings say them
+# pyright: basic
 
 import numpy as np
 from numba import njit

@@ -101,7 +101,7 @@ def pack(rows: Float64[np.ndarray, "n columns"]) -> bytes:
     records = np.empty(len(rows), RECORD)
     with np.errstate(over="ignore"):
         for name, values in zip(TICK_COLUMNS, rows.T, strict=True):
-            records[name] = values if name != "frame" else np.where(np.abs(values) < 2**31, values, STILL)
+            records[name] = values if name != "frame" else np.where((values >= 0) & (values < 2**31), values, STILL)
     return records.tobytes()
 
 

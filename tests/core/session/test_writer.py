@@ -111,7 +111,7 @@ def test_why_it_ended(tmp_path: Path):
 @pytest.mark.usefixtures("unchecked_shapes")
 @pytest.mark.parametrize("rows", [np.zeros(17), np.zeros((3, 10)), np.zeros((2, 2, 17))])
 def test_rows_that_are_none(tmp_path: Path, rows: np.ndarray):
-    with Writer(tmp_path / "stroke.nc") as writer, pytest.raises(OutputError, match=r"\(n, 16\)"):
+    with Writer(tmp_path / "stroke.nc") as writer, pytest.raises(OutputError, match=r"\(n, 17\)"):
         writer.append(rows)
 
 

@@ -85,7 +85,8 @@ def passive(settings, memory, elapsed_s, touching, lift, x, y, z, vx, vy, vz, fx
     if not touching and memory[at.FORCE] == 0.0 and memory[at.FORCE + 1] == 0.0 and memory[at.FORCE + 2] == 0.0:
         memory[at.ENERGY_J], memory[at.GIVEN_J] = min(memory[at.ENERGY_J], 0.0), 0.0
         return fx, fy, fz, False
-    lifted = _counts(memory, lift * rise, memory[at.MAY_GIVE_J])
+    # half of this tick's way is yet to count, and the whole of the next
+    lifted = _counts(memory, 1.5 * lift * rise, memory[at.MAY_GIVE_J])
     brake = _brake(settings, memory, elapsed_s, lifted, vx, vy, vz, fx, fy, fz)
     if brake <= 0.0:
         return fx, fy, fz, False

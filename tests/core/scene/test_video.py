@@ -16,7 +16,7 @@ from tangible_core.errors import ConfigError, PictureError
 from tangible_core.files import reading
 from tangible_core.pipeline.config import parse_config
 from tangible_core.plugins.registry import default_registry
-from tangible_core.scene import video_capture, video_readers
+from tangible_core.scene import video_readers
 from tangible_core.scene.rig import Camera, StereoRig
 from tangible_core.scene.scene_files import SceneFiles
 from tangible_core.scene.workspace import kind_of
@@ -214,6 +214,13 @@ class TestFiles:
                 frames.next()
             assert frames.next().number == 3 and frames.skipped == 2
 
+    def test_one_of_damaged_frames_alone_ends_every_call(self, monkeypatch: pytest.MonkeyPatch):
+        captures = [Played([grey(0)]), *(Played([None, None]) for _ in range(3))]
+        with played(monkeypatch, *captures, repeat=True).video.open() as frames:
+            for said in ("frame 0 is damaged", "no frame of it can be played", "no frame of it can be played"):
+                with pytest.raises(PictureError, match=said):
+                    frames.next()
+
     def test_one_cut_short_is_said_once_and_begins_again(self, tmp_path: Path, capfd: pytest.CaptureFixture[str]):
         path = write_video(tmp_path / "film.mkv", (grey(number) for number in range(30)), codec="mp4v")
         video = Scene.of(video=path).video
@@ -336,7 +343,7 @@ def test_a_device_is_no_video_file(tmp_path: Path):
 
 def test_a_huge_frame_is_refused_before_it_is_decoded(film: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(reading, "MOST_PIXELS", 24 * 32 - 1)
-    monkeypatch.setattr(video_capture, "retrieved", None)
+    monkeypatch.setattr(video_readers, "grabbed", None)
     with pytest.raises(PictureError, match=r"film.avi: a frame of it is larger than .*; make the video smaller first"):
         Scene.of(video=film)
 

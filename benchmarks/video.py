@@ -201,7 +201,7 @@ def _breathing() -> Iterator[Figure]:
     touching = max(1, int(np.count_nonzero(flags & TickFlag.TOUCHING)))
     share = np.count_nonzero(flags & TickFlag.DAMPED) / touching
     said = f"{100 * share:.2f} % of {touching} ticks in contact"
-    yield Figure("damped by the guard, 3 mm at 2 Hz", "< 1 %", said, share < MOST_DAMPED)
+    yield Figure("damped by the guard, 3 mm at 2 Hz", "< 1 %", said, bool(share < MOST_DAMPED))
 
 
 def _steadiness() -> Iterator[Figure]:

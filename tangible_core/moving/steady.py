@@ -1,6 +1,6 @@
 """Disparity that is steady in time: noise is averaged, and a change counts once it was seen twice."""
 
-from typing import NamedTuple, final
+from typing import Any, NamedTuple, cast, final
 
 import numpy as np
 from jaxtyping import Float32
@@ -61,11 +61,11 @@ class Steady:
         return Steadied(found, cut)
 
     def _stepped(self, new: Float32[np.ndarray, "h w"]) -> tuple[Float32[np.ndarray, "h w"], bool]:
-        from .steady_kernels import step
+        from . import steady_kernels
 
         out = np.empty_like(new)
         how = (np.float32(AVERAGED), np.float32(self._gate), MOST_DOUBTS, MOST_MISSING)
-        changed, known = step(new, self._kept, self._waiting, self._doubts, out, *how)
+        changed, known = cast(Any, steady_kernels).step(new, self._kept, self._waiting, self._doubts, out, *how)
         return out, changed > CUT_SHARE * known
 
 

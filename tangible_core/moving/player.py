@@ -1,7 +1,6 @@
 """Who shows the reliefs of a film to a loop: a thread in real time, or a function of simulated time."""
 
 import logging
-import math
 import os
 import statistics
 import sys
@@ -17,7 +16,7 @@ from ..data import FilmFelt, Relief, ServoReport
 from ..errors import BrokenMethod, DeviceError, Stopped, TangibleError
 from ..runtime.stopping import stoppable
 from ..runtime.threads import limited_threads, processors, thread_limit
-from ..scene.video_frames import VideoFrame
+from ..scene.video_frames import VideoFrame, VideoFrames
 from .reliefs import FrameRelief, Reliefs
 
 log = logging.getLogger(__name__)
@@ -27,6 +26,8 @@ OPEN_AGAIN_S = 1.0
 """A source that could not be opened is tried again so often."""
 NICENESS = 5
 """By which the thread goes behind the force loop's process, where the system can do that for a thread."""
+MOST_WAIT_S = 0.01
+"""Between two looks for a frame."""
 AGES = 1000
 
 
@@ -103,6 +104,7 @@ class Player:
         self._ending = threading.Event()
         self._fault: BaseException | None = None
         self._skipped = 0
+        self._began_s: float | None = None
         self._since_s = self._until_s = 0.0
         self._ages_s = deque[float](maxlen=AGES)
         self._thread = threading.Thread(target=self._run, name="film", daemon=True)
@@ -157,34 +159,34 @@ class Player:
         except TangibleError as error:
             self._screen.stands(error)
             raise _Unopened from error
+        self._began_s = None
         try:
             self._show_all(reliefs)
         finally:
             reliefs.__exit__(None, None, None)
 
     def _show_all(self, reliefs: Reliefs) -> None:
-        frames = reliefs.frames
-        frame_s = 1 / frames.fps
-        began_s, again_s = math.nan, 0.0
+        frame_s, again_s = 1 / reliefs.frames.fps, 0.0
         while not self._ending.is_set():
-            now_s = time.monotonic()
-            frame = self._read(frames.next if math.isnan(began_s) else lambda: frames.at(now_s - began_s))  # noqa: B023
-            if frame is not None and math.isnan(began_s):
-                began_s = time.monotonic() - frame.time_s
+            frame, now_s = self._due(reliefs.frames), time.monotonic()
             if frame is not None and (made := self._made(reliefs, frame)) is not None:
                 self._screen.show(made)
-                self._note(began_s + frame.time_s)
-                again_s = time.monotonic() + frame_s
+                again_s = self._note(frame.time_s) + frame_s
             elif self._screen.waits and now_s >= again_s:
                 self._screen.again()
                 again_s = now_s + frame_s
             else:
-                self._ending.wait(min(frame_s / 8, 0.01))
-            self._skipped = frames.skipped
+                self._ending.wait(min(frame_s / 8, MOST_WAIT_S))
+            self._skipped = reliefs.frames.skipped
 
-    def _read(self, read: Callable[[], VideoFrame | None]) -> VideoFrame | None:
+    def _due(self, frames: VideoFrames) -> VideoFrame | None:
+        """The frame to be felt now, if there is a new one; the first begins the film's time."""
         try:
-            return read()
+            if self._began_s is not None:
+                return frames.at(time.monotonic() - self._began_s)
+            if (first := frames.next()) is not None:
+                self._began_s = time.monotonic() - first.time_s
+            return first
         except TangibleError as error:
             self._screen.stands(error)
             return None
@@ -196,10 +198,12 @@ class Player:
             self._screen.stands(error)
             return None
 
-    def _note(self, due_s: float) -> None:
+    def _note(self, due_s: float) -> float:
+        """That a frame was shown which was due then; when it was."""
         self._until_s = time.monotonic()
         self._since_s = self._since_s or self._until_s
-        self._ages_s.append(self._until_s - due_s)
+        self._ages_s.append(self._until_s - due_s - (self._began_s or 0.0))
+        return self._until_s
 
 
 @final

@@ -8,7 +8,7 @@ from typing import NamedTuple, Self, final
 import numpy as np
 
 from ..data import DisparityMap, Relief, Views
-from ..errors import GeometryError
+from ..errors import ConfigError
 from ..plugins.notes import silently
 from ..scene.geometry import ValueRange
 from ..scene.video_frames import VideoFrame, VideoFrames
@@ -82,7 +82,7 @@ class Reliefs:
     def frames(self) -> VideoFrames:
         """Those of the video."""
         if self._frames is None:
-            raise GeometryError("the film is not open; use it in `with reliefs:`")
+            raise ConfigError("the film is not open; use it in `with reliefs:`")
         return self._frames
 
     def made(self, frame: VideoFrame) -> FrameRelief:

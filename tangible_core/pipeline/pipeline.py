@@ -340,7 +340,8 @@ class Pipeline:
         """The frames of a scene that is a video, as reliefs; not open yet.
 
         `with pipeline.reliefs as reliefs: for number, time_s, relief in reliefs:` makes one after the other, steady in
-        time and of one scale. `reliefs.frames.at` skips to what is due, and `reliefs.made` makes the relief of that.
+        time and of one scale; without end where the video repeats. `reliefs.frames.at` skips to what is due, and
+        `reliefs.made` makes the relief of that.
         Raises: ConfigError for a scene that does not move, or a relief that is made of parts.
         """
         return reliefs_of(self.config, self.scene)

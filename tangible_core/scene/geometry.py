@@ -182,7 +182,7 @@ def _unit_range(values: Float[np.ndarray, "h w"], spans: ValueRange) -> Float[np
     low, high = spans.low / size, spans.high / size
     if not low < high:
         return np.zeros(values.shape)
-    if not (TINY < spans.high - spans.low and size < HUGE):  # whose difference, or whose share, is no float32
+    if not (spans.high - spans.low > TINY and size < HUGE):  # whose difference, or whose share, is no float32
         values, spans = values.astype(np.float64) / size, ValueRange(low, high)
     with np.errstate(over="ignore"):
         part = (values - values.dtype.type(spans.low)) * values.dtype.type(1 / (spans.high - spans.low))

@@ -105,6 +105,7 @@ def test_it_goes_on_until_it_is_asked_to_end(folder: Path, asked_by: signal.Sign
 @pytest.mark.slow
 def test_a_video_is_played_and_told_of(tmp_path: Path):
     import cv2
+
     from films import layered
 
     for number in range(6):

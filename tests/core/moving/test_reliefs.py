@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from films import GivenFrames, NearnessOfGrey, greys
-from tangible_core.errors import GeometryError
+from tangible_core.errors import ConfigError, GeometryError
 from tangible_core.moving import Reliefs
 from tangible_core.moving.scale import ADAPTS_S, Scale
 from tangible_core.scene.geometry import ValueRange
@@ -71,7 +71,7 @@ def test_it_begins_anew_when_it_is_opened_again_and_closes_what_it_opened():
 
     maker = NearnessOfGrey()
     reliefs = Reliefs(frames, maker)
-    with pytest.raises(GeometryError, match="not open"):
+    with pytest.raises(ConfigError, match="not open"):
         _ = reliefs.frames
     for _ in range(2):
         with reliefs:

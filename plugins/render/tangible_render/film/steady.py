@@ -3,8 +3,8 @@
 A surface that moves a little may take away the hold of the proxy: a ridge sinks that held it, and it slides off, or the
 ground under the hand falls away while the proxy still hangs on a wall. What the spring then loses at once is let go
 step by step: the point that pulls at the hand goes from where it was to where the proxy is, straight and no faster than
-a hand at rest may feel, or as the hand itself moves. On the way it is never farther from the hand than at the nearer
-end of its way it was or will be, so that it gains no energy.
+a hand at rest may feel, or as the hand itself moves. It is never farther from the hand than at one of the ends of its
+way, so that it has no energy but what the hand and the surface give.
 Imports numba: a method imports this module inside its verb.
 """
 
@@ -17,6 +17,7 @@ from jaxtyping import Float64
 from numba import float64
 
 from tangible_core.compiled.compiling import inner
+from tangible_core.compiled.touch import RISE_M
 
 from ..contact.contact import LEAP_M
 from .film import STEP_N
@@ -30,22 +31,29 @@ REACH = 8.0
 
 
 @inner(forceinline=True)
-def steady(memory, passed, x, y, z, vx, vy, vz, fx, fy, fz):
-    """The law's force, or what may be felt of its change in this tick; passed: 0 where the surface stands still."""
+def steady(memory, passed, moving, x, y, z, vx, vy, vz, fx, fy, fz):
+    """The law's force, or what may be felt of its change in this tick; passed: 0 where the surface stands still.
+
+    Of a force that is short of the law's, `moving` tells of a rise that does what the surface did on what is felt.
+    """
     stiffness = memory[STIFFNESS]
     dx, dy, dz = x - memory[HAND], y - memory[HAND + 1], z - memory[HAND + 2]
     ux, uy, uz = vx - memory[SPEED], vy - memory[SPEED + 1], vz - memory[SPEED + 2]
     moved_m = math.sqrt(dx * dx + dy * dy + dz * dz)
     held_x, held_y = memory[FORCE] - stiffness * dx, memory[FORCE + 1] - stiffness * dy
     held_z = memory[FORCE + 2] - stiffness * dz
-    late = 0.0
-    if (passed > 0.0 or memory[LATE] > 0.0) and moved_m <= LEAP_M:  # not for NaN
+    late, was_late = 0.0, memory[LATE] > 0.0
+    if (passed > 0.0 or was_late) and moved_m <= LEAP_M:  # not for NaN
         step_n = STEP_N + REACH * stiffness * moved_m + memory[DAMPING] * math.sqrt(ux * ux + uy * uy + uz * uz)
         ax, ay, az = fx - held_x, fy - held_y, fz - held_z
         away_n = math.sqrt(ax * ax + ay * ay + az * az)
         if away_n > step_n:
             part, late = step_n / away_n, 1.0
             fx, fy, fz = held_x + part * ax, held_y + part * ay, held_z + part * az
+        if late + was_late > 0.0:
+            more = fx * fx + fy * fy + fz * fz - held_x * held_x - held_y * held_y - held_z * held_z
+            upwards = stiffness * (fz + memory[FORCE + 2])
+            moving[RISE_M] = min(max(more, 0.0) / upwards, STEP_N / stiffness) if upwards > 0.0 else 0.0
     if not np.isfinite(fx + fy + fz):
         fx, fy, fz = 0.0, 0.0, 0.0
     memory[FORCE], memory[FORCE + 1], memory[FORCE + 2] = fx, fy, fz

@@ -141,7 +141,9 @@ class TestAccount:
             memory[at.MAY_GIVE_J] = settings[at.SURFACE_W] = settings[at.MOST_SURFACE_J] = may_j
             speeds = np.diff(steps, axis=0, prepend=steps[:1]) / 0.001
             pushed = [(-v[0], 0.0, max(0.0, -STIFF * x[2])) for x, v in zip(steps, speeds, strict=True)]
-            given.append([guard(settings, memory, 0.001, *x, *v, *f) for x, v, f in zip(steps, speeds, pushed, strict=True)])
+            given.append(
+                [guard(settings, memory, 0.001, *x, *v, *f) for x, v, f in zip(steps, speeds, pushed, strict=True)]
+            )
         assert given[0] == given[1]
 
 

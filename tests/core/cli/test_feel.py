@@ -87,7 +87,7 @@ def test_it_goes_on_until_it_is_asked_to_end(folder: Path, asked_by: signal.Sign
     )
     grown, end = folder / "hand.nc", time.monotonic() + 60
     try:
-        while not grown.exists() or grown.stat().st_size < 50_000:
+        while not grown.exists() or grown.stat().st_size < 60_000:
             assert program.poll() is None and time.monotonic() < end
             time.sleep(0.05)
         (os.killpg if group else os.kill)(program.pid, asked_by)

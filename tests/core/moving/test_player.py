@@ -174,11 +174,11 @@ def test_by_a_clock_nothing_is_left_out_and_frames_come_when_they_are_due():
 
 
 def test_by_a_clock_a_relief_is_shown_again_and_damaged_frames_are_passed_over(caplog):
-    film, given = Seen(arrives=2), greys(*[BOX] * 3)
-    given[1] = PictureError("frame is damaged")
+    film, given = Seen(arrives=2), greys(*[BOX] * 4)
+    given[1] = given[2] = PictureError("frame is damaged")
     with Reliefs(lambda: GivenFrames(given, fps=10), NearnessOfGrey()) as reliefs:
         show = ByClock(reliefs, film)
         for tick in range(700):
             show(tick / 1000)
-    assert film.frames == [0, 0, 2, 2, 2] and show.felt.damaged == 1
+    assert film.frames == [0, 0, 0, 3, 3, 3] and show.felt.damaged == 2
     assert sum("frame is damaged" in each.message for each in caplog.records) == 1

@@ -79,9 +79,7 @@ def run_simulated(
     return recording
 
 
-def _feel(
-    allowed: Guarded, link: Link, seconds: float, tape: "_Tape", frames: Callable[[float], None]
-) -> None:
+def _feel(allowed: Guarded, link: Link, seconds: float, tape: "_Tape", frames: Callable[[float], None]) -> None:
     """Tick until the time is over; a cause to end early is left in tape.stopped."""
     try:
         state, period_s = link.read(), FIRST_S

@@ -1,49 +1,18 @@
 """Coefficients of a surface within milliseconds: those of a still one, by finite filters instead of recursive ones."""
 
-from typing import NamedTuple, Self
-
 import numpy as np
-from jaxtyping import Float32, UInt8
+from jaxtyping import Float32
 
-from ..surface.coefficients import BORDER, spline_coefficients
+from ..surface.coefficients import spline_coefficients
 from ..surface.jumps import ROUNDING
+from .scratch import MARGIN, TAPS, Scratch
 
-TAPS = 10
-"""Cells to each side that a coefficient is made of: farther ones weigh less than (2 - sqrt 3)^11, 5e-7 of a height."""
-MARGIN, RING = BORDER + TAPS, BORDER + 1
 HIGHEST_M = 1e6
 """Heights above count as this: numbers of which float32 can take differences, and no hand comes there."""
 
 
-class Scratch(NamedTuple):
-    """What is written to on the way, so that a frame needs no memory of its own."""
-
-    at: UInt8[np.ndarray, "h w"]
-    wide: UInt8[np.ndarray, "h w"]
-    near: UInt8[np.ndarray, "h6 w6"]
-    values: Float32[np.ndarray, "hm wm"]
-    eased: Float32[np.ndarray, "hm wm"]
-    coefficients: Float32[np.ndarray, "h4 w4"]
-    ends: Float32[np.ndarray, "h4 w4"]
-
-    @classmethod
-    def of(cls, rows: int, columns: int) -> Self:
-        """For heights of this size."""
-        padded = rows + 2 * MARGIN, columns + 2 * MARGIN
-        found = rows + 2 * BORDER, columns + 2 * BORDER
-        return cls(
-            np.empty((rows, columns), np.uint8),
-            np.empty((rows, columns), np.uint8),
-            np.empty((rows + 2 * RING, columns + 2 * RING), np.uint8),
-            np.empty(padded, np.float32),
-            np.empty(padded, np.float32),
-            np.empty(found, np.float32),
-            np.empty(found, np.float32),
-        )
-
-
 def quick_coefficients(height_m: Float32[np.ndarray, "h w"], scratch: Scratch) -> Float32[np.ndarray, "h4 w4"]:
-    """As `spline_coefficients`, within a millionth of the heights: jumps are found and eased as there.
+    """As `spline_coefficients`, within a hundred-thousandth of the heights: jumps are found and eased as there.
 
     Where that filters by recursion in float64, this does by 21 taps in float32; grids too small for these are done as
     there. The array is the scratch's own. The same bits on every processor.

@@ -13,13 +13,10 @@ from tangible_core.errors import ConfigError, GeometryError
 from tangible_core.plugins.interfaces import Film
 
 from ..surface.coefficients import BORDER
-from .coefficients import Scratch, quick_coefficients
+from .coefficients import quick_coefficients
+from .limits import SPEED_M_PER_S, STEP_N
+from .scratch import Scratch
 from .slots import DROPPED, Slots
-
-SPEED_M_PER_S = 0.1
-"""No place of a surface moves faster: a hand does not."""
-STEP_N = 0.08
-"""Nor so fast that the spring on a hand at rest changes by more in a tick, which it would feel as a knock."""
 
 
 def checked(period_s: float, frame_s: float) -> tuple[float, float]:

@@ -14,7 +14,7 @@ from tangible_core.compiled.compiling import KERNEL, inner
 from ..surface.bilinear import HEIGHTS
 from ..surface.coefficients import BORDER
 from ..surface.jumps import BORDER_CELLS, BORDER_JUMP, JUMP, REACH
-from .coefficients import MARGIN, RING, TAPS
+from .scratch import MARGIN, RING, TAPS
 
 MASK = types.Array(uint8, 2, "C")
 ROWS = types.Array(float32, 2, "C")

@@ -20,7 +20,7 @@ from tangible_core.compiled.compiling import inner
 from tangible_core.compiled.touch import RISE_M
 
 from ..contact.contact import LEAP_M
-from .film import STEP_N
+from .limits import STEP_N
 
 STEADY = float64[::1]
 STIFFNESS, DAMPING, FORCE, HAND, SPEED, LATE, REMEMBERED = 0, 1, 2, 5, 8, 11, 12

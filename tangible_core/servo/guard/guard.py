@@ -93,11 +93,15 @@ def _slewed(memory, step_n, fx, fy, fz):
 def _lift(settings, law_n, before, fx, fy, fz):
     """The law's part along z of a force that is safe; before: the length that it had before it was.
 
-    A coupling's force is the tool's on the hand; the surface moves under the tool, and works by the law's force on it.
+    A coupling's force is the tool's on the hand; the surface moves under the tool, and works by the law's force on it,
+    of which the tool's leash hands on no more than the greatest.
     """
-    if settings[at.COUPLING] > 0.0:
-        return law_n * np.sqrt(fx * fx + fy * fy + fz * fz) / before if before > 0.0 else 0.0
-    return fz
+    if settings[at.COUPLING] <= 0.0:
+        return fz
+    if not before > 0.0:
+        return 0.0
+    most = settings[at.MAX_FORCE_N]
+    return min(max(law_n * np.sqrt(fx * fx + fy * fy + fz * fz) / before, -most), most)
 
 
 @inner(forceinline=True)

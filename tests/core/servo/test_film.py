@@ -166,7 +166,7 @@ class TestFaults:
             until(lambda: record.exists() and float(record.read_text() or 0) > 0)
             until(lambda: bool(servo.show(level(0.011), 1) or servo.report().frame))
             os.kill(servo.process_id, signal.SIGKILL)
-            with pytest.raises(DeviceError, match="died|stood still"):
+            with pytest.raises(DeviceError, match=r"died|stood still"):
                 for number in range(2, 1_000_000):
                     servo.show(level(0.01 + 0.001 * (number % 3)), number)
                     time.sleep(0.001)

@@ -1,5 +1,7 @@
 """The energy account of a surface that moves: what it does on the hand is its own work, and no more than it may do."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -9,7 +11,7 @@ from tangible_core.data import DeviceSpec, HapticState, TickFlag
 from tangible_core.servo.guard import layout as at
 from tangible_core.servo.guard.guard import guard, restart
 from tangible_core.servo.guard.guarded import guarded
-from tangible_core.servo.guard.safety import SURFACE_M, SURFACE_M_PER_S, Safety
+from tangible_core.servo.guard.safety import SURFACE_M_PER_S, Coupling, Safety
 from tangible_core.session import run_simulated
 
 SPEC = DeviceSpec(8.0, 3000.0, 1.5, (0.08, 0.08, 0.08), 3e-5)
@@ -20,9 +22,9 @@ STRICT = Safety(passivity="strict", ramp_s=0, max_step_n=10)
 class Felt:
     """A plane under a hand that is led, tick by tick."""
 
-    def __init__(self, safety: Safety = STRICT, height_m: float = 0.01) -> None:
-        self.film = MovingPlane(height_m, STIFF)
-        self.settings, self.memory = safety.arrays(SPEC, STIFF)
+    def __init__(self, safety: Safety = STRICT, stiffness_n_per_m: float = STIFF) -> None:
+        self.film = MovingPlane(0.01, stiffness_n_per_m)
+        self.settings, self.memory = safety.arrays(SPEC, stiffness_n_per_m)
         self._allowed = guarded(self.film.touch, self.settings, self.memory)
         self._at_m = self.force_n = None
         self.work_j, self.damped, self.time_s = 0.0, 0, 0.0
@@ -147,6 +149,11 @@ class TestAccount:
         assert given[0] == given[1]
 
 
+FREE: dict[str, Any] = {"passivity": "strict", "ramp_s": 0, "max_step_n": 10}
+SOFT = {"stiffness_n_per_m": 800.0, "damping_n_s_per_m": 0.1}
+HARD = {"stiffness_n_per_m": 20_000.0, "damping_n_s_per_m": 0.5}
+
+
 class TestCoupling:
     def test_the_surface_works_by_the_law_s_force_on_the_tool(self):
         """Under a hand at rest: its work is in the two springs, the law's and the coupling's."""
@@ -162,12 +169,31 @@ class TestCoupling:
         stored_j = (felt.force_n**2 - before_n**2) / 2 * (1 / STIFF + 1 / coupling)
         assert felt.energy_j - before_j == pytest.approx(stored_j, rel=0.02)
 
-    def test_a_force_that_is_cut_counts_as_far_as_it_left(self):
-        felt = Felt(Safety(passivity="strict", ramp_s=0, max_step_n=10, max_force_n=0.5, coupling="auto"))
-        for _ in range(500):
+    def test_also_while_the_tool_is_still_on_its_way(self):
+        """Its work is never less than what it left in the springs: the rest went into the coupling's damper."""
+        felt = Felt(Safety(passivity="strict", ramp_s=0, max_step_n=10, coupling=Coupling(**SOFT)))
+        for _ in range(2000):
             felt.tick(0.009)
-        assert felt.force_n <= 0.5
-        assert felt.memory[at.LIFT_N] == pytest.approx(felt.force_n, rel=1e-3)
+        before_j, before_n = felt.energy_j, felt.force_n
+        for i in range(2000):
+            felt.tick(0.009, 1e-4 if i < 20 else 0.0)
+        stored_j = (felt.force_n**2 - before_n**2) / 2 * (1 / STIFF + 1 / SOFT["stiffness_n_per_m"])
+        assert felt.force_n > 1.2 * before_n
+        assert stored_j < felt.energy_j - before_j < 1.1 * stored_j
+
+    @pytest.mark.parametrize(
+        ("hand_m", "stiffness_n_per_m", "more"),
+        [(0.007, STIFF, {"max_force_n": 0.5}), (0.0099, 20_000.0, {"coupling": Coupling(**HARD)})],
+    )
+    def test_a_force_that_is_cut_or_softened_counts_as_far_as_it_left(
+        self, hand_m: float, stiffness_n_per_m: float, more
+    ):
+        felt = Felt(Safety(**{**FREE, "coupling": "auto", **more}), stiffness_n_per_m)
+        for _ in range(500):
+            felt.tick(hand_m)
+        wanted_n = stiffness_n_per_m * (0.01 - hand_m)
+        assert 0.1 < felt.force_n < 0.3 * wanted_n
+        assert felt.memory[at.LIFT_N] == pytest.approx(felt.force_n, rel=0.01)
 
 
 def damped_share(

@@ -8,8 +8,6 @@ import statistics
 import tempfile
 import time
 from collections.abc import Callable, Iterator
-from importlib import import_module
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +25,7 @@ from tangible_depth import SemiGlobal
 from tangible_devices import Mock
 from tangible_render import Proxy
 
+from . import video_stress
 from .figures import Figure, MissedError, judged, part
 from .tests_path import films
 
@@ -50,7 +49,7 @@ def section() -> str:
         "a surface that breathes": _breathing,
         "flicker": _steadiness,
         "recordings": _recordings,
-        "random films": _stress,
+        "random films": video_stress.figures,
         f"memory over {MINUTES:g} minutes": _memory,
     }
     found = [figure for name, work in parts.items() for figure in part(name, lambda work=work: list(work()))]
@@ -241,12 +240,6 @@ def _recordings() -> Iterator[Figure]:
     told = f"{known.size} of {frames.size} ticks, frames {known.min():.0f} to {known.max():.0f}, never back"
     met = bool(known.size == frames.size and (np.diff(known) >= 0).all() and known.max() > 10)
     yield Figure("which frame a tick felt, in a recording", "each tick, in order", told, met)
-
-
-def _stress() -> Iterator[Figure]:
-    """Random films under random hands, where that is there."""
-    if find_spec("benchmarks.video_stress") is not None:
-        yield from import_module("benchmarks.video_stress").figures()
 
 
 def _memory() -> Iterator[Figure]:

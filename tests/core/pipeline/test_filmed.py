@@ -122,6 +122,7 @@ def test_films_and_stills_are_felt_in_turn_and_a_film_begins_anew(filmed, walk):
     turns = np.flatnonzero(np.diff(stood.astype(int)))
     assert turns.size >= 2, "film, still, film"
     assert frames[turns[1] + 1] == 0
+    assert not [each for each in threading.enumerate() if each.name == "film"], "the first one ended with its turn"
     assert any(each.film is None for each in reports) and any(each.film is not None for each in reports)
 
 
@@ -178,8 +179,10 @@ FIRST_MEAN = 0.0
 def test_a_plugins_fault_ends_the_session(filmed, monkeypatch, in_real_time):
     pipeline = filmed(depth=Shrinks())
     monkeypatch.setitem(globals(), "FIRST_MEAN", pipeline.views.left.mean())
+    began = time.monotonic()
     with pytest.raises(BrokenMethod, match="made disparity of 4 x 3"):
-        pipeline.feel(Mock(path="circle"), 5.0, in_real_time=in_real_time)
+        pipeline.feel(Mock(path="circle"), 60.0, in_real_time=in_real_time)
+    assert time.monotonic() - began < 50
 
 
 @pytest.mark.slow

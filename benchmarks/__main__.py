@@ -26,6 +26,7 @@ SECTIONS = {
     "servo": "The force loop",
     "servo_faults": "Faults around the force loop",
     "batch": "Many scenes",
+    "video": "Moving pictures",
     "record": "Recordings",
     "devices": "Devices",
     "ui": "The page",

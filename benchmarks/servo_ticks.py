@@ -14,6 +14,7 @@ from tangible_core import HapticSurface, load_method
 from tangible_core.compiled.compiling import KERNEL
 from tangible_core.compiled.kernels import Address
 from tangible_core.compiled.touch import CompiledTouch
+from tangible_core.data import TICK_COLUMNS
 from tangible_core.materials.assignment import library
 from tangible_core.servo import Ring, Safety, cycle
 from tangible_core.servo.loop import sections
@@ -65,8 +66,9 @@ def _arguments(ring: Ring) -> tuple[Any, ...]:
     ring.header[PERIOD_NS] = PERIOD
     of_link = tuple(_buffers(calibration))
     link = of_link, Address(tick.read), Address(tick.write)
-    law = touch.fixed, touch.address(), touch.memory
-    return link, law, (settings, ring.guard, ring.beacon.arrays), sections(ring), np.zeros(cycle.STATE), np.zeros(16)
+    law = touch.fixed, touch.address(), touch.memory, touch.moving
+    limits, row = (settings, ring.guard, ring.beacon.arrays), np.zeros(len(TICK_COLUMNS))
+    return link, law, limits, sections(ring), np.zeros(cycle.STATE), row
 
 
 def _buffers(calibration: Calibration) -> tick.Buffers:

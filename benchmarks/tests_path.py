@@ -10,5 +10,6 @@ import drawn_parts as drawn_parts
 import exported_pictures as exported_pictures
 import falcon_bus as falcon_bus
 import falcon_streams as falcon_streams
+import films as films
 import solids as solids
 import two_cameras as two_cameras

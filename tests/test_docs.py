@@ -132,3 +132,33 @@ def test_the_page_on_devices_shows_what_the_program_takes():
     assert {each.name for each in default_registry().listings if each.kind == "device"} <= set(
         re.findall(r"^\| `([a-z-]+)` \|", page, re.MULTILINE)
     )
+
+
+@pytest.mark.slow
+def test_the_page_on_videos_plays_them(tmp_path: Path):
+    import cv2
+    import numpy as np
+
+    from films import layered
+    from tangible_core import Pipeline, Scene
+    from tangible_depth import SemiGlobal
+    from tangible_devices import Mock
+    from tangible_render import Proxy
+
+    blocks = re.findall(r"```python\n(.*?)```", ROOT.joinpath("docs/video.md").read_text("utf-8"), re.DOTALL)
+    here = (block.replace('"walk.mp4"', "walk, fps=20").replace("seconds=10", "seconds=0.5") for block in blocks[:3])
+    feeling, frames, shown = here
+    for number in range(4):
+        views = layered(number, 1.0, np.random.default_rng(number))
+        cv2.imwrite(str(tmp_path / f"{number}.png"), np.hstack([views.left, views.right]))
+    heights = np.full((4, 12, 16), 0.01, np.float32)
+    names = {"walk": tmp_path, "height_m": heights[0], "waves": heights}
+    exec(feeling, names)
+    assert np.isfinite(names["recording"].frame).all() and names["recording"].frame.max() >= 4, "it repeats"
+    once = Scene.of(video=tmp_path, layout="side-by-side", repeat=False)
+    names["pipeline"] = Pipeline(once, depth=SemiGlobal(), render=Proxy())
+    exec(frames, names)
+    assert names["number"] == 3
+    names["device"] = Mock(path="circle")
+    exec(shown, names)
+    assert names["number"] == 3

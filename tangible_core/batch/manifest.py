@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 from ..errors import BatchError, quoted
 from ..files.paths import as_path
-from ..pipeline.starter import PICTURES
+from ..scene.picture_files import PICTURES, VIDEOS
 from ..scene.scene_files import SceneFiles
 
 MANIFESTS = (".csv", ".parquet")
@@ -35,7 +35,7 @@ def rows_of(over: str, besides: Path | None = None) -> Iterator[SceneRow]:
 
     In a manifest, the column `id` names the row, its number if there is none, and each other column is a key of the
     pipeline file (`scene.left`, `workspace.width_m`); what is empty changes nothing. Of a folder and a glob, two
-    pictures whose names end with `_left` and `_right` are a pair.
+    pictures whose names end with `_left` and `_right` are a pair; where there is no picture, the videos are taken.
     Raises: BatchError if there is no such file, nothing in it, or two rows have one name.
     """
     path = as_path(over, "--over")
@@ -139,15 +139,21 @@ def _parquet(path: Path) -> Iterator[dict[str, Any]]:
 
 def _pictures(files: list[Path], base: Path) -> Iterator[SceneRow]:
     pictures = {file for file in files if file.suffix.lower() in PICTURES}
+    if not pictures:  # a phone lays a short film of the same name beside each photo
+        yield from (_row(_name(file, base), {"scene.video": file}) for file in files if file.suffix.lower() in VIDEOS)
     rights = {right for file in pictures if (right := _right_of(file)) in pictures}
     for left in (file for file in files if file in pictures - rights):
-        name = left.relative_to(base) if left.is_relative_to(base) else Path(left.name)
         right = _right_of(left)
         if right in pictures:
             end = next(end for end, _ in SIDES if left.stem.endswith(end))
-            yield _row(str(name.with_name(left.stem.removesuffix(end))), {"scene.left": left, "scene.right": right})
+            yield _row(_name(left, base).removesuffix(end), {"scene.left": left, "scene.right": right})
         else:
-            yield _row(str(name.with_suffix("")), {"scene.photo": left})
+            yield _row(_name(left, base), {"scene.photo": left})
+
+
+def _name(file: Path, base: Path) -> str:
+    """Of a file below a folder, without its ending."""
+    return str((file.relative_to(base) if file.is_relative_to(base) else Path(file.name)).with_suffix(""))
 
 
 def _row(name: str, files: Mapping[str, Path]) -> SceneRow:

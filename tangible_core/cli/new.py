@@ -12,7 +12,7 @@ from .loudness import is_quiet
 
 def new(
     pictures: Annotated[
-        list[Path], typer.Argument(help="A picture, left and right, or a map of heights.", show_default=False)
+        list[Path], typer.Argument(help="A picture, left and right, a map of heights, or a video.", show_default=False)
     ],
     out: Annotated[Path | None, typer.Option("--out", help="The file to write [default: NAME.yaml].")] = None,
     force: Annotated[bool, typer.Option("--force", help="Write over a file that is there.")] = False,
@@ -27,7 +27,7 @@ def new(
     from . import show
 
     if not are_pictures(pictures):
-        raise ConfigError("new: name a picture (.png, .jpg, ...), left and right, or a map of heights (.npy, .pfm)")
+        raise ConfigError("new: name a picture (.png, .jpg, ...), left and right, a video, or a map of heights (.npy)")
     file = out or Path(f"{pictures[0].stem}.yaml")
     if file.exists() and not force:
         raise OutputError(f"{file}: is there already; --out FILE writes another one, --force writes over it")

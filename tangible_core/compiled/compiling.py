@@ -5,10 +5,11 @@ A room of kernels imports this module.
 
 import gc
 import logging
-from typing import Any
+from collections.abc import Callable
+from typing import Any, cast
 
 from numba.core import event
-from numba.extending import register_jitable
+from numba.extending import overload, register_jitable
 
 from .beside import kernels_are_compiled
 
@@ -21,12 +22,26 @@ KERNEL: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy", 
 atomic operation, twice an array and call. Nobody calls one by C's convention, so that no way in for it is compiled."""
 
 
+INNER: dict[str, Any] = {**KERNEL, "cache": False, "no_cpython_wrapper": True}
+"""The same for a function that only kernels call."""
+
+
 def inner(**options: Any) -> Any:
     """Of a function that only kernels call: it is compiled with them, without what Python would call it through.
 
     That is half of what a small kernel takes to compile. Called from Python, it runs as plain Python.
     """
-    return register_jitable(**{**KERNEL, "cache": False, "no_cpython_wrapper": True, **options})
+    return register_jitable(**{**INNER, **options})
+
+
+def inner_by_type(choose: Callable[..., Callable[..., Any]]) -> Any:
+    """As `inner`, of a function that is another one for other types: `choose` is given numba's, and gives it."""
+
+    def chosen(called: Callable[..., Any]) -> Any:
+        overload(called, jit_options=cast(Any, INNER), strict=False)(choose)
+        return called
+
+    return chosen
 
 
 class _CompileNotice(event.Listener):

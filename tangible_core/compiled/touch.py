@@ -75,6 +75,11 @@ class CompiledTouch(Touch):
         return self._address
 
 
+def moving_of(touch: Touch) -> Float64[np.ndarray, "2"]:
+    """What a touch tells of a surface that moves; of one that tells nothing, that it stands still."""
+    return touch.moving if isinstance(touch, CompiledTouch) else np.array([0.0, np.nan])
+
+
 def _revive(
     module: str,
     name: str,

@@ -5,7 +5,7 @@ from .outcome import Kind, Note, NoteKind, Outcome, OutcomeKind, Outcomes, Plan
 from .parts import PartMap
 from .records import Record, digest_of
 from .surface import TEXTURES, HapticSurface, Material, MaterialMap, Relief, Texture
-from .ticks import TICK_COLUMNS, UNTOUCHED, ServoReport, Spread, TickFlag, beacon_part
+from .ticks import TICK_COLUMNS, UNTOUCHED, FilmFelt, ServoReport, Spread, TickFlag, beacon_part
 from .views import Calibration, DisparityMap, SegmentMap, Views
 from .work import Work
 
@@ -13,6 +13,7 @@ __all__ = [
     "Calibration",
     "DeviceSpec",
     "DisparityMap",
+    "FilmFelt",
     "Finding",
     "Force",
     "HapticState",

@@ -60,9 +60,11 @@ TICK_COLUMNS = (
     *("proxy_x_m", "proxy_y_m", "proxy_z_m"),
     *("fx_n", "fy_n", "fz_n"),
     *("flags", "buttons"),
+    "frame",
 )
 """What is kept of a tick, each a float64: when it began and how late, the tip, the proxy (NaN where there is none), the
-force that the device was given, and the sum of its `TickFlag`s."""
+force that the device was given, the sum of its `TickFlag`s, the buttons, and the number of the frame that a surface
+which moves went to (NaN of one that stands still)."""
 
 
 class Spread(NamedTuple):
@@ -72,6 +74,23 @@ class Spread(NamedTuple):
     p99: float
     p999: float
     most: float
+
+
+class FilmFelt(NamedTuple):
+    """How a film was played to a loop."""
+
+    shown: int
+    """Frames that the surface was sent to."""
+    dropped: int
+    """Of these, those that the loop never went to, as a later one took their place."""
+    skipped: int
+    """Frames that were over before they could be looked at."""
+    damaged: int
+    """Frames that could not be read, or showed no depth."""
+    per_s: float
+    """Frames shown a second."""
+    age_ms: float | None
+    """From when a frame is due to when it is shown, the median of the last thousand; none where time is simulated."""
 
 
 @dataclass(frozen=True)
@@ -105,3 +124,7 @@ class ServoReport:
     """Number of the part that a beacon pulls to; none where no beacon is on."""
     material: str = ""
     """The name of the material under the tip, of parts or of segments; empty where the surface has none."""
+    frame: int | None = None
+    """Number of the frame that a surface which moves goes to; none where it stands still."""
+    film: FilmFelt | None = None
+    """How the film is played that is felt; none where the surface stands."""

@@ -28,12 +28,14 @@ from ..files.paths import as_path
 from ..files.writing import write_text
 from ..legibility import Legibility, SimplifyChoice
 from ..mapping import WorkspaceMapping
+from ..moving import ByClock, Reliefs
 from ..parts import HeightChoice, PartChoice, PartHeights
 from ..plugins import hooks
 from ..plugins.interfaces import (
     KINDS,
     DepthEstimator,
     Exporter,
+    Film,
     ForceRenderer,
     HapticDevice,
     Medium,
@@ -44,7 +46,7 @@ from ..plugins.interfaces import (
 )
 from ..plugins.registry import Registry, default_registry
 from ..preflight import Flight, Hand, Loop, Preflight, judge, survey
-from ..runtime.threads import check_threads
+from ..runtime.threads import check_threads, limited_threads
 from ..scene.scene import Scene
 from ..scene.workspace import Workspace
 from ..servo import OVER, Beacon, Safety, Servo, beacon_to
@@ -66,6 +68,7 @@ from .cache import Cache
 from .config import MaterialChoice, NamedMethod, PipelineConfig, Product, load_config, wrong_of_parts
 from .engine import Engine, Progress
 from .exporting import Export, chosen_exporters, export
+from .filmed import film_of, reliefs_of
 from .following import felt_device, how_followed
 from .legible import legible, of_width
 from .parts_said import Inscription
@@ -332,6 +335,26 @@ class Pipeline:
         """The law on this surface."""
         return self.make("touch")
 
+    @property
+    def reliefs(self) -> Reliefs:
+        """The frames of a scene that is a video, as reliefs; not open yet.
+
+        `with pipeline.reliefs as reliefs: for number, time_s, relief in reliefs:` makes one after the other, steady in
+        time and of one scale; without end where the video repeats. `reliefs.frames.at` skips to what is due, and
+        `reliefs.made` makes the relief of that.
+        Raises: ConfigError for a scene that does not move, or a relief that is made of parts.
+        """
+        return reliefs_of(self.config, self.scene)
+
+    def film(self, device: HapticDevice | None = None, period_s: float = 0.001) -> Film:
+        """The law on the surface of the video's first frame, as a film that goes on from there.
+
+        It is given to a `Servo` or to `session.run_simulated` like a touch, and shown the `reliefs`; `feel` does both.
+        device: whose materials fit, as for `feel`. period_s: of the loop that feels it.
+        Raises: ConfigError for a scene that does not move, or a law that feels none that does; TangibleError as `make`.
+        """
+        return film_of(self.engine, self.config.felt_device if device is None else self._device(device), period_s)
+
     def run(
         self,
         out: str | PathLike[str],
@@ -399,33 +422,42 @@ class Pipeline:
         device that is not there or goes, and is told so in words (`session.run_in_turn`); both in real time alone.
         beacon: the name or the number of a part to which the hand is pulled gently, with 1 N at most, until a button of
         the device releases it; of every scene of `then`, too.
+        A scene that is a video plays while it is felt, by the clock of the device where that is simulated; its parts
+        and materials stay those of the first frame. `ServoReport.film` says how it plays.
         Raises: ConfigError if there is no device or law, or no such part, or others of `then` have another device;
         DeviceError if it cannot be opened; OutputError for the file.
         """
         file = None if record is None else as_path(record, "record")
         if file is not None:
             check_record_path(file, seconds is None)
-        felt, touch, said = self._device(device), self._touch(device), self._about(device)
+        felt, said = self._device(device), self._about(device)
         tell = _both(self._tell, on_report)
         if not in_real_time and (then or on_wait):
             raise ConfigError("then, on_wait: are for a session in real time; leave them out, or in_real_time=False")
         if not in_real_time:
             tell, until_s = telling_parts(self.surface, tell), math.inf if seconds is None else seconds
-            found = run_simulated(touch, felt, until_s, tell, self.config.safety, stop, self._beacon(beacon))
+            touch, how = self._felt(device), (self.config.safety, stop, self._beacon(beacon))
+            if isinstance(touch, Film):
+                with self.reliefs as reliefs, limited_threads(self.threads):
+                    frames = ByClock(reliefs, touch)
+                    found = run_simulated(touch, felt, until_s, frames.told(tell), *how, frames=frames)
+            else:
+                found = run_simulated(touch, felt, until_s, tell, *how)
             found = replace(found, about=said.stamped())
             if file is not None:
                 found.save(file)
             return found
 
-        first = Turn(touch, self.config.safety, self.surface, self._beacon(beacon))
+        first = self._turn(self, device, beacon)
         turns = [first, *(each._turn(self, device, beacon) for each in then)]
         each_s = each_s if then else math.inf
         said = _in_turn(said, [each._about(None) for each in (self, *then)])
 
         def run(rows: Callable[[np.ndarray], None]) -> str:
             report = run_in_turn(
-                turns, felt, seconds, each_s, on_report=tell, keep=rows, on_start=on_start, on_wait=on_wait, stop=stop
-            )
+                turns, felt, seconds, each_s, on_report=tell, keep=rows, on_start=on_start, on_wait=on_wait, stop=stop,
+                threads=self.threads,
+            )  # fmt: skip
             return "" if report.stopped == OVER else report.stopped
 
         if file is not None:
@@ -530,7 +562,12 @@ class Pipeline:
             )
         if device is None and ours.device is None and theirs.device is not None:
             device = theirs.device.method
-        return Turn(self._touch(device), ours.safety, self.surface, self._beacon(beacon))
+        reliefs = None if self.scene.video is None else lambda: self.reliefs
+        return Turn(self._felt(device), ours.safety, self.surface, self._beacon(beacon), reliefs)
+
+    def _felt(self, device: HapticDevice | None) -> Touch | Film:
+        """What a loop feels: of a video, a film."""
+        return self._touch(device) if self.scene.video is None else self.film(device)
 
     def _touch(self, device: HapticDevice | None) -> Touch:
         """The law on the surface, whose materials fit this device, or the configured one."""

@@ -28,7 +28,7 @@ from ..legibility import SimplifyChoice, simplify
 from ..materials import assignment
 from ..parts import Layering, PartHeights
 from ..parts import find as part_finding
-from ..plugins.interfaces import HapticDevice, Method, Skippable, Touch
+from ..plugins.interfaces import DepthEstimator, HapticDevice, Method, Skippable, Touch
 from ..plugins.notes import doubt, note
 from ..preflight import fit_surface
 from ..provenance.closure import closure
@@ -36,6 +36,7 @@ from ..provenance.source import source_digest
 from ..scene import geometry, scaling, unmatched, view_order
 from ..scene.scene import Scene
 from ..scene.scene_files import SceneFiles
+from ..scene.workspace import FeltSize
 from . import felt, layers, parts_found, parts_said
 from .cache import Cache
 from .config import NamedMethod, PipelineConfig
@@ -105,11 +106,10 @@ def _disparity(config: PipelineConfig, grid: FeltScene) -> Rule:
 
     def make(inputs: Inputs) -> DisparityMap:
         views, chosen = _views(grid), _configured(config, "depth")
-        made = chosen.method.estimate(views)
-        _check_shape("depth", chosen, "disparity", made.disparity_px.shape, views.shape)
+        made = estimated(chosen, chosen.method.estimate, views)
         if not as_named:
             made = _in_order(made, views, offset_px / grid.factor)
-        found = felt.known_disparity(scaling.in_pixels_of(made, grid.scene.shape[1]), grid.known)
+        found = in_pictures_pixels(made, grid)
         if views.right is not None and (said := unmatched.hardly_matched(found, grid.known)):
             doubt(log, said)
         return found
@@ -122,19 +122,39 @@ def _disparity(config: PipelineConfig, grid: FeltScene) -> Rule:
 
 
 def _relief(config: PipelineConfig, grid: FeltScene) -> Rule:
-    size, scene = config.size, grid.scene
+    size = config.size
 
     def make(inputs: Inputs) -> Relief:
         disparity: DisparityMap | None = inputs["disparity"]
-        calibration = scene.views.calibration if scene.views else None
         if disparity is None:
             return geometry.flat_relief(_views(grid).shape, size.width_m)
-        disparity = scaling.reduced_disparity(disparity, grid.shape)
-        relief = geometry.make_relief(disparity, calibration, size.width_m, size.relief_m, size.holes)
-        return felt.grounded(geometry.smooth(relief, size.smooth_m), grid.shown)
+        return relief_of(scaling.reduced_disparity(disparity, grid.shape), grid, size)
 
     key = f"{_core(geometry.__name__)} {size!r}{_reduction(grid)}"
     return Rule("relief", "core", key, ("views", "disparity"), make)
+
+
+def estimated(
+    chosen: NamedMethod[DepthEstimator], estimate: Callable[[Views], DisparityMap], views: Views
+) -> DisparityMap:
+    """What the depth method makes of these views. Raises: BrokenMethod for a map of another size; what it raises."""
+    made = estimate(views)
+    _check_shape("depth", chosen, "disparity", made.disparity_px.shape, views.shape)
+    return made
+
+
+def in_pictures_pixels(made: DisparityMap, grid: FeltScene) -> DisparityMap:
+    """The disparity of what is felt, on its grid, in pixels of the pictures, unknown where they are."""
+    return felt.known_disparity(scaling.in_pixels_of(made, grid.scene.shape[1]), grid.known)
+
+
+def relief_of(
+    disparity: DisparityMap, grid: FeltScene, size: FeltSize, spans: geometry.ValueRange | None = None
+) -> Relief:
+    """The relief of a disparity on the grid that is felt. spans: as `geometry.make_relief`."""
+    calibration = grid.scene.views.calibration if grid.scene.views else None
+    relief = geometry.make_relief(disparity, calibration, size.width_m, size.relief_m, size.holes, spans)
+    return felt.grounded(geometry.smooth(relief, size.smooth_m), grid.shown)
 
 
 def _relief_of_parts(config: PipelineConfig, grid: FeltScene) -> Rule:
@@ -390,9 +410,14 @@ def _no_depth(config: PipelineConfig, scene: Scene) -> TangibleError | None:
     if config.depth is None:
         return config.missing("depth")
     if config.depth.method.needs_pair and scene.views.right is None:
+        give = (
+            "say how they lie in it, such as `layout: side-by-side`"
+            if scene.video
+            else "give both, `left:` and `right:`"
+        )
         return PictureError(
-            f"depth method {config.depth.name} needs two views, and the scene {scene.name} has one: give both, `left:` "
-            "and `right:`, or name a method for one picture (`tangible plugins` lists them)"
+            f"depth method {config.depth.name} needs two views, and the scene {scene.name} has one: {give}, "
+            "or name a method for one picture (`tangible plugins` lists them)"
         )
     return None
 

@@ -18,17 +18,15 @@ from ..errors import ConfigError
 from ..plugins.registry import default_registry
 from ..runtime.opencv import plain_opencv
 from ..scene.height_files import said_of
+from ..scene.picture_files import PICTURES as PICTURES
+from ..scene.picture_files import VIDEOS as VIDEOS
 from ..scene.scene import Scene
 from .cache import Cache
 from .config import parse_config
 from .pipeline import Pipeline
 
-PICTURES = frozenset(
-    (".png", ".jpg", ".jpeg", ".jp2", ".webp", ".bmp", ".gif", ".tif", ".tiff", ".ppm", ".pgm", ".heic", ".avif")
-)
-"""Ends of names that are taken for a picture's; any other one is a pipeline file's."""
 MAPS = frozenset({".npy", ".npz", ".pfm"})
-"""And for those of a map of heights."""
+"""Ends of names that are taken for those of a map of heights."""
 
 SIDE_MM = 80
 """The longer side of the surface: what a small desktop device reaches."""
@@ -47,7 +45,7 @@ Kind = Literal["photo", "pair", "heights"]
 
 def are_pictures(paths: Iterable[Path]) -> bool:
     """Whether these are to be felt as they are, and not the name of one pipeline file."""
-    return all(_is_builtin(path) or path.suffix.lower() in PICTURES or _is_map(path) for path in paths)
+    return all(_is_builtin(path) or path.suffix.lower() in PICTURES | VIDEOS or _is_map(path) for path in paths)
 
 
 class Starter(NamedTuple):
@@ -58,7 +56,7 @@ class Starter(NamedTuple):
 
 
 def starter(pictures: Sequence[Path], file: Path) -> Starter:
-    """A pipeline file for one picture, for left and right, for a map of heights, or for a builtin scene.
+    """A pipeline file for one picture, for left and right, for a map of heights, a video, or a builtin scene.
 
     file: where the text is to stand: its paths are relative to that.
     Raises: ConfigError if there are more; PictureError for one that cannot be read, or two that differ in size.
@@ -72,6 +70,9 @@ def starter(pictures: Sequence[Path], file: Path) -> Starter:
     kind: Kind = "heights" if scene.views is None else "pair" if scene.views.right is not None else "photo"
     named = ", ".join(f"{part}: {_path_in_yaml(path, file.parent)}" for part, path in parts.items())
     said = {"scene": f"{{{named}}}" if parts else scene.name, "name": " and ".join(path.name for path in pictures)}
+    if scene.video is not None:
+        said["name"] += ", its first frame"
+        said["scene"] += "   # with layout: side-by-side, if each frame holds the two views of a pair"
     template = kind if scene.measured is None else "measured"
     text = files("tangible_core.pipeline").joinpath(f"starter_{template}.yaml").read_text(encoding="utf-8")
     return Starter(Template(text).substitute(said, file=file, **_size(scene, kind)), scene)
@@ -100,10 +101,15 @@ def _parts(pictures: Sequence[Path]) -> Mapping[str, Any]:
     """Which part of a scene each is; none for a builtin one. Raises: ConfigError."""
     if len(pictures) == 1:
         (path,) = pictures
-        return {} if _is_builtin(path) else {"height" if _is_map(path) else "photo": path}
-    if odd := next((path for path in pictures if _is_builtin(path) or _is_map(path)), None):
+        return {} if _is_builtin(path) else {_part(path): path}
+    if odd := next((path for path in pictures if _is_builtin(path) or _part(path) != "photo"), None):
         raise ConfigError(f"{odd}: left and right are two pictures; name this one alone")
     return dict(zip(("left", "right"), pictures, strict=True))
+
+
+def _part(path: Path) -> str:
+    """Which part of a scene a file is, given alone."""
+    return "height" if _is_map(path) else "video" if path.suffix.lower() in VIDEOS else "photo"
 
 
 def _size(scene: Scene, kind: Kind) -> dict[str, object]:

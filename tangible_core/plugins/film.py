@@ -38,6 +38,11 @@ class Film(ABC):
         """How many frames were shown that the loop never went to, as a later one took their place."""
 
 
+def touch_of(felt: Touch | Film) -> Touch:
+    """What a loop feels, of a surface that stands still or moves."""
+    return felt.touch if isinstance(felt, Film) else felt
+
+
 class Filming(ABC):
     """For a force law that can be felt on a surface that moves."""
 

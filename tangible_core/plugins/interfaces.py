@@ -28,6 +28,7 @@ from ..data.arguments import as_picture
 from ..data.quantities import Quantities
 from .film import Film as Film
 from .film import Filming as Filming
+from .film import touch_of as touch_of
 from .link import Link as Link
 from .touch import PlainTouch as PlainTouch
 from .touch import Touch as Touch
@@ -150,6 +151,19 @@ class Skippable(ABC):
     @abstractmethod
     def skip(self, views: Views) -> str | None:
         """A reason, in words, not to run on these views; None to run. Cheap: it is asked for every plan."""
+
+
+class Following(ABC):
+    """For a depth method that looks for something before it matches, such as the range: a film has it found once."""
+
+    @abstractmethod
+    def follow(self, views: Views) -> Callable[[Views], DisparityMap]:
+        """`estimate` for the frames of a film that these views begin.
+
+        What they show of the cameras is kept for all that follow, which is quicker, and steadier: what is called may
+        remember what it saw. It is called for the first frame as well.
+        Raises: TangibleError as `estimate`.
+        """
 
 
 class Reshaping(ABC):

@@ -8,6 +8,7 @@ from contextvars import ContextVar
 from ..data import Note
 
 _told: ContextVar[Callable[[Note], None] | None] = ContextVar("tangible_notes", default=None)
+_silent: ContextVar[bool] = ContextVar("tangible_notes_silent", default=False)
 
 
 def note(log: logging.Logger, message: str, level: int = logging.INFO) -> None:
@@ -15,14 +16,28 @@ def note(log: logging.Logger, message: str, level: int = logging.INFO) -> None:
 
     What is kept is told again when the result comes from the cache; what is only logged is not.
     """
+    if _silent.get():
+        return
     log.log(level, message)
     _keep(Note(message, "warning" if level >= logging.WARNING else "decision"))
 
 
 def doubt(log: logging.Logger, message: str) -> None:
     """`note` that a result is hardly worth feeling: a warning, on which `tangible feel` asks first."""
+    if _silent.get():
+        return
     log.warning(message)
     _keep(Note(message, "doubt"))
+
+
+@contextmanager
+def silently() -> Generator[None]:
+    """Nothing that is noted in this block is said or kept: frame after frame of a film, it would be the same again."""
+    token = _silent.set(True)
+    try:
+        yield
+    finally:
+        _silent.reset(token)
 
 
 @contextmanager

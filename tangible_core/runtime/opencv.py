@@ -1,5 +1,6 @@
 """OpenCV with one arithmetic on every processor."""
 
+import os
 from collections.abc import Generator
 from contextlib import contextmanager
 from threading import Lock
@@ -12,6 +13,9 @@ _users = 0
 _limits: list[int] = []
 _before = (True, 1)
 """Whether OpenCV was optimised, and its threads, before the first of them came."""
+_silent, _loud = 0, 0
+"""How many want it to be silent, and the level of its log before the first of them came."""
+_QUIET = "-8"  # AV_LOG_QUIET
 
 
 @contextmanager
@@ -57,6 +61,32 @@ def opencv_at_most(threads: int) -> Generator[None]:
         with _LOCK:
             _limits.remove(threads)
             _switch(cv2)
+
+
+@contextmanager
+def silent_opencv() -> Generator[None]:
+    """OpenCV, and FFmpeg in it, without a word on standard error, for the whole process until the last one has left.
+
+    FFmpeg reads how much it may say once, when the first video is opened; who has set it (OPENCV_FFMPEG_LOGLEVEL) to
+    look for a fault is heard.
+    """
+    global _silent, _loud
+    import cv2
+
+    logging: Any = cv2.utils.logging
+    with _LOCK:
+        if not _silent:
+            os.environ.setdefault("OPENCV_FFMPEG_LOGLEVEL", _QUIET)
+            _loud = logging.getLogLevel()
+            logging.setLogLevel(logging.LOG_LEVEL_SILENT)
+        _silent += 1
+    try:
+        yield
+    finally:
+        with _LOCK:
+            _silent -= 1
+            if not _silent:
+                logging.setLogLevel(_loud)
 
 
 limiters.append(opencv_at_most)

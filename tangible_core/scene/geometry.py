@@ -1,6 +1,6 @@
 """From disparity to a relief in metres, and between the picture's frame and the workspace (see `data` for both)."""
 
-from typing import Literal, TypeVar
+from typing import Literal, NamedTuple, TypeVar
 
 import numpy as np
 from jaxtyping import Float, Float32, Float64, Int, Shaped
@@ -15,7 +15,17 @@ Holes = Literal["fill", "cut"]
 RANGE_PERCENT = (0.5, 99.5)
 """The part of a measured map that spans the relief; what lies beyond, mostly wrong matches, is clipped."""
 
+TINY, HUGE = 1e-30, 1e30
+"""Beyond these, what is done with a float32 may leave its range."""
+
 Coordinate = TypeVar("Coordinate", float, np.ndarray)
+
+
+class ValueRange(NamedTuple):
+    """The values that become the bottom and the top of a relief: disparities, depths with their sign, or heights."""
+
+    low: float
+    high: float
 
 
 def disparity_to_depth(
@@ -80,15 +90,35 @@ def _nearest(known: Shaped[np.ndarray, "n"]) -> Int[np.ndarray, "n"]:
 
 
 def make_relief(
-    disparity: DisparityMap, calibration: Calibration | None, width_m: float, relief_m: float, holes: Holes = "fill"
+    disparity: DisparityMap,
+    calibration: Calibration | None,
+    width_m: float,
+    relief_m: float,
+    holes: Holes = "fill",
+    spans: ValueRange | None = None,
 ) -> Relief:
     """The relief of a disparity map: the far end at 0, the near end at relief_m, pixels square.
 
-    With a calibration and a disparity in pixels, heights are linear in depth; otherwise in disparity. The range runs
-    between percentiles of what is known (RANGE_PERCENT); a constant map is flat at 0. A disparity at or beyond
-    infinity is far.
+    With a calibration and a disparity in pixels, heights are linear in depth; otherwise in disparity. A disparity at or
+    beyond infinity is far. spans: the range of nearness that spans the relief, that of this map (`nearness_range`)
+    where nothing is said; what lies beyond is clipped.
     Raises: GeometryError if width_m or relief_m is not positive, or if no depth is known.
     """
+    nearness = _nearness(disparity, calibration)
+    return _relief(nearness, width_m, relief_m, holes, spans or _range_of(nearness, RANGE_PERCENT))
+
+
+def nearness_range(disparity: DisparityMap, calibration: Calibration | None) -> ValueRange:
+    """Between percentiles of what is known (RANGE_PERCENT): disparity, or depth with its sign where it is calibrated.
+
+    Its ends are one where the map is constant: the relief is then flat at 0.
+    Raises: GeometryError if no depth is known.
+    """
+    return _range_of(_nearness(disparity, calibration), RANGE_PERCENT)
+
+
+def _nearness(disparity: DisparityMap, calibration: Calibration | None) -> Float[np.ndarray, "h w"]:
+    """What grows towards the viewer, NaN where unknown. Raises: GeometryError if no depth is known."""
     nearness = disparity.disparity_px
     if calibration is not None and disparity.unit == "px":
         depth = disparity_to_depth(nearness, calibration.focal_px, calibration.baseline_m, calibration.offset_px)
@@ -98,7 +128,7 @@ def make_relief(
             "no depth is known anywhere: all disparities are NaN or mean infinity; check that left and "
             "right are not swapped, the search range, and offset_px"
         )
-    return _relief(nearness, width_m, relief_m, holes, RANGE_PERCENT)
+    return nearness
 
 
 def scale_heights(heights: Shaped[np.ndarray, "h w"], width_m: float, relief_m: float, holes: Holes = "fill") -> Relief:
@@ -110,7 +140,7 @@ def scale_heights(heights: Shaped[np.ndarray, "h w"], width_m: float, relief_m: 
     values = np.where(np.isfinite(heights), heights, np.nan)
     if np.isnan(values).all():
         raise GeometryError("the height map holds only NaN or infinity; use one with some known values")
-    return _relief(values, width_m, relief_m, holes, (0, 100))
+    return _relief(values, width_m, relief_m, holes, _range_of(values, (0, 100)))
 
 
 def flat_relief(shape: tuple[int, int], width_m: float) -> Relief:
@@ -120,29 +150,43 @@ def flat_relief(shape: tuple[int, int], width_m: float) -> Relief:
 
 
 def _relief(
-    values: Float[np.ndarray, "h w"], width_m: float, relief_m: float, holes: Holes, percent: tuple[float, float]
+    values: Float[np.ndarray, "h w"], width_m: float, relief_m: float, holes: Holes, spans: ValueRange
 ) -> Relief:
     if not (0 < width_m < np.inf and 0 < relief_m < np.inf):
         raise GeometryError(f"width_m and relief_m must be positive lengths in metres, not {width_m} and {relief_m}")
     rows, columns = values.shape
     whole = fill_rows(values) if holes == "fill" else values
-    heights = relief_m * _unit_range(whole, values[np.isfinite(values)], percent)
-    return Relief(np.nan_to_num(heights, nan=0.0).astype(np.float32), (width_m, width_m * rows / columns))
+    heights = _unit_range(whole, spans)
+    heights *= relief_m
+    if holes == "cut":
+        heights = np.nan_to_num(heights, nan=0.0)
+    return Relief(heights.astype(np.float32, copy=False), (width_m, width_m * rows / columns))
 
 
-def _unit_range(
-    values: Float[np.ndarray, "h w"], known: Float[np.ndarray, "n"], percent: tuple[float, float]
-) -> Float64[np.ndarray, "h w"]:
-    """Values clipped to percentiles of the known ones and mapped to 0..1; 0 where these do not differ."""
+def _range_of(values: Float[np.ndarray, "h w"], percent: tuple[float, float]) -> ValueRange:
+    """Percentiles of the known values, or all of them where these do not differ; the ends are one of a constant map."""
+    known = values[np.isfinite(values)]
     size = np.max(np.abs(known)) or 1.0  # divided out first: the largest floats have no difference
-    scaled, parts = values.astype(np.float64) / size, known.astype(np.float64) / size
+    parts = known.astype(np.float64) / size
     low, high = np.percentile(parts, percent)
     if not low < high:
         low, high = parts.min(), parts.max()
     if high - low <= 4 * np.finfo(values.dtype).eps * max(abs(low), abs(high)):
+        high = low
+    return ValueRange(float(low * size), float(high * size))
+
+
+def _unit_range(values: Float[np.ndarray, "h w"], spans: ValueRange) -> Float[np.ndarray, "h w"]:
+    """Values clipped to a range and mapped to 0..1; 0 where that is empty."""
+    size = max(abs(spans.low), abs(spans.high)) or 1.0
+    low, high = spans.low / size, spans.high / size
+    if not low < high:
         return np.zeros(values.shape)
+    if not (spans.high - spans.low > TINY and size < HUGE):  # whose difference, or whose share, is no float32
+        values, spans = values.astype(np.float64) / size, ValueRange(low, high)
     with np.errstate(over="ignore"):
-        return np.clip((scaled - low) / (high - low), 0, 1)
+        part = (values - values.dtype.type(spans.low)) * values.dtype.type(1 / (spans.high - spans.low))
+        return np.clip(part, 0, 1, out=part)
 
 
 def picture_to_workspace(

@@ -16,6 +16,7 @@ from ..data.pictures import check_finite, check_picture, opaque
 from ..errors import PictureError, did_you_mean, shown
 from ..files import arrays
 from ..files.reading import TOO_MANY_PIXELS, TooLargeError, check_size, read_bytes
+from ..runtime.opencv import silent_opencv
 from .frames import Say, count_pictures, unsaid
 from .tiff_tags import TIFF, Shape, stated_nodata, tiff_size
 
@@ -26,6 +27,14 @@ log = logging.getLogger(__name__)
 
 FORMATS = ("PNG", "JPEG", "TIFF", "BMP", "GIF", "WEBP", "PPM", "JPEG2000")
 """What Pillow may read. Some that it also knows run other programs (EPS) or cannot be told from noise (TGA)."""
+
+PICTURES = frozenset(
+    (".png", ".jpg", ".jpeg", ".jp2", ".webp", ".bmp", ".gif", ".tif", ".tiff", ".ppm", ".pgm", ".heic", ".avif")
+)
+"""Ends of names that are taken for a picture's; any other one is a pipeline file's."""
+
+VIDEOS = frozenset((".mp4", ".m4v", ".mov", ".avi", ".mkv", ".webm", ".mpg", ".mpeg", ".wmv", ".ogv", ".3gp", ".mts"))
+"""And for a video's."""
 
 NonFinite = Literal["error", "mask"]
 T = TypeVar("T")
@@ -200,9 +209,8 @@ def _said_of(path: Path) -> Generator[None]:
             warnings.simplefilter("error", Image.DecompressionBombWarning)
             yield
     except UnidentifiedImageError as error:
-        raise PictureError(
-            f"{path}: is not a picture that this program can read; use PNG, JPEG, TIFF, PFM or NPY"
-        ) from error
+        cure = "write `video:` for a video" if path.suffix.lower() in VIDEOS else "use PNG, JPEG, TIFF, PFM or NPY"
+        raise PictureError(f"{path}: is not a picture that this program can read; {cure}") from error
     except (Image.DecompressionBombError, Image.DecompressionBombWarning) as error:  # Pillow's limit is above ours
         raise _too_large(path, TOO_MANY_PIXELS) from error
     except TooLargeError as error:
@@ -291,14 +299,11 @@ def _picture_by_opencv(path: Path, data: bytes) -> np.ndarray:
 
     if data.startswith(b"\x89PNG"):
         check_size(*_png_size(data))
-    log_level = cv2.utils.logging.getLogLevel()
-    cv2.utils.logging.setLogLevel(cv2.utils.logging.LOG_LEVEL_SILENT)  # what is wrong is said below, in one line
     try:
-        values: np.ndarray | None = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED)
+        with silent_opencv():  # what is wrong is said below, in one line
+            values: np.ndarray | None = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED)
     except cv2.error:
         values = None
-    finally:
-        cv2.utils.logging.setLogLevel(log_level)
     if values is None:
         raise PictureError(f"{path}: the picture is damaged or of an unsupported kind; save it again as PNG or TIFF")
     if values.ndim == 3:

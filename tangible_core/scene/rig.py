@@ -2,10 +2,10 @@
 
 from dataclasses import dataclass
 from math import sqrt
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal, NamedTuple, final
 
 import numpy as np
-from jaxtyping import Bool, Float64
+from jaxtyping import Bool, Float32, Float64
 
 from ..data import Calibration, Record, Views
 from ..errors import GeometryError, PictureError, quoted
@@ -95,15 +95,32 @@ def turned(views: Views, rig: StereoRig) -> RectifiedViews:
     Source: Fusiello, Trucco & Verri, A compact algorithm for rectification of stereo pairs, 2000; OpenCV's
     initUndistortRectifyMap for the lenses.
     """
-    if views.right is None:
-        raise PictureError("a stereo rig takes two views; give a right one")
-    axes = _axes(np.array(rig.centre_m), looking=rig.rotation[2] + [0, 0, 1])
-    focal = float((rig.left.matrix[1, 1] + rig.right.matrix[1, 1]) / 2)
-    camera = np.array([[focal, 0, rig.left.matrix[0, 2]], [0, focal, rig.left.matrix[1, 2]], [0, 0, 1.0]])
-    size = _canvas(rig.left, axes, camera, views.shape)
-    left, known = _warped(views.left, rig.left, axes, camera, size)
-    right, _ = _warped(views.right, rig.right, np.einsum("ij,kj->ik", axes, rig.rotation), camera, size)
-    return RectifiedViews(Views(left, right, Calibration(focal, _length(np.array(rig.centre_m)))), known)
+    return Turning(rig, views.shape).of(views)
+
+
+@final
+class Turning:
+    """What `turned` does to the pairs of one rig and size, found once for many of them."""
+
+    def __init__(self, rig: StereoRig, shape: tuple[int, int]) -> None:
+        """shape: (h, w) of each picture. Raises: GeometryError as `turned`."""
+        axes = _axes(np.array(rig.centre_m), looking=rig.rotation[2] + [0, 0, 1])
+        focal = float((rig.left.matrix[1, 1] + rig.right.matrix[1, 1]) / 2)
+        camera = np.array([[focal, 0, rig.left.matrix[0, 2]], [0, focal, rig.left.matrix[1, 2]], [0, 0, 1.0]])
+        size = _canvas(rig.left, axes, camera, shape)
+        self._left = _places(rig.left, axes, camera, size)
+        self._right = _places(rig.right, np.einsum("ij,kj->ik", axes, rig.rotation), camera, size)
+        self._calibration = Calibration(focal, _length(np.array(rig.centre_m)))
+
+    def of(self, views: Views) -> RectifiedViews:
+        """A pair of the size that was said. Raises: PictureError if there is only one view."""
+        if views.right is None:
+            raise PictureError("a stereo rig takes two views; give a right one")
+        left, right = _warped(views.left, *self._left), _warped(views.right, *self._right)
+        columns, rows = self._left
+        height, width = views.shape
+        inside = (columns > -0.5) & (columns < width - 0.5) & (rows > -0.5) & (rows < height - 0.5)
+        return RectifiedViews(Views(left, right, self._calibration), inside)
 
 
 def _axes(baseline: np.ndarray, looking: np.ndarray) -> Float64[np.ndarray, "3 3"]:
@@ -149,21 +166,30 @@ def undistorted(
     return ahead * camera[[0, 1], [0, 1]] + camera[:2, 2]
 
 
-def _warped(
-    picture: np.ndarray, lens: Camera, axes: np.ndarray, camera: np.ndarray, size: tuple[int, int]
-) -> tuple[np.ndarray, Bool[np.ndarray, "h w"]]:
+class _Places(NamedTuple):
+    """Where each pixel of a turned picture is in the raw one."""
+
+    columns: Float32[np.ndarray, "h w"]
+    rows: Float32[np.ndarray, "h w"]
+
+
+def _places(lens: Camera, axes: np.ndarray, camera: np.ndarray, size: tuple[int, int]) -> _Places:
     import cv2
 
     find: Any = cv2.fisheye.initUndistortRectifyMap if lens.model == "equidistant" else cv2.initUndistortRectifyMap
+    with plain_opencv():
+        return _Places(*find(lens.matrix, _coefficients(lens), axes, camera, size, cv2.CV_32FC1))
+
+
+def _warped(picture: np.ndarray, columns: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    import cv2
+
     if picture.dtype.name not in ("uint8", "uint16", "float32", "float64"):
         picture = picture.astype(np.float32)
     with plain_opencv():
-        columns, rows = find(lens.matrix, _coefficients(lens), axes, camera, size, cv2.CV_32FC1)
         raw = np.ascontiguousarray(picture)
         found = cv2.remap(raw, columns, rows, cv2.INTER_CUBIC, borderMode=cv2.BORDER_REPLICATE)
-    height, width = picture.shape[:2]
-    inside = (columns > -0.5) & (columns < width - 0.5) & (rows > -0.5) & (rows < height - 0.5)
-    return np.clip(found, picture.min(), picture.max(), out=found), inside
+    return np.clip(found, picture.min(), picture.max(), out=found)
 
 
 def _coefficients(lens: Camera) -> np.ndarray:

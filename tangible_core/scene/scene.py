@@ -1,4 +1,4 @@
-"""What there is to feel: a pair of views, a photo or a height map, from files, from arrays or built in."""
+"""What there is to feel: a pair of views, a photo, a height map or a video, from files, from arrays or built in."""
 
 import logging
 from collections.abc import Mapping, Sequence
@@ -27,8 +27,9 @@ from .picture_files import NonFinite, labels_of, map_of, picture_of, read_labels
 from .rig import StereoRig, turned
 from .rig_files import read_rig
 from .scaling import felt_factor, reduced_map, reduced_shape
-from .scene_files import BUILTINS, SceneFiles, unknown_scene
+from .scene_files import BUILTINS, SceneFiles, VideoLayout, unknown_scene
 from .truth_files import TruthScale, read_truth, truth_of
+from .video_files import FirstFrame, Video, parts_of, read_video, still
 
 log = logging.getLogger(__name__)
 
@@ -76,6 +77,8 @@ class Scene:
     """Where the left view or the photo is; None for everywhere."""
     shown: Bool[np.ndarray, "h w"] | None = None
     """Where the left view or the photo is opaque: elsewhere lies flat ground; None for everywhere."""
+    video: Video | None = None
+    """What plays; the views are those of its first frame."""
     notes: tuple[str, ...] = ()
     """What was noticed while it was read."""
     files: str | SceneFiles | None = None
@@ -89,6 +92,7 @@ class Scene:
         right: File | ArrayLike | None = None,
         stereo: File | ArrayLike | None = None,
         photo: File | ArrayLike | None = None,
+        video: File | int | None = None,
         height: File | ArrayLike | None = None,
         disparity: File | ArrayLike | None = None,
         segments: File | ArrayLike | None = None,
@@ -97,7 +101,9 @@ class Scene:
         calibration: Calibration | None = None,
         rig: "StereoRig | File | None" = None,
         relief_m: float | None = None,
-        layout: Layout | None = None,
+        layout: VideoLayout | None = None,
+        fps: float | None = None,
+        repeat: bool = True,
         photo_depth: bool = True,
         crop: Sequence[int] | None = None,
         rotate: int = 0,
@@ -107,15 +113,20 @@ class Scene:
         non_finite: NonFinite = "error",
         name: str = "",
     ) -> Self:
-        """A scene of files and arrays: left and right, or a photo, or heights; the meanings are those of `SceneFiles`.
+        """A scene of files and arrays: left and right, or a photo, or heights, or a video, which is a file, a folder or
+        the number of a camera; the meanings are those of `SceneFiles`.
 
         What is transparent in a picture with a fourth channel is no part of the scene.
         Pictures are (h, w) or (h, w, 3|4), uint8, uint16, bool or float (white is 1). All are of one size.
         Raises: ConfigError for parts that make no scene, PictureError for one that cannot be read or is no picture.
         """
+        if not isinstance(cast(object, video), str | PathLike | int | None):
+            raise wrong_argument("video", video, "the path of a file or a folder, or the number of a camera")
+        said_whole = {"video": video} if isinstance(video, int) or "://" in str(video) else {}
         parts: dict[str, Any] = {
             "left": left, "right": right, "stereo": stereo, "photo": photo, "height": height,
             "disparity": disparity, "segments": segments, "truth": truth, "rig": rig,
+            "video": None if said_whole else video,
         }  # fmt: skip
         parts = {part: value for part, value in parts.items() if value is not None}
         _check_cameras(calibration, rig)
@@ -127,21 +138,22 @@ class Scene:
         files = _checked(
             paths | {part: Path(f"the array given as {part}") for part in parts.keys() - paths.keys()},
             calibration,
-            {"relief_m": relief_m, "truth_scale": truth_scale, "layout": layout, "photo_depth": photo_depth,
-             "crop": crop, "rotate": rotate,
+            {**said_whole, "relief_m": relief_m, "truth_scale": truth_scale, "layout": layout,
+             "photo_depth": photo_depth, "fps": fps, "repeat": repeat, "crop": crop, "rotate": rotate,
              "invert": invert, "nodata": nodata, "clip": clip, "non_finite": non_finite},
         )  # fmt: skip
         if paths.keys() == parts.keys():
-            return cls._read(name or str(paths[files.main]), files, Path(), files)
-        cameras = _rig(paths["rig"], files).cameras if "rig" in paths else rig
+            return cls._read(name or _named(files), files, Path(), files)
+        cameras = cast("StereoRig | None", _rig(paths["rig"], files).cameras if "rig" in paths else rig)
         said: list[str] = []
-        held: dict[str, np.ndarray] = {}
+        played = _played(files, Path(), cameras, said.append)
+        held = {} if played is None else parts_of(played.picture, files, played.video.name)
         for part, value in sorted(parts.items(), key=lambda each: each[0] != files.main):
-            if part in paths and part != "rig":
+            if part in paths and part not in ("rig", "video"):
                 held |= _read(part, paths[part], files, said.append)
-            elif part != "rig":
+            elif part not in paths and part != "rig":
                 held |= _converted(part, as_picture(part, value), files)
-        return cls._made(name or "arrays", files, held, None, said, cast("StereoRig | None", cameras))
+        return cls._made(name or "arrays", files, held, None, said, cameras, played and played.video)
 
     @classmethod
     def builtin(cls, name: str) -> Self:
@@ -160,7 +172,7 @@ class Scene:
         that differ in size.
         """
         if isinstance(scene, SceneFiles):
-            return cls._read(str(getattr(scene, scene.main)), scene, folder, scene)
+            return cls._read(_named(scene), scene, folder, scene)
         if scene not in BUILTINS:
             raise ConfigError(unknown_scene(scene))
         return cls._read(scene, BUILTINS[scene], _scikit_image_data(), scene)
@@ -170,14 +182,18 @@ class Scene:
         paths = {part: as_path(folder) / as_path(path) for part, path in files if isinstance(path, Path)}
         rig = _rig(paths.pop("rig"), files) if "rig" in paths else None
         said: list[str] = []
-        held: dict[str, np.ndarray] = {}
+        played = _played(files, folder, rig and rig.cameras, said.append)
+        held = {} if played is None else parts_of(played.picture, files, played.video.name)
         for part, path in paths.items():
-            held |= _read(part, path, files, said.append)
-        if rig is not None and rig.size not in (None, held[files.main].shape[1::-1]):
+            if part != "video":
+                held |= _read(part, path, files, said.append)
+        if rig is not None and rig.size not in (None, held["left"].shape[1::-1]):
             raise PictureError(
-                f"{paths[files.main]} is not {rig.size[0]} x {rig.size[1]}, the size that the rig was calibrated for"
+                f"{paths.get(files.main, name)} is not {rig.size[0]} x {rig.size[1]}, the size that the rig was "
+                "calibrated for"
             )
-        return cls._made(name, files.model_copy(update=paths), held, origin, said, rig and rig.cameras)
+        files = files.model_copy(update=paths)
+        return cls._made(name, files, held, origin, said, rig and rig.cameras, played and played.video)
 
     @classmethod
     def _made(
@@ -188,8 +204,11 @@ class Scene:
         origin: "str | SceneFiles | None",
         said: list[str],
         rig: StereoRig | None = None,
+        video: Video | None = None,
     ) -> Self:
-        if files.stereo is not None:
+        if files.video is not None:
+            files = still(files)
+        elif files.stereo is not None:
             files = files.model_copy(update={"left": files.stereo, "right": files.stereo, "stereo": None})
         _check_sizes(files, held)
         held = framed(held, files)
@@ -213,6 +232,7 @@ class Scene:
             truth=_frozen(held.get("truth")),
             known=_frozen(known),
             shown=_frozen(shown),
+            video=video,
             notes=tuple(said),
             files=origin,
         )
@@ -279,6 +299,19 @@ def _checked(paths: Mapping[str, Path], calibration: Calibration | None, options
         ) from error
 
 
+def _named(files: SceneFiles) -> str:
+    """The name of a scene that has none of its own."""
+    return f"camera {files.video}" if isinstance(files.video, int) else str(getattr(files, files.main))
+
+
+def _played(files: SceneFiles, folder: Path, rig: StereoRig | None, say: Say) -> FirstFrame | None:
+    """The video of a scene and its first frame; None where it has none. Raises: PictureError."""
+    if files.video is None:
+        return None
+    source = files.video if isinstance(files.video, int) else as_path(folder) / as_path(files.video)
+    return read_video(source, files.model_copy(update={"video": source}), rig, say)
+
+
 class _Rig(NamedTuple):
     """Two cameras, and the size of the pictures that they were calibrated with, where it is known."""
 
@@ -293,7 +326,7 @@ def _rig(path: Path, files: SceneFiles) -> _Rig:
 def _read(part: str, path: Path, files: SceneFiles, say: Say = unsaid) -> dict[str, np.ndarray]:
     """What a file of a scene holds, by what it is: two views, or a photo and its depth, or what it was given for."""
     if part == "stereo":
-        return read_pair(path, files.layout, files.non_finite, say)._asdict()
+        return read_pair(path, cast("Layout | None", files.layout), files.non_finite, say)._asdict()
     if part == "truth":
         return {part: read_truth(path, files.truth_scale, say)}
     if part not in _PICTURES:
@@ -313,7 +346,7 @@ def _converted(part: str, values: np.ndarray, files: SceneFiles) -> dict[str, np
     if part not in _PICTURES:
         return {part: _CONVERTERS[part](values.copy(), name)}
     picture = picture_of(values.copy(), name, files.non_finite)
-    return halves(picture, files.layout, name)._asdict() if part == "stereo" else {part: picture}
+    return halves(picture, cast("Layout | None", files.layout), name)._asdict() if part == "stereo" else {part: picture}
 
 
 def _disparity(held: Mapping[str, np.ndarray]) -> DisparityMap | None:

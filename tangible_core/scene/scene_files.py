@@ -1,15 +1,15 @@
 """A scene in files: which files, and what is known of the cameras."""
 
-from collections.abc import Mapping
+import re
+from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Annotated, Literal, Self
 
-from pydantic import ConfigDict, Field, model_validator
+from pydantic import BeforeValidator, ConfigDict, Field, model_validator
 
 from ..data import Calibration
 from ..data.quantities import Quantities
 from ..errors import did_you_mean, quoted
-from .pair_files import Layout
 from .picture_files import NonFinite
 from .truth_files import TruthScale
 
@@ -17,20 +17,41 @@ Length = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 Start = Annotated[int, Field(ge=0)]
 Count = Annotated[int, Field(ge=1)]
 Percent = Annotated[float, Field(ge=0, le=100, allow_inf_nan=False)]
+VideoLayout = Literal["mono", "side-by-side", "cross-eyed", "top-bottom"]
+Fps = Annotated[float, Field(gt=0, le=1000, allow_inf_nan=False)]
 Number = Annotated[float, Field(allow_inf_nan=False)]
 
 _NEEDS = {
     **{"focal_px": "baseline_m", "baseline_m": "focal_px", "offset_px": "focal_px"},
-    **{"relief_m": "height", "rig": "left", "rig_unit_m": "rig", "nodata": "height", "layout": "stereo"},
-    "truth_scale": "truth",
+    **{"relief_m": "height", "rig": "left", "rig_unit_m": "rig", "nodata": "height"},
+    **{"truth_scale": "truth", "fps": "video", "repeat": "video"},
 }
 _ALONE = ("rotate", "invert", "clip")
+_BESIDE_VIDEO = ("video", "layout", "fps", "segments", "crop", "repeat")
+_BESIDE_PAIRS = ("focal_px", "baseline_m", "offset_px", "rig", "rig_unit_m", "order")
+"""Beside a video whose frames are pairs."""
 _OF_VIEWS = ("disparity", "truth", "truth_scale", "focal_px", "baseline_m", "offset_px")
 
 
+def _video(value: object) -> object:
+    """Raises: ValueError for what names no video."""
+    if isinstance(value, str) and re.match(r"[A-Za-z][A-Za-z0-9+.-]+://", value):
+        raise ValueError("no address is opened: save the video, and name its file")
+    if isinstance(value, bool) or value == "" or not isinstance(value, str | Path | int | None):
+        raise ValueError(_WHAT_VIDEO)
+    if isinstance(value, int) and not 0 <= value <= LAST_CAMERA:
+        raise ValueError(_WHAT_VIDEO)
+    return value
+
+
+LAST_CAMERA = 99
+_WHAT_VIDEO = "a video is the path of a file or of a folder of pictures, or the number of a camera, from 0"
+VideoSource = Annotated[Path | Annotated[int, Field(ge=0, le=LAST_CAMERA)], BeforeValidator(_video)]
+
+
 class SceneFiles(Quantities):
-    """A scene in files: a pair (left and right, or both in one file, stereo), one photo, or a height map. Relative
-    paths start at the YAML file."""
+    """A scene in files: a pair (left and right, or both in one file, stereo), one photo, a height map, or a video.
+    Relative paths start at the YAML file."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
@@ -40,10 +61,17 @@ class SceneFiles(Quantities):
     """Right view of a rectified pair, of the same size."""
     stereo: Path | None = None
     """A rectified pair in one file: two halves of a picture, a .jps file, or the two pictures of an .mpo file."""
-    layout: Layout | None = None
-    """How the halves of `stereo` lie: `side-by-side`, the left view on the left; `cross-eyed`, the left view on the
-    right; `top-bottom`, the left view on top. When left out, as the file says, and otherwise side-by-side (.jps:
-    cross-eyed)."""
+    video: VideoSource | None = None
+    """A video file, a folder of pictures in the order of their numbers, or the number of a camera, from 0.
+    `tangible feel` plays it; everything else takes its first frame."""
+    fps: Fps | None = None
+    """Frames of the video a second. When left out, what the file or the camera says, and 30 for a folder."""
+    repeat: bool = True
+    """Whether the video begins again at its end."""
+    layout: VideoLayout | None = None
+    """How the halves of `stereo`, or of each frame of `video`, lie: `side-by-side`, the left view on the left;
+    `cross-eyed`, the left view on the right; `top-bottom`, the left view on top; `mono`, for a video of one view. When
+    left out, as the file says, and otherwise side-by-side (.jps: cross-eyed); a video's, mono."""
     photo: Path | None = None
     """A single picture."""
     photo_depth: bool = True
@@ -83,9 +111,9 @@ class SceneFiles(Quantities):
     """The part that is felt, [x, y, width, height] in pixels of the upright picture, x and y from its upper left
     corner. All files of the scene are cropped alike; points of materials count from the part's corner."""
     rotate: Literal[0, 90, 180, 270] = 0
-    """Turn a photo or a height map so many degrees clockwise, after cropping."""
+    """Turn a photo, a video of one view, or a height map so many degrees clockwise, after cropping."""
     invert: bool = False
-    """Turn light and dark of a photo round, or high and low of a height map."""
+    """Turn light and dark of a photo or a video round, or high and low of a height map."""
     nodata: Number | tuple[Number, ...] | None = None
     """Values of a height map that mean that nothing is known there, such as -9999. One that the file states itself
     (GDAL's tag of a GeoTIFF) needs no mention."""
@@ -100,21 +128,48 @@ class SceneFiles(Quantities):
     def _one_scene(self) -> Self:
         given = [name for name, value in self if isinstance(value, Path | float | str) and name != "non_finite"]
         given += ["nodata"] if isinstance(self.nodata, tuple) else []
+        given += ["video"] if isinstance(self.video, int) else []
+        given += [] if self.repeat else ["repeat"]
+        if "video" in given:
+            given += [] if self.non_finite == "error" else ["non_finite"]
+            self._check_video([*given, *(name for name in ("crop", *_ALONE) if getattr(self, name))])
+            return self
         kinds = [kind for kind in (("left", "right"), ("stereo",), ("photo",), ("height",)) if set(kind) & set(given)]
         if self.stereo and (idle := [name for name in ("left", "right", "photo", "height") if name in given]):
             raise ValueError(f"stereo already gives both views; leave out {', '.join(idle)}")
         if len(kinds) != 1 or not set(kinds[0]) <= set(given):
             named = ", ".join(given) or "nothing"
-            raise ValueError(f"a scene is either left and right, or photo, or height; this one gives {named}")
-        for name, other in _NEEDS.items():
-            if name in given and other not in given:
-                raise ValueError(f"{name} needs {other} beside it")
+            raise ValueError(f"a scene is either left and right, or photo, or height, or video; this one gives {named}")
+        self._check_needs(given)
+        if "layout" in given and (not self.stereo or self.layout == "mono"):
+            raise ValueError("layout needs stereo beside it, or video; mono is for a video")
         if idle := self.rig and [name for name in given if name in _OF_VIEWS or name == "segments"]:
             raise ValueError(f"rig says what the cameras are, and turns the pictures; leave out {', '.join(idle)}")
         if idle := self.height and [name for name in given if name in _OF_VIEWS]:
             raise ValueError(f"height already gives all heights; leave out {', '.join(idle)}")
         self._check_framing()
         return self
+
+    def _check_needs(self, given: Collection[str]) -> None:
+        """Raises: ValueError for what says nothing alone."""
+        for name, other in _NEEDS.items():
+            if name in given and other not in given:
+                raise ValueError(f"{name} needs {other} beside it")
+
+    def _check_video(self, given: Collection[str]) -> None:
+        """Raises: ValueError for what cannot stand beside a video."""
+        self._check_needs(set(given) | ({"left"} if self.rig else set()))
+        mono = self.layout in (None, "mono")
+        fitting = {*_BESIDE_VIDEO, *(("rotate", "invert") if mono else _BESIDE_PAIRS)}
+        idle = [name for name in given if name not in fitting]
+        if mono and idle and set(idle) <= set(_BESIDE_PAIRS):
+            raise ValueError(f"{', '.join(idle)} is for two views; say how they lie in the video: layout: side-by-side")
+        if not mono and idle and set(idle) <= {"rotate", "invert"}:
+            raise ValueError(f"{' and '.join(idle)} is for one view: the rows of a pair's views belong together")
+        if idle:
+            raise ValueError(f"a video gives all that is seen; leave out {', '.join(idle)}")
+        if self.rig and (idle := [name for name in given if name in (*_OF_VIEWS, "segments", "crop")]):
+            raise ValueError(f"rig says what the cameras are, and turns the pictures; leave out {', '.join(idle)}")
 
     def _check_framing(self) -> None:
         """Raises: ValueError for what cannot be done with this kind of scene."""
@@ -128,8 +183,10 @@ class SceneFiles(Quantities):
             raise ValueError("rig is for whole pictures; leave out crop")
 
     @property
-    def main(self) -> Literal["left", "stereo", "photo", "height"]:
+    def main(self) -> Literal["left", "stereo", "photo", "height", "video"]:
         """The field that says what kind of scene this is, and whose size the others share."""
+        if self.video is not None:
+            return "video"
         return "left" if self.left else "stereo" if self.stereo else "photo" if self.photo else "height"
 
     @property

@@ -78,7 +78,8 @@ def kind_of(scene: str | SceneFiles | Scene) -> SceneKind:
     if isinstance(scene, str):
         scene = BUILTINS[scene]
     if isinstance(scene, SceneFiles):
-        heights, depth = scene.height is not None, scene.right is not None or scene.disparity is not None
+        pair = scene.right is not None or (scene.video is not None and scene.layout not in (None, "mono"))
+        heights, depth = scene.height is not None, pair or scene.disparity is not None
     else:
         heights = scene.height is not None
         depth = scene.disparity is not None or (scene.views is not None and scene.views.right is not None)

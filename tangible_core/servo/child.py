@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import IO, final
 
 from ..errors import DeviceError
-from ..plugins.interfaces import Link, Touch
+from ..plugins.interfaces import Link, Touch, touch_of
 from . import loop, parcel, priority
 from .ring import STOP, SWAP, Ring
 from .wire import End, Refusal, Start, StartReply, Swap, SwapReply, receive, send, sendable
@@ -55,7 +55,7 @@ class Child:
         self._ring = ring = Ring.attach(Path(start.ring))
         if self._stopped:
             self.stop()
-        touch = parcel.unpack(Path(start.scene))
+        touch = touch_of(parcel.unpack(Path(start.scene)))
         if ring.header[STOP]:
             return
         with start.device.open() as link:
@@ -102,7 +102,8 @@ class Child:
 
     def _swap(self, ring: Ring, link: Link, message: Swap) -> None:
         try:
-            self._next = loop.prepare(link, parcel.unpack(Path(message.scene)), ring, message.settings)
+            touch = touch_of(parcel.unpack(Path(message.scene)))
+            self._next = loop.prepare(link, touch, ring, message.settings)
         except BaseException as error:  # noqa: BLE001 - the scene that is felt stays
             self._reply(Refusal(sendable(error)))
             return

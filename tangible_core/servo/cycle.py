@@ -12,12 +12,15 @@ from numba import int64, njit, types
 from numba.extending import intrinsic
 
 from ..compiled.compiling import KERNEL
+from ..compiled.touch import FRAME
+from ..compiled.touch import RISE_M as RISE
 from ..data import TICK_COLUMNS, TickFlag
 from . import schedule
 from .beacon_kernels import pull
 from .clock import SECOND_NS, wait_ns
 from .guard.coupling import couple
 from .guard.guard import guard, wait
+from .guard.layout import RISE_M
 from .ring import (
     COUNT,
     LEAD_NS,
@@ -86,10 +89,11 @@ def publish(header, sums, late, period, contact, stamps, ticks, row, at_ns, late
 @njit(**KERNEL)
 def allowed(law, limits, period_s, x, y, z, vx, vy, vz, buttons):
     """What may leave of the law's force and the beacon's for a fresh state of the device, and flags."""
-    of_law, tick, _ = law
+    of_law, tick, _, moving = law
     settings, memory, beacon = limits
     felt = couple(settings, memory, period_s, x, y, z, vx, vy, vz)
     force_n = tick(*of_law, *felt)
+    memory[RISE_M] = moving[RISE]
     pulled = pull(*beacon, memory, period_s, felt[0], felt[1], felt[3], felt[4], int64(buttons))
     fx, fy, fz, flags = guard(settings, memory, period_s, x, y, z, vx, vy, vz, *force_n)
     return fx, fy, fz, flags | pulled
@@ -107,12 +111,12 @@ def cycle(link, law, limits, state, row, time_s, late_s, period_s):
     else:
         fx, fy, fz, flags = wait(settings, memory, period_s)
     write(*of_link, fx, fy, fz)
-    proxy = law[2]
+    proxy, moving = law[2], law[3]
     row[0], row[1] = time_s, late_s
     row[2], row[3], row[4], row[5], row[6], row[7] = x, y, z, vx, vy, vz
     row[8], row[9], row[10] = proxy[0], proxy[1], proxy[2]
     row[11], row[12], row[13] = fx, fy, fz
-    row[14], row[15] = flags, state[6]
+    row[14], row[15], row[16] = flags, state[6], moving[FRAME]
 
 
 @njit(**KERNEL)

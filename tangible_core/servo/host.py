@@ -11,9 +11,9 @@ from pathlib import Path
 from types import TracebackType
 from typing import IO, Any, Self, TypeVar, final
 
-from ..data import ServoReport
+from ..data import Relief, ServoReport
 from ..errors import DeviceError, check_positive
-from ..plugins.interfaces import HapticDevice, Touch
+from ..plugins.interfaces import Film, HapticDevice, Touch, touch_of
 from ..runtime.child_process import command
 from . import parcel
 from .beacon import ALL_BUTTONS, ASKED, SEEN, Beacon, BeaconState
@@ -49,7 +49,7 @@ class Servo:
 
     def __init__(
         self,
-        touch: Touch,
+        touch: Touch | Film,
         device: HapticDevice,
         limits: Safety | None = None,
         seconds: float | None = None,
@@ -68,6 +68,7 @@ class Servo:
         self._ring: Ring | None = None
         self._child: subprocess.Popen[bytes] | None = None
         self._ear: threading.Thread | None = None
+        self._film: Film | None = None
         self._sent = [touch.parcel] if isinstance(touch, Packed) else list[Path]()
         self._why = ""
         self._ended: End | None = None
@@ -86,10 +87,11 @@ class Servo:
             settings, memory = self._arrays(self._touch)
             self.ring.guard[: memory.size] = memory
             self.ring.header[[PERIOD_NS, LAST]] = round(self._period_s * 1e9), self._ticks
-            start = Start(str(self.ring.path), self._pack(self._touch), self._device, settings)
+            scene, film = self._pack(self._touch)
+            start = Start(str(self.ring.path), scene, self._device, settings)
             self._ear = threading.Thread(target=self._hear, args=(start,), daemon=True)
             self._ear.start()
-            self._felt_now(self._answer(StartReply))
+            self._felt_now(self._answer(StartReply), film)
             threading.Thread(target=self._watch, daemon=True).start()
             self.start_s = time.monotonic() - begun_s
             return self
@@ -105,7 +107,7 @@ class Servo:
         finally:
             self.ring.header[STOP] = 1  # whatever interrupted that
 
-    def swap(self, touch: Touch, limits: Safety | None = None) -> None:
+    def swap(self, touch: Touch | Film, limits: Safety | None = None) -> None:
         """Feel another scene from one tick to the next; the force fades in. Returns when it is felt.
 
         limits: from then on; without any, those of before.
@@ -114,10 +116,27 @@ class Servo:
         """
         self._limits = limits or self._limits
         try:
-            self._tell(Swap(self._pack(touch), self._arrays(touch)[0]))
-            self._felt_now(self._answer(SwapReply))
+            scene, film = self._pack(touch)
+            self._tell(Swap(scene, self._arrays(touch)[0]))
+            self._felt_now(self._answer(SwapReply), film)
         finally:
             self._remove_sent()
+
+    def show(self, relief: Relief, frame: int) -> None:
+        """Where the surface that is felt goes from here, as `Film.show`: what the loop reads is written to, no more.
+
+        Raises: DeviceError if nothing that moves is felt, or the loop has ended; GeometryError as `Film.show`.
+        """
+        if not self.running:
+            raise self._failure()
+        if self._film is None:
+            raise DeviceError("what is felt stands still and shows no frame; feel the film that a law makes (`film`)")
+        self._film.show(relief, frame)
+
+    @property
+    def film(self) -> Film | None:
+        """The film that is felt, or was at the end, in the memory that the loop reads; none where nothing moves."""
+        return self._film
 
     def pull_to(self, beacon: Beacon | None, buttons: int = ALL_BUTTONS) -> None:
         """Pull the hand gently to a part of the surface that is felt, from now on; or let go of it at once.
@@ -209,9 +228,13 @@ class Servo:
             log.warning("the force loop's process is killed: %s", why)
             self._child.kill()
 
-    def _pack(self, touch: Touch) -> str:
-        self._sent.append(touch.handed_on() if isinstance(touch, Packed) else parcel.pack(touch))
-        return str(self._sent[-1])
+    def _pack(self, touch: Touch | Film) -> tuple[str, Film | None]:
+        """The file of a parcel, and the film in it, in the memory that whoever unpacks it has too."""
+        if isinstance(touch, Packed):
+            self._sent.append(touch.handed_on())
+            return str(self._sent[-1]), touch.film
+        self._sent.append(path := parcel.pack(touch))
+        return str(path), parcel.shared(path) if isinstance(touch, Film) else None
 
     def _remove_sent(self) -> None:
         """Scenes that were not taken out of their files; who stops and who swaps may do it at once."""
@@ -219,9 +242,9 @@ class Servo:
             while True:
                 self._sent.pop().unlink(missing_ok=True)
 
-    def _arrays(self, touch: Touch) -> tuple[Any, Any]:
+    def _arrays(self, touch: Touch | Film) -> tuple[Any, Any]:
         spec = self._device.spec()
-        self._felt = stiffness_of(touch, spec)
+        self._felt = stiffness_of(touch_of(touch), spec)
         return self._limits.arrays(spec, self._felt.n_per_m)
 
     def _tell(self, message: Any) -> None:
@@ -244,7 +267,8 @@ class Servo:
             raise self._failure()
         return message
 
-    def _felt_now(self, reply: StartReply | SwapReply) -> None:
+    def _felt_now(self, reply: StartReply | SwapReply, film: Film | None) -> None:
+        self._film = film
         self.how = "; ".join(filter(None, (reply.how, self._felt.how)))
 
     def _failure(self) -> Exception:

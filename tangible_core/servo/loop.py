@@ -6,7 +6,7 @@ from typing import Any, NamedTuple, cast
 
 import numpy as np
 
-from ..compiled.touch import CompiledLink, CompiledTouch
+from ..compiled.touch import FRAME, CompiledLink, CompiledTouch, moving_of
 from ..data import TICK_COLUMNS, HapticState, TickFlag
 from ..plugins.interfaces import Link, Touch
 from .guard.guarded import guarded
@@ -111,7 +111,12 @@ def _kernels(link: CompiledLink, touch: CompiledTouch) -> tuple[Any, Any]:
     from ..compiled.kernels import Address
 
     read, write, of_link = link.kernels()
-    return (of_link, Address(read), Address(write)), (touch.fixed, touch.address(), touch.memory)
+    return (of_link, Address(read), Address(write)), (
+        touch.fixed,
+        touch.address(),
+        touch.memory,
+        touch.moving,
+    )
 
 
 def _stopped(shared: Sections) -> Sections:
@@ -138,7 +143,7 @@ def _plain(
     """A tick for a device or a law that is no kernel. A law that compiles something does so now, asked in free air."""
     from . import cycle
 
-    proxy = touch.memory[:3] if isinstance(touch, CompiledTouch) else np.full(3, np.nan)
+    proxy, moving = touch.memory[:3] if isinstance(touch, CompiledTouch) else np.full(3, np.nan), moving_of(touch)
     settings, memory, beacon = limits
     header, allowed = shared[0], guarded(touch, settings, memory, pulling(beacon, memory))
     touch.force(FAR)
@@ -151,7 +156,7 @@ def _plain(
         link.write(force)
         began = (at_ns - header[START_NS]) / SECOND_NS, late_ns / SECOND_NS
         felt = *state.position_m, *state.velocity_m_per_s, *proxy, *link.applied
-        row[:] = (*began, *felt, flags, state.buttons)
+        row[:] = (*began, *felt, flags, state.buttons, moving[FRAME])
         kernel.now[:] = at_ns, late_ns
         next(kernel.ticks)
 

@@ -9,7 +9,7 @@ from typing import Any, NoReturn, final
 
 from ..data import DeviceSpec, HapticState
 from ..errors import DeviceError
-from ..plugins.interfaces import Touch
+from ..plugins.interfaces import Film, Touch, touch_of
 from . import parcel
 from .guard.stiffness import stiffness_of
 
@@ -32,6 +32,8 @@ class Packed(Touch):
         self.stiffness_n_per_m = float(stiffness_n_per_m)
         self.parcel = parcel.adopted(Path(path))
         """The file; its name is another one than was given."""
+        self.film: Film | None = None
+        """Of a film, in the process that packed it: what is shown here is felt there."""
 
     def __reduce__(self) -> tuple[Any, ...]:
         return parcel.unpack, (self.parcel,)
@@ -55,13 +57,15 @@ class Packed(Touch):
         self.parcel.unlink(missing_ok=True)
 
 
-def packed(touch: Touch, spec: DeviceSpec) -> Packed:
+def packed(touch: Touch | Film, spec: DeviceSpec) -> Packed:
     """A touch in a parcel, and its stiffness: what it says of it, or what is felt of it; takes some seconds at most.
 
     What another process makes a `Packed` of are its `str(parcel)` and `stiffness_n_per_m`. Until it has, the parcel
-    goes with this process.
+    goes with this process. Of a film, `Packed.film` stays here to be shown pictures, whichever process feels it.
     spec: of the device that it will be felt with.
     Raises: DeviceError if there is no room, or the touch cannot be sent; BrokenMethod for a stiffness that is none.
     """
-    stiffness = stiffness_of(touch, spec).n_per_m
-    return Packed(parcel.pack(touch), stiffness)
+    stiffness = stiffness_of(touch_of(touch), spec).n_per_m
+    made = Packed(parcel.pack(touch), stiffness)
+    made.film = parcel.shared(made.parcel) if isinstance(touch, Film) else None
+    return made

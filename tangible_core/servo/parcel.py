@@ -55,9 +55,22 @@ def adopted(path: Path) -> Path:
 
 def unpack(path: Path) -> Any:
     """The thing in a file of `pack`; its arrays are the file's own memory, which lasts as long as they do."""
-    with path.open("r+b") as file:
-        mapped = memoryview(mmap.mmap(file.fileno(), 0))
+    mapped = _mapped(path)
     path.unlink()
+    return _thing(mapped)
+
+
+def shared(path: Path) -> Any:
+    """The thing in a file of `pack`, which stays there: its arrays are the memory of whoever unpacks it as well."""
+    return _thing(_mapped(path))
+
+
+def _mapped(path: Path) -> memoryview:
+    with path.open("r+b") as file:
+        return memoryview(mmap.mmap(file.fileno(), 0))
+
+
+def _thing(mapped: memoryview) -> Any:
     parts: list[memoryview] = []
     at = 0
     while at < len(mapped):

@@ -16,6 +16,7 @@ from .guard import safety
 from .ring import LONGEST_S, MOST_LATE_S, PEAK_N, WORK_J, Ring
 
 AT = {name: column for column, name in enumerate(TICK_COLUMNS)}
+NOTHING_YET = np.array([np.nan if name == "frame" else 0.0 for name in TICK_COLUMNS])
 Counts = Int64[np.ndarray, "n"]
 """A histogram of a ring."""
 
@@ -104,7 +105,7 @@ def so_far(
     rows: Float64[np.ndarray, "n columns"], ticks: int, peak_force_n: float, work_j: float, stopped: str
 ) -> ServoReport:
     """After so many ticks, the last of which is the last of these rows; of the loop's time nothing is said."""
-    last = rows[-1] if len(rows) else np.zeros(len(TICK_COLUMNS))
+    last = rows[-1] if len(rows) else NOTHING_YET
     time_s, buttons = float(last[AT["time_s"]]), int(last[AT["buttons"]])
     return ServoReport(
         ticks=ticks,
@@ -115,6 +116,7 @@ def so_far(
         work_j=work_j,
         stopped=stopped,
         beacon=beacon_part(int(last[AT["flags"]])),
+        frame=None if math.isnan(last[AT["frame"]]) else int(last[AT["frame"]]),
     )
 
 

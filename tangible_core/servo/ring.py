@@ -11,7 +11,7 @@ All numbers are in the machine's own byte order, one section after the other, ea
 | period | int64 (4096,) | ticks that came so many microseconds after the one before |
 | contact | int64 (32768,) | ticks with a force, by whole millinewtons of it; the last for all that were stronger |
 | stamps | int64 (n,) | number of the tick that lies in each slot, -1 while it is written |
-| ticks | float64 (n, 16) | `data.TICK_COLUMNS`; tick k lies in slot k modulo n |
+| ticks | float64 (n, 17) | `data.TICK_COLUMNS`; tick k lies in slot k modulo n |
 | asked | int64 (16,) | which beacon is asked for, and which is felt (`beacon`) |
 | pull | float64 (16,) | where the beacon's grid lies, and how far its pull has faded in (`beacon`) |
 | field | float32 (1048576,) | the beacon's potential; without memory of its own until one is asked for |
@@ -39,7 +39,7 @@ from ..errors import DeviceError
 from ..runtime.child_process import is_alive
 from .beacon import HELD, MOST_CELLS, BeaconMemory
 
-MAGIC, LAYOUT = 0x54414E47_49424C45, 4
+MAGIC, LAYOUT = 0x54414E47_49424C45, 5
 """The word that begins every ring, and the version of this layout."""
 (
     IS_MAGIC,

@@ -13,7 +13,8 @@ import numpy as np
 
 from ..data import TICK_COLUMNS, HapticSurface, ServoReport, TickFlag
 from ..errors import DeviceError, check_positive
-from ..plugins.interfaces import HapticDevice, Touch
+from ..moving import Player, Reliefs
+from ..plugins.interfaces import Film, HapticDevice, Touch
 from ..runtime.stopping import stop_asked, stoppable
 from ..servo import OVER, Beacon, Safety, Servo
 from ..servo.beacon import BUTTON
@@ -33,12 +34,14 @@ SHORTEST_S = 0.1
 class Turn(NamedTuple):
     """A scene, and what no force on it may do."""
 
-    touch: Touch
+    touch: Touch | Film
     limits: Safety
     parts: HapticSurface | None = None
     """The surface whose parts and materials reports tell; None for none."""
     beacon: Beacon | None = None
     """Pulls to a part of this scene whenever it is felt, until a button has released one."""
+    reliefs: Callable[[], Reliefs] | None = None
+    """Makes what is shown while it is felt, of a touch that is a film; anew for each turn."""
 
 
 def run_in_turn(
@@ -52,6 +55,7 @@ def run_in_turn(
     on_start: Callable[[Servo], None] | None = None,
     on_wait: Callable[[str], None] | None = None,
     stop: Event | None = None,
+    threads: int | None = None,
 ) -> ServoReport:
     """Feel scenes in turn, each for so long, the first again after the last, as `run_in_real_time` feels one.
 
@@ -59,12 +63,12 @@ def run_in_turn(
     with it, the device is waited for, no force being left, and the scene is felt on when it is there. It is told so in
     words, once for each reason and when the device is back. Reports and ticks are then of the whole session: time goes
     on meanwhile, and one tick, STALE and without force, says where the device went. seconds: counted from the first
-    tick on, device or not. on_start: called for each loop.
+    tick on, device or not. on_start: called for each loop. threads: the most that work on the frames of a film at once.
     Raises: as `run_in_real_time`.
     """
     check_positive("each_s", min(each_s, 1.0))
     with stoppable(stop):
-        return _Session(turns, device, seconds, each_s, on_report, keep, on_start, on_wait).run()
+        return _Session(turns, device, seconds, each_s, on_report, keep, on_start, on_wait, threads).run()
 
 
 @final
@@ -81,10 +85,11 @@ class _Session:
         keep: Callable[[np.ndarray], None] | None,
         on_start: Callable[[Servo], None] | None,
         on_wait: Callable[[str], None] | None,
+        threads: int | None = None,
     ) -> None:
         self._turns, self._device, self._seconds, self._each_s = turns, device, seconds, each_s
         self._hear, self._keep_rows, self._begin = on_report or ignored, keep or ignored, on_start or ignored
-        self._on_wait = on_wait
+        self._on_wait, self._threads = on_wait, threads
         self._at, self._due_s = 0, math.inf
         self._swapping: Future[None] | None = None
         self._first_ns = 0
@@ -95,6 +100,7 @@ class _Session:
         self._last = so_far(np.empty((0, len(TICK_COLUMNS))), 0, 0.0, 0.0, "")
         self._row: np.ndarray | None = None
         self._told, self._pause_s = "", FIRST_PAUSE_S
+        self._player: Player | None = None
         self._released = False
         """Whether a button has released a beacon: nobody asks for another one."""
 
@@ -126,6 +132,8 @@ class _Session:
                 if self._on_wait is None or not servo.lost:
                     raise
                 return str(error)
+            finally:
+                self._stand()
         if self._on_wait is None or not servo.lost:
             return None
         self._let_go(servo)
@@ -140,6 +148,7 @@ class _Session:
         self._since_s = (began_ns - self._first_ns) / 1e9
         self._due_s = time.monotonic() + self._each_s
         self._pull(servo)
+        self._play(servo)
         self._begin(servo)
 
     def _look(self, servo: Servo, aside: ThreadPoolExecutor) -> str:
@@ -147,16 +156,33 @@ class _Session:
 
         Returns: that the time is over, where a loop began late; the first one counts its ticks.
         """
+        if self._player is not None:
+            self._player.check()
         if self._swapping is not None and self._swapping.done():
             swapped, self._swapping = self._swapping, None
             if servo.running:  # else it fails for what ended the loop
                 swapped.result()
                 self._at, self._due_s = self._next, time.monotonic() + self._each_s
                 self._pull(servo)
+                self._play(servo)
         elif self._swapping is None and len(self._turns) > 1 and time.monotonic() >= self._due_s:
             self._look_at_beacon(servo)
+            self._stand()
             self._swapping = aside.submit(servo.swap, *self._turns[self._next][:2])
         return self._ended() if self._since_s else ""
+
+    def _play(self, servo: Servo) -> None:
+        """The film of this scene, from its first frame."""
+        self._player, reliefs, film = None, self._turns[self._at].reliefs, servo.film
+        if reliefs is not None and film is not None:
+            self._player = Player(reliefs(), film, self._threads)
+            self._player.start()
+
+    def _stand(self) -> None:
+        """Nothing more is shown; what is felt is what was shown last."""
+        if self._player is not None:
+            self._player.stop()
+            self._player.check()
 
     def _pull(self, servo: Servo) -> None:
         """To the part that this scene has a beacon to; not after a button has released one."""
@@ -173,7 +199,8 @@ class _Session:
 
     def _tell(self, servo: Servo, found: ServoReport) -> None:
         found = report(servo.ring, found.stopped, self._before, self._since_s)
-        self._last = with_part(found, self._turns[self._at].parts)
+        film = self._player.felt if self._player is not None else None
+        self._last = replace(with_part(found, self._turns[self._at].parts), film=film)
         self._hear(self._last)
 
     def _keep(self, rows: np.ndarray) -> None:

@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from ..data import UNTOUCHED, ServoReport, TickFlag
-from ..plugins.interfaces import HapticDevice, Touch
+from ..data import UNTOUCHED, FilmFelt, ServoReport, TickFlag
+from ..plugins.interfaces import Film, HapticDevice, Touch
 from ..runtime.stopping import stop_asked, stoppable
 from ..servo import Beacon, Safety, Servo
 from .keeper import Keeper
@@ -25,7 +25,7 @@ REPORT_EVERY_S = 0.1
 
 
 def run_in_real_time(
-    touch: Touch,
+    touch: Touch | Film,
     device: HapticDevice,
     seconds: float | None = None,
     limits: Safety | None = None,
@@ -122,7 +122,12 @@ def figures(report: ServoReport) -> dict[str, float]:
         },
         "overruns": report.overruns,
         **{name.lower(): report.flagged.get(name, 0) for name in LIMITS},
+        **({} if report.film is None else _of_film(report.film)),
     }
+
+
+def _of_film(film: FilmFelt) -> dict[str, float]:
+    return {f"frames_{name}": value for name, value in film._asdict().items() if value is not None}
 
 
 LIMITS = [flag.name or "" for flag in TickFlag if not flag & UNTOUCHED]

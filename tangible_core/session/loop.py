@@ -5,13 +5,14 @@ import math
 from array import array
 from collections.abc import Callable
 from threading import Event
-from typing import final
+from typing import Any, final
 
 import numpy as np
 
+from ..compiled.touch import FRAME, moving_of
 from ..data import NO_FORCE, TICK_COLUMNS, Force, HapticState, ServoReport
 from ..errors import DeviceError, check_positive
-from ..plugins.interfaces import HapticDevice, Link, Touch
+from ..plugins.interfaces import Film, HapticDevice, Link, Touch, touch_of
 from ..runtime.stopping import stop_asked, stoppable
 from ..servo import Beacon, Safety
 from ..servo.beacon import BeaconMemory
@@ -31,27 +32,29 @@ FIRST_S = 0.001
 
 
 def run_simulated(
-    touch: Touch,
+    touch: Touch | Film,
     device: HapticDevice,
     seconds: float,
     on_report: Callable[[ServoReport], None] | None = None,
     limits: Safety | None = None,
     stop: Event | None = None,
     beacon: Beacon | None = None,
+    frames: Callable[[float], None] | None = None,
 ) -> Recording:
     """Feel for a while, in the device's own time: until its clock has gone on by so many seconds.
 
-    beacon: pulls from the first tick on, until a button releases it (`Servo.pull_to`).
+    beacon: pulls from the first tick on, until a button releases it (`Servo.pull_to`). frames: called before each tick
+    with the device's time since the first, to show what is due by then on the film that is felt (`Film.show`).
 
     The guard of these limits lets no force through that they forbid. `on_report` is called ten times a second of the
     device's time, and at the end. Ctrl-C, `stop` set from another thread, a device that stops answering or whose clock
     stands still, and a full recording (`MOST_TICKS`) end it early: the force is zero, what was felt so far is returned,
     and `Recording.stopped` says why.
     Raises: ConfigError if seconds is not positive and finite, DeviceError if the device cannot be opened, and whatever
-    a faulty touch or `on_report` raises, after the force was made zero.
+    a faulty touch, `on_report` or `frames` raises, after the force was made zero.
     """
     check_positive("seconds", seconds)
-    spec = device.spec()
+    touch, spec = touch_of(touch), device.spec()
     settings, memory = (limits or Safety()).arrays(spec, stiffness_of(touch, spec).n_per_m)
     pull = None if beacon is None else pulling(BeaconMemory.of(beacon).arrays, memory)
     allowed = guarded(touch, settings, memory, pull)
@@ -59,7 +62,7 @@ def run_simulated(
     link = device.open()
     try:
         with stoppable(stop), link:
-            _feel(allowed, link, seconds, tape)
+            _feel(allowed, link, seconds, tape, frames or _ignore)
     except DeviceError as error:  # also when the device is gone before its force could be made zero
         tape.stopped = tape.stopped or str(error)
     if tape.stopped:
@@ -76,12 +79,13 @@ def run_simulated(
     return recording
 
 
-def _feel(allowed: Guarded, link: Link, seconds: float, tape: "_Tape") -> None:
+def _feel(allowed: Guarded, link: Link, seconds: float, tape: "_Tape", frames: Callable[[float], None]) -> None:
     """Tick until the time is over; a cause to end early is left in tape.stopped."""
     try:
         state, period_s = link.read(), FIRST_S
         start_s = state.time_s
         while not tape.stopped:
+            frames(state.time_s - start_s)
             force, flags = allowed(state, period_s)
             link.write(force)
             tape.add(state, link.applied, flags)
@@ -110,7 +114,7 @@ class _Tape:
         self.stopped = ""
         self.ticks = 0
         self._numbers = array("d")
-        self._proxy = proxy_of(touch)
+        self._proxy, self._moving = proxy_of(touch), moving_of(touch)
         self._on_report = on_report
         self._reports = 0
         self._start_s = self._peak_n = self._work_j = 0.0
@@ -124,7 +128,7 @@ class _Tape:
         self._work_j += sum(held * (now - then) for held, now, then in way)
         self._peak_n = max(self._peak_n, math.hypot(*force))
         moved = *state.position_m, *state.velocity_m_per_s
-        row = state.time_s, 0.0, *moved, *self._proxy(), *force, flags, state.buttons
+        row = state.time_s, 0.0, *moved, *self._proxy(), *force, flags, state.buttons, self._moving[FRAME]
         self._numbers.extend(row)  # all at once: Ctrl-C leaves whole rows
         self._state, self._force = state, force
         self.ticks += 1
@@ -142,5 +146,5 @@ class _Tape:
         return Recording(np.array(self._numbers, np.float64).reshape(-1, len(TICK_COLUMNS)), self.stopped)
 
 
-def _ignore(report: ServoReport) -> None:
+def _ignore(_: Any) -> None:
     pass

@@ -99,6 +99,11 @@ class Recording(Record):
         return self.rows[:, ARRAYS["buttons"]].astype(np.int64)
 
     @property
+    def frame(self) -> Times:
+        """The number of the frame that a surface which moves went to, NaN where it stood still."""
+        return self.rows[:, ARRAYS["frame"]]
+
+    @property
     def force_limited(self) -> int:
         """Ticks whose force was over the greatest allowed, and scaled down."""
         return int(np.count_nonzero(self.flags & TickFlag.FORCE_LIMITED))

@@ -30,11 +30,12 @@ def replay(touch: Touch, recording: Recording) -> Recording:
         states = np.hstack([recording.position_m, recording.velocity_m_per_s])
         cast(Any, kernels).over_states(*law, states, proxy_m, force_n)
     else:
-        for i, (time_s, _, x, y, z, vx, vy, vz, *_, buttons) in enumerate(recording.rows.tolist()):
+        for i, (time_s, _, x, y, z, vx, vy, vz, *_, buttons, _) in enumerate(recording.rows.tolist()):
             force_n[i] = touch.force(HapticState((x, y, z), (vx, vy, vz), time_s, int(buttons)))
     rows = recording.rows.copy()
     rows[:, ARRAYS["proxy_m"]], rows[:, ARRAYS["force_n"]] = proxy_m, force_n
     rows[:, ARRAYS["flags"]] = TickFlag.TOUCHING * force_n.any(axis=1)
+    rows[:, ARRAYS["frame"]] = np.nan
     return replace(recording, rows=rows)
 
 
@@ -52,9 +53,12 @@ def proxy_of(touch: Touch) -> Callable[[], tuple[float, ...]]:
 
 
 def undisturbed(recording: Recording) -> np.ndarray:
-    """Recorded forces, NaN at ticks whose force was not the law's own: limited, faded in, damped, none for a fault."""
-    changed = recording.flags & ~int(UNTOUCHED)
-    return np.where(changed[:, None] != 0, np.nan, recording.force_n)
+    """Recorded forces, NaN at ticks whose force was not the law's own on the surface as it was at first.
+
+    That is limited, faded in, damped, none for a fault; or on a surface that had moved.
+    """
+    changed = (recording.flags & ~int(UNTOUCHED) != 0) | (recording.frame > 0)
+    return np.where(changed[:, None], np.nan, recording.force_n)
 
 
 def compared(before: Recording, after: Recording) -> dict[str, float]:

@@ -17,11 +17,20 @@ ARRAYS: dict[str, int | slice] = {
     "force_n": slice(11, 14),
     "flags": 14,
     "buttons": 15,
+    "frame": 16,
 }
 """Where each property of a recording, and array of an .npz, stands in a row of `TICK_COLUMNS`."""
 NEEDED = ("time_s", "position_m", "velocity_m_per_s", "force_n")
 """What each recording has; the rest may be unknown:"""
-UNKNOWN = {"late_s": 0.0, "proxy_x_m": np.nan, "proxy_y_m": np.nan, "proxy_z_m": np.nan, "flags": 0.0, "buttons": 0.0}
+UNKNOWN = {
+    "late_s": 0.0,
+    "proxy_x_m": np.nan,
+    "proxy_y_m": np.nan,
+    "proxy_z_m": np.nan,
+    "flags": 0.0,
+    "buttons": 0.0,
+    "frame": np.nan,
+}
 
 
 def unknown(count: int) -> Float64[np.ndarray, "n columns"]:

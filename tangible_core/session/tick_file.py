@@ -15,7 +15,10 @@ from ..data import TICK_COLUMNS, TickFlag
 from ..data.ticks import BEACON_SHIFT
 from . import netcdf
 from .netcdf import Variable
+from .tick_arrays import ARRAYS, unknown
 
+STILL = -1
+"""In the file, the frame of a surface that stands still: netCDF's readers take what a variable fills in for missing."""
 CUT_OFF = "cut off: the recorder was ended before it could close the file"
 """What a file says until it is closed."""
 STOPPED_BYTES = 240
@@ -66,6 +69,7 @@ def _variables() -> Iterator[Variable]:
     what = f"what happened in the tick; from bit {BEACON_SHIFT} on the number of the part that a beacon pulls to"
     yield _variable(">i4", "1", what, flag_masks=flags[0], flag_meanings=flags[1])
     yield _variable(">i4", "1", "buttons held, one bit each")
+    yield _variable(">i4", "1", "frame that a surface which moves went to", _FillValue=np.array([STILL], ">i4"))
 
 
 def _variable(dtype: str, units: str, long_name: str, **more: str | np.ndarray) -> Variable:
@@ -76,7 +80,7 @@ VARIABLES = dict(zip(TICK_COLUMNS, _variables(), strict=True))
 """What a law is given is exact: rounded by a nanometre, a proxy may take another way. What it gave is float32, within
 4 nm of a proxy under 0.125 m from the centre and 0.3 uN of a force under 8 N."""
 RECORD = np.dtype([(name, variable.dtype) for name, variable in VARIABLES.items()])
-"""A tick, 92 bytes."""
+"""A tick, 96 bytes."""
 
 
 def header(about: About, stopped: str = CUT_OFF, ticks: int = 0) -> bytes:
@@ -97,7 +101,7 @@ def pack(rows: Float64[np.ndarray, "n columns"]) -> bytes:
     records = np.empty(len(rows), RECORD)
     with np.errstate(over="ignore"):
         for name, values in zip(TICK_COLUMNS, rows.T, strict=True):
-            records[name] = values
+            records[name] = values if name != "frame" else np.where((values >= 0) & (values < 2**31), values, STILL)
     return records.tobytes()
 
 
@@ -110,9 +114,12 @@ def read(path: Path) -> tuple[Float64[np.ndarray, "n columns"], str, About]:
 
     with netcdf_file(path, "r", mmap=True) as opened:
         file = cast(Any, opened)
-        rows = np.empty((file.variables["time_s"].shape[0], len(TICK_COLUMNS)))
+        rows = unknown(file.variables["time_s"].shape[0])
         for i, name in enumerate(TICK_COLUMNS):
-            rows[:, i] = file.variables[name][:]
+            if name in file.variables or name != "frame":  # which older recordings have not
+                rows[:, i] = file.variables[name][:]
+        frame = rows[:, ARRAYS["frame"]]
+        frame[frame == STILL] = np.nan
         about = {each.name: _text(file, each.name) for each in fields(About)}
         return rows, _text(file, "stopped"), About(**about)
 

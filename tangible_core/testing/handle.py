@@ -67,7 +67,8 @@ def ride(
     place, sent, (work, lost) = np.empty((count, 3)), np.empty((count, 3)), np.empty((2, count))
     end, body = np.array(state, np.float64), (handle.mass_kg, handle.damping_n_s_per_m)
     cast(Any, handle_kernels).ride(
-        *(touch.address(), touch.fixed, *(guard or (np.empty(0), np.empty(0))), periods, body, handle.push_n),
+        *(touch.address(), touch.fixed, touch.moving, *(guard or (np.empty(0), np.empty(0)))),
+        *(periods, body, handle.push_n),
         *(handle.delay_ticks, handle.resolution_m, end, place, sent, work, lost),
     )
     return Ride(np.cumsum(periods) - periods, place, sent, work, lost, end)

@@ -7,6 +7,8 @@ import numpy as np
 from numba import float64, njit, types
 
 from ..compiled import compiling as compiling
+from ..compiled.touch import RISE_M
+from ..servo.guard import layout
 from ..servo.guard.guard import couple, guard
 
 
@@ -33,7 +35,21 @@ def _measured(resolution_m, at):
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def ride(
-    tick, fixed, settings, memory, periods_s, body, push_n, delay, resolution_m, state, place, sent, work_j, lost_j
+    tick,
+    fixed,
+    moving,
+    settings,
+    memory,
+    periods_s,
+    body,
+    push_n,
+    delay,
+    resolution_m,
+    state,
+    place,
+    sent,
+    work_j,
+    lost_j,
 ):
     """Fills a row a tick: where the encoder says the handle is, the force sent, the energies until then.
 
@@ -54,6 +70,7 @@ def ride(
         if settings.size:
             at = couple(settings, memory, period_s, x, y, z, vx, vy, vz)
             fx, fy, fz = tick(*fixed, *at)
+            memory[layout.RISE_M] = moving[RISE_M]
             fx, fy, fz, _ = guard(settings, memory, period_s, x, y, z, vx, vy, vz, fx, fy, fz)
         else:
             fx, fy, fz = tick(*fixed, x, y, z, vx, vy, vz)

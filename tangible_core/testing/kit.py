@@ -14,6 +14,7 @@ from . import (
     checks_depth,
     checks_device,
     checks_export,
+    checks_film,
     checks_listing,
     checks_options,
     checks_render,
@@ -27,7 +28,7 @@ log = logging.getLogger(__name__)
 FAMILIES: dict[str, tuple[Check, ...]] = {
     "depth": checks_depth.CHECKS,
     "texture": checks_texture.CHECKS,
-    "render": (*checks_render.CHECKS, *checks_touch.CHECKS),
+    "render": (*checks_render.CHECKS, *checks_touch.CHECKS, *checks_film.CHECKS),
     "device": checks_device.CHECKS,
     "export": checks_export.CHECKS,
 }

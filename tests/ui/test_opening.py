@@ -17,6 +17,7 @@ from tangible_core.session.tick_file import About
 from tangible_ui.desk.shelf import MOST_FILES, Shelf
 from tangible_ui.maker import opening
 from tangible_ui.maker.bench import Bench
+from videos import greys
 
 
 @pytest.fixture
@@ -107,6 +108,11 @@ class TestBegin:
         found = opening.begin(bench, [picture(tmp_path / "cat.png")])
         assert "photo:" in found["text"]
         assert found["path"].name == "cat.yaml"
+
+    def test_a_video_is_its_first_frame(self, bench: Bench, tmp_path: Path) -> None:
+        path = greys(tmp_path / "walk.avi", 3)
+        assert said(opening.begin(bench, [path])["text"], path)["scene"] == {"video": str(path)}
+        assert {"name": "walk.avi", "kind": "video"} in opening.folder(bench, tmp_path)["entries"]
 
     def test_two_are_a_pair(self, bench: Bench, tmp_path: Path) -> None:
         found = opening.begin(bench, [picture(tmp_path / "l.png"), picture(tmp_path / "r.png")])

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from page_files import WEB, node
-from tangible_core.data import TickFlag
+from tangible_core.data import TICK_COLUMNS, TickFlag
 from tangible_ui import wire
 from tangible_ui.asks import ASKS
 from tangible_ui.serving.routes import WRONG_KEY
@@ -79,6 +79,17 @@ class TestFrames:
     def test_bytes_are_in_the_same_order_on_every_machine(self, name: str) -> None:
         frame: struct.Struct = getattr(wire, f"{name}_FRAME")
         assert frame.format.startswith("<")
+
+
+def test_columns_of_a_recording_are_where_the_page_reads_them() -> None:
+    said = (WEB / "src/ticks.ts").read_text(encoding="utf-8")
+    (count,), (places,) = re.findall(r"COLUMNS = (\d+);", said), re.findall(r"AT = \{(.*?)\}", said)
+    assert int(count) == len(TICK_COLUMNS)
+    read = {name: TICK_COLUMNS[int(place)] for name, place in re.findall(r"(\w+): (\d+)", places)}
+    assert read == {
+        **{"time": "time_s", "late": "late_s", "hand": "x_m", "velocity": "vx_m_per_s", "proxy": "proxy_x_m"},
+        **{"force": "fx_n", "flags": "flags", "buttons": "buttons"},
+    }
 
 
 def sources(folder: Path, ending: str) -> str:

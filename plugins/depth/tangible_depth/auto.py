@@ -2,12 +2,13 @@
 
 import logging
 import os
+from collections.abc import Callable
 from pathlib import Path
 
 from tangible_core.data import DisparityMap, Views
 from tangible_core.errors import TangibleError
 from tangible_core.files.paths import as_path
-from tangible_core.plugins.interfaces import DepthEstimator
+from tangible_core.plugins.interfaces import DepthEstimator, Following
 from tangible_core.plugins.notes import note
 
 from .luminance import Luminance
@@ -18,7 +19,7 @@ log = logging.getLogger(__name__)
 VARIABLE = "TANGIBLE_MODELS_DIR"
 
 
-class Auto(DepthEstimator):
+class Auto(DepthEstimator, Following):
     """A pair is matched by `semi-global`; one picture goes to a network if there is one, and else to `luminance`.
 
     A network is an ONNX file with its card beside it, a YAML file of the same name, in the folder `models` of the
@@ -35,20 +36,29 @@ class Auto(DepthEstimator):
 
     def estimate(self, views: Views) -> DisparityMap:
         """As the method that is taken. Raises: as that."""
+        return self._chosen(views).estimate(views)
+
+    def follow(self, views: Views) -> Callable[[Views], DisparityMap]:
+        """As the method that is taken; a pair is matched as a preview, at half the size."""
+        if views.right is not None:
+            return SemiGlobal(resolution="half").follow(views)
+        return self._chosen(views).estimate
+
+    def _chosen(self, views: Views) -> DepthEstimator:
         if views.right is not None:
             note(log, "a pair: matched by semi-global")
-            return SemiGlobal().estimate(views)
+            return SemiGlobal()
         network = _network()
         if network is not None:
             note(log, f"one picture: its depth is what the network {network.model} makes of it")
-            return network.estimate(views)
+            return network
         note(
             log,
             "one picture holds no depth, and there is no network: lighter is felt as nearer, so light and shadow are "
             "felt; draw its parts (`tangible parts`), or bring a network (docs/learned-depth.md)",
             logging.WARNING,
         )
-        return Luminance().estimate(views)
+        return Luminance()
 
 
 def _network() -> Onnx | None:

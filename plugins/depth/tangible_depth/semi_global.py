@@ -1,14 +1,18 @@
 """Semi-global matching of census codes: the default, for its time and its error."""
 
-from typing import Annotated, ClassVar, Literal
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 from pydantic import Field
 
 from tangible_core.data import DisparityMap, Views
-from tangible_core.plugins.interfaces import DepthEstimator
+from tangible_core.plugins.interfaces import DepthEstimator, Following
+
+if TYPE_CHECKING:
+    from .matching.chain import Matcher, Search
 
 
-class SemiGlobal(DepthEstimator):
+class SemiGlobal(DepthEstimator, Following):
     """Semi-global matching of census codes along four paths: precise at depth edges, robust to exposure and noise.
 
     What a pair does not need is left out and said: the search of disparities that do not occur, rows without texture,
@@ -56,8 +60,20 @@ class SemiGlobal(DepthEstimator):
         0.2; 0.1 where the value was filled or decided by a neighbour; 0 where nothing changes along the rows.
         Raises: PictureError if there is no right view or the range is empty.
         """
+        from .matching.chain import disparity_map
+
+        return disparity_map(views, "semi-global", *self._how())
+
+    def follow(self, views: Views) -> Callable[[Views], DisparityMap]:
+        """`estimate` for a film: rectified as these views need it, over the range of what was seen of late."""
+        from .matching.followed import FollowedPair
+
+        return FollowedPair(views, "semi-global", *self._how())
+
+    def _how(self) -> "tuple[Search, Matcher]":
+        """What the chain is told, and what matches."""
         from .matching.adaptive import MOST_ROW_OFFSET_PX
-        from .matching.chain import Search, disparity_map
+        from .matching.chain import Search
         from .matching.scaled import Scaling, match_scaled
 
         search = Search(
@@ -69,4 +85,4 @@ class SemiGlobal(DepthEstimator):
             skip_identical=self.skip_identical,
         )
         options = Scaling(self.resolution, self.cost, self.check, self.realign_rows, self.skip_flat)
-        return disparity_map(views, "semi-global", search, lambda pair, span: match_scaled(pair, span, options))
+        return search, lambda pair, span: match_scaled(pair, span, options)

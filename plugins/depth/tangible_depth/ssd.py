@@ -1,16 +1,20 @@
 """Dense sums of squared differences."""
 
-from typing import Annotated, ClassVar, Literal
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 from pydantic import Field
 
 from tangible_core.data import DisparityMap, Views
-from tangible_core.plugins.interfaces import DepthEstimator
+from tangible_core.plugins.interfaces import DepthEstimator, Following
 
 from .windows.odd import WindowSide
 
+if TYPE_CHECKING:
+    from .matching.chain import Matcher, Search
 
-class Ssd(DepthEstimator):
+
+class Ssd(DepthEstimator, Following):
     """Window matching by squared differences, with sub-pixel refinement, left-right check and filling.
 
     The simplest measure, for pairs of equal exposure; `zncc` allows for different ones.
@@ -41,8 +45,20 @@ class Ssd(DepthEstimator):
         where the value was filled or decided by a neighbour; 0 where nothing changes along the rows.
         Raises: PictureError if there is no right view or the range is empty.
         """
-        from .matching.chain import Search, disparity_map
+        from .matching.chain import disparity_map
+
+        return disparity_map(views, "ssd", *self._how())
+
+    def follow(self, views: Views) -> Callable[[Views], DisparityMap]:
+        """`estimate` for a film: rectified as these views need it, over the range of what was seen of late."""
+        from .matching.followed import FollowedPair
+
+        return FollowedPair(views, "ssd", *self._how())
+
+    def _how(self) -> "tuple[Search, Matcher]":
+        """What the chain is told, and what matches."""
+        from .matching.chain import Search
         from .matching.window_matching import match_by_difference
 
         search = Search(self.min_disparity_px, self.max_disparity_px, self.rectify, self.fill)
-        return disparity_map(views, "ssd", search, lambda pair, span: match_by_difference(pair, span, self.window_px))
+        return search, lambda pair, span: match_by_difference(pair, span, self.window_px)

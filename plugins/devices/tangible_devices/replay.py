@@ -46,7 +46,7 @@ class Playback:
         """The next state, whatever is held; after the last one the tip rests, and time goes on by the usual period."""
         self._tick += 1
         rests = max(0, self._tick - len(self._rows) + 1)
-        time_s, _, x, y, z, vx, vy, vz, *_, buttons = self._rows[self._tick - rests].tolist()
+        time_s, _, x, y, z, vx, vy, vz, *_, buttons, _ = self._rows[self._tick - rests].tolist()
         velocity = (0.0, 0.0, 0.0) if rests else (vx, vy, vz)
         return HapticState((x, y, z), velocity, time_s + rests * self._period_s, int(buttons))
 

@@ -1,14 +1,15 @@
 """The proxy, or god-object: a point that stays on the surface, joined to the hand by a spring."""
 
-from typing import Annotated, ClassVar, Self
+from typing import Annotated, Any, ClassVar, Literal, NamedTuple, Self
 
 import numpy as np
+from jaxtyping import Float64
 from pydantic import Field, model_validator
 
-from tangible_core.compiled.touch import CompiledTouch
+from tangible_core.compiled.touch import CompiledTouch, Tick
 from tangible_core.data import HapticSurface
 from tangible_core.haptic_textures.table import bristle_stiffness
-from tangible_core.plugins.interfaces import ForceRenderer, Touch
+from tangible_core.plugins.interfaces import Film, Filming, ForceRenderer, Touch
 
 from .effects.material_table import Row, material_table
 from .effects.table import textured
@@ -17,7 +18,16 @@ from .surface.dequantise import Filter
 from .surface.tiles import tile_bounds
 
 
-class Proxy(ForceRenderer):
+class _Law(NamedTuple):
+    """What a kernel is given after the surface, and which one: no texture, friction or damping where there is none."""
+
+    kind: Literal["spring", "materials", "textures"]
+    arguments: tuple[Any, ...]
+    memory: Float64[np.ndarray, "n"]
+    stiffness_n_per_m: float
+
+
+class Proxy(ForceRenderer, Filming):
     """A spring to a proxy (god-object), which stays on the surface: F = k (p - q).
 
     The proxy p starts where the hand q comes through the surface, a C2 spline, and then minimises |p - q| downhill from
@@ -68,29 +78,60 @@ class Proxy(ForceRenderer):
         Compiled on the first use on a machine, then loaded: each kernel has a module of its own, so that only the one
         that this surface needs is.
         """
+        shape = spline_surface(surface, self.dequantise)
+        law = self._law(surface)
+        fixed = (*shape, tile_bounds(shape[0]), *law.arguments)
+        return CompiledTouch(_still(law.kind), fixed, law.memory, law.stiffness_n_per_m)
+
+    def film(self, surface: HapticSurface, period_s: float = 0.001, frame_s: float = 1 / 30) -> Film:
+        """A film that begins with this surface, whose labels and materials stay where they are.
+
+        Each place goes evenly from one relief to the next, by no more than 0.1 m/s, nor faster than that the spring on
+        a hand at rest changes by 0.08 N a tick. Friction holds the proxy's place, on a surface that rises and falls;
+        damping is that of the hand alone. Heights in steps are not smoothed.
+        """
+        from .film.film import begun, checked
+
+        period_s, frame_s = checked(period_s, frame_s)
+        law = self._law(surface)
+        damping_n_s_per_m = float(law.arguments[1][:, 1].max()) if law.kind != "spring" else 0.0
+        spring = law.stiffness_n_per_m, damping_n_s_per_m
+        return begun(surface, _moving(law.kind), law.arguments, law.memory, spring, period_s, frame_s)
+
+    def _law(self, surface: HapticSurface) -> _Law:
         from .contact import contact
 
-        shape = spline_surface(surface, self.dequantise)
-        shape = (*shape, tile_bounds(shape[0]))
         memory = np.zeros(contact.REMEMBERED)
         if self.texture and (felt := textured(surface, self.friction)):
             labels, table, textures, state = felt
-            fixed = (*shape, labels, table, memory, textures, state)
             stiffness = max(float(table[:, 0].max()), bristle_stiffness(textures))
-            from .proxy_texture_kernels import textured_tick
-
-            return CompiledTouch(textured_tick, fixed, memory, stiffness)
+            return _Law("textures", (labels, table, memory, textures, state), memory, stiffness)
         labels, table = material_table(surface, self._plain())
         if not self.friction:
             table[:, 2:] = 0
         if len(table) == 1 and not table[0, 1:].any():
-            fixed = (*shape, float(table[0, 0]), memory)
-            from .proxy_spring_kernels import spring_tick
-
-            return CompiledTouch(spring_tick, fixed, memory, float(table[0, 0]))
-        from .proxy_kernels import tick
-
-        return CompiledTouch(tick, (*shape, labels, table, memory), memory, float(table[:, 0].max()))
+            return _Law("spring", (float(table[0, 0]), memory), memory, float(table[0, 0]))
+        return _Law("materials", (labels, table, memory), memory, float(table[:, 0].max()))
 
     def _plain(self) -> Row:
         return self.stiffness_n_per_m, self.damping_n_s_per_m, self.static_friction, self.dynamic_friction
+
+
+def _still(kind: str) -> Tick:
+    if kind == "spring":
+        from .proxy_spring_kernels import spring_tick as tick
+    elif kind == "materials":
+        from .proxy_kernels import tick
+    else:
+        from .proxy_texture_kernels import textured_tick as tick
+    return tick
+
+
+def _moving(kind: str) -> Tick:
+    if kind == "spring":
+        from .film.spring_kernels import moving_spring_tick as tick
+    elif kind == "materials":
+        from .film.material_kernels import moving_tick as tick
+    else:
+        from .film.texture_kernels import moving_textured_tick as tick
+    return tick

@@ -15,7 +15,7 @@ from ...data import TickFlag
 from . import layout as at
 from .coupling import READ, WRITTEN, pull
 from .coupling import couple as couple
-from .passivity import passive
+from .passivity import passive, rise_m
 from .vectors import nought, shortened
 
 TOUCHING, FORCE_LIMITED, SLEW_LIMITED, STIFFNESS_LIMITED, RAMPING, NOT_FINITE, DAMPED, STALE = map(
@@ -57,6 +57,7 @@ def _stop(memory, flag):
 def _forget(memory):
     memory[at.PLACE] = memory[at.TOOL] = np.nan
     memory[at.RAMP] = memory[at.ENERGY_J] = 0.0
+    memory[at.LIFT_N] = memory[at.ROSE_M] = memory[at.GIVEN_J] = 0.0
 
 
 @inner(forceinline=True)
@@ -86,6 +87,30 @@ def _slewed(memory, step_n, fx, fy, fz):
     wx, wy, wz = memory[at.FORCE], memory[at.FORCE + 1], memory[at.FORCE + 2]
     dx, dy, dz, short = shortened(fx - wx, fy - wy, fz - wz, step_n)
     return (wx + dx, wy + dy, wz + dz, True) if short else (fx, fy, fz, False)
+
+
+@inner(forceinline=True)
+def _lift(settings, law_n, before, fx, fy, fz):
+    """The law's part along z of a force that is safe; before: the length that it had before it was.
+
+    A coupling's force is the tool's on the hand; the surface moves under the tool, and works by the law's force on it,
+    of which the tool's leash hands on no more than the greatest.
+    """
+    if settings[at.COUPLING] <= 0.0:
+        return fz
+    if not before > 0.0:
+        return 0.0
+    most = settings[at.MAX_FORCE_N]
+    return min(max(law_n * np.sqrt(fx * fx + fy * fy + fz * fz) / before, -most), most)
+
+
+@inner(forceinline=True)
+def _keep_lift(memory, elapsed_s, lift, late, fz):
+    """The law's part along z of the force that leaves, faded in as that; of one held back, no more than what left."""
+    lift *= memory[at.RAMP]
+    if late & SLEW_LIMITED:
+        lift = min(max(fz, min(lift, 0.0)), max(lift, 0.0))
+    memory[at.LIFT_N], memory[at.ROSE_M] = lift, rise_m(memory, elapsed_s)
 
 
 @inner(forceinline=True)
@@ -139,13 +164,17 @@ def guard(settings, memory, period_s, x, y, z, vx, vy, vz, fx, fy, fz):
     acts = touching
     if memory[at.PULL] != 0.0 or memory[at.PULL + 1] != 0.0:
         fx, fy, acts = fx + memory[at.PULL], fy + memory[at.PULL + 1], True
+    law_n, before = fz, 0.0
     if settings[at.COUPLING] > 0.0:
         fx, fy, fz = pull(settings, memory, x, y, z, vx, vy, vz, fx, fy, fz)
+        before = np.sqrt(fx * fx + fy * fy + fz * fz)
     fx, fy, fz, soft = _safe(settings, memory, elapsed_s, acts, fx, fy, fz)
+    lift = _lift(settings, law_n, before, fx, fy, fz)
     braked = False
     if settings[at.BRAKE] > 0.0:
-        fx, fy, fz, braked = passive(settings, memory, elapsed_s, acts, x, y, z, vx, vy, vz, fx, fy, fz)
+        fx, fy, fz, braked = passive(settings, memory, elapsed_s, acts, lift, x, y, z, vx, vy, vz, fx, fy, fz)
     fx, fy, fz, late = _gentle(settings, memory, elapsed_s, fx, fy, fz)
+    _keep_lift(memory, elapsed_s, lift, late, fz)
     _keep(settings, memory, fx, fy, fz)
     return fx, fy, fz, _count(memory, touching * TOUCHING | soft | braked * DAMPED | late)
 

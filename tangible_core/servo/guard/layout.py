@@ -18,12 +18,15 @@ MOST_DELAY = 8
     COUPLING,
     COUPLING_DAMPING,
     COUPLING_LAW,
+    SURFACE_W,
+    MOST_SURFACE_J,
     SETTINGS,
-) = range(15)
+) = range(17)
 """Settings, which a guard reads; the last is how many there are. N/m and N s/m where no unit is in the name.
 
 STIFFNESS_TIMES_PERIOD, N s/m: divided by the period it is the stiffness held stably. CREDIT: the damping whose loss is
-counted for the loop. COUPLING: its stiffness, 0 for none; COUPLING_LAW: that of the law behind it.
+counted for the loop. COUPLING: its stiffness, 0 for none; COUPLING_LAW: that of the law behind it. SURFACE_W,
+MOST_SURFACE_J: the work that a surface which moves may do, as a power for long and as an energy at once.
 """
 
 FORCE = 0
@@ -43,5 +46,9 @@ FLAGS = 8
 PULL = COUNTS + FLAGS
 """The beacon's force along x and y, which joins the law's; and its stiffness, which joins the law's as well."""
 PULL_STIFFNESS = PULL + 2
-MEMORY = PULL_STIFFNESS + 1
+RISE_M, ROSE_M, LIFT_N, GIVEN_J, MAY_GIVE_J = range(PULL_STIFFNESS + 1, PULL_STIFFNESS + 6)
+"""Of a surface that moves: by how much it rose under the proxy in this tick, which whoever asks the law writes before
+the guard, and in the one before; the law's force along z as it left; the work that the surface did in this contact and
+has not taken back, and what it may yet do."""
+MEMORY = MAY_GIVE_J + 1
 """How many numbers a guard remembers."""

@@ -17,6 +17,9 @@ NOMINAL_S = 0.001
 """The period that a device's greatest stiffness is stated for, and that is assumed before one was measured."""
 DEBT_M = 0.001
 """A loop owes at most what the greatest force does over this way: a law that gives by design is not braked for ever."""
+SURFACE_M_PER_S, SURFACE_M = 0.0025, 0.01
+"""A surface that moves does at most the work of the greatest force at this speed for long, and over this way at once,
+beyond what it takes back: what it did more would be no loop's own, and unbounded."""
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 
 
@@ -81,6 +84,8 @@ class Safety(Quantities):
         settings[at.BRAKE] = 0 if self.passivity == "off" else BRAKE_TIMES * damping
         settings[at.CREDIT] = self.stiffness_margin * damping if self.passivity == "coupled" else 0
         settings[at.MOST_DEBT_J] = settings[at.MAX_FORCE_N] * DEBT_M
+        settings[at.SURFACE_W] = settings[at.MAX_FORCE_N] * SURFACE_M_PER_S
+        settings[at.MOST_SURFACE_J] = memory[at.MAY_GIVE_J] = settings[at.MAX_FORCE_N] * SURFACE_M
         settings[at.STIFFNESS] = stiffness_n_per_m
         if self.coupling is not None:
             self._couple(settings, damping, stiffness_n_per_m)

@@ -16,7 +16,9 @@ from tangible_core import Pipeline, Scene
 from tangible_core.batch import batch, running
 from tangible_core.batch.farm import Done
 from tangible_core.batch.job import Job, make_scene
+from tangible_core.batch.manifest import rows_of
 from tangible_core.errors import ArgumentError, BatchError, OutputError, Stopped
+from videos import greys
 
 CONFIG = "scene: builtin/brick\nwant: relief\ndepth: luminance\nworkspace: {width_m: 0.04}\n"
 
@@ -145,6 +147,29 @@ class TestScenes:
         assert rows["own"]["scene"] == "builtin/brick"
         assert rows["wide"]["scene"] == rows["rough"]["scene"] == str(archive / "p0.png")
         assert rows["wide"]["key"] != rows["rough"]["key"]
+
+    def test_a_row_may_name_a_video(self, here: None, archive: Path):
+        greys(archive / "walk.avi", 2)
+        rows = [{"id": "film", "scene.video": archive / "walk.avi"}, {"id": "frames", "scene.video": archive}]
+        done = list(batch(Pipeline.from_yaml(archive.parent / "mine.yaml"), rows, archive.parent / "out"))
+        assert [(row["outcome"], row["scene"]) for row in done] == [
+            ("ok", f"{archive / 'walk.avi'}"),
+            ("ok", f"{archive}"),
+        ]
+
+    def test_videos_are_scenes_where_there_is_no_picture(self, archive: Path):
+        """A phone lays a film of the same name beside each photo."""
+        greys(archive / "p0.avi", 2)
+        assert all("scene.photo=" in row.sets[0] for row in rows_of(str(archive)))
+        films = archive / "films"
+        films.mkdir()
+        greys(films / "walk.avi", 2)
+        greys(films / "run.MP4", 2)
+        (films / "notes.txt").touch()
+        rows = {row.id: row.sets for row in rows_of(str(films))}
+        assert rows == {
+            name: (f'scene.video="{films / file}"',) for name, file in (("run", "run.MP4"), ("walk", "walk.avi"))
+        }
 
     def test_a_table_in_parquet_is_a_manifest(self, archive: Path):
         import pyarrow as pa

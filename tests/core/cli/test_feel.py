@@ -87,7 +87,7 @@ def test_it_goes_on_until_it_is_asked_to_end(folder: Path, asked_by: signal.Sign
     )
     grown, end = folder / "hand.nc", time.monotonic() + 60
     try:
-        while not grown.exists() or grown.stat().st_size < 50_000:
+        while not grown.exists() or grown.stat().st_size < 60_000:
             assert program.poll() is None and time.monotonic() < end
             time.sleep(0.05)
         (os.killpg if group else os.kill)(program.pid, asked_by)
@@ -100,3 +100,27 @@ def test_it_goes_on_until_it_is_asked_to_end(folder: Path, asked_by: signal.Sign
     kept = Recording.load(grown)
     assert kept.stopped in (INTERRUPTED, "the process was asked to end")
     assert (len(kept.rows) > 500, (np.diff(kept.time_s) > 0).all()) == (True, True)
+
+
+@pytest.mark.slow
+def test_a_video_is_played_and_told_of(tmp_path: Path):
+    import cv2
+
+    from films import layered
+
+    for number in range(6):
+        views = layered(number, 1.0, np.random.default_rng(number))
+        cv2.imwrite(str(tmp_path / f"{number}.png"), np.hstack([views.left, views.right]))
+    (tmp_path / "walk.yaml").write_text(
+        "scene: {video: ., layout: side-by-side, fps: 10}\nwant: touch\nrender: {use: proxy}\n"
+        "depth: {use: semi-global, resolution: half}\ndevice: {use: mock, path: circle}\n"
+    )
+    done = tangible("feel", "walk.yaml", "--seconds", 1.5, "--record", "hand.csv", "--json", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    figures = json.loads(done.stdout)["figures"]
+    assert figures["frames_shown"] > 1 and figures["frames_damaged"] == 0
+    assert {"frames_dropped", "frames_skipped", "frames_per_s", "frames_age_ms"} <= figures.keys()
+    assert np.nanmax(Recording.load(tmp_path / "hand.csv").frame) > 0
+    refused = tangible("feel", "walk.yaml", "--set", "render.use=penalty", cwd=tmp_path)
+    assert refused.returncode and "penalty feels no surface that moves" in refused.stderr
+    assert "Traceback" not in refused.stderr

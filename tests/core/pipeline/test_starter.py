@@ -12,6 +12,7 @@ from tangible_core.pipeline.config import parse_config
 from tangible_core.pipeline.starter import are_pictures, starter
 from tangible_core.plugins.registry import default_registry
 from tangible_core.scene.scene_files import SceneFiles
+from videos import greys
 
 
 def waves(columns: int, rows: int, across: float) -> np.ndarray:
@@ -65,6 +66,19 @@ def test_a_map_and_a_pair_and_a_builtin_scene(folder: Path):
     with pytest.raises(ConfigError, match="3 pictures: name one, or left and right"):
         starter([Path("calm.png")] * 3, Path("p.yaml"))
     assert are_pictures([Path("A.JPG")]) and not are_pictures([Path("a.yaml")])
+
+
+def test_a_video_makes_a_scene_of_its_first_frame(folder: Path):
+    greys(folder / "walk.avi", 3, shape=(120, 160))
+    made = starter([Path("walk.avi")], folder / "p.yaml")
+    config = parse_config(made.text, folder / "p.yaml", default_registry())
+    assert isinstance(config.scene, SceneFiles) and config.scene.video == folder / "walk.avi"
+    assert made.scene.video is not None and are_pictures([Path("WALK.MP4")])
+    assert (
+        "walk.avi, its first frame: one picture, 160 x 120 pixels" in made.text and "layout: side-by-side" in made.text
+    )
+    with pytest.raises(ConfigError, match="left and right are two pictures"):
+        starter([Path("walk.avi")] * 2, folder / "p.yaml")
 
 
 def test_new_writes_a_file_that_runs_and_never_writes_over_one(folder: Path):

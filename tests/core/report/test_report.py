@@ -576,7 +576,7 @@ class TestSheet:
 
     def test_a_recording_of_nothing_is_left_out(self, tmp_path: Path) -> None:
         surface = HapticSurface.from_heights(np.zeros((5, 5)))
-        recording = Recording(np.empty((0, 16)))
+        recording = Recording(np.empty((0, 17)))
         draw_sheet(tmp_path / "a.png", surface=surface, recording=recording)
         draw_sheet(tmp_path / "b.png", surface=surface)
         assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()

@@ -7,10 +7,12 @@ from hypothesis.extra import numpy as hnp
 from tangible_core.data import Calibration, DisparityMap, Relief
 from tangible_core.errors import GeometryError
 from tangible_core.scene.geometry import (
+    ValueRange,
     disparity_to_depth,
     fill_rows,
     flat_relief,
     make_relief,
+    nearness_range,
     normals,
     picture_to_workspace,
     resample,
@@ -465,3 +467,27 @@ def test_a_surface_that_rises_away_from_the_user_has_a_positive_slope_in_y():
     assert not across.any()
     assert (along == 2).all()
     assert (normals(relief)[..., 1] < 0).all()
+
+
+@pytest.mark.parametrize("camera", [None, Calibration(500.0, 0.1)])
+@pytest.mark.parametrize("holes", ["fill", "cut"])
+def test_a_range_that_is_given_makes_the_relief_that_it_is_found_for(camera, holes):
+    values = np.random.default_rng(4).uniform(2, 60, (20, 30)).astype(np.float32)
+    values[3, 4:9] = np.nan
+    found = DisparityMap(values)
+    spans = nearness_range(found, camera)
+    alone = make_relief(found, camera, 0.08, 0.01, holes)
+    assert np.array_equal(make_relief(found, camera, 0.08, 0.01, holes, spans).height_m, alone.height_m)
+
+
+def test_what_is_beyond_a_range_that_is_given_is_clipped_and_nothing_else_moves():
+    values = np.tile(np.arange(10, dtype=np.float32), (4, 1))
+    made = make_relief(DisparityMap(values), None, 0.08, 0.01, spans=ValueRange(2, 6))
+    assert np.allclose(made.height_m[0], 0.01 * np.clip((np.arange(10) - 2) / 4, 0, 1))
+
+
+def test_the_range_of_a_constant_map_is_empty_and_its_relief_flat():
+    flat = DisparityMap(np.full((4, 5), 7, np.float32))
+    spans = nearness_range(flat, None)
+    assert spans.low == spans.high == 7
+    assert not make_relief(flat, None, 0.08, 0.01, spans=spans).height_m.any()

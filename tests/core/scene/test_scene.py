@@ -50,7 +50,7 @@ def complaint(**files):
     ],
 )
 def test_a_scene_is_exactly_one_of_pair_photo_and_height(files, named):
-    assert complaint(**files).endswith(f"either left and right, or photo, or height; this one gives {named}")
+    assert complaint(**files).endswith(f"either left and right, or photo, or height, or video; this one gives {named}")
 
 
 @pytest.mark.parametrize(

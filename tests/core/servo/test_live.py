@@ -67,7 +67,7 @@ def test_what_grew_stays_where_no_other_file_could_be_made_of_it(
 
     monkeypatch.setattr(Recording, "save", full)
     with pytest.raises(OutputError, match="no room"), keeping(tmp_path / "hand.csv", About()) as writer:
-        writer.append(np.ones((3, 16)))
+        writer.append(np.ones((3, 17)))
     assert len(Recording.load(tmp_path / "hand.csv.nc").rows) == 3
 
 
@@ -78,7 +78,7 @@ def test_ticks_that_were_overwritten_are_told_and_the_others_kept(caplog: pytest
 
     def since(first: int) -> tuple[np.ndarray, int]:
         firsts.append(first)
-        return np.zeros((3, 16)), first + 5
+        return np.zeros((3, 17)), first + 5
 
     kept: list[np.ndarray] = []
     servo: Any = SimpleNamespace(ring=SimpleNamespace(since=since))
@@ -92,7 +92,7 @@ def test_ticks_that_were_overwritten_are_told_and_the_others_kept(caplog: pytest
 def written(ring: Ring, count: int) -> None:
     """So many ticks more, of which the first number is the tick's own."""
     for number in range(ring.count, ring.count + count):
-        row = np.zeros(16)
+        row = np.zeros(17)
         row[0] = number
         cycle.finish(sections(ring), row, number * 1_000_000, 0)
 

@@ -180,7 +180,7 @@ with Servo(still(), Circling(z_m=float(z_m)), Safety(ramp_s=0)) as servo:
     wait(500)
     servo.stop()
     rows = servo.ring.since(0)[0]
-flags = rows[:, -2].astype(int)
+flags = rows[:, -3].astype(int)
 (swapped,) = (flags & TickFlag.SWAPPED).nonzero()[0]
 print(json.dumps({
     "how": servo.how,

@@ -13,12 +13,13 @@ def test_a_report_is_of_the_last_tick():
     rows = np.arange(2.0 * len(TICK_COLUMNS)).reshape(2, -1)
     assert so_far(rows, 7, 1.5, 0.25, "it is over") == ServoReport(
         ticks=7,
-        time_s=16.0,
-        state=HapticState((18.0, 19.0, 20.0), (21.0, 22.0, 23.0), 16.0, 31),
-        force=Force(27.0, 28.0, 29.0),
+        time_s=17.0,
+        state=HapticState((19.0, 20.0, 21.0), (22.0, 23.0, 24.0), 17.0, 32),
+        force=Force(28.0, 29.0, 30.0),
         peak_force_n=1.5,
         work_j=0.25,
         stopped="it is over",
+        frame=33,
     )
 
 

@@ -59,7 +59,7 @@ def test_what_was_never_touched_by_the_other_is_left_out():
 
 
 def test_nothing_unknown_places_and_a_long_one():
-    empty, one = Recording(np.empty((0, 16))), pressed(1000)
+    empty, one = Recording(np.empty((0, 17))), pressed(1000)
     assert beside(empty, one)["compared"] == beside(one, empty)["compared"] == 0
     lost = one.rows.copy()
     lost[:1000, 2] = np.nan

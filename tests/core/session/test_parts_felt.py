@@ -111,7 +111,7 @@ def test_reports_of_simulated_time_too_and_none_before_the_first_tick():
 @pytest.mark.parametrize("suffix", [".nc", ".npz"])
 def test_a_recording_says_what_parts_are_called(tmp_path: Path, suffix: str):
     said, of = names_text({6: "Gräser [hoch]", 0: 'a "wall"\n'}), names_text({6: "moss"})
-    Recording(np.zeros((2, 16)), "", About("mock", parts=said, materials=of)).save(tmp_path / f"a{suffix}")
+    Recording(np.zeros((2, 17)), "", About("mock", parts=said, materials=of)).save(tmp_path / f"a{suffix}")
     about = Recording.load(tmp_path / f"a{suffix}").about
     assert names_of(about.parts) == [{0: 'a "wall"\n', 6: "Gräser [hoch]"}]
     assert names_of(about.materials) == [{6: "moss"}]
@@ -121,10 +121,10 @@ def test_a_recording_says_what_parts_are_called(tmp_path: Path, suffix: str):
 def test_others_read_the_names_and_recordings_from_before_have_none(tmp_path: Path):
     from scipy.io import netcdf_file
 
-    Recording(np.zeros((2, 16)), "", About(parts=names_text({1: "wall"}))).save(tmp_path / "a.nc")
+    Recording(np.zeros((2, 17)), "", About(parts=names_text({1: "wall"}))).save(tmp_path / "a.nc")
     with netcdf_file(tmp_path / "a.nc", mmap=False) as file:
         assert file.parts == b'{"1": "wall"}'
-    Recording(np.zeros((2, 16)), "", About("mock")).save(tmp_path / "before.nc")
+    Recording(np.zeros((2, 17)), "", About("mock")).save(tmp_path / "before.nc")
     with netcdf_file(tmp_path / "before.nc", mmap=False) as file:
         assert not hasattr(file, "parts"), "nothing is added where there are none"
     assert names_of(Recording.load(tmp_path / "before.nc").about.parts) == []

@@ -10,11 +10,13 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from numpy.lib import recfunctions as rfn
+from scipy.io import netcdf_file
 
 from hostile import npz_bomb
 from tangible_core.data import TICK_COLUMNS, HapticSurface, TickFlag
 from tangible_core.errors import OutputError
-from tangible_core.session import About, Recording, check_record_path, run_simulated
+from tangible_core.session import About, Recording, check_record_path, netcdf, run_simulated, tick_file
 from tangible_devices.mock import Mock
 from tangible_render.penalty_gradient import PenaltyGradient
 
@@ -23,9 +25,10 @@ ABOUT = About("mock", "proxy", "scene: x\nwörds: 1\n", "2026-01-02T03:04:05+00:
 
 def some(count: int = 5, **more) -> Recording:
     """A recording of numbers that float32 holds."""
-    rows = np.random.default_rng(1).normal(size=(count, 16)).astype(np.float32).astype(float)
+    rows = np.random.default_rng(1).normal(size=(count, 17)).astype(np.float32).astype(float)
     rows[:, 0] = 1e5 + np.arange(count) * 0.001
-    rows[:, 14:] = np.arange(2 * count).reshape(count, 2)
+    rows[:, 14:] = np.arange(3 * count).reshape(count, 3)
+    rows[2:, 16] = np.nan  # from the third tick on, another surface, that stands still
     rows[1:, 8:11] = np.nan
     return Recording(rows, **more)
 
@@ -61,15 +64,43 @@ def test_csv_keeps_every_digit_of_the_ticks(tmp_path: Path, count: int):
 
 def test_csv_is_read_by_the_names_of_its_columns(tmp_path: Path):
     """Ten columns were all, once; nothing was known of the others."""
-    names = [name for name in TICK_COLUMNS if not name.startswith(("proxy", "late", "flags", "buttons"))]
+    names = [name for name in TICK_COLUMNS if not name.startswith(("proxy", "late", "flags", "buttons", "frame"))]
     (tmp_path / "old.csv").write_text(
         "\ufeff" + ",".join(["note", *reversed(names)]) + "\n" + "9,9,8,7,6,5,4,3,2,1,0\n" * 2
     )
     recording = Recording.load(tmp_path / "old.csv")
     assert recording.time_s.tolist() == [0, 0]
     assert (recording.position_m[0].tolist(), recording.force_n[1].tolist()) == ([1, 2, 3], [7, 8, 9])
-    assert np.isnan(recording.proxy_m).all()
+    assert np.isnan(recording.proxy_m).all() and np.isnan(recording.frame).all()
     assert not (recording.late_s.any() or recording.flags.any() or recording.buttons.any())
+
+
+@pytest.mark.parametrize("suffix", [".nc", ".npz"])
+def test_of_a_file_from_before_there_were_films_every_surface_stood_still(tmp_path: Path, suffix: str):
+    before = some()
+    path = tmp_path / f"old{suffix}"
+    if suffix == ".nc":
+        names = TICK_COLUMNS[:-1]
+        head = netcdf.header("tick", {"stopped": ""}, {name: tick_file.VARIABLES[name] for name in names}, 5)
+        ticks = np.frombuffer(tick_file.pack(before.rows), tick_file.RECORD)
+        path.write_bytes(head + rfn.repack_fields(ticks[list(names)]).tobytes())
+    else:
+        before.save(tmp_path / "new.npz")
+        with np.load(tmp_path / "new.npz") as new:
+            np.savez(path, **{name: new[name] for name in new.files if name != "frame"})
+    found = Recording.load(path)
+    assert np.array_equal(found.rows[:, :-1], before.rows[:, :-1], equal_nan=True)
+    assert np.isnan(found.frame).all()
+
+
+def test_others_find_the_frame_or_that_there_is_none(tmp_path: Path):
+    """Numbers that float32 does not hold, and whatever else may stand there."""
+    rows = some().rows.copy()
+    rows[:, 16] = 0, 2**24 + 1, np.nan, np.inf, -7
+    Recording(rows).save(tmp_path / "stroke.nc")
+    with netcdf_file(tmp_path / "stroke.nc", mmap=False, maskandscale=True) as file:
+        assert file.variables["frame"][:].tolist() == [0, 2**24 + 1, None, None, None]
+    assert np.array_equal(Recording.load(tmp_path / "stroke.nc").frame[:2], rows[:2, 16])
 
 
 @pytest.mark.parametrize("name", ["time_s", "x_m", "vz_m_per_s", "fz_n"])
@@ -117,7 +148,7 @@ def test_figures():
 
 
 def test_tables_that_are_none():
-    with pytest.raises(OutputError, match=r"\(n, 16\)"):
+    with pytest.raises(OutputError, match=r"\(n, 17\)"):
         Recording(np.zeros((3, 10)))
     parts = {"time_s": np.zeros(3), "position_m": np.zeros((3, 3)), "velocity_m_per_s": np.zeros((3, 3))}
     with pytest.raises(OutputError, match=r"force_n is \(1, 3\); with these times it is \(3, 3\)"):
@@ -208,14 +239,14 @@ def test_what_else_is_in_an_archive_is_not_read(tmp_path: Path):
 @pytest.mark.parametrize("bits", ["nan", "inf", "1e300", "-3e9"])
 @pytest.mark.parametrize("place", [14, 15])
 def test_flags_and_buttons_are_bits(tmp_path: Path, bits: str, place: int):
-    row = ["0"] * 16
+    row = ["0"] * 17
     row[place] = bits
     (tmp_path / "a.csv").write_text(f"{header(tmp_path / 'b.csv')}\n{','.join(row)}\n")
     assert f"its {TICK_COLUMNS[place]} do not all fit into 32 bits" in refusal(tmp_path / "a.csv")
 
 
 def test_a_long_text_in_place_of_a_number_is_not_repeated(tmp_path: Path):
-    (tmp_path / "a.csv").write_text(header(tmp_path / "b.csv") + "\n" + "x\x1b" * 10**6 + ",0" * 15 + "\n")
+    (tmp_path / "a.csv").write_text(header(tmp_path / "b.csv") + "\n" + "x\x1b" * 10**6 + ",0" * 16 + "\n")
     assert "could not convert string to float" in refusal(tmp_path / "a.csv")
 
 

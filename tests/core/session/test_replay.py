@@ -46,8 +46,8 @@ def test_through_another_law_only_force_proxy_and_flags_differ(felt: Recording):
 
 
 def test_a_law_in_python_sees_velocities_and_buttons():
-    rows = np.random.default_rng(0).normal(size=(8, 16))
-    rows[:, 14:] = np.arange(16).reshape(8, 2)
+    rows = np.random.default_rng(0).normal(size=(8, 17))
+    rows[:, 14:16] = np.arange(16).reshape(8, 2)
     again = replay(Viscous(), Recording(rows, "the cable is out"))
     held = (again.buttons & 2) > 0
     assert np.array_equal(again.force_n, -rows[:, 5:8] * held[:, None])
@@ -57,13 +57,13 @@ def test_a_law_in_python_sees_velocities_and_buttons():
 
 
 def test_nothing_is_replayed_to_nothing():
-    assert replay(LAW.touch(SURFACE), Recording(np.empty((0, 16)))).rows.shape == (0, 16)
-    assert replay(Viscous(), Recording(np.empty((0, 16)))).rows.shape == (0, 16)
+    assert replay(LAW.touch(SURFACE), Recording(np.empty((0, 17)))).rows.shape == (0, 17)
+    assert replay(Viscous(), Recording(np.empty((0, 17)))).rows.shape == (0, 17)
 
 
 @pytest.mark.parametrize("flag", list(TickFlag))
 def test_only_forces_that_are_the_laws_own_are_compared(flag: TickFlag):
-    rows = np.ones((2, 16))
-    rows[:, 14] = 0, flag
+    rows = np.ones((2, 17))
+    rows[:, 14], rows[:, 16] = (0, flag), np.nan
     own = np.isfinite(undisturbed(Recording(rows))).all(axis=1)
     assert own.tolist() == [True, flag in (TickFlag.TOUCHING, TickFlag.OVERRUN, TickFlag.SWAPPED)]

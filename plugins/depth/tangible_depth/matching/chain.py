@@ -53,12 +53,12 @@ def disparity_map(views: Views, name: str, search: Search, match: Matcher) -> Di
     found = asked_span(pair, search.least, search.most)
     if search.rectify == "never" or views.calibration is not None:
         found.say()
-        return _in_order(pair, found.span, search.fill, match)
+        return in_order(pair, found.span, search.fill, match)
     aligned = with_common_rows(pair, found.bands or match_bands(pair, found.span), search.most_row_offset_px)
     if aligned is None:
         return _rectified(views, name, search, match, None)
     found.say()
-    return _looked_over(views, name, search, match, _in_order(aligned, found.span, search.fill, match))
+    return _looked_over(views, name, search, match, in_order(aligned, found.span, search.fill, match))
 
 
 def _rectified(views: Views, name: str, search: Search, match: Matcher, instead: DisparityMap | None) -> DisparityMap:
@@ -69,29 +69,29 @@ def _rectified(views: Views, name: str, search: Search, match: Matcher, instead:
     pair = grey_pair(rectified.views, name)
     found = asked_span(pair, search.least, search.most, rectified.seen_px)
     found.say()
-    return rectified.to_original(_in_order(pair, found.span, search.fill, match))
+    return rectified.to_original(in_order(pair, found.span, search.fill, match))
 
 
 def _looked_over(views: Views, name: str, search: Search, match: Matcher, first: DisparityMap) -> DisparityMap:
     """The map that was found, or a better one: where most of it is doubtful, the whole picture is looked at again."""
-    if _doubtful(first) <= MOST_DOUBTFUL:
+    if doubtful(first) <= MOST_DOUBTFUL:
         return first
-    note(log, f"looked again at the whole picture: {_doubtful(first):.0%} of the map are hardly trusted")
+    note(log, f"looked again at the whole picture: {doubtful(first):.0%} of the map are hardly trusted")
     try:
         again = _rectified(views, name, search, match, first)
     except RectificationError as error:
         note(log, f"matched as it is: {error}", logging.WARNING)
         return first
-    return again if _doubtful(again) < _doubtful(first) else first
+    return again if doubtful(again) < doubtful(first) else first
 
 
-def _doubtful(found: DisparityMap) -> float:
+def doubtful(found: DisparityMap) -> float:
     """Share of the pixels whose disparity is hardly trusted."""
     return float(np.count_nonzero(found.confidence < DOUBTFUL) / found.confidence.size)
 
 
-def _in_order(pair: Pair, span: Span, fill: bool, match: Matcher) -> DisparityMap:
-    """Match within `span`.
+def in_order(pair: Pair, span: Span, fill: bool, match: Matcher) -> DisparityMap:
+    """The pair matched within `span`.
 
     Where this is negative throughout, the views are exchanged: mirrored they are a pair in the right order, in which
     what is hidden lies on the side where the matchers expect it.

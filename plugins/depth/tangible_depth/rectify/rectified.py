@@ -1,6 +1,6 @@
 """A pair of pictures turned so that rows correspond, and the way back."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float32, Float64
@@ -35,6 +35,15 @@ class RectifiedPair(Record):
     left_radial: float = 0.0
     right_radial: float = 0.0
     seen_px: tuple[int, int] | None = None
+
+    def again(self, views: Views) -> "RectifiedPair":
+        """Other pictures of the same cameras, turned alike."""
+        if self.skipped or views.right is None:
+            return replace(self, views=views)
+        height, width = self.views.shape
+        left = _warp(views.left, self.left_homography, self.left_radial, width, height)
+        right = _warp(views.right, self.right_homography, self.right_radial, width, height)
+        return replace(self, views=Views(left, right))
 
     def to_original(self, found: DisparityMap) -> DisparityMap:
         """A disparity map of `views` as one of the original left picture: same values plus offset_px, at their pixels.

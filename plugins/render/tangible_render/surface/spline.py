@@ -1,16 +1,18 @@
 """The height of a C2 surface, its slope and its curvature at a point: a cubic B-spline, compiled.
 
-The coefficients are those of `coefficients.py`: two rows and columns more on each side than there are cells. Imports
-numba: a method imports this module inside its verb.
+The coefficients are those of `coefficients.py`: two rows and columns more on each side than there are cells. In their
+place there may be those of a surface that moves, (pairs, first, last): pairs (h, w, 2) are two surfaces, and what is
+read is first times the one and last times the other. numba compiles either apart. Imports numba: a method imports this
+module inside its verb.
 
 Source: Unser, Aldroubi & Eden, B-spline signal processing, IEEE Trans. Signal Processing 41 (1993).
 """
 
 # ruff: noqa: ANN001, ANN201, ANN202 -- the types are in the signatures that numba compiles
 
-from numba import njit
+from numba import njit, types
 
-from tangible_core.compiled.compiling import KERNEL, inner
+from tangible_core.compiled.compiling import KERNEL, inner, inner_by_type
 
 
 @njit(**KERNEL)
@@ -50,7 +52,7 @@ def bend(coefficients, across_per_m, down_per_m, x, y):
 @inner()
 def _place(coefficients, across_per_m, down_per_m, x, y):
     """First row and column of the 4 x 4 coefficients that a point depends on, and how far it is beyond the second."""
-    rows, columns = coefficients.shape
+    rows, columns = _shape(coefficients)
     down, across = 0.5 * (rows - 1) - y * down_per_m, 0.5 * (columns - 1) + x * across_per_m
     row, column = min(max(int(down), 1), rows - 3), min(max(int(across), 1), columns - 3)
     return row - 1, column - 1, down - row, across - column
@@ -88,7 +90,19 @@ def _rows(coefficients, row, column, weights):
 
 
 @inner()
-def _column(coefficients, row, column, weights):
+def _dot(a, b):
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]
+
+
+def _shape_of_one(coefficients):
+    return coefficients.shape
+
+
+def _shape_of_two(coefficients):
+    return coefficients[0].shape[0], coefficients[0].shape[1]
+
+
+def _column_of_one(coefficients, row, column, weights):
     return (
         weights[0] * coefficients[row, column]
         + weights[1] * coefficients[row + 1, column]
@@ -97,6 +111,34 @@ def _column(coefficients, row, column, weights):
     )
 
 
-@inner()
-def _dot(a, b):
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]
+def _column_of_two(coefficients, row, column, weights):
+    """Exactly the one surface or the other where it has all the weight."""
+    pairs, first, last = coefficients
+    of_first = (
+        weights[0] * pairs[row, column, 0]
+        + weights[1] * pairs[row + 1, column, 0]
+        + weights[2] * pairs[row + 2, column, 0]
+        + weights[3] * pairs[row + 3, column, 0]
+    )
+    of_last = (
+        weights[0] * pairs[row, column, 1]
+        + weights[1] * pairs[row + 1, column, 1]
+        + weights[2] * pairs[row + 2, column, 1]
+        + weights[3] * pairs[row + 3, column, 1]
+    )
+    return first * of_first + last * of_last
+
+
+@inner_by_type(lambda coefficients: _shape_of_two if _moves(coefficients) else _shape_of_one)
+def _shape(coefficients):
+    """Rows and columns of the coefficients."""
+
+
+@inner_by_type(lambda coefficients, row, column, weights: _column_of_two if _moves(coefficients) else _column_of_one)
+def _column(coefficients, row, column, weights):
+    """Four rows of a column in one, weighted."""
+
+
+def _moves(kind):
+    """Whether numba's type of the coefficients is that of a surface that moves."""
+    return isinstance(kind, types.BaseTuple)

@@ -239,7 +239,7 @@ class Feeling:
             return STATE_FRAME.pack(STATE, status, 0, seq & 0xFFFFFFFF, 0, 0, 1e3 * time.time(), *nowhere, 0.0)
         if (row := servo.ring.latest()) is None:
             return None
-        t, late, x, y, z, vx, vy, vz, px, py, pz, fx, fy, fz, flags, buttons = row.tolist()
+        t, late, x, y, z, vx, vy, vz, px, py, pz, fx, fy, fz, flags, buttons, _ = row.tolist()
         sample_ms = 1e3 * (servo.ring.start_ns / 1e9 + t + time.time() - time.monotonic())
         tag = int(buttons) >> BUTTON_BITS
         return STATE_FRAME.pack(

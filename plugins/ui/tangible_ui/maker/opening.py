@@ -8,7 +8,7 @@ from tangible_core.files.source import read_text
 from tangible_core.files.writing import write_text
 from tangible_core.pipeline.config import parse_config
 from tangible_core.pipeline.editing import edited, moved, said
-from tangible_core.pipeline.starter import MAPS, PICTURES, are_pictures, starter
+from tangible_core.pipeline.starter import MAPS, PICTURES, VIDEOS, are_pictures, starter
 from tangible_core.scene.scene_files import BUILTINS
 from tangible_core.session.recording_files import SUFFIXES
 
@@ -17,6 +17,7 @@ from .bench import Bench, Job
 PIPELINES = (".yaml", ".yml")
 KINDS = {
     **dict.fromkeys(PICTURES, "picture"),
+    **dict.fromkeys(VIDEOS, "video"),
     **dict.fromkeys(SUFFIXES, "recording"),
     **dict.fromkeys(MAPS, "heights"),
     **dict.fromkeys(PIPELINES, "pipeline"),
@@ -58,8 +59,8 @@ def begin(bench: Bench, files: list[Path]) -> dict[str, Any]:
     if not are_pictures(files):
         odd = next(each for each in files if not are_pictures([each]))
         raise ConfigError(
-            f"{odd.name}: is no picture, height map (.npy, .npz, .pfm), recording (.nc, .npz, .csv) or pipeline file "
-            "(.yaml); if it is one, give it the right ending"
+            f"{odd.name}: is no picture, video, height map (.npy, .npz, .pfm), recording (.nc, .npz, .csv) or "
+            "pipeline file (.yaml); if it is one, give it the right ending"
         )
     path = Path.cwd() / f"{files[0].stem}.yaml"
     return {"text": starter(files, path).text, "path": path}

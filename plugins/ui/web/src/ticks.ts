@@ -1,7 +1,7 @@
 /** A recording as the page has it: a row a tick, as the core's TICK_COLUMNS, and each as a state that can be drawn. */
 import { FLAGS, now, type State, type Vec } from "./protocol";
 
-export const COLUMNS = 16;
+export const COLUMNS = 17;
 const AT = { time: 0, late: 1, hand: 2, velocity: 5, proxy: 8, force: 11, flags: 14, buttons: 15 } as const;
 
 export class Ticks {

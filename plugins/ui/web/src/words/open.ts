@@ -5,8 +5,8 @@ export const t = words({
   title: ["Open", "Öffnen"],
   choose: ["Choose files…", "Dateien wählen …"],
   chooseHelp: [
-    "A photograph, left and right of a pair, a height map, a recording, or a pipeline file with its pictures. You can also drop them anywhere on this page.",
-    "Ein Foto, linkes und rechtes Bild eines Paares, eine Höhenkarte, eine Aufzeichnung oder eine Pipeline-Datei mit ihren Bildern. Sie können sie auch irgendwo auf dieser Seite ablegen.",
+    "A photograph, left and right of a pair, a height map, a video (its first frame), a recording, or a pipeline file with its pictures. You can also drop them anywhere on this page.",
+    "Ein Foto, linkes und rechtes Bild eines Paares, eine Höhenkarte, ein Video (das erste Bild), eine Aufzeichnung oder eine Pipeline-Datei mit ihren Bildern. Sie können sie auch irgendwo auf dieser Seite ablegen.",
   ],
   sending: ["{name}: {percent} % sent", "{name}: {percent} % gesendet"],
   opened: ["Opened: {names}", "Geöffnet: {names}"],
@@ -24,6 +24,7 @@ export const t = words({
   chooseFirst: ["Choose one file, or left and right of a pair.", "Wählen Sie eine Datei, oder das linke und das rechte Bild eines Paares."],
   kind_folder: ["folder", "Ordner"],
   kind_picture: ["picture", "Bild"],
+  kind_video: ["video, its first frame", "Video, das erste Bild"],
   kind_heights: ["height map", "Höhenkarte"],
   kind_recording: ["recording", "Aufzeichnung"],
   kind_pipeline: ["pipeline file", "Pipeline-Datei"],

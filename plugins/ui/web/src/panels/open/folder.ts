@@ -3,7 +3,7 @@ import { button, field } from "../../elements";
 import type { Net } from "../../net";
 import { t } from "../../words/open";
 
-type Kind = "folder" | "picture" | "heights" | "recording" | "pipeline";
+type Kind = "folder" | "picture" | "video" | "heights" | "recording" | "pipeline";
 
 interface Listed {
   folder: string;

@@ -1,0 +1,105 @@
+"""A film of `proxy`: the surface under it moves from one relief to the next within the ticks."""
+
+import math
+from typing import Any, final
+
+import numpy as np
+from jaxtyping import Float64
+
+from tangible_core.compiled.touch import CompiledTouch, Tick
+from tangible_core.data import HapticSurface, Relief
+from tangible_core.data.arguments import as_number
+from tangible_core.errors import ConfigError, GeometryError
+from tangible_core.plugins.interfaces import Film
+
+from ..surface.coefficients import BORDER
+from .coefficients import quick_coefficients
+from .limits import SPEED_M_PER_S, STEP_N
+from .scratch import Scratch
+from .slots import DROPPED, Slots
+
+
+def checked(period_s: float, frame_s: float) -> tuple[float, float]:
+    """Both as numbers. Raises: ConfigError if either is not positive and finite."""
+    for name, value in (("period_s", period_s), ("frame_s", frame_s)):
+        if not 0 < as_number(name, value) < math.inf:
+            raise ConfigError(f"{name} is {value}; a film needs a positive number of seconds")
+    return float(period_s), float(frame_s)
+
+
+@final
+class SplineFilm(Film):
+    """A film whose memory is arrays alone, which the touch reads: it may be shown in one process and felt in another.
+
+    One at a time shows.
+    """
+
+    def __init__(self, touch: CompiledTouch, slots: Slots, extent_m: tuple[float, float], most_m: float) -> None:
+        """most_m: how far any place of the surface may go in the time of a frame."""
+        self._touch, self._slots, self._extent_m, self._most_m = touch, slots, extent_m, most_m
+        self._scratch: Scratch | None = None
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return SplineFilm, (self._touch, self._slots, self._extent_m, self._most_m)
+
+    @property
+    def touch(self) -> CompiledTouch:
+        """What a loop feels."""
+        return self._touch
+
+    def show(self, relief: Relief, frame: int) -> None:
+        """Where the surface goes from here, as far as it may in the time of a frame.
+
+        Raises: GeometryError for a relief of another grid or extent than the first.
+        """
+        self._check(relief)
+        if self._scratch is None:
+            self._scratch = Scratch.of(*relief.height_m.shape)
+        coefficients = quick_coefficients(relief.height_m, self._scratch)
+        self._slots.show(coefficients, frame, self._most_m, self._scratch.ends)
+
+    @property
+    def arrived(self) -> bool:
+        """Whether the surface is what was shown last, or goes all the way there."""
+        return self._slots.arrived
+
+    @property
+    def dropped(self) -> int:
+        """How many frames another took the place of before the loop went to them."""
+        return int(self._slots.told[DROPPED])
+
+    def _check(self, relief: Relief) -> None:
+        rows, columns = self._slots.pairs.shape[1:3]
+        shape = rows - 2 * BORDER, columns - 2 * BORDER
+        if relief.height_m.shape == shape and tuple(relief.extent_m) == self._extent_m:
+            return
+        given, first = _grid(relief.height_m.shape, relief.extent_m), _grid(shape, self._extent_m)
+        raise GeometryError(f"a frame has {given}, the first one {first}; all frames of a film need the same grid")
+
+
+def begun(
+    surface: HapticSurface,
+    tick: Tick,
+    arguments: tuple[Any, ...],
+    memory: Float64[np.ndarray, "n"],
+    spring: tuple[float, float],
+    period_s: float,
+    frame_s: float,
+) -> SplineFilm:
+    """A film that stands still on this surface. arguments, memory: of the law; spring: its stiffness and damping."""
+    from .steady import beginning
+
+    (rows, columns), (width_m, length_m) = surface.height_m.shape, map(float, surface.extent_m)
+    coefficients = quick_coefficients(surface.height_m, Scratch.of(rows, columns))
+    count = max(1, round(frame_s / period_s))
+    slots, moving = Slots.still(coefficients, count), np.zeros(2)
+    shape = width_m, length_m, columns / width_m, rows / length_m
+    shown = slots.pairs, slots.tiles_m, slots.frames, slots.shared, float(count)
+    touch = CompiledTouch(tick, (*shown, *shape, *arguments, beginning(*spring), moving), memory, spring[0], moving)
+    speed_m_per_s = min(SPEED_M_PER_S, STEP_N / (spring[0] * period_s))
+    return SplineFilm(touch, slots, surface.extent_m, speed_m_per_s * count * period_s)
+
+
+def _grid(shape: tuple[int, ...], extent_m: tuple[float, float]) -> str:
+    (rows, columns), (width_m, length_m) = shape, extent_m
+    return f"{columns} x {rows} cells over {1000 * width_m:.6g} x {1000 * length_m:.6g} mm"

@@ -1,0 +1,70 @@
+"""A force that does not jump because the surface moved; compiled.
+
+A surface that moves a little may take away the hold of the proxy: a ridge sinks that held it, and it slides off, or the
+ground under the hand falls away while the proxy still hangs on a wall. What the spring then loses at once is let go
+step by step: the point that pulls at the hand goes from where it was to where the proxy is, straight and no faster than
+a hand at rest may feel, or as the hand itself moves. It is never farther from the hand than at one of the ends of its
+way, so that it has no energy but what the hand and the surface give.
+Imports numba: a method imports this module inside its verb.
+"""
+
+# ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
+
+import math
+
+import numpy as np
+from jaxtyping import Float64
+from numba import float64
+
+from tangible_core.compiled.compiling import inner
+from tangible_core.compiled.touch import RISE_M
+
+from ..contact.contact import LEAP_M
+from .limits import STEP_N
+
+STEADY = float64[::1]
+STIFFNESS, DAMPING, FORCE, HAND, SPEED, LATE, REMEMBERED = 0, 1, 2, 5, 8, 11, 12
+"""What is remembered: stiffness and damping of the law; then the force, position and velocity of the last tick, and
+whether that force was short of the law's."""
+REACH = 8.0
+"""How many times as far as the hand the point goes besides: it slides off a ridge as it does where nothing moves."""
+
+
+@inner(forceinline=True)
+def steady(memory, passed, moving, x, y, z, vx, vy, vz, fx, fy, fz):
+    """The law's force, or what may be felt of its change in this tick; passed: 0 where the surface stands still.
+
+    Of a force that is short of the law's, `moving` tells of a rise that does what the surface did on what is felt.
+    """
+    stiffness = memory[STIFFNESS]
+    dx, dy, dz = x - memory[HAND], y - memory[HAND + 1], z - memory[HAND + 2]
+    ux, uy, uz = vx - memory[SPEED], vy - memory[SPEED + 1], vz - memory[SPEED + 2]
+    moved_m = math.sqrt(dx * dx + dy * dy + dz * dz)
+    held_x, held_y = memory[FORCE] - stiffness * dx, memory[FORCE + 1] - stiffness * dy
+    held_z = memory[FORCE + 2] - stiffness * dz
+    late, was_late = 0.0, memory[LATE] > 0.0
+    if (passed > 0.0 or was_late) and moved_m <= LEAP_M:  # not for NaN
+        step_n = STEP_N + REACH * stiffness * moved_m + memory[DAMPING] * math.sqrt(ux * ux + uy * uy + uz * uz)
+        ax, ay, az = fx - held_x, fy - held_y, fz - held_z
+        away_n = math.sqrt(ax * ax + ay * ay + az * az)
+        if away_n > step_n:
+            part, late = step_n / away_n, 1.0
+            fx, fy, fz = held_x + part * ax, held_y + part * ay, held_z + part * az
+        if late + was_late > 0.0:
+            more = fx * fx + fy * fy + fz * fz - held_x * held_x - held_y * held_y - held_z * held_z
+            upwards = stiffness * (fz + memory[FORCE + 2])
+            moving[RISE_M] = min(max(more, 0.0) / upwards, STEP_N / stiffness) if upwards > 0.0 else 0.0
+    if not np.isfinite(fx + fy + fz):
+        fx, fy, fz = 0.0, 0.0, 0.0
+    memory[FORCE], memory[FORCE + 1], memory[FORCE + 2] = fx, fy, fz
+    memory[HAND], memory[HAND + 1], memory[HAND + 2] = x, y, z
+    memory[SPEED], memory[SPEED + 1], memory[SPEED + 2] = vx, vy, vz
+    memory[LATE] = late
+    return fx, fy, fz
+
+
+def beginning(stiffness_n_per_m: float, damping_n_s_per_m: float) -> Float64[np.ndarray, "n"]:
+    """The memory of a hand that was not there yet."""
+    memory = np.zeros(REMEMBERED)
+    memory[STIFFNESS], memory[DAMPING], memory[HAND] = stiffness_n_per_m, damping_n_s_per_m, np.nan
+    return memory

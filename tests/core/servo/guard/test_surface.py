@@ -1,0 +1,228 @@
+"""The energy account of a surface that moves: what it does on the hand is its own work, and no more than it may do."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from moving_plane import AT_M, GOAL_M, STEP_M, MovingPlane, level
+from tangible_core import load_method
+from tangible_core.data import DeviceSpec, HapticState, TickFlag
+from tangible_core.servo.guard import layout as at
+from tangible_core.servo.guard.guard import guard, restart
+from tangible_core.servo.guard.guarded import guarded
+from tangible_core.servo.guard.safety import SURFACE_M_PER_S, Coupling, Safety
+from tangible_core.session import run_simulated
+
+SPEC = DeviceSpec(8.0, 3000.0, 1.5, (0.08, 0.08, 0.08), 3e-5)
+STIFF = 800.0
+STRICT = Safety(passivity="strict", ramp_s=0, max_step_n=10)
+
+
+class Felt:
+    """A plane under a hand that is led, tick by tick."""
+
+    def __init__(self, safety: Safety = STRICT, stiffness_n_per_m: float = STIFF) -> None:
+        self.film = MovingPlane(0.01, stiffness_n_per_m)
+        self.settings, self.memory = safety.arrays(SPEC, stiffness_n_per_m)
+        self._allowed = guarded(self.film.touch, self.settings, self.memory)
+        self._at_m = self.force_n = None
+        self.work_j, self.damped, self.time_s = 0.0, 0, 0.0
+
+    def tick(self, hand_m: float, rises_m: float = 0.0) -> float:
+        """The plane rises by so much, with the hand at this height then."""
+        plane = self.film.plane
+        plane[GOAL_M], plane[STEP_M] = plane[AT_M] + rises_m, abs(rises_m)
+        speed = 0.0 if self._at_m is None else (hand_m - self._at_m) / 0.001
+        force, flags = self._allowed(HapticState((0.0, 0.0, hand_m), (0.0, 0.0, speed), self.time_s), 0.001)
+        if self._at_m is not None:
+            self.work_j += self.force_n * (hand_m - self._at_m)
+        self._at_m, self.force_n = hand_m, force.z
+        self.damped += bool(flags & TickFlag.DAMPED)
+        self.time_s += 0.001
+        return force.z
+
+    @property
+    def energy_j(self) -> float:
+        return float(self.memory[at.ENERGY_J])
+
+    @property
+    def stored_j(self) -> float:
+        return self.force_n**2 / 2 / STIFF
+
+
+class TestAccount:
+    def test_what_a_plane_does_on_a_hand_at_rest_is_in_the_spring_and_comes_back(self):
+        """Exactly, at any speed; half of the last way counts with the next force."""
+        felt, hand_m = Felt(), 0.009
+        felt.tick(hand_m)
+        before_j, ways = felt.stored_j, np.random.default_rng(0).uniform(0, 1e-4, 60)
+        for rise in (*ways, *-ways[::-1]):
+            felt.tick(hand_m, rise)
+            assert felt.energy_j + felt.force_n * rise / 2 == pytest.approx(felt.stored_j - before_j, abs=1e-15)
+        felt.tick(hand_m)
+        assert felt.energy_j == pytest.approx(0, abs=1e-15)
+        assert not felt.damped
+
+    @pytest.mark.parametrize("way_m", [5e-5, -5e-5])
+    def test_a_hand_that_is_carried_takes_the_work_of_the_plane_and_is_not_braked(self, way_m: float):
+        felt = Felt()
+        felt.tick(0.00801)  # it presses by a hair, so that rounding owes nothing
+        for i in range(101):
+            assert felt.tick(0.008 + way_m * i, way_m if i else 0.0) == pytest.approx(STIFF * 0.002)
+        pressed_j = 1e-5 * STIFF * 0.00199
+        assert felt.work_j == pytest.approx(STIFF * 0.002 * 100 * way_m - pressed_j)
+        assert felt.damped == 0
+        if way_m > 0:  # of the last way, half is yet to count
+            assert felt.energy_j == pytest.approx(pressed_j - STIFF * 0.002 * way_m / 2)
+
+    def test_what_a_hand_pressed_in_is_no_debt_when_the_surface_sinks(self):
+        """It was lost, and the surface owes nothing, nor does the loop."""
+        felt = Felt()
+        for i in range(21):
+            felt.tick(0.0101 - 1e-4 * i)
+        pressed_j = felt.energy_j
+        assert pressed_j > 1e-3
+        for _ in range(15):
+            felt.tick(0.0081, -1e-4)
+        assert felt.energy_j == pressed_j
+
+    def test_a_ratchet_ends_where_the_surface_may_do_no_more(self):
+        """A hand that is lifted with force and comes down without takes 6 mJ a round, until it is braked on its way."""
+        felt, hand_m, way_m, most_j = Felt(), 0.0101, 5e-5, 0.02
+        felt.settings[at.SURFACE_W], felt.settings[at.MOST_SURFACE_J], felt.memory[at.MAY_GIVE_J] = 0.0, most_j, most_j
+        ways = [(-1, 0)] * 42 + ([(1, 1)] * 100 + [(0, -1)] * 38 + [(-1, -1)] * 62 + [(-1, 0)] * 38) * 10
+        for hand, plane in ways:
+            hand_m, before = hand_m + hand * way_m, felt.damped
+            felt.tick(hand_m, plane * way_m)
+            if hand > 0 and felt.damped > before:
+                break
+        assert 0.95 * most_j < felt.work_j < 1.05 * most_j
+
+    def test_the_work_that_it_may_do_comes_back_with_time(self):
+        felt = Felt()
+        felt.tick(0.009)
+        felt.memory[at.MAY_GIVE_J] = 0.0
+        for _ in range(100):
+            felt.tick(0.009)
+        assert felt.memory[at.MAY_GIVE_J] == pytest.approx(0.1 * SPEC.max_force_n * SURFACE_M_PER_S)
+
+    def test_free_air_ends_what_a_surface_gave(self):
+        felt = Felt()
+        felt.tick(0.009)
+        for _ in range(20):
+            felt.tick(0.009, 5e-5)
+        assert felt.memory[at.GIVEN_J] > 0 and felt.energy_j > 0
+        felt.tick(0.02)
+        felt.tick(0.02)
+        assert felt.memory[at.GIVEN_J] == felt.energy_j == 0
+
+    @pytest.mark.parametrize("rise", [np.nan, np.inf, -np.inf, 1.0, -1e300])
+    def test_a_rise_that_is_none_is_no_work(self, rise: float):
+        arrays = STRICT.arrays(SPEC, STIFF)
+        for _ in range(3):
+            arrays[1][at.RISE_M] = rise
+            assert guard(*arrays, 0.001, *[0.0] * 6, 0.0, 0.0, 1.0)[2] == 1.0
+        assert arrays[1][at.ENERGY_J] == 0
+        assert np.isfinite(arrays[1]).sum() == at.MEMORY - (not np.isfinite(rise)) - 1  # of the tool there is none
+
+    def test_another_scene_begins_with_nothing_given(self):
+        felt = Felt()
+        for _ in range(20):
+            felt.tick(0.009, 5e-5)
+        restart(felt.memory)
+        assert felt.memory[[at.GIVEN_J, at.LIFT_N, at.ROSE_M]].tolist() == [0, 0, 0]
+
+    def test_of_a_surface_that_stands_still_nothing_of_this_has_a_say(self):
+        """To the last bit."""
+        random = np.random.default_rng(0)
+        steps = np.cumsum(random.normal(0, 2e-5, (500, 3)), axis=0)
+        given: list[list[tuple[float, ...]]] = []
+        for may_j in (0.0, 1e9):
+            settings, memory = Safety(ramp_s=0.1).arrays(SPEC, STIFF)
+            memory[at.MAY_GIVE_J] = settings[at.SURFACE_W] = settings[at.MOST_SURFACE_J] = may_j
+            speeds = np.diff(steps, axis=0, prepend=steps[:1]) / 0.001
+            pushed = [(-v[0], 0.0, max(0.0, -STIFF * x[2])) for x, v in zip(steps, speeds, strict=True)]
+            given.append(
+                [guard(settings, memory, 0.001, *x, *v, *f) for x, v, f in zip(steps, speeds, pushed, strict=True)]
+            )
+        assert given[0] == given[1]
+
+
+FREE: dict[str, Any] = {"passivity": "strict", "ramp_s": 0, "max_step_n": 10}
+SOFT = {"stiffness_n_per_m": 800.0, "damping_n_s_per_m": 0.1}
+HARD = {"stiffness_n_per_m": 20_000.0, "damping_n_s_per_m": 0.5}
+
+
+class TestCoupling:
+    def test_the_surface_works_by_the_law_s_force_on_the_tool(self):
+        """Under a hand at rest: its work is in the two springs, the law's and the coupling's."""
+        felt = Felt(Safety(passivity="strict", ramp_s=0, max_step_n=10, coupling="auto"))
+        for _ in range(500):
+            felt.tick(0.009)
+        coupling = felt.settings[at.COUPLING]
+        before_j, before_n = felt.energy_j, felt.force_n
+        for _ in range(200):
+            felt.tick(0.009, 1e-5)
+        for _ in range(200):
+            felt.tick(0.009)
+        stored_j = (felt.force_n**2 - before_n**2) / 2 * (1 / STIFF + 1 / coupling)
+        assert felt.energy_j - before_j == pytest.approx(stored_j, rel=0.02)
+
+    def test_also_while_the_tool_is_still_on_its_way(self):
+        """Its work is never less than what it left in the springs: the rest went into the coupling's damper."""
+        felt = Felt(Safety(passivity="strict", ramp_s=0, max_step_n=10, coupling=Coupling(**SOFT)))
+        for _ in range(2000):
+            felt.tick(0.009)
+        before_j, before_n = felt.energy_j, felt.force_n
+        for i in range(2000):
+            felt.tick(0.009, 1e-4 if i < 20 else 0.0)
+        stored_j = (felt.force_n**2 - before_n**2) / 2 * (1 / STIFF + 1 / SOFT["stiffness_n_per_m"])
+        assert felt.force_n > 1.2 * before_n
+        assert stored_j < felt.energy_j - before_j < 1.1 * stored_j
+
+    @pytest.mark.parametrize(
+        ("hand_m", "stiffness_n_per_m", "more"),
+        [(0.007, STIFF, {"max_force_n": 0.5}), (0.0099, 20_000.0, {"coupling": Coupling(**HARD)})],
+    )
+    def test_a_force_that_is_cut_or_softened_counts_as_far_as_it_left(
+        self, hand_m: float, stiffness_n_per_m: float, more
+    ):
+        felt = Felt(Safety(**{**FREE, "coupling": "auto", **more}), stiffness_n_per_m)
+        for _ in range(500):
+            felt.tick(hand_m)
+        wanted_n = stiffness_n_per_m * (0.01 - hand_m)
+        assert 0.1 < felt.force_n < 0.3 * wanted_n
+        assert felt.memory[at.LIFT_N] == pytest.approx(felt.force_n, rel=0.01)
+
+
+def damped_share(
+    film: MovingPlane, rate_hz: float, coupling, seconds: float, from_s: float, hand_n_s_per_m: float = 6.0
+) -> float:
+    """On a plane that goes up and down by 3 mm at this rate, under a hand that circles on it at 20 mm/s."""
+    hand = {"damping_n_s_per_m": hand_n_s_per_m}
+    path = {"path": "circle", "size_m": (0.02, 0.02), "z_m": 0.006, "speed_m_per_s": 0.02}
+    mock = load_method("device", "mock").model_validate({"hand": hand, **path})
+    due = 0
+
+    def frames(time_s: float) -> None:
+        nonlocal due
+        if time_s >= due / 30:
+            film.show(level(0.012 + 0.003 * np.sin(2 * np.pi * rate_hz * due / 30)), due)
+            due += 1
+
+    felt = run_simulated(film, mock, seconds, limits=Safety(coupling=coupling), frames=frames)
+    assert felt.frame[-1] == due - 1
+    return float(np.mean(felt.flags[round(1000 * from_s) :] & TickFlag.DAMPED > 0))
+
+
+class TestHand:
+    @pytest.mark.parametrize("coupling", [None, "auto"])
+    @pytest.mark.parametrize("rate_hz", [0.5, 2.0])
+    def test_one_that_is_moved_by_a_surface_is_not_braked(self, rate_hz: float, coupling):
+        """Once the force has faded in, which lifts a hand by itself."""
+        assert damped_share(MovingPlane(0.012, STIFF), rate_hz, coupling, 5.0, 1.5) < 0.01
+
+    def test_one_that_is_shaken_is(self):
+        """At 8 Hz a firm hand is given more than the surface may give for long."""
+        assert damped_share(MovingPlane(0.012, STIFF), 8.0, None, 6.0, 5.0, hand_n_s_per_m=20.0) > 0.5

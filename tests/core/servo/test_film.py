@@ -1,0 +1,236 @@
+"""A surface that moves while it is felt: shown from here, felt there, in the same memory."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from moving_plane import MovingPlane, level
+from tangible_core import HapticSurface, load_method
+from tangible_core.compiled.touch import CompiledTouch
+from tangible_core.data import TICK_COLUMNS
+from tangible_core.errors import ConfigError, DeviceError
+from tangible_core.plugins.interfaces import Touch
+from tangible_core.servo import Packed, Ring, Safety, Servo, packed, parcel, still
+from tangible_core.servo.guard.layout import GIVEN_J
+from tangible_core.servo.ring import shared_folder
+from tangible_core.session import run_simulated
+from tangible_core.testing.loop_devices import Circling, Failing
+
+AT_ONCE = Safety(ramp_s=0)
+FRAME = TICK_COLUMNS.index("frame")
+DEVICES = [Circling(z_m=0.008), Circling(z_m=0.008, exchanges=True), Failing(fault="none")]
+
+
+def until(condition, seconds: float = 20.0) -> None:
+    end = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end, "it did not happen"
+        time.sleep(0.005)
+
+
+def proxy() -> Touch:
+    return load_method("render", "proxy")().touch(HapticSurface.from_heights(np.full((16, 16), 0.01, np.float32)))
+
+
+def left_behind() -> set[Path]:
+    return set(shared_folder().glob(f"tangible-{os.getpid()}-*"))
+
+
+class TestShow:
+    @pytest.mark.parametrize("device", DEVICES)
+    def test_what_is_shown_here_is_felt_there(self, device) -> None:
+        """By each of the three loops; the ticks tell which frame it was, and the guard what the surface gave."""
+        film = MovingPlane(0.01, stiffness_n_per_m=100.0)
+        with Servo(film, device, AT_ONCE) as servo:
+            until(lambda: servo.report().force.z > 0)
+            before = servo.report()
+            servo.show(level(0.012), 7)
+            until(lambda: servo.report().frame == 7 and servo.film is not None and servo.film.arrived)
+            until(lambda: servo.report().force.z - before.force.z == pytest.approx(0.2, abs=1e-6))
+            given_j = servo.ring.guard[GIVEN_J]
+            servo.stop()
+            rows, _ = servo.ring.since(0)
+        depth_m = 0.002 if isinstance(device, Circling) else 0.011
+        assert given_j == pytest.approx(100 * 0.002 * (depth_m + 0.001), rel=1e-3)
+        assert before.frame == 0 and set(rows[:, FRAME]) == {0.0, 7.0}
+        assert film.plane[0] == 0.01, "what was handed over is not what is felt"
+
+    def test_what_stands_still_shows_nothing(self) -> None:
+        film = MovingPlane()
+        with Servo(proxy(), Circling(), AT_ONCE) as servo:
+            with pytest.raises(DeviceError, match="stands still and shows no frame; feel the film"):
+                servo.show(level(0.011), 1)
+            until(lambda: servo.ring.count)
+            assert servo.film is servo.report().frame is None
+            servo.swap(film)
+            servo.show(level(0.011), 1)
+            until(lambda: servo.report().frame == 1)
+            servo.swap(still())
+            with pytest.raises(DeviceError, match="stands still"):
+                servo.show(level(0.011), 2)
+            servo.swap(film)  # once more, as it was handed over
+            until(lambda: servo.report().frame == 0)
+            servo.stop()
+            with pytest.raises(DeviceError, match="the force loop has ended: stopped"):
+                servo.show(level(0.011), 3)
+            assert servo.film is not None and servo.film.arrived
+        assert not left_behind()
+
+    def test_a_film_that_cannot_be_felt_leaves_the_one_before(self) -> None:
+        with Servo(MovingPlane(), Circling(), AT_ONCE) as servo:
+            before, broken = servo.film, MovingPlane()
+            assert isinstance(broken.touch, CompiledTouch)
+            broken.touch.stiffness_n_per_m = -1.0
+            with pytest.raises(Exception, match="stiffness of"):
+                servo.swap(broken)
+            assert servo.film is before
+            servo.show(level(0.02), 5)
+            until(lambda: servo.report().frame == 5)
+        assert not left_behind()
+
+
+class TestPacked:
+    def test_whoever_packed_it_shows(self) -> None:
+        """Also when another process feels it, which is given a name and a number alone."""
+        made = packed(MovingPlane(0.01), Circling().spec())
+        handed_on = Packed(str(made.parcel), made.stiffness_n_per_m)
+        with Servo(still(), Circling(z_m=0.009), AT_ONCE) as servo:
+            servo.swap(handed_on)
+            with pytest.raises(DeviceError, match="feel the film"):
+                servo.show(level(0.012), 1)
+            assert made.film is not None
+            made.film.show(level(0.012), 3)
+            until(lambda: servo.report().frame == 3 and made.film.arrived)
+        assert not left_behind()
+
+    def test_in_the_same_process_the_loop_shows_as_well(self) -> None:
+        made = packed(MovingPlane(0.01), Circling().spec())
+        with Servo(made, Circling(z_m=0.009), AT_ONCE) as servo:
+            assert servo.film is made.film
+            servo.show(level(0.012), 3)
+            until(lambda: servo.report().frame == 3)
+        assert packed(proxy(), Circling().spec()).film is None
+        for path in left_behind():
+            path.unlink()
+
+    def test_its_memory_is_everybody_s_who_unpacks_it(self) -> None:
+        path = parcel.pack(MovingPlane(0.01))
+        here, again, there = parcel.shared(path), parcel.shared(path), parcel.unpack(path)
+        here.show(level(0.0123), 9)
+        assert again.plane.tolist() == there.plane.tolist() == here.plane.tolist()
+        assert there.touch.fixed[0] is there.plane and there.touch.fixed[2] is there.touch.moving
+        assert not path.exists()
+
+
+def usage(process: int | str) -> np.ndarray:
+    """Descriptors, mappings, and KiB of memory of its own."""
+    of = Path(f"/proc/{process}")
+    status = of.joinpath("status").read_text()
+    anonymous = int(status.partition("RssAnon:")[2].split()[0])
+    return np.array(
+        [len(list(of.joinpath("fd").iterdir())), len(of.joinpath("maps").read_text().splitlines()), anonymous]
+    )
+
+
+class TestFaults:
+    @pytest.mark.parametrize("times", [60, pytest.param(5000, marks=pytest.mark.nightly)])
+    def test_films_and_touches_in_turn_leave_nothing_behind(self, times: int) -> None:
+        """In the loop's process, and in this one, which maps each film too."""
+        with Servo(proxy(), Circling(z_m=0.009), AT_ONCE) as servo:
+
+            def swap(count: int) -> tuple[np.ndarray, np.ndarray]:
+                for i in range(count):
+                    servo.swap(MovingPlane(0.01) if i % 2 else proxy())
+                    if i % 2:
+                        servo.show(level(0.011), i)
+                return usage(servo.process_id), usage("self")
+
+            first = swap(60)
+            last = swap(times)
+            for before, after in zip(first, last, strict=True):
+                descriptors, mappings, kibibytes = after - before
+                assert abs(descriptors) <= 2 and abs(mappings) <= 10
+                assert kibibytes <= 10_000
+        assert not left_behind()
+
+    def test_a_loop_that_is_killed_while_pictures_are_shown(self, tmp_path: Path) -> None:
+        record = tmp_path / "force"
+        device = Failing(fault="none", record=str(record), simulated=False)
+        with Servo(MovingPlane(0.01, 100.0), device, AT_ONCE) as servo:
+            until(lambda: record.exists() and float(record.read_text() or 0) > 0)
+            until(lambda: bool(servo.show(level(0.011), 1) or servo.report().frame))
+            os.kill(servo.process_id, signal.SIGKILL)
+            with pytest.raises(DeviceError, match=r"died|stood still"):
+                for number in range(2, 1_000_000):
+                    servo.show(level(0.01 + 0.001 * (number % 3)), number)
+                    time.sleep(0.001)
+            assert float(record.read_text()) == 0
+        assert not left_behind()
+
+    def test_a_host_that_is_killed_while_it_shows(self, tmp_path: Path) -> None:
+        record = tmp_path / "force"
+        program = subprocess.Popen([sys.executable, "-c", HOST.format(path=sys.path, record=str(record))])
+        until(lambda: record.exists() and float(record.read_text() or 0) > 0, 60)
+        time.sleep(0.1)
+        program.kill()
+        program.wait()
+        until(lambda: float(record.read_text() or 1) == 0)
+        Ring.create(16).remove()  # which sweeps
+        assert not set(shared_folder().glob(f"tangible-{program.pid}-*"))
+
+
+HOST = """
+import sys, time
+sys.path[:] = {path}
+from moving_plane import MovingPlane, level
+from tangible_core.servo import Safety, Servo
+from tangible_core.testing.loop_devices import Failing
+if __name__ == "__main__":
+    with Servo(MovingPlane(0.01, 100.0), Failing(fault="none", record={record!r}), Safety(ramp_s=0)) as servo:
+        number = 0
+        while True:
+            servo.show(level(0.01 + 0.001 * (number % 3)), number)
+            number += 1
+            time.sleep(0.002)
+"""
+
+
+class TestSimulated:
+    def feel(self, frames, seconds: float = 0.3, film: MovingPlane | None = None):
+        mock = load_method("device", "mock").model_validate(
+            {"path": "circle", "z_m": 0.009, "lift_m": 0.01, "hand": None}
+        )
+        return run_simulated(film or MovingPlane(0.01), mock, seconds, limits=AT_ONCE, frames=frames)
+
+    def test_frames_go_by_the_device_s_clock(self) -> None:
+        film, asked = MovingPlane(0.01), list[float]()
+
+        def frames(time_s: float) -> None:
+            asked.append(time_s)
+            if len(asked) % 100 == 1:
+                film.show(level(0.01 + 0.001 * len(asked) / 100), len(asked) // 100)
+
+        felt = self.feel(frames, film=film)
+        assert np.allclose(asked, np.arange(300) / 1000)
+        assert felt.frame.tolist() == [0] * 100 + [1] * 100 + [2] * 100
+        assert felt.proxy_m[199, 2] == pytest.approx(0.01101)
+        assert film.dropped == 0
+
+    def test_what_they_raise_ends_it(self) -> None:
+        def frames(_: float) -> None:
+            raise ConfigError("there is no such frame")
+
+        with pytest.raises(ConfigError, match="no such frame"):
+            self.feel(frames)
+
+    def test_a_film_that_is_shown_nothing_is_its_first_frame_to_the_last_bit(self) -> None:
+        film = MovingPlane(0.01)
+        moved, stood = self.feel(None, film=film), self.feel(None, film=MovingPlane(0.01).touch)
+        assert np.array_equal(moved.rows[:, :FRAME], stood.rows[:, :FRAME])
+        assert (moved.frame == 0).all()

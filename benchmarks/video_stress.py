@@ -19,14 +19,12 @@ from .figures import Figure
 DEVICE = DeviceSpec(8.0, 3000.0, 1.5, (0.08, 0.08, 0.08), 3e-5)
 PERIOD_S, WIDTH_M = 0.001, 0.08
 TICKS, TICKS_A_FILM = 10_000_000, 20_000
-SETTLED = 60
-"""Ticks after a hand was put down until it is the surface alone that moves."""
 STEP_N, GAIN_J, GAIN_SHARE = 0.08, 1e-3, 1e-4
 """What is allowed: of a force on a hand at rest; and of energy beyond what the surface did, once and as a share of all
 work that was done back and forth, of which sampling loses track."""
 DAMPED = int(TickFlag.DAMPED)
-(NOT_FINITE, STEP, WORK, SURFACE, SIZE, MOVED, GAIN, SINCE, TOUCHED, BRAKED, GUARDED, MOST_GUARDED) = range(12)
-FORCE, LEFT, FOUND = 12, 15, 18
+(NOT_FINITE, STEP, WORK, SURFACE, SIZE, MOVED, GAIN, TOUCHED, BRAKED, GUARDED, MOST_GUARDED) = range(11)
+FORCE, LEFT, FOUND = 11, 14, 17
 """What is kept of a film: figures, and the forces of the law and of the guard in the last tick."""
 
 
@@ -157,9 +155,7 @@ def walk(fixed, tick, moving, settings, memory, hands, first, last, stiffness, f
         found[BRAKED] += flags & DAMPED != 0
         px, py, pz = found[FORCE], found[FORCE + 1], found[FORCE + 2]
         held_j = (fx * fx + fy * fy + fz * fz) / (2.0 * stiffness)
-        found[SINCE] += 1.0
         if put_down or i == 0:  # a new account: what the spring holds it was given by the one who put the hand down
-            found[SINCE] = 0.0
             found[WORK], found[SURFACE] = -held_j, 0.0
             found[GUARDED] = 0.0
         else:
@@ -172,7 +168,7 @@ def walk(fixed, tick, moving, settings, memory, hands, first, last, stiffness, f
             found[GAIN] = max(found[GAIN], found[WORK] - found[SURFACE] + held_j)
             found[GUARDED] += found[LEFT] * dx + found[LEFT + 1] * dy + found[LEFT + 2] * dz
             found[MOST_GUARDED] = max(found[MOST_GUARDED], found[GUARDED])
-            if dx == 0.0 and dy == 0.0 and dz == 0.0 and found[SINCE] > SETTLED:
+            if dx == 0.0 and dy == 0.0 and dz == 0.0:
                 step_n = np.sqrt((fx - px) ** 2 + (fy - py) ** 2 + (fz - pz) ** 2)
                 found[STEP] = max(found[STEP], step_n)
         found[FORCE], found[FORCE + 1], found[FORCE + 2] = fx, fy, fz

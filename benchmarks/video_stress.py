@@ -19,12 +19,14 @@ from .figures import Figure
 DEVICE = DeviceSpec(8.0, 3000.0, 1.5, (0.08, 0.08, 0.08), 3e-5)
 PERIOD_S, WIDTH_M = 0.001, 0.08
 TICKS, TICKS_A_FILM = 10_000_000, 20_000
+PUT_DOWN_M = 0.001
+"""A hand that went farther in a tick was put down there, and its account begins anew: sampling knows nothing of it."""
 STEP_N, GAIN_J, GAIN_SHARE = 0.08, 1e-3, 1e-4
 """What is allowed: of a force on a hand at rest; and of energy beyond what the surface did, once and as a share of all
 work that was done back and forth, of which sampling loses track."""
 DAMPED = int(TickFlag.DAMPED)
-(NOT_FINITE, STEP, WORK, SURFACE, SIZE, MOVED, GAIN, TOUCHED, BRAKED, GUARDED, MOST_GUARDED) = range(11)
-FORCE, LEFT, FOUND = 11, 14, 17
+(NOT_FINITE, STEP, WORK, SURFACE, SIZE, MOVED, GAIN, TOUCHED, BRAKED, GUARDED, MOST_GUARDED, AT_REST) = range(12)
+FORCE, LEFT, FOUND = 12, 15, 18
 """What is kept of a film: figures, and the forces of the law and of the guard in the last tick."""
 
 
@@ -145,7 +147,9 @@ def walk(fixed, tick, moving, settings, memory, hands, first, last, stiffness, f
         x, y, z = hands[i, 0], hands[i, 1], hands[i, 2]
         before = hands[max(i - 1, 0)]
         dx, dy, dz = x - before[0], y - before[1], z - before[2]
-        put_down = dx * dx + dy * dy + dz * dz > 25e-6
+        put_down = dx * dx + dy * dy + dz * dz > PUT_DOWN_M * PUT_DOWN_M
+        at_rest = 0.0 if dx != 0.0 or dy != 0.0 or dz != 0.0 else found[AT_REST] + 1.0
+        found[AT_REST] = at_rest
         vx, vy, vz = (0.0, 0.0, 0.0) if put_down else (dx / PERIOD_S, dy / PERIOD_S, dz / PERIOD_S)
         fx, fy, fz = tick(*fixed, x, y, z, vx, vy, vz)
         memory[at.RISE_M] = moving[RISE]
@@ -168,7 +172,7 @@ def walk(fixed, tick, moving, settings, memory, hands, first, last, stiffness, f
             found[GAIN] = max(found[GAIN], found[WORK] - found[SURFACE] + held_j)
             found[GUARDED] += found[LEFT] * dx + found[LEFT + 1] * dy + found[LEFT + 2] * dz
             found[MOST_GUARDED] = max(found[MOST_GUARDED], found[GUARDED])
-            if dx == 0.0 and dy == 0.0 and dz == 0.0:
+            if at_rest > 1.0:
                 step_n = np.sqrt((fx - px) ** 2 + (fy - py) ** 2 + (fz - pz) ** 2)
                 found[STEP] = max(found[STEP], step_n)
         found[FORCE], found[FORCE + 1], found[FORCE + 2] = fx, fy, fz

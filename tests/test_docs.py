@@ -6,8 +6,10 @@ from pathlib import Path
 
 import pytest
 
+from tangible_core import load_method
 from tangible_core.data import TICK_COLUMNS
 from tangible_core.plugins import hooks
+from tangible_core.plugins.film import Filming
 
 ROOT = Path(__file__).parents[1]
 PAGES = sorted([*ROOT.glob("*.md"), *ROOT.joinpath("docs").rglob("*.md"), *ROOT.joinpath("examples").rglob("*.md")])
@@ -113,9 +115,13 @@ def test_the_page_on_recordings_names_every_column():
 
 
 def test_the_page_on_the_force_loop_feels(capsys: pytest.CaptureFixture[str]):
-    pulled, felt = re.findall(r"```python\n(.*?)```", ROOT.joinpath("docs/servo.md").read_text("utf-8"), re.DOTALL)
+    page = ROOT.joinpath("docs/servo.md").read_text("utf-8")
+    pulled, shown, felt = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
     exec(pulled, {})
     assert capsys.readouterr().out == "BeaconState(part=1, why='')\n"
+    exec(shown, {})
+    films = issubclass(load_method("render", "proxy"), Filming)
+    assert re.fullmatch(r"True 0 (0|1|None)\n" if films else "", capsys.readouterr().out)
     exec(felt, {})
     assert capsys.readouterr().out.startswith("200 ")
 

@@ -103,7 +103,8 @@ class Reliefs:
         return found.disparity
 
     def _begin(self, frame: VideoFrame) -> DisparityMap:
-        """A scene: the film's first, or one after a cut."""
+        """A scene: the film's first, or one after a cut; the next frame, if nothing can be found in this one."""
+        self._made = 0
         self._maker.begin(frame.views)
         self._steady = Steady()
         disparity = self._steady.next(self._maker.disparity(frame.views)).disparity

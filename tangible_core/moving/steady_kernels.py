@@ -14,7 +14,7 @@ from ..compiled.compiling import KERNEL
 
 @njit(**KERNEL)
 def step(new, kept, waiting, doubts, out, averaged, gate, most_doubts, most_missing):
-    """Rows of a map taken into what is kept, which goes to `out`; how many pixels changed, and how many could have.
+    """A map taken into what is kept, which goes to `out`; how many known pixels are new, and how many there are.
 
     new, kept, waiting, out: float32 (h, w), NaN where unknown; waiting: a change that was seen once. doubts: uint8, for
     how many frames in a row the kept value was not seen. averaged: share of a new value that is within `gate`.
@@ -36,7 +36,7 @@ def step(new, kept, waiting, doubts, out, averaged, gate, most_doubts, most_miss
                     held, doubts[y, x] = np.float32(np.nan), 0
             else:
                 known += 1
-                changed += not np.isnan(held)
+                changed += 1
                 doubts[y, x] += 1
                 if abs(value - waiting[y, x]) <= gate or doubts[y, x] > most_doubts:
                     held, doubts[y, x] = value, 0

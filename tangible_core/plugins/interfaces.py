@@ -86,6 +86,8 @@ class ForceRenderer(Method):
     """True for a law that renders friction, damping and fine textures of materials by itself."""
     is_lateral: ClassVar[bool] = False
     """True for a law of lateral forces alone: the normal force is the table's, under the hand."""
+    why_still: ClassVar[str] = ""
+    """Why it is no `Filming`, where one may wonder: words that go on "it feels no surface that moves"."""
 
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)

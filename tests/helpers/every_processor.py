@@ -19,7 +19,7 @@ from shapely import get_coordinates
 
 from tangible_core import load_method
 from tangible_core.compiled import threads
-from tangible_core.data import DisparityMap, HapticSurface, SegmentMap, Views, digest_of
+from tangible_core.data import DisparityMap, HapticSurface, Relief, SegmentMap, Views, digest_of
 from tangible_core.data.pictures import to_grey, to_rgb8
 from tangible_core.haptic_textures import compile_textures, radial_spectrum, sample_tile, stroke
 from tangible_core.materials.assignment import library, relative_roughness
@@ -43,6 +43,7 @@ from tangible_core.parts import (
     shared_borders,
 )
 from tangible_core.parts.large import large_parts
+from tangible_core.plugins.interfaces import Filming
 from tangible_core.plugins.registry import default_registry
 from tangible_core.preflight.bumps import feature_m
 from tangible_core.scene.geometry import make_relief, normals, resample, slopes, smooth
@@ -207,6 +208,10 @@ def render() -> Found:
     for name, cls, options in ours("render"):
         for of, felt in (("plain", surface(False)), ("covered", surface())):
             yield f"{name}: forces on a {of} surface", cls(**options).touch(felt).path(path())
+            if issubclass(cls, Filming):
+                film = cls(**options).film(felt)
+                film.show(Relief(felt.height_m[::-1].copy(), felt.extent_m), 1)
+                yield f"{name}: forces of a film on a {of} surface", film.touch.path(path())
 
 
 def haptic_textures() -> Found:

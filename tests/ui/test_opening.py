@@ -133,7 +133,7 @@ class TestBegin:
     @pytest.mark.parametrize("suffix", [".nc", ".npz", ".csv"])
     def test_a_recording_is_one(self, bench: Bench, tmp_path: Path, suffix: str) -> None:
         path = tmp_path / f"felt{suffix}"
-        Recording(np.zeros((3, 16)), "", About("mock", "penalty", "scene: x")).save(path)
+        Recording(np.zeros((3, 17)), "", About("mock", "penalty", "scene: x")).save(path)
         assert opening.begin(bench, [path]) == {"recording": str(path)}
 
     def test_an_array_is_a_height_map(self, bench: Bench, tmp_path: Path) -> None:

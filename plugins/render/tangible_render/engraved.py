@@ -44,6 +44,7 @@ class Engraved(ForceRenderer, Reshaping):
     """
 
     renders_materials: ClassVar[bool] = True
+    why_still: ClassVar[str] = "its grooves lie along borders, which would have to be found and followed in each frame"
 
     law: Annotated[Law, AfterValidator(_checked), Field(validate_default=True)] = "proxy"
     """The force law that feels the grooves: its name, or {use: its name} with its options."""

@@ -40,6 +40,8 @@ class Proxy(ForceRenderer, Filming):
     The surface is the top of a block with upright sides: a hand that comes from beside it under the rim is held off
     along x or y. A hand that is put down in the block, or leaps by more than 5 mm in a tick, is taken straight up; so
     is one that left its proxy more than 20 mm behind, if that is nearer.
+
+    It is felt on a surface that moves as well, see `film`.
     Source: Zilles & Salisbury, A constraint-based god-object method, IROS 1995; Harwin & Melder, Improved haptic
     rendering for multi-finger manipulation using friction cone based god-objects, Eurohaptics 2002.
     """
@@ -87,8 +89,9 @@ class Proxy(ForceRenderer, Filming):
         """A film that begins with this surface, whose labels and materials stay where they are.
 
         Each place goes evenly from one relief to the next, by no more than 0.1 m/s, nor faster than that the spring on
-        a hand at rest changes by 0.08 N a tick. Friction holds the proxy's place, on a surface that rises and falls;
-        damping is that of the hand alone. Heights in steps are not smoothed.
+        a hand at rest changes by 0.08 N a tick; nor does that force change faster where the proxy loses its hold.
+        Friction holds the proxy's place, on a surface that rises and falls; damping is that of the hand alone. Heights
+        in steps are not smoothed.
         """
         from .film.film import begun, checked
 

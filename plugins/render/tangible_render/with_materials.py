@@ -48,6 +48,7 @@ class WithMaterials(ForceRenderer):
 
     version: ClassVar[int] = 2
     renders_materials: ClassVar[bool] = True
+    why_still: ClassVar[str] = "it is for laws that render no materials, and none of these does; `proxy` renders them"
 
     law: Annotated[Law, AfterValidator(_checked), Field(validate_default=True)] = "penalty-gradient"
     """The force law: its name, or {use: its name} with its options."""

@@ -1,9 +1,12 @@
+from contextlib import suppress
+
 import numpy as np
 import pytest
 
 from films import GivenFrames, NearnessOfGrey, greys
+from tangible_core.data import DisparityMap
 from tangible_core.errors import ConfigError, GeometryError
-from tangible_core.moving import Reliefs
+from tangible_core.moving import FrameMaker, Reliefs
 from tangible_core.moving.scale import ADAPTS_S, Scale
 from tangible_core.scene.geometry import ValueRange
 
@@ -86,3 +89,38 @@ def test_a_frame_without_depth_is_refused_and_the_next_goes_on():
         with pytest.raises(GeometryError, match="no depth is known"):
             reliefs.made(reliefs.frames.next())
         assert reliefs.made(reliefs.frames.next()).relief.height_m.any()
+
+
+def test_after_a_dark_pause_a_scene_begins_by_what_is_seen_then():
+    maker, dark, other = NearnessOfGrey(), np.full((8, 12), 255.0), 200 - BOX / 2
+    film = []
+    with Reliefs(lambda: GivenFrames(greys(BOX, *[dark] * 12, *[other] * 3)), maker) as reliefs:
+        while (frame := reliefs.frames.next()) is not None:
+            with suppress(GeometryError):
+                film.append(reliefs.made(frame).relief.height_m)
+    assert maker.begun == 2
+    assert film[-1][0, 0] == pytest.approx(0.01) and film[-1][2, 3] == 0, "the range is the new one"
+
+
+def test_a_scene_that_begins_with_a_frame_that_shows_nothing_begins_with_the_next():
+    class Blind(FrameMaker):
+        """Knows nothing of a picture that is dark, of which it would keep that."""
+
+        def __init__(self):
+            self.maker, self.kept = NearnessOfGrey(), ""
+
+        def begin(self, views):
+            self.kept = "dark" if views.left.max() == 0 else "light"
+
+        def disparity(self, views):
+            found = self.maker.disparity(views)
+            return DisparityMap(np.full_like(found.disparity_px, np.nan)) if self.kept == "dark" else found
+
+        nearness = staticmethod(NearnessOfGrey().nearness)
+        relief = staticmethod(NearnessOfGrey().relief)
+
+    maker = Blind()
+    with Reliefs(lambda: GivenFrames(greys(np.zeros((8, 12)), BOX)), maker) as reliefs:
+        with pytest.raises(GeometryError):
+            reliefs.made(reliefs.frames.next())
+        assert reliefs.made(reliefs.frames.next()).relief.height_m[2, 3] > 0

@@ -16,7 +16,7 @@ from tangible_core.compiled.touch import CompiledTouch
 from tangible_core.data import TICK_COLUMNS
 from tangible_core.errors import ConfigError, DeviceError
 from tangible_core.plugins.interfaces import Touch
-from tangible_core.servo import Packed, Ring, Safety, Servo, packed, parcel, still
+from tangible_core.servo import Packed, Ring, Safety, Servo, host, packed, parcel, still
 from tangible_core.servo.guard.layout import GIVEN_J
 from tangible_core.servo.ring import shared_folder
 from tangible_core.session import run_simulated
@@ -140,8 +140,9 @@ def usage(process: int | str) -> np.ndarray:
 
 class TestFaults:
     @pytest.mark.parametrize("times", [60, pytest.param(5000, marks=pytest.mark.nightly)])
-    def test_films_and_touches_in_turn_leave_nothing_behind(self, times: int) -> None:
+    def test_films_and_touches_in_turn_leave_nothing_behind(self, times: int, monkeypatch: pytest.MonkeyPatch) -> None:
         """In the loop's process, and in this one, which maps each film too."""
+        monkeypatch.setattr(host, "STANDSTILL_S", 30.0)  # of a busy machine
         with Servo(proxy(), Circling(z_m=0.009), AT_ONCE) as servo:
 
             def swap(count: int) -> tuple[np.ndarray, np.ndarray]:

@@ -21,7 +21,7 @@ def saved(folder: Path, rows: np.ndarray, suffix: str = ".npz") -> Path:
 
 def rows(count: int) -> np.ndarray:
     """Jittered times, and positions, velocities and buttons that float32 holds."""
-    table = np.random.default_rng(0).integers(-40, 40, (count, 16)) / 1024
+    table = np.random.default_rng(0).integers(-40, 40, (count, 17)) / 1024
     table[:, 0] = 7 + np.cumsum(np.random.default_rng(1).uniform(0.0005, 0.002, count))
     table[:, 15] = np.arange(count) % 16
     return table
@@ -92,7 +92,7 @@ def test_without_a_file_it_goes_down_and_up_once():
     ("change", "complaint"),
     [
         (lambda table: table[:0], "has no complete tick"),
-        (lambda table: np.where(np.arange(16) < 14, np.nan, table), "has no complete tick"),
+        (lambda table: np.where(np.arange(17) < 14, np.nan, table), "has no complete tick"),
         (lambda table: table[::-1], "does not increase after 7."),
         (lambda table: table[[0, 1, 1]], "does not increase after 7."),
     ],

@@ -25,4 +25,4 @@ def moving_tick(
     shape = (pairs[slot], 1.0 - share, share), width_m, length_m, across_per_m, down_per_m
     fx, fy, fz = spring_and_damper(shape, tiles_m[slot], labels, table, memory, x, y, z, vx, vy, vz)
     risen(pairs[slot], across_per_m, down_per_m, passed, memory, moving)
-    return steady(felt, passed, moving, x, y, z, vx, vy, vz, fx, fy, fz)
+    return steady(felt, moving, x, y, z, vx, vy, vz, fx, fy, fz)

@@ -25,4 +25,4 @@ def moving_spring_tick(
     shape = (pairs[slot], 1.0 - share, share), width_m, length_m, across_per_m, down_per_m
     fx, fy, fz = spring(shape, tiles_m[slot], stiffness, memory, x, y, z, vx, vy, vz)
     risen(pairs[slot], across_per_m, down_per_m, passed, memory, moving)
-    return steady(felt, passed, moving, x, y, z, vx, vy, vz, fx, fy, fz)
+    return steady(felt, moving, x, y, z, vx, vy, vz, fx, fy, fz)

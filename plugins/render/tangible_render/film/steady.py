@@ -31,8 +31,8 @@ REACH = 8.0
 
 
 @inner(forceinline=True)
-def steady(memory, passed, moving, x, y, z, vx, vy, vz, fx, fy, fz):
-    """The law's force, or what may be felt of its change in this tick; passed: 0 where the surface stands still.
+def steady(memory, moving, x, y, z, vx, vy, vz, fx, fy, fz):
+    """The law's force, or what may be felt of its change in this tick: a slide that was begun may outlast a frame.
 
     Of a force that is short of the law's, `moving` tells of a rise that does what the surface did on what is felt.
     """
@@ -43,7 +43,7 @@ def steady(memory, passed, moving, x, y, z, vx, vy, vz, fx, fy, fz):
     held_x, held_y = memory[FORCE] - stiffness * dx, memory[FORCE + 1] - stiffness * dy
     held_z = memory[FORCE + 2] - stiffness * dz
     late, was_late = 0.0, memory[LATE] > 0.0
-    if (passed > 0.0 or was_late) and moved_m <= LEAP_M:  # not for NaN
+    if moved_m <= LEAP_M:  # not for NaN, nor for a hand that was put down
         step_n = STEP_N + REACH * stiffness * moved_m + memory[DAMPING] * math.sqrt(ux * ux + uy * uy + uz * uz)
         ax, ay, az = fx - held_x, fy - held_y, fz - held_z
         away_n = math.sqrt(ax * ax + ay * ay + az * az)

@@ -28,5 +28,5 @@ def moving_textured_tick(
     vz -= tx * vx + ty * vy
     fx, fy, fz = spring_and_damper(shape, tiles_m[slot], labels, table, memory, x, y, z - t, vx, vy, vz)
     risen(pairs[slot], across_per_m, down_per_m, passed, memory, moving)
-    fx, fy, fz = steady(felt, passed, moving, x, y, z - t, vx, vy, vz, fx, fy, fz)
+    fx, fy, fz = steady(felt, moving, x, y, z - t, vx, vy, vz, fx, fy, fz)
     return effects(textures, label, 1.0, contact, tx, ty, dx, dy, dz, vx, vy, vz, fx, fy, fz)

@@ -56,6 +56,23 @@ def slots_of(film: Film):
     return film._slots  # pyright: ignore[reportAttributeAccessIssue]
 
 
+class TestBounds:
+    """What lets a tick be decided without reading the surface holds for all of a slot's way."""
+
+    def test_a_surface_that_sinks_is_felt_until_it_is_below_the_hand(self):
+        film = begun(first=level(0.008))
+        film.show(level(0.005), 1)
+        up_n = hold(film, TICKS, z=0.0065)[:, 2]
+        there_m = 0.008 - 0.003 * np.arange(1, TICKS + 1) / TICKS
+        assert up_n == pytest.approx(800 * np.maximum(there_m - 0.0065, 0), abs=1e-3)
+
+    def test_what_was_level_and_rises_is_where_it_is(self):
+        film = begun(first=level(0.005))
+        film.show(level(0.008), 1)
+        up_n = hold(film, TICKS, z=0.0045)[:, 2]
+        assert up_n == pytest.approx(800 * (0.0005 + 0.003 * np.arange(1, TICKS + 1) / TICKS), abs=1e-3)
+
+
 class TestSlots:
     def test_a_slot_begins_to_the_bit_with_what_the_one_before_ends_with(self):
         film, random = begun(), np.random.default_rng(0)

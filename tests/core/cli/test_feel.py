@@ -114,9 +114,11 @@ def test_a_video_is_played_and_told_of(tmp_path: Path):
     (tmp_path / "walk.yaml").write_text(
         "scene: {video: ., layout: side-by-side, fps: 10}\nwant: touch\nrender: {use: proxy}\n"
         "depth: {use: semi-global, resolution: half}\ndevice: {use: mock, path: circle}\n"
+        "texture: {use: histogram, segments: 2}\n"
     )
     done = tangible("feel", "walk.yaml", "--seconds", 1.5, "--record", "hand.csv", "--json", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
+    assert "parts and materials stay where they are in the first frame" in done.stderr
     figures = json.loads(done.stdout)["figures"]
     assert figures["frames_shown"] > 1 and figures["frames_damaged"] == 0
     assert {"frames_dropped", "frames_skipped", "frames_per_s", "frames_age_ms"} <= figures.keys()

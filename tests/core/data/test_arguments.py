@@ -20,6 +20,7 @@ from tangible_core import (
 )
 from tangible_core.data.arguments import as_array, as_force, as_picture, as_state
 from tangible_core.data.device import Force, HapticState
+from tangible_core.data.ticks import TICK_COLUMNS
 from tangible_core.errors import ArgumentError, TangibleError
 
 pytestmark = pytest.mark.usefixtures("unchecked_shapes")
@@ -70,7 +71,7 @@ def test_what_can_be_converted_is():
     relief = Relief(np.zeros((2, 2)), [0.1, 0.2])
     assert (relief.height_m.dtype, relief.extent_m) == (np.float32, (0.1, 0.2))
     assert HapticSurface.from_heights([[0, 1]], 0.1, [[0, 1]]).labels is not None
-    assert Recording([[0] * 16]).rows.dtype == np.float64
+    assert Recording([[0] * len(TICK_COLUMNS)]).rows.dtype == np.float64
 
 
 def test_what_is_right_is_left_alone():

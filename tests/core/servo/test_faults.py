@@ -436,7 +436,7 @@ def test_a_scene_that_is_taken_over_leaves_the_word_to_stop() -> None:
 @pytest.mark.parametrize("device", [Circling(), Circling(exchanges=True)])
 def test_no_stop_is_lost_among_thousands_of_swaps(device, most: int, in_this_process: None) -> None:
     """In sessions that are ended in one of three ways at a random moment."""
-    rng, swaps, sessions, scene = random.Random(0), 0, 0, proxy()
+    rng, swaps, sessions, scene, sent = random.Random(0), 0, 0, proxy(), list[Path]()
     while swaps < most:
         session = Session(device)
         assert isinstance(session.heard(), StartReply)
@@ -445,7 +445,8 @@ def test_no_stop_is_lost_among_thousands_of_swaps(device, most: int, in_this_pro
         timer.start()
         with suppress(OSError, ValueError):
             while not session.ring.header[STOP]:
-                send(session.commands, Swap(str(pack(scene)), session.settings))
+                sent.append(pack(scene))
+                send(session.commands, Swap(str(sent[-1]), session.settings))
                 if not isinstance(session.heard(), SwapReply):
                     break
                 swaps += 1
@@ -454,6 +455,8 @@ def test_no_stop_is_lost_among_thousands_of_swaps(device, most: int, in_this_pro
         assert session.ring.header[STOP] == 1
         sessions += 1
     assert sessions > 10
+    for path in sent:  # a loop that has ended takes none
+        path.unlink(missing_ok=True)
 
 
 @pytest.mark.parametrize("round", range(6))

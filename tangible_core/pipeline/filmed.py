@@ -112,11 +112,12 @@ def _filming(config: PipelineConfig, registry: Registry) -> Filming:
     law = config.render.method
     if not isinstance(law, Filming):
         can = " or ".join(_laws_that_film(registry))
+        why = f": {law.why_still}" if law.why_still else ""
         raise config.complained(
             (
                 ("render",),
-                f"{config.render.name} feels no surface that moves, and the scene is a video; use {can}, or take one "
-                "frame as a `photo:` or a pair",
+                f"the scene is a video, and {config.render.name} feels no surface that moves{why}; use {can}, or take "
+                "one frame as a `photo:` or a pair",
             )
         )
     return law

@@ -12,7 +12,7 @@ from .ui_late import ring_of
 
 LAWS = ("penalty", "proxy")
 SWAPS = 10
-MINUTES = float(os.environ.get("TANGIBLE_BENCH_MINUTES", "30"))
+MINUTES = float(os.environ.get("TANGIBLE_MINUTES", "30"))
 SETTLE_S = 60.0
 LARGE = (4200, 4300)
 

@@ -128,7 +128,7 @@ class TestScene:
     @pytest.mark.parametrize(
         ("parts", "said"),
         [
-            ({}, "a scene is either left and right, or photo, or height; this one gives nothing"),
+            ({}, "a scene is either left and right, or photo, or height, or video; this one gives nothing"),
             ({"left": np.zeros(SHAPE)}, "this one gives left"),
             ({"photo": np.zeros(SHAPE), "relief_m": 0.01}, "relief_m needs height beside it"),
         ],

@@ -19,7 +19,7 @@ from numba import njit
 
 from tangible_core.compiled.kernels import Address
 from tangible_core.compiled.touch import CompiledLink
-from tangible_core.data import NO_FORCE, Force, HapticState
+from tangible_core.data import NO_FORCE, TICK_COLUMNS, Force, HapticState
 from tangible_core.errors import ConfigError, DeviceError
 from tangible_core.mapping import WorkspaceMapping, mapped
 from tangible_core.plugins.interfaces import Link
@@ -257,6 +257,7 @@ class TestLettingGo:
         assert set(forces[end:]) == {0.0}
 
 
+BUTTONS = TICK_COLUMNS.index("buttons")
 TAGS = [0, 1, 0x2AAAAA, 0x555555, 0x7FFFFF]
 """In bits 8 to 30 of the buttons."""
 
@@ -276,7 +277,7 @@ def test_a_number_of_the_client_s_own_comes_back_with_its_tick_and_is_kept(tmp_p
     with Servo(still(), device) as servo, PointerClient() as client:
         for buttons in sent:
             end = time.monotonic() + 30
-            while (row := servo.ring.latest()) is None or row[-1] != buttons:
+            while (row := servo.ring.latest()) is None or row[BUTTONS] != buttons:
                 client.send((0.02, 0.0, 0.01), buttons)
                 assert time.monotonic() < end
                 time.sleep(0.001)
@@ -284,7 +285,7 @@ def test_a_number_of_the_client_s_own_comes_back_with_its_tick_and_is_kept(tmp_p
         rows, _ = servo.ring.since(0)
     with keeping(tmp_path / "hand.nc", About()) as writer:
         writer.append(rows)
-    kept = Recording.load(tmp_path / "hand.nc").rows[:, -1]
+    kept = Recording.load(tmp_path / "hand.nc").rows[:, BUTTONS]
     assert set(kept.tolist()) <= {0, *sent}
     assert kept[-1] == sent[-1]
 

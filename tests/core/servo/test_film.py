@@ -46,9 +46,9 @@ class TestShow:
     @pytest.mark.parametrize("device", DEVICES)
     def test_what_is_shown_here_is_felt_there(self, device) -> None:
         """By each of the three loops; the ticks tell which frame it was, and the guard what the surface gave."""
-        film = MovingPlane(0.01, stiffness_n_per_m=100.0)
+        film, depth_m = MovingPlane(0.01, stiffness_n_per_m=100.0), 0.002 if isinstance(device, Circling) else 0.011
         with Servo(film, device, AT_ONCE) as servo:
-            until(lambda: servo.report().force.z > 0)
+            until(lambda: servo.report().force.z == pytest.approx(100 * depth_m))  # not one that still grows
             before = servo.report()
             servo.show(level(0.012), 7)
             until(lambda: servo.report().frame == 7 and servo.film is not None and servo.film.arrived)
@@ -56,7 +56,6 @@ class TestShow:
             given_j = servo.ring.guard[GIVEN_J]
             servo.stop()
             rows, _ = servo.ring.since(0)
-        depth_m = 0.002 if isinstance(device, Circling) else 0.011
         assert given_j == pytest.approx(100 * 0.002 * (depth_m + 0.001), rel=1e-3)
         assert before.frame == 0 and set(rows[:, FRAME]) == {0.0, 7.0}
         assert film.plane[0] == 0.01, "what was handed over is not what is felt"

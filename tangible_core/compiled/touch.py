@@ -43,7 +43,7 @@ class CompiledTouch(Touch):
         self.fixed = fixed
         self.memory = np.full(3, np.nan) if memory is None else memory
         self.stiffness_n_per_m = stiffness
-        self.moving = np.array([0.0, np.nan]) if moving is None else moving
+        self.moving = _still() if moving is None else moving
         self._address: Any = None
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -75,9 +75,13 @@ class CompiledTouch(Touch):
         return self._address
 
 
+def _still() -> Float64[np.ndarray, "2"]:
+    return np.array([0.0, np.nan])
+
+
 def moving_of(touch: Touch) -> Float64[np.ndarray, "2"]:
     """What a touch tells of a surface that moves; of one that tells nothing, that it stands still."""
-    return touch.moving if isinstance(touch, CompiledTouch) else np.array([0.0, np.nan])
+    return touch.moving if isinstance(touch, CompiledTouch) else _still()
 
 
 def _revive(

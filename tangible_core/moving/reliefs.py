@@ -23,8 +23,8 @@ class FrameMaker(ABC):
     """How one frame of a film becomes a disparity map, and that a relief: as the pipeline has it."""
 
     @abstractmethod
-    def begin(self, views: Views) -> None:
-        """What is found once, such as the range of disparities, is found in this frame."""
+    def begin(self, views: Views) -> DisparityMap:
+        """As `disparity`, of the first frame, in which what is found once, such as the range of disparities, is."""
 
     @abstractmethod
     def disparity(self, views: Views) -> DisparityMap:
@@ -105,9 +105,8 @@ class Reliefs:
     def _begin(self, frame: VideoFrame) -> DisparityMap:
         """A scene: the film's first, or one after a cut; the next frame, if nothing can be found in this one."""
         self._made = 0
-        self._maker.begin(frame.views)
         self._steady = Steady()
-        disparity = self._steady.next(self._maker.disparity(frame.views)).disparity
+        disparity = self._steady.next(self._maker.begin(frame.views)).disparity
         self._scale = Scale(self._maker.nearness(disparity), frame.time_s)
         self._made = 1
         return disparity

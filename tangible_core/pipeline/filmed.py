@@ -41,23 +41,25 @@ class PipelineFrames(FrameMaker):
         self._exchanged = False
         self._still = FeltScene(scene, config.size)
 
-    def begin(self, views: Views) -> None:
-        """Find in these what is found once."""
+    def begin(self, views: Views) -> DisparityMap:
+        """Of the first frame, in pixels of the pictures; what is found once is found in it."""
         grid, method = self._grid(views), self._depth.method
         assert grid.views is not None
         self._estimate = method.follow(grid.views) if isinstance(method, Following) else method.estimate
-        files, calibration = self._scene.files, views.calibration
-        if isinstance(files, SceneFiles) and files.order == "as-named":
-            return
         made = estimated(self._depth, self._estimate, grid.views)
-        offset_px = calibration.offset_px / grid.factor if calibration else 0.0
-        self._exchanged = views.right is not None and view_order.view_order(made, grid.views.left, offset_px).exchanged
+        files, calibration = self._scene.files, views.calibration
+        if views.right is not None and not (isinstance(files, SceneFiles) and files.order == "as-named"):
+            offset_px = calibration.offset_px / grid.factor if calibration else 0.0
+            self._exchanged = view_order.view_order(made, grid.views.left, offset_px).exchanged
+        return self._put_right(made, grid)
 
     def disparity(self, views: Views) -> DisparityMap:
         """Of one frame, in pixels of the pictures."""
         grid = self._grid(views)
         assert grid.views is not None
-        made = estimated(self._depth, self._estimate, grid.views)
+        return self._put_right(estimated(self._depth, self._estimate, grid.views), grid)
+
+    def _put_right(self, made: DisparityMap, grid: FeltScene) -> DisparityMap:
         return in_pictures_pixels(view_order.put_right(made) if self._exchanged else made, grid)
 
     def nearness(self, disparity: DisparityMap) -> ValueRange:

@@ -53,8 +53,9 @@ class NearnessOfGrey(FrameMaker):
     def __init__(self) -> None:
         self.begun = 0
 
-    def begin(self, views: Views) -> None:
+    def begin(self, views: Views) -> DisparityMap:
         self.begun += 1
+        return self.disparity(views)
 
     def disparity(self, views: Views) -> DisparityMap:
         values = views.left.astype(np.float32)

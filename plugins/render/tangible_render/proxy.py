@@ -8,6 +8,7 @@ from pydantic import Field, model_validator
 
 from tangible_core.compiled.touch import CompiledTouch, Tick
 from tangible_core.data import HapticSurface
+from tangible_core.errors import check_positive
 from tangible_core.haptic_textures.table import bristle_stiffness
 from tangible_core.plugins.interfaces import Film, Filming, ForceRenderer, Touch
 
@@ -93,13 +94,14 @@ class Proxy(ForceRenderer, Filming):
         Friction holds the proxy's place, on a surface that rises and falls; damping is that of the hand alone. Heights
         in steps are not smoothed.
         """
-        from .film.film import begun, checked
+        from .film.film import begun
 
-        period_s, frame_s = checked(period_s, frame_s)
+        check_positive("period_s", period_s)
+        check_positive("frame_s", frame_s)
         law = self._law(surface)
         damping_n_s_per_m = float(law.arguments[1][:, 1].max()) if law.kind != "spring" else 0.0
         spring = law.stiffness_n_per_m, damping_n_s_per_m
-        return begun(surface, _moving(law.kind), law.arguments, law.memory, spring, period_s, frame_s)
+        return begun(surface, _moving(law.kind), law.arguments, law.memory, spring, float(period_s), float(frame_s))
 
     def _law(self, surface: HapticSurface) -> _Law:
         from .contact import contact

@@ -111,6 +111,7 @@ def test_a_scene_that_begins_with_a_frame_that_shows_nothing_begins_with_the_nex
 
         def begin(self, views):
             self.kept = "dark" if views.left.max() == 0 else "light"
+            return self.disparity(views)
 
         def disparity(self, views):
             found = self.maker.disparity(views)

@@ -1,6 +1,5 @@
 """A film of `proxy`: the surface under it moves from one relief to the next within the ticks."""
 
-import math
 from typing import Any, final
 
 import numpy as np
@@ -8,8 +7,7 @@ from jaxtyping import Float64
 
 from tangible_core.compiled.touch import CompiledTouch, Tick
 from tangible_core.data import HapticSurface, Relief
-from tangible_core.data.arguments import as_number
-from tangible_core.errors import ConfigError, GeometryError
+from tangible_core.errors import GeometryError
 from tangible_core.plugins.interfaces import Film
 
 from ..surface.coefficients import BORDER
@@ -17,14 +15,6 @@ from .coefficients import quick_coefficients
 from .limits import SPEED_M_PER_S, STEP_N
 from .scratch import Scratch
 from .slots import DROPPED, Slots
-
-
-def checked(period_s: float, frame_s: float) -> tuple[float, float]:
-    """Both as numbers. Raises: ConfigError if either is not positive and finite."""
-    for name, value in (("period_s", period_s), ("frame_s", frame_s)):
-        if not 0 < as_number(name, value) < math.inf:
-            raise ConfigError(f"{name} is {value}; a film needs a positive number of seconds")
-    return float(period_s), float(frame_s)
 
 
 @final

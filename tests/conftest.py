@@ -97,6 +97,16 @@ def shared_dir() -> Iterator[None]:
         yield
 
 
+@pytest.fixture
+def own_memory(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """As `shared_dir`, of one test: what others have left there is none of its."""
+    from tangible_core.servo.ring import shared_folder
+
+    with tempfile.TemporaryDirectory(prefix="test-", dir=shared_folder()) as own:
+        monkeypatch.setenv("TANGIBLE_SHARED_DIR", own)
+        yield
+
+
 @pytest.fixture(autouse=True)
 def cache_dir(own_dir: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """An empty cache for each test."""

@@ -2,6 +2,7 @@
 
 import asyncio
 import threading
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -87,11 +88,11 @@ class InlineMaker:
             return await self.ask(job, **told)
 
     async def _do(self, job: str, told: dict[str, Any]) -> Any:
-        bench = self.bench
+        done = partial(_done, self.bench, self._alive, job, told)
         if JOBS[job].quick:
-            return await asyncio.to_thread(JOBS[job].do, bench, **told)
+            return await asyncio.to_thread(done)
         async with self._long:
-            return await asyncio.to_thread(JOBS[job].do, bench, **told)
+            return await asyncio.to_thread(done)
 
     def kill(self) -> None:
         self.kills += 1
@@ -102,6 +103,14 @@ class InlineMaker:
 
     def close(self) -> None:
         self.kill()
+
+
+def _done(bench: Bench, alive: threading.Event, job: str, told: dict[str, Any]) -> Any:
+    """What a job makes; of one that was killed meanwhile nothing is left."""
+    made = JOBS[job].do(bench, **told)
+    if not alive.is_set() and isinstance(made, dict) and "parcel" in made:
+        Path(made["parcel"]).unlink()
+    return made
 
 
 class Heard:

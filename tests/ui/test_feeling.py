@@ -21,6 +21,8 @@ from tangible_core.testing.loop_laws import FaultyTouch
 from tangible_ui.feeling.feeling import Feeling, Felt
 from tangible_ui.wire import STATE_FRAME
 
+pytestmark = pytest.mark.usefixtures("own_memory")
+
 LEVEL_M = 0.002
 LEVEL = HapticSurface.from_heights(np.full((32, 32), LEVEL_M, np.float32))
 AT_ONCE = Safety(ramp_s=0, max_step_n=10, passivity="off")
@@ -196,9 +198,9 @@ class TestWhatEndsByItself:
     @pytest.mark.parametrize(
         ("device", "touch", "why", "lost"),
         [
-            (Failing(fault="unplugged"), None, "the failing device does not answer; plug it in", True),
-            (Failing(fault="blocks"), None, "stood still", True),
-            (Failing(fault="bug"), None, "ZeroDivisionError: the driver's own fault", False),
+            (Failing(fault="unplugged", at=1500), None, "the failing device does not answer; plug it in", True),
+            (Failing(fault="blocks", at=1500), None, "stood still", True),
+            (Failing(fault="bug", at=1500), None, "ZeroDivisionError: the driver's own fault", False),
             (Failing(fault="none"), FaultyTouch("odd error"), "OddError", False),
         ],
         ids=["unplugged", "stands still", "a fault of the driver", "a law that raises"],
@@ -206,6 +208,7 @@ class TestWhatEndsByItself:
     def test_is_told_once_with_why(
         self, feeling: Feeling, device: HapticDevice, touch: Touch | None, why: str, lost: bool
     ) -> None:
+        feeling.feel(felt(feeling))  # so that all is compiled, and the next scene is felt before its device fails
         feeling.feel(felt(feeling, device, touch))
         found = []
         until(lambda: found.append(feeling.ended()) or found[-1] is not None)

@@ -29,6 +29,8 @@ from tangible_core.servo.wire import Start, StartReply, Swap, SwapReply, receive
 from tangible_core.testing.loop_devices import Circling, Failing
 from tangible_core.testing.loop_laws import FaultyTouch
 
+pytestmark = pytest.mark.usefixtures("own_memory")
+
 AT_ONCE = Safety(ramp_s=0, max_step_n=10)
 MOST_TICKS_AFTER = 50
 """Of 1 ms each, after whatever ends a loop: 50 ms."""

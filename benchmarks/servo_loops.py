@@ -19,9 +19,11 @@ from tangible_core import HapticSurface, load_method
 from tangible_core.data import Spread
 from tangible_core.plugins.interfaces import HapticDevice, Touch
 from tangible_core.servo import Servo
+from tangible_core.servo.ring import SPINS
 from tangible_core.testing.loop_devices import Circling
 
 from .figures import Figure
+from .servo_rounds import Round
 
 SLICE_S, SLICES = 10.0, 3
 """Each loop runs for so long, in turn with the others, so often."""
@@ -36,14 +38,12 @@ def touch() -> Touch:
     return load_method("render", "proxy")().touch(HapticSurface.from_heights(heights))
 
 
-def ours(device: HapticDevice, seconds: float) -> Spread:
-    """Lateness of the servo on this device."""
+def ours(device: HapticDevice, seconds: float) -> tuple[Round, bool]:
+    """The servo on this device, and whether it was real time."""
     with Servo(touch(), device, seconds=seconds) as servo:
         while servo.running:
             time.sleep(0.1)
-        late_us = servo.report().late_us
-    assert late_us is not None
-    return late_us
+        return Round.of(servo.ring), bool(servo.ring.header[SPINS])
 
 
 def compiled_c(folder: Path) -> Path | None:
@@ -56,11 +56,11 @@ def compiled_c(folder: Path) -> Path | None:
     return program
 
 
-def in_c(program: Path, seconds: float) -> tuple[Spread, bool]:
-    """Lateness of the loop in C, and whether it was real time."""
-    done = subprocess.run([str(program), str(seconds)], check=True, capture_output=True, text=True)
-    *spread, real_time = done.stdout.split()
-    return Spread(*map(float, spread)), real_time == "1"
+def in_c(program: Path, seconds: float) -> tuple[Round, bool]:
+    """The loop in C, and whether it was real time."""
+    done = subprocess.run([str(program), str(round(1000 * seconds))], check=True, capture_output=True, text=True)
+    real_time, overruns, most_ns, *late = map(int, done.stdout.split())
+    return Round(np.array(late), overruns, 1e-9 * most_ns), real_time == 1
 
 
 def beside_c() -> Iterator[Figure]:
@@ -73,10 +73,10 @@ def beside_c() -> Iterator[Figure]:
             return
         theirs, mine, real_time = [], {name: [] for name in LOOPS}, True
         for _ in range(SLICES):
-            spread, real_time = in_c(program, SLICE_S)
-            theirs.append(spread)
+            found, real_time = in_c(program, SLICE_S)
+            theirs.append(found.late_us)
             for name, device in LOOPS.items():
-                mine[name].append(ours(device, SLICE_S))
+                mine[name].append(ours(device, SLICE_S)[0].late_us)
     for name, spreads in mine.items():
         ratio = statistics.median(a.p999 / b.p999 for a, b in zip(spreads, theirs, strict=True))
         said = f"{ratio:.2f} x; us p50/p99/p99.9/most: {_said(spreads)} against {_said(theirs)} in C"
@@ -93,9 +93,9 @@ def beside_a_server() -> Iterator[Figure]:
     for name, device in LOOPS.items():
         alone, beside = [], []
         for _ in range(SLICES):
-            alone.append(ours(device, SLICE_S))
+            alone.append(ours(device, SLICE_S)[0].late_us)
             with busy_server() as served:
-                beside.append(ours(device, SLICE_S))
+                beside.append(ours(device, SLICE_S)[0].late_us)
         ratio = statistics.median(a.p999 / b.p999 for a, b in zip(beside, alone, strict=True))
         yield Figure(
             f"the same beside a busy web server, {name}",

@@ -27,6 +27,8 @@ settings.register_profile("ci", deadline=None, derandomize=True, print_blob=True
 settings.load_profile("ci" if os.environ.get("CI") else "default")
 
 Install = Callable[..., Path]
+STANDSTILL_S = 30.0
+"""Longer than any machine lets a loop stand still, however busy it is."""
 STARTS_PROCESSES = {"subprocess", "Popen", "Servo", "Program", "UiServer"}
 """A test module that has one of these names starts processes, and is none of the fast ones."""
 
@@ -167,3 +169,11 @@ def install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Install
 def _entry_points(site: Path, **of: str) -> metadata.EntryPoints:
     found = [point for dist in metadata.distributions(path=[str(site)]) for point in dist.entry_points]
     return metadata.EntryPoints(found).select(**of)
+
+
+@pytest.fixture
+def patient(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A force loop that a busy machine does not let tick for a while is not ended for that."""
+    from tangible_core.servo import host
+
+    monkeypatch.setattr(host, "STANDSTILL_S", STANDSTILL_S)

@@ -32,8 +32,9 @@ from tangible_core.testing.loop_laws import FaultyTouch
 pytestmark = pytest.mark.usefixtures("own_memory")
 
 AT_ONCE = Safety(ramp_s=0, max_step_n=10)
-MOST_TICKS_AFTER = 50
-"""Of 1 ms each, after whatever ends a loop: 50 ms."""
+MOST_TICKS_AFTER = 2000
+"""Of 1 ms each, after whatever ends a loop, on a machine that is busy elsewhere; less than the 3 s
+after which one is killed. How few they are on a machine that is not, the benchmark `servo_faults` says."""
 
 
 def proxy(height_m: float = 0.002) -> Touch:
@@ -86,7 +87,7 @@ class Interrupt:
 
 class TestInterruptedStart:
     def test_no_force_after_an_interrupt_at_any_step(self, tmp_path: Path) -> None:
-        """Every line of the start, one run each: at most 50 ticks more, no force, no process, no file."""
+        """Every line of the start, one run each: few ticks more, no force, no process, no file."""
         before, ran_through, line = left_behind(), False, 0
         while not ran_through:
             line += 1
@@ -114,7 +115,7 @@ class TestInterruptedStart:
     def test_ctrl_c_reaches_both_processes_while_the_loop_starts(self, tmp_path: Path, delay_s: float) -> None:
         """As the keyboard sends it, also where the program was started with SIGINT ignored."""
         record, ready = tmp_path / "force", tmp_path / "ready"
-        script = HOST.format(record=str(record), ready=str(ready), fault="none")
+        script = HOST.format(record=str(record), ready=str(ready), fault="none", at=0)
         program = subprocess.Popen(
             [sys.executable, "-c", script], stderr=subprocess.PIPE, text=True, start_new_session=True
         )
@@ -161,7 +162,7 @@ from tangible_core.testing.loop_laws import FaultyTouch
 signal.signal(signal.SIGINT, signal.default_int_handler)
 device = Failing(fault="none", record={record!r}, simulated=False)
 Path({ready!r}).touch()
-with Servo(FaultyTouch({fault!r}), device, Safety(ramp_s=0, max_step_n=10)):
+with Servo(FaultyTouch({fault!r}, {at}), device, Safety(ramp_s=0, max_step_n=10)):
     time.sleep(60)
 """
 """A program with a session: killed, or interrupted from the keyboard."""
@@ -179,10 +180,10 @@ class TestStandstill:
     def test_a_law_or_a_device_that_blocks(self, tmp_path: Path, law: Touch, fault: str) -> None:
         record = tmp_path / "force"
         with self.feel(record, law, fault) as servo:
-            until(lambda: held(record) > 0)
             until(lambda: not servo.running)
             assert servo.report().stopped == host.STOOD_STILL
             assert servo.lost
+            assert servo.report().peak_force_n > 0
             assert held(record) == 0
             assert servo.report().ticks == 99
 
@@ -223,11 +224,14 @@ class TestStandstill:
     def test_a_law_that_blocks_when_the_host_is_gone(self, tmp_path: Path) -> None:
         """Nobody watches then: the loop's own process lets go."""
         record = tmp_path / "force"
-        script = HOST.format(record=str(record), ready=str(tmp_path / "ready"), fault="blocks")
+        script = HOST.format(record=str(record), ready=str(tmp_path / "ready"), fault="blocks", at=3000)
         program = subprocess.Popen([sys.executable, "-c", script], stderr=subprocess.DEVNULL)
         until(lambda: held(record) > 0)
-        program.send_signal(signal.SIGSTOP)  # nobody watches from now on, and the law blocks in its 100th tick
-        time.sleep(0.5)
+        program.send_signal(signal.SIGSTOP)  # nobody watches from now on, and the law blocks in its 3000th tick
+        (path,) = shared_folder().glob(f"tangible-{program.pid}-*.ring")
+        ring = Ring.attach(path)
+        until(lambda: ring.count == 2999)
+        assert held(record) > 0
         program.kill()
         program.wait()
         until(lambda: held(record) == 0)
@@ -251,8 +255,9 @@ class TestStandstill:
 
     def test_stop_does_not_wait_for_a_law_that_blocks(self, tmp_path: Path) -> None:
         record = tmp_path / "force"
-        with self.feel(record, FaultyTouch("blocks")):
-            until(lambda: held(record) > 0)
+        with self.feel(record, FaultyTouch("blocks")) as servo:
+            until(lambda: servo.report().ticks == 99)  # the hundredth never ends
+        assert servo.report().peak_force_n > 0
         assert held(record) == 0
 
     @pytest.mark.skipif(not hasattr(signal, "SIGTSTP"), reason="this system has no Ctrl-Z")
@@ -276,6 +281,7 @@ def answered(number: int, how: signal.Handlers) -> Iterator[None]:
         signal.signal(number, before)
 
 
+@pytest.mark.usefixtures("patient")
 class TestWhatAPluginRaises:
     def test_an_error_that_cannot_be_unpickled_ends_the_session_with_its_text(self, tmp_path: Path) -> None:
         record = tmp_path / "force"
@@ -319,6 +325,7 @@ def test_half_a_message_is_the_end(kept: int) -> None:
     assert receive(io.BytesIO(whole.getvalue()[:kept])) is None
 
 
+@pytest.mark.usefixtures("patient")
 class TestSwaps:
     def test_a_scene_that_does_not_arrive_is_refused_and_the_one_before_felt_on(self) -> None:
         with Servo(FaultyTouch(), Failing(fault="none"), AT_ONCE) as servo:
@@ -461,6 +468,7 @@ def test_no_stop_is_lost_among_thousands_of_swaps(device, most: int, in_this_pro
         path.unlink(missing_ok=True)
 
 
+@pytest.mark.usefixtures("patient")
 @pytest.mark.parametrize("round", range(6))
 def test_no_sigterm_is_lost_among_swaps(round: int, tmp_path: Path) -> None:
     with Servo(FaultyTouch(), Failing(fault="none"), AT_ONCE) as servo:

@@ -16,7 +16,7 @@ from tangible_core.compiled.touch import CompiledTouch
 from tangible_core.data import TICK_COLUMNS
 from tangible_core.errors import ConfigError, DeviceError
 from tangible_core.plugins.interfaces import Touch
-from tangible_core.servo import Packed, Ring, Safety, Servo, host, packed, parcel, still
+from tangible_core.servo import Packed, Ring, Safety, Servo, packed, parcel, still
 from tangible_core.servo.guard.layout import GIVEN_J
 from tangible_core.servo.ring import shared_folder
 from tangible_core.session import run_simulated
@@ -24,12 +24,14 @@ from tangible_core.testing.loop_devices import Circling, Failing
 
 pytestmark = pytest.mark.usefixtures("own_memory")
 
-AT_ONCE = Safety(ramp_s=0)
+AT_ONCE = Safety(ramp_s=0, stale_s=1.0)  # a late tick takes no force away
 FRAME = TICK_COLUMNS.index("frame")
 DEVICES = [Circling(z_m=0.008), Circling(z_m=0.008, exchanges=True), Failing(fault="none")]
 
+pytestmark = pytest.mark.usefixtures("patient")
 
-def until(condition, seconds: float = 20.0) -> None:
+
+def until(condition, seconds: float = 60.0) -> None:
     end = time.monotonic() + seconds
     while not condition():
         assert time.monotonic() < end, "it did not happen"
@@ -142,9 +144,8 @@ def usage(process: int | str) -> np.ndarray:
 
 class TestFaults:
     @pytest.mark.parametrize("times", [60, pytest.param(5000, marks=pytest.mark.nightly)])
-    def test_films_and_touches_in_turn_leave_nothing_behind(self, times: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    def test_films_and_touches_in_turn_leave_nothing_behind(self, times: int) -> None:
         """In the loop's process, and in this one, which maps each film too."""
-        monkeypatch.setattr(host, "STANDSTILL_S", 30.0)  # of a busy machine
         with Servo(proxy(), Circling(z_m=0.009), AT_ONCE) as servo:
 
             def swap(count: int) -> tuple[np.ndarray, np.ndarray]:

@@ -23,6 +23,8 @@ from tangible_core.session import INTERRUPTED, Keeper, Recording, figures, keepi
 from tangible_core.session.tick_file import About
 from tangible_core.testing.loop_devices import Circling, Failing
 
+pytestmark = pytest.mark.usefixtures("patient")
+
 
 @pytest.fixture(scope="module")
 def touch() -> Touch:
@@ -33,15 +35,21 @@ def touch() -> Touch:
 def test_every_tick_is_kept_and_reports_come_ten_times_a_second(touch: Touch, tmp_path: Path) -> None:
     reports: list[ServoReport] = []
     began_s: list[float] = []
+    kept_at: list[int] = []
     with keeping(tmp_path / "hand.nc", About("circling", "proxy", "")) as writer:
+
+        def keep(rows: np.ndarray) -> None:
+            kept_at.append(len(rows))
+            writer.append(rows)
+
         last = run_in_real_time(
-            touch, Circling(), 1.0, Safety(), reports.append, writer.append, lambda _: began_s.append(time.monotonic())
+            touch, Circling(), 1.0, Safety(), reports.append, keep, lambda _: began_s.append(time.monotonic())
         )
         took_s = time.monotonic() - began_s[0]
         writer.close()
     kept = Recording.load(tmp_path / "hand.nc")
     assert (last.ticks, len(kept.rows), last.stopped, kept.stopped) == (1000, 1000, OVER, "")
-    assert 5 <= len(reports) <= took_s / 0.1 + 2
+    assert len(kept_at) / 2 <= len(reports) <= took_s / 0.1 + 2  # one at every second look, however late these come
     assert figures(last)["peak_force_n"] == pytest.approx(kept.peak_force_n, rel=1e-6)
     assert figures(last)["contact_share"] == kept.figures()["contact_share"]
     middle_n = kept.figures()["median_contact_force_n"]
@@ -166,7 +174,8 @@ def test_a_full_disk_ends_it_with_no_force(touch: Touch, tmp_path: Path) -> None
 
         def keep(rows: np.ndarray) -> None:
             with files_up_to(20_000):
-                writer.append(rows)
+                for part in np.split(rows, range(10, len(rows), 10)):  # a late look comes for more than there is room
+                    writer.append(part)
 
         run_in_real_time(touch, device, 5.0, Safety(ramp_s=0), lambda _: None, keep)
     assert float(force.read_text()) == 0
@@ -193,7 +202,7 @@ def test_ctrl_c(touch: Touch, tmp_path: Path) -> None:
             )
         writer.close(last.stopped)
     assert last.stopped == INTERRUPTED
-    assert reports == [last]  # it ended before the first one was due
+    assert [each for each in reports if each.ticks] == [last]  # it ended before the first one was due
     assert float(force.read_text()) == 0
     kept = Recording.load(tmp_path / "hand.nc")
     assert kept.stopped == INTERRUPTED

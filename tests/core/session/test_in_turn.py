@@ -17,6 +17,7 @@ from tangible_core.session import INTERRUPTED, STOPPED, Turn, in_turn, run_in_tu
 from tangible_core.testing.loop_devices import Circling, Failing
 
 AT_ONCE = Safety(ramp_s=0, max_step_n=10, stale_s=1.0, passivity="off")  # late ticks change nothing
+pytestmark = pytest.mark.usefixtures("patient")
 TIME_S, PROXY_Z_M, FORCE_Z_N, FLAGS = (TICK_COLUMNS.index(name) for name in ("time_s", "proxy_z_m", "fz_n", "flags"))
 
 
@@ -42,7 +43,7 @@ def test_each_is_felt_in_its_turn_with_its_own_limits_and_the_first_again() -> N
             stop.set()
 
     turns = [Turn(proxy(0.002), AT_ONCE), Turn(proxy(0.003), AT_ONCE.model_copy(update={"max_force_n": 0.3}))]
-    last = run_in_turn(turns, Circling(), 20.0, each_s=0.2, keep=keep, stop=stop)
+    last = run_in_turn(turns, Circling(), 60.0, each_s=0.2, keep=keep, stop=stop)
     rows = np.concatenate(kept)
     assert (last.stopped, last.ticks) == (STOPPED, len(rows))
     first, second = np.flatnonzero(rows[:, FLAGS].astype(int) & TickFlag.SWAPPED)

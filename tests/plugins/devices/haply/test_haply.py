@@ -84,11 +84,13 @@ class TestMessages:
                 before = after
 
     def test_forces_reach_the_motors_and_lapse_when_nothing_is_sent(self, service: MockService):
+        service.lapse_s = 30.0  # no machine is so slow
         with Haply(uri=service.uri).open() as link:
             link.write(Force(0.0, 0.0, 1.5))
             link.read()
             assert service.force() == (0, 0, 1.5)
-            time.sleep(service.lapse_s + 0.05)
+            service.lapse_s = 0.05
+            time.sleep(0.1)
             assert service.force() == NO_FORCE
 
     def test_no_force_is_left_at_the_motors(self, service: MockService):
@@ -105,7 +107,7 @@ class TestMessages:
             assert link.applied == pytest.approx((0, 1.8, 2.4))
 
     def test_the_arm_is_chosen_by_its_id(self):
-        with MockService(arms=("049D", "05DA")) as service:
+        with MockService(arms=("049D", "05DA"), lapse_s=60.0) as service:
             with Haply(uri=service.uri, device_id="05DA").open() as link:
                 link.write(Force(0.0, 0.0, 1.0))
                 link.read()
@@ -242,7 +244,7 @@ class TestFaults:
             thread.join()
 
     def test_a_service_that_hangs(self, service: MockService):
-        link = Haply(uri=service.uri, timeout_s=0.1).open()
+        link = Haply(uri=service.uri, timeout_s=0.6).open()
         link.read()
         service.mute = True
         link.write(Force(0.0, 0.0, 1.0))

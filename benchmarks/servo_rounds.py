@@ -1,0 +1,86 @@
+"""What loops counted in interleaved rounds, and whether one is later than another."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import product
+from statistics import median
+from typing import NamedTuple, Self
+
+import numpy as np
+
+from tangible_core.data import Spread
+from tangible_core.servo import Ring
+from tangible_core.servo.reports import spread
+from tangible_core.servo.ring import MOST_LATE_S
+
+from .ui_late import LATE_US, POINTS, TIMES
+
+BY_CHANCE = 0.05
+"""What happens by chance in a larger share of cases is no difference."""
+
+
+class Round(NamedTuple):
+    """Ticks of one loop, for a few seconds."""
+
+    late: np.ndarray
+    """Ticks that began so many microseconds late; the last for all that were later."""
+    overruns: int
+    """Periods without a tick."""
+    most_late_s: float
+
+    @classmethod
+    def of(cls, ring: Ring) -> Self:
+        """What the loop counted that wrote to this ring."""
+        return cls(ring.late.copy(), ring.overruns, float(ring.sums[MOST_LATE_S]))
+
+    @property
+    def late_percent(self) -> float:
+        """Of the ticks, those later than LATE_US."""
+        return float(100 * self.late[LATE_US:].sum() / max(1, self.late.sum()))
+
+    @property
+    def late_us(self) -> Spread:
+        """How late they were."""
+        return spread(self.late, self.most_late_s)
+
+
+def together(rounds: Iterable[Round]) -> Round:
+    """All ticks of these rounds."""
+    late, overruns, most = zip(*rounds, strict=True)
+    return Round(np.sum(late, axis=0), sum(overruns), max(most))
+
+
+def no_later(mine: Sequence[Round], other: Sequence[Round]) -> bool:
+    """Whether the share of late ticks, the median of the rounds, is TIMES the other's at most, or POINTS more."""
+    one, two = (median(each.late_percent for each in rounds) for rounds in (mine, other))
+    return one <= max(TIMES * two, two + POINTS)
+
+
+def chance_of(more: Sequence[float], fewer: Sequence[float]) -> float:
+    """How often chance alone lets the first ones, added up, exceed the others by as much as they do, or by more.
+
+    The first of both are a pair, as are the second, and so on; all ways to exchange the two of a pair are counted. A
+    standstill of the machine that one round met is chance, a few more in each round are not.
+
+    >>> chance_of([2, 2, 2, 2], [1, 1, 1, 1]), chance_of([40, 0, 0, 0], [0, 1, 1, 1]), chance_of([1, 0], [1, 0])
+    (0.0625, 0.5, 1.0)
+    """
+    differences = np.subtract(more, fewer)
+    signs = np.array(list(product((1, -1), repeat=len(differences))))
+    return float(np.mean(signs @ differences >= differences.sum()))
+
+
+def no_more_overruns(mine: Sequence[Round], other: Sequence[Round]) -> bool:
+    """Whether periods without a tick are no more than in the other's rounds, or so few more that chance explains it."""
+    return chance_of([each.overruns for each in mine], [each.overruns for each in other]) > BY_CHANCE
+
+
+def rows(kinds: Mapping[str, Sequence[Round]]) -> list[tuple[str, ...]]:
+    """A line for each kind: share of late ticks as the median of its rounds; the rest of all their ticks together."""
+    return [_row(name, rounds) for name, rounds in kinds.items()]
+
+
+def _row(name: str, rounds: Sequence[Round]) -> tuple[str, ...]:
+    share, every = median(each.late_percent for each in rounds), together(rounds)
+    late = every.late_us
+    quantiles = (f"{us:.0f} us" for us in (late.p50, late.p99, late.p999, late.most))
+    return name, f"{share:.3f} %", *quantiles, str(every.overruns)

@@ -1,0 +1,91 @@
+"""What is asked of the operating system for a loop, with the answers made up."""
+
+import os
+import platform
+import struct
+import sys
+import threading
+from types import SimpleNamespace
+
+import pytest
+
+from tangible_core.servo import priority
+
+ON_LINUX = "x86_64", 314
+
+
+class Asked:
+    """The C library's functions, and what each was called with."""
+
+    def __init__(self) -> None:
+        self.calls: list[tuple] = []
+
+    def __call__(self, name: str):
+        return lambda *arguments: self.calls.append((name, *arguments)) or 0
+
+
+@pytest.fixture
+def asked(monkeypatch: pytest.MonkeyPatch) -> Asked:
+    """Linux on a 64-bit processor, with a thread of niceness 3 to which real time is refused."""
+    made_up = Asked()
+
+    def refuse(*_: object) -> None:
+        raise PermissionError(1, "Operation not permitted")
+
+    system = SimpleNamespace(
+        SCHED_FIFO=1,
+        SCHED_OTHER=0,
+        PRIO_PROCESS=0,
+        sched_param=lambda number: number,
+        sched_setscheduler=refuse,
+        sched_getscheduler=lambda _: 0,
+        getpriority=lambda *_: 3,
+    )
+    monkeypatch.setattr(priority, "os", system)
+    monkeypatch.setattr(priority, "_c", made_up)
+    monkeypatch.setattr(priority.sys, "platform", "linux")
+    monkeypatch.setattr(platform, "machine", lambda: ON_LINUX[0])
+    return made_up
+
+
+def test_without_rights_the_shortest_slack_and_slice_are_asked_for_and_the_niceness_stays(asked: Asked):
+    real_time, said = priority.ask()
+    assert not real_time
+    assert said == (
+        "plain sleeping: SCHED_FIFO is not permitted (Operation not permitted), so busy programs make ticks late; "
+        "give the user an rtprio limit"
+    )
+    slack, (name, number, thread, attributes, flags) = asked.calls
+    assert slack == ("prctl", priority.SET_TIMER_SLACK, 1, 0, 0, 0)
+    assert (name, number, thread, flags) == ("syscall", ON_LINUX[1], 0, 0)
+    assert struct.unpack("=IIQiIQQQ", attributes) == (48, 0, 0, 3, 0, 100_000, 0, 0)
+
+
+@pytest.mark.parametrize("policy", [3, 5, 0x40000000])
+def test_who_chose_another_class_stays_in_it(policy: int, asked: Asked, monkeypatch: pytest.MonkeyPatch):
+    """SCHED_BATCH, SCHED_IDLE, and what its children are not to inherit."""
+    monkeypatch.setattr(priority.os, "sched_getscheduler", lambda _: policy)
+    priority.shorten_slice()
+    assert asked.calls == []
+
+
+def test_a_processor_whose_call_is_not_known_is_asked_for_nothing(asked: Asked, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(platform, "machine", lambda: "s390x")
+    priority.shorten_slice()
+    assert asked.calls == []
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="another system is asked for nothing")
+def test_the_thread_keeps_its_class_and_niceness():
+    """Of the kernel itself, whether it knows slices or not."""
+    seen: list[tuple[int, int]] = []
+
+    def ask() -> None:
+        for work in (lambda: None, priority.shorten_slice):
+            work()
+            seen.append((os.sched_getscheduler(0), os.getpriority(os.PRIO_PROCESS, 0)))
+
+    thread = threading.Thread(target=ask)  # whose slice ends with it
+    thread.start()
+    thread.join()
+    assert seen[0] == seen[1]

@@ -59,6 +59,7 @@ def test_a_look_that_shows_nothing_teaches_nothing_and_old_ones_are_forgotten(mo
     for _ in range(followed.LOOKS):
         estimate(far)
     assert estimate._span.high < wide.high
+    assert {estimate._span.size.bit_count(), wide.size.bit_count()} == {1}  # no kernel of its own for each range
 
 
 def test_a_range_that_is_told_is_kept_and_nothing_is_looked_for(looks):

@@ -21,8 +21,8 @@ class Span(NamedTuple):
 
     @property
     def lanes(self) -> int:
-        """Lanes that hold them: a power of two, at least 16."""
-        return max(16, 1 << (self.size - 1).bit_length())
+        """Lanes that hold them: a multiple of 16."""
+        return -(-self.size // 16) * 16
 
     def shrunk(self, factor: int) -> "Span":
         """In pixels of a picture made smaller by `factor`, none left out."""
@@ -36,3 +36,7 @@ class Span(NamedTuple):
     def filled(self) -> "Span":
         """With as many larger disparities as the lanes hold anyway: limits cost more than they save."""
         return Span(self.low, self.low + self.lanes - 1)
+
+    def roomy(self) -> "Span":
+        """With larger disparities up to a power of two of them, so that what changes a little needs no other kernel."""
+        return Span(self.low, self.low + max(16, 1 << (self.size - 1).bit_length()) - 1)

@@ -65,12 +65,14 @@ class FollowedPair:
             pair = realigned(pair, self._row_offset_px)
         if self._frames % LOOK_EVERY == LOOK_EVERY - 1:
             self._look(pair)
-        found = in_order(pair, self._span, self._search.fill, self._match)
+        found = in_order(pair, self._span.within(pair.width), self._search.fill, self._match)
         return found if turned is None else turned.to_original(found)
 
     @property
     def _span(self) -> Span:
-        return Span(min(each.low for each in self._spans), max(each.high for each in self._spans))
+        whole = Span(min(each.low for each in self._spans), max(each.high for each in self._spans))
+        # Of a range that was told nothing changes.
+        return whole.roomy() if self._search.most == "auto" and whole.high > 0 else whole
 
     def _look(self, pair: Pair) -> None:
         """For a range that was not told: of a frame in which nothing matches, nothing is learnt."""

@@ -21,16 +21,15 @@ from ..sgm.costs import SHARP
 from ..sgm.strips import blank, sweep
 from .pairs import Pair
 
-COUNT = 24
+COUNT = 16
 """Bands of a picture."""
 FINE_WIDTH, MOST_DISPARITIES = 1280, 256
 HIGH_PX = 3
 """Rows of the picture that make one row of a band."""
 TALL = 2 * RADIUS + 1
 """Rows of a band: what a code looks at."""
-WARM_BANDS = 2
-"""Bands that a path begins before its own."""
-LARGEST_SPECK = 15
+LARGEST_SPECK = 8
+"""Of so few rows: what is thin and near has hardly more in them."""
 STRICT = 1.0
 
 
@@ -59,9 +58,8 @@ def match_bands(pair: Pair, span: Span, width: int = FINE_WIDTH) -> Bands:
     columns = slice(RADIUS, RADIUS - (-w // factor))
     grey = np.ascontiguousarray(left[:, RADIUS, columns])
     out = blank(grey.shape)
-    halves = [(0, COUNT // 2), (COUNT // 2, COUNT)]
     within = span.shrunk(factor).within(grey.shape[1])
-    sweep((_codes(left), _codes(right)), grey, within, SHARP.penalties, STRICT, halves, out, WARM_BANDS)
+    sweep((_codes(left), _codes(right)), grey, within, SHARP.penalties, STRICT, [(0, COUNT)], out)
     found = np.count_nonzero(out.disparity != UNKNOWN)
     lost = remove_speckles(out.disparity, LARGEST_SPECK)
     flat = flat_pixels(left.reshape(COUNT * TALL, -1))[RADIUS::TALL, columns]
@@ -80,9 +78,14 @@ def _averaged(view: UInt8[np.ndarray, "h w"], rows: np.ndarray, factor: int) -> 
 def _codes(bands: UInt8[np.ndarray, "bands 5 padded"]) -> UInt8[np.ndarray, "bands 3 whole"]:
     """Census codes of the middle rows."""
     codes = np.zeros((COUNT, PLANES, bands.shape[2] - 2 * RADIUS), np.uint8)
-    for band, code in zip(bands, codes, strict=True):
-        code_rows(band, OFFSETS, 0, 0, 1, code[None])
+    _code(bands, OFFSETS, codes)
     return codes
+
+
+@njit(**KERNEL)
+def _code(bands, offsets, codes):
+    for band in range(codes.shape[0]):
+        code_rows(bands[band], offsets, 0, 0, 1, codes[band : band + 1])
 
 
 @njit(**KERNEL)

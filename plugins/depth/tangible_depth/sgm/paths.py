@@ -3,7 +3,7 @@
 Every cost, path and sum is a byte a lane; lane k stands for the disparity top - k.
 """
 
-# ruff: noqa: ANN001, ANN201, ANN202, SIM108 -- numba finds the types of what it compiles; the docstrings say them
+# ruff: noqa: ANN001, ANN201, ANN202 -- numba finds the types of what it compiles; the docstrings say them
 
 from typing import NamedTuple
 
@@ -24,7 +24,7 @@ class Limits(NamedTuple):
     least: np.ndarray
     barred: np.ndarray
     free: tuple[int, int]
-    """Columns first..last - 1, at which no lane has a limit."""
+    """Columns first..last - 1, at which only lanes that are not asked for have a limit."""
 
 
 def limits_of(n: int, w: int, span: Span, neutral: np.uint8) -> Limits:
@@ -32,7 +32,7 @@ def limits_of(n: int, w: int, span: Span, neutral: np.uint8) -> Limits:
     columns = np.arange(w + n - 1) - span.high
     beyond = (columns < 0) | (columns >= w)
     first = min(max(span.high, 0), w)
-    last = min(max(w + span.high - n + 1, first), w) if span.size == n else first
+    last = min(max(w + span.high - n + 1, first), w)
     return Limits(
         np.where(beyond, np.uint8(0), np.uint8(255)),
         np.where(beyond, neutral, np.uint8(0)),
@@ -64,13 +64,14 @@ def _grey_step(grey, x, others, z):
 
 
 @inner()
-def _columns(lanes, left, codes, limits, columns, penalties, grey, grey_before, path, path_lowest, costs):
-    """The path from the row before, in place; `costs` keeps this row's costs. No limits: None."""
+def _columns(lanes, left, codes, limits, barred, columns, penalties, grey, grey_before, path, path_lowest, costs):
+    """The path from the row before, in place; `costs` keeps this row's costs. No limits but `barred`: None."""
     n = width(lanes)
     p1, p2_by_step = splat(lanes, penalties.p1), penalties.p2_by_step
+    never = load(lanes, barred, 0)
     for x in range(columns[0], columns[1]):
         if limits is None:  # known to the compiler: the other branch is not there
-            cost = hamming(lanes, left, codes, x)
+            cost = maximum(hamming(lanes, left, codes, x), never)
         else:
             cost = _limited_cost(lanes, left, codes, x, limits)
         store(costs, x * n, cost)
@@ -85,9 +86,9 @@ def vertical(lanes, left, codes, limits, penalties, grey, grey_before, path, pat
     """`_columns` for all columns: the limits are looked up only where there are some."""
     first, last = limits.free
     rest = (penalties, grey, grey_before, path, path_lowest, costs)
-    _columns(lanes, left, codes, limits, (0, first), *rest)
-    _columns(lanes, left, codes, None, (first, last), *rest)
-    _columns(lanes, left, codes, limits, (last, grey.size), *rest)
+    _columns(lanes, left, codes, limits, limits.barred, (0, first), *rest)
+    _columns(lanes, left, codes, None, limits.barred, (first, last), *rest)
+    _columns(lanes, left, codes, limits, limits.barred, (last, grey.size), *rest)
 
 
 @inner()

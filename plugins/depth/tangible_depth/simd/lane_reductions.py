@@ -1,11 +1,23 @@
 """From lanes to one number, or from codes to lanes: the rest of what `lanes` begins."""
 
+from collections.abc import Callable
 from typing import Any
 
 from llvmlite import ir
 from numba import types
 
-from .lanes import INDEX, WORD, LanesType, Vec, emit_call, emit_splat, operation
+from .lanes import (
+    INDEX,
+    WORD,
+    LanesType,
+    Vec,
+    emit_call,
+    emit_splat,
+    joined,
+    operation,
+    parted,
+    shuffled,
+)
 
 
 def _first_set(b: Any, hits: Any, count: int) -> Any:
@@ -15,19 +27,35 @@ def _first_set(b: Any, hits: Any, count: int) -> Any:
     return b.trunc(index, WORD) if count > 64 else b.zext(index, WORD) if count < 64 else index
 
 
+def _folded(b: Any, vec: Vec, value: Any, of_two: Callable[[Any, Vec, Any, Any], Any]) -> tuple[Any, Vec]:
+    """The parts of lanes made one vector: the wider is halved until it is as wide as the next, and both are one."""
+    whole, width = None, 0
+    for (_, part), each in zip(vec.parts, parted(b, vec, value), strict=True):
+        while whole is not None and width > part.count:
+            width //= 2
+            halves = (shuffled(b, whole, whole, range(i, i + width)) for i in (0, width))
+            whole = of_two(b, Vec(vec.element, width), *halves)
+        whole = each if whole is None else of_two(b, part, whole, each)
+        width = part.count
+    return whole, Vec(vec.element, width)
+
+
 @operation
 def first_lane(typing: Any, vec: Vec) -> Any:
     """Lane 0."""
-    return vec.element(vec), lambda c, b, sig, a: b.extract_element(a[0], ir.Constant(INDEX, 0))
+    return vec.element(vec), lambda c, b, sig, a: b.extract_element(parted(b, vec, a[0])[0], ir.Constant(INDEX, 0))
 
 
 @operation
 def lowest(typing: Any, vec: Vec) -> Any:
     """The smallest lane of unsigned integers."""
 
+    def smaller(b: Any, kind: Vec, x: Any, y: Any) -> Any:
+        return emit_call(b, f"llvm.umin.{kind.mangled}", kind.llvm, [x, y])
+
     def emit(c: Any, b: Any, sig: Any, a: Any) -> Any:
-        kind = sig.args[0]
-        return emit_call(b, f"llvm.vector.reduce.umin.{kind.mangled}", kind.llvm.element, a)
+        value, kind = _folded(b, vec, a[0], smaller)
+        return emit_call(b, f"llvm.vector.reduce.umin.{kind.mangled}", ir.IntType(vec.element.bitwidth), [value])
 
     return vec.element(vec), emit
 
@@ -36,15 +64,16 @@ def lowest(typing: Any, vec: Vec) -> Any:
 def highest(typing: Any, vec: Vec) -> Any:
     """The largest lane of floats free of NaN, by halving."""
 
+    def emit_larger(b: Any, kind: Vec, x: Any, y: Any) -> Any:
+        return b.select(b.fcmp_ordered(">", x, y), x, y)
+
     def emit(c: Any, b: Any, sig: Any, a: Any) -> Any:
-        value, count = a[0], sig.args[0].count
+        value, kind = _folded(b, vec, a[0], emit_larger)
+        count = kind.count
         while count > 1:
             count //= 2
-            low, high = (
-                b.shuffle_vector(value, value, ir.Constant(ir.VectorType(INDEX, count), list(range(i, i + count))))
-                for i in (0, count)
-            )
-            value = b.select(b.fcmp_ordered(">", low, high), low, high)
+            halves = (shuffled(b, value, value, range(i, i + count)) for i in (0, count))
+            value = emit_larger(b, kind, *halves)
         return b.extract_element(value, ir.Constant(INDEX, 0))
 
     return vec.element(vec), emit
@@ -55,8 +84,8 @@ def total(typing: Any, vec: Vec) -> Any:
     """The sum of all lanes of integers; it wraps as a lane would."""
 
     def emit(c: Any, b: Any, sig: Any, a: Any) -> Any:
-        kind = sig.args[0]
-        return emit_call(b, f"llvm.vector.reduce.add.{kind.mangled}", kind.llvm.element, a)
+        value, kind = _folded(b, vec, a[0], lambda b, kind, x, y: b.add(x, y))
+        return emit_call(b, f"llvm.vector.reduce.add.{kind.mangled}", ir.IntType(vec.element.bitwidth), [value])
 
     return vec.element(vec), emit
 
@@ -66,9 +95,15 @@ def first_equal(typing: Any, vec: Vec, scalar: Any) -> Any:
     """Index of the first lane equal to the scalar, which must occur."""
 
     def emit(c: Any, b: Any, sig: Any, a: Any) -> Any:
-        kind = sig.args[0]
-        compare = b.fcmp_ordered if kind.real else b.icmp_unsigned
-        return _first_set(b, compare("==", a[0], emit_splat(b, a[1], kind.count)), kind.count)
+        compare = b.fcmp_ordered if vec.real else b.icmp_unsigned
+        index = None
+        for (first, part), value in reversed(list(zip(vec.parts, parted(b, vec, a[0]), strict=True))):
+            hits = compare("==", value, emit_splat(b, a[1], part.count))
+            here = b.add(_first_set(b, hits, part.count), ir.Constant(WORD, first))
+            mask = ir.IntType(part.count)
+            found = b.icmp_unsigned("!=", b.bitcast(hits, mask), ir.Constant(mask, 0))
+            index = here if index is None else b.select(found, here, index)
+        return index
 
     return types.int64(vec, vec.element), emit
 
@@ -76,9 +111,12 @@ def first_equal(typing: Any, vec: Vec, scalar: Any) -> Any:
 @operation
 def hamming(typing: Any, lanes: LanesType, left: Any, right: Any, x: Any) -> Any:
     """Lane k: how many bits of left[:, x] and right[:, x + k] differ, as uint8. Both are (planes, columns) of bytes."""
-    vec = Vec(types.uint8, lanes.count)
+    whole = Vec(types.uint8, lanes.count)
 
     def emit(c: Any, b: Any, sig: Any, a: Any) -> Any:
+        return joined(b, whole, [emit_part(c, b, sig, a, *each) for each in whole.parts])
+
+    def emit_part(c: Any, b: Any, sig: Any, a: Any, first: int, vec: Vec) -> Any:
         rows = [c.make_array(kind)(c, b, array) for kind, array in zip(sig.args[1:3], a[1:3], strict=True)]
         strides = [b.extract_value(each.shape, 1) for each in rows]
         total = ir.Constant(vec.llvm, [0] * vec.count)
@@ -87,10 +125,11 @@ def hamming(typing: Any, lanes: LanesType, left: Any, right: Any, x: Any) -> Any
                 b.gep(each.data, [b.add(a[3], b.mul(stride, ir.Constant(WORD, plane)))])
                 for each, stride in zip(rows, strides, strict=True)
             )
+            codes = b.gep(codes, [ir.Constant(WORD, first)])
             others = b.load(b.bitcast(codes, vec.llvm.as_pointer()))
             others.align = 1
             differing = b.xor(others, emit_splat(b, b.load(code), vec.count))
             total = b.add(total, emit_call(b, f"llvm.ctpop.{vec.mangled}", vec.llvm, [differing]))
         return total
 
-    return vec(lanes, left, right, types.int64), emit
+    return whole(lanes, left, right, types.int64), emit

@@ -3,6 +3,9 @@
 `Vec(element, n)` is a numba type whose machine form is the LLVM vector `<n x element>`. The lane count travels as a
 type: Python passes `Lanes(64)`, numba sees `LanesType(64)`, so that one module-level kernel is compiled per lane count
 and found again in numba's disk cache by the next process (intrinsics made inside a closure would not be).
+
+A count that is no power of two is held as several vectors that are, side by side: LLVM would take one of 80 lanes apart
+lane by lane, which is four times the work of 128.
 """
 
 from collections.abc import Callable, Sequence
@@ -42,13 +45,22 @@ class Vec(types.Type):
         super().__init__(name=f"Vec({element},{count})")
 
     @property
-    def llvm(self) -> ir.VectorType:
-        """The machine type."""
-        return ir.VectorType(ir.FloatType() if self.real else ir.IntType(self.element.bitwidth), self.count)
+    def parts(self) -> "list[tuple[int, Vec]]":
+        """First lane and vector of each part, of a power of two of lanes each, the widest first."""
+        widths = [1 << i for i in reversed(range(self.count.bit_length())) if self.count >> i & 1]
+        return [(sum(widths[:i]), Vec(self.element, each)) for i, each in enumerate(widths)]
+
+    @property
+    def llvm(self) -> ir.VectorType | ir.LiteralStructType:
+        """The machine type: a vector, or one of each part."""
+        element = ir.FloatType() if self.real else ir.IntType(self.element.bitwidth)
+        if self.count & (self.count - 1) == 0:
+            return ir.VectorType(element, self.count)
+        return ir.LiteralStructType([part.llvm for _, part in self.parts])
 
     @property
     def mangled(self) -> str:
-        """How LLVM names this type in its intrinsics."""
+        """How LLVM names this type, if it is one vector, in its intrinsics."""
         return f"v{self.count}i{self.element.bitwidth}"
 
 
@@ -57,7 +69,7 @@ register_model(LanesType)(models.OpaqueModel)
 
 @register_model(Vec)
 class VecModel(models.PrimitiveModel):
-    """A Vec is its LLVM vector."""
+    """A Vec is its LLVM vector, or its vectors."""
 
     def __init__(self, manager: Any, vec: Vec) -> None:
         super().__init__(manager, vec, vec.llvm)
@@ -71,6 +83,21 @@ def _typeof_lanes(value: Lanes, context: Any) -> LanesType:
 @unbox(LanesType)
 def _unbox_lanes(kind: LanesType, value: Any, c: Any) -> NativeValue:
     return NativeValue(c.context.get_dummy_value())
+
+
+def parted(b: Any, vec: Vec, value: Any) -> list[Any]:
+    """Machine code: the vectors that lanes consist of."""
+    return [b.extract_value(value, i) for i in range(len(vec.parts))] if len(vec.parts) > 1 else [value]
+
+
+def joined(b: Any, vec: Vec, vectors: Sequence[Any]) -> Any:
+    """Machine code: lanes from the vectors that they consist of."""
+    if len(vectors) == 1:
+        return vectors[0]
+    value = ir.Constant(vec.llvm, ir.Undefined)
+    for i, each in enumerate(vectors):
+        value = b.insert_value(value, each, i)
+    return value
 
 
 def emit_splat(b: Any, scalar: Any, count: int) -> Any:
@@ -88,19 +115,33 @@ def emit_call(b: Any, name: str, result: Any, args: Sequence[Any]) -> Any:
     return b.call(function, args)
 
 
-def _address(c: Any, b: Any, array_type: Any, array: Any, offset: Any, vec: Vec) -> Any:
+def _address(c: Any, b: Any, array_type: Any, array: Any, offset: Any, first: int, part: Vec) -> Any:
     data = c.make_array(array_type)(c, b, array).data
-    return b.bitcast(b.gep(data, [offset]), vec.llvm.as_pointer())
+    return b.bitcast(b.gep(data, [b.add(offset, ir.Constant(WORD, first))]), part.llvm.as_pointer())
 
 
 def _pairwise(emit: Callable[[Any, Vec, Any, Any], Any]) -> Any:
-    """An intrinsic on two equal vectors."""
+    """An intrinsic on two equal vectors, lane by lane."""
 
     @operation
     def pairwise(typing: Any, x: Vec, y: Vec) -> Any:
-        return x(x, y), lambda c, b, sig, a: emit(b, sig.return_type, a[0], a[1])
+        def emit_all(c: Any, b: Any, sig: Any, a: Any) -> Any:
+            both = zip(x.parts, parted(b, x, a[0]), parted(b, x, a[1]), strict=True)
+            return joined(b, x, [emit(b, part, one, other) for (_, part), one, other in both])
+
+        return x(x, y), emit_all
 
     return pairwise
+
+
+def _one_by_one(vec: Vec, result: Vec, emit: Callable[[Any, Any, Any], Any]) -> Any:
+    """What an intrinsic on one vector returns: emit(b, vector, its new type) for each part."""
+
+    def emit_all(c: Any, b: Any, sig: Any, a: Any) -> Any:
+        parts = zip(parted(b, vec, a[0]), result.parts, strict=True)
+        return joined(b, result, [emit(b, each, part.llvm) for each, (_, part) in parts])
+
+    return result(vec), emit_all
 
 
 def _named(name: str) -> Any:
@@ -116,18 +157,43 @@ subtract = _pairwise(lambda b, vec, x, y: b.fsub(x, y) if vec.real else b.sub(x,
 multiply = _pairwise(lambda b, vec, x, y: b.fmul(x, y) if vec.real else b.mul(x, y))
 larger = _pairwise(lambda b, vec, x, y: b.select(b.fcmp_ordered(">", x, y), x, y))
 """The larger of two vectors of floats, free of NaN."""
-shift_up = _pairwise(
-    lambda b, vec, x, fill: b.shuffle_vector(
-        x, fill, ir.Constant(ir.VectorType(INDEX, vec.count), [vec.count, *range(vec.count - 1)])
-    )
-)
-"""Lane k takes lane k - 1; lane 0 comes from the second vector."""
-shift_down = _pairwise(
-    lambda b, vec, x, fill: b.shuffle_vector(
-        x, fill, ir.Constant(ir.VectorType(INDEX, vec.count), list(range(1, vec.count + 1)))
-    )
-)
-"""Lane k takes lane k + 1; the last lane comes from the second vector."""
+
+
+def shuffled(b: Any, vector: Any, other: Any, lanes: Sequence[int]) -> Any:
+    """Machine code: these lanes of two equal vectors side by side."""
+    return b.shuffle_vector(vector, other, ir.Constant(ir.VectorType(INDEX, len(lanes)), list(lanes)))
+
+
+@operation
+def shift_up(typing: Any, vec: Vec, fill: Vec) -> Any:
+    """Lane k takes lane k - 1; lane 0 comes from the second vector."""
+
+    def emit(c: Any, b: Any, sig: Any, a: Any) -> Any:
+        vectors, moved = parted(b, vec, a[0]), []
+        before, last = parted(b, vec, a[1])[0], 0
+        for (_, part), each in zip(vec.parts, vectors, strict=True):
+            n = part.count
+            carried = shuffled(b, before, before, [last] * n)
+            moved.append(shuffled(b, each, carried, [n, *range(n - 1)]))
+            before, last = each, n - 1
+        return joined(b, vec, moved)
+
+    return vec(vec, fill), emit
+
+
+@operation
+def shift_down(typing: Any, vec: Vec, fill: Vec) -> Any:
+    """Lane k takes lane k + 1; the last lane comes from the second vector."""
+
+    def emit(c: Any, b: Any, sig: Any, a: Any) -> Any:
+        vectors, moved = parted(b, vec, a[0]), []
+        after = [*vectors[1:], parted(b, vec, a[1])[0]]
+        for (_, part), each, following in zip(vec.parts, vectors, after, strict=True):
+            n = part.count
+            moved.append(shuffled(b, each, shuffled(b, following, following, [0] * n), range(1, n + 1)))
+        return joined(b, vec, moved)
+
+    return vec(vec, fill), emit
 
 
 @operation
@@ -142,9 +208,11 @@ def load(typing: Any, lanes: LanesType, array: Any, offset: Any) -> Any:
     vec = Vec(array.dtype, lanes.count)
 
     def emit(c: Any, b: Any, sig: Any, a: Any) -> Any:
-        value = b.load(_address(c, b, sig.args[1], a[1], a[2], vec))
-        value.align = vec.element.bitwidth // 8
-        return value
+        values = []
+        for first, part in vec.parts:
+            values.append(b.load(_address(c, b, sig.args[1], a[1], a[2], first, part)))
+            values[-1].align = vec.element.bitwidth // 8
+        return joined(b, vec, values)
 
     return vec(lanes, array, types.int64), emit
 
@@ -154,8 +222,9 @@ def store(typing: Any, array: Any, offset: Any, vec: Vec) -> Any:
     """array[offset : offset + n] = lanes."""
 
     def emit(c: Any, b: Any, sig: Any, a: Any) -> Any:
-        stored = b.store(a[2], _address(c, b, sig.args[0], a[0], a[1], sig.args[2]))
-        stored.align = sig.args[2].element.bitwidth // 8
+        for (first, part), value in zip(vec.parts, parted(b, vec, a[2]), strict=True):
+            stored = b.store(value, _address(c, b, sig.args[0], a[0], a[1], first, part))
+            stored.align = vec.element.bitwidth // 8
         return c.get_dummy_value()
 
     return types.void(array, types.int64, vec), emit
@@ -164,18 +233,19 @@ def store(typing: Any, array: Any, offset: Any, vec: Vec) -> Any:
 @operation
 def splat(typing: Any, lanes: LanesType, scalar: Any) -> Any:
     """The same scalar in every lane."""
-    return Vec(scalar, lanes.count)(lanes, scalar), lambda c, b, sig, a: emit_splat(b, a[1], sig.return_type.count)
+    vec = Vec(scalar, lanes.count)
+    return vec(lanes, scalar), lambda c, b, sig, a: joined(
+        b, vec, [emit_splat(b, a[1], part.count) for _, part in vec.parts]
+    )
 
 
 @operation
 def widened(typing: Any, vec: Vec) -> Any:
     """Unsigned bytes as 32-bit integers."""
-    wide = Vec(types.int32, vec.count)
-    return wide(vec), lambda c, b, sig, a: b.zext(a[0], sig.return_type.llvm)
+    return _one_by_one(vec, Vec(types.int32, vec.count), lambda b, each, kind: b.zext(each, kind))
 
 
 @operation
 def to_float(typing: Any, vec: Vec) -> Any:
     """Signed integers as float32."""
-    real = Vec(types.float32, vec.count)
-    return real(vec), lambda c, b, sig, a: b.sitofp(a[0], sig.return_type.llvm)
+    return _one_by_one(vec, Vec(types.float32, vec.count), lambda b, each, kind: b.sitofp(each, kind))

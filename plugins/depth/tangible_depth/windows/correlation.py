@@ -14,6 +14,8 @@ from typing import NamedTuple
 import numpy as np
 from numba import float32, int32, njit
 
+from tangible_core.compiled.compiling import inner
+
 from ..dense.span import UNKNOWN
 from ..dense.subpixel import parabola
 from ..simd.lane_reductions import first_equal, first_lane, highest
@@ -21,6 +23,15 @@ from ..simd.lanes import add, larger, load, multiply, shift_down, splat, store, 
 
 OUT = np.float32(-1e30)
 """Score of a window that leaves the picture, or holds nothing to compare."""
+
+
+class Sliding(NamedTuple):
+    """The row that comes in and the one that leaves, zeros if there is none; the right view's shifted by `top`."""
+
+    left: np.ndarray
+    right: np.ndarray
+    gone_left: np.ndarray
+    gone_right: np.ndarray
 
 
 class Windows(NamedTuple):
@@ -31,13 +42,32 @@ class Windows(NamedTuple):
     offset: np.ndarray
 
 
-@njit(nogil=True, boundscheck=False)
-def _add_products(lanes, left, right, sign, column):
-    """column[x] += sign left[x] right[x + k - top], `right` being shifted already."""
+@inner()
+def _products(lanes, left, right, x):
+    """left[x] right[x + k - top], `right` being shifted already."""
+    return multiply(splat(lanes, int32(left[x])), widened(load(lanes, right, x)))
+
+
+@inner()
+def _slid(lanes, rows, x, column):
+    """column[x] with the products of the row that comes in, less those of the row that leaves.
+
+    Done where the column is needed next, so that it is read and written once a row of windows.
+    """
     n = width(lanes)
+    here = add(load(lanes, column, x * n), _products(lanes, rows.left, rows.right, x))
+    here = subtract(here, _products(lanes, rows.gone_left, rows.gone_right, x))
+    store(column, x * n, here)
+    return here
+
+
+@njit(nogil=True, boundscheck=False)
+def _set(left, right, top, out_left, out_right):
+    """One row of both views; of the right one what the lanes reach, where they look for it."""
     for x in range(left.size):
-        product = multiply(splat(lanes, int32(sign * int32(left[x]))), widened(load(lanes, right, x)))
-        store(column, x * n, add(load(lanes, column, x * n), product))
+        out_left[x] = left[x]
+        if 0 <= x + top < out_right.size:
+            out_right[x + top] = right[x]
 
 
 @njit(nogil=True, boundscheck=False)
@@ -70,7 +100,7 @@ def _describe(squared, sums, squares, radius, least_variance, first, windows):
 
 
 @njit(nogil=True, boundscheck=False)
-def _decide(lanes, squared, column, left, right, radius, barred, scores, best, tops, right_tops):
+def _decide(lanes, squared, rows, column, left, right, radius, barred, scores, best, tops, right_tops):
     """Scores of one row; the best lane and its score for each left pixel, the best score for each right pixel.
 
     The score is the covariance over both deviations, -1..1, or if `squared` minus the sum of squared differences.
@@ -80,11 +110,11 @@ def _decide(lanes, squared, column, left, right, radius, barred, scores, best, t
     area = splat(lanes, int32((2 * radius + 1) ** 2))
     window = splat(lanes, int32(0))
     for x in range(min(2 * radius, w)):
-        window = add(window, load(lanes, column, x * n))
+        window = add(window, _slid(lanes, rows, x, column))
     seen = splat(lanes, OUT)
     out = splat(lanes, OUT)
     for x in range(radius, w - radius):
-        window = add(window, load(lanes, column, (x + radius) * n))
+        window = add(window, _slid(lanes, rows, x + radius, column))
         offset = add(load(lanes, right.offset, x), load(lanes, barred, 0))
         if squared is None:
             products = multiply(splat(lanes, left.total[x]), load(lanes, right.total, x))
@@ -136,26 +166,31 @@ def correlate_strip(lanes, squared, left, right, rows, radius, span, least, leas
     h, w = left.shape
     column = np.zeros(w * n, np.int32)
     moments = np.zeros((4, w), np.int32)
-    shifted = np.zeros(w + n - 1, np.uint8)
+    sliding = Sliding(
+        np.zeros(w, np.uint8), np.zeros(w + n - 1, np.uint8), np.zeros(w, np.uint8), np.zeros(w + n - 1, np.uint8)
+    )
     on_left = Windows(np.zeros(w, np.int32), np.zeros(w, np.float32), np.full(w, OUT))
     on_right = Windows(np.zeros(w + n - 1, np.int32), np.zeros(w + n - 1, np.float32), np.full(w + n - 1, OUT))
     barred = np.where(np.arange(n) <= span.high - span.low, float32(0), OUT)
     scores, best, right_tops = np.zeros(w * n, np.float32), np.zeros(w, np.int64), np.full(w + n, OUT)
     for y in range(rows[0] - radius, rows[1] + radius):
-        for sign, entering in ((1, y), (-1, y - 2 * radius - 1)):
-            if entering < rows[0] - radius:
-                continue
-            row = min(max(entering, 0), h - 1)
-            for x in range(w):
-                if 0 <= x + span.high < shifted.size:
-                    shifted[x + span.high] = right[row, x]
-            _add_products(lanes, left[row], shifted, sign, column)
-            _add_moments(left[row], sign, moments[0], moments[1])
-            _add_moments(right[row], sign, moments[2], moments[3])
+        row, gone = min(max(y, 0), h - 1), y - 2 * radius - 1
+        _set(left[row], right[row], span.high, sliding.left, sliding.right)
+        _add_moments(left[row], 1, moments[0], moments[1])
+        _add_moments(right[row], 1, moments[2], moments[3])
+        if gone >= rows[0] - radius:
+            row = min(max(gone, 0), h - 1)
+            _set(left[row], right[row], span.high, sliding.gone_left, sliding.gone_right)
+            _add_moments(left[row], -1, moments[0], moments[1])
+            _add_moments(right[row], -1, moments[2], moments[3])
         centre = y - radius
         if centre < rows[0]:
+            for x in range(w):
+                _slid(lanes, sliding, x, column)
             continue
         _describe(squared, moments[0], moments[1], radius, least_variance, 0, on_left)
         _describe(squared, moments[2], moments[3], radius, least_variance, span.high, on_right)
-        _decide(lanes, squared, column, on_left, on_right, radius, barred, scores, best, tops[centre], right_tops)
+        _decide(
+            lanes, squared, sliding, column, on_left, on_right, radius, barred, scores, best, tops[centre], right_tops
+        )
         _accept(n, span, least, on_left, scores, best, tops[centre], right_tops, radius, disparity[centre])

@@ -271,7 +271,7 @@ def test_a_thin_thing_before_a_wall_widens_the_range(seed):
     pair = synthetic_pair("bars", 480, 360, seed)
     span = asked_span(grey_pair(pair.views, "test"), "auto", "auto").span
     assert np.mean((pair.truth_px >= span.low) & (pair.truth_px <= span.high)) >= 0.999
-    assert span.lanes == 64
+    assert span.lanes <= 64
 
 
 def test_a_pair_in_which_nothing_matches_has_no_range():

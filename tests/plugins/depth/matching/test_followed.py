@@ -8,6 +8,7 @@ from tangible_core.errors import PictureError
 from tangible_core.plugins.interfaces import Following
 from tangible_core.plugins.notes import collected, silently
 from tangible_depth import Auto, SemiGlobal, Ssd, Zncc
+from tangible_depth.dense.span import Span
 from tangible_depth.matching import followed
 from tangible_depth.matching.followed import LOOK_EVERY, FollowedPair
 from tangible_depth.rectify import rectification
@@ -59,6 +60,15 @@ def test_a_look_that_shows_nothing_teaches_nothing_and_old_ones_are_forgotten(mo
     for _ in range(followed.LOOKS):
         estimate(far)
     assert estimate._span.high < wide.high
+
+
+def test_a_range_that_changes_a_little_needs_no_other_kernel():
+    estimate = Zncc().follow(slanted(offset=6.0)[0])
+    sizes = set()
+    for high in (66, 83, 101):
+        estimate._spans.append(Span(-3, high))
+        sizes.add(estimate._span.lanes)
+    assert sizes == {128}
 
 
 def test_a_range_that_is_told_is_kept_and_nothing_is_looked_for(looks):

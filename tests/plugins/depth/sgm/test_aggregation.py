@@ -98,6 +98,19 @@ def test_the_sweep_is_semi_global_matching(span, tolerance):
     assert np.array_equal(out.disparity, plain_disparity(sums, span, tolerance))
 
 
+@pytest.mark.parametrize("span", [Span(0, 46), Span(-1, 69), Span(-3, 104)])
+def test_lanes_in_vectors_of_several_widths_are_as_exact(span):
+    """48, 80 and 112 of them, some not asked for; in the middle of the picture none leads out of it."""
+    assert span.lanes & (span.lanes - 1)
+    views, _, _ = step(shape=(9, 150), back=2, front=40, box=(2, 7, 70, 120))
+    left, right = np.asarray(views.left), np.asarray(views.right)
+    out = blank(left.shape)
+    sweep((census(left), census(right)), left, span, SHARP.penalties, 1.08, [(0, len(left))], out)
+    sums = plain_sums(left, right, span, SHARP.penalties)
+    assert np.array_equal(out.sums, sums.min(axis=-1))
+    assert np.array_equal(out.disparity, plain_disparity(sums, span, 1.08))
+
+
 def test_strips_are_independent_and_hardly_seen(monkeypatch):
     views, _, _ = step(shape=(300, 160), box=(60, 240, 60, 120))
     left, right = np.asarray(views.left), np.asarray(views.right)
@@ -150,7 +163,9 @@ def test_a_jump_is_cheaper_where_the_picture_steps():
 
 def test_a_span_fits_lanes_and_pictures():
     assert Span(0, 63).lanes == 64
-    assert Span(0, 64).lanes == 128
+    assert Span(0, 64).lanes == 80
+    assert Span(2, 68).filled() == Span(2, 81)
+    assert Span(2, 68).roomy() == Span(2, 129)
     assert Span(-3, 3).lanes == 16
     assert Span(-50, 500).within(100) == Span(-50, 99)
     assert Span(500, 900).within(1) == Span(0, 0)

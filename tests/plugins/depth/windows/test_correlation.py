@@ -59,7 +59,7 @@ def plain_scores(left, right, span, side, squared):
 
 
 @pytest.mark.parametrize("squared", [None, True])
-@pytest.mark.parametrize("span", [Span(0, 12), Span(-4, 9), Span(-9, -2)])
+@pytest.mark.parametrize("span", [Span(0, 12), Span(-4, 9), Span(-9, -2), Span(-3, 40)])
 @pytest.mark.parametrize("side", [3, 5])
 def test_scores_are_exact_and_the_best_of_both_views_agree(squared, span, side):
     views, _, _ = step(shape=(12, 48), back=2, front=6, box=(3, 9, 14, 34))

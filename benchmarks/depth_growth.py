@@ -1,8 +1,9 @@
 """Time and memory as pictures grow, and what is seen of the strips they are swept in."""
 
-from collections.abc import Generator
+from collections.abc import Generator, Mapping
 from contextlib import contextmanager
 from functools import partial
+from typing import Literal
 
 import numpy as np
 
@@ -19,45 +20,57 @@ from .turns import Call, seconds
 DISPARITIES = 128
 TILES = (1, 2, 3, 5, 7)
 """The builtin pair this often side by side and below itself: 0.4 to 18 megapixels, all with the same disparities."""
-MEMORY_BYTES_PX, VOLUMES_BYTES = 25, strips.VOLUME_BYTES
-"""What `semi-global` states."""
+VOLUMES_BYTES = strips.VOLUME_BYTES
+Effort = Literal["balanced", "best"]
+MEMORY_BYTES_PX: Mapping[Effort, int] = {"balanced": 25, "best": 32}
+"""What `semi-global` states, as VOLUMES_BYTES."""
+OF: Mapping[Effort, str] = {"balanced": "", "best": ", `effort: best`"}
+Size = tuple[float, float, float, float]
 ROUNDS = 5
+USUAL_COST: Mapping[Effort, Literal["sharp", "levels"]] = {"balanced": "sharp", "best": "levels"}
+"""That clean pairs are matched at."""
 NEAR_ROWS = 8
 """Rows to either side of a border."""
 
 
 def measured() -> tuple[list[Figure], list[str]]:
-    """The promises about growth, and a row a size."""
-    rows = _sizes()
+    """The promises about growth, and a row a size, of the default."""
+    default = _sizes("balanced")
+    figures = [*_promises("balanced", default), *_promises("best", _sizes("best")), _seams()]
+    lines = [(f"{mpx:.1f}", f"{cost:.2f}", f"{used / 2**20:.0f}", f"{share:.2f}") for mpx, cost, used, share in default]
+    return figures, table(("Mpx", "ns / px / disparity", "peak MiB", "time / 3WAY"), lines)
+
+
+def _promises(effort: Effort, rows: list[Size]) -> list[Figure]:
     costs = [cost for _, cost, _, _ in rows]
     times = Figure(
-        f"cost as work grows, {rows[0][0]:.1f} to {rows[-1][0]:.0f} Mpx, {DISPARITIES} disparities",
+        f"cost as work grows{OF[effort]}, {rows[0][0]:.1f} to {rows[-1][0]:.0f} Mpx, {DISPARITIES} disparities",
         "time per pixel and disparity within 1.3 x of its best",
         f"least of {ROUNDS} rounds: {min(costs):.2f} to {max(costs):.2f} ns: {max(costs) / min(costs):.2f} x",
         max(costs) <= 1.3 * min(costs),
     )
     pixels = [each[0] * 1e6 for each in rows]
     memory = [each[2] for each in rows]
-    bounds = [MEMORY_BYTES_PX * count + VOLUMES_BYTES for count in pixels]
+    bounds = [MEMORY_BYTES_PX[effort] * count + VOLUMES_BYTES for count in pixels]
     slope = np.polyfit(pixels[1:], memory[1:], 1)[0]
     peak = Figure(
-        "memory above the pictures",
-        f"bounded and stated: {MEMORY_BYTES_PX} bytes a pixel + {VOLUMES_BYTES >> 20} MiB",
+        f"memory above the pictures{OF[effort]}",
+        f"bounded and stated: {MEMORY_BYTES_PX[effort]} bytes a pixel + {VOLUMES_BYTES >> 20} MiB",
         f"{memory[-1] / 2**20:.0f} MiB at {rows[-1][0]:.0f} Mpx, stated {bounds[-1] / 2**20:.0f}; "
         f"grows by {slope:.0f} bytes a pixel",
         all(used <= bound for used, bound in zip(memory, bounds, strict=True)),
     )
-    lines = [(f"{mpx:.1f}", f"{cost:.2f}", f"{used / 2**20:.0f}", f"{share:.2f}") for mpx, cost, used, share in rows]
-    return [times, peak, _seams()], table(("Mpx", "ns / px / disparity", "peak MiB", "time / 3WAY"), lines)
+    return [times, peak]
 
 
-def _sizes() -> list[tuple[float, float, float, float]]:
+def _sizes(effort: Effort) -> list[Size]:
     """Megapixels, nanoseconds a pixel and disparity, peak bytes, and time over 3WAY's, for each of TILES.
 
     The time is the least of the rounds: what else the machine does can only add, and hits short calls by chance.
     """
     scenes = [_tiled(count) for count in TILES]
-    calls = [partial(SemiGlobal(max_disparity_px=DISPARITIES).estimate, each.views) for each in scenes]
+    method = SemiGlobal(max_disparity_px=DISPARITIES, effort=effort)
+    calls = [partial(method.estimate, each.views) for each in scenes]
     memory = [_peak(call) for call in calls]
     times = [
         [(seconds(partial(filled, each)), seconds(call)) for each, call in zip(scenes, calls, strict=True)]
@@ -87,19 +100,20 @@ def _tiled(count: int) -> KnownScene:
 
 
 def _seams() -> Figure:
-    shares = {name: _seam(each) for name, each in {**real(), "motorcycle x 4": _tiled(2)}.items()}
+    scenes = {**real(), "motorcycle x 4": _tiled(2)}
+    shares = {f"{name}, {effort}": _seam(each, effort) for name, each in scenes.items() for effort in USUAL_COST}
     worst = max(shares, key=shares.__getitem__)
     return Figure(
-        f"seams: rows within {NEAR_ROWS} of a border, against one strip, {len(shares)} scenes",
+        f"seams: rows within {NEAR_ROWS} of a border, against one strip, {len(scenes)} scenes, either effort",
         "difference over 1 px at <= 0.5 % of the pixels",
         f"{shares[worst]:.2f} % at most ({worst}), {np.mean(list(shares.values())):.2f} % mean",
         shares[worst] <= 0.5,
     )
 
 
-def _seam(scene: KnownScene) -> float:
+def _seam(scene: KnownScene, effort: Effort) -> float:
     """Percent of the pixels near borders, those of the trial among them, that one strip decides otherwise."""
-    method = SemiGlobal(max_disparity_px=scene.disparities, cost="sharp")
+    method = SemiGlobal(max_disparity_px=scene.disparities, cost=USUAL_COST[effort], effort=effort)
     with_borders = method.estimate(scene.views).disparity_px
     with _one_strip():
         without = method.model_copy(update={"realign_rows": False}).estimate(scene.views).disparity_px

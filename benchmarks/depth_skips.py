@@ -65,8 +65,11 @@ def skips(scene: KnownScene) -> Iterator[Skip]:
     peer = OpenCVSGBM(max_disparity_px=told, fill=True)
     once = peer.model_copy(update={"second_pass": False})
     sharp = {"cost": "sharp", "realign_rows": False}
+    best: dict[str, object] = {"effort": "best"}
     yield other("disparities outside the range found", "`max_disparity_px`: auto, 256", {}, {"max_disparity_px": 256})
     yield other("the trial of costs and rows", "`cost`: sharp, auto; `realign_rows`", sharp, {})
+    yield other("the comparison of grey levels, `effort: best`", "`cost`: sharp, auto", best | {"cost": "sharp"}, best)
+    yield other("what the best effort adds", "`effort`: balanced, best", {}, best)
     yield other("the strict check from the right", "`check`: soft, strict", {}, {"check": "strict"})
     yield other("full resolution", "`resolution`: half, full", {"resolution": "half"}, {"resolution": "full"})
     yield Skip(

@@ -156,6 +156,11 @@ def depth() -> Found:
             yield f"{name}: disparity of the {of}", found.disparity_px
             yield f"{name}: confidence of the {of}", found.confidence
 
+    for of, views in (("pair", pair()), ("noisy pair", noisy_pair())):
+        found = load_method("depth", "semi-global")(effort="best").estimate(views)
+        yield f"semi-global, the best effort: disparity of the {of}", found.disparity_px
+        yield f"semi-global, the best effort: confidence of the {of}", found.confidence
+
 
 def texture() -> Found:
     for name, cls, options in ours("texture"):

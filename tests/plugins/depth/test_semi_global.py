@@ -12,6 +12,7 @@ from stereo_scenes import slanted, step
 from tangible_core.data import Views
 from tangible_core.errors import PictureError
 from tangible_core.plugins.notes import collected
+from tangible_core.synthetic.stereo_scenes import synthetic_pair
 from tangible_depth.semi_global import SemiGlobal
 
 
@@ -177,7 +178,39 @@ def test_noise_calls_for_another_cost():
     assert share_within(chosen, truth, 1.0) > share_within(sharp, truth, 1.0)
 
 
-@pytest.mark.parametrize("cost", ["sharp", "light", "heavy"])
+def test_grey_levels_are_compared_where_both_views_were_exposed_alike():
+    views, truth, _ = step()
+    darker = Views(views.left, np.rint(0.6 * views.right).astype(np.uint8))
+    with collected() as notes:
+        alike = SemiGlobal(max_disparity_px=32, effort="best").estimate(views)
+    assert not any("grey levels" in each for each in notes)
+    assert alike.digest() == SemiGlobal(max_disparity_px=32, cost="levels", effort="best").estimate(views).digest()
+    with collected() as notes:
+        other = SemiGlobal(max_disparity_px=32, effort="best").estimate(darker)
+    assert any("skipped: comparing grey levels" in each for each in notes)
+    misled = SemiGlobal(max_disparity_px=32, cost="levels", effort="best").estimate(darker)
+    assert share_within(other.disparity_px, truth, 0.5) > share_within(misled.disparity_px, truth, 0.5)
+
+
+def test_the_best_effort_pays():
+    wrong = {"balanced": [], "best": []}
+    for name in ("steps", "spheres"):
+        pair = synthetic_pair(name, 240, 180, seed=5)
+        for effort, found in wrong.items():
+            disparity_px = SemiGlobal.model_validate({"effort": effort}).estimate(pair.views).disparity_px
+            found.append(1 - share_within(disparity_px, pair.truth_px, 2.0))
+    assert np.mean(wrong["best"]) < 0.95 * np.mean(wrong["balanced"])
+
+
+@pytest.mark.parametrize(("across", "down"), [(0.05, 0.0), (-0.04, 0.06)])
+def test_the_best_effort_follows_slanted_planes(across, down):
+    views, truth = slanted(across=across, down=down, offset=9.0)
+    found = SemiGlobal(max_disparity_px=32, effort="best").estimate(views)
+    assert share_within(found.disparity_px, truth, 0.5, np.indices(truth.shape)[1] >= truth + 1) >= 0.97
+    assert share_within(found.disparity_px, truth, 1.0) >= 0.97
+
+
+@pytest.mark.parametrize("cost", ["sharp", "levels", "light", "heavy"])
 def test_every_cost_finds_the_step(cost):
     views, truth, _ = step()
     found = SemiGlobal(max_disparity_px=32, cost=cost).estimate(views).disparity_px
@@ -185,7 +218,9 @@ def test_every_cost_finds_the_step(cost):
 
 
 @pytest.mark.parametrize("shape", [(1, 1), (1, 2), (1, 200), (200, 1), (2, 2), (3, 40), (5, 5), (40, 9)])
-@pytest.mark.parametrize("options", [{}, {"max_disparity_px": 500}, {"resolution": "half"}, {"fill": False}])
+@pytest.mark.parametrize(
+    "options", [{}, {"max_disparity_px": 500}, {"resolution": "half"}, {"fill": False}, {"effort": "best"}]
+)
 def test_small_pictures_are_answered(shape, options):
     rng = np.random.default_rng(1)
     views = Views(*rng.integers(0, 255, (2, *shape), np.uint8))

@@ -45,14 +45,14 @@ def seen_from_the_right(row, columns, seen):
         seen[x] = UNKNOWN
     seen[0] = seen[-1] = NEVER
     for x in range(row.size):
-        columns[x] = _column(int32(x), int32(row[x]), int32(seen.size - 1))
+        columns[x] = column_of(int32(x), int32(row[x]), int32(seen.size - 1))
     for x in range(row.size):
         column = uint32(columns[x])  # never negative, and numba need not ask
         seen[column] = max(seen[column], row[x])
 
 
 @inner()
-def _column(x, value, last):
+def column_of(x, value, last):
     """Where in `seen` a pixel of this disparity is."""
     return min(max(x + int32(1) - ((value + int32(8)) >> int32(4)), int32(0)), last)
 
@@ -61,8 +61,8 @@ def _column(x, value, last):
 def choose(sides, paths, x, seen):
     """The candidate of the highest score; UNKNOWN if there is none."""
     left, right, above, below = sides[LEFT, x], sides[RIGHT, x], sides[ABOVE, x], sides[BELOW, x]
-    row_farthest = min(_or_never(left), _or_never(right))
-    farthest = min(row_farthest, _or_never(above), _or_never(below))
+    row_farthest = min(or_never(left), or_never(right))
+    farthest = min(row_farthest, or_never(above), or_never(below))
     if farthest == NEVER:
         return UNKNOWN
     if max(left, right, above, below) - farthest <= ALIKE:
@@ -77,14 +77,15 @@ def choose(sides, paths, x, seen):
 
 
 @inner()
-def _or_never(value):
+def or_never(value):
+    """A disparity, or NEVER where there is none: for minima."""
     return NEVER if value == UNKNOWN else int32(value)
 
 
 @inner()
 def _score(value, path, farthest, row_farthest, x, seen):
     """Without branches: what a pixel's candidates are like, no processor can guess."""
-    there = int32(seen[_column(x, value, seen.size - 1)])
+    there = int32(seen[column_of(x, value, seen.size - 1)])
     explained = there > value + ALIKE
     contradicted = (there != UNKNOWN) & (there < value - ALIKE)
     score = np.float32(PER_10_PX_NEARER / 160) * np.float32(value - farthest)

@@ -18,6 +18,7 @@ from tangible_core.data import DisparityMap
 
 from .confidence import FILLED, FLAT_REACH, confidence, flat_pixels
 from .edges import MEDIAN_REACH, VOTERS, median, sharpen_edges
+from .eight_sides import fill_from_eight_sides
 from .filling import fill
 from .span import UNKNOWN
 from .speckles import remove_speckles
@@ -33,6 +34,17 @@ class DenseMatches(NamedTuple):
     confidence: Float32[np.ndarray, "h w"]
 
 
+class Cleaning(NamedTuple):
+    """What is done to raw matches besides the rest."""
+
+    sharpen: bool = True
+    """Edges are sharpened; a map that will be enlarged is sharpened then."""
+    largest_speck_px: int = 60
+    """Islands up to here are errors."""
+    eight_sides: bool = False
+    """Gaps are filled from eight sides in place of four."""
+
+
 def _empty(shape: tuple[int, int]) -> DenseMatches:
     return DenseMatches(np.empty(shape, np.int16), np.empty(shape, np.float32))
 
@@ -42,20 +54,21 @@ def completed(
     quality: UInt8[np.ndarray, "h w"],
     by_quality: Float[np.ndarray, "256"],
     grey: UInt8[np.ndarray, "h w"],
-    sharpen: bool = True,
+    cleaning: Cleaning | None = None,
 ) -> DenseMatches:
     """Speckles removed (in `matched` itself), gaps filled, edges sharpened, and all of it judged (see `confidence`).
 
-    A map without any match stays UNKNOWN. Not to `sharpen` is for a map that will be enlarged, and sharpened then.
+    A map without any match stays UNKNOWN.
     """
-    remove_speckles(matched)
-    filled = fill(matched, grey)
+    cleaning = cleaning or Cleaning()
+    remove_speckles(matched, cleaning.largest_speck_px)
+    filled = fill_from_eight_sides(matched, grey) if cleaning.eight_sides else fill(matched, grey)
     out = _empty(grey.shape)
 
     def block(y0: int, y1: int) -> None:
         cut, own = _with_margin(y0, y1, 2 * MEDIAN_REACH + VOTERS)
         final = median(filled[cut])
-        if sharpen:
+        if cleaning.sharpen:
             final = median(sharpen_edges(final, grey[cut]))
         out.disparity[y0:y1] = final[own]
         out.confidence[y0:y1] = confidence(matched[y0:y1], final[own], quality[y0:y1], by_quality)

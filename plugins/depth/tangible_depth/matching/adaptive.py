@@ -2,7 +2,8 @@
 
 No noise model is needed. A wrong match that passes the left-right check is seldom confirmed by its neighbours, so the
 share of checked pixels that the speckle filter erases (the loss) tells how far a cost can be trusted, whatever the
-cause: noise, compression, or rows that do not correspond. The strips already swept are kept when all is well, so that a
+cause: noise, compression, or rows that do not correspond. What the matches cost tells whether the grey levels of both
+views may be compared themselves, besides their order. The strips already swept are kept when all is well, so that a
 clean pair pays next to nothing.
 """
 
@@ -19,13 +20,18 @@ from ..dense.speckles import remove_speckles
 from ..search.bands import match_bands
 from ..search.pairs import Pair
 from ..search.row_offset import CELL_PX, LEAST_ROW_OFFSET_PX, realigned, row_offset
-from ..sgm.census import BITS
 from ..sgm.costs import HEAVY, LIGHT, SHARP, Cost
 from ..sgm.strips import StripMatches, blank, sweep
+from .efforts import ISLAND_PX, Effort
 
 log = logging.getLogger(__name__)
-DOUBT, LEAST_DIFFERING, NOISE = 0.06, 0.28, 0.20
-"""Loss, or share of differing bits, from which the light cost is taken; loss from which the heavy one is."""
+NOISE = 0.20
+"""Loss from which the heavy cost is taken."""
+LEVELS_LOSS, LEVELS_DIFFERING = 0.06, 0.265
+"""Loss, and share of its bits and levels by which matches differ, from which levels mislead: exposures, or noise."""
+LEVELS_APART, EVERY_ROW = 0.6, 4
+"""Share of matches whose levels differ by all that counts from which the views were exposed differently, and in which
+rows of the trial this is looked for."""
 MOST_ROW_OFFSET_PX = 1.0
 """Offsets of rows up to here are found and put right on the way."""
 PROBE_ROWS = 64
@@ -34,10 +40,16 @@ Rows = Sequence[tuple[int, int]]
 
 
 def match(
-    pair: Pair, span: Span, cost: Cost | None, check_tolerance: float, realign_rows: bool, rows: Rows
+    pair: Pair,
+    span: Span,
+    cost: Cost | None,
+    check_tolerance: float,
+    realign_rows: bool,
+    rows: Rows,
+    effort: Effort,
 ) -> tuple[StripMatches, Cost]:
     """The strips `rows` matched, with the given cost or, if None, with the one that the pair calls for."""
-    trial = _Trial(pair, span, cost or SHARP, check_tolerance)
+    trial = _Trial(pair, span, cost or effort.first, check_tolerance, effort)
     if cost and not realign_rows:
         trial.sweep(rows)
         return trial.out, cost
@@ -46,16 +58,24 @@ def match(
     row_offset_px = _row_offset(trial, probes, span, health) if realign_rows else 0.0
     if abs(row_offset_px) > LEAST_ROW_OFFSET_PX:
         note(log, f"rows realigned by {row_offset_px:.2f} px")
-        trial = _Trial(realigned(pair, row_offset_px), span, cost or SHARP, check_tolerance)
+        trial = trial.of(realigned(pair, row_offset_px))
         health = trial.health(probes)
-    if cost is None and (cost := _called_for(health)) is not SHARP:
+    if cost:
+        trial.sweep(rest)
+        return trial.out, cost
+    if trial.cost.most_level and (why := _why_no_levels(health, trial.levels_apart(probes))):
+        note(log, f"skipped: comparing grey levels, as {why}")
+        trial = trial.at(SHARP)
+        health = trial.health(probes)
+    if trial.cost is SHARP and (called_for := _called_for(health, effort)) is not SHARP:
         note(
             log,
-            f"cost {cost.name}: {health.loss:.0%} of the matches stand alone, {health.differing:.0%} of bits differ",
+            f"cost {called_for.name}: {health.loss:.0%} of the matches stand alone, "
+            f"{health.differing:.0%} of bits differ",
         )
-        trial, rest = _Trial(trial.pair, span, cost, check_tolerance), rows
+        trial, rest = trial.at(called_for), rows
     trial.sweep(rest)
-    return trial.out, cost
+    return trial.out, trial.cost
 
 
 class _Health(NamedTuple):
@@ -67,32 +87,67 @@ class _Health(NamedTuple):
     """Mean share of bits in which both views differ where they match."""
 
 
-def _called_for(health: _Health) -> Cost:
+def _called_for(health: _Health, effort: Effort) -> Cost:
     if health.loss >= NOISE:
         return HEAVY
-    return LIGHT if health.loss >= DOUBT or health.differing >= LEAST_DIFFERING else SHARP
+    doubtful = health.loss >= effort.doubt or health.differing >= effort.least_differing
+    return LIGHT if doubtful else SHARP
+
+
+def _why_no_levels(health: _Health, apart: float) -> str:
+    """Empty where both views' grey levels may be compared."""
+    if apart >= LEVELS_APART:
+        return f"{apart:.0%} of them are far apart where the views match: they were exposed differently"
+    if health.loss >= LEVELS_LOSS or health.differing >= LEVELS_DIFFERING:
+        return f"{health.loss:.0%} of the matches stand alone, and {health.differing:.0%} of bits and levels differ"
+    return ""
 
 
 class _Trial:
     """One pair, coded once, and what has been matched of it."""
 
-    def __init__(self, pair: Pair, span: Span, cost: Cost, check_tolerance: float) -> None:
-        self.pair, self.out = pair, blank(pair.left.shape)
+    def __init__(self, pair: Pair, span: Span, cost: Cost, check_tolerance: float, effort: Effort) -> None:
+        self.pair, self.cost, self.out = pair, cost, blank(pair.left.shape)
+        self._span, self._check_tolerance, self._effort = span, check_tolerance, effort
         self._codes = cost.codes(pair.left), cost.codes(pair.right)
-        self._how = span, cost.penalties, check_tolerance
+
+    def of(self, pair: Pair) -> "_Trial":
+        """The same of another pair."""
+        return _Trial(pair, self._span, self.cost, self._check_tolerance, self._effort)
+
+    def at(self, cost: Cost) -> "_Trial":
+        """The same at another cost."""
+        return _Trial(self.pair, self._span, cost, self._check_tolerance, self._effort)
 
     def sweep(self, rows: Rows) -> None:
         """Match these strips."""
-        sweep(self._codes, self.pair.left, *self._how, rows, self.out)
+        how = self._span, self.cost.penalties, self._check_tolerance
+        sweep(self._codes, self.pair.left, *how, rows, self.out, self._effort.warm_rows, self.cost.most_level)
 
     def health(self, rows: Rows) -> _Health:
-        """Match these rows and look at what was found; specks are erased."""
+        """Match these rows and look at what was found.
+
+        Specks are erased, unless small islands are kept: one that reaches beyond these rows may be no speck.
+        """
         self.sweep(rows)
         parts = [StripMatches(*(each[a:b] for each in self.out)) for a, b in rows]
+        if self._effort.small_islands:
+            parts = [StripMatches(each.disparity.copy(), each.sums) for each in parts]
         found = max(1, sum(np.count_nonzero(each.disparity != UNKNOWN) for each in parts))
-        specks = sum(remove_speckles(each.disparity) for each in parts)
+        specks = sum(remove_speckles(each.disparity, ISLAND_PX) for each in parts)
         bits = sum(int(np.sum(each.sums * (each.disparity != UNKNOWN), dtype=np.int64)) for each in parts)
-        return _Health(specks / found, bits / (4 * BITS * max(1, found - specks)))
+        return _Health(specks / found, bits / (4 * self.cost.bits * max(1, found - specks)))
+
+    def levels_apart(self, rows: Rows) -> float:
+        """Share of the matches in these rows whose levels differ by all that counts; 0 of a cost without levels."""
+        apart = found = 0
+        for y in (y for a, b in rows for y in range(a, b, EVERY_ROW)):
+            (x,) = np.nonzero(self.out.disparity[y] != UNKNOWN)
+            there = np.clip(x - ((self.out.disparity[y, x] + 8) >> 4), 0, self.pair.width - 1)
+            apart_here = np.abs((self.pair.left[y, x] >> 1).astype(np.int16) - (self.pair.right[y, there] >> 1))
+            apart += np.count_nonzero(apart_here >= self.cost.most_level)
+            found += len(x)
+        return apart / max(1, found) if self.cost.most_level else 0.0
 
 
 def _probes(rows: Rows) -> tuple[Rows, Rows]:

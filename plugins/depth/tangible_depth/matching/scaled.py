@@ -9,12 +9,13 @@ from jaxtyping import UInt8
 from tangible_core.plugins.notes import note
 
 from ..dense.confidence import FLAT_REACH, LEAST_MATCHED
-from ..dense.refinement import DenseMatches, completed, enlarged
+from ..dense.refinement import Cleaning, DenseMatches, completed, enlarged
 from ..dense.span import Span
 from ..search.pairs import Pair
 from ..sgm.costs import COSTS, SHARP
 from ..sgm.strips import MOST_LANES, strips
 from .adaptive import match
+from .efforts import EFFORTS
 
 log = logging.getLogger(__name__)
 CHECK_TOLERANCE = {"soft": 1.08, "strict": 1.0}
@@ -26,7 +27,8 @@ class Scaling(NamedTuple):
     """What `semi-global` says of the size and the costs at which it matches; each as its option of that name."""
 
     resolution: Literal["full", "half", "auto"]
-    cost: Literal["auto", "sharp", "light", "heavy"]
+    effort: Literal["balanced", "best"]
+    cost: Literal["auto", "sharp", "levels", "light", "heavy"]
     check: Literal["soft", "strict"]
     realign_rows: bool
     skip_flat: bool
@@ -36,7 +38,7 @@ def match_scaled(pair: Pair, span: Span, options: Scaling) -> DenseMatches:
     """A dense map of the pair's own size, whatever size was matched at."""
     factor = _factor(span, options)
     small = pair.shrunk(factor)
-    dense = _match(small, span.shrunk(factor).within(small.width), options)
+    dense = _match(small, span.shrunk(factor).within(small.width), options, factor)
     while factor > 1:
         factor //= 2
         dense = enlarged(dense, pair.shrunk(factor).left)
@@ -60,7 +62,7 @@ def _has_texture(grey: UInt8[np.ndarray, "h w"], y0: int, y1: int) -> bool:
     return not np.array_equal(rows[:, 1:], rows[:, :-1])
 
 
-def _match(pair: Pair, span: Span, options: Scaling) -> DenseMatches:
+def _match(pair: Pair, span: Span, options: Scaling, factor: int) -> DenseMatches:
     rows = strips(pair.left.shape, span)
     if options.skip_flat:
         textured = [each for each in rows if _has_texture(pair.left, *each)]
@@ -70,6 +72,8 @@ def _match(pair: Pair, span: Span, options: Scaling) -> DenseMatches:
     preview = options.resolution == "half"
     cost = SHARP if preview and options.cost == "auto" else COSTS.get(options.cost)
     realign_rows = options.realign_rows and not preview
-    swept, cost = match(pair, span, cost, CHECK_TOLERANCE[options.check], realign_rows, rows)
+    effort = EFFORTS[options.effort]
+    swept, cost = match(pair, span, cost, CHECK_TOLERANCE[options.check], realign_rows, rows, effort)
     by_sum = np.maximum(1 - np.arange(256) / (4 * cost.bits), LEAST_MATCHED)
-    return completed(swept.disparity, swept.sums, by_sum, pair.left, sharpen=not preview)
+    cleaning = Cleaning(not preview, effort.largest_speck_px(cost, factor), effort.eight_sides)
+    return completed(swept.disparity, swept.sums, by_sum, pair.left, cleaning)

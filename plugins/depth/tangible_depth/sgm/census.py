@@ -41,12 +41,19 @@ def two_scale_census(
     return _coded([cv2.GaussianBlur(grey, (0, 0), sigma) for sigma in (fine_px, coarse_px)])
 
 
-def _coded(greys: Sequence[np.ndarray]) -> UInt8[np.ndarray, "h planes whole"]:
-    """The codes of several pictures of one size, side by side in the planes."""
+def with_levels(grey: UInt8[np.ndarray, "h w"]) -> UInt8[np.ndarray, "h 4 whole"]:
+    """The census, and as one more plane the grey values, halved."""
+    codes = _coded([grey], spare_planes=1)
+    np.right_shift(grey, 1, out=codes[:, PLANES, : grey.shape[1]])
+    return codes
+
+
+def _coded(greys: Sequence[np.ndarray], spare_planes: int = 0) -> UInt8[np.ndarray, "h planes whole"]:
+    """The codes of several pictures of one size, side by side in the planes; the spare ones are 0."""
     import cv2
 
     h, w = greys[0].shape
-    codes = np.zeros((h, PLANES * len(greys), w + -w % BLOCK), np.uint8)
+    codes = np.zeros((h, PLANES * len(greys) + spare_planes, w + -w % BLOCK), np.uint8)
     for i, grey in enumerate(greys):
         padded = cv2.copyMakeBorder(grey, RADIUS, RADIUS, RADIUS, RADIUS + -w % BLOCK, cv2.BORDER_REPLICATE)
         in_blocks(h, lambda a, b, padded=padded, i=i: code_rows(padded, OFFSETS, PLANES * i, a, b, codes))

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from jaxtyping import UInt8
 
-from .census import BITS, census, two_scale_census
+from .census import BITS, census, two_scale_census, with_levels
 
 
 class Penalties(NamedTuple):
@@ -25,9 +25,13 @@ class Cost(NamedTuple):
 
     name: str
     bits: int
-    """Of a code."""
+    """Of a code: what a pixel can cost."""
     codes: Callable[[UInt8[np.ndarray, "h w"]], Any]
     penalties: Penalties
+    most_level: int = 0
+    """Up to what the difference of two levels counts; 0: the codes have none."""
+    largest_speck_px: int = 40
+    """Islands up to here are errors with `effort: best`: the surer the cost, the smaller."""
 
 
 def p2_by_grey_step(flat: int, edge: int, slope: float) -> UInt8[np.ndarray, "256"]:
@@ -35,13 +39,29 @@ def p2_by_grey_step(flat: int, edge: int, slope: float) -> UInt8[np.ndarray, "25
     return np.clip(flat - slope * np.arange(256), edge, flat).astype(np.uint8)
 
 
-SHARP = Cost("sharp", BITS, census, Penalties(np.uint8(10), np.uint8(8), p2_by_grey_step(50, 12, 1.5)))
+SHARP = Cost(
+    "sharp",
+    BITS,
+    census,
+    Penalties(np.uint8(10), np.uint8(8), p2_by_grey_step(50, 12, 1.5)),
+    largest_speck_px=30,
+)
 """Census of the picture as it is: the most exact on clean pictures."""
+MOST_LEVEL = 4
+LEVELS = Cost(
+    "levels",
+    BITS + MOST_LEVEL,
+    with_levels,
+    Penalties(np.uint8(10), np.uint8(9), p2_by_grey_step(40, 12, 2.0)),
+    MOST_LEVEL,
+)
+"""Census and the grey levels themselves: more exact still, where both views were exposed alike."""
 LIGHT = Cost(
     "light",
     2 * BITS,
     lambda z: two_scale_census(z, 0.5, 1.5),
     Penalties(np.uint8(18), np.uint8(16), p2_by_grey_step(110, 28, 2.0)),
+    largest_speck_px=60,
 )
 """For light noise or compression."""
 HEAVY = Cost(
@@ -49,6 +69,7 @@ HEAVY = Cost(
     2 * BITS,
     lambda z: two_scale_census(z, 0.7, 2.0),
     Penalties(np.uint8(22), np.uint8(16), p2_by_grey_step(120, 40, 2.0)),
+    largest_speck_px=60,
 )
 """For heavy noise."""
-COSTS = {each.name: each for each in (SHARP, LIGHT, HEAVY)}
+COSTS = {each.name: each for each in (SHARP, LEVELS, LIGHT, HEAVY)}

@@ -13,7 +13,7 @@ from numba import int64, uint8
 from tangible_core.compiled.compiling import inner
 
 from ..dense.span import Span
-from ..simd.lane_reductions import hamming, lowest
+from ..simd.lane_reductions import differences, lowest
 from ..simd.lanes import load, maximum, minimum, saturating_add, shift_down, shift_up, splat, store, subtract, width
 
 
@@ -53,8 +53,8 @@ def _step(lanes, before, before_lowest, cost, p1, p2):
 
 @inner()
 def _limited_cost(lanes, left, codes, x, limits):
-    """Hamming distances; neutral where a disparity leads out of the right view, 255 where it is not asked for."""
-    cost = minimum(hamming(lanes, left, codes, x), load(lanes, limits.most, x))
+    """What codes differ by; neutral where a disparity leads out of the right view, 255 where it is not asked for."""
+    cost = minimum(differences(lanes, left, codes, x), load(lanes, limits.most, x))
     return maximum(maximum(cost, load(lanes, limits.least, x)), load(lanes, limits.barred, 0))
 
 
@@ -71,7 +71,7 @@ def _columns(lanes, left, codes, limits, barred, columns, penalties, grey, grey_
     never = load(lanes, barred, 0)
     for x in range(columns[0], columns[1]):
         if limits is None:  # known to the compiler: the other branch is not there
-            cost = maximum(hamming(lanes, left, codes, x), never)
+            cost = maximum(differences(lanes, left, codes, x), never)
         else:
             cost = _limited_cost(lanes, left, codes, x, limits)
         store(costs, x * n, cost)

@@ -54,18 +54,22 @@ def sweep(
     only: Sequence[tuple[int, int]],
     out: StripMatches,
     warm: int = WARM_ROWS,
+    most_level: int = 0,
 ) -> None:
     """Match the strips `only` and write them into `out`; their paths begin `warm` rows early.
+
+    most_level: up to what the differences of levels count, which the last plane of the codes then holds.
 
     Every strip is independent of the others, so the result does not depend on how many threads there are.
     """
     w, n = grey.shape[1], span.lanes
-    lanes = Lanes(n, codes[0].shape[1])
+    planes = codes[0].shape[1]
+    lanes = Lanes(n, planes - (most_level > 0), most_level)
     limits = limits_of(n, w, span, penalties.neutral)
     highest = max((y1 - y0 for y0, y1 in only), default=0)
 
     def work(share: Iterable[tuple[int, int]]) -> None:
-        room = scratch(highest, w, n, lanes.planes)
+        room = scratch(highest, w, n, planes)
         for rows in share:
             sweep_strip(
                 lanes, *codes, grey, rows, warm, span, limits, penalties, np.float32(check_tolerance), room, *out

@@ -109,8 +109,11 @@ def first_equal(typing: Any, vec: Vec, scalar: Any) -> Any:
 
 
 @operation
-def hamming(typing: Any, lanes: LanesType, left: Any, right: Any, x: Any) -> Any:
-    """Lane k: how many bits of left[:, x] and right[:, x + k] differ, as uint8. Both are (planes, columns) of bytes."""
+def differences(typing: Any, lanes: LanesType, left: Any, right: Any, x: Any) -> Any:
+    """Lane k: how many bits of left[:, x] and right[:, x + k] differ, as uint8. Both are (planes, columns) of bytes.
+
+    If the lanes have a `most_level`, the plane after the code holds levels; what these differ by is added, up to that.
+    """
     whole = Vec(types.uint8, lanes.count)
 
     def emit(c: Any, b: Any, sig: Any, a: Any) -> Any:
@@ -119,8 +122,8 @@ def hamming(typing: Any, lanes: LanesType, left: Any, right: Any, x: Any) -> Any
     def emit_part(c: Any, b: Any, sig: Any, a: Any, first: int, vec: Vec) -> Any:
         rows = [c.make_array(kind)(c, b, array) for kind, array in zip(sig.args[1:3], a[1:3], strict=True)]
         strides = [b.extract_value(each.shape, 1) for each in rows]
-        total = ir.Constant(vec.llvm, [0] * vec.count)
-        for plane in range(sig.args[0].planes):
+
+        def of_plane(plane: int) -> tuple[Any, Any]:
             code, codes = (
                 b.gep(each.data, [b.add(a[3], b.mul(stride, ir.Constant(WORD, plane)))])
                 for each, stride in zip(rows, strides, strict=True)
@@ -128,8 +131,19 @@ def hamming(typing: Any, lanes: LanesType, left: Any, right: Any, x: Any) -> Any
             codes = b.gep(codes, [ir.Constant(WORD, first)])
             others = b.load(b.bitcast(codes, vec.llvm.as_pointer()))
             others.align = 1
-            differing = b.xor(others, emit_splat(b, b.load(code), vec.count))
+            return others, emit_splat(b, b.load(code), vec.count)
+
+        def of_two(name: str, x: Any, y: Any) -> Any:
+            return emit_call(b, f"llvm.{name}.{vec.mangled}", vec.llvm, [x, y])
+
+        total = ir.Constant(vec.llvm, [0] * vec.count)
+        for plane in range(sig.args[0].planes):
+            differing = b.xor(*of_plane(plane))
             total = b.add(total, emit_call(b, f"llvm.ctpop.{vec.mangled}", vec.llvm, [differing]))
+        if most := sig.args[0].most_level:
+            levels = of_plane(sig.args[0].planes)
+            difference = b.sub(of_two("umax", *levels), of_two("umin", *levels))
+            total = b.add(total, of_two("umin", difference, ir.Constant(vec.llvm, [most] * vec.count)))
         return total
 
     return whole(lanes, left, right, types.int64), emit

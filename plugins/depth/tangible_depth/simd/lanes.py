@@ -22,18 +22,18 @@ WORD = ir.IntType(64)
 
 
 class Lanes:
-    """A lane count, and how many bytes a code has, as an argument for kernels."""
+    """A lane count, how many bytes a code has, and up to what a level beside it counts: an argument for kernels."""
 
-    def __init__(self, count: int, planes: int = 0) -> None:
-        self.count, self.planes = count, planes
+    def __init__(self, count: int, planes: int = 0, most_level: int = 0) -> None:
+        self.count, self.planes, self.most_level = count, planes, most_level
 
 
 class LanesType(types.Type):
     """The numba type of `Lanes`: the numbers are part of the type, the value is empty."""
 
-    def __init__(self, count: int, planes: int) -> None:
-        self.count, self.planes = count, planes
-        super().__init__(name=f"Lanes({count},{planes})")
+    def __init__(self, count: int, planes: int, most_level: int) -> None:
+        self.count, self.planes, self.most_level = count, planes, most_level
+        super().__init__(name=f"Lanes({count},{planes},{most_level})")
 
 
 class Vec(types.Type):
@@ -77,7 +77,7 @@ class VecModel(models.PrimitiveModel):
 
 @typeof_impl.register(Lanes)
 def _typeof_lanes(value: Lanes, context: Any) -> LanesType:
-    return LanesType(value.count, value.planes)
+    return LanesType(value.count, value.planes, value.most_level)
 
 
 @unbox(LanesType)

@@ -9,8 +9,8 @@ from stereo_scenes import step
 from tangible_core.compiled.threads import thread_count
 from tangible_depth.dense.span import UNKNOWN, Span
 from tangible_depth.sgm import strips
-from tangible_depth.sgm.census import census
-from tangible_depth.sgm.costs import SHARP, p2_by_grey_step
+from tangible_depth.sgm.census import census, with_levels
+from tangible_depth.sgm.costs import LEVELS, SHARP, p2_by_grey_step
 from tangible_depth.sgm.strips import blank, sweep
 
 
@@ -111,16 +111,28 @@ def test_lanes_in_vectors_of_several_widths_are_as_exact(span):
     assert np.array_equal(out.disparity, plain_disparity(sums, span, 1.08))
 
 
-def test_strips_are_independent_and_hardly_seen(monkeypatch):
+def test_levels_cost_what_they_differ_by_up_to_a_bound():
+    span = Span(0, 0)
+    left = np.tile(np.arange(0, 120, 2, dtype=np.uint8), (9, 1))
+    for darker, cost in ((0, 0), (4, 2), (8, 4), (100, 4)):
+        right = left + np.uint8(darker)  # in the same order: the census sees no difference
+        out = blank(left.shape)
+        codes = with_levels(left), with_levels(right)
+        sweep(codes, left, span, LEVELS.penalties, 1.0, [(0, 9)], out, most_level=LEVELS.most_level)
+        assert (out.sums == 4 * cost).all()
+
+
+@pytest.mark.parametrize("cost", [SHARP, LEVELS])
+def test_strips_are_independent_and_hardly_seen(cost, monkeypatch):
     views, _, _ = step(shape=(300, 160), box=(60, 240, 60, 120))
     left, right = np.asarray(views.left), np.asarray(views.right)
-    codes = census(left), census(right)
+    codes = cost.codes(left), cost.codes(right)
     maps = []
     for rows in (300, 128):
         monkeypatch.setattr(strips, "ROWS", rows)
         out = blank(left.shape)
         for each in strips.strips(left.shape, Span(0, 31)):
-            sweep(codes, left, Span(0, 31), SHARP.penalties, 1.08, [each], out)
+            sweep(codes, left, Span(0, 31), cost.penalties, 1.08, [each], out, most_level=cost.most_level)
         maps.append(out.disparity.astype(int))
     near = [y for y in range(300) if min(abs(y - 128), abs(y - 256)) <= 8]
     assert np.mean(np.abs(maps[0] - maps[1])[near] > 16) <= 0.005

@@ -22,13 +22,11 @@ from tangible_core.servo.ring import shared_folder
 from tangible_core.session import run_simulated
 from tangible_core.testing.loop_devices import Circling, Failing
 
-pytestmark = pytest.mark.usefixtures("own_memory")
+pytestmark = pytest.mark.usefixtures("own_memory", "patient")
 
 AT_ONCE = Safety(ramp_s=0, stale_s=1.0)  # a late tick takes no force away
 FRAME = TICK_COLUMNS.index("frame")
 DEVICES = [Circling(z_m=0.008), Circling(z_m=0.008, exchanges=True), Failing(fault="none")]
-
-pytestmark = pytest.mark.usefixtures("patient")
 
 
 def until(condition, seconds: float = 60.0) -> None:

@@ -11,7 +11,7 @@ from tangible_core.data import NO_FORCE, Force, HapticState, HapticSurface, Mate
 from tangible_core.plugins.interfaces import Touch
 from tangible_core.synthetic.reliefs import cliff, cone, waves
 from tangible_core.synthetic.scenes import KnownSurface, plane, ramp, sphere_cap
-from tangible_render.contact import closest
+from tangible_render.contact import closest, contact
 from tangible_render.proxy import Proxy
 from tangible_render.surface import spline
 from tangible_render.surface.coefficients import spline_surface
@@ -137,6 +137,18 @@ class TestAccuracy:
             read = read if i > 10 else 0
             place = cast(Any, closest.settle)(*shape, *place[:2], *hand, 0.0, 0.0, 0.0)
         assert read <= 2.1 * (len(path) - 11)
+
+    def test_a_hand_under_all_of_a_tile_is_in_without_a_reading(self, monkeypatch: pytest.MonkeyPatch):
+        known = waves()
+        path = stroke(known, 4, 0.0008)
+        felt, unsure = (cast(CompiledTouch, Proxy().touch(known.surface)) for _ in range(2))
+        tiles_m = felt.fixed[5].copy()
+        tiles_m[..., 1] = -np.inf
+        unsure.fixed = (*unsure.fixed[:5], tiles_m, *unsure.fixed[6:])
+        assert (felt.path(path) == unsure.path(path)).all()
+        monkeypatch.setattr(contact, "height", None)
+        shape, bounds, memory = felt.fixed[:5], felt.fixed[5], np.zeros(contact.REMEMBERED)
+        assert cast(Any, contact.approach)(*shape, bounds, memory, 0.0, 0.0, float(bounds[..., 1].min()) - 1e-6, 0.0)
 
     @pytest.mark.parametrize("depth_m", [0.0002, 0.0008])
     def test_on_waves_at_the_speed_of_a_hand(self, depth_m: float):

@@ -1,6 +1,7 @@
 """The proxy against exact nearest points, and its ways in and out."""
 
 from dataclasses import replace
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -10,7 +11,10 @@ from tangible_core.data import NO_FORCE, Force, HapticState, HapticSurface, Mate
 from tangible_core.plugins.interfaces import Touch
 from tangible_core.synthetic.reliefs import cliff, cone, waves
 from tangible_core.synthetic.scenes import KnownSurface, plane, ramp, sphere_cap
+from tangible_render.contact import closest, contact
 from tangible_render.proxy import Proxy
+from tangible_render.surface import spline
+from tangible_render.surface.coefficients import spline_surface
 
 RNG = np.random.default_rng(23)
 K = 800.0
@@ -108,6 +112,43 @@ class TestAccuracy:
         still = Proxy().touch(surface).path(np.repeat(path, 6, axis=0))[5::6]
         assert (still[:, 2] > 0).all()
         assert np.linalg.norm(Proxy().touch(surface).path(path) - still, axis=1).max() <= K * 1e-9
+
+    def test_on_fine_cells_a_surface_that_is_smooth_is_read_twice_a_tick(self, monkeypatch: pytest.MonkeyPatch):
+        """A step that is long for the cells is the last where it is short for what they show: at most 0.01 um off."""
+        c = ((np.arange(512) + 0.5) / 512 - 0.5) * 0.01
+        wave = 2 * np.pi / 0.02
+        surface = HapticSurface(
+            Relief((0.004 * (1 + np.sin(wave * (c + c[:, None])))).astype(np.float32), (0.01, 0.01))
+        )
+        x = np.arange(-0.004, 0.003, 4e-5)
+        path = np.column_stack([x, -0.7 * x, 0.004 * (1 + np.sin(wave * 1.7 * x)) - 0.0008])
+        still = Proxy().touch(surface).path(np.repeat(path, 20, axis=0))[19::20]
+        assert np.linalg.norm(Proxy().touch(surface).path(path) - still, axis=1)[10:].max() <= K * 1e-8
+        read = 0
+
+        def counted(*arguments: Any) -> Any:
+            nonlocal read
+            read += 1
+            return spline.bend(*arguments)
+
+        monkeypatch.setattr(closest, "bend", counted)
+        shape, place = spline_surface(surface, "never"), tuple(path[0, :2].tolist())
+        for i, hand in enumerate(path.tolist()):
+            read = read if i > 10 else 0
+            place = cast(Any, closest.settle)(*shape, *place[:2], *hand, 0.0, 0.0, 0.0)
+        assert read <= 2.1 * (len(path) - 11)
+
+    def test_a_hand_under_all_of_a_tile_is_in_without_a_reading(self, monkeypatch: pytest.MonkeyPatch):
+        known = waves()
+        path = stroke(known, 4, 0.0008)
+        felt, unsure = (cast(CompiledTouch, Proxy().touch(known.surface)) for _ in range(2))
+        tiles_m = felt.fixed[5].copy()
+        tiles_m[..., 1] = -np.inf
+        unsure.fixed = (*unsure.fixed[:5], tiles_m, *unsure.fixed[6:])
+        assert (felt.path(path) == unsure.path(path)).all()
+        monkeypatch.setattr(contact, "height", None)
+        shape, bounds, memory = felt.fixed[:5], felt.fixed[5], np.zeros(contact.REMEMBERED)
+        assert cast(Any, contact.approach)(*shape, bounds, memory, 0.0, 0.0, float(bounds[..., 1].min()) - 1e-6, 0.0)
 
     @pytest.mark.parametrize("depth_m", [0.0002, 0.0008])
     def test_on_waves_at_the_speed_of_a_hand(self, depth_m: float):

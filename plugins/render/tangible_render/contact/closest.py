@@ -19,8 +19,10 @@ STEP_M = 2.5e-4
 """No step is longer."""
 BACK_OFFS, BACK_OFF = 3, 0.35
 """A step that brings the proxy no nearer is shortened so often at most, and by this factor."""
-NEAR_CELLS = 1 / 128
-"""A Newton step shorter than this is the last, and the spline is not read again: its Taylor series is followed."""
+NEAR_CELLS, NEAR_M, NEAR_FINE_CELLS = 1 / 128, 2e-6, 1 / 8
+"""A Newton step shorter than 1/128 of a cell is the last, and the spline is not read again: its Taylor series is
+followed. On cells finer than 256 um a step of up to 2 um is, but of no more than 1/8 of a cell: a step that is long for
+them is still short for what they show."""
 STEEP = 0.1
 """Newton's matrix is used where its determinant is over this part of the one without curvature (Gauss-Newton)."""
 
@@ -46,7 +48,8 @@ def settle(
     With friction the proxy stays where it is while the force is within the static cone (the dynamic one if it slides
     already), and otherwise goes on until the force is on the dynamic cone.
     """
-    half, near_m = (0.5 * width_m, 0.5 * length_m), NEAR_CELLS / max(across_per_m, down_per_m)
+    half, cell_m = (0.5 * width_m, 0.5 * length_m), 1.0 / max(across_per_m, down_per_m)
+    near_m = max(NEAR_CELLS * cell_m, min(NEAR_M, NEAR_FINE_CELLS * cell_m))
     bent = bend(coefficients, across_per_m, down_per_m, px, py)
     if static_friction > 0.0:
         along, normal = _parts(bent, x - px, y - py, z - bent[0])

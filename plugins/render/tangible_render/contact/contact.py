@@ -53,8 +53,8 @@ def approach(coefficients, width_m, length_m, across_per_m, down_per_m, tiles_m,
     memory[7] = FREE
     if z >= tiles_m[row, column, 0]:
         return False
-    depth = height(coefficients, across_per_m, down_per_m, x, y) - z
-    if not depth > 0.0:
+    within = z < tiles_m[row, column, 1]
+    if not (within or height(coefficients, across_per_m, down_per_m, x, y) > z):
         return False
     memory[7] = TOUCHING
     leap = (x - was_x) ** 2 + (y - was_y) ** 2 + (z - was_z) ** 2 > LEAP_M * LEAP_M
@@ -63,8 +63,11 @@ def approach(coefficients, width_m, length_m, across_per_m, down_per_m, tiles_m,
             py = y
         else:
             px = x
-    stretch = (x - px) ** 2 + (y - py) ** 2
-    if phase == LOST or leap or (phase != FREE and stretch > max(STRETCH_M * STRETCH_M, depth * depth)):
+    far = phase != FREE and (x - px) ** 2 + (y - py) ** 2 > STRETCH_M * STRETCH_M
+    if far:
+        depth = height(coefficients, across_per_m, down_per_m, x, y) - z
+        far = (x - px) ** 2 + (y - py) ** 2 > depth * depth
+    if phase == LOST or leap or far:
         px, py = x, y
     elif phase == FREE:
         px, py = _entry(coefficients, across_per_m, down_per_m, was_x, was_y, was_z, x, y, z)

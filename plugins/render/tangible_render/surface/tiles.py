@@ -8,11 +8,11 @@ from jaxtyping import Float32
 
 from .coefficients import BORDER
 
-TILE_CELLS, MOST_TILES = 16, 64
+TILE_CELLS, MOST_TILES = 16, 256
 
 
 def tile_bounds(coefficients: Float32[np.ndarray, "h4 w4"]) -> Float32[np.ndarray, "r c 2"]:
-    """An upper and a lower bound of the surface over each of r x c equal tiles: of 16 cells, or 64 tiles a side.
+    """An upper and a lower bound of the surface over each of r x c equal tiles: of 16 cells, or 256 tiles a side.
 
     A B-spline lies nowhere over the greatest of the 4 x 4 coefficients that it is made of, nor under the least: its
     weights are positive and sum to 1. Where the two bounds of a tile are equal, the surface is level there.

@@ -62,25 +62,30 @@ def pixel_labels(
 @njit(cache=True, nogil=True)
 def _fill(logs, cell_px, start, stop, labels, confidence):
     classes, rows, columns = logs.shape
-    between = np.empty((columns, classes), np.float32)
+    width = labels.shape[1]
+    between, wide = np.empty(columns, np.float32), np.empty(width)
+    best, second, at = np.empty(width), np.empty(width), np.empty(width, np.int32)
+    left, right = np.empty(width, np.int64), np.empty(width)
+    for column in range(width):
+        left[column], right[column] = _place(column, cell_px, columns)
     for row in range(start, stop):
         above, down = _place(row, cell_px, rows)
         below = min(above + 1, rows - 1)
+        best[:], second[:], at[:] = -np.inf, -np.inf, 0
         for k in range(classes):
             for cell in range(columns):
-                between[cell, k] = logs[k, above, cell] + down * (logs[k, below, cell] - logs[k, above, cell])
-        for column in range(labels.shape[1]):
-            left, right = _place(column, cell_px, columns)
-            one, other = between[left], between[min(left + 1, columns - 1)]
-            best, second, at = np.float32(-np.inf), np.float32(-np.inf), 0
-            for k in range(classes):
-                value = one[k] + right * (other[k] - one[k])
-                if value > best:
-                    best, second, at = value, best, k
-                elif value > second:
-                    second = value
-            labels[row, column] = at
-            confidence[row, column] = np.float32(1) - exponential(second - best)
+                between[cell] = logs[k, above, cell] + down * (logs[k, below, cell] - logs[k, above, cell])
+            for column in range(width):
+                one, other = between[left[column]], between[min(left[column] + 1, columns - 1)]
+                wide[column] = one + right[column] * (other - one)
+            for column in range(width):
+                value, most = wide[column], best[column]
+                second[column] = max(second[column], min(value, most))
+                at[column] = k if value > most else at[column]
+                best[column] = max(value, most)
+        for column in range(width):
+            labels[row, column] = at[column]
+            confidence[row, column] = np.float32(1) - exponential(second[column] - best[column])
 
 
 @njit(cache=True, nogil=True)

@@ -78,18 +78,26 @@ _SECOND: UInt64[np.ndarray, "256"] = np.array([_agreements_of(code) for code in 
 def _count(grey, radius, start, stop, shape, first_words, second_words, planes):
     """Fill the rows of cells from start to stop; grey is framed by `radius` pixels."""
     height, width = shape
-    codes = np.empty(width, np.uint8)
+    codes, shares = np.empty(width, np.uint8), np.empty(planes.shape[2], np.float32)
     for cell_row in range(start, stop):
         first, second = np.zeros(planes.shape[2], np.uint64), np.zeros(planes.shape[2], np.uint64)
         end = min((cell_row + 1) * CELL_PX, height)
         for row in range(cell_row * CELL_PX, end):
             _codes(grey, row, radius, codes)
-            for column in range(width):
-                first[column // CELL_PX] += first_words[codes[column]]
-                second[column // CELL_PX] += second_words[codes[column]]
+            whole = width // CELL_PX
+            for cell in range(whole):  # the cell's own sum in registers: each word is written once a row
+                one, other = first[cell], second[cell]
+                for column in range(cell * CELL_PX, (cell + 1) * CELL_PX):
+                    one += first_words[codes[column]]
+                    other += second_words[codes[column]]
+                first[cell], second[cell] = one, other
+            for column in range(whole * CELL_PX, width):
+                first[whole] += first_words[codes[column]]
+                second[whole] += second_words[codes[column]]
+        tall = end - cell_row * CELL_PX
         for cell in range(planes.shape[2]):
-            pixels = (end - cell_row * CELL_PX) * (min((cell + 1) * CELL_PX, width) - cell * CELL_PX)
-            _unpack(first[cell], second[cell], np.float32(1 / pixels), planes[:, cell_row, cell])
+            shares[cell] = 1 / (tall * (min((cell + 1) * CELL_PX, width) - cell * CELL_PX))
+        _unpack(first, second, shares, planes[:, cell_row])
 
 
 @njit(cache=True, nogil=True)
@@ -114,10 +122,15 @@ def _codes(grey, row, radius, codes):
 
 
 @njit(cache=True, nogil=True)
-def _unpack(first, second, share, counters):
+def _unpack(first, second, shares, counters):
+    """Counter after counter, as their planes lie far apart."""
     for i in range(CLASSES):
-        counters[i] = np.float32((first >> np.uint64(5 * i)) & np.uint64(31)) * share
+        for cell in range(shares.size):
+            counters[i, cell] = np.float32((first[cell] >> np.uint64(5 * i)) & np.uint64(31)) * shares[cell]
     for i in range(8):
-        counters[CLASSES + i] = np.float32((second >> np.uint64(5 * i)) & np.uint64(31)) * share
+        for cell in range(shares.size):
+            counters[CLASSES + i, cell] = np.float32((second[cell] >> np.uint64(5 * i)) & np.uint64(31)) * shares[cell]
     for i in range(4):
-        counters[CLASSES + 8 + i] = np.float32((second >> np.uint64(40 + 6 * i)) & np.uint64(63)) * share / 2
+        for cell in range(shares.size):
+            both = np.float32((second[cell] >> np.uint64(40 + 6 * i)) & np.uint64(63))
+            counters[CLASSES + 8 + i, cell] = both * shares[cell] / 2

@@ -9,6 +9,7 @@ from itertools import chain
 
 from . import (
     depth_accuracy,
+    depth_confidence,
     depth_eight_point,
     depth_growth,
     depth_pairs,
@@ -38,7 +39,15 @@ def section() -> str:
     robustness, by_damage = part("damaged pairs", depth_robustness.measured)
     growth, sizes = part("growth", depth_growth.measured)
     skipped = part("what is left out", depth_skips.rows)
-    single = (depth_pandora, depth_range, depth_unrectified, depth_raw, depth_eight_point, depth_start)
+    single = (
+        depth_confidence,
+        depth_pandora,
+        depth_range,
+        depth_unrectified,
+        depth_raw,
+        depth_eight_point,
+        depth_start,
+    )
     others = [part(each.__name__.removeprefix("benchmarks."), each.figures) for each in single]
     figures = [*accuracy, *robustness, *chain.from_iterable(others), *growth]
     wrapper = part("wrapper", depth_accuracy.share_of_wrapper)

@@ -9,7 +9,7 @@ import numpy as np
 from ..data import DisparityMap, Views
 from ..datasets import MarkedPair
 from ..errors import PictureError
-from ..metrics import benchmark_errors, disparity_errors
+from ..metrics import benchmark_errors, disparity_errors, sparsification_errors
 from ..plugins.interfaces import DepthEstimator
 from ..scene.geometry import fill_rows
 from ..synthetic.stereo_scenes import KnownPair
@@ -37,6 +37,8 @@ def estimate(method: DepthEstimator, pair: Pair) -> DisparityMap:
 def measure(found: DisparityMap, pair: Pair) -> dict[str, float]:
     """Errors over all pixels with truth, and (`_noc`) over those of them that the right view shows too.
 
+    And how well the confidence sorts wrong pixels from right ones.
+
     Of a pair of a standard set, what its benchmark measures besides; nothing of one without truth.
     Raises: PictureError if the disparity is relative: it has no unit to compare.
     """
@@ -46,7 +48,8 @@ def measure(found: DisparityMap, pair: Pair) -> dict[str, float]:
         return _as_benchmarks_do(found.disparity_px, pair)
     everywhere = disparity_errors(found.disparity_px, pair.truth_px)
     both = disparity_errors(found.disparity_px, np.where(pair.visible, pair.truth_px, np.float32(np.nan)))
-    return everywhere | {f"{name}{NOC}": value for name, value in both.items()}
+    sorted_out = sparsification_errors(found.disparity_px, found.confidence, pair.truth_px)
+    return everywhere | {f"{name}{NOC}": value for name, value in both.items()} | sorted_out
 
 
 def _as_benchmarks_do(disparity_px: np.ndarray, pair: MarkedPair) -> dict[str, float]:
@@ -141,7 +144,11 @@ def _measures() -> dict[str, Measure]:
         "rms_px": Measure("rms px", 3, tolerance=0.0005),
         "density": Measure("density %", 1, "high"),
     }
-    return _with_noc(errors) | _with_noc(_of_benchmarks() | _at_full_size(errors | _of_benchmarks()))
+    sorted_out = {
+        "ausc": Measure("sparsification %", 3, tolerance=0.0005),
+        "ausc_by_oracle": Measure("sparsification / oracle"),
+    }
+    return _with_noc(errors) | sorted_out | _with_noc(_of_benchmarks() | _at_full_size(errors | _of_benchmarks()))
 
 
 def _of_benchmarks() -> dict[str, Measure]:
@@ -165,13 +172,13 @@ def _with_noc(measures: Mapping[str, Measure]) -> dict[str, Measure]:
 
 TASK = Task(
     kind="depth",
-    version=1,
+    version=2,
     scene=DepthScene,
     work=estimate,
     measure=measure,
     measures=_measures(),
     columns=("bad2", "bad2_noc", "bad1", "average_px", "density"),
-    plotted=("bad2", "bad2_noc"),
+    plotted=("bad2", "bad2_noc", "ausc"),
     perturbations=PERTURBATIONS,
     given={"max_disparity_px": range_px},
     finishes={"fill": fill},

@@ -11,6 +11,8 @@ from .forces import force_steps as force_steps
 from .forces import loop_works as loop_works
 from .forces import proxy_lag as proxy_lag
 from .segments import segment_errors as segment_errors
+from .sparsification import sparsification_curve as sparsification_curve
+from .sparsification import sparsification_errors as sparsification_errors
 from .stability import HANDLE as HANDLE
 from .stability import Handle as Handle
 from .stability import stiffness_limit as stiffness_limit

@@ -43,6 +43,7 @@ def test_a_row_says_everything(registry: Registry, tmp_path: Path):
     assert row.error is None
     assert row.seconds is not None and row.seconds > 0
     assert row.measures["density"] == 100
+    assert row.measures["ausc"] == pytest.approx(row.measures["bad2"])  # one confidence everywhere says nothing
     assert row.versions["fakes"] == "1.0" and row.versions["numpy"] and row.versions["python"]
     assert row.machine["cores"]
     assert list(read_rows(tmp_path / "r.jsonl").values()) == [row]

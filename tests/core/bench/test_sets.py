@@ -237,7 +237,7 @@ def test_headings_say_of_which_size_the_pixels_are():
 def test_a_table_of_details_has_what_benchmarks_measure_of_their_own_scenes_alone():
     old = tables(results(row("m", "planes 64x32", bad2=1.0)), detail=True)[1]
     assert old.headings[4:] == tuple(each.title for each in TASK.measures.values() if not each.of_sets)
-    assert len(old.headings) == 18 and "A90 px" not in old.headings
+    assert len(old.headings) == 20 and "A90 px" not in old.headings
     new = tables(results(row("m", "kitti-2015/a", bad2=1.0, d1=2.0)), detail=True)[1]
     assert new.headings[-1] == "D1-all %"
 

@@ -1,0 +1,56 @@
+"""What is left of the wrong pixels as the least confident ones are removed."""
+
+import numpy as np
+import pytest
+
+from tangible_core.errors import PictureError
+from tangible_core.metrics import disparity_errors, sparsification_curve, sparsification_errors
+
+NAN = np.nan
+
+
+def test_a_curve_worked_out_by_hand():
+    wrong = np.array([True, False, True, False])
+    curve = sparsification_curve(np.array([0.1, 0.9, 0.5, 0.3]), wrong)
+    np.testing.assert_allclose(curve, [0, 1 / 2, 1 / 3, 1 / 2])
+
+
+def test_pixels_of_one_confidence_count_as_in_all_orders_at_once():
+    """Of the three at .5, one is wrong: a third of a wrong pixel comes with each."""
+    wrong = np.array([False, True, False, False])
+    curve = sparsification_curve(np.array([0.9, 0.5, 0.5, 0.5]), wrong)
+    np.testing.assert_allclose(curve, [0, (1 / 3) / 2, (2 / 3) / 3, 1 / 4])
+
+
+def test_areas_of_the_best_of_the_worst_and_of_no_order():
+    """Four pixels, one of them 3 px off: only the whole map has it in the best order, every part in the worst."""
+    truth, found = np.zeros((2, 2), np.float32), np.float32([[0, 3], [1, 2]])
+    best = sparsification_errors(found, np.float32([[1, 0], [1, 1]]), truth)
+    worst = sparsification_errors(found, np.float32([[0, 1], [0, 0]]), truth)
+    none = sparsification_errors(found, np.ones((2, 2), np.float32), truth)
+    quarter = 100 * (1 / 4) / 4
+    assert best == pytest.approx({"ausc": quarter, "ausc_by_oracle": 1})
+    area = 100 * (1 + 1 / 2 + 1 / 3 + 1 / 4) / 4
+    assert worst == pytest.approx({"ausc": area, "ausc_by_oracle": area / quarter})
+    assert none["ausc"] == pytest.approx(disparity_errors(found, truth)["bad2"])
+
+
+def test_a_missing_estimate_is_wrong_and_least_confident_and_what_has_no_truth_is_left_out():
+    found = np.float32([[0, NAN, 9, 0]])
+    truth = np.float32([[0, 0, NAN, 0]])
+    figures = sparsification_errors(found, np.float32([[0.1, 1, 1, 0]]), truth)
+    assert figures == pytest.approx({"ausc": 100 * (1 / 3) / 3, "ausc_by_oracle": 1})
+
+
+def test_nothing_wrong_has_an_area_of_zero_and_nothing_known_has_none():
+    zero, sure = np.zeros((2, 2), np.float32), np.ones((2, 2), np.float32)
+    right = sparsification_errors(zero, sure, zero)
+    assert right["ausc"] == 0
+    assert np.isnan(right["ausc_by_oracle"])
+    assert all(np.isnan(value) for value in sparsification_errors(zero, sure, np.full((2, 2), NAN)).values())
+
+
+@pytest.mark.usefixtures("unchecked_shapes")
+def test_sizes_must_agree():
+    with pytest.raises(PictureError, match=r"\(2, 2\) and its truth \(2, 3\)"):
+        sparsification_errors(np.ones((2, 2)), np.ones((2, 2)), np.ones((2, 3)))

@@ -21,7 +21,7 @@ from .edges import MEDIAN_REACH, VOTERS, median, sharpen_edges
 from .eight_sides import fill_from_eight_sides
 from .filling import fill
 from .span import UNKNOWN
-from .speckles import remove_speckles
+from .speckles import ISLAND_PX, remove_speckles
 
 SAME_SURFACE = 16
 """Sixteenths of a pixel that two neighbours of a small map may differ by and still be blended when it is enlarged."""
@@ -39,7 +39,7 @@ class Cleaning(NamedTuple):
 
     sharpen: bool = True
     """Edges are sharpened; a map that will be enlarged is sharpened then."""
-    largest_speck_px: int = 60
+    largest_speck_px: int = ISLAND_PX
     """Islands up to here are errors."""
     eight_sides: bool = False
     """Gaps are filled from eight sides in place of four."""

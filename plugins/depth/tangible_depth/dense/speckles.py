@@ -14,8 +14,11 @@ from tangible_core.compiled.threads import in_blocks
 
 from .span import UNKNOWN
 
+ISLAND_PX = 60
+"""Islands up to here are errors, where nothing else is said."""
 
-def remove_speckles(disparity: Int16[np.ndarray, "h w"], largest_px: int = 60, step: int = 16) -> int:
+
+def remove_speckles(disparity: Int16[np.ndarray, "h w"], largest_px: int, step: int = 16) -> int:
     """Make islands UNKNOWN, in place, and return how many pixels that were.
 
     An island is a region of at most `largest_px` pixels in which 4-neighbours differ by at most `step` sixteenths of a

@@ -16,13 +16,13 @@ import numpy as np
 from tangible_core.plugins.notes import note
 
 from ..dense.span import UNKNOWN, Span
-from ..dense.speckles import remove_speckles
+from ..dense.speckles import ISLAND_PX, remove_speckles
 from ..search.bands import match_bands
 from ..search.pairs import Pair
 from ..search.row_offset import CELL_PX, LEAST_ROW_OFFSET_PX, realigned, row_offset
 from ..sgm.costs import HEAVY, LIGHT, SHARP, Cost
 from ..sgm.strips import StripMatches, blank, sweep
-from .efforts import ISLAND_PX, Effort
+from .efforts import Effort
 
 log = logging.getLogger(__name__)
 NOISE = 0.20
@@ -139,7 +139,7 @@ class _Trial:
         return _Health(specks / found, bits / (4 * self.cost.bits * max(1, found - specks)))
 
     def levels_apart(self, rows: Rows) -> float:
-        """Share of the matches in these rows whose levels differ by all that counts; 0 of a cost without levels."""
+        """Share of the matches in these rows whose levels differ by all that counts; of a cost that has levels."""
         apart = found = 0
         for y in (y for a, b in rows for y in range(a, b, EVERY_ROW)):
             (x,) = np.nonzero(self.out.disparity[y] != UNKNOWN)
@@ -147,7 +147,7 @@ class _Trial:
             apart_here = np.abs((self.pair.left[y, x] >> 1).astype(np.int16) - (self.pair.right[y, there] >> 1))
             apart += np.count_nonzero(apart_here >= self.cost.most_level)
             found += len(x)
-        return apart / max(1, found) if self.cost.most_level else 0.0
+        return apart / max(1, found)
 
 
 def _probes(rows: Rows) -> tuple[Rows, Rows]:

@@ -2,10 +2,9 @@
 
 from typing import NamedTuple
 
+from ..dense.speckles import ISLAND_PX
 from ..sgm.costs import LEVELS, SHARP, Cost
 from ..sgm.strips import WARM_ROWS
-
-ISLAND_PX = 60
 
 
 class Effort(NamedTuple):

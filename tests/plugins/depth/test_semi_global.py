@@ -13,6 +13,8 @@ from tangible_core.data import Views
 from tangible_core.errors import PictureError
 from tangible_core.plugins.notes import collected
 from tangible_core.synthetic.stereo_scenes import synthetic_pair
+from tangible_depth.dense import refinement
+from tangible_depth.dense.filling import fill
 from tangible_depth.semi_global import SemiGlobal
 
 
@@ -200,6 +202,14 @@ def test_the_best_effort_pays():
             disparity_px = SemiGlobal.model_validate({"effort": effort}).estimate(pair.views).disparity_px
             found.append(1 - share_within(disparity_px, pair.truth_px, 2.0))
     assert np.mean(wrong["best"]) < 0.95 * np.mean(wrong["balanced"])
+
+
+@pytest.mark.parametrize(("effort", "times"), [("balanced", 0), ("best", 1)])
+def test_the_best_effort_alone_fills_from_eight_sides(effort, times, monkeypatch):
+    filled = []
+    monkeypatch.setattr(refinement, "fill_from_eight_sides", lambda *each: filled.append(each) or fill(*each))
+    SemiGlobal(max_disparity_px=32, effort=effort).estimate(step()[0])
+    assert len(filled) == times
 
 
 @pytest.mark.parametrize(("across", "down"), [(0.05, 0.0), (-0.04, 0.06)])

@@ -41,7 +41,8 @@ class Scratch(NamedTuple):
     codes: UInt8[np.ndarray, "planes w+n-1"]
     best: Int32[np.ndarray, "w"]
     right_sums: UInt8[np.ndarray, "w+n"]
-    beside: UInt8[np.ndarray, "3 w"]
+    beside: UInt8[np.ndarray, "2 w"]
+    confirmed: UInt8[np.ndarray, "w"]
 
 
 def scratch(rows: int, w: int, n: int, planes: int) -> Scratch:
@@ -55,7 +56,8 @@ def scratch(rows: int, w: int, n: int, planes: int) -> Scratch:
         np.empty((planes, w + n - 1), np.uint8),
         np.empty(w, np.int32),
         np.empty(w + n, np.uint8),
-        np.empty((3, w), np.uint8),
+        np.empty((2, w), np.uint8),
+        np.empty(w, np.uint8),
     )
 
 
@@ -70,41 +72,42 @@ def _begin(paths, path_lowest):
 
 
 @inner()
-def _decide(lanes, total, path, finals, best, sums, right_sums):
-    """Add the last path; the best lane and its sum for each left pixel, the best sum for each right pixel."""
+def _decide(lanes, total, path, finals, best, beside, sums, right_sums):
+    """Add the last path; the best lane, its sum and those beside it for each left pixel, the best sum for each right.
+
+    finals: scratch, of n at least; what is beside is looked up at once, while it is near the processor.
+    """
     n = width(lanes)
     w = best.size
     wall = splat(lanes, uint8(255))
     seen = wall  # lowest sums so far of the n right pixels that the left pixels still to come can see
     for x in range(w):
         sum_here = saturating_add(load(lanes, total, x * n), load(lanes, path, x * n))
-        store(finals, x * n, sum_here)
+        store(finals, 0, sum_here)
         seen = minimum(seen, sum_here)
         right_sums[x] = first_lane(seen)
         seen = shift_down(seen, wall)
         sums[x] = lowest(sum_here)
-        best[x] = first_equal(sum_here, sums[x])
+        k = best[x] = first_equal(sum_here, sums[x])  # never negative: of a uint64 numba need not ask
+        beside[0, x], beside[1, x] = finals[uint64(max(k - 1, 0))], finals[uint64(min(k + 1, n - 1))]
     for i in range(n - 1):
         right_sums[w + i] = first_lane(seen)
         seen = shift_down(seen, wall)
 
 
 @inner()
-def _accept(n, span, total, best, sums, right_sums, most, check_tolerance, beside, disparity):
+def _accept(span, best, beside, sums, right_sums, confirmed, most, check_tolerance, disparity):
     """Disparities that pass the left-right check: no left pixel fits the right pixel better by more than a factor.
 
     A pixel whose neighbouring disparities fit as well as the best one says nothing and is not accepted. Written without
     branches, because what is accepted no processor can guess; what lies scattered is gathered first, so that the rest
-    is plain vector code. beside: scratch.
+    is plain vector code. confirmed: scratch.
     """
     for i in range(most.size):
         right_sums[i] &= most[i]  # what lies beyond the picture confirms nothing
-    befores, afters, confirmed = beside
     for x in range(best.size):
-        k = best[x]  # no index is ever negative: of a uint64 numba need not ask
-        befores[x] = total[uint64(x * n + max(k - 1, 0))]
-        afters[x] = total[uint64(x * n + min(k + 1, n - 1))]
-        confirmed[x] = right_sums[uint64(x + k)]
+        confirmed[x] = right_sums[uint64(x + best[x])]
+    befores, afters = beside
     last = np.int32(span.high - span.low)
     high = np.int32(span.high)
     for x in range(best.size):
@@ -148,7 +151,7 @@ def sweep_strip(
     """
     h, w = grey.shape
     y0, y1 = rows
-    total, paths, path_lowest, costs, p2, codes, best, right_sums, beside = scratch
+    total, paths, path_lowest, costs, p2, codes, best, right_sums, beside, confirmed = scratch
     p1, p2_across = penalties.p1, p2[2]
     _begin(paths, path_lowest)
     for y in range(max(0, y0 - warm), y1):
@@ -164,13 +167,13 @@ def sweep_strip(
             lower = costs[1], p2[1], paths[1], total[i + 1]
             sideways(lanes, p1, upper, lower)
     _begin(paths, path_lowest)
-    path, finals, n = paths[0], costs[0], width(lanes)
+    path, finals = paths[0], costs[1]
     last = min(h, y1 + warm)
     for i in range(last - y0):
         y = last - 1 - i
         _shifted(right[y], w, span.high, codes)
         jumps(penalties, grey[y], grey[min(y + 1, h - 1)], p2_across)
-        vertical(lanes, left[y], codes, limits, p1, p2_across, path, path, path_lowest, finals)
+        vertical(lanes, left[y], codes, limits, p1, p2_across, path, path, path_lowest, costs[0])
         if y < y1:
-            _decide(lanes, total[y - y0], path, finals, best, sums[y], right_sums)
-            _accept(n, span, finals, best, sums[y], right_sums, limits.most, check_tolerance, beside, disparity[y])
+            _decide(lanes, total[y - y0], path, finals, best, beside, sums[y], right_sums)
+            _accept(span, best, beside, sums[y], right_sums, confirmed, limits.most, check_tolerance, disparity[y])

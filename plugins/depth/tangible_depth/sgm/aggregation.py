@@ -16,8 +16,8 @@ codes[x], a row of w + n - 1 codes of which codes[i] is the right view's column 
 from typing import NamedTuple
 
 import numpy as np
-from jaxtyping import Int64, UInt8
-from numba import njit, uint8
+from jaxtyping import Int32, UInt8
+from numba import njit, uint8, uint64
 
 from tangible_core.compiled.compiling import KERNEL, inner
 
@@ -25,7 +25,7 @@ from ..dense.span import UNKNOWN
 from ..dense.subpixel import equiangular
 from ..simd.lane_reductions import first_equal, first_lane, lowest
 from ..simd.lanes import load, minimum, saturating_add, shift_down, splat, store, width
-from .paths import sideways, vertical
+from .paths import jumps, jumps_along, sideways, vertical
 
 WORST = np.uint8(255)
 
@@ -34,83 +34,108 @@ class Scratch(NamedTuple):
     """What one sweep at a time writes on."""
 
     total: UInt8[np.ndarray, "rows w*n"]
-    path: UInt8[np.ndarray, "w*n"]
+    paths: UInt8[np.ndarray, "2 w*n"]
     path_lowest: UInt8[np.ndarray, "w"]
-    costs: UInt8[np.ndarray, "w*n"]
+    costs: UInt8[np.ndarray, "2 w*n"]
+    p2: UInt8[np.ndarray, "3 w+1"]
     codes: UInt8[np.ndarray, "planes w+n-1"]
-    best: Int64[np.ndarray, "w"]
+    best: Int32[np.ndarray, "w"]
     right_sums: UInt8[np.ndarray, "w+n"]
+    beside: UInt8[np.ndarray, "2 w"]
+    confirmed: UInt8[np.ndarray, "w"]
 
 
 def scratch(rows: int, w: int, n: int, planes: int) -> Scratch:
     """For strips of at most so many rows of w columns and n lanes, and codes of so many planes."""
     return Scratch(
-        np.empty((rows, w * n), np.uint8),
-        np.empty(w * n, np.uint8),
+        np.empty((rows + rows % 2, w * n), np.uint8),
+        np.empty((2, w * n), np.uint8),
         np.empty(w, np.uint8),
-        np.empty(w * n, np.uint8),
+        np.empty((2, w * n), np.uint8),
+        np.empty((3, w + 1), np.uint8),
         np.empty((planes, w + n - 1), np.uint8),
-        np.empty(w, np.int64),
+        np.empty(w, np.int32),
         np.empty(w + n, np.uint8),
+        np.empty((2, w), np.uint8),
+        np.empty(w, np.uint8),
     )
 
 
 @inner()
-def _begin(path, path_lowest):
+def _begin(paths, path_lowest):
     """A path that nothing has been paid for."""
-    for i in range(path.size):
-        path[i] = 0
+    for path in paths:
+        for i in range(path.size):
+            path[i] = 0
     for i in range(path_lowest.size):
         path_lowest[i] = 0
 
 
 @inner()
-def _decide(lanes, total, path, finals, best, sums, right_sums):
-    """Add the last path; the best lane and its sum for each left pixel, the best sum for each right pixel."""
+def _decide(lanes, total, path, finals, best, beside, sums, right_sums):
+    """Add the last path; the best lane, its sum and those beside it for each left pixel, the best sum for each right.
+
+    finals: scratch, of n at least; what is beside is looked up at once, while it is near the processor.
+    """
     n = width(lanes)
     w = best.size
     wall = splat(lanes, uint8(255))
     seen = wall  # lowest sums so far of the n right pixels that the left pixels still to come can see
     for x in range(w):
         sum_here = saturating_add(load(lanes, total, x * n), load(lanes, path, x * n))
-        store(finals, x * n, sum_here)
+        store(finals, 0, sum_here)
         seen = minimum(seen, sum_here)
         right_sums[x] = first_lane(seen)
         seen = shift_down(seen, wall)
         sums[x] = lowest(sum_here)
-        best[x] = first_equal(sum_here, sums[x])
+        k = best[x] = first_equal(sum_here, sums[x])  # never negative: of a uint64 numba need not ask
+        beside[0, x], beside[1, x] = finals[uint64(max(k - 1, 0))], finals[uint64(min(k + 1, n - 1))]
     for i in range(n - 1):
         right_sums[w + i] = first_lane(seen)
         seen = shift_down(seen, wall)
 
 
 @inner()
-def _accept(n, span, total, best, sums, right_sums, most, check_tolerance, disparity):
+def _accept(span, best, beside, sums, right_sums, confirmed, most, check_tolerance, disparity):
     """Disparities that pass the left-right check: no left pixel fits the right pixel better by more than a factor.
 
     A pixel whose neighbouring disparities fit as well as the best one says nothing and is not accepted. Written without
-    branches, because what is accepted no processor can guess.
+    branches, because what is accepted no processor can guess; what lies scattered is gathered first, so that the rest
+    is plain vector code. confirmed: scratch.
     """
-    count = span.high - span.low + 1
+    for i in range(most.size):
+        right_sums[i] &= most[i]  # what lies beyond the picture confirms nothing
     for x in range(best.size):
-        k = best[x]
-        at = np.float32(sums[x])
-        before = np.float32(total[x * n + max(k - 1, 0)])
-        after = np.float32(total[x * n + min(k + 1, n - 1)])
-        inner = (k > 0) & (k < count - 1)
-        flat = inner & (before == at) & (after == at)
-        fits = (most[x + k] != 0) & (at < WORST) & (at <= check_tolerance * np.float32(right_sums[x + k]))
+        confirmed[x] = right_sums[uint64(x + best[x])]
+    befores, afters = beside
+    last = np.int32(span.high - span.low)
+    high = np.int32(span.high)
+    for x in range(best.size):
+        k = np.int32(best[x])
+        at, before, after = np.float32(sums[x]), np.float32(befores[x]), np.float32(afters[x])
+        inner = (k > 0) & (k < last)
+        flat = inner & (befores[x] == sums[x]) & (afters[x] == sums[x])
+        fits = (sums[x] < WORST) & (at <= check_tolerance * np.float32(confirmed[x]))
         offset = equiangular(before, at, after) if inner else np.float32(0)
-        sixteenths = np.int16(np.floor(16 * (np.float32(span.high - k) - offset) + np.float32(0.5)))
+        sixteenths = np.int16(np.floor(np.float32(16) * (np.float32(high - k) - offset) + np.float32(0.5)))
         disparity[x] = sixteenths if fits & (not flat) else UNKNOWN
 
 
 @inner()
 def _shifted(row, w, top, codes):
     """The right view's codes as the lanes want them; beyond the picture its edge is repeated."""
+    end = codes.shape[1]
+    first = min(max(top, 0), end)
+    last = min(max(w + top, first), end)
     for plane in range(row.shape[0]):
-        for i in range(codes.shape[1]):
-            codes[plane, i] = row[plane, min(max(i - top, 0), w - 1)]
+        seen = row[plane, first - top : last - top]
+        for i in range(first):
+            codes[plane, i] = row[plane, 0]
+        inside = codes[plane, first:last]
+        for i in range(inside.size):
+            inside[i] = seen[i]
+        for i in range(last, end):
+            codes[plane, i] = row[plane, w - 1]
 
 
 @njit(**KERNEL)
@@ -126,21 +151,29 @@ def sweep_strip(
     """
     h, w = grey.shape
     y0, y1 = rows
-    total, path, path_lowest, costs, codes, best, right_sums = scratch
-    _begin(path, path_lowest)
+    total, paths, path_lowest, costs, p2, codes, best, right_sums, beside, confirmed = scratch
+    p1, p2_across = penalties.p1, p2[2]
+    _begin(paths, path_lowest)
     for y in range(max(0, y0 - warm), y1):
+        row = (y - y0) & 1
         _shifted(right[y], w, span.high, codes)
-        above = grey[max(y - 1, 0)]
-        vertical(lanes, left[y], codes, limits, penalties, grey[y], above, path, path_lowest, costs)
+        jumps(penalties, grey[y], grey[max(y - 1, 0)], p2_across)
+        vertical(lanes, left[y], codes, limits, p1, p2_across, paths[1 - row], paths[row], path_lowest, costs[row])
         if y >= y0:
-            sideways(lanes, penalties, grey[y], costs, path, total[y - y0])
-    _begin(path, path_lowest)
+            jumps_along(penalties, grey[y], p2[row])
+        if y >= y0 and (row == 1 or y + 1 == y1):  # the last row of an odd number has a stand-in beside it
+            i = y - row - y0
+            upper = costs[0], p2[0], paths[0], total[i]
+            lower = costs[1], p2[1], paths[1], total[i + 1]
+            sideways(lanes, p1, upper, lower)
+    _begin(paths, path_lowest)
+    path, finals = paths[0], costs[1]
     last = min(h, y1 + warm)
     for i in range(last - y0):
         y = last - 1 - i
         _shifted(right[y], w, span.high, codes)
-        below = grey[min(y + 1, h - 1)]
-        vertical(lanes, left[y], codes, limits, penalties, grey[y], below, path, path_lowest, costs)
+        jumps(penalties, grey[y], grey[min(y + 1, h - 1)], p2_across)
+        vertical(lanes, left[y], codes, limits, p1, p2_across, path, path, path_lowest, costs[0])
         if y < y1:
-            _decide(lanes, total[y - y0], path, costs, best, sums[y], right_sums)
-            _accept(width(lanes), span, costs, best, sums[y], right_sums, limits.most, check_tolerance, disparity[y])
+            _decide(lanes, total[y - y0], path, finals, best, beside, sums[y], right_sums)
+            _accept(span, best, beside, sums[y], right_sums, confirmed, limits.most, check_tolerance, disparity[y])

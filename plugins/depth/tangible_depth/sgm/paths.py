@@ -8,13 +8,25 @@ Every cost, path and sum is a byte a lane; lane k stands for the disparity top -
 from typing import NamedTuple
 
 import numpy as np
-from numba import int64, uint8
+from numba import int64, uint8, uint64
 
 from tangible_core.compiled.compiling import inner
 
 from ..dense.span import Span
 from ..simd.lane_reductions import differences, lowest
-from ..simd.lanes import load, maximum, minimum, saturating_add, shift_down, shift_up, splat, store, subtract, width
+from ..simd.lanes import (
+    add,
+    load,
+    maximum,
+    minimum,
+    saturating_add,
+    shift_down,
+    shift_up,
+    splat,
+    store,
+    subtract,
+    width,
+)
 
 
 class Limits(NamedTuple):
@@ -46,9 +58,10 @@ def _step(lanes, before, before_lowest, cost, p1, p2):
     """One step of a path: stay, move by one disparity or jump to any, then pay the pixel's own cost."""
     wall = splat(lanes, uint8(255))
     moved = saturating_add(minimum(shift_up(before, wall), shift_down(before, wall)), p1)
-    jumped = splat(lanes, uint8(before_lowest + p2))
-    best = minimum(minimum(before, jumped), moved)
-    return saturating_add(cost, subtract(best, splat(lanes, before_lowest)))
+    least = splat(lanes, before_lowest)
+    jumped = add(least, splat(lanes, p2))
+    best = minimum(minimum(before, moved), jumped)
+    return saturating_add(cost, subtract(best, least))
 
 
 @inner()
@@ -59,67 +72,88 @@ def _limited_cost(lanes, left, codes, x, limits):
 
 
 @inner()
-def _grey_step(grey, x, others, z):
-    return abs(int64(grey[x]) - int64(others[z]))
+def jumps(penalties, row, other, p2):
+    """What a jump costs from each pixel of a row to the one beside it in another."""
+    for x in range(row.size):
+        p2[x] = penalties.p2_by_step[uint64(abs(int64(row[x]) - int64(other[x])))]
 
 
 @inner()
-def _columns(lanes, left, codes, limits, barred, columns, penalties, grey, grey_before, path, path_lowest, costs):
-    """The path from the row before, in place; `costs` keeps this row's costs. No limits but `barred`: None."""
+def jumps_along(penalties, row, p2):
+    """What a jump costs from column x - 1 of a row to column x, and at either end."""
+    jumps(penalties, row[1:], row[: row.size - 1], p2[1:])
+    p2[0] = p2[row.size] = penalties.p2_by_step[0]
+
+
+@inner()
+def _columns(lanes, left, codes, limits, barred, columns, p1, p2, before, path, path_lowest, costs):
+    """The path from the row before; `costs` keeps this row's costs. No limits but `barred`: None."""
     n = width(lanes)
-    p1, p2_by_step = splat(lanes, penalties.p1), penalties.p2_by_step
-    never = load(lanes, barred, 0)
+    p1, never = splat(lanes, p1), load(lanes, barred, 0)
     for x in range(columns[0], columns[1]):
         if limits is None:  # known to the compiler: the other branch is not there
             cost = maximum(differences(lanes, left, codes, x), never)
         else:
             cost = _limited_cost(lanes, left, codes, x, limits)
         store(costs, x * n, cost)
-        p2 = p2_by_step[_grey_step(grey, x, grey_before, x)]
-        here = _step(lanes, load(lanes, path, x * n), path_lowest[x], cost, p1, p2)
-        path_lowest[x] = lowest(here)
+        i = uint64(x)  # never negative, and numba need not ask
+        here = _step(lanes, load(lanes, before, x * n), path_lowest[i], cost, p1, p2[i])
+        path_lowest[i] = lowest(here)
         store(path, x * n, here)
 
 
 @inner()
-def vertical(lanes, left, codes, limits, penalties, grey, grey_before, path, path_lowest, costs):
+def vertical(lanes, left, codes, limits, p1, p2, before, path, path_lowest, costs):
     """`_columns` for all columns: the limits are looked up only where there are some."""
     first, last = limits.free
-    rest = (penalties, grey, grey_before, path, path_lowest, costs)
+    rest = (p1, p2, before, path, path_lowest, costs)
     _columns(lanes, left, codes, limits, limits.barred, (0, first), *rest)
     _columns(lanes, left, codes, None, limits.barred, (first, last), *rest)
-    _columns(lanes, left, codes, limits, limits.barred, (last, grey.size), *rest)
+    _columns(lanes, left, codes, limits, limits.barred, (last, path_lowest.size), *rest)
 
 
 @inner()
-def sideways(lanes, penalties, grey, costs, path, total):
-    """Sums of the path from above and those from both ends of the row. Walking both at once hides their latency."""
+def sideways(lanes, p1, upper, lower):
+    """Of two rows: sums of the path from above and those from both ends. Walking all four at once hides their latency.
+
+    upper, lower: costs, `jumps_along`, path and total of a row.
+    """
     n = width(lanes)
-    w = grey.size
-    east = west = splat(lanes, uint8(0))
-    east_lowest = west_lowest = uint8(0)
-    east, east_lowest, west, west_lowest = _half_way(
-        lanes, penalties, grey, costs, path, total, (0, w // 2), east, east_lowest, west, west_lowest
-    )
+    w = upper[1].size - 1
+    nothing = splat(lanes, uint8(0)), uint8(0), splat(lanes, uint8(0)), uint8(0)
+    ends = _half_way(lanes, p1, upper, lower, (0, w // 2), nothing, nothing)
     if w % 2:
         middle = (w // 2) * n
-        store(total, middle, load(lanes, path, middle))
-    _half_way(lanes, penalties, grey, costs, total, total, (w // 2, w), east, east_lowest, west, west_lowest)
+        for _, _, path, total in (upper, lower):
+            store(total, middle, load(lanes, path, middle))
+    _half_way(lanes, p1, _begun(upper), _begun(lower), (w // 2, w), *ends)
 
 
 @inner()
-def _half_way(lanes, penalties, grey, costs, so_far, total, steps, east, east_lowest, west, west_lowest):
-    n = width(lanes)
-    p1, p2_by_step = splat(lanes, penalties.p1), penalties.p2_by_step
-    w = grey.size
+def _begun(row):
+    """The row, to whose total more is to be added."""
+    costs, p2, _, total = row
+    return costs, p2, total, total
+
+
+@inner()
+def _half_way(lanes, p1, upper, lower, steps, upper_ends, lower_ends):
+    p1 = splat(lanes, p1)
     for x in range(steps[0], steps[1]):
-        z = w - 1 - x
-        east_p2 = p2_by_step[_grey_step(grey, x, grey, max(x - 1, 0))]
-        west_p2 = p2_by_step[_grey_step(grey, z, grey, min(z + 1, w - 1))]
-        east = _step(lanes, east, east_lowest, load(lanes, costs, x * n), p1, east_p2)
-        west = _step(lanes, west, west_lowest, load(lanes, costs, z * n), p1, west_p2)
-        east_lowest = lowest(east)
-        west_lowest = lowest(west)
-        store(total, x * n, saturating_add(load(lanes, so_far, x * n), east))
-        store(total, z * n, saturating_add(load(lanes, so_far, z * n), west))
-    return east, east_lowest, west, west_lowest
+        upper_ends = _inward(lanes, p1, upper, x, upper_ends)
+        lower_ends = _inward(lanes, p1, lower, x, lower_ends)
+    return upper_ends, lower_ends
+
+
+@inner()
+def _inward(lanes, p1, row, x, ends):
+    """One step of the paths from both ends of a row: to column x, and as far from the other end."""
+    n = width(lanes)
+    costs, p2, so_far, total = row
+    east, east_lowest, west, west_lowest = ends
+    z = p2.size - 2 - x
+    east = _step(lanes, east, east_lowest, load(lanes, costs, x * n), p1, p2[uint64(x)])
+    west = _step(lanes, west, west_lowest, load(lanes, costs, z * n), p1, p2[uint64(z + 1)])
+    store(total, x * n, saturating_add(load(lanes, so_far, x * n), east))
+    store(total, z * n, saturating_add(load(lanes, so_far, z * n), west))
+    return east, lowest(east), west, lowest(west)

@@ -20,11 +20,19 @@ from .lanes import (
 )
 
 
-def _first_set(b: Any, hits: Any, count: int) -> Any:
-    """Index, as a 64-bit integer, of the first true lane."""
-    mask = ir.IntType(count)
-    index = emit_call(b, f"llvm.cttz.i{count}", mask, [b.bitcast(hits, mask), ir.Constant(ir.IntType(1), 1)])
-    return b.trunc(index, WORD) if count > 64 else b.zext(index, WORD) if count < 64 else index
+def _in_words(b: Any, vec: Vec, value: Any) -> list[tuple[int, Any]]:
+    """First lane and vector of pieces of at most 64 lanes: what is true of each lane of one fits a word."""
+    pieces = []
+    for (first, part), each in zip(vec.parts, parted(b, vec, value), strict=True):
+        count = min(part.count, 64)
+        pieces += [(first + i, shuffled(b, each, each, range(i, i + count))) for i in range(0, part.count, count)]
+    return pieces
+
+
+def _first_set(b: Any, mask: Any) -> Any:
+    """Index, as a 64-bit integer, of the first bit that is set."""
+    index = emit_call(b, f"llvm.cttz.{mask.type}", mask.type, [mask, ir.Constant(ir.IntType(1), 1)])
+    return b.zext(index, WORD) if mask.type.width < 64 else index
 
 
 def _folded(b: Any, vec: Vec, value: Any, of_two: Callable[[Any, Vec, Any, Any], Any]) -> tuple[Any, Vec]:
@@ -97,11 +105,11 @@ def first_equal(typing: Any, vec: Vec, scalar: Any) -> Any:
     def emit(c: Any, b: Any, sig: Any, a: Any) -> Any:
         compare = b.fcmp_ordered if vec.real else b.icmp_unsigned
         index = None
-        for (first, part), value in reversed(list(zip(vec.parts, parted(b, vec, a[0]), strict=True))):
-            hits = compare("==", value, emit_splat(b, a[1], part.count))
-            here = b.add(_first_set(b, hits, part.count), ir.Constant(WORD, first))
-            mask = ir.IntType(part.count)
-            found = b.icmp_unsigned("!=", b.bitcast(hits, mask), ir.Constant(mask, 0))
+        for first, value in reversed(_in_words(b, vec, a[0])):
+            mask = ir.IntType(value.type.count)
+            hits = b.bitcast(compare("==", value, emit_splat(b, a[1], value.type.count)), mask)
+            here = b.add(_first_set(b, hits), ir.Constant(WORD, first))
+            found = b.icmp_unsigned("!=", hits, ir.Constant(mask, 0))
             index = here if index is None else b.select(found, here, index)
         return index
 

@@ -24,7 +24,7 @@ class Zncc(DepthEstimator, Following):
     """
 
     needs_pair: ClassVar[bool] = True
-    version: ClassVar[int] = 3
+    version: ClassVar[int] = 4
 
     window_px: WindowSide = 7
     """Side of the square matching window; odd."""
@@ -41,8 +41,8 @@ class Zncc(DepthEstimator, Following):
     def estimate(self, views: Views) -> DisparityMap:
         """Disparity in pixels, float32 (h, w), and its confidence; a filled map is finite unless nothing matched.
 
-        Confidence: the correlation where a match was found, at least 0.2; 0.1 where the value was filled or decided by
-        a neighbour; 0 where nothing changes along the rows.
+        Confidence: 0.2 up to the correlation where a match was found; 0 up to 0.1 where the value was filled or decided
+        by a neighbour; less in either range beside steps of depth and in gaps; 0 where nothing changes along the rows.
         Raises: PictureError if there is no right view or the range is empty.
         """
         from .matching.chain import disparity_map

@@ -1,8 +1,6 @@
 """Disparity where none was found, from the nearest known pixels on eight sides: what `effort: best` fills with.
 
-As `filling`, with the four diagonals besides, and one more thing asked of the right view: a candidate that would be
-seen where the right view shows something that nothing was matched with is less likely. The weights come from a
-regression (which candidate of a pixel is within 2 px of the truth) over two photographs and twelve scenes, rounded.
+As `filling`, with the four diagonals besides.
 """
 
 # ruff: noqa: ANN001, ANN202 -- numba finds the types of what it compiles; the docstrings say them
@@ -13,12 +11,12 @@ from numba import int32, njit, uint16
 
 from tangible_core.compiled.compiling import KERNEL, inner
 
-from .candidates import NEVER, alike, column_of, or_never, seen_from_the_right
+from .candidates import DETOUR, or_never, score, seen_from_the_right
+from .detours import detours
 from .filling import fill
 from .span import UNKNOWN
 
-FARTHER_OF_ROW, CONTRADICTED, UNMATCHED_THERE, BEYOND, DIAGONAL = 0.4, -4.0, -1.4, 0.25, -1.0
-PER_ROOT_OF_GREY, PER_10_PX_NEARER = -0.16, -0.11
+DIAGONAL = -0.9
 HALF = 4
 """Sides seen from one end of the picture, mirrored from the other: in the row, straight on, and two diagonals."""
 LONGEST_PATH = 65535
@@ -38,7 +36,8 @@ def fill_from_eight_sides(disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.nd
         carried, steps = np.empty((2, HALF, w), np.int16), np.empty((2, HALF, w), np.int32)
         _look(disparity, grey, step, carried, steps, values[end], paths[end])
     out = disparity.copy()
-    _choose_all(disparity, values, paths, np.empty(w + 2, np.int16), np.empty(w, np.int32), out)
+    found = detours(disparity, grey)
+    _choose_all(disparity, values, paths, *found, np.empty(w + 2, np.int16), np.empty(w, np.int32), out)
     return fill(out, grey)  # some saw nothing on any side
 
 
@@ -72,44 +71,31 @@ def _look(disparity, grey, step, carried, steps, values, paths):
 
 
 @njit(**KERNEL)
-def _choose_all(disparity, values, paths, seen, columns, out):
+def _choose_all(disparity, values, paths, first, detoured, lengths, seen, columns, out):
     h, w = disparity.shape
     at = 0
     for y in range(h):
         seen_from_the_right(disparity[y], columns, seen)
         for x in range(w):
             if disparity[y, x] == UNKNOWN:
-                out[y, x] = _choose(values[0, at], values[1, at], paths[0, at], paths[1, at], x, seen)
+                detour, length = (detoured[y, x], lengths[y, x]) if x < first[y] else (UNKNOWN, int32(0))
+                out[y, x] = _choose(values[:, at], paths[:, at], detour, length, x, seen)
                 at += 1
 
 
 @inner()
-def _choose(first, last, first_paths, last_paths, x, seen):
+def _choose(values, paths, detour, length, x, seen):
     """The candidate of the highest score; UNKNOWN if there is none."""
-    row_farthest = min(or_never(first[0]), or_never(last[0]))
-    farthest = row_farthest
+    row_farthest = min(or_never(values[0, 0]), or_never(values[1, 0]))
+    farthest = min(row_farthest, or_never(detour))
     for side in range(1, HALF):
-        farthest = min(farthest, or_never(first[side]), or_never(last[side]))
-    best, best_score = UNKNOWN, np.float32(-1e9)
+        farthest = min(farthest, or_never(values[0, side]), or_never(values[1, side]))
+    best, best_score = detour, score(int32(detour), length, farthest, row_farthest, x, seen) + np.float32(DETOUR)
     for k in range(2 * HALF):
-        side = k >> 1
-        value = int32(last[side] if k & 1 else first[side])
-        path = last_paths[side] if k & 1 else first_paths[side]
-        score = _score(value, path, farthest, row_farthest, x, seen)
-        score += np.float32(DIAGONAL) if side & 1 else np.float32(0)
-        if value != UNKNOWN and score > best_score:
-            best, best_score = np.int16(value), score
+        end, side = k & 1, k >> 1
+        value = int32(values[end, side])
+        rated = score(value, paths[end, side], farthest, row_farthest, x, seen)
+        rated += np.float32(DIAGONAL) * np.float32(side & 1)
+        if value != UNKNOWN and rated > best_score:
+            best, best_score = np.int16(value), rated
     return best
-
-
-@inner()
-def _score(value, path, farthest, row_farthest, x, seen):
-    column = column_of(x, value, seen.size - 1)
-    there = int32(seen[column])
-    score = np.float32(PER_10_PX_NEARER / 160) * np.float32(value - farthest)
-    score += np.float32(PER_ROOT_OF_GREY) * np.sqrt(np.float32(path))
-    score += np.float32(FARTHER_OF_ROW) * np.float32(value <= row_farthest + 8)
-    score += np.float32(UNMATCHED_THERE) * np.float32(there == UNKNOWN)
-    score += np.float32(BEYOND) * np.float32(there == NEVER)
-    contradicted = (there != UNKNOWN) & (there < value) & (not alike(there, value))
-    return score + np.float32(CONTRADICTED) * np.float32(contradicted)

@@ -1,7 +1,7 @@
 """Disparity where none was found: from the known pixels round a gap.
 
 The four nearest known neighbours (left, right, above, below) are the candidates for a pixel, each with the grey steps
-crossed on the way from it; `candidates` judges them.
+crossed on the way from it, and at the left border what a detour leads to; `candidates` judges them.
 """
 
 # ruff: noqa: ANN001, ANN202 -- numba finds the types of what it compiles; the docstrings say them
@@ -15,7 +15,8 @@ from numba import int32, njit
 from tangible_core.compiled.compiling import KERNEL, inner
 from tangible_core.compiled.threads import in_blocks
 
-from .candidates import ABOVE, BELOW, LEFT, RIGHT, alike, choose, seen_from_the_right
+from .candidates import ABOVE, BELOW, LEFT, RIGHT, ROUND, alike, choose, seen_from_the_right
+from .detours import detours
 from .span import UNKNOWN
 
 SHORT = 2
@@ -36,10 +37,11 @@ def fill(disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "h w"]) ->
 def _fill_once(disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "h w"]) -> tuple[np.ndarray, int]:
     """The map filled, and how many pixels could not be."""
     out = np.empty_like(disparity)
+    found = detours(disparity, grey)
     left_over: list[int] = []
 
     def block(y0: int, y1: int) -> None:
-        left_over.append(_fill_rows(disparity, grey, y0, y1, _scratch(y1 - y0, disparity.shape[1]), out))
+        left_over.append(_fill_rows(disparity, grey, y0, y1, found, _scratch(y1 - y0, disparity.shape[1]), out))
 
     in_blocks(disparity.shape[0], block)
     return out, sum(left_over)
@@ -48,8 +50,8 @@ def _fill_once(disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "h w
 class _Scratch(NamedTuple):
     """What filling some rows writes on."""
 
-    sides: Int16[np.ndarray, "4 w"]
-    paths: Int32[np.ndarray, "4 w"]
+    sides: Int16[np.ndarray, "5 w"]
+    paths: Int32[np.ndarray, "5 w"]
     below: Int16[np.ndarray, "rows w"]
     below_path: Int32[np.ndarray, "rows w"]
     seen: Int16[np.ndarray, "w+2"]
@@ -60,8 +62,8 @@ class _Scratch(NamedTuple):
 
 def _scratch(rows: int, w: int) -> _Scratch:
     return _Scratch(
-        np.empty((4, w), np.int16),
-        np.empty((4, w), np.int32),
+        np.empty((ROUND + 1, w), np.int16),
+        np.empty((ROUND + 1, w), np.int32),
         np.empty((rows, w), np.int16),
         np.empty((rows, w), np.int32),
         np.empty(w + 2, np.int16),
@@ -72,7 +74,7 @@ def _scratch(rows: int, w: int) -> _Scratch:
 
 
 @njit(**KERNEL)
-def _fill_rows(disparity, grey, y0, y1, scratch, out):
+def _fill_rows(disparity, grey, y0, y1, found, scratch, out):
     """Rows y0..y1-1; how many of their pixels could not be filled."""
     w = disparity.shape[1]
     left_over = 0
@@ -93,6 +95,7 @@ def _fill_rows(disparity, grey, y0, y1, scratch, out):
                     out[y, x] = min(disparity[y, start - 1], disparity[y, stop])
             else:
                 _scan_gap(disparity[y], grey[y], start, stop, sides, paths)
+                _go_round(found, y, start, stop, sides, paths)
                 for x in range(start, stop):
                     out[y, x] = choose(sides, paths, x, seen)
                     left_over += out[y, x] == UNKNOWN
@@ -190,3 +193,12 @@ def _scan_gap(row, grey, start, stop, sides, paths):
         x = stop - 1 - i
         path += abs(int32(grey[x]) - int32(grey[min(x + 1, w - 1)]))
         sides[RIGHT, x], paths[RIGHT, x] = right, path
+
+
+@inner()
+def _go_round(found, y, start, stop, sides, paths):
+    """What detours offer to each pixel of a gap: something at the left border only."""
+    for x in range(start, stop):
+        at_border = x < found.first[y]
+        sides[ROUND, x] = found.values[y, x] if at_border else UNKNOWN
+        paths[ROUND, x] = found.lengths[y, x] if at_border else int32(0)

@@ -16,7 +16,7 @@ from tangible_core.compiled.compiling import KERNEL, inner
 from tangible_core.compiled.threads import in_blocks
 from tangible_core.data import DisparityMap
 
-from .confidence import FILLED, FLAT_REACH, confidence, flat_pixels
+from .confidence import FILLED, FLAT_REACH, GAP_REACH, STEP_REACH, confidence, flat_pixels
 from .edges import MEDIAN_REACH, VOTERS, median, sharpen_edges
 from .eight_sides import fill_from_eight_sides
 from .filling import fill
@@ -66,12 +66,12 @@ def completed(
     out = _empty(grey.shape)
 
     def block(y0: int, y1: int) -> None:
-        cut, own = _with_margin(y0, y1, 2 * MEDIAN_REACH + VOTERS)
+        cut, own = _with_margin(y0, y1, 2 * MEDIAN_REACH + VOTERS + max(STEP_REACH, GAP_REACH))
         final = median(filled[cut])
         if cleaning.sharpen:
             final = median(sharpen_edges(final, grey[cut]))
         out.disparity[y0:y1] = final[own]
-        out.confidence[y0:y1] = confidence(matched[y0:y1], final[own], quality[y0:y1], by_quality)
+        out.confidence[y0:y1] = confidence(matched[cut], final, quality[cut], by_quality)[own]
 
     in_blocks(grey.shape[0], block)
     return out

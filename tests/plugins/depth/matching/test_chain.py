@@ -12,11 +12,11 @@ from stereo_scenes import slanted, step, texture
 from tangible_core.compiled import threads
 from tangible_core.data import Views
 from tangible_core.synthetic.stereo_scenes import synthetic_pair
-from tangible_depth.dense.candidates import choose
+from tangible_depth.dense.candidates import ROUND, choose
 from tangible_depth.dense.confidence import confidence, flat_pixels
 from tangible_depth.dense.edges import median, sharpen_edges
 from tangible_depth.dense.filling import fill
-from tangible_depth.dense.refinement import DenseMatches, as_map, enlarged
+from tangible_depth.dense.refinement import Cleaning, DenseMatches, as_map, completed, enlarged
 from tangible_depth.dense.span import UNKNOWN
 from tangible_depth.dense.speckles import remove_speckles
 from tangible_depth.dense.subpixel import equiangular, parabola
@@ -120,16 +120,8 @@ def test_what_both_views_contradict_is_not_filled_in():
 
 def score(value, path, farthest, row_farthest, there):
     """As the docstring of the candidates weighs it; disparities and `there` in sixteenths of a pixel."""
-    explained = there is not None and there > value + 24
-    contradicted = there is not None and there < value - 24
-    nearer_px = (value - farthest) / 16
-    return (
-        1.2 * (value <= row_farthest + 8)
-        - 2.0 * contradicted
-        + 1.0 * explained
-        - 0.2 * np.sqrt(path)
-        - 0.3 * nearer_px / 10
-    )
+    seen = -1.4 if there is None else 0.75 if there == 32767 else -3.4 * (there < value - 24)
+    return 0.7 * (value <= row_farthest + 8) + seen - 0.18 * np.sqrt(path) - 0.3 * (value - farthest) / 160
 
 
 def test_a_gap_takes_the_candidate_of_the_best_score():
@@ -138,10 +130,10 @@ def test_a_gap_takes_the_candidate_of_the_best_score():
     width, told = 60, 0
     for _ in range(3000):
         x = int(random.integers(20, 40))
-        values = random.choice([16, 32, 64, 70, 120, 200, 320], 4).astype(np.int16)
-        values[random.random(4) < 0.2] = UNKNOWN
-        paths = random.integers(0, 150, 4).astype(np.int32) * random.integers(0, 2, 4).astype(np.int32)
-        seen = random.choice([UNKNOWN, 16, 100, 200, 330], width + 2).astype(np.int16)
+        values = random.choice([16, 32, 64, 70, 120, 200, 320], 5).astype(np.int16)
+        values[random.random(5) < 0.2] = UNKNOWN
+        paths = random.integers(0, 150, 5).astype(np.int32) * random.integers(0, 2, 5).astype(np.int32)
+        seen = random.choice([UNKNOWN, 16, 100, 200, 330, 32767], width + 2).astype(np.int16)
         seen[0] = seen[-1] = 32767
         chosen = choose(values[:, None].repeat(width, 1), paths[:, None].repeat(width, 1), x, seen)
         known = values[values != UNKNOWN].astype(int)
@@ -154,10 +146,11 @@ def test_a_gap_takes_the_candidate_of_the_best_score():
             continue
         row_farthest = row.min() if row.size else 32767
         scores = {}
-        for value, path in zip(values.tolist(), paths.tolist(), strict=True):
+        for side, (value, path) in enumerate(zip(values.tolist(), paths.tolist(), strict=True)):
             if value != UNKNOWN:
                 there = seen[min(max(x + 1 - (value + 8) // 16, 0), width + 1)]
                 found = score(value, path, known.min(), row_farthest, None if there == UNKNOWN else int(there))
+                found -= 1.0 * (side == ROUND)
                 scores[value] = max(found, scores.get(value, -np.inf))
         best, *others = sorted(scores, key=scores.__getitem__, reverse=True)
         if others and scores[best] - scores[others[0]] > 1e-3:
@@ -179,12 +172,12 @@ def test_a_short_gap_between_like_ends_is_closed_with_the_farther(gap, filled_in
     assert (fill(disparity, grey)[4, 20 : 20 + gap] == filled_in).all()
 
 
-@pytest.mark.parametrize(("left", "right", "levels", "near"), [(320, 64, 60, [0, 1, 2]), (64, 320, 120, [11])])
+@pytest.mark.parametrize(("left", "right", "levels", "near"), [(320, 64, 60, [0, 1, 2, 3]), (64, 320, 120, [11])])
 def test_grey_steps_on_the_way_add_up(left, right, levels, near):
     """A gap of twelve columns over stripes: beside it alone the nearer end is believed in.
 
-    It lies 16 px before the other, -0.48, which is the farther of the row, 1.2; on the right both views contradict
-    it, too, -2, and explain the other, 1. So the roots of both ways' steps are to differ by 8.4, or by 23.4.
+    It lies 16 px before the other, -0.48, which is the farther of the row, 0.7; on the right both views contradict
+    it, too, -3.4. So the roots of both ways' steps are to differ by 6.6, or by 25.4.
     """
     disparity = np.full((1, 90), right, np.int16)
     disparity[:, :40], disparity[:, 40:52] = left, UNKNOWN
@@ -214,11 +207,38 @@ def test_the_median_is_that_of_25():
 
 
 def test_confidence_is_read_from_the_table_where_the_match_stood():
-    matched = np.array([[160, 160, UNKNOWN, 160]], np.int16)
-    final = np.array([[160, 170, 160, 200]], np.int16)
+    """Far from steps and gaps."""
+    matched = np.full((1, 60), 160, np.int16)
     table = 1 - np.arange(256) / 255
-    found = confidence(matched, final, np.array([[0, 51, 0, 0]], np.uint8), table)
-    assert np.allclose(found, [[1, 0.8, 0.1, 0.1]])
+    quality = np.tile(np.array([0, 51, 255], np.uint8), 20)[None]
+    assert np.allclose(confidence(matched, matched + np.int16(10), quality, table), np.tile([1, 0.8, 0], 20))
+    assert np.allclose(confidence(matched, matched + np.int16(40), quality, table), 0.1)
+
+
+def test_confidence_falls_beside_steps_of_depth_and_in_gaps():
+    matched = np.full((40, 90), 160, np.int16)
+    matched[:, 60:] = 160 + 16 * 8
+    final = matched.copy()
+    matched[:, :20] = UNKNOWN
+    found = confidence(matched, final, np.zeros(matched.shape, np.uint8), np.ones(256))
+    column = found[20]
+    assert np.array_equal(found, np.tile(column, (40, 1)))
+    missing = np.clip((25 - np.arange(90)) / 11, 0, 1)
+    expected = np.where(np.arange(90) < 20, 0.1, 0.8) * (1 - 0.6 * missing) + np.where(np.arange(90) < 20, 0, 0.2)
+    expected[57:63] = 0.2 + 0.8 / 3  # the step of 8 px is seen from here
+    assert np.allclose(column, expected, atol=0.003)
+
+
+def test_confidence_is_the_same_whatever_the_threads(monkeypatch):
+    rng = np.random.default_rng(5)
+    disparity = np.where(rng.random((150, 70)) < 0.6, UNKNOWN, rng.integers(0, 900, (150, 70))).astype(np.int16)
+    quality, grey = rng.integers(0, 255, (2, *disparity.shape), np.uint8)
+    maps = []
+    for count in (1, 7):
+        monkeypatch.setattr(threads, "thread_count", lambda count=count: count)
+        maps.append(completed(disparity.copy(), quality, np.linspace(1, 0.2, 256), grey, Cleaning(largest_speck_px=0)))
+    assert np.array_equal(maps[0].disparity, maps[1].disparity)
+    assert np.array_equal(maps[0].confidence, maps[1].confidence)
 
 
 def test_flat_pixels_have_one_grey_value_all_round():

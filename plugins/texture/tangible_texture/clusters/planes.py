@@ -80,7 +80,7 @@ def _dot(one, other, lanes):
 
     So the order of its sums is that of the source, however many values the processor adds at once.
     """
-    whole, more = one.size // (8 * LANES) * (8 * LANES), one.size // LANES * LANES
+    whole = one.size // (8 * LANES) * (8 * LANES)
     lanes[:] = 0
     for start in range(0, whole, 8 * LANES):  # eight at a time: sums are written an eighth as often
         for j in range(LANES):
@@ -96,11 +96,10 @@ def _dot(one, other, lanes):
                 + one[i + 6 * LANES] * other[i + 6 * LANES]
                 + one[i + 7 * LANES] * other[i + 7 * LANES]
             )
-    for start in range(whole, more, LANES):
-        for j in range(LANES):
-            lanes[j] += one[start + j] * other[start + j]
-    for i in range(more, one.size):
-        lanes[i - more] += one[i] * other[i]
+    for start in range(whole, one.size, LANES):
+        left, right = one[start : start + LANES], other[start : start + LANES]
+        for j in range(left.size):
+            lanes[j] += left[j] * right[j]
     for j in range(LANES // 2):
         lanes[j] += lanes[j + LANES // 2]
     for j in range(LANES // 4):

@@ -1,6 +1,6 @@
 """Segments by texture: Gabor energies and binary patterns, clustered without chance."""
 
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field
@@ -24,6 +24,8 @@ class Gabor(Segmenter, Skippable):
     Sources: Jain & Farrokhnia, Pattern Recognition 24, 1991 (the energies); Ojala et al., IEEE TPAMI 24, 2002
     (patterns); Su & Dy, ICTAI 2004 (division); Ward, J. Am. Stat. Ass. 58, 1963 (joining).
     """
+
+    version: ClassVar[int] = 2
 
     segments: Annotated[int, Field(ge=1, le=64)] | Literal["auto"] = "auto"
     """Largest number of textures; `auto`: an estimate, at most 8, reported with its reason and reliability."""

@@ -1,6 +1,6 @@
 """Method `kornia-gabor`: Gabor energies and k-means in torch."""
 
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 import numpy as np
 from jaxtyping import Float32, Int32
@@ -31,6 +31,8 @@ class KorniaGabor(Segmenter, Skippable):
     Confidence is 1 - a / b, a and b being the distances from the nearest centre and from the next one; 0 in a seam.
     Source: Jain & Farrokhnia 1991; Riba et al., Kornia, WACV 2020; Arthur & Vassilvitskii, k-means++, SODA 2007.
     """
+
+    version: ClassVar[int] = 2
 
     segments: Annotated[int, Field(ge=1, le=64)] | Literal["auto"] = "auto"
     """Number of textures; fewer if there are fewer distinct features. auto: an estimate, at most 8."""

@@ -2,7 +2,7 @@
 
 import logging
 from math import ceil
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 import numpy as np
 from jaxtyping import Float32
@@ -31,6 +31,8 @@ class Report(Segmenter, Skippable):
     Confidence is 1 - a / b, a and b being a pixel's distances from the nearest centre and from the next one.
     Source: Jain & Farrokhnia, Unsupervised texture segmentation using Gabor filters, Pattern Recognition 24 (1991).
     """
+
+    version: ClassVar[int] = 2
 
     segments: Annotated[int, Field(ge=1, le=64)] | Literal["auto"] = "auto"
     """Number of textures; fewer if there are fewer distinct features. auto: an estimate, at most 8."""

@@ -16,6 +16,8 @@ PULL = 4.0
 """What the neighbours' mean membership weighs against evidence."""
 EVIDENCE = 0.5
 """What evidence weighs: windows overlap, so that cells are not as many witnesses as they seem."""
+BLOCK = 1024
+"""Cells that are worked on while they are in the cache."""
 INSIDE_CELLS = 2.0
 """Standard deviation of the window in which a cell's class must prevail for the cell to count in full."""
 
@@ -71,18 +73,29 @@ def refitted(
 def _softmax(evidence, around, pull):
     found = np.empty_like(evidence)
     classes, cells = evidence.shape
-    for start in range(0, cells, 1024):
-        stop = min(start + 1024, cells)
+    for start in range(0, cells, BLOCK):
+        stop = min(start + BLOCK, cells)
         highest, total = np.full(stop - start, np.float32(-1e30)), np.zeros(stop - start, np.float32)
         for k in range(classes):
-            for i in range(start, stop):
-                found[k, i] = evidence[k, i] + pull * around[k, i]
-                highest[i - start] = max(highest[i - start], found[k, i])
+            _towards(evidence[k, start:stop], around[k, start:stop], pull, found[k, start:stop], highest)
         for k in range(classes):
-            for i in range(start, stop):
-                found[k, i] = exponential(found[k, i] - highest[i - start])
-                total[i - start] += found[k, i]
+            _raise(found[k, start:stop], highest, total)
         for k in range(classes):
-            for i in range(start, stop):
-                found[k, i] /= total[i - start]
+            part = found[k, start:stop]
+            for i in range(part.size):
+                part[i] /= total[i]
     return found
+
+
+@njit(cache=True, nogil=True)
+def _towards(evidence, around, pull, found, highest):
+    for i in range(found.size):
+        found[i] = evidence[i] + pull * around[i]
+        highest[i] = found[i] if found[i] > highest[i] else highest[i]
+
+
+@njit(cache=True, nogil=True)
+def _raise(found, highest, total):
+    for i in range(found.size):
+        found[i] = exponential(found[i] - highest[i])
+        total[i] += found[i]

@@ -17,25 +17,32 @@ SUMMED, LANES = 4096, 64
 @njit(cache=True, nogil=True)
 def mixed(weights, planes):
     """weights (k, d) times planes (d, n): k planes, float32."""
-    found = np.zeros((weights.shape[0], planes.shape[1]), np.float32)
-    for start in range(0, planes.shape[1], BLOCK):
-        part = planes[:, start : start + BLOCK]
-        for k in range(weights.shape[0]):
-            out = found[k, start : start + BLOCK]
-            for d in range(0, part.shape[0] - 3, 4):  # four at a time: sums are written a fourth as often
-                _add_four(weights[k, d : d + 4], part[d : d + 4], out)
-            for d in range(part.shape[0] // 4 * 4, part.shape[0]):
-                weight, plane = np.float32(weights[k, d]), part[d]
+    (count, size), columns = weights.shape, planes.shape[1]
+    found = np.zeros((count, columns), np.float32)
+    for start in range(0, columns, BLOCK):
+        stop = min(start + BLOCK, columns)
+        for k in range(count):
+            out = found[k, start:stop]
+            for d in range(0, size - 3, 4):  # four at a time: sums are written a fourth as often
+                one, two, three, four = (
+                    planes[d, start:stop],  # rows apart: a block of a matrix is not known to be contiguous
+                    planes[d + 1, start:stop],
+                    planes[d + 2, start:stop],
+                    planes[d + 3, start:stop],
+                )
+                _add_four(weights[k, d : d + 4], one, two, three, four, out)
+            for d in range(size // 4 * 4, size):
+                weight, plane = np.float32(weights[k, d]), planes[d, start:stop]
                 for i in range(out.size):
                     out[i] += weight * plane[i]
     return found
 
 
 @njit(cache=True, nogil=True)
-def _add_four(weights, planes, out):
+def _add_four(weights, one, two, three, four, out):
     a, b, c, d = np.float32(weights[0]), np.float32(weights[1]), np.float32(weights[2]), np.float32(weights[3])
     for i in range(out.size):
-        out[i] += a * planes[0, i] + b * planes[1, i] + c * planes[2, i] + d * planes[3, i]
+        out[i] += a * one[i] + b * two[i] + c * three[i] + d * four[i]
 
 
 @njit(cache=True, nogil=True)
@@ -73,7 +80,7 @@ def _dot(one, other, lanes):
 
     So the order of its sums is that of the source, however many values the processor adds at once.
     """
-    whole, more = one.size // (8 * LANES) * (8 * LANES), one.size // LANES * LANES
+    whole = one.size // (8 * LANES) * (8 * LANES)
     lanes[:] = 0
     for start in range(0, whole, 8 * LANES):  # eight at a time: sums are written an eighth as often
         for j in range(LANES):
@@ -89,11 +96,10 @@ def _dot(one, other, lanes):
                 + one[i + 6 * LANES] * other[i + 6 * LANES]
                 + one[i + 7 * LANES] * other[i + 7 * LANES]
             )
-    for start in range(whole, more, LANES):
-        for j in range(LANES):
-            lanes[j] += one[start + j] * other[start + j]
-    for i in range(more, one.size):
-        lanes[i - more] += one[i] * other[i]
+    for start in range(whole, one.size, LANES):
+        left, right = one[start : start + LANES], other[start : start + LANES]
+        for j in range(left.size):
+            lanes[j] += left[j] * right[j]
     for j in range(LANES // 2):
         lanes[j] += lanes[j + LANES // 2]
     for j in range(LANES // 4):

@@ -31,11 +31,11 @@ def filter_part(values, shape, first, frequency, along, across, part):
             column = (left + j) % wide
             if 2 * column <= wide:
                 run = min(columns - j, wide // 2 + 1 - column)
-                _scale(values[row, column : column + run], gain[j : j + run], 1, part[i, j : j + run])
+                _scale(values[row, column : column + run], gain[j : j + run], np.float32(1), part[i, j : j + run])
             else:
                 run = min(columns - j, wide - column)
                 mirrored = values[(high - row) % high, wide - column - run + 1 : wide - column + 1]
-                _scale(mirrored[::-1], gain[j : j + run], -1, part[i, j : j + run])
+                _scale(mirrored[::-1], gain[j : j + run], np.float32(-1), part[i, j : j + run])
             j += run
         _advance(gain, ratio, exp(bend))
 
@@ -51,7 +51,7 @@ def _advance(gain, ratio, shrink):
 def _scale(values, gain, sign, part):
     for j in range(part.size):
         each = np.float32(gain[j])
-        part[j] = complex(values[j].real * each, sign * values[j].imag * each)
+        part[j] = complex(values[j].real * each, values[j].imag * (sign * each))
 
 
 @njit(cache=True, nogil=True)

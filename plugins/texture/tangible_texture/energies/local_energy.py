@@ -25,10 +25,10 @@ RELATIVE_SIGMA = 0.35
 """Of a wavelength: energy is smoothed at least so far, as one wave more or less should not show."""
 REACH = 4.0
 """Standard deviations at which the smoothing Gaussian ends."""
-TAIL = 3.6
-"""Standard deviations of a filter, in frequency, that are kept: the sixth decimal of its energy lies beyond."""
-FINENESS = 3.8
-"""Samples per unit of bandwidth of what is sampled and smoothed, as standard deviations: what folds back is 0.1 %."""
+TAIL = 3.0
+"""Standard deviations of a filter, in frequency, that are kept: the fifth decimal of its energy lies beyond."""
+FINENESS = 3.4
+"""Samples per unit of bandwidth of what is sampled and smoothed, as standard deviations: less than 1 % folds back."""
 
 
 class Spectrum(NamedTuple):

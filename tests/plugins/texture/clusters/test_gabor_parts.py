@@ -29,6 +29,17 @@ def test_eigenvalues_and_solutions_are_those_of_lapack(random: np.random.Generat
     np.testing.assert_allclose(solved(matrix, rows), np.linalg.solve(matrix, rows.T).T, rtol=1e-6, atol=1e-8)
 
 
+@pytest.mark.parametrize("diagonal", [[0, 0, 0], [2, 2, 2, 2], [5, 0, 3, 0, 0], [1e-30, 1, 1e30]])
+def test_eigenvalues_that_are_nothing_or_the_same_are_found(diagonal: list[float]):
+    values, vectors = eigen(np.diag(diagonal).astype(float))
+    assert values.tolist() == sorted(diagonal, reverse=True)
+    np.testing.assert_array_equal(np.abs(vectors).sum(axis=0), 1)
+    rank_one = np.outer(diagonal, diagonal)
+    values, vectors = eigen(rank_one)
+    np.testing.assert_allclose(values[:1], np.trace(rank_one))
+    np.testing.assert_allclose(vectors @ vectors.T, np.eye(len(diagonal)), atol=1e-12)
+
+
 def test_products_of_planes_are_those_of_matrices(random: np.random.Generator):
     planes, others = (random.standard_normal((count, 2500)).astype(np.float32) for count in (7, 3))
     weights = random.random(2500).astype(np.float32)

@@ -51,6 +51,7 @@ class Bands(NamedTuple):
 def match_bands(pair: Pair, span: Span, width: int = FINE_WIDTH) -> Bands:
     """Match COUNT bands of a pair; as many columns are averaged into one as make it at most `width` wide.
 
+    Of many columns every STRIDE-th one is matched, and speaks for those beside it.
     span: in pixels of the picture. Where it holds more than MOST_DISPARITIES, more columns are averaged.
     """
     factor = max(-(-pair.width // width), -(-span.size // MOST_DISPARITIES))
@@ -60,10 +61,11 @@ def match_bands(pair: Pair, span: Span, width: int = FINE_WIDTH) -> Bands:
     codes = np.empty((2, COUNT, PLANES, columns + -columns % BLOCK), np.uint8)
     grey = np.empty((COUNT, -(-columns // stride)), np.uint8)
     flat = np.empty((COUNT, columns), np.bool_)
-    scratch = np.empty(columns * factor, np.int32), np.empty((TALL, codes.shape[3] + 2 * RADIUS), np.uint8)
-    _see(*pair, factor, OFFSETS, stride, *scratch, rows, codes, grey, flat)
+    total = np.empty(columns * factor, np.int32)
+    band = np.empty((TALL, codes.shape[3] + 2 * RADIUS), np.uint8)
+    _see(pair.left, pair.right, factor, OFFSETS, stride, total, band, rows, codes, grey, flat)
     disparity = np.empty((COUNT, columns), np.int16)
-    sweep_columns(*codes, grey, span.shrunk(factor).within(columns), SHARP.penalties, stride, disparity)
+    sweep_columns(codes[0], codes[1], grey, span.shrunk(factor).within(columns), SHARP.penalties, stride, disparity)
     found = _without_flat(flat, disparity)
     lost = remove_speckles(disparity, LARGEST_SPECK)
     return Bands(rows, disparity, factor, found - lost, lost / max(1, found))

@@ -25,7 +25,7 @@ class Effort(NamedTuple):
 
     def largest_speck_px(self, cost: Cost, factor: int = 1) -> int:
         """Islands up to here are errors, in a picture made smaller by `factor`."""
-        return cost.largest_speck_px // factor**2 if self.small_islands else ISLAND_PX
+        return (cost.largest_speck_px if self.small_islands else ISLAND_PX) // factor**2
 
 
 BALANCED = Effort(SHARP, 0.06, 0.28, WARM_ROWS, small_islands=False, eight_sides=False)

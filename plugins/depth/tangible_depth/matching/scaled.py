@@ -12,13 +12,15 @@ from ..dense.confidence import FLAT_REACH, LEAST_MATCHED
 from ..dense.refinement import Cleaning, DenseMatches, completed, enlarged
 from ..dense.span import Span
 from ..search.pairs import Pair
-from ..sgm.costs import COSTS, SHARP
+from ..sgm.costs import COSTS, SHARP, Penalties, p2_by_grey_step
 from ..sgm.strips import MOST_LANES, strips
 from .adaptive import match
 from .efforts import EFFORTS
 
 log = logging.getLogger(__name__)
 CHECK_TOLERANCE = {"soft": 1.08, "strict": 1.0}
+HALVED = SHARP._replace(penalties=Penalties(np.uint8(8), np.uint8(8), p2_by_grey_step(40, 10, 2.0)))
+"""Of a preview: at half the size noise is averaged away, and surfaces end within fewer pixels."""
 MOST_AT_FULL_SIZE = 256
 """Disparities up to which `auto` works at full size: beyond, a coarser map costs little and saves much."""
 
@@ -70,7 +72,7 @@ def _match(pair: Pair, span: Span, options: Scaling, factor: int) -> DenseMatche
             note(log, f"skipped: {len(rows) - len(textured)} of {len(rows)} strips, which have no texture")
         rows = textured
     preview = options.resolution == "half"
-    cost = SHARP if preview and options.cost == "auto" else COSTS.get(options.cost)
+    cost = HALVED if preview and options.cost == "auto" else COSTS.get(options.cost)
     realign_rows = options.realign_rows and not preview
     effort = EFFORTS[options.effort]
     swept, cost = match(pair, span, cost, CHECK_TOLERANCE[options.check], realign_rows, rows, effort)

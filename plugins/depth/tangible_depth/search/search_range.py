@@ -1,8 +1,14 @@
 """Which disparities occur in a pair, found in a few bands of it."""
 
+# ruff: noqa: ANN001, ANN202 -- numba finds the types of what it compiles; the docstrings say them
+
+from math import ceil, floor
 from typing import NamedTuple
 
 import numpy as np
+from numba import njit
+
+from tangible_core.compiled.compiling import KERNEL
 
 from ..dense.span import UNKNOWN, Span
 from .bands import FINE_WIDTH, Bands, match_bands
@@ -19,6 +25,7 @@ NOISY = 0.6
 """Share of matches that no neighbour confirms from which the first copy, which averages noise away, counts as well."""
 FIRST_MARGIN, MARGIN = 1, 2
 """What is then added at either end, in pixels of the copy."""
+LARGEST = np.int16(32767)
 
 
 class RangeEstimate(NamedTuple):
@@ -53,10 +60,31 @@ def find_range(pair: Pair) -> RangeEstimate | None:
 def _look(pair: Pair, span: Span, width: int, margin: int) -> RangeEstimate | None:
     bands = match_bands(pair, span.within(pair.width), width)
     factor = bands.factor
-    known = np.sort(bands.disparity[bands.disparity != UNKNOWN]).astype(np.float32) * (factor / 16)
-    if known.size == 0:
+    if bands.known == 0:
         return None
-    fringe = int(FRINGE * known.size)
-    low, high = known[fringe], known[-1 - fringe]
-    span = Span(int(np.floor(low)) - margin * factor, int(np.ceil(high)) + margin * factor)
-    return RangeEstimate(span, bands, bool(low < -2 and high <= 1))
+    extremes = np.empty((2, 1 + int(FRINGE * bands.known)), np.int16)
+    _find_extremes(bands.disparity, *extremes)
+    low, high = (int(each[-1]) * factor / 16 for each in extremes)
+    span = Span(floor(low) - margin * factor, ceil(high) + margin * factor)
+    return RangeEstimate(span, bands, low < -2 and high <= 1)
+
+
+@njit(**KERNEL)
+def _find_extremes(disparity, lowest, highest):
+    """The lowest known disparities, in rising order, and the highest, in falling order."""
+    lowest[:], highest[:] = LARGEST, UNKNOWN
+    for y in range(disparity.shape[0]):
+        for x in range(disparity.shape[1]):
+            value = disparity[y, x]
+            if value != UNKNOWN and value < lowest[-1]:
+                i = lowest.size - 1
+                while i > 0 and lowest[i - 1] > value:
+                    lowest[i] = lowest[i - 1]
+                    i -= 1
+                lowest[i] = value
+            if value > highest[-1]:
+                i = highest.size - 1
+                while i > 0 and highest[i - 1] < value:
+                    highest[i] = highest[i - 1]
+                    i -= 1
+                highest[i] = value

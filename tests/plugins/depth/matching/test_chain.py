@@ -2,6 +2,7 @@
 
 from collections import deque
 
+import cv2
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -292,6 +293,20 @@ def test_a_thin_thing_before_a_wall_widens_the_range(seed):
     span = asked_span(grey_pair(pair.views, "test"), "auto", "auto").span
     assert np.mean((pair.truth_px >= span.low) & (pair.truth_px <= span.high)) >= 0.999
     assert span.lanes <= 64
+
+
+def test_rods_of_four_pixels_widen_the_range():
+    rng = np.random.default_rng(1)
+    wall_px, covered = 12, 0
+    for _ in range(20):
+        wall, rod = (cv2.GaussianBlur(rng.integers(0, 255, (480, 700), np.uint8), (0, 0), 1.5) for _ in range(2))
+        left, right = wall[:, :640].copy(), wall[:, wall_px : wall_px + 640].copy()
+        at, near_px = rng.integers(200, 600), rng.integers(30, 80)
+        for view, column in ((left, at), (right, at - near_px)):
+            view[:, column : column + 4] = rod[:, :4]
+        found = find_range(Pair(left, right))
+        covered += found.span.low <= wall_px and near_px <= found.span.high
+    assert covered >= 18
 
 
 def test_a_pair_in_which_nothing_matches_has_no_range():

@@ -195,7 +195,7 @@ def test_chance_matches_are_not_followed_into_the_range(monkeypatch: pytest.Monk
     """As those where a turned picture shows nothing: one match in ten is anywhere, the others are in 0..60 px."""
     random = np.random.default_rng(0)
     found_px = np.concatenate([random.uniform(0, 60, 21600), random.uniform(-270, 200, 2400)]).reshape(24, 1000)
-    bands = Bands(np.arange(24), np.rint(16 * found_px).astype(np.int16), 1, 0.3)
+    bands = Bands(np.arange(24), np.rint(16 * found_px).astype(np.int16), 1, found_px.size, 0.3)
     monkeypatch.setattr(asked, "find_range", lambda pair: RangeEstimate(Span(-273, 200), bands, False))
     pair = Pair(*[np.zeros((24, 1000), np.uint8)] * 2)
     assert asked_span(pair, "auto", "auto").span.low == -273

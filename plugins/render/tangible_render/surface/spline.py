@@ -114,12 +114,12 @@ def _shape_of_two(coefficients):
 
 
 def _fetch_of_one(coefficients, row, column):
-    prefetch_line(coefficients, row * coefficients.strides[0] + column * coefficients.strides[1])
+    prefetch_line(coefficients, row * coefficients.strides[0] + column * coefficients.strides[1])  # pyright: ignore[reportCallIssue]
 
 
 def _fetch_of_two(coefficients, row, column):
     pairs, _, _ = coefficients
-    prefetch_line(pairs, row * pairs.strides[0] + column * pairs.strides[1])
+    prefetch_line(pairs, row * pairs.strides[0] + column * pairs.strides[1])  # pyright: ignore[reportCallIssue]
 
 
 def _column_of_one(coefficients, row, column, weights):

@@ -122,22 +122,32 @@ def skips() -> list[str]:
     over, high = path(HAND, -0.0005), path(HAND, -0.02)
     general = Proxy(damping_n_s_per_m=1e-300)  # too little to be felt, so that the law of all parts runs
     smooth, textured = (covered(256, replace(library()["sand"], roughness_m=each)) for each in (0.0, 1e-300))
+    waves, fine = Proxy().touch(surface(256)), Proxy().touch(surface(1024))
     rows = [
-        ("no texture, sand's friction", Proxy(), smooth, path(HAND), Proxy(), textured),
-        ("no friction, no damping, one material", Proxy(), surface(256), path(HAND), general, surface(256)),
-        ("a level tile", Proxy(), level, flat, general, level),
-        ("free air, 0.5 mm over the surface", Proxy(), surface(256), over, None, surface(256)),
-        ("free air, over all of a tile", Proxy(), surface(256), high, None, surface(256)),
+        ("no texture, sand's friction", Proxy().touch(smooth), path(HAND), Proxy().touch(textured)),
+        ("no friction, no damping, one material", waves, path(HAND), general.touch(surface(256))),
+        ("a level tile", Proxy().touch(level), flat, general.touch(level)),
+        ("the height over a hand under all of a tile, 1024^2", fine, path(HAND), _unsure(surface(1024))),
+        ("free air, 0.5 mm over the surface", waves, over, None),
+        ("free air, over all of a tile", waves, high, None),
     ]
     lines = []
-    for what, quick, felt, hands, slow, all_felt in rows:
-        less, whole = quick.touch(felt), (slow or Proxy()).touch(all_felt)
-        way = hands if slow else path(HAND)
-        times = in_turns({"whole": _twice(whole.path, way), "less": _twice(less.path, hands)}, 15, thread_time)
+    for what, less, hands, whole in rows:
+        apart = np.abs(less.path(hands) - whole.path(hands)).max() if whole else 0.0
+        all_of_it = _twice(whole.path, hands) if whole else _twice(less.path, path(HAND))
+        times = in_turns({"whole": all_of_it, "less": _twice(less.path, hands)}, 15, thread_time)
         ns = [1e9 * times[name].seconds / TICKS / 2 for name in ("whole", "less")]
-        apart = np.abs(quick.touch(felt).path(hands) - slow.touch(all_felt).path(hands)).max() if slow else 0.0
         lines.append((what, f"{ns[0]:.0f}", f"{ns[1]:.0f}", f"{times['less'].ratio:.2f}", f"{apart:.1g}"))
     return table(("left out", "all of it, ns", "without, ns", "share", "apart, N"), lines)
+
+
+def _unsure(felt: HapticSurface) -> CompiledTouch:
+    """The proxy, told of no tile how deep it goes."""
+    touch = Proxy().touch(felt)
+    assert isinstance(touch, CompiledTouch)
+    tiles_m = touch.fixed[5].copy()
+    tiles_m[..., 1] = -np.inf
+    return CompiledTouch(touch.tick, (*touch.fixed[:5], tiles_m, *touch.fixed[6:]), touch.memory)
 
 
 def covered(count: int, material: Material) -> HapticSurface:

@@ -12,6 +12,7 @@ from tangible_core.plugins.interfaces import Touch
 from tangible_core.synthetic.reliefs import cliff, cone, waves
 from tangible_core.synthetic.scenes import KnownSurface, plane, ramp, sphere_cap
 from tangible_render.contact import closest, contact
+from tangible_render.contact import held as holding
 from tangible_render.proxy import Proxy
 from tangible_render.surface import spline
 from tangible_render.surface.coefficients import spline_surface
@@ -137,6 +138,24 @@ class TestAccuracy:
             read = read if i > 10 else 0
             place = cast(Any, closest.settle)(*shape, *place[:2], *hand, 0.0, 0.0, 0.0)
         assert read <= 2.1 * (len(path) - 11)
+
+    @pytest.mark.parametrize("friction", [False, True])
+    def test_it_asks_ahead_for_what_it_reads_two_ticks_later(self, monkeypatch: pytest.MonkeyPatch, friction: bool):
+        known = waves()
+        hands, memory = stroke(known, 0.2, 0.0008), np.zeros(contact.REMEMBERED)
+        touch = cast(CompiledTouch, Proxy().touch(known.surface))  # compiled before its parts are exchanged
+        asked: list[tuple[float, float]] = []
+        monkeypatch.setattr(holding, "prefetch", lambda *arguments: asked.append(arguments[3:]))
+        shape, tiles_m = touch.fixed[:5], touch.fixed[5]
+        material = np.zeros((4, 4), np.int32), np.array([[K, 0.0, 0.1, 0.05]])
+        law, told = (holding.spring_and_damper, material) if friction else (holding.spring, (K,))
+        proxies = []
+        for hand in hands.tolist():
+            cast(Any, law)(shape, tiles_m, *told, memory, *hand, 0.0, 0.0, 0.0)
+            proxies.append(memory[:2].copy())
+        assert len(asked) == len(hands)
+        off_m = np.linalg.norm(np.subtract(asked[5:-2], proxies[7:]), axis=1)
+        assert off_m.max() <= 1e-5 < 4e-5 < np.linalg.norm(np.diff(proxies, axis=0), axis=1)[5:].min()
 
     def test_a_hand_under_all_of_a_tile_is_in_without_a_reading(self, monkeypatch: pytest.MonkeyPatch):
         known = waves()

@@ -39,13 +39,18 @@ def _folded(b: Any, vec: Vec, value: Any, of_two: Callable[[Any, Vec, Any, Any],
     """The parts of lanes made one vector: the wider is halved until it is as wide as the next, and both are one."""
     whole, width = None, 0
     for (_, part), each in zip(vec.parts, parted(b, vec, value), strict=True):
-        while whole is not None and width > part.count:
-            width //= 2
-            halves = (shuffled(b, whole, whole, range(i, i + width)) for i in (0, width))
-            whole = of_two(b, Vec(vec.element, width), *halves)
-        whole = each if whole is None else of_two(b, part, whole, each)
+        whole = each if whole is None else of_two(b, part, _halved(b, vec, whole, width, part.count, of_two), each)
         width = part.count
     return whole, Vec(vec.element, width)
+
+
+def _halved(b: Any, vec: Vec, value: Any, width: int, narrow: int, of_two: Callable[[Any, Vec, Any, Any], Any]) -> Any:
+    """So many lanes made one half after the other, until they are as few as that."""
+    while width > narrow:
+        width //= 2
+        halves = (shuffled(b, value, value, range(i, i + width)) for i in (0, width))
+        value = of_two(b, Vec(vec.element, width), *halves)
+    return value
 
 
 @operation
@@ -77,12 +82,8 @@ def highest(typing: Any, vec: Vec) -> Any:
 
     def emit(c: Any, b: Any, sig: Any, a: Any) -> Any:
         value, kind = _folded(b, vec, a[0], emit_larger)
-        count = kind.count
-        while count > 1:
-            count //= 2
-            halves = (shuffled(b, value, value, range(i, i + count)) for i in (0, count))
-            value = emit_larger(b, kind, *halves)
-        return b.extract_element(value, ir.Constant(INDEX, 0))
+        largest = _halved(b, vec, value, kind.count, 1, emit_larger)
+        return b.extract_element(largest, ir.Constant(INDEX, 0))
 
     return vec.element(vec), emit
 

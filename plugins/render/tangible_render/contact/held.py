@@ -3,7 +3,7 @@
 Imports numba: a method imports this module inside its verb.
 """
 
-# ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
+# ruff: noqa: ANN001, ANN201, ANN202 -- the types are in the signatures that numba compiles
 
 import numpy as np
 from numba import float32, float64, types
@@ -11,6 +11,7 @@ from numba import float32, float64, types
 from tangible_core.compiled.compiling import inner
 
 from ..surface.bilinear import HEIGHTS, cell
+from ..surface.spline import prefetch
 from .closest import settle
 from .contact import BESIDE, approach
 
@@ -40,6 +41,7 @@ def spring(shape, tiles_m, stiffness, memory, x, y, z, vx, vy, vz):
         px, py, top, _, _, _ = settle(
             coefficients, width_m, length_m, across_per_m, down_per_m, px, py, x, y, z, 0.0, 0.0, 0.0
         )
+        _look_ahead(coefficients, across_per_m, down_per_m, memory, px, py)
     memory[0], memory[1], memory[2] = px, py, top
     fx, fy, fz = stiffness * (px - x), stiffness * (py - y), stiffness * (top - z)
     return (fx, fy, fz) if np.isfinite(fx + fy + fz) else (0.0, 0.0, 0.0)
@@ -59,9 +61,20 @@ def spring_and_damper(shape, tiles_m, labels, table, memory, x, y, z, vx, vy, vz
         px, py, top, hx, hy, memory[6] = settle(
             coefficients, width_m, length_m, across_per_m, down_per_m, px, py, x, y, z, static, dynamic, memory[6]
         )
+        _look_ahead(coefficients, across_per_m, down_per_m, memory, px, py)
         square = 1.0 + hx * hx + hy * hy
         spring = stiffness * (hx * (x - px) + hy * (y - py) + top - z) / square
         held = min(damping * (vz - hx * vx - hy * vy) / square, max(spring, 0.0))
     memory[0], memory[1], memory[2] = px, py, top
     fx, fy, fz = stiffness * (px - x) + held * hx, stiffness * (py - y) + held * hy, stiffness * (top - z) - held
     return (fx, fy, fz) if np.isfinite(fx + fy + fz) else (0.0, 0.0, 0.0)
+
+
+@inner()
+def _look_ahead(coefficients, across_per_m, down_per_m, memory, px, py):
+    """Ask for what the tick after the next will read if the proxy goes on as it did, from the memory to (px, py).
+
+    Of a large surface it comes from far away, and takes longer than one tick takes along a path.
+    """
+    ahead_x, ahead_y = px + 2.0 * (px - memory[0]), py + 2.0 * (py - memory[1])
+    prefetch(coefficients, across_per_m, down_per_m, ahead_x, ahead_y)

@@ -14,6 +14,8 @@ from numba import njit, types
 
 from tangible_core.compiled.compiling import KERNEL, inner, inner_by_type
 
+from .prefetch import prefetch_line
+
 
 @njit(**KERNEL)
 def height(coefficients, across_per_m, down_per_m, x, y):
@@ -47,6 +49,15 @@ def bend(coefficients, across_per_m, down_per_m, x, y):
         -_dot(rise, tilt) * across_per_m * down_per_m,
         _dot(curve, value) * down_per_m * down_per_m,
     )
+
+
+@inner()
+def prefetch(coefficients, across_per_m, down_per_m, x, y):
+    """Have the coefficients that a point depends on brought near, without waiting for them."""
+    row, column, _, _ = _place(coefficients, across_per_m, down_per_m, x, y)
+    for line in range(row, row + 4):
+        _fetch(coefficients, line, column)
+        _fetch(coefficients, line, column + 3)
 
 
 @inner()
@@ -102,6 +113,15 @@ def _shape_of_two(coefficients):
     return coefficients[0].shape[0], coefficients[0].shape[1]
 
 
+def _fetch_of_one(coefficients, row, column):
+    prefetch_line(coefficients, row * coefficients.strides[0] + column * coefficients.strides[1])  # pyright: ignore[reportCallIssue]
+
+
+def _fetch_of_two(coefficients, row, column):
+    pairs, _, _ = coefficients
+    prefetch_line(pairs, row * pairs.strides[0] + column * pairs.strides[1])  # pyright: ignore[reportCallIssue]
+
+
 def _column_of_one(coefficients, row, column, weights):
     return (
         weights[0] * coefficients[row, column]
@@ -132,6 +152,11 @@ def _column_of_two(coefficients, row, column, weights):
 @inner_by_type(lambda coefficients: _shape_of_two if _moves(coefficients) else _shape_of_one)
 def _shape(coefficients):
     """Rows and columns of the coefficients."""
+
+
+@inner_by_type(lambda coefficients, row, column: _fetch_of_two if _moves(coefficients) else _fetch_of_one)
+def _fetch(coefficients, row, column):
+    """Have the line of the cache that a coefficient is in brought near."""
 
 
 @inner_by_type(lambda coefficients, row, column, weights: _column_of_two if _moves(coefficients) else _column_of_one)

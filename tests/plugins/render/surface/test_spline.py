@@ -77,3 +77,22 @@ def test_float32_coefficients_and_their_margin():
     found = spline_coefficients(HEIGHTS)
     assert found.dtype == np.float32 and found.shape == (13, 18) and found.flags.c_contiguous
     assert np.isinf(spline_coefficients(np.array([[0, 3e38, 0]], np.float32))).any()  # no warning, no exception
+
+
+def test_what_is_asked_for_ahead_is_what_is_read(monkeypatch: pytest.MonkeyPatch):
+    coefficients, _, _, across, down = spline_surface(HapticSurface(Relief(HEIGHTS, EXTENT)), "never")
+    spline.height(coefficients, across, down, 0.0, 0.0)  # compiled before its parts are exchanged
+    asked: list[tuple[int, int]] = []
+    monkeypatch.setattr(spline, "_shape", np.shape)
+    monkeypatch.setattr(spline, "_fetch", lambda _, row, column: asked.append((row, column)))
+    for x, y in (*(RNG.uniform(-0.49, 0.49, (20, 2)) * EXTENT).tolist(), (0.035, -0.015), (-0.035, 0.015)):
+        asked.clear()
+        spline.prefetch(coefficients, across, down, x, y)
+        height, read = spline.height(coefficients, across, down, x, y), set[int]()
+        for index in np.ndindex(coefficients.shape):
+            other = coefficients.copy()
+            other[index] += 1
+            if spline.height(other, across, down, x, y) != height:
+                read.add(index[0])
+                assert index[1] in range(min(asked)[1], max(asked)[1] + 1)
+        assert read <= {row for row, _ in asked} and len(asked) == 8

@@ -1,0 +1,30 @@
+"""Memory that will be read soon, asked for now; compiled.
+
+Imports numba: a method imports this module inside its verb.
+"""
+
+# ruff: noqa: ANN001, ANN201, ANN202 -- the types are those that numba infers
+# pyright: basic
+
+from llvmlite import ir
+from numba import int64, types
+from numba.extending import intrinsic
+
+BYTE, FLAG = ir.IntType(8).as_pointer(), ir.IntType(32)
+READ, KEEP, DATA = 0, 3, 1
+"""What LLVM asks of a prefetch: for reading, into all levels of the cache, no instructions."""
+
+
+@intrinsic
+def prefetch_line(context, array, offset):
+    """Have the line of the cache so many bytes into an array brought near; nothing waits for it, nor can it fail."""
+
+    def generate(context, builder, signature, arguments):
+        data = context.make_array(signature.args[0])(context, builder, arguments[0]).data
+        at = builder.gep(builder.bitcast(data, BYTE), [arguments[1]])
+        kind = ir.FunctionType(ir.VoidType(), [BYTE, FLAG, FLAG, FLAG])
+        prefetch = builder.module.declare_intrinsic("llvm.prefetch", [BYTE], kind)
+        builder.call(prefetch, [at, *(ir.Constant(FLAG, each) for each in (READ, KEEP, DATA))])
+        return context.get_dummy_value()
+
+    return types.void(array, int64), generate

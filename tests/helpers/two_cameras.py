@@ -33,28 +33,39 @@ def some_wrong(left, right, share, seed=1):
 
 
 class Scene:
-    """A wall and a box before it, each with a texture that is a function of place: nothing is resampled."""
+    """A wall and a box before it, each with a texture that is a function of place: nothing is resampled.
 
-    def __init__(self, shape=(150, 200), wall_px=6.0, box_px=14.0, seed=0):
-        self.shape, self.wall_px, self.box_px = shape, wall_px, box_px
+    slope: by how much the wall's disparity grows with each column and row; box: half its size, as shares of the
+    picture's.
+    """
+
+    def __init__(self, shape=(150, 200), wall_px=6.0, box_px=14.0, seed=0, slope=(0.0, 0.0), box=(0.2, 0.25)):
+        self.shape, self.wall_px, self.box_px, self.slope, self.box = shape, wall_px, box_px, slope, box
         random = np.random.default_rng(seed)
         self._waves = random.uniform(-0.2, 0.2, (2, 80, 2)) * 2 * np.pi
         self._phases = random.uniform(0, 2 * np.pi, (2, 80))
 
-    def left(self):
-        x, y = self._grid()
+    def left(self, warp=None):
+        """As the left camera sees it, then moved by a homography."""
+        x, y = self._grid(warp)
         return self._paint(x, y, self._in_box(x, y))
 
     def right(self, warp=None):
         """As the right camera sees it, then moved by a homography."""
-        x, y = self._grid()
-        if warp is not None:
-            x, y = transform(np.linalg.inv(warp), np.column_stack([x.ravel(), y.ravel()])).T.reshape(2, *self.shape)
+        x, y = self._grid(warp)
         box = self._in_box(x + self.box_px, y)
-        return self._paint(x + np.where(box, self.box_px, self.wall_px), y, box)
+        across, down = self.slope
+        wall = (x + self.wall_px + down * y) / (1 - across)
+        return self._paint(np.where(box, x + self.box_px, wall), y, box)
 
     def disparity_px(self):
-        return np.where(self._in_box(*self._grid()), self.box_px, self.wall_px)
+        x, y = self._grid()
+        wall = self.wall_px + self.slope[0] * x + self.slope[1] * y
+        return np.where(self._in_box(x, y), self.box_px, wall)
+
+    def in_box(self):
+        """Left pixels that show the box."""
+        return self._in_box(*self._grid())
 
     def visible(self):
         """Left pixels that the unmoved right camera sees too."""
@@ -62,13 +73,24 @@ class Scene:
         hidden = ~self._in_box(x, y) & self._in_box(x - self.wall_px + self.box_px, y)
         return ~hidden & (x - self.disparity_px() >= 0)
 
-    def _grid(self):
+    def matches(self, left_warp, right_warp):
+        """Where both pictures, moved by these homographies, show each left pixel: two arrays (n, 2)."""
+        left = np.column_stack([each.ravel() for each in self._grid()])
+        shift = np.column_stack([self.disparity_px().ravel(), np.zeros(len(left))])
+        return transform(left_warp, left), transform(right_warp, left - shift)
+
+    def _grid(self, warp=None):
         rows, columns = np.indices(self.shape, np.float64)
-        return columns, rows
+        if warp is None:
+            return columns, rows
+        return transform(np.linalg.inv(warp), np.column_stack([columns.ravel(), rows.ravel()])).T.reshape(
+            2, *self.shape
+        )
 
     def _in_box(self, x, y):
         rows, columns = self.shape
-        return (abs(x - 0.55 * columns) < 0.2 * columns) & (abs(y - 0.5 * rows) < 0.25 * rows)
+        across, down = self.box
+        return (abs(x - 0.55 * columns) < across * columns) & (abs(y - 0.5 * rows) < down * rows)
 
     def _paint(self, x, y, box):
         layers = []

@@ -8,8 +8,7 @@ Source: the split into similarity and perspective is that of Loop & Zhang, Compu
 Stereo Vision, CVPR 1999; fitting to the matches that of Hartley, Theory and Practice of Projective Rectification, 1999.
 """
 
-from collections.abc import Callable
-from math import cos, exp, sin
+from math import cos, exp, log, sin
 
 import numpy as np
 from jaxtyping import Float64
@@ -17,6 +16,7 @@ from jaxtyping import Float64
 from ..sparse.matches import Matches
 from .epipolar import epipoles, product
 from .homographies import transform
+from .least_squares import least_squares, robust_pull
 from .lenses import undistorted
 
 _PRIOR = np.array([0.5, 0.2, 0.5, 0.2, 0.2, 0.5, 0.5])
@@ -24,28 +24,31 @@ _PRIOR = np.array([0.5, 0.2, 0.5, 0.2, 0.2, 0.5, 0.5])
 shift along y. Rolls in radians, lengths in half the longer side of the picture, tilts in one over that."""
 _RADIAL_PRIOR = np.array([0.1, 0.1])
 """The same of the coefficients of both lenses."""
-_NOISE_PX = 0.3
 _START, _FOUND, _SINE = 2.0**-10, 2.0**-20, 2.0**-32
 """What is rounded, and to what: the roll to start with, in radians, whose last bits are those of a processor's linear
 algebra; the seven numbers, to under a thousandth of a pixel; and sines and the like, whose last bits are those of the C
 library, which fuses operations where a processor can."""
-_LOG_2 = 0.6931471805599453
-_ROUNDS, _TRIES = 80, 15
-"""Steps of the fit, and how often one is tried anew."""
-_STEP, _STILL, _LEAST_GAIN = 1e-5, 1e-5, 0.05
-"""In standard deviations of _PRIOR: steps by which slopes are told, and one that is as good as none; and the share of
-what a step promises that it must bring."""
+_STILL = np.array([1e-9, 1e-9, 0.5, 0.2, 0.2, 0.5, 0.5])
+"""The same of a left picture that stays as it is."""
 
 
 def aligning_homographies(
-    matches: Matches, shape: tuple[int, int], roll: float = 0.0
+    matches: Matches, shape: tuple[int, int], roll: float | None = 0.0
 ) -> tuple[Float64[np.ndarray, "3 3"], Float64[np.ndarray, "3 3"]]:
     """Homographies (left, right), each (3, 3), that bring trusted matches of two pictures (h, w) onto common rows.
 
     The middle of each picture keeps its column: a disparity is the shift against the right picture turned about its
-    middle. roll: where to start, radians, see `epipole_roll`.
+    middle. roll: where to start, radians, see `epipole_roll`; None of a plane, which tells nothing of it. The left
+    picture stays as it is then, and where its two numbers explain too little more: what is not turned is not blurred.
+    Source of how much is too little: Schwarz, Estimating the Dimension of a Model, Annals of Statistics 1978.
     """
-    return _homographies(_fitted(matches, shape, roll, _PRIOR), matches, shape)
+    still = _fitted(matches, shape, 0.0, _STILL)
+    if roll is None:
+        return _homographies(still, matches, shape)
+    free = _fitted(matches, shape, roll, _PRIOR)
+    costs = [_disagreement(_pair(found, shape), matches) for found in (free, still)]
+    enough = costs[1] <= costs[0] + 2 * log(len(matches.left_px))
+    return _homographies(still if enough else free, matches, shape)
 
 
 def aligning_lenses(
@@ -72,12 +75,15 @@ def _fitted(
         lenses = values[7:].tolist() or [0.0, 0.0]
         straight = (undistorted(points, k, shape) for points, k in zip(matches, lenses, strict=True))
         left, right = (transform(h, points) for h, points in zip(_pair(values[:7], shape), straight, strict=True))
-        offset = (left[:, 1] - right[:, 1]) / _NOISE_PX
-        # A Cauchy-like pull: what the robust estimate let through by chance may not bend the geometry.
-        pull = np.sqrt(_log1p(offset * offset))
-        return np.concatenate([np.sign(offset) * pull, (values - start) / prior])
+        return np.concatenate([robust_pull(left[:, 1] - right[:, 1]), (values - start) / prior])
 
-    return np.array([_rounded(each, _FOUND) for each in _least_squares(cost, start, prior)])
+    return np.array([_rounded(each, _FOUND) for each in least_squares(cost, start, prior)])
+
+
+def _disagreement(pair: tuple[np.ndarray, np.ndarray], matches: Matches) -> float:
+    """Sum of the squared pulls of the matches off their rows."""
+    left, right = (transform(h, points) for h, points in zip(pair, matches, strict=True))
+    return float(np.square(robust_pull(left[:, 1] - right[:, 1])).sum())
 
 
 def _homographies(
@@ -88,36 +94,6 @@ def _homographies(
         # Both turned over: what lies along the axes changes its sign.
         left, right = _pair(found * [1, -1, 1, -1, -1, 1, -1] + np.pi * np.array([1, 0, 1, 0, 0, 0, 0]), shape)
     return left, right
-
-
-def _least_squares(cost: Callable[[np.ndarray], np.ndarray], start: np.ndarray, scale: np.ndarray) -> np.ndarray:
-    """Numbers near `start` at which the sum of the squares of `cost` is least, after Levenberg and Marquardt.
-
-    scale: of each number. Sums in one order: LAPACK, which SciPy's fit is built on, has other last bits with every
-    processor and from run to run, and this fit is stopped by them.
-    Source: Nocedal & Wright, Numerical Optimization, 2nd ed., sec. 10.3.
-    """
-    from tangible_core.compiled.small_matrices import solved
-
-    values, found, damping = start, cost(start), 1e-2
-    for _ in range(_ROUNDS):
-        both = [cost(values + step) - cost(values - step) for step in np.diag(_STEP * scale)]
-        slopes = np.stack(both, axis=1) / (2 * _STEP)
-        normal, down = np.einsum("ni,nj->ij", slopes, slopes), np.einsum("ni,n->i", slopes, found)
-        for _ in range(_TRIES):
-            move = -solved(normal + damping * np.trace(normal) / len(start) * np.eye(len(start)), down[None])[0]
-            then = cost(values + scale * move)
-            gain, expected = np.square(found).sum() - np.square(then).sum(), -(down * move).sum()
-            if gain > 0 and gain >= _LEAST_GAIN * expected:
-                break
-            damping *= 4
-        else:
-            break
-        values, found = values + scale * move, then
-        damping = damping / 4 if gain > expected else damping if 2 * gain > expected else 2 * damping
-        if np.abs(move).max() < _STILL:
-            break
-    return values
 
 
 def epipole_roll(fundamental: np.ndarray, shape: tuple[int, int]) -> float:
@@ -144,20 +120,6 @@ def _similarity_and_tilt(roll: float, tilt: tuple[float, float], scale: float, s
     across, down = (scale * _rounded(function(roll), _SINE) for function in (cos, sin))
     turn = np.array([[across, -down, 0], [down, across, 0], [0, 0, 1]])
     return product(np.array([[1, 0, 0], [0, 1, shift], [*tilt, 1]]), turn)
-
-
-def _log1p(values: np.ndarray) -> np.ndarray:
-    """Of numbers >= 0, by multiplications and additions alone: the C library's differs by the processor.
-
-    2 atanh(x / (2 + x)), for large x of the fraction of 1 + x and with log 2 for each power of two.
-    """
-    fraction, power = np.frexp(1 + values)
-    small = values < 1
-    share = np.where(small, values / (2 + values), (fraction - 1) / (fraction + 1))
-    square, total = share * share, np.zeros(values.shape)
-    for odd in range(37, 0, -2):
-        total = total * square + 1 / odd
-    return 2 * share * total + np.where(small, 0, power) * _LOG_2
 
 
 def _rounded(value: float, step: float) -> float:

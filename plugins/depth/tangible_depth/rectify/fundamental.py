@@ -13,10 +13,15 @@ from jaxtyping import Bool, Float64
 from tangible_core.errors import GeometryError
 
 from .epipolar import homogeneous, product, sampson_distance
+from .parallax import Plane, best_plane, plane_and_parallax
 
 Degeneracy = Literal["not finite", "too few", "duplicate", "collinear", "homography", "outliers"]
 Fit = Callable[[np.ndarray, np.ndarray, np.ndarray | None], Float64[np.ndarray, "3 3"]]
 """Left points, right points, a weight for each match's equation -> F, as `eight_point`."""
+SURE = 1000
+"""One scene in so many chance may give a parallax."""
+CELL_PX = 6
+"""Side of the cells in which matches off a plane are one witness."""
 FEWEST = 8
 """Matches the eight-point method needs."""
 
@@ -100,10 +105,7 @@ def eight_point(
     return matrix / np.linalg.norm(matrix)
 
 
-_NO_PARALLAX = (
-    "one homography explains the matches (a flat scene, or a camera that only turned); "
-    "move the camera sideways and take a scene with depth"
-)
+_NO_PARALLAX = "one homography explains the matches (a flat scene, or a camera that only turned)"
 
 
 def robust_fundamental(
@@ -114,21 +116,24 @@ def robust_fundamental(
     threshold_px is the Sampson distance up to which a match counts as right; fit makes F from those that are.
     The same matches give the same F.
     Raises: DegenerateMatches as `check_matches`; "homography" if hardly any match stands off the best homography;
-    "outliers" if no F explains more matches than chance would.
+    "outliers" if no F explains more matches than chance would. A thing before a flat scene is enough.
     Source: Barath et al., MAGSAC++, CVPR 2020; Moisan & Stival, IJCV 2004, for what chance explains.
     """
     check_matches(left_px, right_px)
     first = _magsac(left_px, right_px, threshold_px)
-    flat = on_homography(left_px, right_px, threshold_px)
-    if first is None and 2 * np.count_nonzero(flat) > len(flat):
-        raise DegenerateMatches("homography", _NO_PARALLAX)
+    plane = best_plane(left_px, right_px, threshold_px)
+    flat = np.zeros(len(left_px), np.bool_) if plane is None else plane.near
+    if plane is not None and 2 * np.count_nonzero(flat) > len(flat):
+        first = _better_off_plane(plane, first, left_px, right_px, threshold_px)
+        if first is None:
+            raise DegenerateMatches("homography", _NO_PARALLAX)
     if first is None or _false_alarms(left_px, right_px, first.inliers, threshold_px) > 0:
         raise DegenerateMatches(
             "outliers",
             f"no epipolar geometry explains more of the {len(left_px)} matches than chance would; "
             "do both pictures show the same scene?",
         )
-    if _parallax_false_alarms(left_px, right_px, first.inliers, flat, threshold_px) > 0:
+    if _parallax_false_alarms(left_px, right_px, first.inliers, flat, threshold_px) > -log(SURE):
         raise DegenerateMatches("homography", _NO_PARALLAX)
     return _refine(first, left_px, right_px, threshold_px, fit)
 
@@ -137,23 +142,33 @@ def _magsac(left_px: np.ndarray, right_px: np.ndarray, threshold_px: float) -> F
     import cv2
 
     # OpenCV's convention is second^T F first = 0.
-    matrix, _ = cv2.findFundamentalMat(right_px, left_px, cv2.USAC_MAGSAC, threshold_px, 0.9999, 10_000)
+    try:
+        matrix, _ = cv2.findFundamentalMat(right_px, left_px, cv2.USAC_MAGSAC, threshold_px, 0.9999, 10_000)
+    except cv2.error:  # an assertion of its own fails where one plane explains nearly all
+        return None
     if matrix is None or matrix.shape != (3, 3) or not np.isfinite(matrix).all() or not matrix.any():
         return None
+    return _explaining(matrix, left_px, right_px, threshold_px)
+
+
+def _explaining(matrix: np.ndarray, left_px: np.ndarray, right_px: np.ndarray, threshold_px: float) -> Fundamental:
     matrix = matrix / np.linalg.norm(matrix)
     return Fundamental(matrix, sampson_distance(matrix, left_px, right_px) <= threshold_px)
 
 
-def on_homography(left_px: np.ndarray, right_px: np.ndarray, threshold_px: float) -> Bool[np.ndarray, "n"]:
-    """Matches that stand less than three thresholds off the best homography from right to left."""
-    import cv2
+def _better_off_plane(
+    plane: Plane, first: Fundamental | None, left_px: np.ndarray, right_px: np.ndarray, threshold_px: float
+) -> Fundamental | None:
+    """Of two estimates the one that explains more of what stands off the plane, on which most matches lie.
 
-    matrix, _ = cv2.findHomography(right_px, left_px, cv2.USAC_MAGSAC, 2 * threshold_px)
-    if matrix is None:
-        return np.zeros(len(left_px), np.bool_)
-    moved = product(homogeneous(right_px), matrix.T)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return np.linalg.norm(moved[:, :2] / moved[:, 2:] - left_px, axis=1) <= 3 * threshold_px
+    The second is made only where the first leaves most of that unexplained.
+    """
+    if first is not None and 2 * np.count_nonzero(first.inliers & ~plane.near) > np.count_nonzero(~plane.near):
+        return first
+    matrix = plane_and_parallax(plane, left_px, right_px, threshold_px)
+    other = None if matrix is None else _explaining(matrix, left_px, right_px, threshold_px)
+    found = [each for each in (first, other) if each is not None]
+    return max(found, key=lambda each: np.count_nonzero(each.inliers & ~plane.near), default=None)
 
 
 def _false_alarms(left_px: np.ndarray, right_px: np.ndarray, inliers: np.ndarray, threshold_px: float) -> float:
@@ -168,8 +183,11 @@ def _false_alarms(left_px: np.ndarray, right_px: np.ndarray, inliers: np.ndarray
 def _parallax_false_alarms(
     left_px: np.ndarray, right_px: np.ndarray, inliers: np.ndarray, flat: np.ndarray, threshold_px: float
 ) -> float:
-    """The same for what F explains and the homography does not: with a homography given, two matches make an F."""
-    count, kept = int(np.count_nonzero(~flat)), int(np.count_nonzero(inliers & ~flat))
+    """The same for what F explains and the homography does not: with a homography given, two matches make an F.
+
+    Matches of one cell count once: what is matched wrongly is so together with what lies beside it.
+    """
+    count, kept = (len(np.unique(left_px[each] // CELL_PX, axis=0)) for each in (~flat, inliers & ~flat))
     if kept < 3:
         return np.inf
     tries = log(count) + _log_choose(count, kept) + _log_choose(kept, 2)

@@ -16,11 +16,13 @@ from tangible_core.errors import PictureError
 from tangible_core.plugins.notes import note
 
 from ..sparse.matches import Matches, flow_matches, sift_matches
+from ..sparse.standing_off import matches_off
 from .epipolar import homogeneous, product
 from .fundamental import Fit, eight_point
-from .homographies import transform
+from .homographies import inverse, transform
+from .parallax import Plane, best_plane, only_turned
 from .rectified import RectifiedPair, as_it_is, warped
-from .turning import LEAST_TRUSTED, RectificationError, different, find_turn, seen_range
+from .turning import LEAST_TRUSTED, RectificationError, different, find_turn, seen_range, threshold_px
 
 logger = logging.getLogger(__name__)
 
@@ -28,11 +30,20 @@ FEWEST_TO_TELL = 20
 """Matches below which nothing is said about a pair: it is taken as it is."""
 LEAST_GAIN_PX = 0.2
 """Noise in the matches promises less than this; to turn the pictures for it would only blur them."""
+MOSTLY = 0.8
+"""Share of the matches on one plane from which a scene is looked through for what stands off it."""
 EXCHANGED_PX = -2.0
 """Views are exchanged if all but one match in twenty are below this disparity: parallel cameras give none below 0."""
 _VERGED_OR_EXCHANGED = (
     "every disparity is negative: the cameras look towards each other, or the views are exchanged (left is right); "
     "if what is near comes out far, exchange them"
+)
+_TURNED = (
+    "the camera only turned between the two pictures, so nothing in them tells how far anything is; move it sideways"
+)
+_FLAT = (
+    "one plane explains the matches, which leaves open how the cameras stood: the relief is right up to a slant; "
+    "have something stand before the plane"
 )
 
 
@@ -54,10 +65,11 @@ def rectify(
     matches is within tolerance_px (in large pictures: within 1/8000 of the longer side) already, if turning would not
     lessen it by LEAST_GAIN_PX, or if there are too few matches to tell.
     matches: those to go by; found by optical flow and SIFT when left out. fit: makes F of trusted matches.
-    A flat scene, or a camera that only turned, is aligned as well, with a warning: the matches leave it open how.
+    A flat scene is aligned as well, with a warning: it leaves open how the cameras stood, so the left picture stays as
+    it is. Where most matches lie on a plane, what stands off it is looked for and tells the rest.
     Views in the wrong order are taken as they are, with a warning: their disparities are negative.
     Raises: PictureError if there is only one view; RectificationError if the rows do not correspond but no geometry, or
-    only one that distorts the pictures, explains the matches.
+    only one that distorts the pictures, explains the matches, or if the camera only turned: that shows no depth.
     """
     if views.right is None:
         raise PictureError("rectification needs two views; give a right one")
@@ -106,6 +118,9 @@ def _median_offset(matches: Matches) -> float:
 
 def _turned(views: Views, matches: Matches, before: float, fit: Fit) -> RectifiedPair:
     matches = different(matches)
+    plane = best_plane(*matches, threshold_px(views.shape))
+    if plane is not None and np.mean(plane.near) >= MOSTLY:
+        matches = different(_with_those_off(plane, matches, views))
     turn, doubt = find_turn(matches, views.shape, fit)
     disparity, offsets = turn.shifts(matches, views.shape)[turn.trusted].T
     offsets = np.abs(offsets)
@@ -116,6 +131,10 @@ def _turned(views: Views, matches: Matches, before: float, fit: Fit) -> Rectifie
     if doubt is not None:
         why = f"matches lie {before:.1f} px off their rows, but how to turn the pictures is not sure: {doubt}"
         return _left_alone(views, why, logging.WARNING)
+    if turn.plane is not None:
+        if only_turned(turn.plane, *matches, views.shape):
+            raise RectificationError(_TURNED)
+        note(logger, _FLAT, logging.WARNING)
     if _all_negative(disparity):
         note(logger, _VERGED_OR_EXCHANGED, logging.WARNING)
     why = f"median vertical offset {before:.2f} px, now {after:.2f}"
@@ -125,6 +144,14 @@ def _turned(views: Views, matches: Matches, before: float, fit: Fit) -> Rectifie
     note(logger, f"rectified: {why}{lenses}")
     seen = seen_range(matches.left_px[turn.trusted], disparity)
     return warped(views, turn.homographies, why + lenses, _search_start(disparity), turn.radials, seen)
+
+
+def _with_those_off(plane: Plane, matches: Matches, views: Views) -> Matches:
+    """The matches, and those of what stands before or behind the plane."""
+    assert views.right is not None
+    off = matches_off(to_grey(views.left), to_grey(views.right), plane.matrix)
+    right_px = transform(inverse(plane.matrix), off.right_px)
+    return Matches(np.vstack([matches.left_px, off.left_px]), np.vstack([matches.right_px, right_px]))
 
 
 def _search_start(disparity_px: Float64[np.ndarray, "n"]) -> int:

@@ -10,9 +10,10 @@ from tangible_core.errors import GeometryError
 
 from ..sparse.matches import Matches
 from .alignment import aligning_homographies, aligning_lenses, epipole_roll
-from .fundamental import DegenerateMatches, Fit, on_homography, robust_fundamental
+from .fundamental import DegenerateMatches, Fit, robust_fundamental
 from .homographies import transform
 from .lenses import undistorted
+from .parallax import Plane, best_plane
 
 logger = logging.getLogger(__name__)
 
@@ -25,7 +26,7 @@ LEAST_KEPT = 0.5
 LEAST_MORE = 0.05
 """Share of further matches that distortion must bring onto their rows, of those that had no part in it."""
 RADIALS = (0.0, -0.02, 0.02, -0.04, 0.04, -0.08, 0.08, -0.14, 0.14, -0.22)
-"""Distortions to start from: from none, a fit of strong ones goes astray."""
+"""Distortions to start from: from none, a fit of strong ones goes astray. The first three tell whether there is any."""
 FINE = 0.5
 """Share of the threshold by which they are told apart."""
 MOST_RADIAL = 0.3
@@ -58,6 +59,8 @@ class Turn(NamedTuple):
     homographies: tuple[np.ndarray, np.ndarray]
     radials: tuple[float, float]
     trusted: Bool[np.ndarray, "n"]
+    plane: Plane | None = None
+    """What explains them without parallax, which leaves open how the cameras stood."""
 
     def shifts(self, matches: Matches, shape: tuple[int, int]) -> Float64[np.ndarray, "n 2"]:
         """Of matches in pictures (h, w), left less right place (x, y) once they are turned: disparity, row offset."""
@@ -112,29 +115,28 @@ def different(matches: Matches) -> Matches:
 
 def _turn(matches: Matches, shape: tuple[int, int], fit: Fit) -> Turn:
     """Without distortion of the lenses."""
-    trusted, roll = _trusted(matches, shape, fit)
-    kept = Matches(matches.left_px[trusted], matches.right_px[trusted])
-    return Turn(aligning_homographies(kept, shape, roll), (0.0, 0.0), trusted)
-
-
-def _trusted(matches: Matches, shape: tuple[int, int], fit: Fit) -> tuple[Bool[np.ndarray, "n"], float]:
-    """Which matches one geometry explains, and the roll that lays its epipole along the rows."""
     threshold = threshold_px(shape)
     try:
         found = robust_fundamental(*matches, threshold, fit)
     except DegenerateMatches as error:
-        if error.reason != "homography":
+        plane = best_plane(*matches, threshold) if error.reason == "homography" else None
+        if plane is None:
             raise RectificationError(f"matches do not lie on their rows, and there is {error}") from error
-        # A flat scene leaves the epipole open: any that aligns the matches will do, and the nearest bends least.
-        logger.warning("rectifying without parallax: %s", error)
-        return on_homography(*matches, threshold), 0.0
-    return found.inliers, epipole_roll(found.matrix, shape)
+        # The epipole is open: any that aligns the matches will do, and the nearest bends least.
+        homographies = aligning_homographies(_kept(matches, plane.near), shape, None)
+        return Turn(homographies, (0.0, 0.0), plane.near, plane)
+    roll = epipole_roll(found.matrix, shape)
+    return Turn(aligning_homographies(_kept(matches, found.inliers), shape, roll), (0.0, 0.0), found.inliers)
+
+
+def _kept(matches: Matches, trusted: np.ndarray) -> Matches:
+    return Matches(matches.left_px[trusted], matches.right_px[trusted])
 
 
 def _with_lenses(turn: Turn, matches: Matches, shape: tuple[int, int], fit: Fit) -> Turn:
     """The turn with distortion of the lenses; as it is where none explains more of the matches."""
     few = Matches(*(points[:: 1 + len(points) // MOST_FITTED] for points in matches))
-    radial = max(RADIALS, key=lambda each: _explained(few, each, shape, fit))
+    radial = _radial(few, shape, fit)
     straight = Matches(*(undistorted(points, radial, shape) for points in matches))
     try:
         found = robust_fundamental(*straight, threshold_px(shape), fit) if radial else None
@@ -146,14 +148,21 @@ def _with_lenses(turn: Turn, matches: Matches, shape: tuple[int, int], fit: Fit)
     lenses = Turn(turn.homographies, (radial, radial), trusted)
     for _ in range(3):
         some = np.flatnonzero(trusted)[:: 1 + np.count_nonzero(trusted) // MOST_FITTED]
-        kept = Matches(matches.left_px[some], matches.right_px[some])
-        lenses = Turn(*aligning_lenses(kept, shape, roll, lenses.radials), trusted)
+        lenses = Turn(*aligning_lenses(_kept(matches, some), shape, roll, lenses.radials), trusted)
         if max(map(abs, lenses.radials)) > MOST_RADIAL:
             return turn
         trusted = np.abs(lenses.shifts(matches, shape)[:, 1]) <= threshold_px(shape)
         if np.count_nonzero(trusted) < np.count_nonzero(turn.trusted) / 2:
             return turn
     return lenses._replace(trusted=trusted)
+
+
+def _radial(matches: Matches, shape: tuple[int, int], fit: Fit) -> float:
+    """Of RADIALS that which explains most matches; none where weak ones explain hardly more than none does."""
+    none, *weak = (_explained(matches, each, shape, fit) for each in RADIALS[:3])
+    if max(weak) <= (1 + LEAST_MORE) * none:
+        return 0.0
+    return max(RADIALS, key=lambda each: _explained(matches, each, shape, fit))
 
 
 def _explained(matches: Matches, radial: float, shape: tuple[int, int], fit: Fit) -> int:

@@ -6,6 +6,7 @@ from hypothesis import strategies as st
 from tangible_core.errors import GeometryError
 from tangible_depth.rectify.epipolar import sampson_distance
 from tangible_depth.rectify.fundamental import DegenerateMatches, eight_point, normalise, robust_fundamental
+from tangible_depth.rectify.parallax import best_plane, plane_and_parallax
 from two_cameras import seen_points, some_wrong, symmetric_epipolar_distance
 
 
@@ -107,6 +108,56 @@ def test_no_parallax_is_named_among_noise_and_wrong_matches(share, count):
     turned = seen_points(count=count, move_m=(0, 0, 0), noise_px=0.3)
     assert reason(robust_fundamental, *some_wrong(*flat, share)) == "homography"
     assert reason(robust_fundamental, *some_wrong(*turned, share)) == "homography"
+
+
+def before_a_wall(off, wrong, seed):
+    """Matches of a wall, then `off` ones of a thing before it; and as many as `wrong` of chance among the first."""
+    cameras = {"turn": (0.02, -0.05, 0.05), "move_m": (-0.3, 0.02, 0.01)}
+    wall = some_wrong(*seen_points(**cameras, count=600, flat=True, noise_px=0.1, seed=seed), wrong / 600)
+    thing = seen_points(**cameras, count=off, noise_px=0.1, seed=seed + 100)
+    return tuple(np.vstack(each) for each in zip(wall, thing, strict=True))
+
+
+@pytest.mark.parametrize("seed", range(1, 12, 2))
+def test_a_few_matches_before_a_wall_tell_the_geometry(seed):
+    found = robust_fundamental(*before_a_wall(20, 60, seed))
+    assert found.inliers[-20:].all()
+
+
+def test_two_matches_before_a_plane_make_the_epipole():
+    left, right = before_a_wall(12, 12, 1)
+    plane = best_plane(left, right, 1.0)
+    assert plane is not None
+    matrix = plane_and_parallax(plane, left, right, 1.0)
+    true = eight_point(*seen_points(turn=(0.02, -0.05, 0.05), move_m=(-0.3, 0.02, 0.01)))
+    assert sampson_distance(matrix, left[-12:], right[-12:]).max() <= 1
+    assert np.median(sampson_distance(matrix, *seen_points(turn=(0.02, -0.05, 0.05), move_m=(-0.3, 0.02, 0.01)))) <= 1
+    assert np.median(sampson_distance(true, left[-12:], right[-12:])) <= 1
+
+
+def test_nothing_off_a_plane_makes_no_epipole():
+    left, right = seen_points(flat=True)
+    plane = best_plane(left, right, 1.0)
+    assert plane is not None
+    assert plane_and_parallax(plane, left, right, 1.0) is None
+
+
+def test_wrong_matches_beside_one_another_are_one_witness():
+    """A dozen that were all matched to the same wrong place."""
+    left, right = (points.copy() for points in seen_points(flat=True, count=200, noise_px=0.3))
+    near = np.random.default_rng(1).uniform(0, 3, (12, 2))
+    left[:12], right[:12] = near + np.array([402, 300]), near + np.array([300, 360])
+    assert reason(robust_fundamental, left, right) == "homography"
+
+
+def test_an_assertion_within_opencv_is_no_crash(monkeypatch):
+    import cv2
+
+    def fails(*asked):
+        raise cv2.error("(-215:Assertion failed) !model.empty()")
+
+    monkeypatch.setattr(cv2, "findFundamentalMat", fails)
+    assert reason(robust_fundamental, *seen_points(flat=True)) == "homography"
 
 
 @pytest.mark.parametrize("count", [9, 30, 200, 1000])

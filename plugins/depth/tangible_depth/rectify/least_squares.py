@@ -1,0 +1,68 @@
+"""Least squares of a few numbers, the same on every processor, and the pull of offsets that may be wrong."""
+
+from collections.abc import Callable
+
+import numpy as np
+from jaxtyping import Float64
+
+NOISE_PX = 0.3
+"""Of one coordinate of a match."""
+_LOG_2 = 0.6931471805599453
+_ROUNDS, _TRIES = 80, 15
+"""Steps of the fit, and how often one is tried anew."""
+_STEP, _STILL, _LEAST_GAIN = 1e-5, 1e-5, 0.05
+"""In units of each number's scale: steps by which slopes are told, and one that is as good as none; and the share of
+what a step promises that it must bring."""
+
+
+def robust_pull(offset_px: Float64[np.ndarray, "n"]) -> Float64[np.ndarray, "n"]:
+    """The root of log(1 + (offset / NOISE_PX)^2), with the offset's sign.
+
+    A Cauchy-like pull: what a robust estimate let through by chance may not bend what is fitted.
+    """
+    offset = offset_px / NOISE_PX
+    return np.sign(offset) * np.sqrt(_log1p(offset * offset))
+
+
+def least_squares(cost: Callable[[np.ndarray], np.ndarray], start: np.ndarray, scale: np.ndarray) -> np.ndarray:
+    """Numbers near `start` at which the sum of the squares of `cost` is least, after Levenberg and Marquardt.
+
+    scale: of each number. Sums in one order: LAPACK, which SciPy's fit is built on, has other last bits with every
+    processor and from run to run, and this fit is stopped by them.
+    Source: Nocedal & Wright, Numerical Optimization, 2nd ed., sec. 10.3.
+    """
+    from tangible_core.compiled.small_matrices import solved
+
+    values, found, damping = start, cost(start), 1e-2
+    for _ in range(_ROUNDS):
+        both = [cost(values + step) - cost(values - step) for step in np.diag(_STEP * scale)]
+        slopes = np.stack(both, axis=1) / (2 * _STEP)
+        normal, down = np.einsum("ni,nj->ij", slopes, slopes), np.einsum("ni,n->i", slopes, found)
+        for _ in range(_TRIES):
+            move = -solved(normal + damping * np.trace(normal) / len(start) * np.eye(len(start)), down[None])[0]
+            then = cost(values + scale * move)
+            gain, expected = np.square(found).sum() - np.square(then).sum(), -(down * move).sum()
+            if gain > 0 and gain >= _LEAST_GAIN * expected:
+                break
+            damping *= 4
+        else:
+            break
+        values, found = values + scale * move, then
+        damping = damping / 4 if gain > expected else damping if 2 * gain > expected else 2 * damping
+        if np.abs(move).max() < _STILL:
+            break
+    return values
+
+
+def _log1p(values: np.ndarray) -> np.ndarray:
+    """Of numbers >= 0, by multiplications and additions alone: the C library's differs by the processor.
+
+    2 atanh(x / (2 + x)), for large x of the fraction of 1 + x and with log 2 for each power of two.
+    """
+    fraction, power = np.frexp(1 + values)
+    small = values < 1
+    share = np.where(small, values / (2 + values), (fraction - 1) / (fraction + 1))
+    square, total = share * share, np.zeros(values.shape)
+    for odd in range(37, 0, -2):
+        total = total * square + 1 / odd
+    return 2 * share * total + np.where(small, 0, power) * _LOG_2

@@ -16,9 +16,9 @@ class Gabor(Segmenter, Skippable):
     """Clusters of Gabor energies: one texture per segment, whatever its brightness, in one place or several.
 
     Local energy in a bank of Gabor filters, and how often local binary patterns occur, in cells of 4 x 4 pixels. Cells
-    are divided finely and joined again, the two clusters first whose features differ least, whose border is long and of
-    which one is small; after each step the features that tell clusters apart are found anew, and cells take their
-    neighbours' part. No step is left to chance, and none depends on where the picture begins. Labels are in the order
+    are divided finely and joined again, the two clusters first whose features differ least and of which one is small;
+    towards the end the features that tell clusters apart are found anew at each step, and cells take their neighbours'
+    part. No step is left to chance, and none depends on where the picture begins. Labels are in the order
     of their first pixels, row by row. Confidence is 1 - q / p, p and q being the memberships of a pixel's class and of
     the next one: 0 on borders.
     Sources: Jain & Farrokhnia, Pattern Recognition 24, 1991 (the energies); Ojala et al., IEEE TPAMI 24, 2002
@@ -30,7 +30,7 @@ class Gabor(Segmenter, Skippable):
     segments: Annotated[int, Field(ge=1, le=64)] | Literal["auto"] = "auto"
     """Largest number of textures; `auto`: an estimate, at most 8, reported with its reason and reliability."""
     effort: Literal["fast", "balanced"] = "balanced"
-    """`fast` uses coarser cells, and smooths labels between neighbouring cells only at the end."""
+    """`fast` divides cells less finely, and looks anew at what tells clusters apart in the last joinings only."""
     colour: bool | Literal["auto"] = "auto"
     """Add two colour channels to the texture features; `auto`: where windows of the picture differ in colour."""
     lambda_max_px: Annotated[float, Field(ge=2.8, le=512)] = 24.0
@@ -61,6 +61,8 @@ class Gabor(Segmenter, Skippable):
         if found is None:
             return one_segment(picture.shape[:2])
         labels, axes = classes(found, self.segments, self.effort)
+        if not labels.any():
+            return one_segment(picture.shape[:2])
         narrow, middle = (Window(mixed(axes, each.planes), each.shape) for each in (found.narrow, found.middle))
         memberships = fine_memberships(middle, labels, narrow)
         pixels, confidence = pixel_labels(memberships, CELL_PX, picture.shape[:2])

@@ -2,7 +2,8 @@
 
 import logging
 from collections.abc import Iterable
-from itertools import pairwise
+from itertools import accumulate
+from math import isfinite
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -18,47 +19,42 @@ log = logging.getLogger(__name__)
 PRINCIPAL_AXES = 14
 HALF_WHITE = 0.25
 """Power of its variance by which a principal axis is divided: between none and full whitening, which is 0.5."""
-AXES = 20
-"""Discriminants that are kept."""
 MOST_GUESSED = 8
 """What `segments: auto` stops at."""
-MOST_WORTH = 0.5
-"""No rule carries over from some textures to others: even a clear guess is right every second time."""
+WORTH = 0.2, 1.1, 0.97
+"""Of how many guesses are right: that of guesses without any lead, what a lead of 1 adds, and the most; fitted."""
 FINAL_ROUNDS = 8
 
 
 class Effort(NamedTuple):
-    """Clusters to begin with, a segment and besides; and rounds of settling after each joining."""
+    """Clusters to begin with, a segment and besides; and how many above the segments are joined with more care."""
 
     each: int
     besides: int
-    votes: int
+    last: int
 
 
-EFFORTS = {"fast": Effort(2, 4, 0), "balanced": Effort(3, 4, 1)}
+EFFORTS = {"fast": Effort(2, 4, 2), "balanced": Effort(3, 4, 8)}
 
 
 def classes(
     found: Features, segments: int | Literal["auto"], effort: Literal["fast", "balanced"]
 ) -> tuple[Int32[np.ndarray, "m"], Float64[np.ndarray, "a d"]]:
-    """The class of each cell of the middle windows, and the axes along which classes differ."""
-    from .discriminants import discriminant_axes, principal_axes, scatters
-    from .dividing import divided, members
-    from .joining import joining
-    from .neighbourhood import INSIDE_CELLS, refitted, smoothed
+    """The class of each cell of the middle windows, and the axes along which classes differ: none of a single class."""
+    from .discriminants import principal_axes
+    from .dividing import divided
+    from .joining import axes_between, joining
+    from .neighbourhood import refitted
     from .planes import mixed
 
-    spent, shape = EFFORTS[effort], found.middle.shape
+    spent, (planes, shape) = EFFORTS[effort], found.middle
     most = MOST_GUESSED if segments == "auto" else segments
     rotated = mixed(principal_axes(found.wide.planes, PRINCIPAL_AXES, HALF_WHITE), found.wide.planes)
     labels = _spread(divided(rotated, spent.each * most + spent.besides), found.wide.shape, shape)
-    own = members(labels, int(labels.max()) + 1)
-    fit = scatters(found.middle.planes, own * smoothed(own, shape, INSIDE_CELLS) ** 2)
-    axes = discriminant_axes(fit, AXES)
-    planes = mixed(axes, found.middle.planes)
-    steps = joining(planes, refitted(planes, labels, shape, 2, 1), shape, spent.votes)
+    steps = joining(planes, labels, shape, most + spent.last)
     labels = _guessed(steps) if segments == "auto" else next(each.labels for each in steps if each.clusters <= segments)
-    return refitted(planes, labels, shape, FINAL_ROUNDS, 1), axes
+    axes = axes_between(planes, labels, shape)
+    return (refitted(mixed(axes, planes), labels, shape, FINAL_ROUNDS, 1) if len(axes) else labels * 0), axes
 
 
 def _spread(labels: Int32[np.ndarray, "l"], shape: tuple[int, int], to: tuple[int, int]) -> Int32[np.ndarray, "m"]:
@@ -68,20 +64,22 @@ def _spread(labels: Int32[np.ndarray, "l"], shape: tuple[int, int], to: tuple[in
 
 
 def _guessed(steps: Iterable[Step]) -> Int32[np.ndarray, "m"]:
-    """The division whose next joining costs the most, against the joining before."""
+    """The division whose next joining costs the most, against the dearest joining before."""
     every = list(steps)
+    dearest = accumulate((each.cost if isfinite(each.cost) else 0.0 for each in every), max)
     leaps = {
-        after.clusters: (after.cost / before.cost, after)
-        for before, after in pairwise(every)
-        if 2 <= after.clusters <= MOST_GUESSED and before.cost > 0
+        after.clusters: (after.cost / before, after)
+        for before, after in zip(dearest, every[1:], strict=False)
+        if 2 <= after.clusters <= MOST_GUESSED and min(before, after.cost) > 0
     }
     if not leaps:
         return every[-1].labels
     best, *others = sorted(leaps, key=lambda count: -leaps[count][0])
-    worth = min(MOST_WORTH, 1 - max((leaps[count][0] for count in others), default=0.0) / leaps[best][0])
+    lead = 1 - leaps[others[0]][0] / leaps[best][0] if others else 0.0
+    least, slope, most = WORTH
     note(
         log,
-        f"segments: {best}, a guess worth {worth:.2f}: to join two of them costs {leaps[best][0]:.1f} times as much as "
-        "the joining before",
+        f"segments: {best}, a guess worth {min(most, least + slope * lead):.2f}: to join two of them costs "
+        f"{leaps[best][0]:.1f} times as much as any joining before",
     )
     return leaps[best][1].labels

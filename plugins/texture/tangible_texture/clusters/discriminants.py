@@ -11,6 +11,8 @@ from jaxtyping import Float32, Float64
 
 SHRUNK = 0.05
 """Of the mean variance within classes, and of the total scatter: added to the scatter within classes."""
+CELLS = 200
+"""So many cells, as a share of those there are, if that is more: of few cells the scatter is not known well."""
 
 
 class Scatters(NamedTuple):
@@ -32,8 +34,9 @@ def scatters(planes: Float32[np.ndarray, "d n"], weights: Float32[np.ndarray, "k
     total = scatter(planes, weights.sum(axis=0)) / counts.sum() - np.outer(centre, centre)
     between = np.einsum("kd,ke->de", shares[:, None] * (means - centre), means - centre)
     within = total - between
-    ridge = SHRUNK * max(np.trace(within) / len(within), 1e-6)
-    return Scatters(means, shares, within + SHRUNK * total + ridge * np.eye(len(within)))
+    shrunk = min(1.0, max(SHRUNK, CELLS / planes.shape[1]))
+    ridge = shrunk * max(np.trace(within) / len(within), 1e-6)
+    return Scatters(means, shares, within + shrunk * total + ridge * np.eye(len(within)))
 
 
 def evidence(planes: Float32[np.ndarray, "d n"], found: Scatters) -> Float32[np.ndarray, "k n"]:

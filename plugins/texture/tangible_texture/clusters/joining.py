@@ -1,9 +1,8 @@
-"""Joining the clusters of one texture: the least different pair first, refitted after every step."""
+"""Joining the clusters of one texture: the least different pair first, refitted as it goes."""
 
 # ruff: noqa: ANN001, ANN202 -- numba takes the types from the call
 
-from collections.abc import Callable, Iterator
-from math import exp
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -12,14 +11,15 @@ from numba import njit
 
 from tangible_core.compiled.small_matrices import factored, whitened
 
+from .discriminants import discriminant_axes
 from .dividing import members
-from .neighbourhood import INSIDE_CELLS, refitted, smoothed
-from .planes import products, scatter
+from .neighbourhood import INSIDE_CELLS, fitted, refitted, smoothed
+from .planes import mixed, products, scatter
 
-SIZE_POWER = 1.25
+AXES = 20
+"""Discriminants that are kept."""
+SIZE_POWER = 0.4
 """How much the sizes of two clusters speak against joining them; 1 in Ward's method."""
-TOUCHING = 0.25
-"""How much a long border between two clusters speaks for joining them: halves of one texture lie mixed."""
 RIDGE = 0.05
 """Added to each pair's scatter, as a share of the mean variance within clusters."""
 
@@ -34,32 +34,46 @@ class Step(NamedTuple):
 
 
 def joining(
-    planes: Float32[np.ndarray, "d n"], labels: Int32[np.ndarray, "n"], shape: tuple[int, int], votes: int
+    planes: Float32[np.ndarray, "d n"], labels: Int32[np.ndarray, "n"], shape: tuple[int, int], renewed: int
 ) -> Iterator[Step]:
-    """Divisions into ever fewer clusters, one less at least in each, the last of one.
+    """Divisions into ever fewer clusters, one less at least in each, the last of one: at once if nothing differs.
 
-    votes: rounds in which cells settle with their neighbours after each step; 0 leaves them where they are.
+    renewed: from so many clusters on, the discriminants are found anew before each joining, and cells settle with their
+    neighbours after it. Before that, those of the first division do.
     """
+    told = mixed(axes_between(planes, labels, shape), planes)
+    labels = refitted(told, labels, shape, 2, 1) if len(told) else labels
     while (count := int(labels.max()) + 1) > 1:
-        costs = joining_costs(planes, labels, shape)
+        if count <= renewed:
+            told = mixed(axes_between(planes, labels, shape), planes)
+        if not len(told):
+            break
+        costs = joining_costs(told, labels, shape)
         other, one = np.unravel_index(costs.argmin(), costs.shape)
         yield Step(labels, count, float(costs[other, one]))
         names = np.arange(count, dtype=np.int32)
         names[other:] -= 1
         names[other] = one
         labels = names[labels]
-        if votes:
-            labels = refitted(planes, labels, shape, 1, votes)
-    yield Step(labels, 1, np.inf)
+        if count <= renewed:
+            labels = refitted(told, labels, shape, 1, 1)
+    yield Step(np.zeros_like(labels), 1, np.inf)
+
+
+def axes_between(
+    planes: Float32[np.ndarray, "d n"], labels: Int32[np.ndarray, "n"], shape: tuple[int, int]
+) -> Float64[np.ndarray, "a d"]:
+    """The axes along which clusters differ most, AXES at most."""
+    return discriminant_axes(fitted(planes, members(labels, int(labels.max()) + 1), shape), AXES)
 
 
 def joining_costs(
     planes: Float32[np.ndarray, "d n"], labels: Int32[np.ndarray, "n"], shape: tuple[int, int]
 ) -> Float64[np.ndarray, "k k"]:
-    """D (m k / n)^SIZE_POWER exp(-TOUCHING t), for each pair once, the higher label first; elsewhere infinite.
+    """D (m k / n)^SIZE_POWER, for each pair once, the higher label first; elsewhere infinite.
 
     D is the squared Mahalanobis distance of the two means in the mean of the two scatters; m = a b / (a + b) joins
-    their sizes, of k clusters and n cells; t is the length of their border over the root of the smaller one's size.
+    their sizes, of k clusters and n cells.
     """
     count = int(labels.max()) + 1
     own = members(labels, count)
@@ -69,16 +83,14 @@ def joining_costs(
     means, scatter = _moments(np.ascontiguousarray(planes[:, order]), weights[order], np.cumsum(sizes) - sizes, sizes)
     ridge = RIDGE * np.einsum("k,kii->", sizes, scatter) / sizes.sum() / len(planes) + 1e-9
     joined = sizes[:, None] * sizes / (sizes[:, None] + sizes) * count / labels.size
-    touching = _borders(labels.reshape(shape), count) / np.sqrt(np.minimum(sizes[:, None], sizes))
-    costs = _distances(means, scatter, ridge) * _each(lambda size: size**SIZE_POWER, joined)
-    costs *= _each(lambda length: exp(-TOUCHING * length), touching)
+    costs = _distances(means, scatter, ridge) * _powers(joined)
     costs[np.triu_indices(count)] = np.inf
     return costs
 
 
-def _each(function: Callable[[float], float], values: Float64[np.ndarray, "k k"]) -> Float64[np.ndarray, "k k"]:
-    """Of one value after another: NumPy's powers of an array have other last bits where AVX-512 is."""
-    return np.array([list(map(function, row)) for row in values.tolist()])
+def _powers(sizes: Float64[np.ndarray, "k k"]) -> Float64[np.ndarray, "k k"]:
+    """One value after another: NumPy's powers of an array have other last bits where AVX-512 is."""
+    return np.array([[size**SIZE_POWER for size in row] for row in sizes.tolist()])
 
 
 @njit(cache=True, nogil=True)
@@ -104,19 +116,4 @@ def _distances(means, scatters, ridge):
             factor = factored((scatters[one] + scatters[other]) / 2 + ridge * np.eye(size))
             found[one, other] = np.square(whitened(factor, means[one : one + 1] - means[other : other + 1])).sum()
             found[other, one] = found[one, other]
-    return found
-
-
-@njit(cache=True, nogil=True)
-def _borders(labels, count):
-    """Pairs of cells beside each other, of every two clusters."""
-    rows, columns = labels.shape
-    found = np.zeros((count, count))
-    for row in range(rows):
-        for column in range(columns):
-            for below, right in ((row + 1, column), (row, column + 1)):
-                if below < rows and right < columns:
-                    one, other = labels[row, column], labels[below, right]
-                    found[one, other] += 1
-                    found[other, one] += 1
     return found

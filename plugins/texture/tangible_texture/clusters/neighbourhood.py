@@ -9,7 +9,7 @@ from numba import njit
 from tangible_core.compiled.elementary import exponential
 from tangible_core.runtime.opencv import plain_opencv
 
-from .discriminants import evidence, scatters
+from .discriminants import Scatters, evidence, scatters
 from .dividing import members
 
 PULL = 4.0
@@ -52,6 +52,13 @@ def settled(
     return memberships
 
 
+def fitted(
+    planes: Float32[np.ndarray, "d n"], memberships: Float32[np.ndarray, "k n"], shape: tuple[int, int]
+) -> Scatters:
+    """Of cells well inside their classes: those on borders are mixtures."""
+    return scatters(planes, memberships * smoothed(memberships, shape, INSIDE_CELLS) ** 2)
+
+
 def refitted(
     planes: Float32[np.ndarray, "d n"], labels: Int32[np.ndarray, "n"], shape: tuple[int, int], rounds: int, votes: int
 ) -> Int32[np.ndarray, "n"]:
@@ -61,8 +68,8 @@ def refitted(
     """
     memberships = members(labels, int(labels.max()) + 1)
     for _ in range(rounds):
-        fit = scatters(planes, memberships * smoothed(memberships, shape, INSIDE_CELLS) ** 2)
-        memberships = settled(EVIDENCE * evidence(planes, fit), memberships, shape, 1.5, votes)
+        towards = evidence(planes, fitted(planes, memberships, shape))
+        memberships = settled(EVIDENCE * towards, memberships, shape, 1.5, votes)
         before, labels = labels, memberships.argmax(axis=0)
         if np.mean(before != labels) < 1e-3:
             break

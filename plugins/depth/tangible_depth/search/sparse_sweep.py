@@ -1,6 +1,6 @@
 """Semi-global matching of every few columns of rows that lie far apart: all that telling a range needs.
 
-As `sgm.aggregation`, but all rows fit into memory: costs are counted once, and two rows are walked along at a time.
+As `sgm.aggregation`, but all rows fit into memory, so that costs are counted once.
 """
 
 # ruff: noqa: ANN001, ANN202 -- numba finds the types of what it compiles; the docstrings say them
@@ -9,27 +9,28 @@ from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Int16, UInt8
-from numba import int64, njit, uint8
+from numba import njit, uint8
 
 from tangible_core.compiled.compiling import KERNEL, inner
 
 from ..dense.span import UNKNOWN, Span
 from ..dense.subpixel import equiangular
+from ..sgm.aggregation import WORST, begin, shifted
 from ..sgm.census import PLANES
 from ..sgm.costs import Penalties
-from ..sgm.paths import _step as step
+from ..sgm.paths import jumps, jumps_along, sideways, step
 from ..simd.lane_reductions import differences, first_equal, first_lane, lowest
 from ..simd.lanes import Lanes, load, maximum, minimum, saturating_add, shift_down, splat, store, width
 
-WORST = np.uint8(255)
 FEWEST_LANES = 64
 """Lanes are a power of two from here on, so that few kernels are compiled; larger disparities fill them."""
 
 
 class _Scratch(NamedTuple):
-    costs: UInt8[np.ndarray, "rows m*n"]
-    total: UInt8[np.ndarray, "rows m*n"]
-    path: UInt8[np.ndarray, "m*n"]
+    costs: UInt8[np.ndarray, "even_rows m*n"]
+    total: UInt8[np.ndarray, "even_rows m*n"]
+    p2: UInt8[np.ndarray, "2 m+1"]
+    path: UInt8[np.ndarray, "1 m*n"]
     path_lowest: UInt8[np.ndarray, "m"]
     codes: UInt8[np.ndarray, "planes w+n-1"]
     bounds: UInt8[np.ndarray, "2 w+n-1"]
@@ -55,9 +56,10 @@ def sweep_columns(
     n = max(FEWEST_LANES, 1 << (span.size - 1).bit_length())
     span = Span(span.low, span.low + n - 1)
     scratch = _Scratch(
-        np.empty((rows, m * n), np.uint8),
-        np.empty((rows, m * n), np.uint8),
-        np.empty(m * n, np.uint8),
+        np.empty((rows + rows % 2, m * n), np.uint8),
+        np.empty((rows + rows % 2, m * n), np.uint8),
+        np.empty((2, m + 1), np.uint8),
+        np.empty((1, m * n), np.uint8),
         np.empty(m, np.uint8),
         np.empty((PLANES, w + n - 1), np.uint8),
         np.empty((2, w + n - 1), np.uint8),
@@ -69,30 +71,27 @@ def sweep_columns(
 @njit(**KERNEL)
 def _sweep(lanes, left, right, grey, span, penalties, stride, scratch, out):
     rows, w = out.shape
-    costs, total, path, path_lowest, codes, bounds, right_sums = scratch
+    costs, total, p2, path, path_lowest, codes, bounds, right_sums = scratch
+    p1 = penalties.p1
     _bounds(w, span.high, penalties.neutral, bounds)
-    _begin(path, path_lowest)
+    begin(path, path_lowest)
     for y in range(rows):
-        _shifted(right[y], w, span.high, codes)
+        shifted(right[y], w, span.high, codes)
         _count(lanes, left[y], codes, bounds, stride, costs[y])
-        _vertical(lanes, penalties, grey[y], grey[max(y - 1, 0)], costs[y], path, path_lowest, total[y], True)
+        jumps(penalties, grey[y], grey[max(y - 1, 0)], p2[0])
+        _vertical(lanes, p1, p2[0], costs[y], path[0], path_lowest, total[y], True)
     for y in range(0, rows, 2):
-        _sideways(lanes, penalties, grey, costs, total, y, min(y + 1, rows - 1))
-    _begin(path, path_lowest)
+        jumps_along(penalties, grey[y], p2[0])
+        jumps_along(penalties, grey[min(y + 1, rows - 1)], p2[1])
+        upper, lower = total[y], total[y + 1]  # the last row of an odd number has a stand-in beside it
+        sideways(lanes, p1, (costs[y], p2[0], upper, upper), (costs[y + 1], p2[1], lower, lower))
+    begin(path, path_lowest)
     for i in range(rows):
         y = rows - 1 - i
-        _vertical(lanes, penalties, grey[y], grey[min(y + 1, rows - 1)], costs[y], path, path_lowest, total[y], False)
+        jumps(penalties, grey[y], grey[min(y + 1, rows - 1)], p2[0])
+        _vertical(lanes, p1, p2[0], costs[y], path[0], path_lowest, total[y], False)
         _best_right_sums(lanes, total[y], stride, right_sums)
         _accept(lanes, total[y], span, stride, bounds, right_sums, out[y])
-
-
-@inner()
-def _begin(path, path_lowest):
-    """A path that nothing has been paid for."""
-    for i in range(path.size):
-        path[i] = 0
-    for i in range(path_lowest.size):
-        path_lowest[i] = 0
 
 
 @inner()
@@ -102,14 +101,6 @@ def _bounds(w, top, neutral, bounds):
         beyond = (i < top) | (i >= top + w)
         bounds[0, i] = uint8(0) if beyond else uint8(255)
         bounds[1, i] = neutral if beyond else uint8(0)
-
-
-@inner()
-def _shifted(row, w, top, codes):
-    """The right view's codes as the lanes want them; beyond the picture its edge is repeated."""
-    for plane in range(row.shape[0]):
-        for i in range(codes.shape[1]):
-            codes[plane, i] = row[plane, min(max(i - top, 0), w - 1)]
 
 
 @inner()
@@ -123,54 +114,15 @@ def _count(lanes, left, codes, bounds, stride, costs):
 
 
 @inner()
-def _vertical(lanes, penalties, grey, grey_before, costs, path, path_lowest, total, first):
+def _vertical(lanes, p1, p2, costs, path, path_lowest, total, first):
     """The path from the row before, in place; added to the total, of which it may be the first part."""
     n = width(lanes)
-    p1, p2_by_step = splat(lanes, penalties.p1), penalties.p2_by_step
-    for i in range(grey.size):
-        p2 = p2_by_step[_grey_step(grey[i], grey_before[i])]
-        here = step(lanes, load(lanes, path, i * n), path_lowest[i], load(lanes, costs, i * n), p1, p2)
+    p1 = splat(lanes, p1)
+    for i in range(path_lowest.size):
+        here = step(lanes, load(lanes, path, i * n), path_lowest[i], load(lanes, costs, i * n), p1, p2[i])
         path_lowest[i] = lowest(here)
         store(path, i * n, here)
         store(total, i * n, here if first else saturating_add(load(lanes, total, i * n), here))
-
-
-@inner()
-def _sideways(lanes, penalties, grey, costs, total, upper, lower):
-    """The paths from both ends of two rows, added to their totals: four at once hide their latency."""
-    n = width(lanes)
-    m = grey.shape[1]
-    p1, p2_by_step = splat(lanes, penalties.p1), penalties.p2_by_step
-    start = splat(lanes, uint8(0))
-    east = west = east_below = west_below = start
-    a = b = c = d = uint8(0)
-    for x in range(m):
-        z = m - 1 - x
-        before, after = max(x - 1, 0), min(z + 1, m - 1)
-        p2 = p2_by_step[_grey_step(grey[upper, x], grey[upper, before])]
-        east = step(lanes, east, a, load(lanes, costs[upper], x * n), p1, p2)
-        p2 = p2_by_step[_grey_step(grey[upper, z], grey[upper, after])]
-        west = step(lanes, west, b, load(lanes, costs[upper], z * n), p1, p2)
-        p2 = p2_by_step[_grey_step(grey[lower, x], grey[lower, before])]
-        east_below = step(lanes, east_below, c, load(lanes, costs[lower], x * n), p1, p2)
-        p2 = p2_by_step[_grey_step(grey[lower, z], grey[lower, after])]
-        west_below = step(lanes, west_below, d, load(lanes, costs[lower], z * n), p1, p2)
-        a, b, c, d = lowest(east), lowest(west), lowest(east_below), lowest(west_below)
-        _add(lanes, total[upper], x * n, east)
-        _add(lanes, total[upper], z * n, west)
-        if lower != upper:
-            _add(lanes, total[lower], x * n, east_below)
-            _add(lanes, total[lower], z * n, west_below)
-
-
-@inner()
-def _add(lanes, total, at, path):
-    store(total, at, saturating_add(load(lanes, total, at), path))
-
-
-@inner()
-def _grey_step(here, there):
-    return abs(int64(here) - int64(there))
 
 
 @inner()

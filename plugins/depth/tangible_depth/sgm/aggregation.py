@@ -62,7 +62,7 @@ def scratch(rows: int, w: int, n: int, planes: int) -> Scratch:
 
 
 @inner()
-def _begin(paths, path_lowest):
+def begin(paths, path_lowest):
     """A path that nothing has been paid for."""
     for path in paths:
         for i in range(path.size):
@@ -122,7 +122,7 @@ def _accept(span, best, beside, sums, right_sums, confirmed, most, check_toleran
 
 
 @inner()
-def _shifted(row, w, top, codes):
+def shifted(row, w, top, codes):
     """The right view's codes as the lanes want them; beyond the picture its edge is repeated."""
     end = codes.shape[1]
     first = min(max(top, 0), end)
@@ -153,10 +153,10 @@ def sweep_strip(
     y0, y1 = rows
     total, paths, path_lowest, costs, p2, codes, best, right_sums, beside, confirmed = scratch
     p1, p2_across = penalties.p1, p2[2]
-    _begin(paths, path_lowest)
+    begin(paths, path_lowest)
     for y in range(max(0, y0 - warm), y1):
         row = (y - y0) & 1
-        _shifted(right[y], w, span.high, codes)
+        shifted(right[y], w, span.high, codes)
         jumps(penalties, grey[y], grey[max(y - 1, 0)], p2_across)
         vertical(lanes, left[y], codes, limits, p1, p2_across, paths[1 - row], paths[row], path_lowest, costs[row])
         if y >= y0:
@@ -166,12 +166,12 @@ def sweep_strip(
             upper = costs[0], p2[0], paths[0], total[i]
             lower = costs[1], p2[1], paths[1], total[i + 1]
             sideways(lanes, p1, upper, lower)
-    _begin(paths, path_lowest)
+    begin(paths, path_lowest)
     path, finals = paths[0], costs[1]
     last = min(h, y1 + warm)
     for i in range(last - y0):
         y = last - 1 - i
-        _shifted(right[y], w, span.high, codes)
+        shifted(right[y], w, span.high, codes)
         jumps(penalties, grey[y], grey[min(y + 1, h - 1)], p2_across)
         vertical(lanes, left[y], codes, limits, p1, p2_across, path, path, path_lowest, costs[0])
         if y < y1:

@@ -54,7 +54,7 @@ def limits_of(n: int, w: int, span: Span, neutral: np.uint8) -> Limits:
 
 
 @inner()
-def _step(lanes, before, before_lowest, cost, p1, p2):
+def step(lanes, before, before_lowest, cost, p1, p2):
     """One step of a path: stay, move by one disparity or jump to any, then pay the pixel's own cost."""
     wall = splat(lanes, uint8(255))
     moved = saturating_add(minimum(shift_up(before, wall), shift_down(before, wall)), p1)
@@ -97,7 +97,7 @@ def _columns(lanes, left, codes, limits, barred, columns, p1, p2, before, path, 
             cost = _limited_cost(lanes, left, codes, x, limits)
         store(costs, x * n, cost)
         i = uint64(x)  # never negative, and numba need not ask
-        here = _step(lanes, load(lanes, before, x * n), path_lowest[i], cost, p1, p2[i])
+        here = step(lanes, load(lanes, before, x * n), path_lowest[i], cost, p1, p2[i])
         path_lowest[i] = lowest(here)
         store(path, x * n, here)
 
@@ -152,8 +152,8 @@ def _inward(lanes, p1, row, x, ends):
     costs, p2, so_far, total = row
     east, east_lowest, west, west_lowest = ends
     z = p2.size - 2 - x
-    east = _step(lanes, east, east_lowest, load(lanes, costs, x * n), p1, p2[uint64(x)])
-    west = _step(lanes, west, west_lowest, load(lanes, costs, z * n), p1, p2[uint64(z + 1)])
+    east = step(lanes, east, east_lowest, load(lanes, costs, x * n), p1, p2[uint64(x)])
+    west = step(lanes, west, west_lowest, load(lanes, costs, z * n), p1, p2[uint64(z + 1)])
     store(total, x * n, saturating_add(load(lanes, so_far, x * n), east))
     store(total, z * n, saturating_add(load(lanes, so_far, z * n), west))
     return east, lowest(east), west, lowest(west)

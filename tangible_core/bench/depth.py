@@ -10,12 +10,13 @@ from ..data import DisparityMap, Views
 from ..datasets import MarkedPair
 from ..errors import PictureError
 from ..metrics import benchmark_errors, disparity_errors, sparsification_errors
+from ..metrics.sparsification import REMOVED
 from ..plugins.interfaces import DepthEstimator
 from ..scene.geometry import fill_rows
 from ..synthetic.stereo_scenes import KnownPair
 from . import damage
 from .depth_scenes import DepthScene, size_of
-from .task import Measure, Perturbation, Task
+from .task import Curve, Measure, Perturbation, Task
 
 NOC, FULL = "_noc", "_full"
 STEP_PX = 16
@@ -172,13 +173,19 @@ def _with_noc(measures: Mapping[str, Measure]) -> dict[str, Measure]:
 
 TASK = Task(
     kind="depth",
-    version=2,
+    version=3,
     scene=DepthScene,
     work=estimate,
     measure=measure,
     measures=_measures(),
     columns=("bad2", "bad2_noc", "bad1", "average_px", "density"),
     plotted=("bad2", "bad2_noc", "ausc"),
+    curve=Curve(
+        "wrong among those left (bad2), %",
+        "least confident pixels removed, %",
+        {removed: f"left_{removed}" for removed in REMOVED},
+        {removed: f"left_{removed}_by_oracle" for removed in REMOVED},
+    ),
     perturbations=PERTURBATIONS,
     given={"max_disparity_px": range_px},
     finishes={"fill": fill},

@@ -74,6 +74,20 @@ class Perturbation:
 
 
 @dataclass(frozen=True)
+class Curve:
+    """A measure that is drawn over something else than time, of each method and of the best there could be."""
+
+    title: str
+    """Of the upright axis, with the unit."""
+    over: str
+    """What the level axis tells, with the unit."""
+    points: Mapping[float, str]
+    """Names of what `Task.measure` gives at each place; no column of a table shows them."""
+    ideal: Mapping[float, str]
+    """The same of what the method would have if it were perfect in this."""
+
+
+@dataclass(frozen=True)
 class Task:
     """Everything that a comparison must know about one kind of method."""
 
@@ -84,12 +98,15 @@ class Task:
     work: Callable[[Any, Any], Any]
     """(what `prepare` gives, scene) -> result: what is timed."""
     measure: Callable[[Any, Any], Mapping[str, float]]
-    """(result, scene) -> a value for each of `measures`, NaN where there is none. Raises: TangibleError."""
+    """(result, scene) -> a value for each of `measures` and each point of `curve`, NaN where there is none.
+    Raises: TangibleError."""
     measures: Mapping[str, Measure]
     columns: tuple[str, ...]
     """Measures that the table shows, the first one being what methods are judged by."""
     plotted: tuple[str, ...]
     """Measures drawn against time, one panel each."""
+    curve: Curve | None = None
+    """Drawn in a panel of its own."""
     prepare: Callable[[Any, Any], Any] = lambda method, scene: method
     """(method, scene) -> what `work` takes, the method itself if not said; made anew for each call. Untimed, but it
     counts for memory and for the very first call."""

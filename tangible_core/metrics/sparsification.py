@@ -7,6 +7,8 @@ from .disparity import absolute_error
 
 WRONG_PX = 2.0
 """Error above which a pixel counts as wrong, as for `bad2`."""
+REMOVED = range(0, 100, 5)
+"""In per cent: how much of a map is removed where its curve is told."""
 
 
 def sparsification_curve(confidence: Float[np.ndarray, " n"], wrong: Bool[np.ndarray, " n"]) -> Float[np.ndarray, " n"]:
@@ -27,18 +29,29 @@ def sparsification_errors(
 ) -> dict[str, float]:
     """How well the confidence of a disparity map sorts its wrong pixels, those over 2 px off or missing, from the rest.
 
-    Returns: `ausc`, the area under `sparsification_curve` over the pixels with truth, in percent: that of `bad2` for a
-    confidence that says nothing; `ausc_by_oracle`, that over the area of an order that puts every wrong pixel last: 1
-    is perfect, and NaN where nothing is wrong. A missing estimate is the least confident. NaN without truth.
+    Returns, in percent: `left_20` and its like, the share of wrong pixels among those left when the least confident
+    20 % of the pixels with truth are removed, for each of REMOVED, and `left_20_by_oracle`, the same for an order that
+    removes every wrong pixel first; `ausc`, the mean of `sparsification_curve` over all it has, which is `bad2` for a
+    confidence that says nothing. And `ausc_by_oracle`, `ausc` over the oracle's: 1 is perfect, and NaN where nothing
+    is wrong. A missing estimate is the least confident. NaN without truth.
     Raises: PictureError if the disparity and its truth differ in size.
     Source: Hu & Mordohai, A Quantitative Evaluation of Confidence Measures for Stereo Vision, PAMI 34(11), 2012.
     """
     measured = np.isfinite(truth_px)
     error_px = absolute_error(disparity_px, truth_px)[measured]
-    if not error_px.size:
-        return {"ausc": float("nan"), "ausc_by_oracle": float("nan")}
     wrong = ~(error_px <= WRONG_PX)
     sure = np.where(np.isfinite(error_px), confidence[measured], -1.0)
-    area = float(sparsification_curve(sure, wrong).mean())
-    least = float(sparsification_curve(-wrong.astype(np.float64), wrong).mean())
-    return {"ausc": 100 * area, "ausc_by_oracle": area / least if least else float("nan")}
+    found = 100 * sparsification_curve(sure, wrong)
+    oracle = 100 * sparsification_curve(-wrong.astype(np.float64), wrong)
+    area, least = (float(curve.mean()) if curve.size else float("nan") for curve in (found, oracle))
+    points = _points(found) | {f"{name}_by_oracle": value for name, value in _points(oracle).items()}
+    return points | {"ausc": area, "ausc_by_oracle": area / least if least else float("nan")}
+
+
+def _points(curve: Float[np.ndarray, " n"]) -> dict[str, float]:
+    """The curve where REMOVED says; of the last pixel where less than one would be left."""
+    kept = [max(1, round(curve.size * (100 - removed) / 100)) for removed in REMOVED]
+    return {
+        f"left_{removed}": float(curve[count - 1]) if curve.size else float("nan")
+        for removed, count in zip(REMOVED, kept, strict=True)
+    }

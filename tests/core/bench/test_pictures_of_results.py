@@ -1,5 +1,6 @@
 """The plot: drawn, legible, and without overlaps."""
 
+from dataclasses import replace
 from itertools import combinations
 from pathlib import Path
 
@@ -15,6 +16,8 @@ from tangible_core.bench.plot import draw_plot
 from tangible_core.bench.summary import Cell
 from tangible_core.bench.table import Results
 from tangible_core.bench.task import load_task
+from tangible_core.data import DisparityMap
+from tangible_core.synthetic.stereo_scenes import synthetic_pair
 
 
 def results(points: dict[str, tuple[float, float]]) -> Results:
@@ -39,6 +42,29 @@ def test_a_plot_is_drawn(tmp_path: Path, points: dict[str, tuple[float, float]])
     assert draw_plot(tmp_path / "plot.png", results(points))
     with Image.open(tmp_path / "plot.png") as image:
         assert image.size == (1920, 720)
+
+
+def test_a_curve_has_a_panel_of_its_own(tmp_path: Path):
+    curve = load_task("depth").curve
+    assert curve is not None
+    known = {**dict.fromkeys(curve.points.values(), 5.0), **dict.fromkeys(curve.ideal.values(), 1.0)}
+    found = results({"with": (0.1, 5.0), "without": (0.2, 4.0)})
+    cell = next(each for each in found.cells.values() if each.method == "with")
+    found.cells[cell.key] = replace(cell, measures={**cell.measures, **known})
+    assert draw_plot(tmp_path / "plot.png", found)
+    with Image.open(tmp_path / "plot.png") as image:
+        assert image.size == (2880, 720)
+
+
+def test_every_point_of_a_curve_is_measured():
+    task = load_task("depth")
+    assert task.curve is not None
+    pair = synthetic_pair("planes", 64, 48)
+    found = DisparityMap(pair.truth_px + 3 * (np.arange(64) > 40).astype(np.float32))
+    figures = task.measure(found, pair)
+    names = {*task.curve.points.values(), *task.curve.ideal.values()}
+    assert {name for name, value in figures.items() if np.isfinite(value)} >= names
+    assert not names & task.measures.keys()
 
 
 def test_nothing_to_draw_draws_nothing(tmp_path: Path):

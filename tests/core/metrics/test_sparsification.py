@@ -5,8 +5,17 @@ import pytest
 
 from tangible_core.errors import PictureError
 from tangible_core.metrics import disparity_errors, sparsification_curve, sparsification_errors
+from tangible_core.metrics.sparsification import REMOVED
 
 NAN = np.nan
+
+
+def areas(figures: dict[str, float]) -> dict[str, float]:
+    return {name: value for name, value in figures.items() if name.startswith("ausc")}
+
+
+def curve(figures: dict[str, float], end: str = "") -> list[float]:
+    return [figures[f"left_{removed}{end}"] for removed in REMOVED]
 
 
 def test_a_curve_worked_out_by_hand():
@@ -29,17 +38,36 @@ def test_areas_of_the_best_of_the_worst_and_of_no_order():
     worst = sparsification_errors(found, np.float32([[0, 1], [0, 0]]), truth)
     none = sparsification_errors(found, np.ones((2, 2), np.float32), truth)
     quarter = 100 * (1 / 4) / 4
-    assert best == pytest.approx({"ausc": quarter, "ausc_by_oracle": 1})
+    assert areas(best) == pytest.approx({"ausc": quarter, "ausc_by_oracle": 1})
     area = 100 * (1 + 1 / 2 + 1 / 3 + 1 / 4) / 4
-    assert worst == pytest.approx({"ausc": area, "ausc_by_oracle": area / quarter})
+    assert areas(worst) == pytest.approx({"ausc": area, "ausc_by_oracle": area / quarter})
     assert none["ausc"] == pytest.approx(disparity_errors(found, truth)["bad2"])
+
+
+def test_the_curve_of_the_best_order_falls_until_nothing_wrong_is_left():
+    """Of 100 pixels 20 are wrong: of the 100 - r that are left, 20 - r, and then none."""
+    truth = np.zeros((10, 10), np.float32)
+    found = np.zeros((10, 10), np.float32)
+    found[:2] = 3
+    by_hand = [100 * max(0, 20 - removed) / (100 - removed) for removed in REMOVED]
+    figures = sparsification_errors(found, -found, truth)
+    assert curve(figures) == pytest.approx(by_hand)
+    assert curve(figures, "_by_oracle") == pytest.approx(by_hand)
+    unsure = sparsification_errors(found, np.ones_like(found), truth)
+    assert curve(unsure) == pytest.approx([20] * len(REMOVED))
+    assert curve(unsure, "_by_oracle") == pytest.approx(by_hand)
+
+
+def test_of_one_pixel_one_is_always_left():
+    figures = sparsification_errors(np.float32([[3]]), np.float32([[1]]), np.float32([[0]]))
+    assert curve(figures) == [100] * len(REMOVED)
 
 
 def test_a_missing_estimate_is_wrong_and_least_confident_and_what_has_no_truth_is_left_out():
     found = np.float32([[0, NAN, 9, 0]])
     truth = np.float32([[0, 0, NAN, 0]])
     figures = sparsification_errors(found, np.float32([[0.1, 1, 1, 0]]), truth)
-    assert figures == pytest.approx({"ausc": 100 * (1 / 3) / 3, "ausc_by_oracle": 1})
+    assert areas(figures) == pytest.approx({"ausc": 100 * (1 / 3) / 3, "ausc_by_oracle": 1})
 
 
 def test_nothing_wrong_has_an_area_of_zero_and_nothing_known_has_none():

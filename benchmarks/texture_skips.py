@@ -81,7 +81,9 @@ def skips(scene: KnownSegments) -> Iterator[Skip]:
     yield _option("octaves that are not there", "report", blurred, "skip_octaves", True, False)
     yield _option("filters without energy", "gabor", blurred, "least_energy", 1e-4, 0)
     yield _option("colour that is not there", "gabor", coloured, "colour", "auto", True)
-    yield _option("finer division, and neighbours at each step", "gabor", scene, "effort", "fast", "balanced")
+    yield _option(
+        "a finer division, and axes found anew for more of the joinings", "gabor", scene, "effort", "fast", "balanced"
+    )
     yield Skip(
         f"pixels finer than the device resolves, on a surface {1e3 * SURFACE_M:g} mm wide, `gabor`",
         f"`workspace: finest_m`: {1e3 * FINEST_M:g} mm, 0",

@@ -93,7 +93,7 @@ def _curve_panel(axes: Axes, found: list[Line], curved: list[Line], curve: Curve
     for index, line in _in_order(found):
         if line in curved:
             colour = _colour(index)
-            axes.plot(curve.ideal.keys(), _values(line, curve.ideal), color=colour, linewidth=1, linestyle=":")
+            axes.plot(list(curve.ideal), _values(line, curve.ideal), color=colour, linewidth=1, linestyle=":")
             at = list(curve.points), _values(line, curve.points)
             axes.plot(*at, color=colour, marker=_marker(index), markersize=5, label=line.method, **EDGE)
     axes.set(xlabel=curve.over, ylabel=curve.title)

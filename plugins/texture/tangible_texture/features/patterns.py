@@ -2,8 +2,9 @@
 
 A pixel's code says which of eight neighbours are as bright as it is. It adds one to one of 10 rotation-invariant
 classes (Ojala, Pietikainen & Maenpaa, IEEE TPAMI 24, 2002), and to some of 12 agreements that tell directions: both
-neighbours of an axis are alike, both are bright, those a quarter turn apart are alike. A cell holds 16 pixels, so that
-a counter fits 5 bits (6 for quarter turns, of which each pixel has two) and all of a pixel's are two additions.
+neighbours of an axis are dark, both are bright, those a quarter turn apart are alike. A picture's negative exchanges
+counters, but for neighbours of equal grey. A cell holds 16 pixels, so that a counter fits 5 bits (6 for quarter turns,
+of which each pixel has two) and all of a pixel's are two additions.
 """
 
 # ruff: noqa: ANN001, ANN202 -- numba takes the types from the call
@@ -50,7 +51,7 @@ def _pairs_of(code: int) -> Iterator[tuple[bool, ...]]:
     bits = [bool(code >> i & 1) for i in range(8)]
     axes = [(bits[i], bits[i + 4]) for i in range(4)]
     quarters = [[bits[(i + j) % 8] == bits[(i + j + 2) % 8] for j in (0, 4)] for i in range(4)]
-    yield tuple(one == other for one, other in axes)
+    yield tuple(not (one or other) for one, other in axes)
     yield tuple(one and other for one, other in axes)
     yield from zip(*quarters, strict=True)
 
@@ -66,8 +67,8 @@ def _packed(flags: Iterable[bool], first_bit: int, width: int) -> int:
 
 
 def _agreements_of(code: int) -> int:
-    alike, bright, *quarters = _pairs_of(code)
-    return _packed(alike, 0, 5) + _packed(bright, 20, 5) + sum(_packed(each, 40, 6) for each in quarters)
+    dark, bright, *quarters = _pairs_of(code)
+    return _packed(dark, 0, 5) + _packed(bright, 20, 5) + sum(_packed(each, 40, 6) for each in quarters)
 
 
 _FIRST: UInt64[np.ndarray, "256"] = np.array([1 << 5 * _class_of(code) for code in range(256)], np.uint64)

@@ -147,7 +147,7 @@ def test_what_joining_costs_is_as_it_is_written(random: np.random.Generator):
 def test_patterns_of_a_flat_picture_are_all_bright():
     found = pattern_frequencies(np.zeros((8, 12), np.float32)).reshape(len(RADII), COUNTERS, 2, 3)
     expected = np.zeros(COUNTERS)
-    expected[[8, *range(10, COUNTERS)]] = 1
+    expected[[8, *range(14, COUNTERS)]] = 1
     np.testing.assert_array_equal(found, np.broadcast_to(expected[:, None, None], found.shape))
 
 
@@ -167,6 +167,14 @@ def test_a_flipped_picture_has_flipped_patterns(random: np.random.Generator):
         part = slice(radius * COUNTERS, (radius + 1) * COUNTERS)
         sets = [sorted(map(tuple, planes[part].reshape(COUNTERS, -1).round(5).tolist())) for planes in (one, other)]
         assert sets[0] == sets[1]
+
+
+def test_a_negative_exchanges_patterns(random: np.random.Generator):
+    """k bright neighbours become 8 - k, two bright ones two dark ones."""
+    picture = random.permutation(16 * 24).reshape(16, 24).astype(np.float32)
+    plain, negative = (pattern_frequencies(each).reshape(len(RADII), COUNTERS, 4, 6) for each in (picture, -picture))
+    exchanged = [*range(8, -1, -1), 9, *range(14, 18), *range(10, 14), *range(18, COUNTERS)]
+    np.testing.assert_array_equal(negative[:2, exchanged, 1:-1, 1:-1], plain[:2, :, 1:-1, 1:-1])
 
 
 def test_a_border_lies_between_the_centres_of_cells():

@@ -8,6 +8,7 @@ import os
 
 from . import (
     texture_accuracy,
+    texture_colour,
     texture_features,
     texture_gradient,
     texture_growth,
@@ -31,6 +32,7 @@ PROTOCOL = (
 def section() -> str:
     """The section of RESULTS.md, as Markdown."""
     figures = part("mosaics", texture_accuracy.figures)
+    figures += part("colour", texture_colour.figures)
     figures += part("features", texture_features.figures)
     figures += part("smooth scenes", texture_gradient.figures)
     figures += part("invariance", texture_invariance.figures)

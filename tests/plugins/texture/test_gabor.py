@@ -164,10 +164,17 @@ def test_colour_is_used_where_windows_differ_in_it():
     assert rand_index(truth, found.labels) > 0.95
 
 
+def under_slanting_light(picture: np.ndarray) -> np.ndarray:
+    """Redder from left to right, and bluer from top to bottom."""
+    rows, columns = (np.linspace(-0.15, 0.15, side) for side in picture.shape)
+    return np.stack([picture + columns, picture, picture + rows[:, None]], axis=2) / 1.5 + 0.15
+
+
 @pytest.mark.parametrize(
     ("picture", "colour", "why"),
     [
         (PICTURE, "auto", "there is none"),
+        (under_slanting_light(PICTURE), "auto", "of white, under 0.02"),
         (np.stack([PICTURE, PICTURE, PICTURE * 0.999], axis=2), "auto", "of white, under 0.02"),
     ],
 )

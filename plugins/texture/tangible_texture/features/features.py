@@ -17,7 +17,8 @@ NARROW_PX, MIDDLE_PX, WIDE_PX = 5.0, 10.0, 18.0
 LARGE_PX = 320
 """Where the root of a picture's area is less, its windows are narrower in proportion, down to half as wide."""
 COLOURFUL = 0.02
-"""Windows that differ in colour by less than this share of white do so by chance, or by the light."""
+"""Windows that differ in colour by less than this share of white, an even change across the picture apart, do so by
+chance, or by the light."""
 COLOUR_WEIGHT = 3.0
 """What a plane of colour counts against one of ninety of texture."""
 
@@ -118,9 +119,19 @@ def _tints(picture: np.ndarray, colour: bool | Literal["auto"]) -> list[Float32[
     opponents = (1 + (red - green) / 2, 1 + (red + green) / 4 - blue / 2)
     with plain_opencv():
         planes = np.stack([cv2.resize(each, (columns, rows), interpolation=cv2.INTER_AREA) for each in opponents])
-    differ = float(np.sqrt(averaged(planes, MIDDLE_PX / CELL_PX).var(axis=(1, 2)).sum()))
+    differ = float(np.sqrt(_without_slope(averaged(planes, MIDDLE_PX / CELL_PX)).var(axis=(1, 2)).sum()))
     if colour == "auto" and differ < COLOURFUL:
         note(log, f"colour left out: windows differ in it by {differ:.3f} of white, under {COLOURFUL:g}")
         return []
     note(log, f"colour used: windows differ in it by {differ:.3f} of white")
     return [planes]
+
+
+def _without_slope(planes: Float32[np.ndarray, "d rows columns"]) -> Float32[np.ndarray, "d rows columns"]:
+    """Less what changes evenly across the picture, as light does."""
+    for axis in (1, 2):
+        place = np.arange(planes.shape[axis], dtype=np.float32) - np.float32((planes.shape[axis] - 1) / 2)
+        place = np.expand_dims(place, tuple({0, 1, 2} - {axis}))
+        slope = (planes * place).mean(axis=(1, 2), keepdims=True) / max(float(np.square(place).mean()), 1e-9)
+        planes = planes - slope * place
+    return planes

@@ -38,7 +38,7 @@ class SemiGlobal(DepthEstimator, Following):
     effort: Literal["balanced", "best"] = "balanced"
     """best: grey levels are compared besides their order where both views were exposed alike (`cost`: levels), smaller
     islands count as surfaces, and gaps are filled from eight sides in place of four; about 8 % fewer wrong pixels than
-    balanced for about a third more processor time."""
+    balanced for about half as much processor time again."""
     cost: Literal["auto", "sharp", "levels", "light", "heavy"] = "auto"
     """Matching cost: sharp compares the order of grey values, levels the values as well, for clean pictures whose views
     were exposed alike; light and heavy are for light and heavy noise; auto: chosen by a test on part of the picture,

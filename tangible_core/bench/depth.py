@@ -10,7 +10,7 @@ from ..data import DisparityMap, Views
 from ..datasets import MarkedPair
 from ..errors import PictureError
 from ..metrics import benchmark_errors, disparity_errors, sparsification_errors
-from ..metrics.sparsification import REMOVED
+from ..metrics.sparsification import LEFT, LEFT_BY_ORACLE
 from ..plugins.interfaces import DepthEstimator
 from ..scene.geometry import fill_rows
 from ..synthetic.stereo_scenes import KnownPair
@@ -183,8 +183,8 @@ TASK = Task(
     curve=Curve(
         "wrong among those left (bad2), %",
         "least confident pixels removed, %",
-        {removed: f"left_{removed}" for removed in REMOVED},
-        {removed: f"left_{removed}_by_oracle" for removed in REMOVED},
+        LEFT,
+        LEFT_BY_ORACLE,
     ),
     perturbations=PERTURBATIONS,
     given={"max_disparity_px": range_px},

@@ -84,8 +84,7 @@ def _panel(axes: Axes, results: Results, found: list[Line], measure: str) -> Non
     axes.xaxis.set_major_formatter("{x:g}")
     axes.xaxis.set_minor_formatter(NullFormatter())
     axes.set(xlabel=f"time, {results.task.clock.unit}", ylabel=results.heading(measure))
-    axes.grid(color="#dddddd", linewidth=0.5)
-    axes.set_axisbelow(True)
+    _rule(axes)
 
 
 def _curve_panel(axes: Axes, found: list[Line], curved: list[Line], curve: Curve) -> None:
@@ -98,6 +97,11 @@ def _curve_panel(axes: Axes, found: list[Line], curved: list[Line], curve: Curve
             axes.plot(*at, color=colour, marker=_marker(index), markersize=5, label=line.method, **EDGE)
     axes.set(xlabel=curve.over, ylabel=curve.title)
     axes.legend(title="dotted: the best there could be", title_fontsize=8)
+    _rule(axes)
+
+
+def _rule(axes: Axes) -> None:
+    """Pale lines behind what is drawn."""
     axes.grid(color="#dddddd", linewidth=0.5)
     axes.set_axisbelow(True)
 
@@ -107,7 +111,7 @@ def _in_order(found: list[Line]) -> Iterator[tuple[int, Line]]:
     return enumerate(sorted(found, key=lambda line: line.method))
 
 
-def _values(line: Line, points: Mapping[float, str]) -> list[float]:
+def _values(line: Line, points: Mapping[int, str]) -> list[float]:
     return [line.measures.get(name, math.nan) for name in points.values()]
 
 

@@ -81,9 +81,9 @@ class Curve:
     """Of the upright axis, with the unit."""
     over: str
     """What the level axis tells, with the unit."""
-    points: Mapping[float, str]
+    points: Mapping[int, str]
     """Names of what `Task.measure` gives at each place; no column of a table shows them."""
-    ideal: Mapping[float, str]
+    ideal: Mapping[int, str]
     """The same of what the method would have if it were perfect in this."""
 
 

@@ -1,5 +1,7 @@
 """Whether a map knows where it is wrong: what is left of its wrong pixels as the least confident ones are removed."""
 
+from collections.abc import Mapping
+
 import numpy as np
 from jaxtyping import Bool, Float
 
@@ -7,8 +9,10 @@ from .disparity import absolute_error
 
 WRONG_PX = 2.0
 """Error above which a pixel counts as wrong, as for `bad2`."""
-REMOVED = range(0, 100, 5)
-"""In per cent: how much of a map is removed where its curve is told."""
+LEFT = {removed: f"left_{removed}" for removed in range(0, 100, 5)}
+"""Per cent of a map that are removed where its curve is told -> name of the figure."""
+LEFT_BY_ORACLE = {removed: f"{name}_by_oracle" for removed, name in LEFT.items()}
+"""The same of the oracle's curve."""
 
 
 def sparsification_curve(confidence: Float[np.ndarray, " n"], wrong: Bool[np.ndarray, " n"]) -> Float[np.ndarray, " n"]:
@@ -30,7 +34,7 @@ def sparsification_errors(
     """How well the confidence of a disparity map sorts its wrong pixels, those over 2 px off or missing, from the rest.
 
     Returns, in percent: `left_20` and its like, the share of wrong pixels among those left when the least confident
-    20 % of the pixels with truth are removed, for each of REMOVED, and `left_20_by_oracle`, the same for an order that
+    20 % of the pixels with truth are removed, for each of LEFT, and `left_20_by_oracle`, the same for an order that
     removes every wrong pixel first; `ausc`, the mean of `sparsification_curve` over all it has, which is `bad2` for a
     confidence that says nothing. And `ausc_by_oracle`, `ausc` over the oracle's: 1 is perfect, and NaN where nothing
     is wrong. A missing estimate is the least confident. NaN without truth.
@@ -44,14 +48,14 @@ def sparsification_errors(
     found = 100 * sparsification_curve(sure, wrong)
     oracle = 100 * sparsification_curve(-wrong.astype(np.float64), wrong)
     area, least = (float(curve.mean()) if curve.size else float("nan") for curve in (found, oracle))
-    points = _points(found) | {f"{name}_by_oracle": value for name, value in _points(oracle).items()}
-    return points | {"ausc": area, "ausc_by_oracle": area / least if least else float("nan")}
+    return (
+        _points(found, LEFT)
+        | _points(oracle, LEFT_BY_ORACLE)
+        | {"ausc": area, "ausc_by_oracle": area / least if least else float("nan")}
+    )
 
 
-def _points(curve: Float[np.ndarray, " n"]) -> dict[str, float]:
-    """The curve where REMOVED says; of the last pixel where less than one would be left."""
-    kept = [max(1, round(curve.size * (100 - removed) / 100)) for removed in REMOVED]
-    return {
-        f"left_{removed}": float(curve[count - 1]) if curve.size else float("nan")
-        for removed, count in zip(REMOVED, kept, strict=True)
-    }
+def _points(curve: Float[np.ndarray, " n"], names: Mapping[int, str]) -> dict[str, float]:
+    """The curve where names say; of the last pixel where less than one would be left."""
+    kept = {name: max(1, round(curve.size * (100 - removed) / 100)) for removed, name in names.items()}
+    return {name: float(curve[count - 1]) if curve.size else float("nan") for name, count in kept.items()}

@@ -5,7 +5,7 @@ import pytest
 
 from tangible_core.errors import PictureError
 from tangible_core.metrics import disparity_errors, sparsification_curve, sparsification_errors
-from tangible_core.metrics.sparsification import REMOVED
+from tangible_core.metrics.sparsification import LEFT
 
 NAN = np.nan
 
@@ -15,7 +15,7 @@ def areas(figures: dict[str, float]) -> dict[str, float]:
 
 
 def curve(figures: dict[str, float], end: str = "") -> list[float]:
-    return [figures[f"left_{removed}{end}"] for removed in REMOVED]
+    return [figures[f"left_{removed}{end}"] for removed in LEFT]
 
 
 def test_a_curve_worked_out_by_hand():
@@ -49,18 +49,18 @@ def test_the_curve_of_the_best_order_falls_until_nothing_wrong_is_left():
     truth = np.zeros((10, 10), np.float32)
     found = np.zeros((10, 10), np.float32)
     found[:2] = 3
-    by_hand = [100 * max(0, 20 - removed) / (100 - removed) for removed in REMOVED]
+    by_hand = [100 * max(0, 20 - removed) / (100 - removed) for removed in LEFT]
     figures = sparsification_errors(found, -found, truth)
     assert curve(figures) == pytest.approx(by_hand)
     assert curve(figures, "_by_oracle") == pytest.approx(by_hand)
     unsure = sparsification_errors(found, np.ones_like(found), truth)
-    assert curve(unsure) == pytest.approx([20] * len(REMOVED))
+    assert curve(unsure) == pytest.approx([20] * len(LEFT))
     assert curve(unsure, "_by_oracle") == pytest.approx(by_hand)
 
 
 def test_of_one_pixel_one_is_always_left():
     figures = sparsification_errors(np.float32([[3]]), np.float32([[1]]), np.float32([[0]]))
-    assert curve(figures) == [100] * len(REMOVED)
+    assert curve(figures) == [100] * len(LEFT)
 
 
 def test_a_missing_estimate_is_wrong_and_least_confident_and_what_has_no_truth_is_left_out():

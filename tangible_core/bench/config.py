@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
+from os.path import normpath
 from pathlib import Path
 from typing import Annotated, Any, cast
 
@@ -104,7 +105,7 @@ def parse_comparison(text: str, path: Path, registry: Registry, overrides: Itera
         source.complain(("out",), f"out: a folder is wanted, not {quoted(out)}")
     source.settle()
     folder = path.parent if "out" in source.tree else Path()
-    return Comparison(path, task, methods, scenes, damages, protocol, finishes, baseline, folder / out)
+    return Comparison(path, task, methods, scenes, damages, protocol, finishes, baseline, Path(normpath(folder / out)))
 
 
 def _task(source: Source) -> Task:

@@ -130,7 +130,7 @@ class Source:
             self.complain(location, str(error))
             return None
         except ValidationError as error:
-            for each in _deepest(error, plain(block)):
+            for each in _joined(_deepest(error, plain(block))):
                 self._complain_of(location, model, each)
             return None
 
@@ -146,8 +146,7 @@ class Source:
             given = "" if told else f", not {quoted(error['input'])}"
             if error["type"] == "literal_error":
                 given += did_you_mean(f"{error['input']}", re.findall(r"'([^']*)'", error["msg"]))
-            said = PLAIN_WORDS.get(error["type"], error["msg"].removeprefix("Value error, "))
-            self.complain(where, f"{name}: {said}{given}")
+            self.complain(where, f"{name}: {error['msg']}{given}")
 
 
 PLAIN_WORDS = {
@@ -156,6 +155,8 @@ PLAIN_WORDS = {
     "list_type": "Input should be a list, such as [1, 2]",
     "tuple_type": "Input should be a list, such as [1, 2]",
     "path_type": "Input should be the path of a file",
+    "int_parsing": "Input should be a valid integer",
+    "float_parsing": "Input should be a valid number",
 }
 """What pydantic says in words of Python's, by the type of its error."""
 
@@ -165,6 +166,19 @@ def _deepest(error: ValidationError, block: Any) -> list[Mapping[str, Any]]:
     found: list[dict[str, Any]] = [{**each, "loc": _place_in(block, each["loc"])} for each in error.errors()]
     places: list[Location] = [each["loc"] for each in found]
     return [each for each in found if not any(_is_within(place, each["loc"]) for place in places)]
+
+
+def _joined(found: Iterable[Mapping[str, Any]]) -> list[dict[str, Any]]:
+    """The same in plain words; what is wanted at one place said once: `Input should be greater than 0, or 'auto'`."""
+    wanted = "Input should be "
+    joined = dict[tuple[Location, str], dict[str, Any]]()
+    for each in found:
+        said = str(PLAIN_WORDS.get(each["type"]) or each["msg"].removeprefix("Value error, "))
+        key = (each["loc"], "" if said.startswith(wanted) else said)
+        if key in joined and key[1] == "":
+            said = f"{joined[key]['msg']}, or {said.removeprefix(wanted)}"
+        joined[key] = {**each, "msg": said}
+    return list(joined.values())
 
 
 def _is_within(inner: Location, outer: Location) -> bool:

@@ -47,7 +47,7 @@ calls: 1
 timeout_s: 10
 fill: [other]
 baseline: constant
-out: results
+out: ../results
 """
     found = parse(text, registry)
     assert [each.label for each in found.methods] == ["constant", "other"]
@@ -55,7 +55,7 @@ out: results
     assert [each.name for each in found.damages] == ["none", "noise 2", "noise 5", "shift -0.5", "gain 0.8"]
     assert found.finishes == {"fill": {"other"}}
     assert found.baseline == "constant"
-    assert found.out == Path("here/results")
+    assert found.out == Path("results")
 
 
 def test_a_sweep_spans_a_grid(registry: Registry):

@@ -219,6 +219,15 @@ def test_scene_files():
         ("scene: {height: h.npy, clip: [1]}\n", "1:24: scene.clip.1: Field required"),
         ("scene: {height: 3}\n", "1:9: scene.height: Input should be the path of a file, not 3"),
         ("scene: builtin/brick\nworkspace: x\n", "2:1: workspace: Input should be a mapping, such as {key: value}"),
+        ("scene: builtin/brick\nworkspace: {width_m: x}\n", "width_m: Input should be a valid number, not 'x'"),
+        (
+            "scene: builtin/brick\ntexture: {use: gabor, segments: 0}\n",
+            "2:23: texture.segments: Input should be greater than or equal to 1, or 'auto', not 0",
+        ),
+        (
+            "scene: builtin/brick\ntexture: {use: gabor, segments: aut}\n",
+            "texture.segments: Input should be a valid integer, or 'auto', not 'aut' (did you mean 'auto'?)",
+        ),
     ],
 )
 def test_a_complaint_has_the_words_and_places_of_the_file(text: str, says: str):

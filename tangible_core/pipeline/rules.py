@@ -110,8 +110,10 @@ def _disparity(config: PipelineConfig, grid: FeltScene) -> Rule:
         if not as_named:
             made = _in_order(made, views, offset_px / grid.factor)
         found = in_pictures_pixels(made, grid)
-        if views.right is not None and (said := unmatched.hardly_matched(found, grid.known)):
-            doubt(log, said)
+        if views.right is not None:
+            said = unmatched.same_twice(views, found) or unmatched.hardly_matched(found, grid.known)
+            if said:
+                doubt(log, said)
         return found
 
     name, key = _identity(config.depth)

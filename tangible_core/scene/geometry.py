@@ -126,7 +126,7 @@ def _nearness(disparity: DisparityMap, calibration: Calibration | None) -> Float
     if not np.isfinite(nearness).any():
         raise GeometryError(
             "no depth is known anywhere: all disparities are NaN or mean infinity; check that left and "
-            "right are not swapped, the search range, and offset_px"
+            "right are two pictures that show something and are not swapped, the search range, and offset_px"
         )
     return nearness
 

@@ -3,11 +3,21 @@
 import numpy as np
 from jaxtyping import Bool
 
-from ..data import DisparityMap
+from ..data import DisparityMap, Views
 from .view_order import MATCHED
 
 LEAST_MATCHED = 0.25
 """Part of the picture below which hardly anything was matched: good pairs reach 0.5 to 0.9, noise 0.02 to 0.12."""
+
+
+def same_twice(views: Views, disparity: DisparityMap) -> str:
+    """What to say of a depth that was asked of one picture twice; empty of two pictures, or where one is enough."""
+    if disparity.unit != "px" or views.right is None or not np.array_equal(views.left, views.right):
+        return ""
+    return (
+        "left and right are one and the same picture: nothing has moved between them, so no depth can be seen and the "
+        "surface is flat. Name the two pictures of a pair, taken from side by side, or this one alone as a photo"
+    )
 
 
 def hardly_matched(disparity: DisparityMap, known: Bool[np.ndarray, "h w"] | None = None) -> str:

@@ -8,7 +8,7 @@ import pytest
 
 from tangible_core import DepthEstimator, Pipeline, Scene
 from tangible_core.data import DisparityMap, Views
-from tangible_core.scene.unmatched import hardly_matched
+from tangible_core.scene.unmatched import hardly_matched, same_twice
 
 SHAPE = 10, 20
 
@@ -33,6 +33,20 @@ def test_what_shows_nothing_does_not_count():
     assert hardly_matched(matched(0.2), known) == ""
     known[:] = True
     assert hardly_matched(matched(0.2), known)
+
+
+def test_one_picture_twice_is_said():
+    left, right = np.random.default_rng(1).random((2, *SHAPE))
+    twice = Scene.of(left=left, right=left.copy()).views
+    two = Scene.of(left=left, right=right).views
+    assert twice is not None and two is not None
+    assert "one and the same picture: " in same_twice(twice, matched(1))
+    assert same_twice(two, matched(1)) == ""
+    assert same_twice(twice, matched(1, unit="relative")) == ""
+    same = Pipeline(Scene.of(left=left, right=left), depth=Guesses(), cached=False)
+    same.make("disparity")
+    [doubt] = same.outcomes.doubts
+    assert doubt.text.startswith("left and right are one and the same picture: ")
 
 
 class Guesses(DepthEstimator):

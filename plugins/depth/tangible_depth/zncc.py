@@ -24,7 +24,7 @@ class Zncc(DepthEstimator, Following):
     """
 
     needs_pair: ClassVar[bool] = True
-    version: ClassVar[int] = 4
+    version: ClassVar[int] = 5
 
     window_px: WindowSide = 7
     """Side of the square matching window; odd."""

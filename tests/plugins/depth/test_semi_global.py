@@ -15,9 +15,8 @@ from tangible_core.plugins.notes import collected
 from tangible_core.synthetic.stereo_scenes import synthetic_pair
 from tangible_depth.dense import refinement
 from tangible_depth.dense.filling import fill
-from tangible_depth.matching.efforts import EFFORTS
+from tangible_depth.dense.speckles import Specks
 from tangible_depth.semi_global import SemiGlobal
-from tangible_depth.sgm.costs import SHARP
 
 
 def share_within(found, truth, px, where=True):
@@ -149,9 +148,8 @@ def test_a_preview_at_half_the_size_has_the_full_size():
     assert share_within(found.disparity_px, truth, 1.0) >= 0.96
 
 
-@pytest.mark.parametrize("effort", EFFORTS.values())
-def test_an_island_is_an_error_by_its_size_in_the_whole_picture(effort):
-    assert effort.largest_speck_px(SHARP, 2) == effort.largest_speck_px(SHARP) // 4
+def test_an_island_is_an_error_by_its_size_in_the_whole_picture():
+    assert Specks(20, 60, 200).shrunk(2) == Specks(5, 15, 50)
 
 
 def test_exposure_changes_next_to_nothing():

@@ -21,7 +21,7 @@ from .edges import MEDIAN_REACH, VOTERS, median, sharpen_edges
 from .eight_sides import fill_from_eight_sides
 from .filling import fill
 from .span import UNKNOWN
-from .speckles import ISLAND_PX, remove_speckles
+from .speckles import Specks, remove_specks
 
 SAME_SURFACE = 16
 """Sixteenths of a pixel that two neighbours of a small map may differ by and still be blended when it is enlarged."""
@@ -39,8 +39,10 @@ class Cleaning(NamedTuple):
 
     sharpen: bool = True
     """Edges are sharpened; a map that will be enlarged is sharpened then."""
-    largest_speck_px: int = ISLAND_PX
-    """Islands up to here are errors."""
+    specks: Specks = Specks()
+    """Which islands are errors, in a picture of full size."""
+    factor: int = 1
+    """By how much the picture was made smaller."""
     eight_sides: bool = False
     """Gaps are filled from eight sides in place of four."""
 
@@ -61,7 +63,7 @@ def completed(
     A map without any match stays UNKNOWN.
     """
     cleaning = cleaning or Cleaning()
-    remove_speckles(matched, cleaning.largest_speck_px)
+    remove_specks(matched, cleaning.specks, cleaning.factor)
     filled = fill_from_eight_sides(matched, grey) if cleaning.eight_sides else fill(matched, grey)
     out = _empty(grey.shape)
 

@@ -5,8 +5,10 @@ As OpenCV's `filterSpeckles`, but over runs of a row instead of pixels, and on a
 
 # ruff: noqa: ANN001, ANN202 -- numba finds the types of what it compiles; the docstrings say them
 
+from typing import NamedTuple
+
 import numpy as np
-from jaxtyping import Int16
+from jaxtyping import Int16, Int32
 from numba import int64, njit
 
 from tangible_core.compiled.compiling import KERNEL, inner
@@ -16,6 +18,43 @@ from .span import UNKNOWN
 
 ISLAND_PX = 60
 """Islands up to here are errors, where nothing else is said."""
+REACH = 20
+"""Rows and columns round a pixel in which is counted how much was matched."""
+FEW, HARDLY_ANY = 0.5, 0.2
+"""Shares of the pixels round one below which few, and hardly any, were matched."""
+
+
+class Specks(NamedTuple):
+    """Up to which size islands are errors: the less was matched round one, the larger it may be.
+
+    Matches among many others have been confirmed by them while costs were aggregated; a lone one was found by chance,
+    and all that is filled round it would be wrong with it.
+    """
+
+    among_many_px: int = 20
+    among_few_px: int = ISLAND_PX
+    alone_px: int = ISLAND_PX
+
+    def shrunk(self, factor: int) -> "Specks":
+        """The same in a picture made smaller by `factor`."""
+        return Specks(*(each // factor**2 for each in self))
+
+    def by_share(self) -> Int32[np.ndarray, "256"]:
+        """The largest error where 0 to 255 of 255 pixels round it were matched."""
+        share = np.arange(256) / 255
+        return np.select((share < HARDLY_ANY, share < FEW), self[:0:-1], self.among_many_px).astype(np.int32)
+
+
+def remove_specks(disparity: Int16[np.ndarray, "h w"], specks: Specks, factor: int = 1) -> None:
+    """Make islands UNKNOWN, in place, by what was matched round each of their pixels; see `remove_speckles`.
+
+    factor: by how much the picture was made smaller.
+    """
+    import cv2
+
+    across = 2 * (REACH // factor) + 1
+    share = cv2.blur(np.uint8(255) * (disparity != UNKNOWN), (across, across))
+    _remove(disparity, specks.shrunk(factor).by_share(), share, 16)
 
 
 def remove_speckles(disparity: Int16[np.ndarray, "h w"], largest_px: int, step: int = 16) -> int:
@@ -24,11 +63,17 @@ def remove_speckles(disparity: Int16[np.ndarray, "h w"], largest_px: int, step: 
     An island is a region of at most `largest_px` pixels in which 4-neighbours differ by at most `step` sixteenths of a
     pixel, and which no such step joins to anything else.
     """
+    return _remove(disparity, np.full(1, largest_px, np.int32), np.zeros(disparity.shape, np.uint8), step)
+
+
+def _remove(disparity: np.ndarray, largest_px: np.ndarray, share: np.ndarray, step: int) -> int:
+    """largest_px: of an island, by the `share` of each of its pixels."""
     h, w = disparity.shape
     start, stop, parent, size = (np.empty(h * w, np.int32) for _ in range(4))
     begin, end = np.empty(h, np.int64), np.empty(h, np.int64)
     first_rows: list[int] = []
     erased: list[int] = []
+    most = int(largest_px.max())
 
     def label(y0: int, y1: int) -> None:
         first_rows.append(y0)
@@ -37,7 +82,11 @@ def remove_speckles(disparity: Int16[np.ndarray, "h w"], largest_px: int, step: 
     in_blocks(h, label)
     for y in sorted(first_rows)[1:]:
         _join_rows(disparity, step, y, start, stop, parent, size, begin, end)
-    in_blocks(h, lambda a, b: erased.append(_erase(disparity, largest_px, a, b, start, stop, parent, size, begin, end)))
+
+    def erase(y0: int, y1: int) -> None:
+        erased.append(_erase(disparity, most, largest_px, share, y0, y1, start, stop, parent, size, begin, end))
+
+    in_blocks(h, erase)
     return sum(erased)
 
 
@@ -100,15 +149,16 @@ def _unite(parent, size, i, j):
 
 
 @njit(**KERNEL)
-def _erase(disparity, largest, y0, y1, start, stop, parent, size, begin, end):
+def _erase(disparity, most, largest_px, share, y0, y1, start, stop, parent, size, begin, end):
     erased = 0
     for y in range(y0, y1):
         for run in range(begin[y], end[y]):
             root = run
             while parent[root] != root:  # no path is shortened here: other threads read too
                 root = parent[root]
-            if size[root] <= largest:
+            if size[root] <= most:
                 for x in range(start[run], stop[run]):
-                    disparity[y, x] = UNKNOWN
-                erased += stop[run] - start[run]
+                    if size[root] <= largest_px[share[y, x]]:
+                        disparity[y, x] = UNKNOWN
+                        erased += 1
     return erased

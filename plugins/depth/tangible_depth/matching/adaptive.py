@@ -125,14 +125,9 @@ class _Trial:
         sweep(self._codes, self.pair.left, *how, rows, self.out, self._effort.warm_rows, self.cost.most_level)
 
     def health(self, rows: Rows) -> _Health:
-        """Match these rows and look at what was found.
-
-        Specks are erased, unless small islands are kept: one that reaches beyond these rows may be no speck.
-        """
+        """Match these rows and look at what was found, specks being errors; none is erased: it may reach beyond."""
         self.sweep(rows)
-        parts = [StripMatches(*(each[a:b] for each in self.out)) for a, b in rows]
-        if self._effort.small_islands:
-            parts = [StripMatches(each.disparity.copy(), each.sums) for each in parts]
+        parts = [StripMatches(self.out.disparity[a:b].copy(), self.out.sums[a:b]) for a, b in rows]
         found = max(1, sum(np.count_nonzero(each.disparity != UNKNOWN) for each in parts))
         specks = sum(remove_speckles(each.disparity, ISLAND_PX) for each in parts)
         bits = sum(int(np.sum(each.sums * (each.disparity != UNKNOWN), dtype=np.int64)) for each in parts)

@@ -17,7 +17,7 @@ from ..rectify.turning import RectificationError
 from ..search.asked import Auto, asked_span
 from ..search.bands import match_bands
 from ..search.pairs import Pair, grey_pair
-from ..search.raw_pairs import with_common_rows
+from ..search.raw_pairs import rows_correspond, with_common_rows
 
 log = logging.getLogger(__name__)
 
@@ -58,7 +58,8 @@ def disparity_map(views: Views, name: str, search: Search, match: Matcher) -> Di
     if aligned is None:
         return _rectified(views, name, search, match, None)
     found.say()
-    return _looked_over(views, name, search, match, in_order(aligned, found.span, search.fill, match))
+    first = in_order(aligned, found.span, search.fill, match)
+    return first if _fares_well(aligned, first) else _looked_over(views, name, search, match, first)
 
 
 def _rectified(views: Views, name: str, search: Search, match: Matcher, instead: DisparityMap | None) -> DisparityMap:
@@ -72,10 +73,18 @@ def _rectified(views: Views, name: str, search: Search, match: Matcher, instead:
     return rectified.to_original(in_order(pair, found.span, search.fill, match))
 
 
+def _fares_well(pair: Pair, found: DisparityMap) -> bool:
+    """Whether most was matched, or what was matched shows at least that the rows correspond."""
+    if doubtful(found) <= MOST_DOUBTFUL:
+        return True
+    correspond = rows_correspond(pair, found.disparity_px, found.confidence >= DOUBTFUL)
+    if correspond:
+        note(log, "skipped: a look at the whole picture, as rows correspond where the views match")
+    return correspond
+
+
 def _looked_over(views: Views, name: str, search: Search, match: Matcher, first: DisparityMap) -> DisparityMap:
-    """The map that was found, or a better one: where most of it is doubtful, the whole picture is looked at again."""
-    if doubtful(first) <= MOST_DOUBTFUL:
-        return first
+    """The map that was found, or a better one by a look at the whole picture."""
     note(log, f"looked again at the whole picture: {doubtful(first):.0%} of the map are hardly trusted")
     try:
         again = _rectified(views, name, search, match, first)

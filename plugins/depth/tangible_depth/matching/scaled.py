@@ -77,5 +77,5 @@ def _match(pair: Pair, span: Span, options: Scaling, factor: int) -> DenseMatche
     effort = EFFORTS[options.effort]
     swept, cost = match(pair, span, cost, CHECK_TOLERANCE[options.check], realign_rows, rows, effort)
     by_sum = np.maximum(1 - np.arange(256) / (4 * cost.bits), LEAST_MATCHED)
-    cleaning = Cleaning(not preview, effort.largest_speck_px(cost, factor), effort.eight_sides)
+    cleaning = Cleaning(not preview, cost.specks, factor, effort.eight_sides)
     return completed(swept.disparity, swept.sums, by_sum, pair.left, cleaning)

@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from jaxtyping import UInt8
 
+from ..dense.speckles import Specks
 from .census import BITS, census, two_scale_census, with_levels
 
 
@@ -30,8 +31,8 @@ class Cost(NamedTuple):
     penalties: Penalties
     most_level: int = 0
     """Up to what the difference of two levels counts; 0: the codes have none."""
-    largest_speck_px: int = 40
-    """Islands up to here are errors with `effort: best`: the surer the cost, the smaller."""
+    specks: Specks = Specks()
+    """Which islands are errors."""
 
 
 def p2_by_grey_step(flat: int, edge: int, slope: float) -> UInt8[np.ndarray, "256"]:
@@ -44,7 +45,6 @@ SHARP = Cost(
     BITS,
     census,
     Penalties(np.uint8(10), np.uint8(8), p2_by_grey_step(50, 12, 1.5)),
-    largest_speck_px=30,
 )
 """Census of the picture as it is: the most exact on clean pictures."""
 MOST_LEVEL = 4
@@ -56,12 +56,13 @@ LEVELS = Cost(
     MOST_LEVEL,
 )
 """Census and the grey levels themselves: more exact still, where both views were exposed alike."""
+NOISY = Specks(among_many_px=30, alone_px=200)
 LIGHT = Cost(
     "light",
     2 * BITS,
     lambda z: two_scale_census(z, 0.5, 1.5),
     Penalties(np.uint8(18), np.uint8(16), p2_by_grey_step(110, 28, 2.0)),
-    largest_speck_px=60,
+    specks=NOISY,
 )
 """For light noise or compression."""
 HEAVY = Cost(
@@ -69,7 +70,7 @@ HEAVY = Cost(
     2 * BITS,
     lambda z: two_scale_census(z, 0.7, 2.0),
     Penalties(np.uint8(22), np.uint8(16), p2_by_grey_step(120, 40, 2.0)),
-    largest_speck_px=60,
+    specks=NOISY,
 )
 """For heavy noise."""
 COSTS = {each.name: each for each in (SHARP, LEVELS, LIGHT, HEAVY)}

@@ -19,7 +19,7 @@ from tangible_depth.dense.edges import median, sharpen_edges
 from tangible_depth.dense.filling import fill
 from tangible_depth.dense.refinement import Cleaning, DenseMatches, as_map, completed, enlarged
 from tangible_depth.dense.span import UNKNOWN
-from tangible_depth.dense.speckles import remove_speckles
+from tangible_depth.dense.speckles import Specks, remove_speckles, remove_specks
 from tangible_depth.dense.subpixel import equiangular, parabola
 from tangible_depth.search.asked import asked_span
 from tangible_depth.search.pairs import Pair, grey_pair
@@ -84,6 +84,29 @@ def test_speckles_are_the_small_islands(disparity, largest):
     cleaned = disparity.copy()
     assert remove_speckles(cleaned, largest, 16) == np.isin(label, small).sum()
     assert np.array_equal(cleaned, expected)
+
+
+@pytest.mark.parametrize(("far_px", "alone_px", "left"), [(50, 60, 0), (50, 100, 0), (80, 60, 80), (80, 100, 0)])
+def test_an_island_is_an_error_by_its_size_and_by_what_was_matched_round_it(far_px: int, alone_px: int, left: int):
+    """The same islands among many matches and far from any."""
+    disparity = np.full((100, 300), UNKNOWN)
+    disparity[:, :150] = 100
+    island = np.s_[40:50, : far_px // 10]
+    for x0, here in ((60, 300), (230, 300)):
+        disparity[:, x0 : x0 + 150][island] = here
+    remove_specks(disparity, Specks(20, 60, alone_px))
+    assert np.count_nonzero(disparity[:, :150] == 300) == far_px
+    assert np.count_nonzero(disparity[:, 200:] == 300) == left
+
+
+def test_among_few_matches_small_islands_are_errors():
+    """Every third row matched, and islands of 40 pixels between them, which nothing joins."""
+    for rows, left in ((slice(0, 100, 3), 0), (slice(None), 40)):
+        disparity = np.full((100, 100), UNKNOWN)
+        disparity[rows] = 100
+        disparity[50:54, 40:50] = 300
+        remove_specks(disparity, Specks(20, 60, 60))
+        assert np.count_nonzero(disparity == 300) == left
 
 
 @settings(max_examples=40)
@@ -237,7 +260,9 @@ def test_confidence_is_the_same_whatever_the_threads(monkeypatch):
     maps = []
     for count in (1, 7):
         monkeypatch.setattr(threads, "thread_count", lambda count=count: count)
-        maps.append(completed(disparity.copy(), quality, np.linspace(1, 0.2, 256), grey, Cleaning(largest_speck_px=0)))
+        maps.append(
+            completed(disparity.copy(), quality, np.linspace(1, 0.2, 256), grey, Cleaning(specks=Specks(0, 0, 0)))
+        )
     assert np.array_equal(maps[0].disparity, maps[1].disparity)
     assert np.array_equal(maps[0].confidence, maps[1].confidence)
 

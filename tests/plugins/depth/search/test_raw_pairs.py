@@ -15,7 +15,7 @@ from tangible_depth.search.asked import asked_span
 from tangible_depth.search.bands import Bands, match_bands
 from tangible_depth.search.corner_look import corners_correspond
 from tangible_depth.search.pairs import Pair, grey_pair
-from tangible_depth.search.raw_pairs import common_row_offset
+from tangible_depth.search.raw_pairs import common_row_offset, rows_correspond
 from tangible_depth.search.row_profiles import rows_lie_elsewhere
 from tangible_depth.search.search_range import RangeEstimate, find_range
 from tangible_depth.semi_global import SemiGlobal
@@ -189,6 +189,20 @@ def test_a_map_that_fares_badly_is_looked_at_again(monkeypatch: pytest.MonkeyPat
     assert any(each.startswith("looked again at the whole picture") for each in notes)
     assert any(each.startswith("rectified: ") for each in notes)
     assert share_right(found, scene) >= 0.9
+
+
+def test_noise_alone_calls_for_no_second_look():
+    """Most is not matched, but what is lies in its own row; where it does not, the whole picture is looked at."""
+    scene = Scene((240, 320), 8.0, 20.0)
+    pair = [rolled(degrees, scene) for degrees in (0, 1)]
+    for views, correspond in zip(pair, (True, False), strict=True):
+        rng = np.random.default_rng(3)
+        noise = rng.normal(0, 12, (2, *scene.shape))
+        noisy = Views(
+            *(np.clip(a + b, 0, 255).astype(np.uint8) for a, b in zip(grey_pair(views, ""), noise, strict=True))
+        )
+        found = SemiGlobal(rectify="never", max_disparity_px=48).estimate(noisy)
+        assert rows_correspond(grey_pair(noisy, ""), found.disparity_px, found.confidence >= 0.2) == correspond
 
 
 def test_chance_matches_are_not_followed_into_the_range(monkeypatch: pytest.MonkeyPatch):

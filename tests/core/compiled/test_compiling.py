@@ -21,5 +21,5 @@ def test_compiling_is_said_once_a_family_and_other_kernels_are_not_ours(caplog):
     assert {record.levelname for record in caplog.records} == {"INFO"}, "it is routine, and no warning"
     assert [record.message for record in caplog.records] == [
         "compiling the render kernels for this processor, about 2 s; later runs find them on disk",
-        "compiling the depth kernels for this processor, about 5 s; later runs find them on disk",
+        "compiling the depth kernels for this processor, about 8 s; later runs find them on disk",
     ]

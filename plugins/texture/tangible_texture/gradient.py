@@ -1,7 +1,7 @@
 """Segments by gradient: flat basins, flooded up to the edges between them."""
 
 import logging
-from typing import TYPE_CHECKING, Annotated, Literal, Self
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, Self
 
 import numpy as np
 from jaxtyping import Float32, Int32
@@ -27,15 +27,17 @@ class Gradient(Segmenter, Skippable):
 
     Smooth the picture; take the slope of its steepest channel, in units of the noise hereabouts. Connected flat parts
     are the first segments. They grow uphill until they meet (a watershed), and two of them stay apart if three fifths
-    or more of the border between them lie on edges: on Canny's, or where the picture rises from one to the other by as
-    much as an edge begins with. All of this at 1.75 sigma_px, which weak edges need, on a grid as coarse as that
-    allows; then the boundaries are flooded once more, at sigma_px and to the pixel. Labels are in the order of their
-    first pixels, row by row. Confidence is 1 - (s - flat) / (top - flat) within 0..1, s being the slope in units of
-    noise and top its maximum, or canny_high if that is more: 1 in a flat basin, 0 on the strongest edge.
+    or more of the border between them lie on edges: on Canny's, or where the picture rises from one to the other with
+    two thirds of the slope that an edge begins with. All of this at 1.75 sigma_px, which weak edges need, on a grid as
+    coarse as that allows; then the boundaries are flooded once more, at sigma_px and to the pixel. Labels are in the
+    order of their first pixels, row by row. Confidence is 1 - (s - flat) / (top - flat) within 0..1, s being the slope
+    in units of noise and top its maximum, or canny_high if that is more: 1 in a flat basin, 0 on the strongest edge.
     Memory: 40 bytes a pixel beyond the picture for grey, 75 for colour.
     Sources: Canny, A computational approach to edge detection, 1986; Meyer, Un algorithme optimal pour la ligne de
     partage des eaux, 1991.
     """
+
+    version: ClassVar[int] = 2
 
     segments: Annotated[int, Field(ge=1)] | Literal["auto"] = "auto"
     """Largest number of segments: the least separated ones are merged; `auto`: as many as edges hold apart, at most 64,

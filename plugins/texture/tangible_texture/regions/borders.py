@@ -10,6 +10,8 @@ from .landscape import Landscape
 Ways = tuple[tuple[slice, slice], tuple[slice, slice]]
 """Where the first pixels of all pairs are, and where the second ones."""
 
+WEAK_EDGE, ACROSS_IT = 2 / 3, 0.45
+"""Parts of the slope at which an edge begins that is one where two regions meet, and of it what must lead across."""
 DOWN: Ways = np.s_[:-1, :], np.s_[1:, :]
 ACROSS: Ways = np.s_[:, :-1], np.s_[:, 1:]
 
@@ -33,13 +35,14 @@ def borders(
 ) -> dict[tuple[int, int], Border]:
     """Every border there is, by its two regions, the lower label first.
 
-    A pair has an edge where `edges` is not 0, and where the picture rises or falls by edge_slope or more from one of
-    its pixels to the other. The second finds what is no crest: a weak edge between the flanks of strong ones.
+    A pair has an edge where `edges` is not 0, and where the picture is as steep as WEAK_EDGE times edge_slope and rises
+    or falls from one of its pixels to the other. The second finds what is no crest, a weak edge between the flanks of
+    strong ones, and what noise has broken: regions meet there, and noise alone has no slope that leads across for long.
     """
     count = int(labels.max()) + 1
     pairs = [
-        _pairs(labels, land.steep, edges, slope, edge_slope, ways, count)
-        for slope, ways in ((land.down, DOWN), (land.across, ACROSS))
+        _pairs(labels, land.steep, edges, slopes, edge_slope, ways, count)
+        for slopes, ways in (((land.down, land.across), DOWN), ((land.across, land.down), ACROSS))
     ]
     keys, highest, edged = (np.concatenate(each) for each in zip(*pairs, strict=True))
     found, which, number = np.unique(keys, return_inverse=True, return_counts=True)
@@ -53,12 +56,15 @@ def _pairs(
     labels: np.ndarray,
     height: np.ndarray,
     edges: np.ndarray,
-    slope: np.ndarray,
+    slopes: tuple[np.ndarray, np.ndarray],
     edge_slope: float,
     ways: Ways,
     count: int,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """A key, the greater height and whether there is an edge, of every two pixels of two labels that lie this way."""
+    """A key, the greater height and whether there is an edge, of every two pixels of two labels that lie this way.
+
+    slopes: this way, and the other.
+    """
     first, second = ways
     at = np.flatnonzero(labels[first] != labels[second])
 
@@ -67,5 +73,7 @@ def _pairs(
 
     one, other = both(labels)
     keys = np.minimum(one, other).astype(np.int64) * count + np.maximum(one, other)
-    steep = np.abs(np.add(*both(slope))) >= 2 * edge_slope
+    leading, aside = (np.add(*both(slope)) for slope in slopes)
+    slope = np.hypot(leading, aside)
+    steep = (slope >= 2 * WEAK_EDGE * edge_slope) & (np.abs(leading) >= ACROSS_IT * slope)
     return keys, np.maximum(*both(height)), steep | (np.maximum(*both(edges)) > 0)

@@ -27,6 +27,13 @@ class TestMerging:
             found = borders(self.LABELS, land, edges, 4)
             assert tuple(found[pair].edges for pair in ((0, 1), (0, 2), (1, 2))) == expected
 
+    def test_an_oblique_border_may_be_weaker_than_an_edge_begins(self):
+        edges = np.zeros((2, 3), np.uint8)
+        for across, down, expected in ((1.9, 1.9, (1, 2, 1)), (1.8, 1.8, (0, 0, 0)), (2.7, 1.0, (1, 1, 1))):
+            rises = (np.full((2, 3), each, np.float32) for each in (across, down))
+            found = borders(self.LABELS, Landscape(self.HEIGHT, *rises), edges, 4)
+            assert tuple(found[pair].edges for pair in ((0, 1), (0, 2), (1, 2))) == expected
+
     def test_one_region_has_no_border(self):
         flat = np.ones((3, 4), np.float32)
         assert borders(np.zeros((3, 4), np.int32), Landscape(flat, flat, flat), np.zeros((3, 4), np.uint8), 4) == {}

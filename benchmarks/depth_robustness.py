@@ -15,8 +15,8 @@ from .figures import Figure, table
 from .turns import in_turns
 
 DAMAGES = (
-    ("noise", 2), ("noise", 5), ("noise", 10), ("gain", 0.8), ("gamma", 1.4), ("jpeg", 50), ("shift", 0.5),
-    ("shift", 1), ("blur", 1),
+    ("noise", 2), ("noise", 5), ("noise", 10), ("noise", 15), ("gain", 0.8), ("gamma", 1.4), ("jpeg", 50),
+    ("shift", 0.5), ("shift", 1), ("blur", 1),
 )  # fmt: skip
 
 

@@ -6,6 +6,7 @@ import numpy as np
 from jaxtyping import Bool, Float32
 
 from tangible_core.plugins.notes import note
+from tangible_core.runtime.opencv import plain_opencv
 
 from ..dense.span import UNKNOWN
 from .bands import Bands
@@ -19,9 +20,11 @@ log = logging.getLogger(__name__)
 LEAST_AGREED, MOST_SPREAD_PX = 0.45, 0.3
 """Share of the edges whose views agree on an offset, and median deviation of these offsets, if rows correspond. Damaged
 pairs reach 0.21 px; a roll of 0.3 degrees has 0.47 px and more."""
-LEAST_AGREED_OF_MAP, MOST_OFF_PX = 0.3, 0.5
-"""The share for a whole map, not averaged as bands are: noise of sd 10 leaves 0.32, a wall of bricks that is a course
-lower 0.27. And by how much the rows may still miss each other."""
+SMOOTHING_PX = 1.2
+"""Sigma of the Gaussian that averages noise away before the rows of a whole map are judged; bands are averages."""
+LEAST_AGREED_OF_MAP, MOST_SPREAD_OF_MAP_PX, MOST_OFF_PX = 0.5, 0.4, 0.5
+"""The same two for a whole map, and by how much its rows may still miss each other. With noise of sd 5 to 15 two thirds
+agree and spread by 0.18 to 0.43 px; of rows that lie two lower, which bands take for common, a quarter agree."""
 
 
 def with_common_rows(pair: Pair, bands: Bands, most_row_offset_px: float) -> Pair | None:
@@ -47,21 +50,26 @@ def common_row_offset(pair: Pair, bands: Bands) -> float | None:
 
     Most horizontal edges that were matched must find their like, and half of these within MOST_SPREAD_PX.
     """
-    return _agreed_px(row_votes(pair, bands.rows, bands.disparity, bands.factor), LEAST_AGREED)
+    return _agreed_px(row_votes(pair, bands.rows, bands.disparity, bands.factor), LEAST_AGREED, MOST_SPREAD_PX)
 
 
 def rows_correspond(pair: Pair, disparity_px: Float32[np.ndarray, "h w"], matched: Bool[np.ndarray, "h w"]) -> bool:
     """Whether what was `matched` finds its like in its own row: then it is noise that kept the rest from matching."""
+    import cv2
+
     rows = np.arange(CELL_PX // 2, len(matched), CELL_PX)
     sixteenths = np.where(matched[rows], np.rint(16 * disparity_px[rows]), UNKNOWN).astype(np.int16)
-    row_offset_px = _agreed_px(row_votes(pair, rows, sixteenths), LEAST_AGREED_OF_MAP)
+    with plain_opencv():
+        left, right = (cv2.GaussianBlur(each, (0, 0), SMOOTHING_PX) for each in pair)
+    votes = row_votes(Pair(left, right), rows, sixteenths)  # pyright: ignore[reportArgumentType]
+    row_offset_px = _agreed_px(votes, LEAST_AGREED_OF_MAP, MOST_SPREAD_OF_MAP_PX)
     return row_offset_px is not None and abs(row_offset_px) <= MOST_OFF_PX
 
 
-def _agreed_px(votes: Float32[np.ndarray, "votes"], least_agreed: float) -> float | None:
+def _agreed_px(votes: Float32[np.ndarray, "votes"], least_agreed: float, most_spread_px: float) -> float | None:
     """The median of `row_votes`; None if too few agree on one, or these differ."""
     agreed = votes[np.isfinite(votes)]
     if agreed.size < max(LEAST_VOTES, least_agreed * votes.size):
         return None
     row_offset_px = float(np.median(agreed))
-    return row_offset_px if np.median(np.abs(agreed - row_offset_px)) <= MOST_SPREAD_PX else None
+    return row_offset_px if np.median(np.abs(agreed - row_offset_px)) <= most_spread_px else None

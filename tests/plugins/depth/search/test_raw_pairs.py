@@ -191,13 +191,14 @@ def test_a_map_that_fares_badly_is_looked_at_again(monkeypatch: pytest.MonkeyPat
     assert share_right(found, scene) >= 0.9
 
 
-def test_noise_alone_calls_for_no_second_look():
+@pytest.mark.parametrize("noise_sd", [12, 50])
+def test_noise_alone_calls_for_no_second_look(noise_sd: int):
     """Most is not matched, but what is lies in its own row; where it does not, the whole picture is looked at."""
     scene = Scene((240, 320), 8.0, 20.0)
     pair = [rolled(degrees, scene) for degrees in (0, 1)]
     for views, correspond in zip(pair, (True, False), strict=True):
         rng = np.random.default_rng(3)
-        noise = rng.normal(0, 12, (2, *scene.shape))
+        noise = rng.normal(0, noise_sd, (2, *scene.shape))
         noisy = Views(
             *(np.clip(a + b, 0, 255).astype(np.uint8) for a, b in zip(grey_pair(views, ""), noise, strict=True))
         )

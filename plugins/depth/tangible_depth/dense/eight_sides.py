@@ -1,6 +1,6 @@
 """Disparity where none was found, from the nearest known pixels on eight sides: what `effort: best` fills with.
 
-As `filling`, with the four diagonals besides.
+As `filling`, with the four diagonals besides; then what was filled is laid on `planes`.
 """
 
 # ruff: noqa: ANN001, ANN202 -- numba finds the types of what it compiles; the docstrings say them
@@ -14,6 +14,7 @@ from tangible_core.compiled.compiling import KERNEL, inner
 from .candidates import DETOUR, or_never, score, seen_from_the_right
 from .detours import detours
 from .filling import fill
+from .planes import laid_on_planes
 from .span import UNKNOWN
 
 DIAGONAL = -0.9
@@ -38,7 +39,7 @@ def fill_from_eight_sides(disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.nd
     out = disparity.copy()
     found = detours(disparity, grey)
     _choose_all(disparity, values, paths, *found, np.empty(w + 2, np.int16), np.empty(w, np.int32), out)
-    return fill(out, grey)  # some saw nothing on any side
+    return laid_on_planes(disparity, fill(out, grey), grey)  # some saw nothing on any side
 
 
 @njit(**KERNEL)

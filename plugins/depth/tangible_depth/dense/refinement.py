@@ -44,7 +44,7 @@ class Cleaning(NamedTuple):
     factor: int = 1
     """By how much the picture was made smaller."""
     eight_sides: bool = False
-    """Gaps are filled from eight sides in place of four."""
+    """Gaps are filled from eight sides in place of four, and surfaces go on into them as they lie."""
 
 
 def _empty(shape: tuple[int, int]) -> DenseMatches:

@@ -18,7 +18,7 @@ class Effort(NamedTuple):
     warm_rows: int
     """Rows by which the paths of a strip begin early: the more, the less a seam is seen."""
     eight_sides: bool
-    """Gaps are filled from eight sides in place of four."""
+    """Gaps are filled from eight sides in place of four, and surfaces go on into them as they lie."""
 
 
 BALANCED = Effort(SHARP, 0.06, 0.28, WARM_ROWS, eight_sides=False)

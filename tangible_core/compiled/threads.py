@@ -4,8 +4,10 @@ No OpenMP: its idle threads spin and take the processor from whoever works.
 """
 
 import os
+from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from contextvars import copy_context
 from functools import cache
 from itertools import pairwise
@@ -47,19 +49,22 @@ def in_blocks(length: int, work: Callable[[int, int], Any], at_least: int = 16) 
 
 
 def in_turns(tasks: list[T], work: Callable[[Iterable[T]], Any], most: int | None = None) -> None:
-    """work(share) on interleaved shares of the tasks, one share a thread, `most` threads at most.
+    """work(share) in up to `most` threads, which take the tasks in their order, each the next when it is done with one.
 
     Raises: Stopped between two tasks if the caller's work shall end.
     """
     parts = min(thread_count(), len(tasks), len(tasks) if most is None else most)
     if parts:
-        run_all([lambda t=t: work(_while_wanted(tasks[t::parts])) for t in range(parts)])
+        left = deque(tasks)
+        run_all([lambda: work(_taken(left)) for _ in range(parts)])
 
 
-def _while_wanted(tasks: Iterable[T]) -> Iterator[T]:
-    for each in tasks:
-        check_stopped()
-        yield each
+def _taken(left: deque[T]) -> Iterator[T]:
+    """What nobody else takes of it; other threads may empty it between a look and the taking."""
+    with suppress(IndexError):
+        while left:
+            check_stopped()
+            yield left.popleft()
 
 
 @cache

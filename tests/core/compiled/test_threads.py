@@ -1,6 +1,7 @@
 """Work shared among threads."""
 
-from threading import get_ident
+from collections.abc import Iterable
+from threading import Barrier, get_ident
 
 import pytest
 
@@ -14,6 +15,19 @@ def test_turns_cover_every_task_once_in_no_more_shares_than_asked_for(most, shar
     in_turns(list(range(17)), seen.append, most)
     assert len(seen) == shares
     assert sorted(task for share in seen for task in share) == list(range(17))
+
+
+def test_a_long_task_holds_no_other_back(monkeypatch):
+    monkeypatch.setattr("tangible_core.compiled.threads.thread_count", lambda: 2)
+    others = Barrier(2, timeout=10)
+    left = iter((2, 1, 0))
+
+    def work(share: Iterable[str]) -> None:
+        for task in share:
+            if task == "long" or next(left) == 0:
+                others.wait()  # the long task ends when all others are done
+
+    in_turns(["long", "short", "short", "short"], work)
 
 
 def test_no_task_is_no_work():

@@ -5,11 +5,14 @@ As `filling`, with the four diagonals besides; then what was filled is laid on `
 
 # ruff: noqa: ANN001, ANN202 -- numba finds the types of what it compiles; the docstrings say them
 
+from collections.abc import Iterable
+
 import numpy as np
 from jaxtyping import Int16, UInt8
 from numba import int32, njit, uint16
 
 from tangible_core.compiled.compiling import KERNEL, inner
+from tangible_core.compiled.threads import in_blocks, in_turns
 
 from .candidates import DETOUR, or_never, score, seen_from_the_right
 from .detours import detours
@@ -28,17 +31,27 @@ def fill_from_eight_sides(disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.nd
 
     disparity is in sixteenths of a pixel.
     """
-    missing = np.count_nonzero(disparity == UNKNOWN)
+    h, w = disparity.shape
+    before = np.concatenate([[0], np.cumsum(np.count_nonzero(disparity == UNKNOWN, axis=1))])
+    missing = int(before[-1])
     if missing in (0, disparity.size):
         return disparity.copy()
-    w = disparity.shape[1]
     values, paths = np.empty((2, missing, HALF), np.int16), np.empty((2, missing, HALF), np.uint16)
-    for end, step in enumerate((1, -1)):
-        carried, steps = np.empty((2, HALF, w), np.int16), np.empty((2, HALF, w), np.int32)
-        _look(disparity, grey, step, carried, steps, values[end], paths[end])
+
+    def look(ends: Iterable[tuple[int, int]]) -> None:
+        for end, step in ends:
+            carried, steps = np.empty((2, HALF, w), np.int16), np.empty((2, HALF, w), np.int32)
+            _look(disparity, grey, step, carried, steps, values[end], paths[end])
+
+    in_turns([(0, 1), (1, -1)], look)
     out = disparity.copy()
     found = detours(disparity, grey)
-    _choose_all(disparity, values, paths, *found, np.empty(w + 2, np.int16), np.empty(w, np.int32), out)
+
+    def choose(y0: int, y1: int) -> None:
+        seen, columns = np.empty(w + 2, np.int16), np.empty(w, np.int32)
+        _choose_rows(disparity, values, paths, *found, seen, columns, y0, y1, before[y0], out)
+
+    in_blocks(h, choose)
     return laid_on_planes(disparity, fill(out, grey), grey)  # some saw nothing on any side
 
 
@@ -72,10 +85,10 @@ def _look(disparity, grey, step, carried, steps, values, paths):
 
 
 @njit(**KERNEL)
-def _choose_all(disparity, values, paths, first, detoured, lengths, seen, columns, out):
-    h, w = disparity.shape
-    at = 0
-    for y in range(h):
+def _choose_rows(disparity, values, paths, first, detoured, lengths, seen, columns, y0, y1, at, out):
+    """Rows y0..y1-1, the first gap of which is number `at`."""
+    w = disparity.shape[1]
+    for y in range(y0, y1):
         seen_from_the_right(disparity[y], columns, seen)
         for x in range(w):
             if disparity[y, x] == UNKNOWN:

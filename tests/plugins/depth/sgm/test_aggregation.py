@@ -168,6 +168,16 @@ def test_no_more_threads_are_at_work_than_there_is_room_for(monkeypatch):
     assert at_work == [3]
 
 
+def test_the_highest_strips_are_matched_first(monkeypatch):
+    """So that threads that take one after the other end at about the same time."""
+    taken = []
+    monkeypatch.setattr(strips, "in_turns", lambda tasks, work, most: taken.extend(tasks))
+    codes = np.empty((160, 3, 64), np.uint8)
+    rows = [(0, 20), (20, 84), (84, 94), (94, 160)]
+    sweep((codes, codes), codes[:, 0], Span(0, 31), SHARP.penalties, 1.0, rows, blank((160, 64)))
+    assert taken == [(94, 160), (20, 84), (0, 20), (84, 94)]
+
+
 def test_a_jump_is_cheaper_where_the_picture_steps():
     penalties = p2_by_grey_step(50, 12, 1.5)
     assert (penalties[0], penalties[10], penalties[255]) == (50, 35, 12)

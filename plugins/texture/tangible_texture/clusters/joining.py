@@ -14,7 +14,7 @@ from tangible_core.compiled.small_matrices import factored, whitened
 from .discriminants import discriminant_axes
 from .dividing import members
 from .neighbourhood import INSIDE_CELLS, fitted, refitted, smoothed
-from .planes import mixed, products, scatter
+from .planes import mixed, products, scatter_alone
 
 AXES = 20
 """Discriminants that are kept."""
@@ -102,7 +102,7 @@ def _moments(planes, weights, starts, sizes):
         inside = slice(starts[k], starts[k] + sizes[k])
         own, heavy = np.ascontiguousarray(planes[:, inside]), weights[inside]
         means[k] = products(heavy.reshape(1, -1), own)[0] / heavy.sum()
-        scatters[k] = scatter(own, heavy) / heavy.sum() - np.outer(means[k], means[k])
+        scatters[k] = scatter_alone(own, heavy) / heavy.sum() - np.outer(means[k], means[k])
     return means, scatters
 
 

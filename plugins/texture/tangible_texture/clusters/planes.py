@@ -5,11 +5,18 @@ They are small, and asked for between threads of our own: a BLAS that wakes thre
 
 # ruff: noqa: ANN001, ANN201, ANN202 -- numba takes the types from the call
 
+from collections.abc import Iterable
+
 import numpy as np
+from jaxtyping import Float32, Float64
 from numba import njit
+
+from tangible_core.compiled.threads import in_turns, thread_count
 
 BLOCK = 1024
 """Columns that are worked on while they are in the cache."""
+SHARED = 4_000_000
+"""Products from which threads are worth their waking."""
 SUMMED, LANES = 4096, 64
 """Columns that are summed in single precision, in so many lanes side by side; their sums are added up in double."""
 
@@ -57,18 +64,44 @@ def products(one, other):
     return found
 
 
+def scatter(planes: Float32[np.ndarray, "d n"], weights: Float32[np.ndarray, "n"]) -> Float64[np.ndarray, "d d"]:
+    """Weighted second moments, sum of w z z' over the columns; large ones by all processors."""
+    size, columns = planes.shape
+    parts = thread_count() if size * size * columns >= SHARED else 1
+    found = np.zeros((size, size))
+
+    def work(share: Iterable[int]) -> None:
+        for first in share:
+            _scatter_rows(planes, weights, first, parts, found)
+
+    in_turns(list(range(parts)), work)
+    return _mirrored(found)
+
+
 @njit(cache=True, nogil=True)
-def scatter(planes, weights):
-    """Weighted second moments, sum of w z z' over the columns: float64 (d, d)."""
-    size = planes.shape[0]
-    found, lanes = np.zeros((size, size)), np.empty(LANES, np.float32)
+def scatter_alone(planes, weights):
+    """As `scatter`, for a kernel: by the processor that calls it."""
+    found = np.zeros((planes.shape[0], planes.shape[0]))
+    _scatter_rows(planes, weights, 0, 1, found)
+    return _mirrored(found)
+
+
+@njit(cache=True, nogil=True)
+def _scatter_rows(planes, weights, first, step, found):
+    """Every step-th row from the first on of the lower triangle; no sum depends on the step."""
+    lanes = np.empty(LANES, np.float32)
     for start in range(0, planes.shape[1], SUMMED):
         heavy = weights[start : start + SUMMED]
-        for d in range(size):
+        for d in range(first, planes.shape[0], step):
             weighted = heavy * planes[d, start : start + SUMMED]
             for e in range(d + 1):
                 found[d, e] += _dot(weighted, planes[e, start : start + SUMMED], lanes)
-    for d in range(size):
+
+
+@njit(cache=True, nogil=True)
+def _mirrored(found):
+    """The upper triangle as the lower one, in place."""
+    for d in range(found.shape[0]):
         for e in range(d):
             found[e, d] = found[d, e]
     return found

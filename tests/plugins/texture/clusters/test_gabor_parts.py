@@ -4,12 +4,13 @@ import numpy as np
 import pytest
 
 from tangible_core.compiled.small_matrices import eigen, solved
+from tangible_texture.clusters import planes as matrices
 from tangible_texture.clusters.discriminants import discriminant_axes, evidence, principal_axes, scatters
 from tangible_texture.clusters.dividing import divided, members
 from tangible_texture.clusters.full_size import pixel_labels
 from tangible_texture.clusters.joining import joining, joining_costs
 from tangible_texture.clusters.neighbourhood import INSIDE_CELLS, smoothed
-from tangible_texture.clusters.planes import mixed, products, scatter
+from tangible_texture.clusters.planes import mixed, products, scatter, scatter_alone
 from tangible_texture.features.patterns import COUNTERS, RADII, pattern_frequencies
 
 
@@ -47,6 +48,18 @@ def test_products_of_planes_are_those_of_matrices(random: np.random.Generator):
     np.testing.assert_allclose(mixed(mix, planes), mix @ planes, atol=1e-4)
     np.testing.assert_allclose(products(others, planes), others.astype(float) @ planes.T, atol=1e-2)
     np.testing.assert_allclose(scatter(planes, weights), (planes * weights) @ planes.T.astype(float), atol=1e-2)
+
+
+@pytest.mark.parametrize("threads", [1, 2, 3, 8])
+def test_a_scatter_is_the_same_to_the_last_bit_however_many_threads_share_it(
+    threads: int, random: np.random.Generator, monkeypatch: pytest.MonkeyPatch
+):
+    planes, weights = random.standard_normal((7, 9000)).astype(np.float32), random.random(9000).astype(np.float32)
+    alone = scatter_alone(planes, weights)
+    monkeypatch.setattr(matrices, "SHARED", 1)
+    monkeypatch.setattr(matrices, "thread_count", lambda: threads)
+    assert np.array_equal(matrices.scatter(planes, weights), alone)
+    assert np.array_equal(alone, alone.T)
 
 
 def two_groups(random: np.random.Generator, count: int = 400) -> tuple[np.ndarray, np.ndarray]:

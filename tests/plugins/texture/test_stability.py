@@ -249,7 +249,7 @@ def test_there_are_methods():
     assert {"gradient", "histogram"} <= set(METHODS)
 
 
-@pytest.mark.parametrize(("name", "bytes_a_pixel"), [("gradient", 40), ("histogram", 50)])
+@pytest.mark.parametrize(("name", "bytes_a_pixel"), [("gabor", 60), ("gradient", 40), ("histogram", 50)])
 def test_the_memory_that_is_stated_is_enough_for_four_megapixels(name: str, bytes_a_pixel: int):
     """Of grey, above the picture, and 16 MiB for what does not grow."""
     script = (

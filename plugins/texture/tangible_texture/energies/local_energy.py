@@ -97,11 +97,16 @@ def standardised(grey: Float32[np.ndarray, "h w"]) -> Float32[np.ndarray, "h w"]
 
 
 def energy_planes(
-    spectrum: Spectrum, filters: Sequence[Gabor], shape: tuple[int, int], step_px: int, sigma_px: float
+    spectrum: Spectrum,
+    filters: Sequence[Gabor],
+    shape: tuple[int, int],
+    step_px: int,
+    sigma_px: float,
+    out: Float32[np.ndarray, "filters rows columns"] | None = None,
 ) -> Float32[np.ndarray, "filters rows columns"]:
-    """As `local_energy`, of the filters given; shape: the picture's."""
+    """As `local_energy`, of the filters given; shape: the picture's. out: where they are written."""
     cells = tuple(-(-side // step_px) for side in shape)
-    planes = np.empty((len(filters), *cells), np.float32)
+    planes = np.empty((len(filters), *cells), np.float32) if out is None else out
 
     def work(share: Iterable[int]) -> None:
         for i in share:

@@ -35,19 +35,28 @@ def capped(planes: Float32[np.ndarray, "d h w"]) -> Float32[np.ndarray, "d h w"]
 
 
 def averaged(
-    planes: Float32[np.ndarray, "d h w"], sigma_cells: float, step: int = 1
+    planes: Float32[np.ndarray, "d h w"],
+    sigma_cells: float,
+    step: int = 1,
+    out: Float32[np.ndarray, "d rows columns"] | None = None,
 ) -> Float32[np.ndarray, "d rows columns"]:
-    """Gaussian means in windows of sigma_cells, then means of step x step cells; mirrored outside."""
+    """Gaussian means in windows of sigma_cells, then means of step x step cells; mirrored outside.
+
+    out: where they are written; it may be `planes` where step is 1.
+    """
     import cv2
 
     rows, columns = (-(-side // step) for side in planes.shape[1:])
-    found = np.empty((len(planes), rows, columns), np.float32)
+    found = np.empty((len(planes), rows, columns), np.float32) if out is None else out
 
     @plain_opencv()
     def work(share: Iterable[int]) -> None:
+        room = np.empty(planes.shape[1:], np.float32) if step > 1 else None
         for i in share:
-            smooth = cv2.GaussianBlur(planes[i], (0, 0), sigma_cells, borderType=cv2.BORDER_REFLECT)
-            found[i] = cv2.resize(smooth, (columns, rows), interpolation=cv2.INTER_AREA) if step > 1 else smooth
+            smooth = found[i] if room is None else room
+            cv2.GaussianBlur(planes[i], (0, 0), sigma_cells, dst=smooth, borderType=cv2.BORDER_REFLECT)
+            if step > 1:
+                cv2.resize(smooth, (columns, rows), dst=found[i], interpolation=cv2.INTER_AREA)
 
     in_turns(list(range(len(planes))), work)
     return found
@@ -65,7 +74,7 @@ def _standardise(plane):
     mean = np.float32(_total(plane) / plane.size)
     for i in range(plane.size):
         plane[i] -= mean
-    deviation = np.sqrt(_total(plane * plane) / plane.size)
+    deviation = np.sqrt(_total_of_squares(plane) / plane.size)
     plane *= np.float32(1 / deviation) if deviation > STILL else np.float32(0)
 
 
@@ -81,4 +90,19 @@ def _total(values):
         total += lanes[j]
     for i in range(whole, values.size):
         total += values[i]
+    return total
+
+
+@njit(cache=True, nogil=True)
+def _total_of_squares(values):
+    """As `_total`, of the squares, which need no memory of their own."""
+    lanes, whole = np.zeros(LANES), values.size // LANES * LANES
+    for i in range(0, whole, LANES):
+        for j in range(LANES):
+            lanes[j] += values[i + j] * values[i + j]
+    total = 0.0
+    for j in range(LANES):
+        total += lanes[j]
+    for i in range(whole, values.size):
+        total += values[i] * values[i]
     return total

@@ -53,16 +53,15 @@ def features(
     if is_flat(grey):
         note(log, "one segment: the picture is flat")
         return None
-    texture, tints = _texture(grey, lambda_max_px, least_energy), _tints(picture, colour)
-    step = 2 if min(texture[0].shape[1:]) >= 32 else 1
+    planes, colours = _planes(picture, grey, lambda_max_px, least_energy, colour)
+    step = 2 if min(planes.shape[1:]) >= 32 else 1
     narrow_px, middle_px, wide_px = _widths(grey.size)
-    narrow = averaged(np.concatenate(texture + tints), (narrow_px**2 - ENERGY_SIGMA_PX**2) ** 0.5 / CELL_PX)
+    narrow = averaged(planes, (narrow_px**2 - ENERGY_SIGMA_PX**2) ** 0.5 / CELL_PX, out=planes)
     middle = averaged(narrow, (middle_px**2 - narrow_px**2) ** 0.5 / CELL_PX, step)
     if is_one_texture(np.sqrt(middle), middle_px / CELL_PX / step, grey):
         note(log, "one segment: the texture is the same all over the picture")
         return None
     wide = averaged(middle, (wide_px**2 - middle_px**2) ** 0.5 / CELL_PX / step, step)
-    colours = sum(len(each) for each in tints)
     return Features(_window(wide, colours), _window(middle, colours), _window(narrow, colours))
 
 
@@ -82,14 +81,21 @@ def _window(planes: Float32[np.ndarray, "d rows columns"], colours: int) -> Wind
     return Window(flat, (rows, columns))
 
 
-def _texture(
-    grey: Float32[np.ndarray, "h w"], lambda_max_px: float, least_energy: float
-) -> list[Float32[np.ndarray, "d rows columns"]]:
-    """Energies and pattern frequencies, cell by cell."""
+def _planes(
+    picture: np.ndarray,
+    grey: Float32[np.ndarray, "h w"],
+    lambda_max_px: float,
+    least_energy: float,
+    colour: bool | Literal["auto"],
+) -> tuple[Float32[np.ndarray, "d rows columns"], int]:
+    """Energies, pattern frequencies and tints, cell by cell, and how many of the planes are tints.
+
+    All are written where they stay: of a large picture they are hundreds of megabytes, and so would be each copy.
+    """
     from ..energies.gabor_bank import bank, octaves
     from ..energies.local_energy import energy_planes, mean_energies, padding, spectrum_of, standardised
     from .cells import CELL_PX, ENERGY_SIGMA_PX, capped
-    from .patterns import pattern_frequencies
+    from .patterns import PATTERNS, pattern_frequencies
 
     filters = bank(octaves(lambda_max_px))
     spectrum = spectrum_of(grey, padding(filters, ENERGY_SIGMA_PX))
@@ -97,34 +103,41 @@ def _texture(
     kept = [each for each, mean in zip(filters, means, strict=True) if mean >= least_energy * means.sum()]
     if len(kept) < len(filters):
         note(log, f"{len(filters) - len(kept)} of {len(filters)} filters left out: they hold no energy to speak of")
-    energies = energy_planes(spectrum, kept, grey.shape, CELL_PX, ENERGY_SIGMA_PX)
-    return [capped(energies), pattern_frequencies(standardised(grey))]
+    tints = _tints(picture, colour)
+    rows, columns = (-(-side // CELL_PX) for side in grey.shape)
+    planes = np.empty((len(kept) + PATTERNS + len(tints), rows, columns), np.float32)
+    energies, patterns = planes[: len(kept)], planes[len(kept) : len(kept) + PATTERNS]
+    capped(energy_planes(spectrum, kept, grey.shape, CELL_PX, ENERGY_SIGMA_PX, energies))
+    pattern_frequencies(standardised(grey), patterns)
+    planes[len(kept) + PATTERNS :] = tints
+    return planes, len(tints)
 
 
-def _tints(picture: np.ndarray, colour: bool | Literal["auto"]) -> list[Float32[np.ndarray, "2 rows columns"]]:
-    """Red against green and both against blue, cell by cell, 0..2; nothing where colour is not used."""
+def _tints(picture: np.ndarray, colour: bool | Literal["auto"]) -> Float32[np.ndarray, "tints rows columns"]:
+    """Red against green and both against blue, cell by cell, 0..2; no plane where colour is not used."""
     import cv2
 
     from .cells import CELL_PX, averaged
     from .channels import channels
 
+    rows, columns = (-(-side // CELL_PX) for side in picture.shape[:2])
+    none = np.empty((0, rows, columns), np.float32)
     if colour is False:
-        return []
+        return none
     paint = channels(picture, colour=True)
     if paint.shape[2] == 1:
         note(log, "colour left out: there is none")
-        return []
+        return none
     red, green, blue = np.moveaxis(paint, 2, 0)
-    rows, columns = (-(-side // CELL_PX) for side in red.shape)
     opponents = (1 + (red - green) / 2, 1 + (red + green) / 4 - blue / 2)
     with plain_opencv():
         planes = np.stack([cv2.resize(each, (columns, rows), interpolation=cv2.INTER_AREA) for each in opponents])
     differ = float(np.sqrt(_without_slope(averaged(planes, MIDDLE_PX / CELL_PX)).var(axis=(1, 2)).sum()))
     if colour == "auto" and differ < COLOURFUL:
         note(log, f"colour left out: windows differ in it by {differ:.3f} of white, under {COLOURFUL:g}")
-        return []
+        return none
     note(log, f"colour used: windows differ in it by {differ:.3f} of white")
-    return [planes]
+    return planes
 
 
 def _without_slope(planes: Float32[np.ndarray, "d rows columns"]) -> Float32[np.ndarray, "d rows columns"]:

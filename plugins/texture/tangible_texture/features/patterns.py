@@ -23,28 +23,32 @@ CLASSES, AGREEMENTS = 10, 12
 COUNTERS = CLASSES + AGREEMENTS
 RADII = ((1, 0.0), (3, 0.0), (5, 1.5))
 """How far the neighbours are, in px, and the standard deviation of the Gaussian that smooths before."""
+PATTERNS = len(RADII) * COUNTERS
+"""Planes of `pattern_frequencies`."""
 ALIKE = 1e-3
 """A neighbour darker by less than this share of the picture's standard deviation is as bright: rounding is none."""
 
 
-def pattern_frequencies(grey: Float32[np.ndarray, "h w"]) -> Float32[np.ndarray, "counters rows columns"]:
+def pattern_frequencies(
+    grey: Float32[np.ndarray, "h w"], out: Float32[np.ndarray, "counters rows columns"] | None = None
+) -> Float32[np.ndarray, "counters rows columns"]:
     """How often each class and agreement occurs in each cell, 0..1, for every radius of RADII in turn.
 
     grey: of standard deviation 1. Cells lie as those of `local_energy` with step_px = 4; the last may be cut. A flip or
-    a quarter turn of the picture flips or turns the planes and exchanges some of them.
+    a quarter turn of the picture flips or turns the planes and exchanges some of them. out: where they are written.
     """
     import cv2
 
     shape = tuple(-(-side // CELL_PX) for side in grey.shape)
-    found = np.empty((len(RADII), COUNTERS, *shape), np.float32)
-    for planes, (radius, sigma) in zip(found, RADII, strict=True):
+    found = np.empty((PATTERNS, *shape), np.float32) if out is None else out
+    for planes, (radius, sigma) in zip(found.reshape(len(RADII), COUNTERS, *shape), RADII, strict=True):
         with plain_opencv():
             smooth = cv2.GaussianBlur(grey, (0, 0), sigma, borderType=cv2.BORDER_REFLECT_101) if sigma else grey
         framed = np.pad(smooth, radius, mode="edge")
         in_blocks(
             shape[0], lambda a, b, f=framed, r=radius, p=planes: _count(f, r, a, b, grey.shape, _FIRST, _SECOND, p), 4
         )
-    return found.reshape(-1, *shape)
+    return found
 
 
 def _pairs_of(code: int) -> Iterator[tuple[bool, ...]]:

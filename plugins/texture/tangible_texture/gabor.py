@@ -25,7 +25,7 @@ class Gabor(Segmenter, Skippable):
     (patterns); Su & Dy, ICTAI 2004 (division); Ward, J. Am. Stat. Ass. 58, 1963 (joining).
     """
 
-    version: ClassVar[int] = 2
+    version: ClassVar[int] = 3
 
     segments: Annotated[int, Field(ge=1, le=64)] | Literal["auto"] = "auto"
     """Largest number of textures; `auto`: an estimate, at most 8, reported with its reason and reliability."""

@@ -34,7 +34,7 @@ class Effort(NamedTuple):
     last: int
 
 
-EFFORTS = {"fast": Effort(2, 4, 2), "balanced": Effort(3, 4, 8)}
+EFFORTS = {"fast": Effort(2, 2, 2), "balanced": Effort(3, 4, 8)}
 
 
 def classes(

@@ -26,13 +26,12 @@ def smoothed(memberships: Float32[np.ndarray, "k n"], shape: tuple[int, int], si
     """Gaussian means of each class's memberships over the grid of cells."""
     import cv2
 
+    found = np.empty(memberships.shape, np.float32)
+    taps = cv2.getGaussianKernel(2 * round(4 * sigma) + 1, sigma, cv2.CV_32F)  # once: grids are small, and classes many
     with plain_opencv():
-        return np.stack(
-            [
-                cv2.GaussianBlur(each.reshape(shape), (0, 0), sigma, borderType=cv2.BORDER_REFLECT).ravel()
-                for each in memberships
-            ]
-        )
+        for each, out in zip(memberships, found, strict=True):
+            cv2.sepFilter2D(each.reshape(shape), -1, taps, taps, dst=out.reshape(shape), borderType=cv2.BORDER_REFLECT)
+    return found
 
 
 def settled(

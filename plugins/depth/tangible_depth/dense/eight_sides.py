@@ -1,6 +1,6 @@
 """Disparity where none was found, from the nearest known pixels on eight sides: what `effort: best` fills with.
 
-As `filling`, with the four diagonals besides; then what was filled is laid on `planes`.
+As `filling`, with the four diagonals besides.
 """
 
 # ruff: noqa: ANN001, ANN202 -- numba finds the types of what it compiles; the docstrings say them
@@ -17,7 +17,6 @@ from tangible_core.compiled.threads import in_blocks, in_turns
 from .candidates import DETOUR, or_never, score, seen_from_the_right
 from .detours import detours
 from .filling import fill
-from .planes import laid_on_planes
 from .span import UNKNOWN
 
 DIAGONAL = -0.9
@@ -52,7 +51,7 @@ def fill_from_eight_sides(disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.nd
         _choose_rows(disparity, values, paths, *found, seen, columns, y0, y1, before[y0], out)
 
     in_blocks(h, choose)
-    return laid_on_planes(disparity, fill(out, grey), grey)  # some saw nothing on any side
+    return fill(out, grey)  # some saw nothing on any side
 
 
 @njit(**KERNEL)

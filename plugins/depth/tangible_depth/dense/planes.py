@@ -21,6 +21,7 @@ from .span import UNKNOWN
 EVERY, COUNT = 4, 12
 """Every which row and column is sampled, and how many samples round a pixel are looked at either way."""
 COLUMNS = np.arange(1 - COUNT, COUNT, 2).astype(np.uint16)
+"""The columns of the samples, in half samples from their middle; what is negative wraps, as all sums do."""
 OF_SURFACE, OF_GREY = 36, 30
 """Sixteenths of a pixel and grey levels by which a known pixel may differ and still be of the same surface."""
 RIDGE = 1.0

@@ -20,6 +20,7 @@ from .confidence import FILLED, FLAT_REACH, GAP_REACH, STEP_REACH, confidence, f
 from .edges import MEDIAN_REACH, VOTERS, median, sharpen_edges
 from .eight_sides import fill_from_eight_sides
 from .filling import fill
+from .planes import laid_on_planes
 from .span import UNKNOWN
 from .speckles import Specks, remove_specks
 
@@ -64,7 +65,10 @@ def completed(
     """
     cleaning = cleaning or Cleaning()
     remove_specks(matched, cleaning.specks, cleaning.factor)
-    filled = fill_from_eight_sides(matched, grey) if cleaning.eight_sides else fill(matched, grey)
+    if cleaning.eight_sides:
+        filled = laid_on_planes(matched, fill_from_eight_sides(matched, grey), grey)
+    else:
+        filled = fill(matched, grey)
     out = _empty(grey.shape)
 
     def block(y0: int, y1: int) -> None:

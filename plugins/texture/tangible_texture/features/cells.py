@@ -55,7 +55,7 @@ def averaged(
         for i in share:
             smooth = found[i] if room is None else room
             cv2.GaussianBlur(planes[i], (0, 0), sigma_cells, dst=smooth, borderType=cv2.BORDER_REFLECT)
-            if step > 1:
+            if room is not None:
                 cv2.resize(smooth, (columns, rows), dst=found[i], interpolation=cv2.INTER_AREA)
 
     in_turns(list(range(len(planes))), work)
@@ -71,38 +71,27 @@ def standardise_roots(planes: Float32[np.ndarray, "d n"]) -> None:
 def _standardise(plane):
     for i in range(plane.size):
         plane[i] = np.sqrt((plane[i] if plane[i] > 0 else np.float32(0)) + np.float32(1e-6))
-    mean = np.float32(_total(plane) / plane.size)
+    mean = np.float32(_total(plane, False) / plane.size)
     for i in range(plane.size):
         plane[i] -= mean
-    deviation = np.sqrt(_total_of_squares(plane) / plane.size)
+    deviation = np.sqrt(_total(plane, True) / plane.size)
     plane *= np.float32(1 / deviation) if deviation > STILL else np.float32(0)
 
 
 @njit(cache=True, nogil=True)
-def _total(values):
-    """The sum, in lanes of a fixed number: no order depends on how many values the processor adds at once."""
+def _total(values, squared):
+    """The sum, of the squares if asked, in lanes of a fixed number.
+
+    So no order depends on how many values the processor adds at once, and squares need no memory of their own.
+    """
     lanes, whole = np.zeros(LANES), values.size // LANES * LANES
     for i in range(0, whole, LANES):
         for j in range(LANES):
-            lanes[j] += values[i + j]
+            value = values[i + j]
+            lanes[j] += value * value if squared else value
     total = 0.0
     for j in range(LANES):
         total += lanes[j]
     for i in range(whole, values.size):
-        total += values[i]
-    return total
-
-
-@njit(cache=True, nogil=True)
-def _total_of_squares(values):
-    """As `_total`, of the squares, which need no memory of their own."""
-    lanes, whole = np.zeros(LANES), values.size // LANES * LANES
-    for i in range(0, whole, LANES):
-        for j in range(LANES):
-            lanes[j] += values[i + j] * values[i + j]
-    total = 0.0
-    for j in range(LANES):
-        total += lanes[j]
-    for i in range(whole, values.size):
-        total += values[i] * values[i]
+        total += values[i] * values[i] if squared else values[i]
     return total

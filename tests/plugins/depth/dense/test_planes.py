@@ -11,6 +11,11 @@ SHAPE = (80, 96)
 Y, X = np.indices(SHAPE)
 
 
+def completed(disparity: np.ndarray, grey: np.ndarray) -> np.ndarray:
+    """Filled, and laid on planes."""
+    return laid_on_planes(disparity, fill_from_eight_sides(disparity, grey), grey)
+
+
 def plane(across: float, down: float, offset: float = 400.0) -> np.ndarray:
     """Disparity in sixteenths of a pixel, with these slopes, in sixteenths a pixel."""
     return np.rint(offset + across * X + down * Y).astype(np.int16)
@@ -23,7 +28,7 @@ def test_a_gap_in_a_slanted_plane_is_slanted(across: float, down: float, gap: tu
     truth, grey = plane(across, down), np.full(SHAPE, 90, np.uint8)
     disparity = truth.copy()
     disparity[gap] = UNKNOWN
-    found = fill_from_eight_sides(disparity, grey)
+    found = completed(disparity, grey)
     assert np.abs(found.astype(int) - truth)[gap].max() <= 5
     known = disparity != UNKNOWN
     assert np.array_equal(found[known], truth[known])
@@ -32,7 +37,7 @@ def test_a_gap_in_a_slanted_plane_is_slanted(across: float, down: float, gap: tu
 def test_a_flat_surface_stays_flat_to_the_sixteenth():
     disparity = np.full(SHAPE, np.int16(160))
     disparity[20:60, 30:70] = UNKNOWN
-    assert (fill_from_eight_sides(disparity, np.zeros(SHAPE, np.uint8)) == 160).all()
+    assert (completed(disparity, np.zeros(SHAPE, np.uint8)) == 160).all()
 
 
 def test_either_surface_goes_on_by_itself():

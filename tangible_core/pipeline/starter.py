@@ -139,7 +139,10 @@ def _slope(values: Float32[np.ndarray, "h w"], smooth_mm: float) -> float:
     longer = max(values.shape)
     scale = min(1.0, CELLS / longer)
     rows, columns = (max(1, round(side * scale)) for side in values.shape)
-    known = np.where(np.isfinite(values), values, np.float32(np.nanmin(values)))
+    finite = np.isfinite(values)
+    if not finite.any():
+        return 0.0
+    known = np.where(finite, values, values[finite].min())
     with plain_opencv():
         small = cv2.resize(known, (columns, rows), interpolation=cv2.INTER_AREA).astype(np.float64)
         if sigma := smooth_mm / SIDE_MM * longer * scale:

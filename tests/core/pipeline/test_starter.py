@@ -56,6 +56,17 @@ def test_heights_in_millimetres_are_taken_at_their_word(folder: Path):
         assert config.size.relief_m == pytest.approx(0.015)
 
 
+@pytest.mark.parametrize("hole", [np.nan, np.inf, -np.inf])
+def test_what_is_not_known_of_a_map_is_no_slope(folder: Path, hole: float):
+    ramp = np.tile(np.linspace(0, 1, 60), (30, 1))
+    np.save("ramp.npy", ramp)
+    ramp[:, 0] = hole
+    np.save("holed.npy", ramp)
+    assert relief_mm("holed.npy") == pytest.approx(relief_mm("ramp.npy"), abs=0.5)
+    np.save("unknown.npy", np.full((9, 9), hole))
+    assert "scene: {height: unknown.npy}" in starter([Path("unknown.npy")], Path("p.yaml")).text
+
+
 def test_a_map_and_a_pair_and_a_builtin_scene(folder: Path):
     assert "scene: {height: map.npy}" in starter([Path("map.npy")], Path("p.yaml")).text
     pair = starter([folder / "calm.png", folder / "calm.png"], folder / "sub" / "p.yaml").text

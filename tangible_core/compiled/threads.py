@@ -6,7 +6,7 @@ No OpenMP: its idle threads spin and take the processor from whoever works.
 import os
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor, wait
 from contextlib import suppress
 from contextvars import copy_context
 from functools import cache
@@ -29,7 +29,8 @@ def run_all(jobs: Iterable[Callable[[], Any]]) -> None:
     """Run every job and wait; the calling thread does the first. A job must not call `run_all` itself.
 
     There are no more jobs than `thread_count` says: each gets a thread.
-    Raises: Stopped before any job if the caller's work shall end; a job sees that as well as its caller does.
+    Raises: Stopped before any job if the caller's work shall end; a job sees that as well as its caller does. What the
+    calling thread raises, such as an interrupt, comes before what it brings about in the others.
     """
     check_stopped()
     first, *rest = jobs
@@ -37,8 +38,9 @@ def run_all(jobs: Iterable[Callable[[], Any]]) -> None:
     try:
         first()
     finally:
-        for each in waiting:
-            each.result()
+        wait(waiting)
+    for each in waiting:
+        each.result()
 
 
 def in_blocks(length: int, work: Callable[[int, int], Any], at_least: int = 16) -> None:

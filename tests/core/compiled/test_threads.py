@@ -1,11 +1,11 @@
 """Work shared among threads."""
 
 from collections.abc import Iterable
-from threading import Barrier, get_ident
+from threading import Barrier, Event, get_ident
 
 import pytest
 
-from tangible_core.compiled.threads import in_blocks, in_turns
+from tangible_core.compiled.threads import in_blocks, in_turns, run_all
 
 
 @pytest.mark.parametrize(("most", "shares"), [(None, 5), (3, 3), (1, 1), (9, 5)])
@@ -28,6 +28,25 @@ def test_a_long_task_holds_no_other_back(monkeypatch):
                 others.wait()  # the long task ends when all others are done
 
     in_turns(["long", "short", "short", "short"], work)
+
+
+def test_an_interrupt_is_not_replaced_by_what_it_brings_about_in_other_threads():
+    interrupted, ended = Event(), Event()
+
+    def interrupt() -> None:
+        interrupted.set()
+        raise KeyboardInterrupt
+
+    def fail() -> None:
+        interrupted.wait(10)
+        ended.set()
+        raise RuntimeError("what it needed is half done")
+
+    with pytest.raises(KeyboardInterrupt):
+        run_all([interrupt, fail])
+    assert ended.is_set()
+    with pytest.raises(RuntimeError, match="half done"):
+        run_all([lambda: None, fail])
 
 
 def test_no_task_is_no_work():

@@ -14,7 +14,7 @@ from tangible_core.errors import PictureError
 from tangible_core.plugins.notes import collected
 from tangible_core.synthetic.stereo_scenes import synthetic_pair
 from tangible_depth.dense import refinement
-from tangible_depth.dense.filling import fill
+from tangible_depth.dense.filling.four_directions import fill
 from tangible_depth.dense.speckles import Specks
 from tangible_depth.semi_global import SemiGlobal
 

@@ -18,9 +18,9 @@ from tangible_core.data import DisparityMap
 
 from .confidence import FILLED, FLAT_REACH, GAP_REACH, STEP_REACH, confidence, flat_pixels
 from .edges import MEDIAN_REACH, VOTERS, median, sharpen_edges
-from .eight_sides import fill_from_eight_sides
-from .filling import fill
-from .planes import laid_on_planes
+from .filling.eight_directions import fill_from_eight_sides
+from .filling.four_directions import fill
+from .filling.planes import laid_on_planes
 from .span import UNKNOWN
 from .speckles import Specks, remove_specks
 

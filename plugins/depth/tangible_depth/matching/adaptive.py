@@ -17,9 +17,9 @@ from tangible_core.plugins.notes import note
 
 from ..dense.span import UNKNOWN, Span
 from ..dense.speckles import ISLAND_PX, remove_speckles
+from ..row_alignment.row_offset import CELL_PX, LEAST_ROW_OFFSET_PX, realigned, row_offset
 from ..search.bands import match_bands
 from ..search.pairs import Pair
-from ..search.row_offset import CELL_PX, LEAST_ROW_OFFSET_PX, realigned, row_offset
 from ..sgm.costs import HEAVY, LIGHT, SHARP, Cost
 from ..sgm.strips import StripMatches, blank, sweep
 from .efforts import Effort

@@ -13,18 +13,18 @@ from stereo_scenes import slanted, step, texture
 from tangible_core.compiled import threads
 from tangible_core.data import Views
 from tangible_core.synthetic.stereo_scenes import synthetic_pair
-from tangible_depth.dense.candidates import ROUND, choose
 from tangible_depth.dense.confidence import confidence, flat_pixels
 from tangible_depth.dense.edges import median, sharpen_edges
-from tangible_depth.dense.filling import fill
+from tangible_depth.dense.filling.candidates import ROUND, choose
+from tangible_depth.dense.filling.four_directions import fill
 from tangible_depth.dense.refinement import Cleaning, DenseMatches, as_map, completed, enlarged
 from tangible_depth.dense.span import UNKNOWN
 from tangible_depth.dense.speckles import Specks, remove_speckles, remove_specks
 from tangible_depth.dense.subpixel import equiangular, parabola
-from tangible_depth.search.asked import asked_span
+from tangible_depth.row_alignment.row_offset import realigned, row_offset
+from tangible_depth.search.disparity_range import asked_span
 from tangible_depth.search.pairs import Pair, grey_pair
-from tangible_depth.search.row_offset import realigned, row_offset
-from tangible_depth.search.search_range import find_range
+from tangible_depth.search.range_in_bands import find_range
 from tangible_depth.sgm.census import census
 
 MAPS = arrays(

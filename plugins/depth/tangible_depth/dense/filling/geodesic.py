@@ -17,7 +17,7 @@ from numba import int32, njit
 
 from tangible_core.compiled.compiling import KERNEL
 
-from .span import UNKNOWN
+from ..span import UNKNOWN
 
 PER_PIXEL = 1
 """Length of a step to a neighbour of the same grey, in grey levels."""

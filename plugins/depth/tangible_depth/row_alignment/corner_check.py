@@ -5,7 +5,7 @@ from jaxtyping import Float, Float32, Float64, UInt8
 
 from tangible_core.runtime.opencv import plain_opencv
 
-from .pairs import Pair
+from ..search.pairs import Pair
 
 Points = Float32[np.ndarray, "n 1 2"]
 

@@ -6,7 +6,7 @@ What a look along rows alone takes for a match, such as one course of bricks for
 import numpy as np
 from jaxtyping import Float64, UInt8
 
-from .pairs import Pair
+from ..search.pairs import Pair
 
 REACH = 1 / 6
 """How far up and down is looked, in heights of the picture."""

@@ -9,11 +9,11 @@ from tangible_core.plugins.notes import note
 from tangible_core.runtime.opencv import plain_opencv
 
 from ..dense.span import UNKNOWN
-from .bands import Bands
-from .corner_look import corners_correspond
-from .pairs import Pair
+from ..search.bands import Bands
+from ..search.pairs import Pair
+from .corner_check import corners_correspond
+from .profile_check import rows_lie_elsewhere
 from .row_offset import CELL_PX, LEAST_ROW_OFFSET_PX, LEAST_VOTES, realigned, row_votes
-from .row_profiles import rows_lie_elsewhere
 
 log = logging.getLogger(__name__)
 

@@ -9,10 +9,10 @@ from tangible_core.plugins.interfaces import Following
 from tangible_core.plugins.notes import collected, silently
 from tangible_depth import Auto, SemiGlobal, Ssd, Zncc
 from tangible_depth.dense.span import Span
-from tangible_depth.matching import followed
-from tangible_depth.matching.followed import LOOK_EVERY, FollowedPair
+from tangible_depth.matching import film
+from tangible_depth.matching.film import LOOK_EVERY, FollowedPair
 from tangible_depth.rectify import rectification
-from tangible_depth.search import asked
+from tangible_depth.search import disparity_range
 
 METHODS = [SemiGlobal(), SemiGlobal(resolution="half"), Zncc(), Ssd()]
 
@@ -21,8 +21,8 @@ METHODS = [SemiGlobal(), SemiGlobal(resolution="half"), Zncc(), Ssd()]
 def looks(monkeypatch):
     """How often the range of a pair is looked for."""
     counted = []
-    found = asked.find_range
-    monkeypatch.setattr(asked, "find_range", lambda pair: counted.append(pair) or found(pair))
+    found = disparity_range.find_range
+    monkeypatch.setattr(disparity_range, "find_range", lambda pair: counted.append(pair) or found(pair))
     return counted
 
 
@@ -51,13 +51,13 @@ def test_what_comes_nearer_is_let_in_at_the_next_look():
 
 
 def test_a_look_that_shows_nothing_teaches_nothing_and_old_ones_are_forgotten(monkeypatch):
-    monkeypatch.setattr(followed, "LOOK_EVERY", 1)
+    monkeypatch.setattr(film, "LOOK_EVERY", 1)
     near, far, dark = slanted(offset=40.0)[0], slanted(offset=6.0)[0], np.zeros((96, 160), np.uint8)
     estimate = SemiGlobal(resolution="half", skip_identical=False).follow(near)
     wide = estimate._span
     estimate(Views(dark, dark))
     assert estimate._span == wide
-    for _ in range(followed.LOOKS):
+    for _ in range(film.LOOKS):
         estimate(far)
     assert estimate._span.high < wide.high
 
@@ -90,7 +90,7 @@ def test_cameras_that_look_elsewhere_are_turned_by_the_first_frame_alone(monkeyp
     ]
     counted = []
     rectify = rectification.rectify
-    monkeypatch.setattr(followed, "rectify", lambda *given, **named: counted.append(1) or rectify(*given, **named))
+    monkeypatch.setattr(film, "rectify", lambda *given, **named: counted.append(1) or rectify(*given, **named))
     estimate = SemiGlobal().follow(rolled[0])
     for each in rolled:
         alone = SemiGlobal().estimate(each).disparity_px
@@ -107,7 +107,7 @@ def test_rows_that_miss_each_other_by_a_constant_are_put_right_in_each_frame():
 
 
 def test_a_calibrated_pair_is_not_turned(monkeypatch):
-    monkeypatch.setattr(followed, "with_common_rows", None)
+    monkeypatch.setattr(film, "with_common_rows", None)
     views, true, hidden = step()
     views = Views(views.left, views.right, Calibration(100.0, 0.1))
     assert wrong(SemiGlobal(resolution="half").follow(views)(views), true, hidden) < 0.1

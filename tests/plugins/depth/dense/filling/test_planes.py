@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from tangible_depth.dense.eight_sides import fill_from_eight_sides
-from tangible_depth.dense.planes import laid_on_planes
+from tangible_depth.dense.filling.eight_directions import fill_from_eight_sides
+from tangible_depth.dense.filling.planes import laid_on_planes
 from tangible_depth.dense.span import UNKNOWN
 
 SHAPE = (80, 96)

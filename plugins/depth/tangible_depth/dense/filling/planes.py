@@ -14,9 +14,9 @@ from numba import int16, int32, njit, uint16
 from tangible_core.compiled.compiling import KERNEL, inner
 from tangible_core.compiled.threads import in_blocks
 
-from ..simd.lane_reductions import total
-from ..simd.lanes import Lanes, add, load, minimum, multiply, splat, subtract
-from .span import UNKNOWN
+from ...simd.lane_reductions import total
+from ...simd.lanes import Lanes, add, load, minimum, multiply, splat, subtract
+from ..span import UNKNOWN
 
 EVERY, COUNT = 4, 12
 """Every which row and column is sampled, and how many samples round a pixel are looked at either way."""

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from tangible_depth.dense.detours import detours
-from tangible_depth.dense.eight_sides import fill_from_eight_sides
-from tangible_depth.dense.filling import fill
+from tangible_depth.dense.filling.eight_directions import fill_from_eight_sides
+from tangible_depth.dense.filling.four_directions import fill
+from tangible_depth.dense.filling.geodesic import detours
 from tangible_depth.dense.span import UNKNOWN
 
 

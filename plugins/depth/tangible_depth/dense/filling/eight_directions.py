@@ -14,10 +14,10 @@ from numba import int32, njit, uint16
 from tangible_core.compiled.compiling import KERNEL, inner
 from tangible_core.compiled.threads import in_blocks, in_turns
 
+from ..span import UNKNOWN
 from .candidates import DETOUR, or_never, score, seen_from_the_right
-from .detours import detours
-from .filling import fill
-from .span import UNKNOWN
+from .four_directions import fill
+from .geodesic import detours
 
 DIAGONAL = -0.9
 HALF = 4

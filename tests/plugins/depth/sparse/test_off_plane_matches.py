@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from tangible_depth.sparse.standing_off import matches_off
+from tangible_depth.sparse.off_plane_matches import matches_off
 from two_cameras import Scene
 
 WALL_PX = np.array([[1, 0, 6], [0, 1, 0], [0, 0, 1.0]])

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from tangible_depth.dense.eight_sides import fill_from_eight_sides
+from tangible_depth.dense.filling.eight_directions import fill_from_eight_sides
 from tangible_depth.dense.span import UNKNOWN
 
 

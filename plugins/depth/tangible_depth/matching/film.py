@@ -9,13 +9,13 @@ from tangible_core.data import DisparityMap, Views
 
 from ..dense.span import Span
 from ..rectify.rectification import rectify, whole_picture_matches
-from ..rectify.rectified import RectifiedPair
-from ..rectify.turning import RectificationError
-from ..search.asked import asked_span
+from ..rectify.rectified_pair import RectifiedPair
+from ..rectify.rectifying_rotation import RectificationError
+from ..row_alignment.common_rows import common_row_offset, with_common_rows
+from ..row_alignment.row_offset import realigned
 from ..search.bands import match_bands
+from ..search.disparity_range import asked_span
 from ..search.pairs import Pair, grey_pair
-from ..search.raw_pairs import common_row_offset, with_common_rows
-from ..search.row_offset import realigned
 from .chain import MOST_DOUBTFUL, Matcher, Search, doubtful, in_order, nothing_moved
 
 LOOK_EVERY, LOOKS = 30, 8

@@ -10,14 +10,14 @@ from tangible_core.plugins.notes import collected
 from tangible_core.synthetic.stereo_scenes import SCENES, synthetic_pair
 from tangible_depth.dense.span import Span
 from tangible_depth.matching import chain
-from tangible_depth.search import asked
-from tangible_depth.search.asked import asked_span
+from tangible_depth.row_alignment.common_rows import common_row_offset, rows_correspond
+from tangible_depth.row_alignment.corner_check import corners_correspond
+from tangible_depth.row_alignment.profile_check import rows_lie_elsewhere
+from tangible_depth.search import disparity_range
 from tangible_depth.search.bands import Bands, match_bands
-from tangible_depth.search.corner_look import corners_correspond
+from tangible_depth.search.disparity_range import asked_span
 from tangible_depth.search.pairs import Pair, grey_pair
-from tangible_depth.search.raw_pairs import common_row_offset, rows_correspond
-from tangible_depth.search.row_profiles import rows_lie_elsewhere
-from tangible_depth.search.search_range import RangeEstimate, find_range
+from tangible_depth.search.range_in_bands import RangeEstimate, find_range
 from tangible_depth.semi_global import SemiGlobal
 from tangible_depth.zncc import Zncc
 from two_cameras import Scene, roll_and_tilt
@@ -211,7 +211,7 @@ def test_chance_matches_are_not_followed_into_the_range(monkeypatch: pytest.Monk
     random = np.random.default_rng(0)
     found_px = np.concatenate([random.uniform(0, 60, 21600), random.uniform(-270, 200, 2400)]).reshape(24, 1000)
     bands = Bands(np.arange(24), np.rint(16 * found_px).astype(np.int16), 1, found_px.size, 0.3)
-    monkeypatch.setattr(asked, "find_range", lambda pair: RangeEstimate(Span(-273, 200), bands, False))
+    monkeypatch.setattr(disparity_range, "find_range", lambda pair: RangeEstimate(Span(-273, 200), bands, False))
     pair = Pair(*[np.zeros((24, 1000), np.uint8)] * 2)
     assert asked_span(pair, "auto", "auto").span.low == -273
     found = asked_span(pair, "auto", "auto", (3, 40)).span

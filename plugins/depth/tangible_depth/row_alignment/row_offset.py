@@ -15,7 +15,7 @@ from tangible_core.runtime.opencv import plain_opencv
 
 from ..dense.span import UNKNOWN
 from ..dense.subpixel import parabola
-from .pairs import Pair
+from ..search.pairs import Pair
 
 CELL_PX, NEAR_PX, MOST_POINTS, LEAST_VOTES = 12, 1, 250, 20
 LEAST_ROW_OFFSET_PX = 0.3

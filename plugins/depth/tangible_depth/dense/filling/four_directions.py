@@ -15,9 +15,9 @@ from numba import int32, njit
 from tangible_core.compiled.compiling import KERNEL, inner
 from tangible_core.compiled.threads import in_blocks
 
+from ..span import UNKNOWN
 from .candidates import ABOVE, BELOW, LEFT, RIGHT, ROUND, alike, choose, seen_from_the_right
-from .detours import detours
-from .span import UNKNOWN
+from .geodesic import detours
 
 SHORT = 2
 """Columns of a gap that is closed without asking, where both ends are alike."""

@@ -11,7 +11,7 @@ from tangible_core.plugins.notes import note
 from ..dense.span import UNKNOWN, Span
 from .bands import Bands
 from .pairs import Pair
-from .search_range import MARGIN, find_range, reach_px
+from .range_in_bands import MARGIN, find_range, reach_px
 
 log = logging.getLogger(__name__)
 Auto = Literal["auto"]

@@ -22,7 +22,7 @@ from numba import int32, uint32
 
 from tangible_core.compiled.compiling import inner
 
-from .span import UNKNOWN
+from ..span import UNKNOWN
 
 FARTHER_OF_ROW, CONTRADICTED, UNMATCHED_THERE, BEYOND = 0.7, -3.4, -1.4, 0.75
 PER_ROOT_OF_GREY, PER_10_PX_NEARER = -0.18, -0.3

@@ -9,13 +9,13 @@ from jaxtyping import UInt8
 from tangible_core.plugins.notes import note
 
 from ..dense.confidence import FLAT_REACH, LEAST_MATCHED
+from ..dense.filling.gaps import Effort
 from ..dense.refinement import Cleaning, DenseMatches, completed, enlarged
 from ..dense.span import Span
 from ..search.pairs import Pair
 from ..sgm.costs import COSTS, SHARP, Penalties, p2_by_grey_step
 from ..sgm.strips import MOST_LANES, strips
 from .adaptive import match
-from .efforts import EFFORTS
 
 log = logging.getLogger(__name__)
 CHECK_TOLERANCE = {"soft": 1.08, "strict": 1.0}
@@ -29,7 +29,7 @@ class Scaling(NamedTuple):
     """What `semi-global` says of the size and the costs at which it matches; each as its option of that name."""
 
     resolution: Literal["full", "half", "auto"]
-    effort: Literal["balanced", "best"]
+    effort: Effort
     cost: Literal["auto", "sharp", "levels", "light", "heavy"]
     check: Literal["soft", "strict"]
     realign_rows: bool
@@ -74,8 +74,7 @@ def _match(pair: Pair, span: Span, options: Scaling, factor: int) -> DenseMatche
     preview = options.resolution == "half"
     cost = HALVED if preview and options.cost == "auto" else COSTS.get(options.cost)
     realign_rows = options.realign_rows and not preview
-    effort = EFFORTS[options.effort]
-    swept, cost = match(pair, span, cost, CHECK_TOLERANCE[options.check], realign_rows, rows, effort)
+    swept, cost = match(pair, span, cost, CHECK_TOLERANCE[options.check], realign_rows, rows, options.effort)
     by_sum = np.maximum(1 - np.arange(256) / (4 * cost.bits), LEAST_MATCHED)
-    cleaning = Cleaning(not preview, cost.specks, factor, effort.eight_sides)
+    cleaning = Cleaning(not preview, cost.specks, factor, options.effort)
     return completed(swept.disparity, swept.sums, by_sum, pair.left, cleaning)

@@ -29,14 +29,7 @@ PER_ROOT_OF_GREY, PER_10_PX_NEARER = -0.18, -0.3
 DETOUR = -1.0
 ALIKE = 24
 """Sixteenths of a pixel by which two disparities may differ and still be called the same surface."""
-LEFT, RIGHT, ABOVE, BELOW, ROUND = range(5)
 NEVER = np.int32(32767)
-
-
-@inner()
-def alike(a, b):
-    """Whether two known disparities may be of one surface."""
-    return abs(int32(a) - int32(b)) <= ALIKE
 
 
 @inner()
@@ -59,27 +52,6 @@ def seen_from_the_right(row, columns, seen):
 def column_of(x, value, last):
     """Where in `seen` a pixel of this disparity is."""
     return min(max(x + int32(1) - ((value + int32(8)) >> int32(4)), int32(0)), last)
-
-
-@inner()
-def choose(sides, paths, x, seen):
-    """The candidate of the highest score; UNKNOWN if there is none."""
-    left, right, above, below = sides[LEFT, x], sides[RIGHT, x], sides[ABOVE, x], sides[BELOW, x]
-    detour = sides[ROUND, x]
-    row_farthest = min(or_never(left), or_never(right))
-    farthest = min(row_farthest, or_never(above), or_never(below), or_never(detour))
-    if farthest == NEVER:
-        return UNKNOWN
-    if max(left, right, above, below, detour) - farthest <= ALIKE:
-        return np.int16(farthest if row_farthest == NEVER else row_farthest)
-    best, best_score = UNKNOWN, np.float32(-1e9)
-    for side in range(ROUND + (detour != UNKNOWN)):
-        value = int32(sides[side, x])
-        rated = score(value, paths[side, x], farthest, row_farthest, x, seen)
-        rated += np.float32(DETOUR) * np.float32(side == ROUND)
-        best = np.int16(value) if rated > best_score else best
-        best_score = max(rated, best_score)
-    return best
 
 
 @inner()

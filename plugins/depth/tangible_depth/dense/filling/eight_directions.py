@@ -16,7 +16,7 @@ from tangible_core.compiled.threads import in_blocks, in_turns
 
 from ..span import UNKNOWN
 from .candidates import DETOUR, or_never, score, seen_from_the_right
-from .four_directions import fill
+from .four_directions import fill_from_four_directions
 from .geodesic import detours
 
 DIAGONAL = -0.9
@@ -25,7 +25,7 @@ HALF = 4
 LONGEST_PATH = 65535
 
 
-def fill_from_eight_sides(disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "h w"]) -> np.ndarray:
+def fill_from_eight_directions(disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "h w"]) -> np.ndarray:
     """The map with every UNKNOWN pixel filled; known pixels keep their value, a map without any stays as it is.
 
     disparity is in sixteenths of a pixel.
@@ -51,7 +51,7 @@ def fill_from_eight_sides(disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.nd
         _choose_rows(disparity, values, paths, *found, seen, columns, y0, y1, before[y0], out)
 
     in_blocks(h, choose)
-    return fill(out, grey)  # some saw nothing on any side
+    return fill_from_four_directions(out, grey)  # some saw nothing on any side
 
 
 @njit(**KERNEL)

@@ -4,7 +4,7 @@ The four nearest known neighbours (left, right, above, below) are the candidates
 crossed on the way from it, and at the left border what a detour leads to; `candidates` judges them.
 """
 
-# ruff: noqa: ANN001, ANN202 -- numba finds the types of what it compiles; the docstrings say them
+# ruff: noqa: ANN001, ANN201, ANN202 -- numba finds the types of what it compiles; the docstrings say them
 
 from typing import NamedTuple
 
@@ -16,14 +16,17 @@ from tangible_core.compiled.compiling import KERNEL, inner
 from tangible_core.compiled.threads import in_blocks
 
 from ..span import UNKNOWN
-from .candidates import ABOVE, BELOW, LEFT, RIGHT, ROUND, alike, choose, seen_from_the_right
+from .candidates import ALIKE, DETOUR, NEVER, or_never, score, seen_from_the_right
 from .geodesic import detours
 
+LEFT, RIGHT, ABOVE, BELOW, ROUND = range(5)
 SHORT = 2
 """Columns of a gap that is closed without asking, where both ends are alike."""
 
 
-def fill(disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "h w"]) -> Int16[np.ndarray, "h w"]:
+def fill_from_four_directions(
+    disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "h w"]
+) -> Int16[np.ndarray, "h w"]:
     """The map with every UNKNOWN pixel filled; known pixels keep their value, a map without any stays as it is.
 
     disparity is in sixteenths of a pixel.
@@ -90,16 +93,43 @@ def _fill_rows(disparity, grey, y0, y1, found, scratch, out):
         seen_from_the_right(disparity[y], columns, seen)
         for gap in range(0, _edges_of_gaps(disparity[y], edges), 2):
             start, stop = edges[gap], edges[gap + 1]
-            if stop - start <= SHORT and start > 0 and stop < w and alike(disparity[y, start - 1], disparity[y, stop]):
+            if stop - start <= SHORT and start > 0 and stop < w and _alike(disparity[y, start - 1], disparity[y, stop]):
                 for x in range(start, stop):  # one of the many gaps between whole disparities
                     out[y, x] = min(disparity[y, start - 1], disparity[y, stop])
             else:
                 _scan_gap(disparity[y], grey[y], start, stop, sides, paths)
                 _go_round(found, y, start, stop, sides, paths)
                 for x in range(start, stop):
-                    out[y, x] = choose(sides, paths, x, seen)
+                    out[y, x] = choose_of_four(sides, paths, x, seen)
                     left_over += out[y, x] == UNKNOWN
     return left_over
+
+
+@inner()
+def _alike(a, b):
+    """Whether two known disparities may be of one surface."""
+    return abs(int32(a) - int32(b)) <= ALIKE
+
+
+@inner()
+def choose_of_four(sides, paths, x, seen):
+    """The candidate of the highest score; UNKNOWN if there is none."""
+    left, right, above, below = sides[LEFT, x], sides[RIGHT, x], sides[ABOVE, x], sides[BELOW, x]
+    detour = sides[ROUND, x]
+    row_farthest = min(or_never(left), or_never(right))
+    farthest = min(row_farthest, or_never(above), or_never(below), or_never(detour))
+    if farthest == NEVER:
+        return UNKNOWN
+    if max(left, right, above, below, detour) - farthest <= ALIKE:
+        return np.int16(farthest if row_farthest == NEVER else row_farthest)
+    best, best_score = UNKNOWN, np.float32(-1e9)
+    for side in range(ROUND + (detour != UNKNOWN)):
+        value = int32(sides[side, x])
+        rated = score(value, paths[side, x], farthest, row_farthest, x, seen)
+        rated += np.float32(DETOUR) * np.float32(side == ROUND)
+        best = np.int16(value) if rated > best_score else best
+        best_score = max(rated, best_score)
+    return best
 
 
 @inner()

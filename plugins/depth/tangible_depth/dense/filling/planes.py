@@ -32,7 +32,7 @@ FARTHEST_OFF = 32000
 """Sixteenths of a pixel from which a value is left alone: in 16 bits it might be taken for UNKNOWN."""
 
 
-def laid_on_planes(
+def fit_planes(
     disparity: Int16[np.ndarray, "h w"], filled: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "h w"]
 ) -> Int16[np.ndarray, "h w"]:
     """`filled`, with what is UNKNOWN in `disparity` put onto the plane of its surface; in sixteenths of a pixel."""

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from tangible_depth.dense.filling.eight_directions import fill_from_eight_sides
-from tangible_depth.dense.filling.four_directions import fill
+from tangible_depth.dense.filling.eight_directions import fill_from_eight_directions
+from tangible_depth.dense.filling.four_directions import fill_from_four_directions
 from tangible_depth.dense.filling.geodesic import detours
 from tangible_depth.dense.span import UNKNOWN
 
@@ -47,7 +47,7 @@ def test_no_way_leads_through_rows_without_a_match_nor_through_other_gaps():
     assert (detours(np.full((3, 6), UNKNOWN), np.zeros((3, 6), np.uint8)).values == UNKNOWN).all()
 
 
-@pytest.mark.parametrize("filled", [fill, fill_from_eight_sides])
+@pytest.mark.parametrize("filled", [fill_from_four_directions, fill_from_eight_directions])
 def test_the_left_border_is_filled_with_the_surface_that_the_picture_shows_there(filled):
     disparity, grey = corner()
     found = filled(disparity, grey)

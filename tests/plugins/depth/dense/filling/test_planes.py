@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from tangible_depth.dense.filling.eight_directions import fill_from_eight_sides
-from tangible_depth.dense.filling.planes import laid_on_planes
+from tangible_depth.dense.filling.eight_directions import fill_from_eight_directions
+from tangible_depth.dense.filling.planes import fit_planes
 from tangible_depth.dense.span import UNKNOWN
 
 SHAPE = (80, 96)
@@ -13,7 +13,7 @@ Y, X = np.indices(SHAPE)
 
 def completed(disparity: np.ndarray, grey: np.ndarray) -> np.ndarray:
     """Filled, and laid on planes."""
-    return laid_on_planes(disparity, fill_from_eight_sides(disparity, grey), grey)
+    return fit_planes(disparity, fill_from_eight_directions(disparity, grey), grey)
 
 
 def plane(across: float, down: float, offset: float = 400.0) -> np.ndarray:
@@ -50,7 +50,7 @@ def test_either_surface_goes_on_by_itself():
         gap[30:46, 30:46] = gap[30:46, 50:66] = True
         nearest = np.where(left, truth[:, 29:30], truth[:, 66:67])
         filled = np.where(gap, nearest, truth).astype(np.int16)
-        found = laid_on_planes(np.where(gap, UNKNOWN, truth), filled, grey)
+        found = fit_planes(np.where(gap, UNKNOWN, truth), filled, grey)
         assert np.abs(found.astype(int) - truth)[gap].max() <= 5
 
 
@@ -61,9 +61,9 @@ def test_no_value_is_out_of_bounds(value: int):
         disparity = np.full(shape, UNKNOWN)
         disparity[0, 0] = value
         filled = np.full(shape, np.int16(value))
-        assert np.array_equal(laid_on_planes(disparity, filled, np.zeros(shape, np.uint8)), filled)
+        assert np.array_equal(fit_planes(disparity, filled, np.zeros(shape, np.uint8)), filled)
 
 
 def test_what_stays_unknown_stays_so():
     unknown = np.full((9, 9), UNKNOWN)
-    assert (laid_on_planes(unknown, unknown, np.zeros((9, 9), np.uint8)) == UNKNOWN).all()
+    assert (fit_planes(unknown, unknown, np.zeros((9, 9), np.uint8)) == UNKNOWN).all()

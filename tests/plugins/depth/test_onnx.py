@@ -233,9 +233,9 @@ class TestMistakes:
 
     def test_no_onnxruntime(self, networks: Path, monkeypatch: pytest.MonkeyPatch):
         monkeypatch.setitem(__import__("sys").modules, "onnxruntime", None)
-        from tangible_depth.network import running
+        from tangible_depth.network import runtimes
 
-        running._loaded.cache_clear()
+        runtimes._loaded.cache_clear()
         with pytest.raises(BrokenMethod, match=r"pip install 'tangible-images\[onnx\]'"):
             Onnx(model=networks / "mono.onnx", runtime="onnxruntime").estimate(wall())
 

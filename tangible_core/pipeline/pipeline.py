@@ -68,7 +68,7 @@ from .config.config import MaterialChoice, NamedMethod, PipelineConfig, Product,
 from .config.parts_said import Inscription
 from .engine.cache import Cache
 from .engine.engine import Engine, Progress
-from .engine.filmed import film_of, reliefs_of
+from .engine.film import film_of, reliefs_of
 from .engine.rules import fitted
 from .engine.warm_up import rehearsal
 from .output.exporting import Export, chosen_exporters, export

@@ -5,14 +5,14 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from tangible_core.data import PartMap
-from tangible_core.description import place_in_words
 from tangible_core.errors import ConfigError
 from tangible_core.parts import PartChoice, PartHeights, part_sizes
+from tangible_core.parts.words.places import place_in_words
 from tangible_core.pipeline.config.config import MaterialChoice, PipelineConfig
 from tangible_core.pipeline.engine.layers import heights_of
 from tangible_core.pipeline.engine.parts_found import check_found, parts_of
 from tangible_core.pipeline.pipeline import Pipeline
-from tangible_core.report.numbered_parts import numbered_parts
+from tangible_report.numbered_parts import numbered_parts
 
 MOST_CELLS = 512
 """A side: where a part lies shows on so many."""

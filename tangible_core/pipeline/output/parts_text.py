@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from ...data import DisparityMap, PartMap
 from ...errors import ConfigError, shown
 from ...parts import PartChoice, PartHeights
-from ..config.config import PipelineConfig
+from ..config.model import PipelineConfig
 from ..engine import rules
 from ..engine.engine import Engine
 from ..engine.felt import FeltScene

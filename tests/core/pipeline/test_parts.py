@@ -572,7 +572,7 @@ class TestWritten:
         assert again.surface.digest() == first.surface.digest()
         np.testing.assert_array_equal(again.surface.height_m, first.surface.height_m)
         line = next(each for each in file.read_text(encoding="utf-8").splitlines() if each.startswith("  3: "))
-        assert line.startswith('  3: {name: "Truhe", height_m: 0.00') and 'material: "glass"}  # guessed, ' in line
+        assert line.startswith("  3: {name: Truhe, height_m: 0.00") and "material: glass}   # guessed, " in line
         rerun = again.run(folder / "out")
         assert not file.exists() and file not in rerun.files
 

@@ -9,6 +9,7 @@ from ruamel.yaml.comments import CommentedMap
 
 from ....errors import ConfigError, quoted
 from ....files.source import Location
+from ....plugins.interfaces import KINDS
 from ..methods import NamedMethod, choose, named_method
 from .key import Forms, Key, Reading, Unchecked
 
@@ -62,7 +63,7 @@ class MethodList(Key, Unchecked):
             known = ", ".join(reading.registry.names(self.name))
             return reading.source.complain(
                 (self.name,),
-                f"{self.name}: takes a list of methods, such as [{{use: ...}}], not {quoted(block)}; "
+                f"{self.name}: takes a list of {_plural(self.name)}, such as [{{use: ...}}], not {quoted(block)}; "
                 f"installed: {known}",
             )
         listed = enumerate(cast("list[Any]", block))
@@ -96,6 +97,10 @@ def _taken(kind: str, reading: Reading, method: Any) -> NamedMethod[Any] | None:
         return named_method(kind, method, reading.registry)
     except ConfigError as error:
         return reading.source.complain((kind,), str(error))
+
+
+def _plural(kind: str) -> str:
+    return f"{KINDS[cast(Any, kind)].__name__.lower()}s"
 
 
 def index_of(listed: list[Any], name: str) -> int:

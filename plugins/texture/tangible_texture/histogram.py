@@ -14,7 +14,7 @@ from tangible_core.plugins.notes import note
 from .signal.skipping import nothing_to_divide, one_segment
 
 if TYPE_CHECKING:
-    from .clusters.levels import Levels
+    from .clusters.otsu import Levels
 
 BINS = 256
 """How many grey levels are told apart between the darkest and the brightest."""
@@ -68,7 +68,7 @@ class Histogram(Segmenter, Skippable):
         """
         from .features.channels import channels
         from .regions.merging import in_reading_order
-        from .regions.parts import without_small_parts
+        from .regions.small_parts import without_small_parts
         from .signal.slopes import slopes
         from .signal.smoothing import gaussian, without_specks
 
@@ -89,7 +89,7 @@ class Histogram(Segmenter, Skippable):
         self, grey: Float32[np.ndarray, "h w"], flat: Bool[np.ndarray, "h w"], most: int
     ) -> tuple[Int32[np.ndarray, "h w"], Float32[np.ndarray, "h w"]]:
         """Each pixel's class, dark to bright, and how sure it is; `most` is how many levels the picture has."""
-        from .clusters.levels import Levels
+        from .clusters.otsu import Levels
 
         bins = _bins(grey)
         pixels = np.bincount(bins[flat], minlength=BINS)

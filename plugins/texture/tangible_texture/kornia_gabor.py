@@ -79,7 +79,7 @@ class KorniaGabor(Segmenter, Skippable):
         return self._segments(grey, needed_filters(grey, wanted, self.skip_weak, self.skip_octaves), most_px)
 
     def _segments(self, grey: Float32[np.ndarray, "h w"], filters: "list[Gabor]", most_px: float) -> SegmentMap:
-        from .clusters.labelling import enlarged, segments_of
+        from .kmeans.labelling import enlarged, segments_of
         from .energies.noise_floor import is_one_texture
         from .kornia_gabor_kernels import energies, standardised_roots
 
@@ -97,7 +97,7 @@ class KorniaGabor(Segmenter, Skippable):
         self, rows: "Tensor", shape: tuple[int, ...], count: int, radius: int
     ) -> tuple[Int32[np.ndarray, "rows columns"], Float32[np.ndarray, "n"]]:
         """Labels and confidence of the cells; a few clusters more where seams were among those that were asked for."""
-        from .clusters.labelling import margins
+        from .kmeans.labelling import margins
         from .features.seams import without_seams
         from .kornia_gabor_kernels import kmeans
 

@@ -12,7 +12,7 @@ from jaxtyping import Float32
 from kornia.filters import fft_conv
 from torch import Tensor
 
-from .clusters.kmeans import SAME
+from .kmeans.lloyd import SAME
 from .energies.gabor_bank import Gabor, kernel
 from .energies.local_energy import fft, padding, smoothing_px, smoothing_table, standardised
 

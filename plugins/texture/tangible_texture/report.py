@@ -66,7 +66,7 @@ class Report(Segmenter, Skippable):
 
     def segment(self, picture: np.ndarray) -> SegmentMap:
         """Labels in the order of their first pixels. Raises: PictureError as `check_picture`."""
-        from .clusters.labelling import labelled
+        from .kmeans.labelling import labelled
         from .energies.filter_choice import needed_filters
         from .energies.noise_floor import is_flat, is_one_texture
 

@@ -10,9 +10,9 @@ from pydantic import ValidationError
 
 from tangible_core.data import Views
 from tangible_core.plugins.notes import collected
-from tangible_texture.clusters.levels import Levels
+from tangible_texture.clusters.otsu import Levels
 from tangible_texture.histogram import MOST_LEVELS, Histogram
-from tangible_texture.regions.parts import without_small_parts
+from tangible_texture.regions.small_parts import without_small_parts
 
 
 def spread(levels: np.ndarray, counts: np.ndarray, starts: tuple[int, ...]) -> float:

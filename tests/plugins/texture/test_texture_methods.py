@@ -9,7 +9,7 @@ from label_maps import rand_index
 from tangible_core.data import Views
 from tangible_core.errors import TangibleError
 from tangible_core.plugins.notes import collected
-from tangible_texture.clusters.kmeans import kmeans
+from tangible_texture.kmeans.lloyd import kmeans
 from tangible_texture.energies.gabor_bank import bank, octaves
 from tangible_texture.energies.local_energy import energy_planes, padding, spectrum_of
 from tangible_texture.energies.responses import even_responses

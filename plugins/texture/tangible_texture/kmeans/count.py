@@ -27,7 +27,7 @@ def choose_count(features: Float32[np.ndarray, "n d"], most: int, seed: int = 0)
     and is off by one at most in 7 of 10; the confidence there is 0.15, right or wrong.
     Source: Rousseeuw, Silhouettes, J. Comput. Appl. Math. 20 (1987).
     """
-    from .kmeans import kmeans
+    from .lloyd import kmeans
 
     rows = features[np.random.default_rng(seed).permutation(len(features))[:SAMPLE]]
     scores: dict[int, float] = {}
@@ -45,7 +45,7 @@ def choose_count(features: Float32[np.ndarray, "n d"], most: int, seed: int = 0)
 
 def _silhouette(rows: Float32[np.ndarray, "n d"], labels: np.ndarray) -> float:
     """Mean of (b - a) / max(a, b): a to the own cluster's rows, b to those of the nearest other one."""
-    from .planes import mixed
+    from ..clusters.planes import mixed
 
     squares = np.square(rows).sum(axis=1)
     away = np.sqrt(np.maximum(squares[:, None] + squares - 2 * mixed(rows, np.ascontiguousarray(rows.T)), 0))

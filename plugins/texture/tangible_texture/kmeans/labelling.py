@@ -10,7 +10,7 @@ from tangible_core.data import SegmentMap
 from tangible_core.plugins.notes import note
 
 from .count import choose_count
-from .kmeans import kmeans
+from .lloyd import kmeans
 
 log = logging.getLogger(__name__)
 MOST_SEGMENTS = 8

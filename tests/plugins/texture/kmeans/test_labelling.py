@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tangible_core.plugins.notes import collected
-from tangible_texture.clusters.labelling import enlarged, labelled, margins, segments_of
+from tangible_texture.kmeans.labelling import enlarged, labelled, margins, segments_of
 from tangible_texture.energies.noise_floor import is_flat, is_one_texture
 from tangible_texture.features.seams import without_seams
 from tangible_texture.regions.merging import in_reading_order

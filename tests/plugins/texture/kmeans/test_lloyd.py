@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 
 from tangible_core.compiled import threads
 from tangible_texture.clusters import kmeans as module
-from tangible_texture.clusters.count import choose_count
-from tangible_texture.clusters.kmeans import kmeans
+from tangible_texture.kmeans.count import choose_count
+from tangible_texture.kmeans.lloyd import kmeans
 
 
 def blobs(count, each=200, dims=5, seed=0, apart=20.0):

@@ -9,7 +9,7 @@ from tangible_core.data import SegmentMap, Views
 from tangible_core.data.pictures import check_picture
 from tangible_core.plugins.interfaces import Segmenter, Skippable
 
-from .signal.skipping import nothing_to_divide, one_segment
+from .signal.skipping import one_segment, reason_to_skip
 
 
 class Gabor(Segmenter, Skippable):
@@ -40,7 +40,7 @@ class Gabor(Segmenter, Skippable):
 
     def skip(self, views: Views) -> str | None:
         """One flat colour is one segment, and so is any picture when no more is asked for."""
-        return nothing_to_divide(views.left, self.segments)
+        return reason_to_skip(views.left, self.segments)
 
     def segment(self, picture: np.ndarray) -> SegmentMap:
         """Regions of the picture; one where its texture is the same everywhere, but for single pixels.
@@ -50,20 +50,22 @@ class Gabor(Segmenter, Skippable):
         """
         from .clusters.classes import classes
         from .clusters.full_size import fine_memberships, pixel_labels
-        from .clusters.planes import mixed
+        from .clusters.planes import combine_planes
         from .features.cells import CELL_PX
         from .features.features import Window, features
-        from .regions.merging import in_reading_order
+        from .regions.merging import number_in_reading_order
 
         if self.segments == 1:
             return one_segment(check_picture(picture).shape[:2])
-        found = features(picture, self.lambda_max_px, self.least_energy, self.colour)
-        if found is None:
+        windows = features(picture, self.lambda_max_px, self.least_energy, self.colour)
+        if windows is None:
             return one_segment(picture.shape[:2])
-        labels, axes = classes(found, self.segments, self.effort)
+        labels, axes = classes(windows, self.segments, self.effort)
         if not labels.any():
             return one_segment(picture.shape[:2])
-        narrow, middle = (Window(mixed(axes, each.planes), each.shape) for each in (found.narrow, found.middle))
+        narrow, middle = (
+            Window(combine_planes(axes, each.planes), each.shape) for each in (windows.narrow, windows.middle)
+        )
         memberships = fine_memberships(middle, labels, narrow)
         pixels, confidence = pixel_labels(memberships, CELL_PX, picture.shape[:2])
-        return SegmentMap(in_reading_order(pixels), confidence)
+        return SegmentMap(number_in_reading_order(pixels), confidence)

@@ -11,7 +11,7 @@ from tangible_core.data import SegmentMap, Views
 from tangible_core.plugins.interfaces import Segmenter, Skippable
 from tangible_core.plugins.notes import note
 
-from .signal.skipping import nothing_to_divide, one_segment
+from .signal.skipping import one_segment, reason_to_skip
 
 if TYPE_CHECKING:
     from .regions.landscape import Landscape
@@ -70,7 +70,7 @@ class Gradient(Segmenter, Skippable):
 
     def skip(self, views: Views) -> str | None:
         """One segment is asked for, or there is one flat colour."""
-        return nothing_to_divide(views.left, self.segments)
+        return reason_to_skip(views.left, self.segments)
 
     def segment(self, picture: np.ndarray) -> SegmentMap:
         """Regions of the picture; one where nothing but noise is found in it.
@@ -79,22 +79,22 @@ class Gradient(Segmenter, Skippable):
         """
         from .features.channels import channels
         from .regions.landscape import landscape
-        from .regions.merging import in_reading_order
-        from .regions.refining import refined
+        from .regions.merging import number_in_reading_order
+        from .regions.refining import refine_labels
         from .signal.slopes import slopes
-        from .signal.smoothing import two_scales, without_specks
+        from .signal.smoothing import remove_specks, smooth_at_two_scales
 
-        near, wide, step = two_scales(without_specks(channels(picture, self.colour)), self.sigma_px)
+        near, wide, step = smooth_at_two_scales(remove_specks(channels(picture, self.colour)), self.sigma_px)
         magnitude, _, _, noise = slopes(near)
         strongest = float(magnitude.max())
-        labels = self._regions(landscape(wide, self._most, noise), step) if strongest > NOTHING else None
+        labels = self._regions(landscape(wide, self._max_steepness, noise), step) if strongest > NOTHING else None
         if labels is None:
             return one_segment(magnitude.shape)
-        steep = magnitude / np.maximum(noise, np.float32(strongest / self._most))
-        return SegmentMap(in_reading_order(refined(labels, step, steep)), self._confidence(steep))
+        steep = magnitude / np.maximum(noise, np.float32(strongest / self._max_steepness))
+        return SegmentMap(number_in_reading_order(refine_labels(labels, step, steep)), self._confidence(steep))
 
     @property
-    def _most(self) -> float:
+    def _max_steepness(self) -> float:
         """The steepest slope in units of the noise, at most: `contrast` of it begins an edge."""
         return self.canny_high / self.contrast
 
@@ -111,7 +111,7 @@ class Gradient(Segmenter, Skippable):
         if count < 2:
             return None
         labels = watershed(land.steep, markers)
-        edges = canny_edges(land, self.canny_low, self.canny_high, self._most)
+        edges = canny_edges(land, self.canny_low, self.canny_high, self._max_steepness)
         most = MOST_SEGMENTS if self.segments == "auto" else self.segments
         areas = np.bincount(labels.ravel(), minlength=count).tolist()
         between = borders(labels, land, edges, self.canny_high)

@@ -11,10 +11,10 @@ from tangible_core.data import SegmentMap, Views
 from tangible_core.plugins.interfaces import Segmenter, Skippable
 from tangible_core.plugins.notes import note
 
-from .signal.skipping import nothing_to_divide, one_segment
+from .signal.skipping import one_segment, reason_to_skip
 
 if TYPE_CHECKING:
-    from .clusters.otsu import Levels
+    pass
 
 BINS = 256
 """How many grey levels are told apart between the darkest and the brightest."""
@@ -59,7 +59,7 @@ class Histogram(Segmenter, Skippable):
 
     def skip(self, views: Views) -> str | None:
         """One segment is asked for, or there is one flat colour."""
-        return nothing_to_divide(views.left, self.segments)
+        return reason_to_skip(views.left, self.segments)
 
     def segment(self, picture: np.ndarray) -> SegmentMap:
         """Classes of grey; one where all of it is the same.
@@ -67,12 +67,12 @@ class Histogram(Segmenter, Skippable):
         Raises: PictureError as `check_picture`.
         """
         from .features.channels import channels
-        from .regions.merging import in_reading_order
-        from .regions.small_parts import without_small_parts
+        from .regions.merging import number_in_reading_order
+        from .regions.small_parts import remove_small_parts
         from .signal.slopes import slopes
-        from .signal.smoothing import gaussian, without_specks
+        from .signal.smoothing import gaussian, remove_specks
 
-        values = without_specks(channels(picture, colour=False))
+        values = remove_specks(channels(picture, colour=False))
         sigma_px = min(self.sigma_px, values.size**0.5 / 16)
         grey = gaussian(values, sigma_px)[..., 0] if sigma_px else values[..., 0]
         if float(np.ptp(grey)) <= NOTHING:
@@ -81,27 +81,29 @@ class Histogram(Segmenter, Skippable):
         flat = 1.001 * float(np.quantile(steep, FLAT_SHARE)) + NOTHING  # slopes that are equal differ by rounding
         classes, confidence = self._classes(grey, steep <= flat, np.unique(_bins(values)).size)
         smallest_px = min(self.smallest_px, classes.size // 16)
-        labels = without_small_parts(classes, steep, flat, smallest_px) if smallest_px > 1 else classes
+        labels = remove_small_parts(classes, steep, flat, smallest_px) if smallest_px > 1 else classes
         confidence[labels != classes] = 0
-        return SegmentMap(in_reading_order(labels), confidence)
+        return SegmentMap(number_in_reading_order(labels), confidence)
 
     def _classes(
         self, grey: Float32[np.ndarray, "h w"], flat: Bool[np.ndarray, "h w"], most: int
     ) -> tuple[Int32[np.ndarray, "h w"], Float32[np.ndarray, "h w"]]:
         """Each pixel's class, dark to bright, and how sure it is; `most` is how many levels the picture has."""
-        from .clusters.otsu import Levels
+        from .clusters.otsu import OtsuClasses
 
         bins = _bins(grey)
         pixels = np.bincount(bins[flat], minlength=BINS)
         used = np.flatnonzero(pixels)
         levels = np.bincount(bins[flat], grey[flat])[used] / pixels[used]
-        divisions = Levels(levels, pixels[used], min(most, MOST_LEVELS if self.segments == "auto" else self.segments))
+        divisions = OtsuClasses(
+            levels, pixels[used], min(most, MOST_LEVELS if self.segments == "auto" else self.segments)
+        )
         starts = divisions.starts(self._number(divisions))[1:]
         thresholds = (levels[starts] + levels[starts - 1]) / 2
         classes = np.searchsorted(thresholds, grey).astype(np.int32)
         return classes, _confidence(grey, classes, thresholds)
 
-    def _number(self, divisions: "Levels") -> int:
+    def _number(self, divisions: "OtsuClasses") -> int:
         if self.segments != "auto":
             return len(divisions.spreads)
         number, ratio = divisions.clearest()

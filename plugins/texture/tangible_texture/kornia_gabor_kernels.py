@@ -12,9 +12,9 @@ from jaxtyping import Float32
 from kornia.filters import fft_conv
 from torch import Tensor
 
-from .kmeans.lloyd import SAME
 from .energies.gabor_bank import Gabor, kernel
-from .energies.local_energy import fft, padding, smoothing_px, smoothing_table, standardised
+from .energies.local_energy import fft, padding, smoothing_px, smoothing_table, standardise
+from .kmeans.lloyd import SAME
 
 
 def energies(
@@ -25,7 +25,7 @@ def energies(
     Memory: about 60 bytes a pixel of the mirrored picture.
     """
     pad_px = padding(filters, sigma_px)
-    picture = standardised(grey)
+    picture = standardise(grey)
     cells = [-(-side // step_px) for side in grey.shape]
     planes = []
     for gabor in filters:
@@ -37,14 +37,14 @@ def energies(
         response = fft_conv(mirrored.expand(2, 1, -1, -1), parts, padding="valid")
         energy = response.square().sum(dim=(0, 1))
         down, along = (
-            _dense(count, step_px, smoothing_px(gabor, sigma_px), side, pad_px).to(device)
+            _dense_smoothing_table(count, step_px, smoothing_px(gabor, sigma_px), side, pad_px).to(device)
             for count, side in zip(cells, energy.shape, strict=True)
         )
         planes.append(down @ energy @ along.T)
     return torch.stack(planes)
 
 
-def _dense(cells: int, step_px: int, wide_px: float, samples: int, pad_px: int) -> Tensor:
+def _dense_smoothing_table(cells: int, step_px: int, wide_px: float, samples: int, pad_px: int) -> Tensor:
     """`smoothing_table` as a matrix (cells, samples)."""
     first, weights = smoothing_table(cells, step_px, wide_px, samples, 1.0, pad_px)
     matrix = np.zeros((cells, samples), np.float32)
@@ -52,7 +52,7 @@ def _dense(cells: int, step_px: int, wide_px: float, samples: int, pad_px: int) 
     return torch.from_numpy(matrix)
 
 
-def standardised_roots(planes: Tensor) -> Tensor:
+def standardise_roots(planes: Tensor) -> Tensor:
     """One row a cell (n, filters): amplitudes, each filter's of mean 0 and deviation 1, or 0 where all are one."""
     rows = planes.flatten(1).T.sqrt()
     rows = rows - rows.mean(dim=0)

@@ -12,7 +12,7 @@ from tangible_core.data.pictures import to_grey
 from tangible_core.plugins.interfaces import Segmenter, Skippable
 from tangible_core.runtime.torch_extra import TorchDevice, need, pick_device
 
-from .signal.skipping import nothing_to_divide, one_segment
+from .signal.skipping import one_segment, reason_to_skip
 
 QUIET = 0.25
 """This share of the slopes is taken to be noise, and their largest to be that quantile of a Rayleigh distribution."""
@@ -52,7 +52,7 @@ class KorniaGradient(Segmenter, Skippable):
 
     def skip(self, views: Views) -> str | None:
         """One flat colour is one segment, and so is any picture when no more is asked for."""
-        return nothing_to_divide(views.left, self.segments)
+        return reason_to_skip(views.left, self.segments)
 
     def segment(self, picture: np.ndarray) -> SegmentMap:
         """Regions of the picture, in the order of their first pixels.
@@ -62,7 +62,7 @@ class KorniaGradient(Segmenter, Skippable):
         need("torch")
         need("kornia")
         from .energies.noise_floor import is_flat
-        from .regions.merging import in_reading_order
+        from .regions.merging import number_in_reading_order
         from .regions.watershed import watershed
 
         grey = to_grey(picture)
@@ -73,7 +73,7 @@ class KorniaGradient(Segmenter, Skippable):
         if count < 2:
             return one_segment(grey.shape)
         top = max(float(steep.max()), self.canny_high)
-        return SegmentMap(in_reading_order(watershed(steep, markers)), 1 - steep / np.float32(top))
+        return SegmentMap(number_in_reading_order(watershed(steep, markers)), 1 - steep / np.float32(top))
 
     def _landscape(self, grey: Float32[np.ndarray, "h w"]) -> Float32[np.ndarray, "h w"]:
         """The slope in units of the noise, canny_high at least on edges."""
@@ -98,9 +98,9 @@ class KorniaGradient(Segmenter, Skippable):
         from .regions.basins import MOST_SEGMENTS, STEEPER, basins
 
         levels = [self.canny_low * times for times in STEEPER]
-        found, count = basins(steep, levels, max(4, min(self.smallest_px, steep.size // 16)))
+        basin_labels, count = basins(steep, levels, max(4, min(self.smallest_px, steep.size // 16)))
         most = min(count, MOST_SEGMENTS if self.segments == "auto" else self.segments)
-        largest = np.argsort(-np.bincount(found[found >= 0], minlength=count), kind="stable")[:most]
+        largest = np.argsort(-np.bincount(basin_labels[basin_labels >= 0], minlength=count), kind="stable")[:most]
         names = np.full(count + 1, -1, np.int32)  # the last is what -1 finds
         names[largest] = np.arange(most)
-        return names[found], most
+        return names[basin_labels], most

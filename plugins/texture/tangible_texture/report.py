@@ -13,7 +13,7 @@ from tangible_core.data.pictures import to_grey
 from tangible_core.plugins.interfaces import Segmenter, Skippable
 from tangible_core.plugins.notes import note
 
-from .signal.skipping import nothing_to_divide, one_segment
+from .signal.skipping import one_segment, reason_to_skip
 
 if TYPE_CHECKING:
     from .energies.gabor_bank import Gabor
@@ -62,13 +62,13 @@ class Report(Segmenter, Skippable):
 
     def skip(self, views: Views) -> str | None:
         """One flat colour is one segment, and so is any picture when no more is asked for."""
-        return nothing_to_divide(views.left, self.segments)
+        return reason_to_skip(views.left, self.segments)
 
     def segment(self, picture: np.ndarray) -> SegmentMap:
         """Labels in the order of their first pixels. Raises: PictureError as `check_picture`."""
-        from .kmeans.labelling import labelled
         from .energies.filter_choice import needed_filters
         from .energies.noise_floor import is_flat, is_one_texture
+        from .kmeans.labelling import segment_by_kmeans
 
         grey = to_grey(picture)
         if is_flat(grey):
@@ -78,12 +78,12 @@ class Report(Segmenter, Skippable):
         features = self._features(grey, filters, step_px)
         if is_one_texture(features.transpose(2, 0, 1), self.widest_px / step_px, grey):
             return one_segment(grey.shape)
-        return labelled(features, step_px, grey.shape, self.segments, self.seed, start="random")
+        return segment_by_kmeans(features, step_px, grey.shape, self.segments, self.seed, start="random")
 
     def _filters(self, width_px: int) -> "list[Gabor]":
-        from .energies.gabor_bank import bank, octaves, printed
+        from .energies.gabor_bank import bank, octaves, printed_wavelengths
 
-        wavelengths = printed(width_px) if self.frequencies == "printed" else octaves(self.longest_px)
+        wavelengths = printed_wavelengths(width_px) if self.frequencies == "printed" else octaves(self.longest_px)
         return bank(wavelengths, 6, self.bandwidth, self.gamma)
 
     def _step_px(self, pixels: int, filters: int) -> int:

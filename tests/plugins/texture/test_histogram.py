@@ -10,9 +10,9 @@ from pydantic import ValidationError
 
 from tangible_core.data import Views
 from tangible_core.plugins.notes import collected
-from tangible_texture.clusters.otsu import Levels
+from tangible_texture.clusters.otsu import OtsuClasses
 from tangible_texture.histogram import MOST_LEVELS, Histogram
-from tangible_texture.regions.small_parts import without_small_parts
+from tangible_texture.regions.small_parts import remove_small_parts
 
 
 def spread(levels: np.ndarray, counts: np.ndarray, starts: tuple[int, ...]) -> float:
@@ -32,7 +32,7 @@ class TestLevels:
     @given(st.lists(st.integers(1, 30), min_size=1, max_size=9), st.integers(1, 9), st.integers(0, 99))
     def test_no_other_division_is_better(self, counts: list[int], classes: int, seed: int):
         levels, number = np.sort(np.random.default_rng(seed).random(len(counts))), np.array(counts)
-        found = Levels(levels, number, classes)
+        found = OtsuClasses(levels, number, classes)
         classes = len(found.spreads)
         every = [spread(levels, number, starts) for starts in combinations(range(1, levels.size), classes - 1)]
         assert found.spreads[-1] == pytest.approx(min(every), abs=1e-9)
@@ -46,18 +46,18 @@ class TestLevels:
         pixels = np.bincount(picture.ravel(), minlength=256)
         expected = threshold_multiotsu(hist=(pixels, np.arange(256.0)), classes=classes)
         used = np.flatnonzero(pixels)
-        starts = used[Levels(used.astype(float), pixels[used], classes).starts(classes)][1:]
+        starts = used[OtsuClasses(used.astype(float), pixels[used], classes).starts(classes)][1:]
         assert [pixels[:start].sum() for start in starts] == [pixels[: int(each) + 1].sum() for each in expected]
 
     def test_even_levels_are_one_class_and_so_are_those_of_one_gaussian(self):
         levels = np.arange(256.0)
         for counts in (np.full(256, 9), np.rint(9999 * np.exp(-(((levels - 128) / 30) ** 2) / 2)).astype(int) + 1):
-            assert Levels(levels, counts, MOST_LEVELS).clearest() == (1, 1.0)
+            assert OtsuClasses(levels, counts, MOST_LEVELS).clearest() == (1, 1.0)
 
     def test_humps_are_counted(self):
         levels = np.arange(256.0)
         humps = sum(np.exp(-(((levels - mean) / 5) ** 2) / 2) for mean in (40, 110, 200))
-        number, ratio = Levels(levels, np.rint(9999 * humps).astype(int) + 1, MOST_LEVELS).clearest()
+        number, ratio = OtsuClasses(levels, np.rint(9999 * humps).astype(int) + 1, MOST_LEVELS).clearest()
         assert number == 3
         assert ratio < 0.2
 
@@ -67,16 +67,16 @@ class TestSmallParts:
     LEVEL = np.zeros((3, 4), np.float32)
 
     def test_they_go_to_what_lies_beside_them(self):
-        assert without_small_parts(self.CLASSES, self.LEVEL, 1, 3).tolist() == [[0, 0, 0, 1]] * 3
-        assert without_small_parts(self.CLASSES, self.LEVEL, 1, 4).tolist() == [[0] * 4] * 3
+        assert remove_small_parts(self.CLASSES, self.LEVEL, 1, 3).tolist() == [[0, 0, 0, 1]] * 3
+        assert remove_small_parts(self.CLASSES, self.LEVEL, 1, 4).tolist() == [[0] * 4] * 3
 
     def test_nothing_but_small_parts_is_one(self):
-        assert np.all(without_small_parts(self.CLASSES, self.LEVEL, 1, 10) == 0)
+        assert np.all(remove_small_parts(self.CLASSES, self.LEVEL, 1, 10) == 0)
 
     def test_an_edge_is_no_part(self):
         classes = np.array([[0, 0, 0, 1, 1, 2, 2, 2]] * 9, np.int32)
         steep = np.array([[0, 0, 2, 4, 5, 2, 0, 0]] * 9, np.float32)
-        assert np.delete(without_small_parts(classes, steep, 1, 9), 4, axis=1).tolist() == [[0] * 4 + [2] * 3] * 9
+        assert np.delete(remove_small_parts(classes, steep, 1, 9), 4, axis=1).tolist() == [[0] * 4 + [2] * 3] * 9
 
 
 class TestHistogram:

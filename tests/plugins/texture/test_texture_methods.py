@@ -9,10 +9,10 @@ from label_maps import rand_index
 from tangible_core.data import Views
 from tangible_core.errors import TangibleError
 from tangible_core.plugins.notes import collected
-from tangible_texture.kmeans.lloyd import kmeans
 from tangible_texture.energies.gabor_bank import bank, octaves
 from tangible_texture.energies.local_energy import energy_planes, padding, spectrum_of
 from tangible_texture.energies.responses import even_responses
+from tangible_texture.kmeans.lloyd import kmeans
 from tangible_texture.kornia_gabor import KorniaGabor
 from tangible_texture.kornia_gradient import KorniaGradient
 from tangible_texture.report import Report
@@ -118,7 +118,7 @@ class TestKorniaGabor:
     def test_labels_are_those_of_the_fast_bank_with_the_same_clustering(self):
         import torch
 
-        from tangible_texture.kornia_gabor_kernels import standardised_roots
+        from tangible_texture.kornia_gabor_kernels import standardise_roots
 
         grey, _ = quarters(256)
         found = KorniaGabor(segments=4, drop_seams=False, skip_octaves=False).segment(grey)
@@ -126,7 +126,7 @@ class TestKorniaGabor:
         planes = energy_planes(
             spectrum_of(grey.astype(np.float32), padding(filters, 12.0)), filters, grey.shape, 4, 12.0
         )
-        rows = standardised_roots(torch.from_numpy(planes)).numpy()
+        rows = standardise_roots(torch.from_numpy(planes)).numpy()
         ours = kmeans(rows, 4, restarts=10).labels.reshape(64, 64).repeat(4, 0).repeat(4, 1)
         assert rand_index(found.labels, ours) > 0.95
 

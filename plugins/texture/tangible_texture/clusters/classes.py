@@ -38,32 +38,40 @@ EFFORTS = {"fast": Effort(2, 2, 2), "balanced": Effort(3, 4, 8)}
 
 
 def classes(
-    found: Features, segments: int | Literal["auto"], effort: Literal["fast", "balanced"]
+    features: Features, segments: int | Literal["auto"], effort: Literal["fast", "balanced"]
 ) -> tuple[Int32[np.ndarray, "m"], Float64[np.ndarray, "a d"]]:
     """The class of each cell of the middle windows, and the axes along which classes differ: none of a single class."""
     from .discriminants import principal_axes
-    from .dividing import divided
-    from .joining import axes_between, joining
-    from .neighbourhood import refitted
-    from .planes import mixed
+    from .dividing import divide
+    from .joining import axes_between, join_clusters
+    from .neighbourhood import refit_labels
+    from .planes import combine_planes
 
-    spent, (planes, shape) = EFFORTS[effort], found.middle
+    spent, (planes, shape) = EFFORTS[effort], features.middle
     most = MOST_GUESSED if segments == "auto" else segments
-    rotated = mixed(principal_axes(found.wide.planes, PRINCIPAL_AXES, HALF_WHITE), found.wide.planes)
-    labels = _spread(divided(rotated, spent.each * most + spent.besides), found.wide.shape, shape)
-    steps = joining(planes, labels, shape, most + spent.last)
-    labels = _guessed(steps) if segments == "auto" else next(each.labels for each in steps if each.clusters <= segments)
+    rotated = combine_planes(principal_axes(features.wide.planes, PRINCIPAL_AXES, HALF_WHITE), features.wide.planes)
+    labels = _resample_labels(divide(rotated, spent.each * most + spent.besides), features.wide.shape, shape)
+    steps = join_clusters(planes, labels, shape, most + spent.last)
+    labels = (
+        _clearest_division(steps)
+        if segments == "auto"
+        else next(each.labels for each in steps if each.clusters <= segments)
+    )
     axes = axes_between(planes, labels, shape)
-    return (refitted(mixed(axes, planes), labels, shape, FINAL_ROUNDS, 1) if len(axes) else labels * 0), axes
+    return (
+        refit_labels(combine_planes(axes, planes), labels, shape, FINAL_ROUNDS, 1) if len(axes) else labels * 0
+    ), axes
 
 
-def _spread(labels: Int32[np.ndarray, "l"], shape: tuple[int, int], to: tuple[int, int]) -> Int32[np.ndarray, "m"]:
+def _resample_labels(
+    labels: Int32[np.ndarray, "l"], shape: tuple[int, int], to: tuple[int, int]
+) -> Int32[np.ndarray, "m"]:
     """Labels of a coarse grid, on a finer one."""
     rows, columns = (((np.arange(n) + 0.5) * side / n).astype(int) for side, n in zip(shape, to, strict=True))
     return labels.reshape(shape)[np.ix_(rows, columns)].ravel()
 
 
-def _guessed(steps: Iterable[Step]) -> Int32[np.ndarray, "m"]:
+def _clearest_division(steps: Iterable[Step]) -> Int32[np.ndarray, "m"]:
     """The division whose next joining costs the most, against the dearest joining before."""
     every = list(steps)
     dearest = accumulate((each.cost if isfinite(each.cost) else 0.0 for each in every), max)

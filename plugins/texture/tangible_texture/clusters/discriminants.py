@@ -25,13 +25,13 @@ class Scatters(NamedTuple):
 
 def scatters(planes: Float32[np.ndarray, "d n"], weights: Float32[np.ndarray, "k n"]) -> Scatters:
     """Of classes with these weights a cell, whose sum is what a cell counts."""
-    from .planes import products, scatter
+    from .planes import inner_products, scatter_matrix
 
     counts = weights.sum(axis=1, dtype=np.float64) + 1e-3
     shares = counts / counts.sum()
-    means = products(weights, planes) / counts[:, None]
+    means = inner_products(weights, planes) / counts[:, None]
     centre = np.einsum("k,kd->d", shares, means)
-    total = scatter(planes, weights.sum(axis=0)) / counts.sum() - np.outer(centre, centre)
+    total = scatter_matrix(planes, weights.sum(axis=0)) / counts.sum() - np.outer(centre, centre)
     between = np.einsum("kd,ke->de", shares[:, None] * (means - centre), means - centre)
     within = total - between
     shrunk = min(1.0, max(SHRUNK, CELLS / planes.shape[1]))
@@ -39,24 +39,24 @@ def scatters(planes: Float32[np.ndarray, "d n"], weights: Float32[np.ndarray, "k
     return Scatters(means, shares, within + shrunk * total + ridge * np.eye(len(within)))
 
 
-def evidence(planes: Float32[np.ndarray, "d n"], found: Scatters) -> Float32[np.ndarray, "k n"]:
+def evidence(planes: Float32[np.ndarray, "d n"], fit: Scatters) -> Float32[np.ndarray, "k n"]:
     """How much each cell speaks for each class: log likelihoods of one Gaussian's width, but for what all share."""
     from tangible_core.compiled.small_matrices import solved
 
-    from .planes import mixed
+    from .planes import combine_planes
 
-    towards = solved(found.within, found.means)
-    heights = 0.5 * (found.means * towards).sum(axis=1)
-    return mixed(towards, planes) - heights.astype(np.float32)[:, None]
+    towards = solved(fit.within, fit.means)
+    heights = 0.5 * (fit.means * towards).sum(axis=1)
+    return combine_planes(towards, planes) - heights.astype(np.float32)[:, None]
 
 
-def discriminant_axes(found: Scatters, most: int) -> Float64[np.ndarray, "m d"]:
+def discriminant_axes(fit: Scatters, most: int) -> Float64[np.ndarray, "m d"]:
     """The directions in which classes differ most, `most` or as many as there are, scaled to unit scatter within."""
     from tangible_core.compiled.small_matrices import eigen, solved
 
-    centre = np.einsum("k,kd->d", found.shares, found.means)
-    apart = np.sqrt(found.shares)[:, None] * (found.means - centre)
-    towards = solved(found.within, apart)
+    centre = np.einsum("k,kd->d", fit.shares, fit.means)
+    apart = np.sqrt(fit.shares)[:, None] * (fit.means - centre)
+    towards = solved(fit.within, apart)
     strengths, vectors = eigen(np.einsum("kd,jd->kj", apart, towards))
     kept = np.flatnonzero(strengths > 1e-9)[:most]
     return np.einsum("ak,kd->ad", vectors[kept] / np.sqrt(strengths[kept])[:, None], towards)
@@ -66,8 +66,8 @@ def principal_axes(planes: Float32[np.ndarray, "d n"], most: int, power: float =
     """Leading principal axes of centred planes, each divided by its variance to this power; none for still planes."""
     from tangible_core.compiled.small_matrices import eigen
 
-    from .planes import scatter
+    from .planes import scatter_matrix
 
-    values, vectors = eigen(scatter(planes, np.ones(planes.shape[1], np.float32)) / planes.shape[1])
+    values, vectors = eigen(scatter_matrix(planes, np.ones(planes.shape[1], np.float32)) / planes.shape[1])
     kept = np.flatnonzero(values > 1e-6 * max(values[0], 1e-6))[:most]
     return vectors[kept] * np.array([value**-power for value in values[kept].tolist()])[:, None]

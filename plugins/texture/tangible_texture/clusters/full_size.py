@@ -12,8 +12,8 @@ from tangible_core.runtime.opencv import plain_opencv
 
 from ..features.features import Window
 from .discriminants import evidence, scatters
-from .dividing import members
-from .neighbourhood import EVIDENCE, settled
+from .dividing import one_hot
+from .neighbourhood import EVIDENCE, mean_field
 
 NARROW = 0.6
 """The share of the evidence in narrow windows; the rest is that of the wide ones."""
@@ -28,15 +28,15 @@ def fine_memberships(
 
     labels: of the wide cells. Both windows have the same features.
     """
-    own = members(labels, int(labels.max()) + 1)
-    towards = enlarged(evidence(wide.planes, scatters(wide.planes, own)), wide.shape, narrow.shape)
-    soft = enlarged(own, wide.shape, narrow.shape)
-    near = evidence(narrow.planes, scatters(narrow.planes, members(soft.argmax(axis=0), len(own))))
+    own = one_hot(labels, int(labels.max()) + 1)
+    towards = resize_planes(evidence(wide.planes, scatters(wide.planes, own)), wide.shape, narrow.shape)
+    soft = resize_planes(own, wide.shape, narrow.shape)
+    near = evidence(narrow.planes, scatters(narrow.planes, one_hot(soft.argmax(axis=0), len(own))))
     both = np.float32(EVIDENCE * NARROW) * near + np.float32(EVIDENCE * (1 - NARROW)) * towards
-    return settled(both, soft, narrow.shape, 2.0, 4).reshape(-1, *narrow.shape)
+    return mean_field(both, soft, narrow.shape, 2.0, 4).reshape(-1, *narrow.shape)
 
 
-def enlarged(planes: Float32[np.ndarray, "k m"], shape: tuple[int, int], to: tuple[int, int]) -> np.ndarray:
+def resize_planes(planes: Float32[np.ndarray, "k m"], shape: tuple[int, int], to: tuple[int, int]) -> np.ndarray:
     """Planes of cells, interpolated between the centres of a coarse grid: (k, n)."""
     import cv2
 

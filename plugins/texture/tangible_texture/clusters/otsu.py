@@ -9,7 +9,7 @@ CLEAR = 0.75
 Weights = Float64[np.ndarray, "n"]
 
 
-class Levels:
+class OtsuClasses:
     """The best divisions of sorted grey levels, `counts` pixels each, into 1..most classes.
 
     The variance within the classes is least, which is the variance between them at its most (Otsu, A threshold

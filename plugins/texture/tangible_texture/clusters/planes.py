@@ -22,14 +22,14 @@ SUMMED, LANES = 4096, 64
 
 
 @njit(cache=True, nogil=True)
-def mixed(weights, planes):
+def combine_planes(weights, planes):
     """weights (k, d) times planes (d, n): k planes, float32."""
     (count, size), columns = weights.shape, planes.shape[1]
-    found = np.zeros((count, columns), np.float32)
+    result = np.zeros((count, columns), np.float32)
     for start in range(0, columns, BLOCK):
         stop = min(start + BLOCK, columns)
         for k in range(count):
-            out = found[k, start:stop]
+            out = result[k, start:stop]
             for d in range(0, size - 3, 4):  # four at a time: sums are written a fourth as often
                 one, two, three, four = (
                     planes[d, start:stop],  # rows apart: a block of a matrix is not known to be contiguous
@@ -42,7 +42,7 @@ def mixed(weights, planes):
                 weight, plane = np.float32(weights[k, d]), planes[d, start:stop]
                 for i in range(out.size):
                     out[i] += weight * plane[i]
-    return found
+    return result
 
 
 @njit(cache=True, nogil=True)
@@ -53,41 +53,41 @@ def _add_four(weights, one, two, three, four, out):
 
 
 @njit(cache=True, nogil=True)
-def products(one, other):
+def inner_products(one, other):
     """one (k, n) times the transpose of other (d, n): sums over the columns, float64 (k, d)."""
-    found, lanes = np.zeros((one.shape[0], other.shape[0])), np.empty(LANES, np.float32)
+    result, lanes = np.zeros((one.shape[0], other.shape[0])), np.empty(LANES, np.float32)
     for start in range(0, one.shape[1], SUMMED):
         for k in range(one.shape[0]):
             left = one[k, start : start + SUMMED]
             for d in range(other.shape[0]):
-                found[k, d] += _dot(left, other[d, start : start + SUMMED], lanes)
-    return found
+                result[k, d] += _dot(left, other[d, start : start + SUMMED], lanes)
+    return result
 
 
-def scatter(planes: Float32[np.ndarray, "d n"], weights: Float32[np.ndarray, "n"]) -> Float64[np.ndarray, "d d"]:
+def scatter_matrix(planes: Float32[np.ndarray, "d n"], weights: Float32[np.ndarray, "n"]) -> Float64[np.ndarray, "d d"]:
     """Weighted second moments, sum of w z z' over the columns; large ones by all processors."""
     size, columns = planes.shape
     parts = thread_count() if size * size * columns >= SHARED else 1
-    found = np.zeros((size, size))
+    result = np.zeros((size, size))
 
     def work(share: Iterable[int]) -> None:
         for first in share:
-            _scatter_rows(planes, weights, first, parts, found)
+            _scatter_rows(planes, weights, first, parts, result)
 
     in_turns(list(range(parts)), work)
-    return _mirrored(found)
+    return _mirror_lower_triangle(result)
 
 
 @njit(cache=True, nogil=True)
-def scatter_alone(planes, weights):
+def scatter_matrix_in_kernel(planes, weights):
     """As `scatter`, for a kernel: by the processor that calls it."""
-    found = np.zeros((planes.shape[0], planes.shape[0]))
-    _scatter_rows(planes, weights, 0, 1, found)
-    return _mirrored(found)
+    result = np.zeros((planes.shape[0], planes.shape[0]))
+    _scatter_rows(planes, weights, 0, 1, result)
+    return _mirror_lower_triangle(result)
 
 
 @njit(cache=True, nogil=True)
-def _scatter_rows(planes, weights, first, step, found):
+def _scatter_rows(planes, weights, first, step, result):
     """Every step-th row from the first on of the lower triangle; no sum depends on the step."""
     lanes = np.empty(LANES, np.float32)
     for start in range(0, planes.shape[1], SUMMED):
@@ -95,16 +95,16 @@ def _scatter_rows(planes, weights, first, step, found):
         for d in range(first, planes.shape[0], step):
             weighted = heavy * planes[d, start : start + SUMMED]
             for e in range(d + 1):
-                found[d, e] += _dot(weighted, planes[e, start : start + SUMMED], lanes)
+                result[d, e] += _dot(weighted, planes[e, start : start + SUMMED], lanes)
 
 
 @njit(cache=True, nogil=True)
-def _mirrored(found):
+def _mirror_lower_triangle(result):
     """The upper triangle as the lower one, in place."""
-    for d in range(found.shape[0]):
+    for d in range(result.shape[0]):
         for e in range(d):
-            found[e, d] = found[d, e]
-    return found
+            result[e, d] = result[d, e]
+    return result
 
 
 @njit(cache=True, nogil=True)

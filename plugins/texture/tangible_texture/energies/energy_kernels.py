@@ -66,14 +66,14 @@ def power(grid):
 
 
 @njit(cache=True, nogil=True)
-def times(one, other):
+def complex_products(one, other):
     """Products of complex numbers, one by one: NumPy's are fused where a processor can."""
-    found = np.empty_like(one)
+    product = np.empty_like(one)
     for i in range(one.shape[0]):
         for j in range(one.shape[1]):
             a, b = one[i, j], other[i, j]
-            found[i, j] = complex(a.real * b.real - a.imag * b.imag, a.real * b.imag + a.imag * b.real)
-    return found
+            product[i, j] = complex(a.real * b.real - a.imag * b.imag, a.real * b.imag + a.imag * b.real)
+    return product
 
 
 @njit(cache=True, nogil=True)

@@ -10,7 +10,7 @@ from tangible_core.compiled.threads import thread_count
 from tangible_core.plugins.notes import note
 
 from .gabor_bank import Gabor
-from .local_energy import fft, mean_energies, spectrum_of, standardised
+from .local_energy import fft, mean_energies, spectrum_of, standardise
 
 log = logging.getLogger(__name__)
 
@@ -28,9 +28,9 @@ def needed_filters(
 
     How many are left out is noted. Where the picture has no energy at all, every filter stays.
     """
-    kept = within_bandwidth(grey, filters) if skip_octaves else list(filters)
+    kept = filters_within_bandwidth(grey, filters) if skip_octaves else list(filters)
     if skip_weak:
-        strong = strongest(mean_energies(spectrum_of(grey, PAD_PX), kept))
+        strong = are_strongest(mean_energies(spectrum_of(grey, PAD_PX), kept))
         kept = [each for each, keep in zip(kept, strong, strict=True) if keep]
     if len(kept) < len(filters):
         left = len(filters) - len(kept)
@@ -38,7 +38,7 @@ def needed_filters(
     return kept
 
 
-def strongest(energies: Float64[np.ndarray, "filters"], share: float = ENOUGH) -> Bool[np.ndarray, "filters"]:
+def are_strongest(energies: Float64[np.ndarray, "filters"], share: float = ENOUGH) -> Bool[np.ndarray, "filters"]:
     """The fewest filters that together hold this share of the energy; all, if there is none.
 
     The energies of filters that hardly overlap add up, and their share is R^2, how much of the picture's variance the
@@ -51,7 +51,9 @@ def strongest(energies: Float64[np.ndarray, "filters"], share: float = ENOUGH) -
     return kept if kept.any() else ~kept
 
 
-def within_bandwidth(grey: Float32[np.ndarray, "h w"], filters: Sequence[Gabor], least: float = NOTHING) -> list[Gabor]:
+def filters_within_bandwidth(
+    grey: Float32[np.ndarray, "h w"], filters: Sequence[Gabor], least: float = NOTHING
+) -> list[Gabor]:
     """The filters of wavelengths that are not too short for the picture; all, if they all are, or it is flat.
 
     Too short is a wavelength if waves of up to sqrt 2 times as long, where its octave begins, and all shorter ones
@@ -59,7 +61,7 @@ def within_bandwidth(grey: Float32[np.ndarray, "h w"], filters: Sequence[Gabor],
     """
     down, right = (np.arange(side, dtype=np.float32) / (2 * side) for side in grey.shape)
     squared = down[:, None] ** 2 + right**2
-    power = np.square(fft.dctn(standardised(grey), norm="ortho", workers=thread_count()))
+    power = np.square(fft.dctn(standardise(grey), norm="ortho", workers=thread_count()))
     shares = {
         wavelength: power[squared > 0.5 / wavelength**2].sum(dtype=np.float64) / grey.size
         for wavelength in {each.wavelength_px for each in filters}

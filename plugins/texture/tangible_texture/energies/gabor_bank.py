@@ -59,7 +59,7 @@ def octaves(lambda_max_px: float) -> tuple[float, ...]:
     return tuple(SHORTEST_PX * 2**i for i in range(count))
 
 
-def printed(width_px: int) -> tuple[float, ...]:
+def printed_wavelengths(width_px: int) -> tuple[float, ...]:
     """Wavelengths in px, rising, of the printed frequencies 0.25 -+ 2^(i - 0.5) / N cycles a pixel, i = 1..log2(N / 8).
 
     The paper has widths N that are powers of two. For another one i ends at the whole part of log2(N / 8), with N

@@ -81,13 +81,13 @@ def spectrum_of(grey: Float32[np.ndarray, "h w"], pad_px: int) -> Spectrum:
     check_finite(grey, "grey")
     shape = (fft.next_fast_len(grey.shape[0] + 2 * pad_px), fft.next_fast_len(grey.shape[1] + 2 * pad_px, real=True))
     ends = [(pad_px, padded - pad_px - side) for padded, side in zip(shape, grey.shape, strict=True)]
-    mirrored = np.pad(standardised(grey), ends, mode="symmetric")
+    mirrored = np.pad(standardise(grey), ends, mode="symmetric")
     values = fft.rfft2(mirrored, norm="forward", workers=thread_count())
     values[0, 0] = 0
     return Spectrum(values, shape, pad_px)
 
 
-def standardised(grey: Float32[np.ndarray, "h w"]) -> Float32[np.ndarray, "h w"]:
+def standardise(grey: Float32[np.ndarray, "h w"]) -> Float32[np.ndarray, "h w"]:
     """Of mean 0 and standard deviation 1; all 0 where nothing is left but what rounding makes of one value."""
     top = np.float32(max(float(grey.max()), -float(grey.min())))
     scaled = grey / top if top else grey

@@ -11,10 +11,10 @@ FAINT = 0.05
 
 def is_flat(grey: Float32[np.ndarray, "h w"]) -> bool:
     """Whether all is one grey but for single pixels."""
-    from ..signal.smoothing import without_specks
-    from .local_energy import standardised
+    from ..signal.smoothing import remove_specks
+    from .local_energy import standardise
 
-    return not standardised(without_specks(grey[..., None])[..., 0]).any()
+    return not standardise(remove_specks(grey[..., None])[..., 0]).any()
 
 
 def is_one_texture(

@@ -21,7 +21,7 @@ STILL = 1e-6
 """Standard deviation under which a plane says nothing, features being of the order of 1."""
 
 
-def capped(planes: Float32[np.ndarray, "d h w"]) -> Float32[np.ndarray, "d h w"]:
+def cap_rare_values(planes: Float32[np.ndarray, "d h w"]) -> Float32[np.ndarray, "d h w"]:
     """Rare huge values held down, in place."""
 
     def work(share: Iterable[int]) -> None:
@@ -34,7 +34,7 @@ def capped(planes: Float32[np.ndarray, "d h w"]) -> Float32[np.ndarray, "d h w"]
     return planes
 
 
-def averaged(
+def window_means(
     planes: Float32[np.ndarray, "d h w"],
     sigma_cells: float,
     step: int = 1,
@@ -47,19 +47,19 @@ def averaged(
     import cv2
 
     rows, columns = (-(-side // step) for side in planes.shape[1:])
-    found = np.empty((len(planes), rows, columns), np.float32) if out is None else out
+    means = np.empty((len(planes), rows, columns), np.float32) if out is None else out
 
     @plain_opencv()
     def work(share: Iterable[int]) -> None:
         room = np.empty(planes.shape[1:], np.float32) if step > 1 else None
         for i in share:
-            smooth = found[i] if room is None else room
+            smooth = means[i] if room is None else room
             cv2.GaussianBlur(planes[i], (0, 0), sigma_cells, dst=smooth, borderType=cv2.BORDER_REFLECT)
             if room is not None:
-                cv2.resize(smooth, (columns, rows), dst=found[i], interpolation=cv2.INTER_AREA)
+                cv2.resize(smooth, (columns, rows), dst=means[i], interpolation=cv2.INTER_AREA)
 
     in_turns(list(range(len(planes))), work)
-    return found
+    return means
 
 
 def standardise_roots(planes: Float32[np.ndarray, "d n"]) -> None:

@@ -40,15 +40,15 @@ def pattern_frequencies(
     import cv2
 
     shape = tuple(-(-side // CELL_PX) for side in grey.shape)
-    found = np.empty((PATTERNS, *shape), np.float32) if out is None else out
-    for planes, (radius, sigma) in zip(found.reshape(len(RADII), COUNTERS, *shape), RADII, strict=True):
+    frequencies = np.empty((PATTERNS, *shape), np.float32) if out is None else out
+    for planes, (radius, sigma) in zip(frequencies.reshape(len(RADII), COUNTERS, *shape), RADII, strict=True):
         with plain_opencv():
             smooth = cv2.GaussianBlur(grey, (0, 0), sigma, borderType=cv2.BORDER_REFLECT_101) if sigma else grey
         framed = np.pad(smooth, radius, mode="edge")
         in_blocks(
             shape[0], lambda a, b, f=framed, r=radius, p=planes: _count(f, r, a, b, grey.shape, _FIRST, _SECOND, p), 4
         )
-    return found
+    return frequencies
 
 
 def _pairs_of(code: int) -> Iterator[tuple[bool, ...]]:
@@ -66,13 +66,13 @@ def _class_of(code: int) -> int:
     return sum(bits) if sum(bits[i] != bits[i - 1] for i in range(8)) <= 2 else CLASSES - 1
 
 
-def _packed(flags: Iterable[bool], first_bit: int, width: int) -> int:
+def _pack_bits(flags: Iterable[bool], first_bit: int, width: int) -> int:
     return sum(1 << (first_bit + width * i) for i, flag in enumerate(flags) if flag)
 
 
 def _agreements_of(code: int) -> int:
     dark, bright, *quarters = _pairs_of(code)
-    return _packed(dark, 0, 5) + _packed(bright, 20, 5) + sum(_packed(each, 40, 6) for each in quarters)
+    return _pack_bits(dark, 0, 5) + _pack_bits(bright, 20, 5) + sum(_pack_bits(each, 40, 6) for each in quarters)
 
 
 _FIRST: UInt64[np.ndarray, "256"] = np.array([1 << 5 * _class_of(code) for code in range(256)], np.uint64)

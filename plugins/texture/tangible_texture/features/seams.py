@@ -4,7 +4,7 @@ import numpy as np
 from jaxtyping import Bool, Int32
 
 
-def without_seams(
+def remove_seams(
     labels: Int32[np.ndarray, "rows columns"], radius: int
 ) -> tuple[Int32[np.ndarray, "rows columns"], Bool[np.ndarray, "rows columns"]]:
     """Labels in which every part of a segment that no disc of this radius fits into goes to what is nearest by.

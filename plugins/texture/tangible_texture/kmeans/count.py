@@ -32,10 +32,10 @@ def choose_count(features: Float32[np.ndarray, "n d"], most: int, seed: int = 0)
     rows = features[np.random.default_rng(seed).permutation(len(features))[:SAMPLE]]
     scores: dict[int, float] = {}
     for count in range(2, most + 1):
-        found = kmeans(rows, count, restarts=3, seed=seed)
-        if len(found.centres) < count:
+        clustering = kmeans(rows, count, restarts=3, seed=seed)
+        if len(clustering.centres) < count:
             break
-        scores[count] = _silhouette(rows, found.labels)
+        scores[count] = _silhouette(rows, clustering.labels)
     best = max(scores, key=lambda count: scores[count], default=1)
     score = scores.get(best, 0.0)
     if score < APART:
@@ -45,10 +45,10 @@ def choose_count(features: Float32[np.ndarray, "n d"], most: int, seed: int = 0)
 
 def _silhouette(rows: Float32[np.ndarray, "n d"], labels: np.ndarray) -> float:
     """Mean of (b - a) / max(a, b): a to the own cluster's rows, b to those of the nearest other one."""
-    from ..clusters.planes import mixed
+    from ..clusters.planes import combine_planes
 
     squares = np.square(rows).sum(axis=1)
-    away = np.sqrt(np.maximum(squares[:, None] + squares - 2 * mixed(rows, np.ascontiguousarray(rows.T)), 0))
+    away = np.sqrt(np.maximum(squares[:, None] + squares - 2 * combine_planes(rows, np.ascontiguousarray(rows.T)), 0))
     sizes = np.bincount(labels)
     sums = np.stack([away[:, labels == each].sum(axis=1) for each in range(len(sizes))], axis=1)
     each = np.arange(len(rows))

@@ -17,7 +17,7 @@ MOST_SEGMENTS = 8
 """What `segments: auto` stops at."""
 
 
-def segments_of(rows: Float32[np.ndarray, "n d"], segments: int | Literal["auto"], seed: int) -> int:
+def choose_segments(rows: Float32[np.ndarray, "n d"], segments: int | Literal["auto"], seed: int) -> int:
     """The number asked for, or a guess that is noted with what it is worth."""
     if segments != "auto":
         return segments
@@ -26,7 +26,7 @@ def segments_of(rows: Float32[np.ndarray, "n d"], segments: int | Literal["auto"
     return guess.segments
 
 
-def labelled(
+def segment_by_kmeans(
     features: Float32[np.ndarray, "rows columns d"],
     step_px: int,
     shape: tuple[int, int],
@@ -37,18 +37,20 @@ def labelled(
 ) -> SegmentMap:
     """Cluster features given every step_px pixels, and give every pixel of (h, w) the label of its cell."""
     rows = features.reshape(-1, features.shape[2])
-    found = kmeans(rows, segments_of(rows, segments, seed), restarts, seed, start)
-    return enlarged(found.labels.reshape(features.shape[:2]), margins(rows, found.centres), step_px, shape)
+    clustering = kmeans(rows, choose_segments(rows, segments, seed), restarts, seed, start)
+    return label_map_of_cells(
+        clustering.labels.reshape(features.shape[:2]), margins(rows, clustering.centres), step_px, shape
+    )
 
 
-def enlarged(
+def label_map_of_cells(
     labels: Int32[np.ndarray, "rows columns"], trust: Float32[np.ndarray, "n"], step_px: int, shape: tuple[int, int]
 ) -> SegmentMap:
     """The segments of (h, w) pixels, from labels and confidence every step_px pixels, in the order of first pixels."""
-    from ..regions.merging import in_reading_order
+    from ..regions.merging import number_in_reading_order
 
     cells = np.ix_(*(np.arange(side) // step_px for side in shape))
-    return SegmentMap(in_reading_order(labels.astype(np.int32))[cells], trust.reshape(labels.shape)[cells])
+    return SegmentMap(number_in_reading_order(labels.astype(np.int32))[cells], trust.reshape(labels.shape)[cells])
 
 
 def margins(rows: Float32[np.ndarray, "n d"], centres: Float32[np.ndarray, "k d"]) -> Float32[np.ndarray, "n"]:

@@ -31,39 +31,39 @@ def basins(
     """
     import cv2
 
-    found = np.full(height.shape, UNSEEN, np.int32)
+    labels = np.full(height.shape, UNSEEN, np.int32)
     count = 0
     for level in levels:
         size, parts = cv2.connectedComponents((height <= level).view(np.uint8), connectivity=4)
         owners, areas = np.full(size, UNSEEN, np.int32), np.zeros(size, np.int32)
-        count = _add(found, parts, owners, areas, smallest_px, count)
-    return found, count
+        count = _label_parts(labels, parts, owners, areas, smallest_px, count)
+    return labels, count
 
 
 @njit(**KERNEL)
-def _add(found, parts, names, areas, smallest_px, count):
+def _label_parts(labels, parts, names, areas, smallest_px, count):
     """Give every part with one basin in it to that basin, every large one without to a new one, from `count` on.
 
     names, areas: scratch, -1 and 0 for each part.
     """
-    _own(found, parts, names, areas)
+    _find_owners(labels, parts, names, areas)
     names[0] = _SEVERAL  # what is too high
     for part in range(1, names.size):
         if names[part] == UNSEEN and areas[part] >= smallest_px:
             names[part] = count
             count += 1
-    for row in range(found.shape[0]):
-        for column in range(found.shape[1]):
-            found[row, column] = max(found[row, column], names[parts[row, column]], UNSEEN)
+    for row in range(labels.shape[0]):
+        for column in range(labels.shape[1]):
+            labels[row, column] = max(labels[row, column], names[parts[row, column]], UNSEEN)
     return count
 
 
 @inner()
-def _own(found, parts, owners, areas):
+def _find_owners(labels, parts, owners, areas):
     """The basin in each part, -1 if there is none, -2 if there are several; and the areas of the parts."""
-    for row in range(found.shape[0]):
-        for column in range(found.shape[1]):
-            part, basin = parts[row, column], found[row, column]
+    for row in range(labels.shape[0]):
+        for column in range(labels.shape[1]):
+            part, basin = parts[row, column], labels[row, column]
             areas[part] += 1
             if basin >= 0 and owners[part] != basin:
                 owners[part] = basin if owners[part] == UNSEEN else _SEVERAL

@@ -45,10 +45,10 @@ def borders(
         for slopes, ways in (((land.down, land.across), DOWN), ((land.across, land.down), ACROSS))
     ]
     keys, highest, edged = (np.concatenate(each) for each in zip(*pairs, strict=True))
-    found, which, number = np.unique(keys, return_inverse=True, return_counts=True)
-    sums = (np.bincount(which, weights, found.size).tolist() for weights in (highest, edged))
+    bordering, which, number = np.unique(keys, return_inverse=True, return_counts=True)
+    sums = (np.bincount(which, weights, bordering.size).tolist() for weights in (highest, edged))
     return {
-        divmod(key, count): Border(*sums) for key, *sums in zip(found.tolist(), number.tolist(), *sums, strict=True)
+        divmod(key, count): Border(*sums) for key, *sums in zip(bordering.tolist(), number.tolist(), *sums, strict=True)
     }
 
 

@@ -52,14 +52,14 @@ class _Graph:
         self.left = len(areas)
         self.weighing = False
         self.parent = list(range(len(areas)))
-        self.beside: list[dict[int, Border]] = [{} for _ in areas]
+        self.neighbours: list[dict[int, Border]] = [{} for _ in areas]
         self.queue: list[tuple[float, int, int, Border]] = []
         for (one, other), border in borders.items():
             self.connect(one, other, border)
 
     def connect(self, one: int, other: int, border: Border) -> None:
         """Set the border of two regions."""
-        self.beside[one][other] = self.beside[other][one] = border
+        self.neighbours[one][other] = self.neighbours[other][one] = border
         reluctance = self.reluctance(one, other, border)
         if reluctance < 0 or self.weighing:
             heapq.heappush(self.queue, (reluctance, min(one, other), max(one, other), border))
@@ -67,7 +67,7 @@ class _Graph:
     def weigh(self) -> None:
         """Queue what edges hold apart, too."""
         self.weighing = True
-        for one, others in enumerate(self.beside):
+        for one, others in enumerate(self.neighbours):
             for other, border in others.items():
                 if one < other:
                     self.connect(one, other, border)
@@ -76,7 +76,7 @@ class _Graph:
         """Merge the pairs in the queue until no more than `most` regions are left, or edges hold all apart."""
         while self.queue:
             reluctance, one, other, border = heapq.heappop(self.queue)
-            if self.beside[one].get(other) is not border:
+            if self.neighbours[one].get(other) is not border:
                 continue
             if reluctance >= 0 and self.left <= most:
                 break
@@ -90,21 +90,21 @@ class _Graph:
         a, b = self.areas[one], self.areas[other]
         return border.height / border.pairs * a * b / (a + b)
 
-    def join(self, kept: int, lost: int) -> None:
+    def join(self, survivor: int, lost: int) -> None:
         """Make two regions one."""
-        self.parent[lost] = kept
-        self.areas[kept] += self.areas[lost]
+        self.parent[lost] = survivor
+        self.areas[survivor] += self.areas[lost]
         self.left -= 1
-        borders, self.beside[lost] = self.beside[lost], {}
+        borders, self.neighbours[lost] = self.neighbours[lost], {}
         for far, border in borders.items():
-            del self.beside[far][lost]
-            if far != kept:
-                own = self.beside[kept].get(far)
-                self.beside[kept][far] = border.joined(own) if own else border
-        for far in self.beside[kept] if self.weighing else borders:
-            if far != kept:
-                border = Border(*self.beside[kept][far])  # a new one, so that the pairs of the old area are void
-                self.connect(kept, far, border)
+            del self.neighbours[far][lost]
+            if far != survivor:
+                own = self.neighbours[survivor].get(far)
+                self.neighbours[survivor][far] = border.joined(own) if own else border
+        for far in self.neighbours[survivor] if self.weighing else borders:
+            if far != survivor:
+                border = Border(*self.neighbours[survivor][far])  # a new object voids the queued pairs of the old area
+                self.connect(survivor, far, border)
 
     def root(self, region: int) -> int:
         """The region that this one has become part of."""
@@ -113,15 +113,15 @@ class _Graph:
         return region
 
 
-def in_reading_order(labels: Int32[np.ndarray, "h w"]) -> Int32[np.ndarray, "h w"]:
+def number_in_reading_order(labels: Int32[np.ndarray, "h w"]) -> Int32[np.ndarray, "h w"]:
     """Labels 0..n-1 in the order of their first pixels, row by row. Parameters: labels >= 0."""
-    found = np.empty_like(labels)
-    _rename(labels, np.full(int(labels.max()) + 1, -1, np.int32), found)
-    return found
+    numbered = np.empty_like(labels)
+    _rename(labels, np.full(int(labels.max()) + 1, -1, np.int32), numbered)
+    return numbered
 
 
 @njit(**KERNEL)
-def _rename(labels, order, found):
+def _rename(labels, order, numbered):
     count = 0
     for row in range(labels.shape[0]):
         for column in range(labels.shape[1]):
@@ -129,4 +129,4 @@ def _rename(labels, order, found):
             if order[label] < 0:
                 order[label] = count
                 count += 1
-            found[row, column] = order[label]
+            numbered[row, column] = order[label]

@@ -7,7 +7,7 @@ from .borders import ACROSS, DOWN
 from .watershed import UNSEEN, watershed
 
 
-def refined(
+def refine_labels(
     labels: Int32[np.ndarray, "r c"], step: int, height: Float32[np.ndarray, "h w"]
 ) -> Int32[np.ndarray, "h w"]:
     """Labels of every step-th pixel as labels of every pixel: the cells beside borders are flooded anew, from within.

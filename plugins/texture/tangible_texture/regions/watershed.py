@@ -41,31 +41,31 @@ def watershed(height: Heights, markers: Labels) -> Labels:
     """
     top = float(height.max())
     scale = np.float32((LEVELS - 1) / np.sqrt(top) if top else 0)
-    found = np.empty_like(markers)
+    flooded = np.empty_like(markers)
     for row in range(0, len(height), TILE_PX):
         for column in range(0, height.shape[1], TILE_PX):
-            _flood_tile(found, row, column, height, markers, scale)
-    return found if found.min() > UNSEEN else _flood(height, found, scale)
+            _flood_tile(flooded, row, column, height, markers, scale)
+    return flooded if flooded.min() > UNSEEN else _flood(height, flooded, scale)
 
 
-def _flood_tile(found: Labels, row: int, column: int, height: Heights, markers: Labels, scale: np.float32) -> None:
+def _flood_tile(flooded: Labels, row: int, column: int, height: Heights, markers: Labels, scale: np.float32) -> None:
     """Flood one tile and what is around it, and keep the tile: a whole picture's memory is too far to jump about in."""
     top, left = max(0, row - AROUND_PX), max(0, column - AROUND_PX)
     window = np.s_[top : row + TILE_PX + AROUND_PX, left : column + TILE_PX + AROUND_PX]
     labels = _flood(np.ascontiguousarray(height[window]), np.ascontiguousarray(markers[window]), scale)
     inner = labels[row - top :, column - left :][:TILE_PX, :TILE_PX]
-    found[row : row + TILE_PX, column : column + TILE_PX] = inner
+    flooded[row : row + TILE_PX, column : column + TILE_PX] = inner
 
 
 def _flood(height: Heights, markers: Labels, scale: np.float32) -> Labels:
     rows, columns = height.shape
-    cells, found = np.empty(((rows + 2) * (columns + 2), 3), np.int32), np.empty_like(markers)
-    _pour(height, markers, scale, cells, np.full(LEVELS, _LAST, np.int32), np.empty(LEVELS, np.int32), found)
-    return found
+    cells, flooded = np.empty(((rows + 2) * (columns + 2), 3), np.int32), np.empty_like(markers)
+    _pour(height, markers, scale, cells, np.full(LEVELS, _LAST, np.int32), np.empty(LEVELS, np.int32), flooded)
+    return flooded
 
 
 @njit(**KERNEL)
-def _pour(height, markers, scale, cells, first, last, found):
+def _pour(height, markers, scale, cells, first, last, flooded):
     rows, columns = height.shape
     width = columns + 2
     _frame(height, markers, scale, cells)
@@ -79,14 +79,14 @@ def _pour(height, markers, scale, cells, first, last, found):
         pixel = first[level]
         while pixel != _LAST:
             for step in neighbours:
-                beside = pixel + step
-                if cells[beside, _LABEL] == UNSEEN:
-                    cells[beside, _LABEL] = cells[pixel, _LABEL]
-                    _append(beside, max(level, np.int64(cells[beside, _LEVEL])), cells, first, last)
+                neighbour = pixel + step
+                if cells[neighbour, _LABEL] == UNSEEN:
+                    cells[neighbour, _LABEL] = cells[pixel, _LABEL]
+                    _append(neighbour, max(level, np.int64(cells[neighbour, _LEVEL])), cells, first, last)
             pixel = cells[pixel, _NEXT]
     for row in range(rows):
         for column in range(columns):
-            found[row, column] = cells[(row + 1) * width + column + 1, _LABEL]
+            flooded[row, column] = cells[(row + 1) * width + column + 1, _LABEL]
 
 
 @inner()

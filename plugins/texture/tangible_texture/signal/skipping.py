@@ -8,7 +8,7 @@ from tangible_core.data import SegmentMap
 from tangible_core.data.pictures import is_one_colour
 
 
-def nothing_to_divide(picture: np.ndarray, segments: int | Literal["auto"]) -> str | None:
+def reason_to_skip(picture: np.ndarray, segments: int | Literal["auto"]) -> str | None:
     """Why a picture is one segment whatever it shows, in words; None if that is not known beforehand."""
     if segments == 1:
         return "one segment is asked for; `segments: auto` or a larger number divides the picture"

@@ -40,9 +40,9 @@ def slopes(smooth: Float32[np.ndarray, "h w c"]) -> tuple[Map, Map, Map, Map]:
     noise = _noise(magnitude)
     if smooth.shape[2] == 1:
         return magnitude[..., 0], across[..., 0], down[..., 0], noise
-    found = np.empty((3, *magnitude.shape[:2]), np.float32)
-    _steepest(magnitude, across, down, found)
-    return found[0], found[1], found[2], noise
+    result = np.empty((3, *magnitude.shape[:2]), np.float32)
+    _steepest(magnitude, across, down, result)
+    return result[0], result[1], result[2], noise
 
 
 @njit(**KERNEL)
@@ -61,13 +61,13 @@ def _differences(rows, across, down, channels):
 
 
 @inner()
-def _halve(right, left, found):
-    for at in range(len(found)):
-        found[at] = _HALF * (right[at] - left[at])
+def _halve(right, left, result):
+    for at in range(len(result)):
+        result[at] = _HALF * (right[at] - left[at])
 
 
 @njit(**KERNEL)
-def _steepest(magnitude, across, down, found):
+def _steepest(magnitude, across, down, result):
     rows, columns, channels = magnitude.shape
     for row in range(rows):
         for column in range(columns):
@@ -75,9 +75,9 @@ def _steepest(magnitude, across, down, found):
             for channel in range(1, channels):
                 if magnitude[row, column, channel] > magnitude[row, column, best]:
                     best = channel
-            found[0, row, column] = magnitude[row, column, best]
-            found[1, row, column] = across[row, column, best]
-            found[2, row, column] = down[row, column, best]
+            result[0, row, column] = magnitude[row, column, best]
+            result[1, row, column] = across[row, column, best]
+            result[2, row, column] = down[row, column, best]
 
 
 def _noise(magnitude: Float32[np.ndarray, "h w c"]) -> Map:
@@ -86,7 +86,7 @@ def _noise(magnitude: Float32[np.ndarray, "h w c"]) -> Map:
     rows, columns = magnitude.shape[:2]
     step = 4 if min(rows, columns) >= TILE_PX else 1
     strips = np.array_split(magnitude[::step, ::step], _tiles(rows), axis=0)
-    levels = [[_quiet(tile) for tile in np.array_split(strip, _tiles(columns), axis=1)] for strip in strips]
+    levels = [[_quiet_level(tile) for tile in np.array_split(strip, _tiles(columns), axis=1)] for strip in strips]
     with plain_opencv():
         return cv2.resize(np.array(levels, np.float32) / _QUIET_RATIO, (columns, rows), interpolation=cv2.INTER_LINEAR)
 
@@ -95,7 +95,7 @@ def _tiles(length: int) -> int:
     return max(1, round(length / TILE_PX))
 
 
-def _quiet(tile: Float32[np.ndarray, "h w c"]) -> np.float32:
+def _quiet_level(tile: Float32[np.ndarray, "h w c"]) -> np.float32:
     """The quantile of the magnitudes, in the channel where it is highest."""
     every = tile.reshape(-1, tile.shape[2])
     at = int(QUIET_SHARE * len(every))

@@ -17,7 +17,7 @@ loses narrow regions.
 """
 
 
-def without_specks(values: Float32[np.ndarray, "h w c"]) -> Float32[np.ndarray, "h w c"]:
+def remove_specks(values: Float32[np.ndarray, "h w c"]) -> Float32[np.ndarray, "h w c"]:
     """A pixel further from its 8 neighbours than they are from one another takes the nearest of their values.
 
     Noise, lines, corners and steps stay as they are. A picture of one pixel has no neighbours and stays.
@@ -30,12 +30,12 @@ def without_specks(values: Float32[np.ndarray, "h w c"]) -> Float32[np.ndarray, 
     around = np.array([[1, 1, 1], [1, 0, 1], [1, 1, 1]], np.uint8)
     lowest, highest = (each(values, around).reshape(values.shape) for each in (cv2.erode, cv2.dilate))
     calm = np.empty(values.size, values.dtype)
-    _calm(values.ravel(), lowest.ravel(), highest.ravel(), calm)
+    _replace_specks(values.ravel(), lowest.ravel(), highest.ravel(), calm)
     return calm.reshape(values.shape)
 
 
 @njit(**KERNEL)
-def _calm(values, lowest, highest, calm):
+def _replace_specks(values, lowest, highest, calm):
     """A value that is further outside of lowest..highest than these are apart becomes the nearer of them."""
     for at in range(values.size):
         value, low, high = values[at], lowest[at], highest[at]
@@ -51,7 +51,7 @@ def gaussian(values: Float32[np.ndarray, "h w c"], sigma_px: float) -> Float32[n
         return cv2.GaussianBlur(values, (0, 0), sigma_px, borderType=cv2.BORDER_REFLECT).reshape(values.shape)
 
 
-def two_scales(
+def smooth_at_two_scales(
     values: Float32[np.ndarray, "h w c"], sigma_px: float
 ) -> tuple[Float32[np.ndarray, "h w c"], Float32[np.ndarray, "r s c"], int]:
     """Smoothed by sigma_px, and by WIDER times as much, each at most 1/16 of the root of the picture's area.

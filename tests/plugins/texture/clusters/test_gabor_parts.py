@@ -6,11 +6,16 @@ import pytest
 from tangible_core.compiled.small_matrices import eigen, solved
 from tangible_texture.clusters import planes as matrices
 from tangible_texture.clusters.discriminants import discriminant_axes, evidence, principal_axes, scatters
-from tangible_texture.clusters.dividing import divided, members
+from tangible_texture.clusters.dividing import divide, one_hot
 from tangible_texture.clusters.full_size import pixel_labels
-from tangible_texture.clusters.joining import joining, joining_costs
-from tangible_texture.clusters.neighbourhood import INSIDE_CELLS, smoothed
-from tangible_texture.clusters.planes import mixed, products, scatter, scatter_alone
+from tangible_texture.clusters.joining import join_clusters, joining_costs
+from tangible_texture.clusters.neighbourhood import INSIDE_CELLS, smooth_memberships
+from tangible_texture.clusters.planes import (
+    combine_planes,
+    inner_products,
+    scatter_matrix,
+    scatter_matrix_in_kernel,
+)
 from tangible_texture.features.patterns import COUNTERS, RADII, pattern_frequencies
 
 
@@ -45,9 +50,9 @@ def test_products_of_planes_are_those_of_matrices(random: np.random.Generator):
     planes, others = (random.standard_normal((count, 2500)).astype(np.float32) for count in (7, 3))
     weights = random.random(2500).astype(np.float32)
     mix = random.standard_normal((4, 7))
-    np.testing.assert_allclose(mixed(mix, planes), mix @ planes, atol=1e-4)
-    np.testing.assert_allclose(products(others, planes), others.astype(float) @ planes.T, atol=1e-2)
-    np.testing.assert_allclose(scatter(planes, weights), (planes * weights) @ planes.T.astype(float), atol=1e-2)
+    np.testing.assert_allclose(combine_planes(mix, planes), mix @ planes, atol=1e-4)
+    np.testing.assert_allclose(inner_products(others, planes), others.astype(float) @ planes.T, atol=1e-2)
+    np.testing.assert_allclose(scatter_matrix(planes, weights), (planes * weights) @ planes.T.astype(float), atol=1e-2)
 
 
 @pytest.mark.parametrize("threads", [1, 2, 3, 8])
@@ -55,10 +60,10 @@ def test_a_scatter_is_the_same_to_the_last_bit_however_many_threads_share_it(
     threads: int, random: np.random.Generator, monkeypatch: pytest.MonkeyPatch
 ):
     planes, weights = random.standard_normal((7, 9000)).astype(np.float32), random.random(9000).astype(np.float32)
-    alone = scatter_alone(planes, weights)
+    alone = scatter_matrix_in_kernel(planes, weights)
     monkeypatch.setattr(matrices, "SHARED", 1)
     monkeypatch.setattr(matrices, "thread_count", lambda: threads)
-    assert np.array_equal(matrices.scatter(planes, weights), alone)
+    assert np.array_equal(matrices.scatter_matrix(planes, weights), alone)
     assert np.array_equal(alone, alone.T)
 
 
@@ -71,7 +76,7 @@ def two_groups(random: np.random.Generator, count: int = 400) -> tuple[np.ndarra
 
 def test_discriminants_find_what_tells_groups_apart(random: np.random.Generator):
     planes, labels = two_groups(random)
-    fit = scatters(planes, members(labels, 2))
+    fit = scatters(planes, one_hot(labels, 2))
     axes = discriminant_axes(fit, 20)
     assert axes.shape == (1, 5)
     assert np.abs(axes[0]).argmax() == 2
@@ -87,28 +92,28 @@ def test_scatter_of_few_cells_is_shrunk_further(random: np.random.Generator, cou
     centres = np.stack([planes[:, labels == k].mean(axis=1) for k in (0, 1)])
     within = total - centres.T @ centres / 2
     expected = within + share * total + share * np.trace(within) / 5 * np.eye(5)
-    np.testing.assert_allclose(scatters(planes, members(labels, 2)).within, expected, rtol=1e-3, atol=1e-3)
+    np.testing.assert_allclose(scatters(planes, one_hot(labels, 2)).within, expected, rtol=1e-3, atol=1e-3)
 
 
 def test_principal_axes_half_whitened(random: np.random.Generator):
     planes, _ = two_groups(random)
-    variances = mixed(principal_axes(planes, 3, 0.25), planes).var(axis=1)
+    variances = combine_planes(principal_axes(planes, 3, 0.25), planes).var(axis=1)
     values = np.sort(np.linalg.eigvalsh(np.cov(planes, bias=True)))[::-1][:3]
     np.testing.assert_allclose(variances, np.sqrt(values), rtol=1e-4)
 
 
 def test_the_widest_group_is_halved_first_and_equal_cells_never(random: np.random.Generator):
     planes, labels = two_groups(random)
-    found = divided(planes, 2)
+    found = divide(planes, 2)
     assert np.mean((found == found[0]) == (labels == 0)) > 0.99
     same = np.repeat(np.array([[-1.0, 1.0]], np.float32), 50, axis=1)
-    assert divided(same, 9).max() == 1
+    assert divide(same, 9).max() == 1
 
 
 def test_a_division_does_not_depend_on_the_order_of_cells(random: np.random.Generator):
     planes, _ = two_groups(random)
     order = random.permutation(planes.shape[1])
-    one, other = divided(planes, 6)[order], divided(np.ascontiguousarray(planes[:, order]), 6)
+    one, other = divide(planes, 6)[order], divide(np.ascontiguousarray(planes[:, order]), 6)
     assert len(set(zip(one.tolist(), other.tolist(), strict=True))) == one.max() + 1
 
 
@@ -120,14 +125,14 @@ def test_halves_of_one_group_cost_the_least_to_join(random: np.random.Generator,
     thirds = thirds.astype(np.int32)
     costs = joining_costs(planes, thirds, shape)
     assert np.unravel_index(costs.argmin(), costs.shape) == (1, 0)
-    steps = list(joining(planes, thirds, shape, renewed))
+    steps = list(join_clusters(planes, thirds, shape, renewed))
     assert [each.clusters for each in steps] == [3, 2, 1]
     np.testing.assert_array_equal(steps[1].labels, labels)
     assert steps[-1].cost == np.inf
 
 
 def test_clusters_that_nothing_tells_apart_are_one():
-    steps = list(joining(np.zeros((3, 64), np.float32), (np.arange(64) % 4).astype(np.int32), (8, 8), 9))
+    steps = list(join_clusters(np.zeros((3, 64), np.float32), (np.arange(64) % 4).astype(np.int32), (8, 8), 9))
     assert [each.clusters for each in steps] == [1]
     assert not steps[0].labels.any()
 
@@ -139,8 +144,8 @@ def test_what_joining_costs_is_as_it_is_written(random: np.random.Generator):
     labels[:, 20:] = 3
     planes = random.standard_normal((5, labels.size)).astype(np.float32) + labels.ravel() * 0.3
     planes = planes.astype(np.float32)
-    own = members(labels.ravel(), count)
-    weights = (own * (smoothed(own, shape, INSIDE_CELLS) ** 2 + 1e-3)).max(axis=0).astype(np.float64)
+    own = one_hot(labels.ravel(), count)
+    weights = (own * (smooth_memberships(own, shape, INSIDE_CELLS) ** 2 + 1e-3)).max(axis=0).astype(np.float64)
     sizes = np.bincount(labels.ravel())
     parts = [(planes[:, labels.ravel() == k].astype(np.float64), weights[labels.ravel() == k]) for k in range(count)]
     means = [np.average(part, axis=1, weights=heavy) for part, heavy in parts]

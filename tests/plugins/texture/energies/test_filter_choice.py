@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tangible_core.plugins.notes import collected
-from tangible_texture.energies.filter_choice import needed_filters, strongest, within_bandwidth
+from tangible_texture.energies.filter_choice import are_strongest, filters_within_bandwidth, needed_filters
 from tangible_texture.energies.gabor_bank import bank, octaves
 from tangible_texture.signal.smoothing import gaussian
 
@@ -18,18 +18,18 @@ def stripes(wavelength_px):
 
 def test_the_fewest_that_hold_the_share():
     energies = np.array([1.0, 60.0, 4.0, 35.0])
-    assert strongest(energies, 0.95).tolist() == [False, True, False, True]
-    assert strongest(energies, 0.96).tolist() == [False, True, True, True]
-    assert strongest(energies, 0.5).tolist() == [False, True, False, False]
-    assert strongest(energies, 1.0).all()
-    assert strongest(np.zeros(3)).all()
+    assert are_strongest(energies, 0.95).tolist() == [False, True, False, True]
+    assert are_strongest(energies, 0.96).tolist() == [False, True, True, True]
+    assert are_strongest(energies, 0.5).tolist() == [False, True, False, False]
+    assert are_strongest(energies, 1.0).all()
+    assert are_strongest(np.zeros(3)).all()
 
 
 def test_a_wave_lies_within_the_bandwidth_up_to_root_two_of_its_length():
-    kept = within_bandwidth(stripes(10), FILTERS)
+    kept = filters_within_bandwidth(stripes(10), FILTERS)
     assert kept == FILTERS[12:]
-    assert within_bandwidth(stripes(7.5), FILTERS) == FILTERS[6:]
-    assert within_bandwidth(stripes(90), FILTERS) == FILTERS  # as no filter would be left
+    assert filters_within_bandwidth(stripes(7.5), FILTERS) == FILTERS[6:]
+    assert filters_within_bandwidth(stripes(90), FILTERS) == FILTERS  # as no filter would be left
 
 
 def test_a_sharp_picture_keeps_its_octaves_and_a_blurred_one_loses_the_finest():

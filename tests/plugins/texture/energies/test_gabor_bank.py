@@ -13,7 +13,7 @@ from tangible_texture.energies.gabor_bank import (
     bank,
     kernel,
     octaves,
-    printed,
+    printed_wavelengths,
     sigma_of_bandwidth,
 )
 
@@ -43,18 +43,18 @@ def test_half_the_height_is_so_many_octaves_wide(bandwidth):
 def test_printed_frequencies_for_a_width_of_a_power_of_two():
     offsets = np.array([2**-0.5, 2**0.5, 2**1.5]) * 2 / 128  # i = 0.5, 1.5, 2.5 less 1, doubled
     expected = np.concatenate([0.25 - offsets, [0.25 - 2**3.5 / 128], 0.25 + offsets, [0.25 + 2**3.5 / 128]])
-    assert np.sort(1 / np.array(printed(128))) == pytest.approx(np.sort(expected))
-    assert len(printed(512)) == 12
-    assert list(printed(512)) == sorted(printed(512))
+    assert np.sort(1 / np.array(printed_wavelengths(128))) == pytest.approx(np.sort(expected))
+    assert len(printed_wavelengths(512)) == 12
+    assert list(printed_wavelengths(512)) == sorted(printed_wavelengths(512))
 
 
 def test_printed_frequencies_for_other_widths():
-    assert len(printed(511)) == len(printed(256)) == 10
-    assert max(1 / each for each in printed(300)) == pytest.approx(0.25 + 2**4.5 / 300)
+    assert len(printed_wavelengths(511)) == len(printed_wavelengths(256)) == 10
+    assert max(1 / each for each in printed_wavelengths(300)) == pytest.approx(0.25 + 2**4.5 / 300)
     for width in (1, 7, 15):
-        assert printed(width) == (4.0,)
+        assert printed_wavelengths(width) == (4.0,)
     for width in range(16, 2000, 37):
-        frequencies = 1 / np.array(printed(width))
+        frequencies = 1 / np.array(printed_wavelengths(width))
         assert 0.07 < frequencies.min() < 0.25 < frequencies.max() < 0.43
 
 

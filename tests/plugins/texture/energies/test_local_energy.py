@@ -10,7 +10,7 @@ from scipy.signal import fftconvolve
 
 from tangible_core.compiled import threads
 from tangible_core.errors import PictureError
-from tangible_texture.energies.gabor_bank import bank, octaves, printed
+from tangible_texture.energies.gabor_bank import bank, octaves, printed_wavelengths
 from tangible_texture.energies.local_energy import (
     REACH,
     energy_planes,
@@ -19,7 +19,7 @@ from tangible_texture.energies.local_energy import (
     padding,
     smoothing_px,
     spectrum_of,
-    standardised,
+    standardise,
 )
 
 OCTAVES = octaves(24)
@@ -94,7 +94,7 @@ def test_filters_that_nearly_nothing_passes_are_within_a_thousandth_of_the_stron
 @pytest.mark.parametrize(("step_px", "sigma_px"), [(1, 2.0), (3, 8.0), (8, 12.0), (5, 4.0)])
 def test_other_steps_and_windows_are_as_exact(step_px, sigma_px):
     grey = natural((97, 131), seed=1)
-    wavelengths = (*printed(97)[:2], 16.0)
+    wavelengths = (*printed_wavelengths(97)[:2], 16.0)
     found = local_energy(grey, wavelengths, 4, step_px, sigma_px)
     assert found.shape == (12, ceil(97 / step_px), ceil(131 / step_px))
     assert found.dtype == np.float32
@@ -209,6 +209,6 @@ def test_filters_can_be_chosen_one_by_one():
 
 
 def test_standardised_has_mean_0_and_deviation_1():
-    values = standardised(np.random.default_rng(0).normal(7, 1e-3, (50, 60)).astype(np.float32))
+    values = standardise(np.random.default_rng(0).normal(7, 1e-3, (50, 60)).astype(np.float32))
     assert values.mean(dtype=float) == pytest.approx(0, abs=1e-3)
     assert values.std(dtype=float) == pytest.approx(1, rel=1e-5)

@@ -4,18 +4,18 @@ import numpy as np
 import pytest
 
 from tangible_core.plugins.notes import collected
-from tangible_texture.kmeans.labelling import enlarged, labelled, margins, segments_of
 from tangible_texture.energies.noise_floor import is_flat, is_one_texture
-from tangible_texture.features.seams import without_seams
-from tangible_texture.regions.merging import in_reading_order
+from tangible_texture.features.seams import remove_seams
+from tangible_texture.kmeans.labelling import choose_segments, label_map_of_cells, margins, segment_by_kmeans
+from tangible_texture.regions.merging import number_in_reading_order
 
 
 def test_labels_are_in_the_order_of_their_first_pixels():
-    assert in_reading_order(np.array([[3, 3, 0], [7, 0, 3]], np.int32)).tolist() == [[0, 0, 1], [2, 1, 0]]
+    assert number_in_reading_order(np.array([[3, 3, 0], [7, 0, 3]], np.int32)).tolist() == [[0, 0, 1], [2, 1, 0]]
 
 
 def test_cells_become_pixels():
-    found = enlarged(np.array([[1, 0]], np.int32), np.array([0.25, 1], np.float32), 3, (2, 5))
+    found = label_map_of_cells(np.array([[1, 0]], np.int32), np.array([0.25, 1], np.float32), 3, (2, 5))
     assert found.labels.tolist() == [[0, 0, 0, 1, 1]] * 2
     assert found.confidence.tolist() == [[0.25] * 3 + [1] * 2] * 2
 
@@ -30,8 +30,8 @@ def test_margins_are_1_at_a_centre_and_0_half_way():
 def test_a_guess_is_noted_and_a_number_is_taken():
     rows = np.repeat(np.eye(3, dtype=np.float32) * 9, 20, axis=0)
     with collected() as notes:
-        assert segments_of(rows, 5, 0) == 5
-        assert segments_of(rows, "auto", 0) == 3
+        assert choose_segments(rows, 5, 0) == 5
+        assert choose_segments(rows, "auto", 0) == 3
     [said] = notes
     assert said.startswith("segments: 3, a guess worth")
 
@@ -39,7 +39,7 @@ def test_a_guess_is_noted_and_a_number_is_taken():
 def test_features_in_two_halves_are_two_segments():
     features = np.zeros((4, 6, 2), np.float32)
     features[:, 4:] = 1
-    found = labelled(features, 2, (7, 12), 5, seed=0)
+    found = segment_by_kmeans(features, 2, (7, 12), 5, seed=0)
     assert np.array_equal(found.labels, (np.arange(12) >= 8).astype(np.int32)[None].repeat(7, axis=0))
     assert (found.confidence == 1).all()
 
@@ -65,15 +65,15 @@ def test_features_of_one_size_are_one_texture_and_so_is_what_is_too_fine_for_the
 
 def test_a_narrow_strip_goes_to_its_neighbours():
     labels = np.repeat([0, 2, 1], [20, 4, 20]).astype(np.int32)[None].repeat(30, axis=0)
-    found, same = without_seams(labels, 3)
+    found, same = remove_seams(labels, 3)
     assert np.array_equal(found, np.repeat([0, 1], 22).astype(np.int32)[None].repeat(30, axis=0))
     assert np.array_equal(same, labels != 2)
-    assert np.array_equal(without_seams(labels, 1)[0], labels)
+    assert np.array_equal(remove_seams(labels, 1)[0], labels)
 
 
 def test_wide_segments_stay_up_to_the_frame():
     labels = (np.arange(40) >= 12).astype(np.int32)[None].repeat(40, axis=0)
-    found, same = without_seams(labels, 5)
+    found, same = remove_seams(labels, 5)
     assert np.array_equal(found, labels)
     assert same.all()
 
@@ -81,7 +81,7 @@ def test_wide_segments_stay_up_to_the_frame():
 @pytest.mark.parametrize("shape", [(1, 1), (2, 9), (5, 3)])
 def test_a_picture_smaller_than_the_disc_stays(shape):
     labels = np.zeros(shape, np.int32)
-    assert np.array_equal(without_seams(labels, 4)[0], labels)
+    assert np.array_equal(remove_seams(labels, 4)[0], labels)
     checks = (np.indices(shape).sum(axis=0) % 2).astype(np.int32)
-    found, same = without_seams(checks, 1)
+    found, same = remove_seams(checks, 1)
     assert np.array_equal(found, checks) or same.any()

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tangible_core.compiled import threads
-from tangible_texture.clusters import kmeans as module
+from tangible_texture.kmeans import lloyd as module
 from tangible_texture.kmeans.count import choose_count
 from tangible_texture.kmeans.lloyd import kmeans
 

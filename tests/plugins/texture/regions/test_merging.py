@@ -5,7 +5,7 @@ import numpy as np
 from tangible_texture.regions import merging
 from tangible_texture.regions.borders import Border, borders
 from tangible_texture.regions.landscape import Landscape
-from tangible_texture.regions.merging import in_reading_order, merge
+from tangible_texture.regions.merging import merge, number_in_reading_order
 
 
 class TestMerging:
@@ -58,7 +58,7 @@ class TestMerging:
 
     def test_labels_are_in_reading_order(self):
         labels = np.array([[3, 3, 1], [0, 2, 1]], np.int32)
-        assert in_reading_order(labels).tolist() == [[0, 0, 1], [2, 3, 1]]
+        assert number_in_reading_order(labels).tolist() == [[0, 0, 1], [2, 3, 1]]
 
     def test_a_region_beside_many_is_merged_with_them_one_by_one(self, monkeypatch):
         """Of a ground with a thousand grains nothing is queued again that its area says nothing about."""

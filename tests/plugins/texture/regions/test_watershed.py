@@ -5,7 +5,7 @@ import pytest
 
 from tangible_texture.features.channels import channels
 from tangible_texture.regions.basins import basins
-from tangible_texture.regions.refining import refined
+from tangible_texture.regions.refining import refine_labels
 from tangible_texture.regions.watershed import watershed
 from tangible_texture.signal.slopes import slopes
 from tangible_texture.signal.smoothing import gaussian
@@ -75,10 +75,10 @@ class TestRefining:
         height = np.zeros((9, 11), np.float32)
         height[:, 5] = 1
         labels = np.array([[0, 0, 0, 1, 1, 1]] * 5, np.int32)
-        found = refined(labels, 2, height)
+        found = refine_labels(labels, 2, height)
         assert np.delete(found, 5, axis=1).tolist() == [[0] * 5 + [1] * 5] * 9
 
     def test_a_region_of_one_cell_stays(self):
         labels = np.zeros((5, 5), np.int32)
         labels[2, 2] = 1
-        assert np.count_nonzero(refined(labels, 2, np.zeros((10, 10), np.float32)) == 1) >= 4
+        assert np.count_nonzero(refine_labels(labels, 2, np.zeros((10, 10), np.float32)) == 1) >= 4

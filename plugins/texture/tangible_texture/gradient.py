@@ -19,19 +19,20 @@ if TYPE_CHECKING:
 log = logging.getLogger(__name__)
 
 NOTHING = 1e-6
-"""A slope, per pixel, that rounding can make of one colour when white is 1."""
+"""The largest slope per pixel that rounding can produce in a picture of one colour, when white is 1."""
 
 
 class Gradient(Segmenter, Skippable):
     """Regions between edges: a watershed of the gradient and Canny edges; for smooth things rather than textures.
 
-    Smooth the picture; take the slope of its steepest channel, in units of the noise hereabouts. Connected flat parts
-    are the first segments. They grow uphill until they meet (a watershed), and two of them stay apart if three fifths
-    or more of the border between them lie on edges: on Canny's, or where the picture rises from one to the other with
-    two thirds of the slope that an edge begins with. All of this at 1.75 sigma_px, which weak edges need, on a grid as
+    The picture is smoothed; the slope is that of its steepest channel, in units of the local noise. Connected flat
+    areas are the first segments. They grow uphill until they meet (a watershed), and two of them stay separate if three
+    fifths or more of their border lie on edges: on Canny's, or where the picture rises from one to the other with two
+    thirds of the slope that starts an edge. All of this happens at 1.75 sigma_px, which weak edges need, on a grid as
     coarse as that allows; then the boundaries are flooded once more, at sigma_px and to the pixel. Labels are in the
-    order of their first pixels, row by row. Confidence is 1 - (s - flat) / (top - flat) within 0..1, s being the slope
-    in units of noise and top its maximum, or canny_high if that is more: 1 in a flat basin, 0 on the strongest edge.
+    order of their first pixels, row by row. Confidence is 1 - (s - flat) / (top - flat) within 0..1, where s is the
+    slope in units of noise and top the larger of its maximum and canny_high: 1 in a flat basin, 0 on the strongest
+    edge.
     Memory: 40 bytes a pixel beyond the picture for grey, 75 for colour.
     Sources: Canny, A computational approach to edge detection, 1986; Meyer, Un algorithme optimal pour la ligne de
     partage des eaux, 1991.
@@ -40,8 +41,8 @@ class Gradient(Segmenter, Skippable):
     version: ClassVar[int] = 2
 
     segments: Annotated[int, Field(ge=1)] | Literal["auto"] = "auto"
-    """Largest number of segments: the least separated ones are merged; `auto`: as many as edges hold apart, at most 64,
-    reported with the share of the weakest border that is an edge."""
+    """Largest number of segments: the least separated ones are merged; `auto`: as many as edges separate, at most 64,
+    reported with the share of edges in the weakest border."""
     sigma_px: Annotated[float, Field(gt=0, le=100)] = 2.0
     """Standard deviation of the smoothing Gaussian, limited to 1/16 of the square root of the picture's area. A region
     narrower than about 8 of these can be lost: less for small things, more for weak edges in noise."""
@@ -64,17 +65,18 @@ class Gradient(Segmenter, Skippable):
         if not self.flat < self.canny_low <= self.canny_high:
             raise ValueError(
                 f"flat {self.flat:g} < canny_low {self.canny_low:g} <= canny_high {self.canny_high:g} must hold: "
-                "flat parts are no edges, and the lower threshold is not above the upper one"
+                "a flat area is not an edge, and the lower threshold is not above the upper one"
             )
         return self
 
     def skip(self, views: Views) -> str | None:
-        """One segment is asked for, or there is one flat colour."""
+        """Return a reason to make one segment: one flat colour, or one segment requested; None otherwise."""
         return reason_to_skip(views.left, self.segments)
 
     def segment(self, picture: np.ndarray) -> SegmentMap:
-        """Regions of the picture; one where nothing but noise is found in it.
+        """Divide the picture at its edges; one segment if it holds nothing but noise.
 
+        Returns: labels int32 (h, w), confidence float32 (h, w) in 0..1.
         Raises: PictureError as `check_picture`.
         """
         from .features.channels import channels
@@ -95,11 +97,11 @@ class Gradient(Segmenter, Skippable):
 
     @property
     def _max_steepness(self) -> float:
-        """The steepest slope in units of the noise, at most: `contrast` of it begins an edge."""
+        """The upper bound of slopes in units of the noise: `contrast` times this bound starts an edge."""
         return self.canny_high / self.contrast
 
     def _regions(self, land: "Landscape", step: int) -> Int32[np.ndarray, "h w"] | None:
-        """Labels of every step-th pixel; None where there is one region."""
+        """Return labels of every step-th pixel; None where there is only one region."""
         from .regions.basins import MOST_SEGMENTS, STEEPER, basins
         from .regions.borders import borders
         from .regions.landscape import canny_edges
@@ -117,8 +119,8 @@ class Gradient(Segmenter, Skippable):
         between = borders(labels, land, edges, self.canny_high)
         parts = merge(areas, between, most)
         if self.segments == "auto":
-            worth, why = weakest_border(between, parts), "the share of edges in the weakest border between two of them"
-            note(log, f"segments: {np.unique(parts).size}, a guess worth {worth:.2f}: {why}")
+            worth, why = weakest_border(between, parts), "the share of edges in the weakest border between two segments"
+            note(log, f"segments: {np.unique(parts).size}, estimated with confidence {worth:.2f}: {why}")
         return parts[labels]
 
     def _confidence(self, steep: Float32[np.ndarray, "h w"]) -> Float32[np.ndarray, "h w"]:

@@ -19,16 +19,17 @@ if TYPE_CHECKING:
     from .energies.gabor_bank import Gabor
 
 MORE = 3
-"""So many clusters more are tried as long as seams are among those that were asked for."""
+"""The number of extra clusters to try while some of the requested ones turn out to be seams."""
 
 
 class KorniaGabor(Segmenter, Skippable):
     """Amplitudes in a bank of Gabor filters, one octave and 30 degrees apart, clustered by k-means; all of it in torch.
 
     Amplitudes are the roots of the energy in Gaussian windows, standardised over the picture. kornia's `fft_conv`
-    applies the filters, at full resolution. Along a boundary a window sees two textures, which can look like a third:
-    what no disc as wide as the window fits into goes to the segments beside it. Colour is reduced to grey.
-    Confidence is 1 - a / b, a and b being the distances from the nearest centre and from the next one; 0 in a seam.
+    applies the filters, at full resolution. Along a boundary a window sees two textures, which can look like a third
+    (a seam): an area too narrow for a disc as wide as the window goes to the adjacent segments. Colour is reduced to
+    grey. Confidence is 1 - a / b, where a and b are the distances from the nearest centre and the second nearest; 0 in
+    a seam.
     Source: Jain & Farrokhnia 1991; Riba et al., Kornia, WACV 2020; Arthur & Vassilvitskii, k-means++, SODA 2007.
     """
 
@@ -57,12 +58,13 @@ class KorniaGabor(Segmenter, Skippable):
     """Device to compute on; `auto` uses a GPU if there is one."""
 
     def skip(self, views: Views) -> str | None:
-        """One flat colour is one segment, and so is any picture when no more is asked for."""
+        """Return a reason to make one segment: one flat colour, or one segment requested; None otherwise."""
         return reason_to_skip(views.left, self.segments)
 
     def segment(self, picture: np.ndarray) -> SegmentMap:
-        """Labels in the order of their first pixels.
+        """Divide the picture by texture, labels in the order of their first pixels.
 
+        Returns: labels int32 (h, w), confidence float32 (h, w) in 0..1.
         Raises: PictureError as `check_picture`, BrokenMethod without torch or kornia.
         """
         need("torch")
@@ -96,7 +98,7 @@ class KorniaGabor(Segmenter, Skippable):
     def _cluster(
         self, rows: "Tensor", shape: tuple[int, ...], count: int, radius: int
     ) -> tuple[Int32[np.ndarray, "rows columns"], Float32[np.ndarray, "n"]]:
-        """Labels and confidence of the cells; a few clusters more where seams were among those that were asked for."""
+        """Return labels and confidence of the cells; seams are replaced by up to MORE extra clusters."""
         from .features.seams import remove_seams
         from .kmeans.labelling import margins
         from .kornia_gabor_kernels import kmeans

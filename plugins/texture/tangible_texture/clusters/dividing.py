@@ -1,15 +1,17 @@
-"""A first, fine division of cells into clusters, without chance."""
+"""The initial division of cells into many clusters, without chance."""
 
 import numpy as np
 from jaxtyping import Float32, Int32
 
 ROUNDS = 8
+"""The largest number of Lloyd's rounds: joining corrects the rest."""
 
 
 def divide(planes: Float32[np.ndarray, "d n"], most: int) -> Int32[np.ndarray, "n"]:
-    """Clusters 0..k-1: the widest one is halved across its longest axis until there are `most`, then Lloyd's rounds.
+    """Halve the widest cluster across its longest axis until there are `most`, then run Lloyd's rounds.
 
-    Nothing depends on the order of the cells, nor on a seed. Fewer clusters where nothing is left to halve.
+    Nothing depends on the order of the cells, nor on a seed. There are fewer clusters where nothing is left to halve.
+    Returns: labels 0..k-1.
     Source: Su & Dy, A deterministic method for initializing k-means clustering, ICTAI 2004 (PCA-Part).
     """
     parts = [np.arange(planes.shape[1])]
@@ -28,7 +30,7 @@ def divide(planes: Float32[np.ndarray, "d n"], most: int) -> Int32[np.ndarray, "
 
 
 def _halve_cluster(planes: Float32[np.ndarray, "d n"]) -> tuple[float, np.ndarray]:
-    """The sum of squared distances from the mean, and which columns lie above it along the longest axis."""
+    """Return the sum of squared distances from the mean, and a mask of the columns above it on the longest axis."""
     from tangible_core.compiled.small_matrices import eigen
 
     from .planes import combine_planes, scatter_matrix
@@ -39,7 +41,7 @@ def _halve_cluster(planes: Float32[np.ndarray, "d n"]) -> tuple[float, np.ndarra
 
 
 def _lloyd_rounds(planes: Float32[np.ndarray, "d n"], centres: np.ndarray) -> Int32[np.ndarray, "n"]:
-    """Lloyd's rounds, ROUNDS at most; clusters that lose all their cells are gone."""
+    """Run at most ROUNDS of Lloyd's rounds; a cluster without cells is dropped."""
     from .planes import combine_planes, inner_products
 
     labels = np.full(planes.shape[1], -1)
@@ -54,5 +56,5 @@ def _lloyd_rounds(planes: Float32[np.ndarray, "d n"], centres: np.ndarray) -> In
 
 
 def one_hot(labels: np.ndarray, count: int) -> Float32[np.ndarray, "k n"]:
-    """1 where a cell has the label, else 0."""
+    """Return 1 where a cell has the label, else 0: one row a label."""
     return np.asarray(labels == np.arange(count)[:, None], np.float32)

@@ -1,4 +1,4 @@
-"""Joining the clusters of one texture: the least different pair first, refitted as it goes."""
+"""Joining of clusters of one texture: the least different pair first, refitting in between."""
 
 # ruff: noqa: ANN001, ANN202 -- numba takes the types from the call
 
@@ -17,29 +17,29 @@ from .neighbourhood import INSIDE_CELLS, interior_scatters, refit_labels, smooth
 from .planes import combine_planes, inner_products, scatter_matrix_in_kernel
 
 AXES = 20
-"""Discriminants that are kept."""
+"""The largest number of discriminants."""
 SIZE_POWER = 0.4
-"""How much the sizes of two clusters speak against joining them; 1 in Ward's method."""
+"""The exponent of the sizes of two clusters in the cost of joining them; 1 in Ward's method."""
 RIDGE = 0.05
-"""Added to each pair's scatter, as a share of the mean variance within clusters."""
+"""The ridge added to each pair's scatter, as a share of the mean variance within clusters."""
 
 
 class Step(NamedTuple):
-    """A division into clusters, and what joining the next two costs."""
+    """A division into clusters, and the cost of the next joining."""
 
     labels: Int32[np.ndarray, "n"]
     clusters: int
     cost: float
-    """See `joining_costs`; infinite where there is one cluster only."""
+    """The cost by `joining_costs`; infinite where there is one cluster only."""
 
 
 def join_clusters(
     planes: Float32[np.ndarray, "d n"], labels: Int32[np.ndarray, "n"], shape: tuple[int, int], renewed: int
 ) -> Iterator[Step]:
-    """Divisions into ever fewer clusters, one less at least in each, the last of one: at once if nothing differs.
+    """Yield divisions into ever fewer clusters, down to one: one less at least in each, one at once if none differ.
 
-    renewed: from so many clusters on, the discriminants are found anew before each joining, and cells settle with their
-    neighbours after it. Before that, those of the first division do.
+    renewed: from this number of clusters down, discriminants are recomputed before each joining, and cells settle with
+    their neighbours after it. Before that, the discriminants of the first division are used.
     """
     projected = combine_planes(axes_between(planes, labels, shape), planes)
     labels = refit_labels(projected, labels, shape, 2, 1) if len(projected) else labels
@@ -63,16 +63,16 @@ def join_clusters(
 def axes_between(
     planes: Float32[np.ndarray, "d n"], labels: Int32[np.ndarray, "n"], shape: tuple[int, int]
 ) -> Float64[np.ndarray, "a d"]:
-    """The axes along which clusters differ most, AXES at most."""
+    """Return the axes along which clusters differ most, at most AXES."""
     return discriminant_axes(interior_scatters(planes, one_hot(labels, int(labels.max()) + 1), shape), AXES)
 
 
 def joining_costs(
     planes: Float32[np.ndarray, "d n"], labels: Int32[np.ndarray, "n"], shape: tuple[int, int]
 ) -> Float64[np.ndarray, "k k"]:
-    """D (m k / n)^SIZE_POWER, for each pair once, the higher label first; elsewhere infinite.
+    """Compute D (m k / n)^SIZE_POWER for each pair once, the higher label first; infinite elsewhere.
 
-    D is the squared Mahalanobis distance of the two means in the mean of the two scatters; m = a b / (a + b) joins
+    D is the squared Mahalanobis distance of the two means in the mean of the two scatters; m = a b / (a + b) combines
     their sizes, of k clusters and n cells.
     """
     count = int(labels.max()) + 1
@@ -89,13 +89,13 @@ def joining_costs(
 
 
 def _powers(sizes: Float64[np.ndarray, "k k"]) -> Float64[np.ndarray, "k k"]:
-    """One value after another: NumPy's powers of an array have other last bits where AVX-512 is."""
+    """Raise one value after another: NumPy's powers of an array have other last bits where AVX-512 is."""
     return np.array([[size**SIZE_POWER for size in row] for row in sizes.tolist()])
 
 
 @njit(cache=True, nogil=True)
 def _moments(planes, weights, starts, sizes):
-    """Weighted mean and scatter of every cluster, whose cells lie side by side."""
+    """Compute weighted mean and scatter of every cluster, whose cells are contiguous."""
     size = planes.shape[0]
     means, scatters = np.zeros((sizes.size, size)), np.zeros((sizes.size, size, size))
     for k in range(sizes.size):
@@ -108,7 +108,7 @@ def _moments(planes, weights, starts, sizes):
 
 @njit(cache=True, nogil=True)
 def _distances(means, scatters, ridge):
-    """d' S^-1 d of every two, as |L^-1 d|^2 with Cholesky's factor L of S."""
+    """Compute d' S^-1 d of every two clusters, as |L^-1 d|^2 with Cholesky's factor L of S."""
     count, size = means.shape
     distances = np.zeros((count, count))
     for one in range(count):

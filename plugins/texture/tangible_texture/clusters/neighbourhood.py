@@ -1,4 +1,4 @@
-"""Cells and their neighbours: memberships that follow the evidence and what is round about."""
+"""Memberships of cells from their own evidence and from their neighbours."""
 
 # ruff: noqa: ANN001, ANN202 -- numba takes the types from the call
 
@@ -13,21 +13,23 @@ from .discriminants import Scatters, evidence, scatters
 from .dividing import one_hot
 
 PULL = 4.0
-"""What the neighbours' mean membership weighs against evidence."""
+"""The weight of the neighbours' mean membership against evidence."""
 EVIDENCE = 0.5
-"""What evidence weighs: windows overlap, so that cells are not as many witnesses as they seem."""
+"""The weight of evidence, under 1: windows overlap, so that cells are not independent."""
 BLOCK = 1024
-"""Cells that are worked on while they are in the cache."""
+"""The number of cells processed while they are in the cache."""
 INSIDE_CELLS = 2.0
-"""Standard deviation of the window in which a cell's class must prevail for the cell to count in full."""
+"""The standard deviation, in cells, of the window in which a cell's class must prevail for its full weight."""
 
 
 def smooth_memberships(memberships: Float32[np.ndarray, "k n"], shape: tuple[int, int], sigma: float) -> np.ndarray:
-    """Gaussian means of each class's memberships over the grid of cells."""
+    """Compute Gaussian means of each class's memberships over the grid of cells."""
     import cv2
 
     result = np.empty(memberships.shape, np.float32)
-    taps = cv2.getGaussianKernel(2 * round(4 * sigma) + 1, sigma, cv2.CV_32F)  # once: grids are small, and classes many
+    taps = cv2.getGaussianKernel(
+        2 * round(4 * sigma) + 1, sigma, cv2.CV_32F
+    )  # computed once: grids are small, and classes many
     with plain_opencv():
         for each, out in zip(memberships, result, strict=True):
             cv2.sepFilter2D(each.reshape(shape), -1, taps, taps, dst=out.reshape(shape), borderType=cv2.BORDER_REFLECT)
@@ -41,7 +43,7 @@ def mean_field(
     sigma: float,
     rounds: int,
 ) -> Float32[np.ndarray, "k n"]:
-    """Mean field: each cell's memberships follow its evidence and PULL times the mean of those around, in rounds.
+    """Update each cell's memberships by its evidence and PULL times the mean of those around it, in rounds.
 
     Source: the mean-field approximation of a Potts model with Gaussian neighbourhoods (Krahenbuhl & Koltun,
     Efficient inference in fully connected CRFs, NIPS 2011).
@@ -54,14 +56,14 @@ def mean_field(
 def interior_scatters(
     planes: Float32[np.ndarray, "d n"], memberships: Float32[np.ndarray, "k n"], shape: tuple[int, int]
 ) -> Scatters:
-    """Of cells well inside their classes: those on borders are mixtures."""
+    """Compute the scatters of cells well inside their classes: cells on borders are mixtures."""
     return scatters(planes, memberships * smooth_memberships(memberships, shape, INSIDE_CELLS) ** 2)
 
 
 def refit_labels(
     planes: Float32[np.ndarray, "d n"], labels: Int32[np.ndarray, "n"], shape: tuple[int, int], rounds: int, votes: int
 ) -> Int32[np.ndarray, "n"]:
-    """Labels after rounds of fitting discriminants to cells well inside their classes, and settling with neighbours.
+    """Refine labels in rounds: fit discriminants to cells well inside their classes, then settle with neighbours.
 
     Classes may vanish; labels stay 0..k-1.
     """

@@ -13,7 +13,7 @@ from .local_energy import fft
 
 
 def even_responses(grey: Float32[np.ndarray, "h w"], filters: Sequence[Gabor]) -> Iterator[Float32[np.ndarray, "h w"]]:
-    """The picture convolved with each filter's even kernel; outside of the picture is its mirror image."""
+    """Yield the picture convolved with each filter's even kernel; outside of the picture is its mirror image."""
     kernels = [np.real(kernel(each)).astype(np.float32) for each in filters]
     radius = max(len(each) // 2 for each in kernels)
     shape = [fft.next_fast_len(side + 2 * radius, real=True) for side in grey.shape]

@@ -1,4 +1,4 @@
-"""What a picture's texture is like in windows of three widths."""
+"""Features of a picture's texture in windows of three widths."""
 
 import logging
 from typing import Literal, NamedTuple
@@ -13,14 +13,16 @@ from tangible_core.runtime.opencv import plain_opencv
 log = logging.getLogger(__name__)
 
 NARROW_PX, MIDDLE_PX, WIDE_PX = 5.0, 10.0, 18.0
-"""Standard deviations of the windows: along borders, in which classes are told apart, and to begin with."""
+"""The standard deviations of the windows, px: along borders, for the classes, and for the initial division."""
 LARGE_PX = 320
-"""Where the root of a picture's area is less, its windows are narrower in proportion, down to half as wide."""
+"""The root of a picture's area, px, below which windows are narrower in proportion, down to half as wide."""
 COLOURFUL = 0.02
-"""Windows that differ in colour by less than this share of white, an even change across the picture apart, do so by
-chance, or by the light."""
+"""The least difference of windows in colour, as a share of white, that is more than chance or light.
+
+An even change across the picture, as of light, does not count.
+"""
 COLOUR_WEIGHT = 3.0
-"""What a plane of colour counts against one of ninety of texture."""
+"""The weight of a plane of colour against one of ninety planes of texture."""
 
 
 class Window(NamedTuple):
@@ -41,7 +43,7 @@ class Features(NamedTuple):
 def features(
     picture: np.ndarray, lambda_max_px: float, least_energy: float, colour: bool | Literal["auto"]
 ) -> Features | None:
-    """Features in windows of WIDE_PX, MIDDLE_PX and NARROW_PX, or less in a small picture; None where all are alike.
+    """Compute features in windows of WIDE_PX, MIDDLE_PX and NARROW_PX, or less in a small picture; None if all agree.
 
     The narrow ones have a value every 4 pixels, the middle ones every 8 and the wide ones every 16; of small pictures
     all of them every 4. Raises: PictureError as `check_picture`.
@@ -59,7 +61,7 @@ def features(
     narrow = window_means(planes, (narrow_px**2 - ENERGY_SIGMA_PX**2) ** 0.5 / CELL_PX, out=planes)
     middle = window_means(narrow, (middle_px**2 - narrow_px**2) ** 0.5 / CELL_PX, step)
     if is_one_texture(np.sqrt(middle), middle_px / CELL_PX / step, grey):
-        note(log, "one segment: the texture is the same all over the picture")
+        note(log, "one segment: the picture has the same texture everywhere")
         return None
     wide = window_means(middle, (wide_px**2 - middle_px**2) ** 0.5 / CELL_PX / step, step)
     return Features(_window(wide, colour_count), _window(middle, colour_count), _window(narrow, colour_count))
@@ -71,7 +73,7 @@ def _widths(pixels: int) -> tuple[float, float, float]:
 
 
 def _window(planes: Float32[np.ndarray, "d rows columns"], colour_count: int) -> Window:
-    """Standardised, in place; the last `colours` planes weigh more."""
+    """Standardise planes in place; the last `colour_count` ones weigh more."""
     from .cells import standardise_roots
 
     rows, columns = planes.shape[1:]
@@ -88,9 +90,9 @@ def _planes(
     least_energy: float,
     colour: bool | Literal["auto"],
 ) -> tuple[Float32[np.ndarray, "d rows columns"], int]:
-    """Energies, pattern frequencies and tints, cell by cell, and how many of the planes are tints.
+    """Return energies, pattern frequencies and colours, cell by cell, and the number of planes of colour.
 
-    All are written where they stay: of a large picture they are hundreds of megabytes, and so would be each copy.
+    All are written to one array: for a large picture it has hundreds of megabytes, and so would each copy.
     """
     from ..energies.gabor_bank import bank, octaves
     from ..energies.local_energy import energy_planes, mean_energies, padding, spectrum_of, standardise
@@ -116,8 +118,8 @@ def _planes(
     return planes, len(colours)
 
 
-def _colour_planes(picture: np.ndarray, colour: bool | Literal["auto"]) -> Float32[np.ndarray, "tints rows columns"]:
-    """Red against green and both against blue, cell by cell, 0..2; no plane where colour is not used."""
+def _colour_planes(picture: np.ndarray, colour: bool | Literal["auto"]) -> Float32[np.ndarray, "colours rows columns"]:
+    """Return red against green and both against blue, cell by cell, 0..2; no plane where colour is not used."""
     import cv2
 
     from .cells import CELL_PX, window_means
@@ -129,7 +131,7 @@ def _colour_planes(picture: np.ndarray, colour: bool | Literal["auto"]) -> Float
         return none
     paint = channels(picture, colour=True)
     if paint.shape[2] == 1:
-        note(log, "colour left out: there is none")
+        note(log, "colour left out: the picture has none")
         return none
     red, green, blue = np.moveaxis(paint, 2, 0)
     opponents = (1 + (red - green) / 2, 1 + (red + green) / 4 - blue / 2)
@@ -137,14 +139,14 @@ def _colour_planes(picture: np.ndarray, colour: bool | Literal["auto"]) -> Float
         planes = np.stack([cv2.resize(each, (columns, rows), interpolation=cv2.INTER_AREA) for each in opponents])
     differ = float(np.sqrt(_remove_slope(window_means(planes, MIDDLE_PX / CELL_PX)).var(axis=(1, 2)).sum()))
     if colour == "auto" and differ < COLOURFUL:
-        note(log, f"colour left out: windows differ in it by {differ:.3f} of white, under {COLOURFUL:g}")
+        note(log, f"colour left out: it differs between windows by {differ:.3f} of white, under {COLOURFUL:g}")
         return none
-    note(log, f"colour used: windows differ in it by {differ:.3f} of white")
+    note(log, f"colour used: it differs between windows by {differ:.3f} of white")
     return planes
 
 
 def _remove_slope(planes: Float32[np.ndarray, "d rows columns"]) -> Float32[np.ndarray, "d rows columns"]:
-    """Less what changes evenly across the picture, as light does."""
+    """Subtract an even change across the picture, as light causes."""
     for axis in (1, 2):
         place = np.arange(planes.shape[axis], dtype=np.float32) - np.float32((planes.shape[axis] - 1) / 2)
         place = np.expand_dims(place, tuple({0, 1, 2} - {axis}))

@@ -1,4 +1,4 @@
-"""How many textures there are: a guess, with what it is worth."""
+"""An estimate of the number of textures, with its confidence."""
 
 from typing import NamedTuple
 
@@ -6,13 +6,13 @@ import numpy as np
 from jaxtyping import Float32
 
 SAMPLE = 1500
-"""Rows that are looked at: silhouettes cost the square of them."""
+"""The number of rows in the estimate: the cost of silhouettes grows with its square."""
 APART = 0.25
-"""A mean silhouette under this is no structure (Kaufman & Rousseeuw, Finding groups in data, 1990, sec. 2.2)."""
+"""The least mean silhouette that indicates structure (Kaufman & Rousseeuw, Finding groups in data, 1990, sec. 2.2)."""
 
 
 class Count(NamedTuple):
-    """How many segments, how sure that is (0..1), and why in words."""
+    """An estimated number of segments, its confidence in 0..1, and the reason in words."""
 
     segments: int
     confidence: float
@@ -20,11 +20,11 @@ class Count(NamedTuple):
 
 
 def choose_count(features: Float32[np.ndarray, "n d"], most: int, seed: int = 0) -> Count:
-    """The number of clusters, `most` at the highest, whose mean silhouette is the greatest; one if none is over APART.
+    """Choose the number of clusters up to `most` with the greatest mean silhouette; one if that is under APART.
 
-    Confidence: how far that silhouette lies between APART and 1, or the best one between APART and 0. No rule known
-    transfers from one set of textures to another: on mosaics of natural textures this one finds the number in 3 of 10,
-    and is off by one at most in 7 of 10; the confidence there is 0.15, right or wrong.
+    Confidence: the position of that silhouette between APART and 1, or between APART and 0 for one cluster. No known
+    rule transfers from one set of textures to another: on mosaics of natural textures this one is right in 3 of 10
+    cases, and off by one at most in 7 of 10; its confidence there is 0.15, right or wrong.
     Source: Rousseeuw, Silhouettes, J. Comput. Appl. Math. 20 (1987).
     """
     from .lloyd import kmeans
@@ -39,12 +39,12 @@ def choose_count(features: Float32[np.ndarray, "n d"], most: int, seed: int = 0)
     best = max(scores, key=lambda count: scores[count], default=1)
     score = scores.get(best, 0.0)
     if score < APART:
-        return Count(1, 1 - max(score, 0) / APART, "nothing in the features holds two groups apart")
+        return Count(1, 1 - max(score, 0) / APART, "the features do not separate into groups")
     return Count(best, (score - APART) / (1 - APART), f"{best} groups have the greatest mean silhouette, {score:.2f}")
 
 
 def _silhouette(rows: Float32[np.ndarray, "n d"], labels: np.ndarray) -> float:
-    """Mean of (b - a) / max(a, b): a to the own cluster's rows, b to those of the nearest other one."""
+    """Return the mean of (b - a) / max(a, b), a and b being mean distances to the own and the nearest other cluster."""
     from ..clusters.planes import combine_planes
 
     squares = np.square(rows).sum(axis=1)

@@ -1,4 +1,4 @@
-"""From features to a label map by k-means."""
+"""A label map from features, by k-means."""
 
 import logging
 from typing import Literal
@@ -14,16 +14,16 @@ from .lloyd import kmeans
 
 log = logging.getLogger(__name__)
 MOST_SEGMENTS = 8
-"""What `segments: auto` stops at."""
+"""The largest number of segments under `auto`."""
 
 
 def choose_segments(rows: Float32[np.ndarray, "n d"], segments: int | Literal["auto"], seed: int) -> int:
-    """The number asked for, or a guess that is noted with what it is worth."""
+    """Return the requested number, or for `auto` an estimate, reported with its confidence."""
     if segments != "auto":
         return segments
-    guess = choose_count(rows, MOST_SEGMENTS, seed)
-    note(log, f"segments: {guess.segments}, a guess worth {guess.confidence:.2f}: {guess.reason}")
-    return guess.segments
+    estimate = choose_count(rows, MOST_SEGMENTS, seed)
+    note(log, f"segments: {estimate.segments}, estimated with confidence {estimate.confidence:.2f}: {estimate.reason}")
+    return estimate.segments
 
 
 def segment_by_kmeans(
@@ -35,7 +35,7 @@ def segment_by_kmeans(
     start: Literal["plus-plus", "random"] = "plus-plus",
     restarts: int = 1,
 ) -> SegmentMap:
-    """Cluster features given every step_px pixels, and give every pixel of (h, w) the label of its cell."""
+    """Cluster features sampled every step_px pixels, and give every pixel of (h, w) the label of its cell."""
     rows = features.reshape(-1, features.shape[2])
     clustering = kmeans(rows, choose_segments(rows, segments, seed), restarts, seed, start)
     return label_map_of_cells(
@@ -46,7 +46,7 @@ def segment_by_kmeans(
 def label_map_of_cells(
     labels: Int32[np.ndarray, "rows columns"], trust: Float32[np.ndarray, "n"], step_px: int, shape: tuple[int, int]
 ) -> SegmentMap:
-    """The segments of (h, w) pixels, from labels and confidence every step_px pixels, in the order of first pixels."""
+    """Repeat labels and confidence of cells for (h, w) pixels; labels are in the order of their first pixels."""
     from ..regions.merging import number_in_reading_order
 
     cells = np.ix_(*(np.arange(side) // step_px for side in shape))
@@ -54,7 +54,7 @@ def label_map_of_cells(
 
 
 def margins(rows: Float32[np.ndarray, "n d"], centres: Float32[np.ndarray, "k d"]) -> Float32[np.ndarray, "n"]:
-    """1 - a / b of each row, a and b being its distances from the nearest centre and the next one; 1 for one centre."""
+    """Return 1 - a / b of each row, a and b being its distances from the two nearest centres; 1 for one centre."""
     if len(centres) == 1:
         return np.ones(len(rows), np.float32)
     away = np.stack([np.sqrt(np.square(rows - centre).sum(axis=1)) for centre in centres], axis=1)

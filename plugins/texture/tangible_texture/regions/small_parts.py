@@ -1,4 +1,4 @@
-"""Connected parts of classes."""
+"""Removal of small connected parts of classes."""
 
 import numpy as np
 from jaxtyping import Float32, Int32
@@ -9,9 +9,9 @@ from .watershed import UNSEEN, watershed
 def remove_small_parts(
     classes: Int32[np.ndarray, "h w"], steep: Float32[np.ndarray, "h w"], flat: float, smallest_px: int
 ) -> Int32[np.ndarray, "h w"]:
-    """Parts (4 neighbours) of fewer flat pixels go to the classes beside them, up to the steepest pixels in between.
+    """Give parts (4 neighbours) of fewer flat pixels to the adjacent classes, up to the steepest pixels in between.
 
-    What is steeper than `flat` is in no part: on an edge from dark to bright lies no segment of grey.
+    Pixels steeper than `flat` are in no part: an edge from dark to bright is not a segment of grey.
     Returns: classes; all are 0 where all parts are small.
     """
     markers = np.full(classes.shape, UNSEEN, np.int32)

@@ -1,4 +1,4 @@
-"""Watershed by flooding, with one queue a level. Compiled by numba."""
+"""Watershed by flooding, with one queue for each level. Compiled by numba."""
 
 # ruff: noqa: ANN001, ANN202 -- numba takes the types from the call
 
@@ -9,13 +9,13 @@ from numba import njit
 from tangible_core.compiled.compiling import KERNEL, inner
 
 LEVELS = 1024
-"""How many heights are told apart; low ones, at which most waters meet, more finely than high ones."""
+"""The number of levels of height; low ones, where most waters meet, are finer than high ones."""
 
 TILE_PX = 512
-"""Side of what is flooded at once."""
+"""The side of a tile flooded at once, px."""
 
 AROUND_PX = 32
-"""More than the width of what lies between two flat basins."""
+"""The margin flooded around a tile, px: more than the distance between two flat basins."""
 
 UNSEEN = -1
 _OUTSIDE = -2
@@ -23,7 +23,7 @@ _LAST = -1
 _UNQUEUED = -2
 
 _LABEL, _LEVEL, _NEXT = range(3)
-"""What is known of a pixel: all of it side by side, as the flood jumps about in memory."""
+"""The columns of the state of a pixel, contiguous because the flood jumps about in memory."""
 
 
 Heights = Float32[np.ndarray, "h w"]
@@ -33,11 +33,11 @@ Labels = Int32[np.ndarray, "h w"]
 def watershed(height: Heights, markers: Labels) -> Labels:
     """Flood a landscape from markers: each pixel gets the marker whose water reaches it first, over its 4 neighbours.
 
-    Large landscapes are flooded tile by tile, each with AROUND_PX around it, from beyond which no water comes unless a
-    tile has no marker. Parameters: height >= 0; markers, -1 where there is none.
-    Returns: labels, those of the markers; no pixel is left on a shed. Where there is no marker at all, all are -1.
+    Large landscapes are flooded tile by tile, each with a margin of AROUND_PX; no water comes from further away unless
+    a tile has no marker. Parameters: height >= 0; markers, -1 where there is none.
+    Returns: the labels of the markers; no pixel is left on a shed. Without any marker, all are -1.
     Source: Meyer, Un algorithme optimal pour la ligne de partage des eaux, 1991; the queue is an array of first-in
-    first-out lists, one a level.
+    first-out lists, one for each level.
     """
     top = float(height.max())
     scale = np.float32((LEVELS - 1) / np.sqrt(top) if top else 0)
@@ -49,7 +49,7 @@ def watershed(height: Heights, markers: Labels) -> Labels:
 
 
 def _flood_tile(flooded: Labels, row: int, column: int, height: Heights, markers: Labels, scale: np.float32) -> None:
-    """Flood one tile and what is around it, and keep the tile: a whole picture's memory is too far to jump about in."""
+    """Flood one tile with its margin, and keep the tile: a whole picture does not fit the cache."""
     top, left = max(0, row - AROUND_PX), max(0, column - AROUND_PX)
     window = np.s_[top : row + TILE_PX + AROUND_PX, left : column + TILE_PX + AROUND_PX]
     labels = _flood(np.ascontiguousarray(height[window]), np.ascontiguousarray(markers[window]), scale)
@@ -91,7 +91,7 @@ def _pour(height, markers, scale, cells, first, last, flooded):
 
 @inner()
 def _frame(height, markers, scale, cells):
-    """The pixels in a frame one pixel wide that counts as outside."""
+    """Copy the pixels into a frame one pixel wide that counts as outside."""
     rows, columns = height.shape
     for column in range(columns + 2):
         cells[column, _LABEL] = cells[(rows + 1) * (columns + 2) + column, _LABEL] = _OUTSIDE

@@ -1,4 +1,4 @@
-"""Slopes of a smoothed picture: how steep, which way, and how much of it is noise."""
+"""Slopes of a smoothed picture: magnitude, direction, and the noise in them."""
 
 # ruff: noqa: ANN001, ANN202 -- numba takes the types from the call
 
@@ -12,13 +12,13 @@ from tangible_core.compiled.compiling import KERNEL, inner
 from tangible_core.runtime.opencv import plain_opencv
 
 TILE_PX = 128
-"""Side of the tiles in which noise is measured."""
+"""The side of the tiles in which noise is measured, px."""
 
 QUIET_SHARE = 0.25
-"""In every tile at least this share of the pixels is taken to hold noise and no edge."""
+"""The share of the pixels of a tile assumed to hold noise and no edge, at least."""
 
 _QUIET_RATIO = np.float32(sqrt(-2 * log(1 - QUIET_SHARE)))
-"""That quantile of a Rayleigh distribution, which slopes of Gaussian noise follow, over its parameter."""
+"""The QUIET_SHARE quantile over the parameter of a Rayleigh distribution, that of slopes of Gaussian noise."""
 
 _HALF = np.float32(0.5)
 
@@ -26,12 +26,12 @@ Map = Float32[np.ndarray, "h w"]
 
 
 def slopes(smooth: Float32[np.ndarray, "h w c"]) -> tuple[Map, Map, Map, Map]:
-    """Slopes per pixel, by central differences, in the channel where they are steepest, and the noise in them.
+    """Compute slopes per pixel, by central differences, in the channel where they are steepest, and their noise.
 
     Noise is the parameter of its Rayleigh distribution, in the noisiest channel; it is measured in tiles, from the
     flattest quarter of their pixels, and interpolated between the tiles. A texture that fills its tile counts as noise,
     as does a steady shading.
-    Returns: magnitude, across, down, noise.
+    Returns: magnitude, across, down, noise: float32 (h, w) each.
     """
     across, down = np.empty(smooth.shape, np.float32), np.empty(smooth.shape, np.float32)
     rows, across_rows, down_rows = (each.reshape(len(smooth), -1) for each in (smooth, across, down))
@@ -47,7 +47,7 @@ def slopes(smooth: Float32[np.ndarray, "h w c"]) -> tuple[Map, Map, Map, Map]:
 
 @njit(**KERNEL)
 def _differences(rows, across, down, channels):
-    """Central differences across and down; channels stand side by side in a row, and the border is repeated."""
+    """Write central differences across and down; channels are interleaved in a row, and the border is repeated."""
     for row in range(len(rows)):
         _halve(rows[min(row + 1, len(rows) - 1)], rows[max(row - 1, 0)], down[row])
         here, there = rows[row], across[row]
@@ -96,7 +96,7 @@ def _tiles(length: int) -> int:
 
 
 def _quiet_level(tile: Float32[np.ndarray, "h w c"]) -> np.float32:
-    """The quantile of the magnitudes, in the channel where it is highest."""
+    """Return the QUIET_SHARE quantile of the magnitudes, in the channel where it is highest."""
     every = tile.reshape(-1, tile.shape[2])
     at = int(QUIET_SHARE * len(every))
     return np.partition(every, at, axis=0)[at].max()

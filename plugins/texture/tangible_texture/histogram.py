@@ -14,7 +14,7 @@ from tangible_core.plugins.notes import note
 from .signal.skipping import one_segment, reason_to_skip
 
 if TYPE_CHECKING:
-    pass
+    from .clusters.otsu import OtsuClasses
 
 BINS = 256
 """The number of grey levels between the darkest and the brightest: that of 8 bits."""

@@ -22,9 +22,9 @@ log = logging.getLogger(__name__)
 
 
 class Report(Segmenter, Skippable):
-    """Even Gabor filters, a bounded non-linearity, mean magnitude in Gaussian windows, and k-means from a random start.
+    """Gabor filters, a bounded non-linearity, mean magnitude in Gaussian windows, and k-means from a random start.
 
-    Filters respond to grey levels of 0..255 and keep the amplitude of a wave of their own frequency. The printed
+    Even filters respond to grey levels of 0..255 and keep the amplitude of a wave of their own frequency. The printed
     formulas divide x' by gamma instead of the wavelength, and lack pi in the bandwidth of a given sigma; both are
     corrected. Everything is computed at the picture's full resolution, unless that would take more than memory_mb.
     Where features hardly differ, there is one segment. Colour is reduced to grey.
@@ -92,10 +92,7 @@ class Report(Segmenter, Skippable):
     def _step_px(self, pixels: int, filters: int) -> int:
         step_px = ceil((4 * pixels * filters / (self.memory_mb << 20)) ** 0.5)
         if step_px > 1:
-            note(
-                log,
-                f"features computed every {step_px} pixels only: at all pixels they would exceed {self.memory_mb} MB",
-            )
+            note(log, f"features every {step_px} pixels only: at every pixel they would exceed {self.memory_mb} MB")
         return step_px
 
     def _features(

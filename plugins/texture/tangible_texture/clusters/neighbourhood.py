@@ -27,9 +27,8 @@ def smooth_memberships(memberships: Float32[np.ndarray, "k n"], shape: tuple[int
     import cv2
 
     result = np.empty(memberships.shape, np.float32)
-    taps = cv2.getGaussianKernel(
-        2 * round(4 * sigma) + 1, sigma, cv2.CV_32F
-    )  # computed once: grids are small, and classes many
+    # computed once: grids are small, and classes many
+    taps = cv2.getGaussianKernel(2 * round(4 * sigma) + 1, sigma, cv2.CV_32F)
     with plain_opencv():
         for each, out in zip(memberships, result, strict=True):
             cv2.sepFilter2D(each.reshape(shape), -1, taps, taps, dst=out.reshape(shape), borderType=cv2.BORDER_REFLECT)

@@ -63,8 +63,8 @@ def octaves(lambda_max_px: float) -> tuple[float, ...]:
 def printed_wavelengths(width_px: int) -> tuple[float, ...]:
     """Return rising wavelengths in px of the printed frequencies, 0.25 -+ 2^(i - 0.5) / N cycles a pixel.
 
-    i = 1..log2(N / 8). The paper has widths N that are powers of two. For another width i ends at the whole part of log2(N / 8), with N
-    itself in the formula; under 16 px, where no i is left, 0.25 alone remains.
+    i = 1..log2(N / 8). The paper has widths N that are powers of two. For another width i ends at the whole part of
+    log2(N / 8), with N itself in the formula; under 16 px, where no i is left, 0.25 alone remains.
 
     >>> [round(1 / each, 3) for each in printed_wavelengths(32)]
     [0.338, 0.294, 0.206, 0.162]

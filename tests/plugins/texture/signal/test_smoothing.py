@@ -1,4 +1,4 @@
-"""Smoothing before slopes: what goes and what stays."""
+"""Smoothing before slopes removes specks and keeps structure."""
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ from tangible_texture.signal.smoothing import WIDER, gaussian, remove_specks, sm
 
 class TestSmoothing:
     @given(st.integers(2, 6), st.integers(2, 6), st.data())
-    def test_one_pixel_that_differs_vanishes(self, rows: int, columns: int, data: st.DataObject):
+    def test_single_pixel_vanishes(self, rows: int, columns: int, data: st.DataObject):
         picture = np.full((rows, columns, 1), 0.5, np.float32)
         row, column = data.draw(st.integers(0, rows - 1)), data.draw(st.integers(0, columns - 1))
         picture[row, column] = data.draw(st.sampled_from([0.0, 0.499, 0.501, 1.0]))
@@ -30,7 +30,7 @@ class TestSmoothing:
         assert found.sum() == pytest.approx(1, abs=1e-5)
 
     @pytest.mark.parametrize(("shape", "step"), [((512, 512), 2), ((511, 301), 2), ((30, 40), 1), ((1, 1), 1)])
-    def test_two_scales(self, shape: tuple[int, int], step: int):
+    def test_two_scales_have_their_shapes_and_deviations(self, shape: tuple[int, int], step: int):
         noise = np.random.default_rng(0).normal(0, 1, (*shape, 2)).astype(np.float32)
         near, wide, found = smooth_at_two_scales(noise, 2.0)
         assert found == step

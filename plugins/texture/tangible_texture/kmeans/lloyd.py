@@ -1,4 +1,4 @@
-"""k-means clustering. Compiled by numba."""
+"""k-means clustering by Lloyd's rounds. Compiled by numba."""
 
 # ruff: noqa: ANN001, ANN202 -- numba takes the types from the call
 
@@ -12,18 +12,18 @@ from numba import njit
 from tangible_core.compiled.threads import in_turns
 
 SAME = 1e-5
-"""Rows closer than this share of the longest row are one: less is what single precision leaves of sums."""
+"""The largest distance of equal rows, as a share of the longest row: the rounding of sums in single precision."""
 SIDE_BY_SIDE = 64
-"""Rows whose distances are worked on together, as many at once as a processor can."""
+"""The number of rows whose distances are computed together, in vector instructions."""
 BLOCK = 4096
-"""Rows that are summed together: the result does not depend on how many threads there are."""
+"""The number of rows summed together: fixed, so that the result does not depend on the number of threads."""
 
 
 class Clusters(NamedTuple):
     """The cluster of each row, the clusters' means, and the sum of squared distances of the rows from these."""
 
     labels: Int32[np.ndarray, "n"]
-    """0..k-1, each of them present."""
+    """Labels 0..k-1, each of them present."""
     centres: Float32[np.ndarray, "k d"]
     cost: float
 
@@ -36,10 +36,10 @@ def kmeans(
     start: Literal["plus-plus", "random"] = "plus-plus",
     rounds: int = 1000,
 ) -> Clusters:
-    """The cheapest of `restarts` runs of Lloyd's rounds, each until the centres stand still, or `rounds` of them.
+    """Return the cheapest of `restarts` runs of Lloyd's rounds, each until no label changes, or `rounds` of them.
 
-    Never more clusters than there are distinct rows (see SAME). start: rows drawn with a weight of their squared
-    distance from those drawn before (Arthur & Vassilvitskii, SODA 2007), or all alike ("random").
+    There are never more clusters than distinct rows (see SAME). start: rows drawn with weights of their squared
+    distances from those drawn before (Arthur & Vassilvitskii, SODA 2007), or uniformly ("random").
     """
     rows = np.ascontiguousarray(rows, np.float32)
     random = np.random.default_rng(seed)
@@ -75,7 +75,7 @@ def _settle(rows: Float32[np.ndarray, "n d"], centres: Float32[np.ndarray, "k d"
 
 @njit(cache=True, nogil=True)
 def _start(rows, uniform, weighted, least):
-    """Rows to start from, as many as `uniform` has values; fewer where there are no more distinct ones."""
+    """Draw one starting row for each value of `uniform`; fewer if there are not as many distinct rows."""
     count = len(rows)
     centres = np.empty((len(uniform), rows.shape[1]), np.float32)
     centres[0] = rows[int(uniform[0] * count)]
@@ -110,7 +110,7 @@ def _squared_distance(one, other):
 
 @njit(cache=True, nogil=True)
 def _assign(rows, centres, labels, sums, counts):
-    """Write each row's nearest centre, and the sums of the rows by centre; the cost, and how many labels changed."""
+    """Write each row's nearest centre and the sums of rows by centre; return the cost and the number of new labels."""
     sums[:] = 0
     counts[:] = 0
     cost, moved = 0.0, 0
@@ -138,9 +138,9 @@ def _assign(rows, centres, labels, sums, counts):
 
 @njit(cache=True, nogil=True)
 def _squared_distances(columns, centre, away):
-    """As `_squared_distance`, of columns side by side: no order depends on how many a processor works on at once."""
+    """Compute `_squared_distance` of SIDE_BY_SIDE columns; no order of sums depends on the processor's vectors."""
     away[:] = 0
-    for d in range(0, centre.size - 3, 4):  # four at a time: sums are written a fourth as often
+    for d in range(0, centre.size - 3, 4):  # four at a time: a quarter of the writes
         p, q, r, s = centre[d], centre[d + 1], centre[d + 2], centre[d + 3]
         for i in range(SIDE_BY_SIDE):
             one, two = columns[d, i] - p, columns[d + 1, i] - q

@@ -1,4 +1,4 @@
-"""Clusters whose answer is known, and the guess at how many there are."""
+"""Clusters of a known division, and the estimate of their number."""
 
 import numpy as np
 import pytest
@@ -6,13 +6,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tangible_core.compiled import threads
-from tangible_texture.clusters import kmeans as module
-from tangible_texture.clusters.count import choose_count
-from tangible_texture.clusters.kmeans import kmeans
+from tangible_texture.kmeans import lloyd as module
+from tangible_texture.kmeans.count import choose_count
+from tangible_texture.kmeans.lloyd import kmeans
 
 
 def blobs(count, each=200, dims=5, seed=0, apart=20.0):
-    """Points round centres that are far apart, and which centre each belongs to."""
+    """Return points around distant centres, and the centre of each point."""
     rng = np.random.default_rng(seed)
     centres = apart * np.eye(count, dims) + apart * (np.arange(count) // dims)[:, None]
     truth = rng.permutation(np.repeat(np.arange(count), each))
@@ -25,7 +25,7 @@ def same_parts(one, other):
 
 @pytest.mark.parametrize("start", ["plus-plus", "random"])
 @pytest.mark.parametrize("count", [1, 2, 5])
-def test_points_far_apart_are_told_apart_exactly(start, count):
+def test_clusters_of_distant_points_are_exact(start, count):
     rows, truth = blobs(count)
     found = kmeans(rows, count, restarts=30, seed=1, start=start)
     assert same_parts(found.labels, truth)
@@ -34,7 +34,7 @@ def test_points_far_apart_are_told_apart_exactly(start, count):
     assert found.cost == pytest.approx(np.square(rows - found.centres[found.labels]).sum(), rel=1e-4)
 
 
-def test_every_row_has_the_nearest_centre_and_every_centre_is_a_mean():
+def test_rows_have_the_nearest_centre_and_centres_are_means():
     rows = np.random.default_rng(0).normal(size=(3000, 7)).astype(np.float32)
     found = kmeans(rows, 6, seed=3)
     away = np.square(rows[:, None] - found.centres).sum(axis=2)
@@ -43,7 +43,7 @@ def test_every_row_has_the_nearest_centre_and_every_centre_is_a_mean():
     assert found.centres == pytest.approx(np.array(means), abs=1e-5)
 
 
-def test_one_seed_gives_one_answer_and_threads_change_nothing(monkeypatch):
+def test_clusters_of_one_seed_are_the_same_with_any_threads(monkeypatch):
     rows = np.random.default_rng(0).normal(size=(2000, 4)).astype(np.float32)
     monkeypatch.setattr(module, "BLOCK", 300)
     expected = kmeans(rows, 5, seed=7, start="random")
@@ -54,7 +54,7 @@ def test_one_seed_gives_one_answer_and_threads_change_nothing(monkeypatch):
     assert not np.array_equal(kmeans(rows, 5, seed=8, start="random").labels, expected.labels)
 
 
-def test_more_restarts_cost_no_more():
+def test_cost_with_more_restarts_is_not_higher():
     rows = np.random.default_rng(0).normal(size=(500, 3)).astype(np.float32)
     costs = [kmeans(rows, 8, restarts, seed=0).cost for restarts in (1, 3, 10)]
     assert costs == sorted(costs, reverse=True)
@@ -65,7 +65,7 @@ def test_more_restarts_cost_no_more():
 @given(
     st.integers(1, 6), st.integers(1, 12), st.sampled_from(["plus-plus", "random"]), st.sampled_from([1e-15, 1, 1e15])
 )
-def test_never_more_clusters_than_distinct_rows(distinct, clusters, start, scale):
+def test_clusters_are_not_more_than_distinct_rows(distinct, clusters, start, scale):
     rows = np.float32(scale) * (np.arange(40) % distinct).astype(np.float32)[:, None].repeat(2, axis=1)
     found = kmeans(rows, clusters, seed=clusters, start=start)
     assert len(found.centres) <= min(distinct, clusters)
@@ -76,7 +76,7 @@ def test_never_more_clusters_than_distinct_rows(distinct, clusters, start, scale
 
 
 @pytest.mark.parametrize("empty", [0, 1, 2])
-def test_a_cluster_that_never_has_a_row_is_left_out(empty: int):
+def test_cluster_without_any_row_is_dropped(empty: int):
     rows = np.array([[4], [4], [5], [5], [6], [20]], np.float32)
     starts = np.insert(np.array([[3.5], [19.0]], np.float32), empty, 500, axis=0)
     found = module._settle(rows, starts, 100)
@@ -85,8 +85,8 @@ def test_a_cluster_that_never_has_a_row_is_left_out(empty: int):
     assert found.cost == pytest.approx(2.8)
 
 
-def test_a_cluster_that_loses_all_its_rows_is_left_out():
-    """The second has the first two rows at the start, and its neighbours take them from it."""
+def test_cluster_losing_all_its_rows_is_dropped():
+    """The second cluster starts with the first two rows, and its neighbours take them."""
     rows = np.array([[0, 4], [9, 8], [8, 4], [1, 0], [4, 2], [9, 5], [2, 0]], np.float32)
     starts = np.array([[6, 0], [6, 5], [7, 3]], np.float32)
     assert np.square(rows[:, None] - starts).sum(axis=2).argmin(axis=1).tolist() == [1, 1, 2, 0, 0, 2, 0]
@@ -96,15 +96,15 @@ def test_a_cluster_that_loses_all_its_rows_is_left_out():
     assert found.cost == pytest.approx(np.square(rows - found.centres[found.labels]).sum())
 
 
-def test_rows_that_only_rounding_keeps_apart_are_one():
-    """Less than a hundred thousandth of the longest apart: here a ten thousandth is."""
+def test_rows_differing_by_rounding_are_one_cluster():
+    """The threshold is a hundred thousandth of the longest row; a ten thousandth is above it."""
     away = np.random.default_rng(0).random((100, 3))
     assert len(kmeans((7 + 3e-5 * away).astype(np.float32), 5).centres) == 1
     assert len(kmeans((7 + 7e-4 * away).astype(np.float32), 5).centres) == 5
 
 
 @pytest.mark.parametrize("weighted", [True, False])
-def test_starts_are_drawn_by_squared_distance_or_all_alike(weighted: bool):
+def test_starts_are_drawn_by_squared_distance_or_uniformly(weighted: bool):
     random = np.random.default_rng(5)
     for _ in range(200):
         rows = random.integers(-50, 50, (30, 2)).astype(np.float32)
@@ -118,14 +118,14 @@ def test_starts_are_drawn_by_squared_distance_or_all_alike(weighted: bool):
 
 
 @pytest.mark.parametrize("count", [2, 3, 5])
-def test_groups_far_apart_are_counted(count):
+def test_count_of_distant_groups_is_exact(count):
     guess = choose_count(blobs(count)[0], 8, seed=0)
     assert guess.segments == count
     assert 0.5 < guess.confidence < 1
     assert str(count) in guess.reason
 
 
-def test_one_group_is_one():
+def test_count_of_one_group_is_one():
     rows = np.random.default_rng(0).normal(size=(4000, 12)).astype(np.float32)
     assert choose_count(rows, 8).segments == 1
     flat = choose_count(np.ones((30, 4), np.float32), 8)
@@ -133,11 +133,11 @@ def test_one_group_is_one():
     assert choose_count(np.ones((1, 4), np.float32), 8).segments == 1
 
 
-def test_no_more_than_the_most_are_counted():
+def test_count_with_a_bound_stays_within_it():
     assert choose_count(blobs(5)[0], 3).segments <= 3
     assert choose_count(blobs(5)[0], 1).segments == 1
 
 
-def test_one_seed_gives_one_guess():
+def test_count_of_one_seed_is_the_same():
     rows, _ = blobs(4, each=900, apart=4.0)
     assert choose_count(rows, 8, seed=5) == choose_count(rows, 8, seed=5)

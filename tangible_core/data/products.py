@@ -1,0 +1,41 @@
+"""The table of the pipeline's products: whatever lists products reads it here."""
+
+from collections.abc import Mapping
+from typing import Literal, NamedTuple
+
+from .parts import PartMap
+from .records import Record
+from .surface import HapticSurface, MaterialMap, Relief
+from .views import DisparityMap, SegmentMap
+
+Product = Literal["disparity", "relief", "segments", "parts", "simplified", "materials", "surface", "touch"]
+
+
+class ProductRow(NamedTuple):
+    """The facts about a product that do not depend on a scene; `pipeline/engine/stages/` has how it is made."""
+
+    record: type[Record] | None
+    """The record's class; None for a product that is not a record, and is neither cached nor exported."""
+    title: tuple[str, str]
+    """The name that the page shows, in English and in German."""
+    panel: str = ""
+    """The product of the sheet's panel that draws such a record; "" for a record without a picture of its own."""
+    in_report: bool = False
+    """True if a run that needs the product keeps it and shows it on its sheet."""
+
+
+PRODUCTS: Mapping[Product, ProductRow] = {
+    "disparity": ProductRow(DisparityMap, ("Depth", "Tiefe"), "disparity", in_report=True),
+    "relief": ProductRow(Relief, ("Relief", "Relief"), "relief"),
+    "segments": ProductRow(SegmentMap, ("Texture", "Textur"), "segments", in_report=True),
+    "parts": ProductRow(PartMap, ("Parts", "Teile"), "parts", in_report=True),
+    "simplified": ProductRow(PartMap, ("Legible parts", "Lesbare Teile"), "parts"),
+    "materials": ProductRow(MaterialMap, ("Materials", "Materialien"), in_report=True),
+    "surface": ProductRow(HapticSurface, ("Surface", "Oberfläche"), "relief", in_report=True),
+    "touch": ProductRow(None, ("Force law", "Kraftgesetz")),
+}
+"""Every product, in the order in which a picture becomes a force."""
+EXPORTABLE = tuple(name for name, row in PRODUCTS.items() if row.record is not None)
+"""The products that an exporter may need: all that are records."""
+IN_REPORT = tuple(name for name, row in PRODUCTS.items() if row.in_report)
+"""The products that a run keeps and shows on its sheet, besides the requested one."""

@@ -22,8 +22,8 @@ from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.pipeline.starter import MAPS, SIDE_MM, in_yaml, starter
 from tangible_core.plugins import hooks
 from tangible_core.plugins.registry import Registry, default_registry
-from tangible_core.report.numbered_parts import numbered_parts
 from tangible_core.scene.scene import Scene
+from tangible_report.numbered_parts import numbered_parts
 
 from .listed_parts import ListedPart, list_rows
 from .parts_starter import RELIEF_MM, parts_starter, title_of

@@ -16,8 +16,6 @@ class ProductRow(NamedTuple):
 
     record: type[Record] | None
     """The record's class; None for a product that is not a record, and is neither cached nor exported."""
-    title: tuple[str, str]
-    """The name that the page shows, in English and in German."""
     panel: str = ""
     """The product of the sheet's panel that draws such a record; "" for a record without a picture of its own."""
     in_report: bool = False
@@ -25,14 +23,14 @@ class ProductRow(NamedTuple):
 
 
 PRODUCTS: Mapping[Product, ProductRow] = {
-    "disparity": ProductRow(DisparityMap, ("Depth", "Tiefe"), "disparity", in_report=True),
-    "relief": ProductRow(Relief, ("Relief", "Relief"), "relief"),
-    "segments": ProductRow(SegmentMap, ("Texture", "Textur"), "segments", in_report=True),
-    "parts": ProductRow(PartMap, ("Parts", "Teile"), "parts", in_report=True),
-    "simplified": ProductRow(PartMap, ("Legible parts", "Lesbare Teile"), "parts"),
-    "materials": ProductRow(MaterialMap, ("Materials", "Materialien"), in_report=True),
-    "surface": ProductRow(HapticSurface, ("Surface", "Oberfläche"), "relief", in_report=True),
-    "touch": ProductRow(None, ("Force law", "Kraftgesetz")),
+    "disparity": ProductRow(DisparityMap, "disparity", in_report=True),
+    "relief": ProductRow(Relief, "relief"),
+    "segments": ProductRow(SegmentMap, "segments", in_report=True),
+    "parts": ProductRow(PartMap, "parts", in_report=True),
+    "simplified": ProductRow(PartMap, "parts"),
+    "materials": ProductRow(MaterialMap, in_report=True),
+    "surface": ProductRow(HapticSurface, "relief", in_report=True),
+    "touch": ProductRow(None),
 }
 """Every product, in the order in which a picture becomes a force."""
 EXPORTABLE = tuple(name for name, row in PRODUCTS.items() if row.record is not None)

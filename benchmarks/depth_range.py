@@ -4,7 +4,7 @@ from functools import partial
 
 import numpy as np
 
-from tangible_depth.search.disparity_range import asked_span
+from tangible_depth.search.disparity_range import find_disparity_range
 from tangible_depth.search.range_in_bands import find_range
 from tangible_depth.semi_global import SemiGlobal
 
@@ -61,7 +61,7 @@ def _between() -> Figure:
 
 def coverage(scene: KnownScene) -> float:
     """Share of the true disparities within the range that is tried, in percent."""
-    span, truth = asked_span(scene.grey, "auto", "auto").span, scene.pair.truth_px
+    span, truth = find_disparity_range(scene.grey, "auto", "auto").span, scene.pair.truth_px
     truth = truth[np.isfinite(truth)]
     return 100 * float(np.mean((truth >= span.low) & (truth <= span.high)))
 

@@ -10,7 +10,7 @@ from tangible_core.data import Views
 from tangible_core.plugins.notes import collected
 from tangible_core.testing.synthetic.stereo_scenes import synthetic_pair
 from tangible_depth.rectify.homographies import camera_matrix, inverse, rotation, transform
-from tangible_depth.rectify.lenses import distorted, undistorted
+from tangible_depth.rectify.lenses import distort, undistort
 from tangible_depth.rectify.rectification import rectify, whole_picture_matches
 from tangible_depth.semi_global import SemiGlobal
 
@@ -42,11 +42,11 @@ class Taken(NamedTuple):
 
     def place_px(self, points_px: np.ndarray) -> np.ndarray:
         """Where this picture shows points (n, 2) of the rectified one."""
-        return distorted(transform(self.homography(), points_px), self.radial, SHAPE)
+        return distort(transform(self.homography(), points_px), self.radial, SHAPE)
 
     def source_px(self) -> np.ndarray:
         """Which point of the rectified picture each pixel shows, (h w, 2)."""
-        return transform(inverse(self.homography()), undistorted(_pixels(), self.radial, SHAPE))
+        return transform(inverse(self.homography()), undistort(_pixels(), self.radial, SHAPE))
 
 
 CAMERAS = {

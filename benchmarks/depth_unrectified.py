@@ -10,7 +10,7 @@ from tangible_core.data import Views
 from tangible_core.metrics import disparity_errors
 from tangible_depth.rectify.homographies import camera_matrix, rotation, transform
 from tangible_depth.rectify.rectification import rectify
-from tangible_depth.rectify.rectified_pair import RectifiedPair, warped
+from tangible_depth.rectify.rectified_pair import RectifiedPair, warp_pair
 from tangible_depth.semi_global import SemiGlobal
 
 from .depth_pairs import KnownScene, real, synthetic
@@ -122,7 +122,7 @@ def own_row_offset_px(scene: KnownScene) -> float:
 
 def undone(rolled: Rolled) -> RectifiedPair:
     """The pair rectified by what rolled it: whatever is lost then, no better geometry brings back."""
-    return warped(rolled.views, (np.eye(3), np.linalg.inv(rolled.homography)), "the roll undone")
+    return warp_pair(rolled.views, (np.eye(3), np.linalg.inv(rolled.homography)), "the roll undone")
 
 
 def loss(scene: KnownScene, rolled: Rolled, rectified: RectifiedPair) -> float:

@@ -51,7 +51,7 @@ from tangible_core.scene.scaling import enlarged, enlarged_segments, reduced
 from tangible_core.scene.scene import Scene
 from tangible_depth.rectify.alignment import aligning_lenses
 from tangible_depth.rectify.rectification import rectify
-from tangible_depth.rectify.rectified_pair import warped
+from tangible_depth.rectify.rectified_pair import warp_pair
 from tangible_depth.sparse.harris import harris_response
 from tangible_depth.sparse.matches import flow_matches, inverse_lengths, sift_matches
 
@@ -149,7 +149,7 @@ def depth() -> Found:
     pairs_of_points = sift_matches(left, right)
     yield "rectified, lenses", aligning_lenses(pairs_of_points, left.shape, 0.0, (-0.08, -0.08))
     straight = turned.left_homography, turned.right_homography
-    yield "rectified, lenses taken out", warped(noisy_pair(), straight, "", 0, (-0.1, -0.08)).views
+    yield "rectified, lenses taken out", warp_pair(noisy_pair(), straight, "", 0, (-0.1, -0.08)).views
     for name, cls, options in ours("depth"):
         for of, views in (("pair", pair()), ("noisy pair", noisy_pair())):
             found = cls(**options).estimate(views)

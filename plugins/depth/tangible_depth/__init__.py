@@ -1,4 +1,4 @@
-"""Depth estimators: pictures to disparity. Each method is imported when it is first used."""
+"""Depth estimators, from pictures to disparity. Each method is imported when it is first used."""
 
 from typing import TYPE_CHECKING
 

@@ -15,9 +15,9 @@ from .dense.integration import gradient, integrate
 
 
 class Contour(DepthEstimator):
-    """Slopes along contours are kept, all others flattened, and a surface fitted to what remains; lighter is nearer.
+    """Slopes along contours are kept, all others flattened, and a surface is fitted to them; lighter is nearer.
 
-    The picture is read in grey.
+    The picture is converted to grey.
 
     A contour is found as Canny finds edges, by two thresholds on the slope, but in its full width, so that each step
     of the relief has the height of the picture's step.
@@ -33,13 +33,12 @@ class Contour(DepthEstimator):
     """Gradient, as a fraction of the picture's steepest, down to which a contour is followed; 0 keeps every
     gradient."""
     least_contrast: Annotated[float, Field(gt=0, le=1)] = 0.004
-    """Gradient, as a fraction of white per pixel, below which nothing is a contour, so that a flat picture stays
-    flat."""
+    """Smallest gradient of a contour, as a fraction of white per pixel, so that a flat picture stays flat."""
 
     def estimate(self, views: Views) -> DisparityMap:
-        """Relative nearness of the left view, 0 far to 1 near; all 0 where there is no contour. The right is not read.
+        """Estimate relative nearness of the left view, 0 far to 1 near; all 0 without a contour. The right is ignored.
 
-        Confidence is 1 where the relief has the slope that the contours ask for, less where they contradict each other.
+        Confidence is 1 where the relief has the slope of the contours, less where they contradict each other.
         """
         import cv2
 
@@ -49,18 +48,18 @@ class Contour(DepthEstimator):
                 grey = cv2.GaussianBlur(grey, (0, 0), self.smoothing_px, borderType=cv2.BORDER_REFLECT)
         x, y = gradient(grey)
         steepness = np.hypot(x, y)
-        kept = self._contours(steepness)
-        x, y = np.where(kept, x, 0), np.where(kept, y, 0)
+        on_contour = self._contours(steepness)
+        x, y = np.where(on_contour, x, 0), np.where(on_contour, y, 0)
         relief = integrate(x, y)
-        got_x, got_y = gradient(relief)
-        error = np.hypot(got_x - x, got_y - y) / max(float(steepness.max()), self.least_contrast)
+        relief_x, relief_y = gradient(relief)
+        error = np.hypot(relief_x - x, relief_y - y) / max(float(steepness.max()), self.least_contrast)
         height = float(np.ptp(relief))
-        # A height below float32's rounding of the picture's own values is none.
+        # A smaller height is rounding error of float32.
         nearness = (relief - relief.min()) / height if height > 1e-6 else np.zeros_like(relief)
         return DisparityMap(nearness.astype(np.float32), (1 / (1 + 10 * error)).astype(np.float32), "relative")
 
     def _contours(self, steepness: Float32[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
-        """Pixels over the weak threshold that hang together with one over the strong (Canny 1986, sec. 5.2)."""
+        """Find pixels over the weak threshold that are connected to one over the strong (Canny 1986, sec. 5.2)."""
         import cv2
 
         steepest = float(steepness.max())

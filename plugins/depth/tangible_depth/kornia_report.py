@@ -17,7 +17,7 @@ from .rectify.fundamental import check_matches
 class KorniaReport(DepthEstimator):
     """Corners and edges, robust eight-point, rectification, correlation along rows, filling from neighbours, by kornia.
 
-    Takes any pair, rectified or not. Matched in grey; colour only says where filling stops.
+    Takes any pair, rectified or not. Matching uses grey; colour only limits the filling.
     Source: as `report`; Riba et al., Kornia, WACV 2020.
     """
 
@@ -39,7 +39,7 @@ class KorniaReport(DepthEstimator):
     ones a GPU."""
 
     def estimate(self, views: Views) -> DisparityMap:
-        """Dense disparity of the left view.
+        """Estimate dense disparity of the left view.
 
         Raises: PictureError without a right view, BrokenMethod without torch or kornia, RectificationError as
         `rectify`.
@@ -63,16 +63,17 @@ class KorniaReport(DepthEstimator):
 
 
 _BORDER = 4
+"""Pixels of padding at the border."""
 
 
 def kornia_response(grey: Grey, torch_device: TorchDevice = "auto") -> Grey:
-    """`harris.harris_response` by kornia, on the same scale; at the border edges repeat."""
+    """Compute `harris.harris_response` by kornia, on the same scale; the picture's edge is repeated outwards."""
     import torch
     from kornia.feature import harris_response
 
-    # kornia mirrors at the border, which takes more rows and columns than the smallest pictures have.
+    # kornia mirrors at the border, which needs more rows and columns than the smallest pictures have.
     picture = torch.from_numpy(np.pad(grey, _BORDER, mode="edge")).to(pick_device(torch_device))[None, None]
-    # It halves (-1, 0, 1), and the response goes with the fourth power of the slope.
+    # kornia halves (-1, 0, 1), and the response is proportional to the fourth power of the slope.
     response = 16 * harris_response(picture, 0.04, grads_mode="diff")[0, 0].cpu().numpy()
     return response[_BORDER:-_BORDER, _BORDER:-_BORDER]
 
@@ -80,7 +81,7 @@ def kornia_response(grey: Grey, torch_device: TorchDevice = "auto") -> Grey:
 def kornia_eight_point(
     left_px: np.ndarray, right_px: np.ndarray, weights: np.ndarray | None = None
 ) -> Float64[np.ndarray, "3 3"]:
-    """`fundamental.eight_point` by kornia, which counts the weights in its normalisation too.
+    """Compute `fundamental.eight_point` by kornia, which also weights its normalisation.
 
     Raises: DegenerateMatches as `check_matches`.
     """
@@ -89,7 +90,7 @@ def kornia_eight_point(
 
     check_matches(left_px, right_px)
     left, right = (torch.from_numpy(np.asarray(points, np.float64))[None] for points in (left_px, right_px))
-    # kornia weighs squares, and its points2^T F points1 = 0 has the left picture second.
+    # kornia weights squares, and its points2^T F points1 = 0 has the left picture second.
     squared = None if weights is None else torch.from_numpy(np.asarray(weights, np.float64) ** 2)[None]
     matrix = find_fundamental(right, left, squared)[0].numpy()
     return matrix / np.linalg.norm(matrix)

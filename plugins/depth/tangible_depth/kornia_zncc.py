@@ -11,17 +11,17 @@ from tangible_core.errors import PictureError
 from tangible_core.plugins.interfaces import DepthEstimator
 from tangible_core.runtime.torch_extra import TorchDevice, need
 
-from .rectify.rectification import with_rectification
-from .sparse.assembling import assemble, without_speckles
+from .rectify.rectification import estimate_rectified
+from .sparse.assembling import assemble, erase_speckles
 from .sparse.corner_range import range_of_pair
 
 
 class KorniaZNCC(DepthEstimator):
     """Zero-mean normalised cross-correlation of every pixel, parabola, left-right check, holes filled by colour.
 
-    Matched in grey; colour only says where filling stops.
+    Matching uses grey; colour only limits the filling.
 
-    The blocks it is made of (`torch_zncc`) take batches and give gradients; this method takes one pair.
+    Its functions (`torch_zncc`) accept batches and provide gradients; this method takes one pair.
     """
 
     needs_pair: ClassVar[bool] = True
@@ -40,14 +40,14 @@ class KorniaZNCC(DepthEstimator):
     ones a GPU."""
 
     def estimate(self, views: Views) -> DisparityMap:
-        """Dense disparity of the left view.
+        """Estimate dense disparity of the left view.
 
         Raises: PictureError without a right view, BrokenMethod without torch, RectificationError as `rectify`.
         """
         need("torch")
         if views.right is None:
             raise PictureError("kornia-zncc needs two views; give a right one")
-        return self._match(views) if self.rectify == "never" else with_rectification(views, self._match)
+        return self._match(views) if self.rectify == "never" else estimate_rectified(views, self._match)
 
     def _match(self, views: Views) -> DisparityMap:
         from .windows.torch_zncc import match_pair
@@ -56,7 +56,7 @@ class KorniaZNCC(DepthEstimator):
         left, right = to_grey(views.left), to_grey(views.right)
         low, high = range_of_pair(left, right, self.max_disparity_px)
         disparity, score = match_pair(left, right, low, high, self.window_px, self.torch_device, self.memory_mb)
-        disparity = without_speckles(disparity)
+        disparity = erase_speckles(disparity)
         filled = assemble(disparity, score, views.left)
         known = np.isfinite(disparity)
         return DisparityMap(np.where(known, disparity, filled.disparity_px), np.where(known, score, filled.confidence))

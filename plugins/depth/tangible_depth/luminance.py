@@ -22,21 +22,21 @@ class Luminance(DepthEstimator):
     """
 
     smoothing_px: Annotated[int, Field(ge=0, le=1000)] = 2
-    """Radius of the smoothing window; 0 leaves the picture as it is."""
+    """Radius of the smoothing window; 0 for no smoothing."""
     edge_contrast: Annotated[float, Field(gt=0, le=1)] = 0.05
     """Standard deviation within a window, white being 1, above which it counts as an edge and is not smoothed."""
 
     def estimate(self, views: Views) -> DisparityMap:
-        """Relative disparity 0 (darkest) .. 1 (lightest), known everywhere with confidence 1."""
+        """Estimate relative disparity 0 (darkest) .. 1 (lightest), known everywhere with confidence 1."""
         grey = to_grey(views.left).astype(np.float64)
         if self.smoothing_px:
             with plain_opencv():
-                grey = _guided(grey, self.smoothing_px, self.edge_contrast)
-        return DisparityMap(_stretched(grey), unit="relative")
+                grey = _guided_filter(grey, self.smoothing_px, self.edge_contrast)
+        return DisparityMap(_stretch(grey), unit="relative")
 
 
-def _guided(grey: Float64[np.ndarray, "h w"], radius_px: int, contrast: float) -> Float64[np.ndarray, "h w"]:
-    """The guided filter with guide = input: in each window out = a grey + b, a = var / (var + contrast^2)."""
+def _guided_filter(grey: Float64[np.ndarray, "h w"], radius_px: int, contrast: float) -> Float64[np.ndarray, "h w"]:
+    """Apply the guided filter with guide = input: in each window out = a grey + b, a = var / (var + contrast^2)."""
     import cv2
 
     def mean(values: np.ndarray) -> np.ndarray:
@@ -49,7 +49,7 @@ def _guided(grey: Float64[np.ndarray, "h w"], radius_px: int, contrast: float) -
     return mean(slope) * grey + mean((1 - slope) * average)
 
 
-def _stretched(grey: Float64[np.ndarray, "h w"]) -> Float32[np.ndarray, "h w"]:
+def _stretch(grey: Float64[np.ndarray, "h w"]) -> Float32[np.ndarray, "h w"]:
     low, high = float(grey.min()), float(grey.max())
     if high - low <= 4 * np.finfo(np.float32).eps:
         return np.zeros(grey.shape, np.float32)

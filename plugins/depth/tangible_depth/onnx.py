@@ -1,4 +1,4 @@
-"""Method `onnx`: depth by a trained network that the user brings."""
+"""Method `onnx`: depth by a trained network from the user."""
 
 import logging
 from pathlib import Path
@@ -15,7 +15,7 @@ from tangible_core.plugins.notes import note
 
 from .network.card import PRESETS, Card, check_file, read_card
 from .network.conversion import to_disparity
-from .network.fitting import Colours, Map, cut_back, fit_for, in_strips, tensor
+from .network.fitting import Colours, Map, fit_size, map_in_strips, restore_size, tensor
 from .network.runtimes import Runtime, run
 
 log = logging.getLogger(__name__)
@@ -24,8 +24,8 @@ log = logging.getLogger(__name__)
 class Onnx(DepthEstimator, Skippable):
     """A trained network in an ONNX file, for one picture or for a rectified pair; none is shipped or downloaded.
 
-    A card says what the network takes and what its numbers mean: disparity in pixels, inverse depth, depth, or metres.
-    From one picture, what comes out is nearness in 0..1; metres become a disparity where the cameras are known.
+    A card describes the network's input and the meaning of its output: disparity in pixels, inverse depth, depth, or
+    metres. From one picture, the result is nearness in 0..1; metres become a disparity if the cameras are known.
     A picture of more than `most_px` pixels is matched in strips of rows if its map is in pixels, and reduced otherwise.
 
     Source: that of the network, which its card names.
@@ -34,41 +34,41 @@ class Onnx(DepthEstimator, Skippable):
     model: Path | None = None
     """The ONNX file."""
     card: str = ""
-    """What the network takes and gives: the name of a card that is shipped (depth-anything-v2-small, ...), or a YAML
-    file; empty for the YAML file of the model's name beside it."""
+    """Description of the network: the name of a shipped card (depth-anything-v2-small, ...), or a YAML file; empty for
+    the YAML file next to the model with its name."""
     runtime: Runtime = "opencv"
-    """What runs it: `opencv` (5 or newer), or `onnxruntime` where that is installed, which uses a graphics card."""
+    """Library that runs the network: `opencv` (5 or newer), or `onnxruntime` if installed, which can use a GPU."""
     most_px: Annotated[int, Field(ge=4096, le=100_000_000)] = 600_000
-    """Most pixels that the network sees at once: memory grows with them."""
+    """Largest number of pixels of the network's input: its memory grows with them."""
 
     @property
     def needs_pair(self) -> bool:  # pyright: ignore[reportIncompatibleVariableOverride] - it depends on the network
-        """Whether the network takes two views, as far as its card can be read."""
+        """True for a network of two views; False if its card cannot be read."""
         try:
             return self.model is not None and self._card(self.model).is_stereo
         except (TangibleError, OSError):
             return False
 
     def reads(self) -> tuple[Path, ...]:
-        """The network and its card."""
+        """Return the network and its card."""
         return () if self.model is None else (self.model, *filter(None, [self._card_file(self.model)]))
 
     def skip(self, views: Views) -> str | None:
-        """Two views that are identical show no depth to a network that compares them."""
+        """Return the reason to skip a pair of identical views, which shows no depth."""
         if views.right is not None and self.needs_pair and np.array_equal(views.left, views.right):
             return "both views are identical: there is no depth to find"
         return None
 
     def estimate(self, views: Views) -> DisparityMap:
-        """Disparity in pixels, or nearness from one picture; NaN where the network gives no number.
+        """Estimate disparity in pixels, or nearness from one picture; NaN where the network returns no number.
 
-        Raises: ModelAbsent if the network is not there, ConfigError for a card or a network that does not fit,
-        PictureError without the right view that it needs.
+        Raises: ModelAbsent without a network file, ConfigError for a card or a network that does not fit, PictureError
+        without a right view that the network needs.
         """
         if self.model is None:
             raise ModelAbsent(
-                "onnx needs a network of your own: depth: {use: onnx, model: FILE.onnx, card: NAME or FILE.yaml}; "
-                f"nothing is downloaded; cards are there for {', '.join(PRESETS)} (docs/learned-depth.md)"
+                "onnx needs a network from you: depth: {use: onnx, model: FILE.onnx, card: NAME or FILE.yaml}; "
+                f"nothing is downloaded; cards are shipped for {', '.join(PRESETS)} (docs/learned-depth.md)"
             )
         card = self._card(self.model)
         check_file(self.model, card)
@@ -78,12 +78,12 @@ class Onnx(DepthEstimator, Skippable):
                 "use a network for one picture"
             )
         if not card.verified:
-            note(log, f"the card of {card.title} was never tried with its network: look whether near is high")
-        found, sure = self._maps(self.model, card, to_rgb(views.left), _right(views, card))
-        return to_disparity(found, sure, card.output.means, views)
+            note(log, f"the card of {card.title} was never tested with its network: check that near is high")
+        values, sure = self._maps(self.model, card, to_rgb(views.left), _right(views, card))
+        return to_disparity(values, sure, card.output.means, views)
 
     def _maps(self, model: Path, card: Card, left: Colours, right: Colours | None) -> tuple[Map, Map | None]:
-        """What the network gives, and how sure it is of it, in the size of the picture."""
+        """Return the network's map and its confidence, if any, in the size of the picture."""
         most_px, (height, width) = self.most_px, left.shape[:2]
         in_pixels = card.output.means == "disparity-px" and card.input.size_px is None
         limit = height * width if in_pixels else most_px
@@ -92,24 +92,24 @@ class Onnx(DepthEstimator, Skippable):
             views = [each[rows] for each in (left, right) if each is not None]
             return self._run(model, card, views, limit)
 
-        maps = in_strips((height, width), most_px if in_pixels else height * width, card.input.multiple, work)
+        maps = map_in_strips((height, width), most_px if in_pixels else height * width, card.input.multiple, work)
         return maps[0], maps[1] if len(maps) > 1 else None
 
     def _run(self, model: Path, card: Card, views: list[Colours], most_px: int) -> list[Map]:
         takes, gives = card.input, card.output
         shape: tuple[int, int] = views[0].shape[:2]
-        fit = fit_for(shape, takes, most_px)
+        fit = fit_size(shape, takes, most_px)
         names = (takes.left, takes.right) if len(views) == 2 else (takes.left,)
         inputs = {name: tensor(view, takes, fit) for name, view in zip(names, views, strict=True)}
         wanted = [gives.name, gives.confidence] if gives.confidence else [gives.name]
-        found = run(model, self.runtime, inputs, wanted)
+        outputs = run(model, self.runtime, inputs, wanted)
         maps: list[Map] = []
-        for name, each in zip(wanted, found, strict=True):
-            values = cut_back(each, fit, shape)
+        for name, each in zip(wanted, outputs, strict=True):
+            values = restore_size(each, fit, shape)
             if values is None:
                 raise ConfigError(
-                    f"model: {model} gives {name or 'an output'} of {each.shape}, which is no map; name another output "
-                    "in the card"
+                    f"model: {model} returns {name or 'an output'} of {each.shape}, which is not a map; name another "
+                    "output in the card"
                 )
             maps.append(values)
         if gives.means == "disparity-px":
@@ -120,12 +120,12 @@ class Onnx(DepthEstimator, Skippable):
         return read_card(self._card_file(model) or self.card)
 
     def _card_file(self, model: Path) -> Path | None:
-        """Where the card stands; None for one that is shipped. A relative file is looked for beside the network too."""
+        """Return the card's file; None for a shipped card. A relative file may also lie next to the network."""
         if self.card in PRESETS:
             return None
-        named = Path(self.card) if self.card else model.with_suffix(".yaml")
-        beside = model.parent / named
-        return beside if beside.is_file() else named
+        path = Path(self.card) if self.card else model.with_suffix(".yaml")
+        next_to_model = model.parent / path
+        return next_to_model if next_to_model.is_file() else path
 
 
 def _right(views: Views, card: Card) -> Colours | None:

@@ -16,21 +16,21 @@ from tangible_core.scene.geometry import fill_rows
 from .dense.left_right import left_right_confidence
 
 MODES = {"sgbm": 0, "hh": 1, "3way": 2, "hh4": 3}
-"""OpenCV's numbers of its variants."""
+"""Variants of the matcher and their numbers in OpenCV."""
 
 STEP = 16
-"""OpenCV searches multiples of 16 disparities, and counts in sixteenths of a pixel."""
+"""Steps of a pixel in OpenCV's disparities, and the number of which its range must be a multiple."""
 
 AGREEMENT_PX, DERIVATIVE_CAP = 1, 63
-"""OpenCV's own left-right check, and where it clips the derivatives that it compares."""
+"""Tolerance of OpenCV's own left-right check, in pixels, and the limit of the derivatives that it compares."""
 
 
 class OpenCVSGBM(DepthEstimator, Skippable):
     """OpenCV's semi-global block matching of a rectified pair.
 
-    Penalties are those that OpenCV's documentation recommends for one channel, P1 = 8 b^2 and P2 = 32 b^2 for blocks
-    of side b. Views are matched in grey, at eight bits. They are padded sideways, so that every column gets a
-    disparity. A block without any change along its rows stays unknown: OpenCV would invent one.
+    Penalties follow OpenCV's documentation for one channel, P1 = 8 b^2 and P2 = 32 b^2 for blocks of side b. Views are
+    matched in grey, at eight bits. They are padded sideways, so that every column gets a disparity. A block without any
+    change along its rows stays unknown: OpenCV would invent a disparity.
 
     Source: Hirschmueller, PAMI 2008; Birchfield & Tomasi, PAMI 1998, for the cost.
     """
@@ -44,9 +44,9 @@ class OpenCVSGBM(DepthEstimator, Skippable):
     min_disparity_px: Annotated[int, Field(ge=-2016, le=2016)] = 0
     """Smallest disparity searched; negative where the cameras converge."""
     max_disparity_px: Annotated[int, Field(ge=-2016, le=2016)] = 64
-    """Disparities below this one are searched."""
+    """Upper end of the search range, exclusive."""
     uniqueness_percent: Annotated[int, Field(ge=0, le=99)] = 10
-    """Margin by which the best cost must beat all others but its neighbours; otherwise the disparity is unknown."""
+    """Margin by which the best cost must beat all others except its neighbours; otherwise the disparity is unknown."""
     speckle_size: Annotated[int, Field(ge=0)] = 100
     """Speckles of at most this many pixels are removed; 0 keeps all."""
     speckle_step_px: Annotated[int, Field(ge=1, le=16)] = 2
@@ -68,13 +68,13 @@ class OpenCVSGBM(DepthEstimator, Skippable):
         return self
 
     def skip(self, views: Views) -> str | None:
-        """A second view identical to the first shows no depth."""
+        """Return the reason to skip a pair of identical views, which shows no depth."""
         if views.right is not None and np.array_equal(views.left, views.right):
             return "both views are identical: there is no depth to find"
         return None
 
     def estimate(self, views: Views) -> DisparityMap:
-        """Disparity in pixels, NaN where unknown; confidence by `left_right_confidence`.
+        """Estimate disparity in pixels, NaN if unknown; confidence by `left_right_confidence`.
 
         Raises: PictureError if there is no right view, or the pair is too large for the mode.
         """
@@ -83,16 +83,16 @@ class OpenCVSGBM(DepthEstimator, Skippable):
                 "stereo needs two views, but this scene has one; use a method for a single picture, such as luminance"
             )
         left, right = _eight_bits(views.left, views.right)
-        found = np.where(_has_texture(left, self.block_px), self._match(left, right), np.float32(np.nan))
-        confidence = np.isfinite(found).astype(np.float32)
+        disparity = np.where(_has_texture(left, self.block_px), self._match(left, right), np.float32(np.nan))
+        confidence = np.isfinite(disparity).astype(np.float32)
         if self.second_pass:
-            confidence = left_right_confidence(found, self._match(right[:, ::-1], left[:, ::-1])[:, ::-1])
-        if self.fill and not np.isnan(found).all():
-            found = fill_rows(found)
-        return DisparityMap(found, confidence)
+            confidence = left_right_confidence(disparity, self._match(right[:, ::-1], left[:, ::-1])[:, ::-1])
+        if self.fill and not np.isnan(disparity).all():
+            disparity = fill_rows(disparity)
+        return DisparityMap(disparity, confidence)
 
     def _match(self, left: UInt8[np.ndarray, "h w"], right: UInt8[np.ndarray, "h w"]) -> Float32[np.ndarray, "h w"]:
-        """Disparity of the left view, NaN where unknown; the range is first cut to what fits into the picture."""
+        """Match the left view, NaN if unknown; the range is first clipped to the picture's width."""
         width = left.shape[1]
         low, high = max(self.min_disparity_px, 1 - width), min(self.max_disparity_px, width)
         if low >= high:
@@ -104,11 +104,14 @@ class OpenCVSGBM(DepthEstimator, Skippable):
     def _compute(
         self, left: UInt8[np.ndarray, "h w"], right: UInt8[np.ndarray, "h w"], low: int, count: int
     ) -> Float32[np.ndarray, "h w"]:
-        """OpenCV's answer for `count` disparities from `low`, in pixels; unknown is below `low`."""
+        """Run OpenCV for `count` disparities from `low`, in pixels; unknown ones are below `low`."""
         import cv2
 
         block = self.block_px
-        before, after = max(low + count, 0), max(-low, 0) + block // 2  # what OpenCV leaves out, and its least width
+        before, after = (
+            max(low + count, 0),
+            max(-low, 0) + block // 2,
+        )  # columns that OpenCV leaves out, and its least width
         matcher = cv2.StereoSGBM.create(
             minDisparity=low,
             numDisparities=count,
@@ -134,9 +137,9 @@ class OpenCVSGBM(DepthEstimator, Skippable):
 
 
 def _eight_bits(left: np.ndarray, right: np.ndarray) -> list[UInt8[np.ndarray, "h w"]]:
-    """Both views in grey, brightened together by a power of two where they leave the upper half unused.
+    """Convert both views to grey, multiplied by a power of two if they leave the upper half of the range unused.
 
-    So a 12-bit pair in 16-bit files keeps its detail, and a picture gives the same in any type.
+    So a 12-bit pair in 16-bit files keeps its detail, and a picture gives the same result in any type.
     """
     greys = [np.clip(to_grey(view), 0, 1) for view in (left, right)]
     peak = max(float(grey.max()) for grey in greys)
@@ -145,11 +148,11 @@ def _eight_bits(left: np.ndarray, right: np.ndarray) -> list[UInt8[np.ndarray, "
 
 
 def _has_texture(grey: UInt8[np.ndarray, "h w"], block_px: int) -> Bool[np.ndarray, "h w"]:
-    """Whether anything changes along the rows within the block round a pixel, one of 3 px at least."""
+    """Test each pixel for a change along the rows within its block, of at least 3 px."""
     import cv2
 
     change = np.zeros(grey.shape, np.uint8)
     change[:, 1:] = grey[:, 1:] != grey[:, :-1]
     side = max(block_px, 3)
-    # A change lies between two columns, so the block holds one column of changes less than of pixels.
+    # A change lies between two columns, so a block has one column of changes less than of pixels.
     return cv2.dilate(change, np.ones((side, side - 1), np.uint8), anchor=(side // 2 - 1, side // 2)) > 0

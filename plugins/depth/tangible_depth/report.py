@@ -1,4 +1,4 @@
-"""Method `report`: the documented baseline, the chain of the report "Tangible Images" as it is written there."""
+"""Method `report`: the documented baseline, the chain of the report "Tangible Images"."""
 
 from typing import Annotated, ClassVar, Literal
 
@@ -18,10 +18,10 @@ from .sparse.matches import inverse_lengths
 class Report(DepthEstimator):
     """Harris corners and edges, robust eight-point, rectification, correlation along rows, filling from neighbours.
 
-    Takes any pair, rectified or not. Everything is matched in grey; colour only says where filling stops. The report
-    measures disparity as the Euclidean distance of two matched points: after rectification that is the horizontal
-    shift. It also names a Hough transform for sub-pixel accuracy, which is no way to it: a parabola through the best
-    score and its neighbours is used.
+    Takes any pair, rectified or not. Matching uses grey; colour only limits the filling. The report measures
+    disparity as the Euclidean distance of two matched points, which is the horizontal shift after rectification. It
+    also proposes a Hough transform for sub-pixel accuracy, which does not provide it: a parabola through the best score
+    and its neighbours is used.
     Source: Harris & Stephens 1988; Hartley 1997; Fusiello & Irsara 2011; Gastal & Oliveira 2011.
     """
 
@@ -40,7 +40,7 @@ class Report(DepthEstimator):
     """Largest disparity searched, from 0; `auto` takes the range, of either sign, from matched corners."""
 
     def estimate(self, views: Views) -> DisparityMap:
-        """Dense disparity of the left view.
+        """Estimate dense disparity of the left view.
 
         Raises: PictureError without a right view, RectificationError as `rectify`.
         """

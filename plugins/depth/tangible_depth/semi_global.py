@@ -15,9 +15,9 @@ if TYPE_CHECKING:
 class SemiGlobal(DepthEstimator, Following):
     """Semi-global matching of census codes along four paths: precise at depth edges, robust to exposure and noise.
 
-    What a pair does not need is left out and said: the search of disparities that do not occur, rows without texture,
-    a second view that equals the first. A pair whose views are exchanged is matched as well: its disparities are
-    negative, and a warning says so. Rows that miss each other by a constant are put right.
+    Steps that a pair does not need are skipped, with a note: disparities that do not occur, rows without texture, a
+    second view that equals the first. A pair whose views are exchanged is matched as well: its disparities are
+    negative, and a warning is logged. A constant vertical offset between the rows is corrected.
     Colour is reduced to grey.
 
     Memory above the pictures: about 25 bytes a pixel, measured to 18 megapixels, and at most 256 MiB for the cost
@@ -34,15 +34,15 @@ class SemiGlobal(DepthEstimator, Following):
     """Lower end of the search range; auto: 0 if the upper end is given, otherwise estimated with it, of either sign."""
     resolution: Literal["full", "half", "auto"] = "auto"
     """Resolution of the matching. auto: full, unless the search range is too large. half: a preview in a fraction of
-    the time, without tests for noise and for vertical offset: `cost` auto is sharp, and rows are taken as they are."""
+    the time, without tests for noise and for vertical offset: `cost` auto is sharp, and rows are not realigned."""
     effort: Literal["balanced", "best"] = "balanced"
-    """best: grey levels are compared besides their order where both views were exposed alike (`cost`: levels), and
-    gaps are filled from eight sides in place of four, surfaces going on as they lie; about 8 % fewer wrong pixels than
-    balanced for about half as much processor time again."""
+    """best: grey levels are compared besides their order if both views have the same exposure (`cost`: levels), and
+    gaps are filled from eight directions instead of four, along the plane of each surface; about 8 % fewer wrong pixels
+    than balanced for about half as much processor time again."""
     cost: Literal["auto", "sharp", "levels", "light", "heavy"] = "auto"
-    """Matching cost: sharp compares the order of grey values, levels the values as well, for clean pictures whose views
-    were exposed alike; light and heavy are for light and heavy noise; auto: chosen by a test on part of the picture,
-    among levels as well with `effort: best`."""
+    """Matching cost: sharp compares the order of grey values, levels the values as well, for clean pictures of the
+    same exposure; light and heavy are for light and heavy noise; auto: chosen by a test on part of the picture, with
+    `effort: best` among levels as well."""
     rectify: Literal["auto", "never"] = "auto"
     """auto: rectify a pair whose rows do not correspond; never: take every pair as rectified."""
     check: Literal["soft", "strict"] = "soft"
@@ -59,25 +59,25 @@ class SemiGlobal(DepthEstimator, Following):
     """Strips without any change along their rows: fill them and skip the matching."""
 
     def estimate(self, views: Views) -> DisparityMap:
-        """Disparity in pixels, float32 (h, w), and its confidence; a filled map is finite unless nothing matched.
+        """Estimate disparity in pixels, float32 (h, w), and its confidence; a filled map is finite if anything matched.
 
         Confidence: 0.2 up to 1 - (differing bits along the winner's four paths) / (all bits) where a match was found;
-        0 up to 0.1 where the value was filled or decided by a neighbour; less in either range beside steps of depth
-        and in gaps; 0 where nothing changes along the rows.
+        0 up to 0.1 where the value was filled or decided by a neighbour; less in either range next to depth steps and
+        in gaps; 0 where nothing changes along the rows.
         Raises: PictureError if there is no right view or the range is empty.
         """
         from .matching.chain import disparity_map
 
-        return disparity_map(views, "semi-global", *self._how())
+        return disparity_map(views, "semi-global", *self._search_and_matcher())
 
     def follow(self, views: Views) -> Callable[[Views], DisparityMap]:
-        """`estimate` for a film: rectified as these views need it, over the range of what was seen of late."""
-        from .matching.film import FollowedPair
+        """Return `estimate` for a film: it rectifies by these views and follows the range of recent frames."""
+        from .matching.film import FilmMatcher
 
-        return FollowedPair(views, "semi-global", *self._how())
+        return FilmMatcher(views, "semi-global", *self._search_and_matcher())
 
-    def _how(self) -> "tuple[Search, Matcher]":
-        """What the chain is told, and what matches."""
+    def _search_and_matcher(self) -> "tuple[Search, Matcher]":
+        """Return the options of the chain, and the matcher."""
         from .matching.adaptive import MOST_ROW_OFFSET_PX
         from .matching.chain import Search
         from .matching.scaling import Scaling, match_scaled

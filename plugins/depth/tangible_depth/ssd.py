@@ -39,25 +39,25 @@ class Ssd(DepthEstimator, Following):
     NaN."""
 
     def estimate(self, views: Views) -> DisparityMap:
-        """Disparity in pixels, float32 (h, w), and its confidence; a filled map is finite unless nothing matched.
+        """Estimate disparity in pixels, float32 (h, w), and its confidence; a filled map is finite if anything matched.
 
         Confidence: 0.2 up to exp(-(mean squared difference of grey levels) / 400) where a match was found; 0 up to 0.1
-        where the value was filled or decided by a neighbour; less in either range beside steps of depth and in gaps;
+        where the value was filled or decided by a neighbour; less in either range next to depth steps and in gaps;
         0 where nothing changes along the rows.
         Raises: PictureError if there is no right view or the range is empty.
         """
         from .matching.chain import disparity_map
 
-        return disparity_map(views, "ssd", *self._how())
+        return disparity_map(views, "ssd", *self._search_and_matcher())
 
     def follow(self, views: Views) -> Callable[[Views], DisparityMap]:
-        """`estimate` for a film: rectified as these views need it, over the range of what was seen of late."""
-        from .matching.film import FollowedPair
+        """Return `estimate` for a film: it rectifies by these views and follows the range of recent frames."""
+        from .matching.film import FilmMatcher
 
-        return FollowedPair(views, "ssd", *self._how())
+        return FilmMatcher(views, "ssd", *self._search_and_matcher())
 
-    def _how(self) -> "tuple[Search, Matcher]":
-        """What the chain is told, and what matches."""
+    def _search_and_matcher(self) -> "tuple[Search, Matcher]":
+        """Return the options of the chain, and the matcher."""
         from .matching.chain import Search
         from .matching.window_matching import match_by_difference
 

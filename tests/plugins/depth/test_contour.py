@@ -5,7 +5,7 @@ from tangible_core.data import Views
 from tangible_depth.contour import Contour
 
 
-def test_a_smooth_bump_comes_back_whole_when_every_slope_is_kept():
+def test_smooth_bump_with_all_slopes_kept_is_restored():
     y, x = np.mgrid[:61, :83]
     bump = np.exp(-((x - 40) ** 2 + (y - 30) ** 2) / 200).astype(np.float32)
     found = Contour(smoothing_px=0, weak_edge=0, strong_edge=0.01, least_contrast=1e-6).estimate(Views(bump))
@@ -15,7 +15,7 @@ def test_a_smooth_bump_comes_back_whole_when_every_slope_is_kept():
     assert found.confidence == pytest.approx(1, abs=1e-3)
 
 
-def test_steps_stay_and_shading_goes():
+def test_steps_are_kept_and_shading_is_removed():
     shading = np.tile(np.linspace(0.2, 0.4, 80), (60, 1))
     shading[:, 40:] += 0.4
     relief = Contour(smoothing_px=0).estimate(Views(shading)).disparity_px
@@ -23,7 +23,7 @@ def test_steps_stay_and_shading_goes():
     assert relief[:, 40:] == pytest.approx(1, abs=1e-4)
 
 
-def test_a_blurred_step_keeps_its_whole_height():
+def test_blurred_step_keeps_its_height():
     picture = np.zeros((60, 120), np.uint8)
     picture[:, 40:] = 100
     picture[:, 80:] = 200
@@ -33,7 +33,7 @@ def test_a_blurred_step_keeps_its_whole_height():
 
 @pytest.mark.parametrize("shape", [(20, 30), (1, 1), (1, 9), (9, 1), (20, 30, 3), (20, 30, 4)])
 @pytest.mark.parametrize("dtype", [np.uint8, np.uint16, np.bool_, np.float32, np.float64])
-def test_a_flat_picture_is_flat(shape, dtype):
+def test_flat_picture_is_flat(shape, dtype):
     found = Contour().estimate(Views(np.ones(shape, dtype)))
     assert found.disparity_px.dtype == np.float32
     assert not found.disparity_px.any()
@@ -45,7 +45,7 @@ def test_noise_below_the_least_contrast_is_flat():
     assert not Contour().estimate(Views(noise.astype(np.uint8))).disparity_px.any()
 
 
-def test_the_same_picture_in_other_types_has_the_same_relief():
+def test_relief_is_the_same_for_every_dtype():
     grey = np.random.default_rng(0).integers(0, 256, (40, 50)).astype(np.uint8)
     relief = Contour().estimate(Views(grey)).disparity_px
     assert relief.min() == 0

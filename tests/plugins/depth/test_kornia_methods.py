@@ -17,7 +17,7 @@ METHODS = [KorniaZNCC(), KorniaReport()]
 
 
 @pytest.mark.parametrize("method", METHODS, ids=["zncc", "report"])
-def test_disparity_of_a_known_scene(method):
+def test_known_scene_gives_its_disparity(method):
     scene = Scene()
     found = method.estimate(Views(scene.left(), scene.right()))
     error = np.abs(found.disparity_px - scene.disparity_px())
@@ -27,14 +27,14 @@ def test_disparity_of_a_known_scene(method):
 
 @pytest.mark.parametrize("method", METHODS, ids=["zncc", "report"])
 @pytest.mark.slow
-def test_a_raw_pair_is_rectified_first(method):
+def test_raw_pair_is_rectified_first(method):
     scene = Scene((240, 320), 8.0, 20.0)
     views = Views(scene.left(), scene.right(roll_and_tilt(scene.shape)))
     error = np.abs(method.estimate(views).disparity_px - scene.disparity_px())
     assert np.mean(error[scene.visible()] <= 2) > 0.9
 
 
-def test_rectification_can_be_left_out():
+def test_rectify_never_skips_rectification():
     scene = Scene((240, 320), 8.0, 20.0)
     views = Views(scene.left(), scene.right(roll_and_tilt(scene.shape)))
     error = np.abs(KorniaZNCC(rectify="never").estimate(views).disparity_px - scene.disparity_px())
@@ -65,7 +65,7 @@ def test_fundamental_matrices_agree():
     assert cosine == pytest.approx(1, abs=1e-6)
 
 
-def test_the_robust_estimate_takes_kornias_fit():
+def test_robust_estimate_accepts_kornias_fit():
     matches = some_wrong(*seen_points(noise_px=0.3), 0.3)
     ours, theirs = robust_fundamental(*matches), robust_fundamental(*matches, fit=kornia_eight_point)
     assert np.mean(ours.inliers == theirs.inliers) > 0.95
@@ -74,18 +74,18 @@ def test_the_robust_estimate_takes_kornias_fit():
 
 
 @pytest.mark.parametrize(("method", "missing"), [(METHODS[0], "torch"), (METHODS[1], "torch"), (METHODS[1], "kornia")])
-def test_without_the_extra_the_error_says_how_to_get_it(method, missing, monkeypatch):
+def test_error_without_the_extra_gives_the_cure(method, missing, monkeypatch):
     monkeypatch.setitem(sys.modules, missing, None)
     with pytest.raises(TangibleError, match=rf"{missing}.*pip install 'tangible-images\[torch\]'"):
         method.estimate(Views(np.zeros((20, 20)), np.zeros((20, 20))))
 
 
-def test_what_is_no_module_of_the_extra_is_named():
+def test_module_outside_the_extra_is_named():
     with pytest.raises(BrokenMethod, match="needs torch"):
         need("torch.no_such_part")
 
 
-def test_a_gpu_is_asked_for_only_where_there_is_one(monkeypatch):
+def test_missing_gpu_is_refused(monkeypatch):
     import torch
 
     monkeypatch.setattr(torch.cuda, "is_available", lambda: False)

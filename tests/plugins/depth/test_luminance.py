@@ -15,21 +15,21 @@ def raw(picture):
 
 
 @pytest.mark.parametrize("dtype", [np.uint8, np.uint16, np.float32])
-def test_lighter_is_nearer_and_all_shades_count(dtype):
+def test_lighter_pixels_are_nearer_at_every_shade(dtype):
     found = raw(np.array([[10, 20], [30, 50]], dtype) / dtype(100 if dtype == np.float32 else 1))
     np.testing.assert_allclose(found.disparity_px, [[0, 0.25], [0.5, 1]], atol=1e-6)
     assert found.unit == "relative"
     assert (found.confidence == 1).all()
 
 
-def test_luma_is_what_counts_as_light():
+def test_luma_gives_the_nearness_of_colours():
     found = raw(np.uint8([[[0, 0, 0], [255, 0, 0], [0, 255, 0], [0, 0, 255], [255, 255, 255]]]))
     np.testing.assert_allclose(found.disparity_px, [[0, 0.299, 0.587, 0.114, 1]], atol=1e-6)
 
 
 @pytest.mark.parametrize("smoothing_px", [0, 2, 50])
 @pytest.mark.parametrize("shape", [(1, 1), (1, 9), (9, 1), (20, 30), (20, 30, 3), (20, 30, 4)])
-def test_a_picture_of_one_shade_is_flat_at_zero(shape, smoothing_px):
+def test_picture_of_one_shade_is_flat_at_zero(shape, smoothing_px):
     found = Luminance(smoothing_px=smoothing_px).estimate(Views(np.full(shape, 77, np.uint8)))
     assert found.disparity_px.shape == shape[:2]
     assert not found.disparity_px.any()

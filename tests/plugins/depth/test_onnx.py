@@ -34,11 +34,11 @@ def networks(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def card(tmp_path: Path):
     """Writes a card for a network, and gives the method."""
 
-    def made(model: Path, text: str, **options) -> Onnx:
+    def create(model: Path, text: str, **options) -> Onnx:
         (tmp_path / "card.yaml").write_text(text)
         return Onnx(model=model, card=str(tmp_path / "card.yaml"), **options)
 
-    return made
+    return create
 
 
 def picture(rows: int = 40, columns: int = 50, seed: int = 0) -> np.ndarray:
@@ -50,7 +50,7 @@ def nearness(values: np.ndarray) -> np.ndarray:
 
 
 @pytest.mark.parametrize("runtime", RUNTIMES)
-def test_inverse_depth_is_nearness(networks: Path, runtime):
+def test_inverse_depth_becomes_nearness(networks: Path, runtime):
     seen = picture()
     found = Onnx(model=networks / "mono.onnx", runtime=runtime).estimate(Views(seen))
     assert found.unit == "relative"
@@ -59,14 +59,14 @@ def test_inverse_depth_is_nearness(networks: Path, runtime):
 
 
 @pytest.mark.parametrize("runtime", RUNTIMES)
-def test_a_pair_is_matched_in_pixels(networks: Path, runtime):
+def test_stereo_network_gives_pixels(networks: Path, runtime):
     found = Onnx(model=networks / "stereo.onnx", runtime=runtime).estimate(wall(6.0))
     assert found.unit == "px"
     assert np.median(np.abs(found.disparity_px - 6)) < 0.2
 
 
 @pytest.mark.parametrize("name", ["vit_like", "raft_like"])
-def test_both_runtimes_run_what_transformers_and_rafts_have(tmp_path: Path, card, name: str):
+def test_both_runtimes_run_operators_of_transformers_and_rafts(tmp_path: Path, card, name: str):
     model = getattr(onnx_models, name)(tmp_path / f"{name}.onnx")
     mono = name == "vit_like"
     text = "input: {size_px: [56, 70]}\noutput: {means: inverse-depth}" if mono else (
@@ -77,7 +77,7 @@ def test_both_runtimes_run_what_transformers_and_rafts_have(tmp_path: Path, card
     np.testing.assert_allclose(one.disparity_px, other.disparity_px, atol=1e-3 * np.ptp(one.disparity_px))
 
 
-def test_what_goes_in_is_as_the_card_says(tmp_path: Path, card):
+def test_input_is_normalised_as_in_the_card(tmp_path: Path, card):
     """The network gives the mean of what it gets."""
     model, seen = onnx_models.mono(tmp_path / "m.onnx"), picture()
     plain = "output: {means: disparity-px}"
@@ -91,7 +91,7 @@ def test_what_goes_in_is_as_the_card_says(tmp_path: Path, card):
 
 
 @pytest.mark.parametrize("shape", [(40, 50), (1, 1), (3, 200), (32, 64)])
-def test_a_padded_picture_comes_back_in_its_size(networks: Path, card, shape: tuple[int, int]):
+def test_padded_picture_gives_a_map_of_its_size(networks: Path, card, shape: tuple[int, int]):
     seen = picture(*shape)
     text = "input: {multiple: 32}\noutput: {means: disparity-px}"
     found = card(networks / "mono.onnx", text).estimate(Views(seen))
@@ -99,7 +99,7 @@ def test_a_padded_picture_comes_back_in_its_size(networks: Path, card, shape: tu
 
 
 @pytest.mark.parametrize("text", ["multiple: 32, fit: resize", "size_px: [32, 160]"])
-def test_a_resized_pair_is_matched_in_pixels_of_the_picture(tmp_path: Path, card, text: str):
+def test_resized_pair_gives_pixels_of_the_picture(tmp_path: Path, card, text: str):
     """6 pixels of 320 are 3 of 160."""
     model = onnx_models.stereo(tmp_path / "s.onnx")
     told = card(model, f"input: {{left: left, right: right, {text}}}\noutput: {{means: disparity-px}}")
@@ -108,7 +108,7 @@ def test_a_resized_pair_is_matched_in_pixels_of_the_picture(tmp_path: Path, card
     assert abs(np.median(found.disparity_px) - 6) < 1
 
 
-def test_strips_keep_memory_in_bounds_and_meet(networks: Path, monkeypatch: pytest.MonkeyPatch):
+def test_strips_bound_the_input_and_blend(networks: Path, monkeypatch: pytest.MonkeyPatch):
     from tangible_depth import onnx as method
 
     sizes: list[int] = []
@@ -143,18 +143,18 @@ class TestMeaning:
         text = f"input: {{white: 5}}\noutput: {{means: {means}}}"
         return card(networks / "mono.onnx", text).estimate(Views(seen, None, calibration))
 
-    def test_depth_is_turned_round(self, card, networks: Path):
+    def test_depth_is_inverted(self, card, networks: Path):
         found = self.estimate(card, networks, "depth")
         assert found.unit == "relative"
         np.testing.assert_allclose(found.disparity_px, nearness(1 / self.DEPTH), atol=1e-4)
 
-    def test_metres_are_a_disparity_where_the_cameras_are_known(self, card, networks: Path):
+    def test_metres_with_known_cameras_become_disparity(self, card, networks: Path):
         found = self.estimate(card, networks, "depth-m", Calibration(900.0, 0.2, 31.0))
         assert found.unit == "px"
         np.testing.assert_allclose(found.disparity_px, 900 * 0.2 / self.DEPTH - 31, rtol=1e-4)
         assert self.estimate(card, networks, "depth-m").unit == "relative"
 
-    def test_what_is_no_distance_is_unknown(self, card, networks: Path):
+    def test_invalid_distances_are_unknown(self, card, networks: Path):
         text = "input: {mean: [0.5, 0.5, 0.5]}\noutput: {means: depth-m}"
         seen = picture()
         found = card(networks / "mono.onnx", text).estimate(Views(seen))
@@ -162,35 +162,37 @@ class TestMeaning:
         assert (np.isnan(found.disparity_px) == unknown).mean() > 0.999
         assert (found.confidence[np.isnan(found.disparity_px)] == 0).all()
 
-    def test_a_network_says_how_sure_it_is(self, card, tmp_path: Path):
+    def test_confidence_output_is_used(self, card, tmp_path: Path):
         model = onnx_models.mono(tmp_path / "c.onnx", confidence=True)
         text = "output: {name: inverse_depth, means: inverse-depth, confidence: sure}"
         seen = picture()
         found = card(model, text).estimate(Views(seen))
         np.testing.assert_allclose(found.confidence, seen.mean(axis=2) / 2, atol=1e-5)
 
-    def test_a_flat_answer_is_flat(self, card, networks: Path):
+    def test_flat_output_is_flat(self, card, networks: Path):
         found = card(networks / "mono.onnx", "output: {means: depth}").estimate(Views(np.full((9, 9), 0.5, np.float32)))
         assert (found.disparity_px == 0).all()
 
 
 class TestMistakes:
-    def test_no_network(self):
-        with pytest.raises(ModelAbsent, match=r"^onnx needs a network of your own: .*nothing is downloaded"):
+    def test_missing_model_option_is_refused(self):
+        with pytest.raises(ModelAbsent, match=r"^onnx needs a network from you: .*nothing is downloaded"):
             Onnx().estimate(wall())
 
-    def test_a_network_that_was_not_fetched_is_said_with_its_address(self, tmp_path: Path):
-        with pytest.raises(ModelAbsent, match="is not there, and nothing is downloaded; fetch Depth Anything V2 Small"):
+    def test_missing_network_is_refused_with_its_address(self, tmp_path: Path):
+        with pytest.raises(
+            ModelAbsent, match="does not exist, and nothing is downloaded; fetch Depth Anything V2 Small"
+        ):
             Onnx(model=tmp_path / "no.onnx", card="depth-anything-v2-small").estimate(wall())
 
-    def test_another_file_than_the_card_is_of(self, networks: Path, card):
+    def test_file_of_another_digest_is_refused(self, networks: Path, card):
         digest = hashlib.sha256((networks / "mono.onnx").read_bytes()).hexdigest()
         text = "sha256: {}\noutput: {{means: inverse-depth}}"
         card(networks / "mono.onnx", text.format(digest)).estimate(Views(picture()))
         with pytest.raises(ConfigError, match=f"its SHA-256 is {digest}, not {'f' * 64}"):
             card(networks / "mono.onnx", text.format("f" * 64)).estimate(Views(picture()))
 
-    def test_a_card_that_is_not_there(self, networks: Path):
+    def test_missing_card_is_refused(self, networks: Path):
         with pytest.raises(ConfigError, match=r"depth-anythin-v2-small is neither a file .*did you mean"):
             Onnx(model=networks / "mono.onnx", card="depth-anythin-v2-small").estimate(wall())
 
@@ -198,18 +200,18 @@ class TestMistakes:
         ("text", "said"),
         [
             ("output: {means: nearness}", r"card.yaml:1:.*means"),
-            ("input: {right: r}\noutput: {means: depth}", "names both inputs"),
+            ("input: {right: r}\noutput: {means: depth}", "needs both inputs"),
             ("input: {std: [0, 1, 1]}\noutput: {means: depth}", r"card.yaml:1:.*std"),
             ("outptu: {means: depth}", "outptu"),
             ("output: [", "card.yaml"),
         ],
     )
-    def test_a_card_that_says_nonsense_is_told_with_the_place(self, networks: Path, card, text: str, said: str):
+    def test_invalid_card_is_refused_with_the_place(self, networks: Path, card, text: str, said: str):
         with pytest.raises(ConfigError, match=said):
             card(networks / "mono.onnx", text).estimate(wall())
 
     @pytest.mark.parametrize("runtime", RUNTIMES)
-    def test_a_file_that_is_no_network(self, tmp_path: Path, card, runtime):
+    def test_file_without_a_network_is_refused(self, tmp_path: Path, card, runtime):
         (tmp_path / "no.onnx").write_bytes(b"not a network at all")
         method = card(tmp_path / "no.onnx", "output: {means: depth}", runtime=runtime)
         with pytest.raises(ConfigError, match=rf"cannot be run by {runtime} on .*; check the card's inputs") as told:
@@ -217,12 +219,12 @@ class TestMistakes:
         assert "\n" not in str(told.value)
 
     @pytest.mark.parametrize("runtime", RUNTIMES)
-    def test_an_input_or_output_that_there_is_not(self, networks: Path, card, runtime):
+    def test_unknown_input_or_output_is_refused(self, networks: Path, card, runtime):
         for text in ("input: {left: nothing}\noutput: {means: depth}", "output: {name: nothing, means: depth}"):
             with pytest.raises(ConfigError, match="cannot be run"):
                 card(networks / "mono.onnx", text, runtime=runtime).estimate(wall())
 
-    def test_a_pair_is_needed_and_foretold(self, networks: Path):
+    def test_stereo_network_needs_a_pair(self, networks: Path):
         method = Onnx(model=networks / "stereo.onnx")
         assert method.needs_pair
         assert not Onnx(model=networks / "mono.onnx").needs_pair
@@ -231,7 +233,7 @@ class TestMistakes:
         plan = Pipeline(Scene.of(photo=picture()), depth=method, cached=False).plan("disparity")
         assert [step.outcome for step in plan.steps if step.product == "disparity"] == ["refused"]
 
-    def test_no_onnxruntime(self, networks: Path, monkeypatch: pytest.MonkeyPatch):
+    def test_missing_onnxruntime_is_refused(self, networks: Path, monkeypatch: pytest.MonkeyPatch):
         monkeypatch.setitem(__import__("sys").modules, "onnxruntime", None)
         from tangible_depth.network import runtimes
 
@@ -248,12 +250,12 @@ def test_identical_views_are_skipped(networks: Path):
     assert Onnx(model=networks / "mono.onnx").skip(same) is None
 
 
-def test_another_network_or_card_in_the_same_file_is_another_result(tmp_path: Path):
+def test_changed_network_or_card_changes_the_result(tmp_path: Path):
     onnx_models.mono(tmp_path / "m.onnx")
     (tmp_path / "m.yaml").write_text("output: {means: inverse-depth}")
     seen, cache = picture(), Cache(tmp_path / "cache")
 
-    def made() -> tuple[str, np.ndarray]:
+    def create() -> tuple[str, np.ndarray]:
         pipeline = Pipeline(Scene.of(photo=seen), depth=Onnx(model=tmp_path / "m.onnx"), workspace={"finest_m": 0})
         pipeline.cache = cache
         disparity = pipeline.disparity
@@ -261,10 +263,10 @@ def test_another_network_or_card_in_the_same_file_is_another_result(tmp_path: Pa
         outcome = {each.product: each.outcome for each in pipeline.outcomes}["disparity"]
         return outcome, disparity.disparity_px
 
-    assert made()[0] == "ran"
-    assert made()[0] == "cached"
+    assert create()[0] == "ran"
+    assert create()[0] == "cached"
     (tmp_path / "m.yaml").write_text("output: {means: depth}\n")
-    outcome, found = made()
+    outcome, found = create()
     assert outcome == "ran"
     np.testing.assert_allclose(found, nearness(1 / seen.mean(axis=2)), atol=1e-4)
 
@@ -275,16 +277,16 @@ class TestAuto:
         monkeypatch.setenv("TANGIBLE_MODELS_DIR", str(tmp_path / "models"))
         return tmp_path / "models"
 
-    def test_a_pair_is_matched(self):
+    def test_pair_is_matched_by_semi_global(self):
         assert Auto().estimate(wall(6.0)).digest() == SemiGlobal().estimate(wall(6.0)).digest()
 
-    def test_without_a_network_lighter_is_nearer_and_that_is_said(self, caplog: pytest.LogCaptureFixture):
+    def test_picture_without_a_network_is_luminance_with_a_warning(self, caplog: pytest.LogCaptureFixture):
         with caplog.at_level(logging.WARNING):
             found = Auto().estimate(Views(picture()))
         assert found.digest() == Luminance().estimate(Views(picture())).digest()
-        assert "one picture holds no depth" in caplog.text
+        assert "one picture contains no depth" in caplog.text
 
-    def test_the_first_network_for_one_picture_is_taken(self, folder: Path, caplog: pytest.LogCaptureFixture):
+    def test_first_network_for_one_picture_is_taken(self, folder: Path, caplog: pytest.LogCaptureFixture):
         folder.mkdir()
         for name, text in (("a", STEREO), ("b", ""), ("c", "output: {means: inverse-depth}"), ("d", "output: [")):
             onnx_models.mono(folder / f"{name}.onnx")
@@ -299,7 +301,7 @@ class TestAuto:
 
 @pytest.mark.parametrize(("name", "kept"), [("mono", []), ("stereo", ["flat_pair_claims_nothing"])])
 def test_networks_conform(networks: Path, name: str, kept: list[str]):
-    """But a network that does not say how sure it is claims to know all of a picture without any texture."""
+    """A network without a confidence output is confident in a picture without texture, a known failure."""
     results = list(run_checks("depth", "onnx", model=networks / f"{name}.onnx"))
     assert [each.name for each in results if not each.passed] == kept
     assert not any("not asked" in each.message for each in results)

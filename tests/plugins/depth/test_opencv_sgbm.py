@@ -17,7 +17,7 @@ def texture(shape, seed=0):
     return np.random.default_rng(seed).integers(0, 256, shape, dtype=np.uint8)
 
 
-def shifted(disparity_px, shape=(48, 96)):
+def wall_views(disparity_px, shape=(48, 96)):
     """Both views of a wall of random texture: exact at whole disparities, everything seen in both."""
     wide = texture((shape[0], shape[1] + 64))
     return Views(wide[:, 32 : 32 + shape[1]], wide[:, 32 + disparity_px : 32 + disparity_px + shape[1]])
@@ -47,8 +47,8 @@ def estimate(views, **options):
 
 @EVERY_MODE
 @pytest.mark.parametrize("disparity_px", [0, 1, 5, 17])
-def test_a_wall_is_found_where_it_is(mode, disparity_px):
-    found = estimate(shifted(disparity_px), mode=mode)
+def test_wall_is_matched_at_its_disparity(mode, disparity_px):
+    found = estimate(wall_views(disparity_px), mode=mode)
     error = np.abs(found.disparity_px - disparity_px)[:, disparity_px:]
     assert found.disparity_px.dtype == found.confidence.dtype == np.float32
     assert np.isfinite(error).mean() > 0.98
@@ -58,8 +58,8 @@ def test_a_wall_is_found_where_it_is(mode, disparity_px):
 
 
 @pytest.mark.parametrize("disparity_px", [-20, -6, 6])
-def test_either_sign_is_found_in_a_signed_range(disparity_px):
-    found = estimate(shifted(disparity_px), min_disparity_px=-32, max_disparity_px=32)
+def test_disparities_of_either_sign_in_a_signed_range_are_matched(disparity_px):
+    found = estimate(wall_views(disparity_px), min_disparity_px=-32, max_disparity_px=32)
     seen = slice(max(disparity_px, 0), min(disparity_px, 0) or None)
     error = np.abs(found.disparity_px - disparity_px)[:, seen]
     assert np.nanmax(error) < 1
@@ -69,7 +69,7 @@ def test_either_sign_is_found_in_a_signed_range(disparity_px):
 
 @EVERY_MODE
 @pytest.mark.parametrize("disparity_px", [6.25, 6.5, 6.75])
-def test_parts_of_a_pixel_are_found(mode, disparity_px):
+def test_fractions_of_a_pixel_are_matched(mode, disparity_px):
     found = estimate(wall(disparity_px), mode=mode).disparity_px[:, 8:-8]
     assert np.isfinite(found).mean() > 0.99
     assert np.nanmedian(np.abs(found - disparity_px)) < 0.13
@@ -77,7 +77,7 @@ def test_parts_of_a_pixel_are_found(mode, disparity_px):
 
 
 @EVERY_MODE
-def test_a_step_is_found_and_what_only_one_view_sees_is_not_trusted(mode):
+def test_step_is_matched_and_its_occlusion_not_trusted(mode):
     views, truth, seen = step()
     found = estimate(views, mode=mode, max_disparity_px=32)
     near_edge = np.zeros_like(seen)  # blocks there hold both depths
@@ -90,17 +90,17 @@ def test_a_step_is_found_and_what_only_one_view_sees_is_not_trusted(mode):
 
 
 def test_first_columns_get_a_disparity_too():
-    found = estimate(shifted(3)).disparity_px
+    found = estimate(wall_views(3)).disparity_px
     assert np.isfinite(found[:, 3:16]).mean() > 0.98
 
 
-def test_only_what_was_asked_for_is_tried():
-    found = estimate(shifted(17), max_disparity_px=17).disparity_px
+def test_requested_range_alone_is_tried():
+    found = estimate(wall_views(17), max_disparity_px=17).disparity_px
     assert not (np.abs(found - 17) < 0.5).any()
     assert np.nanmax(np.where(np.isnan(found), -1, found)) < 16.5
 
 
-def test_filling_is_by_the_stated_rule_and_not_trusted():
+def test_filled_pixels_follow_the_stated_rule_without_confidence():
     views = step()[0]
     holed, filled = estimate(views), estimate(views, fill=True)
     holes = np.isnan(holed.disparity_px)
@@ -110,7 +110,7 @@ def test_filling_is_by_the_stated_rule_and_not_trusted():
     np.testing.assert_array_equal(filled.confidence, holed.confidence)
 
 
-def test_without_a_second_pass_all_that_is_known_is_trusted():
+def test_known_pixels_without_a_second_pass_are_trusted():
     views = step()[0]
     once, twice = estimate(views, second_pass=False), estimate(views)
     np.testing.assert_array_equal(once.disparity_px, twice.disparity_px)
@@ -132,14 +132,14 @@ def test_without_a_second_pass_all_that_is_known_is_trusted():
     ],
     ids=["uint16", "float64", "float32", "rgb", "rgba", "strided"],
 )
-def test_the_type_of_a_picture_does_not_matter(as_type):
+def test_every_dtype_gives_the_same_disparity(as_type):
     views = step()[0]
     plain, other = estimate(views), estimate(Views(as_type(views.left), as_type(views.right)))
     assert plain.digest() == other.digest()
 
 
-def test_yes_and_no_are_a_picture():
-    views = shifted(4)
+def test_boolean_picture_is_matched():
+    views = wall_views(4)
     found = estimate(Views(views.left > 127, views.right > 127)).disparity_px[:, 4:]
     assert np.nanmedian(found) == 4
 
@@ -152,7 +152,7 @@ def test_twelve_bits_in_sixteen_keep_their_detail():
     assert np.nanmedian(np.abs(found - 6)) < 0.1
 
 
-def test_inputs_are_left_alone_and_the_answer_is_always_the_same():
+def test_inputs_stay_unchanged_and_results_are_deterministic():
     views = step()[0]
     before = views.digest()
     assert estimate(views).digest() == estimate(views).digest()
@@ -164,7 +164,7 @@ def test_inputs_are_left_alone_and_the_answer_is_always_the_same():
 
 @EVERY_MODE
 @pytest.mark.parametrize("value", [0, 128, 255])
-def test_a_constant_pair_is_unknown(mode, value):
+def test_constant_pair_is_unknown(mode, value):
     flat = np.full((32, 64), value, np.uint8)
     found = estimate(Views(flat, flat), mode=mode)
     assert np.isnan(found.disparity_px).all()
@@ -177,8 +177,8 @@ def test_stripes_along_the_rows_are_unknown():
     assert np.isnan(estimate(Views(stripes, stripes)).disparity_px).all()
 
 
-def test_a_flat_patch_is_unknown_and_its_border_known():
-    views = shifted(0, (60, 120))
+def test_flat_patch_is_unknown_and_its_border_known():
+    views = wall_views(0, (60, 120))
     left = views.left.copy()
     left[20:40, 40:80] = 100
     found = estimate(Views(left, left), block_px=5)
@@ -192,7 +192,7 @@ def test_a_flat_patch_is_unknown_and_its_border_known():
 @pytest.mark.parametrize("shape", [(1, 1), (1, 40), (40, 1), (2, 2), (3, 3), (7, 20)])
 @pytest.mark.parametrize("span", [(0, 64), (-48, 16), (-64, -16), (16, 48)])
 @pytest.mark.parametrize("block_px", [1, 5, 11])
-def test_the_smallest_pictures_are_matched(mode, shape, span, block_px):
+def test_smallest_pictures_are_matched(mode, shape, span, block_px):
     views = Views(texture(shape), texture(shape, seed=1))
     low, high = span
     found = estimate(views, mode=mode, min_disparity_px=low, max_disparity_px=high, block_px=block_px)
@@ -201,24 +201,24 @@ def test_the_smallest_pictures_are_matched(mode, shape, span, block_px):
     assert ((known >= low - 0.5) & (known < high - 0.5)).all()
 
 
-def test_a_range_wider_than_the_picture_is_cut_to_it():
-    views = shifted(4, (48, 64))
+def test_range_wider_than_the_picture_is_clipped():
+    views = wall_views(4, (48, 64))
     wide = estimate(views, min_disparity_px=-2016, max_disparity_px=2016).disparity_px
     assert np.nanmedian(wide) == 4
 
 
-def test_a_range_beside_the_picture_finds_nothing():
-    found = estimate(shifted(4, (20, 64)), min_disparity_px=64, max_disparity_px=128)
+def test_range_outside_the_picture_gives_unknown():
+    found = estimate(wall_views(4, (20, 64)), min_disparity_px=64, max_disparity_px=128)
     assert np.isnan(found.disparity_px).all()
     assert not found.confidence.any()
 
 
-def test_one_view_is_told_what_to_use():
+def test_single_view_is_refused_with_an_alternative():
     with pytest.raises(TangibleError, match=r"needs two views.*luminance"):
         estimate(Views(texture((8, 8))))
 
 
-def test_what_opencv_refuses_is_one_error_with_a_cure(monkeypatch):
+def test_error_of_opencv_becomes_one_error_with_a_cure(monkeypatch):
     import cv2
 
     class Refusing:
@@ -227,7 +227,7 @@ def test_what_opencv_refuses_is_one_error_with_a_cure(monkeypatch):
 
     monkeypatch.setattr(cv2.StereoSGBM, "create", lambda **options: Refusing())
     with pytest.raises(TangibleError, match=r"96 x 48 over 64 disparities in mode 'hh'.*Insufficient.*try mode"):
-        estimate(shifted(4), mode="hh")
+        estimate(wall_views(4), mode="hh")
 
 
 @pytest.mark.parametrize(
@@ -245,13 +245,13 @@ def test_what_opencv_refuses_is_one_error_with_a_cure(monkeypatch):
         {"window_px": 3},
     ],
 )
-def test_options_that_make_no_sense_are_refused(options):
+def test_contradicting_options_are_refused(options):
     with pytest.raises(ValidationError):
         OpenCVSGBM(**options)
 
 
-def test_identical_views_need_no_matching():
-    views = shifted(4)
+def test_identical_views_skip_the_matching():
+    views = wall_views(4)
     method = OpenCVSGBM()
     assert isinstance(method, Skippable)
     assert method.skip(views) is None

@@ -25,7 +25,7 @@ def share_within(found, truth, px, where=True):
 
 
 @pytest.mark.parametrize("offset", [2.5, 6.0, 7.25, 11.6])
-def test_a_frontal_plane_is_found_to_a_fraction_of_a_pixel(offset):
+def test_frontal_plane_is_matched_to_a_fraction_of_a_pixel(offset):
     views, truth = slanted(offset=offset)
     found = SemiGlobal(max_disparity_px=32).estimate(views)
     assert np.median(np.abs(found.disparity_px - truth)) <= 0.25  # census costs are drawn to whole pixels
@@ -34,7 +34,7 @@ def test_a_frontal_plane_is_found_to_a_fraction_of_a_pixel(offset):
 
 
 @pytest.mark.parametrize(("across", "down"), [(0.05, 0.0), (0.0, 0.08), (-0.04, 0.06)])
-def test_a_slanted_plane_is_followed(across, down):
+def test_slanted_plane_is_matched(across, down):
     views, truth = slanted(across=across, down=down, offset=9.0)
     found = SemiGlobal(max_disparity_px=32).estimate(views).disparity_px
     seen = np.indices(truth.shape)[1] >= truth
@@ -42,7 +42,7 @@ def test_a_slanted_plane_is_followed(across, down):
     assert share_within(found, truth, 1.0) >= 0.97
 
 
-def test_what_a_step_hides_is_filled_from_behind():
+def test_occlusion_at_a_step_is_filled_from_behind():
     views, truth, hidden = step()
     found = SemiGlobal(max_disparity_px=32).estimate(views)
     assert share_within(found.disparity_px, truth, 0.5) >= 0.985
@@ -51,7 +51,7 @@ def test_what_a_step_hides_is_filled_from_behind():
     assert found.confidence[hidden].mean() < 0.2 < 0.6 < found.confidence[~hidden].mean()
 
 
-def test_unfilled_what_is_hidden_stays_unknown():
+def test_occlusion_without_filling_stays_unknown():
     views, truth, hidden = step()
     found = SemiGlobal(max_disparity_px=32, fill=False).estimate(views)
     assert np.isnan(found.disparity_px[hidden]).mean() >= 0.9
@@ -61,7 +61,7 @@ def test_unfilled_what_is_hidden_stays_unknown():
     assert (found.confidence[~known] == 0).all()
 
 
-def test_a_strict_check_keeps_fewer_matches():
+def test_strict_check_keeps_fewer_matches():
     views, _, _ = step()
     kept = [
         np.isfinite(SemiGlobal(max_disparity_px=32, fill=False, check=check).estimate(views).disparity_px).sum()
@@ -71,7 +71,7 @@ def test_a_strict_check_keeps_fewer_matches():
 
 
 @pytest.mark.parametrize("offset", [-9.0, 3.0, 30.0])
-def test_the_range_is_found_of_either_sign(offset):
+def test_range_of_either_sign_is_estimated(offset):
     views, truth = slanted(shape=(120, 240), offset=offset)
     with collected() as notes:
         found = SemiGlobal().estimate(views).disparity_px
@@ -79,13 +79,13 @@ def test_the_range_is_found_of_either_sign(offset):
     assert any("which do not occur" in each for each in notes)
 
 
-def test_a_range_round_zero_is_matched_when_asked_for():
+def test_requested_range_around_zero_is_matched():
     views, truth = slanted(across=0.1, offset=-8.0)
     found = SemiGlobal(min_disparity_px=-12, max_disparity_px=16).estimate(views).disparity_px
     assert share_within(found, truth, 0.5, np.indices(truth.shape)[1] >= truth) >= 0.95
 
 
-def test_exchanged_views_are_told_and_matched_all_the_same(caplog):
+def test_exchanged_views_are_matched_with_a_warning(caplog):
     views, truth, _ = step(shape=(120, 240), box=(30, 90, 80, 180))
     with caplog.at_level(logging.WARNING, "tangible_depth"):
         found = SemiGlobal().estimate(Views(views.right, views.left)).disparity_px
@@ -94,13 +94,13 @@ def test_exchanged_views_are_told_and_matched_all_the_same(caplog):
     assert (found < 0).all()
 
 
-def test_the_right_order_is_not_complained_about(caplog):
+def test_views_in_order_give_no_warning(caplog):
     with caplog.at_level(logging.WARNING, "tangible_depth"):
         SemiGlobal().estimate(slanted(shape=(120, 240))[0])
     assert "exchanged" not in caplog.text
 
 
-def test_only_the_disparities_asked_for_are_given():
+def test_requested_range_bounds_the_disparities():
     views, _ = slanted(offset=20.0)
     found = SemiGlobal(max_disparity_px=10, fill=False).estimate(views).disparity_px
     assert not (found[np.isfinite(found)] > 9.5).any()
@@ -132,14 +132,14 @@ def test_strips_without_texture_are_not_matched():
 
 
 @pytest.mark.parametrize("options", [{}, {"skip_identical": False}, {"skip_identical": False, "skip_flat": False}])
-def test_a_constant_pair_claims_nothing(options):
+def test_constant_pair_has_no_confidence(options):
     flat = np.full((80, 120), 77, np.uint8)
     for right in (flat, flat + np.uint8(20)):
         found = SemiGlobal(**options).estimate(Views(flat, right))
         assert not (np.isfinite(found.disparity_px) & (found.confidence > 0)).any()
 
 
-def test_a_preview_at_half_the_size_has_the_full_size():
+def test_preview_at_half_resolution_has_the_full_size():
     views, truth, _ = step(shape=(151, 223), back=8, front=24, box=(40, 110, 90, 170))
     with collected() as notes:
         found = SemiGlobal(max_disparity_px=48, resolution="half").estimate(views)
@@ -148,18 +148,18 @@ def test_a_preview_at_half_the_size_has_the_full_size():
     assert share_within(found.disparity_px, truth, 1.0) >= 0.96
 
 
-def test_an_island_is_an_error_by_its_size_in_the_whole_picture():
-    assert Specks(20, 60, 200).shrunk(2) == Specks(5, 15, 50)
+def test_speckle_size_scales_with_the_resolution():
+    assert Specks(20, 60, 200).downsample(2) == Specks(5, 15, 50)
 
 
-def test_exposure_changes_next_to_nothing():
+def test_exposure_hardly_changes_the_map():
     views, truth, _ = step()
     darker = np.rint(0.7 * views.right + 20).astype(np.uint8)
     found = SemiGlobal(max_disparity_px=32).estimate(Views(views.left, darker)).disparity_px
     assert share_within(found, truth, 0.5) >= 0.98
 
 
-def test_rows_that_miss_each_other_are_realigned():
+def test_offset_rows_are_realigned():
     views, truth = slanted(shape=(160, 200))
     moved = Views(views.left, np.roll(views.right, 1, axis=0))
     with collected() as notes:
@@ -171,7 +171,7 @@ def test_rows_that_miss_each_other_are_realigned():
     assert notes == []
 
 
-def test_noise_calls_for_another_cost():
+def test_noisy_pair_gets_another_cost():
     views, truth = slanted(shape=(160, 200))
     rng = np.random.default_rng(0)
     noisy = [
@@ -185,7 +185,7 @@ def test_noise_calls_for_another_cost():
     assert share_within(chosen, truth, 1.0) > share_within(sharp, truth, 1.0)
 
 
-def test_grey_levels_are_compared_where_both_views_were_exposed_alike():
+def test_grey_levels_are_compared_at_equal_exposure_only():
     views, truth, _ = step()
     darker = Views(views.left, np.rint(0.6 * views.right).astype(np.uint8))
     with collected() as notes:
@@ -199,7 +199,7 @@ def test_grey_levels_are_compared_where_both_views_were_exposed_alike():
     assert share_within(other.disparity_px, truth, 0.5) > share_within(misled.disparity_px, truth, 0.5)
 
 
-def test_the_best_effort_pays():
+def test_best_effort_has_fewer_wrong_pixels():
     wrong = {"balanced": [], "best": []}
     for name in ("steps", "spheres"):
         pair = synthetic_pair(name, 240, 180, seed=5)
@@ -210,7 +210,7 @@ def test_the_best_effort_pays():
 
 
 @pytest.mark.parametrize(("effort", "times"), [("balanced", 0), ("best", 1)])
-def test_the_best_effort_alone_fills_from_eight_sides(effort, times, monkeypatch):
+def test_best_effort_alone_fills_from_eight_directions(effort, times, monkeypatch):
     filled = []
     monkeypatch.setattr(
         gaps, "fill_from_eight_directions", lambda *each: filled.append(each) or fill_from_four_directions(*each)
@@ -220,7 +220,7 @@ def test_the_best_effort_alone_fills_from_eight_sides(effort, times, monkeypatch
 
 
 @pytest.mark.parametrize(("across", "down"), [(0.05, 0.0), (-0.04, 0.06)])
-def test_the_best_effort_follows_slanted_planes(across, down):
+def test_best_effort_follows_slanted_planes(across, down):
     views, truth = slanted(across=across, down=down, offset=9.0)
     found = SemiGlobal(max_disparity_px=32, effort="best").estimate(views)
     assert share_within(found.disparity_px, truth, 0.5, np.indices(truth.shape)[1] >= truth + 1) >= 0.97
@@ -255,7 +255,7 @@ def test_every_dtype_gives_the_same_map():
         assert options.estimate(Views(same(views.left), same(views.right))).digest() == expected
 
 
-def test_two_calls_at_once_do_not_disturb_each_other():
+def test_two_simultaneous_calls_are_independent():
     pairs = [step()[0], slanted(offset=12.0)[0], slanted(shape=(130, 90))[0]] * 3
     method = SemiGlobal(max_disparity_px=32)
     alone = [method.estimate(each).digest() for each in pairs]
@@ -263,7 +263,7 @@ def test_two_calls_at_once_do_not_disturb_each_other():
         assert [each.digest() for each in pool.map(method.estimate, pairs)] == alone
 
 
-def test_a_range_wider_than_full_size_allows_is_matched_smaller():
+def test_range_too_wide_for_full_size_is_matched_smaller():
     views, truth = slanted(shape=(40, 1400), offset=310.0)
     with collected() as notes:
         found = SemiGlobal(min_disparity_px=0, max_disparity_px=400).estimate(views).disparity_px
@@ -271,17 +271,17 @@ def test_a_range_wider_than_full_size_allows_is_matched_smaller():
     assert share_within(found, truth, 1.0) >= 0.97
 
 
-def test_a_pair_is_asked_for():
+def test_missing_right_view_is_refused():
     with pytest.raises(PictureError, match="right one is missing"):
         SemiGlobal().estimate(Views(np.zeros((4, 4), np.uint8)))
 
 
-def test_an_empty_range_is_refused():
+def test_empty_range_is_refused():
     with pytest.raises(PictureError, match=r"the search range 8\.\.4 px is empty"):
         SemiGlobal(min_disparity_px=8, max_disparity_px=5).estimate(slanted()[0])
 
 
-def test_a_second_process_does_not_compile():
+def test_second_process_does_not_compile():
     script = (
         "import numpy as np; from tangible_core.data import Views; from tangible_depth.semi_global import SemiGlobal;"
         "z = np.random.default_rng(0).integers(0, 255, (40, 60), np.uint8);"

@@ -35,10 +35,10 @@ SHAPE = 96, 176
 PERIOD_PX = 8
 HALF = SHAPE[0] // 2
 WINDOWS_PX = 12
-"""How far a border of texture reaches into what a method says."""
+"""Margin, in pixels, in which a border of texture may affect a map."""
 FROM_ONE_PICTURE = ("contour", "luminance")
 OTHERS_ANSWERS = ("auto", "onnx")
-"""Those of another method, or of a network that the user brings."""
+"""Methods that forward to others, or to the user's network."""
 METHODS = [
     each.name
     for each in default_registry().listings
@@ -80,7 +80,7 @@ def level_stripes(dark: int) -> np.ndarray:
     return np.tile(column[:, None], (1, SHAPE[1]))
 
 
-def rendered(*surfaces: Surface) -> KnownPair:
+def render(*surfaces: Surface) -> KnownPair:
     left, right = (np.rint(np.clip(view(surfaces, SHAPE), 0, 255)).astype(np.uint8) for view in (left_view, right_view))
     truth = true_disparity(surfaces, SHAPE).astype(np.float32)
     return KnownPair(Views(left, right), truth, truly_visible(surfaces, SHAPE))
@@ -94,8 +94,8 @@ def planes() -> KnownPair:
 
 @cache
 def border() -> KnownPair:
-    """Near things that the pictures' left and right borders cut."""
-    return rendered(
+    """Near objects cut by the left and right borders of the pictures."""
+    return render(
         slanted(1, everywhere, 4),
         slanted(2, rectangle(-99, 20, 30, 70), 18),
         slanted(3, rectangle(145, 30, 999, 80), 16),
@@ -105,10 +105,10 @@ def border() -> KnownPair:
 @cache
 def jump() -> KnownPair:
     """A third of the width between the depths of two things."""
-    return rendered(slanted(4, everywhere, 2), slanted(5, rectangle(90, 16, 160, 80), 58))
+    return render(slanted(4, everywhere, 2), slanted(5, rectangle(90, 16, 160, 80), 58))
 
 
-def changed(scene: Callable[[], KnownPair], left: Callable = lambda z: z, right: Callable | None = None) -> KnownPair:
+def change(scene: Callable[[], KnownPair], left: Callable = lambda z: z, right: Callable | None = None) -> KnownPair:
     known = scene()
     both = left(known.views.left), (right or left)(known.views.right)
     return KnownPair(Views(*both), known.truth_px, known.visible)
@@ -124,7 +124,7 @@ def half_white(picture: np.ndarray) -> np.ndarray:
     return picture
 
 
-def mirrored(known: KnownPair) -> KnownPair:
+def mirror(known: KnownPair) -> KnownPair:
     """Both views turned left for right: all disparities are negative, as when the views are exchanged."""
     views = Views(known.views.left[:, ::-1], known.views.right[:, ::-1])
     return KnownPair(views, -known.truth_px[:, ::-1], known.visible[:, ::-1])
@@ -160,7 +160,7 @@ def well_formed(found: DisparityMap, known: KnownPair) -> None:
 
 
 def right(share: float, px: float = 2.0, rows: slice = slice(None)) -> Demand:
-    """At least this share of the visible pixels is within px of the truth; an unknown one is not."""
+    """Claim that this share of the visible pixels at least is within px of the truth; unknown ones are not."""
 
     def demand(found: DisparityMap, known: KnownPair) -> None:
         near = np.abs(found.disparity_px - known.truth_px) <= px
@@ -170,7 +170,7 @@ def right(share: float, px: float = 2.0, rows: slice = slice(None)) -> Demand:
 
 
 def claims(most: float, over: float = 0.0, rows: slice = slice(None)) -> Demand:
-    """At most this share of the pixels is told with a confidence above `over`."""
+    """Claim that this share of the pixels at most has a confidence above `over`."""
 
     def demand(found: DisparityMap, known: KnownPair) -> None:
         assert np.mean((np.isfinite(found.disparity_px) & (found.confidence > over))[rows]) <= most
@@ -189,7 +189,7 @@ def within_px(low: float, high: float) -> Demand:
 
 
 def periodic(start_px: int) -> Demand:
-    """What is told with confidence is a shift that makes the stripes agree; a tenth may not, at the borders."""
+    """Claim that confident disparities align the stripes; a tenth may not, at the borders."""
 
     def demand(found: DisparityMap, known: KnownPair) -> None:
         told = found.disparity_px[found.confidence > 0.5]
@@ -240,22 +240,22 @@ CASES: dict[str, Case] = {
     "level stripes, not filled": Case(
         lambda: unknown(level_stripes(40), level_stripes(50)), claims(0), {"fill": False}
     ),
-    "darker": Case(lambda: changed(planes, right=curve(0.8)), right(0.9)),
-    "brighter": Case(lambda: changed(planes, right=curve(0.9, offset=25)), right(0.95)),
-    "gamma": Case(lambda: changed(planes, right=curve(1, 1.4)), right(0.9)),
-    "dim": Case(lambda: changed(planes, curve(0.12)), right(0.95)),
-    "black and white": Case(lambda: changed(planes, lambda z: z > 127), right(0.85)),
-    "floats of 1e20": Case(lambda: changed(planes, lambda z: z / 255 * 1e20), right(0.95)),
-    "floats of 1e-20": Case(lambda: changed(planes, lambda z: z / 255 * 1e-20), right_or_silent),
-    "a row lower": Case(lambda: changed(planes, right=lambda z: np.vstack([z[:1], z[:-1]])), right(0.9)),
+    "darker": Case(lambda: change(planes, right=curve(0.8)), right(0.9)),
+    "brighter": Case(lambda: change(planes, right=curve(0.9, offset=25)), right(0.95)),
+    "gamma": Case(lambda: change(planes, right=curve(1, 1.4)), right(0.9)),
+    "dim": Case(lambda: change(planes, curve(0.12)), right(0.95)),
+    "black and white": Case(lambda: change(planes, lambda z: z > 127), right(0.85)),
+    "floats of 1e20": Case(lambda: change(planes, lambda z: z / 255 * 1e20), right(0.95)),
+    "floats of 1e-20": Case(lambda: change(planes, lambda z: z / 255 * 1e-20), right_or_silent),
+    "a row lower": Case(lambda: change(planes, right=lambda z: np.vstack([z[:1], z[:-1]])), right(0.9)),
     "cut by the border": Case(border, right(0.95)),
     "huge jump": Case(jump, right(0.95)),
-    "exchanged": Case(lambda: mirrored(border()), right(0.95)),
-    "half saturated": Case(lambda: changed(planes, half_white), HALF_LIT),
-    "half of one view saturated": Case(lambda: changed(planes, right=half_white), HALF_LIT),
+    "exchanged": Case(lambda: mirror(border()), right(0.95)),
+    "half saturated": Case(lambda: change(planes, half_white), HALF_LIT),
+    "half of one view saturated": Case(lambda: change(planes, right=half_white), HALF_LIT),
     "range over the width": Case(planes, right(0.95), {"max_disparity_px": 500}),
     "negative range": Case(
-        lambda: mirrored(border()),
+        lambda: mirror(border()),
         both(right(0.95), within_px(-24, 0)),
         {"min_disparity_px": -24, "max_disparity_px": 1},
     ),
@@ -270,7 +270,7 @@ CASES: dict[str, Case] = {
 NOT_KEPT: dict[tuple[str, str], str] = {
     ("exchanged", "opencv-sgbm"): "it searches the disparities that it is told, 0 to 63 px by default",
 }
-"""By case and method: why not. The cell must then fail."""
+"""Known failures by case and method, with the reason; the cell must then fail."""
 
 
 def cells() -> list[Any]:
@@ -288,7 +288,7 @@ def cells() -> list[Any]:
 
 
 @pytest.mark.parametrize(("case", "name"), cells())
-def test_a_cell(case: str, name: str):
+def test_method_on_a_case_keeps_its_bound(case: str, name: str):
     pair, matched, options = CASES[case]
     known = pair()
     found = method(name, **options).estimate(known.views)
@@ -302,7 +302,7 @@ def test_a_cell(case: str, name: str):
 
 
 @pytest.mark.parametrize("name", METHODS)
-def test_the_kind_of_array_hardly_matters(name: str):
+def test_array_layout_hardly_changes_the_map(name: str):
     """8 and 16 bits, floats, RGBA, layouts: all but 1 % of the pixels within a twentieth of a pixel."""
     colour = [np.dstack([grey, 255 - grey // 2, grey // 3]) for grey in (planes().views.left, planes().views.right)]
     expected = method(name).estimate(Views(*colour))
@@ -314,27 +314,27 @@ def test_the_kind_of_array_hardly_matters(name: str):
 
 
 @pytest.mark.parametrize("name", [name for name in MATCHERS if name != "opencv-sgbm"])  # it searches what it is told
-def test_exchanged_views_are_said(name: str, caplog: pytest.LogCaptureFixture):
+def test_exchanged_views_are_reported(name: str, caplog: pytest.LogCaptureFixture):
     method(name).estimate(border().views)
     assert "exchanged" not in caplog.text
-    method(name).estimate(mirrored(border()).views)
+    method(name).estimate(mirror(border()).views)
     assert "exchanged" in caplog.text
 
 
 @pytest.mark.parametrize("name", MATCHERS)
-def test_one_view_is_no_pair(name: str):
+def test_single_view_is_refused(name: str):
     with pytest.raises(PictureError, match="two views"):
         method(name).estimate(Views(noise(0)))
 
 
-def test_two_sizes_are_one_error():
+def test_views_of_two_sizes_are_refused():
     with pytest.raises(TangibleError, match=r"176 x 96.*175 x 96"):
         Views(noise(0), noise(0)[:, 1:])
 
 
 @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
 @pytest.mark.parametrize("side", ["left", "right"])
-def test_what_is_not_finite_is_told_with_its_place(value: float, side: str):
+def test_value_that_is_not_finite_is_refused_with_its_place(value: float, side: str):
     views = {"left": noise(0) / 255, "right": noise(1) / 255}
     views[side][31, 64] = value
     with pytest.raises(PictureError, match=f"{side} view.*row 31, column 64"):
@@ -342,7 +342,7 @@ def test_what_is_not_finite_is_told_with_its_place(value: float, side: str):
 
 
 @pytest.mark.parametrize("name", METHODS)
-def test_calls_at_once_do_not_disturb_each_other(name: str):
+def test_simultaneous_calls_are_independent(name: str):
     pairs = [planes().views, border().views, jump().views] * 2
     alone = [method(name).estimate(each).digest() for each in pairs[:3]] * 2
     with ThreadPoolExecutor(3) as pool:
@@ -362,7 +362,7 @@ def test_every_process_gives_the_same_maps():
 
 
 @pytest.mark.parametrize("name", ["semi-global", "zncc"])
-def test_the_memory_that_is_stated_is_enough_for_five_megapixels(name: str):
+def test_stated_memory_is_enough_for_five_megapixels(name: str):
     """40 bytes a pixel above the pictures, and 256 MiB for the volumes of the strips at work."""
     script = (
         "import numpy as np; from tangible_bench.memory import start_peak; from tangible_core.data import Views;"

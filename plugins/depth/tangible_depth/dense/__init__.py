@@ -1,1 +1,1 @@
-"""From raw matches to a dense map: confidence, speckles, filling, edges."""
+"""Post-processing of raw matches into a dense map: confidence, speckles, filling, edges."""

@@ -1,6 +1,6 @@
-"""How far a disparity can be trusted."""
+"""The confidence of each disparity, 0..1."""
 
-# ruff: noqa: ANN001, ANN202 -- numba finds the types of what it compiles; the docstrings say them
+# ruff: noqa: ANN001, ANN202 -- numba infers the types of kernels; their docstrings give them
 
 import numpy as np
 from jaxtyping import Bool, Float, Float32, Int16, UInt8
@@ -11,15 +11,19 @@ from tangible_core.compiled.compiling import KERNEL
 from .span import UNKNOWN
 
 AGREEMENT = 16
-"""Sixteenths of a pixel by which a final value may differ from the match that it is judged by."""
+"""Largest difference, in sixteenths of a pixel, at which a final value still counts as its match."""
 FLAT_REACH = 2
-"""Rows and columns round a pixel in which `flat_pixels` looks."""
-LEAST_MATCHED, FILLED = 0.2, 0.1
-"""Confidence of the worst match, and the highest of a value that comes from neighbours."""
-STEP_REACH, GAP_REACH = 3, 5
-"""Rows and columns round a pixel in which steps of depth and pixels without a match lessen its confidence."""
+"""Radius, in pixels, of the window of `flat_pixels`: that of a census code."""
+LEAST_MATCHED = 0.2
+"""Confidence of the worst match."""
+FILLED = 0.1
+"""Highest confidence of a value that comes from neighbours."""
+STEP_REACH = 3
+"""Radius, in pixels, of the window in which a depth step lowers the confidence."""
+GAP_REACH = 5
+"""Radius, in pixels, of the window in which pixels without a match lower the confidence."""
 SHARE_LOST = 0.6
-"""What of the confidence is lost where nothing round a pixel was matched."""
+"""Share of the confidence lost where no pixel of the window was matched."""
 
 
 def confidence(
@@ -28,13 +32,14 @@ def confidence(
     quality: UInt8[np.ndarray, "h w"],
     by_quality: Float[np.ndarray, "256"],
 ) -> Float32[np.ndarray, "h w"]:
-    """LEAST_MATCHED up to by_quality[quality] where the final value agrees with a match, 0 up to FILLED elsewhere.
+    """Rate each pixel: LEAST_MATCHED to by_quality[quality] where it agrees with its match, 0 to FILLED elsewhere.
 
-    Of either range there is (1 - SHARE_LOST m) / sqrt(1 + s): s is the step of depth in pixels between the nearest and
-    the farthest value round the pixel, m the share of the pixels round it without a match. The form comes from a
+    Either range is scaled by (1 - SHARE_LOST m) / sqrt(1 + s), where s is the depth step in pixels between the nearest
+    and the farthest value near the pixel, and m the share of pixels near it without a match. The form comes from a
     logistic regression (which pixels are over 2 px off) over four photographs and four scenes.
 
-    matched (UNKNOWN where nothing was) and final in sixteenths of a pixel; quality, what each match cost or scored.
+    matched: disparity in sixteenths of a pixel, UNKNOWN without a match; final: the same after filling and sharpening.
+    quality: cost or score of each match, the index into by_quality. Returns: float32 (h, w).
     """
     import cv2
 
@@ -48,7 +53,7 @@ def confidence(
 
 
 def flat_pixels(grey: UInt8[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
-    """Where nothing changes along the rows of the 5 x 5 window: any shift along them fits as well as any other."""
+    """Find pixels whose 5 x 5 window is constant along its rows, so that every disparity fits equally well."""
     import cv2
 
     row = np.ones((1, 2 * FLAT_REACH + 1), np.uint8)
@@ -60,11 +65,13 @@ def flat_pixels(grey: UInt8[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
 def _judge(matched, final, quality, table, near, far, gaps, out):
     least, filled = np.float32(LEAST_MATCHED), np.float32(FILLED)
     for y in range(final.shape[0]):
-        for x in range(final.shape[1]):  # apart from the table, so that it is plain vector code
+        for x in range(final.shape[1]):  # without the table, so that the loop vectorises
             step = np.float32(int32(near[y, x]) - int32(far[y, x])) * np.float32(1 / 16)
             share = np.float32(1) - np.float32(SHARE_LOST / 255) * np.float32(gaps[y, x])
             out[y, x] = share / np.sqrt(np.float32(1) + step)
         for x in range(final.shape[1]):
             agrees = abs(int32(matched[y, x]) - int32(final[y, x])) <= AGREEMENT
-            value = least + (table[quality[y, x]] - least) * out[y, x]  # read in any case: no processor can guess
+            value = (
+                least + (table[quality[y, x]] - least) * out[y, x]
+            )  # read unconditionally: a branch here is unpredictable
             out[y, x] = value if agrees & (matched[y, x] != UNKNOWN) else filled * out[y, x]

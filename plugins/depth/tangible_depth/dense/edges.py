@@ -1,12 +1,12 @@
-"""Depth edges moved to where the picture has its edges.
+"""Depth edges aligned with the edges of the picture.
 
-Windows and paths let a near surface grow over its neighbour by a pixel or two. Round every depth edge the two surfaces
-are put to the vote: the pixels of a small window, weighted by how much their grey value is like the pixel's own, decide
-which of the two it belongs to. This is the weighted median of Ma et al., Constant time weighted median filtering for
-stereo matching and beyond, ICCV 2013, cut down to two candidates and to the pixels where there is a choice.
+Windows and paths let a near surface grow over its neighbour by a pixel or two. Near every depth edge, the pixels of a
+small window vote for one of the two surfaces; a vote weighs more the more alike its grey value is to the pixel's own.
+This is the weighted median of Ma et al., Constant time weighted median filtering for stereo matching and beyond,
+ICCV 2013, reduced to two candidates and to the pixels that have a choice.
 """
 
-# ruff: noqa: ANN001, ANN202 -- numba finds the types of what it compiles; the docstrings say them
+# ruff: noqa: ANN001, ANN202 -- numba infers the types of kernels; their docstrings give them
 
 import numpy as np
 from jaxtyping import Int16, UInt8
@@ -18,33 +18,39 @@ from ..simd.lane_reductions import total
 from ..simd.lanes import Lanes, add, load, maximum, minimum, multiply, splat, subtract
 
 MEDIAN_REACH = 2
-"""Rows and columns round a pixel of which `median` is."""
-NEARBY, VOTERS, STRIDE = 1, 4, 2
-"""Radius in which an edge is looked for; radius of the voting window, and distance of its voters, in pixels."""
+"""Radius of the median window, in pixels."""
+NEARBY = 1
+"""Radius, in pixels, of the window in which a depth edge is detected."""
+VOTERS = 4
+"""Radius of the voting window, in pixels."""
+STRIDE = 2
+"""Distance between voters, in pixels."""
 JUMP = 24
-"""Sixteenths of a pixel that make an edge."""
+"""Smallest depth step of an edge, in sixteenths of a pixel."""
 GREY_REACH = 24
-"""Grey levels at which a vote has lost all its weight."""
+"""Grey difference, in levels, at which a vote has no weight left."""
 LANES = 16
-"""At least as many as a row of the voting window has pixels."""
+"""SIMD lanes for a row of the voting window, at least as many as it has pixels."""
 VOTING = np.array([k <= 2 * VOTERS and k % STRIDE == 0 for k in range(LANES)], np.uint16)
+"""Mask of the lanes that have a vote."""
 ZERO_RANK = np.uint16(32768)
-"""Added to disparities, it makes them unsigned and keeps their order."""
+"""Offset that makes disparities unsigned and keeps their order."""
 NO_GREY = 1000
-"""Beyond the picture: too far from any grey value to have a vote."""
+"""Grey level of pixels beyond the picture: too far from any real one to have a vote."""
 
 
 def median(disparity: Int16[np.ndarray, "h w"]) -> Int16[np.ndarray, "h w"]:
-    """5 x 5 median; beyond the picture its edge is repeated."""
+    """Filter with a 5 x 5 median; the picture's edge is repeated outwards."""
     import cv2
 
     return cv2.medianBlur(disparity, 2 * MEDIAN_REACH + 1)  # pyright: ignore[reportReturnType]
 
 
 def sharpen_edges(disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "h w"]) -> Int16[np.ndarray, "h w"]:
-    """A dense map in sixteenths of a pixel, each pixel near a depth edge on the side that its grey value votes for.
+    """Move each pixel near a depth edge to the surface that its grey value votes for.
 
-    A pixel that changes sides takes the weighted mean of its new side.
+    disparity: a dense map in sixteenths of a pixel; grey: the left view. A pixel that changes sides takes the weighted
+    mean of its new side. Returns: a new map (h, w).
     """
     import cv2
 
@@ -73,7 +79,7 @@ def _vote(lanes, voting, ranks, greys, disparity, grey, far, near, out):
 
 @inner()
 def _majority(lanes, voting, ranks, greys, y, x, middle):
-    """Votes for the front less votes for the back. A row of the window fits the lanes, some of which have no vote."""
+    """Return the votes for the front minus those for the back. A row of the window fits the lanes; not all vote."""
     own = splat(lanes, greys[y + VOTERS, x + VOTERS])
     border, one = splat(lanes, uint16(middle + ZERO_RANK)), splat(lanes, uint16(1))
     reach = splat(lanes, uint16(GREY_REACH))

@@ -1,4 +1,4 @@
-"""Surfaces from slopes: the least-squares fit to a field of gradients."""
+"""Least-squares integration of a field of gradients into a surface."""
 
 import numpy as np
 from jaxtyping import Float
@@ -7,14 +7,14 @@ from jaxtyping import Float
 def gradient(
     heights: Float[np.ndarray, "h w"],
 ) -> tuple[Float[np.ndarray, "h w"], Float[np.ndarray, "h w"]]:
-    """Differences to the next column and to the next row; 0 in the last one, which has no next."""
+    """Return the differences to the next column and to the next row; 0 in the last one, which has no next."""
     return np.diff(heights, axis=1, append=heights[:, -1:]), np.diff(heights, axis=0, append=heights[-1:])
 
 
 def integrate(x_slope: Float[np.ndarray, "h w"], y_slope: Float[np.ndarray, "h w"]) -> Float[np.ndarray, "h w"]:
-    """The surface of mean zero whose `gradient` comes nearest to these slopes, in the sense of least squares.
+    """Return the surface (h, w) of mean zero whose `gradient` is nearest to these slopes by least squares.
 
-    The last column of x_slope and the last row of y_slope are not read. A gradient of a surface gives that surface.
+    The last column of x_slope and the last row of y_slope are not read. The gradient of a surface gives that surface.
     Source: the Poisson equation with free borders by the cosine transform: Frankot & Chellappa, PAMI 1988, on the
     basis of Simchony, Chellappa & Shao, PAMI 1990.
     """

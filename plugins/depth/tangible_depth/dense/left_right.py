@@ -1,4 +1,4 @@
-"""The left-right check: a match that holds from both views is to be trusted."""
+"""The left-right check: confidence from the agreement of both views' maps."""
 
 import numpy as np
 from jaxtyping import Float32
@@ -7,7 +7,7 @@ from jaxtyping import Float32
 def left_right_confidence(
     left_px: Float32[np.ndarray, "h w"], right_px: Float32[np.ndarray, "h w"]
 ) -> Float32[np.ndarray, "h w"]:
-    """How far both views agree: c = max(0, 1 - |d_L(x) - d_R(x - d_L(x))| / 1 px).
+    """Measure how far both views agree: c = max(0, 1 - |d_L(x) - d_R(x - d_L(x))| / 1 px).
 
     Parameters: disparities of the left and of the right view, (h, w), NaN where unknown; both count a left pixel x as
     the match of the right pixel x - d.

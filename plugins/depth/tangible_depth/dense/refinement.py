@@ -1,10 +1,10 @@
-"""From raw matches to a dense map: cleaned, filled, sharpened, enlarged.
+"""Completion of raw matches into a dense map: speckle removal, filling, sharpening, enlargement.
 
-What looks only a few rows away is done block by block, all of it by the thread that has the block: a block is cut out
-with some rows to spare, treated like a picture of its own, and its own rows are kept.
+Filters with a reach of a few rows run block by block, all filters of a block on one thread: the block is cut out with
+a margin, filtered like a separate picture, and its own rows are kept.
 """
 
-# ruff: noqa: ANN001, ANN202 -- numba finds the types of what it compiles; the docstrings say them
+# ruff: noqa: ANN001, ANN202 -- numba infers the types of kernels; their docstrings give them
 
 from typing import NamedTuple
 
@@ -23,43 +23,44 @@ from .span import UNKNOWN
 from .speckles import Specks, remove_specks
 
 SAME_SURFACE = 16
-"""Sixteenths of a pixel that two neighbours of a small map may differ by and still be blended when it is enlarged."""
+"""Largest difference, in sixteenths of a pixel, at which neighbours are blended when a map is enlarged."""
 
 
 class DenseMatches(NamedTuple):
-    """Disparity in sixteenths of a pixel, and its confidence."""
+    """A dense map: disparity in sixteenths of a pixel, and its confidence 0..1."""
 
     disparity: Int16[np.ndarray, "h w"]
     confidence: Float32[np.ndarray, "h w"]
 
 
 class Cleaning(NamedTuple):
-    """What is done to raw matches besides the rest."""
+    """Options of `complete`."""
 
     sharpen: bool = True
-    """Edges are sharpened; a map that will be enlarged is sharpened then."""
+    """Switch for the sharpening of depth edges; a map to be enlarged is sharpened by `enlarge` instead."""
     specks: Specks = Specks()
-    """Which islands are errors, in a picture of full size."""
+    """Sizes up to which islands are removed, in pixels of the full-size picture."""
     factor: int = 1
-    """By how much the picture was made smaller."""
+    """Factor by which the picture was downsampled."""
     effort: Effort = "balanced"
-    """How gaps are filled (`fill_gaps`)."""
+    """Effort of the filling, see `fill_gaps`."""
 
 
 def _empty(shape: tuple[int, int]) -> DenseMatches:
     return DenseMatches(np.empty(shape, np.int16), np.empty(shape, np.float32))
 
 
-def completed(
+def complete(
     matched: Int16[np.ndarray, "h w"],
     quality: UInt8[np.ndarray, "h w"],
     by_quality: Float[np.ndarray, "256"],
     grey: UInt8[np.ndarray, "h w"],
     cleaning: Cleaning | None = None,
 ) -> DenseMatches:
-    """Speckles removed (in `matched` itself), gaps filled, edges sharpened, and all of it judged (see `confidence`).
+    """Remove speckles (in `matched` itself), fill gaps, sharpen edges, and rate the result (see `confidence`).
 
-    A map without any match stays UNKNOWN.
+    matched: disparity in sixteenths of a pixel, UNKNOWN without a match; a map without any match stays UNKNOWN.
+    quality, by_quality: see `confidence`. grey: the left view.
     """
     cleaning = cleaning or Cleaning()
     remove_specks(matched, cleaning.specks, cleaning.factor)
@@ -67,7 +68,7 @@ def completed(
     out = _empty(grey.shape)
 
     def block(y0: int, y1: int) -> None:
-        cut, own = _with_margin(y0, y1, 2 * MEDIAN_REACH + VOTERS + max(STEP_REACH, GAP_REACH))
+        cut, own = _slices_with_margin(y0, y1, 2 * MEDIAN_REACH + VOTERS + max(STEP_REACH, GAP_REACH))
         final = median(filled[cut])
         if cleaning.sharpen:
             final = median(sharpen_edges(final, grey[cut]))
@@ -78,13 +79,13 @@ def completed(
     return out
 
 
-def enlarged(small: DenseMatches, grey: UInt8[np.ndarray, "h w"]) -> DenseMatches:
-    """Twice the size: linear within a surface, and at its edges decided by the larger picture `grey`."""
+def enlarge(small: DenseMatches, grey: UInt8[np.ndarray, "h w"]) -> DenseMatches:
+    """Enlarge a map to twice its size: linear within a surface, edges decided by `grey`, the larger left view."""
     out = _empty(grey.shape)
     padded = np.pad(small.disparity, 1, mode="edge")
 
     def block(y0: int, y1: int) -> None:
-        cut, own = _with_margin(y0, y1, VOTERS)
+        cut, own = _slices_with_margin(y0, y1, VOTERS)
         part = _empty(grey[cut].shape)
         _enlarge(padded, small.confidence, cut.start, *part)
         out.disparity[y0:y1] = sharpen_edges(part.disparity, grey[cut])[own]
@@ -94,12 +95,12 @@ def enlarged(small: DenseMatches, grey: UInt8[np.ndarray, "h w"]) -> DenseMatche
     return out
 
 
-def as_map(dense: DenseMatches, grey: UInt8[np.ndarray, "h w"], fill: bool) -> DisparityMap:
-    """In pixels; NaN where nothing is known and, unless `fill`, where a value comes from neighbours."""
+def to_disparity_map(dense: DenseMatches, grey: UInt8[np.ndarray, "h w"], fill: bool) -> DisparityMap:
+    """Convert to pixels; NaN where nothing is known and, unless `fill`, where the value comes from neighbours."""
     disparity_px, trust = np.empty(grey.shape, np.float32), np.empty(grey.shape, np.float32)
 
     def block(y0: int, y1: int) -> None:
-        cut, own = _with_margin(y0, y1, FLAT_REACH)
+        cut, own = _slices_with_margin(y0, y1, FLAT_REACH)
         rows = (each[y0:y1] for each in (*dense, disparity_px, trust))
         _to_pixels(flat_pixels(grey[cut])[own], fill, *rows)
 
@@ -107,8 +108,8 @@ def as_map(dense: DenseMatches, grey: UInt8[np.ndarray, "h w"], fill: bool) -> D
     return DisparityMap(disparity_px, trust)
 
 
-def _with_margin(y0: int, y1: int, rows: int) -> tuple[slice, slice]:
-    """Rows y0..y1-1 with as many more on either side, or as there are; and where among these the former lie."""
+def _slices_with_margin(y0: int, y1: int, rows: int) -> tuple[slice, slice]:
+    """Slice rows y0..y1-1 with a margin of `rows` on either side, where there are; and y0..y1-1 within that slice."""
     first = max(0, y0 - rows)
     return slice(first, y1 + rows), slice(y0 - first, y1 - first)
 
@@ -125,9 +126,9 @@ def _to_pixels(flat, fill, disparity, confidence, disparity_px, trust):
 
 @njit(**KERNEL)
 def _enlarge(padded, trust, y0, out, out_trust):
-    """Rows from y0 on; `padded` is the small map with its edge repeated once.
+    """Enlarge the rows from y0 on; `padded` is the small map with its edge repeated once.
 
-    A pixel lies a quarter of a small pixel off the centre of its own: 3/4 of that, 1/4 of the neighbour there.
+    A pixel lies a quarter of a small pixel off the centre of that one: 3/4 of its value, 1/4 of the neighbour's.
     """
     for i in range(out.shape[0]):
         y = y0 + i
@@ -142,6 +143,6 @@ def _enlarge(padded, trust, y0, out, out_trust):
 
 @inner()
 def _step(own, other):
-    """To a neighbour on the same surface; 0 to any other."""
+    """Return the difference to a neighbour on the same surface; 0 for any other neighbour."""
     step = int32(other) - own
     return step if abs(step) <= SAME_SURFACE else int32(0)

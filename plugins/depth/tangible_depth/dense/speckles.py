@@ -1,9 +1,9 @@
-"""Small islands of disparity: wrong matches that no neighbour confirms.
+"""Removal of speckles: small islands of disparity, mostly wrong matches that no neighbour confirms.
 
-As OpenCV's `filterSpeckles`, but over runs of a row instead of pixels, and on all processors.
+Like OpenCV's `filterSpeckles`, but over runs of a row instead of pixels, and on all processors.
 """
 
-# ruff: noqa: ANN001, ANN202 -- numba finds the types of what it compiles; the docstrings say them
+# ruff: noqa: ANN001, ANN202 -- numba infers the types of kernels; their docstrings give them
 
 from typing import NamedTuple
 
@@ -17,57 +17,57 @@ from tangible_core.compiled.threads import in_blocks
 from .span import UNKNOWN
 
 ISLAND_PX = 60
-"""Islands up to here are errors, where nothing else is said."""
+"""Default size, in pixels, up to which an island is removed."""
 REACH = 20
-"""Rows and columns round a pixel in which is counted how much was matched."""
+"""Radius, in pixels, of the window in which the share of matched pixels is counted."""
 FEW, HARDLY_ANY = 0.5, 0.2
-"""Shares of the pixels round one below which few, and hardly any, were matched."""
+"""Shares of matched pixels in the window below which few, and hardly any, count as matched."""
 
 
 class Specks(NamedTuple):
-    """Up to which size islands are errors: the less was matched round one, the larger it may be.
+    """Largest islands, in pixels, that are removed: the fewer matches are near an island, the larger.
 
-    Matches among many others have been confirmed by them while costs were aggregated; a lone one was found by chance,
-    and all that is filled round it would be wrong with it.
+    Matches among many others were confirmed by them while costs were aggregated; a lone one was found by chance, and
+    every gap filled from it would be wrong too.
     """
 
     among_many_px: int = 20
     among_few_px: int = ISLAND_PX
     alone_px: int = ISLAND_PX
 
-    def shrunk(self, factor: int) -> "Specks":
-        """The same in a picture made smaller by `factor`."""
+    def downsample(self, factor: int) -> "Specks":
+        """Return the same sizes for a picture that is smaller by `factor`."""
         return Specks(*(each // factor**2 for each in self))
 
     def by_share(self) -> Int32[np.ndarray, "256"]:
-        """The largest error where 0 to 255 of 255 pixels round it were matched."""
+        """Return the largest removed island, in pixels, for 0 to 255 of 255 matched pixels near it."""
         share = np.arange(256) / 255
         return np.select((share < HARDLY_ANY, share < FEW), self[:0:-1], self.among_many_px).astype(np.int32)
 
 
 def remove_specks(disparity: Int16[np.ndarray, "h w"], specks: Specks, factor: int = 1) -> None:
-    """Make islands UNKNOWN, in place, by what was matched round each of their pixels; see `remove_speckles`.
+    """Make islands UNKNOWN, in place, by the share of matched pixels near each of their pixels; see `remove_speckles`.
 
-    factor: by how much the picture was made smaller.
+    factor: the one by which the picture was downsampled.
     """
     import cv2
 
     across = 2 * (REACH // factor) + 1
     share = cv2.blur(np.uint8(255) * (disparity != UNKNOWN), (across, across))
-    _remove(disparity, specks.shrunk(factor).by_share(), share, 16)
+    _remove(disparity, specks.downsample(factor).by_share(), share, 16)
 
 
 def remove_speckles(disparity: Int16[np.ndarray, "h w"], largest_px: int, step: int = 16) -> int:
-    """Make islands UNKNOWN, in place, and return how many pixels that were.
+    """Make islands UNKNOWN, in place, and return their number of pixels.
 
     An island is a region of at most `largest_px` pixels in which 4-neighbours differ by at most `step` sixteenths of a
-    pixel, and which no such step joins to anything else.
+    pixel, and which no such step joins to another region.
     """
     return _remove(disparity, np.full(1, largest_px, np.int32), np.zeros(disparity.shape, np.uint8), step)
 
 
 def _remove(disparity: np.ndarray, largest_px: np.ndarray, share: np.ndarray, step: int) -> int:
-    """largest_px: of an island, by the `share` of each of its pixels."""
+    """Make islands UNKNOWN; largest_px[share] is the largest that is removed at a pixel of this `share`."""
     h, w = disparity.shape
     start, stop, parent, size = (np.empty(h * w, np.int32) for _ in range(4))
     begin, end = np.empty(h, np.int64), np.empty(h, np.int64)
@@ -92,7 +92,10 @@ def _remove(disparity: np.ndarray, largest_px: np.ndarray, share: np.ndarray, st
 
 @njit(**KERNEL)
 def _label(disparity, step, y0, y1, start, stop, parent, size, begin, end):
-    """Runs of rows y0..y1-1, numbered from y0 w and joined within these rows. Row y has begin[y]..end[y]-1."""
+    """Find the runs of rows y0..y1-1 and join them within these rows.
+
+    Runs are numbered from y0 w on; row y has begin[y]..end[y]-1.
+    """
     w = disparity.shape[1]
     run = y0 * w
     for y in range(y0, y1):
@@ -116,7 +119,7 @@ def _label(disparity, step, y0, y1, start, stop, parent, size, begin, end):
 
 @njit(**KERNEL)
 def _join_rows(disparity, step, y, start, stop, parent, size, begin, end):
-    """Join the runs of row y with those of row y-1 that they touch."""
+    """Join the runs of row y with the touching runs of row y-1."""
     upper, lower = disparity[y - 1], disparity[y]
     above = begin[y - 1]
     for here in range(begin[y], end[y]):
@@ -141,7 +144,7 @@ def _root(parent, i):
 
 @inner()
 def _unite(parent, size, i, j):
-    """One region of two, without a branch: whether they are one already, no processor can guess."""
+    """Join two regions, without a branch: whether they are joined already is unpredictable."""
     i, j = _root(parent, i), _root(parent, j)
     low, high = min(i, j), max(i, j)
     united = size[low] + (size[high] if i != j else 0)
@@ -154,7 +157,7 @@ def _erase(disparity, most, largest_px, share, y0, y1, start, stop, parent, size
     for y in range(y0, y1):
         for run in range(begin[y], end[y]):
             root = run
-            while parent[root] != root:  # no path is shortened here: other threads read too
+            while parent[root] != root:  # paths are not shortened here: other threads read them
                 root = parent[root]
             if size[root] <= most:
                 for x in range(start[run], stop[run]):

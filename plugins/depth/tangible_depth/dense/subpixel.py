@@ -1,4 +1,4 @@
-"""Where between three samples the optimum lies, in steps from the middle one."""
+"""Sub-pixel position of an optimum between three samples, in steps from the middle one."""
 
 from typing import Any
 
@@ -7,7 +7,7 @@ from tangible_core.compiled.compiling import inner
 
 @inner()
 def parabola(before: Any, at: Any, after: Any) -> Any:
-    """Vertex of the parabola through three equally spaced samples, (a - c) / (2 (a - 2 b + c)).
+    """Return the vertex of the parabola through three equally spaced samples, (a - c) / (2 (a - 2 b + c)).
 
     Within +-0.5 if `at` is the best of the three, whether best means smallest or largest; 0 if they lie on a line.
     """
@@ -17,7 +17,7 @@ def parabola(before: Any, at: Any, after: Any) -> Any:
 
 @inner()
 def equiangular(before: Any, at: Any, after: Any) -> Any:
-    """Tip of the symmetric V through three equally spaced costs; 0 if they are equal.
+    """Return the tip of the symmetric V through three equally spaced costs; 0 if they are equal.
 
     Costs that count differing bits grow linearly round their minimum: the parabola would pull towards whole numbers.
     Within +-0.5 if `at` is the smallest.

@@ -1,1 +1,1 @@
-"""The road of a whole matcher: what comes before and after the matching itself, dense or feature by feature."""
+"""The chain of a whole matcher, from views to a disparity map, dense or feature by feature: start at `chain`."""

@@ -1,10 +1,10 @@
-"""Choosing what to compare by trying it on a part of the picture.
+"""Choice of the matching cost by a trial on a part of the picture.
 
 No noise model is needed. A wrong match that passes the left-right check is seldom confirmed by its neighbours, so the
-share of checked pixels that the speckle filter erases (the loss) tells how far a cost can be trusted, whatever the
-cause: noise, compression, or rows that do not correspond. What the matches cost tells whether the grey levels of both
-views may be compared themselves, besides their order. The strips already swept are kept when all is well, so that a
-clean pair pays next to nothing.
+share of checked pixels that the speckle filter removes (the loss) measures how far a cost can be trusted, whatever the
+cause: noise, compression, or rows that do not correspond. The cost of the matches shows whether the grey levels of both
+views may be compared, besides their order. The strips of the trial are kept if the cost stays, so that a clean pair
+pays next to nothing.
 """
 
 import logging
@@ -18,29 +18,31 @@ from tangible_core.plugins.notes import note
 from ..dense.filling.gaps import Effort
 from ..dense.span import UNKNOWN, Span
 from ..dense.speckles import ISLAND_PX, remove_speckles
-from ..row_alignment.row_offset import CELL_PX, LEAST_ROW_OFFSET_PX, realigned, row_offset
+from ..row_alignment.row_offset import CELL_PX, LEAST_ROW_OFFSET_PX, row_offset, shift_rows
 from ..search.bands import match_bands
 from ..search.pairs import Pair
 from ..sgm.costs import HEAVY, LEVELS, LIGHT, SHARP, Cost
-from ..sgm.strips import WARM_ROWS, StripMatches, blank, sweep
+from ..sgm.strips import WARM_ROWS, StripMatches, sweep, unknown_matches
 
 log = logging.getLogger(__name__)
 NOISE = 0.20
-"""Loss from which the heavy cost is taken."""
+"""Loss from which the heavy cost is used."""
 LEVELS_LOSS, LEVELS_DIFFERING = 0.06, 0.265
-"""Loss, and share of its bits and levels by which matches differ, from which levels mislead: exposures, or noise."""
-LEVELS_APART, EVERY_ROW = 0.6, 4
-"""Share of matches whose levels differ by all that counts from which the views were exposed differently, and in which
-rows of the trial this is looked for."""
+"""Loss, and share of differing bits and levels, from which levels mislead: other exposure, or noise."""
+LEVELS_APART = 0.6
+"""Share of matches whose levels differ by the most that counts from which the views were exposed differently."""
+EVERY_ROW = 4
+"""Distance of the trial's rows in which levels are compared."""
 MOST_ROW_OFFSET_PX = 1.0
-"""Offsets of rows up to here are found and put right on the way."""
+"""Largest row offset, in pixels, that the trial measures and corrects."""
 PROBE_ROWS = 64
-"""Rows of a strip that are tried before the rest."""
+"""Rows of a strip that a trial matches."""
 Rows = Sequence[tuple[int, int]]
+"""First and last + 1 row of strips."""
 
 
 class _Spending(NamedTuple):
-    """The cost that an effort tries first, what it takes for noise, and the rows that it spends on seams."""
+    """The cost that an effort tries first, its thresholds for noise, and the rows that it spends on seams."""
 
     first: Cost
     """The cost that is tried first."""
@@ -67,7 +69,7 @@ def match(
     rows: Rows,
     effort: Effort,
 ) -> tuple[StripMatches, Cost]:
-    """The strips `rows` matched, with the given cost or, if None, with the one that the pair calls for."""
+    """Match the strips `rows` with the given cost or, if None, with the one chosen by a trial; return the cost too."""
     trial = _Trial(pair, span, cost or SPENDING[effort].first, check_tolerance, effort)
     if cost and not realign_rows:
         trial.sweep(rows)
@@ -77,36 +79,36 @@ def match(
     row_offset_px = _row_offset(trial, probes, span, health) if realign_rows else 0.0
     if abs(row_offset_px) > LEAST_ROW_OFFSET_PX:
         note(log, f"rows realigned by {row_offset_px:.2f} px")
-        trial = trial.of(realigned(pair, row_offset_px))
+        trial = trial.with_pair(shift_rows(pair, row_offset_px))
         health = trial.health(probes)
     if cost:
         trial.sweep(rest)
         return trial.out, cost
-    if trial.cost.most_level and (why := _why_no_levels(health, trial.levels_apart(probes))):
+    if trial.cost.most_level and (why := _why_levels_mislead(health, trial.levels_apart(probes))):
         note(log, f"skipped: comparing grey levels, as {why}")
-        trial = trial.at(SHARP)
+        trial = trial.with_cost(SHARP)
         health = trial.health(probes)
-    if trial.cost is SHARP and (called_for := _called_for(health, effort)) is not SHARP:
+    if trial.cost is SHARP and (cost_for_noise := _cost_for_noise(health, effort)) is not SHARP:
         note(
             log,
-            f"cost {called_for.name}: {health.loss:.0%} of the matches stand alone, "
-            f"{health.differing:.0%} of bits differ",
+            f"cost {cost_for_noise.name}: {health.loss:.0%} of the matches are speckles, "
+            f"{health.differing:.0%} of census bits differ",
         )
-        trial, rest = trial.at(called_for), rows
+        trial, rest = trial.with_cost(cost_for_noise), rows
     trial.sweep(rest)
     return trial.out, trial.cost
 
 
 class _Health(NamedTuple):
-    """How the matches of a trial fare."""
+    """The quality of a trial's matches."""
 
     loss: float
-    """Share of them that no neighbour confirms."""
+    """Share of the matches that are speckles."""
     differing: float
-    """Mean share of bits in which both views differ where they match."""
+    """Mean share of differing bits of the other matches."""
 
 
-def _called_for(health: _Health, effort: Effort) -> Cost:
+def _cost_for_noise(health: _Health, effort: Effort) -> Cost:
     if health.loss >= NOISE:
         return HEAVY
     spending = SPENDING[effort]
@@ -114,30 +116,30 @@ def _called_for(health: _Health, effort: Effort) -> Cost:
     return LIGHT if doubtful else SHARP
 
 
-def _why_no_levels(health: _Health, apart: float) -> str:
-    """Empty where both views' grey levels may be compared."""
+def _why_levels_mislead(health: _Health, apart: float) -> str:
+    """Return the reason against comparing the grey levels of both views; empty if there is none."""
     if apart >= LEVELS_APART:
-        return f"{apart:.0%} of them are far apart where the views match: they were exposed differently"
+        return f"{apart:.0%} of them are far apart where the views match: the exposures differ"
     if health.loss >= LEVELS_LOSS or health.differing >= LEVELS_DIFFERING:
-        return f"{health.loss:.0%} of the matches stand alone, and {health.differing:.0%} of bits and levels differ"
+        return f"{health.loss:.0%} of the matches are speckles, and {health.differing:.0%} of bits and levels differ"
     return ""
 
 
 class _Trial:
-    """One pair, coded once, and what has been matched of it."""
+    """A pair with its codes of one cost, and the matches so far."""
 
     def __init__(self, pair: Pair, span: Span, cost: Cost, check_tolerance: float, effort: Effort) -> None:
-        self.pair, self.cost, self.out = pair, cost, blank(pair.left.shape)
+        self.pair, self.cost, self.out = pair, cost, unknown_matches(pair.left.shape)
         self._span, self._check_tolerance = span, check_tolerance
         self._effort: Effort = effort
         self._codes = cost.codes(pair.left), cost.codes(pair.right)
 
-    def of(self, pair: Pair) -> "_Trial":
-        """The same of another pair."""
+    def with_pair(self, pair: Pair) -> "_Trial":
+        """Return a new trial of another pair at this cost."""
         return _Trial(pair, self._span, self.cost, self._check_tolerance, self._effort)
 
-    def at(self, cost: Cost) -> "_Trial":
-        """The same at another cost."""
+    def with_cost(self, cost: Cost) -> "_Trial":
+        """Return a new trial of this pair at another cost."""
         return _Trial(self.pair, self._span, cost, self._check_tolerance, self._effort)
 
     def sweep(self, rows: Rows) -> None:
@@ -146,28 +148,28 @@ class _Trial:
         sweep(self._codes, self.pair.left, *how, rows, self.out, SPENDING[self._effort].warm_rows, self.cost.most_level)
 
     def health(self, rows: Rows) -> _Health:
-        """Match these rows and look at what was found, specks being errors; none is erased: it may reach beyond."""
+        """Match these rows and count the speckles; none is removed, as it may extend beyond the rows."""
         self.sweep(rows)
         parts = [StripMatches(self.out.disparity[a:b].copy(), self.out.sums[a:b]) for a, b in rows]
-        found = max(1, sum(np.count_nonzero(each.disparity != UNKNOWN) for each in parts))
+        matches = max(1, sum(np.count_nonzero(each.disparity != UNKNOWN) for each in parts))
         specks = sum(remove_speckles(each.disparity, ISLAND_PX) for each in parts)
         bits = sum(int(np.sum(each.sums * (each.disparity != UNKNOWN), dtype=np.int64)) for each in parts)
-        return _Health(specks / found, bits / (4 * self.cost.bits * max(1, found - specks)))
+        return _Health(specks / matches, bits / (4 * self.cost.bits * max(1, matches - specks)))
 
     def levels_apart(self, rows: Rows) -> float:
-        """Share of the matches in these rows whose levels differ by all that counts; of a cost that has levels."""
-        apart = found = 0
+        """Return the share of matches in these rows whose levels differ by the most that counts."""
+        apart = matches = 0
         for y in (y for a, b in rows for y in range(a, b, EVERY_ROW)):
             (x,) = np.nonzero(self.out.disparity[y] != UNKNOWN)
             there = np.clip(x - ((self.out.disparity[y, x] + 8) >> 4), 0, self.pair.width - 1)
             apart_here = np.abs((self.pair.left[y, x] >> 1).astype(np.int16) - (self.pair.right[y, there] >> 1))
             apart += np.count_nonzero(apart_here >= self.cost.most_level)
-            found += len(x)
-        return apart / max(1, found)
+            matches += len(x)
+        return apart / max(1, matches)
 
 
 def _probes(rows: Rows) -> tuple[Rows, Rows]:
-    """The first PROBE_ROWS of a quarter of the strips, at least two, evenly spread; and all other rows."""
+    """Return the first PROBE_ROWS of a quarter of the strips, at least two, evenly spread; and all other rows."""
     count = min(len(rows), max(2, len(rows) // 4))
     chosen = {rows[(2 * i + 1) * len(rows) // (2 * count)] for i in range(count)}
     probes = [(a, min(a + PROBE_ROWS, b)) for a, b in rows if (a, b) in chosen]
@@ -176,7 +178,7 @@ def _probes(rows: Rows) -> tuple[Rows, Rows]:
 
 
 def _row_offset(trial: _Trial, probes: Rows, span: Span, health: _Health) -> float:
-    if health.loss >= NOISE:  # the matches themselves are suspect: bands average the noise away
+    if health.loss >= NOISE:  # too many wrong matches: bands average the noise away
         bands = match_bands(trial.pair, span)
         return row_offset(trial.pair, bands.rows, bands.disparity, bands.factor)
     rows = np.array([y for a, b in probes for y in range(a + CELL_PX // 2, b, CELL_PX)], np.int64)

@@ -1,4 +1,4 @@
-"""What all dense matchers do round their matching: the range, raw pairs, exchanged views, and the map in pixels."""
+"""The steps that all dense matchers share: search range, rectification, exchanged views, and the map in pixels."""
 
 import logging
 from collections.abc import Callable
@@ -10,110 +10,117 @@ from tangible_core.data import DisparityMap, Views
 from tangible_core.plugins.notes import note
 
 from ..dense.confidence import flat_pixels
-from ..dense.refinement import DenseMatches, as_map
+from ..dense.refinement import DenseMatches, to_disparity_map
 from ..dense.span import Span
 from ..rectify.rectification import rectify, whole_picture_matches
 from ..rectify.rectifying_rotation import RectificationError
-from ..row_alignment.common_rows import rows_correspond, with_common_rows
+from ..row_alignment.common_rows import align_rows, rows_correspond
 from ..search.bands import match_bands
-from ..search.disparity_range import Auto, asked_span
+from ..search.disparity_range import Auto, find_disparity_range
 from ..search.pairs import Pair, grey_pair
 
 log = logging.getLogger(__name__)
 
 Matcher = Callable[[Pair, Span], DenseMatches]
+"""A method that matches a pair along its rows over a range of disparities."""
 Rectify = Literal["auto", "never"]
-DOUBTFUL, MOST_DOUBTFUL = 0.15, 0.5
-"""Confidence below which a pixel was not matched but filled; and the share of such pixels from which a map fares so
-badly that the whole picture is looked at again."""
+LOW_CONFIDENCE = 0.15
+"""Confidence below which a pixel was filled, not matched."""
+MOST_LOW_CONFIDENCE = 0.5
+"""Share of pixels of low confidence above which the pair is tried again with rectification."""
 
 
 class Search(NamedTuple):
-    """The options that all dense matchers have, and what a matcher does by itself."""
+    """The options of all dense matchers, and the steps that a matcher takes itself."""
 
     least: int | Auto
+    """Lower end of the search range, pixels."""
     most: int | Auto
+    """Upper end of the search range, exclusive, pixels."""
     rectify: Rectify
     fill: bool
     most_row_offset_px: float = 0.0
-    """The constant offset of rows that the matcher puts right."""
+    """Largest constant row offset that the matcher corrects itself, pixels."""
     skip_identical: bool = False
 
 
 def disparity_map(views: Views, name: str, search: Search, match: Matcher) -> DisparityMap:
-    """Disparity of the left view by the method `name`, which matches along rows.
+    """Compute the disparity of the left view by the method `name`, which matches along rows.
 
-    A pair whose rows do not correspond is rectified first, unless its calibration says that it is or `rectify` is
-    `never`. Raises: PictureError without a right view or for an empty range; RectificationError as `rectify`.
+    A pair whose rows do not correspond is rectified first, unless it has the calibration of a rectified pair or
+    `rectify` is `never`.
+    Raises: PictureError without a right view or for an empty range; RectificationError as `rectify`.
     """
     pair = grey_pair(views, name)
     if search.skip_identical and np.array_equal(*pair):
         note(log, "skipped: matching, as both views are identical")
-        return nothing_moved(pair, search.fill)
-    found = asked_span(pair, search.least, search.most)
+        return zero_disparity(pair, search.fill)
+    estimate = find_disparity_range(pair, search.least, search.most)
     if search.rectify == "never" or views.calibration is not None:
-        found.say()
-        return in_order(pair, found.span, search.fill, match)
-    aligned = with_common_rows(pair, found.bands or match_bands(pair, found.span), search.most_row_offset_px)
+        estimate.log_notes()
+        return match_in_order(pair, estimate.span, search.fill, match)
+    aligned = align_rows(pair, estimate.bands or match_bands(pair, estimate.span), search.most_row_offset_px)
     if aligned is None:
-        return _rectified(views, name, search, match, None)
-    found.say()
-    first = in_order(aligned, found.span, search.fill, match)
-    return first if _fares_well(aligned, first) else _looked_over(views, name, search, match, first)
+        return _match_rectified(views, name, search, match, None)
+    estimate.log_notes()
+    first = match_in_order(aligned, estimate.span, search.fill, match)
+    return first if _is_reliable(aligned, first) else _retry_rectified(views, name, search, match, first)
 
 
-def _rectified(views: Views, name: str, search: Search, match: Matcher, instead: DisparityMap | None) -> DisparityMap:
-    """The map of a pair that is turned by features of the whole picture; `instead` of one that need not be."""
+def _match_rectified(
+    views: Views, name: str, search: Search, match: Matcher, instead: DisparityMap | None
+) -> DisparityMap:
+    """Rectify a pair by features of the whole picture and match it; return `instead` if it needs no rectification."""
     rectified = rectify(views, matches=whole_picture_matches(views))
     if rectified.skipped and instead is not None:
         return instead
     pair = grey_pair(rectified.views, name)
-    found = asked_span(pair, search.least, search.most, rectified.seen_px)
-    found.say()
-    return rectified.to_original(in_order(pair, found.span, search.fill, match))
+    estimate = find_disparity_range(pair, search.least, search.most, rectified.verified_px)
+    estimate.log_notes()
+    return rectified.to_original(match_in_order(pair, estimate.span, search.fill, match))
 
 
-def _fares_well(pair: Pair, found: DisparityMap) -> bool:
-    """Whether most was matched, or what was matched shows at least that the rows correspond."""
-    if doubtful(found) <= MOST_DOUBTFUL:
+def _is_reliable(pair: Pair, disparity: DisparityMap) -> bool:
+    """Test whether most pixels were matched, or at least the matched ones show that the rows correspond."""
+    if low_confidence_share(disparity) <= MOST_LOW_CONFIDENCE:
         return True
-    correspond = rows_correspond(pair, found.disparity_px, found.confidence >= DOUBTFUL)
+    correspond = rows_correspond(pair, disparity.disparity_px, disparity.confidence >= LOW_CONFIDENCE)
     if correspond:
-        note(log, "skipped: a look at the whole picture, as rows correspond where the views match")
+        note(log, "skipped: another try with rectification, as rows correspond where the views match")
     return correspond
 
 
-def _looked_over(views: Views, name: str, search: Search, match: Matcher, first: DisparityMap) -> DisparityMap:
-    """The map that was found, or a better one by a look at the whole picture."""
-    note(log, f"looked again at the whole picture: {doubtful(first):.0%} of the map are hardly trusted")
+def _retry_rectified(views: Views, name: str, search: Search, match: Matcher, first: DisparityMap) -> DisparityMap:
+    """Return a better map by rectification, or else the first one."""
+    note(log, f"retried with rectification: {low_confidence_share(first):.0%} of the pixels have low confidence")
     try:
-        again = _rectified(views, name, search, match, first)
+        again = _match_rectified(views, name, search, match, first)
     except RectificationError as error:
-        note(log, f"matched as it is: {error}", logging.WARNING)
+        note(log, f"matched without rectification: {error}", logging.WARNING)
         return first
-    return again if doubtful(again) < doubtful(first) else first
+    return again if low_confidence_share(again) < low_confidence_share(first) else first
 
 
-def doubtful(found: DisparityMap) -> float:
-    """Share of the pixels whose disparity is hardly trusted."""
-    return float(np.count_nonzero(found.confidence < DOUBTFUL) / found.confidence.size)
+def low_confidence_share(disparity: DisparityMap) -> float:
+    """Return the share of pixels of low confidence, 0..1."""
+    return float(np.count_nonzero(disparity.confidence < LOW_CONFIDENCE) / disparity.confidence.size)
 
 
-def in_order(pair: Pair, span: Span, fill: bool, match: Matcher) -> DisparityMap:
-    """The pair matched within `span`.
+def match_in_order(pair: Pair, span: Span, fill: bool, match: Matcher) -> DisparityMap:
+    """Match the pair within `span`, in the right order of its views.
 
-    Where this is negative throughout, the views are exchanged: mirrored they are a pair in the right order, in which
-    what is hidden lies on the side where the matchers expect it.
+    If the span has no positive disparity, the views are exchanged: mirrored, they are a pair in the right order, whose
+    occlusions lie on the side where the matchers expect them.
     """
     if span.high > 0 or pair.width == 1:
-        return as_map(match(pair, span), pair.left, fill)
-    flipped = pair.mirrored()
-    found = as_map(match(flipped, Span(-span.high, -span.low)), flipped.left, fill)
-    return DisparityMap(-found.disparity_px[:, ::-1], found.confidence[:, ::-1])
+        return to_disparity_map(match(pair, span), pair.left, fill)
+    flipped = pair.mirror()
+    disparity = to_disparity_map(match(flipped, Span(-span.high, -span.low)), flipped.left, fill)
+    return DisparityMap(-disparity.disparity_px[:, ::-1], disparity.confidence[:, ::-1])
 
 
-def nothing_moved(pair: Pair, fill: bool) -> DisparityMap:
-    """The map of two identical views: 0 everywhere, and nothing known where nothing changes along the rows."""
+def zero_disparity(pair: Pair, fill: bool) -> DisparityMap:
+    """Return the map of two identical views: 0 everywhere, with confidence 0 for flat pixels, or NaN unless `fill`."""
     flat = flat_pixels(pair.left)
     unknown = flat & (not fill or bool(flat.all()))
     return DisparityMap(np.where(unknown, np.float32(np.nan), np.float32(0)), (~flat).astype(np.float32))

@@ -1,4 +1,4 @@
-"""The report's chain, feature by feature, with its parts open to exchange.
+"""The chain of the report, feature by feature, with exchangeable parts.
 
 features -> matches -> fundamental matrix -> rectification -> matches along rows -> sub-pixel -> check -> filling.
 """
@@ -18,7 +18,7 @@ from ..rectify.fundamental import Fit
 from ..rectify.rectification import rectify
 from ..rectify.rectified_pair import RectifiedPair
 from ..sparse.assembling import assemble
-from ..sparse.corner_range import MOST_CORNERS, MaxDisparity, range_of_shifts, within
+from ..sparse.corner_range import MOST_CORNERS, MaxDisparity, clip_range, range_of_shifts
 from ..sparse.harris import corners, least_response, row_edges
 from ..sparse.matches import Matches, corner_matches
 
@@ -29,18 +29,18 @@ Row = Float32[np.ndarray, "n"]
 
 
 class Parts(NamedTuple):
-    """What the chain leaves open: the Harris response, F from trusted matches, and the search along rows."""
+    """The exchangeable parts of the chain: the Harris response, F from trusted matches, and the search along rows."""
 
     response: Callable[[Grey], Grey]
     fit: Fit
     match_rows: Callable[[Grey, Grey, Int64[np.ndarray, "n 2"], int, int], tuple[Row, Row]]
-    """left, right, points (column, row), lowest and highest disparity -> disparity (NaN unknown), score in 0..1."""
+    """Search left, right, points (column, row), lowest and highest disparity -> disparity (NaN unknown), score 0..1."""
 
 
 def disparity_by_features(
     views: Views, parts: Parts, least_contrast: float, least_score: float, max_disparity_px: MaxDisparity
 ) -> DisparityMap:
-    """Dense disparity from scattered matches of corners and edges, whatever way the cameras looked.
+    """Compute dense disparity from scattered matches of corners and edges, for cameras of any orientation.
 
     Raises: PictureError if there is only one view; RectificationError as `rectify`.
     """
@@ -60,18 +60,18 @@ def _match_features(views: Views, parts: Parts, least: float, least_score: float
     left, right = to_grey(views.left), to_grey(views.right)
     response = parts.response(left)
     points = np.unique(np.vstack([corners(response, least, left.size), row_edges(response, least)]), axis=0)
-    found, value = parts.match_rows(left, right, points, low, high)
-    kept = np.isfinite(found) & (value >= least_score)
-    logger.info("%d features, %d matched along rows over %d..%d px", len(points), np.count_nonzero(kept), low, high)
+    found_px, value = parts.match_rows(left, right, points, low, high)
+    accepted = np.isfinite(found_px) & (value >= least_score)
+    logger.info("%d features, %d matched along rows over %d..%d px", len(points), np.count_nonzero(accepted), low, high)
     disparity, score = np.full(left.shape, np.nan, np.float32), np.zeros(left.shape, np.float32)
-    columns, rows = points[kept].T
-    disparity[rows, columns], score[rows, columns] = found[kept], value[kept]
+    columns, rows = points[accepted].T
+    disparity[rows, columns], score[rows, columns] = found_px[accepted], value[accepted]
     return assemble(disparity, score, views.left)
 
 
 def _range(matches: Matches, rectified: RectifiedPair, most: MaxDisparity) -> tuple[int, int]:
-    """Lowest and highest disparity to try in the rectified views."""
+    """Return the lowest and highest disparity to try in the rectified views."""
     width = rectified.views.shape[1]
     if most != "auto":
-        return within(-rectified.offset_px, most - rectified.offset_px, width)
+        return clip_range(-rectified.offset_px, most - rectified.offset_px, width)
     return range_of_shifts(rectified.left_place_px(matches.left_px) - rectified.right_place_px(matches.right_px), width)

@@ -1,4 +1,4 @@
-"""The frames of a film matched one after the other: what the first one shows of the cameras is kept."""
+"""Matching of the frames of a film: rectification is estimated from the first frame and reused."""
 
 from collections import deque
 from typing import final
@@ -11,92 +11,94 @@ from ..dense.span import Span
 from ..rectify.rectification import rectify, whole_picture_matches
 from ..rectify.rectified_pair import RectifiedPair
 from ..rectify.rectifying_rotation import RectificationError
-from ..row_alignment.common_rows import common_row_offset, with_common_rows
-from ..row_alignment.row_offset import realigned
+from ..row_alignment.common_rows import align_rows, common_row_offset
+from ..row_alignment.row_offset import shift_rows
 from ..search.bands import match_bands
-from ..search.disparity_range import asked_span
+from ..search.disparity_range import find_disparity_range
 from ..search.pairs import Pair, grey_pair
-from .chain import MOST_DOUBTFUL, Matcher, Search, doubtful, in_order, nothing_moved
+from .chain import MOST_LOW_CONFIDENCE, Matcher, Search, low_confidence_share, match_in_order, zero_disparity
 
-LOOK_EVERY, LOOKS = 30, 8
-"""Frames after which the range is looked for again, and how many of these looks count: what comes nearer is let in, and
-what one bad frame shows is forgotten."""
+SEARCH_EVERY = 30
+"""Frames after which the search range is estimated again, so that it follows objects that come nearer."""
+SEARCHES = 8
+"""Latest estimates of the range that count together, so that the range of a bad frame is dropped later."""
 
 
 @final
-class FollowedPair:
-    """`chain.disparity_map` for the frames of a film: the rectification is found once, and the range now and then.
+class FilmMatcher:
+    """A `disparity_map` for the frames of a film: it rectifies by the first frame and updates the range at times.
 
-    The range covers what was found in the last LOOKS looks.
+    The range covers the last SEARCHES estimates of it.
     """
 
     def __init__(self, views: Views, name: str, search: Search, match: Matcher) -> None:
-        """Raises: as `disparity_map`."""
+        """Prepare for frames like `views`. Raises: as `disparity_map`."""
         self._name, self._search, self._match = name, search, match
-        self._turned: RectifiedPair | None = None
+        self._rectified: RectifiedPair | None = None
         self._row_offset_px = 0.0
         pair = grey_pair(views, name)
-        found = asked_span(pair, search.least, search.most)
-        self._spans = deque([found.span], maxlen=LOOKS)
+        estimate = find_disparity_range(pair, search.least, search.most)
+        self._spans = deque([estimate.span], maxlen=SEARCHES)
         self._frames = 0
         if search.rectify == "never" or views.calibration is not None or np.array_equal(*pair):
             return
-        bands = found.bands or match_bands(pair, found.span)
-        aligned = with_common_rows(pair, bands, search.most_row_offset_px)
+        bands = estimate.bands or match_bands(pair, estimate.span)
+        aligned = align_rows(pair, bands, search.most_row_offset_px)
         if aligned is None:
-            self._turn(views)
+            self._rectify(views)
         elif aligned is not pair:
             self._row_offset_px = common_row_offset(pair, bands) or 0.0
-        if aligned is not None and doubtful(first := self._matched(views)) > MOST_DOUBTFUL:
-            self._turn_if_better(views, doubtful(first))
+        if aligned is not None and low_confidence_share(first := self._match_frame(views)) > MOST_LOW_CONFIDENCE:
+            self._rectify_if_better(views, low_confidence_share(first))
 
     def __call__(self, views: Views) -> DisparityMap:
-        """Disparity of the left view of the next frame. Raises: PictureError without a right view."""
-        found = self._matched(views)
+        """Compute the disparity of the next frame's left view. Raises: PictureError without a right view."""
+        disparity = self._match_frame(views)
         self._frames += 1
-        return found
+        return disparity
 
-    def _matched(self, views: Views) -> DisparityMap:
-        turned = None if self._turned is None else self._turned.again(views)
-        pair = grey_pair(views if turned is None else turned.views, self._name)
+    def _match_frame(self, views: Views) -> DisparityMap:
+        rectified = None if self._rectified is None else self._rectified.warp(views)
+        pair = grey_pair(views if rectified is None else rectified.views, self._name)
         if self._search.skip_identical and np.array_equal(*pair):
-            return nothing_moved(pair, self._search.fill)
+            return zero_disparity(pair, self._search.fill)
         if self._row_offset_px:
-            pair = realigned(pair, self._row_offset_px)
-        if self._frames % LOOK_EVERY == LOOK_EVERY - 1:
-            self._look(pair)
-        found = in_order(pair, self._span.within(pair.width), self._search.fill, self._match)
-        return found if turned is None else turned.to_original(found)
+            pair = shift_rows(pair, self._row_offset_px)
+        if self._frames % SEARCH_EVERY == SEARCH_EVERY - 1:
+            self._update_range(pair)
+        disparity = match_in_order(pair, self._span.clip(pair.width), self._search.fill, self._match)
+        return disparity if rectified is None else rectified.to_original(disparity)
 
     @property
     def _span(self) -> Span:
         whole = Span(min(each.low for each in self._spans), max(each.high for each in self._spans))
-        # Of a range that was told nothing changes.
-        return whole.roomy() if self._search.most == "auto" and whole.high > 0 else whole
+        # A range that was given stays as it is.
+        return whole.widen() if self._search.most == "auto" and whole.high > 0 else whole
 
-    def _look(self, pair: Pair) -> None:
-        """For a range that was not told: of a frame in which nothing matches, nothing is learnt."""
+    def _update_range(self, pair: Pair) -> None:
+        """Estimate the range anew unless it was given; a frame without matches is ignored."""
         if self._search.most != "auto":
             return
-        found = asked_span(pair, self._search.least, self._search.most)
-        if found.bands is not None:
-            self._spans.append(found.span)
+        estimate = find_disparity_range(pair, self._search.least, self._search.most)
+        if estimate.bands is not None:
+            self._spans.append(estimate.span)
 
-    def _turn(self, views: Views) -> None:
-        turned = rectify(views, matches=whole_picture_matches(views))
-        if not turned.skipped:
-            self._turned, self._row_offset_px = turned, 0.0
-            pair = grey_pair(turned.views, self._name)
+    def _rectify(self, views: Views) -> None:
+        rectified = rectify(views, matches=whole_picture_matches(views))
+        if not rectified.skipped:
+            self._rectified, self._row_offset_px = rectified, 0.0
+            pair = grey_pair(rectified.views, self._name)
             self._spans = deque(
-                [asked_span(pair, self._search.least, self._search.most, turned.seen_px).span], maxlen=LOOKS
+                [find_disparity_range(pair, self._search.least, self._search.most, rectified.verified_px).span],
+                maxlen=SEARCHES,
             )
 
-    def _turn_if_better(self, views: Views, before: float) -> None:
-        """By the whole picture, as a single pair that fares as badly is."""
+    def _rectify_if_better(self, views: Views, before: float) -> None:
+        """Rectify by the whole picture, and keep it if the map gets more confident, as `disparity_map` does."""
         kept = self._spans, self._row_offset_px
         try:
-            self._turn(views)
+            self._rectify(views)
         except RectificationError:
             return
-        if self._turned is not None and doubtful(self._matched(views)) >= before:
-            self._turned, (self._spans, self._row_offset_px) = None, kept
+        if self._rectified is not None and low_confidence_share(self._match_frame(views)) >= before:
+            self._rectified, (self._spans, self._row_offset_px) = None, kept

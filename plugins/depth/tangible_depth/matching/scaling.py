@@ -1,4 +1,4 @@
-"""Semi-global matching at the size that serves: full, or smaller for a preview or a very wide range."""
+"""Semi-global matching at full size, or at a smaller one for a preview or a very wide range."""
 
 import logging
 from typing import Literal, NamedTuple
@@ -10,7 +10,7 @@ from tangible_core.plugins.notes import note
 
 from ..dense.confidence import FLAT_REACH, LEAST_MATCHED
 from ..dense.filling.gaps import Effort
-from ..dense.refinement import Cleaning, DenseMatches, completed, enlarged
+from ..dense.refinement import Cleaning, DenseMatches, complete, enlarge
 from ..dense.span import Span
 from ..search.pairs import Pair
 from ..sgm.costs import COSTS, SHARP, Penalties, p2_by_grey_step
@@ -19,14 +19,15 @@ from .adaptive import match
 
 log = logging.getLogger(__name__)
 CHECK_TOLERANCE = {"soft": 1.08, "strict": 1.0}
+"""Factor on the best cost of the right pixel that a match may have, by the option `check`."""
 HALVED = SHARP._replace(penalties=Penalties(np.uint8(8), np.uint8(8), p2_by_grey_step(40, 10, 2.0)))
-"""Of a preview: at half the size noise is averaged away, and surfaces end within fewer pixels."""
+"""Cost of a preview: at half the size noise is averaged away, and surfaces end within fewer pixels."""
 MOST_AT_FULL_SIZE = 256
-"""Disparities up to which `auto` works at full size: beyond, a coarser map costs little and saves much."""
+"""Largest number of disparities that `resolution: auto` matches at full size; wider ranges hardly need it."""
 
 
 class Scaling(NamedTuple):
-    """What `semi-global` says of the size and the costs at which it matches; each as its option of that name."""
+    """The options of `semi-global` about size and cost, under their own names."""
 
     resolution: Literal["full", "half", "auto"]
     effort: Effort
@@ -37,21 +38,21 @@ class Scaling(NamedTuple):
 
 
 def match_scaled(pair: Pair, span: Span, options: Scaling) -> DenseMatches:
-    """A dense map of the pair's own size, whatever size was matched at."""
+    """Match a pair and return a dense map of its full size."""
     factor = _factor(span, options)
-    small = pair.shrunk(factor)
-    dense = _match(small, span.shrunk(factor).within(small.width), options, factor)
+    small = pair.downsample(factor)
+    dense = _match(small, span.downsample(factor).clip(small.width), options, factor)
     while factor > 1:
         factor //= 2
-        dense = enlarged(dense, pair.shrunk(factor).left)
+        dense = enlarge(dense, pair.downsample(factor).left)
     return dense
 
 
 def _factor(span: Span, options: Scaling) -> int:
-    """By how much the pictures are made smaller before they are matched: a power of two."""
+    """Choose the factor by which the pictures are downsampled before the matching: a power of two."""
     factor = 2 if options.resolution == "half" else 1
     most = MOST_AT_FULL_SIZE if options.resolution == "auto" else MOST_LANES
-    while span.shrunk(factor).size > most:
+    while span.downsample(factor).size > most:
         factor *= 2
     if factor > 1:
         note(log, f"skipped: full resolution, matched at 1/{factor}")
@@ -59,7 +60,7 @@ def _factor(span: Span, options: Scaling) -> int:
 
 
 def _has_texture(grey: UInt8[np.ndarray, "h w"], y0: int, y1: int) -> bool:
-    """Whether any pixel of rows y0..y1-1 is not flat (`flat_pixels`)."""
+    """Test whether any pixel of rows y0..y1-1 is not flat (`flat_pixels`)."""
     rows = grey[max(0, y0 - FLAT_REACH) : y1 + FLAT_REACH]
     return not np.array_equal(rows[:, 1:], rows[:, :-1])
 
@@ -77,4 +78,4 @@ def _match(pair: Pair, span: Span, options: Scaling, factor: int) -> DenseMatche
     swept, cost = match(pair, span, cost, CHECK_TOLERANCE[options.check], realign_rows, rows, options.effort)
     by_sum = np.maximum(1 - np.arange(256) / (4 * cost.bits), LEAST_MATCHED)
     cleaning = Cleaning(not preview, cost.specks, factor, options.effort)
-    return completed(swept.disparity, swept.sums, by_sum, pair.left, cleaning)
+    return complete(swept.disparity, swept.sums, by_sum, pair.left, cleaning)

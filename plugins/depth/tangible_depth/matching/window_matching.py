@@ -1,4 +1,4 @@
-"""Dense matching of square windows: what `zncc` and `ssd` share."""
+"""Dense matching of square windows, shared by `zncc` and `ssd`."""
 
 from collections.abc import Callable
 
@@ -8,15 +8,15 @@ from jaxtyping import Float32
 from tangible_core.compiled.threads import in_blocks
 
 from ..dense.confidence import LEAST_MATCHED
-from ..dense.refinement import DenseMatches, completed
+from ..dense.refinement import DenseMatches, complete
 from ..dense.span import Span
 from ..search.pairs import Pair
-from ..sgm.strips import blank
+from ..sgm.strips import unknown_matches
 from ..simd.lanes import Lanes
 from ..windows.correlation import correlate_strip
 
 LEAST_VARIANCE = 1.0
-"""Grey levels squared below which a window says nothing."""
+"""Smallest variance of a window that is matched, in grey levels squared."""
 SSD_SCALE = 400.0
 """Mean squared difference of grey levels at which the confidence has fallen to 1/e."""
 
@@ -25,12 +25,12 @@ Trust = Callable[[Float32[np.ndarray, "rows w"]], Float32[np.ndarray, "rows w"]]
 
 
 def match_by_correlation(pair: Pair, span: Span, window_px: int) -> DenseMatches:
-    """Zero-mean normalised cross-correlation; the confidence of a match is its correlation."""
+    """Match by zero-mean normalised cross-correlation; the confidence of a match is its correlation."""
     return _match(pair, span, window_px, None, 0.0, lambda scores: np.clip(scores, 0, 1))
 
 
 def match_by_difference(pair: Pair, span: Span, window_px: int) -> DenseMatches:
-    """Sum of squared differences S; the confidence of a match is exp(-S / (pixels x SSD_SCALE))."""
+    """Match by the sum of squared differences S; the confidence of a match is exp(-S / (pixels x SSD_SCALE))."""
     from tangible_core.compiled.elementary import exponentials
 
     scale = np.float32(window_px**2 * SSD_SCALE)
@@ -38,7 +38,7 @@ def match_by_difference(pair: Pair, span: Span, window_px: int) -> DenseMatches:
 
 
 def _match(pair: Pair, span: Span, window_px: int, squared: bool | None, least: float, trust: Trust) -> DenseMatches:
-    disparity, quality = blank(pair.left.shape)
+    disparity, quality = unknown_matches(pair.left.shape)
     scores = np.full(pair.left.shape, -1e30, np.float32)
 
     def block(y0: int, y1: int) -> None:
@@ -48,4 +48,4 @@ def _match(pair: Pair, span: Span, window_px: int, squared: bool | None, least: 
 
     if min(pair.left.shape) >= window_px:
         in_blocks(pair.left.shape[0], block)
-    return completed(disparity, quality, np.maximum(np.arange(256) / 255, LEAST_MATCHED), pair.left)
+    return complete(disparity, quality, np.maximum(np.arange(256) / 255, LEAST_MATCHED), pair.left)

@@ -1,1 +1,1 @@
-"""Networks in ONNX files: the card that says what one takes and gives, what runs it, pictures in and maps out."""
+"""Networks in ONNX files: the card that describes one, the runtimes, and the conversion of pictures and maps."""

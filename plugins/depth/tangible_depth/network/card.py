@@ -1,4 +1,4 @@
-"""A network's card: which file it is, what it takes, and what its numbers mean."""
+"""The card of a network: its file, its inputs and the meaning of its output."""
 
 import hashlib
 from functools import lru_cache
@@ -11,10 +11,11 @@ from tangible_core.errors import ConfigError, ModelAbsent, did_you_mean
 from tangible_core.files.source import parse_source, read_text
 
 Three = tuple[float, float, float]
+"""A number for each colour."""
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 Means = Literal["disparity-px", "inverse-depth", "depth", "depth-m"]
-"""`disparity-px`: pixels of the picture that goes in. `inverse-depth`: larger is nearer, in no unit. `depth`: larger is
-farther, in no unit. `depth-m`: metres."""
+"""Meaning of an output. `disparity-px`: pixels of the input picture. `inverse-depth`: larger is nearer, without a unit.
+`depth`: larger is farther, without a unit. `depth-m`: metres."""
 
 
 class _Part(BaseModel):
@@ -22,7 +23,7 @@ class _Part(BaseModel):
 
 
 class NetworkInput(_Part):
-    """What goes in: float32 (1, 3, h, w) of each picture, (value of 0..1 times `white` - mean) / std."""
+    """The input: float32 (1, 3, h, w) of each picture, (value of 0..1 times `white` - mean) / std."""
 
     left: str = ""
     """Name of the input for the picture, or the left view; empty for the only one."""
@@ -31,69 +32,69 @@ class NetworkInput(_Part):
     order: Literal["rgb", "bgr"] = "rgb"
     """Order of the colours."""
     white: Positive = 1.0
-    """The number that stands for white before the mean is taken off: 1 or 255."""
+    """Value of white before the mean is subtracted: 1 or 255."""
     mean: Three = (0.0, 0.0, 0.0)
-    """Taken off each colour, in the order of the colours."""
+    """Mean subtracted from each colour, in the order of the colours."""
     std: tuple[Positive, Positive, Positive] = (1.0, 1.0, 1.0)
-    """Each colour is divided by it."""
+    """Standard deviation by which each colour is divided."""
     multiple: Annotated[int, Field(ge=1, le=1024)] = 1
-    """Height and width must be multiples of it."""
+    """Number of which height and width must be multiples."""
     fit: Literal["pad", "resize"] = "pad"
-    """How they become so: `pad` repeats the last row and column, `resize` changes the picture's size a little."""
+    """Way to reach a multiple: `pad` repeats the last row and column, `resize` changes the picture's size a little."""
     size_px: tuple[Annotated[int, Field(ge=1, le=20_000)], Annotated[int, Field(ge=1, le=20_000)]] | None = None
-    """Height and width of a network that takes one size alone: each picture is resized to it."""
+    """Height and width of a network with a fixed input size, to which each picture is resized."""
 
     @model_validator(mode="after")
     def _two_inputs(self) -> Self:
         if self.right and not self.left:
-            raise ValueError("a network of two views names both inputs; give `left` beside `right`")
+            raise ValueError("a network for two views needs both inputs; give `left` as well as `right`")
         return self
 
 
 class NetworkOutput(_Part):
-    """What comes out: numbers (h, w), or with one or two dimensions of 1 before."""
+    """The output: numbers (h, w), or with one or two leading dimensions of 1."""
 
     name: str = ""
     """Name of the output; empty for the first."""
     means: Means
-    """What the numbers are."""
+    """Meaning of the numbers."""
     confidence: str = ""
-    """Name of an output from 0 to 1 that says how sure the network is; empty where there is none."""
+    """Name of an output with the network's confidence, 0 to 1; empty without one."""
 
 
 class Card(_Part):
-    """What must be known of a network to use it."""
+    """The facts about a network that are needed to use it."""
 
     title: str = ""
-    """What it is called."""
+    """Name of the network."""
     file: str = ""
-    """Name of the file where it is published."""
+    """Name of its published file."""
     source: str = ""
-    """Address to fetch it from."""
+    """Address to download it from."""
     sha256: Annotated[str, Field(pattern="^([0-9a-f]{64})?$")] = ""
-    """Digest of the file, which is then checked; empty where it is not known."""
+    """Digest that the file must have; empty if unknown."""
     licence: str = ""
-    """What its makers allow."""
+    """Licence of the network."""
     verified: bool = True
-    """False for a card that was written from what is published, without the network being run."""
+    """False for a card that was written from published facts, without running the network."""
     input: NetworkInput = NetworkInput()
     output: NetworkOutput
 
     @property
     def is_stereo(self) -> bool:
-        """Whether it takes two views."""
+        """True for a network of two views."""
         return bool(self.input.right)
 
     @property
-    def fetched_from(self) -> str:
-        """What to fetch, in words."""
+    def fetch_hint(self) -> str:
+        """The hint in error messages about where to get the network."""
         digest = f" (SHA-256 {self.sha256})" if self.sha256 else ""
         what = " ".join(filter(None, [self.title or "the network", self.file and f"as {self.file}"]))
         return f"fetch {what} from {self.source}{digest}" if self.source else f"put {what} there"
 
 
 MEAN, STD = (0.485, 0.456, 0.406), (0.229, 0.224, 0.225)
-"""Of the colours of ImageNet, with which most networks are trained."""
+"""Mean and standard deviation of the colours of ImageNet, with which most networks are trained."""
 
 
 def _preset(title: str, file: str, source: str, licence: str, takes: NetworkInput, means: Means) -> Card:
@@ -137,13 +138,13 @@ PRESETS = {
         "inverse-depth",
     ),
 }
-"""Cards that come with the program, written from what their makers publish; no network comes with it."""
+"""Cards that are shipped, written from published facts; no network is shipped."""
 
 
 def read_card(card: str | Path) -> Card:
-    """A preset by its name, or the card in a YAML file.
+    """Return a preset by its name, or the card in a YAML file.
 
-    Raises: ConfigError with every complaint, or for a name that is neither.
+    Raises: ConfigError with every error in the file, or for an unknown name.
     """
     if str(card) in PRESETS:
         return PRESETS[str(card)]
@@ -151,15 +152,15 @@ def read_card(card: str | Path) -> Card:
     if not path.is_file():
         raise ConfigError(
             f"card: {card} is neither a file nor one of {', '.join(PRESETS)}{did_you_mean(str(card), PRESETS)}; name "
-            "one of these, or a YAML file that says what the network takes and gives (docs/learned-depth.md)"
+            "one of these, or a YAML file that describes the network (docs/learned-depth.md)"
         )
-    found = path.stat()
-    return _read(path, found.st_mtime_ns, found.st_size)
+    status = path.stat()
+    return _read(path, status.st_mtime_ns, status.st_size)
 
 
 @lru_cache(maxsize=16)
 def _read(path: Path, changed_ns: int, size: int) -> Card:
-    source = parse_source(read_text(path), path, "a card is a mapping that says `output: {means: ...}`")
+    source = parse_source(read_text(path), path, "a card is a mapping with `output: {means: ...}`")
     card = source.model((), Card, dict(source.tree))
     source.settle()
     assert card is not None
@@ -167,14 +168,14 @@ def _read(path: Path, changed_ns: int, size: int) -> Card:
 
 
 def check_file(model: Path, card: Card) -> None:
-    """Raises: ModelAbsent if the network is not there, ConfigError if it is another file than the card is of."""
+    """Check the file. Raises: ModelAbsent without a file, ConfigError if it is not the one of the card."""
     if not model.is_file():
-        raise ModelAbsent(f"model: {model} is not there, and nothing is downloaded; {card.fetched_from}")
-    found = model.stat()
-    if card.sha256 and (digest := _sha256(model, found.st_mtime_ns, found.st_size)) != card.sha256:
+        raise ModelAbsent(f"model: {model} does not exist, and nothing is downloaded; {card.fetch_hint}")
+    status = model.stat()
+    if card.sha256 and (digest := _sha256(model, status.st_mtime_ns, status.st_size)) != card.sha256:
         raise ConfigError(
-            f"model: {model} is not the file that its card is of: its SHA-256 is {digest}, not {card.sha256}; "
-            f"{card.fetched_from}, or correct the card"
+            f"model: {model} is not the file of its card: its SHA-256 is {digest}, not {card.sha256}; "
+            f"{card.fetch_hint}, or correct the card"
         )
 
 

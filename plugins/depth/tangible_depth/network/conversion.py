@@ -1,4 +1,4 @@
-"""What a network's numbers mean, as a disparity map."""
+"""Conversion of a network's numbers to a disparity map."""
 
 import numpy as np
 from jaxtyping import Float32
@@ -8,18 +8,19 @@ from tangible_core.data import DisparityMap, Views
 from .card import Means
 
 Map = Float32[np.ndarray, "h w"]
+"""A map of a network."""
 
 
-def to_disparity(found: Map, sure: Map | None, means: Means, views: Views) -> DisparityMap:
-    """The disparity map that these numbers are; unknown where a number is none, or stands for no distance.
+def to_disparity(values: Map, sure: Map | None, means: Means, views: Views) -> DisparityMap:
+    """Convert a network's numbers to a disparity map; unknown where a number is not finite or not a distance.
 
-    Metres become Z = f b / (d + offset) solved for d, in pixels, where the cameras are known; everything else from one
-    picture is put on 0 (far) to 1 (near).
+    With known cameras metres become pixels, Z = f b / (d + offset) solved for d; all other maps of one picture are
+    stretched to 0 (far) .. 1 (near). sure: confidence 0..1, or None for 1 everywhere.
     """
-    known = np.isfinite(found)
+    known = np.isfinite(values)
     if means != "disparity-px":
-        known &= found > 0 if means in ("depth", "depth-m") else known
-    values = np.where(known, found, 1).astype(np.float64)
+        known &= values > 0 if means in ("depth", "depth-m") else known
+    values = np.where(known, values, 1).astype(np.float64)
     cameras = views.calibration
     if means == "disparity-px":
         disparity = values
@@ -27,7 +28,7 @@ def to_disparity(found: Map, sure: Map | None, means: Means, views: Views) -> Di
         disparity = cameras.focal_px * cameras.baseline_m / values - cameras.offset_px
     else:
         near = values if means == "inverse-depth" else 1 / values
-        disparity = _stretched(near, known)
+        disparity = _stretch(near, known)
     in_px = means == "disparity-px" or (means == "depth-m" and cameras is not None)
     confidence = np.ones_like(disparity) if sure is None else np.clip(np.nan_to_num(sure), 0, 1)
     return DisparityMap(
@@ -37,8 +38,8 @@ def to_disparity(found: Map, sure: Map | None, means: Means, views: Views) -> Di
     )
 
 
-def _stretched(near: np.ndarray, known: np.ndarray) -> np.ndarray:
-    """On 0..1; all 0 where everything is as near."""
+def _stretch(near: np.ndarray, known: np.ndarray) -> np.ndarray:
+    """Stretch to 0..1; all 0 if everything is equally near."""
     if not known.any():
         return near
     low, high = float(near[known].min()), float(near[known].max())

@@ -1,4 +1,4 @@
-"""Pictures as a network takes them, and its maps in the size of the picture."""
+"""Conversion of pictures to a network's input, and of its maps to the size of the picture."""
 
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
@@ -11,22 +11,24 @@ from tangible_core.runtime.opencv import plain_opencv
 from .card import NetworkInput
 
 Map = Float32[np.ndarray, "h w"]
+"""A map of a network."""
 Colours = Float32[np.ndarray, "h w 3"]
+"""A picture, red, green and blue in 0..1."""
 OVERLAP = 0.25
-"""Share of a strip that it has in common with the next: there one map fades into the other."""
+"""Share of a strip that overlaps with the next, where one map fades into the other."""
 LEAST_ROWS = 64
-"""Of a strip: a network needs some surroundings."""
+"""Smallest rows of a strip: a network needs context."""
 
 
 class Fit(NamedTuple):
-    """The size that a picture gets, and how much of it is the picture."""
+    """The size (rows, columns) of a resized picture, and that size with padding."""
 
     resized: tuple[int, int]
     padded: tuple[int, int]
 
 
-def fit_for(shape: tuple[int, int], takes: NetworkInput, most_px: int) -> Fit:
-    """The size for a network: at most so many pixels, its multiples, its one size."""
+def fit_size(shape: tuple[int, int], takes: NetworkInput, most_px: int) -> Fit:
+    """Choose the size for a network: at most `most_px` pixels, in its multiples, or its fixed size."""
     if takes.size_px is not None:
         return Fit(takes.size_px, takes.size_px)
     shrink = min(1.0, (most_px / (shape[0] * shape[1])) ** 0.5)
@@ -39,8 +41,8 @@ def fit_for(shape: tuple[int, int], takes: NetworkInput, most_px: int) -> Fit:
 
 
 def tensor(picture: Colours, takes: NetworkInput, fit: Fit) -> Float32[np.ndarray, "1 3 rows columns"]:
-    """A picture as the network takes it."""
-    picture = resized(picture, fit.resized)
+    """Convert a picture to the network's input."""
+    picture = resize(picture, fit.resized)
     down, right = (whole - part for whole, part in zip(fit.padded, fit.resized, strict=True))
     if down or right:
         picture = np.pad(picture, ((0, down), (0, right), (0, 0)), mode="edge")
@@ -51,12 +53,12 @@ def tensor(picture: Colours, takes: NetworkInput, fit: Fit) -> Float32[np.ndarra
     return np.ascontiguousarray(normal.transpose(2, 0, 1)[None])
 
 
-def cut_back(found: np.ndarray, fit: Fit, shape: tuple[int, int]) -> Map | None:
-    """What a network gave, without padding, in the size of the picture; None if it is no map.
+def restore_size(output: np.ndarray, fit: Fit, shape: tuple[int, int]) -> Map | None:
+    """Remove the padding from a network's output and resize it to the picture; None if it is not a map.
 
-    A map of a half or a quarter of the size stands for the whole.
+    A map of a half or a quarter of the size is enlarged first.
     """
-    values = np.asarray(found, np.float32)
+    values = np.asarray(output, np.float32)
     while values.ndim > 2 and values.shape[0] == 1:
         values = values[0]
     if values.ndim == 3 and values.shape[2] == 1:
@@ -64,12 +66,12 @@ def cut_back(found: np.ndarray, fit: Fit, shape: tuple[int, int]) -> Map | None:
     if values.ndim != 2 or values.size == 0:
         return None
     if values.shape != fit.padded:
-        values = resized(values, fit.padded)
-    return resized(np.ascontiguousarray(values[: fit.resized[0], : fit.resized[1]]), shape)
+        values = resize(values, fit.padded)
+    return resize(np.ascontiguousarray(values[: fit.resized[0], : fit.resized[1]]), shape)
 
 
-def resized(values: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
-    """Bilinear, and the mean where it gets smaller; the same array where it has this size."""
+def resize(values: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
+    """Resize bilinearly, or by averaging to a smaller size; return the same array if it has this size."""
     import cv2
 
     if values.shape[:2] == shape:
@@ -79,10 +81,10 @@ def resized(values: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
         return cv2.resize(values, shape[::-1], interpolation=cv2.INTER_AREA if shrinks else cv2.INTER_LINEAR)
 
 
-def in_strips(shape: tuple[int, int], most_px: int, multiple: int, work: Callable[[slice], list[Map]]) -> list[Map]:
-    """Maps of rows that are made a strip at a time, each of at most so many pixels; one fades into the next.
+def map_in_strips(shape: tuple[int, int], most_px: int, multiple: int, work: Callable[[slice], list[Map]]) -> list[Map]:
+    """Compute maps in strips of rows, each of at most `most_px` pixels, and fade each strip into the next.
 
-    Only for what means the same in every strip, such as pixels of disparity.
+    Only for values with the same meaning in every strip, such as pixels of disparity.
     """
     rows = max(LEAST_ROWS, most_px // shape[1] // multiple * multiple)
     if rows >= shape[0]:
@@ -91,9 +93,9 @@ def in_strips(shape: tuple[int, int], most_px: int, multiple: int, work: Callabl
     weight = np.zeros((shape[0], 1), np.float32)
     for strip in _strips(shape[0], rows):
         ramp = _ramp(strip, shape[0], max(1, round(OVERLAP * rows)))
-        found = work(strip)
-        total = total or [np.zeros(shape, np.float32) for _ in found]
-        for whole, part in zip(total, found, strict=True):
+        maps = work(strip)
+        total = total or [np.zeros(shape, np.float32) for _ in maps]
+        for whole, part in zip(total, maps, strict=True):
             whole[strip] += ramp * part
         weight[strip] += ramp
     return [whole / weight for whole in total]

@@ -1,4 +1,4 @@
-"""What runs a network: OpenCV, or onnxruntime where it is installed."""
+"""Runtimes of networks: OpenCV, or onnxruntime if installed."""
 # OpenCV's `dnn` and onnxruntime have no types.
 # pyright: reportUnknownVariableType=false, reportUnknownMemberType=false, reportUnknownArgumentType=false
 
@@ -16,47 +16,47 @@ from tangible_core.errors import BrokenMethod, ConfigError, shown
 
 Runtime = Literal["opencv", "onnxruntime"]
 OLDEST_OPENCV = 5
-"""Version from which OpenCV runs transformers, and pictures of another size than the network was written for."""
-_turn = Lock()
-"""One network works at a time: none of them may be called from two threads, and each uses all threads that it may."""
+"""Oldest version of OpenCV that runs transformers, and pictures of another size than the network's own."""
+_lock = Lock()
+"""Lock for one network at a time: none is thread-safe, and each uses all threads itself."""
 
 
 class Network(Protocol):
-    """A network that is loaded."""
+    """A loaded network."""
 
     def run(self, inputs: Mapping[str, Float32[np.ndarray, "1 3 _ _"]], outputs: Sequence[str]) -> list[np.ndarray]:
-        """The outputs of these names, an empty one being the first. Inputs by name; an empty one is the only one."""
+        """Return the named outputs. An empty name is the first output, or the only input."""
         ...
 
 
 def run(
     model: Path, runtime: Runtime, inputs: Mapping[str, Float32[np.ndarray, "1 3 _ _"]], outputs: Sequence[str]
 ) -> list[np.ndarray]:
-    """What the network in this file gives.
+    """Run the network in this file and return its outputs.
 
-    Raises: ConfigError if it cannot be loaded or does not take these inputs; BrokenMethod without what runs it.
+    Raises: ConfigError if it cannot be loaded or rejects these inputs; BrokenMethod without the runtime.
     """
-    found = model.stat()
-    with _turn:
+    status = model.stat()
+    with _lock:
         try:
-            network = _loaded(model, found.st_mtime_ns, found.st_size, runtime)
+            network = _load(model, status.st_mtime_ns, status.st_size, runtime)
             return network.run(inputs, outputs)
         except (BrokenMethod, ConfigError, MemoryError):
             raise
-        except Exception as error:  # whatever the runtime raises says what it does not like
+        except Exception as error:  # runtimes raise errors of any type, with a useful message
             sizes = ", ".join(f"{name or 'input'} {each.shape}" for name, each in inputs.items())
             raise ConfigError(
                 f"model: {model} cannot be run by {runtime} on {sizes}: {shown(' '.join(str(error).split()), 300)}; "
-                f"check the card's inputs and outputs, or try `runtime: {_other(runtime)}`"
+                f"check the card's inputs and outputs, or try `runtime: {_other_runtime(runtime)}`"
             ) from error
 
 
-def _other(runtime: Runtime) -> Runtime:
+def _other_runtime(runtime: Runtime) -> Runtime:
     return "onnxruntime" if runtime == "opencv" else "opencv"
 
 
 @lru_cache(maxsize=1)
-def _loaded(model: Path, changed_ns: int, size: int, runtime: Runtime) -> Network:
+def _load(model: Path, changed_ns: int, size: int, runtime: Runtime) -> Network:
     return _OpenCV(model) if runtime == "opencv" else _OnnxRuntime(model)
 
 
@@ -74,8 +74,8 @@ class _OpenCV:
     def run(self, inputs: Mapping[str, Float32[np.ndarray, "1 3 _ _"]], outputs: Sequence[str]) -> list[np.ndarray]:
         for name, values in inputs.items():
             self._net.setInput(values, name)
-        known = list(self._net.getUnconnectedOutLayersNames())
-        return [np.array(each) for each in self._net.forward([name or known[0] for name in outputs])]
+        names = list(self._net.getUnconnectedOutLayersNames())
+        return [np.array(each) for each in self._net.forward([name or names[0] for name in outputs])]
 
 
 class _OnnxRuntime:
@@ -97,6 +97,6 @@ class _OnnxRuntime:
 
     def run(self, inputs: Mapping[str, Float32[np.ndarray, "1 3 _ _"]], outputs: Sequence[str]) -> list[np.ndarray]:
         own = [each.name for each in self._session.get_inputs()]
-        known = [each.name for each in self._session.get_outputs()]
-        told = {name or own[0]: values for name, values in inputs.items()}
-        return [np.array(each) for each in self._session.run([name or known[0] for name in outputs], told)]
+        names = [each.name for each in self._session.get_outputs()]
+        feed = {name or own[0]: values for name, values in inputs.items()}
+        return [np.array(each) for each in self._session.run([name or names[0] for name in outputs], feed)]

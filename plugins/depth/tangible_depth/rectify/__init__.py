@@ -1,1 +1,1 @@
-"""Rectification: epipolar geometry, and turning two pictures so that rows correspond."""
+"""Rectification of pairs whose rows do not correspond: start at `rectification`."""

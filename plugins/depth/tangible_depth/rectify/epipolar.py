@@ -1,4 +1,4 @@
-"""Epipolar geometry of two pictures: lines, epipoles and how far a match is from obeying a fundamental matrix.
+"""Epipolar geometry of two pictures: lines, epipoles, and the distance of a match from a fundamental matrix.
 
 Convention: left^T F right = 0, points homogeneous (column, row, 1) in pixels. A right point's line in the left
 picture is F right, a left point's line in the right picture is F^T left.
@@ -9,20 +9,20 @@ from jaxtyping import Float64
 
 
 def homogeneous(points_px: np.ndarray) -> Float64[np.ndarray, "n 3"]:
-    """Points (n, 2) with a third coordinate of one."""
+    """Append a third coordinate of one to points (n, 2)."""
     return np.column_stack([np.asarray(points_px, np.float64), np.ones(len(points_px))])
 
 
 def product(one: np.ndarray, other: np.ndarray) -> Float64[np.ndarray, "n m"]:
-    """one (n, k) times other (k, m), added up in one order by every processor, as no BLAS does."""
+    """Multiply one (n, k) by other (k, m), summing in the same order on every processor, unlike BLAS."""
     return np.einsum("nk,km->nm", one, other)
 
 
 def lines_in_left(fundamental: np.ndarray, right_px: np.ndarray) -> Float64[np.ndarray, "n 3"]:
-    """Epipolar lines a x + b y + c = 0 in the left picture, one a right point (n, 2), with a^2 + b^2 = 1.
+    """Return epipolar lines a x + b y + c = 0 in the left picture, one per right point (n, 2), with a^2 + b^2 = 1.
 
-    The distance of a left point from its line is then |a x + b y + c| in pixels. A point that is the epipole has
-    no line: its row is NaN.
+    The distance of a left point from its line is then |a x + b y + c| in pixels. The epipole has no line: its row is
+    NaN.
     Source: Hartley & Zisserman, Multiple View Geometry, 2nd ed., sec. 9.2.
     """
     return _unit_normal(product(homogeneous(right_px), fundamental.T))
@@ -35,7 +35,7 @@ def _unit_normal(lines: np.ndarray) -> Float64[np.ndarray, "n 3"]:
 
 
 def epipoles(fundamental: np.ndarray) -> tuple[Float64[np.ndarray, "3"], Float64[np.ndarray, "3"]]:
-    """Where each camera's centre is seen by the other: homogeneous, of unit length, (in the left, in the right).
+    """Return the epipoles (left, right), each camera's centre in the other view: homogeneous, of unit length.
 
     F^T left_epipole = 0 and F right_epipole = 0. A third coordinate of zero means infinitely far, as in a rectified
     pair, where both are (1, 0, 0).
@@ -45,7 +45,7 @@ def epipoles(fundamental: np.ndarray) -> tuple[Float64[np.ndarray, "3"], Float64
 
 
 def segments(lines: np.ndarray, shape: tuple[int, int]) -> Float64[np.ndarray, "n 4"]:
-    """Ends (x0, y0, x1, y1) of the part of each line that crosses a picture of shape (h, w), NaN where none does."""
+    """Return ends (x0, y0, x1, y1) of the part of each line in a picture of shape (h, w), NaN without one."""
     rows, columns = shape
     a, b, c = (np.asarray(lines, np.float64)[:, i : i + 1] for i in range(3))
     right, bottom = columns - 1.0, rows - 1.0
@@ -62,7 +62,7 @@ def segments(lines: np.ndarray, shape: tuple[int, int]) -> Float64[np.ndarray, "
 
 
 def sampson_distance(fundamental: np.ndarray, left_px: np.ndarray, right_px: np.ndarray) -> Float64[np.ndarray, "n"]:
-    """First-order distance of each match (n, 2), (n, 2) from the nearest pair of points that obeys F, pixels.
+    """Return the first-order distance in pixels of each match (n, 2), (n, 2) from the nearest pair that obeys F.
 
     |l^T F r| / sqrt((F r)_1^2 + (F r)_2^2 + (F^T l)_1^2 + (F^T l)_2^2).
     Source: the root of Hartley & Zisserman, 2nd ed., eq. 11.9.

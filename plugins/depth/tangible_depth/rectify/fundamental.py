@@ -1,4 +1,4 @@
-"""The fundamental matrix from matches: normalised eight-point, its robust estimation, and why it cannot be had.
+"""The fundamental matrix from matches: normalised eight-point, robust estimation, and degenerate cases.
 
 Convention: left^T F right = 0 (see `epipolar`).
 """
@@ -13,21 +13,21 @@ from jaxtyping import Bool, Float64
 from tangible_core.errors import GeometryError
 
 from .epipolar import homogeneous, product, sampson_distance
-from .parallax import Plane, best_plane, plane_and_parallax
+from .parallax import Plane, best_plane, fundamental_from_plane
 
 Degeneracy = Literal["not finite", "too few", "duplicate", "collinear", "homography", "outliers"]
 Fit = Callable[[np.ndarray, np.ndarray, np.ndarray | None], Float64[np.ndarray, "3 3"]]
-"""Left points, right points, a weight for each match's equation -> F, as `eight_point`."""
-SURE = 1000
-"""One scene in so many chance may give a parallax."""
+"""An estimator of F: left points, right points, a weight for each match's equation -> F, as `eight_point`."""
+CHANCE_SCENES = 1000
+"""Scenes of which chance may produce a parallax in one."""
 CELL_PX = 6
-"""Side of the cells in which matches off a plane are one witness."""
+"""Side of the cells, in pixels, in which matches off a plane count once."""
 FEWEST = 8
-"""Matches the eight-point method needs."""
+"""Fewest matches of the eight-point method."""
 
 
 class DegenerateMatches(GeometryError):
-    """Matches that determine no fundamental matrix; `reason` names the case."""
+    """An error for matches that determine no fundamental matrix; `reason` names the case."""
 
     def __init__(self, reason: Degeneracy, message: str) -> None:
         self.reason: Degeneracy = reason
@@ -42,7 +42,7 @@ class Fundamental(NamedTuple):
 
 
 def check_matches(left_px: np.ndarray, right_px: np.ndarray) -> None:
-    """Raises: DegenerateMatches ("not finite", "too few", "duplicate" or "collinear") if no F can come of these."""
+    """Check that matches can determine F. Raises: DegenerateMatches: not finite, too few, duplicate or collinear."""
     if left_px.shape != right_px.shape or left_px.ndim != 2 or left_px.shape[1] != 2:
         raise GeometryError(
             f"matches must be two arrays (n, 2) of equal length, not {left_px.shape} and {right_px.shape}"
@@ -65,13 +65,13 @@ def check_matches(left_px: np.ndarray, right_px: np.ndarray) -> None:
 
 
 def _is_line(points: np.ndarray) -> bool:
-    """Whether the spread across is under half a percent of the spread along: no geometry survives noise there."""
+    """Test whether the spread across is under half a percent of the spread along: noise then hides any geometry."""
     along, across = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
     return bool(across < 0.005 * along)
 
 
 def normalise(points_px: np.ndarray) -> tuple[Float64[np.ndarray, "n 3"], Float64[np.ndarray, "3 3"]]:
-    """Points moved to their centroid and scaled to a mean distance of sqrt(2), and the transform T that does it.
+    """Move points to their centroid and scale them to a mean distance of sqrt(2); return the transform T too.
 
     Source: Hartley, In Defense of the Eight-Point Algorithm, PAMI 1997.
     """
@@ -85,11 +85,11 @@ def normalise(points_px: np.ndarray) -> tuple[Float64[np.ndarray, "n 3"], Float6
 def eight_point(
     left_px: np.ndarray, right_px: np.ndarray, weights: np.ndarray | None = None
 ) -> Float64[np.ndarray, "3 3"]:
-    """F of unit norm and rank 2 from at least eight matches (n, 2), (n, 2), all of them trusted.
+    """Estimate F, of unit norm and rank 2, from at least eight trusted matches (n, 2), (n, 2).
 
     weights (n,) multiply each match's equation; 1 when left out.
     Raises: DegenerateMatches as `check_matches`, or "homography" if the equations leave more than one F: the points
-    are on a plane, or the camera only turned.
+    are on a plane, or the camera only rotated.
     Source: Hartley & Zisserman, 2nd ed., alg. 11.1.
     """
     check_matches(left_px, right_px)
@@ -105,19 +105,18 @@ def eight_point(
     return matrix / np.linalg.norm(matrix)
 
 
-_NO_PARALLAX = "one homography explains the matches (a flat scene, or a camera that only turned)"
+_NO_PARALLAX = "one homography explains the matches (a flat scene, or a camera that only rotated)"
 
 
 def robust_fundamental(
     left_px: np.ndarray, right_px: np.ndarray, threshold_px: float = 1.0, fit: Fit = eight_point
 ) -> Fundamental:
-    """F from matches of which some are wrong: MAGSAC (OpenCV), then reweighted eight-point on what it keeps.
+    """Estimate F from matches of which some are wrong: MAGSAC (OpenCV), then reweighted eight-point on its inliers.
 
-    threshold_px is the Sampson distance up to which a match counts as right; fit makes F from those that are.
-    The same matches give the same F.
-    Raises: DegenerateMatches as `check_matches`; "homography" if hardly any match stands off the best homography;
-    "outliers" if no F explains more matches than chance would. A thing before a flat scene is enough.
-    Source: Barath et al., MAGSAC++, CVPR 2020; Moisan & Stival, IJCV 2004, for what chance explains.
+    threshold_px: largest Sampson distance of an inlier; fit: estimates F from inliers. Deterministic.
+    Raises: DegenerateMatches as `check_matches`; "homography" if hardly any match lies off the best homography;
+    "outliers" if no F explains more matches than chance would. An object before a flat scene is enough.
+    Source: Barath et al., MAGSAC++, CVPR 2020; Moisan & Stival, IJCV 2004, for the share that chance explains.
     """
     check_matches(left_px, right_px)
     first = _magsac(left_px, right_px, threshold_px)
@@ -133,7 +132,7 @@ def robust_fundamental(
             f"no epipolar geometry explains more of the {len(left_px)} matches than chance would; "
             "do both pictures show the same scene?",
         )
-    if _parallax_false_alarms(left_px, right_px, first.inliers, flat, threshold_px) > -log(SURE):
+    if _parallax_false_alarms(left_px, right_px, first.inliers, flat, threshold_px) > -log(CHANCE_SCENES):
         raise DegenerateMatches("homography", _NO_PARALLAX)
     return _refine(first, left_px, right_px, threshold_px, fit)
 
@@ -144,14 +143,14 @@ def _magsac(left_px: np.ndarray, right_px: np.ndarray, threshold_px: float) -> F
     # OpenCV's convention is second^T F first = 0.
     try:
         matrix, _ = cv2.findFundamentalMat(right_px, left_px, cv2.USAC_MAGSAC, threshold_px, 0.9999, 10_000)
-    except cv2.error:  # an assertion of its own fails where one plane explains nearly all
+    except cv2.error:  # an internal assertion fails if one plane explains nearly all matches
         return None
     if matrix is None or matrix.shape != (3, 3) or not np.isfinite(matrix).all() or not matrix.any():
         return None
-    return _explaining(matrix, left_px, right_px, threshold_px)
+    return _with_inliers(matrix, left_px, right_px, threshold_px)
 
 
-def _explaining(matrix: np.ndarray, left_px: np.ndarray, right_px: np.ndarray, threshold_px: float) -> Fundamental:
+def _with_inliers(matrix: np.ndarray, left_px: np.ndarray, right_px: np.ndarray, threshold_px: float) -> Fundamental:
     matrix = matrix / np.linalg.norm(matrix)
     return Fundamental(matrix, sampson_distance(matrix, left_px, right_px) <= threshold_px)
 
@@ -159,20 +158,20 @@ def _explaining(matrix: np.ndarray, left_px: np.ndarray, right_px: np.ndarray, t
 def _better_off_plane(
     plane: Plane, first: Fundamental | None, left_px: np.ndarray, right_px: np.ndarray, threshold_px: float
 ) -> Fundamental | None:
-    """Of two estimates the one that explains more of what stands off the plane, on which most matches lie.
+    """Return the estimate that explains more matches off the dominant plane.
 
-    The second is made only where the first leaves most of that unexplained.
+    The second estimate is made only if the first leaves most of these unexplained.
     """
     if first is not None and 2 * np.count_nonzero(first.inliers & ~plane.near) > np.count_nonzero(~plane.near):
         return first
-    matrix = plane_and_parallax(plane, left_px, right_px, threshold_px)
-    other = None if matrix is None else _explaining(matrix, left_px, right_px, threshold_px)
-    found = [each for each in (first, other) if each is not None]
-    return max(found, key=lambda each: np.count_nonzero(each.inliers & ~plane.near), default=None)
+    matrix = fundamental_from_plane(plane, left_px, right_px, threshold_px)
+    other = None if matrix is None else _with_inliers(matrix, left_px, right_px, threshold_px)
+    estimates = [each for each in (first, other) if each is not None]
+    return max(estimates, key=lambda each: np.count_nonzero(each.inliers & ~plane.near), default=None)
 
 
 def _false_alarms(left_px: np.ndarray, right_px: np.ndarray, inliers: np.ndarray, threshold_px: float) -> float:
-    """Logarithm of how many geometries with this many inliers chance would offer (Moisan & Stival 2004, eq. 8)."""
+    """Return the log number of geometries with as many inliers expected by chance (Moisan & Stival 2004, eq. 8)."""
     count, kept = len(inliers), int(np.count_nonzero(inliers))
     if kept < FEWEST:
         return np.inf
@@ -183,9 +182,9 @@ def _false_alarms(left_px: np.ndarray, right_px: np.ndarray, inliers: np.ndarray
 def _parallax_false_alarms(
     left_px: np.ndarray, right_px: np.ndarray, inliers: np.ndarray, flat: np.ndarray, threshold_px: float
 ) -> float:
-    """The same for what F explains and the homography does not: with a homography given, two matches make an F.
+    """Return the same for inliers of F off the homography: given a homography, two matches determine F.
 
-    Matches of one cell count once: what is matched wrongly is so together with what lies beside it.
+    Matches of one cell count once, as neighbouring matches are wrong together.
     """
     count, kept = (len(np.unique(left_px[each] // CELL_PX, axis=0)) for each in (~flat, inliers & ~flat))
     if kept < 3:
@@ -195,7 +194,7 @@ def _parallax_false_alarms(
 
 
 def _log_chance(left_px: np.ndarray, right_px: np.ndarray, threshold_px: float) -> float:
-    """How likely a random point lies within the threshold of a random line: the line's strip over the picture."""
+    """Return the log probability that a random point lies near a random line: the line's strip over the picture."""
     width, height = np.minimum(np.ptp(left_px, axis=0), np.ptp(right_px, axis=0))
     strip = 2 * threshold_px * float(np.hypot(width, height))
     return log(strip / (width * height)) if strip < width * height else 0.0
@@ -208,7 +207,7 @@ def _log_choose(n: int, k: int) -> float:
 def _refine(
     first: Fundamental, left_px: np.ndarray, right_px: np.ndarray, threshold_px: float, fit: Fit
 ) -> Fundamental:
-    """Eight-point on the inliers, each equation weighted so that its residual is in pixels and doubt counts less."""
+    """Repeat eight-point on the inliers, weighting each equation by certainty and to a residual in pixels."""
     best = first
     for _ in range(5):
         left, right = left_px[best.inliers], right_px[best.inliers]
@@ -222,7 +221,7 @@ def _refine(
 
 
 def pixel_weights(fundamental: np.ndarray, left_px: np.ndarray, right_px: np.ndarray) -> Float64[np.ndarray, "n"]:
-    """Weights that turn the algebraic residual of `eight_point` into the Sampson distance (n,), largest 1."""
+    """Return weights that turn the algebraic residual of `eight_point` into the Sampson distance (n,), largest 1."""
     in_left = product(homogeneous(right_px), fundamental.T)[:, :2]
     in_right = product(homogeneous(left_px), fundamental)[:, :2]
     weights = 1 / np.sqrt((in_left**2).sum(axis=1) + (in_right**2).sum(axis=1) + np.finfo(np.float64).tiny)

@@ -1,4 +1,4 @@
-"""Homographies of a camera that turns about its centre: H = K R K^-1.
+"""Homographies of a camera that rotates about its centre: H = K R K^-1.
 
 Source: Hartley & Zisserman, Multiple View Geometry, 2nd ed., sec. 8.4.2.
 """
@@ -10,19 +10,19 @@ from .epipolar import homogeneous, product
 
 
 def transform(homography: np.ndarray, points_px: np.ndarray) -> Float64[np.ndarray, "n 2"]:
-    """Points (n, 2) mapped by a homography (3, 3)."""
+    """Map points (n, 2) by a homography (3, 3)."""
     moved = product(homogeneous(points_px), homography.T)
     return moved[:, :2] / moved[:, 2:]
 
 
 def inverse(matrix: np.ndarray) -> Float64[np.ndarray, "3 3"]:
-    """Of a matrix (3, 3), by its cofactors."""
+    """Invert a matrix (3, 3) by its cofactors."""
     cofactors = np.cross(np.roll(matrix, -1, axis=0), np.roll(matrix, -2, axis=0))
     return cofactors.T / (matrix[0] * cofactors[0]).sum()
 
 
 def rotation(pitch: float, yaw: float, roll: float) -> Float64[np.ndarray, "3 3"]:
-    """R_z(roll) R_y(yaw) R_x(pitch), radians."""
+    """Return R_z(roll) R_y(yaw) R_x(pitch), angles in radians."""
     (cx, cy, cz), (sx, sy, sz) = np.cos([pitch, yaw, roll]), np.sin([pitch, yaw, roll])
     about_x = np.array([[1, 0, 0], [0, cx, -sx], [0, sx, cx]])
     about_y = np.array([[cy, 0, sy], [0, 1, 0], [-sy, 0, cy]])
@@ -31,6 +31,6 @@ def rotation(pitch: float, yaw: float, roll: float) -> Float64[np.ndarray, "3 3"
 
 
 def camera_matrix(focal_px: float, shape: tuple[int, int]) -> Float64[np.ndarray, "3 3"]:
-    """K of a camera that looks through the middle of a picture (h, w)."""
+    """Return K of a camera whose axis goes through the middle of a picture (h, w)."""
     rows, columns = shape
     return np.array([[focal_px, 0, (columns - 1) / 2], [0, focal_px, (rows - 1) / 2], [0, 0, 1.0]])

@@ -1,4 +1,4 @@
-"""Least squares of a few numbers, the same on every processor, and the pull of offsets that may be wrong."""
+"""A least-squares fit of a few parameters, bit-identical on every processor, and a robust loss."""
 
 from collections.abc import Callable
 
@@ -6,29 +6,32 @@ import numpy as np
 from jaxtyping import Float64
 
 NOISE_PX = 0.3
-"""Of one coordinate of a match."""
+"""Standard deviation of a coordinate of a match, in pixels."""
 _LOG_2 = 0.6931471805599453
 _ROUNDS, _TRIES = 80, 15
-"""Steps of the fit, and how often one is tried anew."""
-_STEP, _STILL, _LEAST_GAIN = 1e-5, 1e-5, 0.05
-"""In units of each number's scale: steps by which slopes are told, and one that is as good as none; and the share of
-what a step promises that it must bring."""
+"""Maximum number of steps of a fit, and of damping factors tried for a step."""
+_STEP = 1e-5
+"""Step of the finite differences, in units of each parameter's scale."""
+_STILL = 1e-5
+"""Step at which the fit has converged, in units of each parameter's scale."""
+_LEAST_GAIN = 0.05
+"""Lowest share of its expected gain with which a step is accepted."""
 
 
 def robust_pull(offset_px: Float64[np.ndarray, "n"]) -> Float64[np.ndarray, "n"]:
-    """The root of log(1 + (offset / NOISE_PX)^2), with the offset's sign.
+    """Return the root of log(1 + (offset / NOISE_PX)^2), with the offset's sign.
 
-    A Cauchy-like pull: what a robust estimate let through by chance may not bend what is fitted.
+    A Cauchy-like loss, so that outliers among the inliers hardly affect the fit.
     """
     offset = offset_px / NOISE_PX
     return np.sign(offset) * np.sqrt(_log1p(offset * offset))
 
 
 def least_squares(cost: Callable[[np.ndarray], np.ndarray], start: np.ndarray, scale: np.ndarray) -> np.ndarray:
-    """Numbers near `start` at which the sum of the squares of `cost` is least, after Levenberg and Marquardt.
+    """Minimise the sum of the squares of `cost` near `start`, after Levenberg and Marquardt.
 
-    scale: of each number. Sums in one order: LAPACK, which SciPy's fit is built on, has other last bits with every
-    processor and from run to run, and this fit is stopped by them.
+    scale: typical size of each parameter. Sums run in a fixed order: LAPACK, which SciPy uses, differs in its last bits
+    by processor and from run to run, and these bits decide when this fit stops.
     Source: Nocedal & Wright, Numerical Optimization, 2nd ed., sec. 10.3.
     """
     from tangible_core.compiled.small_matrices import solved
@@ -55,7 +58,7 @@ def least_squares(cost: Callable[[np.ndarray], np.ndarray], start: np.ndarray, s
 
 
 def _log1p(values: np.ndarray) -> np.ndarray:
-    """Of numbers >= 0, by multiplications and additions alone: the C library's differs by the processor.
+    """Compute log(1 + x) for x >= 0 by multiplications and additions alone: the C library's differs by processor.
 
     2 atanh(x / (2 + x)), for large x of the fraction of 1 + x and with log 2 for each power of two.
     """

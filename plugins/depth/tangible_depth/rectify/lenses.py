@@ -2,7 +2,7 @@
 
 A point at radius r from the picture's middle, in half its longer side, is at r (1 + k / 2) / (1 + k r^2) in the picture
 of a lens without distortion: k < 0 where straight lines bulge outwards. The factor keeps the size of the picture as a
-whole, without which a fit would find what makes it small.
+whole; without it a fit would shrink the picture.
 Source: Fitzgibbon, Simultaneous linear estimation of multiple view geometry and lens distortion, CVPR 2001.
 """
 
@@ -10,8 +10,8 @@ import numpy as np
 from jaxtyping import Float64
 
 
-def undistorted(points_px: np.ndarray, radial: float, shape: tuple[int, int]) -> Float64[np.ndarray, "n 2"]:
-    """Where a lens without distortion shows points (n, 2) of a picture (h, w)."""
+def undistort(points_px: np.ndarray, radial: float, shape: tuple[int, int]) -> Float64[np.ndarray, "n 2"]:
+    """Map points (n, 2) of a picture (h, w) to the picture of a lens without distortion."""
     if radial == 0:
         return np.asarray(points_px, np.float64)
     middle, half = _frame(shape)
@@ -19,8 +19,8 @@ def undistorted(points_px: np.ndarray, radial: float, shape: tuple[int, int]) ->
     return middle + half * away * (1 + radial / 2) / (1 + radial * _square(away))
 
 
-def distorted(points_px: np.ndarray, radial: float, shape: tuple[int, int]) -> Float64[np.ndarray, "n 2"]:
-    """The way back; what no point of the picture comes to be lies far outside of it."""
+def distort(points_px: np.ndarray, radial: float, shape: tuple[int, int]) -> Float64[np.ndarray, "n 2"]:
+    """Invert `undistort`; a point that has no inverse is mapped far outside of the picture."""
     if radial == 0:
         return np.asarray(points_px, np.float64)
     middle, half = _frame(shape)

@@ -1,4 +1,4 @@
-"""What one homography explains of a pair, and what the rest tells: a flat scene, or a camera that only turned.
+"""Dominant planes: matches that one homography explains, the parallax of the others, and purely rotated cameras.
 
 Convention: left^T F right = 0 (see `epipolar`); homographies lead from the right picture to the left one.
 """
@@ -14,23 +14,23 @@ from .homographies import camera_matrix, inverse, rotation, transform
 from .least_squares import least_squares, robust_pull
 
 MOST_SAMPLED = 100
-"""Matches that stand off a plane of which every two are tried for an epipole."""
+"""Largest number of matches off a plane whose pairs are tried for an epipole."""
 FOCAL_SPREAD, ZOOM_SPREAD, TURN_SPREAD = 0.35, 0.2, 0.5
-"""Standard deviations of what an unknown camera is taken to be: logarithm of its focal length in longer sides of the
-picture, logarithm of the zoom between the pictures, and each turn in radians."""
+"""Standard deviations of the parameters of an unknown camera: logarithm of its focal length in longer sides of the
+picture, logarithm of the zoom between the pictures, and each angle in radians."""
 FREE_NUMBERS = 3
-"""What a homography has more numbers than a turn of a camera of unknown focal length that zooms: 8 against 5."""
+"""Degrees of freedom of a homography beyond those of a rotating, zooming camera of unknown focal length: 8 - 5."""
 
 
 class Plane(NamedTuple):
-    """The best homography (3, 3), and which matches stand less than three thresholds off it."""
+    """The best homography (3, 3), and the mask of matches within three thresholds of it."""
 
     matrix: Float64[np.ndarray, "3 3"]
     near: Bool[np.ndarray, "n"]
 
 
 def best_plane(left_px: np.ndarray, right_px: np.ndarray, threshold_px: float) -> Plane | None:
-    """The homography that explains most matches (n, 2), (n, 2); None if there is none."""
+    """Find the homography that explains most matches (n, 2), (n, 2); None without one."""
     import cv2
 
     matrix, _ = cv2.findHomography(right_px, left_px, cv2.USAC_MAGSAC, 2 * threshold_px)
@@ -41,12 +41,12 @@ def best_plane(left_px: np.ndarray, right_px: np.ndarray, threshold_px: float) -
     return Plane(matrix, away <= 3 * threshold_px)
 
 
-def plane_and_parallax(
+def fundamental_from_plane(
     plane: Plane, left_px: np.ndarray, right_px: np.ndarray, threshold_px: float
 ) -> Float64[np.ndarray, "3 3"] | None:
-    """F = [e]x H, with the epipole e at which most of what stands off the plane points; None if less than two do.
+    """Return F = [e]x H with the epipole e of most matches off the plane; None with fewer than two of them.
 
-    Two matches off the plane make an epipole, where seven of all would seldom have two of a small thing among them.
+    Two matches off the plane determine an epipole; a sample of seven would seldom contain two of a small object.
     Source: Chum, Werner & Matas, Two-View Geometry Estimation Unaffected by a Dominant Plane, CVPR 2005.
     """
     off = np.flatnonzero(~plane.near)
@@ -65,19 +65,19 @@ def plane_and_parallax(
     return product(np.array([[0, -w, y], [w, 0, -x], [-y, x, 0]]), plane.matrix)
 
 
-def only_turned(plane: Plane, left_px: np.ndarray, right_px: np.ndarray, shape: tuple[int, int]) -> bool:
-    """Whether a camera that turned about its centre, and may have zoomed, explains the matches as well as a plane does.
+def is_pure_rotation(plane: Plane, left_px: np.ndarray, right_px: np.ndarray, shape: tuple[int, int]) -> bool:
+    """Test whether a camera that rotated about its centre, and perhaps zoomed, explains the matches as well as a plane.
 
-    H = K R K'^-1 of a focal length that cameras have. A wall seen from two places does not look like that: it is
-    shifted, stretched along the baseline or sheared, and a turn does this to no picture.
+    H = K R K'^-1 with a plausible focal length. A wall seen from two places does not fit: it is shifted, stretched
+    along the baseline or sheared, which no rotation does.
     Source: Hartley & Zisserman, Multiple View Geometry, 2nd ed., sec. 8.4.2; Schwarz, Estimating the Dimension of a
-    Model, Annals of Statistics 1978, for what three numbers more must explain.
+    Model, Annals of Statistics 1978, for how much three more parameters must explain.
     """
     left, right = left_px[plane.near], right_px[plane.near]
     spread = np.array([FOCAL_SPREAD, ZOOM_SPREAD, TURN_SPREAD, TURN_SPREAD, TURN_SPREAD])
 
     def cost(values: np.ndarray) -> np.ndarray:
-        away = transform(_turn(values, shape), right) - left
+        away = transform(_rotation_homography(values, shape), right) - left
         return np.concatenate([robust_pull(away.ravel()), values / spread])
 
     turned = np.square(cost(least_squares(cost, np.zeros(5), spread))).sum()
@@ -85,8 +85,8 @@ def only_turned(plane: Plane, left_px: np.ndarray, right_px: np.ndarray, shape: 
     return bool(turned <= flat + FREE_NUMBERS * log(len(left)))
 
 
-def _turn(values: np.ndarray, shape: tuple[int, int]) -> Float64[np.ndarray, "3 3"]:
-    """Homography from the right picture to the left one: logarithms of focal length and zoom, pitch, yaw and roll."""
+def _rotation_homography(values: np.ndarray, shape: tuple[int, int]) -> Float64[np.ndarray, "3 3"]:
+    """Return the homography from right to left for log focal length, log zoom, pitch, yaw and roll."""
     focal_px = max(shape) * exp(values[0])
     right = camera_matrix(focal_px * exp(values[1]), shape)
     return product(product(camera_matrix(focal_px, shape), rotation(*values[2:])), inverse(right))

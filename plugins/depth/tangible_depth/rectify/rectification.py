@@ -1,7 +1,6 @@
-"""Rectification: turning two pictures so that every match lies on its own row, where they do not lie so already.
+"""Rectification of a pair: warping two pictures so that every match lies on its own row: the entry to this room.
 
-A method that searches along rows works on any pair through `with_rectification`; `calibrated` does the same for
-cameras that are known.
+A method that searches along rows works on any pair through `estimate_rectified`.
 """
 
 import logging
@@ -16,41 +15,46 @@ from tangible_core.errors import PictureError
 from tangible_core.plugins.notes import note
 
 from ..sparse.matches import Matches, flow_matches, sift_matches
-from ..sparse.off_plane_matches import matches_off
+from ..sparse.off_plane_matches import match_off_plane
 from .epipolar import homogeneous, product
 from .fundamental import Fit, eight_point
 from .homographies import inverse, transform
-from .parallax import Plane, best_plane, only_turned
-from .rectified_pair import RectifiedPair, as_it_is, warped
-from .rectifying_rotation import LEAST_TRUSTED, RectificationError, different, find_turn, seen_range, threshold_px
+from .parallax import Plane, best_plane, is_pure_rotation
+from .rectified_pair import RectifiedPair, unchanged_pair, warp_pair
+from .rectifying_rotation import (
+    LEAST_TRUSTED,
+    RectificationError,
+    find_rotation,
+    threshold_px,
+    unique_matches,
+    verified_range,
+)
 
 logger = logging.getLogger(__name__)
 
 FEWEST_TO_TELL = 20
-"""Matches below which nothing is said about a pair: it is taken as it is."""
+"""Fewest matches that decide about a pair; with fewer, it is taken as rectified."""
 LEAST_GAIN_PX = 0.2
-"""Noise in the matches promises less than this; to turn the pictures for it would only blur them."""
+"""Smallest gain in median row offset, in pixels, above the noise of the matches; for less, warping would only blur."""
 MOSTLY = 0.8
-"""Share of the matches on one plane from which a scene is looked through for what stands off it."""
+"""Share of the matches on one plane from which more matches off the plane are searched."""
 EXCHANGED_PX = -2.0
-"""Views are exchanged if all but one match in twenty are below this disparity: parallel cameras give none below 0."""
+"""Disparity, in pixels, below which 95 % of the matches of exchanged views lie: parallel cameras give none below 0."""
 _VERGED_OR_EXCHANGED = (
     "every disparity is negative: the cameras look towards each other, or the views are exchanged (left is right); "
-    "if what is near comes out far, exchange them"
+    "if near objects come out far, exchange them"
 )
-_TURNED = (
-    "the camera only turned between the two pictures, so nothing in them tells how far anything is; move it sideways"
-)
-_FLAT = (
-    "one plane explains the matches, which leaves open how the cameras stood: the relief is right up to a slant; "
-    "have something stand before the plane"
+_PURE_ROTATION = "the camera only turned between the two pictures, so they contain no depth; move it sideways"
+_FLAT_SCENE = (
+    "one plane explains the matches, so the cameras' poses stay ambiguous: the relief is right up to a slant; "
+    "add an object in front of the plane"
 )
 
 
-def with_rectification(views: Views, estimate: Callable[[Views], DisparityMap]) -> DisparityMap:
-    """Disparity of the left view by a method that searches along rows, whatever way the cameras looked.
+def estimate_rectified(views: Views, estimate: Callable[[Views], DisparityMap]) -> DisparityMap:
+    """Estimate the left view's disparity by a method that searches along rows, for cameras of any orientation.
 
-    Raises: RectificationError if the rows do not correspond and cannot be made to; and what `estimate` raises.
+    Raises: RectificationError if the rows do not correspond and cannot be aligned; and as `estimate`.
     """
     rectified = rectify(views)
     return rectified.to_original(estimate(rectified.views))
@@ -59,51 +63,51 @@ def with_rectification(views: Views, estimate: Callable[[Views], DisparityMap]) 
 def rectify(
     views: Views, tolerance_px: float = 0.35, matches: Matches | None = None, fit: Fit = eight_point
 ) -> RectifiedPair:
-    """A pair of unknown cameras turned so that its rows correspond.
+    """Rectify a pair of unknown cameras, so that its rows correspond.
 
-    Skipped, with the reason in `why`, if the views carry a calibration, if the median vertical offset of their
-    matches is within tolerance_px (in large pictures: within 1/8000 of the longer side) already, if turning would not
-    lessen it by LEAST_GAIN_PX, or if there are too few matches to tell.
-    matches: those to go by; found by optical flow and SIFT when left out. fit: makes F of trusted matches.
-    A flat scene is aligned as well, with a warning: it leaves open how the cameras stood, so the left picture stays as
-    it is. Where most matches lie on a plane, what stands off it is looked for and tells the rest.
-    Views in the wrong order are taken as they are, with a warning: their disparities are negative.
+    Skipped, with the reason in `why`, if the views have a calibration, if the median vertical offset of their
+    matches is within tolerance_px (in large pictures: within 1/8000 of the longer side) already, if rectifying would
+    not reduce it by LEAST_GAIN_PX, or if there are too few matches to decide.
+    matches: those to use; by optical flow and SIFT if None. fit: estimates F from trusted matches.
+    A flat scene is aligned as well, with a warning: the cameras' poses stay ambiguous, so the left picture stays
+    unchanged. If most matches lie on a plane, matches off it are searched and resolve the ambiguity.
+    Exchanged views are not swapped, but a warning says so: their disparities are negative.
     Raises: PictureError if there is only one view; RectificationError if the rows do not correspond but no geometry, or
-    only one that distorts the pictures, explains the matches, or if the camera only turned: that shows no depth.
+    only one that distorts the pictures, explains the matches, or if the camera only rotated: that shows no depth.
     """
     if views.right is None:
         raise PictureError("rectification needs two views; give a right one")
     if views.calibration is not None:
-        return _left_alone(views, "the views carry the calibration of a rectified pair")
+        return _keep_pair(views, "the views have the calibration of a rectified pair")
     left, right = to_grey(views.left), to_grey(views.right)
     tolerance_px = max(tolerance_px, max(views.shape) / 8000)
     if matches is None:
         quick = flow_matches(left, right)
         if len(quick.left_px) >= FEWEST_TO_TELL and (offset := _median_offset(quick)) <= tolerance_px:
-            _say_if_exchanged(quick.left_px[:, 0] - quick.right_px[:, 0])
-            return _left_alone(views, f"already rectified: median vertical offset {offset:.2f} px")
+            _warn_if_exchanged(quick.left_px[:, 0] - quick.right_px[:, 0])
+            return _keep_pair(views, f"already rectified: median vertical offset {offset:.2f} px")
         matches = sift_matches(left, right)
     if len(matches.left_px) < FEWEST_TO_TELL:
-        return _left_alone(views, f"only {len(matches.left_px)} matches, too few to tell; taken as rectified")
+        return _keep_pair(views, f"only {len(matches.left_px)} matches, too few to decide; taken as rectified")
     if (before := _median_offset(matches)) <= tolerance_px:
-        _say_if_exchanged(matches.left_px[:, 0] - matches.right_px[:, 0])
-        return _left_alone(views, f"already rectified: median vertical offset {before:.2f} px")
-    return _turned(views, matches, before, fit)
+        _warn_if_exchanged(matches.left_px[:, 0] - matches.right_px[:, 0])
+        return _keep_pair(views, f"already rectified: median vertical offset {before:.2f} px")
+    return _rotate(views, matches, before, fit)
 
 
 def whole_picture_matches(views: Views) -> Matches:
-    """By SIFT, of a pair: unlike what is followed from place to place, it leaves out what repeats."""
+    """Match a pair by SIFT, which leaves out repetitive texture, unlike tracking."""
     if views.right is None:
         raise PictureError("rectification needs two views; give a right one")
     return sift_matches(to_grey(views.left), to_grey(views.right))
 
 
-def _left_alone(views: Views, why: str, level: int = logging.INFO) -> RectifiedPair:
+def _keep_pair(views: Views, why: str, level: int = logging.INFO) -> RectifiedPair:
     note(logger, f"not rectified: {why}", level)
-    return as_it_is(views, why)
+    return unchanged_pair(views, why)
 
 
-def _say_if_exchanged(disparity_px: Float64[np.ndarray, "n"]) -> None:
+def _warn_if_exchanged(disparity_px: Float64[np.ndarray, "n"]) -> None:
     if _all_negative(disparity_px):
         note(logger, "every disparity is negative: the views seem to be exchanged (left is right)", logging.WARNING)
 
@@ -116,48 +120,50 @@ def _median_offset(matches: Matches) -> float:
     return float(np.median(np.abs(matches.row_offset_px)))
 
 
-def _turned(views: Views, matches: Matches, before: float, fit: Fit) -> RectifiedPair:
-    matches = different(matches)
+def _rotate(views: Views, matches: Matches, before: float, fit: Fit) -> RectifiedPair:
+    matches = unique_matches(matches)
     plane = best_plane(*matches, threshold_px(views.shape))
     if plane is not None and np.mean(plane.near) >= MOSTLY:
-        matches = different(_with_those_off(plane, matches, views))
-    turn, doubt = find_turn(matches, views.shape, fit)
-    disparity, offsets = turn.shifts(matches, views.shape)[turn.trusted].T
+        matches = unique_matches(_add_off_plane_matches(plane, matches, views))
+    rotation, doubt = find_rotation(matches, views.shape, fit)
+    disparity, offsets = rotation.shifts(matches, views.shape)[rotation.trusted].T
     offsets = np.abs(offsets)
     if (after := float(np.median(offsets))) > before - LEAST_GAIN_PX:
-        return _left_alone(views, f"turning would not help: median vertical offset {before:.2f} px, then {after:.2f}")
+        return _keep_pair(views, f"rectifying would not help: median vertical offset {before:.2f} px, then {after:.2f}")
     if len(offsets) >= LEAST_TRUSTED:
-        check_homographies(turn.homographies, views.shape, offsets)
+        check_homographies(rotation.homographies, views.shape, offsets)
     if doubt is not None:
-        why = f"matches lie {before:.1f} px off their rows, but how to turn the pictures is not sure: {doubt}"
-        return _left_alone(views, why, logging.WARNING)
-    if turn.plane is not None:
-        if only_turned(turn.plane, *matches, views.shape):
-            raise RectificationError(_TURNED)
-        note(logger, _FLAT, logging.WARNING)
+        why = f"matches lie {before:.1f} px off their rows, but the rectification is uncertain: {doubt}"
+        return _keep_pair(views, why, logging.WARNING)
+    if rotation.plane is not None:
+        if is_pure_rotation(rotation.plane, *matches, views.shape):
+            raise RectificationError(_PURE_ROTATION)
+        note(logger, _FLAT_SCENE, logging.WARNING)
     if _all_negative(disparity):
         note(logger, _VERGED_OR_EXCHANGED, logging.WARNING)
     why = f"median vertical offset {before:.2f} px, now {after:.2f}"
     lenses = (
-        f"; radial distortion of the lenses {turn.radials[0]:.3f}, {turn.radials[1]:.3f}" if any(turn.radials) else ""
+        f"; radial distortion of the lenses {rotation.radials[0]:.3f}, {rotation.radials[1]:.3f}"
+        if any(rotation.radials)
+        else ""
     )
     note(logger, f"rectified: {why}{lenses}")
-    seen = seen_range(matches.left_px[turn.trusted], disparity)
-    return warped(views, turn.homographies, why + lenses, _search_start(disparity), turn.radials, seen)
+    seen = verified_range(matches.left_px[rotation.trusted], disparity)
+    return warp_pair(views, rotation.homographies, why + lenses, _search_start(disparity), rotation.radials, seen)
 
 
-def _with_those_off(plane: Plane, matches: Matches, views: Views) -> Matches:
-    """The matches, and those of what stands before or behind the plane."""
+def _add_off_plane_matches(plane: Plane, matches: Matches, views: Views) -> Matches:
+    """Return the matches, and more of objects before or behind the plane."""
     assert views.right is not None
-    off = matches_off(to_grey(views.left), to_grey(views.right), plane.matrix)
+    off = match_off_plane(to_grey(views.left), to_grey(views.right), plane.matrix)
     right_px = transform(inverse(plane.matrix), off.right_px)
     return Matches(np.vstack([matches.left_px, off.left_px]), np.vstack([matches.right_px, right_px]))
 
 
 def _search_start(disparity_px: Float64[np.ndarray, "n"]) -> int:
-    """Zero, or a disparity below all but stray matches where the cameras look past each other and some are negative.
+    """Return zero, or a disparity below all but stray matches if the cameras diverge and some are negative.
 
-    Never above zero: a far wall without detail has no match to speak for it.
+    Never above zero, as a far wall without detail has no matches.
     """
     low, high = np.percentile(disparity_px, [1, 99])
     return min(0, int(np.floor(low - max(4.0, 0.1 * (high - low)))))
@@ -166,7 +172,7 @@ def _search_start(disparity_px: Float64[np.ndarray, "n"]) -> int:
 def check_homographies(
     pair: tuple[np.ndarray, np.ndarray], shape: tuple[int, int], offsets_px: np.ndarray, most_offset_px: float = 3.0
 ) -> None:
-    """Raises: RectificationError if a homography tears, mirrors or resizes a picture, or rows do not correspond.
+    """Check homographies. Raises: RectificationError if one tears, mirrors or resizes a picture, or rows differ.
 
     The area may change by a factor of three; the 95th percentile of the vertical offsets is most_offset_px at most.
     """

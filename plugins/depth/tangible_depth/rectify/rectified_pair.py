@@ -1,4 +1,4 @@
-"""A pair of pictures turned so that rows correspond, and the way back."""
+"""A rectified pair of pictures, and the map back to the originals."""
 
 from dataclasses import dataclass, replace
 
@@ -11,18 +11,18 @@ from tangible_core.runtime.opencv import plain_opencv
 
 from .epipolar import product
 from .homographies import inverse, transform
-from .lenses import distorted, undistorted
+from .lenses import distort, undistort
 
 
 @dataclass(frozen=True, eq=False)
 class RectifiedPair(Record):
-    """A pair whose matches lie on one row, how it came about, and the way back to the pictures as they were.
+    """A pair whose matches lie on common rows, with the homographies back to the original pictures.
 
     left_homography, right_homography: (3, 3), from a point of the original picture, free of its lens's distortion, to
     its place in `views`; left_radial, right_radial: that distortion (see `lenses`), 0 for none.
-    offset_px: what to add to a disparity found in `views`; `rectify` moves the right view so that none is negative.
-    why: what was done or why nothing was, in words; `skipped` tells which.
-    seen_px: lowest and highest disparity, in `views`, of the matches that it was made from; None if it was skipped.
+    offset_px: added to a disparity of `views`; `rectify` moves the right view so that none is negative.
+    skipped: whether the pair is unchanged. why: a message about what was done, or why nothing was.
+    verified_px: lowest and highest disparity, in `views`, of the matches used; None if skipped.
     """
 
     views: Views
@@ -34,10 +34,10 @@ class RectifiedPair(Record):
     why: str
     left_radial: float = 0.0
     right_radial: float = 0.0
-    seen_px: tuple[int, int] | None = None
+    verified_px: tuple[int, int] | None = None
 
-    def again(self, views: Views) -> "RectifiedPair":
-        """Other pictures of the same cameras, turned alike."""
+    def warp(self, views: Views) -> "RectifiedPair":
+        """Warp other pictures of the same cameras by the same homographies."""
         if self.skipped or views.right is None:
             return replace(self, views=views)
         height, width = self.views.shape
@@ -45,41 +45,43 @@ class RectifiedPair(Record):
         right = _warp(views.right, self.right_homography, self.right_radial, width, height)
         return replace(self, views=Views(left, right))
 
-    def to_original(self, found: DisparityMap) -> DisparityMap:
-        """A disparity map of `views` as one of the original left picture: same values plus offset_px, at their pixels.
+    def to_original(self, disparity: DisparityMap) -> DisparityMap:
+        """Map a disparity map of `views` to the original left picture: the same values plus offset_px.
 
-        Pixels of the original that the rectified view does not show are unknown.
+        Pixels of the original outside of the rectified view are unknown.
         """
         if self.skipped:
-            return found
+            return disparity
         return DisparityMap(
-            self._sample(found.disparity_px, np.nan) + np.float32(self.offset_px),
-            self._sample(found.confidence, 0),
-            found.unit,
+            self._sample(disparity.disparity_px, np.nan) + np.float32(self.offset_px),
+            self._sample(disparity.confidence, 0),
+            disparity.unit,
         )
 
     def right_px(self, disparity_px: Float32[np.ndarray, "h w"]) -> Float64[np.ndarray, "h w 2"]:
-        """Where each original left pixel is seen in the original right picture, by a map from `to_original`."""
+        """Return each original left pixel's place in the original right picture, by a map from `to_original`."""
         left = self.left_place_px(_pixels(self.original_shape))
         left[:, 0] -= disparity_px.ravel().astype(np.float64) - self.offset_px
         straight = transform(inverse(self.right_homography), left)
-        return distorted(straight, self.right_radial, self.original_shape).reshape(*self.original_shape, 2)
+        return distort(straight, self.right_radial, self.original_shape).reshape(*self.original_shape, 2)
 
     def left_place_px(self, points_px: np.ndarray) -> Float64[np.ndarray, "n 2"]:
-        """Where `views` shows points (n, 2) of the original left picture."""
-        return transform(self.left_homography, undistorted(points_px, self.left_radial, self.original_shape))
+        """Map points (n, 2) of the original left picture to `views`."""
+        return transform(self.left_homography, undistort(points_px, self.left_radial, self.original_shape))
 
     def right_place_px(self, points_px: np.ndarray) -> Float64[np.ndarray, "n 2"]:
-        """Where `views` shows points (n, 2) of the original right picture."""
-        return transform(self.right_homography, undistorted(points_px, self.right_radial, self.original_shape))
+        """Map points (n, 2) of the original right picture to `views`."""
+        return transform(self.right_homography, undistort(points_px, self.right_radial, self.original_shape))
 
     def _sample(self, values: Float32[np.ndarray, "h w"], outside: float) -> Float32[np.ndarray, "rows columns"]:
-        """The nearest value: an average across an edge of depth would be neither side's."""
+        """Sample the nearest value: an average across a depth edge would belong to neither surface."""
         import cv2
 
         rows, columns = self.original_shape
         if self.left_radial:
-            return _nearest(values, self.left_place_px(_pixels(self.original_shape)), outside).reshape(rows, columns)
+            return _sample_nearest(values, self.left_place_px(_pixels(self.original_shape)), outside).reshape(
+                rows, columns
+            )
         with plain_opencv():
             return cv2.warpPerspective(
                 values,
@@ -91,46 +93,46 @@ class RectifiedPair(Record):
             )
 
 
-def as_it_is(views: Views, why: str) -> RectifiedPair:
-    """A pair whose rows correspond already, or of which nobody can tell."""
+def unchanged_pair(views: Views, why: str) -> RectifiedPair:
+    """Return a pair unchanged; `why` gives the reason."""
     return RectifiedPair(views, np.eye(3), np.eye(3), views.shape, 0.0, True, why)
 
 
-def warped(
+def warp_pair(
     views: Views,
     pair: tuple[np.ndarray, np.ndarray],
     why: str,
     start_px: int = 0,
     radials: tuple[float, float] = (0.0, 0.0),
-    seen_px: tuple[int, int] | None = None,
+    verified_px: tuple[int, int] | None = None,
 ) -> RectifiedPair:
-    """Both pictures on a canvas that holds the whole left one, the right one moved so that start_px becomes zero.
+    """Warp both pictures onto a canvas of the whole left one, the right one moved so that start_px becomes zero.
 
     pair: homographies (left, right), each (3, 3), that bring matches onto common rows once the distortion `radials`
-    of their lenses is taken out. seen_px: disparities of these matches, before start_px becomes zero.
+    of their lenses is removed. verified_px: lowest and highest disparity of these matches, before the move.
     """
     if views.right is None:
         raise PictureError("rectification needs two views; give a right one")
-    quad = transform(pair[0], undistorted(_border(views.shape, radials[0] != 0), radials[0], views.shape))
+    quad = transform(pair[0], undistort(_border(views.shape, radials[0] != 0), radials[0], views.shape))
     origin, end = np.floor(quad.min(axis=0)), np.ceil(quad.max(axis=0))
     width, height = (int(size) + 1 for size in end - origin)
-    left, right = _moved(pair[0], origin), _moved(pair[1], origin - [start_px, 0])
-    turned = Views(
+    left, right = _translate(pair[0], origin), _translate(pair[1], origin - [start_px, 0])
+    rectified = Views(
         _warp(views.left, left, radials[0], width, height), _warp(views.right, right, radials[1], width, height)
     )
-    seen = None if seen_px is None else (seen_px[0] - start_px, seen_px[1] - start_px)
-    return RectifiedPair(turned, left, right, views.shape, float(start_px), False, why, *radials, seen)
+    seen = None if verified_px is None else (verified_px[0] - start_px, verified_px[1] - start_px)
+    return RectifiedPair(rectified, left, right, views.shape, float(start_px), False, why, *radials, seen)
 
 
 def _border(shape: tuple[int, int], curved: bool) -> Float64[np.ndarray, "n 2"]:
-    """Corners of a picture and, where its sides become curves, points along them."""
+    """Return the corners of a picture and, if its sides become curves, points along them."""
     rows, columns = shape
     steps = np.linspace(0, 1, 33 if curved else 2)
     sides = [np.column_stack([steps, np.full(len(steps), end)]) for end in (0, 1)]
     return np.vstack([*sides, *(each[:, ::-1] for each in sides)]) * [columns - 1, rows - 1]
 
 
-def _moved(homography: np.ndarray, origin: np.ndarray) -> Float64[np.ndarray, "3 3"]:
+def _translate(homography: np.ndarray, origin: np.ndarray) -> Float64[np.ndarray, "3 3"]:
     return product(np.array([[1, 0, -origin[0]], [0, 1, -origin[1]], [0, 0, 1.0]]), homography)
 
 
@@ -144,19 +146,21 @@ def _warp(picture: np.ndarray, homography: np.ndarray, radial: float, width: int
     with plain_opencv():
         if radial:
             straight = transform(inverse(homography), _pixels((height, width)))
-            columns, rows = distorted(straight, radial, picture.shape[:2]).astype(np.float32).T.reshape(2, height, -1)
+            columns, rows = distort(straight, radial, picture.shape[:2]).astype(np.float32).T.reshape(2, height, -1)
             warped = cv2.remap(raw, columns, rows, cubic, borderMode=edge)
         else:
             warped = cv2.warpPerspective(raw, homography, (width, height), flags=cubic, borderMode=edge)
     return np.clip(warped, picture.min(), picture.max(), out=warped)
 
 
-def _nearest(values: Float32[np.ndarray, "h w"], places_px: np.ndarray, outside: float) -> Float32[np.ndarray, "n"]:
+def _sample_nearest(
+    values: Float32[np.ndarray, "h w"], places_px: np.ndarray, outside: float
+) -> Float32[np.ndarray, "n"]:
     columns, rows = np.rint(places_px).astype(np.int64).T
     inside = (columns >= 0) & (columns < values.shape[1]) & (rows >= 0) & (rows < values.shape[0])
-    found = np.full(len(places_px), outside, np.float32)
-    found[inside] = values[rows[inside], columns[inside]]
-    return found
+    sampled = np.full(len(places_px), outside, np.float32)
+    sampled[inside] = values[rows[inside], columns[inside]]
+    return sampled
 
 
 def _pixels(shape: tuple[int, int]) -> Float64[np.ndarray, "n 2"]:

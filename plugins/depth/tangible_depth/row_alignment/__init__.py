@@ -1,1 +1,1 @@
-"""Whether the rows of a pair correspond, and by how much they are offset: start at `common_rows`."""
+"""The tests whether the rows of a pair correspond, and their constant offset: start at `common_rows`."""

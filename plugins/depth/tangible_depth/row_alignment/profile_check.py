@@ -1,6 +1,6 @@
-"""A look across the rows: whether the mean grey of each row is found again at its own height in the other view.
+"""The row-alignment test by profiles: does the mean grey of each row occur at the same height in the other view?
 
-What a look along rows alone takes for a match, such as one course of bricks for the next, lies at another height here.
+Matching along rows may take one course of bricks for the next; their profiles lie at different heights.
 """
 
 import numpy as np
@@ -9,18 +9,21 @@ from jaxtyping import Float64, UInt8
 from ..search.pairs import Pair
 
 REACH = 1 / 6
-"""How far up and down is looked, in heights of the picture."""
+"""Largest shift tried up and down, as a share of the picture's height."""
 NEAR = 1 / 200
-"""Heights of the picture, 2 px at least, up to which a view may lie lower or higher: that is put right otherwise."""
-LEAST_BETTER, LESS_LEFT, NO_BETTER = 0.05, 0.6, 0.995
-"""By how much another height must correlate better; or the share that it must leave of what their own heights leave
-unexplained, as where courses repeat; correlation from which nothing is better."""
+"""Largest accepted shift, as a share of the picture's height and at least 2 px: other tests correct it."""
+LEAST_BETTER = 0.05
+"""Smallest gain in correlation of another height that fails the test."""
+LESS_LEFT = 0.6
+"""Share of the unexplained part at the own height below which another height fails the test too: courses repeat."""
+NO_BETTER = 0.995
+"""Correlation at the own height that always passes."""
 SLOW = 1 / 8
-"""Changes of grey over this share of the height are light, and what one view shows beyond the other."""
+"""Wavelength, as a share of the height, from which changes of grey are ignored: light, and the views' borders."""
 
 
-def rows_lie_elsewhere(pair: Pair) -> bool:
-    """Whether the rows as a whole look more like rows at another height of the right view than like their own."""
+def rows_match_elsewhere(pair: Pair) -> bool:
+    """Test whether the rows as a whole correlate better with rows at another height of the right view."""
     height = pair.left.shape[0]
     reach, near = int(REACH * height), max(2, round(NEAR * height))
     if reach <= near:
@@ -32,7 +35,7 @@ def rows_lie_elsewhere(pair: Pair) -> bool:
 
 
 def _profile(view: UInt8[np.ndarray, "h w"]) -> Float64[np.ndarray, "h"]:
-    """Mean of each row, without its slow changes."""
+    """Return the mean grey of each row, without slow changes."""
     import cv2
 
     means = cv2.reduce(view, 1, cv2.REDUCE_SUM, dtype=cv2.CV_32S)[:, 0] / view.shape[1]
@@ -44,11 +47,11 @@ def _profile(view: UInt8[np.ndarray, "h w"]) -> Float64[np.ndarray, "h"]:
 def _correlations(
     left: Float64[np.ndarray, "h"], right: Float64[np.ndarray, "h"], reach: int
 ) -> Float64[np.ndarray, "shifts"]:
-    """Of the left rows with the right ones -reach to reach rows further down, over the rows that both have."""
+    """Correlate the left profile with the right one -reach to reach rows further down, over their common rows."""
     nothing = np.zeros(reach)
     windows = np.lib.stride_tricks.sliding_window_view(np.concatenate([nothing, right, nothing]), len(left))
     both = np.einsum("sh,h->s", windows, left)
-    # Of the left rows those above the lowest ones count, and of the right rows the others; the other way round upwards.
+    # Downwards the lowest left rows and the uppermost right rows have no partner; upwards it is the other way round.
     ours, theirs = (np.cumsum(each**2) for each in (left, right))
     steps = np.arange(1, reach + 1)
     down = ours[-1 - steps] * (theirs[-1] - theirs[steps - 1])

@@ -1,9 +1,9 @@
-"""By how much the rows of a pair miss each other, and putting that right.
+"""The vertical offset between the rows of a pair, and its correction.
 
-Half a pixel of vertical offset already costs a matcher of rows a good part of its matches.
+Half a pixel of vertical offset already costs a matcher along rows a good part of its matches.
 """
 
-# ruff: noqa: ANN001, ANN202 -- numba finds the types of what it compiles; the docstrings say them
+# ruff: noqa: ANN001, ANN202 -- numba infers the types of kernels; their docstrings give them
 
 import numpy as np
 from jaxtyping import Float32, Int16, Int64
@@ -17,22 +17,30 @@ from ..dense.span import UNKNOWN
 from ..dense.subpixel import parabola
 from ..search.pairs import Pair
 
-CELL_PX, NEAR_PX, MOST_POINTS, LEAST_VOTES = 12, 1, 250, 20
+CELL_PX = 12
+"""Width of a cell, in columns; the strongest edge of a cell has a vote."""
+NEAR_PX = 1
+"""Rows above and below a given row in which its edges are sought."""
+MOST_POINTS = 250
+"""Largest number of edges that vote, for speed."""
+LEAST_VOTES = 20
+"""Fewest votes that determine an offset."""
 LEAST_ROW_OFFSET_PX = 0.3
-"""Smaller offsets of rows are left alone."""
+"""Smallest offset that is corrected, in pixels."""
 LEAST_EDGE = 40
-"""Sobel response over rows from which a pixel says something about its row."""
+"""Smallest Sobel response across rows, in grey levels, of a pixel that determines its row."""
 RADIUS, REACH = 3, 2
+"""Radius of the correlation window, and rows tried up and down, in pixels."""
 LEAST_CORRELATION, LEAST_BEND = 0.7, 0.02
+"""Lowest correlation of a match, and smallest curvature of its peak, which a vote needs."""
 
 
 def row_votes(
     pair: Pair, rows: Int64[np.ndarray, "n"], disparity: Int16[np.ndarray, "n columns"], factor: int = 1
 ) -> Float32[np.ndarray, "votes"]:
-    """Row in the right view - row in the left view, in pixels, of up to MOST_POINTS horizontal edges on or near `rows`.
+    """Return right row - left row, in pixels, of up to MOST_POINTS horizontal edges on or near `rows`; NaN: no match.
 
-    NaN where the views do not agree on an offset of a good pixel at most.
-    disparity: of these rows, in sixteenths of `factor` pixels, UNKNOWN where there is none.
+    disparity: those of these rows, in sixteenths of `factor` pixels, UNKNOWN without one.
     """
     points = np.empty((len(rows) * (pair.width // CELL_PX), 3), np.int64)
     points = points[: _edge_points(pair.left, rows, disparity, factor, points)]
@@ -47,14 +55,14 @@ def row_votes(
 
 
 def row_offset(pair: Pair, rows: Int64[np.ndarray, "n"], disparity: Int16[np.ndarray, "n w"], factor: int = 1) -> float:
-    """Median of the `row_votes`; 0 if they are too few."""
+    """Return the median of the `row_votes`, in pixels; 0 if there are too few."""
     votes = row_votes(pair, rows, disparity, factor)
     agreed = votes[np.isfinite(votes)]
     return float(np.median(agreed)) if agreed.size >= LEAST_VOTES else 0.0
 
 
-def realigned(pair: Pair, row_offset_px: float) -> Pair:
-    """The pair with its right view moved up by `row_offset_px`, so that rows correspond; cubic between rows."""
+def shift_rows(pair: Pair, row_offset_px: float) -> Pair:
+    """Move the right view up by `row_offset_px`, so that rows correspond; cubic between rows."""
     import cv2
 
     nearest = round(row_offset_px)
@@ -69,7 +77,7 @@ def realigned(pair: Pair, row_offset_px: float) -> Pair:
 
 @njit(**KERNEL)
 def _edge_points(left, rows, disparity, factor, points):
-    """Row, column and disparity of the strongest horizontal edge in each cell round the rows; returns how many."""
+    """Write row, column and disparity of the strongest horizontal edge in each cell; return their number."""
     h, w = left.shape
     count = 0
     for i in range(rows.size):
@@ -91,7 +99,7 @@ def _edge_points(left, rows, disparity, factor, points):
 
 @njit(**KERNEL)
 def _vote(left, right, points, slack, first, last, scores, votes):
-    """Sub-pixel row offset of the best correlation near each point; NaN where the match is poor. scores: scratch."""
+    """Write the sub-pixel row offset of the best correlation near each point; NaN for a poor match. scores: scratch."""
     h, w = left.shape
     reach = scores.size >> 1
     edge = RADIUS + reach
@@ -116,7 +124,7 @@ def _vote(left, right, points, slack, first, last, scores, votes):
 
 @inner()
 def _correlation(left, y, x, right, v, u):
-    """Zero-mean normalised cross-correlation of two windows; -1 if either is nearly flat."""
+    """Return the zero-mean normalised cross-correlation of two windows; -1 if either is nearly flat."""
     a_sum = b_sum = aa = bb = ab = np.int32(0)
     for i in range(-RADIUS, RADIUS + 1):
         for j in range(-RADIUS, RADIUS + 1):

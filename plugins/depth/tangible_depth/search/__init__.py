@@ -1,1 +1,1 @@
-"""Which disparities occur in a pair, and whether its rows correspond: found before anything is matched."""
+"""The disparities that occur in a pair, estimated before the matching: start at `disparity_range`."""

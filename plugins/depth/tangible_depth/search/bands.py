@@ -1,9 +1,9 @@
-"""A pair seen in a few bands of rows at full width: enough to tell its range, and whether its rows correspond.
+"""Matches in a few bands of rows at full width: enough for the search range, and to check that rows correspond.
 
-Thin near things stay what they are along a row, and a band of rows averages noise and small offsets of rows away.
+Thin near objects keep their width along a row, and a band of rows averages noise and small row offsets away.
 """
 
-# ruff: noqa: ANN001, ANN202 -- numba finds the types of what it compiles; the docstrings say them
+# ruff: noqa: ANN001, ANN202 -- numba infers the types of kernels; their docstrings give them
 
 from typing import NamedTuple
 
@@ -23,22 +23,27 @@ from .sparse_sweep import sweep_columns
 
 COUNT = 16
 """Bands of a picture."""
-FINE_WIDTH, MOST_DISPARITIES = 1280, 256
+FINE_WIDTH = 1280
+"""Largest number of columns of a band by default."""
+MOST_DISPARITIES = 256
+"""Largest number of disparities tried in a band: of more, columns are averaged."""
 HIGH_PX = 3
-"""Rows of the picture that make one row of a band."""
+"""Rows of the picture averaged into one row of a band."""
 TALL = 2 * RADIUS + 1
-"""Rows of a band: what a code looks at."""
-STRIDE, LEAST_STRIDDEN = 3, 200
-"""Every how many columns are matched, of bands from so many columns on."""
+"""Rows of a band: the window of a census code."""
+STRIDE = 3
+"""Distance of matched columns in wide bands."""
+LEAST_STRIDDEN = 200
+"""Columns from which a band is wide."""
 LARGEST_SPECK = 8
-"""Of so few rows: what is thin and near has hardly more in them."""
+"""Largest speckle, in pixels of the bands: thin near objects have hardly more in so few rows."""
 
 
 class Bands(NamedTuple):
-    """What was matched in some bands: `rows`, their middles in the picture, and the disparity of the left view there.
+    """The matches in a few bands; `rows` are their middle rows in the picture, `disparity` is that of the left view.
 
-    disparity, in sixteenths of a pixel of the picture divided by `factor` along its rows; known, of how many pixels;
-    loss, the share of matches that no neighbour confirmed (they are left out).
+    disparity is in sixteenths of a pixel of the picture downsampled by `factor` along its rows; known is the number of
+    pixels with a disparity; loss is the share of matches removed as speckles.
     """
 
     rows: Int64[np.ndarray, "bands"]
@@ -49,10 +54,10 @@ class Bands(NamedTuple):
 
 
 def match_bands(pair: Pair, span: Span, width: int = FINE_WIDTH) -> Bands:
-    """Match COUNT bands of a pair; as many columns are averaged into one as make it at most `width` wide.
+    """Match COUNT bands of a pair; columns are averaged until a band is at most `width` wide.
 
-    Of many columns every STRIDE-th one is matched, and speaks for those beside it.
-    span: in pixels of the picture. Where it holds more than MOST_DISPARITIES, more columns are averaged.
+    Of a wide band every STRIDE-th column is matched, for the columns next to it too.
+    span: in pixels of the picture. If it has more than MOST_DISPARITIES, more columns are averaged.
     """
     factor = max(-(-pair.width // width), -(-span.size // MOST_DISPARITIES))
     columns = -(-pair.width // factor)
@@ -63,30 +68,30 @@ def match_bands(pair: Pair, span: Span, width: int = FINE_WIDTH) -> Bands:
     flat = np.empty((COUNT, columns), np.bool_)
     total = np.empty(columns * factor, np.int32)
     band = np.empty((TALL, codes.shape[3] + 2 * RADIUS), np.uint8)
-    _see(pair.left, pair.right, factor, OFFSETS, stride, total, band, rows, codes, grey, flat)
+    _encode_bands(pair.left, pair.right, factor, OFFSETS, stride, total, band, rows, codes, grey, flat)
     disparity = np.empty((COUNT, columns), np.int16)
-    sweep_columns(codes[0], codes[1], grey, span.shrunk(factor).within(columns), SHARP.penalties, stride, disparity)
-    found = _without_flat(flat, disparity)
+    sweep_columns(codes[0], codes[1], grey, span.downsample(factor).clip(columns), SHARP.penalties, stride, disparity)
+    found = _remove_flat(flat, disparity)
     lost = remove_speckles(disparity, LARGEST_SPECK)
     return Bands(rows, disparity, factor, found - lost, lost / max(1, found))
 
 
 @njit(**KERNEL)
-def _see(left, right, factor, offsets, stride, total, band, rows, codes, grey, flat):
-    """The middle rows of the bands, their codes in both views, and of the left one the grey values and what is flat."""
+def _encode_bands(left, right, factor, offsets, stride, total, band, rows, codes, grey, flat):
+    """Write the bands' middle rows, their codes in both views, and the left view's grey values and flat pixels."""
     for i in range(rows.size):
         rows[i] = (2 * i + 1) * left.shape[0] // (2 * rows.size)
-        _see_band(right, rows[i], factor, offsets, flat.shape[1], total, band, codes[1, i : i + 1])
-        _see_band(left, rows[i], factor, offsets, flat.shape[1], total, band, codes[0, i : i + 1])
+        _encode_band(right, rows[i], factor, offsets, flat.shape[1], total, band, codes[1, i : i + 1])
+        _encode_band(left, rows[i], factor, offsets, flat.shape[1], total, band, codes[0, i : i + 1])
         for x in range(grey.shape[1]):
             grey[i, x] = band[RADIUS, RADIUS + x * stride]
-        _flat_columns(band, flat[i])
+        _find_flat_columns(band, flat[i])
 
 
 @inner()
-def _see_band(view, row, factor, offsets, columns, total, band, codes):
+def _encode_band(view, row, factor, offsets, columns, total, band, codes):
     for j in range(TALL):
-        _average(view, row + (j - RADIUS) * HIGH_PX, factor, columns, total, band[j])
+        _average_rows(view, row + (j - RADIUS) * HIGH_PX, factor, columns, total, band[j])
     for plane in range(PLANES):
         for x in range(codes.shape[2]):
             codes[0, plane, x] = 0
@@ -94,8 +99,8 @@ def _see_band(view, row, factor, offsets, columns, total, band, codes):
 
 
 @inner()
-def _average(view, middle, factor, columns, total, means):
-    """Each a mean of HIGH_PX x factor pixels round row `middle`; beyond the picture its edge repeats."""
+def _average_rows(view, middle, factor, columns, total, means):
+    """Average HIGH_PX x factor pixels near row `middle` into each value; the picture's edge is repeated outwards."""
     h, w = view.shape
     scale = np.float32(1 / (HIGH_PX * factor))
     for x in range(total.size):
@@ -121,8 +126,8 @@ def _average(view, middle, factor, columns, total, means):
 
 
 @inner()
-def _flat_columns(band, flat):
-    """As `flat_pixels` of the band's middle row."""
+def _find_flat_columns(band, flat):
+    """Find flat pixels of the band's middle row, as `flat_pixels` does."""
     for x in range(flat.size):
         flat[x] = True
     for j in range(TALL):
@@ -135,8 +140,8 @@ def _flat_columns(band, flat):
 
 
 @njit(**KERNEL)
-def _without_flat(flat, disparity):
-    """Make what is flat UNKNOWN; how many others are known."""
+def _remove_flat(flat, disparity):
+    """Make flat pixels UNKNOWN; return the number of known ones."""
     known = 0
     for y in range(disparity.shape[0]):
         for x in range(disparity.shape[1]):

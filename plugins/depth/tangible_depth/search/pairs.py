@@ -1,4 +1,4 @@
-"""A pair of views as the matchers want it: two grey pictures of 8 bits."""
+"""The input of the matchers: two grey pictures of 8 bits."""
 
 from math import floor, log2
 from typing import NamedTuple
@@ -12,30 +12,30 @@ from tangible_core.errors import PictureError
 
 
 class Pair(NamedTuple):
-    """Two grey pictures of one size, each contiguous in memory."""
+    """Two grey pictures (h, w) of one size, each contiguous in memory."""
 
     left: UInt8[np.ndarray, "h w"]
     right: UInt8[np.ndarray, "h w"]
 
     @property
     def width(self) -> int:
-        """Columns."""
+        """The number of columns."""
         return self.left.shape[1]
 
-    def shrunk(self, factor: int) -> "Pair":
-        """Every factor x factor pixels averaged into one; the last ones are completed by repeating the edge."""
-        return self if factor == 1 else Pair(*(_shrunk(each, factor) for each in self))
+    def downsample(self, factor: int) -> "Pair":
+        """Average factor x factor pixels into one; the edge is repeated to complete the last ones."""
+        return self if factor == 1 else Pair(*(_downsample(each, factor) for each in self))
 
-    def mirrored(self) -> "Pair":
-        """Left and right exchanged in each picture; a disparity d becomes -d."""
+    def mirror(self) -> "Pair":
+        """Mirror each picture sideways; a disparity d becomes -d."""
         return Pair(*(np.ascontiguousarray(each[:, ::-1]) for each in self))
 
 
 def grey_pair(views: Views, method: str) -> Pair:
-    """Both views in 8 bits of grey.
+    """Convert both views to 8 bits of grey.
 
-    Values keep their meaning from type to type (colour by ITU-R BT.601). Where the views leave the upper half unused,
-    as 12 bits in a 16-bit file do, both are brightened by a power of two.
+    The same picture gives the same values in any data type (colour by ITU-R BT.601). If the views leave the upper half
+    of the range unused, as 12 bits in a 16-bit file do, both are multiplied by a power of two.
     Raises: PictureError if there is no right view.
     """
     if views.right is None:
@@ -58,7 +58,7 @@ def _grey8(picture: np.ndarray) -> UInt8[np.ndarray, "h w"]:
     return cv2.cvtColor(np.ascontiguousarray(picture), cv2.COLOR_RGB2GRAY)  # pyright: ignore[reportReturnType]
 
 
-def _shrunk(grey: UInt8[np.ndarray, "h w"], factor: int) -> UInt8[np.ndarray, "-(-h//{factor}) -(-w//{factor})"]:
+def _downsample(grey: UInt8[np.ndarray, "h w"], factor: int) -> UInt8[np.ndarray, "-(-h//{factor}) -(-w//{factor})"]:
     import cv2
 
     h, w = grey.shape

@@ -1,6 +1,6 @@
-"""Which disparities occur in a pair, found in a few bands of it."""
+"""The disparities that occur in a few bands of a pair."""
 
-# ruff: noqa: ANN001, ANN202 -- numba finds the types of what it compiles; the docstrings say them
+# ruff: noqa: ANN001, ANN202 -- numba infers the types of kernels; their docstrings give them
 
 from math import ceil, floor
 from typing import NamedTuple
@@ -14,51 +14,54 @@ from ..dense.span import UNKNOWN, Span
 from .bands import FINE_WIDTH, Bands, match_bands
 from .pairs import Pair
 
-FIRST_WIDTH, REACH = 80, 0.36
-"""Width of the first copy, and the largest disparity of either sign in widths of the picture."""
+FIRST_WIDTH = 80
+"""Width of the first copy, in columns."""
+REACH = 0.36
+"""Largest disparity of either sign, as a share of the picture's width."""
 THIN_REACH = 1 / 8
-"""Disparities, in widths of the picture, that the second copy tries at least: things too thin for the first stand out
-from what is behind them by less than this."""
+"""Smallest range of the second copy, as a share of the picture's width: objects too thin for the first copy stand out
+from their background by less than this."""
 FRINGE = 0.0005
-"""Share of the matches left out at either end as errors."""
+"""Share of the matches dropped at either end as errors."""
 NOISY = 0.6
-"""Share of matches that no neighbour confirms from which the first copy, which averages noise away, counts as well."""
+"""Loss (share of speckles) from which the first copy, which averages noise away, counts as well."""
 FIRST_MARGIN, MARGIN = 1, 2
-"""What is then added at either end, in pixels of the copy."""
+"""Margins added to the range of the first and second copy at either end, in pixels of the copy."""
 LARGEST = np.int16(32767)
+"""Disparity above every real one."""
 
 
 class RangeEstimate(NamedTuple):
-    """The range of a pair, and the bands in which it was found."""
+    """The range of a pair, and the bands that it was estimated in."""
 
     span: Span
     bands: Bands
     swapped: bool
-    """Whether every disparity is negative, which parallel cameras in the right order cannot give."""
+    """True if every disparity is negative, which parallel cameras in the right order cannot produce."""
 
 
 def reach_px(width: int) -> int:
-    """The largest disparity of either sign that a picture of this width is searched for."""
+    """Return the largest disparity of either sign to try in a picture of this width."""
     return round(REACH * width)
 
 
 def find_range(pair: Pair) -> RangeEstimate | None:
-    """The disparities that occur, of either sign; None if nothing at all matches."""
+    """Estimate the disparities that occur, of either sign; None if nothing matches."""
     width, reach = pair.width, reach_px(pair.width)
-    first = _look(pair, Span(-reach, reach), FIRST_WIDTH, FIRST_MARGIN)
+    first = _range_of_bands(pair, Span(-reach, reach), FIRST_WIDTH, FIRST_MARGIN)
     if first is None:
         return None
     low, high = first.span
     span = Span(low, max(high, low + round(THIN_REACH * width)))
-    fine = _look(pair, span, FINE_WIDTH, MARGIN)
+    fine = _range_of_bands(pair, span, FINE_WIDTH, MARGIN)
     if fine is None or fine.bands.loss < NOISY:
         return fine or first
     wider = Span(min(first.span.low, fine.span.low), max(first.span.high, fine.span.high))
     return RangeEstimate(wider, fine.bands, first.swapped and fine.swapped)
 
 
-def _look(pair: Pair, span: Span, width: int, margin: int) -> RangeEstimate | None:
-    bands = match_bands(pair, span.within(pair.width), width)
+def _range_of_bands(pair: Pair, span: Span, width: int, margin: int) -> RangeEstimate | None:
+    bands = match_bands(pair, span.clip(pair.width), width)
     factor = bands.factor
     if bands.known == 0:
         return None
@@ -71,7 +74,7 @@ def _look(pair: Pair, span: Span, width: int, margin: int) -> RangeEstimate | No
 
 @njit(**KERNEL)
 def _find_extremes(disparity, lowest, highest):
-    """The lowest known disparities, in rising order, and the highest, in falling order."""
+    """Find the lowest known disparities, in rising order, and the highest, in falling order."""
     lowest[:], highest[:] = LARGEST, UNKNOWN
     for y in range(disparity.shape[0]):
         for x in range(disparity.shape[1]):

@@ -1,9 +1,9 @@
-"""Semi-global matching of every few columns of rows that lie far apart: all that telling a range needs.
+"""Semi-global matching of a subset of columns and rows: enough to estimate a range.
 
-As `sgm.aggregation`, but all rows fit into memory, so that costs are counted once.
+As `sgm.aggregation`, but all rows fit into memory, so that costs are computed once.
 """
 
-# ruff: noqa: ANN001, ANN202 -- numba finds the types of what it compiles; the docstrings say them
+# ruff: noqa: ANN001, ANN202 -- numba infers the types of kernels; their docstrings give them
 
 from typing import NamedTuple
 
@@ -15,18 +15,20 @@ from tangible_core.compiled.compiling import KERNEL, inner
 
 from ..dense.span import UNKNOWN, Span
 from ..dense.subpixel import equiangular
-from ..sgm.aggregation import WORST, begin, shifted
+from ..sgm.aggregation import WORST, begin_path, shift_codes
 from ..sgm.census import PLANES
 from ..sgm.costs import Penalties
-from ..sgm.paths import jumps, jumps_along, sideways, step
+from ..sgm.paths import add_horizontal_paths, jump_penalties, jump_penalties_along, step
 from ..simd.lane_reductions import differences, first_equal, first_lane, lowest
 from ..simd.lanes import Lanes, load, maximum, minimum, saturating_add, shift_down, splat, store, width
 
 FEWEST_LANES = 64
-"""Lanes are a power of two from here on, so that few kernels are compiled; larger disparities fill them."""
+"""Fewest lanes; more are a power of two, so that few kernels are compiled, and larger disparities fill them."""
 
 
 class _Scratch(NamedTuple):
+    """Scratch memory of a sweep, for m matched columns and n lanes."""
+
     costs: UInt8[np.ndarray, "even_rows m*n"]
     total: UInt8[np.ndarray, "even_rows m*n"]
     p2: UInt8[np.ndarray, "2 m+1"]
@@ -46,10 +48,10 @@ def sweep_columns(
     stride: int,
     out: Int16[np.ndarray, "rows w"],
 ) -> None:
-    """Disparities in sixteenths of a pixel, UNKNOWN where the strict left-right check fails.
+    """Write disparities in sixteenths of a pixel into `out`, UNKNOWN where the strict left-right check fails.
 
-    left, right: census codes. grey: of the columns that are matched, every `stride`-th, each of which speaks for the
-    columns up to the next.
+    left, right: census codes. grey: grey values of the matched columns, every `stride`-th; each stands for the columns
+    up to the next.
     """
     rows, m = grey.shape
     w = out.shape[1]
@@ -74,21 +76,21 @@ def _sweep(lanes, left, right, grey, span, penalties, stride, scratch, out):
     costs, total, p2, path, path_lowest, codes, bounds, right_sums = scratch
     p1 = penalties.p1
     _bounds(w, span.high, penalties.neutral, bounds)
-    begin(path, path_lowest)
+    begin_path(path, path_lowest)
     for y in range(rows):
-        shifted(right[y], w, span.high, codes)
-        _count(lanes, left[y], codes, bounds, stride, costs[y])
-        jumps(penalties, grey[y], grey[max(y - 1, 0)], p2[0])
+        shift_codes(right[y], w, span.high, codes)
+        _differing_bits(lanes, left[y], codes, bounds, stride, costs[y])
+        jump_penalties(penalties, grey[y], grey[max(y - 1, 0)], p2[0])
         _vertical(lanes, p1, p2[0], costs[y], path[0], path_lowest, total[y], True)
     for y in range(0, rows, 2):
-        jumps_along(penalties, grey[y], p2[0])
-        jumps_along(penalties, grey[min(y + 1, rows - 1)], p2[1])
-        upper, lower = total[y], total[y + 1]  # the last row of an odd number has a stand-in beside it
-        sideways(lanes, p1, (costs[y], p2[0], upper, upper), (costs[y + 1], p2[1], lower, lower))
-    begin(path, path_lowest)
+        jump_penalties_along(penalties, grey[y], p2[0])
+        jump_penalties_along(penalties, grey[min(y + 1, rows - 1)], p2[1])
+        upper, lower = total[y], total[y + 1]  # an odd last row is paired with a dummy row
+        add_horizontal_paths(lanes, p1, (costs[y], p2[0], upper, upper), (costs[y + 1], p2[1], lower, lower))
+    begin_path(path, path_lowest)
     for i in range(rows):
         y = rows - 1 - i
-        jumps(penalties, grey[y], grey[min(y + 1, rows - 1)], p2[0])
+        jump_penalties(penalties, grey[y], grey[min(y + 1, rows - 1)], p2[0])
         _vertical(lanes, p1, p2[0], costs[y], path[0], path_lowest, total[y], False)
         _best_right_sums(lanes, total[y], stride, right_sums)
         _accept(lanes, total[y], span, stride, bounds, right_sums, out[y])
@@ -96,7 +98,7 @@ def _sweep(lanes, left, right, grey, span, penalties, stride, scratch, out):
 
 @inner()
 def _bounds(w, top, neutral, bounds):
-    """What a column of the right view costs at most and at least: neutral beyond the picture."""
+    """Write the most and the least that a column of the right view costs: neutral beyond the picture."""
     for i in range(bounds.shape[1]):
         beyond = (i < top) | (i >= top + w)
         bounds[0, i] = uint8(0) if beyond else uint8(255)
@@ -104,8 +106,8 @@ def _bounds(w, top, neutral, bounds):
 
 
 @inner()
-def _count(lanes, left, codes, bounds, stride, costs):
-    """What codes differ by; neutral where a disparity leads out of the right view."""
+def _differing_bits(lanes, left, codes, bounds, stride, costs):
+    """Count the differing bits of codes; neutral if a disparity leads out of the right view."""
     n = width(lanes)
     for i in range(costs.size // n):
         x = i * stride
@@ -115,7 +117,7 @@ def _count(lanes, left, codes, bounds, stride, costs):
 
 @inner()
 def _vertical(lanes, p1, p2, costs, path, path_lowest, total, first):
-    """The path from the row before, in place; added to the total, of which it may be the first part."""
+    """Step the path from the previous row, in place, and add it to the total, or start the total with it."""
     n = width(lanes)
     p1 = splat(lanes, p1)
     for i in range(path_lowest.size):
@@ -127,10 +129,10 @@ def _vertical(lanes, p1, p2, costs, path, path_lowest, total, first):
 
 @inner()
 def _best_right_sums(lanes, total, stride, right_sums):
-    """For each right pixel the lowest sum of all left ones that are matched."""
+    """Find the lowest sum of all matched left pixels for each right pixel."""
     n = width(lanes)
     wall = splat(lanes, uint8(255))
-    seen = wall  # lowest sums so far of the n right pixels that the left pixels still to come can see
+    seen = wall  # lowest sums so far of the n right pixels that later left pixels can match
     m = total.size // n
     for i in range(m):
         seen = minimum(seen, load(lanes, total, i * n))
@@ -144,9 +146,9 @@ def _best_right_sums(lanes, total, stride, right_sums):
 
 @inner()
 def _accept(lanes, sums, span, stride, bounds, right_sums, disparity):
-    """Mutual best matches that neither neighbouring disparity fits as well as, between the ends of the span.
+    """Accept mutual best matches that fit better than both neighbouring disparities.
 
-    Written without branches, because what is accepted no processor can guess.
+    Written without branches, as acceptance is unpredictable.
     """
     n = width(lanes)
     for i in range(sums.size // n):

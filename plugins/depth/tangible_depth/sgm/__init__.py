@@ -1,1 +1,1 @@
-"""Semi-global matching: census codes, what matches cost, paths, and their aggregation in strips."""
+"""Semi-global matching: census codes, matching costs, paths, and their aggregation in strips."""

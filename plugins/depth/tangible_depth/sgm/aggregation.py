@@ -1,17 +1,17 @@
 """Semi-global matching along four paths, one byte a pixel and disparity.
 
 Source: Hirschmueller, Stereo processing by semiglobal matching and mutual information, IEEE PAMI 30(2), 2008, eq. 13.
-Each path is kept relative to its own minimum, so that the winner's sum of four paths is small and saturating bytes are
+Each path is relative to its own minimum, so that the winner's sum of four paths is small and saturating bytes are
 enough: only losers reach 255.
 
-Rows are worked in strips. A strip begins its downward (and upward) path some rows early, which makes strips independent
-of each other: any number of threads, bounded memory, and a volume that stays near the processor.
+Rows are processed in strips. A strip starts its downward (and upward) path some rows early, which makes strips
+independent of each other: any number of threads, bounded memory, and a volume that fits the caches.
 
 Lane k stands for the disparity top - k, so that the right view's codes are contiguous: for pixel x they begin at
 codes[x], a row of w + n - 1 codes of which codes[i] is the right view's column i - top.
 """
 
-# ruff: noqa: ANN001, ANN201, ANN202 -- numba finds the types of what it compiles; the docstrings say them
+# ruff: noqa: ANN001, ANN201, ANN202 -- numba infers the types of kernels; their docstrings give them
 
 from typing import NamedTuple
 
@@ -25,13 +25,14 @@ from ..dense.span import UNKNOWN
 from ..dense.subpixel import equiangular
 from ..simd.lane_reductions import first_equal, first_lane, lowest
 from ..simd.lanes import load, minimum, saturating_add, shift_down, splat, store, width
-from .paths import jumps, jumps_along, sideways, vertical
+from .paths import add_horizontal_paths, jump_penalties, jump_penalties_along, step_vertical_path
 
 WORST = np.uint8(255)
+"""Sum of a disparity that is never accepted."""
 
 
 class Scratch(NamedTuple):
-    """What one sweep at a time writes on."""
+    """Scratch memory of one sweep."""
 
     total: UInt8[np.ndarray, "rows w*n"]
     paths: UInt8[np.ndarray, "2 w*n"]
@@ -46,7 +47,7 @@ class Scratch(NamedTuple):
 
 
 def scratch(rows: int, w: int, n: int, planes: int) -> Scratch:
-    """For strips of at most so many rows of w columns and n lanes, and codes of so many planes."""
+    """Allocate scratch memory for strips of at most `rows` rows of w columns, n lanes, and codes of `planes` planes."""
     return Scratch(
         np.empty((rows + rows % 2, w * n), np.uint8),
         np.empty((2, w * n), np.uint8),
@@ -62,8 +63,8 @@ def scratch(rows: int, w: int, n: int, planes: int) -> Scratch:
 
 
 @inner()
-def begin(paths, path_lowest):
-    """A path that nothing has been paid for."""
+def begin_path(paths, path_lowest):
+    """Start a path with cost 0."""
     for path in paths:
         for i in range(path.size):
             path[i] = 0
@@ -73,14 +74,14 @@ def begin(paths, path_lowest):
 
 @inner()
 def _decide(lanes, total, path, finals, best, beside, sums, right_sums):
-    """Add the last path; the best lane, its sum and those beside it for each left pixel, the best sum for each right.
+    """Add the last path; find the best lane, its sum and the two next to it per left pixel, the best sum per right one.
 
-    finals: scratch, of n at least; what is beside is looked up at once, while it is near the processor.
+    finals: scratch, of n at least; neighbouring sums are read at once, while they are in the cache.
     """
     n = width(lanes)
     w = best.size
     wall = splat(lanes, uint8(255))
-    seen = wall  # lowest sums so far of the n right pixels that the left pixels still to come can see
+    seen = wall  # lowest sums so far of the n right pixels that later left pixels can match
     for x in range(w):
         sum_here = saturating_add(load(lanes, total, x * n), load(lanes, path, x * n))
         store(finals, 0, sum_here)
@@ -88,7 +89,7 @@ def _decide(lanes, total, path, finals, best, beside, sums, right_sums):
         right_sums[x] = first_lane(seen)
         seen = shift_down(seen, wall)
         sums[x] = lowest(sum_here)
-        k = best[x] = first_equal(sum_here, sums[x])  # never negative: of a uint64 numba need not ask
+        k = best[x] = first_equal(sum_here, sums[x])  # never negative: uint64 spares numba a test
         beside[0, x], beside[1, x] = finals[uint64(max(k - 1, 0))], finals[uint64(min(k + 1, n - 1))]
     for i in range(n - 1):
         right_sums[w + i] = first_lane(seen)
@@ -97,14 +98,14 @@ def _decide(lanes, total, path, finals, best, beside, sums, right_sums):
 
 @inner()
 def _accept(span, best, beside, sums, right_sums, confirmed, most, check_tolerance, disparity):
-    """Disparities that pass the left-right check: no left pixel fits the right pixel better by more than a factor.
+    """Accept disparities that pass the left-right check: no left pixel fits the right one better by more than a factor.
 
-    A pixel whose neighbouring disparities fit as well as the best one says nothing and is not accepted. Written without
-    branches, because what is accepted no processor can guess; what lies scattered is gathered first, so that the rest
-    is plain vector code. confirmed: scratch.
+    A pixel whose neighbouring disparities fit as well as the best one is ambiguous and not accepted. Written without
+    branches, as acceptance is unpredictable; scattered values are gathered first, so that the rest is vector code.
+    confirmed: scratch.
     """
     for i in range(most.size):
-        right_sums[i] &= most[i]  # what lies beyond the picture confirms nothing
+        right_sums[i] &= most[i]  # columns beyond the picture confirm nothing
     for x in range(best.size):
         confirmed[x] = right_sums[uint64(x + best[x])]
     befores, afters = beside
@@ -122,8 +123,8 @@ def _accept(span, best, beside, sums, right_sums, confirmed, most, check_toleran
 
 
 @inner()
-def shifted(row, w, top, codes):
-    """The right view's codes as the lanes want them; beyond the picture its edge is repeated."""
+def shift_codes(row, w, top, codes):
+    """Shift the right view's codes by `top` for the lanes; the picture's edge is repeated outwards."""
     end = codes.shape[1]
     first = min(max(top, 0), end)
     last = min(max(w + top, first), end)
@@ -142,7 +143,7 @@ def shifted(row, w, top, codes):
 def sweep_strip(
     lanes, left, right, grey, rows, warm, span, limits, penalties, check_tolerance, scratch, disparity, sums
 ):
-    """Disparities in sixteenths of a pixel (UNKNOWN where rejected) and sums of rows[0]..rows[1]-1.
+    """Compute disparities in sixteenths of a pixel (UNKNOWN if rejected) and sums of rows[0]..rows[1]-1.
 
     Parameters: lanes, Lanes(n, planes); left, right uint8 (h, planes, >= w), codes of the two views; grey uint8 (h, w),
     the left view; warm, rows that a path begins early; span, the disparities to try, at most n; limits, those of rows
@@ -153,27 +154,29 @@ def sweep_strip(
     y0, y1 = rows
     total, paths, path_lowest, costs, p2, codes, best, right_sums, beside, confirmed = scratch
     p1, p2_across = penalties.p1, p2[2]
-    begin(paths, path_lowest)
+    begin_path(paths, path_lowest)
     for y in range(max(0, y0 - warm), y1):
         row = (y - y0) & 1
-        shifted(right[y], w, span.high, codes)
-        jumps(penalties, grey[y], grey[max(y - 1, 0)], p2_across)
-        vertical(lanes, left[y], codes, limits, p1, p2_across, paths[1 - row], paths[row], path_lowest, costs[row])
+        shift_codes(right[y], w, span.high, codes)
+        jump_penalties(penalties, grey[y], grey[max(y - 1, 0)], p2_across)
+        step_vertical_path(
+            lanes, left[y], codes, limits, p1, p2_across, paths[1 - row], paths[row], path_lowest, costs[row]
+        )
         if y >= y0:
-            jumps_along(penalties, grey[y], p2[row])
-        if y >= y0 and (row == 1 or y + 1 == y1):  # the last row of an odd number has a stand-in beside it
+            jump_penalties_along(penalties, grey[y], p2[row])
+        if y >= y0 and (row == 1 or y + 1 == y1):  # an odd last row is paired with a dummy row
             i = y - row - y0
             upper = costs[0], p2[0], paths[0], total[i]
             lower = costs[1], p2[1], paths[1], total[i + 1]
-            sideways(lanes, p1, upper, lower)
-    begin(paths, path_lowest)
+            add_horizontal_paths(lanes, p1, upper, lower)
+    begin_path(paths, path_lowest)
     path, finals = paths[0], costs[1]
     last = min(h, y1 + warm)
     for i in range(last - y0):
         y = last - 1 - i
-        shifted(right[y], w, span.high, codes)
-        jumps(penalties, grey[y], grey[min(y + 1, h - 1)], p2_across)
-        vertical(lanes, left[y], codes, limits, p1, p2_across, path, path, path_lowest, costs[0])
+        shift_codes(right[y], w, span.high, codes)
+        jump_penalties(penalties, grey[y], grey[min(y + 1, h - 1)], p2_across)
+        step_vertical_path(lanes, left[y], codes, limits, p1, p2_across, path, path, path_lowest, costs[0])
         if y < y1:
             _decide(lanes, total[y - y0], path, finals, best, beside, sums[y], right_sums)
             _accept(span, best, beside, sums[y], right_sums, confirmed, limits.most, check_tolerance, disparity[y])

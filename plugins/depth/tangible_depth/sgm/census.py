@@ -4,7 +4,7 @@ Source: Zabih & Woodfill, Non-parametric local transforms for computing visual c
 the order of grey values only, so that exposure, gain and gamma of the two pictures may differ.
 """
 
-# ruff: noqa: ANN001, ANN201 -- numba finds the types of what it compiles; the docstrings say them
+# ruff: noqa: ANN001, ANN201 -- numba infers the types of kernels; their docstrings give them
 
 from collections.abc import Sequence
 
@@ -16,40 +16,42 @@ from tangible_core.compiled.compiling import KERNEL
 from tangible_core.compiled.threads import in_blocks
 
 RADIUS = 2
+"""Radius of the window, in pixels."""
 PLANES = 3
-"""Bytes of a code."""
+"""Bytes of a code, one plane each."""
 BITS = 8 * PLANES
+"""Bits of a code, one for each neighbour."""
 BLOCK = 64
-"""Columns that a processor treats at once; whole blocks spare it the odd ones at a row's end."""
+"""Columns of a block: rows are padded to whole blocks, so that vector code needs no remainder loop."""
 OFFSETS = np.array([(dy, dx) for dy in range(5) for dx in range(5) if (dy, dx) != (RADIUS, RADIUS)])
 
 
 def census(grey: UInt8[np.ndarray, "h w"]) -> UInt8[np.ndarray, "h 3 whole"]:
-    """Codes of 24 bits from the 5 x 5 window, a plane a byte; beyond the picture its edge is repeated.
+    """Compute codes of 24 bits from the 5 x 5 window, one plane per byte; the picture's edge is repeated outwards.
 
-    Rows are completed to whole blocks of BLOCK columns; what stands there means nothing.
+    Rows are padded to whole blocks of BLOCK columns; the padding is undefined.
     """
-    return _coded([grey])
+    return _encode([grey])
 
 
 def two_scale_census(
     grey: UInt8[np.ndarray, "h w"], fine_px: float, coarse_px: float
 ) -> UInt8[np.ndarray, "h 6 whole"]:
-    """Codes of 48 bits: the census at two Gaussian blurs; the coarse half survives noise, the fine keeps edges."""
+    """Compute codes of 48 bits, the census at two Gaussian blurs: coarse ones resist noise, fine ones keep edges."""
     import cv2
 
-    return _coded([cv2.GaussianBlur(grey, (0, 0), sigma) for sigma in (fine_px, coarse_px)])
+    return _encode([cv2.GaussianBlur(grey, (0, 0), sigma) for sigma in (fine_px, coarse_px)])
 
 
-def with_levels(grey: UInt8[np.ndarray, "h w"]) -> UInt8[np.ndarray, "h 4 whole"]:
-    """The census, and as one more plane the grey values, halved."""
-    codes = _coded([grey], spare_planes=1)
+def census_with_levels(grey: UInt8[np.ndarray, "h w"]) -> UInt8[np.ndarray, "h 4 whole"]:
+    """Compute the census, and one more plane of halved grey values."""
+    codes = _encode([grey], spare_planes=1)
     np.right_shift(grey, 1, out=codes[:, PLANES, : grey.shape[1]])
     return codes
 
 
-def _coded(greys: Sequence[np.ndarray], spare_planes: int = 0) -> UInt8[np.ndarray, "h planes whole"]:
-    """The codes of several pictures of one size, side by side in the planes; the spare ones are 0."""
+def _encode(greys: Sequence[np.ndarray], spare_planes: int = 0) -> UInt8[np.ndarray, "h planes whole"]:
+    """Encode several pictures of one size into consecutive planes; spare planes are 0."""
     import cv2
 
     h, w = greys[0].shape
@@ -62,7 +64,7 @@ def _coded(greys: Sequence[np.ndarray], spare_planes: int = 0) -> UInt8[np.ndarr
 
 @njit(**KERNEL)
 def code_rows(padded, offsets, first_plane, y0, y1, codes):
-    """Rows y0..y1-1, one neighbour after the other along a whole row: each inner loop is plain vector code."""
+    """Encode rows y0..y1-1, one neighbour after the other along a whole row, so that each inner loop vectorises."""
     w = codes.shape[2]
     for y in range(y0, y1):
         centre = padded[y + RADIUS, RADIUS : RADIUS + w]

@@ -1,4 +1,4 @@
-"""What a match costs: the codes that are compared, and the penalties P1 and P2 of changes of disparity."""
+"""Matching costs: the codes that are compared, and the penalties P1 and P2 of disparity changes."""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -7,36 +7,36 @@ import numpy as np
 from jaxtyping import UInt8
 
 from ..dense.speckles import Specks
-from .census import BITS, census, two_scale_census, with_levels
+from .census import BITS, census, census_with_levels, two_scale_census
 
 
 class Penalties(NamedTuple):
-    """What a path pays, in differing bits."""
+    """The penalties of a path, in differing bits."""
 
     p1: np.uint8
-    """For a change of one disparity."""
+    """Penalty of a change by one disparity."""
     neutral: np.uint8
-    """For a disparity that leads out of the right view, where nothing can be compared."""
+    """Cost of a disparity that leads out of the right view, where nothing can be compared."""
     p2_by_step: UInt8[np.ndarray, "256"]
-    """For any other change, by the grey step it comes with: depth breaks where the picture does."""
+    """Penalty of any other change, by the grey step there: depth edges coincide with edges of the picture."""
 
 
 class Cost(NamedTuple):
-    """A way of comparing two pictures."""
+    """A way to compare two pictures."""
 
     name: str
     bits: int
-    """Of a code: what a pixel can cost."""
+    """Bits of a code, the most that a pixel can cost."""
     codes: Callable[[UInt8[np.ndarray, "h w"]], Any]
     penalties: Penalties
     most_level: int = 0
-    """Up to what the difference of two levels counts; 0: the codes have none."""
+    """Largest value that the difference of two grey levels counts; 0 for codes without levels."""
     specks: Specks = Specks()
-    """Which islands are errors."""
+    """Sizes up to which islands are removed."""
 
 
 def p2_by_grey_step(flat: int, edge: int, slope: float) -> UInt8[np.ndarray, "256"]:
-    """From `flat` where the picture is flat down to `edge`, `slope` bits cheaper for each grey level of the step."""
+    """Return P2 by grey step: `flat` at 0, `slope` bits less per grey level, `edge` at least."""
     return np.clip(flat - slope * np.arange(256), edge, flat).astype(np.uint8)
 
 
@@ -46,17 +46,19 @@ SHARP = Cost(
     census,
     Penalties(np.uint8(10), np.uint8(8), p2_by_grey_step(50, 12, 1.5)),
 )
-"""Census of the picture as it is: the most exact on clean pictures."""
+"""Census of the original picture: the most precise on clean pictures."""
 MOST_LEVEL = 4
+"""Largest value that the difference of two halved grey levels counts, in bits."""
 LEVELS = Cost(
     "levels",
     BITS + MOST_LEVEL,
-    with_levels,
+    census_with_levels,
     Penalties(np.uint8(10), np.uint8(9), p2_by_grey_step(40, 12, 2.0)),
     MOST_LEVEL,
 )
-"""Census and the grey levels themselves: more exact still, where both views were exposed alike."""
+"""Census and grey levels: more precise still, if both views have the same exposure."""
 NOISY = Specks(among_many_px=30, alone_px=200)
+"""Islands that are removed in noisy pictures."""
 LIGHT = Cost(
     "light",
     2 * BITS,
@@ -64,7 +66,7 @@ LIGHT = Cost(
     Penalties(np.uint8(18), np.uint8(16), p2_by_grey_step(110, 28, 2.0)),
     specks=NOISY,
 )
-"""For light noise or compression."""
+"""Two-scale census for light noise or compression."""
 HEAVY = Cost(
     "heavy",
     2 * BITS,
@@ -72,5 +74,6 @@ HEAVY = Cost(
     Penalties(np.uint8(22), np.uint8(16), p2_by_grey_step(120, 40, 2.0)),
     specks=NOISY,
 )
-"""For heavy noise."""
+"""Two-scale census for heavy noise."""
 COSTS = {each.name: each for each in (SHARP, LEVELS, LIGHT, HEAVY)}
+"""All costs by name, the option `cost`."""

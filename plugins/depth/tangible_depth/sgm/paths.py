@@ -1,9 +1,9 @@
-"""The paths of semi-global matching: what one row hands on to the next, and one pixel to its neighbours.
+"""The paths of semi-global matching: steps from row to row, and along a row.
 
 Every cost, path and sum is a byte a lane; lane k stands for the disparity top - k.
 """
 
-# ruff: noqa: ANN001, ANN201, ANN202 -- numba finds the types of what it compiles; the docstrings say them
+# ruff: noqa: ANN001, ANN201, ANN202 -- numba infers the types of kernels; their docstrings give them
 
 from typing import NamedTuple
 
@@ -30,17 +30,17 @@ from ..simd.lanes import (
 
 
 class Limits(NamedTuple):
-    """Bounds on a row's costs: most and least by index of the shifted right row, 255 for lanes not asked for."""
+    """Bounds on a row's costs: most and least by index of the shifted right row; `barred` is 255 for unused lanes."""
 
     most: np.ndarray
     least: np.ndarray
     barred: np.ndarray
     free: tuple[int, int]
-    """Columns first..last - 1, at which only lanes that are not asked for have a limit."""
+    """Columns first..last - 1, at which only unused lanes have a limit."""
 
 
-def limits_of(n: int, w: int, span: Span, neutral: np.uint8) -> Limits:
-    """The limits of rows of w columns."""
+def row_limits(n: int, w: int, span: Span, neutral: np.uint8) -> Limits:
+    """Compute the limits of rows of w columns."""
     columns = np.arange(w + n - 1) - span.high
     beyond = (columns < 0) | (columns >= w)
     first = min(max(span.high, 0), w)
@@ -55,7 +55,7 @@ def limits_of(n: int, w: int, span: Span, neutral: np.uint8) -> Limits:
 
 @inner()
 def step(lanes, before, before_lowest, cost, p1, p2):
-    """One step of a path: stay, move by one disparity or jump to any, then pay the pixel's own cost."""
+    """Step a path by one pixel: stay, move by one disparity or jump to any, then add the pixel's own cost."""
     wall = splat(lanes, uint8(255))
     moved = saturating_add(minimum(shift_up(before, wall), shift_down(before, wall)), p1)
     least = splat(lanes, before_lowest)
@@ -66,94 +66,94 @@ def step(lanes, before, before_lowest, cost, p1, p2):
 
 @inner()
 def _limited_cost(lanes, left, codes, x, limits):
-    """What codes differ by; neutral where a disparity leads out of the right view, 255 where it is not asked for."""
+    """Count the differing bits of codes; neutral if a disparity leads out of the right view, 255 for unused lanes."""
     cost = minimum(differences(lanes, left, codes, x), load(lanes, limits.most, x))
     return maximum(maximum(cost, load(lanes, limits.least, x)), load(lanes, limits.barred, 0))
 
 
 @inner()
-def jumps(penalties, row, other, p2):
-    """What a jump costs from each pixel of a row to the one beside it in another."""
+def jump_penalties(penalties, row, other, p2):
+    """Write the penalty P2 of a jump from each pixel of a row to the same column of another."""
     for x in range(row.size):
         p2[x] = penalties.p2_by_step[uint64(abs(int64(row[x]) - int64(other[x])))]
 
 
 @inner()
-def jumps_along(penalties, row, p2):
-    """What a jump costs from column x - 1 of a row to column x, and at either end."""
-    jumps(penalties, row[1:], row[: row.size - 1], p2[1:])
+def jump_penalties_along(penalties, row, p2):
+    """Write the penalty P2 of a jump from column x - 1 of a row to column x, and at either end."""
+    jump_penalties(penalties, row[1:], row[: row.size - 1], p2[1:])
     p2[0] = p2[row.size] = penalties.p2_by_step[0]
 
 
 @inner()
-def _columns(lanes, left, codes, limits, barred, columns, p1, p2, before, path, path_lowest, costs):
-    """The path from the row before; `costs` keeps this row's costs. No limits but `barred`: None."""
+def _step_columns(lanes, left, codes, limits, barred, columns, p1, p2, before, path, path_lowest, costs):
+    """Step the path from the previous row; `costs` keeps this row's costs. limits: None for `barred` alone."""
     n = width(lanes)
     p1, never = splat(lanes, p1), load(lanes, barred, 0)
     for x in range(columns[0], columns[1]):
-        if limits is None:  # known to the compiler: the other branch is not there
+        if limits is None:  # a compile-time constant: the other branch is removed
             cost = maximum(differences(lanes, left, codes, x), never)
         else:
             cost = _limited_cost(lanes, left, codes, x, limits)
         store(costs, x * n, cost)
-        i = uint64(x)  # never negative, and numba need not ask
+        i = uint64(x)  # never negative, which spares numba a test
         here = step(lanes, load(lanes, before, x * n), path_lowest[i], cost, p1, p2[i])
         path_lowest[i] = lowest(here)
         store(path, x * n, here)
 
 
 @inner()
-def vertical(lanes, left, codes, limits, p1, p2, before, path, path_lowest, costs):
-    """`_columns` for all columns: the limits are looked up only where there are some."""
+def step_vertical_path(lanes, left, codes, limits, p1, p2, before, path, path_lowest, costs):
+    """Run `_step_columns` for all columns, with limits only for the columns that have some."""
     first, last = limits.free
     rest = (p1, p2, before, path, path_lowest, costs)
-    _columns(lanes, left, codes, limits, limits.barred, (0, first), *rest)
-    _columns(lanes, left, codes, None, limits.barred, (first, last), *rest)
-    _columns(lanes, left, codes, limits, limits.barred, (last, path_lowest.size), *rest)
+    _step_columns(lanes, left, codes, limits, limits.barred, (0, first), *rest)
+    _step_columns(lanes, left, codes, None, limits.barred, (first, last), *rest)
+    _step_columns(lanes, left, codes, limits, limits.barred, (last, path_lowest.size), *rest)
 
 
 @inner()
-def sideways(lanes, p1, upper, lower):
-    """Of two rows: sums of the path from above and those from both ends. Walking all four at once hides their latency.
+def add_horizontal_paths(lanes, p1, upper, lower):
+    """Add the paths from both ends of two rows to those from above. Interleaving all four hides their latency.
 
-    upper, lower: costs, `jumps_along`, path and total of a row.
+    upper, lower: costs, `jump_penalties_along`, path and total of a row.
     """
     n = width(lanes)
     w = upper[1].size - 1
     nothing = splat(lanes, uint8(0)), uint8(0), splat(lanes, uint8(0)), uint8(0)
-    ends = _half_way(lanes, p1, upper, lower, (0, w // 2), nothing, nothing)
+    ends = _walk_half(lanes, p1, upper, lower, (0, w // 2), nothing, nothing)
     if w % 2:
         middle = (w // 2) * n
         for _, _, path, total in (upper, lower):
             store(total, middle, load(lanes, path, middle))
-    _half_way(lanes, p1, _begun(upper), _begun(lower), (w // 2, w), *ends)
+    _walk_half(lanes, p1, _continue_total(upper), _continue_total(lower), (w // 2, w), *ends)
 
 
 @inner()
-def _begun(row):
-    """The row, to whose total more is to be added."""
+def _continue_total(row):
+    """Return the row with its total in place of the path, to add the rest to it."""
     costs, p2, _, total = row
     return costs, p2, total, total
 
 
 @inner()
-def _half_way(lanes, p1, upper, lower, steps, upper_ends, lower_ends):
+def _walk_half(lanes, p1, upper, lower, steps, upper_ends, lower_ends):
     p1 = splat(lanes, p1)
     for x in range(steps[0], steps[1]):
-        upper_ends = _inward(lanes, p1, upper, x, upper_ends)
-        lower_ends = _inward(lanes, p1, lower, x, lower_ends)
+        upper_ends = _step_inward(lanes, p1, upper, x, upper_ends)
+        lower_ends = _step_inward(lanes, p1, lower, x, lower_ends)
     return upper_ends, lower_ends
 
 
 @inner()
-def _inward(lanes, p1, row, x, ends):
-    """One step of the paths from both ends of a row: to column x, and as far from the other end."""
+def _step_inward(lanes, p1, row, x, ends):
+    """Step the paths from both ends of a row: to column x, and to the same distance from the other end."""
     n = width(lanes)
-    costs, p2, so_far, total = row
+    costs, p2, before, total = row
     east, east_lowest, west, west_lowest = ends
     z = p2.size - 2 - x
     east = step(lanes, east, east_lowest, load(lanes, costs, x * n), p1, p2[uint64(x)])
     west = step(lanes, west, west_lowest, load(lanes, costs, z * n), p1, p2[uint64(z + 1)])
-    store(total, x * n, saturating_add(load(lanes, so_far, x * n), east))
-    store(total, z * n, saturating_add(load(lanes, so_far, z * n), west))
+    store(total, x * n, saturating_add(load(lanes, before, x * n), east))
+    store(total, z * n, saturating_add(load(lanes, before, z * n), west))
     return east, lowest(east), west, lowest(west)

@@ -1,4 +1,4 @@
-"""A picture swept in strips: threads, memory, and where the seams lie."""
+"""Semi-global matching of a picture in strips: threads, memory, seams."""
 
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
@@ -12,33 +12,36 @@ from ..dense.span import UNKNOWN, Span
 from ..simd.lanes import Lanes
 from .aggregation import scratch, sweep_strip
 from .costs import Penalties
-from .paths import limits_of
+from .paths import row_limits
 
-ROWS, WARM_ROWS = 128, 32
-"""Rows of a strip, and rows that a path begins before it: what lies farther away hardly reaches in."""
+ROWS = 128
+"""Rows of a strip."""
+WARM_ROWS = 32
+"""Rows before a strip at which its paths start: rows farther away hardly affect it."""
 VOLUME_BYTES = 256 << 20
-"""Bound on the cost volumes of all threads together."""
+"""Largest memory for the cost volumes of all threads together, bytes."""
 AT_ONCE = 4
-"""Strips at work for which there is room in any case: more only where they are small."""
+"""Fewest strips in memory at once; more run in parallel only if they are small."""
 MOST_LANES = 512
+"""Largest number of SIMD lanes, so of disparities at full size."""
 
 
 class StripMatches(NamedTuple):
-    """Disparity in sixteenths of a pixel, UNKNOWN where none passed the left-right check, and the winner's cost."""
+    """Disparity in sixteenths of a pixel, UNKNOWN if none passed the left-right check, and the winner's cost."""
 
     disparity: Int16[np.ndarray, "h w"]
     sums: UInt8[np.ndarray, "h w"]
 
 
-def blank(shape: tuple[int, int]) -> StripMatches:
-    """A map in which nothing is known yet."""
+def unknown_matches(shape: tuple[int, int]) -> StripMatches:
+    """Allocate a map of UNKNOWN disparities."""
     return StripMatches(np.full(shape, UNKNOWN, np.int16), np.full(shape, 255, np.uint8))
 
 
 def strips(shape: tuple[int, int], span: Span) -> list[tuple[int, int]]:
-    """First and last + 1 row of each strip: ROWS high, or lower where AT_ONCE volumes would pass VOLUME_BYTES.
+    """Return first and last + 1 row of each strip: ROWS high, or lower if AT_ONCE volumes would exceed VOLUME_BYTES.
 
-    However many threads there are: at its seams a map would show where they lie.
+    Independent of the number of threads, as seams are visible in a map.
     """
     h, w = shape
     rows = max(8, min(ROWS, VOLUME_BYTES // (AT_ONCE * w * span.lanes)))
@@ -58,14 +61,14 @@ def sweep(
 ) -> None:
     """Match the strips `only` and write them into `out`; their paths begin `warm` rows early.
 
-    most_level: up to what the differences of levels count, which the last plane of the codes then holds.
+    most_level: most that the difference of two levels counts; if not 0, the last plane of the codes holds levels.
 
     Every strip is independent of the others, so the result does not depend on how many threads there are.
     """
     w, n = grey.shape[1], span.lanes
     planes = codes[0].shape[1]
     lanes = Lanes(n, planes - (most_level > 0), most_level)
-    limits = limits_of(n, w, span, penalties.neutral)
+    limits = row_limits(n, w, span, penalties.neutral)
     highest = max((y1 - y0 for y0, y1 in only), default=0)
 
     def work(share: Iterable[tuple[int, int]]) -> None:
@@ -75,5 +78,5 @@ def sweep(
                 lanes, *codes, grey, rows, warm, span, limits, penalties, np.float32(check_tolerance), room, *out
             )
 
-    highest_first = sorted(only, key=lambda rows: rows[0] - rows[1])  # so that the threads end at about the same time
+    highest_first = sorted(only, key=lambda rows: rows[0] - rows[1])  # so that all threads end at about the same time
     in_turns(highest_first, work, max(1, VOLUME_BYTES // max(1, highest * w * n)))

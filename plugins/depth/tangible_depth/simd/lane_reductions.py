@@ -1,4 +1,4 @@
-"""From lanes to one number, or from codes to lanes: the rest of what `lanes` begins."""
+"""Reductions of SIMD lanes to one number, and of codes to lanes; an extension of `lanes`."""
 
 from collections.abc import Callable
 from typing import Any
@@ -13,61 +13,61 @@ from .lanes import (
     Vec,
     emit_call,
     emit_splat,
-    joined,
+    join,
     operation,
-    parted,
-    shuffled,
+    shuffle,
+    split,
 )
 
 
 def _in_words(b: Any, vec: Vec, value: Any) -> list[tuple[int, Any]]:
-    """First lane and vector of pieces of at most 64 lanes: what is true of each lane of one fits a word."""
+    """Divide lanes into pieces of at most 64, whose mask fits a word: first lane and vector of each."""
     pieces = []
-    for (first, part), each in zip(vec.parts, parted(b, vec, value), strict=True):
+    for (first, part), each in zip(vec.parts, split(b, vec, value), strict=True):
         count = min(part.count, 64)
-        pieces += [(first + i, shuffled(b, each, each, range(i, i + count))) for i in range(0, part.count, count)]
+        pieces += [(first + i, shuffle(b, each, each, range(i, i + count))) for i in range(0, part.count, count)]
     return pieces
 
 
 def _first_set(b: Any, mask: Any) -> Any:
-    """Index, as a 64-bit integer, of the first bit that is set."""
+    """Return the index of the first set bit, as a 64-bit integer."""
     index = emit_call(b, f"llvm.cttz.{mask.type}", mask.type, [mask, ir.Constant(ir.IntType(1), 1)])
     return b.zext(index, WORD) if mask.type.width < 64 else index
 
 
-def _folded(b: Any, vec: Vec, value: Any, of_two: Callable[[Any, Vec, Any, Any], Any]) -> tuple[Any, Vec]:
-    """The parts of lanes made one vector: the wider is halved until it is as wide as the next, and both are one."""
+def _fold(b: Any, vec: Vec, value: Any, of_two: Callable[[Any, Vec, Any, Any], Any]) -> tuple[Any, Vec]:
+    """Fold the parts of lanes into one vector: halve the wider until it is as wide as the next, then combine both."""
     whole, width = None, 0
-    for (_, part), each in zip(vec.parts, parted(b, vec, value), strict=True):
-        whole = each if whole is None else of_two(b, part, _halved(b, vec, whole, width, part.count, of_two), each)
+    for (_, part), each in zip(vec.parts, split(b, vec, value), strict=True):
+        whole = each if whole is None else of_two(b, part, _halve(b, vec, whole, width, part.count, of_two), each)
         width = part.count
     return whole, Vec(vec.element, width)
 
 
-def _halved(b: Any, vec: Vec, value: Any, width: int, narrow: int, of_two: Callable[[Any, Vec, Any, Any], Any]) -> Any:
-    """So many lanes made one half after the other, until they are as few as that."""
+def _halve(b: Any, vec: Vec, value: Any, width: int, narrow: int, of_two: Callable[[Any, Vec, Any, Any], Any]) -> Any:
+    """Halve `width` lanes until `narrow` are left."""
     while width > narrow:
         width //= 2
-        halves = (shuffled(b, value, value, range(i, i + width)) for i in (0, width))
+        halves = (shuffle(b, value, value, range(i, i + width)) for i in (0, width))
         value = of_two(b, Vec(vec.element, width), *halves)
     return value
 
 
 @operation
 def first_lane(typing: Any, vec: Vec) -> Any:
-    """Lane 0."""
-    return vec.element(vec), lambda c, b, sig, a: b.extract_element(parted(b, vec, a[0])[0], ir.Constant(INDEX, 0))
+    """Return lane 0."""
+    return vec.element(vec), lambda c, b, sig, a: b.extract_element(split(b, vec, a[0])[0], ir.Constant(INDEX, 0))
 
 
 @operation
 def lowest(typing: Any, vec: Vec) -> Any:
-    """The smallest lane of unsigned integers."""
+    """Return the smallest lane of unsigned integers."""
 
     def smaller(b: Any, kind: Vec, x: Any, y: Any) -> Any:
         return emit_call(b, f"llvm.umin.{kind.mangled}", kind.llvm, [x, y])
 
     def emit(c: Any, b: Any, sig: Any, a: Any) -> Any:
-        value, kind = _folded(b, vec, a[0], smaller)
+        value, kind = _fold(b, vec, a[0], smaller)
         return emit_call(b, f"llvm.vector.reduce.umin.{kind.mangled}", ir.IntType(vec.element.bitwidth), [value])
 
     return vec.element(vec), emit
@@ -75,14 +75,14 @@ def lowest(typing: Any, vec: Vec) -> Any:
 
 @operation
 def highest(typing: Any, vec: Vec) -> Any:
-    """The largest lane of floats free of NaN, by halving."""
+    """Return the largest lane of floats without NaN, by halving."""
 
     def emit_larger(b: Any, kind: Vec, x: Any, y: Any) -> Any:
         return b.select(b.fcmp_ordered(">", x, y), x, y)
 
     def emit(c: Any, b: Any, sig: Any, a: Any) -> Any:
-        value, kind = _folded(b, vec, a[0], emit_larger)
-        largest = _halved(b, vec, value, kind.count, 1, emit_larger)
+        value, kind = _fold(b, vec, a[0], emit_larger)
+        largest = _halve(b, vec, value, kind.count, 1, emit_larger)
         return b.extract_element(largest, ir.Constant(INDEX, 0))
 
     return vec.element(vec), emit
@@ -90,10 +90,10 @@ def highest(typing: Any, vec: Vec) -> Any:
 
 @operation
 def total(typing: Any, vec: Vec) -> Any:
-    """The sum of all lanes of integers; it wraps as a lane would."""
+    """Return the sum of all lanes of integers, which wraps like a lane."""
 
     def emit(c: Any, b: Any, sig: Any, a: Any) -> Any:
-        value, kind = _folded(b, vec, a[0], lambda b, kind, x, y: b.add(x, y))
+        value, kind = _fold(b, vec, a[0], lambda b, kind, x, y: b.add(x, y))
         return emit_call(b, f"llvm.vector.reduce.add.{kind.mangled}", ir.IntType(vec.element.bitwidth), [value])
 
     return vec.element(vec), emit
@@ -101,7 +101,7 @@ def total(typing: Any, vec: Vec) -> Any:
 
 @operation
 def first_equal(typing: Any, vec: Vec, scalar: Any) -> Any:
-    """Index of the first lane equal to the scalar, which must occur."""
+    """Return the index of the first lane equal to the scalar, which must occur."""
 
     def emit(c: Any, b: Any, sig: Any, a: Any) -> Any:
         compare = b.fcmp_ordered if vec.real else b.icmp_unsigned
@@ -119,14 +119,14 @@ def first_equal(typing: Any, vec: Vec, scalar: Any) -> Any:
 
 @operation
 def differences(typing: Any, lanes: LanesType, left: Any, right: Any, x: Any) -> Any:
-    """Lane k: how many bits of left[:, x] and right[:, x + k] differ, as uint8. Both are (planes, columns) of bytes.
+    """Count the differing bits of left[:, x] and right[:, x + k] in lane k, as uint8. Both are (planes, columns) bytes.
 
-    If the lanes have a `most_level`, the plane after the code holds levels; what these differ by is added, up to that.
+    If the lanes have a `most_level`, the plane after the code holds levels, whose difference is added, at most that.
     """
     whole = Vec(types.uint8, lanes.count)
 
     def emit(c: Any, b: Any, sig: Any, a: Any) -> Any:
-        return joined(b, whole, [emit_part(c, b, sig, a, *each) for each in whole.parts])
+        return join(b, whole, [emit_part(c, b, sig, a, *each) for each in whole.parts])
 
     def emit_part(c: Any, b: Any, sig: Any, a: Any, first: int, vec: Vec) -> Any:
         rows = [c.make_array(kind)(c, b, array) for kind, array in zip(sig.args[1:3], a[1:3], strict=True)]

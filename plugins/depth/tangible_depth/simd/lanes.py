@@ -1,11 +1,11 @@
-"""SIMD lanes inside numba: one LLVM vector holds the same quantity for many disparities at once.
+"""SIMD lanes inside numba: one LLVM vector holds the same quantity of many disparities.
 
 `Vec(element, n)` is a numba type whose machine form is the LLVM vector `<n x element>`. The lane count travels as a
 type: Python passes `Lanes(64)`, numba sees `LanesType(64)`, so that one module-level kernel is compiled per lane count
-and found again in numba's disk cache by the next process (intrinsics made inside a closure would not be).
+and found again in numba's disk cache by the next process (intrinsics of a closure would not be).
 
-A count that is no power of two is held as several vectors that are, side by side: LLVM would take one of 80 lanes apart
-lane by lane, which is four times the work of 128.
+A count that is not a power of two is held as several vectors that are: LLVM would process one vector of 80 lanes lane
+by lane, which takes four times as long as 128.
 """
 
 from collections.abc import Callable, Sequence
@@ -16,13 +16,15 @@ from numba import types
 from numba.extending import NativeValue, intrinsic, models, register_model, typeof_impl, unbox
 
 operation: Any = intrinsic
-"""Called without the typing context that the function itself takes first, which type checkers cannot know."""
+"""Decorator of an intrinsic; callers omit its first parameter, the typing context, which type checkers cannot know."""
 INDEX = ir.IntType(32)
+"""Machine type of a lane's index."""
 WORD = ir.IntType(64)
+"""Machine type of offsets and masks."""
 
 
 class Lanes:
-    """A lane count, how many bytes a code has, and up to what a level beside it counts: an argument for kernels."""
+    """The lane count, bytes of a code, and most that its level counts, as an argument of kernels."""
 
     def __init__(self, count: int, planes: int = 0, most_level: int = 0) -> None:
         self.count, self.planes, self.most_level = count, planes, most_level
@@ -46,13 +48,13 @@ class Vec(types.Type):
 
     @property
     def parts(self) -> "list[tuple[int, Vec]]":
-        """First lane and vector of each part, of a power of two of lanes each, the widest first."""
+        """The first lane and the vector of each part, a power of two lanes each, the widest first."""
         widths = [1 << i for i in reversed(range(self.count.bit_length())) if self.count >> i & 1]
         return [(sum(widths[:i]), Vec(self.element, each)) for i, each in enumerate(widths)]
 
     @property
     def llvm(self) -> ir.VectorType | ir.LiteralStructType:
-        """The machine type: a vector, or one of each part."""
+        """The machine type: a vector, or a struct of the parts' vectors."""
         element = ir.FloatType() if self.real else ir.IntType(self.element.bitwidth)
         if self.count & (self.count - 1) == 0:
             return ir.VectorType(element, self.count)
@@ -60,7 +62,7 @@ class Vec(types.Type):
 
     @property
     def mangled(self) -> str:
-        """How LLVM names this type, if it is one vector, in its intrinsics."""
+        """The name of this type, if it is one vector, in LLVM's intrinsics."""
         return f"v{self.count}i{self.element.bitwidth}"
 
 
@@ -69,7 +71,7 @@ register_model(LanesType)(models.OpaqueModel)
 
 @register_model(Vec)
 class VecModel(models.PrimitiveModel):
-    """A Vec is its LLVM vector, or its vectors."""
+    """The data model of a Vec: its LLVM vector, or its vectors."""
 
     def __init__(self, manager: Any, vec: Vec) -> None:
         super().__init__(manager, vec, vec.llvm)
@@ -85,13 +87,13 @@ def _unbox_lanes(kind: LanesType, value: Any, c: Any) -> NativeValue:
     return NativeValue(c.context.get_dummy_value())
 
 
-def parted(b: Any, vec: Vec, value: Any) -> list[Any]:
-    """Machine code: the vectors that lanes consist of."""
+def split(b: Any, vec: Vec, value: Any) -> list[Any]:
+    """Emit code that splits lanes into their vectors."""
     return [b.extract_value(value, i) for i in range(len(vec.parts))] if len(vec.parts) > 1 else [value]
 
 
-def joined(b: Any, vec: Vec, vectors: Sequence[Any]) -> Any:
-    """Machine code: lanes from the vectors that they consist of."""
+def join(b: Any, vec: Vec, vectors: Sequence[Any]) -> Any:
+    """Emit code that joins vectors into lanes."""
     if len(vectors) == 1:
         return vectors[0]
     value = ir.Constant(vec.llvm, ir.Undefined)
@@ -101,14 +103,14 @@ def joined(b: Any, vec: Vec, vectors: Sequence[Any]) -> Any:
 
 
 def emit_splat(b: Any, scalar: Any, count: int) -> Any:
-    """Machine code: the same scalar in every lane."""
+    """Emit code for the same scalar in every lane."""
     blank = ir.Constant(ir.VectorType(scalar.type, count), ir.Undefined)
     first = b.insert_element(blank, scalar, ir.Constant(INDEX, 0))
     return b.shuffle_vector(first, blank, ir.Constant(ir.VectorType(INDEX, count), [0] * count))
 
 
 def emit_call(b: Any, name: str, result: Any, args: Sequence[Any]) -> Any:
-    """Machine code: a call of an LLVM intrinsic."""
+    """Emit a call of an LLVM intrinsic."""
     function = b.module.globals.get(name) or ir.Function(
         b.module, ir.FunctionType(result, [each.type for each in args]), name
     )
@@ -121,13 +123,13 @@ def _address(c: Any, b: Any, array_type: Any, array: Any, offset: Any, first: in
 
 
 def _pairwise(emit: Callable[[Any, Vec, Any, Any], Any]) -> Any:
-    """An intrinsic on two equal vectors, lane by lane."""
+    """Create an intrinsic on two equal vectors, lane by lane."""
 
     @operation
     def pairwise(typing: Any, x: Vec, y: Vec) -> Any:
         def emit_all(c: Any, b: Any, sig: Any, a: Any) -> Any:
-            both = zip(x.parts, parted(b, x, a[0]), parted(b, x, a[1]), strict=True)
-            return joined(b, x, [emit(b, part, one, other) for (_, part), one, other in both])
+            both = zip(x.parts, split(b, x, a[0]), split(b, x, a[1]), strict=True)
+            return join(b, x, [emit(b, part, one, other) for (_, part), one, other in both])
 
         return x(x, y), emit_all
 
@@ -135,76 +137,76 @@ def _pairwise(emit: Callable[[Any, Vec, Any, Any], Any]) -> Any:
 
 
 def _one_by_one(vec: Vec, result: Vec, emit: Callable[[Any, Any, Any], Any]) -> Any:
-    """What an intrinsic on one vector returns: emit(b, vector, its new type) for each part."""
+    """Return signature and code of an intrinsic on one vector: emit(b, vector, its new type) for each part."""
 
     def emit_all(c: Any, b: Any, sig: Any, a: Any) -> Any:
-        parts = zip(parted(b, vec, a[0]), result.parts, strict=True)
-        return joined(b, result, [emit(b, each, part.llvm) for each, (_, part) in parts])
+        parts = zip(split(b, vec, a[0]), result.parts, strict=True)
+        return join(b, result, [emit(b, each, part.llvm) for each, (_, part) in parts])
 
     return result(vec), emit_all
 
 
-def _named(name: str) -> Any:
+def _from_intrinsic(name: str) -> Any:
     return _pairwise(lambda b, vec, x, y: emit_call(b, f"llvm.{name}.{vec.mangled}", vec.llvm, [x, y]))
 
 
-saturating_add = _named("uadd.sat")
-"""250 + 10 = 255: losers stay losers."""
-minimum = _named("umin")
-maximum = _named("umax")
+saturating_add = _from_intrinsic("uadd.sat")
+"""Sum that saturates, 250 + 10 = 255, so that high costs stay high."""
+minimum = _from_intrinsic("umin")
+maximum = _from_intrinsic("umax")
 add = _pairwise(lambda b, vec, x, y: b.fadd(x, y) if vec.real else b.add(x, y))
 subtract = _pairwise(lambda b, vec, x, y: b.fsub(x, y) if vec.real else b.sub(x, y))
 multiply = _pairwise(lambda b, vec, x, y: b.fmul(x, y) if vec.real else b.mul(x, y))
 larger = _pairwise(lambda b, vec, x, y: b.select(b.fcmp_ordered(">", x, y), x, y))
-"""The larger of two vectors of floats, free of NaN."""
+"""Maximum of floats without NaN, lane by lane."""
 
 
-def shuffled(b: Any, vector: Any, other: Any, lanes: Sequence[int]) -> Any:
-    """Machine code: these lanes of two equal vectors side by side."""
+def shuffle(b: Any, vector: Any, other: Any, lanes: Sequence[int]) -> Any:
+    """Emit code that picks these lanes of two equal vectors."""
     return b.shuffle_vector(vector, other, ir.Constant(ir.VectorType(INDEX, len(lanes)), list(lanes)))
 
 
 @operation
 def shift_up(typing: Any, vec: Vec, fill: Vec) -> Any:
-    """Lane k takes lane k - 1; lane 0 comes from the second vector."""
+    """Move lane k - 1 to lane k; lane 0 comes from the second vector."""
 
     def emit(c: Any, b: Any, sig: Any, a: Any) -> Any:
-        vectors, moved = parted(b, vec, a[0]), []
-        before, last = parted(b, vec, a[1])[0], 0
+        vectors, moved = split(b, vec, a[0]), []
+        before, last = split(b, vec, a[1])[0], 0
         for (_, part), each in zip(vec.parts, vectors, strict=True):
             n = part.count
-            carried = shuffled(b, before, before, [last] * n)
-            moved.append(shuffled(b, each, carried, [n, *range(n - 1)]))
+            carried = shuffle(b, before, before, [last] * n)
+            moved.append(shuffle(b, each, carried, [n, *range(n - 1)]))
             before, last = each, n - 1
-        return joined(b, vec, moved)
+        return join(b, vec, moved)
 
     return vec(vec, fill), emit
 
 
 @operation
 def shift_down(typing: Any, vec: Vec, fill: Vec) -> Any:
-    """Lane k takes lane k + 1; the last lane comes from the second vector."""
+    """Move lane k + 1 to lane k; the last lane comes from the second vector."""
 
     def emit(c: Any, b: Any, sig: Any, a: Any) -> Any:
-        vectors, moved = parted(b, vec, a[0]), []
-        after = [*vectors[1:], parted(b, vec, a[1])[0]]
+        vectors, moved = split(b, vec, a[0]), []
+        after = [*vectors[1:], split(b, vec, a[1])[0]]
         for (_, part), each, following in zip(vec.parts, vectors, after, strict=True):
             n = part.count
-            moved.append(shuffled(b, each, shuffled(b, following, following, [0] * n), range(1, n + 1)))
-        return joined(b, vec, moved)
+            moved.append(shuffle(b, each, shuffle(b, following, following, [0] * n), range(1, n + 1)))
+        return join(b, vec, moved)
 
     return vec(vec, fill), emit
 
 
 @operation
 def width(typing: Any, lanes: LanesType) -> Any:
-    """The lane count, a constant to the compiler."""
+    """Return the lane count, a compile-time constant."""
     return types.int64(lanes), lambda c, b, sig, a: ir.Constant(WORD, sig.args[0].count)
 
 
 @operation
 def load(typing: Any, lanes: LanesType, array: Any, offset: Any) -> Any:
-    """Lanes from array[offset : offset + n]; the array's type decides the lanes' type."""
+    """Load lanes from array[offset : offset + n]; their type is that of the array."""
     vec = Vec(array.dtype, lanes.count)
 
     def emit(c: Any, b: Any, sig: Any, a: Any) -> Any:
@@ -212,17 +214,17 @@ def load(typing: Any, lanes: LanesType, array: Any, offset: Any) -> Any:
         for first, part in vec.parts:
             values.append(b.load(_address(c, b, sig.args[1], a[1], a[2], first, part)))
             values[-1].align = vec.element.bitwidth // 8
-        return joined(b, vec, values)
+        return join(b, vec, values)
 
     return vec(lanes, array, types.int64), emit
 
 
 @operation
 def store(typing: Any, array: Any, offset: Any, vec: Vec) -> Any:
-    """array[offset : offset + n] = lanes."""
+    """Store lanes to array[offset : offset + n]."""
 
     def emit(c: Any, b: Any, sig: Any, a: Any) -> Any:
-        for (first, part), value in zip(vec.parts, parted(b, vec, a[2]), strict=True):
+        for (first, part), value in zip(vec.parts, split(b, vec, a[2]), strict=True):
             stored = b.store(value, _address(c, b, sig.args[0], a[0], a[1], first, part))
             stored.align = vec.element.bitwidth // 8
         return c.get_dummy_value()
@@ -232,20 +234,20 @@ def store(typing: Any, array: Any, offset: Any, vec: Vec) -> Any:
 
 @operation
 def splat(typing: Any, lanes: LanesType, scalar: Any) -> Any:
-    """The same scalar in every lane."""
+    """Fill every lane with a scalar."""
     vec = Vec(scalar, lanes.count)
-    return vec(lanes, scalar), lambda c, b, sig, a: joined(
+    return vec(lanes, scalar), lambda c, b, sig, a: join(
         b, vec, [emit_splat(b, a[1], part.count) for _, part in vec.parts]
     )
 
 
 @operation
-def widened(typing: Any, vec: Vec) -> Any:
-    """Unsigned bytes as 32-bit integers."""
+def widen(typing: Any, vec: Vec) -> Any:
+    """Convert unsigned bytes to 32-bit integers."""
     return _one_by_one(vec, Vec(types.int32, vec.count), lambda b, each, kind: b.zext(each, kind))
 
 
 @operation
 def to_float(typing: Any, vec: Vec) -> Any:
-    """Signed integers as float32."""
+    """Convert signed integers to float32."""
     return _one_by_one(vec, Vec(types.float32, vec.count), lambda b, each, kind: b.sitofp(each, kind))

@@ -1,1 +1,1 @@
-"""Features: corners, their matches, and maps made of them."""
+"""Features: corners, their matches, and dense maps assembled from them."""

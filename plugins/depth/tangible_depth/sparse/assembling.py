@@ -1,4 +1,4 @@
-"""A dense map from scattered disparities: filled from neighbours, along rows and columns, within colour edges."""
+"""Assembly of a dense map from scattered disparities: filled along rows and columns, within colour edges."""
 
 import numpy as np
 from jaxtyping import Float32
@@ -8,7 +8,7 @@ from tangible_core.data.pictures import to_rgb8
 from tangible_core.runtime.opencv import plain_opencv
 
 STRAY_PX = 2.0
-"""A match this far from what its neighbours agree on is left out."""
+"""Distance of a match from its neighbours' mean, in pixels, above which it is dropped."""
 
 
 def assemble(
@@ -21,9 +21,10 @@ def assemble(
     """Fill and smooth scattered matches; each pixel takes the mean of those near it, by score, distance and colour.
 
     disparity_px: NaN where there is no match; score: 0..1, read where there is one; picture: (h, w[, 3|4]).
-    reach_px: how far a match counts; colour_step: how great a change of colour, as a share of white, counts as far.
-    Confidence is the score at a match and falls off, within colour edges, with the distance from the matches. All is
-    unknown if there is no match at all.
+    reach_px: distance over which a match counts; colour_step: change of colour, as a share of white, that counts as
+    that distance.
+    Confidence is the score at a match and falls off, within colour edges, with the distance from the matches. Without
+    any match, everything is unknown.
     Source: normalised convolution by the domain transform of Gastal & Oliveira, SIGGRAPH 2011.
     """
     import cv2
@@ -42,7 +43,7 @@ def assemble(
 def _weighted_mean(
     values: Float32[np.ndarray, "h w"], score: Float32[np.ndarray, "h w"], guide: np.ndarray, reach: float, step: float
 ) -> tuple[Float32[np.ndarray, "h w"], Float32[np.ndarray, "h w"]]:
-    """The mean of the known values round each pixel, NaN out of their reach, and the sum of their weights."""
+    """Return the mean of the known values near each pixel, NaN out of their reach, and the sum of their weights."""
     import cv2
 
     known = np.isfinite(values)
@@ -52,13 +53,13 @@ def _weighted_mean(
             cv2.ximgproc.dtFilter(guide, part, reach, 255 * step, mode=cv2.ximgproc.DTF_RF, numIters=3)
             for part in (np.where(known, values, 0).astype(np.float32) * weight, weight)
         )
-    # Below this a float32 sum of decaying weights is rounding.
+    # A smaller float32 sum of decaying weights is rounding error.
     reached = weight > 1e-12
     return np.where(reached, total / np.where(reached, weight, 1), np.float32(np.nan)), weight
 
 
-def without_speckles(disparity_px: Float32[np.ndarray, "h w"], most_px: int = 60) -> Float32[np.ndarray, "h w"]:
-    """Unknown where at most most_px connected pixels of like disparity stand alone: a chance match, mostly."""
+def erase_speckles(disparity_px: Float32[np.ndarray, "h w"], most_px: int = 60) -> Float32[np.ndarray, "h w"]:
+    """Make islands of at most most_px connected pixels of similar disparity unknown: mostly chance matches."""
     import cv2
 
     lowest = -2048
@@ -69,7 +70,7 @@ def without_speckles(disparity_px: Float32[np.ndarray, "h w"], most_px: int = 60
 
 
 def fill_nearest(values: Float32[np.ndarray, "h w"]) -> Float32[np.ndarray, "h w"]:
-    """NaN replaced by the nearest known value; at least one must be known."""
+    """Replace NaN by the nearest known value; at least one must be known."""
     import cv2
 
     unknown = ~np.isfinite(values)

@@ -1,4 +1,4 @@
-"""Harris corners and edges: where a picture has something to match.
+"""Harris corners and edges, the features that are matched.
 
 X = I * (-1, 0, 1), Y = I * (-1, 0, 1)^T; A = X^2 * w, B = Y^2 * w, C = XY * w; M = [[A, C], [C, B]];
 R = det M - k (tr M)^2: above zero at a corner, below zero along an edge, near zero where the picture is flat.
@@ -14,7 +14,7 @@ from tangible_core.runtime.opencv import plain_opencv
 
 
 def gaussian_window(sigma_px: float) -> Float64[np.ndarray, "n"]:
-    """exp(-u^2 / (2 sigma^2)) out to three sigma, scaled to sum to one; w(u, v) is the product of two of them.
+    """Compute exp(-u^2 / (2 sigma^2)) out to three sigma, scaled to sum to one; w(u, v) is the product of two of them.
 
     Raises: ValueError if sigma_px is not positive.
     """
@@ -28,7 +28,7 @@ def gaussian_window(sigma_px: float) -> Float64[np.ndarray, "n"]:
 def harris_response(
     grey: Float[np.ndarray, "h w"], window: np.ndarray | None = None, k: float = 0.04
 ) -> Float[np.ndarray, "h w"]:
-    """R of every pixel, in the picture's own float type; borders are mirrored.
+    """Compute R of every pixel, in the picture's own float type; borders are mirrored.
 
     window: the weights w along one axis, an odd number of them; a Gaussian of sigma 1 px when left out. A picture
     multiplied by c has its response multiplied by c^4.
@@ -49,9 +49,9 @@ def harris_response(
 
 
 def corners(response: Float[np.ndarray, "h w"], least: float, most: int) -> Int64[np.ndarray, "n 2"]:
-    """Corners as (column, row), strongest first: R is over `least` and the largest of its 3 x 3 neighbourhood.
+    """Find corners as (column, row), strongest first: R is over `least` and the largest of its 3 x 3 neighbourhood.
 
-    least: >= 0; most: how many at most, so that a busy picture costs no more than a plain one.
+    least: >= 0; most: largest number of corners, so that a busy picture costs no more than a plain one.
     """
     import cv2
 
@@ -62,9 +62,9 @@ def corners(response: Float[np.ndarray, "h w"], least: float, most: int) -> Int6
 
 
 def row_edges(response: Float[np.ndarray, "h w"], least: float) -> Int64[np.ndarray, "n 2"]:
-    """Edges that cross their row, as (column, row) in reading order: R is under -least and lowest among its neighbours.
+    """Find edges across rows, as (column, row) in reading order: R is under -least and lowest among its neighbours.
 
-    An edge along a row has no place on it, so a search along rows could not tell where it went.
+    An edge along a row cannot be located by a search along rows.
     """
     beside = np.pad(response, ((0, 0), (1, 1)), constant_values=np.inf)
     valley = (response < -least) & (response <= beside[:, :-2]) & (response < beside[:, 2:])
@@ -73,7 +73,7 @@ def row_edges(response: Float[np.ndarray, "h w"], least: float) -> Int64[np.ndar
 
 
 def least_response(contrast: float, k: float = 0.04) -> float:
-    """The |R| of an edge whose slope is `contrast` grey levels a pixel, to tell features from noise.
+    """Return the |R| of an edge whose slope is `contrast` grey levels a pixel, to tell features from noise.
 
     A ramp of slope g has X = 2 g, hence R = -k (2 g)^4.
     """

@@ -11,26 +11,26 @@ from jaxtyping import Float32, Float64, Int64, UInt8
 from tangible_core.runtime.opencv import plain_opencv
 
 MOST_PIXELS = 2_000_000
-"""SIFT looks at pictures reduced to this: it needs about 300 bytes a pixel."""
+"""Largest picture for SIFT, in pixels; larger ones are reduced, as it needs about 300 bytes a pixel."""
 FLOW_PIXELS = 60_000
-"""Optical flow finds its corners in pictures reduced to this."""
+"""Largest picture in which optical flow detects its corners, in pixels."""
 FLAT = 1e-4
-"""Length of a window less its mean, white being 1, below which it holds nothing but rounding."""
+"""Smallest norm of a window minus its mean, white being 1: a smaller one is rounding error."""
 STEPS = 2.0**24
-"""To the unit, of normalised windows that are compared all against all."""
+"""Steps per unit to which normalised windows are rounded before they are correlated all against all."""
 SMALLEST_SIDE = 16
-"""Pictures narrower than this hold no window worth following."""
+"""Smallest side of a picture, in pixels, in which features are matched."""
 
 
 class Matches(NamedTuple):
-    """Points seen in both pictures, best first where the maker can tell."""
+    """Matching points of two pictures, (column, row) in pixels, best first if they are ranked."""
 
     left_px: Float64[np.ndarray, "n 2"]
     right_px: Float64[np.ndarray, "n 2"]
 
     @property
     def row_offset_px(self) -> Float64[np.ndarray, "n"]:
-        """How far each right point lies below its left one; all zero in a rectified pair."""
+        """The row offset of each match, right minus left; all zero in a rectified pair."""
         return self.right_px[:, 1] - self.left_px[:, 1]
 
 
@@ -38,13 +38,13 @@ NO_MATCHES = Matches(np.empty((0, 2)), np.empty((0, 2)))
 
 
 def stretch8(grey: Float32[np.ndarray, "h w"]) -> UInt8[np.ndarray, "h w"]:
-    """Eight bits from the darkest to the lightest value, so that a dim picture keeps its detail."""
+    """Stretch a picture from its darkest to its lightest value to eight bits, so that a dim one keeps its detail."""
     low, high = float(grey.min()), float(grey.max())
     return np.rint((grey - low) * (255 / max(high - low, 1e-6))).astype(np.uint8)
 
 
 def sift_matches(left: Float32[np.ndarray, "h w"], right: Float32[np.ndarray, "h w"], ratio: float = 0.8) -> Matches:
-    """SIFT features that choose each other and beat their second choice by the ratio (Lowe, IJCV 2004, sec. 7.1)."""
+    """Match SIFT features that are mutual best and pass the ratio test (Lowe, IJCV 2004, sec. 7.1)."""
     import cv2
 
     if min(left.shape) < SMALLEST_SIDE:
@@ -54,33 +54,33 @@ def sift_matches(left: Float32[np.ndarray, "h w"], right: Float32[np.ndarray, "h
     full = stretch8(left), stretch8(right)
     with plain_opencv():
         (left_points, left_codes), (right_points, right_codes) = (
-            detector.detectAndCompute(_reduced(grey, scale), None) for grey in full
+            detector.detectAndCompute(_reduce(grey, scale), None) for grey in full
         )
     if left_codes is None or right_codes is None or min(len(left_points), len(right_points)) < 2:
         return NO_MATCHES
     distance = _distances(left_codes, right_codes)
-    chosen = _mutual(-distance)
+    chosen = _mutual_best(-distance)
     nearest, second = np.partition(distance, 1, axis=1)[:, :2].T
     chosen = chosen[nearest[chosen[:, 0]] < ratio * second[chosen[:, 0]]]
-    at = [_enlarged(np.array([point.pt for point in points]), scale) for points in (left_points, right_points)]
+    at = [_to_full_size(np.array([point.pt for point in points]), scale) for points in (left_points, right_points)]
     found = Matches(at[0][chosen[:, 0]], at[1][chosen[:, 1]])
-    return found if scale == 1 else _sharpened(found, full)
+    return found if scale == 1 else _track_at_full_size(found, full)
 
 
-def _reduced(picture: UInt8[np.ndarray, "h w"], scale: float) -> UInt8[np.ndarray, "small_h small_w"]:
+def _reduce(picture: UInt8[np.ndarray, "h w"], scale: float) -> UInt8[np.ndarray, "small_h small_w"]:
     import cv2
 
     return picture if scale == 1 else cv2.resize(picture, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA)
 
 
 def _distances(left_codes: np.ndarray, right_codes: np.ndarray) -> Float32[np.ndarray, "n m"]:
-    # Codes are whole numbers under 256, whose products and sums are exact in whatever order they are added.
+    # Codes are whole numbers under 256, whose products and sums are exact in any order.
     squares = (left_codes**2).sum(axis=1)[:, None] + (right_codes**2).sum(axis=1) - 2 * left_codes @ right_codes.T
     return np.sqrt(np.maximum(squares, 0))
 
 
-def _mutual(score: np.ndarray) -> Int64[np.ndarray, "n 2"]:
-    """Pairs (i, j) of which each is the other's best."""
+def _mutual_best(score: np.ndarray) -> Int64[np.ndarray, "n 2"]:
+    """Return the mutual best pairs (i, j)."""
     best = score.argmax(axis=1)
     back = score.argmax(axis=0)
     mine = np.arange(len(best))
@@ -96,25 +96,25 @@ def corner_matches(
     window_px: int = 11,
     least_score: float = 0.8,
 ) -> Matches:
-    """Corners that choose each other by normalised cross-correlation of their windows, the right ones to sub-pixel.
+    """Match mutual best corners by normalised cross-correlation of their windows, the right ones to sub-pixel.
 
-    Windows over `least_score` only; a flat window correlates with nothing. Memory: n x m scores.
+    least_score: least correlation of a match; a flat window correlates with nothing. Memory: n x m scores.
     """
     if not len(left_corners) or not len(right_corners):
         return NO_MATCHES
     half = window_px // 2
     patches = normalised_windows(left, left_corners, half)
     score = correlations(patches, normalised_windows(right, right_corners, half))
-    chosen = _mutual(score)
+    chosen = _mutual_best(score)
     chosen = chosen[score[chosen[:, 0], chosen[:, 1]] >= least_score]
     if not len(chosen):
         return NO_MATCHES
-    refined = _refined(patches[chosen[:, 0]], right, right_corners[chosen[:, 1]], half)
+    refined = _refine_peaks(patches[chosen[:, 0]], right, right_corners[chosen[:, 1]], half)
     return Matches(left_corners[chosen[:, 0]].astype(np.float64), refined)
 
 
 def correlations(left: Float32[np.ndarray, "n k"], right: Float32[np.ndarray, "m k"]) -> Float64[np.ndarray, "n m"]:
-    """Products of normalised windows.
+    """Return the correlations of normalised windows, each left one with each right one.
 
     The windows are rounded to whole numbers of 1 / STEPS, whose sums stay under 2^53: exact in any order.
     """
@@ -123,11 +123,11 @@ def correlations(left: Float32[np.ndarray, "n k"], right: Float32[np.ndarray, "m
 
 
 def inverse_lengths(grey: Float32[np.ndarray, "h w"], half: int) -> Float32[np.ndarray, "h w"]:
-    """One over the length of each pixel's window less its mean; 0 where it is flat. Edges repeat outwards."""
+    """Return 1 / norm of each pixel's window minus its mean; 0 for a flat one. Edges are repeated outwards."""
     import cv2
 
     side = (2 * half + 1, 2 * half + 1)
-    # The difference of two large sums: in float32 it comes out negative in a quarter of the windows.
+    # A difference of two large sums: in float32 it is negative for a quarter of the windows.
     exact = grey.astype(np.float64)
     with plain_opencv():
         mean = cv2.boxFilter(exact, -1, side, borderType=cv2.BORDER_REPLICATE)
@@ -139,7 +139,7 @@ def inverse_lengths(grey: Float32[np.ndarray, "h w"], half: int) -> Float32[np.n
 def normalised_windows(
     grey: Float32[np.ndarray, "h w"], points: Int64[np.ndarray, "n 2"], half: int
 ) -> Float32[np.ndarray, "n k"]:
-    """The windows round some points less their mean and over their length; zero where a window is flat."""
+    """Return the windows round some points, minus their mean, divided by their norm; zero for a flat window."""
     padded = np.pad(grey, half, mode="edge")
     side = 2 * half + 1
     windows = np.lib.stride_tricks.sliding_window_view(padded, (side, side))
@@ -149,10 +149,10 @@ def normalised_windows(
     return np.where(length > FLAT, centred / np.maximum(length, FLAT), 0).astype(np.float32)
 
 
-def _refined(
+def _refine_peaks(
     patches: Float32[np.ndarray, "n k"], right: np.ndarray, points: Int64[np.ndarray, "n 2"], half: int, reach: int = 3
 ) -> Float64[np.ndarray, "n 2"]:
-    """The correlation's peak near each right point, by a parabola along each axis."""
+    """Refine each right point to the peak of the correlation near it, by a parabola along each axis."""
     steps = np.arange(-reach, reach + 1)
     rows, columns = right.shape
     offsets = np.array([(x, y) for y in steps for x in steps])
@@ -170,7 +170,7 @@ def _refined(
 
 
 def parabola(before: np.ndarray, at: np.ndarray, after: np.ndarray) -> Float64[np.ndarray, "n"]:
-    """Where the parabola through three equidistant scores peaks, -0.5..0.5 from the middle one; 0 if it has no peak."""
+    """Return the peak of the parabola through three equidistant scores, -0.5..0.5 from the middle; 0 without a peak."""
     before, at, after = (np.asarray(part, np.float64) for part in (before, at, after))
     bend = 2 * at - before - after
     return np.where(bend > 0, np.clip(0.5 * (after - before) / np.where(bend > 0, bend, 1), -0.5, 0.5), 0.0)
@@ -178,30 +178,30 @@ def parabola(before: np.ndarray, at: np.ndarray, after: np.ndarray) -> Float64[n
 
 @plain_opencv()
 def flow_matches(left: Float32[np.ndarray, "h w"], right: Float32[np.ndarray, "h w"], most: int = 150) -> Matches:
-    """Strong corners followed into the right picture and back (pyramidal Lucas-Kanade): to a tenth of a pixel.
+    """Match strong corners by tracking into the right picture and back (pyramidal Lucas-Kanade), to a tenth of a pixel.
 
-    Cheap, because they are found and followed in small pictures and only placed in the full ones. What does not come
-    back to within half a small pixel is left out, which removes most wrong ones.
+    Cheap, as they are detected and tracked in small pictures and only refined in the full ones. A corner that does not
+    come back to within half a small pixel is dropped, which removes most wrong matches.
     """
     import cv2
 
     if min(left.shape) < SMALLEST_SIDE:
         return NO_MATCHES
-    # Flow takes brightness for constant; equal histograms forgive another exposure or gamma.
+    # Optical flow assumes constant brightness; equal histograms allow another exposure or gamma.
     full = cv2.equalizeHist(stretch8(left)), cv2.equalizeHist(stretch8(right))
     scale = min(1.0, (FLOW_PIXELS / left.size) ** 0.5)
-    small = [_reduced(grey, scale) for grey in full]
+    small = [_reduce(grey, scale) for grey in full]
     start = cv2.goodFeaturesToTrack(small[0], most, 0.01, 8)
     if start is None:
         return NO_MATCHES
-    there = _follow(small[0], small[1], start, start, levels=5)
-    kept = np.linalg.norm(_follow(small[1], small[0], there, there, levels=5) - start, axis=2).ravel() < 0.5
-    found = Matches(*(_enlarged(points[kept].reshape(-1, 2), scale) for points in (start, there)))
-    return found if scale == 1 else _sharpened(found, full)
+    there = _track(small[0], small[1], start, start, levels=5)
+    kept = np.linalg.norm(_track(small[1], small[0], there, there, levels=5) - start, axis=2).ravel() < 0.5
+    found = Matches(*(_to_full_size(points[kept].reshape(-1, 2), scale) for points in (start, there)))
+    return found if scale == 1 else _track_at_full_size(found, full)
 
 
-def _follow(first: np.ndarray, second: np.ndarray, start: np.ndarray, guess: np.ndarray, levels: int) -> np.ndarray:
-    """Lucas-Kanade from `start` in the first picture to near `guess` in the second; NaN where it loses the point."""
+def _track(first: np.ndarray, second: np.ndarray, start: np.ndarray, guess: np.ndarray, levels: int) -> np.ndarray:
+    """Track `start` into the second picture from `guess` (Lucas-Kanade); NaN for a lost point."""
     import cv2
 
     flags = cv2.OPTFLOW_USE_INITIAL_FLOW
@@ -211,16 +211,16 @@ def _follow(first: np.ndarray, second: np.ndarray, start: np.ndarray, guess: np.
     return np.where(seen[..., None] > 0, there, np.nan)
 
 
-def _sharpened(matches: Matches, pictures: tuple[np.ndarray, np.ndarray]) -> Matches:
-    """Matches found in reduced pictures, followed once more in the full ones; those lost there are left out."""
+def _track_at_full_size(matches: Matches, pictures: tuple[np.ndarray, np.ndarray]) -> Matches:
+    """Track matches of reduced pictures again in the full ones; matches lost there are dropped."""
     if not len(matches.left_px):
         return matches
     start, guess = (points.astype(np.float32)[:, None] for points in matches)
-    there = _follow(*pictures, start, guess, levels=2)[:, 0]
+    there = _track(*pictures, start, guess, levels=2)[:, 0]
     kept = np.isfinite(there).all(axis=1)
     return Matches(matches.left_px[kept], there[kept].astype(np.float64))
 
 
-def _enlarged(points_px: np.ndarray, scale: float) -> Float64[np.ndarray, "n 2"]:
-    """Points of a reduced picture in the full one; centres are whole numbers, so (0, 0) does not stay where it is."""
+def _to_full_size(points_px: np.ndarray, scale: float) -> Float64[np.ndarray, "n 2"]:
+    """Convert points of a reduced picture to the full one; centres are whole numbers, so (0, 0) moves too."""
     return (points_px.astype(np.float64) + 0.5) / scale - 0.5

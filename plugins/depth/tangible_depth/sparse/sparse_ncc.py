@@ -1,4 +1,4 @@
-"""Compiled search: where along its row each feature of one picture is seen in the other.
+"""Compiled search for each feature of the left picture along its row of the right one.
 
 The score is the zero-mean normalised cross-correlation of two windows,
 sum (I_p - mean)(I_q - mean) / sqrt(sum (I_p - mean)^2 sum (I_q - mean)^2), in -1..1; a flat window has none.
@@ -13,7 +13,7 @@ def match_rows(left, right, left_inverse, right_inverse, points, low, high, half
     """Fill disparity[i] and score[i] for each point (column, row) of the left picture.
 
     left, right: float32 (h + 2 half, w + 2 half), padded by half a window; *_inverse: float32 (h, w), one over the
-    length of each pixel's window less its mean, 0 where it is flat; low..high: disparities tried, both included.
+    norm of each pixel's window minus its mean, 0 for a flat one; low..high: disparities tried, both included.
     disparity: NaN where a window is flat, or the best right window's own best left window is over a pixel away.
     """
     scores = np.empty(high - low + 1, np.float32)
@@ -40,7 +40,7 @@ def match_rows(left, right, left_inverse, right_inverse, points, low, high, half
 
 @njit(cache=True, nogil=True)
 def _row_scores(anchor, other, anchor_inverse, other_inverse, x, y, first, last, half, window, scores):  # noqa: ANN001, ANN202
-    """scores[c] of the anchor's window at (x, y) with the other's at columns first..last, cut to the picture."""
+    """Write to scores[c] the correlations of the anchor's window at (x, y) with the other's at columns first..last."""
     first, last = max(first, 0), min(last, other_inverse.shape[1] - 1)
     count = max(last - first + 1, 0)
     length = anchor_inverse[y, x]
@@ -64,7 +64,7 @@ def _row_scores(anchor, other, anchor_inverse, other_inverse, x, y, first, last,
 
 @njit(cache=True, nogil=True)
 def _peak(scores, best, count):  # noqa: ANN001, ANN202
-    """Where the parabola through the best score and its neighbours peaks, from the best one."""
+    """Return the peak of the parabola through the best score and its neighbours, relative to the best one."""
     if best == 0 or best == count - 1:
         return np.float32(0)
     bend = 2 * scores[best] - scores[best - 1] - scores[best + 1]

@@ -1,13 +1,13 @@
-"""Windows compared at every disparity: zero-mean normalised cross-correlation and sums of squared differences.
+"""Comparison of windows at every disparity: zero-mean normalised cross-correlation and squared differences.
 
-Window sums are exact 32-bit integers that slide: down by the products of the row that comes in less those of the row
-that leaves, sideways by one column in and one out, for all disparities at once. No step depends on the window's size.
-Sums of products may wrap round; the covariance, which they are subtracted to, fits 32 bits for windows up to 19 x 19.
+Window sums are exact 32-bit integers that slide: down by adding the products of the entering row and subtracting those
+of the leaving one, sideways by one column in and one out, for all disparities at once. No step depends on the window's
+size. Sums of products may wrap; the covariance, their difference, fits 32 bits for windows up to 19 x 19.
 
 Lane k stands for the disparity top - k, as in `sweep`: for pixel x the right view's column is x + k - top.
 """
 
-# ruff: noqa: ANN001, ANN201, ANN202 -- numba finds the types of what it compiles; the docstrings say them
+# ruff: noqa: ANN001, ANN201, ANN202 -- numba infers the types of kernels; their docstrings give them
 
 from typing import NamedTuple
 
@@ -19,14 +19,14 @@ from tangible_core.compiled.compiling import inner
 from ..dense.span import UNKNOWN
 from ..dense.subpixel import parabola
 from ..simd.lane_reductions import first_equal, first_lane, highest
-from ..simd.lanes import add, larger, load, multiply, shift_down, splat, store, subtract, to_float, widened, width
+from ..simd.lanes import add, larger, load, multiply, shift_down, splat, store, subtract, to_float, widen, width
 
 OUT = np.float32(-1e30)
-"""Score of a window that leaves the picture, or holds nothing to compare."""
+"""Score of a window beyond the picture or without texture."""
 
 
 class Sliding(NamedTuple):
-    """The row that comes in and the one that leaves, zeros if there is none; the right view's shifted by `top`."""
+    """The entering row and the leaving one, zeros without one; those of the right view are shifted by `top`."""
 
     left: np.ndarray
     right: np.ndarray
@@ -35,7 +35,7 @@ class Sliding(NamedTuple):
 
 
 class Windows(NamedTuple):
-    """Of each window of a row, by its centre: the sum, and the scale and offset that a score takes from it."""
+    """The sums of the windows of a row, by their centres, and the scale and offset of their scores."""
 
     total: np.ndarray
     scale: np.ndarray
@@ -44,15 +44,15 @@ class Windows(NamedTuple):
 
 @inner()
 def _products(lanes, left, right, x):
-    """left[x] right[x + k - top], `right` being shifted already."""
-    return multiply(splat(lanes, int32(left[x])), widened(load(lanes, right, x)))
+    """Return left[x] right[x + k - top]; `right` is shifted already."""
+    return multiply(splat(lanes, int32(left[x])), widen(load(lanes, right, x)))
 
 
 @inner()
-def _slid(lanes, rows, x, column):
-    """column[x] with the products of the row that comes in, less those of the row that leaves.
+def _slide(lanes, rows, x, column):
+    """Update column[x]: add the products of the entering row, subtract those of the leaving one.
 
-    Done where the column is needed next, so that it is read and written once a row of windows.
+    Done when the column is needed next, so that it is read and written once per row of windows.
     """
     n = width(lanes)
     here = add(load(lanes, column, x * n), _products(lanes, rows.left, rows.right, x))
@@ -63,7 +63,7 @@ def _slid(lanes, rows, x, column):
 
 @njit(nogil=True, boundscheck=False)
 def _set(left, right, top, out_left, out_right):
-    """One row of both views; of the right one what the lanes reach, where they look for it."""
+    """Copy one row of both views; of the right one the part that the lanes reach, shifted by `top`."""
     for x in range(left.size):
         out_left[x] = left[x]
         if 0 <= x + top < out_right.size:
@@ -80,7 +80,7 @@ def _add_moments(row, sign, sums, squares):
 
 @njit(nogil=True, boundscheck=False, error_model="numpy")
 def _describe(squared, sums, squares, radius, least_variance, first, windows):
-    """The window centred on column x, from the sums of columns, goes to first + x; flat ones get no score at all."""
+    """Write the window centred on column x, from the sums of columns, to first + x; flat ones get the offset OUT."""
     w = sums.size
     area = (2 * radius + 1) ** 2
     total = square = np.int64(0)
@@ -101,7 +101,7 @@ def _describe(squared, sums, squares, radius, least_variance, first, windows):
 
 @njit(nogil=True, boundscheck=False)
 def _decide(lanes, squared, rows, column, left, right, radius, barred, scores, best, tops, right_tops):
-    """Scores of one row; the best lane and its score for each left pixel, the best score for each right pixel.
+    """Compute the scores of one row; the best lane and score for each left pixel, the best score for each right pixel.
 
     The score is the covariance over both deviations, -1..1, or if `squared` minus the sum of squared differences.
     """
@@ -110,11 +110,11 @@ def _decide(lanes, squared, rows, column, left, right, radius, barred, scores, b
     area = splat(lanes, int32((2 * radius + 1) ** 2))
     window = splat(lanes, int32(0))
     for x in range(min(2 * radius, w)):
-        window = add(window, _slid(lanes, rows, x, column))
+        window = add(window, _slide(lanes, rows, x, column))
     seen = splat(lanes, OUT)
     out = splat(lanes, OUT)
     for x in range(radius, w - radius):
-        window = add(window, _slid(lanes, rows, x + radius, column))
+        window = add(window, _slide(lanes, rows, x + radius, column))
         offset = add(load(lanes, right.offset, x), load(lanes, barred, 0))
         if squared is None:
             products = multiply(splat(lanes, left.total[x]), load(lanes, right.total, x))
@@ -137,7 +137,7 @@ def _decide(lanes, squared, rows, column, left, right, radius, barred, scores, b
 
 @njit(nogil=True, boundscheck=False, error_model="numpy")
 def _accept(n, span, least, left, scores, best, tops, right_tops, radius, disparity):
-    """Disparities of pixels and right pixels that choose each other, moved by the parabola through three scores."""
+    """Accept disparities of mutual best pixels, refined by the parabola through three scores."""
     disparity[:] = UNKNOWN
     for x in range(radius, best.size - radius):
         k, at = best[x], tops[x]
@@ -155,7 +155,7 @@ def _accept(n, span, least, left, scores, best, tops, right_tops, radius, dispar
 
 @njit(nogil=True, boundscheck=False, cache=True)
 def correlate_strip(lanes, squared, left, right, rows, radius, span, least, least_variance, disparity, tops):
-    """Disparities in sixteenths of a pixel (UNKNOWN where rejected) and scores of rows[0]..rows[1]-1.
+    """Compute disparities in sixteenths of a pixel (UNKNOWN if rejected) and scores of rows[0]..rows[1]-1.
 
     Parameters: lanes, Lanes(n); squared, None for correlation, True for squared differences (None is known to the
     compiler); left, right uint8 (h, w); radius of the window; span, the disparities to try, at most n; least, the score
@@ -186,7 +186,7 @@ def correlate_strip(lanes, squared, left, right, rows, radius, span, least, leas
         centre = y - radius
         if centre < rows[0]:
             for x in range(w):
-                _slid(lanes, sliding, x, column)
+                _slide(lanes, sliding, x, column)
             continue
         _describe(squared, moments[0], moments[1], radius, least_variance, 0, on_left)
         _describe(squared, moments[2], moments[3], radius, least_variance, span.high, on_right)

@@ -17,35 +17,36 @@ from torch.nn.functional import pad
 from tangible_core.runtime.torch_extra import TorchDevice, pick_device
 
 FLAT_VARIANCE = 1e-7
-"""Of a window, white being 1: below it float32 leaves nothing but rounding."""
+"""Smallest variance of a window, white being 1: a smaller one is rounding error of float32."""
 OUTSIDE = -1.0
-"""Score where the right window's centre is out of the picture, or a window is flat: never the best."""
+"""Score if the right window's centre is outside the picture, or a window is flat: never the best."""
 SAME_SCORE = 1e-5
-"""Scores no farther apart than float32 rounds them."""
+"""Largest difference of equal scores, the rounding of float32."""
 
 
 class BestMatches(NamedTuple):
-    """The best shift of each left pixel (b, h, w): pixels, NaN where there is none, and its score in 0..1."""
+    """The best shift of each left pixel (b, h, w) in pixels, NaN without one, and its score in 0..1."""
 
     disparity_px: Tensor
     score: Tensor
 
 
 def scores(left: Tensor, right: Tensor, low: int, high: int, window_px: int) -> Tensor:
-    """ZNCC of every left pixel with the right one d pixels to its left, for d = low..high: (b, high - low + 1, h, w).
+    """Compute ZNCC of each left pixel with the right one d to its left, d = low..high: (b, high - low + 1, h, w).
 
-    In -1..1, OUTSIDE where there is no telling. Differentiable with respect to both pictures. Edges repeat outwards.
+    In -1..1, OUTSIDE if undefined. Differentiable with respect to both pictures. Edges are repeated
+    outwards.
     """
     half = window_px // 2
     middle = (left.mean(dim=(-2, -1), keepdim=True) + right.mean(dim=(-2, -1), keepdim=True)) / 2
     edges = (half, half, half, half)
     left, right = (pad(picture - middle, edges, mode="replicate") for picture in (left, right))
     left_mean, left_variance = _statistics(left, window_px)
-    right_mean, right_variance = (_shifted(part, low, high, 0.0) for part in _statistics(right, window_px))
-    products = _mean(left * _shifted(right, low, high, 0.0), window_px)
-    told = (left_variance > FLAT_VARIANCE) & (right_variance > FLAT_VARIANCE)
-    spread = torch.where(told, left_variance * right_variance, 1.0).sqrt()
-    return torch.where(told, (products - left_mean * right_mean) / spread, OUTSIDE)
+    right_mean, right_variance = (_shift(part, low, high, 0.0) for part in _statistics(right, window_px))
+    products = _mean(left * _shift(right, low, high, 0.0), window_px)
+    textured = (left_variance > FLAT_VARIANCE) & (right_variance > FLAT_VARIANCE)
+    spread = torch.where(textured, left_variance * right_variance, 1.0).sqrt()
+    return torch.where(textured, (products - left_mean * right_mean) / spread, OUTSIDE)
 
 
 def _statistics(padded: Tensor, window_px: int) -> tuple[Tensor, Tensor]:
@@ -54,17 +55,17 @@ def _statistics(padded: Tensor, window_px: int) -> tuple[Tensor, Tensor]:
 
 
 def _mean(padded: Tensor, window_px: int) -> Tensor:
-    """Mean over each whole window, along the rows and then along the columns.
+    """Average over each whole window, along the rows and then along the columns.
 
-    Sums of slices: ten times as fast as torch's pooling here, and a GPU's convolution would round to 10 bits.
+    By sums of slices: ten times as fast as torch's pooling, and a GPU's convolution would round to 10 bits.
     """
     columns, rows = padded.shape[-1] - window_px + 1, padded.shape[-2] - window_px + 1
     along = reduce(torch.add, (padded[..., i : i + columns] for i in range(window_px)))
     return reduce(torch.add, (along[..., i : i + rows, :] for i in range(window_px))) / window_px**2
 
 
-def _shifted(values: Tensor, low: int, high: int, outside: float) -> Tensor:
-    """Copies of (b, 1, h, w) moved right by low..high: (b, high - low + 1, h, w), `outside` where they do not reach."""
+def _shift(values: Tensor, low: int, high: int, outside: float) -> Tensor:
+    """Shift (b, 1, h, w) right by low..high: (b, high - low + 1, h, w), `outside` beyond its edges."""
     width = values.shape[-1]
     before, after = max(high, 0), max(-low, 0)
     wide = pad(values, (before, after), value=outside)
@@ -72,10 +73,10 @@ def _shifted(values: Tensor, low: int, high: int, outside: float) -> Tensor:
 
 
 def best_shifts(volume: Tensor, low: int) -> BestMatches:
-    """The best of scores (b, n, h, w) of the disparities low, low + 1, ..., by the parabola through its neighbours.
+    """Find the best of scores (b, n, h, w) of the disparities low, low + 1, ..., refined by a parabola.
 
-    Unknown unless the matched right pixel finds no better left one (left-right check) and the score is above 0, or
-    where both neighbours score the same, as in a picture that does not change along its rows: any shift would do.
+    Unknown if the matched right pixel has a better left one (left-right check), if the score is not above 0, or if both
+    neighbours have the same score, as in a picture that is constant along its rows.
     """
     count, width = volume.shape[1], volume.shape[-1]
     value, at = volume.max(dim=1)
@@ -91,7 +92,7 @@ def best_shifts(volume: Tensor, low: int) -> BestMatches:
 
 
 def _right_best(volume: Tensor, low: int) -> Tensor:
-    """The best score of each right pixel (b, h, w): its scores lie on the volume's diagonals."""
+    """Return the best score of each right pixel (b, h, w): its scores lie on the volume's diagonals."""
     width = volume.shape[-1]
     best = torch.full_like(volume[:, 0], OUTSIDE)
     for k, scores_at in enumerate(volume.unbind(dim=1)):
@@ -110,10 +111,9 @@ def _parabola(before: Tensor, value: Tensor, after: Tensor) -> Tensor:
 
 
 def match(left: Tensor, right: Tensor, low: int, high: int, window_px: int, memory_mb: int = 64) -> BestMatches:
-    """The best shift of every pixel in low..high, in strips of rows so that the scores take about memory_mb.
+    """Find the best shift of every pixel in low..high, in strips of rows whose scores take about memory_mb.
 
-    A strip is at least a window high, whatever that takes. On a CPU small strips are the fastest: they stay in its
-    caches.
+    A strip is at least a window high, even if it takes more. On a CPU small strips are fastest: they fit its caches.
     """
 
     def one_strip(first: int, last: int, skip: int, rows: int) -> BestMatches:
@@ -122,16 +122,16 @@ def match(left: Tensor, right: Tensor, low: int, high: int, window_px: int, memo
             return BestMatches(*(part[..., skip : skip + rows, :] for part in best_shifts(volume, low)))
 
     strips = list(_strips(left, high - low + 1, window_px // 2, memory_mb))
-    done = [one_strip(*strip) for strip in strips] if left.is_cuda else _on_all_cores(one_strip, strips)
-    return BestMatches(*(torch.cat(parts, dim=-2) for parts in zip(*done, strict=True)))
+    results = [one_strip(*strip) for strip in strips] if left.is_cuda else _on_all_cores(one_strip, strips)
+    return BestMatches(*(torch.cat(parts, dim=-2) for parts in zip(*results, strict=True)))
 
 
 Strip = tuple[int, int, int, int]
-"""First and last row to read, how many of these only surround, how many are wanted."""
+"""First and last row to read, number of context rows before the wanted ones, number of wanted rows."""
 
 
 def _on_all_cores(work: Callable[[int, int, int, int], BestMatches], strips: list[Strip]) -> list[BestMatches]:
-    """A strip a thread: torch's own threads wait for each other at every sum, and spin where a core is busy."""
+    """Run one strip per thread: torch's own threads wait for each other at every sum, and spin on a busy core."""
     threads = torch.get_num_threads()
     try:
         with ThreadPoolExecutor(threads, initializer=torch.set_num_threads, initargs=(1,)) as pool:
@@ -160,7 +160,7 @@ def match_pair(
     torch_device: TorchDevice,
     memory_mb: int,
 ) -> tuple[Float32[np.ndarray, "h w"], Float32[np.ndarray, "h w"]]:
-    """`match` on arrays: disparity, NaN where unknown, and score in 0..1."""
+    """Run `match` on arrays; return disparity in pixels, NaN if unknown, and score in 0..1."""
     device = pick_device(torch_device)
     first, second = (torch.from_numpy(np.ascontiguousarray(grey)).to(device)[None, None] for grey in (left, right))
     disparity, score = match(first, second, low, high, window_px, memory_mb)

@@ -7,19 +7,19 @@ from tangible_depth.dense.integration import gradient, integrate
 
 
 @pytest.mark.parametrize("shape", [(61, 83), (64, 64), (1, 9), (9, 1), (1, 1), (2, 3)])
-def test_a_bump_comes_back_from_its_slopes(shape):
+def test_bump_is_restored_from_its_slopes(shape):
     rows, columns = np.indices(shape, np.float64)
     bump = np.exp(-((rows - 0.4 * shape[0]) ** 2 + (columns - 0.5 * shape[1]) ** 2) / 200)
     assert integrate(*gradient(bump)) == pytest.approx(bump - bump.mean(), abs=1e-12)
 
 
 @given(st.integers(0, 2**32 - 1), st.integers(1, 12), st.integers(1, 12))
-def test_any_surface_comes_back(seed, rows, columns):
+def test_any_surface_is_restored(seed, rows, columns):
     surface = np.random.default_rng(seed).normal(size=(rows, columns))
     assert integrate(*gradient(surface)) == pytest.approx(surface - surface.mean(), abs=1e-9)
 
 
-def test_slopes_of_no_surface_are_met_as_nearly_as_can_be():
+def test_inconsistent_slopes_are_fitted_by_least_squares():
     random = np.random.default_rng(0)
     x, y = random.normal(size=(2, 12, 15))
     x[:, -1], y[-1] = 0, 0

@@ -9,13 +9,13 @@ from tangible_depth.dense.left_right import left_right_confidence
 NAN = np.nan
 
 
-def test_views_that_agree_are_trusted_and_a_pixel_apart_no_more():
+def test_confidence_falls_from_agreement_to_a_pixel_apart():
     left = np.float32([[0, 0, 2, 2, 2, 2]])
     right = np.float32([[2, 2.25, 3, 1.5, 0, 0]])
     assert left_right_confidence(left, right).tolist() == [[0, 0, 1, 0.75, 0, 0.5]]
 
 
-def test_what_is_unknown_or_outside_is_not_trusted():
+def test_unknown_or_outside_pixels_have_no_confidence():
     left = np.float32([[1, NAN, 3, -2, -1]])
     right = np.float32([[1, 1, NAN, 1, -1]])
     assert left_right_confidence(left, right).tolist() == [[0, 0, 0, 0, 0]]

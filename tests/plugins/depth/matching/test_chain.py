@@ -15,13 +15,13 @@ from tangible_core.data import Views
 from tangible_core.testing.synthetic.stereo_scenes import synthetic_pair
 from tangible_depth.dense.confidence import confidence, flat_pixels
 from tangible_depth.dense.edges import median, sharpen_edges
-from tangible_depth.dense.filling.four_directions import ROUND, choose_of_four, fill_from_four_directions
-from tangible_depth.dense.refinement import Cleaning, DenseMatches, as_map, completed, enlarged
+from tangible_depth.dense.filling.four_directions import GEODESIC, choose_of_four, fill_from_four_directions
+from tangible_depth.dense.refinement import Cleaning, DenseMatches, complete, enlarge, to_disparity_map
 from tangible_depth.dense.span import UNKNOWN
 from tangible_depth.dense.speckles import Specks, remove_speckles, remove_specks
 from tangible_depth.dense.subpixel import equiangular, parabola
-from tangible_depth.row_alignment.row_offset import realigned, row_offset
-from tangible_depth.search.disparity_range import asked_span
+from tangible_depth.row_alignment.row_offset import row_offset, shift_rows
+from tangible_depth.search.disparity_range import find_disparity_range
 from tangible_depth.search.pairs import Pair, grey_pair
 from tangible_depth.search.range_in_bands import find_range
 from tangible_depth.sgm.census import census
@@ -32,18 +32,18 @@ MAPS = arrays(
 
 
 @given(st.floats(-0.5, 0.5), st.floats(0.1, 100), st.floats(-100, 100))
-def test_the_parabola_has_its_vertex_found(vertex, bend, level):
+def test_parabola_through_samples_gives_its_vertex(vertex, bend, level):
     samples = [bend * (x - vertex) ** 2 + level for x in (-1, 0, 1)]
     assert parabola(*samples) == pytest.approx(vertex, abs=1e-6)
     assert parabola(*[-each for each in samples]) == pytest.approx(vertex, abs=1e-6)
 
 
 @given(st.floats(-0.5, 0.5), st.floats(0.1, 100), st.floats(-100, 100))
-def test_the_v_has_its_tip_found(tip, slope, level):
+def test_v_through_samples_gives_its_tip(tip, slope, level):
     assert equiangular(*[slope * abs(x - tip) + level for x in (-1, 0, 1)]) == pytest.approx(tip, abs=1e-6)
 
 
-def test_three_equal_samples_give_no_offset():
+def test_equal_samples_give_no_offset():
     assert parabola(2.0, 2.0, 2.0) == equiangular(2.0, 2.0, 2.0) == 0
 
 
@@ -76,7 +76,7 @@ def islands(disparity, step):
 
 @settings(max_examples=60)
 @given(MAPS, st.integers(0, 9))
-def test_speckles_are_the_small_islands(disparity, largest):
+def test_speckle_filter_removes_small_islands(disparity, largest):
     label = islands(disparity, 16)
     small = [i for i in range(label.max() + 1) if (label == i).sum() <= largest]
     expected = np.where(np.isin(label, small), UNKNOWN, disparity)
@@ -86,7 +86,7 @@ def test_speckles_are_the_small_islands(disparity, largest):
 
 
 @pytest.mark.parametrize(("far_px", "alone_px", "left"), [(50, 60, 0), (50, 100, 0), (80, 60, 80), (80, 100, 0)])
-def test_an_island_is_an_error_by_its_size_and_by_what_was_matched_round_it(far_px: int, alone_px: int, left: int):
+def test_island_is_removed_by_size_and_share_of_matches_near_it(far_px: int, alone_px: int, left: int):
     """The same islands among many matches and far from any."""
     disparity = np.full((100, 300), UNKNOWN)
     disparity[:, :150] = 100
@@ -98,7 +98,7 @@ def test_an_island_is_an_error_by_its_size_and_by_what_was_matched_round_it(far_
     assert np.count_nonzero(disparity[:, 200:] == 300) == left
 
 
-def test_among_few_matches_small_islands_are_errors():
+def test_small_island_among_few_matches_is_removed():
     """Every third row matched, and islands of 40 pixels between them, which nothing joins."""
     for rows, left in ((slice(0, 100, 3), 0), (slice(None), 40)):
         disparity = np.full((100, 100), UNKNOWN)
@@ -110,7 +110,7 @@ def test_among_few_matches_small_islands_are_errors():
 
 @settings(max_examples=40)
 @given(MAPS, st.integers(0, 255))
-def test_filling_keeps_what_is_known_and_leaves_nothing_unknown(disparity, seed):
+def test_filling_keeps_known_pixels_and_leaves_none_unknown(disparity, seed):
     grey = np.random.default_rng(seed).integers(0, 255, disparity.shape, np.uint8)
     filled = fill_from_four_directions(disparity, grey)
     known = disparity != UNKNOWN
@@ -119,7 +119,7 @@ def test_filling_keeps_what_is_known_and_leaves_nothing_unknown(disparity, seed)
     assert set(np.unique(filled)) <= set(np.unique(disparity))
 
 
-def test_filling_does_not_depend_on_the_number_of_threads(monkeypatch):
+def test_filling_with_any_number_of_threads_is_the_same(monkeypatch):
     rng = np.random.default_rng(3)
     disparity = np.where(rng.random((130, 70)) < 0.6, UNKNOWN, rng.integers(0, 900, (130, 70))).astype(np.int16)
     disparity[40:80] = UNKNOWN
@@ -132,7 +132,7 @@ def test_filling_does_not_depend_on_the_number_of_threads(monkeypatch):
     assert np.array_equal(maps[0], maps[2])
 
 
-def test_what_both_views_contradict_is_not_filled_in():
+def test_candidate_contradicted_by_both_views_is_not_taken():
     """A gap between two near bars, over a far wall that is seen through it from the right: it is wall."""
     disparity = np.full((9, 60), 64, np.int16)
     disparity[:, 20:26] = disparity[:, 34:40] = 320
@@ -142,12 +142,12 @@ def test_what_both_views_contradict_is_not_filled_in():
 
 
 def score(value, path, farthest, row_farthest, there):
-    """As the docstring of the candidates weighs it; disparities and `there` in sixteenths of a pixel."""
+    """Score a candidate by the docstring of `candidates`; disparities and `there` in sixteenths of a pixel."""
     seen = -1.4 if there is None else 0.75 if there == 32767 else -3.4 * (there < value - 24)
     return 0.7 * (value <= row_farthest + 8) + seen - 0.18 * np.sqrt(path) - 0.3 * (value - farthest) / 160
 
 
-def test_a_gap_takes_the_candidate_of_the_best_score():
+def test_gap_takes_the_candidate_of_the_best_score():
     """Behind which every weight stands: drawn at random, and nothing said where two are as good as alike."""
     random = np.random.default_rng(6)
     width, told = 60, 0
@@ -173,7 +173,7 @@ def test_a_gap_takes_the_candidate_of_the_best_score():
             if value != UNKNOWN:
                 there = seen[min(max(x + 1 - (value + 8) // 16, 0), width + 1)]
                 found = score(value, path, known.min(), row_farthest, None if there == UNKNOWN else int(there))
-                found -= 1.0 * (side == ROUND)
+                found -= 1.0 * (side == GEODESIC)
                 scores[value] = max(found, scores.get(value, -np.inf))
         best, *others = sorted(scores, key=scores.__getitem__, reverse=True)
         if others and scores[best] - scores[others[0]] > 1e-3:
@@ -183,8 +183,8 @@ def test_a_gap_takes_the_candidate_of_the_best_score():
 
 
 @pytest.mark.parametrize(("gap", "filled_in"), [(1, 64), (2, 64), (3, 0)])
-def test_a_short_gap_between_like_ends_is_closed_with_the_farther(gap, filled_in):
-    """Without asking what lies above, where the picture has no edge; a longer one is asked about."""
+def test_short_gap_between_similar_ends_takes_the_farther(gap, filled_in):
+    """Short gaps ignore the rows above if the picture has no edge; longer ones do not."""
     disparity = np.zeros((9, 40), np.int16)
     disparity[4] = 80
     disparity[4, :20] = 64
@@ -196,7 +196,7 @@ def test_a_short_gap_between_like_ends_is_closed_with_the_farther(gap, filled_in
 
 
 @pytest.mark.parametrize(("left", "right", "levels", "near"), [(320, 64, 60, [0, 1, 2, 3]), (64, 320, 120, [11])])
-def test_grey_steps_on_the_way_add_up(left, right, levels, near):
+def test_grey_steps_on_a_path_add_up(left, right, levels, near):
     """A gap of twelve columns over stripes: beside it alone the nearer end is believed in.
 
     It lies 16 px before the other, -0.48, which is the farther of the row, 0.7; on the right both views contradict
@@ -208,7 +208,7 @@ def test_grey_steps_on_the_way_add_up(left, right, levels, near):
     assert np.flatnonzero(fill_from_four_directions(disparity, grey)[0, 40:52] == 320).tolist() == near
 
 
-def test_a_surface_ends_where_the_picture_has_an_edge():
+def test_depth_edge_moves_to_the_edge_of_the_picture():
     grey = np.full((30, 40), 60, np.uint8)
     grey[:, 20:] = 200
     fattened = np.where(np.indices(grey.shape)[1] >= 19, np.int16(320), np.int16(64))
@@ -216,20 +216,20 @@ def test_a_surface_ends_where_the_picture_has_an_edge():
     assert np.array_equal(sharp, np.where(grey == 200, 320, 64))
 
 
-def test_without_a_depth_edge_nothing_is_voted_on():
+def test_map_without_depth_edges_is_not_sharpened():
     disparity = np.tile(np.arange(0, 400, 10, dtype=np.int16), (20, 1))
     assert np.array_equal(
         sharpen_edges(disparity, np.random.default_rng(0).integers(0, 255, (20, 40), np.uint8)), disparity
     )
 
 
-def test_the_median_is_that_of_25():
+def test_median_takes_25_pixels():
     disparity = np.random.default_rng(0).integers(0, 900, (40, 30)).astype(np.int16)
     windows = np.lib.stride_tricks.sliding_window_view(np.pad(disparity, 2, mode="edge"), (5, 5))
     assert np.array_equal(median(disparity), np.median(windows, axis=(2, 3)).astype(np.int16))
 
 
-def test_confidence_is_read_from_the_table_where_the_match_stood():
+def test_confidence_of_a_kept_match_is_read_from_the_table():
     """Far from steps and gaps."""
     matched = np.full((1, 60), 160, np.int16)
     table = 1 - np.arange(256) / 255
@@ -238,7 +238,7 @@ def test_confidence_is_read_from_the_table_where_the_match_stood():
     assert np.allclose(confidence(matched, matched + np.int16(40), quality, table), 0.1)
 
 
-def test_confidence_falls_beside_steps_of_depth_and_in_gaps():
+def test_confidence_next_to_depth_steps_and_in_gaps_falls():
     matched = np.full((40, 90), 160, np.int16)
     matched[:, 60:] = 160 + 16 * 8
     final = matched.copy()
@@ -252,7 +252,7 @@ def test_confidence_falls_beside_steps_of_depth_and_in_gaps():
     assert np.allclose(column, expected, atol=0.003)
 
 
-def test_confidence_is_the_same_whatever_the_threads(monkeypatch):
+def test_confidence_with_any_number_of_threads_is_the_same(monkeypatch):
     rng = np.random.default_rng(5)
     disparity = np.where(rng.random((150, 70)) < 0.6, UNKNOWN, rng.integers(0, 900, (150, 70))).astype(np.int16)
     quality, grey = rng.integers(0, 255, (2, *disparity.shape), np.uint8)
@@ -260,41 +260,41 @@ def test_confidence_is_the_same_whatever_the_threads(monkeypatch):
     for count in (1, 7):
         monkeypatch.setattr(threads, "thread_count", lambda count=count: count)
         maps.append(
-            completed(disparity.copy(), quality, np.linspace(1, 0.2, 256), grey, Cleaning(specks=Specks(0, 0, 0)))
+            complete(disparity.copy(), quality, np.linspace(1, 0.2, 256), grey, Cleaning(specks=Specks(0, 0, 0)))
         )
     assert np.array_equal(maps[0].disparity, maps[1].disparity)
     assert np.array_equal(maps[0].confidence, maps[1].confidence)
 
 
-def test_flat_pixels_have_one_grey_value_all_round():
+def test_flat_pixels_have_one_grey_value_near_them():
     grey = np.full((12, 12), 7, np.uint8)
     grey[6, 6] = 8
     assert np.array_equal(flat_pixels(grey), np.maximum(*np.abs(np.indices(grey.shape) - 6)) > 2)
 
 
-def test_pixels_are_flat_where_their_rows_do_not_change():
+def test_pixels_of_constant_rows_are_flat():
     level = np.tile(np.arange(0, 240, 20, dtype=np.uint8)[:, None], (1, 12))
     assert flat_pixels(level).all()
     assert not flat_pixels(np.ascontiguousarray(level.T)).any()
 
 
-def test_a_plane_is_enlarged_exactly():
+def test_plane_is_enlarged_exactly():
     y, x = np.indices((20, 30))
     small = (4 * x + 2 * y + 100).astype(np.int16)
-    large = enlarged(DenseMatches(small, np.ones(small.shape, np.float32)), np.full((39, 60), 9, np.uint8))
+    large = enlarge(DenseMatches(small, np.ones(small.shape, np.float32)), np.full((39, 60), 9, np.uint8))
     rows, columns = np.indices((39, 60))
     exact = 2 * (4 * (columns - 0.5) / 2 + 2 * (rows - 0.5) / 2 + 100)
     assert np.abs(large.disparity - exact)[1:-1, 1:-1].max() <= 1
     assert large.confidence.shape == (39, 60)
 
 
-def test_a_map_in_pixels_says_what_is_unknown():
+def test_map_in_pixels_has_nan_where_unknown():
     grey = np.random.default_rng(0).integers(0, 255, (6, 6), np.uint8)
     disparity = np.full((6, 6), 40, np.int16)
     disparity[0] = UNKNOWN
     trust = np.full((6, 6), 0.7, np.float32)
     trust[1] = 0.1
-    filled, bare = (as_map(DenseMatches(disparity, trust), grey, fill) for fill in (True, False))
+    filled, bare = (to_disparity_map(DenseMatches(disparity, trust), grey, fill) for fill in (True, False))
     assert np.isnan(filled.disparity_px[0]).all()
     assert (filled.disparity_px[1:] == 2.5).all()
     assert np.isnan(bare.disparity_px[:2]).all()
@@ -302,7 +302,7 @@ def test_a_map_in_pixels_says_what_is_unknown():
 
 
 @pytest.mark.parametrize("offset", [-7.0, 5.0, 21.0])
-def test_the_range_covers_what_occurs_and_little_more(offset):
+def test_estimated_range_covers_all_disparities_and_little_more(offset):
     views, truth = slanted(shape=(160, 320), down=0.05, offset=offset)
     found = find_range(grey_pair(views, "test"))
     assert found.span.low <= truth.min()
@@ -312,9 +312,9 @@ def test_the_range_covers_what_occurs_and_little_more(offset):
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_a_thin_thing_before_a_wall_widens_the_range(seed):
+def test_thin_object_before_a_wall_widens_the_range(seed):
     pair = synthetic_pair("bars", 480, 360, seed)
-    span = asked_span(grey_pair(pair.views, "test"), "auto", "auto").span
+    span = find_disparity_range(grey_pair(pair.views, "test"), "auto", "auto").span
     assert np.mean((pair.truth_px >= span.low) & (pair.truth_px <= span.high)) >= 0.999
     assert span.lanes <= 64
 
@@ -333,27 +333,27 @@ def test_rods_of_four_pixels_widen_the_range():
     assert covered >= 18
 
 
-def test_a_pair_in_which_nothing_matches_has_no_range():
+def test_pair_without_matches_has_no_range():
     assert find_range(Pair(np.zeros((40, 60), np.uint8), np.zeros((40, 60), np.uint8))) is None
 
 
 @pytest.mark.parametrize("rows", [-1.0, 0.0, 0.5, 1.0])
-def test_an_offset_of_rows_is_measured_and_put_right(rows):
+def test_row_offset_is_measured_and_corrected(rows):
     y, x = np.indices((160, 240), float)
     pair = Pair(texture(x, y), texture(x + 5, y - rows))
     at, disparity = np.arange(6, 160, 12), np.full((13, 240), 80, np.int16)
     measured = row_offset(pair, at, disparity)
     assert measured == pytest.approx(rows, abs=0.12)
-    again = realigned(pair, measured)
+    again = shift_rows(pair, measured)
     assert row_offset(again, at, disparity) == pytest.approx(0, abs=0.12)
 
 
-def test_an_offset_needs_votes():
+def test_row_offset_without_votes_is_zero():
     pair = Pair(*np.full((2, 60, 60), 9, np.uint8))
     assert row_offset(pair, np.arange(6, 60, 12), np.zeros((5, 60), np.int16)) == 0
 
 
-def test_bytes_keep_their_values_and_halves_are_brightened():
+def test_bytes_keep_their_values_and_dark_pictures_are_brightened():
     views, _, _ = step(shape=(20, 40), back=1, front=3, box=(4, 12, 10, 30))
     assert np.array_equal(grey_pair(views, "test").left, views.left)
     twelve_bits = Views(views.left.astype(np.uint16) * 16, views.right.astype(np.uint16) * 16)
@@ -361,7 +361,7 @@ def test_bytes_keep_their_values_and_halves_are_brightened():
     assert np.array_equal(grey_pair(Views(views.left > 127, views.right > 127), "test").left, (views.left > 127) * 255)
 
 
-def test_a_failing_block_fails_the_whole(monkeypatch):
+def test_failing_block_fails_all_blocks(monkeypatch):
     monkeypatch.setattr(threads, "thread_count", lambda: 4)
 
     def work(start, stop):
@@ -372,7 +372,7 @@ def test_a_failing_block_fails_the_whole(monkeypatch):
         threads.in_blocks(100, work)
 
 
-def test_the_blocks_cover_everything_once(monkeypatch):
+def test_blocks_cover_every_row_once(monkeypatch):
     monkeypatch.setattr(threads, "thread_count", lambda: 3)
     seen = np.zeros(50, int)
 

@@ -10,7 +10,7 @@ from tangible_core.plugins.notes import collected, silently
 from tangible_depth import Auto, SemiGlobal, Ssd, Zncc
 from tangible_depth.dense.span import Span
 from tangible_depth.matching import film
-from tangible_depth.matching.film import LOOK_EVERY, FollowedPair
+from tangible_depth.matching.film import SEARCH_EVERY, FilmMatcher
 from tangible_depth.rectify import rectification
 from tangible_depth.search import disparity_range
 
@@ -18,51 +18,51 @@ METHODS = [SemiGlobal(), SemiGlobal(resolution="half"), Zncc(), Ssd()]
 
 
 @pytest.fixture
-def looks(monkeypatch):
-    """How often the range of a pair is looked for."""
+def searches(monkeypatch):
+    """Count the range searches."""
     counted = []
     found = disparity_range.find_range
     monkeypatch.setattr(disparity_range, "find_range", lambda pair: counted.append(pair) or found(pair))
     return counted
 
 
-def wrong(found, true, hidden):
+def share_wrong(found, true, hidden):
     return np.mean(np.abs(found.disparity_px - true)[~hidden] > 1)
 
 
 @pytest.mark.parametrize("method", METHODS, ids=repr)
-def test_each_frame_is_matched_as_well_as_alone_and_the_range_is_looked_for_once(method, looks):
+def test_frames_of_a_film_match_as_well_as_single_pairs_with_one_range_search(method, searches):
     assert isinstance(method, Following)
     views, true, hidden = step()
-    alone = wrong(method.estimate(views), true, hidden)
-    looks.clear()
+    alone = share_wrong(method.estimate(views), true, hidden)
+    searches.clear()
     estimate = method.follow(views)
     for _ in range(3):
-        assert wrong(estimate(views), true, hidden) <= alone + 0.01
-    assert len(looks) == 1
+        assert share_wrong(estimate(views), true, hidden) <= alone + 0.01
+    assert len(searches) == 1
 
 
-def test_what_comes_nearer_is_let_in_at_the_next_look():
+def test_nearer_object_widens_the_range_at_the_next_search():
     far, near = slanted(offset=6.0)[0], slanted(offset=60.0)
     estimate = SemiGlobal(resolution="half").follow(far)
-    assert isinstance(estimate, FollowedPair)
-    errors = [np.median(np.abs(estimate(near[0]).disparity_px - near[1])[:, 70:]) for _ in range(LOOK_EVERY + 1)]
+    assert isinstance(estimate, FilmMatcher)
+    errors = [np.median(np.abs(estimate(near[0]).disparity_px - near[1])[:, 70:]) for _ in range(SEARCH_EVERY + 1)]
     assert errors[-1] < 0.5 < errors[0]
 
 
-def test_a_look_that_shows_nothing_teaches_nothing_and_old_ones_are_forgotten(monkeypatch):
-    monkeypatch.setattr(film, "LOOK_EVERY", 1)
+def test_range_ignores_empty_frames_and_forgets_old_searches(monkeypatch):
+    monkeypatch.setattr(film, "SEARCH_EVERY", 1)
     near, far, dark = slanted(offset=40.0)[0], slanted(offset=6.0)[0], np.zeros((96, 160), np.uint8)
     estimate = SemiGlobal(resolution="half", skip_identical=False).follow(near)
     wide = estimate._span
     estimate(Views(dark, dark))
     assert estimate._span == wide
-    for _ in range(film.LOOKS):
+    for _ in range(film.SEARCHES):
         estimate(far)
     assert estimate._span.high < wide.high
 
 
-def test_a_range_that_changes_a_little_needs_no_other_kernel():
+def test_slightly_changed_range_uses_the_same_kernel():
     estimate = Zncc().follow(slanted(offset=6.0)[0])
     sizes = set()
     for high in (66, 83, 101):
@@ -71,15 +71,15 @@ def test_a_range_that_changes_a_little_needs_no_other_kernel():
     assert sizes == {128}
 
 
-def test_a_range_that_is_told_is_kept_and_nothing_is_looked_for(looks):
+def test_given_range_is_kept_without_a_search(searches):
     views = step()[0]
     estimate = SemiGlobal(min_disparity_px=0, max_disparity_px=24, rectify="never").follow(views)
-    for _ in range(LOOK_EVERY + 1):
+    for _ in range(SEARCH_EVERY + 1):
         estimate(views)
-    assert looks == []
+    assert searches == []
 
 
-def test_cameras_that_look_elsewhere_are_turned_by_the_first_frame_alone(monkeypatch):
+def test_unrectified_film_is_rectified_by_its_first_frame(monkeypatch):
     import cv2
 
     generator = np.random.default_rng(6)
@@ -99,41 +99,41 @@ def test_cameras_that_look_elsewhere_are_turned_by_the_first_frame_alone(monkeyp
     assert counted == [1]
 
 
-def test_rows_that_miss_each_other_by_a_constant_are_put_right_in_each_frame():
+def test_constant_row_offset_is_corrected_in_each_frame():
     views, true, hidden = step((120, 200))
     lower = Views(views.left, np.roll(views.right, 1, axis=0))
     estimate = SemiGlobal(resolution="half").follow(lower)
-    assert wrong(estimate(lower), true, hidden) < 0.1
+    assert share_wrong(estimate(lower), true, hidden) < 0.1
 
 
-def test_a_calibrated_pair_is_not_turned(monkeypatch):
-    monkeypatch.setattr(film, "with_common_rows", None)
+def test_calibrated_film_is_not_rectified(monkeypatch):
+    monkeypatch.setattr(film, "align_rows", None)
     views, true, hidden = step()
     views = Views(views.left, views.right, Calibration(100.0, 0.1))
-    assert wrong(SemiGlobal(resolution="half").follow(views)(views), true, hidden) < 0.1
+    assert share_wrong(SemiGlobal(resolution="half").follow(views)(views), true, hidden) < 0.1
 
 
-def test_identical_views_are_skipped_frame_by_frame():
+def test_identical_views_of_a_film_are_skipped_per_frame():
     views, _true, _hidden = step()
     same = Views(views.left, views.left)
     estimate = SemiGlobal(resolution="half").follow(same)
     assert not estimate(same).disparity_px[~np.isnan(estimate(same).disparity_px)].any()
 
 
-def test_one_view_is_refused():
+def test_single_view_of_a_film_is_refused():
     with pytest.raises(PictureError, match="two views"):
         SemiGlobal().follow(Views(step()[0].left))
 
 
-def test_auto_follows_a_pair_and_one_picture():
+def test_auto_follows_pairs_and_single_pictures():
     views, _true, _hidden = step()
-    assert isinstance(Auto().follow(views), FollowedPair)
+    assert isinstance(Auto().follow(views), FilmMatcher)
     with collected() as notes:
         assert Auto().follow(Views(views.left))(Views(views.left)).unit == "relative"
     assert any("no depth" in each for each in notes)
 
 
-def test_what_is_noted_silently_is_neither_said_nor_kept(caplog):
+def test_silent_notes_are_neither_logged_nor_kept(caplog):
     caplog.set_level("INFO")
     with collected() as notes, silently():
         SemiGlobal().estimate(Views(step()[0].left, step()[0].left))

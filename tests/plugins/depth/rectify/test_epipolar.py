@@ -25,12 +25,12 @@ def test_lines_of_a_rectified_pair_are_its_rows():
         assert lines == pytest.approx(np.array([[0, 1, -7], [0, 1, -2.0]]))
 
 
-def test_distances_of_a_rectified_pair_are_its_vertical_offset():
+def test_distances_in_a_rectified_pair_are_its_row_offsets():
     left, right = np.array([[10.0, 5], [40, 9]]), np.array([[2.0, 8], [30, 9]])
     assert sampson_distance(RECTIFIED, left, right) == pytest.approx([3 / np.sqrt(2), 0])
 
 
-def test_distances_are_those_of_the_points_from_their_lines():
+def test_distances_are_those_of_points_from_their_lines():
     random = np.random.default_rng(0)
     matrix = random.normal(size=(3, 3))
     left, right = random.normal(size=(2, 50, 2))
@@ -40,7 +40,7 @@ def test_distances_are_those_of_the_points_from_their_lines():
     assert sampson_distance(matrix, left, right) ** -2 == pytest.approx(to_left**-2 + to_right**-2)
 
 
-def test_sampson_is_the_distance_to_the_nearest_pair_that_obeys():
+def test_sampson_distance_is_that_to_the_nearest_exact_pair():
     left, right = seen_points(count=20)
     matrix = eight_point(left, right)
     step = 1e-4 * np.random.default_rng(0).normal(size=(4, 20))
@@ -57,7 +57,7 @@ def line_length(matrix, points):
     return np.linalg.norm((np.column_stack([points, np.ones(len(points))]) @ matrix.T)[:, :2], axis=1)
 
 
-def test_epipoles_of_known_cameras():
+def test_epipoles_of_known_cameras_are_exact():
     # P_left = [I | 0], P_right = [I | t]: right = left + t / depth, F = [t]x up to the convention's transpose.
     move = np.array([0.3, -0.2, 0.5])
     left, right = epipoles(skew(move))
@@ -65,7 +65,7 @@ def test_epipoles_of_known_cameras():
         assert np.cross(epipole, move) == pytest.approx(np.zeros(3), abs=1e-12)
 
 
-def test_an_epipole_has_no_line():
+def test_epipole_has_no_line():
     assert np.isnan(lines_in_left(skew([2.0, 3.0, 1.0]), np.array([[2.0, 3.0]]))).all()
 
 
@@ -78,5 +78,5 @@ def test_segments_end_at_the_border_of_the_picture():
     assert (same | np.isclose(swapped, expected, equal_nan=True).all(axis=1)).all()
 
 
-def test_no_matches_have_no_distances():
+def test_distances_without_matches_are_empty():
     assert sampson_distance(RECTIFIED, np.empty((0, 2)), np.empty((0, 2))).shape == (0,)

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from tangible_core.errors import GeometryError
 from tangible_depth.rectify.epipolar import sampson_distance
 from tangible_depth.rectify.fundamental import DegenerateMatches, eight_point, normalise, robust_fundamental
-from tangible_depth.rectify.parallax import best_plane, plane_and_parallax
+from tangible_depth.rectify.parallax import best_plane, fundamental_from_plane
 from two_cameras import seen_points, some_wrong, symmetric_epipolar_distance
 
 
@@ -22,7 +22,7 @@ def test_normalised_points_are_centred_with_a_mean_distance_of_root_two():
     move=st.tuples(st.floats(0.2, 1), st.floats(-0.3, 0.3), st.floats(-0.3, 0.3)),
     count=st.integers(9, 60),
 )
-def test_exact_points_give_their_geometry_back(turn, move, count):
+def test_exact_points_give_their_geometry(turn, move, count):
     left, right = seen_points(turn, move, count)
     matrix = eight_point(left, right)
     assert np.linalg.norm(matrix) == pytest.approx(1)
@@ -30,7 +30,7 @@ def test_exact_points_give_their_geometry_back(turn, move, count):
     assert sampson_distance(matrix, left, right).max() < 1e-4
 
 
-def test_half_a_pixel_of_noise_at_6000_pixels_width_leaves_a_tenth():
+def test_noise_of_half_a_pixel_at_6000_pixels_leaves_a_tenth():
     errors = []
     for seed in range(10):
         true = seen_points(width=6000, seed=seed)
@@ -39,7 +39,7 @@ def test_half_a_pixel_of_noise_at_6000_pixels_width_leaves_a_tenth():
     assert np.median(errors) <= 0.1
 
 
-def test_a_weight_of_zero_leaves_a_match_out():
+def test_match_of_weight_zero_is_ignored():
     left, right = some_wrong(*seen_points(count=40), share=0.25)
     weights = np.r_[np.zeros(10), np.ones(30)]
     matrix = eight_point(left, right, weights)
@@ -47,7 +47,7 @@ def test_a_weight_of_zero_leaves_a_match_out():
 
 
 @pytest.mark.parametrize("share", [0.0, 0.3, 0.6])
-def test_wrong_matches_are_told_from_right_ones(share):
+def test_wrong_matches_are_outliers(share):
     noisy = seen_points(count=400, noise_px=0.3)
     found = robust_fundamental(*some_wrong(*noisy, share), threshold_px=1.5)
     wrong = round(share * 400)
@@ -56,7 +56,7 @@ def test_wrong_matches_are_told_from_right_ones(share):
     assert np.median(sampson_distance(found.matrix, *seen_points(count=400))) < 0.1
 
 
-def test_the_same_matches_give_the_same_matrix():
+def test_same_matches_give_the_same_matrix():
     matches = some_wrong(*seen_points(noise_px=0.3), 0.4)
     assert np.array_equal(robust_fundamental(*matches).matrix, robust_fundamental(*matches).matrix)
 
@@ -68,42 +68,42 @@ def reason(call, *matches):
 
 
 @pytest.mark.parametrize("call", [eight_point, robust_fundamental])
-class TestEveryDegeneracyIsNamed:
-    def test_too_few(self, call):
+class TestDegeneracies:
+    def test_too_few_matches_are_refused(self, call):
         assert reason(call, *seen_points(count=7)) == "too few"
         assert reason(call, np.empty((0, 2)), np.empty((0, 2))) == "too few"
 
-    def test_duplicate(self, call):
+    def test_duplicate_matches_are_refused(self, call):
         left, right = seen_points(count=5)
         assert reason(call, np.tile(left, (9, 1)), np.tile(right, (9, 1))) == "duplicate"
         assert reason(call, np.ones((30, 2)), np.ones((30, 2))) == "duplicate"
 
-    def test_collinear(self, call):
+    def test_collinear_matches_are_refused(self, call):
         along = np.linspace(0, 700, 40)
         line = np.column_stack([along, 0.5 * along + 3])
         assert reason(call, line, line + np.array([5, 1])) == "collinear"
         assert reason(call, seen_points(count=40)[0], line) == "collinear"
 
-    def test_flat_scene(self, call):
+    def test_flat_scene_is_degenerate(self, call):
         assert reason(call, *seen_points(flat=True)) == "homography"
 
-    def test_a_camera_that_only_turned(self, call):
+    def test_rotated_camera_is_degenerate(self, call):
         assert reason(call, *seen_points(move_m=(0, 0, 0))) == "homography"
 
     @pytest.mark.parametrize("value", [np.nan, np.inf])
-    def test_not_finite(self, call, value):
+    def test_matches_that_are_not_finite_are_refused(self, call, value):
         left, right = seen_points()
         right[7, 1] = value
         assert reason(call, left, right) == "not finite"
 
-    def test_shapes(self, call):
+    def test_matches_of_wrong_shapes_are_refused(self, call):
         with pytest.raises(GeometryError, match="two arrays"):
             call(np.ones((9, 2)), np.ones((8, 2)))
 
 
 @pytest.mark.parametrize("share", [0.0, 0.3])
 @pytest.mark.parametrize("count", [30, 100, 500])
-def test_no_parallax_is_named_among_noise_and_wrong_matches(share, count):
+def test_missing_parallax_is_detected_among_noise_and_wrong_matches(share, count):
     flat = seen_points(count=count, flat=True, noise_px=0.3)
     turned = seen_points(count=count, move_m=(0, 0, 0), noise_px=0.3)
     assert reason(robust_fundamental, *some_wrong(*flat, share)) == "homography"
@@ -119,30 +119,30 @@ def before_a_wall(off, wrong, seed):
 
 
 @pytest.mark.parametrize("seed", range(1, 12, 2))
-def test_a_few_matches_before_a_wall_tell_the_geometry(seed):
+def test_few_matches_before_a_wall_determine_the_geometry(seed):
     found = robust_fundamental(*before_a_wall(20, 60, seed))
     assert found.inliers[-20:].all()
 
 
-def test_two_matches_before_a_plane_make_the_epipole():
+def test_two_matches_before_a_plane_determine_the_epipole():
     left, right = before_a_wall(12, 12, 1)
     plane = best_plane(left, right, 1.0)
     assert plane is not None
-    matrix = plane_and_parallax(plane, left, right, 1.0)
+    matrix = fundamental_from_plane(plane, left, right, 1.0)
     true = eight_point(*seen_points(turn=(0.02, -0.05, 0.05), move_m=(-0.3, 0.02, 0.01)))
     assert sampson_distance(matrix, left[-12:], right[-12:]).max() <= 1
     assert np.median(sampson_distance(matrix, *seen_points(turn=(0.02, -0.05, 0.05), move_m=(-0.3, 0.02, 0.01)))) <= 1
     assert np.median(sampson_distance(true, left[-12:], right[-12:])) <= 1
 
 
-def test_nothing_off_a_plane_makes_no_epipole():
+def test_plane_alone_has_no_epipole():
     left, right = seen_points(flat=True)
     plane = best_plane(left, right, 1.0)
     assert plane is not None
-    assert plane_and_parallax(plane, left, right, 1.0) is None
+    assert fundamental_from_plane(plane, left, right, 1.0) is None
 
 
-def test_wrong_matches_beside_one_another_are_one_witness():
+def test_neighbouring_wrong_matches_count_once():
     """A dozen that were all matched to the same wrong place."""
     left, right = (points.copy() for points in seen_points(flat=True, count=200, noise_px=0.3))
     near = np.random.default_rng(1).uniform(0, 3, (12, 2))
@@ -150,7 +150,7 @@ def test_wrong_matches_beside_one_another_are_one_witness():
     assert reason(robust_fundamental, left, right) == "homography"
 
 
-def test_an_assertion_within_opencv_is_no_crash(monkeypatch):
+def test_assertion_within_opencv_is_handled(monkeypatch):
     import cv2
 
     def fails(*asked):
@@ -161,16 +161,16 @@ def test_an_assertion_within_opencv_is_no_crash(monkeypatch):
 
 
 @pytest.mark.parametrize("count", [9, 30, 200, 1000])
-def test_chance_alone_is_no_geometry(count):
+def test_chance_matches_are_outliers(count):
     random = np.random.default_rng(count)
     assert reason(robust_fundamental, *random.uniform(0, 700, (2, count, 2))) == "outliers"
 
 
-def test_a_dozen_good_matches_are_enough():
+def test_dozen_good_matches_are_enough():
     found = robust_fundamental(*seen_points(count=12, noise_px=0.1))
     assert found.inliers.all()
 
 
-def test_a_rectified_pair_has_its_geometry():
+def test_rectified_pair_gives_its_geometry():
     matrix = robust_fundamental(*seen_points(turn=(0, 0, 0), move_m=(-0.3, 0, 0))).matrix
     assert abs(matrix) == pytest.approx(np.array([[0, 0, 0], [0, 0, 1], [0, 1, 0]]) / np.sqrt(2), abs=1e-6)

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from tangible_depth.rectify.homographies import camera_matrix, rotation
-from tangible_depth.rectify.parallax import best_plane, only_turned
+from tangible_depth.rectify.parallax import best_plane, is_pure_rotation
 
 SHAPE = (750, 1000)
 
 
 def flat_matches(seed, focal, shift_px, noise_px, zoom=1.0, slant=0.4, turn=0.03):
-    """Of a wall, slanted by chance, by cameras that turn somewhat and whose focal length is so many widths."""
+    """Matches of a randomly slanted wall by slightly rotated cameras; the focal length is in widths."""
     random = np.random.default_rng(seed)
     camera = camera_matrix(focal * SHAPE[1], SHAPE)
     other = camera_matrix(zoom * focal * SHAPE[1], SHAPE)
@@ -25,19 +25,19 @@ def flat_matches(seed, focal, shift_px, noise_px, zoom=1.0, slant=0.4, turn=0.03
 @pytest.mark.parametrize("seed", range(1, 12, 2))
 @pytest.mark.parametrize("focal", [0.6, 1.0, 2.0])
 @pytest.mark.parametrize("zoom", [1.0, 1.1])
-def test_a_camera_that_turned_is_known_as_one(seed, focal, zoom):
+def test_rotated_camera_is_recognised(seed, focal, zoom):
     matches = flat_matches(seed, focal, 0.0, 0.3, zoom)
-    assert only_turned(best_plane(*matches, 1.0), *matches, SHAPE)
+    assert is_pure_rotation(best_plane(*matches, 1.0), *matches, SHAPE)
 
 
 @pytest.mark.parametrize("seed", range(1, 12, 2))
 @pytest.mark.parametrize(("focal", "shift_px"), [(0.6, 10), (1.0, 10), (2.0, 40)])
-def test_a_wall_from_two_places_is_not_taken_for_one(seed, focal, shift_px):
+def test_wall_from_two_places_is_not_a_rotated_camera(seed, focal, shift_px):
     matches = flat_matches(seed, focal, shift_px, 0.3)
-    assert not only_turned(best_plane(*matches, 1.0), *matches, SHAPE)
+    assert not is_pure_rotation(best_plane(*matches, 1.0), *matches, SHAPE)
 
 
 @pytest.mark.parametrize("seed", range(1, 12, 2))
-def test_a_wall_that_faces_the_cameras_is_no_turn_of_a_camera_with_an_endless_focal_length(seed):
+def test_frontal_wall_is_not_a_rotated_camera_of_infinite_focal_length(seed):
     matches = flat_matches(seed, 1.0, 40, 0.3, slant=0.0, turn=0.0)
-    assert not only_turned(best_plane(*matches, 1.0), *matches, SHAPE)
+    assert not is_pure_rotation(best_plane(*matches, 1.0), *matches, SHAPE)

@@ -11,18 +11,18 @@ from tangible_depth.rectify import alignment, least_squares, rectification, rect
 from tangible_depth.rectify.alignment import aligning_homographies, epipole_roll
 from tangible_depth.rectify.fundamental import eight_point
 from tangible_depth.rectify.homographies import camera_matrix, rotation, transform
-from tangible_depth.rectify.lenses import distorted, undistorted
-from tangible_depth.rectify.rectification import RectificationError, check_homographies, rectify, with_rectification
-from tangible_depth.rectify.rectified_pair import warped
-from tangible_depth.rectify.rectifying_rotation import seen_range
+from tangible_depth.rectify.lenses import distort, undistort
+from tangible_depth.rectify.rectification import RectificationError, check_homographies, estimate_rectified, rectify
+from tangible_depth.rectify.rectified_pair import warp_pair
+from tangible_depth.rectify.rectifying_rotation import verified_range
 from tangible_depth.sparse.matches import Matches
 from two_cameras import HEIGHT, WIDTH, Scene, roll_and_tilt, seen_points, some_wrong
 
 BLANK = np.zeros((HEIGHT, WIDTH), np.uint8)
 
 
-def shifted(before_px, after_px, monkeypatch):
-    """A pair whose rows lie this far apart, and homographies that leave them so far apart."""
+def offset_matches(before_px, after_px, monkeypatch):
+    """Matches with a row offset before rectification, and patched homographies that leave another one."""
     left, right = seen_points(turn=(0, 0, 0), move_m=(-0.3, 0, 0))
     pair = np.eye(3), np.array([[1, 0, 0], [0, 1, after_px - before_px], [0, 0, 1.0]])
     monkeypatch.setattr(rectifying_rotation, "aligning_homographies", lambda matches, shape, roll: pair)
@@ -30,7 +30,7 @@ def shifted(before_px, after_px, monkeypatch):
 
 
 def rectified_points(noise_px=0.3, **cameras):
-    """What becomes of exact points when the pair is rectified by noisy ones."""
+    """Rectify exact points by a pair with noisy ones."""
     rectified = rectify(Views(BLANK, BLANK), matches=Matches(*seen_points(noise_px=noise_px, **cameras)))
     left, right = seen_points(**cameras)
     shift = transform(rectified.left_homography, left) - transform(rectified.right_homography, right)
@@ -50,14 +50,14 @@ def rectified_points(noise_px=0.3, **cameras):
     ],
     ids=["slight", "rolled", "toed in", "toed in more", "one below", "one above", "on its side"],
 )
-def test_rows_correspond_whatever_way_the_cameras_look(turn, move):
+def test_rectified_rows_correspond_for_any_cameras(turn, move):
     rectified, shift = rectified_points(turn=turn, move_m=move)
     assert not rectified.skipped
     assert np.median(np.abs(shift[:, 1])) <= 0.15
     assert shift[:, 0].min() > -1  # the search may start at zero
 
 
-def test_the_fit_is_as_good_as_scipys(monkeypatch):
+def test_least_squares_fit_is_as_good_as_scipys(monkeypatch):
     from scipy.optimize import least_squares
 
     costs = []
@@ -77,7 +77,7 @@ def test_the_fit_is_as_good_as_scipys(monkeypatch):
     assert max(ours / theirs for ours, theirs in costs) <= 1 + 1e-6
 
 
-def test_the_last_bits_of_where_the_fit_starts_do_not_matter(monkeypatch):
+def test_fit_ignores_the_last_bits_of_its_start(monkeypatch):
     starts = []
     fit = alignment.least_squares
     monkeypatch.setattr(alignment, "least_squares", lambda *asked: starts.append(asked[1]) or fit(*asked))
@@ -87,7 +87,7 @@ def test_the_last_bits_of_where_the_fit_starts_do_not_matter(monkeypatch):
     assert all(np.array_equal(*each) for each in zip(starts[:2], starts[2:], strict=True))
 
 
-def test_the_last_bits_of_what_the_fit_finds_do_not_matter(monkeypatch):
+def test_fit_rounds_the_last_bits_of_its_result(monkeypatch):
     matches = Matches(*seen_points(noise_px=0.3, turn=(0.02, -0.05, 0.01), move_m=(-0.3, 0.02, 0.05)))
     expected = aligning_homographies(matches, (HEIGHT, WIDTH))
     fit = alignment.least_squares
@@ -97,7 +97,7 @@ def test_the_last_bits_of_what_the_fit_finds_do_not_matter(monkeypatch):
     )
 
 
-def test_wrong_matches_do_not_bend_it():
+def test_wrong_matches_do_not_affect_the_rectification():
     matches = Matches(*some_wrong(*seen_points(noise_px=0.3), 0.3))
     rectified = rectify(Views(BLANK, BLANK), matches=matches)
     left, right = seen_points()
@@ -106,20 +106,20 @@ def test_wrong_matches_do_not_bend_it():
 
 
 @pytest.mark.parametrize("move", [(0, 0, -0.5), (-0.1, 0, -0.5)])
-def test_a_camera_that_went_forwards_is_refused(move):
+def test_camera_moved_forwards_is_refused(move):
     with pytest.raises(RectificationError, match=r"forwards|baseline|area|order"):
         rectified_points(turn=(0, 0, 0), move_m=move)
 
 
-def test_a_flat_scene_is_aligned_and_it_is_said(caplog):
+def test_flat_scene_is_aligned_with_a_warning(caplog):
     rectified, shift = rectified_points(flat=True)
     assert np.median(np.abs(shift[:, 1])) <= 0.15
     assert np.array_equal(rectified.left_homography, np.eye(3))
     assert caplog.text.count("one plane explains the matches") == 1
 
 
-def test_a_plane_that_a_lens_bends_by_half_a_pixel_turns_no_left_picture():
-    """What no homography explains, the roll of both pictures would, by 45 degrees: a plane leaves it open."""
+def test_plane_bent_by_a_lens_keeps_the_left_picture():
+    """The roll of both pictures by 45 degrees would explain the rest, as a plane does not determine it."""
     left, right = seen_points(flat=True, noise_px=0.05, count=500)
     bent = right + [[0, 0.4]] * ((right - [WIDTH / 2, HEIGHT / 2]) / (WIDTH / 2))[:, :1] ** 2
     rectified = rectify(Views(BLANK, BLANK), matches=Matches(left, bent))
@@ -128,23 +128,23 @@ def test_a_plane_that_a_lens_bends_by_half_a_pixel_turns_no_left_picture():
 
 @pytest.mark.parametrize("turn", [(0.02, -0.05, 0.01), (0, 0, 0.1), (0, 0.3, 0)], ids=["slight", "rolled", "far"])
 @pytest.mark.parametrize("noise_px", [0.0, 0.3])
-def test_a_camera_that_only_turned_shows_no_depth(turn, noise_px):
+def test_rotated_camera_is_refused(turn, noise_px):
     with pytest.raises(RectificationError, match="the camera only turned"):
         rectified_points(noise_px, turn=turn, move_m=(0, 0, 0))
 
 
-def test_a_dozen_matches_do_not_tell_that_a_camera_only_turned(caplog):
+def test_dozen_matches_do_not_prove_a_rotated_camera(caplog):
     left, right = seen_points(turn=(0.02, -0.05, 0.01), move_m=(0, 0, 0), count=25)
     assert "only 25 of 25 matches agree" in rectify(Views(BLANK, BLANK), matches=Matches(left, right)).why
 
 
-class TestMostlyFlat:
+class TestDominantPlane:
     """Pictures of a wall, exactly known."""
 
     SHAPE = (300, 400)
 
     @pytest.mark.parametrize("seed", [1, 3])
-    def test_a_wall_slants_as_it_does(self, seed):
+    def test_wall_keeps_its_slant(self, seed):
         scene = Scene(self.SHAPE, 10.0, 0.0, seed, slope=(0.03, -0.02), box=(0, 0))
         warp = roll_and_tilt(self.SHAPE)
         with collected() as notes:
@@ -155,7 +155,7 @@ class TestMostlyFlat:
         assert np.abs(shift[:, 0] + rectified.offset_px - scene.disparity_px().ravel()).max() <= 0.1
         assert [each.startswith("one plane explains the matches") for each in notes] == [True, False]
 
-    def test_a_camera_that_only_turned(self):
+    def test_rotated_camera_is_degenerate(self):
         scene = Scene(self.SHAPE, 0.0, 0.0, 1, box=(0, 0))
         camera = camera_matrix(400, self.SHAPE)
         turned = scene.right(camera @ rotation(0.02, 0.04, 0.03) @ np.linalg.inv(camera))
@@ -163,8 +163,8 @@ class TestMostlyFlat:
             rectify(Views(scene.left(), turned))
 
     @pytest.mark.parametrize(("box", "seed"), [((0.0375, 0.05), 1), ((0.0125, 0.3), 3)], ids=["small", "thin"])
-    def test_a_small_thing_before_a_wall_tells_how_the_cameras_stood(self, box, seed):
-        """It takes one or two pixels in a hundred; by the wall alone its rows would lie 1.2 px apart."""
+    def test_small_object_before_a_wall_resolves_the_poses(self, box, seed):
+        """The object covers 1 to 2 % of the pixels; by the wall alone its rows would be 1.2 px apart."""
         scene = Scene(self.SHAPE, 10.0, 34.0, seed, slope=(0.01, -0.01), box=box)
         warps = roll_and_tilt(self.SHAPE, 3.0, (0, 0)), roll_and_tilt(self.SHAPE, -2.0)
         rectified = rectify(Views(scene.left(warps[0]), scene.right(warps[1])))
@@ -177,8 +177,8 @@ class TestMostlyFlat:
 
 
 @pytest.mark.parametrize("degrees", [0.0, 1.0])
-def test_a_left_picture_that_needs_no_turning_stays_as_it_is(degrees):
-    """What is not resampled is not blurred."""
+def test_left_picture_without_need_stays_unchanged(degrees):
+    """A picture that is not resampled is not blurred."""
     left, right = seen_points(turn=(0, 0, 0), move_m=(-0.3, 0, 0), noise_px=0.1)
     rolls = (roll_and_tilt((HEIGHT, WIDTH), each, (0, 0)) for each in (degrees, 2.0))
     turned = Matches(*(transform(roll, points) for roll, points in zip(rolls, (left, right), strict=True)))
@@ -193,69 +193,69 @@ def test_chance_matches_are_refused():
         rectify(Views(BLANK, BLANK), matches=matches)
 
 
-class TestWhatIsSkippedAndWhy:
-    def test_a_rectified_pair(self):
+class TestSkippedPair:
+    def test_rectified_pair_is_skipped(self):
         scene = Scene()
         rectified = rectify(Views(scene.left(), scene.right()))
         assert rectified.skipped
         assert "already rectified" in rectified.why
         assert rectified.views.left is not None
 
-    def test_a_calibrated_pair(self):
+    def test_calibrated_pair_is_skipped(self):
         rectified = rectify(Views(BLANK, BLANK, Calibration(900.0, 0.1)))
         assert rectified.skipped
         assert "calibration" in rectified.why
 
-    def test_noise_that_no_turn_would_lessen(self):
+    def test_noise_without_gain_is_skipped(self):
         matches = Matches(*seen_points(turn=(0, 0, 0), move_m=(-0.3, 0, 0), noise_px=0.5))
         rectified = rectify(Views(BLANK, BLANK), matches=matches)
         assert rectified.skipped
         assert "would not help" in rectified.why
 
     @pytest.mark.parametrize(("after_px", "turned"), [(0.29, True), (0.31, False), (0.6, False)])
-    def test_turning_is_to_gain_a_fifth_of_a_pixel(self, after_px, turned, monkeypatch):
-        """From half a pixel."""
-        rectified = rectify(Views(BLANK, BLANK), matches=shifted(0.5, after_px, monkeypatch))
+    def test_rectification_needs_a_gain_of_a_fifth_of_a_pixel(self, after_px, turned, monkeypatch):
+        """The rows start half a pixel apart."""
+        rectified = rectify(Views(BLANK, BLANK), matches=offset_matches(0.5, after_px, monkeypatch))
         assert rectified.skipped != turned
         assert f"offset 0.50 px, {'now' if turned else 'then'} {after_px:.2f}" in rectified.why
 
     @pytest.mark.parametrize(("offset_px", "size", "turned"), [(0.34, 1, False), (0.36, 1, True), (0.36, 4, False)])
-    def test_a_third_of_a_pixel_is_none_and_more_in_large_pictures(self, offset_px, size, turned, monkeypatch):
+    def test_third_of_a_pixel_is_tolerated_and_more_in_large_pictures(self, offset_px, size, turned, monkeypatch):
         views = Views(*[np.zeros((size * HEIGHT, size * WIDTH), np.uint8)] * 2)
-        rectified = rectify(views, matches=shifted(offset_px, 0.0, monkeypatch))
+        rectified = rectify(views, matches=offset_matches(offset_px, 0.0, monkeypatch))
         assert rectified.skipped != turned
 
     @pytest.mark.parametrize(
         ("share", "away_px", "said"), [(0.04, -2.1, True), (0.06, -2.1, False), (0.04, -1.9, False)]
     )
-    def test_views_are_exchanged_where_nearly_all_disparities_are_below_minus_two(self, share, away_px, said, caplog):
+    def test_views_with_disparities_below_minus_two_are_exchanged(self, share, away_px, said, caplog):
         left = np.random.default_rng(0).uniform(0, 700, (1000, 2))
         disparity = np.where(np.arange(1000) < 1000 * share, 3.0, away_px)
         rectify(Views(BLANK, BLANK), matches=Matches(left, left - np.column_stack([disparity, 0 * disparity])))
         assert ("seem to be exchanged" in caplog.text) == said
 
-    def test_another_exposure_is_no_reason_to_turn(self):
+    def test_pair_with_another_exposure_is_skipped(self):
         scene = Scene()
         assert rectify(Views(scene.left(), 0.2 + 0.5 * scene.right() ** 1.4)).skipped
 
-    def test_too_little_to_tell(self):
+    def test_picture_with_few_features_is_skipped(self):
         rectified = rectify(Views(BLANK, BLANK))
         assert rectified.skipped
         assert "too few" in rectified.why
 
     @pytest.mark.parametrize(("count", "told"), [(19, False), (20, True)])
-    def test_twenty_matches_tell(self, count, told, monkeypatch):
-        matches = shifted(0.5, 0.0, monkeypatch)
+    def test_twenty_matches_decide(self, count, told, monkeypatch):
+        matches = offset_matches(0.5, 0.0, monkeypatch)
         rectified = rectify(Views(BLANK, BLANK), matches=Matches(matches.left_px[:count], matches.right_px[:count]))
         assert rectified.skipped
-        assert ("only 19 matches, too few to tell" in rectified.why) != told
+        assert ("only 19 matches, too few to decide" in rectified.why) != told
         assert ("only 20 of 20 matches agree, 30 are needed" in rectified.why) == told
 
-    def test_a_skipped_map_comes_back_itself(self):
+    def test_map_of_a_skipped_pair_is_returned_unchanged(self):
         found = DisparityMap(np.ones((HEIGHT, WIDTH), np.float32))
-        assert with_rectification(Views(BLANK, BLANK), lambda views: found) is found
+        assert estimate_rectified(Views(BLANK, BLANK), lambda views: found) is found
 
-    def test_one_view_is_no_pair(self):
+    def test_single_view_is_refused(self):
         with pytest.raises(PictureError, match="two views"):
             rectify(Views(BLANK))
 
@@ -267,7 +267,7 @@ def warped_scene():
 
 
 def true_map(scene, rectified):
-    """What a perfect method would find in the rectified views."""
+    """The map of a perfect method in the rectified views."""
     rows, columns = rectified.views.shape
     y, x = np.indices((rows, columns), np.float64)
     original = transform(np.linalg.inv(rectified.left_homography), np.column_stack([x.ravel(), y.ravel()]))
@@ -279,7 +279,7 @@ def true_map(scene, rectified):
 
 
 @pytest.mark.slow
-def test_a_rolled_and_tilted_picture_is_put_right():
+def test_rolled_and_tilted_picture_is_rectified():
     scene, warp, views = warped_scene()
     rectified = rectify(views)
     assert not rectified.skipped
@@ -293,7 +293,7 @@ def test_a_rolled_and_tilted_picture_is_put_right():
 
 
 @pytest.mark.slow
-def test_the_way_back_leads_to_the_original_pixels():
+def test_map_to_original_hits_the_original_pixels():
     scene, warp, views = warped_scene()
     rectified = rectify(views)
     _, perfect = true_map(scene, rectified)
@@ -312,7 +312,7 @@ def test_the_way_back_leads_to_the_original_pixels():
 
 
 @pytest.mark.parametrize("dtype", [np.bool_, np.uint8, np.uint16, np.float16, np.float32, np.float64])
-def test_pictures_of_any_kind_are_turned(dtype):
+def test_pictures_of_any_kind_are_rectified(dtype):
     views = warped_scene()[2]
     white = np.iinfo(dtype).max if np.issubdtype(dtype, np.integer) else 1
     left, right = (
@@ -327,8 +327,8 @@ def test_pictures_of_any_kind_are_turned(dtype):
     assert rectified.views.left.dtype == (dtype if dtype not in (np.bool_, np.float16) else np.float32)
 
 
-class TestGuards:
-    def test_the_same_pictures_pass(self):
+class TestHomographyCheck:
+    def test_identity_homographies_pass(self):
         check_homographies((np.eye(3), np.eye(3)), (100, 200), np.zeros(5))
 
     @pytest.mark.parametrize(
@@ -340,7 +340,7 @@ class TestGuards:
             (np.array([[1, 0, 0], [0, 1, 0], [-0.01, 0, 1.0]]), "infinity"),
         ],
     )
-    def test_distortions_are_refused(self, homography, words):
+    def test_distorting_homographies_are_refused(self, homography, words):
         with pytest.raises(RectificationError, match=words):
             check_homographies((np.eye(3), homography), (100, 200), np.zeros(5))
 
@@ -353,7 +353,7 @@ class TestGuards:
             check_homographies((np.eye(3), np.eye(3)), (100, 200), offsets)
 
     @pytest.mark.parametrize(("side", "refused"), [(1.7, False), (1.8, True), (0.6, False), (0.55, True)])
-    def test_an_area_changes_by_a_factor_of_three_at_most(self, side, refused):
+    def test_area_may_change_by_a_factor_of_three(self, side, refused):
         with pytest.raises(RectificationError, match="area") if refused else nullcontext():
             check_homographies((np.diag([side, side, 1.0]), np.eye(3)), (100, 200), np.zeros(5))
 
@@ -369,21 +369,21 @@ def test_exact_matches_are_aligned_exactly():
     assert np.abs(offset).max() < 0.02
 
 
-def test_the_epipole_gives_the_roll():
+def test_epipole_gives_the_roll():
     shape = (HEIGHT, WIDTH)
     for move, roll in (((-0.3, 0, 0), 0), ((-0.3, -0.3, 0), -np.pi / 4), ((-0.3, 0.3, 0), np.pi / 4)):
         matrix = eight_point(*seen_points(turn=(0, 0, 0), move_m=move))
         assert epipole_roll(matrix, shape) == pytest.approx(roll, abs=1e-3)
 
 
-def test_the_middle_keeps_its_column():
+def test_middle_of_a_picture_keeps_its_column():
     left, right = seen_points(turn=(0.01, 0.02, 0.03))
     middle = camera_matrix(1, (HEIGHT, WIDTH))[:2, 2][None]
     for homography in aligning_homographies(Matches(left, right), (HEIGHT, WIDTH)):
         assert transform(homography, middle)[0, 0] == pytest.approx(middle[0, 0])
 
 
-def test_rotations_are_rotations():
+def test_rotation_matrices_are_orthonormal():
     turn = rotation(0.1, -0.2, 0.3)
     assert turn @ turn.T == pytest.approx(np.eye(3))
     assert rotation(0, 0, np.pi / 2) @ [1, 0, 0] == pytest.approx([0, 1, 0])
@@ -394,14 +394,14 @@ def test_rotations_are_rotations():
 @pytest.mark.parametrize(
     ("low", "high", "start"), [(0.0, 20.0, -4), (10.0, 90.0, 0), (-3.0, 17.0, -7), (-20.0, 80.0, -30), (4.5, 9.0, 0)]
 )
-def test_the_search_starts_below_all_but_stray_disparities(low, high, start):
+def test_search_starts_below_all_but_stray_disparities(low, high, start):
     """A tenth of their range below, and 4 px at least, one in a hundred left out at each end; never above 0."""
     disparity = np.linspace(low, high, 981)
     stray = np.concatenate([np.full(10, -500.0), disparity, np.full(10, 900.0)])
     assert rectification._search_start(stray) == start
 
 
-class TestWhatARectificationIsBelievedOn:
+class TestEvidence:
     def matches(self, asked=slice(None)):
         left, right = seen_points(noise_px=0.2, turn=(0.02, -0.05, 0.03), move_m=(-0.3, 0.02, 0.05), count=120)
         return Matches(left[asked], right[asked])
@@ -413,32 +413,32 @@ class TestWhatARectificationIsBelievedOn:
         return rectified.why
 
     @pytest.mark.parametrize(("count", "believed"), [(29, False), (36, True)])
-    def test_thirty_matches(self, count, believed):
+    def test_geometry_of_under_thirty_matches_is_not_trusted(self, count, believed):
         """Two or three of 36 stand off by more than a pixel."""
         assert rectify(Views(BLANK, BLANK), matches=self.matches(slice(count))).skipped != believed
 
-    def test_one_match_many_times_is_one(self, caplog):
+    def test_duplicate_matches_count_once(self, caplog):
         left, right = self.matches(slice(25))
         assert "only 25 of 25" in self.refused(Matches(np.tile(left, (4, 1)), np.tile(right, (4, 1))), caplog)
 
-    def test_they_lie_all_over_the_picture(self, caplog):
+    def test_matches_in_one_corner_are_not_trusted(self, caplog):
         left, right = seen_points(noise_px=0.2, turn=(0.02, -0.05, 0.03), move_m=(-0.3, 0.02, 0.05), count=1000)
         corner = (left < [0.5 * WIDTH, 0.5 * HEIGHT]).all(axis=1)
         assert "4 of 16 parts" in self.refused(Matches(left[corner], right[corner]), caplog)
 
-    def test_matches_that_had_no_part_in_it_agree(self, caplog):
-        """Here every other match is of something else that moved by itself."""
+    def test_held_out_matches_that_disagree_are_not_trusted(self, caplog):
+        """Every other match belongs to an object that moved by itself."""
         left, right = (points.copy() for points in self.matches())
         right[1::2, 1] += np.random.default_rng(0).uniform(20, 200, len(right[1::2]))
         assert "of the matches that had no part in it" in self.refused(Matches(left, right), caplog)
 
 
 @pytest.mark.parametrize("radial", [-0.15, -0.05, 0.1])
-def test_lenses_that_distort_are_found(radial):
+def test_lens_distortion_is_estimated(radial):
     shape = HEIGHT, WIDTH
     cameras = {"turn": (0.02, -0.05, 0.03), "move_m": (-0.3, 0.02, 0.05), "count": 400}
     exact, noisy = (
-        Matches(*(distorted(points, radial, shape) for points in seen_points(**cameras, noise_px=noise)))
+        Matches(*(distort(points, radial, shape) for points in seen_points(**cameras, noise_px=noise)))
         for noise in (0.0, 0.2)
     )
     rectified = rectify(Views(BLANK, BLANK), matches=noisy)
@@ -449,22 +449,22 @@ def test_lenses_that_distort_are_found(radial):
     assert "radial distortion of the lenses" in rectified.why
 
 
-def test_a_lens_without_distortion_is_given_none():
+def test_lens_without_distortion_gets_none():
     rectified, _ = rectified_points()
     assert (rectified.left_radial, rectified.right_radial) == (0, 0)
 
 
 @pytest.mark.parametrize("radial", [-0.2, 0.0, 0.1])
-def test_distortion_is_taken_out_and_put_back(radial):
+def test_distortion_is_removed_and_restored(radial):
     points = np.random.default_rng(0).uniform(0, [WIDTH, HEIGHT], (200, 2))
-    straight = undistorted(points, radial, (HEIGHT, WIDTH))
-    assert distorted(straight, radial, (HEIGHT, WIDTH)) == pytest.approx(points)
+    straight = undistort(points, radial, (HEIGHT, WIDTH))
+    assert distort(straight, radial, (HEIGHT, WIDTH)) == pytest.approx(points)
 
 
-def test_a_map_goes_back_through_the_lens():
+def test_map_to_original_applies_the_lens():
     """Each pixel of the original gets what stands at its place in the turned view, and leads to its match."""
     size = np.indices((60, 80), np.uint8).sum(axis=0).astype(np.uint8)
-    bent = warped(Views(size, size), (np.eye(3), np.eye(3)), "", 0, (-0.1, -0.1))
+    bent = warp_pair(Views(size, size), (np.eye(3), np.eye(3)), "", 0, (-0.1, -0.1))
     place = np.indices(bent.views.shape, np.float32)[1]
     back = bent.to_original(DisparityMap(place)).disparity_px
     y, x = np.indices(size.shape)
@@ -477,13 +477,13 @@ def test_a_map_goes_back_through_the_lens():
     assert np.abs(rows - columns)[2:-2, 2:-2].max() <= 2
 
 
-def test_disparities_that_no_neighbour_has_do_not_widen_the_range():
+def test_disparities_without_similar_neighbours_do_not_widen_the_range():
     points = np.random.default_rng(0).uniform(0, 700, (300, 2))
     disparity = 0.05 * points[:, 0] + 10
     disparity[[3, 77]] = -400.0, 300.0
-    assert seen_range(points, disparity) == (10, 45)
+    assert verified_range(points, disparity) == (10, 45)
 
 
-def test_the_logarithm_is_one():
+def test_logarithm_is_accurate():
     values = np.concatenate([[0.0, 1.0, 3.0], np.geomspace(1e-18, 1e9, 500)])
     assert least_squares._log1p(values) == pytest.approx([math.log1p(each) for each in values], rel=4e-15, abs=0)

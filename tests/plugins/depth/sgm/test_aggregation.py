@@ -9,9 +9,9 @@ from stereo_scenes import step
 from tangible_core.compiled.threads import thread_count
 from tangible_depth.dense.span import UNKNOWN, Span
 from tangible_depth.sgm import strips
-from tangible_depth.sgm.census import census, with_levels
+from tangible_depth.sgm.census import census, census_with_levels
 from tangible_depth.sgm.costs import LEVELS, SHARP, p2_by_grey_step
-from tangible_depth.sgm.strips import blank, sweep
+from tangible_depth.sgm.strips import sweep, unknown_matches
 
 
 def plain_census(grey):
@@ -87,10 +87,10 @@ def plain_disparity(sums, span, tolerance):
 
 @pytest.mark.parametrize("span", [Span(0, 15), Span(0, 10), Span(-5, 6), Span(3, 20), Span(-9, -2)])
 @pytest.mark.parametrize("tolerance", [1.0, 1.08])
-def test_the_sweep_is_semi_global_matching(span, tolerance):
+def test_sweep_equals_plain_semi_global_matching(span, tolerance):
     views, _, _ = step(shape=(22, 41), back=2, front=6, box=(5, 16, 14, 30))
     left, right = np.asarray(views.left), np.asarray(views.right)
-    out = blank(left.shape)
+    out = unknown_matches(left.shape)
     rows = [(0, left.shape[0])]
     sweep((census(left), census(right)), left, span, SHARP.penalties, tolerance, rows, out)
     sums = plain_sums(left, right, span, SHARP.penalties)
@@ -99,38 +99,38 @@ def test_the_sweep_is_semi_global_matching(span, tolerance):
 
 
 @pytest.mark.parametrize("span", [Span(0, 46), Span(-1, 69), Span(-3, 104)])
-def test_lanes_in_vectors_of_several_widths_are_as_exact(span):
+def test_lanes_in_vectors_of_several_widths_are_exact(span):
     """48, 80 and 112 of them, some not asked for; in the middle of the picture none leads out of it."""
     assert span.lanes & (span.lanes - 1)
     views, _, _ = step(shape=(9, 150), back=2, front=40, box=(2, 7, 70, 120))
     left, right = np.asarray(views.left), np.asarray(views.right)
-    out = blank(left.shape)
+    out = unknown_matches(left.shape)
     sweep((census(left), census(right)), left, span, SHARP.penalties, 1.08, [(0, len(left))], out)
     sums = plain_sums(left, right, span, SHARP.penalties)
     assert np.array_equal(out.sums, sums.min(axis=-1))
     assert np.array_equal(out.disparity, plain_disparity(sums, span, 1.08))
 
 
-def test_levels_cost_what_they_differ_by_up_to_a_bound():
+def test_levels_cost_their_difference_up_to_a_bound():
     span = Span(0, 0)
     left = np.tile(np.arange(0, 120, 2, dtype=np.uint8), (9, 1))
     for darker, cost in ((0, 0), (4, 2), (8, 4), (100, 4)):
         right = left + np.uint8(darker)  # in the same order: the census sees no difference
-        out = blank(left.shape)
-        codes = with_levels(left), with_levels(right)
+        out = unknown_matches(left.shape)
+        codes = census_with_levels(left), census_with_levels(right)
         sweep(codes, left, span, LEVELS.penalties, 1.0, [(0, 9)], out, most_level=LEVELS.most_level)
         assert (out.sums == 4 * cost).all()
 
 
 @pytest.mark.parametrize("cost", [SHARP, LEVELS])
-def test_strips_are_independent_and_hardly_seen(cost, monkeypatch):
+def test_strips_are_independent_with_hardly_visible_seams(cost, monkeypatch):
     views, _, _ = step(shape=(300, 160), box=(60, 240, 60, 120))
     left, right = np.asarray(views.left), np.asarray(views.right)
     codes = cost.codes(left), cost.codes(right)
     maps = []
     for rows in (300, 128):
         monkeypatch.setattr(strips, "ROWS", rows)
-        out = blank(left.shape)
+        out = unknown_matches(left.shape)
         for each in strips.strips(left.shape, Span(0, 31)):
             sweep(codes, left, Span(0, 31), cost.penalties, 1.08, [each], out, most_level=cost.most_level)
         maps.append(out.disparity.astype(int))
@@ -141,7 +141,7 @@ def test_strips_are_independent_and_hardly_seen(cost, monkeypatch):
 @pytest.mark.parametrize(
     ("shape", "span"), [((4000, 6000), Span(0, 255)), ((500, 741), Span(0, 63)), ((9, 90000), Span(0, 511))]
 )
-def test_the_volumes_stay_within_their_bound(shape, span):
+def test_volumes_stay_within_their_bound(shape, span):
     rows = strips.strips(shape, span)
     highest = max(b - a for a, b in rows)
     assert [a for a, _ in rows] == [0, *[b for _, b in rows][:-1]]
@@ -151,44 +151,44 @@ def test_the_volumes_stay_within_their_bound(shape, span):
 
 
 @pytest.mark.parametrize("processors", [1, 3, 64])
-def test_strips_are_the_same_with_any_number_of_threads(processors, monkeypatch):
+def test_strips_with_any_number_of_threads_are_the_same(processors, monkeypatch):
     expected = strips.strips((3000, 4500), Span(0, 511))
     monkeypatch.setattr(os, "sched_getaffinity", lambda _: set(range(processors)), raising=False)
     assert thread_count() == processors
     assert strips.strips((3000, 4500), Span(0, 511)) == expected
 
 
-def test_no_more_threads_are_at_work_than_there_is_room_for(monkeypatch):
+def test_threads_are_limited_by_memory(monkeypatch):
     monkeypatch.setattr(strips, "VOLUME_BYTES", 3 * 16 * 64 * 32)
     at_work = []
     monkeypatch.setattr(strips, "in_turns", lambda tasks, work, most: at_work.append(most))
     rows = [(y, y + 16) for y in range(0, 160, 16)]
     codes = np.empty((160, 3, 64), np.uint8)
-    sweep((codes, codes), codes[:, 0], Span(0, 31), SHARP.penalties, 1.0, rows, blank((160, 64)))
+    sweep((codes, codes), codes[:, 0], Span(0, 31), SHARP.penalties, 1.0, rows, unknown_matches((160, 64)))
     assert at_work == [3]
 
 
-def test_the_highest_strips_are_matched_first(monkeypatch):
-    """So that threads that take one after the other end at about the same time."""
+def test_highest_strips_are_matched_first(monkeypatch):
+    """Threads then end at about the same time."""
     taken = []
     monkeypatch.setattr(strips, "in_turns", lambda tasks, work, most: taken.extend(tasks))
     codes = np.empty((160, 3, 64), np.uint8)
     rows = [(0, 20), (20, 84), (84, 94), (94, 160)]
-    sweep((codes, codes), codes[:, 0], Span(0, 31), SHARP.penalties, 1.0, rows, blank((160, 64)))
+    sweep((codes, codes), codes[:, 0], Span(0, 31), SHARP.penalties, 1.0, rows, unknown_matches((160, 64)))
     assert taken == [(94, 160), (20, 84), (0, 20), (84, 94)]
 
 
-def test_a_jump_is_cheaper_where_the_picture_steps():
+def test_jump_at_a_grey_step_is_cheaper():
     penalties = p2_by_grey_step(50, 12, 1.5)
     assert (penalties[0], penalties[10], penalties[255]) == (50, 35, 12)
 
 
-def test_a_span_fits_lanes_and_pictures():
+def test_span_fits_lanes_and_pictures():
     assert Span(0, 63).lanes == 64
     assert Span(0, 64).lanes == 80
-    assert Span(2, 68).filled() == Span(2, 81)
-    assert Span(2, 68).roomy() == Span(2, 129)
+    assert Span(2, 68).fill_lanes() == Span(2, 81)
+    assert Span(2, 68).widen() == Span(2, 129)
     assert Span(-3, 3).lanes == 16
-    assert Span(-50, 500).within(100) == Span(-50, 99)
-    assert Span(500, 900).within(1) == Span(0, 0)
-    assert Span(-5, 5).shrunk(2) == Span(-3, 3)
+    assert Span(-50, 500).clip(100) == Span(-50, 99)
+    assert Span(500, 900).clip(1) == Span(0, 0)
+    assert Span(-5, 5).downsample(2) == Span(-3, 3)

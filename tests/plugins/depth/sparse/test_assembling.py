@@ -1,46 +1,46 @@
 import numpy as np
 import pytest
 
-from tangible_depth.sparse.assembling import assemble, fill_nearest, without_speckles
+from tangible_depth.sparse.assembling import assemble, erase_speckles, fill_nearest
 
 SHAPE = (30, 40)
 
 
-def scattered(values, every=4):
+def scatter(values, every=4):
     found = np.full(SHAPE, np.nan, np.float32)
     found[::every, ::every] = values[::every, ::every]
     return found, np.where(np.isfinite(found), 0.9, 0).astype(np.float32)
 
 
-def test_one_disparity_everywhere_is_found_everywhere():
-    filled = assemble(*scattered(np.full(SHAPE, 7.25)), np.zeros(SHAPE, np.uint8))
+def test_constant_disparity_is_assembled_everywhere():
+    filled = assemble(*scatter(np.full(SHAPE, 7.25)), np.zeros(SHAPE, np.uint8))
     assert filled.disparity_px == pytest.approx(7.25, abs=1e-4)
 
 
-def test_colour_edges_divide_and_rows_and_columns_fill():
+def test_rows_and_columns_are_filled_up_to_colour_edges():
     step = np.where(np.arange(40) < 20, 5.0, 15.0) * np.ones((30, 1))
     picture = np.where(step == 5, 30, 220).astype(np.uint8)
-    filled = assemble(*scattered(step), picture)
+    filled = assemble(*scatter(step), picture)
     assert np.abs(filled.disparity_px - step).max() < 0.1
 
 
-def test_a_stray_match_is_left_out():
-    found, score = scattered(np.full(SHAPE, 7.0))
+def test_stray_match_is_dropped():
+    found, score = scatter(np.full(SHAPE, 7.0))
     found[16, 20] = 30
     filled = assemble(found, score, np.zeros(SHAPE, np.uint8))
     assert filled.disparity_px == pytest.approx(7, abs=1e-4)
 
 
 @pytest.mark.parametrize(("off_px", "agrees"), [(-2.1, False), (-1.9, True), (1.9, True), (2.1, False)])
-def test_stray_is_what_lies_over_two_pixels_off(off_px, agrees):
+def test_match_over_two_pixels_off_is_stray(off_px, agrees):
     """A match of hardly any weight, so that the mean is that of the others; one that counts keeps its score."""
-    found, score = scattered(np.full(SHAPE, 7.0))
+    found, score = scatter(np.full(SHAPE, 7.0))
     found[16, 20], score[16, 20] = 7 + off_px, 1e-4
     confidence = assemble(found, score, np.zeros(SHAPE, np.uint8)).confidence
     assert (confidence[16, 20] == np.float32(1e-4)) == agrees
 
 
-def test_matches_count_by_their_scores():
+def test_matches_are_weighted_by_their_scores():
     """Both sums do, of disparities and of weights: of each match by itself the confidence says how much it counts."""
 
     def one(column, disparity, score):
@@ -62,8 +62,8 @@ def test_matches_count_by_their_scores():
 
 
 @pytest.mark.parametrize(("grey", "least", "most"), [(1, 0.6, 0.95), (20, 0.005, 0.3), (200, 0.0, 1e-12)])
-def test_a_change_of_colour_counts_as_distance(grey, least, most):
-    """One of 8 % of white, as long a way as the reach: what is left of a match behind it, of what there is without."""
+def test_colour_change_counts_as_distance(grey, least, most):
+    """A change of 8 % of white counts as the reach: the remaining share of a match's weight behind it."""
     found, score = np.full(SHAPE, np.nan, np.float32), np.zeros(SHAPE, np.float32)
     found[15, 10], score[15, 10] = 5, 0.9
     edged = np.where(np.arange(40) < 20, 0, grey).astype(np.uint8) * np.ones((30, 1), np.uint8)
@@ -71,7 +71,7 @@ def test_a_change_of_colour_counts_as_distance(grey, least, most):
     assert least <= behind / plain <= most
 
 
-def test_what_no_match_reaches_is_as_the_nearest_place_that_one_reaches():
+def test_pixel_out_of_reach_takes_the_nearest_reached_value():
     """Behind an edge from black to white sums of weights are rounding, and their ratio is no disparity."""
     picture = np.where(np.arange(40) < 20, 0, 255).astype(np.uint8) * np.ones((30, 1), np.uint8)
     found, score = np.full(SHAPE, np.nan, np.float32), np.zeros(SHAPE, np.float32)
@@ -84,7 +84,7 @@ def test_what_no_match_reaches_is_as_the_nearest_place_that_one_reaches():
 
 
 def test_confidence_is_the_score_at_a_match_and_less_elsewhere():
-    found, score = scattered(np.full(SHAPE, 7.0), every=10)
+    found, score = scatter(np.full(SHAPE, 7.0), every=10)
     confidence = assemble(found, score, np.zeros(SHAPE, np.uint8)).confidence
     assert confidence[10, 10] == pytest.approx(0.9)
     assert confidence[0, 0] == pytest.approx(0.9)
@@ -92,28 +92,28 @@ def test_confidence_is_the_score_at_a_match_and_less_elsewhere():
     assert confidence.min() >= 0
 
 
-def test_without_any_match_all_is_unknown():
+def test_assembly_without_matches_is_unknown():
     nothing = assemble(np.full(SHAPE, np.nan, np.float32), np.zeros(SHAPE, np.float32), np.zeros(SHAPE, np.uint8))
     assert np.isnan(nothing.disparity_px).all()
     assert not nothing.confidence.any()
 
 
 @pytest.mark.parametrize("shape", [(1, 1), (1, 7), (7, 1), (2, 2)])
-def test_the_smallest_pictures(shape):
+def test_smallest_pictures_are_assembled(shape):
     filled = assemble(np.full(shape, 3, np.float32), np.ones(shape, np.float32), np.zeros((*shape, 4), np.uint16))
     assert np.all(filled.disparity_px == 3)
 
 
-def test_fill_nearest():
+def test_nan_takes_the_nearest_known_value():
     values = np.array([[np.nan, 1, np.nan, np.nan, 5]], np.float32)
     assert fill_nearest(values).tolist() == [[1, 1, 1, 5, 5]]
     assert fill_nearest(np.ones((2, 2), np.float32)).tolist() == [[1, 1], [1, 1]]
 
 
-def test_small_islands_go_and_large_ones_stay():
+def test_small_islands_are_erased_and_large_ones_kept():
     disparity = np.full(SHAPE, np.nan, np.float32)
     disparity[:10, :10] = 5.5
     disparity[20:22, 20:22] = -3.5
-    left = without_speckles(disparity)
+    left = erase_speckles(disparity)
     assert np.all(left[:10, :10] == 5.5)
     assert np.isnan(left[10:]).all()

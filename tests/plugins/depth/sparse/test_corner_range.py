@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from tangible_depth.sparse.corner_range import range_of_pair, range_of_shifts, within
+from tangible_depth.sparse.corner_range import clip_range, range_of_pair, range_of_shifts
 from two_cameras import Scene
 
 
@@ -9,30 +9,30 @@ def shifts(values, vertical=0.0):
     return np.column_stack([values, np.full(len(values), vertical)])
 
 
-def test_what_is_seen_with_room_to_spare_and_zero():
+def test_range_of_shifts_has_a_margin_and_zero():
     assert range_of_shifts(shifts(np.linspace(20, 60, 101)), 500) == (0, 64)
     assert range_of_shifts(shifts(np.linspace(-30, 70, 101)), 500) == (-39, 79)
 
 
-def test_stray_matches_do_not_widen_it():
+def test_stray_matches_do_not_widen_the_range():
     values = np.r_[np.linspace(20, 60, 500), [-300, 400]]
     assert range_of_shifts(shifts(values), 500) == (0, 64)
     off_row = np.vstack([shifts(np.linspace(20, 60, 100)), shifts(np.full(30, 400.0), vertical=9)])
     assert range_of_shifts(off_row, 500) == (0, 64)
 
 
-def test_with_hardly_any_match_a_quarter_of_the_width():
+def test_range_of_few_matches_is_a_quarter_of_the_width():
     assert range_of_shifts(np.empty((0, 2)), 200) == (0, 50)
 
 
 @pytest.mark.parametrize(
     ("low", "high", "width", "range_px"), [(-9, 9, 4, (-3, 3)), (0, 64, 1, (0, 0)), (5, 2, 9, (5, 5))]
 )
-def test_never_beyond_the_picture(low, high, width, range_px):
-    assert within(low, high, width) == range_px
+def test_range_is_clipped_to_the_picture(low, high, width, range_px):
+    assert clip_range(low, high, width) == range_px
 
 
-def test_the_range_of_a_pair_covers_its_disparities():
+def test_range_of_a_pair_covers_its_disparities():
     scene = Scene(wall_px=-7.0, box_px=13.0)
     low, high = range_of_pair(scene.left(), scene.right(), "auto")
     assert -25 <= low <= -7

@@ -5,7 +5,7 @@ import pytest
 from tangible_depth.sparse.harris import corners, gaussian_window, harris_response, least_response, row_edges
 
 
-def test_the_window_sums_to_one_and_has_its_sigma():
+def test_gaussian_window_sums_to_one_and_has_its_sigma():
     window = gaussian_window(2.0)
     offsets = np.arange(len(window)) - len(window) // 2
     assert window.sum() == pytest.approx(1)
@@ -13,19 +13,19 @@ def test_the_window_sums_to_one_and_has_its_sigma():
     assert window[len(window) // 2 + 2] / window.max() == pytest.approx(np.exp(-0.5))
 
 
-def test_a_window_needs_a_width():
+def test_gaussian_window_without_a_width_is_refused():
     with pytest.raises(ValueError, match="sigma_px > 0"):
         gaussian_window(0)
 
 
-def test_a_ramp_is_an_edge_of_known_response():
+def test_ramp_is_an_edge_of_known_response():
     ramp = np.tile(0.03 * np.arange(40.0), (30, 1))
     response = harris_response(ramp, k=0.05)
     assert response[10:20, 10:30] == pytest.approx(-0.05 * (2 * 0.03) ** 4)
     assert least_response(0.03, k=0.05) == pytest.approx(0.05 * (2 * 0.03) ** 4)
 
 
-def test_a_saddle_is_a_corner_of_known_response():
+def test_saddle_is_a_corner_of_known_response():
     y, x = np.mgrid[-20:21, -20:21].astype(float)
     window = gaussian_window(1.5)
     second = window @ (np.arange(len(window)) - len(window) // 2) ** 2  # of x y: A = B = 4 <y^2>, C = 4 <x y> = 0
@@ -34,14 +34,14 @@ def test_a_saddle_is_a_corner_of_known_response():
 
 
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
-def test_equals_opencv_where_both_can_say_it(dtype):
+def test_harris_response_equals_opencvs(dtype):
     grey = np.random.default_rng(0).random((33, 47)).astype(dtype)
     ours = harris_response(grey, np.full(5, 0.2), k=0.06)
     assert ours.dtype == dtype
     assert ours == pytest.approx(cv2.cornerHarris(grey.astype(np.float32), 5, 1, 0.06), abs=1e-5)
 
 
-def test_a_square_has_four_corners_and_two_upright_edges():
+def test_square_has_four_corners_and_two_upright_edges():
     square = np.zeros((40, 40))
     square[10:30, 12:28] = 1
     response = harris_response(square)
@@ -55,7 +55,7 @@ def test_a_square_has_four_corners_and_two_upright_edges():
     assert np.abs(middle[:, :1] - [12, 27]).min(axis=1).max() <= 1
 
 
-def test_corners_come_strongest_first_and_no_more_than_asked():
+def test_corners_are_sorted_by_strength_and_limited_in_number():
     response = harris_response(np.random.default_rng(1).random((50, 50)))
     found = corners(response, 0.0, most=7)
     values = response[found[:, 1], found[:, 0]]
@@ -65,7 +65,7 @@ def test_corners_come_strongest_first_and_no_more_than_asked():
 
 
 @pytest.mark.parametrize("shape", [(1, 1), (1, 9), (9, 1), (20, 20)])
-def test_nothing_to_find_in_a_flat_picture(shape):
+def test_flat_picture_has_no_features(shape):
     response = harris_response(np.full(shape, 0.3, np.float32))
     assert response.shape == shape
     assert len(corners(response, least_response(0.001), 10)) == 0

@@ -23,7 +23,7 @@ MAKERS = [
 
 
 @pytest.mark.parametrize("make", MAKERS, ids=["sift", "flow", "corners"])
-class TestMakers:
+class TestMatchers:
     def test_most_matches_are_right_to_a_tenth_of_a_pixel(self, make):
         scene = Scene(wall_px=6.4, box_px=13.7)
         left, right = make(scene.left(), scene.right())
@@ -33,12 +33,12 @@ class TestMakers:
         assert np.median(error) < 0.15
 
     @pytest.mark.parametrize("shape", [(1, 1), (1, 50), (50, 1), (10, 10), (64, 64)])
-    def test_a_flat_picture_has_none(self, make, shape):
+    def test_flat_picture_has_no_matches(self, make, shape):
         flat = np.full(shape, 0.5, np.float32)
         assert len(make(flat, flat).left_px) == 0
 
 
-def test_large_pictures_are_matched_reduced_and_measured_in_full(monkeypatch):
+def test_large_pictures_are_matched_reduced_and_refined_in_full(monkeypatch):
     monkeypatch.setattr("tangible_depth.sparse.matches.MOST_PIXELS", 20_000)
     scene = Scene((240, 320), 6.4, 13.7)
     matches = sift_matches(scene.left(), scene.right())
@@ -47,21 +47,21 @@ def test_large_pictures_are_matched_reduced_and_measured_in_full(monkeypatch):
     assert np.median(np.abs(error)) < 0.2
 
 
-def test_vertical_offset_is_down():
+def test_row_offset_is_positive_downwards():
     assert Matches(np.array([[1.0, 2]]), np.array([[5.0, 6]])).row_offset_px == [4]
 
 
 @pytest.mark.parametrize("peak", [-0.5, -0.2, 0.0, 0.4])
-def test_a_parabola_peaks_where_it_was_put(peak):
+def test_parabola_gives_its_peak(peak):
     before, at, after = (3 - 2 * (np.array([x]) - peak) ** 2 for x in (-1, 0, 1))
     assert parabola(before, at, after) == pytest.approx([peak])
 
 
-def test_a_valley_or_a_line_has_no_peak():
+def test_valley_or_line_has_no_peak():
     assert parabola(np.array([2.0, 1.0]), np.array([1.0, 2.0]), np.array([2.0, 3.0])) == pytest.approx([0, 0])
 
 
-def test_normalised_windows_are_blind_to_gain_and_offset_and_zero_where_flat():
+def test_normalised_windows_ignore_gain_and_offset_and_are_zero_if_flat():
     grey = np.random.default_rng(0).random((20, 20)).astype(np.float32)
     points = np.array([[0, 0], [10, 7], [19, 19]])
     windows = normalised_windows(grey, points, 2)
@@ -78,12 +78,12 @@ def test_inverse_lengths_are_those_of_the_windows():
     assert inverse_lengths(np.full((9, 11), 0.7, np.float32), 2).max() == 0
 
 
-def test_a_dim_picture_is_stretched_and_a_flat_one_is_not():
+def test_dim_picture_is_stretched_and_flat_one_is_not():
     assert stretch8(np.array([[0.1, 0.2, 0.15]], np.float32)).tolist() == [[0, 255, 128]]
     assert stretch8(np.array([[0.3, 0.3]], np.float32)).tolist() == [[0, 0]]
 
 
-def test_the_order_of_a_sum_does_not_matter_to_a_score():
+def test_score_is_independent_of_the_order_of_its_sum():
     random = np.random.default_rng(0)
     grey = random.random((60, 80), np.float32)
     points = np.column_stack([random.integers(0, 80, 300), random.integers(0, 60, 300)])

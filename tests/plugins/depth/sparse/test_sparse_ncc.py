@@ -20,7 +20,7 @@ def every(shape, step, margin):
 
 
 @pytest.mark.parametrize(("wall", "box"), [(6.0, 14.0), (6.3, 13.6), (-9.0, 4.5)])
-def test_disparities_of_a_known_scene(wall, box):
+def test_known_scene_gives_its_disparities(wall, box):
     scene = Scene(wall_px=wall, box_px=box)
     points = every(scene.shape, 5, 20)
     disparity, score = search(scene.left(), scene.right(), points, -15, 20)
@@ -32,7 +32,7 @@ def test_disparities_of_a_known_scene(wall, box):
     assert ((score >= 0) & (score <= 1 + 1e-5)).all()
 
 
-def test_the_score_is_the_correlation_and_blind_to_exposure():
+def test_score_is_the_correlation_for_any_exposure():
     random = np.random.default_rng(0)
     left = random.random((11, 40)).astype(np.float32)
     right = np.roll(left, -3, axis=1) * 0.5 + 0.1
@@ -44,7 +44,7 @@ def test_the_score_is_the_correlation_and_blind_to_exposure():
     assert search(left, noisy, np.array([[20, 5]]), 3, 3)[1] == pytest.approx([np.corrcoef(a, b)[0, 1]], abs=1e-5)
 
 
-def test_flat_windows_and_ranges_out_of_the_picture_are_unknown():
+def test_flat_windows_and_ranges_beyond_the_picture_are_unknown():
     flat = np.full((20, 20), 0.4, np.float32)
     disparity, score = search(flat, flat, np.array([[10, 10], [0, 0]]), 0, 5)
     assert np.isnan(disparity).all()
@@ -53,6 +53,6 @@ def test_flat_windows_and_ranges_out_of_the_picture_are_unknown():
     assert np.isnan(search(random, random, np.array([[3, 3]]), 10, 15)[0]).all()
 
 
-def test_no_points():
+def test_search_without_points_is_empty():
     grey = np.zeros((5, 5), np.float32)
     assert search(grey, grey, np.empty((0, 2), np.int64), 0, 3)[0].size == 0

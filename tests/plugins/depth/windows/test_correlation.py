@@ -13,7 +13,7 @@ from tangible_core.errors import PictureError
 from tangible_depth.dense.span import UNKNOWN, Span
 from tangible_depth.matching.window_matching import LEAST_VARIANCE
 from tangible_depth.search.pairs import Pair
-from tangible_depth.sgm.strips import blank
+from tangible_depth.sgm.strips import unknown_matches
 from tangible_depth.simd.lanes import Lanes
 from tangible_depth.windows.correlation import correlate_strip
 from tangible_depth.windows.odd import WindowSide
@@ -23,7 +23,7 @@ WINDOWS = arrays(np.float64, (5, 5), elements=st.integers(0, 255).map(float))
 
 
 @given(WINDOWS, WINDOWS, st.floats(0.1, 9), st.floats(-50, 50))
-def test_the_matching_value_ignores_gain_and_offset(one, other, gain, offset):
+def test_matching_value_ignores_gain_and_offset(one, other, gain, offset):
     value = matching_value(one, other)
     if np.ptp(one) == 0 or np.ptp(other) == 0:
         assert np.isnan(value)
@@ -35,7 +35,7 @@ def test_the_matching_value_ignores_gain_and_offset(one, other, gain, offset):
     assert matching_value(one, -one) == pytest.approx(-1)
 
 
-def test_the_matching_value_is_the_correlation_coefficient():
+def test_matching_value_is_the_correlation_coefficient():
     one, other = np.random.default_rng(0).normal(size=(2, 7, 7))
     assert matching_value(one, other) == pytest.approx(np.corrcoef(one.ravel(), other.ravel())[0, 1])
 
@@ -61,10 +61,10 @@ def plain_scores(left, right, span, side, squared):
 @pytest.mark.parametrize("squared", [None, True])
 @pytest.mark.parametrize("span", [Span(0, 12), Span(-4, 9), Span(-9, -2), Span(-3, 40)])
 @pytest.mark.parametrize("side", [3, 5])
-def test_scores_are_exact_and_the_best_of_both_views_agree(squared, span, side):
+def test_scores_are_exact_and_mutual_best_are_accepted(squared, span, side):
     views, _, _ = step(shape=(12, 48), back=2, front=6, box=(3, 9, 14, 34))
     pair = Pair(np.asarray(views.left), np.asarray(views.right))
-    disparity, _ = blank(pair.left.shape)
+    disparity, _ = unknown_matches(pair.left.shape)
     tops = np.full(pair.left.shape, -1e30, np.float32)
     how = (side // 2, span, np.float32(-1e29 if squared else 0.0), LEAST_VARIANCE)
     correlate_strip(Lanes(span.lanes), squared, *pair, (0, 12), *how, disparity, tops)
@@ -82,7 +82,7 @@ def test_scores_are_exact_and_the_best_of_both_views_agree(squared, span, side):
 
 @pytest.mark.parametrize("name", ["zncc", "ssd"])
 @pytest.mark.parametrize("offset", [4.0, 7.25, 11.6])
-def test_a_plane_is_found_to_a_fraction_of_a_pixel(name, offset):
+def test_plane_is_matched_to_a_fraction_of_a_pixel(name, offset):
     views, truth = slanted(offset=offset)
     found = load_method("depth", name)(max_disparity_px=32).estimate(views)
     assert np.median(np.abs(found.disparity_px - truth)) <= 0.07
@@ -90,7 +90,7 @@ def test_a_plane_is_found_to_a_fraction_of_a_pixel(name, offset):
 
 
 @pytest.mark.parametrize("name", ["zncc", "ssd"])
-def test_a_step_is_found_and_filled(name):
+def test_step_is_matched_and_filled(name):
     views, truth, hidden = step()
     method = load_method("depth", name)
     found = method(max_disparity_px=32).estimate(views)

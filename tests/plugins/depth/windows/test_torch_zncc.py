@@ -20,7 +20,7 @@ def test_scores_are_correlations_of_windows():
         assert volume[0, d + 2, y, x].item() == pytest.approx(np.corrcoef(*windows)[0, 1], abs=1e-9)
 
 
-def test_what_is_out_of_the_picture_or_flat_has_no_score():
+def test_flat_or_outside_windows_have_no_score():
     left, right = random_pair(1, 1, 6, 8)
     volume = scores(left, right, -1, 3, 3)
     assert (volume[0, 4, :, :3] == OUTSIDE).all()
@@ -30,14 +30,14 @@ def test_what_is_out_of_the_picture_or_flat_has_no_score():
 
 
 @pytest.mark.slow
-def test_gradients_are_right():
+def test_gradients_of_scores_are_right():
     left, right = random_pair(1, 1, 4, 5)
     torch.autograd.gradcheck(
         lambda a, b: torch.softmax(5.0 * scores(a, b, 0, 2, 3), dim=1), (left.requires_grad_(), right.requires_grad_())
     )
 
 
-def test_a_shift_is_found_below_the_pixel_and_checked_from_the_right():
+def test_shift_is_found_to_sub_pixel_and_checked_from_the_right():
     scene = Scene(wall_px=5.4, box_px=12.7)
     left, right = (torch.from_numpy(grey)[None, None] for grey in (scene.left(), scene.right()))
     found = match(left, right, 0, 20, 7)
@@ -50,7 +50,7 @@ def test_a_shift_is_found_below_the_pixel_and_checked_from_the_right():
     assert ((found.score >= 0) & (found.score <= 1)).all()
 
 
-def test_the_left_right_check_is_exact():
+def test_left_right_check_is_exact():
     # Left pixel 1 matches right pixel 0 at 0.9, left pixel 0 the same at 0.5: only the better one stays.
     volume = torch.full((1, 2, 1, 2), OUTSIDE)
     volume[0, 0, 0, 0], volume[0, 1, 0, 1], volume[0, 0, 0, 1] = 0.5, 0.9, 0.1
@@ -60,7 +60,7 @@ def test_the_left_right_check_is_exact():
     assert found.score[0, 0].tolist() == pytest.approx([0, 0.9])
 
 
-def test_strips_and_batches_change_nothing():
+def test_strips_and_batches_give_the_same_result():
     pair = random_pair(3, 1, 40, 30, dtype=torch.float32)
     whole = match(*pair, -3, 9, 5)
     strips = match(*pair, -3, 9, 5, memory_mb=0)
@@ -70,7 +70,7 @@ def test_strips_and_batches_change_nothing():
     assert torch.allclose(alone.disparity_px[0], whole.disparity_px[1], atol=1e-4, equal_nan=True)
 
 
-def test_agrees_with_the_compiled_search():
+def test_torch_search_agrees_with_the_compiled_one():
     from tangible_depth.sparse.matches import inverse_lengths
     from tangible_depth.sparse.sparse_ncc import match_rows
 

@@ -1,9 +1,6 @@
-"""Disparity where none was found, from the nearest known pixels on eight sides: what `effort: best` fills with.
+"""Filling from eight directions, for `effort: best`: as `four_directions`, with the four diagonals as well."""
 
-As `filling`, with the four diagonals besides.
-"""
-
-# ruff: noqa: ANN001, ANN202 -- numba finds the types of what it compiles; the docstrings say them
+# ruff: noqa: ANN001, ANN202 -- numba infers the types of kernels; their docstrings give them
 
 from collections.abc import Iterable
 
@@ -15,21 +12,20 @@ from tangible_core.compiled.compiling import KERNEL, inner
 from tangible_core.compiled.threads import in_blocks, in_turns
 
 from ..span import UNKNOWN
-from .candidates import DETOUR, or_never, score, seen_from_the_right
+from .candidates import GEODESIC_SCORE, known_or_nearest, project_to_right, score_candidate
 from .four_directions import fill_from_four_directions
-from .geodesic import detours
+from .geodesic import geodesic_candidates
 
-DIAGONAL = -0.9
+DIAGONAL_SCORE = -0.9
+"""Term of a diagonal candidate in its score."""
 HALF = 4
-"""Sides seen from one end of the picture, mirrored from the other: in the row, straight on, and two diagonals."""
+"""Directions of one scan: within the row, straight up, and two diagonals; the scan back has the opposite ones."""
 LONGEST_PATH = 65535
+"""Longest path told apart, in grey levels: 16 bits."""
 
 
 def fill_from_eight_directions(disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "h w"]) -> np.ndarray:
-    """The map with every UNKNOWN pixel filled; known pixels keep their value, a map without any stays as it is.
-
-    disparity is in sixteenths of a pixel.
-    """
+    """Fill every UNKNOWN pixel of a map in sixteenths of a pixel; a map without any known pixel stays as it is."""
     h, w = disparity.shape
     before = np.concatenate([[0], np.cumsum(np.count_nonzero(disparity == UNKNOWN, axis=1))])
     missing = int(before[-1])
@@ -40,23 +36,23 @@ def fill_from_eight_directions(disparity: Int16[np.ndarray, "h w"], grey: UInt8[
     def look(ends: Iterable[tuple[int, int]]) -> None:
         for end, step in ends:
             carried, steps = np.empty((2, HALF, w), np.int16), np.empty((2, HALF, w), np.int32)
-            _look(disparity, grey, step, carried, steps, values[end], paths[end])
+            _scan(disparity, grey, step, carried, steps, values[end], paths[end])
 
     in_turns([(0, 1), (1, -1)], look)
     out = disparity.copy()
-    found = detours(disparity, grey)
+    found = geodesic_candidates(disparity, grey)
 
     def choose(y0: int, y1: int) -> None:
         seen, columns = np.empty(w + 2, np.int16), np.empty(w, np.int32)
         _choose_rows(disparity, values, paths, *found, seen, columns, y0, y1, before[y0], out)
 
     in_blocks(h, choose)
-    return fill_from_four_directions(out, grey)  # some saw nothing on any side
+    return fill_from_four_directions(out, grey)  # some have no known pixel in any direction
 
 
 @njit(**KERNEL)
-def _look(disparity, grey, step, carried, steps, values, paths):
-    """What each UNKNOWN pixel sees on four sides, those passed on the way from the first (step 1) or last pixel."""
+def _scan(disparity, grey, step, carried, steps, values, paths):
+    """Find the candidates of each UNKNOWN pixel in four directions, scanning from the first (step 1) or last pixel."""
     h, w = disparity.shape
     at = 0 if step > 0 else values.shape[0] - 1
     for i in range(h):
@@ -84,31 +80,34 @@ def _look(disparity, grey, step, carried, steps, values, paths):
 
 
 @njit(**KERNEL)
-def _choose_rows(disparity, values, paths, first, detoured, lengths, seen, columns, y0, y1, at, out):
-    """Rows y0..y1-1, the first gap of which is number `at`."""
+def _choose_rows(disparity, values, paths, first, ends, lengths, seen, columns, y0, y1, at, out):
+    """Fill rows y0..y1-1, whose first UNKNOWN pixel is number `at`."""
     w = disparity.shape[1]
     for y in range(y0, y1):
-        seen_from_the_right(disparity[y], columns, seen)
+        project_to_right(disparity[y], columns, seen)
         for x in range(w):
             if disparity[y, x] == UNKNOWN:
-                detour, length = (detoured[y, x], lengths[y, x]) if x < first[y] else (UNKNOWN, int32(0))
-                out[y, x] = _choose(values[:, at], paths[:, at], detour, length, x, seen)
+                geodesic, length = (ends[y, x], lengths[y, x]) if x < first[y] else (UNKNOWN, int32(0))
+                out[y, x] = _choose(values[:, at], paths[:, at], geodesic, length, x, seen)
                 at += 1
 
 
 @inner()
-def _choose(values, paths, detour, length, x, seen):
-    """The candidate of the highest score; UNKNOWN if there is none."""
-    row_farthest = min(or_never(values[0, 0]), or_never(values[1, 0]))
-    farthest = min(row_farthest, or_never(detour))
+def _choose(values, paths, geodesic, length, x, seen):
+    """Return the candidate of the highest score; UNKNOWN without one."""
+    row_farthest = min(known_or_nearest(values[0, 0]), known_or_nearest(values[1, 0]))
+    farthest = min(row_farthest, known_or_nearest(geodesic))
     for side in range(1, HALF):
-        farthest = min(farthest, or_never(values[0, side]), or_never(values[1, side]))
-    best, best_score = detour, score(int32(detour), length, farthest, row_farthest, x, seen) + np.float32(DETOUR)
+        farthest = min(farthest, known_or_nearest(values[0, side]), known_or_nearest(values[1, side]))
+    best, best_score = (
+        geodesic,
+        score_candidate(int32(geodesic), length, farthest, row_farthest, x, seen) + np.float32(GEODESIC_SCORE),
+    )
     for k in range(2 * HALF):
         end, side = k & 1, k >> 1
         value = int32(values[end, side])
-        rated = score(value, paths[end, side], farthest, row_farthest, x, seen)
-        rated += np.float32(DIAGONAL) * np.float32(side & 1)
+        rated = score_candidate(value, paths[end, side], farthest, row_farthest, x, seen)
+        rated += np.float32(DIAGONAL_SCORE) * np.float32(side & 1)
         if value != UNKNOWN and rated > best_score:
             best, best_score = np.int16(value), rated
     return best

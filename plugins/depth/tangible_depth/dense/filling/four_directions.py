@@ -1,10 +1,10 @@
-"""Disparity where none was found: from the known pixels round a gap.
+"""Filling from four directions, for `effort: balanced` and for all methods other than `semi-global`.
 
-The four nearest known neighbours (left, right, above, below) are the candidates for a pixel, each with the grey steps
-crossed on the way from it, and at the left border what a detour leads to; `candidates` judges them.
+The candidates of a pixel are its nearest known neighbours to the left, right, above and below, each with the grey steps
+crossed on the path from it, and at the left border the geodesic candidate; `candidates` scores them.
 """
 
-# ruff: noqa: ANN001, ANN201, ANN202 -- numba finds the types of what it compiles; the docstrings say them
+# ruff: noqa: ANN001, ANN201, ANN202 -- numba infers the types of kernels; their docstrings give them
 
 from typing import NamedTuple
 
@@ -16,31 +16,29 @@ from tangible_core.compiled.compiling import KERNEL, inner
 from tangible_core.compiled.threads import in_blocks
 
 from ..span import UNKNOWN
-from .candidates import ALIKE, DETOUR, NEVER, or_never, score, seen_from_the_right
-from .geodesic import detours
+from .candidates import GEODESIC_SCORE, NEAREST, SAME_SURFACE, known_or_nearest, project_to_right, score_candidate
+from .geodesic import geodesic_candidates
 
-LEFT, RIGHT, ABOVE, BELOW, ROUND = range(5)
+LEFT, RIGHT, ABOVE, BELOW, GEODESIC = range(5)
+"""Indices of the candidates."""
 SHORT = 2
-"""Columns of a gap that is closed without asking, where both ends are alike."""
+"""Widest gap, in columns, that takes the farther end without scoring if both ends are of one surface."""
 
 
 def fill_from_four_directions(
     disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "h w"]
 ) -> Int16[np.ndarray, "h w"]:
-    """The map with every UNKNOWN pixel filled; known pixels keep their value, a map without any stays as it is.
-
-    disparity is in sixteenths of a pixel.
-    """
+    """Fill every UNKNOWN pixel of a map in sixteenths of a pixel; a map without any known pixel stays as it is."""
     filled, left_over = _fill_once(disparity, grey)
-    if 0 < left_over < filled.size:  # some saw nothing along their row and column
+    if 0 < left_over < filled.size:  # some have no known pixel in their row and column
         filled, _ = _fill_once(filled, grey)
     return filled
 
 
 def _fill_once(disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "h w"]) -> tuple[np.ndarray, int]:
-    """The map filled, and how many pixels could not be."""
+    """Return the filled map, and the number of pixels left UNKNOWN."""
     out = np.empty_like(disparity)
-    found = detours(disparity, grey)
+    found = geodesic_candidates(disparity, grey)
     left_over: list[int] = []
 
     def block(y0: int, y1: int) -> None:
@@ -51,7 +49,7 @@ def _fill_once(disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "h w
 
 
 class _Scratch(NamedTuple):
-    """What filling some rows writes on."""
+    """Scratch memory for filling a block of rows."""
 
     sides: Int16[np.ndarray, "5 w"]
     paths: Int32[np.ndarray, "5 w"]
@@ -65,8 +63,8 @@ class _Scratch(NamedTuple):
 
 def _scratch(rows: int, w: int) -> _Scratch:
     return _Scratch(
-        np.empty((ROUND + 1, w), np.int16),
-        np.empty((ROUND + 1, w), np.int32),
+        np.empty((GEODESIC + 1, w), np.int16),
+        np.empty((GEODESIC + 1, w), np.int32),
         np.empty((rows, w), np.int16),
         np.empty((rows, w), np.int32),
         np.empty(w + 2, np.int16),
@@ -78,7 +76,7 @@ def _scratch(rows: int, w: int) -> _Scratch:
 
 @njit(**KERNEL)
 def _fill_rows(disparity, grey, y0, y1, found, scratch, out):
-    """Rows y0..y1-1; how many of their pixels could not be filled."""
+    """Fill rows y0..y1-1; return the number of their pixels left UNKNOWN."""
     w = disparity.shape[1]
     left_over = 0
     sides, paths, below, below_path, seen, columns, edges, missing = scratch
@@ -90,15 +88,20 @@ def _fill_rows(disparity, grey, y0, y1, found, scratch, out):
         _copy(below[y - y0], sides[BELOW])
         _copy(below_path[y - y0], paths[BELOW])
         _copy(disparity[y], out[y])
-        seen_from_the_right(disparity[y], columns, seen)
+        project_to_right(disparity[y], columns, seen)
         for gap in range(0, _edges_of_gaps(disparity[y], edges), 2):
             start, stop = edges[gap], edges[gap + 1]
-            if stop - start <= SHORT and start > 0 and stop < w and _alike(disparity[y, start - 1], disparity[y, stop]):
+            if (
+                stop - start <= SHORT
+                and start > 0
+                and stop < w
+                and _same_surface(disparity[y, start - 1], disparity[y, stop])
+            ):
                 for x in range(start, stop):  # one of the many gaps between whole disparities
                     out[y, x] = min(disparity[y, start - 1], disparity[y, stop])
             else:
                 _scan_gap(disparity[y], grey[y], start, stop, sides, paths)
-                _go_round(found, y, start, stop, sides, paths)
+                _offer_geodesic(found, y, start, stop, sides, paths)
                 for x in range(start, stop):
                     out[y, x] = choose_of_four(sides, paths, x, seen)
                     left_over += out[y, x] == UNKNOWN
@@ -106,27 +109,27 @@ def _fill_rows(disparity, grey, y0, y1, found, scratch, out):
 
 
 @inner()
-def _alike(a, b):
-    """Whether two known disparities may be of one surface."""
-    return abs(int32(a) - int32(b)) <= ALIKE
+def _same_surface(a, b):
+    """Test whether two known disparities may belong to one surface."""
+    return abs(int32(a) - int32(b)) <= SAME_SURFACE
 
 
 @inner()
 def choose_of_four(sides, paths, x, seen):
-    """The candidate of the highest score; UNKNOWN if there is none."""
+    """Return the candidate of the highest score; UNKNOWN without one."""
     left, right, above, below = sides[LEFT, x], sides[RIGHT, x], sides[ABOVE, x], sides[BELOW, x]
-    detour = sides[ROUND, x]
-    row_farthest = min(or_never(left), or_never(right))
-    farthest = min(row_farthest, or_never(above), or_never(below), or_never(detour))
-    if farthest == NEVER:
+    geodesic = sides[GEODESIC, x]
+    row_farthest = min(known_or_nearest(left), known_or_nearest(right))
+    farthest = min(row_farthest, known_or_nearest(above), known_or_nearest(below), known_or_nearest(geodesic))
+    if farthest == NEAREST:
         return UNKNOWN
-    if max(left, right, above, below, detour) - farthest <= ALIKE:
-        return np.int16(farthest if row_farthest == NEVER else row_farthest)
+    if max(left, right, above, below, geodesic) - farthest <= SAME_SURFACE:
+        return np.int16(farthest if row_farthest == NEAREST else row_farthest)
     best, best_score = UNKNOWN, np.float32(-1e9)
-    for side in range(ROUND + (detour != UNKNOWN)):
+    for side in range(GEODESIC + (geodesic != UNKNOWN)):
         value = int32(sides[side, x])
-        rated = score(value, paths[side, x], farthest, row_farthest, x, seen)
-        rated += np.float32(DETOUR) * np.float32(side == ROUND)
+        rated = score_candidate(value, paths[side, x], farthest, row_farthest, x, seen)
+        rated += np.float32(GEODESIC_SCORE) * np.float32(side == GEODESIC)
         best = np.int16(value) if rated > best_score else best
         best_score = max(rated, best_score)
     return best
@@ -134,7 +137,7 @@ def choose_of_four(sides, paths, x, seen):
 
 @inner()
 def _edges_of_gaps(row, edges):
-    """Each gap's first column and the one after its last; how many numbers that are. Without a branch to guess."""
+    """Write each gap's first column and the one after its last; return their number. Without unpredictable branches."""
     count = 0
     inside = False
     for x in range(row.size):
@@ -147,14 +150,14 @@ def _edges_of_gaps(row, edges):
 
 @inner()
 def _copy(row, out):
-    """As `out[:] = row`, which numba does column by column."""
+    """Copy a row; numba's `out[:] = row` is slower, as it is not vectorised."""
     for x in range(row.size):
         out[x] = row[x]
 
 
 @inner()
 def _carry(row, grey, next_grey, carried, path):
-    """Step from one row to the next: what is known there starts afresh, the rest goes on with its path."""
+    """Step from one row to the next: a known pixel starts a new path, all other paths go on."""
     for x in range(row.size):
         known = row[x] != UNKNOWN
         carried[x] = row[x] if known else carried[x]
@@ -163,7 +166,7 @@ def _carry(row, grey, next_grey, carried, path):
 
 @inner()
 def _start(carried, path):
-    """Nothing known so far."""
+    """Start a scan with no known value."""
     for x in range(carried.size):
         carried[x] = UNKNOWN
         path[x] = 0
@@ -171,7 +174,7 @@ def _start(carried, path):
 
 @inner()
 def _scan_up(disparity, grey, y0, y1, below, path, carried, steps, missing):
-    """The nearest known value below each pixel of rows y0..y1-1, and the grey steps on the way."""
+    """Find the nearest known value below each pixel of rows y0..y1-1, and the grey steps on the path."""
     h = disparity.shape[0]
     _start(carried, steps)
     last = min(_reach(disparity, y1, 1, missing), h - 1)
@@ -186,7 +189,7 @@ def _scan_up(disparity, grey, y0, y1, below, path, carried, steps, missing):
 
 @inner()
 def _start_above(disparity, grey, y0, carried, path, missing):
-    """The state of a downward scan that has reached row y0 - 1."""
+    """Bring a downward scan to row y0 - 1."""
     _start(carried, path)
     for y in range(max(_reach(disparity, y0 - 1, -1, missing), 0), y0 - 1):
         _carry(disparity[y], grey[y], grey[y + 1], carried, path)
@@ -194,7 +197,7 @@ def _start_above(disparity, grey, y0, carried, path, missing):
 
 @inner()
 def _reach(disparity, y, step, missing):
-    """The row at which, from row y on, every column has shown a known value; past the picture if some show none."""
+    """Return the row at which, from row y on, every column has had a known value; beyond the picture without one."""
     for x in range(missing.size):
         missing[x] = True
     while 0 <= y < disparity.shape[0]:
@@ -210,7 +213,7 @@ def _reach(disparity, y, step, missing):
 
 @inner()
 def _scan_gap(row, grey, start, stop, sides, paths):
-    """What the known pixels at both ends of a gap offer to each pixel in it."""
+    """Offer the known pixels at both ends of a gap to each pixel in it."""
     w = row.size
     left = row[start - 1] if start > 0 else UNKNOWN
     path = int32(0)
@@ -226,9 +229,9 @@ def _scan_gap(row, grey, start, stop, sides, paths):
 
 
 @inner()
-def _go_round(found, y, start, stop, sides, paths):
-    """What detours offer to each pixel of a gap: something at the left border only."""
+def _offer_geodesic(found, y, start, stop, sides, paths):
+    """Offer the geodesic candidates to each pixel of a gap; there are some at the left border only."""
     for x in range(start, stop):
         at_border = x < found.first[y]
-        sides[ROUND, x] = found.values[y, x] if at_border else UNKNOWN
-        paths[ROUND, x] = found.lengths[y, x] if at_border else int32(0)
+        sides[GEODESIC, x] = found.values[y, x] if at_border else UNKNOWN
+        paths[GEODESIC, x] = found.lengths[y, x] if at_border else int32(0)

@@ -1,13 +1,12 @@
-"""What a pixel at the left border, where the right view ends, has in common with known ones round a corner.
+"""Candidates at the left border by geodesic distance: the path of least grey change to a known pixel.
 
-Nothing that the right view does not show is known there, and a wide strip may have no known pixel straight on that
-is of the same surface. So the way that crosses the fewest grey steps is followed, whatever way it turns: the geodesic
-distance, by two sweeps to and fro as in a chamfer transform.
+The right view does not show the left border, so a wide strip there has no matches, and no known pixel of its surface
+may lie straight ahead. The geodesic path may turn; two sweeps, forth and back as in a chamfer transform, find it.
 Source of the sweeps: Toivanen, New geodesic distance transforms for gray-scale images, Pattern Recognition Letters 17,
 1996.
 """
 
-# ruff: noqa: ANN001, ANN202 -- numba finds the types of what it compiles; the docstrings say them
+# ruff: noqa: ANN001, ANN202 -- numba infers the types of kernels; their docstrings give them
 
 from typing import NamedTuple
 
@@ -20,24 +19,26 @@ from tangible_core.compiled.compiling import KERNEL
 from ..span import UNKNOWN
 
 PER_PIXEL = 1
-"""Length of a step to a neighbour of the same grey, in grey levels."""
+"""Length of a step to a neighbour of equal grey, in grey levels."""
 SWEEPS = (-1, 1)
-"""From the last pixel to the first, where what is known lies ahead, and back."""
+"""Directions of the sweeps: from the last pixel to the first, as known pixels lie to the right, and back."""
 NO_WAY = np.int32(1 << 28)
+"""Length where no path leads to a known pixel, in grey levels: longer than any path."""
 
 
-class Detours(NamedTuple):
-    """For each pixel before the first known one of its row: what the shortest way leads to, and its length."""
+class GeodesicCandidates(NamedTuple):
+    """Disparity at the end of the shortest path of each pixel before the first known one of its row."""
 
     first: Int64[np.ndarray, " h"]
-    """The first known column of each row; 0 where there is none, as nothing then tells how far the border reaches."""
+    """The first known column of each row; 0 without one, as the width of the border is unknown there."""
     values: Int16[np.ndarray, "h columns"]
+    """The disparities, in sixteenths of a pixel, UNKNOWN without a path."""
     lengths: Int32[np.ndarray, "h columns"]
-    """In grey levels."""
+    """The lengths of the paths, in grey levels."""
 
 
-def detours(disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "h w"]) -> Detours:
-    """UNKNOWN where no way leads to anything known. disparity is in sixteenths of a pixel."""
+def geodesic_candidates(disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "h w"]) -> GeodesicCandidates:
+    """Find the candidates of a map in sixteenths of a pixel; UNKNOWN where no path leads to a known pixel."""
     known = disparity != UNKNOWN
     first = known.argmax(axis=1)
     part = slice(None), slice(int(first.max()) + 1)
@@ -46,12 +47,12 @@ def detours(disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "h w"])
     greys = np.pad(grey[part].astype(np.int32), 1)
     for step in SWEEPS:
         _sweep(greys, first, step, values, lengths)
-    return Detours(first, values[1:-1, 1:-1], lengths[1:-1, 1:-1])
+    return GeodesicCandidates(first, values[1:-1, 1:-1], lengths[1:-1, 1:-1])
 
 
 @njit(**KERNEL)
 def _sweep(grey, first, step, values, lengths):
-    """All with a margin of one pixel, which no way leads through; nor does any through a gap further on in a row."""
+    """Shorten the paths in one sweep; arrays have a margin of one pixel. No path crosses the margin or a later gap."""
     h = first.size
     for i in range(h):
         y = i + 1 if step > 0 else h - i

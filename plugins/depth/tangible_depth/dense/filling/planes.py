@@ -1,11 +1,11 @@
-"""Surfaces go on into gaps as they lie: by the plane through what is known of them.
+"""Plane fitting for `effort: best`: a slanted surface goes on through a gap with its slope.
 
-A gap that is filled with the value of a neighbour is flat, whatever the slope of the surface. Here each filled pixel is
-put onto a plane: that of least squares through the known pixels round it that are of its surface, by their disparity
-and their grey. A ridge holds the slopes near 0 where these pixels lie too close together to tell them.
+A gap that is filled with a neighbour's value is flat, whatever the slope of the surface. Here each filled pixel is put
+onto the least-squares plane through the known pixels near it that are of its surface, by disparity and by grey. A ridge
+keeps the slopes near 0 where these pixels lie too close together to determine them.
 """
 
-# ruff: noqa: ANN001, ANN202 -- numba finds the types of what it compiles; the docstrings say them
+# ruff: noqa: ANN001, ANN202 -- numba infers the types of kernels; their docstrings give them
 
 import numpy as np
 from jaxtyping import Int16, UInt8
@@ -18,50 +18,52 @@ from ...simd.lane_reductions import total
 from ...simd.lanes import Lanes, add, load, minimum, multiply, splat, subtract
 from ..span import UNKNOWN
 
-EVERY, COUNT = 4, 12
-"""Every which row and column is sampled, and how many samples round a pixel are looked at either way."""
+EVERY = 4
+"""Distance of the samples, in rows and columns."""
+COUNT = 12
+"""Samples near a pixel along either axis that are used."""
 COLUMNS = np.arange(1 - COUNT, COUNT, 2).astype(np.uint16)
-"""The columns of the samples, in half samples from their middle; what is negative wraps, as all sums do."""
+"""Columns of the samples, in half samples from their middle; negative ones wrap, as all sums do."""
 OF_SURFACE, OF_GREY = 36, 30
-"""Sixteenths of a pixel and grey levels by which a known pixel may differ and still be of the same surface."""
+"""Largest difference to a known pixel of the same surface, in sixteenths of a pixel and in grey levels."""
 RIDGE = 1.0
-"""Square half samples that are added to the variance of the positions, which is 48 where all round is known."""
+"""Ridge added to the variance of the positions, in square half samples; that is 48 where all samples are known."""
 FEWEST = 4
-"""Samples of a surface from which a plane is laid through them."""
+"""Fewest samples that determine a plane."""
 FARTHEST_OFF = 32000
-"""Sixteenths of a pixel from which a value is left alone: in 16 bits it might be taken for UNKNOWN."""
+"""Disparity, in sixteenths of a pixel, from which a value is kept: 16 bits could turn it into UNKNOWN."""
 
 
 def fit_planes(
     disparity: Int16[np.ndarray, "h w"], filled: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "h w"]
 ) -> Int16[np.ndarray, "h w"]:
-    """`filled`, with what is UNKNOWN in `disparity` put onto the plane of its surface; in sixteenths of a pixel."""
+    """Put each pixel of `filled` that is UNKNOWN in `disparity` onto its surface's plane; sixteenths of a pixel."""
     out = filled.copy()
     samples = slice(EVERY // 2, None, EVERY), slice(EVERY // 2, None, EVERY)
     known = np.pad(disparity[samples], COUNT // 2, constant_values=UNKNOWN).view(np.uint16)
     levels = np.pad(grey[samples].astype(np.uint16), COUNT // 2)
 
     def block(y0: int, y1: int) -> None:
-        _lay(disparity, filled, grey, known, levels, COLUMNS, Lanes(COUNT), y0, y1, out)
+        _fit_rows(disparity, filled, grey, known, levels, COLUMNS, Lanes(COUNT), y0, y1, out)
 
     in_blocks(filled.shape[0], block)
     return out
 
 
 @njit(**KERNEL)
-def _lay(disparity, filled, grey, known, levels, columns, lanes, y0, y1, out):
+def _fit_rows(disparity, filled, grey, known, levels, columns, lanes, y0, y1, out):
     for y in range(y0, y1):
         for x in range(filled.shape[1]):
             if disparity[y, x] == UNKNOWN and abs(int32(filled[y, x])) < FARTHEST_OFF:
-                out[y, x] = _on_plane(known, levels, columns, lanes, y, x, int32(filled[y, x]), int32(grey[y, x]))
+                out[y, x] = _fit_pixel(known, levels, columns, lanes, y, x, int32(filled[y, x]), int32(grey[y, x]))
 
 
 @inner()
-def _on_plane(known, levels, columns, lanes, y, x, value, level):
-    """The plane through the samples round (y, x) that are like its value and grey level, at this pixel.
+def _fit_pixel(known, levels, columns, lanes, y, x, value, level):
+    """Return the value at (y, x) of the plane through the samples near it of similar value and grey level.
 
-    Positions i (columns, one a lane) and j (rows) are in half samples, odd numbers from the middle; v is what a sample
-    has more than the value. Every sum fits into 16 bits.
+    Positions i (columns, one a lane) and j (rows) are in half samples, odd numbers from the middle; v is the difference
+    of a sample to the value. Every sum fits into 16 bits.
     """
     top, left = y // EVERY, x // EVERY
     least, darkest = splat(lanes, uint16(OF_SURFACE - value)), splat(lanes, uint16(OF_GREY - level))
@@ -94,7 +96,7 @@ def _on_plane(known, levels, columns, lanes, y, x, value, level):
 
 @inner()
 def _within(lanes, shifted, reach):
-    """1 where an unsigned number is 0 up to 2 reach, 0 elsewhere."""
+    """Return 1 where an unsigned number is in 0..2 reach, 0 elsewhere."""
     bound = splat(lanes, uint16(2 * reach + 1))
     return minimum(subtract(bound, minimum(shifted, bound)), splat(lanes, uint16(1)))
 
@@ -106,5 +108,5 @@ def _sum(lanes):
 
 @inner()
 def _half_samples(pixel, first):
-    """How far a pixel lies from the middle of its samples, the first of which is at this place among all."""
+    """Return the distance of a pixel from the middle of its samples, given the index of the first sample."""
     return (pixel - EVERY * first) * np.float64(2 / EVERY)

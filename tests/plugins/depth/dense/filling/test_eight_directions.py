@@ -6,7 +6,7 @@ from tangible_depth.dense.filling.eight_directions import fill_from_eight_direct
 from tangible_depth.dense.span import UNKNOWN
 
 
-def test_what_is_known_stays_and_what_is_not_is_filled():
+def test_known_pixels_stay_and_unknown_ones_are_filled():
     rng = np.random.default_rng(0)
     disparity = rng.integers(0, 500, (30, 40)).astype(np.int16)
     known = rng.random(disparity.shape) < 0.3
@@ -15,20 +15,20 @@ def test_what_is_known_stays_and_what_is_not_is_filled():
     assert np.isin(filled, disparity[known]).all()
 
 
-def test_a_map_without_any_match_and_one_without_a_gap_stay_as_they_are():
+def test_maps_without_matches_or_without_gaps_stay_unchanged():
     grey = np.zeros((7, 9), np.uint8)
     for value in (UNKNOWN, np.int16(48)):
         disparity = np.full((7, 9), value)
         assert np.array_equal(fill_from_eight_directions(disparity, grey), disparity)
 
 
-def test_one_match_fills_everything():
+def test_single_match_fills_the_map():
     disparity = np.full((9, 11), UNKNOWN)
     disparity[2, 7] = 80
     assert (fill_from_eight_directions(disparity, np.zeros((9, 11), np.uint8)) == 80).all()
 
 
-def test_a_gap_takes_the_surface_that_the_picture_shows_there_though_only_a_diagonal_sees_it():
+def test_gap_takes_the_surface_of_its_grey_from_a_diagonal():
     disparity = np.full((21, 21), np.int16(160))
     grey = np.full((21, 21), 200, np.uint8)
     diagonal = np.eye(21, dtype=bool) | np.eye(21, k=1, dtype=bool) | np.eye(21, k=-1, dtype=bool)
@@ -40,7 +40,7 @@ def test_a_gap_takes_the_surface_that_the_picture_shows_there_though_only_a_diag
     assert (filled[12, 8], filled[8, 12]) == (160, 160)
 
 
-def test_the_farther_side_wins_in_a_row_where_the_picture_says_nothing():
+def test_gap_in_a_uniform_row_takes_the_farther_side():
     disparity = np.full((1, 40), np.int16(16))
     disparity[0, 24:] = 160
     disparity[0, 14:24] = UNKNOWN

@@ -12,7 +12,7 @@ from tangible_core.plugins.interfaces import ForceRenderer, Reshaping, Touch
 from tangible_core.plugins.notes import note
 
 from .borders.distance import border_distance
-from .inner_law import Law, checked, made
+from .effects.inner_law import Law, checked, made
 
 log = logging.getLogger(__name__)
 FEWEST_CELLS = 6

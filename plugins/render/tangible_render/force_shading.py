@@ -28,10 +28,10 @@ class ForceShading(ForceRenderer):
 
     def touch(self, surface: HapticSurface) -> Touch:
         """A new touch on this surface; compiled on the first use on a machine, then loaded."""
-        from . import force_shading_kernels
+        from .kernels import force_shading as kernels
 
         heights = np.ascontiguousarray(surface.height_m, np.float32)
         out = np.ascontiguousarray(np.moveaxis(normals(surface.relief), 2, 0))
         labels, stiffness = stiffness_table(surface, self.stiffness_n_per_m)
         fixed = (heights, out, labels, stiffness, *map(float, surface.extent_m))
-        return CompiledTouch(force_shading_kernels.tick, fixed, stiffness=float(stiffness.max()))
+        return CompiledTouch(kernels.tick, fixed, stiffness=float(stiffness.max()))

@@ -31,8 +31,8 @@ class GreyLevel(ForceRenderer):
 
     def touch(self, surface: HapticSurface) -> Touch:
         """A new touch on this surface; compiled on the first use on a machine, then loaded."""
-        from . import grey_level_kernels
+        from .kernels import grey_level as kernels
 
         heights = np.ascontiguousarray(surface.height_m, np.float32)
         fixed = (heights, grey_levels(heights), *map(float, surface.extent_m), self.force_at_white_n)
-        return CompiledTouch(grey_level_kernels.tick, fixed, stiffness=0.0)
+        return CompiledTouch(kernels.tick, fixed, stiffness=0.0)

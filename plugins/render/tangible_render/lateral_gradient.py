@@ -32,7 +32,7 @@ class LateralGradient(ForceRenderer):
 
     def touch(self, surface: HapticSurface) -> Touch:
         """A new touch on this surface; compiled on the first use on a machine, then loaded."""
-        from . import lateral_kernels
+        from .kernels import lateral as kernels
 
         fixed = (*spline_surface(surface, self.dequantise), self.force_per_slope_n, 0.0)
-        return CompiledTouch(lateral_kernels.tick, fixed, stiffness=0.0)
+        return CompiledTouch(kernels.tick, fixed, stiffness=0.0)

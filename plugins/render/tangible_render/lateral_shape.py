@@ -34,7 +34,7 @@ class LateralShape(ForceRenderer):
 
     def touch(self, surface: HapticSurface) -> Touch:
         """A new touch on this surface; compiled on the first use on a machine, then loaded."""
-        from . import lateral_kernels
+        from .kernels import lateral as kernels
 
         fixed = (*spline_surface(surface, self.dequantise), 0.0, self.stiffness_n_per_m)
-        return CompiledTouch(lateral_kernels.tick, fixed, stiffness=self.stiffness_n_per_m)
+        return CompiledTouch(kernels.tick, fixed, stiffness=self.stiffness_n_per_m)

@@ -38,9 +38,9 @@ class Penalty(ForceRenderer):
 
     def touch(self, surface: HapticSurface) -> Touch:
         """A new touch on this surface; compiled on the first use on a machine, then loaded."""
-        from . import penalty_kernels
+        from .kernels import penalty as kernels
 
         shape = spline_surface(surface, self.dequantise)
         labels, stiffness = stiffness_table(surface, self.stiffness_n_per_m)
         fixed = (*shape, labels, stiffness, self.damping_n_s_per_m)
-        return CompiledTouch(penalty_kernels.tick, fixed, stiffness=float(stiffness.max()))
+        return CompiledTouch(kernels.tick, fixed, stiffness=float(stiffness.max()))

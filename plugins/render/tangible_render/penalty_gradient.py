@@ -32,9 +32,9 @@ class PenaltyGradient(ForceRenderer):
 
     def touch(self, surface: HapticSurface) -> Touch:
         """A new touch on this surface; compiled on the first use on a machine, then loaded."""
-        from . import penalty_gradient_kernels
+        from .kernels import penalty_gradient as kernels
 
         labels, stiffness = stiffness_table(surface, self.stiffness_n_per_m)
         heights = np.ascontiguousarray(surface.height_m, np.float32)
         fixed = (heights, labels, stiffness, *map(float, surface.extent_m), self.damping_n_s_per_m)
-        return CompiledTouch(penalty_gradient_kernels.tick, fixed, stiffness=float(stiffness.max()))
+        return CompiledTouch(kernels.tick, fixed, stiffness=float(stiffness.max()))

@@ -12,8 +12,8 @@ from tangible_core.errors import check_positive
 from tangible_core.haptic_textures.table import bristle_stiffness
 from tangible_core.plugins.interfaces import Film, Filming, ForceRenderer, Touch
 
+from .effects.effects_table import textured
 from .effects.material_table import Row, material_table
-from .effects.table import textured
 from .surface.coefficients import spline_surface
 from .surface.dequantise import Filter
 from .surface.tiles import tile_bounds
@@ -104,9 +104,9 @@ class Proxy(ForceRenderer, Filming):
         return begun(surface, _moving(law.kind), law.arguments, law.memory, spring, float(period_s), float(frame_s))
 
     def _law(self, surface: HapticSurface) -> _Law:
-        from .contact import contact
+        from .contact.approach import REMEMBERED
 
-        memory = np.zeros(contact.REMEMBERED)
+        memory = np.zeros(REMEMBERED)
         if self.texture and (felt := textured(surface, self.friction)):
             labels, table, textures, state = felt
             stiffness = max(float(table[:, 0].max()), bristle_stiffness(textures))
@@ -124,19 +124,19 @@ class Proxy(ForceRenderer, Filming):
 
 def _still(kind: str) -> Tick:
     if kind == "spring":
-        from .proxy_spring_kernels import spring_tick as tick
+        from .kernels.proxy_spring import spring_tick as tick
     elif kind == "materials":
-        from .proxy_kernels import tick
+        from .kernels.proxy import tick
     else:
-        from .proxy_texture_kernels import textured_tick as tick
+        from .kernels.proxy_texture import textured_tick as tick
     return tick
 
 
 def _moving(kind: str) -> Tick:
     if kind == "spring":
-        from .film.spring_kernels import moving_spring_tick as tick
+        from .film.proxy_spring_kernels import moving_spring_tick as tick
     elif kind == "materials":
-        from .film.material_kernels import moving_tick as tick
+        from .film.proxy_kernels import moving_tick as tick
     else:
-        from .film.texture_kernels import moving_textured_tick as tick
+        from .film.proxy_texture_kernels import moving_textured_tick as tick
     return tick

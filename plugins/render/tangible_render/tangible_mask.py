@@ -42,14 +42,14 @@ class TangibleMask(ForceRenderer):
 
     def touch(self, surface: HapticSurface) -> Touch:
         """A new touch on this surface; compiled on the first use on a machine, then loaded."""
-        from . import tangible_mask_kernels
+        from .kernels import tangible_mask as kernels
 
         heights = np.ascontiguousarray(surface.height_m, np.float32)
         across_m, along_m = surface.relief.pitch_m
         columns, rows = self._cells(across_m), self._cells(along_m)
         scales = self._newtons(columns, rows, across_m), self._newtons(rows, columns, along_m)
         fixed = (heights, summed_tables(255 - grey_levels(heights)), *map(float, surface.extent_m))
-        return CompiledTouch(tangible_mask_kernels.tick, (*fixed, rows // 2, columns // 2, *scales), stiffness=0.0)
+        return CompiledTouch(kernels.tick, (*fixed, rows // 2, columns // 2, *scales), stiffness=0.0)
 
     def _cells(self, pitch_m: float) -> int:
         return self.mask_px or max(3, 2 * round((self.mask_m / pitch_m - 1) / 2) + 1)

@@ -12,8 +12,8 @@ from tangible_core.haptic_textures.table import bristle_stiffness
 from tangible_core.materials.assignment import find, library
 from tangible_core.plugins.interfaces import ForceRenderer, PlainTouch, Touch
 
-from .effects.table import ACTING, effects_table, nowhere
-from .inner_law import Law, checked, made
+from .effects.effects_table import ACTING, effects_table, nowhere
+from .effects.inner_law import Law, checked, made
 
 
 def _refusal(cls: type[ForceRenderer]) -> str:
@@ -109,7 +109,7 @@ class PlainWithMaterials(PlainTouch):
 
 
 def _told(law: Touch) -> CompiledTouch:
-    from .effects.told import told
+    from .effects.stub_law import told
 
     return CompiledTouch(told, (np.zeros(6), np.zeros(3)), stiffness=law.stiffness_n_per_m)
 

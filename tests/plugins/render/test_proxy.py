@@ -11,8 +11,9 @@ from tangible_core.data import NO_FORCE, Force, HapticState, HapticSurface, Mate
 from tangible_core.plugins.interfaces import Touch
 from tangible_core.testing.synthetic.reliefs import cliff, cone, waves
 from tangible_core.testing.synthetic.scenes import KnownSurface, plane, ramp, sphere_cap
-from tangible_render.contact import closest, contact
-from tangible_render.contact import held as holding
+from tangible_render.contact import approach as contact
+from tangible_render.contact import closest
+from tangible_render.contact import spring as holding
 from tangible_render.proxy import Proxy
 from tangible_render.surface import spline
 from tangible_render.surface.coefficients import spline_surface

@@ -14,7 +14,7 @@ from tangible_core.plugins.registry import load_method
 from tangible_core.testing.fuzz import MARGIN_M, Worst, fuzz
 from tangible_core.testing.synthetic.rough import rough_surfaces
 from tangible_core.testing.synthetic.scenes import sphere_cap
-from tangible_render.contact.contact import LEAP_M, STRETCH_M
+from tangible_render.contact.approach import LEAP_M, STRETCH_M
 from tangible_render.proxy import Proxy
 from tangible_render.surface.coefficients import spline_coefficients
 from tangible_render.with_materials import WithMaterials

@@ -14,7 +14,7 @@ from tangible_core.materials.assignment import library
 from tangible_core.plugins.interfaces import ForceRenderer
 from tangible_core.testing.synthetic.rough import rough_surfaces
 from tangible_core.testing.synthetic.scenes import ramp
-from tangible_render import proxy_kernels, proxy_spring_kernels, proxy_texture_kernels
+from tangible_render.kernels import proxy, proxy_spring, proxy_texture
 from tangible_render.proxy import Proxy
 from tangible_render.with_materials import WithMaterials
 
@@ -185,11 +185,11 @@ class TestLeftOut:
 
     def test_a_surface_without_textures_is_compiled_without_them(self):
         smooth = replace(GRAINY, roughness_m=0.0)
-        assert touch(Proxy(), level(smooth)).tick is proxy_spring_kernels.spring_tick
-        assert touch(Proxy(), level(replace(smooth, damping_n_s_per_m=1.0))).tick is proxy_kernels.tick
-        assert touch(Proxy(), level(GRAINY)).tick is proxy_texture_kernels.textured_tick
-        assert touch(Proxy(texture=False), level(GRAINY)).tick is proxy_spring_kernels.spring_tick
-        assert touch(Proxy(friction=False), level(RUBBER)).tick is proxy_spring_kernels.spring_tick
+        assert touch(Proxy(), level(smooth)).tick is proxy_spring.spring_tick
+        assert touch(Proxy(), level(replace(smooth, damping_n_s_per_m=1.0))).tick is proxy.tick
+        assert touch(Proxy(), level(GRAINY)).tick is proxy_texture.textured_tick
+        assert touch(Proxy(texture=False), level(GRAINY)).tick is proxy_spring.spring_tick
+        assert touch(Proxy(friction=False), level(RUBBER)).tick is proxy_spring.spring_tick
 
     def test_a_material_that_nowhere_occurs_costs_nothing(self):
         surface = HapticSurface.from_heights(np.full((4, 4), 0.01), 0.08, np.zeros((4, 4), np.int32), (RUBBER, GRAINY))
@@ -197,7 +197,7 @@ class TestLeftOut:
         assert touch(Proxy(texture=False), surface).tick is touch(Proxy(texture=False), alone).tick
         smooth = replace(GRAINY, roughness_m=0.0)
         plain = HapticSurface.from_heights(np.full((4, 4), 0.01), 0.08, np.zeros((4, 4), np.int32), (smooth, RUBBER))
-        assert touch(Proxy(), plain).tick is touch(Proxy(texture=False), plain).tick is proxy_spring_kernels.spring_tick
+        assert touch(Proxy(), plain).tick is touch(Proxy(texture=False), plain).tick is proxy_spring.spring_tick
 
     @pytest.mark.parametrize("material", [GRAINY, RUBBER], ids=lambda each: each.name)
     def test_travelling_changes_nothing(self, material: Material):

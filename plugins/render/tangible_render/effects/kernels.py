@@ -24,7 +24,7 @@ from tangible_core.haptic_textures.table import COUNT, DRAG, HEAD
 from tangible_core.haptic_textures.table import STIFFNESS as STICKS
 from tangible_core.haptic_textures.waves import WAVES
 
-from ..contact.contact import LEAP_M
+from ..contact.approach import LEAP_M
 from ..surface.bilinear import bilinear, cell, over
 
 STIFFNESS, DAMPING, STATIC, DYNAMIC = range(HEAD + 4 * WAVES, HEAD + 4 * WAVES + 4)

@@ -12,9 +12,8 @@ from tangible_core.plugins.interfaces import Film
 
 from ..surface.coefficients import BORDER
 from .coefficients import quick_coefficients
-from .limits import SPEED_M_PER_S, STEP_N
 from .scratch import Scratch
-from .slots import DROPPED, Slots
+from .slots import DROPPED, SPEED_M_PER_S, STEP_N, Slots
 
 
 @final

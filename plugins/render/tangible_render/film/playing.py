@@ -18,7 +18,7 @@ from numba.extending import intrinsic
 from tangible_core.compiled.compiling import KERNEL, inner
 from tangible_core.compiled.touch import FRAME, RISE_M
 
-from ..contact.contact import TOUCHING
+from ..contact.approach import TOUCHING
 from ..surface.spline import height
 
 SLOTS = 3

@@ -7,6 +7,10 @@ from jaxtyping import Float32, Float64, Int64
 
 from ..surface.tiles import tile_bounds
 
+SPEED_M_PER_S = 0.1
+"""No place of a surface moves faster: a hand does not."""
+STEP_N = 0.08
+"""Nor so fast that the spring on a hand at rest changes by more in a tick, which it would feel as a knock."""
 SLOTS = 3
 DROPPED, SHORT = 0, 1
 """In `told`: frames that were never gone to; and from SHORT on, for each slot, whether it ends short of its frame."""

@@ -19,8 +19,8 @@ from numba import float64
 from tangible_core.compiled.compiling import inner
 from tangible_core.compiled.touch import RISE_M
 
-from ..contact.contact import LEAP_M
-from .limits import STEP_N
+from ..contact.approach import LEAP_M
+from .slots import STEP_N
 
 STEADY = float64[::1]
 STIFFNESS, DAMPING, FORCE, HAND, SPEED, LATE, REMEMBERED = 0, 1, 2, 5, 8, 11, 12

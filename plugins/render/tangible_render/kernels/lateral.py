@@ -7,8 +7,8 @@ from numba import float64, njit
 
 from tangible_core.compiled.compiling import KERNEL
 
-from .surface.bilinear import HEIGHTS, NEWTONS, over
-from .surface.spline import slope
+from ..surface.bilinear import HEIGHTS, NEWTONS, over
+from ..surface.spline import slope
 
 SURFACE = (HEIGHTS, *[float64] * 6)
 

@@ -7,7 +7,7 @@ from numba import float64, njit
 
 from tangible_core.compiled.compiling import KERNEL
 
-from .surface.bilinear import GREYS, HEIGHTS, NEWTONS, cell, over
+from ..surface.bilinear import GREYS, HEIGHTS, NEWTONS, cell, over
 
 SURFACE = (HEIGHTS, GREYS, float64, float64, float64)
 

@@ -12,8 +12,8 @@ from tangible_core.compiled.compiling import inner
 
 from ..surface.bilinear import HEIGHTS, cell
 from ..surface.spline import prefetch
+from .approach import BESIDE, approach
 from .closest import settle
-from .contact import BESIDE, approach
 
 SURFACE = (HEIGHTS, *[float64] * 4, types.Array(float32, 3, "C", readonly=True))
 MATERIALS = types.Array(float64, 2, "C", readonly=True)

@@ -9,7 +9,7 @@ from numba import float64, njit
 
 from tangible_core.compiled.compiling import KERNEL
 
-from ..contact.held import MEMORY, spring
+from ..contact.spring import MEMORY, spring
 from ..surface.bilinear import NEWTONS
 from .playing import MOVING, MOVING_SURFACE, play, risen
 from .steady import STEADY, steady

@@ -9,8 +9,8 @@ from numba import float64, njit
 
 from tangible_core.compiled.compiling import KERNEL
 
-from .contact.held import MATERIALS, MEMORY, SURFACE, spring_and_damper
-from .surface.bilinear import LABELS, NEWTONS
+from ..contact.spring import MATERIALS, MEMORY, SURFACE, spring_and_damper
+from ..surface.bilinear import LABELS, NEWTONS
 
 
 @njit(NEWTONS(*SURFACE, LABELS, MATERIALS, MEMORY, *[float64] * 6), **KERNEL)

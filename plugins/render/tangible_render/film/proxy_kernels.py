@@ -9,7 +9,7 @@ from numba import float64, njit
 
 from tangible_core.compiled.compiling import KERNEL
 
-from ..contact.held import MATERIALS, MEMORY, spring_and_damper
+from ..contact.spring import MATERIALS, MEMORY, spring_and_damper
 from ..surface.bilinear import LABELS, NEWTONS
 from .playing import MOVING, MOVING_SURFACE, play, risen
 from .steady import STEADY, steady
@@ -20,7 +20,7 @@ def moving_tick(
     pairs, tiles_m, frames, shared, count, width_m, length_m, across_per_m, down_per_m, labels, table, memory, felt,
     moving, x, y, z, vx, vy, vz,
 ):  # fmt: skip
-    """As `proxy_kernels.tick`, on the surface as it is at the end of this tick."""
+    """As `kernels.tick`, on the surface as it is at the end of this tick."""
     slot, share, passed = play(frames, shared, count, moving)
     shape = (pairs[slot], 1.0 - share, share), width_m, length_m, across_per_m, down_per_m
     fx, fy, fz = spring_and_damper(shape, tiles_m[slot], labels, table, memory, x, y, z, vx, vy, vz)

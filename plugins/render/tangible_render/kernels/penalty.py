@@ -7,8 +7,8 @@ from numba import float64, njit
 
 from tangible_core.compiled.compiling import KERNEL
 
-from .surface.bilinear import HEIGHTS, LABELS, NEWTONS, TABLE, cell, over
-from .surface.spline import height
+from ..surface.bilinear import HEIGHTS, LABELS, NEWTONS, TABLE, cell, over
+from ..surface.spline import height
 
 SURFACE = (HEIGHTS, *[float64] * 4, LABELS, TABLE, float64)
 

@@ -9,9 +9,9 @@ from numba import float64, njit
 
 from tangible_core.compiled.compiling import KERNEL
 
-from .contact.held import MATERIALS, MEMORY, SURFACE, spring_and_damper
-from .effects.kernels import effects, texture
-from .surface.bilinear import LABELS, NEWTONS
+from ..contact.spring import MATERIALS, MEMORY, SURFACE, spring_and_damper
+from ..effects.kernels import effects, texture
+from ..surface.bilinear import LABELS, NEWTONS
 
 
 @njit(

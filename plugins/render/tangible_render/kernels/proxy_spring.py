@@ -9,8 +9,8 @@ from numba import float64, njit
 
 from tangible_core.compiled.compiling import KERNEL
 
-from .contact.held import MEMORY, SURFACE, spring
-from .surface.bilinear import NEWTONS
+from ..contact.spring import MEMORY, SURFACE, spring
+from ..surface.bilinear import NEWTONS
 
 
 @njit(NEWTONS(*SURFACE, float64, MEMORY, *[float64] * 6), **KERNEL)

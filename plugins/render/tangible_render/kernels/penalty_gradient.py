@@ -7,7 +7,7 @@ from numba import float64, njit
 
 from tangible_core.compiled.compiling import KERNEL
 
-from .surface.bilinear import HEIGHTS, LABELS, NEWTONS, TABLE, bilinear, cell, over
+from ..surface.bilinear import HEIGHTS, LABELS, NEWTONS, TABLE, bilinear, cell, over
 
 SURFACE = (HEIGHTS, LABELS, TABLE, float64, float64, float64)
 

@@ -9,7 +9,7 @@ from numba import float32, float64, njit, types
 
 from tangible_core.compiled.compiling import KERNEL
 
-from .surface.bilinear import HEIGHTS, LABELS, NEWTONS, TABLE, bilinear, cell, over
+from ..surface.bilinear import HEIGHTS, LABELS, NEWTONS, TABLE, bilinear, cell, over
 
 NORMALS = types.Array(float32, 3, "C", readonly=True)
 SURFACE = (HEIGHTS, NORMALS, LABELS, TABLE, float64, float64)

@@ -7,7 +7,7 @@ from numba import float64, int64, njit, types
 
 from tangible_core.compiled.compiling import KERNEL
 
-from .surface.bilinear import HEIGHTS, NEWTONS, cell, over
+from ..surface.bilinear import HEIGHTS, NEWTONS, cell, over
 
 TABLES = types.Array(int64, 3, "C", readonly=True)
 SURFACE = (HEIGHTS, TABLES, float64, float64, int64, int64, float64, float64)

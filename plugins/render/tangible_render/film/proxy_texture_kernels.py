@@ -9,7 +9,7 @@ from numba import float64, njit
 
 from tangible_core.compiled.compiling import KERNEL
 
-from ..contact.held import MATERIALS, MEMORY, spring_and_damper
+from ..contact.spring import MATERIALS, MEMORY, spring_and_damper
 from ..effects.kernels import effects, texture
 from ..surface.bilinear import LABELS, NEWTONS
 from .playing import MOVING, MOVING_SURFACE, play, risen

@@ -12,7 +12,7 @@ from tangible_core.plugins.interfaces import ForceRenderer, Reshaping, Touch
 from tangible_core.plugins.notes import note
 
 from .borders.distance import border_distance
-from .effects.inner_law import Law, checked, made
+from .effects.inner_law import Law, build_law, complete_options
 
 log = logging.getLogger(__name__)
 FEWEST_CELLS = 6
@@ -23,8 +23,8 @@ def _refusal(cls: type[ForceRenderer]) -> str:
     return "is around a law already; give the law itself" if cls is Engraved else ""
 
 
-def _checked(law: Law) -> dict[str, Any]:
-    return checked(law, _refusal)
+def _complete(law: Law) -> dict[str, Any]:
+    return complete_options(law, _refusal)
 
 
 class Engraved(ForceRenderer, Reshaping):
@@ -46,7 +46,7 @@ class Engraved(ForceRenderer, Reshaping):
     renders_materials: ClassVar[bool] = True
     why_still: ClassVar[str] = "its grooves lie along borders, which would have to be found and followed in each frame"
 
-    law: Annotated[Law, AfterValidator(_checked), Field(validate_default=True)] = "proxy"
+    law: Annotated[Law, AfterValidator(_complete), Field(validate_default=True)] = "proxy"
     """The force law that feels the grooves: its name, or {use: its name} with its options."""
     width_m: Annotated[float, Field(gt=0, le=0.05, allow_inf_nan=False)] = 0.003
     """Width of a groove, from edge to edge."""
@@ -55,7 +55,7 @@ class Engraved(ForceRenderer, Reshaping):
 
     def touch(self, surface: HapticSurface) -> Touch:
         """The law's own touch on the surface with its grooves; on the surface as it is where that has no borders."""
-        _, law = made(self.law, _refusal)
+        _, law = build_law(self.law, _refusal)
         return law.touch(self.felt(surface))
 
     def felt(self, surface: HapticSurface) -> HapticSurface:
@@ -64,7 +64,7 @@ class Engraved(ForceRenderer, Reshaping):
         if labels is None or (labels == labels[0, 0]).all():
             note(log, "no groove is engraved: the surface has no parts or segments with a border between them")
             return surface
-        self._tell_coarse(max(surface.relief.pitch_m))
+        self._warn_if_coarse(max(surface.relief.pitch_m))
         lower_m = self.section(border_distance(labels, surface.relief.pitch_m, self.width_m / 2))
         height_m = surface.height_m - lower_m
         lift_m = max(0.0, -float(height_m.min()))
@@ -78,7 +78,7 @@ class Engraved(ForceRenderer, Reshaping):
         turn = 2 * np.pi * np.minimum(distance_m / self.width_m, 0.5)
         return np.float32(0.5 * self.depth_m) * (1 + np.cos(turn, dtype=np.float32))
 
-    def _tell_coarse(self, pitch_m: float) -> None:
+    def _warn_if_coarse(self, pitch_m: float) -> None:
         if self.width_m < FEWEST_CELLS * pitch_m:
             note(
                 log,

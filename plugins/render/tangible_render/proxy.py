@@ -12,7 +12,7 @@ from tangible_core.errors import check_positive
 from tangible_core.haptic_textures.table import bristle_stiffness
 from tangible_core.plugins.interfaces import Film, Filming, ForceRenderer, Touch
 
-from .effects.effects_table import textured
+from .effects.effects_table import split_textures
 from .effects.material_table import Row, material_table
 from .surface.coefficients import spline_surface
 from .surface.dequantise import Filter
@@ -67,7 +67,7 @@ class Proxy(ForceRenderer, Filming):
     never, or a standard deviation in cells."""
 
     @model_validator(mode="after")
-    def _slides_more_easily_than_it_starts(self) -> Self:
+    def _dynamic_friction_within_static(self) -> Self:
         if self.dynamic_friction > self.static_friction:
             raise ValueError(
                 f"dynamic_friction {self.dynamic_friction} is above static_friction {self.static_friction}; "
@@ -84,7 +84,7 @@ class Proxy(ForceRenderer, Filming):
         shape = spline_surface(surface, self.dequantise)
         law = self._law(surface)
         fixed = (*shape, tile_bounds(shape[0]), *law.arguments)
-        return CompiledTouch(_still(law.kind), fixed, law.memory, law.stiffness_n_per_m)
+        return CompiledTouch(_still_tick(law.kind), fixed, law.memory, law.stiffness_n_per_m)
 
     def film(self, surface: HapticSurface, period_s: float = 0.001, frame_s: float = 1 / 30) -> Film:
         """A film that begins with this surface, whose labels and materials stay where they are.
@@ -94,35 +94,37 @@ class Proxy(ForceRenderer, Filming):
         Friction holds the proxy's place, on a surface that rises and falls; damping is that of the hand alone. Heights
         in steps are not smoothed.
         """
-        from .film.film import begun
+        from .film.film import create_film
 
         check_positive("period_s", period_s)
         check_positive("frame_s", frame_s)
         law = self._law(surface)
         damping_n_s_per_m = float(law.arguments[1][:, 1].max()) if law.kind != "spring" else 0.0
         spring = law.stiffness_n_per_m, damping_n_s_per_m
-        return begun(surface, _moving(law.kind), law.arguments, law.memory, spring, float(period_s), float(frame_s))
+        return create_film(
+            surface, _moving_tick(law.kind), law.arguments, law.memory, spring, float(period_s), float(frame_s)
+        )
 
     def _law(self, surface: HapticSurface) -> _Law:
         from .contact.approach import REMEMBERED
 
         memory = np.zeros(REMEMBERED)
-        if self.texture and (felt := textured(surface, self.friction)):
-            labels, table, textures, state = felt
+        if self.texture and (tables := split_textures(surface, self.friction)):
+            labels, table, textures, state = tables
             stiffness = max(float(table[:, 0].max()), bristle_stiffness(textures))
             return _Law("textures", (labels, table, memory, textures, state), memory, stiffness)
-        labels, table = material_table(surface, self._plain())
+        labels, table = material_table(surface, self._default_row())
         if not self.friction:
             table[:, 2:] = 0
         if len(table) == 1 and not table[0, 1:].any():
             return _Law("spring", (float(table[0, 0]), memory), memory, float(table[0, 0]))
         return _Law("materials", (labels, table, memory), memory, float(table[:, 0].max()))
 
-    def _plain(self) -> Row:
+    def _default_row(self) -> Row:
         return self.stiffness_n_per_m, self.damping_n_s_per_m, self.static_friction, self.dynamic_friction
 
 
-def _still(kind: str) -> Tick:
+def _still_tick(kind: str) -> Tick:
     if kind == "spring":
         from .kernels.proxy_spring import spring_tick as tick
     elif kind == "materials":
@@ -132,7 +134,7 @@ def _still(kind: str) -> Tick:
     return tick
 
 
-def _moving(kind: str) -> Tick:
+def _moving_tick(kind: str) -> Tick:
     if kind == "spring":
         from .film.proxy_spring_kernels import moving_spring_tick as tick
     elif kind == "materials":

@@ -22,7 +22,7 @@ def border_distance(
         return distance_m
     row, column = np.nonzero(near)
     places_m = np.column_stack([column, row]) * np.array(pitch_m)
-    distance_m[near] = np.minimum(_to_lines(places_m, lines, np.array(pitch_m), most_m), most_m)
+    distance_m[near] = np.minimum(_distance_to_lines(places_m, lines, np.array(pitch_m), most_m), most_m)
     return distance_m
 
 
@@ -32,30 +32,30 @@ def _near(labels: Int32[np.ndarray, "h w"], pitch_m: tuple[float, float], most_m
 
     from tangible_core.data.parts import beside_border
 
-    beside = beside_border(labels)
-    if not beside.any():
-        return beside
+    bordering = beside_border(labels)
+    if not bordering.any():
+        return bordering
     reach_m = most_m + 1.5 * float(np.hypot(*pitch_m))
-    found: Any = ndimage.distance_transform_edt(~beside, sampling=pitch_m[::-1])
-    return np.asarray(found <= reach_m)
+    distances: Any = ndimage.distance_transform_edt(~bordering, sampling=pitch_m[::-1])
+    return np.asarray(distances <= reach_m)
 
 
-def _to_lines(
+def _distance_to_lines(
     places_m: Float64[np.ndarray, "n 2"], lines: Borders, pitch_m: np.ndarray, most_m: float
 ) -> Float64[np.ndarray, "n"]:
     from scipy.spatial import KDTree
 
     at_m = lines.at * pitch_m
     nearest = KDTree(at_m).query(places_m, distance_upper_bound=most_m + float(np.hypot(*pitch_m)))[1]
-    found = nearest < len(at_m)
+    within = nearest < len(at_m)
     distance_m = np.full(len(places_m), np.inf)
-    here, point = places_m[found], np.asarray(nearest)[found]
-    to_both = [_to_stretch(here, at_m[point], at_m[lines.beside[point, side]]) for side in (0, 1)]
-    distance_m[found] = np.minimum(*to_both)
+    here, point = places_m[within], np.asarray(nearest)[within]
+    to_both = [_distance_to_stretch(here, at_m[point], at_m[lines.neighbours[point, side]]) for side in (0, 1)]
+    distance_m[within] = np.minimum(*to_both)
     return distance_m
 
 
-def _to_stretch(
+def _distance_to_stretch(
     here: Float64[np.ndarray, "n 2"], start: Float64[np.ndarray, "n 2"], end: Float64[np.ndarray, "n 2"]
 ) -> Float64[np.ndarray, "n"]:
     """From points to straight stretches; one of no length is a point."""

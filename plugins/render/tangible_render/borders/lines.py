@@ -19,7 +19,7 @@ class Borders(NamedTuple):
 
     at: Points
     """(column, row) in cells, the first cell's centre at (0, 0); one for each side of a cell between two labels."""
-    beside: Int64[np.ndarray, "n 2"]
+    neighbours: Int64[np.ndarray, "n 2"]
     """Which points come before and after each, itself where the line ends: at the rim, or where three labels meet."""
 
 
@@ -31,24 +31,24 @@ def border_lines(labels: Int32[np.ndarray, "h w"]) -> Borders:
     draws no circle together. So a straight border is straight at any angle, and corners are kept within half a cell.
     Source: projections onto convex sets (Youla & Webb, IEEE Trans. Medical Imaging 1, 1982).
     """
-    found, beside = _sides(labels)
-    at = lanes = np.ascontiguousarray(found.T)
-    for _ in range(ROUNDS if len(found) else 0):
-        at = np.clip(_low_pass(at, beside), lanes - 0.5, lanes + 0.5)
-    return Borders(np.ascontiguousarray(at.T), beside)
+    points, neighbours = _sides(labels)
+    at = lanes = np.ascontiguousarray(points.T)
+    for _ in range(ROUNDS if len(points) else 0):
+        at = np.clip(_low_pass(at, neighbours), lanes - 0.5, lanes + 0.5)
+    return Borders(np.ascontiguousarray(at.T), neighbours)
 
 
-def _low_pass(at: Lanes, beside: Int64[np.ndarray, "n 2"]) -> Lanes:
-    ends = beside == np.arange(len(beside))[:, None]
+def _low_pass(at: Lanes, neighbours: Int64[np.ndarray, "n 2"]) -> Lanes:
+    ends = neighbours == np.arange(len(neighbours))[:, None]
     loose = ends.any(axis=1)
-    before, after = (np.where(loose, np.arange(len(beside)), side) for side in beside.T)
-    lost = at
+    before, after = (np.where(loose, np.arange(len(neighbours)), side) for side in neighbours.T)
+    residual = at
     for _ in range(PASSES):
-        lost = lost - _blurred(lost, before, after)
-    return at - lost
+        residual = residual - _blur(residual, before, after)
+    return at - residual
 
 
-def _blurred(at: Lanes, before: Int64[np.ndarray, "n"], after: Int64[np.ndarray, "n"]) -> Lanes:
+def _blur(at: Lanes, before: Int64[np.ndarray, "n"], after: Int64[np.ndarray, "n"]) -> Lanes:
     """Averaged with the neighbours; where a line ends, it stays."""
     for _ in range(BLUR):
         mean = at.take(before, axis=1)
@@ -75,10 +75,10 @@ def _sides(labels: Int32[np.ndarray, "h w"]) -> tuple[Points, Int64[np.ndarray, 
     first = np.concatenate([row * corner + column + 1, (row_level + 1) * corner + column_level])
     last = np.concatenate([(row + 1) * corner + column + 1, (row_level + 1) * corner + column_level + 1])
     ends = np.stack([first, last], axis=1)
-    beside = np.repeat(np.arange(len(at))[:, None], 2, axis=1)
+    neighbours = np.repeat(np.arange(len(at))[:, None], 2, axis=1)
     _, which, counts = np.unique(ends.ravel(), return_inverse=True, return_counts=True)
-    met = np.argsort(which.ravel(), kind="stable")
-    starts = np.searchsorted(which.ravel()[met], np.flatnonzero(counts == 2))
-    one, other = met[starts], met[starts + 1]
-    beside.ravel()[one], beside.ravel()[other] = other // 2, one // 2
-    return at, beside
+    order = np.argsort(which.ravel(), kind="stable")
+    starts = np.searchsorted(which.ravel()[order], np.flatnonzero(counts == 2))
+    one, other = order[starts], order[starts + 1]
+    neighbours.ravel()[one], neighbours.ravel()[other] = other // 2, one // 2
+    return at, neighbours

@@ -50,44 +50,44 @@ def settle(
     """
     half, cell_m = (0.5 * width_m, 0.5 * length_m), 1.0 / max(across_per_m, down_per_m)
     near_m = max(NEAR_CELLS * cell_m, min(NEAR_M, NEAR_FINE_CELLS * cell_m))
-    bent = bend(coefficients, across_per_m, down_per_m, px, py)
+    expansion = bend(coefficients, across_per_m, down_per_m, px, py)
     if static_friction > 0.0:
-        along, normal = _parts(bent, x - px, y - py, z - bent[0])
+        along, normal = _parts(expansion, x - px, y - py, z - expansion[0])
         if along <= (dynamic_friction if slides > 0.0 else static_friction) * normal:
-            return px, py, bent[0], bent[1], bent[2], 0.0
+            return px, py, expansion[0], expansion[1], expansion[2], 0.0
         slides = 1.0
     for _ in range(STEPS):
-        away = x - px, y - py, z - bent[0]
+        away = x - px, y - py, z - expansion[0]
         share = 1.0
         if static_friction > 0.0:
-            along, normal = _parts(bent, *away)
+            along, normal = _parts(expansion, *away)
             share = 1.0 - dynamic_friction * normal / along
             if not share > 0.0:
                 break
-        sx, sy, newton = _step(half, px, py, away, bent, share)
+        sx, sy, newton = _step(half, px, py, away, expansion, share)
         if newton and sx * sx + sy * sy <= near_m * near_m:
-            h, hx, hy = _taylor(bent, sx, sy)
+            h, hx, hy = _taylor(expansion, sx, sy)
             return px + sx, py + sy, h, hx, hy, slides
         sx, sy, there, nearer = _accept(coefficients, across_per_m, down_per_m, px, py, sx, sy, x, y, z, away)
         if not nearer:
             break
-        px, py, bent = px + sx, py + sy, there
-    return px, py, bent[0], bent[1], bent[2], slides
+        px, py, expansion = px + sx, py + sy, there
+    return px, py, expansion[0], expansion[1], expansion[2], slides
 
 
 @inner()
-def _parts(bent, dx, dy, dz):
+def _parts(expansion, dx, dy, dz):
     """Lengths of the way from proxy to hand along the surface and along its normal."""
-    _, hx, hy, _, _, _ = bent
+    _, hx, hy, _, _, _ = expansion
     inward = hx * dx + hy * dy - dz
     square = inward * inward / (1.0 + hx * hx + hy * hy)
     return math.sqrt(max(dx * dx + dy * dy + dz * dz - square, 0.0)), math.sqrt(square)
 
 
 @inner()
-def _step(half, px, py, away, bent, share):
+def _step(half, px, py, away, expansion, share):
     """This share of Newton's step, or of Gauss and Newton's, within the borders; (step_x, step_y, whether Newton's)."""
-    (dx, dy, dz), (_, hx, hy, hxx, hxy, hyy) = away, bent
+    (dx, dy, dz), (_, hx, hy, hxx, hxy, hyy) = away, expansion
     gx, gy = share * (dx + hx * dz), share * (dy + hy * dz)
     xx, xy, yy = 1.0 + hx * hx, hx * hy, 1.0 + hy * hy
     plain = xx + hy * hy
@@ -131,8 +131,8 @@ def _square(dx, dy, dz):
 
 
 @inner()
-def _taylor(bent, sx, sy):
+def _taylor(expansion, sx, sy):
     """Height and slopes a small step away."""
-    h, hx, hy, hxx, hxy, hyy = bent
+    h, hx, hy, hxx, hxy, hyy = expansion
     rise = hx * sx + hy * sy + 0.5 * (hxx * sx * sx + hyy * sy * sy) + hxy * sx * sy
     return h + rise, hx + hxx * sx + hxy * sy, hy + hxy * sx + hyy * sy

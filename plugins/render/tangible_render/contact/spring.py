@@ -41,7 +41,7 @@ def spring(shape, tiles_m, stiffness, memory, x, y, z, vx, vy, vz):
         px, py, top, _, _, _ = settle(
             coefficients, width_m, length_m, across_per_m, down_per_m, px, py, x, y, z, 0.0, 0.0, 0.0
         )
-        _look_ahead(coefficients, across_per_m, down_per_m, memory, px, py)
+        _prefetch_ahead(coefficients, across_per_m, down_per_m, memory, px, py)
     memory[0], memory[1], memory[2] = px, py, top
     fx, fy, fz = stiffness * (px - x), stiffness * (py - y), stiffness * (top - z)
     return (fx, fy, fz) if np.isfinite(fx + fy + fz) else (0.0, 0.0, 0.0)
@@ -53,7 +53,7 @@ def spring_and_damper(shape, tiles_m, labels, table, memory, x, y, z, vx, vy, vz
     coefficients, width_m, length_m, across_per_m, down_per_m = shape
     if not approach(coefficients, width_m, length_m, across_per_m, down_per_m, tiles_m, memory, x, y, z, vx + vy + vz):
         return 0.0, 0.0, 0.0
-    px, py, top, held, hx, hy = memory[0], memory[1], z, 0.0, 0.0, 0.0
+    px, py, top, damper, hx, hy = memory[0], memory[1], z, 0.0, 0.0, 0.0
     row, column = cell(labels.shape[0], labels.shape[1], width_m, length_m, px, py)
     label = labels[row, column]
     stiffness, damping, static, dynamic = table[label, 0], table[label, 1], table[label, 2], table[label, 3]
@@ -61,17 +61,17 @@ def spring_and_damper(shape, tiles_m, labels, table, memory, x, y, z, vx, vy, vz
         px, py, top, hx, hy, memory[6] = settle(
             coefficients, width_m, length_m, across_per_m, down_per_m, px, py, x, y, z, static, dynamic, memory[6]
         )
-        _look_ahead(coefficients, across_per_m, down_per_m, memory, px, py)
+        _prefetch_ahead(coefficients, across_per_m, down_per_m, memory, px, py)
         square = 1.0 + hx * hx + hy * hy
         spring = stiffness * (hx * (x - px) + hy * (y - py) + top - z) / square
-        held = min(damping * (vz - hx * vx - hy * vy) / square, max(spring, 0.0))
+        damper = min(damping * (vz - hx * vx - hy * vy) / square, max(spring, 0.0))
     memory[0], memory[1], memory[2] = px, py, top
-    fx, fy, fz = stiffness * (px - x) + held * hx, stiffness * (py - y) + held * hy, stiffness * (top - z) - held
+    fx, fy, fz = stiffness * (px - x) + damper * hx, stiffness * (py - y) + damper * hy, stiffness * (top - z) - damper
     return (fx, fy, fz) if np.isfinite(fx + fy + fz) else (0.0, 0.0, 0.0)
 
 
 @inner()
-def _look_ahead(coefficients, across_per_m, down_per_m, memory, px, py):
+def _prefetch_ahead(coefficients, across_per_m, down_per_m, memory, px, py):
     """Ask for what the tick after the next will read if the proxy goes on as it did, from the memory to (px, py).
 
     Of a large surface it comes from far away, and takes longer than one tick takes along a path.

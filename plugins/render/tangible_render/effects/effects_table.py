@@ -10,11 +10,11 @@ from tangible_core.haptic_textures import compile_textures
 from tangible_core.haptic_textures.table import COUNT, DRAG, STIFFNESS
 
 Table = Float64[np.ndarray, "n p"]
-TEXTURED = [COUNT, DRAG, STIFFNESS]
+TEXTURE_COLUMNS = [COUNT, DRAG, STIFFNESS]
 """Columns of which a texture has at least one."""
-BESIDES = 4
+LAW_COLUMNS = 4
 """Columns after those of a texture: k, b, mu_s and mu_d, as in `material_table`."""
-ACTING = [*TEXTURED, -3, -2]
+EFFECT_COLUMNS = [*TEXTURE_COLUMNS, -3, -2]
 """Columns of which a material has at least one that adds something to a law; -3 is b, -2 mu_s."""
 
 
@@ -28,14 +28,14 @@ def effects_table(
     """
     assert surface.labels is not None and surface.materials is not None
     rows = _rows(surface.materials, friction, texture, damping)
-    met = np.flatnonzero(np.bincount(surface.labels.ravel()))
-    rows[np.setdiff1d(np.arange(len(rows)), met)] = 0
-    if (rows[met] == rows[met[0]]).all():
-        return np.zeros((1, 1), np.int32), rows[met[:1]]
+    present = np.flatnonzero(np.bincount(surface.labels.ravel()))
+    rows[np.setdiff1d(np.arange(len(rows)), present)] = 0
+    if (rows[present] == rows[present[0]]).all():
+        return np.zeros((1, 1), np.int32), rows[present[:1]]
     return np.ascontiguousarray(surface.labels, np.int32), rows
 
 
-def textured(
+def split_textures(
     surface: HapticSurface, friction: bool
 ) -> tuple[Int32[np.ndarray, "h w"], Float64[np.ndarray, "n 4"], Table, Float64[np.ndarray, "m"]] | None:
     """For a law that has friction and damping itself: labels, k, b, mu_s and mu_d of each, textures alone, memory.
@@ -45,14 +45,14 @@ def textured(
     if surface.labels is None or not surface.materials:
         return None
     labels, table = effects_table(surface, friction)
-    if not table[:, TEXTURED].any():
+    if not table[:, TEXTURE_COLUMNS].any():
         return None
-    own = table[:, -BESIDES:].copy()
-    table[:, 1 - BESIDES :] = 0
-    return labels, own, table, nowhere()
+    with_friction = table[:, -LAW_COLUMNS:].copy()
+    table[:, 1 - LAW_COLUMNS :] = 0
+    return labels, with_friction, table, initial_memory()
 
 
-def nowhere() -> Float64[np.ndarray, "m"]:
+def initial_memory() -> Float64[np.ndarray, "m"]:
     """The memory of a hand that was not there yet."""
     from . import kernels
 
@@ -64,14 +64,14 @@ def nowhere() -> Float64[np.ndarray, "m"]:
 def _rows(materials: Sequence[Material], friction: bool, texture: bool, damping: bool) -> Table:
     textures = texture * compile_textures(materials)
     textures[:, STIFFNESS] *= friction
-    rubs = friction * (textures[:, STIFFNESS] == 0)
-    besides = [
+    has_friction = friction * (textures[:, STIFFNESS] == 0)
+    law_columns = [
         (
             each.stiffness_n_per_m,
             damping * each.damping_n_s_per_m,
-            own * each.static_friction,
-            own * each.dynamic_friction,
+            with_friction * each.static_friction,
+            with_friction * each.dynamic_friction,
         )
-        for each, own in zip(materials, rubs, strict=True)
+        for each, with_friction in zip(materials, has_friction, strict=True)
     ]
-    return np.hstack([textures, np.reshape(besides, (-1, BESIDES))])
+    return np.hstack([textures, np.reshape(law_columns, (-1, LAW_COLUMNS))])

@@ -13,7 +13,7 @@ Refusal = Callable[[type[ForceRenderer]], str]
 """Why a class cannot be the law within, in words; empty if it can."""
 
 
-def made(law: Law, refusal: Refusal) -> tuple[str, ForceRenderer]:
+def build_law(law: Law, refusal: Refusal) -> tuple[str, ForceRenderer]:
     """Name and method. Raises: ValueError if it has no name or is refused, TangibleError if it is none."""
     from tangible_core.plugins.registry import load_method
 
@@ -27,10 +27,10 @@ def made(law: Law, refusal: Refusal) -> tuple[str, ForceRenderer]:
     return name, cls(**options)
 
 
-def checked(law: Law, refusal: Refusal) -> dict[str, Any]:
+def complete_options(law: Law, refusal: Refusal) -> dict[str, Any]:
     """The law's name and all of its options. Raises: ValueError if it is none, or one of them is wrong."""
     try:
-        name, method = made(law, refusal)
+        name, method = build_law(law, refusal)
     except ValidationError as error:
         wrong = (f"{'.'.join(map(str, each['loc']))}: {each['msg']}" for each in error.errors())
         raise ValueError("; ".join(wrong)) from error

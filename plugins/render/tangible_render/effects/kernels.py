@@ -53,7 +53,7 @@ def lateral_tick(fixed, law, height_m, labels, width_m, length_m, table, bristle
     push = 0.0
     if over(width_m, length_m, x, y) and np.isfinite(vx + vy + vz):
         push = table[label, STIFFNESS] * max(bilinear(height_m, width_m, length_m, x, y)[0] + t - z, 0.0)
-    along, aside = _rub(table, label, bristle, memory, dx, dy, vx, vy, push)
+    along, aside = _friction(table, label, bristle, memory, dx, dy, vx, vy, push)
     fx, fy = fx + along - tx * push, fy + aside - ty * push
     return (fx, fy, fz) if np.isfinite(fx + fy + fz) else (0.0, 0.0, 0.0)
 
@@ -70,14 +70,14 @@ def texture(labels, width_m, length_m, table, memory, x, y, z):
     row, column = cell(labels.shape[0], labels.shape[1], width_m, length_m, at_x, at_y)
     label = labels[row, column]
     dx, dy, dz = x - memory[WAS_X], y - memory[WAS_Y], z - memory[WAS_Z]
-    known = dx * dx + dy * dy + dz * dz <= LEAP_M * LEAP_M
-    if not known:
+    continues = dx * dx + dy * dy + dz * dz <= LEAP_M * LEAP_M
+    if not continues:
         dx, dy = 0.0, 0.0
-        _let_go(memory)
+        _release(memory)
     t, tx, ty = 0.0, 0.0, 0.0
     if table[label, COUNT] > 0.0:
         t, tx, ty = texture_height(table, label, x, y, dx, dy, 1.0)
-    dz = dz - t if known else 0.0
+    dz = dz - t if continues else 0.0
     memory[WAS_X], memory[WAS_Y], memory[WAS_Z] = x, y, z - t
     return label, t, tx, ty, dx, dy, dz
 
@@ -88,7 +88,7 @@ def effects(table, label, bristle, memory, tx, ty, dx, dy, dz, vx, vy, vz, fx, f
     push = math.sqrt(fx * fx + fy * fy + fz * fz)
     acts = table[label, DRAG] + table[label, STICKS] + table[label, DAMPING] + table[label, STATIC] > 0.0
     if not (acts and 0.0 < push < math.inf):
-        _let_go(memory)
+        _release(memory)
         fx, fy = fx - tx * fz, fy - ty * fz
         return (fx, fy, fz) if np.isfinite(fx + fy + fz) else (0.0, 0.0, 0.0)
     inverse = 1.0 / push
@@ -101,16 +101,16 @@ def effects(table, label, bristle, memory, tx, ty, dx, dy, dz, vx, vy, vz, fx, f
     bx, by, bz = nx * ny * a, sign + ny * ny * a, -ny
     way_x, way_y = ax * dx + ay * dy + az * dz, bx * dx + by * dy + bz * dz
     speed_x, speed_y = ax * vx + ay * vy + az * vz, bx * vx + by * vy + bz * vz
-    along, aside = _rub(table, label, bristle, memory, way_x, way_y, speed_x, speed_y, push)
-    held = min(table[label, DAMPING] * (nx * vx + ny * vy + nz * vz), push)
-    fz += along * az + aside * bz - held * nz
-    fx += along * ax + aside * bx - held * nx - tx * fz
-    fy += along * ay + aside * by - held * ny - ty * fz
+    along, aside = _friction(table, label, bristle, memory, way_x, way_y, speed_x, speed_y, push)
+    damper = min(table[label, DAMPING] * (nx * vx + ny * vy + nz * vz), push)
+    fz += along * az + aside * bz - damper * nz
+    fx += along * ax + aside * bx - damper * nx - tx * fz
+    fy += along * ay + aside * by - damper * ny - ty * fz
     return (fx, fy, fz) if np.isfinite(fx + fy + fz) else (0.0, 0.0, 0.0)
 
 
 @inner(forceinline=True)
-def _let_go(memory):
+def _release(memory):
     for i in range(WAS_X):
         memory[i] = 0.0
     for i in range(WAY_X, memory.size):
@@ -119,7 +119,7 @@ def _let_go(memory):
 
 
 @inner(forceinline=True)
-def _rub(table, label, bristle, memory, dx, dy, vx, vy, push):
+def _friction(table, label, bristle, memory, dx, dy, vx, vy, push):
     """Lateral newtons after a step (dx, dy) along the surface at (vx, vy) m/s: friction, and the texture's own.
 
     A bristle: it sticks while its pull is within the static cone (the dynamic one if it slides already), and slides on
@@ -127,7 +127,7 @@ def _rub(table, label, bristle, memory, dx, dy, vx, vy, push):
     as it is only ever turned or shortened (Hayward & Armstrong, Experimental Robotics VI, 2000).
     """
     if not push > 0.0:
-        _let_go(memory)
+        _release(memory)
         return 0.0, 0.0
     if memory[SLIDES] < 0.0:
         dx, dy = 0.0, 0.0

@@ -23,9 +23,9 @@ def material_table(surface: HapticSurface, plain: Row) -> tuple[Int32[np.ndarray
         ],
         np.float64,
     )
-    met = table[np.flatnonzero(np.bincount(surface.labels.ravel()))]
-    if (met == met[0]).all():
-        return np.zeros((1, 1), np.int32), met[:1]
+    present = table[np.flatnonzero(np.bincount(surface.labels.ravel()))]
+    if (present == present[0]).all():
+        return np.zeros((1, 1), np.int32), present[:1]
     return np.ascontiguousarray(surface.labels, np.int32), table
 
 

@@ -23,10 +23,10 @@ def quick_coefficients(height_m: Float32[np.ndarray, "h w"], scratch: Scratch) -
         height_m, highest_m = np.minimum(height_m, np.float32(HIGHEST_M)), np.float32(HIGHEST_M)
     if min(height_m.shape) <= MARGIN:
         return spline_coefficients(height_m)
-    from .filter_kernels import filtered, stand_out
+    from .filter_kernels import filter_coefficients, mark_jumps
 
-    stand_out(height_m, highest_m * ROUNDING, *scratch[:3])
-    filtered(height_m, scratch.near, _taps(), scratch.values, scratch.eased, scratch.coefficients)
+    mark_jumps(height_m, highest_m * ROUNDING, *scratch[:3])
+    filter_coefficients(height_m, scratch.near, _taps(), scratch.values, scratch.eased, scratch.coefficients)
     return scratch.coefficients
 
 

@@ -55,18 +55,18 @@ class SplineFilm(Film):
     @property
     def dropped(self) -> int:
         """How many frames another took the place of before the loop went to them."""
-        return int(self._slots.told[DROPPED])
+        return int(self._slots.host_state[DROPPED])
 
     def _check(self, relief: Relief) -> None:
         rows, columns = self._slots.pairs.shape[1:3]
         shape = rows - 2 * BORDER, columns - 2 * BORDER
         if relief.height_m.shape == shape and tuple(relief.extent_m) == self._extent_m:
             return
-        given, first = _grid(relief.height_m.shape, relief.extent_m), _grid(shape, self._extent_m)
-        raise GeometryError(f"a frame has {given}, the first one {first}; all frames of a film need the same grid")
+        new, first = _grid(relief.height_m.shape, relief.extent_m), _grid(shape, self._extent_m)
+        raise GeometryError(f"a frame has {new}, the first one {first}; all frames of a film need the same grid")
 
 
-def begun(
+def create_film(
     surface: HapticSurface,
     tick: Tick,
     arguments: tuple[Any, ...],
@@ -76,7 +76,7 @@ def begun(
     frame_s: float,
 ) -> SplineFilm:
     """A film that stands still on this surface. arguments, memory: of the law; spring: its stiffness and damping."""
-    from .steady import beginning
+    from .steady import initial_memory
 
     (rows, columns), (width_m, length_m) = surface.height_m.shape, map(float, surface.extent_m)
     coefficients = quick_coefficients(surface.height_m, Scratch.of(rows, columns))
@@ -84,7 +84,9 @@ def begun(
     slots, moving = Slots.still(coefficients, count), np.zeros(2)
     shape = width_m, length_m, columns / width_m, rows / length_m
     shown = slots.pairs, slots.tiles_m, slots.frames, slots.shared, float(count)
-    touch = CompiledTouch(tick, (*shown, *shape, *arguments, beginning(*spring), moving), memory, spring[0], moving)
+    touch = CompiledTouch(
+        tick, (*shown, *shape, *arguments, initial_memory(*spring), moving), memory, spring[0], moving
+    )
     speed_m_per_s = min(SPEED_M_PER_S, STEP_N / (spring[0] * period_s))
     return SplineFilm(touch, slots, surface.extent_m, speed_m_per_s * count * period_s)
 

@@ -25,7 +25,7 @@ SIXTH, HALF, NOTHING = np.float32(1 / 6), np.float32(0.5), np.float32(0.0)
 
 
 @inner()
-def _stands_out(a, b, c, d, e, f, g, rounding):
+def _is_jump(a, b, c, d, e, f, g, rounding):
     """Whether the fourth difference about d is large beside the second ones up to two cells away."""
     before, left, here, right, after = (
         _second(a, b, c),
@@ -49,7 +49,7 @@ def _down(height_m, at, rounding):
     rows, columns = height_m.shape
     for row in range(3, rows - 3):
         for column in range(columns):
-            at[row, column] |= _stands_out(
+            at[row, column] |= _is_jump(
                 height_m[row - 3, column],
                 height_m[row - 2, column],
                 height_m[row - 1, column],
@@ -70,7 +70,7 @@ def _along(height_m, at, rounding):
     rows, columns = height_m.shape
     for row in range(rows):
         for i in range(columns - 6):
-            at[row, i + 3] |= _stands_out(
+            at[row, i + 3] |= _is_jump(
                 height_m[row, i],
                 height_m[row, i + 1],
                 height_m[row, i + 2],
@@ -171,11 +171,11 @@ def _level(line, near, heights, inside):
 
 
 @inner()
-def _eased(a, b, c, d, e, before, here, after):
+def _ease_value(a, b, c, d, e, before, here, after):
     """The value in the middle of five, so that a spline does not swing over there; and what stays is not here."""
     left, middle, right = b + before * _peak(a, b, c), c + here * _peak(b, c, d), d + after * _peak(c, d, e)
-    moved = middle + ((right - middle) - (middle - left)) * SIXTH
-    return moved if here > NOTHING else c
+    value = middle + ((right - middle) - (middle - left)) * SIXTH
+    return value if here > NOTHING else c
 
 
 @inner()
@@ -191,7 +191,7 @@ def _ease_down(values, eased, row, before, here, after):
     """A row eased down the columns; before, here, after: which cells of it and its neighbours are near a jump."""
     for i in range(here.shape[0]):
         j = i + MARGIN - RING
-        eased[j] = _eased(
+        eased[j] = _ease_value(
             values[row - 2, j],
             values[row - 1, j],
             values[row, j],
@@ -209,7 +209,7 @@ def _ease_along(values, eased, near):
         eased[i] = values[i]
     for i in range(1, near.shape[0] - 1):
         j = i + MARGIN - RING
-        eased[j] = _eased(
+        eased[j] = _ease_value(
             values[j - 2],
             values[j - 1],
             values[j],
@@ -222,29 +222,29 @@ def _ease_along(values, eased, near):
 
 
 @inner()
-def _filter_down(values, taps, row, found):
+def _filter_down(values, taps, row, out):
     """A row of the values filtered down the columns; its middle is TAPS rows farther down."""
     middle = row + TAPS
-    for i in range(found.shape[0]):
-        found[i] = taps[0] * values[middle, i]
+    for i in range(out.shape[0]):
+        out[i] = taps[0] * values[middle, i]
     for tap in range(1, TAPS + 1):
         weight, above, below = taps[tap], values[middle - tap], values[middle + tap]
-        for i in range(found.shape[0]):
-            found[i] += weight * (above[i] + below[i])
+        for i in range(out.shape[0]):
+            out[i] += weight * (above[i] + below[i])
 
 
 @inner()
-def _filter_along(values, taps, found):
-    for i in range(found.shape[0]):
-        found[i] = taps[0] * values[i + TAPS]
+def _filter_along(values, taps, out):
+    for i in range(out.shape[0]):
+        out[i] = taps[0] * values[i + TAPS]
     for tap in range(1, TAPS + 1):
         weight = taps[tap]
-        for i in range(found.shape[0]):
-            found[i] += weight * (values[i + TAPS - tap] + values[i + TAPS + tap])
+        for i in range(out.shape[0]):
+            out[i] += weight * (values[i + TAPS - tap] + values[i + TAPS + tap])
 
 
 @njit(void(HEIGHTS, float32, MASK, MASK, MASK), **KERNEL)
-def stand_out(height_m, rounding, at, wide, near):
+def mark_jumps(height_m, rounding, at, wide, near):
     """`jumps`: the cells whose fourth differences stand out, and in `near` those up to two beside.
 
     rounding: what differences are too small to tell. at, wide: scratch. near: as if the outermost cells went on for
@@ -260,7 +260,7 @@ def stand_out(height_m, rounding, at, wide, near):
 
 
 @njit(void(HEIGHTS, MASK, LINE, ROWS, ROWS, ROWS), **KERNEL)
-def filtered(height_m, near, taps, values, eased, coefficients):
+def filter_coefficients(height_m, near, taps, values, eased, coefficients):
     """`spline_coefficients`: continued, eased and filtered down the columns, then along the rows."""
     rows, columns = height_m.shape
     _continue(height_m, near, values)
@@ -277,7 +277,7 @@ def filtered(height_m, near, taps, values, eased, coefficients):
 
 
 @njit(types.boolean(ROWS, PAIRS, PAIRS, float32), **KERNEL)
-def go_on(coefficients, played, free, most_m):
+def fill_slot(coefficients, played, free, most_m):
     """Write the way from what a slot ends with to these coefficients, at most so far; whether that is short of them.
 
     What the coefficients are where it is short becomes what it ends with.

@@ -50,7 +50,7 @@ def _load(context, array, index):
 
 
 @intrinsic
-def _replace(context, array, index, known, value):
+def _replace(context, array, index, expected, value):
     """Whether a number of an int64 array was the known one, and is now this: at once, for whoever else does so."""
 
     def generate(context, builder, signature, arguments):
@@ -96,7 +96,7 @@ def play(frames, shared, count, moving):
 
 
 @inner(forceinline=True)
-def risen(pairs, across_per_m, down_per_m, passed, memory, moving):
+def write_rise(pairs, across_per_m, down_per_m, passed, memory, moving):
     """How much the surface rose at the proxy in this tick, written to what the touch tells."""
     if passed > 0.0 and memory[7] == TOUCHING and not np.isnan(memory[2]):
         moving[RISE_M] = height((pairs, -passed, passed), across_per_m, down_per_m, memory[0], memory[1])

@@ -28,13 +28,13 @@ class Scratch(NamedTuple):
     def of(cls, rows: int, columns: int) -> Self:
         """For heights of this size."""
         padded = rows + 2 * MARGIN, columns + 2 * MARGIN
-        found = rows + 2 * BORDER, columns + 2 * BORDER
+        with_border = rows + 2 * BORDER, columns + 2 * BORDER
         return cls(
             np.empty((rows, columns), np.uint8),
             np.empty((rows, columns), np.uint8),
             np.empty((rows + 2 * RING, columns + 2 * RING), np.uint8),
             np.empty(padded, np.float32),
             np.empty(padded, np.float32),
-            np.empty(found, np.float32),
-            np.empty(found, np.float32),
+            np.empty(with_border, np.float32),
+            np.empty(with_border, np.float32),
         )

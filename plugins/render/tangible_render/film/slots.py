@@ -29,7 +29,7 @@ class Slots(NamedTuple):
     """The frame that each goes to."""
     shared: Int64[np.ndarray, "2"]
     """Which slot is played and which is published, see `playing`."""
-    told: Int64[np.ndarray, "4"]
+    host_state: Int64[np.ndarray, "4"]
     """What only the one who shows writes and reads."""
 
     @classmethod
@@ -41,7 +41,7 @@ class Slots(NamedTuple):
         shared = np.array([0, count], np.int64)
         return cls(pairs, tiles_m, tiles_m.copy(), np.zeros(SLOTS), shared, np.zeros(SHORT + SLOTS, np.int64))
 
-    def show(self, wanted: Float32[np.ndarray, "h4 w4"], frame: int, most_m: float, ends: np.ndarray) -> None:
+    def show(self, target: Float32[np.ndarray, "h4 w4"], frame: int, most_m: float, ends: np.ndarray) -> None:
         """Go to this surface next, from where the slot that is played ends, by at most so much anywhere.
 
         ends: scratch of the same shape.
@@ -51,27 +51,27 @@ class Slots(NamedTuple):
         while True:
             played, published = slots_of(self.shared)
             free = next(slot for slot in range(SLOTS) if slot not in (played, published))
-            np.copyto(ends, wanted)
+            np.copyto(ends, target)
             self._fill(free, played, ends, most_m)
             self.frames[free] = frame
             if publish(self.shared, played, published, free):
-                self.told[DROPPED] += played != published and self.frames[published] != frame
+                self.host_state[DROPPED] += played != published and self.frames[published] != frame
                 return
 
     def _fill(self, free: int, played: int, ends: np.ndarray, most_m: float) -> None:
         """A slot that begins where another ends. `ends` are the wanted coefficients, and become what it ends with."""
-        from .filter_kernels import go_on
+        from .filter_kernels import fill_slot
 
-        self.told[SHORT + free] = go_on(ends, self.pairs[played], self.pairs[free], most_m)
+        self.host_state[SHORT + free] = fill_slot(ends, self.pairs[played], self.pairs[free], most_m)
         self.ends_m[free] = bounds = tile_bounds(ends)
-        begins, both = self.ends_m[played], self.tiles_m[free]
-        np.maximum(bounds[..., 0], begins[..., 0], out=both[..., 0])
-        np.minimum(bounds[..., 1], begins[..., 1], out=both[..., 1])
+        begins, bounds_of_both = self.ends_m[played], self.tiles_m[free]
+        np.maximum(bounds[..., 0], begins[..., 0], out=bounds_of_both[..., 0])
+        np.minimum(bounds[..., 1], begins[..., 1], out=bounds_of_both[..., 1])
 
     @property
     def arrived(self) -> bool:
         """Whether what was published last ends where it was wanted."""
-        return not self.told[SHORT + slots_of(self.shared)[1]]
+        return not self.host_state[SHORT + slots_of(self.shared)[1]]
 
 
 def slots_of(shared: Int64[np.ndarray, "2"]) -> tuple[int, int]:

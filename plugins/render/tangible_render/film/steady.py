@@ -63,7 +63,7 @@ def steady(memory, moving, x, y, z, vx, vy, vz, fx, fy, fz):
     return fx, fy, fz
 
 
-def beginning(stiffness_n_per_m: float, damping_n_s_per_m: float) -> Float64[np.ndarray, "n"]:
+def initial_memory(stiffness_n_per_m: float, damping_n_s_per_m: float) -> Float64[np.ndarray, "n"]:
     """The memory of a hand that was not there yet."""
     memory = np.zeros(REMEMBERED)
     memory[STIFFNESS], memory[DAMPING], memory[HAND] = stiffness_n_per_m, damping_n_s_per_m, np.nan

@@ -27,18 +27,18 @@ def spline_coefficients(height_m: Float32[np.ndarray, "h w"]) -> Float32[np.ndar
     from scipy.ndimage import spline_filter1d
 
     at = jumps(height_m)
-    values = _continued(height_m, at)
+    values = _extend(height_m, at)
     near = np.pad(np.pad(at, BORDER, mode="edge"), _RUN_IN - BORDER)
-    kept = slice(_RUN_IN - BORDER, BORDER - _RUN_IN)
+    inside = slice(_RUN_IN - BORDER, BORDER - _RUN_IN)
     ease(values, near)
     values = spline_filter1d(values, order=3, axis=0, mode="mirror")
     ease(values.T, near.T)
     values = spline_filter1d(values, order=3, axis=1, mode="mirror")
     with np.errstate(over="ignore"):
-        return np.ascontiguousarray(values[kept, kept], np.float32)
+        return np.ascontiguousarray(values[inside, inside], np.float32)
 
 
-def _continued(height_m: Float32[np.ndarray, "h w"], at: Bool[np.ndarray, "h w"]) -> Float64[np.ndarray, "h64 w64"]:
+def _extend(height_m: Float32[np.ndarray, "h w"], at: Bool[np.ndarray, "h w"]) -> Float64[np.ndarray, "h64 w64"]:
     """The heights, and beyond each border their odd reflection, or level ground where they jump at the border."""
     heights = height_m.astype(np.float64)
     values = np.pad(heights, _RUN_IN, mode="reflect", reflect_type="odd")

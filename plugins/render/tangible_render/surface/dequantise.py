@@ -55,17 +55,17 @@ def lattice_step(height_m: Float32[np.ndarray, "h w"]) -> float:
 
 
 def _low_pass(values: Float32[np.ndarray, "h w"], sigma: float) -> Float32[np.ndarray, "h w"]:
-    lost = values
+    residual = values
     for _ in range(PASSES):
-        lost = lost - _gauss(lost, sigma)
-    return values - lost
+        residual = residual - _gauss(residual, sigma)
+    return values - residual
 
 
 def _gauss(values: Float32[np.ndarray, "h w"], sigma: float) -> Float32[np.ndarray, "h w"]:
     import cv2
 
     reach = int(np.ceil(4 * sigma))
-    continued = np.pad(values, reach, mode="reflect", reflect_type="odd")
+    extended = np.pad(values, reach, mode="reflect", reflect_type="odd")
     with plain_opencv():
-        blurred = cv2.GaussianBlur(continued, (2 * reach + 1, 2 * reach + 1), sigma)
+        blurred = cv2.GaussianBlur(extended, (2 * reach + 1, 2 * reach + 1), sigma)
     return np.asarray(blurred[reach:-reach, reach:-reach], np.float32)

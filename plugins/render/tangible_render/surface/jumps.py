@@ -23,13 +23,13 @@ def jumps(height_m: Float32[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
     """
     from scipy.ndimage import maximum_filter
 
-    found = np.zeros(height_m.shape, bool)
+    mask = np.zeros(height_m.shape, bool)
     with np.errstate(over="ignore", invalid="ignore"):
         rounding = ROUNDING * np.abs(height_m).max()
-        for heights, at in ((height_m, found), (height_m.T, found.T)):
+        for heights, at in ((height_m, mask), (height_m.T, mask.T)):
             for lines in _blocks(heights) if len(heights) > 2 * REACH else ():
-                at[2:-2, lines] |= _stand_out(np.diff(heights[:, lines], 2, axis=0), rounding)
-    return maximum_filter(found, 2 * REACH + 1) if found.any() else found
+                at[2:-2, lines] |= _exceed_nearby(np.diff(heights[:, lines], 2, axis=0), rounding)
+    return maximum_filter(mask, 2 * REACH + 1) if mask.any() else mask
 
 
 def ease(values: Float64[np.ndarray, "h w"], at: Bool[np.ndarray, "h w"]) -> None:
@@ -53,7 +53,7 @@ def _blocks(lines: np.ndarray) -> Iterator[slice]:
     return (slice(first, first + count) for first in range(0, lines.shape[1], count))
 
 
-def _stand_out(second: Float32[np.ndarray, "n w"], rounding: np.floating) -> Bool[np.ndarray, "m w"]:
+def _exceed_nearby(second: Float32[np.ndarray, "n w"], rounding: np.floating) -> Bool[np.ndarray, "m w"]:
     """Whether fourth differences are large beside the second ones up to two cells away, column by column."""
     fourth, size = np.abs(np.diff(second, 2, axis=0)), np.abs(second)
     nearby = np.maximum(np.maximum(size[:-2], size[1:-1]), size[2:])

@@ -1,4 +1,4 @@
-"""Any law, and what the materials of a surface add to it."""
+"""The effects of a surface's materials around any other force law."""
 
 from typing import Annotated, Any, ClassVar, final
 
@@ -17,7 +17,7 @@ from .effects.inner_law import Law, build_law, complete_options
 
 
 def _refusal(cls: type[ForceRenderer]) -> str:
-    return "renders materials itself; use it as it is" if cls.renders_materials else ""
+    return "renders materials itself; use it directly" if cls.renders_materials else ""
 
 
 def _complete(law: Law) -> dict[str, Any]:
@@ -32,39 +32,42 @@ def _builtin_name(material: str) -> str:
 
 
 class WithMaterials(ForceRenderer):
-    """Friction that sticks and slips, fine textures and damping of the surface's materials, around any other law.
+    """Friction that sticks and slips, fine textures and damping of the surface's materials, around any other force law.
 
-    The texture t(x, y) lies on the law's surface: the law is asked for its force G at z - t, and (G_x - t_x G_z,
-    G_y - t_y G_z, G_z) is felt, which takes the same work. So a law that gains no energy gains none with a texture,
-    where the material is one. Friction and damping, which never give any, join G: |G| is the push, damping lies along
-    it, and across it friction, a bristle that sticks up to the static friction and slides on the dynamic one. Of a
-    law that pushes nothing up from level ground, k d is the push, k the material's stiffness and d the depth; it has
-    no damping.
+    The texture t(x, y) is added to the surface of the inner force law: its force G is evaluated at z - t, and the
+    result is (G_x - t_x G_z, G_y - t_y G_z, G_z), which does the same work. So an inner force law that generates no
+    energy generates none with a texture, where the material is uniform. Friction and damping, which only take energy,
+    are added to G: |G| is the push, damping lies along G, and across it friction, a bristle that sticks up to the static
+    friction and slides on the dynamic one. For a lateral force law the push is k d, with k the material's stiffness and
+    d the depth; it has no damping.
 
-    A law whose force depends on the stiffness of materials has that too. `proxy` brings all of this itself.
+    If the inner force law uses the stiffness of materials, that is kept. `proxy` renders all of this itself.
     Source: Robles-De-La-Torre & Hayward, Nature 412 (2001), for the texture on level ground; Hayward & Armstrong, A new
     computational model of friction applied to haptic rendering, Experimental Robotics VI, 2000.
     """
 
     version: ClassVar[int] = 2
     renders_materials: ClassVar[bool] = True
-    why_still: ClassVar[str] = "it is for laws that render no materials, and none of these does; `proxy` renders them"
+    why_still: ClassVar[str] = (
+        "no force law without materials supports moving surfaces; `proxy` does, and renders materials"
+    )
 
     law: Annotated[Law, AfterValidator(_complete), Field(validate_default=True)] = "penalty-gradient"
-    """The force law: its name, or {use: its name} with its options."""
+    """The inner force law: its name, or {use: its name} with its options."""
     friction: bool = True
     """Render friction."""
     texture: bool = True
     """Render fine textures; if false, their drag and their own friction are left out too."""
     damping: bool = True
-    """Render the damping of materials; the law keeps its own in either case."""
+    """Render the damping of materials; the inner force law keeps its own in either case."""
     material: Annotated[str, AfterValidator(_builtin_name)] | None = None
-    """A built-in material for a surface that has none; without it such a surface feels like the law alone."""
+    """A built-in material for a surface without any; by default such a surface feels like the inner force law alone."""
 
     def touch(self, surface: HapticSurface) -> Touch:
-        """A new touch on this surface; the law's own where the materials add nothing to it.
+        """Return a new touch on this surface; the inner force law's own where the materials add nothing.
 
-        Compiled on the first use of a law on a machine, then loaded. Around a law in plain Python it is Python's too.
+        Kernels are compiled on the first use on a machine, then loaded. Around a force law in plain Python the touch is
+        plain Python, too.
         """
         _, law = build_law(self.law, _refusal)
         surface = self._with_material(surface)
@@ -87,10 +90,10 @@ class WithMaterials(ForceRenderer):
 
 @final
 class MaterialsAdapter(PlainTouch):
-    """Materials around a law in plain Python, by the kernel that has them around a compiled one.
+    """Materials around a force law in plain Python, by the kernel for compiled ones.
 
-    Its law is `told`: the kernel is run once for what the law is asked, on a memory that is put back, and once more
-    with what the law said.
+    The kernel calls `stub_law`: it runs once to learn the state at which to evaluate the force law, after which its
+    memory is restored, and once more with the force for that state.
     """
 
     def __init__(self, law: Touch, wrapped: CompiledTouch) -> None:
@@ -98,7 +101,7 @@ class MaterialsAdapter(PlainTouch):
         self._law, self._wrapped = law, wrapped
 
     def force(self, state: HapticState) -> Force:
-        """The law's, and what the materials add to it."""
+        """Return the inner force law's force with the effects of the materials, N."""
         (state_of_law, force_of_law), memory = self._wrapped.fixed[0], self._wrapped.fixed[-1]
         before = memory.copy()
         self._wrapped.force(state)

@@ -1,4 +1,4 @@
-"""How far each cell of a surface is from the nearest border between its labels."""
+"""The distance of each cell of a surface from the nearest border between its labels."""
 
 from typing import Any
 
@@ -11,9 +11,9 @@ from .lines import Borders, border_lines
 def border_distance(
     labels: Int32[np.ndarray, "h w"], pitch_m: tuple[float, float], most_m: float
 ) -> Float32[np.ndarray, "h w"]:
-    """Metres from each cell's centre to the nearest line of `border_lines`, most_m where it is farther.
+    """Compute metres from each cell's centre to the nearest line of `border_lines`, at most most_m.
 
-    pitch_m: width and length of a cell. The distance is that to the stretches between the points, not to the points.
+    pitch_m: width and length of a cell. Distances are to the segments between the points, not to the points.
     """
     distance_m = np.full(labels.shape, most_m, np.float32)
     lines = border_lines(labels)
@@ -27,7 +27,7 @@ def border_distance(
 
 
 def _near(labels: Int32[np.ndarray, "h w"], pitch_m: tuple[float, float], most_m: float) -> np.ndarray:
-    """The cells that may be so near: by the cells beside borders, which lie within half a cell of them and the line."""
+    """Return a mask of cells that may be within most_m: those near cells at borders, half a cell from the line."""
     from scipy import ndimage
 
     from tangible_core.data.parts import beside_border
@@ -50,15 +50,15 @@ def _distance_to_lines(
     within = nearest < len(at_m)
     distance_m = np.full(len(places_m), np.inf)
     here, point = places_m[within], np.asarray(nearest)[within]
-    to_both = [_distance_to_stretch(here, at_m[point], at_m[lines.neighbours[point, side]]) for side in (0, 1)]
+    to_both = [_distance_to_segment(here, at_m[point], at_m[lines.neighbours[point, side]]) for side in (0, 1)]
     distance_m[within] = np.minimum(*to_both)
     return distance_m
 
 
-def _distance_to_stretch(
+def _distance_to_segment(
     here: Float64[np.ndarray, "n 2"], start: Float64[np.ndarray, "n 2"], end: Float64[np.ndarray, "n 2"]
 ) -> Float64[np.ndarray, "n"]:
-    """From points to straight stretches; one of no length is a point."""
+    """Compute distances from points to straight segments; a segment of no length is a point."""
     way = end - start
     square = np.maximum((way * way).sum(axis=1), 1e-300)
     share = np.clip(((here - start) * way).sum(axis=1) / square, 0.0, 1.0)

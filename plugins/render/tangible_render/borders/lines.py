@@ -1,34 +1,37 @@
-"""The borders between labels as lines: from the stairs of cells to the smooth lines that such stairs may come from."""
+"""The borders between labels as lines: smooth lines within the uncertainty of the staircase of cells."""
 
 from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Float64, Int32, Int64
 
-BLUR, PASSES, ROUNDS = 128, 5, 8
-"""Averages of neighbours that make a Gaussian of 8 steps of a line; Gaussians in a low-pass; how often that is clipped
-to the half cell in which a line is known. As heights that came in steps are made smooth (`surface.dequantise`)."""
+BLUR = 128
+"""The number of averages of neighbours, which make a Gaussian with a standard deviation of 8 points of a line."""
+PASSES = 5
+"""The number of Gaussians in a low-pass, the same as in `surface.dequantise`."""
+ROUNDS = 8
+"""The number of low-passes, each clipped to half a cell around the staircase, the same as in `surface.dequantise`."""
 
 Points = Float64[np.ndarray, "n 2"]
 Lanes = Float64[np.ndarray, "2 n"]
-"""Points, column by column: neighbours are then taken in a third of the time."""
+"""The points, coordinate by coordinate: neighbours are then taken in a third of the time."""
 
 
 class Borders(NamedTuple):
-    """Lines between labels, as points that have up to two neighbours."""
+    """The lines between labels, as points with up to two neighbours."""
 
     at: Points
-    """(column, row) in cells, the first cell's centre at (0, 0); one for each side of a cell between two labels."""
+    """The points (column, row) in cells, the first cell's centre at (0, 0); one for each side between two labels."""
     neighbours: Int64[np.ndarray, "n 2"]
-    """Which points come before and after each, itself where the line ends: at the rim, or where three labels meet."""
+    """The points before and after each; the point itself where a line ends: at the rim, or where three labels meet."""
 
 
 def border_lines(labels: Int32[np.ndarray, "h w"]) -> Borders:
-    """The lines between the labels. Each of their points lies within half a cell of the side that it is of.
+    """Return smooth lines between the labels; each point lies within half a cell of its cell side.
 
-    The sides of cells are stairs, within half a cell of which the border lies. Of the lines there a smooth one is
-    sought: low-passed along each line and clipped to the half cells, in turn. The low-pass is 1 - (1 - G)^5, which
-    draws no circle together. So a straight border is straight at any angle, and corners are kept within half a cell.
+    The sides of cells form a staircase, and the border lies within half a cell of it. To find a smooth line there, each
+    line is low-passed and clipped to the half cells, in turn. The low-pass is 1 - (1 - G)^5, which does not shrink
+    circles. So a straight border is straight at any angle, and corners stay within half a cell.
     Source: projections onto convex sets (Youla & Webb, IEEE Trans. Medical Imaging 1, 1982).
     """
     points, neighbours = _sides(labels)
@@ -49,7 +52,7 @@ def _low_pass(at: Lanes, neighbours: Int64[np.ndarray, "n 2"]) -> Lanes:
 
 
 def _blur(at: Lanes, before: Int64[np.ndarray, "n"], after: Int64[np.ndarray, "n"]) -> Lanes:
-    """Averaged with the neighbours; where a line ends, it stays."""
+    """Average points with their neighbours BLUR times; the ends of lines stay."""
     for _ in range(BLUR):
         mean = at.take(before, axis=1)
         mean += at.take(after, axis=1)
@@ -61,7 +64,7 @@ def _blur(at: Lanes, before: Int64[np.ndarray, "n"], after: Int64[np.ndarray, "n
 
 
 def _sides(labels: Int32[np.ndarray, "h w"]) -> tuple[Points, Int64[np.ndarray, "n 2"]]:
-    """The middles of the sides of cells that lie between two labels, and the neighbours of each along the line.
+    """Return the middles of the cell sides between two labels, and the neighbours of each along the line.
 
     Two sides are neighbours where they alone meet at a corner of cells; where three or four meet, lines end.
     """

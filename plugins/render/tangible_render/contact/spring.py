@@ -18,14 +18,14 @@ from .closest import settle
 SURFACE = (HEIGHTS, *[float64] * 4, types.Array(float32, 3, "C", readonly=True))
 MATERIALS = types.Array(float64, 2, "C", readonly=True)
 MEMORY = float64[::1]
-"""Types of what a kernel of `proxy` is given."""
+"""The numba types of a touch's memory; SURFACE and MATERIALS are those of the other arguments of a kernel."""
 
 
 @inner(forceinline=True)
 def spring(shape, tiles_m, stiffness, memory, x, y, z, vx, vy, vz):
-    """F = k (p - q), where all is one material that has neither friction nor damping.
+    """Compute F = k (p - q), for one material without friction and damping.
 
-    In a level tile that the proxy is in already, it is right above the hand.
+    In a level tile that already holds the proxy, the proxy is right above the hand.
     """
     coefficients, width_m, length_m, across_per_m, down_per_m = shape
     if not approach(coefficients, width_m, length_m, across_per_m, down_per_m, tiles_m, memory, x, y, z, vx + vy + vz):
@@ -49,7 +49,7 @@ def spring(shape, tiles_m, stiffness, memory, x, y, z, vx, vy, vz):
 
 @inner(forceinline=True)
 def spring_and_damper(shape, tiles_m, labels, table, memory, x, y, z, vx, vy, vz):
-    """F = k (p - q) - b v_n n; the proxy p is held by friction."""
+    """Compute F = k (p - q) - b v_n n; friction holds the proxy p."""
     coefficients, width_m, length_m, across_per_m, down_per_m = shape
     if not approach(coefficients, width_m, length_m, across_per_m, down_per_m, tiles_m, memory, x, y, z, vx + vy + vz):
         return 0.0, 0.0, 0.0
@@ -72,9 +72,9 @@ def spring_and_damper(shape, tiles_m, labels, table, memory, x, y, z, vx, vy, vz
 
 @inner()
 def _prefetch_ahead(coefficients, across_per_m, down_per_m, memory, px, py):
-    """Ask for what the tick after the next will read if the proxy goes on as it did, from the memory to (px, py).
+    """Prefetch the coefficients for the tick after the next, if the proxy keeps its last step, memory to (px, py).
 
-    Of a large surface it comes from far away, and takes longer than one tick takes along a path.
+    For a large surface they come from main memory, which takes longer than a tick of a path.
     """
     ahead_x, ahead_y = px + 2.0 * (px - memory[0]), py + 2.0 * (py - memory[1])
     prefetch(coefficients, across_per_m, down_per_m, ahead_x, ahead_y)

@@ -1,4 +1,4 @@
-"""Textures, friction and damping of a surface's materials, as kernels read them."""
+"""The table of textures, friction and damping of a surface's materials, for kernels."""
 
 from collections.abc import Sequence
 
@@ -11,20 +11,20 @@ from tangible_core.haptic_textures.table import COUNT, DRAG, STIFFNESS
 
 Table = Float64[np.ndarray, "n p"]
 TEXTURE_COLUMNS = [COUNT, DRAG, STIFFNESS]
-"""Columns of which a texture has at least one."""
+"""The columns of a texture; at least one of them is not 0 in a texture."""
 LAW_COLUMNS = 4
-"""Columns after those of a texture: k, b, mu_s and mu_d, as in `material_table`."""
+"""The number of columns after those of a texture: k, b, mu_s and mu_d, as in `material_table`."""
 EFFECT_COLUMNS = [*TEXTURE_COLUMNS, -3, -2]
-"""Columns of which a material has at least one that adds something to a law; -3 is b, -2 mu_s."""
+"""The columns that add to a force law if any of them is not 0; -3 is b, -2 mu_s."""
 
 
 def effects_table(
     surface: HapticSurface, friction: bool = True, texture: bool = True, damping: bool = True
 ) -> tuple[Int32[np.ndarray, "h w"], Table]:
-    """Labels, and a row for each: its texture's, then k, b, mu_s and mu_d; one cell of one row where all are alike.
+    """Return labels, and a row for each: its texture, then k, b, mu_s and mu_d; one cell and one row if all are equal.
 
-    What is left out is 0, and so are the rows of labels that nowhere occur. A texture that sticks and slips brings the
-    whole of its material's friction. The surface has materials.
+    Disabled effects are 0, and so are the rows of labels that do not occur. A texture that sticks and slips replaces
+    its material's friction. The surface must have materials.
     """
     assert surface.labels is not None and surface.materials is not None
     rows = _rows(surface.materials, friction, texture, damping)
@@ -38,9 +38,10 @@ def effects_table(
 def split_textures(
     surface: HapticSurface, friction: bool
 ) -> tuple[Int32[np.ndarray, "h w"], Float64[np.ndarray, "n 4"], Table, Float64[np.ndarray, "m"]] | None:
-    """For a law that has friction and damping itself: labels, k, b, mu_s and mu_d of each, textures alone, memory.
+    """Split the table for a force law with its own friction and damping.
 
-    None where no material of the surface has a texture.
+    Returns: labels, the columns k, b, mu_s and mu_d, a table of textures alone, and the memory of their touch; None if
+    no material of the surface has a texture.
     """
     if surface.labels is None or not surface.materials:
         return None
@@ -53,7 +54,7 @@ def split_textures(
 
 
 def initial_memory() -> Float64[np.ndarray, "m"]:
-    """The memory of a hand that was not there yet."""
+    """Return the memory of a touch before its first tick."""
     from . import kernels
 
     memory = np.zeros(kernels.REMEMBERED)

@@ -18,13 +18,13 @@ from .slots import DROPPED, SPEED_M_PER_S, STEP_N, Slots
 
 @final
 class SplineFilm(Film):
-    """A film whose memory is arrays alone, which the touch reads: it may be shown in one process and felt in another.
+    """A film whose memory consists of arrays read by the touch: one process may show frames and another render forces.
 
-    One at a time shows.
+    Only one process shows at a time.
     """
 
     def __init__(self, touch: CompiledTouch, slots: Slots, extent_m: tuple[float, float], most_m: float) -> None:
-        """most_m: how far any place of the surface may go in the time of a frame."""
+        """Wrap the touch and its slots. most_m: the longest way of any place of the surface in a frame."""
         self._touch, self._slots, self._extent_m, self._most_m = touch, slots, extent_m, most_m
         self._scratch: Scratch | None = None
 
@@ -33,11 +33,11 @@ class SplineFilm(Film):
 
     @property
     def touch(self) -> CompiledTouch:
-        """What a loop feels."""
+        """The touch for a servo loop."""
         return self._touch
 
     def show(self, relief: Relief, frame: int) -> None:
-        """Where the surface goes from here, as far as it may in the time of a frame.
+        """Move the surface towards this relief, as far as it may go in the time of a frame.
 
         Raises: GeometryError for a relief of another grid or extent than the first.
         """
@@ -49,12 +49,12 @@ class SplineFilm(Film):
 
     @property
     def arrived(self) -> bool:
-        """Whether the surface is what was shown last, or goes all the way there."""
+        """True if the surface is the relief shown last, or moves all the way to it."""
         return self._slots.arrived
 
     @property
     def dropped(self) -> int:
-        """How many frames another took the place of before the loop went to them."""
+        """The number of frames replaced by another before the loop reached them."""
         return int(self._slots.host_state[DROPPED])
 
     def _check(self, relief: Relief) -> None:
@@ -75,7 +75,7 @@ def create_film(
     period_s: float,
     frame_s: float,
 ) -> SplineFilm:
-    """A film that stands still on this surface. arguments, memory: of the law; spring: its stiffness and damping."""
+    """Return a film at rest on this surface. arguments, memory: the force law's; spring: its stiffness and damping."""
     from .steady import initial_memory
 
     (rows, columns), (width_m, length_m) = surface.height_m.shape, map(float, surface.extent_m)

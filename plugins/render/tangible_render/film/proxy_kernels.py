@@ -1,6 +1,6 @@
-"""The law of `proxy` on materials, on a surface that moves; compiled. Imports numba: imported inside `film`.
+"""The compiled kernel of `proxy` on materials, on a moving surface. Imports numba: imported inside `film`.
 
-What a touch remembers is listed in `contact`.
+`contact.approach` lists the memory of a touch.
 """
 
 # ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
@@ -20,7 +20,7 @@ def moving_tick(
     pairs, tiles_m, frames, shared, count, width_m, length_m, across_per_m, down_per_m, labels, table, memory, last,
     moving, x, y, z, vx, vy, vz,
 ):  # fmt: skip
-    """As `kernels.tick`, on the surface as it is at the end of this tick."""
+    """Compute `kernels.proxy.tick` on the surface at the end of this tick."""
     slot, share, passed = play(frames, shared, count, moving)
     shape = (pairs[slot], 1.0 - share, share), width_m, length_m, across_per_m, down_per_m
     fx, fy, fz = spring_and_damper(shape, tiles_m[slot], labels, table, memory, x, y, z, vx, vy, vz)

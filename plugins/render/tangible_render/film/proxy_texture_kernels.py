@@ -1,6 +1,6 @@
-"""The law of `proxy` on materials with a texture, on a surface that moves; compiled. Imports numba.
+"""The compiled kernel of `proxy` on materials with a texture, on a moving surface. Imports numba.
 
-What a touch remembers is listed in `contact`.
+`contact.approach` lists the memory of a touch.
 """
 
 # ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
@@ -21,7 +21,7 @@ def moving_textured_tick(
     pairs, tiles_m, frames, shared, count, width_m, length_m, across_per_m, down_per_m, labels, table, memory, textures,
     contact, last, moving, x, y, z, vx, vy, vz,
 ):  # fmt: skip
-    """As `proxy_texture_kernels.textured_tick`, on the surface as it is at the end of this tick."""
+    """Compute `kernels.proxy_texture.textured_tick` on the surface at the end of this tick."""
     slot, share, passed = play(frames, shared, count, moving)
     shape = (pairs[slot], 1.0 - share, share), width_m, length_m, across_per_m, down_per_m
     label, t, tx, ty, dx, dy, dz = texture(labels, width_m, length_m, textures, contact, x, y, z)

@@ -1,6 +1,6 @@
 """A stand-in for a maker's library: millimetres and millinewtons, in its own frame.
 
-x to the right, y up, z towards the user. The handle moves on a circle of 20 mm, once a second, whatever force is applied.
+x to the right, y up, z towards the user. The handle moves on a circle of 20 mm, once a second, under any force.
 """
 
 import math
@@ -19,7 +19,7 @@ class Box:
         Box.busy, self._ms, self.held_mn = True, 0, (0.0, 0.0, 0.0)
 
     def poll(self) -> tuple[int, Triple]:
-        """Return milliseconds since the box was opened, and the handle's place; a millisecond passes. Raises: OSError."""
+        """Return milliseconds since opening, and the handle's place; a millisecond passes. Raises: OSError."""
         if not Box.there:
             raise OSError("no answer")
         self._ms += 1

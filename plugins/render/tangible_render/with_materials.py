@@ -38,8 +38,8 @@ class WithMaterials(ForceRenderer):
     result is (G_x - t_x G_z, G_y - t_y G_z, G_z), which does the same work. So an inner force law that generates no
     energy generates none with a texture, where the material is uniform. Friction and damping, which only take energy,
     are added to G: |G| is the push, damping lies along G, and across it friction, a bristle that sticks up to the
-    static friction and slides on the dynamic one. For a lateral force law the push is k d, with k the material's stiffness and
-    d the depth; it has no damping.
+    static friction and slides on the dynamic one. For a lateral force law the push is k d, with k the material's
+    stiffness and d the depth; it has no damping.
 
     If the inner force law uses the stiffness of materials, that is kept. `proxy` renders all of this itself.
     Source: Robles-De-La-Torre & Hayward, Nature 412 (2001), for the texture on level ground; Hayward & Armstrong, A new

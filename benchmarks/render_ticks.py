@@ -12,8 +12,8 @@ from tangible_core.data import HapticSurface, Material
 from tangible_core.materials.assignment import library
 from tangible_core.plugins.interfaces import ForceRenderer
 from tangible_core.plugins.registry import default_registry
-from tangible_render import tangible_mask_kernels
-from tangible_render.effects.told import told as constant
+from tangible_render.effects.stub_law import stub_law as constant
+from tangible_render.kernels import tangible_mask as tangible_mask_kernels
 from tangible_render.lateral_shape import LateralShape
 from tangible_render.penalty import Penalty
 from tangible_render.proxy import Proxy

@@ -100,13 +100,13 @@ print(f"proxy: {recording.peak_force_n:.2f} N at most, grey level: {again.peak_f
 
 # %%
 class Ramp(DepthEstimator):
-    """Nearer from top to bottom, whatever is seen."""
+    """A ramp that comes nearer from top to bottom, for any picture."""
 
     most_px: float = 40.0
     """Disparity of the lowest row."""
 
     def estimate(self, views: Views) -> DisparityMap:
-        """The ramp, in pixels."""
+        """Return the ramp, in pixels."""
         height, width = views.shape
         column = np.linspace(0, self.most_px, height, dtype=np.float32)
         return DisparityMap(np.repeat(column[:, None], width, axis=1))

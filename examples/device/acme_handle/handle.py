@@ -23,7 +23,7 @@ class Handle(HapticDevice):
     """Acme's handle on three axes, through the library of its maker."""
 
     def spec(self) -> DeviceSpec:
-        """From the data sheet; asks nothing of the box."""
+        """Return the data sheet's values; the box is not contacted."""
         return SPEC
 
     def open(self) -> Link:
@@ -55,13 +55,13 @@ class HandleLink(Link):
         return HapticState(self._position_m, (vx, vy, vz), self._ms / 1000)
 
     def _send(self, force: Force) -> None:
-        """In the maker's units and frame."""
+        """Convert to the maker's units and frame."""
         x, y, z = force
         self._ask(self._box.push, (1000 * x, 1000 * z, -1000 * y))
 
     @property
     def applied(self) -> Force:
-        """What the box holds."""
+        """Return the force that the box applies."""
         right, up, near = self._box.held_mn
         return Force(right / 1000, -near / 1000, up / 1000)
 

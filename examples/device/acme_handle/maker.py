@@ -1,6 +1,6 @@
-"""In place of the library that a maker delivers: millimetres and millinewtons, in a frame of its own.
+"""A stand-in for a maker's library: millimetres and millinewtons, in its own frame.
 
-x to the right, y up, z towards the user. The handle moves on a circle of 20 mm, once a second, whatever pushes it.
+x to the right, y up, z towards the user. The handle moves on a circle of 20 mm, once a second, under any force.
 """
 
 import math
@@ -9,7 +9,7 @@ Triple = tuple[float, float, float]
 
 
 class Box:
-    """One box; nobody else can open it meanwhile. Raises: OSError if it is not there, or busy."""
+    """A connection to one box, which nobody else can open meanwhile. Raises: OSError if it is not there, or busy."""
 
     there, busy = True, False
 
@@ -19,7 +19,7 @@ class Box:
         Box.busy, self._ms, self.held_mn = True, 0, (0.0, 0.0, 0.0)
 
     def poll(self) -> tuple[int, Triple]:
-        """Milliseconds since it was opened, and where the handle is; a millisecond passes. Raises: OSError."""
+        """Return milliseconds since opening, and the handle's place; a millisecond passes. Raises: OSError."""
         if not Box.there:
             raise OSError("no answer")
         self._ms += 1

@@ -25,11 +25,11 @@ class Contours(Exporter):
     """Width of the drawing; null for that of the workspace."""
 
     def picture_width_m(self, aspect: float) -> float | None:
-        """The relief is made so wide: nothing is scaled here."""
+        """Return the width at which the relief is made: nothing is scaled here."""
         return self.width_m
 
     def write(self, work: Work, stem: Path) -> tuple[Path, ...]:
-        """One file. Raises: GeometryError where there is no line to draw."""
+        """Write one file. Raises: GeometryError where there is no line to draw."""
         lines = self._lines(work.relief.height_m, work.relief.pitch_m)
         if not lines:
             raise GeometryError(f"no line is drawn: nothing is {1e3 * self.step_m:g} mm high; make step_m smaller")

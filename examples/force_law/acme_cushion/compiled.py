@@ -20,7 +20,7 @@ class CompiledCushion(ForceRenderer):
     """Depth over which the stiffness grows from zero."""
 
     def touch(self, surface: HapticSurface) -> Touch:
-        """A new touch on this surface; compiled on first use, then loaded from disk."""
+        """Return a new touch on this surface; compiled on first use, then loaded from disk."""
         from . import kernels  # imports numba, so here
 
         height_m = np.pad(surface.height_m, 1, mode="edge")

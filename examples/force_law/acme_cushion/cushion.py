@@ -21,7 +21,7 @@ class Cushion(ForceRenderer):
     """Depth over which the stiffness grows from zero."""
 
     def touch(self, surface: HapticSurface) -> Touch:
-        """A new touch on this surface."""
+        """Return a new touch on this surface."""
         return CushionTouch(surface, self.stiffness_n_per_m, self.soft_m)
 
 
@@ -35,7 +35,7 @@ class CushionTouch(PlainTouch):
         self._extent_m = surface.extent_m
 
     def force(self, state: HapticState) -> Force:
-        """Straight up where the tip is below the surface; zero in free air and beyond the picture."""
+        """Return a force straight up where the tip is below the surface; zero in free air and beyond the picture."""
         (x, y, z), (width_m, length_m) = state.position_m, self._extent_m
         across, down = x / width_m + 0.5, 0.5 - y / length_m
         if not (0 <= across <= 1 and 0 <= down <= 1):
@@ -46,7 +46,7 @@ class CushionTouch(PlainTouch):
         return Force(0.0, 0.0, push_n) if depth_m > 0 and math.isfinite(push_n) else NO_FORCE
 
     def _height(self, across: float, down: float) -> float:
-        """Bilinear between the centres of the cells; level from the outermost centres to the edge."""
+        """Interpolate between the centres of the cells; level from the outermost centres to the edge."""
         rows, columns = self._height_m.shape
         row, column = 0.5 + down * (rows - 2), 0.5 + across * (columns - 2)
         i, j = int(row), int(column)

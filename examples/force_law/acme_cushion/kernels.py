@@ -13,7 +13,7 @@ NEWTONS = types.UniTuple(float64, 3)
 
 @njit(NEWTONS(HEIGHTS, *[float64] * 4, *[float64] * 6), **KERNEL)
 def tick(height_m, width_m, length_m, stiffness_n_per_m, soft_m, x, y, z, vx, vy, vz):
-    """Straight up where the tip is below the surface; zero in free air and beyond the picture."""
+    """Return a force straight up where the tip is below the surface; zero in free air and beyond the picture."""
     across, down = x / width_m + 0.5, 0.5 - y / length_m
     if not (0.0 <= across <= 1.0 and 0.0 <= down <= 1.0):
         return 0.0, 0.0, 0.0

@@ -20,7 +20,7 @@ class Blocks(DepthEstimator):
     """Shifts from 0 to one less than this are tried."""
 
     def estimate(self, views: Views) -> DisparityMap:
-        """Whole pixels; unknown where every shift fits alike, as on a wall of one colour."""
+        """Match whole pixels; unknown where every shift fits equally, as on a wall of one colour."""
         if views.right is None:
             raise PictureError("acme-blocks compares two views; give the scene a right one, or use another method")
         left, right = to_grey(views.left), to_grey(views.right)

@@ -1,4 +1,4 @@
-"""Force renderers: laws that turn a position into a force. Each method is imported when it is first used."""
+"""Force laws, from a position to a force. Each is imported when it is first used."""
 
 from typing import TYPE_CHECKING
 

@@ -1,4 +1,4 @@
-"""The grey level as a force: the simplest law there is."""
+"""The grey level as a force: the simplest force law."""
 
 from typing import Annotated, ClassVar
 
@@ -15,12 +15,12 @@ from .surface.grey_levels import grey_levels
 class GreyLevel(ForceRenderer):
     """The baseline: on contact, a force straight up in proportion to brightness, F_z = white G / 255.
 
-    G is the height in 256 steps, 0 on the base plane and 255 at the surface's highest point, of the cell that the tip
-    is in. Its faults are what the other renderers put right: the force steps at the surface, however gently it is
-    touched, and at the edges of cells; it is always along z, so that a slope pushes nobody sideways; pressing deeper
-    changes nothing; and the lowest ground cannot be felt at all.
+    G is the height of the cell under the tip in 256 steps, 0 on the base plane and 255 at the surface's highest point.
+    The other force laws correct its faults: the force steps at the surface, however gentle the touch, and at the edges
+    of cells; it is always along z, so that a slope does not push sideways; pressing deeper changes nothing; and the
+    lowest ground cannot be felt at all.
 
-    The surface ends at its extent: beyond it is free air.
+    The surface ends at its extent; beyond it is free air.
     Source: the report "Tangible Images", sec. 4.3, F_z proportional to G(m, n).
     """
 
@@ -30,9 +30,9 @@ class GreyLevel(ForceRenderer):
     """Force on the highest point of the surface."""
 
     def touch(self, surface: HapticSurface) -> Touch:
-        """A new touch on this surface; compiled on the first use on a machine, then loaded."""
-        from . import grey_level_kernels
+        """Return a new touch on this surface; its kernel is compiled on the first use on a machine, then loaded."""
+        from .kernels import grey_level as kernels
 
         heights = np.ascontiguousarray(surface.height_m, np.float32)
         fixed = (heights, grey_levels(heights), *map(float, surface.extent_m), self.force_at_white_n)
-        return CompiledTouch(grey_level_kernels.tick, fixed, stiffness=0.0)
+        return CompiledTouch(kernels.tick, fixed, stiffness=0.0)

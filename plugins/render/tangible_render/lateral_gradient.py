@@ -1,4 +1,4 @@
-"""A lateral force against the slope: texture on a device of two axes."""
+"""A lateral force against the slope: texture on a device with two axes."""
 
 from typing import Annotated, ClassVar
 
@@ -13,9 +13,9 @@ from .surface.dequantise import Filter
 
 
 class LateralGradient(ForceRenderer):
-    """A lateral force in proportion to the slope, on contact, whatever the depth: F = -K grad h; none along z.
+    """A lateral force in proportion to the slope, on contact at any depth: F = -K grad h; none along z.
 
-    K is the weight of a ball that rolls on the surface. The surface is a C2 spline; it ends at its extent: beyond it is
+    K is the weight of a ball rolling on the surface. The surface is a C2 spline; it ends at its extent; beyond it is
     free air. The force steps at the surface.
     Source: Minsky, Ouh-young, Steele, Brooks & Behensky, Feeling and seeing: issues in force display, I3D 1990.
     """
@@ -31,8 +31,8 @@ class LateralGradient(ForceRenderer):
     never, or a standard deviation in cells."""
 
     def touch(self, surface: HapticSurface) -> Touch:
-        """A new touch on this surface; compiled on the first use on a machine, then loaded."""
-        from . import lateral_kernels
+        """Return a new touch on this surface; its kernel is compiled on the first use on a machine, then loaded."""
+        from .kernels import lateral as kernels
 
         fixed = (*spline_surface(surface, self.dequantise), self.force_per_slope_n, 0.0)
-        return CompiledTouch(lateral_kernels.tick, fixed, stiffness=0.0)
+        return CompiledTouch(kernels.tick, fixed, stiffness=0.0)

@@ -1,4 +1,4 @@
-"""A lateral force in proportion to the push: a shape felt on a flat table."""
+"""A lateral force in proportion to the push: a shape on a flat table."""
 
 from typing import Annotated, ClassVar
 
@@ -15,9 +15,9 @@ from .surface.dequantise import Filter
 class LateralShape(ForceRenderer):
     """A lateral force in proportion to slope and pressing force: F = -F_n grad h with F_n = k d; none along z.
 
-    What a frictionless slope does to a finger that pushes with F_n, less its lift: it is felt as the shape even on a
-    flat table, which brings the force along z. k stands for how hard the hand pushes. The surface is a C2 spline; it
-    ends at its extent: beyond it is free air.
+    This is the force of a frictionless slope on a finger that pushes with F_n, without its vertical part: it feels like
+    the shape even on a flat table, which supplies the force along z. k stands for how hard the hand pushes. The surface
+    is a C2 spline; it ends at its extent; beyond it is free air.
     Source: Robles-De-La-Torre & Hayward, Force can overcome object geometry in the perception of shape through active
     touch, Nature 412 (2001).
     """
@@ -33,8 +33,8 @@ class LateralShape(ForceRenderer):
     never, or a standard deviation in cells."""
 
     def touch(self, surface: HapticSurface) -> Touch:
-        """A new touch on this surface; compiled on the first use on a machine, then loaded."""
-        from . import lateral_kernels
+        """Return a new touch on this surface; its kernel is compiled on the first use on a machine, then loaded."""
+        from .kernels import lateral as kernels
 
         fixed = (*spline_surface(surface, self.dequantise), 0.0, self.stiffness_n_per_m)
-        return CompiledTouch(lateral_kernels.tick, fixed, stiffness=self.stiffness_n_per_m)
+        return CompiledTouch(kernels.tick, fixed, stiffness=self.stiffness_n_per_m)

@@ -1,4 +1,4 @@
-"""Penalty force straight up: the plainest spring."""
+"""Penalty force straight up: the simplest spring."""
 
 from collections.abc import Mapping
 from typing import Annotated, ClassVar
@@ -17,19 +17,19 @@ from .surface.dequantise import Filter
 class Penalty(ForceRenderer):
     """A spring along z: F_z = k d, d = h(x, y) - z the depth under the surface.
 
-    It has no lateral part, so that a slope is felt by its height alone and pushes nobody sideways, and it is not
-    conservative: in at a deep place and out at a shallow one gives energy away. Damping acts along z, in contact only,
-    and never pulls. The surface is a C2 spline; it ends at its extent: beyond it is free air.
+    It has no lateral part, so that a slope shows by its height alone and does not push sideways, and it is not
+    conservative: entering at a deep place and leaving at a shallow one generates energy. Damping acts along z, in
+    contact only, and never pulls. The surface is a C2 spline; it ends at its extent; beyond it is free air.
     Source: Massie & Salisbury, The PHANToM haptic interface, ASME Winter Annual Meeting 1994.
     """
 
     version: ClassVar[int] = 2
 
     expected_failures: ClassVar[Mapping[str, str]] = {
-        "springs_are_exact": "a spring along z alone is its law, on slopes too, where the normal leans away from z"
+        "springs_are_exact": "its spring acts along z alone, on slopes too, where the normal leans away from z"
     }
     stiffness_n_per_m: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 800.0
-    """Stiffness, where the cell under the tip has no material of its own."""
+    """Stiffness, where the cell under the tip has no material."""
     damping_n_s_per_m: Annotated[float, Field(ge=0, allow_inf_nan=False)] = 0.0
     """Damping along z, in contact."""
     dequantise: Filter = "auto"
@@ -37,10 +37,10 @@ class Penalty(ForceRenderer):
     never, or a standard deviation in cells."""
 
     def touch(self, surface: HapticSurface) -> Touch:
-        """A new touch on this surface; compiled on the first use on a machine, then loaded."""
-        from . import penalty_kernels
+        """Return a new touch on this surface; its kernel is compiled on the first use on a machine, then loaded."""
+        from .kernels import penalty as kernels
 
         shape = spline_surface(surface, self.dequantise)
         labels, stiffness = stiffness_table(surface, self.stiffness_n_per_m)
         fixed = (*shape, labels, stiffness, self.damping_n_s_per_m)
-        return CompiledTouch(penalty_kernels.tick, fixed, stiffness=float(stiffness.max()))
+        return CompiledTouch(kernels.tick, fixed, stiffness=float(stiffness.max()))

@@ -1,4 +1,4 @@
-"""Penalty force along the gradient: a spring that stores what the hand puts in."""
+"""Penalty force along the gradient: a spring that stores the work of the hand."""
 
 from typing import Annotated
 
@@ -20,21 +20,21 @@ class PenaltyGradient(ForceRenderer):
     or loses energy. Not normalised: on a slope the stiffness along the normal is k (1 + |g|^2). Damping acts along the
     normal, in contact only, and never pulls. No friction.
 
-    The surface ends at its extent: beyond it is free air. The force steps there under the surface, and where two
+    The surface ends at its extent; beyond it is free air. The force steps there under the surface, and where two
     materials of unequal stiffness meet.
-    Source: the penalty method (reviewed in Zilles & Salisbury 1995), its direction the potential's own gradient.
+    Source: the penalty method (reviewed in Zilles & Salisbury 1995), its direction that of the potential's gradient.
     """
 
     stiffness_n_per_m: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 800.0
-    """Stiffness on level ground, where the cell under the tip has no material of its own."""
+    """Stiffness on level ground, where the cell under the tip has no material."""
     damping_n_s_per_m: Annotated[float, Field(ge=0, allow_inf_nan=False)] = 0.0
     """Damping along the normal, in contact."""
 
     def touch(self, surface: HapticSurface) -> Touch:
-        """A new touch on this surface; compiled on the first use on a machine, then loaded."""
-        from . import penalty_gradient_kernels
+        """Return a new touch on this surface; its kernel is compiled on the first use on a machine, then loaded."""
+        from .kernels import penalty_gradient as kernels
 
         labels, stiffness = stiffness_table(surface, self.stiffness_n_per_m)
         heights = np.ascontiguousarray(surface.height_m, np.float32)
         fixed = (heights, labels, stiffness, *map(float, surface.extent_m), self.damping_n_s_per_m)
-        return CompiledTouch(penalty_gradient_kernels.tick, fixed, stiffness=float(stiffness.max()))
+        return CompiledTouch(kernels.tick, fixed, stiffness=float(stiffness.max()))

@@ -1,4 +1,4 @@
-"""The proxy, or god-object: a point that stays on the surface, joined to the hand by a spring."""
+"""The proxy, or god-object: a point on the surface, joined to the hand by a spring."""
 
 from typing import Annotated, Any, ClassVar, Literal, NamedTuple, Self
 
@@ -12,15 +12,15 @@ from tangible_core.errors import check_positive
 from tangible_core.haptic_textures.table import bristle_stiffness
 from tangible_core.plugins.interfaces import Film, Filming, ForceRenderer, Touch
 
+from .effects.effects_table import split_textures
 from .effects.material_table import Row, material_table
-from .effects.table import textured
 from .surface.coefficients import spline_surface
 from .surface.dequantise import Filter
 from .surface.tiles import tile_bounds
 
 
 class _Law(NamedTuple):
-    """What a kernel is given after the surface, and which one: no texture, friction or damping where there is none."""
+    """A kernel's kind and its arguments after the surface: the simplest kernel with the effects that occur."""
 
     kind: Literal["spring", "materials", "textures"]
     arguments: tuple[Any, ...]
@@ -31,18 +31,18 @@ class _Law(NamedTuple):
 class Proxy(ForceRenderer, Filming):
     """A spring to a proxy (god-object), which stays on the surface: F = k (p - q).
 
-    The proxy p starts where the hand q comes through the surface, a C2 spline, and then minimises |p - q| downhill from
-    where it was, so that a wall holds it back: unlike a penalty force it does not throw the hand out at the far side.
-    With friction it rests while the force is within the static cone, and slides on the dynamic one: it sticks and
-    slips. Damping acts along the normal and never pulls. The fine textures of materials lie on the surface as heights;
-    what a texture has of its own, such as drag, joins in. Where the stiffness is one, no closed path gains energy but
-    by sampling: at a hand at rest the proxy only ever comes nearer.
+    The proxy p starts where the hand q passes through the surface, a C2 spline, and then minimises |p - q| downhill
+    from its last place, so that a wall holds it back: unlike a penalty force it does not push the hand out at the far
+    side. With friction the proxy rests while the force is within the static cone, and slides on the dynamic one: stick
+    and slip. Damping acts along the normal and never pulls. The fine textures of materials are added to the surface as
+    heights; other effects of a texture, such as drag, are added to the force. Where the stiffness is uniform, no closed
+    path gains energy except by sampling: for a hand at rest the proxy only ever comes nearer.
 
-    The surface is the top of a block with upright sides: a hand that comes from beside it under the rim is held off
-    along x or y. A hand that is put down in the block, or leaps by more than 5 mm in a tick, is taken straight up; so
-    is one that left its proxy more than 20 mm behind, if that is nearer.
+    The surface is the top of a block with vertical sides: a hand that enters from the side, below the rim, is pushed
+    back along x or y. The proxy of a hand that appears in the block, or jumps by more than 5 mm in a tick, starts
+    straight above the hand; so does a proxy more than 20 mm behind its hand, if the surface above is nearer.
 
-    It is felt on a surface that moves as well, see `film`.
+    Surfaces that move are supported as well, see `film`.
     Source: Zilles & Salisbury, A constraint-based god-object method, IROS 1995; Harwin & Melder, Improved haptic
     rendering for multi-finger manipulation using friction cone based god-objects, Eurohaptics 2002.
     """
@@ -59,7 +59,7 @@ class Proxy(ForceRenderer, Filming):
     dynamic_friction: Annotated[float, Field(ge=0, allow_inf_nan=False)] = 0.0
     """Coefficient of dynamic friction, where the surface has no materials."""
     friction: bool = True
-    """Render friction; if false, none at all, that of materials included."""
+    """Render friction; if false, there is none at all, that of materials included."""
     texture: bool = True
     """Render the fine textures of materials; if false, their drag and their own friction are left out too."""
     dequantise: Filter = "auto"
@@ -67,7 +67,7 @@ class Proxy(ForceRenderer, Filming):
     never, or a standard deviation in cells."""
 
     @model_validator(mode="after")
-    def _slides_more_easily_than_it_starts(self) -> Self:
+    def _dynamic_friction_within_static(self) -> Self:
         if self.dynamic_friction > self.static_friction:
             raise ValueError(
                 f"dynamic_friction {self.dynamic_friction} is above static_friction {self.static_friction}; "
@@ -76,67 +76,69 @@ class Proxy(ForceRenderer, Filming):
         return self
 
     def touch(self, surface: HapticSurface) -> Touch:
-        """A new touch on this surface, without what it does not need: texture, friction, damping, several materials.
+        """Return a new touch on this surface, with the simplest kernel for its textures and materials.
 
-        Compiled on the first use on a machine, then loaded: each kernel has a module of its own, so that only the one
-        that this surface needs is.
+        The kernel is compiled on the first use on a machine, then loaded: each kernel has its own module, so that only
+        the required one is compiled.
         """
         shape = spline_surface(surface, self.dequantise)
         law = self._law(surface)
         fixed = (*shape, tile_bounds(shape[0]), *law.arguments)
-        return CompiledTouch(_still(law.kind), fixed, law.memory, law.stiffness_n_per_m)
+        return CompiledTouch(_still_tick(law.kind), fixed, law.memory, law.stiffness_n_per_m)
 
     def film(self, surface: HapticSurface, period_s: float = 0.001, frame_s: float = 1 / 30) -> Film:
-        """A film that begins with this surface, whose labels and materials stay where they are.
+        """Return a film that begins with this surface, whose labels and materials stay in place.
 
-        Each place goes evenly from one relief to the next, by no more than 0.1 m/s, nor faster than that the spring on
-        a hand at rest changes by 0.08 N a tick; nor does that force change faster where the proxy loses its hold.
-        Friction holds the proxy's place, on a surface that rises and falls; damping is that of the hand alone. Heights
-        in steps are not smoothed.
+        Each place moves evenly from one relief to the next, at 0.1 m/s at most and so slowly that the spring force on a
+        hand at rest changes by at most 0.08 N a tick; that bound also holds where the proxy loses its hold. Friction
+        holds the proxy in place while the surface rises and falls; damping sees the velocity of the hand alone.
+        Quantised heights are not smoothed.
         """
-        from .film.film import begun
+        from .film.film import create_film
 
         check_positive("period_s", period_s)
         check_positive("frame_s", frame_s)
         law = self._law(surface)
         damping_n_s_per_m = float(law.arguments[1][:, 1].max()) if law.kind != "spring" else 0.0
         spring = law.stiffness_n_per_m, damping_n_s_per_m
-        return begun(surface, _moving(law.kind), law.arguments, law.memory, spring, float(period_s), float(frame_s))
+        return create_film(
+            surface, _moving_tick(law.kind), law.arguments, law.memory, spring, float(period_s), float(frame_s)
+        )
 
     def _law(self, surface: HapticSurface) -> _Law:
-        from .contact import contact
+        from .contact.approach import REMEMBERED
 
-        memory = np.zeros(contact.REMEMBERED)
-        if self.texture and (felt := textured(surface, self.friction)):
-            labels, table, textures, state = felt
+        memory = np.zeros(REMEMBERED)
+        if self.texture and (tables := split_textures(surface, self.friction)):
+            labels, table, textures, state = tables
             stiffness = max(float(table[:, 0].max()), bristle_stiffness(textures))
             return _Law("textures", (labels, table, memory, textures, state), memory, stiffness)
-        labels, table = material_table(surface, self._plain())
+        labels, table = material_table(surface, self._default_row())
         if not self.friction:
             table[:, 2:] = 0
         if len(table) == 1 and not table[0, 1:].any():
             return _Law("spring", (float(table[0, 0]), memory), memory, float(table[0, 0]))
         return _Law("materials", (labels, table, memory), memory, float(table[:, 0].max()))
 
-    def _plain(self) -> Row:
+    def _default_row(self) -> Row:
         return self.stiffness_n_per_m, self.damping_n_s_per_m, self.static_friction, self.dynamic_friction
 
 
-def _still(kind: str) -> Tick:
+def _still_tick(kind: str) -> Tick:
     if kind == "spring":
-        from .proxy_spring_kernels import spring_tick as tick
+        from .kernels.proxy_spring import spring_tick as tick
     elif kind == "materials":
-        from .proxy_kernels import tick
+        from .kernels.proxy import tick
     else:
-        from .proxy_texture_kernels import textured_tick as tick
+        from .kernels.proxy_texture import textured_tick as tick
     return tick
 
 
-def _moving(kind: str) -> Tick:
+def _moving_tick(kind: str) -> Tick:
     if kind == "spring":
-        from .film.spring_kernels import moving_spring_tick as tick
+        from .film.proxy_spring_kernels import moving_spring_tick as tick
     elif kind == "materials":
-        from .film.material_kernels import moving_tick as tick
+        from .film.proxy_kernels import moving_tick as tick
     else:
-        from .film.texture_kernels import moving_textured_tick as tick
+        from .film.proxy_texture_kernels import moving_textured_tick as tick
     return tick

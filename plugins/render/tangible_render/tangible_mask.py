@@ -1,4 +1,4 @@
-"""The tangible mask: a window's worth of darkness pulls the hand."""
+"""The tangible mask: the dark cells of a window pull the hand."""
 
 from typing import Annotated, ClassVar
 
@@ -21,11 +21,11 @@ def _odd(count: int) -> int:
 class TangibleMask(ForceRenderer):
     """A lateral pull to the darker, lower side: F = s sum (255 - I) (u, v) over the mask around the tip's cell.
 
-    (u, v) is a cell's offset from the middle, along x and y; I is the height in 256 steps, as `grey-level` has it (of a
-    picture it was Y = 0.3 R + 0.59 G + 0.11 B). Felt on contact, as hard however deep; zero where the mask leaves the
-    surface. s is such that a slope feels the same at any resolution: on a long straight edge from the base plane to
-    the highest point the force is `force_at_edge_n`. A tick reads three summed tables at the mask's corners, whatever
-    its size; they take 24 bytes a cell.
+    (u, v) is a cell's offset from the middle, along x and y; I is the height in 256 steps, as in `grey-level` (in the
+    source, a picture's Y = 0.3 R + 0.59 G + 0.11 B). The force acts on contact and is the same at any depth; it is zero
+    where the mask leaves the surface. s makes a slope feel the same at any resolution: on a long straight edge from the
+    base plane to the highest point the force is `force_at_edge_n`. A tick reads three summed-area tables at the mask's
+    corners, for any size of the mask; they take 24 bytes a cell.
     Source: Vasudevan & Manivannan, Tangible images: runtime generation of haptic textures from images, IEEE Haptics
     Symposium 2008 (masks of 5, 17 and 65 cells).
     """
@@ -41,27 +41,27 @@ class TangibleMask(ForceRenderer):
     """Force on a straight edge from black to white."""
 
     def touch(self, surface: HapticSurface) -> Touch:
-        """A new touch on this surface; compiled on the first use on a machine, then loaded."""
-        from . import tangible_mask_kernels
+        """Return a new touch on this surface; its kernel is compiled on the first use on a machine, then loaded."""
+        from .kernels import tangible_mask as kernels
 
         heights = np.ascontiguousarray(surface.height_m, np.float32)
         across_m, along_m = surface.relief.pitch_m
         columns, rows = self._cells(across_m), self._cells(along_m)
         scales = self._newtons(columns, rows, across_m), self._newtons(rows, columns, along_m)
         fixed = (heights, summed_tables(255 - grey_levels(heights)), *map(float, surface.extent_m))
-        return CompiledTouch(tangible_mask_kernels.tick, (*fixed, rows // 2, columns // 2, *scales), stiffness=0.0)
+        return CompiledTouch(kernels.tick, (*fixed, rows // 2, columns // 2, *scales), stiffness=0.0)
 
     def _cells(self, pitch_m: float) -> int:
         return self.mask_px or max(3, 2 * round((self.mask_m / pitch_m - 1) / 2) + 1)
 
     def _newtons(self, cells: int, others: int, pitch_m: float) -> float:
-        """s: an edge through the middle sums to 255 others (cells^2 - 1) / 8; a mask off its size is corrected for."""
+        """Return s: an edge through the middle sums to 255 others (cells^2 - 1) / 8, corrected for the rounded size."""
         side_m = cells * pitch_m if self.mask_px else self.mask_m
         return 8 * self.force_at_edge_n / (255 * others * cells * (cells**2 - 1)) * side_m / pitch_m
 
 
 def summed_tables(dark: np.ndarray) -> np.ndarray:
-    """Sums of dark, of dark x column and of dark x row over all cells above and to the left: int64 (h + 1, w + 1, 3).
+    """Sum dark, dark x column and dark x row over all cells above and to the left: int64 (h + 1, w + 1, 3).
 
     Source: Crow, Summed-area tables for texture mapping, SIGGRAPH 1984.
     """

@@ -1,4 +1,4 @@
-"""Any law, and what the materials of a surface add to it."""
+"""The effects of a surface's materials around any other force law."""
 
 from typing import Annotated, Any, ClassVar, final
 
@@ -12,19 +12,19 @@ from tangible_core.haptic_textures.table import bristle_stiffness
 from tangible_core.materials.assignment import find, library
 from tangible_core.plugins.interfaces import ForceRenderer, PlainTouch, Touch
 
-from .effects.table import ACTING, effects_table, nowhere
-from .inner_law import Law, checked, made
+from .effects.effects_table import EFFECT_COLUMNS, effects_table, initial_memory
+from .effects.inner_law import Law, build_law, complete_options
 
 
 def _refusal(cls: type[ForceRenderer]) -> str:
-    return "renders materials itself; use it as it is" if cls.renders_materials else ""
+    return "renders materials itself; use it directly" if cls.renders_materials else ""
 
 
-def _checked(law: Law) -> dict[str, Any]:
-    return checked(law, _refusal)
+def _complete(law: Law) -> dict[str, Any]:
+    return complete_options(law, _refusal)
 
 
-def _known(material: str) -> str:
+def _builtin_name(material: str) -> str:
     try:
         return find(material, library()).name
     except TangibleError as error:
@@ -32,53 +32,56 @@ def _known(material: str) -> str:
 
 
 class WithMaterials(ForceRenderer):
-    """Friction that sticks and slips, fine textures and damping of the surface's materials, around any other law.
+    """Friction that sticks and slips, fine textures and damping of the surface's materials, around any other force law.
 
-    The texture t(x, y) lies on the law's surface: the law is asked for its force G at z - t, and (G_x - t_x G_z,
-    G_y - t_y G_z, G_z) is felt, which takes the same work. So a law that gains no energy gains none with a texture,
-    where the material is one. Friction and damping, which never give any, join G: |G| is the push, damping lies along
-    it, and across it friction, a bristle that sticks up to the static friction and slides on the dynamic one. Of a
-    law that pushes nothing up from level ground, k d is the push, k the material's stiffness and d the depth; it has
-    no damping.
+    The texture t(x, y) is added to the surface of the inner force law: its force G is evaluated at z - t, and the
+    result is (G_x - t_x G_z, G_y - t_y G_z, G_z), which does the same work. So an inner force law that generates no
+    energy generates none with a texture, where the material is uniform. Friction and damping, which only take energy,
+    are added to G: |G| is the push, damping lies along G, and across it friction, a bristle that sticks up to the
+    static friction and slides on the dynamic one. For a lateral force law the push is k d, with k the material's
+    stiffness and d the depth; it has no damping.
 
-    A law whose force depends on the stiffness of materials has that too. `proxy` brings all of this itself.
+    If the inner force law uses the stiffness of materials, that is kept. `proxy` renders all of this itself.
     Source: Robles-De-La-Torre & Hayward, Nature 412 (2001), for the texture on level ground; Hayward & Armstrong, A new
     computational model of friction applied to haptic rendering, Experimental Robotics VI, 2000.
     """
 
     version: ClassVar[int] = 2
     renders_materials: ClassVar[bool] = True
-    why_still: ClassVar[str] = "it is for laws that render no materials, and none of these does; `proxy` renders them"
+    why_still: ClassVar[str] = (
+        "no force law without materials supports moving surfaces; `proxy` does, and renders materials"
+    )
 
-    law: Annotated[Law, AfterValidator(_checked), Field(validate_default=True)] = "penalty-gradient"
-    """The force law: its name, or {use: its name} with its options."""
+    law: Annotated[Law, AfterValidator(_complete), Field(validate_default=True)] = "penalty-gradient"
+    """The inner force law: its name, or {use: its name} with its options."""
     friction: bool = True
     """Render friction."""
     texture: bool = True
     """Render fine textures; if false, their drag and their own friction are left out too."""
     damping: bool = True
-    """Render the damping of materials; the law keeps its own in either case."""
-    material: Annotated[str, AfterValidator(_known)] | None = None
-    """A built-in material for a surface that has none; without it such a surface feels like the law alone."""
+    """Render the damping of materials; the inner force law keeps its own in either case."""
+    material: Annotated[str, AfterValidator(_builtin_name)] | None = None
+    """A built-in material for a surface without any; by default such a surface feels like the inner force law alone."""
 
     def touch(self, surface: HapticSurface) -> Touch:
-        """A new touch on this surface; the law's own where the materials add nothing to it.
+        """Return a new touch on this surface; the inner force law's own where the materials add nothing.
 
-        Compiled on the first use of a law on a machine, then loaded. Around a law in plain Python it is Python's too.
+        Kernels are compiled on the first use on a machine, then loaded. Around a force law in plain Python the touch is
+        plain Python, too.
         """
-        _, law = made(self.law, _refusal)
-        surface = self._covered(surface)
+        _, law = build_law(self.law, _refusal)
+        surface = self._with_material(surface)
         touch = law.touch(surface)
         if surface.labels is None or not surface.materials:
             return touch
         labels, table = effects_table(surface, self.friction, self.texture, self.damping and not law.is_lateral)
-        if not table[:, ACTING].any():
+        if not table[:, EFFECT_COLUMNS].any():
             return touch
         if isinstance(touch, CompiledTouch):
-            return _around(touch, surface, labels, table, law.is_lateral)
-        return PlainWithMaterials(touch, _around(_told(touch), surface, labels, table, law.is_lateral))
+            return _wrap(touch, surface, labels, table, law.is_lateral)
+        return MaterialsAdapter(touch, _wrap(_stub_touch(touch), surface, labels, table, law.is_lateral))
 
-    def _covered(self, surface: HapticSurface) -> HapticSurface:
+    def _with_material(self, surface: HapticSurface) -> HapticSurface:
         if self.material is None or (surface.labels is not None and surface.materials):
             return surface
         labels = np.zeros(surface.height_m.shape, np.int32)
@@ -86,41 +89,41 @@ class WithMaterials(ForceRenderer):
 
 
 @final
-class PlainWithMaterials(PlainTouch):
-    """Materials around a law in plain Python, by the kernel that has them around a compiled one.
+class MaterialsAdapter(PlainTouch):
+    """Materials around a force law in plain Python, by the kernel for compiled ones.
 
-    Its law is `told`: the kernel is run once for what the law is asked, on a memory that is put back, and once more
-    with what the law said.
+    The kernel calls `stub_law`: it runs once to learn the state at which to evaluate the force law, after which its
+    memory is restored, and once more with the force for that state.
     """
 
-    def __init__(self, law: Touch, felt: CompiledTouch) -> None:
-        self.stiffness_n_per_m = felt.stiffness_n_per_m
-        self._law, self._felt = law, felt
+    def __init__(self, law: Touch, wrapped: CompiledTouch) -> None:
+        self.stiffness_n_per_m = wrapped.stiffness_n_per_m
+        self._law, self._wrapped = law, wrapped
 
     def force(self, state: HapticState) -> Force:
-        """The law's, and what the materials add to it."""
-        (asked, answer), memory = self._felt.fixed[0], self._felt.fixed[-1]
+        """Return the inner force law's force with the effects of the materials, N."""
+        (state_of_law, force_of_law), memory = self._wrapped.fixed[0], self._wrapped.fixed[-1]
         before = memory.copy()
-        self._felt.force(state)
+        self._wrapped.force(state)
         memory[:] = before
-        x, y, z, vx, vy, vz = asked.tolist()
-        answer[:] = self._law.force(HapticState((x, y, z), (vx, vy, vz), state.time_s, state.buttons))
-        return self._felt.force(state)
+        x, y, z, vx, vy, vz = state_of_law.tolist()
+        force_of_law[:] = self._law.force(HapticState((x, y, z), (vx, vy, vz), state.time_s, state.buttons))
+        return self._wrapped.force(state)
 
 
-def _told(law: Touch) -> CompiledTouch:
-    from .effects.told import told
+def _stub_touch(law: Touch) -> CompiledTouch:
+    from .effects.stub_law import stub_law
 
-    return CompiledTouch(told, (np.zeros(6), np.zeros(3)), stiffness=law.stiffness_n_per_m)
+    return CompiledTouch(stub_law, (np.zeros(6), np.zeros(3)), stiffness=law.stiffness_n_per_m)
 
 
-def _around(
+def _wrap(
     law: CompiledTouch, surface: HapticSurface, labels: np.ndarray, table: np.ndarray, lateral: bool
 ) -> CompiledTouch:
     from .effects import kernels
 
     bristle = float(table[:, kernels.STIFFNESS].max())
-    rest = (labels, *map(float, surface.extent_m), table, bristle, nowhere())
+    rest = (labels, *map(float, surface.extent_m), table, bristle, initial_memory())
     bristles = max(bristle * bool(table[:, kernels.STATIC].any()), bristle_stiffness(table))
     stiffness = None if law.stiffness_n_per_m is None else max(law.stiffness_n_per_m, bristles)
     if not lateral:

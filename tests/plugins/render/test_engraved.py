@@ -1,4 +1,4 @@
-"""Engraved contours: a groove of the section that is said, at any angle and on any grid, and as passive as its law."""
+"""Engraved contours: a groove of the stated section, at any angle, on any grid, as passive as its force law."""
 
 import logging
 from dataclasses import replace
@@ -23,7 +23,7 @@ GROOVE = Engraved(law={"use": "penalty-gradient", "stiffness_n_per_m": K}, width
 
 
 def grid(cells: int) -> tuple[np.ndarray, np.ndarray]:
-    """x and y of the cells' centres."""
+    """Return x and y of the cells' centres."""
     rows, columns = np.indices((cells, cells))
     return ((columns + 0.5) / cells - 0.5) * SIDE_M, (0.5 - (rows + 0.5) / cells) * SIDE_M
 
@@ -34,7 +34,7 @@ def level(labels: np.ndarray, height_m: float = HIGH_M) -> HapticSurface:
 
 
 def section(distance_m: np.ndarray, method: Engraved = GROOVE) -> np.ndarray:
-    """The formula: a raised cosine."""
+    """Return the formula's section, a raised cosine."""
     within = np.abs(distance_m) < method.width_m / 2
     return np.where(within, method.depth_m / 2 * (1 + np.cos(2 * np.pi * distance_m / method.width_m)), 0.0)
 
@@ -52,11 +52,11 @@ def straight(cells: int, degrees: float) -> tuple[HapticSurface, np.ndarray, np.
     return level(distance_m > 0), distance_m, inner
 
 
-class TestTheSection:
+class TestSection:
     @pytest.mark.parametrize("cells", [400, 800])
     @pytest.mark.parametrize("degrees", [0, 3, 11, 22.5, 30, 45, 60, 77, 90, 130])
-    def test_it_is_the_formula_on_a_straight_border_at_any_angle(self, cells: int, degrees: float):
-        """Within 4 um on the average and 17 um at most on cells of 0.2 mm, half of that on cells half as wide."""
+    def test_section_on_a_straight_border_is_the_formula(self, cells: int, degrees: float):
+        """The error is 4 um on average and 17 um at most on cells of 0.2 mm, half of that on cells half as wide."""
         surface, distance_m, inner = straight(cells, degrees)
         near = inner & (np.abs(distance_m) < GROOVE.width_m / 2)
         error_m = np.abs(HIGH_M - GROOVE.felt(surface).height_m - section(distance_m))
@@ -64,21 +64,21 @@ class TestTheSection:
         assert error_m[inner].max() < 17e-6 * 400 / cells
 
     @pytest.mark.parametrize("degrees", [1, 89, 134])
-    def test_a_border_that_hardly_slants_is_known_to_half_a_cell_and_no_worse(self, degrees: float):
-        """Or hardly off the diagonal: its stairs are longer than what is seen of the line at once."""
+    def test_section_on_a_slightly_oblique_border_is_within_half_a_cell(self, degrees: float):
+        """So is a border close to the diagonal: its stairs are longer than the low-pass."""
         surface, distance_m, inner = straight(400, degrees)
         error_m = np.abs(HIGH_M - GROOVE.felt(surface).height_m - section(distance_m))[inner]
         steepest = np.pi * GROOVE.depth_m / GROOVE.width_m
         assert error_m.max() < 0.5 * SIDE_M / 400 * steepest
 
-    def test_a_circle_keeps_its_radius(self):
+    def test_circle_keeps_its_radius(self):
         x, y = grid(400)
         distance_m = np.hypot(x, y) - 0.0203
         error_m = np.abs(HIGH_M - GROOVE.felt(level(distance_m < 0)).height_m - section(distance_m))
         assert error_m.max() < 5e-5 and error_m.mean() < 1e-6
 
-    def test_cells_that_are_not_square_and_borders_that_meet(self):
-        """A cross: at its middle no deeper than anywhere on it."""
+    def test_section_on_oblong_cells_where_borders_meet_is_the_formula(self):
+        """A cross is at its middle no deeper than anywhere on it."""
         x, y = grid(400)
         labels = ((x > 0) + 2 * (y > 0)).astype(np.int32)
         carved = GROOVE.felt(level(labels)).height_m
@@ -87,7 +87,7 @@ class TestTheSection:
         wide = HapticSurface(Relief(np.full((400, 200), HIGH_M, np.float32), (SIDE_M, SIDE_M)), labels[:, ::2])
         assert np.abs(GROOVE.felt(wide).height_m - carved[:, ::2])[5:-5, 10:-10].max() < 1e-4
 
-    def test_twice_the_cells_feel_the_same(self):
+    def test_forces_with_twice_the_cells_agree(self):
         def bodies(cells: int) -> HapticSurface:
             x, y = grid(cells)
             labels = (np.hypot(x - 0.01, y) < 0.015) + 2 * (y > 0.4 * x + 0.015) + 4 * (x < -0.021)
@@ -101,15 +101,15 @@ class TestTheSection:
         apart_n = np.abs(coarse - fine)
         assert apart_n[:, 2].mean() < 0.01 * K * GROOVE.depth_m and apart_n[:, 2].max() < 0.16 * K * GROOVE.depth_m
 
-    def test_lines_leave_the_half_cells_of_the_labels_nowhere(self):
-        """Of noise, which no smooth line follows; each side of a cell between two labels has its point."""
+    def test_lines_stay_within_half_a_cell_of_the_labels(self):
+        """Labels are noise, which no smooth line follows; each cell side between two labels has its point."""
         labels = np.random.default_rng(0).integers(0, 2, (40, 50)).astype(np.int32)
         at, beside = lines.border_lines(labels)
         assert len(at) == sum(np.count_nonzero(np.diff(labels, axis=axis)) for axis in (0, 1))
         away = np.abs(at - lines._sides(labels)[0])
         assert 0.49 < away.max() <= 0.5 and beside.min() >= 0 and beside.max() < len(at)
 
-    def test_a_grid_that_is_too_coarse_is_said(self):
+    def test_grid_too_coarse_for_a_groove_is_reported(self):
         surface = straight(100, 30)[0]
         with collected() as notes:
             GROOVE.felt(surface)
@@ -117,8 +117,8 @@ class TestTheSection:
         assert "3 mm is 3.8 cells wide" in said and "from 4.8 mm on" in said
 
 
-class TestWhatIsFelt:
-    def test_a_hand_sinks_into_the_groove_by_its_section(self):
+class TestForces:
+    def test_hand_sinks_into_the_groove_by_its_section(self):
         surface, *_ = straight(400, 0)
         y = np.linspace(-0.003, 0.003, 400)
         path = np.column_stack([0 * y + 0.001, y, np.full_like(y, HIGH_M - 0.001)])
@@ -126,8 +126,8 @@ class TestWhatIsFelt:
         assert np.allclose(depth_m, 0.001 - section(y), atol=8e-6)
 
     @pytest.mark.parametrize("law", ["proxy", "penalty-gradient"])
-    def test_no_closed_path_over_grooves_gains_energy(self, law: str):
-        """Around and across them, pressed and lifted, so finely that what sampling adds is small; without damping."""
+    def test_closed_paths_over_grooves_gain_no_energy(self, law: str):
+        """Paths go around and across grooves, pressed and lifted, finely sampled and without damping."""
         x, y = grid(300)
         surface = level((np.hypot(x, y) < 0.012) + 2 * (x > 0.003) + 4 * (y > 0.2 * x))
         turn = np.linspace(0, 2 * np.pi, 60_000)
@@ -142,7 +142,7 @@ class TestWhatIsFelt:
         assert np.abs(np.sum(force[:, :2] ** 2, axis=1)).max() > 1e-3, "its sides push"
 
     @pytest.mark.parametrize("law", ["proxy", {"use": "with-materials", "law": "penalty"}, "lateral-shape"])
-    def test_it_is_the_law_on_the_carved_surface_materials_included(self, law: str | dict[str, str]):
+    def test_force_is_that_of_the_inner_law_on_the_carved_surface(self, law: str | dict[str, str]):
         surface = straight(200, 30)[0]
         surface = replace(surface, materials=(library()["sand"], library()["rubber"]), names=("a", "b"))
         method = Engraved(law=law)
@@ -158,35 +158,35 @@ class TestWhatIsFelt:
         assert found.stiffness_n_per_m == own.stiffness_n_per_m
 
     @pytest.mark.parametrize("labels", [None, np.zeros((50, 50), np.int32), np.full((50, 50), 3, np.int32)])
-    def test_without_borders_it_is_the_law_itself_and_says_so_once(self, labels: np.ndarray | None):
+    def test_surface_without_borders_is_reported_once(self, labels: np.ndarray | None):
         surface = HapticSurface(Relief(np.full((50, 50), HIGH_M, np.float32), (SIDE_M, SIDE_M)), labels)
         path = np.column_stack([np.linspace(-0.05, 0.05, 200), np.zeros(200), np.full(200, HIGH_M - 0.001)])
         with collected() as notes:
             found = Engraved().touch(surface).path(path)
         assert found.tobytes() == Proxy().touch(surface).path(path).tobytes()
-        assert notes == ["no groove is engraved: the surface has no parts or segments with a border between them"]
+        assert notes == ["no groove is engraved: the surface has no borders between parts or segments"]
 
 
-class TestTheBase:
-    def test_where_the_ground_is_too_low_all_of_it_is_lifted_and_that_is_said(self):
+class TestBase:
+    def test_ground_too_low_for_a_groove_is_raised_and_reported(self):
         halves = straight(400, 30)[0]
         surface = HapticSurface(Relief(np.full((400, 400), 0.0002, np.float32), (SIDE_M, SIDE_M)), halves.labels)
         with collected() as notes:
             carved = GROOVE.felt(surface)
         assert carved.height_m.min() == 0
         assert carved.height_m.max() == pytest.approx(GROOVE.depth_m, abs=2e-6)
-        assert notes == ["the surface is lifted by 0.4 mm, so that its grooves end over the base"]
+        assert notes == ["the surface is raised by 0.4 mm, so that its grooves stay above the base"]
         deep = GROOVE.felt(straight(400, 30)[0])
         assert np.allclose(deep.height_m - deep.height_m.min(), carved.height_m, atol=1e-8)
 
-    def test_where_it_is_high_enough_nothing_is_lifted_or_said(self):
+    def test_ground_high_enough_is_neither_raised_nor_reported(self):
         with collected() as notes:
             carved = GROOVE.felt(straight(400, 30)[0])
         assert notes == [] and carved.height_m.max() == np.float32(HIGH_M)
 
 
 def test_preflight_judges_the_grooves():
-    """On level ground: of two parts that are equally high, the one slope is the groove's."""
+    """On two parts of equal height the only slope is the groove's."""
     labels = (np.indices((80, 80))[1] > 40).astype(np.int32)
     scene = Scene.of(photo=np.full((80, 80, 3), 128, np.uint8), segments=labels)
     level_m = {number: {"height_m": 0.004} for number in (0, 1)}
@@ -211,24 +211,24 @@ class TestOptions:
     @pytest.mark.parametrize(
         ("options", "said"),
         [
-            ({"law": "engraved"}, "engraved is around a law already"),
+            ({"law": "engraved"}, "engraved already wraps a force law"),
             ({"law": {"use": "proxy", "stifness": 3}}, "stifness"),
-            ({"law": {}}, "a law has a name"),
+            ({"law": {}}, "a force law needs a name"),
             ({"law": "no-such-law"}, "no-such-law"),
             ({"width_m": 0}, "width_m"),
             ({"depth_m": np.inf}, "depth_m"),
         ],
     )
-    def test_what_makes_no_sense_is_refused(self, options: dict[str, object], said: str):
+    def test_wrong_options_are_refused(self, options: dict[str, object], said: str):
         with pytest.raises(ValidationError, match=said):
             Engraved(**options)  # pyright: ignore[reportArgumentType]
 
-    def test_materials_go_within_it_and_not_around(self):
+    def test_materials_around_engraved_are_refused(self):
         with pytest.raises(ValidationError, match="engraved renders materials itself"):
             WithMaterials(law="engraved")
         assert Engraved(law={"use": "with-materials"}).touch(straight(50, 30)[0]) is not None
 
-    def test_free_air_and_broken_states(self, caplog: pytest.LogCaptureFixture):
+    def test_force_in_free_air_and_broken_states_is_zero(self, caplog: pytest.LogCaptureFixture):
         caplog.set_level(logging.ERROR)
         touch = Engraved().touch(straight(200, 30)[0])
         assert not any(touch.force(HapticState((0.0, 0.0, HIGH_M + 1e-6))))

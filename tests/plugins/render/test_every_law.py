@@ -1,4 +1,4 @@
-"""What holds for every force law: in free air, at states and on surfaces of any kind, and of its options."""
+"""Properties of every force law: free air, states and surfaces of any kind, options."""
 
 import numpy as np
 import pytest
@@ -35,7 +35,7 @@ BUMPY = HapticSurface.from_heights(RNG.uniform(0, 0.004, (12, 16)), WIDTH_M)
 
 @pytest.mark.parametrize("renderer", RENDERERS, ids=repr)
 class TestEveryRenderer:
-    def test_free_air(self, renderer):
+    def test_force_in_free_air_is_zero(self, renderer):
         touch, edge = renderer.touch(tilted(0, 0)), WIDTH_M / 2
         assert at(touch, 0, 0, UP_M) == NO_FORCE
         assert at(touch, 0, 0, UP_M, (0, 0, -1)) == NO_FORCE
@@ -46,12 +46,12 @@ class TestEveryRenderer:
 
     @pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
     @pytest.mark.parametrize("axis", range(6))
-    def test_a_state_that_is_not_finite_is_not_pushed(self, renderer, bad: float, axis: int):
+    def test_state_not_finite_has_no_force(self, renderer, bad: float, axis: int):
         numbers = [0.001, 0.002, -0.003, 0.0, 0.0, 0.0]
         numbers[axis] = bad
         assert at(renderer.touch(BUMPY), *numbers[:3], velocity=tuple(numbers[3:])) == NO_FORCE
 
-    def test_a_path_is_force_by_force(self, renderer):
+    def test_path_is_force_by_force(self, renderer):
         path = np.column_stack([RNG.uniform(-0.035, 0.035, (300, 2)), RNG.uniform(-0.002, 0.005, 300)])
         path[77] = np.nan
         steps = np.diff(path, axis=0, prepend=path[:1]) / 0.002
@@ -62,35 +62,35 @@ class TestEveryRenderer:
         assert np.count_nonzero(singly) > 50
 
     @pytest.mark.usefixtures("unchecked_shapes")
-    def test_paths_of_any_layout(self, renderer):
-        def felt(path: np.ndarray) -> np.ndarray:
+    def test_path_of_any_layout_is_the_same(self, renderer):
+        def forces_on(path: np.ndarray) -> np.ndarray:
             return renderer.touch(BUMPY).path(path)
 
-        assert felt(np.empty((0, 3))).shape == (0, 3)
+        assert forces_on(np.empty((0, 3))).shape == (0, 3)
         path = np.asfortranarray(RNG.uniform(-0.003, 0.003, (10, 3)))
         path.flags.writeable = False
-        assert np.array_equal(felt(path), felt(np.ascontiguousarray(path)))
-        assert np.array_equal(felt(np.zeros((1, 3), int)), [at(renderer.touch(BUMPY), 0, 0, 0)])
+        assert np.array_equal(forces_on(path), forces_on(np.ascontiguousarray(path)))
+        assert np.array_equal(forces_on(np.zeros((1, 3), int)), [at(renderer.touch(BUMPY), 0, 0, 0)])
 
     @pytest.mark.usefixtures("unchecked_shapes")
     @pytest.mark.parametrize("shape", [(3,), (3, 2), (2, 3, 3)])
-    def test_what_is_no_path(self, renderer, shape: tuple[int, ...]):
+    def test_path_of_another_shape_is_refused(self, renderer, shape: tuple[int, ...]):
         with pytest.raises(GeometryError, match=r"\(n, 3\)"):
             renderer.touch(BUMPY).path(np.zeros(shape))
 
     @pytest.mark.parametrize("period_s", [0.0, -1.0, np.nan, np.inf])
-    def test_what_is_no_period(self, renderer, period_s: float):
+    def test_period_not_positive_is_refused(self, renderer, period_s: float):
         with pytest.raises(GeometryError, match="period_s"):
             renderer.touch(BUMPY).path(np.zeros((2, 3)), period_s)
 
     @pytest.mark.parametrize("shape", [(1, 1), (1, 5), (5, 1), (2, 1)])
-    def test_the_smallest_surfaces(self, renderer, shape: tuple[int, int]):
+    def test_smallest_surfaces_have_finite_forces(self, renderer, shape: tuple[int, int]):
         touch = renderer.touch(HapticSurface(Relief(np.full(shape, UP_M, np.float32), (WIDTH_M, WIDTH_M))))
         expected = renderer.touch(tilted(0, 0))
         for x, y in ((0, 0), (0.03125, -0.03125), (-0.013, 0.021)):
             assert at(touch, x, y, 0.001) == pytest.approx(at(expected, x, y, 0.001), abs=1e-12)
 
-    def test_heights_of_any_layout(self, renderer):
+    def test_heights_of_any_layout_are_the_same(self, renderer):
         heights = np.asarray(RNG.uniform(0, 0.004, (6, 9)), np.float32)
         extent = (WIDTH_M, WIDTH_M)
         plain = renderer.touch(HapticSurface(Relief(heights, extent)))
@@ -99,7 +99,7 @@ class TestEveryRenderer:
         assert np.array_equal(plain.path(path), turned.path(path))
 
     @given(st.lists(st.floats(), min_size=6, max_size=6))
-    def test_always_finite(self, renderer, numbers: list[float]):
+    def test_force_at_any_state_is_finite(self, renderer, numbers: list[float]):
         force = at(renderer.touch(BUMPY), *numbers[:3], velocity=tuple(numbers[3:]))
         assert np.isfinite(force).all()
 
@@ -125,6 +125,6 @@ class TestEveryRenderer:
         (Proxy, "dynamic_friction", 0.2),
     ],
 )
-def test_options_that_make_no_sense(renderer, option: str, value: float):
+def test_wrong_options_are_refused(renderer, option: str, value: float):
     with pytest.raises(ValidationError, match=option):
         renderer(**{option: value})

@@ -20,7 +20,7 @@ def at(touch: Touch, x: float, y: float, z: float, velocity=(0.0, 0.0, 0.0)) -> 
 
 
 class TestFriction:
-    def test_it_sticks_up_to_the_static_cone_and_slides_on_the_dynamic_one(self):
+    def test_proxy_sticks_in_the_static_cone_and_slides_on_the_dynamic_one(self):
         touch = Proxy(static_friction=0.8, dynamic_friction=0.5).touch(LEVEL)
         x = np.arange(0, 0.004, 1e-6)
         force = touch.path(np.column_stack([x, np.zeros_like(x), np.full_like(x, 0.009)]))
@@ -35,7 +35,7 @@ class TestFriction:
         [(0.003, 0.0, 0.1), (0.05, 0.0, 0.009), (np.nan, 0.0, 0.009), (0.003, np.inf, 0.009), None],
         ids=["lifted", "beside", "lost", "no number", "leapt"],
     )
-    def test_each_contact_begins_at_rest(self, between: tuple[float, float, float] | None):
+    def test_contact_after_another_begins_at_rest(self, between: tuple[float, float, float] | None):
         """A proxy that slid is held up to the static friction again once the hand was elsewhere: on a slope within
         that cone, but not within the dynamic one, it rests."""
         known = ramp((0.65, 0.0), 0.03)
@@ -49,15 +49,15 @@ class TestFriction:
         assert at(touch, *anew) == pytest.approx((0, 0, K * 0.001), abs=1e-5)
         assert at(touch, *anew) == pytest.approx((0, 0, K * 0.001), abs=1e-5)
 
-    def test_what_slid_and_came_to_rest_is_at_rest(self):
-        """Within the dynamic cone it sticks, and holds up to the static one again."""
+    def test_sliding_proxy_coming_to_rest_sticks_again(self):
+        """A force within the dynamic cone lets the proxy stick, up to the static cone again."""
         touch = Proxy(static_friction=0.8, dynamic_friction=0.5).touch(LEVEL)
         x = np.linspace(0, 0.003, 300)
         touch.path(np.column_stack([x, 0 * x, np.full(300, 0.009)]))
         assert at(touch, 0.0029, 0.0, 0.009).x == pytest.approx(-K * 0.0004, abs=1e-3)
         assert at(touch, 0.0032, 0.0, 0.009).x == pytest.approx(-K * 0.0007, abs=1e-3)
 
-    def test_it_sticks_again_when_the_hand_turns_back(self):
+    def test_proxy_sticks_again_when_the_hand_turns_back(self):
         touch = Proxy(static_friction=0.8, dynamic_friction=0.5).touch(LEVEL)
         there, back = np.linspace(0, 0.004, 400), np.linspace(0.004, 0.002, 400)
         x = np.concatenate([there, back])
@@ -65,7 +65,7 @@ class TestFriction:
         assert force[399, 0] == pytest.approx(-0.4, abs=1e-3)
         assert force[:, 0].max() == pytest.approx(0.8 * 0.8, abs=0.01)
 
-    def test_on_a_slope_it_rests_if_the_cone_is_wider_than_the_slope(self):
+    def test_proxy_on_a_slope_within_the_cone_rests(self):
         known = ramp((0.3, 0.0), 0.02)
         hand = known.at(0.001, 0.002, 0.001)
         held = at(Proxy(static_friction=0.31, dynamic_friction=0.31).touch(known.surface), *hand)
@@ -75,7 +75,7 @@ class TestFriction:
         along = np.linalg.norm(slid - (slid @ normal) * normal)
         assert along == pytest.approx(0.1 * (slid @ normal), rel=1e-3)
 
-    def test_on_a_curved_surface_the_force_stays_on_the_cone(self):
+    def test_force_on_a_curved_surface_stays_on_the_cone(self):
         known = sphere_cap(shape=(256, 256))
         turn = np.arange(2000) / 1000
         places = np.column_stack([0.025 * np.sin(1.95 * turn), 0.025 * np.sin(1.45 * turn + 0.7)])
@@ -87,7 +87,7 @@ class TestFriction:
         along = np.linalg.norm(force - push[:, None] * normal, axis=1)
         assert np.percentile(np.abs(along[200:] / push[200:] - 0.3), 95) < 1e-3
 
-    def test_materials_bring_their_own_stiffness_and_friction(self):
+    def test_materials_have_their_own_stiffness_and_friction(self):
         labels = np.zeros((64, 64), np.int32)
         labels[:, 32:] = 1
         materials = Material("ice", 1200.0, 0, 0.0, 0.0), Material("felt", 300.0, 0, 0.9, 0.7)
@@ -100,7 +100,7 @@ class TestFriction:
             off = Proxy(friction=False).touch(surface).path(path)[-1]
             assert off == pytest.approx([0, 0, stiffness * 0.001], abs=1e-6)
 
-    def test_without_friction_the_damping_of_materials_stays(self):
+    def test_damping_of_materials_without_friction_stays(self):
         honey = Material("honey", 500.0, 4.0, 0.6, 0.5)
         surface = HapticSurface.from_heights(np.full((8, 8), 0.01), 0.08, np.zeros((8, 8), np.int32), (honey,))
         touch = Proxy(friction=False).touch(surface)
@@ -109,7 +109,7 @@ class TestFriction:
 
     @pytest.mark.slow
     def test_damping_acts_along_the_normal_at_the_proxy(self):
-        """Where that is after the last step, under a slow hand the only one, and not where it was before."""
+        """The normal is that after the last step, the only one under a slow hand, not that before."""
         surface = waves().surface
         coefficients, _, _, across, down = spline_surface(surface, "auto")
         touch, without = Proxy(damping_n_s_per_m=4.0).touch(surface), Proxy().touch(surface)
@@ -132,6 +132,6 @@ class TestFriction:
             assert np.allclose(force, max(0.0, spring - 4 * speed) * normal, rtol=1e-4, atol=1e-4)
 
 
-def test_friction_that_grows_when_it_slides_is_refused():
+def test_dynamic_friction_above_static_is_refused():
     with pytest.raises(ValueError, match="sliding takes no more force"):
         Proxy(static_friction=0.2, dynamic_friction=0.3)

@@ -1,4 +1,4 @@
-"""The laws without a normal force, and the spring without a lateral one, on surfaces known exactly."""
+"""Force laws without a normal force, and the spring without a lateral one, on analytic surfaces."""
 
 import numpy as np
 import pytest
@@ -28,7 +28,7 @@ def known(request) -> KnownSurface:
 PLACES = RNG.uniform(-0.036, 0.036, (12, 2))
 
 
-def test_lateral_gradient_is_the_slope_however_deep(known: KnownSurface):
+def test_lateral_gradient_at_any_depth_is_the_slope(known: KnownSurface):
     for x, y in PLACES:
         slope = np.array(known.slope(x, y))
         for depth in (1e-5, 0.004):
@@ -62,7 +62,7 @@ def test_penalty_takes_the_stiffness_of_materials():
 
 
 @pytest.mark.parametrize("sigma_cells", [2.0, 4.0])
-def test_a_mask_of_the_derivative_of_a_gaussian_is_the_lateral_gradient(sigma_cells: float):
+def test_mask_of_a_gaussian_derivative_is_the_lateral_gradient(sigma_cells: float):
     """sum (H - h) G (u, v) / sigma^2 over a wide mask = -grad (G * h): the two laws are one, but for the weights."""
     surface = HapticSurface.from_heights(RNG.uniform(0, 0.004, (80, 80)))
     pitch = surface.relief.pitch_m[0]
@@ -80,14 +80,14 @@ def test_a_mask_of_the_derivative_of_a_gaussian_is_the_lateral_gradient(sigma_ce
 
 
 class TestForceShading:
-    def test_on_a_plane_it_is_a_spring_along_the_normal(self):
+    def test_force_on_a_plane_is_a_spring_along_the_normal(self):
         known = KNOWN["ramp"]
         normal = known.normal(0, 0)
         for x, y in RNG.uniform(-0.037, 0.037, (12, 2)):
             force = press(ForceShading(stiffness_n_per_m=700.0), known, x, y)
             assert np.allclose(force, 0.7 * normal[2] * normal, rtol=1e-3, atol=1e-4)
 
-    def test_the_direction_turns_smoothly_over_an_edge_where_the_facets_jump(self):
+    def test_direction_over_an_edge_turns_smoothly(self):
         known = ridge(shape=(64, 64))
         touch = ForceShading().touch(known.surface)
         x = np.linspace(-0.004, 0.004, 4001)
@@ -96,6 +96,6 @@ class TestForceShading:
         assert turned[0] == pytest.approx(-26.565, abs=1e-2) and turned[-1] == pytest.approx(26.565, abs=1e-2)
         assert np.abs(np.diff(turned)).max() < 0.1
 
-    def test_free_air(self):
+    def test_force_in_free_air_is_zero(self):
         known = KNOWN["sphere"]
         assert tuple(press(ForceShading(), known, 0.01, 0.02, -1e-4)) == NO_FORCE

@@ -1,4 +1,4 @@
-"""The gradient spring on surfaces whose answer is known exactly."""
+"""The gradient spring on surfaces with exact answers."""
 
 import numpy as np
 import pytest
@@ -29,7 +29,7 @@ class TestPenaltyGradient:
         z = UP_M + 0.125 * x - 0.0625 * y - depth
         assert at(touch, x, y, z) == (-0.125 * 1.0, 0.0625 * 1.0, 1.0)
 
-    def test_one_bilinear_patch(self):
+    def test_bilinear_patch_is_exact_in_height_and_gradient(self):
         """h = a + b x + c y + e x y through four centres: height and gradient are those of the polynomial."""
         corners = np.array([[1, 3], [2, 7]]) / 1024  # far row first
         touch = PenaltyGradient(stiffness_n_per_m=1024.0).touch(HapticSurface.from_heights(corners, 2.0))
@@ -40,7 +40,7 @@ class TestPenaltyGradient:
         depth = 1 / 256
         assert at(touch, x, y, height - depth) == (-4 * slope_x, -4 * slope_y, 4.0)
 
-    def test_heights_go_on_unchanged_from_the_last_centre_to_the_edge(self):
+    def test_heights_from_the_last_centre_to_the_edge_are_constant(self):
         surface = tilted(0.125, 0)
         touch = PenaltyGradient(stiffness_n_per_m=512.0).touch(surface)
         edge = WIDTH_M / 2
@@ -48,7 +48,7 @@ class TestPenaltyGradient:
         for x in (edge, edge - surface.relief.pitch_m[0] / 4):
             assert at(touch, x, 0.0, highest - 1 / 512) == (0.0, 0.0, 1.0)
 
-    def test_sphere_within_the_error_of_its_samples(self):
+    def test_sphere_is_within_the_error_of_its_samples(self):
         radius, count, k = 0.05, 256, 800.0
         pitch = WIDTH_M / count
         c = (np.arange(count) + 0.5) * pitch - WIDTH_M / 2
@@ -80,7 +80,7 @@ class TestPenaltyGradient:
             assert np.allclose(at(touch, x, y, z), numeric, rtol=2e-4, atol=2e-4)
 
     @given(st.floats(0.001, 0.02), st.floats(0, 6.28), st.integers(1, 3))
-    def test_no_work_over_a_closed_path(self, radius_m: float, start: float, waves: int):
+    def test_closed_path_does_no_work(self, radius_m: float, start: float, waves: int):
         turn = start + np.linspace(0, 2 * np.pi, 20001)
         path = np.column_stack(
             [radius_m * np.cos(turn), 0.7 * radius_m * np.sin(turn), 0.002 + 0.001 * np.sin(waves * turn)]
@@ -103,7 +103,7 @@ class TestPenaltyGradient:
             assert np.allclose(force, max(0.0, spring - b * speed) * normal, rtol=1e-12, atol=1e-12)
         assert at(touch, 0.0, 0.0, 0.05, (0.0, 0.0, -1.0)) == NO_FORCE
 
-    def test_materials_give_the_stiffness_of_their_cell(self):
+    def test_materials_set_the_stiffness_of_their_cell(self):
         labels = np.zeros((4, 8), np.int32)
         labels[:, 4:], labels[3, :] = 1, 2
         materials = material("soft", 128.0), material("hard", 1024.0), material("middling", 256.0)
@@ -116,11 +116,11 @@ class TestPenaltyGradient:
         surface = HapticSurface.from_heights(np.full((2, 2), UP_M), WIDTH_M, np.zeros((2, 2), np.int32))
         assert at(PenaltyGradient().touch(surface), 0.0, 0.0, 0.0).z == 800 * UP_M
 
-    def test_resampling_a_plane_changes_nothing(self):
+    def test_plane_resampled_has_the_same_forces(self):
         forces = [at(PenaltyGradient().touch(tilted(0.25, 0.125, (n, n))), 0.003, 0.007, 0.001) for n in (16, 32, 64)]
         assert np.allclose(forces, forces[0], rtol=1e-6)
 
-    def test_resampling_a_smooth_surface_changes_less_than_a_finger_feels(self):
+    def test_smooth_surface_resampled_changes_imperceptibly(self):
         def waves(count: int) -> HapticSurface:
             c = ((np.arange(count) + 0.5) / count - 0.5) * WIDTH_M
             return HapticSurface.from_heights(0.005 + 0.002 * np.sin(150 * c)[None] * np.cos(120 * c)[:, None], WIDTH_M)

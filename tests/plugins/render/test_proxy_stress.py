@@ -1,4 +1,4 @@
-"""The proxy on surfaces that break a careless law: its energy, its bounds, and each short cut against the long way."""
+"""The proxy on surfaces that break careless force laws: energy, bounds, and short cuts against the long way."""
 
 import numpy as np
 import pytest
@@ -25,7 +25,7 @@ def rough(request) -> HapticSurface:
 
 class TestStress:
     @pytest.mark.parametrize("depth_m", [0.0, 0.004])
-    def test_no_closed_path_gains_energy(self, rough: HapticSurface, depth_m: float):
+    def test_closed_paths_gain_no_energy(self, rough: HapticSurface, depth_m: float):
         """Work of the device on the hand over the second of two turns, by the trapezoidal rule."""
         turn = np.arange(20000) / 20000
         x, y = 0.032 * np.sin(2 * np.pi * 5 * turn), 0.041 * np.sin(2 * np.pi * 3 * turn + 0.4)  # over the borders too
@@ -37,8 +37,8 @@ class TestStress:
     @pytest.mark.parametrize(
         "renderer", [Proxy(), Proxy(static_friction=0.6, dynamic_friction=0.4, damping_n_s_per_m=1)]
     )
-    def test_a_wild_hand_is_never_pushed_wildly(self, rough: HapticSurface, renderer: Proxy):
-        """Walks of 0.5 m/s and more with leaps, 15000 ticks a map: finite, and no longer than what was said."""
+    def test_force_on_a_wild_hand_is_bounded(self, rough: HapticSurface, renderer: Proxy):
+        """Walks of 0.5 m/s and more with leaps, 15000 ticks a map, have finite forces within their bound."""
         random = np.random.default_rng(9)
         steps = random.normal(0, 1, (15000, 3)) * random.choice([1e-5, 2e-4, 1e-3], (15000, 1))
         path = np.cumsum(steps, axis=0) * [1, 1, 0.05] + [0, 0, 0.002]
@@ -52,15 +52,15 @@ class TestStress:
         most = K * (deepest + 0.005) + renderer.damping_n_s_per_m * min(speed, 100)
         assert np.linalg.norm(force, axis=1).max() <= most
 
-    def test_a_hand_at_rest_sees_its_proxy_only_come_nearer(self, rough: HapticSurface):
+    def test_proxy_of_a_hand_at_rest_only_comes_nearer(self, rough: HapticSurface):
         for x, y in RNG.uniform(-0.038, 0.038, (10, 2)):
             rest = Proxy().touch(rough).path(np.tile([x, y, -0.001], (60, 1)))
             size = np.linalg.norm(rest, axis=1)
             assert (np.diff(size) <= 1e-6).all()  # of newtons: the last step follows a Taylor series
             assert np.abs(rest[-1] - rest[-2]).max() < 1e-3
 
-    def test_where_it_comes_to_rest_the_hand_lies_along_the_normal(self, rough: HapticSurface):
-        """However rough the ground: no step of the search gets stuck before that."""
+    def test_proxy_at_rest_has_the_hand_along_its_normal(self, rough: HapticSurface):
+        """The search gets stuck on no rough ground."""
         coefficients, *_, across, down = spline_surface(rough, "auto")
         for x, y in RNG.uniform(-0.03, 0.03, (60, 2)):
             hand = np.array([x, y, spline.height(coefficients, across, down, x, y) - 0.003])
@@ -70,8 +70,8 @@ class TestStress:
             normal = np.array([-slope_x, -slope_y, 1]) / np.sqrt(1 + slope_x**2 + slope_y**2)
             assert np.linalg.norm(np.cross(pull, normal)) <= 1e-6 * np.linalg.norm(pull)
 
-    def test_each_tick_brings_the_proxy_nearer_than_it_was(self, rough: HapticSurface):
-        """Wherever the hand went meanwhile: what the hand puts in while it moves is all that there is."""
+    def test_proxy_in_each_tick_comes_nearer(self, rough: HapticSurface):
+        """The work of the moving hand is the only energy."""
         random = np.random.default_rng(4)
         path = np.cumsum(random.normal(0, 3e-4, (4000, 3)) * [1, 1, 0.1], axis=0) + np.array([0, 0, -0.002])
         path[:, :2] = (path[:, :2] + 0.03) % 0.06 - 0.03
@@ -88,11 +88,11 @@ class TestStress:
         assert stayed > 3000
 
 
-class TestWhatIsLeftOut:
+class TestShortCuts:
     """Each short cut gives what the long way gives."""
 
-    def test_the_spring_alone_is_the_general_law(self, rough: HapticSurface):
-        """Damping without velocity is nothing, so that the general law can be made to run."""
+    def test_spring_alone_matches_the_general_kernel(self, rough: HapticSurface):
+        """Damping without velocity has no force, which lets the general kernel run."""
         turn = np.linspace(0, 6, 3000)
         path = np.column_stack([0.03 * np.sin(3 * turn), 0.03 * np.cos(2 * turn), 0.002 * np.sin(9 * turn)])
         states = [HapticState(tuple(place)) for place in path.tolist()]
@@ -100,7 +100,7 @@ class TestWhatIsLeftOut:
         assert general.tick is not spring.tick
         assert np.allclose([general.force(s) for s in states], [spring.force(s) for s in states], rtol=0, atol=1e-9)
 
-    def test_materials_that_are_alike_are_one(self):
+    def test_equal_materials_are_one(self):
         labels = np.arange(4096, dtype=np.int32).reshape(64, 64) % 3
         alike = tuple(Material(name, 500.0, 0.0, 0.0, 0.0) for name in "abc")
         one = Proxy(stiffness_n_per_m=500.0).touch(plane().surface)
@@ -111,14 +111,14 @@ class TestWhatIsLeftOut:
         )
 
     @given(st.floats(-0.04, 0.04), st.floats(-0.04, 0.04), st.floats(-0.001, 0.011))
-    def test_free_air_is_where_the_hand_is_above_the_surface(self, x: float, y: float, z: float):
+    def test_hand_above_the_surface_is_in_free_air(self, x: float, y: float, z: float):
         surface = MAPS["spikes"]
         coefficients, _, _, across, down = spline_surface(surface, "auto")
         assert (Proxy().touch(surface).force(HapticState((x, y, z))) == NO_FORCE) == (
             z >= spline.height(coefficients, across, down, x, y)
         )
 
-    def test_level_ground_is_level_in_the_tiles_as_in_the_spline(self):
+    def test_level_ground_is_level_in_tiles_and_spline(self):
         heights = np.full((256, 256), 0.004)
         heights[100:120, 100:120] = 0.009
         path = np.column_stack([np.linspace(-0.039, 0.039, 3000), np.linspace(0.03, -0.02, 3000), np.full(3000, 0.003)])

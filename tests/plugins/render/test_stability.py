@@ -14,7 +14,7 @@ from tangible_core.plugins.registry import load_method
 from tangible_core.testing.fuzz import MARGIN_M, Worst, fuzz
 from tangible_core.testing.synthetic.rough import rough_surfaces
 from tangible_core.testing.synthetic.scenes import sphere_cap
-from tangible_render.contact.contact import LEAP_M, STRETCH_M
+from tangible_render.contact.approach import LEAP_M, STRETCH_M
 from tangible_render.proxy import Proxy
 from tangible_render.surface.coefficients import spline_coefficients
 from tangible_render.with_materials import WithMaterials
@@ -37,7 +37,7 @@ HOW_MANY = [
 ]
 
 
-def walked(renderer: ForceRenderer, surface: HapticSurface, ticks: int, seed: int = 1) -> Worst:
+def walk_over(renderer: ForceRenderer, surface: HapticSurface, ticks: int, seed: int = 1) -> Worst:
     touch = renderer.touch(surface)
     assert isinstance(touch, CompiledTouch)
     worst = fuzz(touch, surface, ticks, seed, K)
@@ -46,15 +46,15 @@ def walked(renderer: ForceRenderer, surface: HapticSurface, ticks: int, seed: in
     return worst
 
 
-def covered(surface: HapticSurface, *names: str) -> HapticSurface:
-    """In a checker of materials, 8 x 8 cells each."""
+def cover(surface: HapticSurface, *names: str) -> HapticSurface:
+    """Cover the surface with a checkerboard of materials, 8 x 8 cells each."""
     rows, columns = np.indices(surface.height_m.shape) // 8
     labels = np.asarray((rows + columns) % len(names), np.int32)
     return HapticSurface(surface.relief, labels, tuple(library()[name] for name in names))
 
 
 def farthest(surface: HapticSurface) -> float:
-    """The way from hand to proxy at most: let go where it is long and the surface above is nearer, or a leap away."""
+    """Return the longest way from hand to proxy: released where the surface above is nearer, or a leap away."""
     coefficients = spline_coefficients(surface.height_m)
     deep = float(coefficients.max() - min(coefficients.min(), surface.height_m.min() - MARGIN_M))
     return float(np.hypot(max(STRETCH_M, deep) + LEAP_M, deep))
@@ -63,28 +63,28 @@ def farthest(surface: HapticSurface) -> float:
 @pytest.mark.parametrize("ticks", HOW_MANY)
 @pytest.mark.parametrize("name", MAPS)
 class TestProxy:
-    def test_without_friction(self, name: str, ticks: int):
+    def test_proxy_without_friction_is_stable(self, name: str, ticks: int):
         """No tick gives more than its sampling, so no path does, closed or not; a Taylor series errs a little."""
-        worst = walked(Proxy(stiffness_n_per_m=K), MAPS[name], ticks)
+        worst = walk_over(Proxy(stiffness_n_per_m=K), MAPS[name], ticks)
         assert worst.greatest_n <= K * farthest(MAPS[name])
         assert worst.gained_j <= 1e-8
 
-    def test_with_friction(self, name: str, ticks: int):
-        """Where a contact begins is known to 1/64 of a tick's way, on a spike's side as steep as it is."""
-        worst = walked(Proxy(static_friction=0.6, dynamic_friction=0.4), MAPS[name], ticks)
+    def test_proxy_with_friction_is_stable(self, name: str, ticks: int):
+        """The start of a contact is exact to 1/64 of a tick's way, times the slope of a spike."""
+        worst = walk_over(Proxy(static_friction=0.6, dynamic_friction=0.4), MAPS[name], ticks)
         assert worst.greatest_n <= K * farthest(MAPS[name])
         assert worst.gained_j <= K / 2 * FASTEST_M**2
 
-    def test_with_everything(self, name: str, ticks: int):
+    def test_proxy_with_all_effects_is_stable(self, name: str, ticks: int):
         """Textures turn a force by their slopes, and damping is of a clock that jitters fivefold."""
-        surface = covered(MAPS[name], "sand", "rubber", "water", "brick")
-        worst = walked(Proxy(), surface, ticks)
+        surface = cover(MAPS[name], "sand", "rubber", "water", "brick")
+        worst = walk_over(Proxy(), surface, ticks)
         stiffest, steepest, fastest = 900.0, 2.0, 5 * 0.5 * 3
         assert worst.greatest_n <= (stiffest * farthest(surface) + 3 * fastest) * (1 + steepest) * 2
 
 
 @pytest.mark.parametrize("ticks", HOW_MANY)
-def test_the_track_of_the_exact_nearest_point_is_never_lost(ticks: int):
+def test_proxy_never_loses_the_exact_nearest_point(ticks: int):
     touch = Proxy(stiffness_n_per_m=K).touch(BALL)
     assert isinstance(touch, CompiledTouch)
     worst = fuzz(touch, BALL, ticks, 3, K, ball_m=(0.1, -0.08))
@@ -94,13 +94,13 @@ def test_the_track_of_the_exact_nearest_point_is_never_lost(ticks: int):
 @pytest.mark.parametrize("ticks", [30_000, pytest.param(1_000_000, marks=pytest.mark.nightly)])
 @pytest.mark.parametrize("name", MAPS)
 @pytest.mark.parametrize("law", LAWS)
-def test_every_other_law_is_bounded(law: str, name: str, ticks: int):
-    """By the spring to the highest place, as steep as the steepest edge between two cells; and so with materials."""
+def test_other_force_laws_are_bounded(law: str, name: str, ticks: int):
+    """The bound is the spring to the highest place, as steep as the steepest edge of two cells; also with materials."""
     surface = MAPS[name]
     deep = float(surface.height_m.max() - surface.height_m.min()) * 2.5 + MARGIN_M
     pitch = min(surface.relief.pitch_m)
     steep = 1 + 4 * float(np.ptp(surface.height_m)) / pitch
     most = max(K * deep, 3.0) * steep
-    assert walked(load_method("render", law)(), surface, ticks).greatest_n <= most
-    with_sand = walked(WithMaterials(law=law), covered(surface, "sand", "skin"), ticks)
+    assert walk_over(load_method("render", law)(), surface, ticks).greatest_n <= most
+    with_sand = walk_over(WithMaterials(law=law), cover(surface, "sand", "skin"), ticks)
     assert with_sand.greatest_n <= 4 * most + 50

@@ -1,4 +1,4 @@
-"""The tangible mask: against the plain sum, at any resolution, and where it ends."""
+"""The tangible mask against the plain sum, at any resolution, and at its limits."""
 
 import numpy as np
 import pytest
@@ -14,7 +14,7 @@ WIDTH_M = 0.0625
 
 
 def plain_sum(dark: np.ndarray, row: int, column: int, side: int) -> np.ndarray:
-    """sum dark (u, v) as it is written: u along the columns, v against the rows."""
+    """Sum dark (u, v) by its definition: u along the columns, v against the rows."""
     half = side // 2
     offsets = np.arange(-half, half + 1)
     window = dark[row - half : row + half + 1, column - half : column + half + 1].astype(np.int64)
@@ -26,15 +26,15 @@ def centre(surface: HapticSurface, row: int, column: int) -> tuple[float, float]
     return (column + 0.5) * width / columns - width / 2, length / 2 - (row + 0.5) * length / rows
 
 
-def felt(renderer: TangibleMask, surface: HapticSurface, row: int, column: int) -> np.ndarray:
+def force_at_cell(renderer: TangibleMask, surface: HapticSurface, row: int, column: int) -> np.ndarray:
     return np.array(renderer.touch(surface).force(HapticState((*centre(surface, row, column), -0.001))))
 
 
 @given(st.integers(1, 32), st.integers(0, 99), st.integers(0, 99))
-def test_it_is_the_plain_sum(half: int, row: int, column: int):
+def test_force_matches_the_plain_sum(half: int, row: int, column: int):
     side = 2 * half + 1
     surface = HapticSurface.from_heights(np.random.default_rng(half).uniform(0, 0.01, (100, 100)), WIDTH_M)
-    force = felt(TangibleMask(mask_px=side, force_at_edge_n=2.0), surface, row, column)
+    force = force_at_cell(TangibleMask(mask_px=side, force_at_edge_n=2.0), surface, row, column)
     if min(row, column) < half or max(row, column) > 99 - half:
         assert tuple(force) == NO_FORCE
         return
@@ -43,19 +43,21 @@ def test_it_is_the_plain_sum(half: int, row: int, column: int):
     assert np.allclose(force[:2], expected, rtol=1e-9, atol=1e-12) and force[2] == 0
 
 
-def test_an_edge_from_black_to_white_pulls_with_the_force_of_the_option():
+def test_edge_from_black_to_white_pulls_with_the_force_of_the_option():
     heights = np.zeros((41, 41))
     heights[:, 21:] = 0.01
-    assert felt(TangibleMask(mask_px=17, force_at_edge_n=3.0), HapticSurface.from_heights(heights), 20, 20) == (
-        pytest.approx((-3.0, 0, 0))
-    )
-    assert felt(TangibleMask(mask_px=17, force_at_edge_n=3.0), HapticSurface.from_heights(heights.T), 20, 20) == (
+    assert force_at_cell(
+        TangibleMask(mask_px=17, force_at_edge_n=3.0), HapticSurface.from_heights(heights), 20, 20
+    ) == (pytest.approx((-3.0, 0, 0)))
+    assert force_at_cell(
+        TangibleMask(mask_px=17, force_at_edge_n=3.0), HapticSurface.from_heights(heights.T), 20, 20
+    ) == (
         pytest.approx((0, 3.0, 0))  # higher rows are nearer: the dark side is far, along y
     )
 
 
 @pytest.mark.parametrize("slope", [(0.1, 0.0), (0.0, 0.2), (0.1, -0.05)])
-def test_a_slope_feels_the_same_at_half_and_double_resolution(slope: tuple[float, float]):
+def test_slope_at_half_and_double_resolution_has_the_same_force(slope: tuple[float, float]):
     def ramp(count: int) -> HapticSurface:
         c = ((np.arange(count) + 0.5) / count - 0.5) * WIDTH_M
         heights = 0.02 + slope[0] * c[None] - slope[1] * c[:, None]
@@ -71,7 +73,7 @@ def test_a_slope_feels_the_same_at_half_and_double_resolution(slope: tuple[float
         assert np.allclose(mean, expected, rtol=0.02, atol=0.02 * np.abs(expected).max())  # 256 grey levels
 
 
-def test_it_is_felt_under_the_surface_alone_and_however_deep():
+def test_force_below_the_surface_is_the_same_at_any_depth():
     surface = HapticSurface.from_heights(RNG.uniform(0.002, 0.01, (30, 30)), WIDTH_M)
     touch = TangibleMask().touch(surface)
     x, y = centre(surface, 12, 13)
@@ -82,7 +84,7 @@ def test_it_is_felt_under_the_surface_alone_and_however_deep():
     )
 
 
-def test_cells_that_are_not_square_have_a_mask_that_is():
+def test_mask_on_oblong_cells_is_square():
     x = np.linspace(0, 1, 60)[None, :] * np.ones((30, 1))
     force = (
         TangibleMask(mask_m=0.01, force_at_edge_n=1.0)
@@ -93,5 +95,5 @@ def test_cells_that_are_not_square_have_a_mask_that_is():
     assert abs(force.y) < 1e-12
 
 
-def test_it_wants_no_materials():
+def test_materials_are_not_used():
     assert not TangibleMask.uses_materials

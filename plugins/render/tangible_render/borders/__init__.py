@@ -1,1 +1,1 @@
-"""The borders between labels as lines without stairs, and the distance to them."""
+"""The borders between labels as smooth lines, and the distance to them."""

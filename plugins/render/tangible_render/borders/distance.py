@@ -1,4 +1,4 @@
-"""How far each cell of a surface is from the nearest border between its labels."""
+"""The distance of each cell of a surface from the nearest border between its labels."""
 
 from typing import Any
 
@@ -11,9 +11,9 @@ from .lines import Borders, border_lines
 def border_distance(
     labels: Int32[np.ndarray, "h w"], pitch_m: tuple[float, float], most_m: float
 ) -> Float32[np.ndarray, "h w"]:
-    """Metres from each cell's centre to the nearest line of `border_lines`, most_m where it is farther.
+    """Compute metres from each cell's centre to the nearest line of `border_lines`, at most most_m.
 
-    pitch_m: width and length of a cell. The distance is that to the stretches between the points, not to the points.
+    pitch_m: width and length of a cell. Distances are to the segments between the points, not to the points.
     """
     distance_m = np.full(labels.shape, most_m, np.float32)
     lines = border_lines(labels)
@@ -22,43 +22,43 @@ def border_distance(
         return distance_m
     row, column = np.nonzero(near)
     places_m = np.column_stack([column, row]) * np.array(pitch_m)
-    distance_m[near] = np.minimum(_to_lines(places_m, lines, np.array(pitch_m), most_m), most_m)
+    distance_m[near] = np.minimum(_distance_to_lines(places_m, lines, np.array(pitch_m), most_m), most_m)
     return distance_m
 
 
 def _near(labels: Int32[np.ndarray, "h w"], pitch_m: tuple[float, float], most_m: float) -> np.ndarray:
-    """The cells that may be so near: by the cells beside borders, which lie within half a cell of them and the line."""
+    """Return a mask of cells that may be within most_m: those near cells at borders, half a cell from the line."""
     from scipy import ndimage
 
     from tangible_core.data.parts import beside_border
 
-    beside = beside_border(labels)
-    if not beside.any():
-        return beside
+    bordering = beside_border(labels)
+    if not bordering.any():
+        return bordering
     reach_m = most_m + 1.5 * float(np.hypot(*pitch_m))
-    found: Any = ndimage.distance_transform_edt(~beside, sampling=pitch_m[::-1])
-    return np.asarray(found <= reach_m)
+    distances: Any = ndimage.distance_transform_edt(~bordering, sampling=pitch_m[::-1])
+    return np.asarray(distances <= reach_m)
 
 
-def _to_lines(
+def _distance_to_lines(
     places_m: Float64[np.ndarray, "n 2"], lines: Borders, pitch_m: np.ndarray, most_m: float
 ) -> Float64[np.ndarray, "n"]:
     from scipy.spatial import KDTree
 
     at_m = lines.at * pitch_m
     nearest = KDTree(at_m).query(places_m, distance_upper_bound=most_m + float(np.hypot(*pitch_m)))[1]
-    found = nearest < len(at_m)
+    within = nearest < len(at_m)
     distance_m = np.full(len(places_m), np.inf)
-    here, point = places_m[found], np.asarray(nearest)[found]
-    to_both = [_to_stretch(here, at_m[point], at_m[lines.beside[point, side]]) for side in (0, 1)]
-    distance_m[found] = np.minimum(*to_both)
+    here, point = places_m[within], np.asarray(nearest)[within]
+    to_both = [_distance_to_segment(here, at_m[point], at_m[lines.neighbours[point, side]]) for side in (0, 1)]
+    distance_m[within] = np.minimum(*to_both)
     return distance_m
 
 
-def _to_stretch(
+def _distance_to_segment(
     here: Float64[np.ndarray, "n 2"], start: Float64[np.ndarray, "n 2"], end: Float64[np.ndarray, "n 2"]
 ) -> Float64[np.ndarray, "n"]:
-    """From points to straight stretches; one of no length is a point."""
+    """Compute distances from points to straight segments; a segment of no length is a point."""
     way = end - start
     square = np.maximum((way * way).sum(axis=1), 1e-300)
     share = np.clip(((here - start) * way).sum(axis=1) / square, 0.0, 1.0)

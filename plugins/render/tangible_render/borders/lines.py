@@ -1,55 +1,58 @@
-"""The borders between labels as lines: from the stairs of cells to the smooth lines that such stairs may come from."""
+"""The borders between labels as lines: smooth lines within the uncertainty of the staircase of cells."""
 
 from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Float64, Int32, Int64
 
-BLUR, PASSES, ROUNDS = 128, 5, 8
-"""Averages of neighbours that make a Gaussian of 8 steps of a line; Gaussians in a low-pass; how often that is clipped
-to the half cell in which a line is known. As heights that came in steps are made smooth (`surface.dequantise`)."""
+BLUR = 128
+"""The number of averages of neighbours, which make a Gaussian with a standard deviation of 8 points of a line."""
+PASSES = 5
+"""The number of Gaussians in a low-pass, the same as in `surface.dequantise`."""
+ROUNDS = 8
+"""The number of low-passes, each clipped to half a cell around the staircase, the same as in `surface.dequantise`."""
 
 Points = Float64[np.ndarray, "n 2"]
 Lanes = Float64[np.ndarray, "2 n"]
-"""Points, column by column: neighbours are then taken in a third of the time."""
+"""The points, coordinate by coordinate: neighbours are then taken in a third of the time."""
 
 
 class Borders(NamedTuple):
-    """Lines between labels, as points that have up to two neighbours."""
+    """The lines between labels, as points with up to two neighbours."""
 
     at: Points
-    """(column, row) in cells, the first cell's centre at (0, 0); one for each side of a cell between two labels."""
-    beside: Int64[np.ndarray, "n 2"]
-    """Which points come before and after each, itself where the line ends: at the rim, or where three labels meet."""
+    """The points (column, row) in cells, the first cell's centre at (0, 0); one for each side between two labels."""
+    neighbours: Int64[np.ndarray, "n 2"]
+    """The points before and after each; the point itself where a line ends: at the rim, or where three labels meet."""
 
 
 def border_lines(labels: Int32[np.ndarray, "h w"]) -> Borders:
-    """The lines between the labels. Each of their points lies within half a cell of the side that it is of.
+    """Return smooth lines between the labels; each point lies within half a cell of its cell side.
 
-    The sides of cells are stairs, within half a cell of which the border lies. Of the lines there a smooth one is
-    sought: low-passed along each line and clipped to the half cells, in turn. The low-pass is 1 - (1 - G)^5, which
-    draws no circle together. So a straight border is straight at any angle, and corners are kept within half a cell.
+    The sides of cells form a staircase, and the border lies within half a cell of it. To find a smooth line there, each
+    line is low-passed and clipped to the half cells, in turn. The low-pass is 1 - (1 - G)^5, which does not shrink
+    circles. So a straight border is straight at any angle, and corners stay within half a cell.
     Source: projections onto convex sets (Youla & Webb, IEEE Trans. Medical Imaging 1, 1982).
     """
-    found, beside = _sides(labels)
-    at = lanes = np.ascontiguousarray(found.T)
-    for _ in range(ROUNDS if len(found) else 0):
-        at = np.clip(_low_pass(at, beside), lanes - 0.5, lanes + 0.5)
-    return Borders(np.ascontiguousarray(at.T), beside)
+    points, neighbours = _sides(labels)
+    at = lanes = np.ascontiguousarray(points.T)
+    for _ in range(ROUNDS if len(points) else 0):
+        at = np.clip(_low_pass(at, neighbours), lanes - 0.5, lanes + 0.5)
+    return Borders(np.ascontiguousarray(at.T), neighbours)
 
 
-def _low_pass(at: Lanes, beside: Int64[np.ndarray, "n 2"]) -> Lanes:
-    ends = beside == np.arange(len(beside))[:, None]
+def _low_pass(at: Lanes, neighbours: Int64[np.ndarray, "n 2"]) -> Lanes:
+    ends = neighbours == np.arange(len(neighbours))[:, None]
     loose = ends.any(axis=1)
-    before, after = (np.where(loose, np.arange(len(beside)), side) for side in beside.T)
-    lost = at
+    before, after = (np.where(loose, np.arange(len(neighbours)), side) for side in neighbours.T)
+    residual = at
     for _ in range(PASSES):
-        lost = lost - _blurred(lost, before, after)
-    return at - lost
+        residual = residual - _blur(residual, before, after)
+    return at - residual
 
 
-def _blurred(at: Lanes, before: Int64[np.ndarray, "n"], after: Int64[np.ndarray, "n"]) -> Lanes:
-    """Averaged with the neighbours; where a line ends, it stays."""
+def _blur(at: Lanes, before: Int64[np.ndarray, "n"], after: Int64[np.ndarray, "n"]) -> Lanes:
+    """Average points with their neighbours BLUR times; the ends of lines stay."""
     for _ in range(BLUR):
         mean = at.take(before, axis=1)
         mean += at.take(after, axis=1)
@@ -61,7 +64,7 @@ def _blurred(at: Lanes, before: Int64[np.ndarray, "n"], after: Int64[np.ndarray,
 
 
 def _sides(labels: Int32[np.ndarray, "h w"]) -> tuple[Points, Int64[np.ndarray, "n 2"]]:
-    """The middles of the sides of cells that lie between two labels, and the neighbours of each along the line.
+    """Return the middles of the cell sides between two labels, and the neighbours of each along the line.
 
     Two sides are neighbours where they alone meet at a corner of cells; where three or four meet, lines end.
     """
@@ -75,10 +78,10 @@ def _sides(labels: Int32[np.ndarray, "h w"]) -> tuple[Points, Int64[np.ndarray, 
     first = np.concatenate([row * corner + column + 1, (row_level + 1) * corner + column_level])
     last = np.concatenate([(row + 1) * corner + column + 1, (row_level + 1) * corner + column_level + 1])
     ends = np.stack([first, last], axis=1)
-    beside = np.repeat(np.arange(len(at))[:, None], 2, axis=1)
+    neighbours = np.repeat(np.arange(len(at))[:, None], 2, axis=1)
     _, which, counts = np.unique(ends.ravel(), return_inverse=True, return_counts=True)
-    met = np.argsort(which.ravel(), kind="stable")
-    starts = np.searchsorted(which.ravel()[met], np.flatnonzero(counts == 2))
-    one, other = met[starts], met[starts + 1]
-    beside.ravel()[one], beside.ravel()[other] = other // 2, one // 2
-    return at, beside
+    order = np.argsort(which.ravel(), kind="stable")
+    starts = np.searchsorted(which.ravel()[order], np.flatnonzero(counts == 2))
+    one, other = order[starts], order[starts + 1]
+    neighbours.ravel()[one], neighbours.ravel()[other] = other // 2, one // 2
+    return at, neighbours

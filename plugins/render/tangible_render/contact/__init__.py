@@ -1,1 +1,1 @@
-"""Where the proxy comes into contact, and where it rests."""
+"""Contact of the proxy: entry, the nearest point, spring and damper."""

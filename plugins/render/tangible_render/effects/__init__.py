@@ -1,1 +1,1 @@
-"""What materials add to a law: textures, friction, damping."""
+"""Effects around another force law: the option that names it; textures, friction and damping of materials."""

@@ -1,12 +1,12 @@
-"""What wraps any law, compiled: a fine texture on its surface, friction, and damping along its force.
+"""The compiled wrapper of a force law: a fine texture on its surface, friction, and damping along its force.
 
-The texture is a height t(x, y) on top of the law's surface. To the law, a hand at (x, y, z) is one at (x, y, z - t);
-what is felt of a force G there is (G_x - t_x G_z, G_y - t_y G_z, G_z). Both take the same work from the hand: a law
-that gains no energy gains none through a texture. Friction and damping join G: they never give any.
+The texture is a height t(x, y) on top of the force law's surface. The force law sees a hand at (x, y, z) at
+(x, y, z - t), and its force G there becomes (G_x - t_x G_z, G_y - t_y G_z, G_z). Both do the same work: a force law
+that generates no energy generates none through a texture. Friction and damping are added to G and only take energy.
 
-A touch remembers, in `memory`: first the state of the texture's own forces, then 0-2 where the hand was to the law, x
-NaN if nowhere; 3-4 its way along the surface; 5-7 the bristle of its friction, and 1 if that slides, 0 if it sticks, -1
-in free air.
+The memory of a touch: first the state of the texture's own forces, then 0-2 the last position seen by the force law, x
+NaN if there is none; 3-4 the way along the surface; 5-7 the bristle of the friction, and 1 if that slides, 0 if it
+sticks, -1 in free air.
 Imports numba: a method imports this module inside its verb.
 """
 
@@ -24,20 +24,22 @@ from tangible_core.haptic_textures.table import COUNT, DRAG, HEAD
 from tangible_core.haptic_textures.table import STIFFNESS as STICKS
 from tangible_core.haptic_textures.waves import WAVES
 
-from ..contact.contact import LEAP_M
+from ..contact.approach import LEAP_M
 from ..surface.bilinear import bilinear, cell, over
 
 STIFFNESS, DAMPING, STATIC, DYNAMIC = range(HEAD + 4 * WAVES, HEAD + 4 * WAVES + 4)
-"""Columns of a label's row, after those of its texture."""
+"""The columns of a label's row, after those of its texture."""
 WAS_X, WAS_Y, WAS_Z, WAY_X, WAY_Y, BRISTLE_X, BRISTLE_Y, SLIDES = range(STATE, STATE + 8)
+"""The places in the memory of a touch, after the state of the texture's own forces."""
 REMEMBERED = STATE + 8
+"""The number of values in the memory of a touch."""
 
 
 @njit(**KERNEL)
 def tick(fixed, law, labels, width_m, length_m, table, bristle, memory, x, y, z, vx, vy, vz):
-    """A law whose force is the push of the surface: friction lies across it, damping along it.
+    """Wrap a force law whose force is the push of the surface: friction lies across it, damping along it.
 
-    fixed, law: a kernel's arguments before the state, and its address. bristle: the stiffness of friction that sticks.
+    fixed, law: a kernel's arguments before the state, and its address. bristle: the stiffness of sticking friction.
     """
     label, t, tx, ty, dx, dy, dz = texture(labels, width_m, length_m, table, memory, x, y, z)
     vz -= tx * vx + ty * vy
@@ -47,70 +49,70 @@ def tick(fixed, law, labels, width_m, length_m, table, bristle, memory, x, y, z,
 
 @njit(**KERNEL)
 def lateral_tick(fixed, law, height_m, labels, width_m, length_m, table, bristle, memory, x, y, z, vx, vy, vz):
-    """A law that leaves the push to a table: the push of texture and friction is k d, d the depth under the cells."""
+    """Wrap a lateral force law: the push for texture and friction is k d, d the depth under the cells."""
     label, t, tx, ty, dx, dy, _ = texture(labels, width_m, length_m, table, memory, x, y, z)
     fx, fy, fz = law(*fixed, x, y, z - t, vx, vy, vz - tx * vx - ty * vy)
     push = 0.0
     if over(width_m, length_m, x, y) and np.isfinite(vx + vy + vz):
         push = table[label, STIFFNESS] * max(bilinear(height_m, width_m, length_m, x, y)[0] + t - z, 0.0)
-    along, aside = _rub(table, label, bristle, memory, dx, dy, vx, vy, push)
+    along, aside = _friction(table, label, bristle, memory, dx, dy, vx, vy, push)
     fx, fy = fx + along - tx * push, fy + aside - ty * push
     return (fx, fy, fz) if np.isfinite(fx + fy + fz) else (0.0, 0.0, 0.0)
 
 
 @inner(forceinline=True)
 def texture(labels, width_m, length_m, table, memory, x, y, z):
-    """(label, t, t_x, t_y, dx, dy, dz): the label under the hand or nearest to it, its texture, the hand's step.
+    """Return (label, t, t_x, t_y, dx, dy, dz): the label under or nearest to the hand, its texture, the hand's step.
 
-    How fast a wave passes is taken from the step since the last tick, whatever the servo's rate. There is no step for a
-    hand that comes anew. dz is that of the hand to the law.
+    The speed of a wave comes from the step since the last tick, at any rate of the servo. A hand that enters anew has
+    no step. dz is the step as the force law sees it.
     """
-    at_x = x if abs(x) <= 0.5 * width_m else math.copysign(0.5 * width_m, x)  # a number for NaN, too
+    at_x = x if abs(x) <= 0.5 * width_m else math.copysign(0.5 * width_m, x)  # finite for NaN, too
     at_y = y if abs(y) <= 0.5 * length_m else math.copysign(0.5 * length_m, y)
     row, column = cell(labels.shape[0], labels.shape[1], width_m, length_m, at_x, at_y)
     label = labels[row, column]
     dx, dy, dz = x - memory[WAS_X], y - memory[WAS_Y], z - memory[WAS_Z]
-    known = dx * dx + dy * dy + dz * dz <= LEAP_M * LEAP_M
-    if not known:
+    continues = dx * dx + dy * dy + dz * dz <= LEAP_M * LEAP_M
+    if not continues:
         dx, dy = 0.0, 0.0
-        _let_go(memory)
+        _release(memory)
     t, tx, ty = 0.0, 0.0, 0.0
     if table[label, COUNT] > 0.0:
         t, tx, ty = texture_height(table, label, x, y, dx, dy, 1.0)
-    dz = dz - t if known else 0.0
+    dz = dz - t if continues else 0.0
     memory[WAS_X], memory[WAS_Y], memory[WAS_Z] = x, y, z - t
     return label, t, tx, ty, dx, dy, dz
 
 
 @inner(forceinline=True)
 def effects(table, label, bristle, memory, tx, ty, dx, dy, dz, vx, vy, vz, fx, fy, fz):
-    """A law's force with friction, the texture's own forces and damping, as it is felt through the texture."""
+    """Add friction, the texture's own forces and damping to a force, and transform it by the texture's slope."""
     push = math.sqrt(fx * fx + fy * fy + fz * fz)
     acts = table[label, DRAG] + table[label, STICKS] + table[label, DAMPING] + table[label, STATIC] > 0.0
     if not (acts and 0.0 < push < math.inf):
-        _let_go(memory)
+        _release(memory)
         fx, fy = fx - tx * fz, fy - ty * fz
         return (fx, fy, fz) if np.isfinite(fx + fy + fz) else (0.0, 0.0, 0.0)
     inverse = 1.0 / push
     nx, ny, nz = inverse * fx, inverse * fy, inverse * fz
-    # Two unit vectors across: Duff et al., Building an orthonormal basis, revisited, JCGT 6(1), 2017. No law pushes
-    # straight down, where alone the sign is needed: without it nothing that can be felt is another.
+    # Two unit vectors across: Duff et al., Building an orthonormal basis, revisited, JCGT 6(1), 2017. The sign
+    # matters only for a force straight down, which no force law has.
     sign = math.copysign(1.0, nz)
     a = -1.0 / (sign + nz)
     ax, ay, az = 1.0 + sign * nx * nx * a, sign * nx * ny * a, -sign * nx
     bx, by, bz = nx * ny * a, sign + ny * ny * a, -ny
     way_x, way_y = ax * dx + ay * dy + az * dz, bx * dx + by * dy + bz * dz
     speed_x, speed_y = ax * vx + ay * vy + az * vz, bx * vx + by * vy + bz * vz
-    along, aside = _rub(table, label, bristle, memory, way_x, way_y, speed_x, speed_y, push)
-    held = min(table[label, DAMPING] * (nx * vx + ny * vy + nz * vz), push)
-    fz += along * az + aside * bz - held * nz
-    fx += along * ax + aside * bx - held * nx - tx * fz
-    fy += along * ay + aside * by - held * ny - ty * fz
+    along, aside = _friction(table, label, bristle, memory, way_x, way_y, speed_x, speed_y, push)
+    damper = min(table[label, DAMPING] * (nx * vx + ny * vy + nz * vz), push)
+    fz += along * az + aside * bz - damper * nz
+    fx += along * ax + aside * bx - damper * nx - tx * fz
+    fy += along * ay + aside * by - damper * ny - ty * fz
     return (fx, fy, fz) if np.isfinite(fx + fy + fz) else (0.0, 0.0, 0.0)
 
 
 @inner(forceinline=True)
-def _let_go(memory):
+def _release(memory):
     for i in range(WAS_X):
         memory[i] = 0.0
     for i in range(WAY_X, memory.size):
@@ -119,15 +121,15 @@ def _let_go(memory):
 
 
 @inner(forceinline=True)
-def _rub(table, label, bristle, memory, dx, dy, vx, vy, push):
-    """Lateral newtons after a step (dx, dy) along the surface at (vx, vy) m/s: friction, and the texture's own.
+def _friction(table, label, bristle, memory, dx, dy, vx, vy, push):
+    """Return lateral newtons after a step (dx, dy) along the surface at (vx, vy) m/s: friction and texture forces.
 
-    A bristle: it sticks while its pull is within the static cone (the dynamic one if it slides already), and slides on
-    the dynamic one. Whatever the path, the push and the turning of the surface, it stores no more than it was given,
-    as it is only ever turned or shortened (Hayward & Armstrong, Experimental Robotics VI, 2000).
+    Friction is a bristle: it sticks while its pull is within the static cone (the dynamic one if it slides already),
+    and slides on the dynamic one. For any path, push and rotation of the surface it stores no more energy than it was
+    given, as it is only ever rotated or shortened (Hayward & Armstrong, Experimental Robotics VI, 2000).
     """
     if not push > 0.0:
-        _let_go(memory)
+        _release(memory)
         return 0.0, 0.0
     if memory[SLIDES] < 0.0:
         dx, dy = 0.0, 0.0

@@ -1,4 +1,4 @@
-"""What the materials of a surface say to a kernel: a row of numbers a label."""
+"""The table of a surface's materials for kernels: a row of numbers for each label."""
 
 import numpy as np
 from jaxtyping import Float64, Int32
@@ -6,13 +6,13 @@ from jaxtyping import Float64, Int32
 from tangible_core.data import HapticSurface
 
 Row = tuple[float, float, float, float]
-"""Stiffness in N/m, damping in N s/m, static and dynamic friction."""
+"""The stiffness in N/m, damping in N s/m, static and dynamic friction of a material."""
 
 
 def material_table(surface: HapticSurface, plain: Row) -> tuple[Int32[np.ndarray, "h w"], Float64[np.ndarray, "n 4"]]:
-    """Labels, and a row a label; one cell of one row where all the surface is alike.
+    """Return labels, and a row for each; one cell and one row where the whole surface is equal.
 
-    plain: what holds where the surface has no materials.
+    plain: the row of a surface without materials.
     """
     if surface.labels is None or not surface.materials:
         return np.zeros((1, 1), np.int32), np.array([plain], np.float64)
@@ -23,15 +23,15 @@ def material_table(surface: HapticSurface, plain: Row) -> tuple[Int32[np.ndarray
         ],
         np.float64,
     )
-    met = table[np.flatnonzero(np.bincount(surface.labels.ravel()))]
-    if (met == met[0]).all():
-        return np.zeros((1, 1), np.int32), met[:1]
+    present = table[np.flatnonzero(np.bincount(surface.labels.ravel()))]
+    if (present == present[0]).all():
+        return np.zeros((1, 1), np.int32), present[:1]
     return np.ascontiguousarray(surface.labels, np.int32), table
 
 
 def stiffness_table(
     surface: HapticSurface, plain_n_per_m: float
 ) -> tuple[Int32[np.ndarray, "h w"], Float64[np.ndarray, "n"]]:
-    """Labels, and the stiffness of each, as `material_table`."""
+    """Return the labels of `material_table`, and the stiffness of each, N/m."""
     labels, table = material_table(surface, (plain_n_per_m, 0.0, 0.0, 0.0))
     return labels, np.ascontiguousarray(table[:, 0])

@@ -1,1 +1,1 @@
-"""Surfaces that move under the proxy: three slots for what comes next, and the ticks that go from one to another."""
+"""Surfaces that move under the proxy: three slots of surfaces, and the ticks that interpolate between them."""

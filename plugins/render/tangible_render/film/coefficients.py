@@ -1,4 +1,4 @@
-"""Coefficients of a surface within milliseconds: those of a still one, by finite filters instead of recursive ones."""
+"""Spline coefficients within milliseconds, by finite filters instead of the recursive ones of a still surface."""
 
 import numpy as np
 from jaxtyping import Float32
@@ -8,14 +8,14 @@ from ..surface.jumps import ROUNDING
 from .scratch import MARGIN, TAPS, Scratch
 
 HIGHEST_M = 1e6
-"""Heights above count as this: numbers of which float32 can take differences, and no hand comes there."""
+"""The bound of heights, m: float32 can take their differences, and no hand reaches them."""
 
 
 def quick_coefficients(height_m: Float32[np.ndarray, "h w"], scratch: Scratch) -> Float32[np.ndarray, "h4 w4"]:
-    """As `spline_coefficients`, within a hundred-thousandth of the heights: jumps are found and eased as there.
+    """Compute `spline_coefficients` within a hundred-thousandth of the heights; jumps are detected and eased alike.
 
-    Where that filters by recursion in float64, this does by 21 taps in float32; grids too small for these are done as
-    there. The array is the scratch's own. The same bits on every processor.
+    This filters by 21 taps in float32 in place of a recursion in float64; grids too small for the taps use
+    `spline_coefficients` itself. The result is the scratch's own array, with the same bits on every processor.
     Source: Unser, Aldroubi & Eden, B-spline signal processing, IEEE Trans. Signal Processing 41 (1993), sec. II-B.
     """
     height_m, highest_m = np.ascontiguousarray(height_m), height_m.max()
@@ -23,14 +23,14 @@ def quick_coefficients(height_m: Float32[np.ndarray, "h w"], scratch: Scratch) -
         height_m, highest_m = np.minimum(height_m, np.float32(HIGHEST_M)), np.float32(HIGHEST_M)
     if min(height_m.shape) <= MARGIN:
         return spline_coefficients(height_m)
-    from .filter_kernels import filtered, stand_out
+    from .filter_kernels import filter_coefficients, mark_jumps
 
-    stand_out(height_m, highest_m * ROUNDING, *scratch[:3])
-    filtered(height_m, scratch.near, _taps(), scratch.values, scratch.eased, scratch.coefficients)
+    mark_jumps(height_m, highest_m * ROUNDING, *scratch[:3])
+    filter_coefficients(height_m, scratch.near, _taps(), scratch.values, scratch.eased, scratch.coefficients)
     return scratch.coefficients
 
 
 def _taps() -> Float32[np.ndarray, "t"]:
-    """What a height weighs in the coefficient of its own cell, and in those of the ones beside it; in all 1."""
+    """Return the weights of a height in the coefficients of its own cell and of its neighbours; their sum is 1."""
     weights = (np.sqrt(3) - 2) ** np.arange(TAPS + 1)
     return np.asarray(weights / (2 * weights.sum() - 1), np.float32)

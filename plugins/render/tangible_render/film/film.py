@@ -12,20 +12,19 @@ from tangible_core.plugins.interfaces import Film
 
 from ..surface.coefficients import BORDER
 from .coefficients import quick_coefficients
-from .limits import SPEED_M_PER_S, STEP_N
 from .scratch import Scratch
-from .slots import DROPPED, Slots
+from .slots import DROPPED, SPEED_M_PER_S, STEP_N, Slots
 
 
 @final
 class SplineFilm(Film):
-    """A film whose memory is arrays alone, which the touch reads: it may be shown in one process and felt in another.
+    """A film whose memory consists of arrays read by the touch: one process may show frames and another render forces.
 
-    One at a time shows.
+    Only one process shows at a time.
     """
 
     def __init__(self, touch: CompiledTouch, slots: Slots, extent_m: tuple[float, float], most_m: float) -> None:
-        """most_m: how far any place of the surface may go in the time of a frame."""
+        """Wrap the touch and its slots. most_m: the longest way of any place of the surface in a frame."""
         self._touch, self._slots, self._extent_m, self._most_m = touch, slots, extent_m, most_m
         self._scratch: Scratch | None = None
 
@@ -34,11 +33,11 @@ class SplineFilm(Film):
 
     @property
     def touch(self) -> CompiledTouch:
-        """What a loop feels."""
+        """The touch for a servo loop."""
         return self._touch
 
     def show(self, relief: Relief, frame: int) -> None:
-        """Where the surface goes from here, as far as it may in the time of a frame.
+        """Move the surface towards this relief, as far as it may go in the time of a frame.
 
         Raises: GeometryError for a relief of another grid or extent than the first.
         """
@@ -50,24 +49,24 @@ class SplineFilm(Film):
 
     @property
     def arrived(self) -> bool:
-        """Whether the surface is what was shown last, or goes all the way there."""
+        """True if the surface is the relief shown last, or moves all the way to it."""
         return self._slots.arrived
 
     @property
     def dropped(self) -> int:
-        """How many frames another took the place of before the loop went to them."""
-        return int(self._slots.told[DROPPED])
+        """The number of frames replaced by another before the loop reached them."""
+        return int(self._slots.host_state[DROPPED])
 
     def _check(self, relief: Relief) -> None:
         rows, columns = self._slots.pairs.shape[1:3]
         shape = rows - 2 * BORDER, columns - 2 * BORDER
         if relief.height_m.shape == shape and tuple(relief.extent_m) == self._extent_m:
             return
-        given, first = _grid(relief.height_m.shape, relief.extent_m), _grid(shape, self._extent_m)
-        raise GeometryError(f"a frame has {given}, the first one {first}; all frames of a film need the same grid")
+        new, first = _grid(relief.height_m.shape, relief.extent_m), _grid(shape, self._extent_m)
+        raise GeometryError(f"a frame has {new}, the first one {first}; all frames of a film need the same grid")
 
 
-def begun(
+def create_film(
     surface: HapticSurface,
     tick: Tick,
     arguments: tuple[Any, ...],
@@ -76,8 +75,8 @@ def begun(
     period_s: float,
     frame_s: float,
 ) -> SplineFilm:
-    """A film that stands still on this surface. arguments, memory: of the law; spring: its stiffness and damping."""
-    from .steady import beginning
+    """Return a film at rest on this surface. arguments, memory: the force law's; spring: its stiffness and damping."""
+    from .steady import initial_memory
 
     (rows, columns), (width_m, length_m) = surface.height_m.shape, map(float, surface.extent_m)
     coefficients = quick_coefficients(surface.height_m, Scratch.of(rows, columns))
@@ -85,7 +84,9 @@ def begun(
     slots, moving = Slots.still(coefficients, count), np.zeros(2)
     shape = width_m, length_m, columns / width_m, rows / length_m
     shown = slots.pairs, slots.tiles_m, slots.frames, slots.shared, float(count)
-    touch = CompiledTouch(tick, (*shown, *shape, *arguments, beginning(*spring), moving), memory, spring[0], moving)
+    touch = CompiledTouch(
+        tick, (*shown, *shape, *arguments, initial_memory(*spring), moving), memory, spring[0], moving
+    )
     speed_m_per_s = min(SPEED_M_PER_S, STEP_N / (spring[0] * period_s))
     return SplineFilm(touch, slots, surface.extent_m, speed_m_per_s * count * period_s)
 

@@ -1,7 +1,7 @@
-"""Jumps found and eased, and the finite filter that gives a spline's coefficients; compiled.
+"""Detection and easing of jumps, and the finite filter of spline coefficients; compiled.
 
-What `surface.jumps` and `surface.coefficients` do in NumPy and SciPy, row by row in float32, in loops that a compiler
-turns into vectors. Nothing is summed in an order that it might change. Imports numba: imported inside a verb.
+These kernels do the work of `surface.jumps` and `surface.coefficients` row by row in float32, in loops that compile to
+vector instructions. No sum has an order that the compiler might change. Imports numba: imported inside a verb.
 """
 
 # ruff: noqa: ANN001, ANN201, ANN202 -- the types are in the signatures that numba compiles
@@ -25,8 +25,8 @@ SIXTH, HALF, NOTHING = np.float32(1 / 6), np.float32(0.5), np.float32(0.0)
 
 
 @inner()
-def _stands_out(a, b, c, d, e, f, g, rounding):
-    """Whether the fourth difference about d is large beside the second ones up to two cells away."""
+def _is_jump(a, b, c, d, e, f, g, rounding):
+    """Return True if the fourth difference around d is large against the second ones up to two cells away."""
     before, left, here, right, after = (
         _second(a, b, c),
         _second(b, c, d),
@@ -45,11 +45,11 @@ def _second(a, b, c):
 
 @inner()
 def _down(height_m, at, rounding):
-    """Down the columns, all at a time."""
+    """Mark jumps down the columns, all at a time."""
     rows, columns = height_m.shape
     for row in range(3, rows - 3):
         for column in range(columns):
-            at[row, column] |= _stands_out(
+            at[row, column] |= _is_jump(
                 height_m[row - 3, column],
                 height_m[row - 2, column],
                 height_m[row - 1, column],
@@ -66,11 +66,11 @@ def _down(height_m, at, rounding):
 
 @inner()
 def _along(height_m, at, rounding):
-    """Along the rows. (From 0 on: of an index that might be negative, numba makes no vectors.)"""
+    """Mark jumps along the rows; indices start at 0, as numba does not vectorise ones that might be negative."""
     rows, columns = height_m.shape
     for row in range(rows):
         for i in range(columns - 6):
-            at[row, i + 3] |= _stands_out(
+            at[row, i + 3] |= _is_jump(
                 height_m[row, i],
                 height_m[row, i + 1],
                 height_m[row, i + 2],
@@ -86,7 +86,7 @@ def _along(height_m, at, rounding):
 
 @inner()
 def _at_border(line, first, rounding):
-    """Whether that of the five cells from `first` on, the outermost, is beside those nearest to the border."""
+    """Return True if the outermost five cells, from `first` on, jump against those nearest to the border."""
     count = line.shape[0] - 2
     begin = 0 if first == 0 else max(count - BORDER_CELLS, 0)
     nearby = NOTHING
@@ -102,7 +102,7 @@ def _at_border(line, first, rounding):
 
 @inner()
 def _widen(at, wide, near):
-    """Each cell that stands out, and the two beside it in each direction."""
+    """Mark each jump and its two neighbours in each direction."""
     rows, columns = at.shape
     for row in range(rows):
         for i in range(columns):
@@ -128,7 +128,7 @@ def _widen(at, wide, near):
 
 @inner()
 def _continue(height_m, near, values):
-    """The heights, and beyond each border their odd reflection, or level ground where they jump at the border."""
+    """Extend heights beyond each border by their odd reflection, or level where they jump at the border."""
     rows, columns = height_m.shape
     for row in range(rows):
         line = values[MARGIN + row]
@@ -157,7 +157,7 @@ def _reflect(edge, within, beyond):
 
 @inner()
 def _level(line, near, heights, inside):
-    """Beyond a cell at a jump, its height goes on. inside: of this row only what is beyond its ends is beyond."""
+    """Extend the height of a cell at a jump beyond the border. inside: True for a row with heights of its own."""
     columns = heights.shape[0]
     for i in range(MARGIN):
         if near[RING]:
@@ -171,16 +171,16 @@ def _level(line, near, heights, inside):
 
 
 @inner()
-def _eased(a, b, c, d, e, before, here, after):
-    """The value in the middle of five, so that a spline does not swing over there; and what stays is not here."""
+def _ease_value(a, b, c, d, e, before, here, after):
+    """Return the middle of five values, moved against overshoot of the spline if `here` is 1."""
     left, middle, right = b + before * _peak(a, b, c), c + here * _peak(b, c, d), d + after * _peak(c, d, e)
-    moved = middle + ((right - middle) - (middle - left)) * SIXTH
-    return moved if here > NOTHING else c
+    value = middle + ((right - middle) - (middle - left)) * SIXTH
+    return value if here > NOTHING else c
 
 
 @inner()
 def _peak(a, b, c):
-    """Half of how far a lone peak is above its neighbours, or a lone pit below (then negative); otherwise 0."""
+    """Return half the height of a single peak above its neighbours, or of a pit below (negative); otherwise 0."""
     up, down = b - a, b - c
     less = up if abs(up) < abs(down) else down
     return HALF * less if up * down > NOTHING else NOTHING
@@ -188,10 +188,10 @@ def _peak(a, b, c):
 
 @inner()
 def _ease_down(values, eased, row, before, here, after):
-    """A row eased down the columns; before, here, after: which cells of it and its neighbours are near a jump."""
+    """Ease a row down the columns; before, here, after: masks of cells near a jump, of the row and its neighbours."""
     for i in range(here.shape[0]):
         j = i + MARGIN - RING
-        eased[j] = _eased(
+        eased[j] = _ease_value(
             values[row - 2, j],
             values[row - 1, j],
             values[row, j],
@@ -209,7 +209,7 @@ def _ease_along(values, eased, near):
         eased[i] = values[i]
     for i in range(1, near.shape[0] - 1):
         j = i + MARGIN - RING
-        eased[j] = _eased(
+        eased[j] = _ease_value(
             values[j - 2],
             values[j - 1],
             values[j],
@@ -222,33 +222,33 @@ def _ease_along(values, eased, near):
 
 
 @inner()
-def _filter_down(values, taps, row, found):
-    """A row of the values filtered down the columns; its middle is TAPS rows farther down."""
+def _filter_down(values, taps, row, out):
+    """Filter a row of the values down the columns; its middle is TAPS rows further down."""
     middle = row + TAPS
-    for i in range(found.shape[0]):
-        found[i] = taps[0] * values[middle, i]
+    for i in range(out.shape[0]):
+        out[i] = taps[0] * values[middle, i]
     for tap in range(1, TAPS + 1):
         weight, above, below = taps[tap], values[middle - tap], values[middle + tap]
-        for i in range(found.shape[0]):
-            found[i] += weight * (above[i] + below[i])
+        for i in range(out.shape[0]):
+            out[i] += weight * (above[i] + below[i])
 
 
 @inner()
-def _filter_along(values, taps, found):
-    for i in range(found.shape[0]):
-        found[i] = taps[0] * values[i + TAPS]
+def _filter_along(values, taps, out):
+    for i in range(out.shape[0]):
+        out[i] = taps[0] * values[i + TAPS]
     for tap in range(1, TAPS + 1):
         weight = taps[tap]
-        for i in range(found.shape[0]):
-            found[i] += weight * (values[i + TAPS - tap] + values[i + TAPS + tap])
+        for i in range(out.shape[0]):
+            out[i] += weight * (values[i + TAPS - tap] + values[i + TAPS + tap])
 
 
 @njit(void(HEIGHTS, float32, MASK, MASK, MASK), **KERNEL)
-def stand_out(height_m, rounding, at, wide, near):
-    """`jumps`: the cells whose fourth differences stand out, and in `near` those up to two beside.
+def mark_jumps(height_m, rounding, at, wide, near):
+    """Mark the cells at jumps as `surface.jumps` does, and in `near` also their neighbours up to two cells away.
 
-    rounding: what differences are too small to tell. at, wide: scratch. near: as if the outermost cells went on for
-    BORDER more on each side, and a ring of none around these.
+    rounding: the largest difference that is rounding. at, wide: scratch. near: extended by BORDER copies of the
+    outermost cells on each side, and a ring of 0 around these.
     """
     rows, columns = height_m.shape
     for row in range(rows):
@@ -260,8 +260,8 @@ def stand_out(height_m, rounding, at, wide, near):
 
 
 @njit(void(HEIGHTS, MASK, LINE, ROWS, ROWS, ROWS), **KERNEL)
-def filtered(height_m, near, taps, values, eased, coefficients):
-    """`spline_coefficients`: continued, eased and filtered down the columns, then along the rows."""
+def filter_coefficients(height_m, near, taps, values, eased, coefficients):
+    """Compute `spline_coefficients`: extend, then ease and filter down the columns, then along the rows."""
     rows, columns = height_m.shape
     _continue(height_m, near, values)
     for row in range(rows + 2 * MARGIN):
@@ -272,15 +272,15 @@ def filtered(height_m, near, taps, values, eased, coefficients):
             _ease_down(values, eased[row], row, near[i - 1], near[i], near[i + 1])
     for row in range(rows + 2 * BORDER):
         _filter_down(eased, taps, row, values[row])
-        _ease_along(values[row], eased[row], near[row + 1])  # no row below is made of that any more
+        _ease_along(values[row], eased[row], near[row + 1])  # no later row reads this one
         _filter_along(eased[row], taps, coefficients[row])
 
 
 @njit(types.boolean(ROWS, PAIRS, PAIRS, float32), **KERNEL)
-def go_on(coefficients, played, free, most_m):
-    """Write the way from what a slot ends with to these coefficients, at most so far; whether that is short of them.
+def fill_slot(coefficients, played, free, most_m):
+    """Write the way from the end of the played slot to these coefficients, by at most most_m anywhere.
 
-    What the coefficients are where it is short becomes what it ends with.
+    Returns: True if it falls short of them; the coefficients become the end of the way.
     """
     short = False
     rows, columns = coefficients.shape

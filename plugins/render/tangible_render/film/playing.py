@@ -1,10 +1,10 @@
-"""Which surface a tick feels of a film: slots that two processes share without waiting for each other; compiled.
+"""The surface of a film in each tick: slots that two processes share without locks; compiled.
 
-There are three slots, each with a surface to begin with and one to end with. One is played, one may be published to
-come next, and the third is free for the host to write. Which is which stands in one number, STATE, that either side
-replaces only if the other has not meanwhile. So a slot that is published always begins with what the one that is played
-ends with, and the surface goes on exactly from there; what is played is never written to; and nobody waits: a tick that
-loses a race plays on where it is, and tries again in the next.
+There are three slots, each with a first and a last surface. One is played, one may be published to come next, and the
+third is free for the host to write. One number, STATE, holds their roles, and either side replaces it only if the other
+has not done so meanwhile (compare and swap). So a published slot always begins with the last surface of the played one,
+and the surface continues exactly from there; the played slot is never written to; and neither side waits: a tick that
+loses a race stays in its slot, and tries again in the next tick.
 Imports numba: a method imports this module inside its verb.
 """
 
@@ -18,13 +18,17 @@ from numba.extending import intrinsic
 from tangible_core.compiled.compiling import KERNEL, inner
 from tangible_core.compiled.touch import FRAME, RISE_M
 
-from ..contact.contact import TOUCHING
+from ..contact.approach import TOUCHING
 from ..surface.spline import height
 
 SLOTS = 3
-STATE, TICK = 0, 1
-"""In `shared`: the slot that is played and the one that is published, see `state`; how many ticks it was played."""
+"""The number of slots."""
+STATE = 0
+"""The index in `shared` of the played and the published slot, see `state`."""
+TICK = 1
+"""The index in `shared` of the number of ticks for which the slot has been played."""
 SHARED = 2
+"""The length of `shared`."""
 MOVING_SURFACE = (
     types.Array(float32, 4, "C"),
     types.Array(float32, 4, "C"),
@@ -33,14 +37,15 @@ MOVING_SURFACE = (
     float64,
     *[float64] * 4,
 )
-"""Types of what a kernel of a film is given first: `pairs`, `tiles_m`, `frames`, `shared`, the ticks of a slot, and the
-surface's extent and cells. SLOTS times: pairs of coefficients (h, w, 2), bounds of both, the frame that it goes to."""
+"""The numba types of the first arguments of a film's kernel: `pairs`, `tiles_m`, `frames`, `shared`, the ticks of a
+slot, and the surface's extent and cells per metre. Each slot has pairs of coefficients (h, w, 2), their bounds, and a
+frame."""
 MOVING = float64[::1]
 
 
 @intrinsic
 def _load(context, array, index):
-    """A number of an int64 array, such that all that was written before it is seen from here on."""
+    """Read a number of an int64 array with acquire order: all writes before its release are visible after."""
 
     def generate(context, builder, signature, arguments):
         data = context.make_array(signature.args[0])(context, builder, arguments[0]).data
@@ -50,8 +55,8 @@ def _load(context, array, index):
 
 
 @intrinsic
-def _replace(context, array, index, known, value):
-    """Whether a number of an int64 array was the known one, and is now this: at once, for whoever else does so."""
+def _replace(context, array, index, expected, value):
+    """Replace a number of an int64 array atomically if it is the expected one; return True if it was."""
 
     def generate(context, builder, signature, arguments):
         data = context.make_array(signature.args[0])(context, builder, arguments[0]).data
@@ -64,26 +69,26 @@ def _replace(context, array, index, known, value):
 
 @inner()
 def state(played, published):
-    """Two slots as one number; both are the same where nothing is to come."""
+    """Return two slots as one number; both are equal where no slot is to follow."""
     return SLOTS * played + published
 
 
 @njit(types.UniTuple(int64, 2)(int64[::1]), **KERNEL)
 def slots(shared):
-    """The slot that is played, and the one that is published."""
+    """Return the slot that is played, and the slot that is published."""
     now = _load(shared, int64(STATE))
     return now // SLOTS, now % SLOTS
 
 
 @njit(types.boolean(int64[::1], int64, int64, int64), **KERNEL)
 def publish(shared, played, published, next_one):
-    """Whether a slot was published in the place of another: not if a tick has left the one that was played."""
+    """Publish a slot in place of another; return False if a tick has left the played slot meanwhile."""
     return _replace(shared, int64(STATE), state(played, published), state(played, next_one))
 
 
 @inner(forceinline=True)
 def play(frames, shared, count, moving):
-    """For a tick: which slot it plays, where it is in it after this tick, 0..1, and how much of it passes in it."""
+    """Return the slot of a tick, the position in the slot after it, 0..1, and the share passed in it."""
     now = _load(shared, int64(STATE))
     slot, following, tick = now // SLOTS, now % SLOTS, shared[TICK]
     if tick >= count and following != slot and _replace(shared, int64(STATE), now, state(following, following)):
@@ -96,7 +101,7 @@ def play(frames, shared, count, moving):
 
 
 @inner(forceinline=True)
-def risen(pairs, across_per_m, down_per_m, passed, memory, moving):
-    """How much the surface rose at the proxy in this tick, written to what the touch tells."""
+def write_rise(pairs, across_per_m, down_per_m, passed, memory, moving):
+    """Write to `moving` the rise of the surface at the proxy in this tick, m: its speed along z times the period."""
     if passed > 0.0 and memory[7] == TOUCHING and not np.isnan(memory[2]):
         moving[RISE_M] = height((pairs, -passed, passed), across_per_m, down_per_m, memory[0], memory[1])

@@ -1,4 +1,4 @@
-"""The arrays that a frame is made in, and how far beyond the heights they reach."""
+"""The scratch arrays of a frame, and their margins beyond the heights."""
 
 from typing import NamedTuple, Self
 
@@ -8,13 +8,15 @@ from jaxtyping import Float32, UInt8
 from ..surface.coefficients import BORDER
 
 TAPS = 10
-"""Cells to each side that a coefficient is made of: farther ones weigh less than (2 - sqrt 3)^11, 5e-7 of a height."""
-MARGIN, RING = BORDER + TAPS, BORDER + 1
-"""Cells beyond each border: of values, for the filter; and of the mask, which has one more of nothing all round."""
+"""The reach of the filter in cells: further heights weigh less than (2 - sqrt 3)^11, 5e-7."""
+MARGIN = BORDER + TAPS
+"""The cells of values beyond each border, for the filter."""
+RING = BORDER + 1
+"""The cells of the mask beyond each border, the outermost of which are 0."""
 
 
 class Scratch(NamedTuple):
-    """What is written to on the way, so that a frame needs no memory of its own."""
+    """The scratch arrays of a frame, allocated once for all frames."""
 
     at: UInt8[np.ndarray, "h w"]
     wide: UInt8[np.ndarray, "h w"]
@@ -26,15 +28,15 @@ class Scratch(NamedTuple):
 
     @classmethod
     def of(cls, rows: int, columns: int) -> Self:
-        """For heights of this size."""
+        """Allocate the arrays for heights of this size."""
         padded = rows + 2 * MARGIN, columns + 2 * MARGIN
-        found = rows + 2 * BORDER, columns + 2 * BORDER
+        with_border = rows + 2 * BORDER, columns + 2 * BORDER
         return cls(
             np.empty((rows, columns), np.uint8),
             np.empty((rows, columns), np.uint8),
             np.empty((rows + 2 * RING, columns + 2 * RING), np.uint8),
             np.empty(padded, np.float32),
             np.empty(padded, np.float32),
-            np.empty(found, np.float32),
-            np.empty(found, np.float32),
+            np.empty(with_border, np.float32),
+            np.empty(with_border, np.float32),
         )

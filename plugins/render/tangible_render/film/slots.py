@@ -1,4 +1,4 @@
-"""The arrays of a film: three slots, each from one surface to the next, in the memory of whoever shares them."""
+"""The arrays of a film: three slots, each from one surface to the next, in shared memory or not."""
 
 from typing import NamedTuple, cast
 
@@ -7,38 +7,45 @@ from jaxtyping import Float32, Float64, Int64
 
 from ..surface.tiles import tile_bounds
 
+SPEED_M_PER_S = 0.1
+"""The greatest speed of any place of a surface, m/s: that of a hand."""
+STEP_N = 0.08
+"""The greatest change of the spring force on a hand at rest in a tick, N: more feels like a knock."""
 SLOTS = 3
-DROPPED, SHORT = 0, 1
-"""In `told`: frames that were never gone to; and from SHORT on, for each slot, whether it ends short of its frame."""
+"""The number of slots: played, published and free."""
+DROPPED = 0
+"""The index in `host_state` of the number of frames never reached."""
+SHORT = 1
+"""The first index in `host_state` of a flag for each slot: 1 if it ends short of its frame."""
 
 
 class Slots(NamedTuple):
-    """All that a film remembers: whoever has these arrays, in whichever process, goes on with it."""
+    """The whole state of a film: any process with these arrays can continue it."""
 
     pairs: Float32[np.ndarray, "3 h4 w4 2"]
-    """Coefficients of what each slot begins with and of what it ends with."""
+    """The coefficients of the first and the last surface of each slot."""
     tiles_m: Float32[np.ndarray, "3 r c 2"]
-    """Bounds of both, tile by tile: what a tick reads."""
+    """The bounds of both surfaces, tile by tile, which a tick reads."""
     ends_m: Float32[np.ndarray, "3 r c 2"]
-    """Bounds of what it ends with."""
+    """The bounds of the last surface."""
     frames: Float64[np.ndarray, "3"]
-    """The frame that each goes to."""
+    """The frame to which each slot moves."""
     shared: Int64[np.ndarray, "2"]
-    """Which slot is played and which is published, see `playing`."""
-    told: Int64[np.ndarray, "4"]
-    """What only the one who shows writes and reads."""
+    """The slots that are played and published, see `playing`."""
+    host_state: Int64[np.ndarray, "4"]
+    """The state of the showing process alone, see DROPPED and SHORT."""
 
     @classmethod
     def still(cls, coefficients: Float32[np.ndarray, "h4 w4"], count: int) -> "Slots":
-        """A film that stands still, of frame 0. count: ticks that a slot takes."""
+        """Return the slots of a film at rest, at frame 0. count: ticks of a slot."""
         bounds = tile_bounds(coefficients)
         pairs = np.repeat(coefficients[None, :, :, None], SLOTS, axis=0).repeat(2, axis=3)
         tiles_m = np.repeat(bounds[None], SLOTS, axis=0)
         shared = np.array([0, count], np.int64)
         return cls(pairs, tiles_m, tiles_m.copy(), np.zeros(SLOTS), shared, np.zeros(SHORT + SLOTS, np.int64))
 
-    def show(self, wanted: Float32[np.ndarray, "h4 w4"], frame: int, most_m: float, ends: np.ndarray) -> None:
-        """Go to this surface next, from where the slot that is played ends, by at most so much anywhere.
+    def show(self, target: Float32[np.ndarray, "h4 w4"], frame: int, most_m: float, ends: np.ndarray) -> None:
+        """Publish a slot from the end of the played one to this surface, by at most most_m anywhere.
 
         ends: scratch of the same shape.
         """
@@ -47,31 +54,31 @@ class Slots(NamedTuple):
         while True:
             played, published = slots_of(self.shared)
             free = next(slot for slot in range(SLOTS) if slot not in (played, published))
-            np.copyto(ends, wanted)
+            np.copyto(ends, target)
             self._fill(free, played, ends, most_m)
             self.frames[free] = frame
             if publish(self.shared, played, published, free):
-                self.told[DROPPED] += played != published and self.frames[published] != frame
+                self.host_state[DROPPED] += played != published and self.frames[published] != frame
                 return
 
     def _fill(self, free: int, played: int, ends: np.ndarray, most_m: float) -> None:
-        """A slot that begins where another ends. `ends` are the wanted coefficients, and become what it ends with."""
-        from .filter_kernels import go_on
+        """Fill a slot that begins at the end of another. `ends`: the target coefficients, then those at its end."""
+        from .filter_kernels import fill_slot
 
-        self.told[SHORT + free] = go_on(ends, self.pairs[played], self.pairs[free], most_m)
+        self.host_state[SHORT + free] = fill_slot(ends, self.pairs[played], self.pairs[free], most_m)
         self.ends_m[free] = bounds = tile_bounds(ends)
-        begins, both = self.ends_m[played], self.tiles_m[free]
-        np.maximum(bounds[..., 0], begins[..., 0], out=both[..., 0])
-        np.minimum(bounds[..., 1], begins[..., 1], out=both[..., 1])
+        begins, bounds_of_both = self.ends_m[played], self.tiles_m[free]
+        np.maximum(bounds[..., 0], begins[..., 0], out=bounds_of_both[..., 0])
+        np.minimum(bounds[..., 1], begins[..., 1], out=bounds_of_both[..., 1])
 
     @property
     def arrived(self) -> bool:
-        """Whether what was published last ends where it was wanted."""
-        return not self.told[SHORT + slots_of(self.shared)[1]]
+        """True if the slot published last ends at its target."""
+        return not self.host_state[SHORT + slots_of(self.shared)[1]]
 
 
 def slots_of(shared: Int64[np.ndarray, "2"]) -> tuple[int, int]:
-    """The slot that is played, and the one that is published."""
+    """Return the slot that is played, and the slot that is published."""
     from .playing import slots
 
     return cast("tuple[int, int]", slots(shared))

@@ -1,10 +1,10 @@
-"""A force that does not jump because the surface moved; compiled.
+"""A limit on the change of force due to a moving surface; compiled.
 
-A surface that moves a little may take away the hold of the proxy: a ridge sinks that held it, and it slides off, or the
-ground under the hand falls away while the proxy still hangs on a wall. What the spring then loses at once is let go
-step by step: the point that pulls at the hand goes from where it was to where the proxy is, straight and no faster than
-a hand at rest may feel, or as the hand itself moves. It is never farther from the hand than at one of the ends of its
-way, so that it has no energy but what the hand and the surface give.
+A small motion of the surface may free the proxy: the ridge that held it sinks, and it slides off, or the ground under
+the hand falls away while the proxy still hangs on a wall. The spring's loss is then spread over several ticks: the
+point that pulls at the hand moves straight from its last place to the proxy, no faster than the limit for a hand at
+rest, or as the hand itself moves. It is never further from the hand than at one of the ends of its way, so that its
+energy comes from the hand and the surface alone.
 Imports numba: a method imports this module inside its verb.
 """
 
@@ -19,22 +19,22 @@ from numba import float64
 from tangible_core.compiled.compiling import inner
 from tangible_core.compiled.touch import RISE_M
 
-from ..contact.contact import LEAP_M
-from .limits import STEP_N
+from ..contact.approach import LEAP_M
+from .slots import STEP_N
 
 STEADY = float64[::1]
 STIFFNESS, DAMPING, FORCE, HAND, SPEED, LATE, REMEMBERED = 0, 1, 2, 5, 8, 11, 12
-"""What is remembered: stiffness and damping of the law; then the force, position and velocity of the last tick, and
-whether that force was short of the law's."""
+"""The places in the memory: stiffness and damping of the force law; then force, position and velocity of the last tick,
+a flag for a force short of the force law's, and the length of the memory."""
 REACH = 8.0
-"""How many times as far as the hand the point goes besides: it slides off a ridge as it does where nothing moves."""
+"""The additional way of the point as a multiple of the hand's: it then slides off a ridge as on a still surface."""
 
 
 @inner(forceinline=True)
 def steady(memory, moving, x, y, z, vx, vy, vz, fx, fy, fz):
-    """The law's force, or what may be felt of its change in this tick: a slide that was begun may outlast a frame.
+    """Return the force law's force, its change limited for this tick; a slide may last longer than a frame.
 
-    Of a force that is short of the law's, `moving` tells of a rise that does what the surface did on what is felt.
+    For a limited force, `moving` gets the rise that does the same work on it as the surface did.
     """
     stiffness = memory[STIFFNESS]
     dx, dy, dz = x - memory[HAND], y - memory[HAND + 1], z - memory[HAND + 2]
@@ -43,7 +43,7 @@ def steady(memory, moving, x, y, z, vx, vy, vz, fx, fy, fz):
     held_x, held_y = memory[FORCE] - stiffness * dx, memory[FORCE + 1] - stiffness * dy
     held_z = memory[FORCE + 2] - stiffness * dz
     late, was_late = 0.0, memory[LATE] > 0.0
-    if moved_m <= LEAP_M:  # not for NaN, nor for a hand that was put down
+    if moved_m <= LEAP_M:  # False for NaN and for a hand that was put down elsewhere
         step_n = STEP_N + REACH * stiffness * moved_m + memory[DAMPING] * math.sqrt(ux * ux + uy * uy + uz * uz)
         ax, ay, az = fx - held_x, fy - held_y, fz - held_z
         away_n = math.sqrt(ax * ax + ay * ay + az * az)
@@ -63,8 +63,8 @@ def steady(memory, moving, x, y, z, vx, vy, vz, fx, fy, fz):
     return fx, fy, fz
 
 
-def beginning(stiffness_n_per_m: float, damping_n_s_per_m: float) -> Float64[np.ndarray, "n"]:
-    """The memory of a hand that was not there yet."""
+def initial_memory(stiffness_n_per_m: float, damping_n_s_per_m: float) -> Float64[np.ndarray, "n"]:
+    """Return the memory before the first tick."""
     memory = np.zeros(REMEMBERED)
     memory[STIFFNESS], memory[DAMPING], memory[HAND] = stiffness_n_per_m, damping_n_s_per_m, np.nan
     return memory

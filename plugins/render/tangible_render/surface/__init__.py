@@ -1,1 +1,1 @@
-"""Heights under a point: cells, a C2 spline, tiles; heights that came in steps."""
+"""Heights under a point: cells, a C2 spline, tiles; dequantisation of heights."""

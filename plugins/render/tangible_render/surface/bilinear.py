@@ -1,7 +1,7 @@
-"""Where a point lies on a grid of cells, and the height there; compiled.
+"""The cell under a point, and the bilinear height there; compiled.
 
-Cells are areas: a grid of h x w cells covers the extent, row 0 is far (the greatest y), and a cell's value stands at
-its centre. Imports numba: a method imports this module inside its verb.
+Cells are areas: a grid of h x w cells covers the extent, row 0 is far (the greatest y), and a cell's value is at its
+centre. Imports numba: a method imports this module inside its verb.
 """
 
 # ruff: noqa: ANN001, ANN201, ANN202 -- the types are in the signatures that numba compiles
@@ -20,13 +20,13 @@ NEWTONS = types.UniTuple(float64, 3)
 
 @njit(**KERNEL)
 def over(width_m, length_m, x, y):
-    """Whether a point is over the extent, its edge included; never for NaN."""
+    """Return True if a point is over the extent, its edge included; False for NaN."""
     return abs(x) <= 0.5 * width_m and abs(y) <= 0.5 * length_m
 
 
 @njit(**KERNEL)
 def cell(rows, columns, width_m, length_m, x, y):
-    """(row, column) of the cell that a point over the extent lies in."""
+    """Return (row, column) of the cell under a point over the extent."""
     row = int(0.5 * rows - y * (rows / length_m))
     column = int(0.5 * columns + x * (columns / width_m))
     return min(row, rows - 1), min(column, columns - 1)
@@ -34,9 +34,9 @@ def cell(rows, columns, width_m, length_m, x, y):
 
 @njit(**KERNEL)
 def bilinear(height_m, width_m, length_m, x, y):
-    """Height and its exact gradient (h, dh/dx, dh/dy) of the bilinear interpolant between the cells' centres.
+    """Return height and exact gradient (h, dh/dx, dh/dy) of the bilinear interpolant between the cells' centres.
 
-    From the outermost centres to the edge the heights go on unchanged, so that the slope across the edge is 0 there.
+    From the outermost centres to the edge the heights continue unchanged, so that the slope across the edge is 0 there.
     Float32 heights, arithmetic in float64.
     """
     rows, columns = height_m.shape
@@ -55,7 +55,7 @@ def bilinear(height_m, width_m, length_m, x, y):
 
 @inner()
 def _between(place, count):
-    """The two centres a place lies between, and how far it is from the first to the second."""
+    """Return the two centres around a place, and its position between them, 0..1."""
     last = count - 1
     if place <= 0.0:
         return 0, 0, 0.0

@@ -1,4 +1,4 @@
-"""Heights as the coefficients of a C2 surface: a cubic B-spline through the cells' centres, but beside jumps."""
+"""Coefficients of a C2 surface: a cubic B-spline through the heights at the cells' centres, except near jumps."""
 
 import numpy as np
 from jaxtyping import Bool, Float32, Float64
@@ -9,37 +9,37 @@ from .dequantise import Filter, dequantise
 from .jumps import ease, jumps
 
 BORDER = 2
-"""Rows and columns of coefficients beyond the heights on each side, which the outermost half cell needs."""
+"""The rows and columns of coefficients beyond the heights on each side, for the outermost half cell."""
 _RUN_IN = 32
-"""Cells continued for the recursive filter: what it does at the very end has faded by (2 - sqrt 3)^32, 1e-18."""
+"""The cells added for the recursive filter: the effect of its start has faded by (2 - sqrt 3)^32, 1e-18."""
 
 
 def spline_coefficients(height_m: Float32[np.ndarray, "h w"]) -> Float32[np.ndarray, "h4 w4"]:
-    """Coefficients (h + 4, w + 4) of the cubic B-spline that has these heights at the cells' centres.
+    """Compute coefficients (h + 4, w + 4) of the cubic B-spline with these heights at the cells' centres.
 
-    Beyond the outermost centres the heights go on as their odd reflection, 2 h(0) - h(-x): a plane stays that plane
+    Beyond the outermost centres the heights continue as their odd reflection, 2 h(0) - h(-x): a plane stays that plane
     up to the border of the extent, and the curvature across the outermost centres is 0 (a natural spline).
 
-    At jumps, where it would swing over by a tenth of a step and more, the spline leaves the heights: it goes from one
-    side to the other without a groove at the foot or a lip at the top, and on level beyond the border.
+    At jumps, where it would overshoot by a tenth of a step or more, the spline leaves the heights: it joins the two
+    sides without a groove at the foot or a lip at the top, and continues level beyond the border.
     Source: Unser, Aldroubi & Eden, B-spline signal processing, IEEE Trans. Signal Processing 41 (1993).
     """
     from scipy.ndimage import spline_filter1d
 
     at = jumps(height_m)
-    values = _continued(height_m, at)
+    values = _extend(height_m, at)
     near = np.pad(np.pad(at, BORDER, mode="edge"), _RUN_IN - BORDER)
-    kept = slice(_RUN_IN - BORDER, BORDER - _RUN_IN)
+    inside = slice(_RUN_IN - BORDER, BORDER - _RUN_IN)
     ease(values, near)
     values = spline_filter1d(values, order=3, axis=0, mode="mirror")
     ease(values.T, near.T)
     values = spline_filter1d(values, order=3, axis=1, mode="mirror")
     with np.errstate(over="ignore"):
-        return np.ascontiguousarray(values[kept, kept], np.float32)
+        return np.ascontiguousarray(values[inside, inside], np.float32)
 
 
-def _continued(height_m: Float32[np.ndarray, "h w"], at: Bool[np.ndarray, "h w"]) -> Float64[np.ndarray, "h64 w64"]:
-    """The heights, and beyond each border their odd reflection, or level ground where they jump at the border."""
+def _extend(height_m: Float32[np.ndarray, "h w"], at: Bool[np.ndarray, "h w"]) -> Float64[np.ndarray, "h64 w64"]:
+    """Extend heights beyond each border by their odd reflection, or level where they jump at the border."""
     heights = height_m.astype(np.float64)
     values = np.pad(heights, _RUN_IN, mode="reflect", reflect_type="odd")
     if at.any():
@@ -50,9 +50,9 @@ def _continued(height_m: Float32[np.ndarray, "h w"], at: Bool[np.ndarray, "h w"]
 def spline_surface(
     surface: HapticSurface, cells: Filter
 ) -> tuple[Float32[np.ndarray, "h4 w4"], float, float, float, float]:
-    """What kernels read: the coefficients, the width and length in metres, and the cells to the metre along x and y.
+    """Return a kernel's arguments: the coefficients, width and length in m, and cells per metre along x and y.
 
-    Heights in steps are smoothed first, see `dequantise`.
+    Quantised heights are smoothed first, see `dequantise`.
     """
     (rows, columns), (width_m, length_m) = surface.height_m.shape, surface.extent_m
     coefficients = spline_coefficients(dequantise(surface.height_m, cells))

@@ -1,4 +1,4 @@
-"""Where heights jump, and heights beside a jump that a cubic spline passes without swinging over it."""
+"""Detection of jumps in heights, and their easing, so that a cubic spline does not overshoot."""
 
 from collections.abc import Iterator
 
@@ -6,37 +6,38 @@ import numpy as np
 from jaxtyping import Bool, Float32, Float64
 
 JUMP = 1.5
-"""Heights jump where the fourth difference is more than this many times the second ones up to two cells away: 3 at a
-step, 2 at a kink, 0.6 on a wave of 8 cells."""
+"""The least ratio, at a jump, of the fourth difference to the second ones up to two cells away: it is 3 at a step, 2 at
+a kink, 0.6 on a wave of 8 cells."""
 BORDER_JUMP, BORDER_CELLS = 0.9, 12
-"""The same at the border, where less is known: a step between the last two cells comes to 1 there."""
+"""The same ratio at the border, where a step between the last two cells has the ratio 1, and the number of cells whose
+second differences it is compared with."""
 ROUNDING = 2.0**-17
-"""Fourth differences below this part of the greatest height are float32's rounding."""
+"""The largest fourth difference due to rounding in float32, as a share of the greatest height."""
 REACH = 2
-"""Cells to each side of one that takes part in a jump which take part too: edges at an angle jump a bit in each row."""
+"""The neighbours of a jump that belong to it, in cells to each side: oblique edges jump a little in each row."""
 
 
 def jumps(height_m: Float32[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
-    """The cells at steps, kinks, spikes and noise, where a cubic spline through all heights would ring.
+    """Return a mask of the cells at steps, kinks, spikes and noise, where a cubic spline would ring.
 
-    Waves of 8 cells and longer have none. Heights alone tell, not what they go on as beyond the border.
+    Waves of 8 cells and longer have none. Only the heights count, not their extension beyond the border.
     """
     from scipy.ndimage import maximum_filter
 
-    found = np.zeros(height_m.shape, bool)
+    mask = np.zeros(height_m.shape, bool)
     with np.errstate(over="ignore", invalid="ignore"):
         rounding = ROUNDING * np.abs(height_m).max()
-        for heights, at in ((height_m, found), (height_m.T, found.T)):
+        for heights, at in ((height_m, mask), (height_m.T, mask.T)):
             for lines in _blocks(heights) if len(heights) > 2 * REACH else ():
-                at[2:-2, lines] |= _stand_out(np.diff(heights[:, lines], 2, axis=0), rounding)
-    return maximum_filter(found, 2 * REACH + 1) if found.any() else found
+                at[2:-2, lines] |= _exceed_nearby(np.diff(heights[:, lines], 2, axis=0), rounding)
+    return maximum_filter(mask, 2 * REACH + 1) if mask.any() else mask
 
 
 def ease(values: Float64[np.ndarray, "h w"], at: Bool[np.ndarray, "h w"]) -> None:
-    """Move the values at jumps, in place, so that a cubic spline through each column does not swing over.
+    """Move the values at jumps, in place, so that a cubic spline through each column does not overshoot.
 
-    A spline lies within the range of its coefficients, so these are to be the values themselves; to a lone peak, what
-    keeps its height is added, half of how far it stands out. The values are moved to where such a spline passes.
+    A spline lies within the range of its coefficients, so the values become coefficients; half its height is added to a
+    single peak, which keeps it. The values are moved to those of that spline.
     """
     for columns in _blocks(values):
         if not (here := at[:, columns]).any():
@@ -48,13 +49,13 @@ def ease(values: Float64[np.ndarray, "h w"], at: Bool[np.ndarray, "h w"]) -> Non
 
 
 def _blocks(lines: np.ndarray) -> Iterator[slice]:
-    """So many columns at a time that what is made of them stays near the processor."""
+    """Return slices of columns whose intermediate arrays fit the cache."""
     count = max(2**16 // len(lines), 16)
     return (slice(first, first + count) for first in range(0, lines.shape[1], count))
 
 
-def _stand_out(second: Float32[np.ndarray, "n w"], rounding: np.floating) -> Bool[np.ndarray, "m w"]:
-    """Whether fourth differences are large beside the second ones up to two cells away, column by column."""
+def _exceed_nearby(second: Float32[np.ndarray, "n w"], rounding: np.floating) -> Bool[np.ndarray, "m w"]:
+    """Return True where fourth differences are large against the second ones up to two cells away, column by column."""
     fourth, size = np.abs(np.diff(second, 2, axis=0)), np.abs(second)
     nearby = np.maximum(np.maximum(size[:-2], size[1:-1]), size[2:])
     np.maximum(nearby[1:], size[:-3], out=nearby[1:])
@@ -66,6 +67,6 @@ def _stand_out(second: Float32[np.ndarray, "n w"], rounding: np.floating) -> Boo
 
 
 def _peaks(steps: Float64[np.ndarray, "n w"]) -> Float64[np.ndarray, "m w"]:
-    """Half of how far a lone peak is above its neighbours, or a lone pit below (then negative); otherwise 0."""
+    """Return half the height of a single peak above its neighbours, or of a pit below (negative); otherwise 0."""
     up, down = steps[:-1], -steps[1:]
     return np.where(up * down > 0, np.sign(up) * np.minimum(np.abs(up), np.abs(down)) / 2, 0.0)

@@ -1,4 +1,4 @@
-"""Memory that will be read soon, asked for now; compiled.
+"""Prefetching of memory that will be read soon; compiled.
 
 Imports numba: a method imports this module inside its verb.
 """
@@ -12,12 +12,12 @@ from numba.extending import intrinsic
 
 BYTE, FLAG = ir.IntType(8).as_pointer(), ir.IntType(32)
 READ, KEEP, DATA = 0, 3, 1
-"""What LLVM asks of a prefetch: for reading, into all levels of the cache, no instructions."""
+"""The flags of LLVM's prefetch: for reading, into all levels of the cache, data rather than instructions."""
 
 
 @intrinsic
 def prefetch_line(context, array, offset):
-    """Have the line of the cache so many bytes into an array brought near; nothing waits for it, nor can it fail."""
+    """Prefetch the cache line at a byte offset into an array; it neither waits nor fails."""
 
     def generate(context, builder, signature, arguments):
         data = context.make_array(signature.args[0])(context, builder, arguments[0]).data

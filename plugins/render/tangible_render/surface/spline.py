@@ -1,9 +1,8 @@
-"""The height of a C2 surface, its slope and its curvature at a point: a cubic B-spline, compiled.
+"""Height, slope and curvature of a C2 surface at a point: a cubic B-spline, compiled.
 
-The coefficients are those of `coefficients.py`: two rows and columns more on each side than there are cells. In their
-place there may be those of a surface that moves, (pairs, first, last): pairs (h, w, 2) are two surfaces, and what is
-read is first times the one and last times the other. numba compiles either apart. Imports numba: a method imports this
-module inside its verb.
+The coefficients are those of `coefficients.py`: two rows and columns more on each side than there are cells. They may
+also be those of a moving surface, (pairs, first, last): pairs (h, w, 2) are two surfaces, weighted by first and last.
+numba compiles each form separately. Imports numba: a method imports this module inside its verb.
 
 Source: Unser, Aldroubi & Eden, B-spline signal processing, IEEE Trans. Signal Processing 41 (1993).
 """
@@ -19,14 +18,14 @@ from .prefetch import prefetch_line
 
 @njit(**KERNEL)
 def height(coefficients, across_per_m, down_per_m, x, y):
-    """Height at a point over the extent. across_per_m, down_per_m: cells to the metre along x and against y."""
+    """Return the height at a point over the extent. across_per_m, down_per_m: cells per metre along x and against y."""
     row, column, down, across = _place(coefficients, across_per_m, down_per_m, x, y)
     return _dot(_rows(coefficients, row, column, _values(down)), _values(across))
 
 
 @njit(**KERNEL)
 def slope(coefficients, across_per_m, down_per_m, x, y):
-    """Height and gradient (h, dh/dx, dh/dy) at a point over the extent."""
+    """Return height and gradient (h, dh/dx, dh/dy) at a point over the extent."""
     row, column, down, across = _place(coefficients, across_per_m, down_per_m, x, y)
     line, value = _rows(coefficients, row, column, _values(down)), _values(across)
     rise = _dot(_rows(coefficients, row, column, _slopes(down)), value)
@@ -35,7 +34,7 @@ def slope(coefficients, across_per_m, down_per_m, x, y):
 
 @njit(**KERNEL)
 def bend(coefficients, across_per_m, down_per_m, x, y):
-    """Height, gradient and Hessian (h, h_x, h_y, h_xx, h_xy, h_yy) at a point over the extent."""
+    """Return height, gradient and Hessian (h, h_x, h_y, h_xx, h_xy, h_yy) at a point over the extent."""
     row, column, down, across = _place(coefficients, across_per_m, down_per_m, x, y)
     line = _rows(coefficients, row, column, _values(down))
     rise = _rows(coefficients, row, column, _slopes(down))
@@ -53,7 +52,7 @@ def bend(coefficients, across_per_m, down_per_m, x, y):
 
 @inner()
 def prefetch(coefficients, across_per_m, down_per_m, x, y):
-    """Have the coefficients that a point depends on brought near, without waiting for them."""
+    """Prefetch the coefficients of a point, without waiting for them."""
     row, column, _, _ = _place(coefficients, across_per_m, down_per_m, x, y)
     for line in range(row, row + 4):
         _fetch(coefficients, line, column)
@@ -62,7 +61,7 @@ def prefetch(coefficients, across_per_m, down_per_m, x, y):
 
 @inner()
 def _place(coefficients, across_per_m, down_per_m, x, y):
-    """First row and column of the 4 x 4 coefficients that a point depends on, and how far it is beyond the second."""
+    """Return the first row and column of a point's 4 x 4 coefficients, and its offset beyond the second ones."""
     rows, columns = _shape(coefficients)
     down, across = 0.5 * (rows - 1) - y * down_per_m, 0.5 * (columns - 1) + x * across_per_m
     row, column = min(max(int(down), 1), rows - 3), min(max(int(across), 1), columns - 3)
@@ -71,7 +70,7 @@ def _place(coefficients, across_per_m, down_per_m, x, y):
 
 @inner()
 def _values(t):
-    """The four B-splines over an interval, at t in 0..1 of it."""
+    """Return the four B-splines over an interval, at t in 0..1 of it."""
     u = 1.0 - t
     first, last = u * u * u / 6.0, t * t * t / 6.0
     second = 2.0 / 3.0 - t * t * (1.0 - 0.5 * t)
@@ -91,7 +90,7 @@ def _bends(t):
 
 @inner()
 def _rows(coefficients, row, column, weights):
-    """The four rows in one, weighted."""
+    """Return the weighted sums of four rows, one for each of four columns."""
     return (
         _column(coefficients, row, column, weights),
         _column(coefficients, row, column + 1, weights),
@@ -132,7 +131,7 @@ def _column_of_one(coefficients, row, column, weights):
 
 
 def _column_of_two(coefficients, row, column, weights):
-    """Exactly the one surface or the other where it has all the weight."""
+    """Return the weighted sum of both surfaces: exactly one of them where it has all the weight."""
     pairs, first, last = coefficients
     of_first = (
         weights[0] * pairs[row, column, 0]
@@ -151,19 +150,19 @@ def _column_of_two(coefficients, row, column, weights):
 
 @inner_by_type(lambda coefficients: _shape_of_two if _moves(coefficients) else _shape_of_one)
 def _shape(coefficients):
-    """Rows and columns of the coefficients."""
+    """Return rows and columns of the coefficients."""
 
 
 @inner_by_type(lambda coefficients, row, column: _fetch_of_two if _moves(coefficients) else _fetch_of_one)
 def _fetch(coefficients, row, column):
-    """Have the line of the cache that a coefficient is in brought near."""
+    """Prefetch the cache line of a coefficient."""
 
 
 @inner_by_type(lambda coefficients, row, column, weights: _column_of_two if _moves(coefficients) else _column_of_one)
 def _column(coefficients, row, column, weights):
-    """Four rows of a column in one, weighted."""
+    """Return the weighted sum of four rows of a column."""
 
 
 def _moves(kind):
-    """Whether numba's type of the coefficients is that of a surface that moves."""
+    """Return True if numba's type of the coefficients is that of a moving surface."""
     return isinstance(kind, types.BaseTuple)

@@ -1,4 +1,4 @@
-"""Between which heights a spline surface lies, tile by tile: what lets a tick be decided without reading the spline."""
+"""Bounds of a spline surface, tile by tile: many ticks are decided without reading the spline."""
 
 from collections.abc import Callable
 from itertools import pairwise
@@ -8,14 +8,17 @@ from jaxtyping import Float32
 
 from .coefficients import BORDER
 
-TILE_CELLS, MOST_TILES = 16, 256
+TILE_CELLS = 16
+"""The side of a tile, cells."""
+MOST_TILES = 256
+"""The largest number of tiles along a side; larger grids have larger tiles."""
 
 
 def tile_bounds(coefficients: Float32[np.ndarray, "h4 w4"]) -> Float32[np.ndarray, "r c 2"]:
-    """An upper and a lower bound of the surface over each of r x c equal tiles: of 16 cells, or 256 tiles a side.
+    """Compute an upper and a lower bound of the surface over each of r x c equal tiles: of 16 cells, or 256 a side.
 
-    A B-spline lies nowhere over the greatest of the 4 x 4 coefficients that it is made of, nor under the least: its
-    weights are positive and sum to 1. Where the two bounds of a tile are equal, the surface is level there.
+    A B-spline is nowhere above the greatest of its 4 x 4 coefficients, nor below the least: its weights are positive
+    and sum to 1. Where the two bounds of a tile are equal, the surface is level there.
     """
     highest, lowest = coefficients, coefficients
     for axis in (0, 1):
@@ -24,7 +27,7 @@ def tile_bounds(coefficients: Float32[np.ndarray, "h4 w4"]) -> Float32[np.ndarra
 
 
 def _reduce(extreme: Callable[..., np.ndarray], values: np.ndarray, axis: int) -> np.ndarray:
-    """One value a tile along this axis, over all coefficients that a point in it or at its edge depends on."""
+    """Return one value for each tile along this axis, over all coefficients of the points in it and at its edge."""
     lines = np.moveaxis(values, axis, 0)
     cells = len(lines) - 2 * BORDER
     count = min(-(-cells // TILE_CELLS), MOST_TILES)

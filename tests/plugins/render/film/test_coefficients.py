@@ -24,7 +24,7 @@ HEIGHTS = {
 }
 
 
-def made(heights: np.ndarray) -> tuple[np.ndarray, Scratch]:
+def coefficients_of(heights: np.ndarray) -> tuple[np.ndarray, Scratch]:
     height_m = np.asarray(heights, np.float32)
     scratch = Scratch.of(*height_m.shape)
     for each in scratch:
@@ -33,23 +33,23 @@ def made(heights: np.ndarray) -> tuple[np.ndarray, Scratch]:
 
 
 @pytest.mark.parametrize("name", HEIGHTS)
-def test_a_frame_is_the_surface_that_a_still_one_is(name: str):
-    """At jumps too: no groove, no lip. Within 0.2 micrometres of 20 mm."""
+def test_coefficients_of_a_frame_match_a_still_surface(name: str):
+    """The error is within 0.2 micrometres of 20 mm, at jumps too: no groove, no lip."""
     heights = np.asarray(HEIGHTS[name], np.float32)
-    found, scratch = made(heights)
+    found, scratch = coefficients_of(heights)
     assert np.abs(found - spline_coefficients(heights)).max() <= 1e-5 * heights.max()
     if min(heights.shape) > MARGIN:
         assert np.array_equal(scratch.near[RING:-RING, RING:-RING].astype(bool), jumps(heights))
 
 
-def test_level_ground_is_level_to_the_last_bit():
-    found, _ = made(np.full((40, 50), 0.00731))
+def test_level_ground_has_level_coefficients_to_the_last_bit():
+    found, _ = coefficients_of(np.full((40, 50), 0.00731))
     assert np.unique(found).size == 1
     assert found[0, 0] == pytest.approx(0.00731, rel=1e-6)
 
 
 @pytest.mark.parametrize("shape", [(1, 1), (40, 50)])
-def test_heights_beyond_reason_are_cut_and_stay_finite(shape: tuple[int, int]):
-    found, _ = made(np.full(shape, 3e38))
+def test_heights_beyond_the_bound_are_cut_and_finite(shape: tuple[int, int]):
+    found, _ = coefficients_of(np.full(shape, 3e38))
     assert np.isfinite(found).all()
     assert found.max() == pytest.approx(HIGHEST_M, rel=1e-6)

@@ -1,4 +1,4 @@
-"""The C2 surface beside steps, lines and borders: no groove, no lip; and waves as they were, bit by bit."""
+"""The C2 surface near steps, lines and borders: no groove, no lip; waves stay the same to the bit."""
 
 import numpy as np
 import pytest
@@ -16,7 +16,7 @@ DEGREES = (0, 90, 180, 10, 45, 77)
 
 
 def step(shape: tuple[int, int], degrees: float, high_m: float = 0.01, blur_cells: float = 0.0) -> HapticSurface:
-    """Ground that steps down past the centre, towards this direction; blurred as a camera blurs an edge."""
+    """Return ground that steps down past the centre in this direction, blurred as by a camera."""
     row, column = np.indices(shape) + 0.5
     x, y = column - shape[1] / 2, shape[0] / 2 - row
     over = 0.1 - np.cos(np.radians(degrees)) * x - np.sin(np.radians(degrees)) * y
@@ -32,8 +32,8 @@ def read(surface: HapticSurface, places: np.ndarray) -> np.ndarray:
 
 @pytest.mark.parametrize("shape", SIZES)
 class TestSteps:
-    def test_no_groove_at_the_foot_and_no_lip_at_the_top(self, shape: tuple[int, int]):
-        """Up to the borders, of edges as sharp as can be and blurred ones, which were off by a fifth of the step."""
+    def test_step_has_no_groove_at_the_foot_and_no_lip_at_the_top(self, shape: tuple[int, int]):
+        """Sharp and blurred edges, up to the borders, were off by a fifth of the step without easing."""
         random = np.random.default_rng(5)
         for degrees in DEGREES if shape[0] > 50 else (0, 180):
             for high_m, blur_cells in ((0.02, 0.0), (0.0005, 0.0), (0.01, 1.0), (0.01, 2.0)):
@@ -44,8 +44,8 @@ class TestSteps:
                 assert found.min() >= -0.01 and found.max() <= 1.01
                 assert found.min() < 0.001 and found.max() > 0.999
 
-    def test_the_foot_of_a_cliff_does_not_hold_the_hand(self, shape: tuple[int, int]):
-        """Down along the wall, then away over the level ground: the exact force two cells from the wall and farther."""
+    def test_foot_of_a_cliff_does_not_hold_the_hand(self, shape: tuple[int, int]):
+        """A path goes down the wall, then away over level ground: the force is exact from two cells on."""
         for angle in DEGREES if shape[0] > 50 else (0, 180):
             away = np.array([np.cos(np.radians(angle)), np.sin(np.radians(angle))])
             pitch_m = WIDTH_M / shape[1]
@@ -58,7 +58,7 @@ class TestSteps:
             assert np.abs(force[free] - [0, 0, K * DEPTH_M]).max() <= 1e-4
             assert np.abs(force).max() <= 8.01 + K * DEPTH_M
 
-    def test_the_top_of_a_cliff_is_level_up_to_its_edge(self, shape: tuple[int, int]):
+    def test_top_of_a_cliff_is_level_up_to_its_edge(self, shape: tuple[int, int]):
         pitch_m = WIDTH_M / shape[1]
         x = np.linspace(-0.012, -2.5 * pitch_m, 1500)
         path = np.column_stack([x, 0 * x, np.full(1500, 0.01 - DEPTH_M)])
@@ -75,7 +75,7 @@ def waves(seed: int, shortest_cells: float) -> np.ndarray:
     return np.asarray(sum_of - np.min(sum_of), np.float32)
 
 
-def test_waves_are_interpolated_bit_by_bit_as_without_jumps():
+def test_waves_are_interpolated_to_the_bit():
     for seed in range(40):
         heights = waves(seed, (8, 12, 40, 3000)[seed % 4])
         continued = np.pad(heights.astype(np.float64), 32, mode="reflect", reflect_type="odd")
@@ -84,7 +84,7 @@ def test_waves_are_interpolated_bit_by_bit_as_without_jumps():
         assert (spline_coefficients(heights) == exact).all()
 
 
-def test_beyond_the_reach_of_a_jump_waves_are_as_without_it():
+def test_waves_away_from_a_jump_are_as_without_it():
     heights = waves(3, 12)
     stepped = heights.copy()
     stepped[:, 60:] += 2 * heights.max()
@@ -93,7 +93,7 @@ def test_beyond_the_reach_of_a_jump_waves_are_as_without_it():
 
 
 @pytest.mark.parametrize("turned", [False, True])
-def test_a_line_of_one_cell_keeps_its_height(turned: bool):
+def test_line_of_one_cell_keeps_its_height(turned: bool):
     heights = np.zeros((40, 40), np.float32)
     heights[:, 20] = 0.002
     surface = HapticSurface.from_heights(heights.T if turned else heights, WIDTH_M)
@@ -104,8 +104,8 @@ def test_a_line_of_one_cell_keeps_its_height(turned: bool):
 
 
 @pytest.mark.parametrize("where", range(1, 5))
-def test_ground_goes_on_level_beyond_a_border_that_it_jumps_at(where: int):
-    """It went on up, by half of the step at the very border."""
+def test_ground_beyond_a_jump_at_the_border_is_level(where: int):
+    """Without easing the ground rose further, by half of the step at the border."""
     heights = np.zeros((30, 40), np.float32)
     heights[:, -where:] = 0.01
     x = np.linspace(0.3, 0.5, 400) * WIDTH_M
@@ -113,7 +113,7 @@ def test_ground_goes_on_level_beyond_a_border_that_it_jumps_at(where: int):
     assert found.max() <= 0.0101 and found.min() >= -0.0001
 
 
-def test_a_picture_turned_by_a_quarter_has_the_same_surface():
+def test_picture_turned_by_a_quarter_has_the_same_surface():
     heights = step((64, 64), 33, blur_cells=1.0).height_m
     turned = np.ascontiguousarray(heights.T)
     assert np.abs(spline_coefficients(turned).T - spline_coefficients(heights))[4:-4, 4:-4].max() <= 1e-4 * 0.01

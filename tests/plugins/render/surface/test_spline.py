@@ -1,4 +1,4 @@
-"""The C2 surface: against a natural cubic spline of another make, on planes, and on the smallest grids."""
+"""The C2 surface against SciPy's natural cubic spline, on planes, and on the smallest grids."""
 
 import numpy as np
 import pytest
@@ -17,7 +17,7 @@ EXTENT = (0.07, 0.03)  # cells that are not square
 
 
 def read(heights: np.ndarray, x: float, y: float, extent=EXTENT) -> tuple[float, ...]:
-    """Height, gradient and Hessian, by the function that gives all of them."""
+    """Return height, gradient and Hessian from one call."""
     coefficients, _, _, across, down = spline_surface(HapticSurface(Relief(heights, extent)), "never")
     return spline.bend(coefficients, across, down, x, y)
 
@@ -35,13 +35,13 @@ def peer(heights: np.ndarray, x: float, y: float) -> tuple[float, ...]:
 
 
 @given(st.floats(-1, 1), st.floats(-1, 1))
-def test_it_is_the_natural_cubic_spline(u: float, v: float):
+def test_surface_is_the_natural_cubic_spline(u: float, v: float):
     x, y = u * (0.07 - 0.005) / 2, v * (0.03 - 0.03 / 9) / 2  # between the outermost centres
     found, expected = read(HEIGHTS, x, y), peer(HEIGHTS, x, y)
     assert np.allclose(found, expected, rtol=0, atol=np.array([2e-9, 2e-6, 2e-6, 3e-3, 3e-3, 3e-3]))
 
 
-def test_the_three_readings_agree():
+def test_height_slope_and_bend_agree():
     coefficients, _, _, across, down = spline_surface(HapticSurface(Relief(HEIGHTS, EXTENT)), "never")
     for x, y in RNG.uniform(-0.5, 0.5, (200, 2)) * EXTENT:
         whole = spline.bend(coefficients, across, down, x, y)
@@ -50,7 +50,7 @@ def test_the_three_readings_agree():
 
 
 @pytest.mark.parametrize("shape", [(65, 65), (3, 7), (2, 2), (7, 1)])
-def test_a_plane_is_that_plane_up_to_its_border(shape: tuple[int, int]):
+def test_plane_is_exact_up_to_its_border(shape: tuple[int, int]):
     known = ramp((0.0 if shape[1] == 1 else 0.2, 0.1), 0.05, shape)
     for x, y in (*RNG.uniform(-0.5, 0.5, (50, 2)), (0.5, 0.5), (-0.5, 0.5), (0.5, -0.5)):
         x, y = x * known.surface.extent_m[0], y * known.surface.extent_m[1]
@@ -60,7 +60,7 @@ def test_a_plane_is_that_plane_up_to_its_border(shape: tuple[int, int]):
 
 
 @pytest.mark.parametrize("shape", [(1, 1), (1, 5), (5, 1)])
-def test_the_smallest_grids_are_level(shape: tuple[int, int]):
+def test_smallest_grids_are_level(shape: tuple[int, int]):
     for x, y in ((0.0, 0.0), (0.035, -0.015), (-0.035, 0.015), (0.01, 0.01)):
         assert read(np.full(shape, 0.25, np.float32), x, y) == pytest.approx((0.25, 0, 0, 0, 0, 0), abs=1e-12)
 
@@ -73,13 +73,13 @@ def test_height_slope_and_curvature_are_continuous_across_cells():
             assert np.allclose(above, below, rtol=1e-6, atol=1e-4)
 
 
-def test_float32_coefficients_and_their_margin():
+def test_coefficients_are_float32_with_a_margin():
     found = spline_coefficients(HEIGHTS)
     assert found.dtype == np.float32 and found.shape == (13, 18) and found.flags.c_contiguous
     assert np.isinf(spline_coefficients(np.array([[0, 3e38, 0]], np.float32))).any()  # no warning, no exception
 
 
-def test_what_is_asked_for_ahead_is_what_is_read(monkeypatch: pytest.MonkeyPatch):
+def test_prefetched_coefficients_are_those_read(monkeypatch: pytest.MonkeyPatch):
     coefficients, _, _, across, down = spline_surface(HapticSurface(Relief(HEIGHTS, EXTENT)), "never")
     spline.height(coefficients, across, down, 0.0, 0.0)  # compiled before its parts are exchanged
     asked: list[tuple[int, int]] = []

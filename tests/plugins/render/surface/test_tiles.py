@@ -13,7 +13,7 @@ RNG = np.random.default_rng(2)
 
 
 @pytest.mark.parametrize("shape", [(1, 1), (1, 40), (16, 16), (17, 33), (50, 70), (2, 4200)])
-def test_every_place_lies_between_the_bounds_of_its_tile(shape: tuple[int, int]):
+def test_places_lie_between_the_bounds_of_their_tile(shape: tuple[int, int]):
     surface = HapticSurface(Relief(RNG.uniform(0, 0.01, shape).astype(np.float32), (0.08, 0.05)))
     coefficients, width, length, across, down = spline_surface(surface, "never")
     bounds = tile_bounds(coefficients)
@@ -33,8 +33,8 @@ def test_every_place_lies_between_the_bounds_of_its_tile(shape: tuple[int, int])
 @pytest.mark.parametrize("turned", [False, True])
 @pytest.mark.parametrize("count", [40, 48])
 @pytest.mark.parametrize("sign", [1, -1])
-def test_each_coefficient_counts_for_every_tile_that_it_reaches(count: int, turned: bool, sign: int):
-    """One that is not 0 lifts the surface, or lowers it, wherever it has a weight."""
+def test_coefficient_counts_in_every_tile_it_reaches(count: int, turned: bool, sign: int):
+    """A coefficient that is not 0 raises or lowers the surface wherever it has a weight."""
     for line in range(count + 4):
         lines = np.zeros((count + 4, 5), np.float32)
         lines[line] = sign
@@ -47,7 +47,7 @@ def test_each_coefficient_counts_for_every_tile_that_it_reaches(count: int, turn
             assert lowest <= spline.height(coefficients, float(across), float(down), *at) <= highest
 
 
-def test_level_ground_has_equal_bounds_and_a_bump_has_not():
+def test_bounds_of_level_ground_are_equal_and_of_a_bump_not():
     heights = np.full((200, 200), 0.003, np.float32)
     heights[150, 150] = 0.004
     bounds = tile_bounds(spline_surface(HapticSurface.from_heights(heights), "auto")[0])

@@ -1,4 +1,4 @@
-"""The law of `penalty`, compiled. Imports numba: the method imports this module inside `touch`."""
+"""The compiled kernel of `penalty`. Imports numba: the method imports this module inside `touch`."""
 
 # ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
 
@@ -7,8 +7,8 @@ from numba import float64, njit
 
 from tangible_core.compiled.compiling import KERNEL
 
-from .surface.bilinear import HEIGHTS, LABELS, NEWTONS, TABLE, cell, over
-from .surface.spline import height
+from ..surface.bilinear import HEIGHTS, LABELS, NEWTONS, TABLE, cell, over
+from ..surface.spline import height
 
 SURFACE = (HEIGHTS, *[float64] * 4, LABELS, TABLE, float64)
 
@@ -17,7 +17,7 @@ SURFACE = (HEIGHTS, *[float64] * 4, LABELS, TABLE, float64)
 def tick(
     coefficients, width_m, length_m, across_per_m, down_per_m, labels, stiffness, damping_n_s_per_m, x, y, z, vx, vy, vz
 ):
-    """F_z = max(0, k d - b v_z), where d = h - z > 0; zero in free air."""
+    """Compute F_z = max(0, k d - b v_z), where d = h - z > 0; zero in free air."""
     if not over(width_m, length_m, x, y):
         return 0.0, 0.0, 0.0
     depth = height(coefficients, across_per_m, down_per_m, x, y) - z

@@ -1,4 +1,4 @@
-"""The law of `penalty-gradient`, compiled. Imports numba: the method imports this module inside `touch`."""
+"""The compiled kernel of `penalty-gradient`. Imports numba: the method imports this module inside `touch`."""
 
 # ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
 
@@ -7,14 +7,14 @@ from numba import float64, njit
 
 from tangible_core.compiled.compiling import KERNEL
 
-from .surface.bilinear import HEIGHTS, LABELS, NEWTONS, TABLE, bilinear, cell, over
+from ..surface.bilinear import HEIGHTS, LABELS, NEWTONS, TABLE, bilinear, cell, over
 
 SURFACE = (HEIGHTS, LABELS, TABLE, float64, float64, float64)
 
 
 @njit(NEWTONS(*SURFACE, *[float64] * 6), **KERNEL)
 def tick(height_m, labels, stiffness_n_per_m, width_m, length_m, damping_n_s_per_m, x, y, z, vx, vy, vz):
-    """F = max(0, k d - b v.(-g, 1) / (1 + |g|^2)) (-g, 1), where d = h - z > 0; zero in free air."""
+    """Compute F = max(0, k d - b v.(-g, 1) / (1 + |g|^2)) (-g, 1), where d = h - z > 0; zero in free air."""
     if not over(width_m, length_m, x, y):
         return 0.0, 0.0, 0.0
     height, slope_x, slope_y = bilinear(height_m, width_m, length_m, x, y)

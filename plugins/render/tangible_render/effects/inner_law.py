@@ -1,4 +1,4 @@
-"""A law within a law, as an option: its name, or {use: its name} with its options."""
+"""The option for an inner force law: its name, or {use: its name} with its options."""
 
 from collections.abc import Callable
 from typing import Any
@@ -10,27 +10,30 @@ from tangible_core.plugins.interfaces import ForceRenderer
 
 Law = str | dict[str, Any]
 Refusal = Callable[[type[ForceRenderer]], str]
-"""Why a class cannot be the law within, in words; empty if it can."""
+"""A function that returns the reason why a class cannot be the inner force law; empty if it can."""
 
 
-def made(law: Law, refusal: Refusal) -> tuple[str, ForceRenderer]:
-    """Name and method. Raises: ValueError if it has no name or is refused, TangibleError if it is none."""
+def build_law(law: Law, refusal: Refusal) -> tuple[str, ForceRenderer]:
+    """Return the name and the method.
+
+    Raises: ValueError if it has no name or is refused, TangibleError if it is not an installed force law.
+    """
     from tangible_core.plugins.registry import load_method
 
     options: dict[str, Any] = {"use": law} if isinstance(law, str) else dict(law)
     name = options.pop("use", None)
     if not isinstance(name, str):
-        raise ValueError("a law has a name, {use: ...}")
+        raise ValueError("a force law needs a name, {use: ...}")
     cls = load_method("render", name)
     if why := refusal(cls):
         raise ValueError(f"{name} {why}")
     return name, cls(**options)
 
 
-def checked(law: Law, refusal: Refusal) -> dict[str, Any]:
-    """The law's name and all of its options. Raises: ValueError if it is none, or one of them is wrong."""
+def complete_options(law: Law, refusal: Refusal) -> dict[str, Any]:
+    """Return the force law's name and all of its options. Raises: ValueError if the name or an option is wrong."""
     try:
-        name, method = made(law, refusal)
+        name, method = build_law(law, refusal)
     except ValidationError as error:
         wrong = (f"{'.'.join(map(str, each['loc']))}: {each['msg']}" for each in error.errors())
         raise ValueError("; ".join(wrong)) from error

@@ -1,6 +1,6 @@
-"""The law of `proxy` on materials, compiled. Imports numba: the method imports this module inside `touch`.
+"""The compiled kernel of `proxy` on materials. Imports numba: the method imports this module inside `touch`.
 
-What a touch remembers is listed in `contact`.
+`contact.approach` lists the memory of a touch.
 """
 
 # ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
@@ -9,14 +9,14 @@ from numba import float64, njit
 
 from tangible_core.compiled.compiling import KERNEL
 
-from .contact.held import MATERIALS, MEMORY, SURFACE, spring_and_damper
-from .surface.bilinear import LABELS, NEWTONS
+from ..contact.spring import MATERIALS, MEMORY, SURFACE, spring_and_damper
+from ..surface.bilinear import LABELS, NEWTONS
 
 
 @njit(NEWTONS(*SURFACE, LABELS, MATERIALS, MEMORY, *[float64] * 6), **KERNEL)
 def tick(
     coefficients, width_m, length_m, across_per_m, down_per_m, tiles_m, labels, table, memory, x, y, z, vx, vy, vz
 ):
-    """F = k (p - q) - b v_n n, the proxy p held by friction; the table has a row k, b, mu_s, mu_d for each label."""
+    """Compute F = k (p - q) - b v_n n, the proxy p held by friction; table: a row k, b, mu_s, mu_d for each label."""
     shape = coefficients, width_m, length_m, across_per_m, down_per_m
     return spring_and_damper(shape, tiles_m, labels, table, memory, x, y, z, vx, vy, vz)

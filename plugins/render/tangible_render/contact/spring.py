@@ -12,20 +12,20 @@ from tangible_core.compiled.compiling import inner
 
 from ..surface.bilinear import HEIGHTS, cell
 from ..surface.spline import prefetch
+from .approach import BESIDE, approach
 from .closest import settle
-from .contact import BESIDE, approach
 
 SURFACE = (HEIGHTS, *[float64] * 4, types.Array(float32, 3, "C", readonly=True))
 MATERIALS = types.Array(float64, 2, "C", readonly=True)
 MEMORY = float64[::1]
-"""Types of what a kernel of `proxy` is given."""
+"""The numba types of a touch's memory; SURFACE and MATERIALS are those of the other arguments of a kernel."""
 
 
 @inner(forceinline=True)
 def spring(shape, tiles_m, stiffness, memory, x, y, z, vx, vy, vz):
-    """F = k (p - q), where all is one material that has neither friction nor damping.
+    """Compute F = k (p - q), for one material without friction and damping.
 
-    In a level tile that the proxy is in already, it is right above the hand.
+    In a level tile that already holds the proxy, the proxy is right above the hand.
     """
     coefficients, width_m, length_m, across_per_m, down_per_m = shape
     if not approach(coefficients, width_m, length_m, across_per_m, down_per_m, tiles_m, memory, x, y, z, vx + vy + vz):
@@ -41,7 +41,7 @@ def spring(shape, tiles_m, stiffness, memory, x, y, z, vx, vy, vz):
         px, py, top, _, _, _ = settle(
             coefficients, width_m, length_m, across_per_m, down_per_m, px, py, x, y, z, 0.0, 0.0, 0.0
         )
-        _look_ahead(coefficients, across_per_m, down_per_m, memory, px, py)
+        _prefetch_ahead(coefficients, across_per_m, down_per_m, memory, px, py)
     memory[0], memory[1], memory[2] = px, py, top
     fx, fy, fz = stiffness * (px - x), stiffness * (py - y), stiffness * (top - z)
     return (fx, fy, fz) if np.isfinite(fx + fy + fz) else (0.0, 0.0, 0.0)
@@ -49,11 +49,11 @@ def spring(shape, tiles_m, stiffness, memory, x, y, z, vx, vy, vz):
 
 @inner(forceinline=True)
 def spring_and_damper(shape, tiles_m, labels, table, memory, x, y, z, vx, vy, vz):
-    """F = k (p - q) - b v_n n; the proxy p is held by friction."""
+    """Compute F = k (p - q) - b v_n n; friction holds the proxy p."""
     coefficients, width_m, length_m, across_per_m, down_per_m = shape
     if not approach(coefficients, width_m, length_m, across_per_m, down_per_m, tiles_m, memory, x, y, z, vx + vy + vz):
         return 0.0, 0.0, 0.0
-    px, py, top, held, hx, hy = memory[0], memory[1], z, 0.0, 0.0, 0.0
+    px, py, top, damper, hx, hy = memory[0], memory[1], z, 0.0, 0.0, 0.0
     row, column = cell(labels.shape[0], labels.shape[1], width_m, length_m, px, py)
     label = labels[row, column]
     stiffness, damping, static, dynamic = table[label, 0], table[label, 1], table[label, 2], table[label, 3]
@@ -61,20 +61,20 @@ def spring_and_damper(shape, tiles_m, labels, table, memory, x, y, z, vx, vy, vz
         px, py, top, hx, hy, memory[6] = settle(
             coefficients, width_m, length_m, across_per_m, down_per_m, px, py, x, y, z, static, dynamic, memory[6]
         )
-        _look_ahead(coefficients, across_per_m, down_per_m, memory, px, py)
+        _prefetch_ahead(coefficients, across_per_m, down_per_m, memory, px, py)
         square = 1.0 + hx * hx + hy * hy
         spring = stiffness * (hx * (x - px) + hy * (y - py) + top - z) / square
-        held = min(damping * (vz - hx * vx - hy * vy) / square, max(spring, 0.0))
+        damper = min(damping * (vz - hx * vx - hy * vy) / square, max(spring, 0.0))
     memory[0], memory[1], memory[2] = px, py, top
-    fx, fy, fz = stiffness * (px - x) + held * hx, stiffness * (py - y) + held * hy, stiffness * (top - z) - held
+    fx, fy, fz = stiffness * (px - x) + damper * hx, stiffness * (py - y) + damper * hy, stiffness * (top - z) - damper
     return (fx, fy, fz) if np.isfinite(fx + fy + fz) else (0.0, 0.0, 0.0)
 
 
 @inner()
-def _look_ahead(coefficients, across_per_m, down_per_m, memory, px, py):
-    """Ask for what the tick after the next will read if the proxy goes on as it did, from the memory to (px, py).
+def _prefetch_ahead(coefficients, across_per_m, down_per_m, memory, px, py):
+    """Prefetch the coefficients for the tick after the next, if the proxy keeps its last step, memory to (px, py).
 
-    Of a large surface it comes from far away, and takes longer than one tick takes along a path.
+    For a large surface they come from main memory, which takes longer than a tick of a path.
     """
     ahead_x, ahead_y = px + 2.0 * (px - memory[0]), py + 2.0 * (py - memory[1])
     prefetch(coefficients, across_per_m, down_per_m, ahead_x, ahead_y)

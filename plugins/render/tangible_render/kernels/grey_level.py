@@ -1,4 +1,4 @@
-"""The law of `grey-level`, compiled. Imports numba: the method imports this module inside `touch`."""
+"""The compiled kernel of `grey-level`. Imports numba: the method imports this module inside `touch`."""
 
 # ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
 
@@ -7,14 +7,14 @@ from numba import float64, njit
 
 from tangible_core.compiled.compiling import KERNEL
 
-from .surface.bilinear import GREYS, HEIGHTS, NEWTONS, cell, over
+from ..surface.bilinear import GREYS, HEIGHTS, NEWTONS, cell, over
 
 SURFACE = (HEIGHTS, GREYS, float64, float64, float64)
 
 
 @njit(NEWTONS(*SURFACE, *[float64] * 6), **KERNEL)
 def tick(height_m, grey, width_m, length_m, white_n, x, y, z, vx, vy, vz):
-    """F_z = white_n G / 255 under the surface of the cell that the tip is in; zero in free air."""
+    """Compute F_z = white_n G / 255 below the height of the cell under the tip; zero in free air."""
     if not (over(width_m, length_m, x, y) and np.isfinite(z + vx + vy + vz)):
         return 0.0, 0.0, 0.0
     row, column = cell(height_m.shape[0], height_m.shape[1], width_m, length_m, x, y)

@@ -1,4 +1,6 @@
-"""What stands for a law in Python where a kernel calls a law; compiled, and apart, as hardly anybody needs it.
+"""A stub for a force law in Python where a kernel calls a compiled one.
+
+It has its own module, so that it is compiled only where it is needed, which is rare.
 
 Imports numba: a method imports this module inside its verb.
 """
@@ -13,7 +15,7 @@ from ..surface.bilinear import NEWTONS
 
 
 @njit(NEWTONS(float64[::1], float64[::1], *[float64] * 6), **KERNEL)
-def told(asked, force_n, x, y, z, vx, vy, vz):
-    """In place of a law in Python: it writes down what it is asked, and answers what it was told."""
-    asked[0], asked[1], asked[2], asked[3], asked[4], asked[5] = x, y, z, vx, vy, vz
+def stub_law(state, force_n, x, y, z, vx, vy, vz):
+    """Record the position and velocity passed in, and return the force stored before."""
+    state[0], state[1], state[2], state[3], state[4], state[5] = x, y, z, vx, vy, vz
     return force_n[0], force_n[1], force_n[2]

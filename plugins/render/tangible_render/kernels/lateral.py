@@ -1,4 +1,4 @@
-"""The laws of `lateral-gradient` and `lateral-shape`, compiled. Imports numba: the methods do so inside `touch`."""
+"""The compiled kernel of `lateral-gradient` and `lateral-shape`. Imports numba: imported inside `touch`."""
 
 # ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
 
@@ -7,15 +7,15 @@ from numba import float64, njit
 
 from tangible_core.compiled.compiling import KERNEL
 
-from .surface.bilinear import HEIGHTS, NEWTONS, over
-from .surface.spline import slope
+from ..surface.bilinear import HEIGHTS, NEWTONS, over
+from ..surface.spline import slope
 
 SURFACE = (HEIGHTS, *[float64] * 6)
 
 
 @njit(NEWTONS(*SURFACE, *[float64] * 6), **KERNEL)
 def tick(coefficients, width_m, length_m, across_per_m, down_per_m, push_n, stiffness_n_per_m, x, y, z, vx, vy, vz):
-    """F = -(push_n + k d) grad h, where d = h - z > 0, and nothing along z; zero in free air."""
+    """Compute F = -(push_n + k d) grad h, where d = h - z > 0, and nothing along z; zero in free air."""
     if not (over(width_m, length_m, x, y) and np.isfinite(vx + vy + vz)):
         return 0.0, 0.0, 0.0
     height, slope_x, slope_y = slope(coefficients, across_per_m, down_per_m, x, y)

@@ -1,6 +1,6 @@
-"""The law of `proxy` on materials, on a surface that moves; compiled. Imports numba: imported inside `film`.
+"""The compiled kernel of `proxy` on materials, on a moving surface. Imports numba: imported inside `film`.
 
-What a touch remembers is listed in `contact`.
+`contact.approach` lists the memory of a touch.
 """
 
 # ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
@@ -9,20 +9,20 @@ from numba import float64, njit
 
 from tangible_core.compiled.compiling import KERNEL
 
-from ..contact.held import MATERIALS, MEMORY, spring_and_damper
+from ..contact.spring import MATERIALS, MEMORY, spring_and_damper
 from ..surface.bilinear import LABELS, NEWTONS
-from .playing import MOVING, MOVING_SURFACE, play, risen
+from .playing import MOVING, MOVING_SURFACE, play, write_rise
 from .steady import STEADY, steady
 
 
 @njit(NEWTONS(*MOVING_SURFACE, LABELS, MATERIALS, MEMORY, STEADY, MOVING, *[float64] * 6), **KERNEL)
 def moving_tick(
-    pairs, tiles_m, frames, shared, count, width_m, length_m, across_per_m, down_per_m, labels, table, memory, felt,
+    pairs, tiles_m, frames, shared, count, width_m, length_m, across_per_m, down_per_m, labels, table, memory, last,
     moving, x, y, z, vx, vy, vz,
 ):  # fmt: skip
-    """As `proxy_kernels.tick`, on the surface as it is at the end of this tick."""
+    """Compute `kernels.proxy.tick` on the surface at the end of this tick."""
     slot, share, passed = play(frames, shared, count, moving)
     shape = (pairs[slot], 1.0 - share, share), width_m, length_m, across_per_m, down_per_m
     fx, fy, fz = spring_and_damper(shape, tiles_m[slot], labels, table, memory, x, y, z, vx, vy, vz)
-    risen(pairs[slot], across_per_m, down_per_m, passed, memory, moving)
-    return steady(felt, moving, x, y, z, vx, vy, vz, fx, fy, fz)
+    write_rise(pairs[slot], across_per_m, down_per_m, passed, memory, moving)
+    return steady(last, moving, x, y, z, vx, vy, vz, fx, fy, fz)

@@ -1,4 +1,4 @@
-"""The law of `force-shading`, compiled. Imports numba: the method imports this module inside `touch`."""
+"""The compiled kernel of `force-shading`. Imports numba: the method imports this module inside `touch`."""
 
 # ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
 
@@ -9,7 +9,7 @@ from numba import float32, float64, njit, types
 
 from tangible_core.compiled.compiling import KERNEL
 
-from .surface.bilinear import HEIGHTS, LABELS, NEWTONS, TABLE, bilinear, cell, over
+from ..surface.bilinear import HEIGHTS, LABELS, NEWTONS, TABLE, bilinear, cell, over
 
 NORMALS = types.Array(float32, 3, "C", readonly=True)
 SURFACE = (HEIGHTS, NORMALS, LABELS, TABLE, float64, float64)
@@ -17,7 +17,7 @@ SURFACE = (HEIGHTS, NORMALS, LABELS, TABLE, float64, float64)
 
 @njit(NEWTONS(*SURFACE, *[float64] * 6), **KERNEL)
 def tick(height_m, normal, labels, stiffness_n_per_m, width_m, length_m, x, y, z, vx, vy, vz):
-    """F = k d / sqrt(1 + |g|^2) n, where d = h - z > 0 and n is the normal between the cells'; zero in free air."""
+    """Compute F = k d / sqrt(1 + |g|^2) n, where d = h - z > 0 and n is the interpolated normal; zero in free air."""
     if not (over(width_m, length_m, x, y) and np.isfinite(vx + vy + vz)):
         return 0.0, 0.0, 0.0
     height, slope_x, slope_y = bilinear(height_m, width_m, length_m, x, y)

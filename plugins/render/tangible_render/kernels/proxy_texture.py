@@ -1,6 +1,6 @@
-"""The law of `proxy` on materials with a texture, compiled. Imports numba: imported by the method inside `touch`.
+"""The compiled kernel of `proxy` on materials with a texture. Imports numba: imported inside `touch`.
 
-What a touch remembers is listed in `contact`.
+`contact.approach` lists the memory of a touch.
 """
 
 # ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
@@ -9,9 +9,9 @@ from numba import float64, njit
 
 from tangible_core.compiled.compiling import KERNEL
 
-from .contact.held import MATERIALS, MEMORY, SURFACE, spring_and_damper
-from .effects.kernels import effects, texture
-from .surface.bilinear import LABELS, NEWTONS
+from ..contact.spring import MATERIALS, MEMORY, SURFACE, spring_and_damper
+from ..effects.kernels import effects, texture
+from ..surface.bilinear import LABELS, NEWTONS
 
 
 @njit(
@@ -22,7 +22,7 @@ def textured_tick(
     coefficients, width_m, length_m, across_per_m, down_per_m, tiles_m, labels, table, memory, textures, contact,
     x, y, z, vx, vy, vz,
 ):  # fmt: skip
-    """As `proxy_kernels.tick`, under the textures of the materials; see `effects.kernels` for table and contact."""
+    """Compute `proxy.tick` under the textures of the materials; see `effects.kernels` for table and contact."""
     shape = coefficients, width_m, length_m, across_per_m, down_per_m
     label, t, tx, ty, dx, dy, dz = texture(labels, width_m, length_m, textures, contact, x, y, z)
     vz -= tx * vx + ty * vy

@@ -1,4 +1,4 @@
-"""The law of `tangible-mask`, compiled. Imports numba: the method imports this module inside `touch`."""
+"""The compiled kernel of `tangible-mask`. Imports numba: the method imports this module inside `touch`."""
 
 # ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
 
@@ -7,7 +7,7 @@ from numba import float64, int64, njit, types
 
 from tangible_core.compiled.compiling import KERNEL
 
-from .surface.bilinear import HEIGHTS, NEWTONS, cell, over
+from ..surface.bilinear import HEIGHTS, NEWTONS, cell, over
 
 TABLES = types.Array(int64, 3, "C", readonly=True)
 SURFACE = (HEIGHTS, TABLES, float64, float64, int64, int64, float64, float64)
@@ -15,7 +15,7 @@ SURFACE = (HEIGHTS, TABLES, float64, float64, int64, int64, float64, float64)
 
 @njit(types.UniTuple(int64, 2)(TABLES, *[int64] * 4), **KERNEL)
 def window(tables, row, column, half_rows, half_columns):
-    """Sums of dark u and dark v over the mask around a cell, u along the columns and v against the rows."""
+    """Sum dark u and dark v over the mask around a cell, u along the columns and v against the rows."""
     far, near = row - half_rows, row + half_rows + 1
     left, right = column - half_columns, column + half_columns + 1
     dark = tables[near, right, 0] - tables[far, right, 0] - tables[near, left, 0] + tables[far, left, 0]
@@ -26,7 +26,10 @@ def window(tables, row, column, half_rows, half_columns):
 
 @njit(NEWTONS(*SURFACE, *[float64] * 6), **KERNEL)
 def tick(height_m, tables, width_m, length_m, half_rows, half_columns, across_n, along_n, x, y, z, vx, vy, vz):
-    """(across_n sum dark u, along_n sum dark v, 0) under the surface; zero in free air and where the mask ends."""
+    """Compute (across_n sum dark u, along_n sum dark v, 0) below the surface.
+
+    It is zero in free air and where the mask leaves the surface.
+    """
     if not (over(width_m, length_m, x, y) and np.isfinite(z + vx + vy + vz)):
         return 0.0, 0.0, 0.0
     rows, columns = height_m.shape

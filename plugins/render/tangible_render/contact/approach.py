@@ -1,6 +1,6 @@
-"""Whether the hand is in the surface, and where the proxy starts from when it comes in; compiled.
+"""Collision of the hand with the surface, and the starting point of the proxy; compiled.
 
-A touch remembers, in `memory`: 0-2 the proxy, its z NaN while nothing is touched, 3-5 where the hand was, 6 whether the
+The memory of a touch: 0-2 the proxy, its z NaN without contact, 3-5 the last position of the hand, 6 is 1 while the
 proxy slides, 7 the phase.
 Imports numba: a method imports this module inside its verb.
 """
@@ -15,17 +15,18 @@ from ..surface.bilinear import cell, over
 from ..surface.spline import height
 
 REMEMBERED = 8
+"""The number of values in the memory of a touch."""
 LOST, BESIDE, FREE, TOUCHING = 0.0, 1.0, 2.0, 3.0
-"""Nothing is known of the hand; it is beside the surface or came in under its rim; above it; the proxy is on top."""
+"""The phases: no valid hand; hand at the side, or entered below the rim; above the surface; in contact from above."""
 LEAP_M = 0.005
-"""No hand moves farther in a tick: one that did was put down elsewhere, and is taken as new."""
+"""The longest step of a hand in a tick, m: after a longer one its contact starts anew."""
 STRETCH_M = 0.02
-"""A proxy left farther behind is let go if the surface right above is nearer: no desktop device holds such a force."""
+"""The distance, m, at which a proxy is released if the surface above is nearer: no desktop device holds its force."""
 
 
 @inner()
 def _entry(coefficients, across_per_m, down_per_m, from_x, from_y, from_z, x, y, z):
-    """Where the straight way of the hand came through the surface, within 1/64 of the way, on the side it came from."""
+    """Return where the hand's straight way crossed the surface, within 1/64 of the way, on the outer side."""
     out, inside = 0.0, 1.0
     for _ in range(6):
         part = 0.5 * (out + inside)
@@ -39,7 +40,7 @@ def _entry(coefficients, across_per_m, down_per_m, from_x, from_y, from_z, x, y,
 
 @inner(forceinline=True)
 def approach(coefficients, width_m, length_m, across_per_m, down_per_m, tiles_m, memory, x, y, z, speed):
-    """Whether the hand is in the surface; its phase, and where its proxy starts from this tick, go to the memory."""
+    """Return True if the hand is in the surface; write its phase and the proxy's starting point to the memory."""
     phase, px, py, was_x, was_y, was_z = memory[7], memory[0], memory[1], memory[3], memory[4], memory[5]
     memory[7], memory[2], memory[3], memory[4], memory[5] = LOST, np.nan, x, y, z
     if not np.isfinite(x + y + z + speed):

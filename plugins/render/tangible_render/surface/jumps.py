@@ -21,7 +21,7 @@ def jumps(height_m: Float32[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
 
     Waves of 8 cells and longer have none. Heights alone tell, not what they go on as beyond the border.
     """
-    from scipy.ndimage import maximum_filter
+    import cv2
 
     found = np.zeros(height_m.shape, bool)
     with np.errstate(over="ignore", invalid="ignore"):
@@ -29,7 +29,9 @@ def jumps(height_m: Float32[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
         for heights, at in ((height_m, found), (height_m.T, found.T)):
             for lines in _blocks(heights) if len(heights) > 2 * REACH else ():
                 at[2:-2, lines] |= _stand_out(np.diff(heights[:, lines], 2, axis=0), rounding)
-    return maximum_filter(found, 2 * REACH + 1) if found.any() else found
+    if not found.any():
+        return found
+    return cv2.dilate(found.view(np.uint8), np.ones((2 * REACH + 1, 2 * REACH + 1), np.uint8)).view(bool)
 
 
 def ease(values: Float64[np.ndarray, "h w"], at: Bool[np.ndarray, "h w"]) -> None:

@@ -12,6 +12,7 @@ from numba.core import event
 from numba.extending import overload, register_jitable
 
 from .beside import kernels_are_compiled
+from .loading import load_kernels_alone
 
 log = logging.getLogger(__name__)
 SECONDS = {"depth": 8, "texture": 2, "render": 2, "core": 1}
@@ -87,5 +88,6 @@ class _Unswept(event.Listener):
             gc.enable()
 
 
+load_kernels_alone()
 for _listener in (_CompileNotice(), _Unswept()):
     event.register("numba:compile", _listener)  # pyright: ignore[reportUnknownMemberType]

@@ -12,7 +12,7 @@ from stereo_scenes import slanted, step
 from tangible_core.data import Views
 from tangible_core.errors import PictureError
 from tangible_core.plugins.notes import collected
-from tangible_core.synthetic.stereo_scenes import synthetic_pair
+from tangible_core.testing.synthetic.stereo_scenes import synthetic_pair
 from tangible_depth.dense.filling import gaps
 from tangible_depth.dense.filling.four_directions import fill_from_four_directions
 from tangible_depth.dense.speckles import Specks

@@ -12,7 +12,7 @@ from hypothesis.extra.numpy import arrays
 from stereo_scenes import slanted, step, texture
 from tangible_core.compiled import threads
 from tangible_core.data import Views
-from tangible_core.synthetic.stereo_scenes import synthetic_pair
+from tangible_core.testing.synthetic.stereo_scenes import synthetic_pair
 from tangible_depth.dense.confidence import confidence, flat_pixels
 from tangible_depth.dense.edges import median, sharpen_edges
 from tangible_depth.dense.filling.four_directions import ROUND, choose_of_four, fill_from_four_directions

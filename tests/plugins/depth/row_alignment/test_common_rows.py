@@ -7,7 +7,7 @@ import pytest
 
 from tangible_core.data import Calibration, Views
 from tangible_core.plugins.notes import collected
-from tangible_core.synthetic.stereo_scenes import SCENES, synthetic_pair
+from tangible_core.testing.synthetic.stereo_scenes import SCENES, synthetic_pair
 from tangible_depth.dense.span import Span
 from tangible_depth.matching import chain
 from tangible_depth.row_alignment.common_rows import common_row_offset, rows_correspond

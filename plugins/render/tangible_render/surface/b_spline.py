@@ -1,5 +1,7 @@
 """The recursive filter that turns values into the coefficients of a cubic B-spline."""
 
+from itertools import pairwise
+
 import numpy as np
 from jaxtyping import Float64
 
@@ -29,7 +31,7 @@ def spline_filter(values: Float64[np.ndarray, "h w"]) -> None:
         if not weight:  # too small for a double: all further ones are as well
             break
     rows[0] /= 1 - across * across
-    for before, here in zip(rows, rows[1:], strict=False):
+    for before, here in pairwise(rows):
         np.multiply(before, POLE, out=part)
         here += part
     rows[last][:] = (POLE * rows[last - 1] + rows[last]) * POLE / (POLE * POLE - 1)

@@ -17,7 +17,7 @@ from .loading import load_kernels_alone
 
 log = logging.getLogger(__name__)
 BYTECODE = {"depth": 36_000, "texture": 3_700, "render": 10_600, "core": 14_000}
-"""Bytes of Python's bytecode that a first `tangible demo` compiles of each family, to which its time is in proportion."""
+"""Bytes of bytecode that a first `tangible demo` compiles of each family: its time is in proportion to them."""
 
 KERNEL: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy", "_nrt": False, "no_cfunc_wrapper": True}
 """Options of a kernel that is given all its arrays and makes none: it counts no references to them, each of which is an

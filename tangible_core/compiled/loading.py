@@ -11,7 +11,8 @@ from typing import Any
 from numba.core.caching import FunctionCache
 from numba.core.dispatcher import Dispatcher
 
-_enable_caching = Dispatcher.enable_caching
+_dispatchers: Any = Dispatcher
+_enable_caching = _dispatchers.enable_caching
 
 
 class KernelCache(FunctionCache):
@@ -19,8 +20,9 @@ class KernelCache(FunctionCache):
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """The compiled kernel for this signature, or None where the disk has none."""
-        with self._guard_against_spurious_io_errors():
-            return self._load_overload(sig, target_context)
+        cache: Any = self
+        with cache._guard_against_spurious_io_errors():
+            return cache._load_overload(sig, target_context)
 
 
 def _enable_kernel_caching(dispatcher: Any) -> None:
@@ -31,4 +33,4 @@ def _enable_kernel_caching(dispatcher: Any) -> None:
 
 def load_kernels_alone() -> None:
     """From now on, give each kernel that is defined with `_nrt=False` and `cache=True` this cache."""
-    Dispatcher.enable_caching = _enable_kernel_caching
+    _dispatchers.enable_caching = _enable_kernel_caching

@@ -22,7 +22,8 @@ class Clock:
 def compile_event(module: str, size: int) -> SimpleNamespace:
     """Of a function of this module with so many bytes of bytecode, as numba has it."""
     function = SimpleNamespace(__module__=module, __code__=SimpleNamespace(co_code=bytes(size)))
-    return SimpleNamespace(data={"dispatcher": SimpleNamespace(py_func=function)})
+    targetctx = SimpleNamespace(refresh=lambda: None)
+    return SimpleNamespace(data={"dispatcher": SimpleNamespace(py_func=function, targetctx=targetctx)})
 
 
 @pytest.fixture

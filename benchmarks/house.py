@@ -104,8 +104,15 @@ def cache_rows(others: int = 50_000, kept: int = 300) -> list[str]:
     return judged([Figure(f"a result kept beside {others:,} others, median", "< 2 ms", said, worst < 2)])
 
 
+LIBRARIES = "import numba, cv2, scipy.ndimage, matplotlib.pyplot"
+"""What other programs of this field import before they do anything: the second run of the demo is measured by it."""
+
+
 def demo_rows(rounds: int = 3) -> list[str]:
     """`tangible demo` with nothing compiled or kept, again, and with kernels alone."""
+    imports = [sys.executable, "-c", LIBRARIES]
+    wall(imports)
+    bases: list[float] = []
     runs = ("first on a machine", "second", "another, its results not kept")
     times: dict[str, list[float]] = {run: [] for run in runs}
     products: dict[str, str] = {}
@@ -114,11 +121,14 @@ def demo_rows(rounds: int = 3) -> list[str]:
             for run, folder in zip(runs, (results, results, f"{results}/others"), strict=True):
                 seconds, products[run] = demo(Path(folder), Path(kernels))
                 times[run].append(seconds)
+            bases.append(wall(imports))
     median = {run: statistics.median(times[run]) for run in runs}
     ratio = statistics.median(a / b for a, b in zip(times[runs[0]], times[runs[1]], strict=True))
+    light = statistics.median(a / b for a, b in zip(times[runs[1]], bases, strict=True))
     bounds = [
         Figure("first run", "<= 10 s", f"{median[runs[0]]:.1f} s", median[runs[0]] <= 10),
-        Figure("first run over the second, median of pairs", "<= 3.5", f"{ratio:.2f}", ratio <= 3.5),
+        Figure("first run over the second, median of pairs", "<= 3", f"{ratio:.2f}", ratio <= 3),
+        Figure(f"second run over `python -c '{LIBRARIES}'`, median of pairs", "<= 2.5", f"{light:.2f}", light <= 2.5),
     ]
     return [
         f"`tangible demo`, whole processes, medians of {rounds}: nothing compiled or kept, again, and kernels alone.",

@@ -1,5 +1,10 @@
 """Many scenes through one pipeline: an archive, a dataset, a sweep of options; on all cores, or on many machines."""
 
-from .running import batch
+from typing import TYPE_CHECKING
 
-__all__ = ["batch"]
+from tangible_core.lazily import lazily
+
+if TYPE_CHECKING:
+    from .running import batch as batch
+
+__all__, __getattr__ = lazily(__name__, {"running": ["batch"]})  # pyright: ignore[reportUnsupportedDunderAll]

@@ -1,5 +1,7 @@
 """What `--help` says fits a narrow terminal, whole."""
 
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -14,3 +16,12 @@ def test_no_summary_is_cut_off(words: list[str], tmp_path: Path, monkeypatch: py
     assert len(lines) > 5
     assert max(map(len, lines)) <= 80
     assert not [line for line in lines if line.endswith("...") and not line.startswith("Usage")]
+
+
+def test_help_imports_neither_numpy_nor_the_pipeline():
+    """It is there at once, whatever packages add commands."""
+    code = (
+        "import sys; sys.argv[1:] = ['--help']\nfrom tangible_core.cli import main\ntry: main()\nfinally: "
+        "print([name for name in sys.modules if name in ('numpy', 'tangible_core.pipeline')], file=sys.stderr)"
+    )
+    assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stderr.strip() == "[]"

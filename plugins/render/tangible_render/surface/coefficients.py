@@ -5,6 +5,7 @@ from jaxtyping import Bool, Float32, Float64
 
 from tangible_core.data import HapticSurface
 
+from .b_spline import spline_filter
 from .dequantise import Filter, dequantise
 from .jumps import ease, jumps
 
@@ -24,18 +25,17 @@ def spline_coefficients(height_m: Float32[np.ndarray, "h w"]) -> Float32[np.ndar
     sides without a groove at the foot or a lip at the top, and continues level beyond the border.
     Source: Unser, Aldroubi & Eden, B-spline signal processing, IEEE Trans. Signal Processing 41 (1993).
     """
-    from scipy.ndimage import spline_filter1d
-
     at = jumps(height_m)
     values = _extend(height_m, at)
     near = np.pad(np.pad(at, BORDER, mode="edge"), _RUN_IN - BORDER)
     inside = slice(_RUN_IN - BORDER, BORDER - _RUN_IN)
     ease(values, near)
-    values = spline_filter1d(values, order=3, axis=0, mode="mirror")
-    ease(values.T, near.T)
-    values = spline_filter1d(values, order=3, axis=1, mode="mirror")
+    spline_filter(values)
+    values, near = np.ascontiguousarray(values.T), near.T
+    ease(values, near)
+    spline_filter(values)
     with np.errstate(over="ignore"):
-        return np.ascontiguousarray(values[inside, inside], np.float32)
+        return np.ascontiguousarray(values[inside, inside].T, np.float32)
 
 
 def _extend(height_m: Float32[np.ndarray, "h w"], at: Bool[np.ndarray, "h w"]) -> Float64[np.ndarray, "h64 w64"]:

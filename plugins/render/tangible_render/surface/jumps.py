@@ -22,7 +22,7 @@ def jumps(height_m: Float32[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
 
     Waves of 8 cells and longer have none. Only the heights count, not their extension beyond the border.
     """
-    from scipy.ndimage import maximum_filter
+    import cv2
 
     mask = np.zeros(height_m.shape, bool)
     with np.errstate(over="ignore", invalid="ignore"):
@@ -30,7 +30,9 @@ def jumps(height_m: Float32[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
         for heights, at in ((height_m, mask), (height_m.T, mask.T)):
             for lines in _blocks(heights) if len(heights) > 2 * REACH else ():
                 at[2:-2, lines] |= _exceed_nearby(np.diff(heights[:, lines], 2, axis=0), rounding)
-    return maximum_filter(mask, 2 * REACH + 1) if mask.any() else mask
+    if not mask.any():
+        return mask
+    return cv2.dilate(mask.view(np.uint8), np.ones((2 * REACH + 1, 2 * REACH + 1), np.uint8)).view(bool)
 
 
 def ease(values: Float64[np.ndarray, "h w"], at: Bool[np.ndarray, "h w"]) -> None:

@@ -17,6 +17,9 @@ if TYPE_CHECKING:
 
 Write = Callable[["Figure", IO[bytes], str, str], None]
 
+COMPRESSION = 1
+"""Level of PNG's compression: a third of the time of matplotlib's 6, which would make a file a seventh smaller."""
+
 
 def described(figure: Figure) -> str:
     """What is on a sheet, in words: each panel's headline, the caption of a picture, and its legend."""
@@ -41,7 +44,9 @@ def writer(path: Path) -> Write:
 def _png(figure: Figure, file: IO[bytes], title: str, says: str) -> None:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-    FigureCanvasAgg(figure).print_png(file, metadata={"Title": title, "Description": says})
+    FigureCanvasAgg(figure).print_png(
+        file, metadata={"Title": title, "Description": says}, pil_kwargs={"compress_level": COMPRESSION}
+    )
 
 
 def _svg(figure: Figure, file: IO[bytes], title: str, says: str) -> None:

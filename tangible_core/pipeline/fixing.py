@@ -51,7 +51,7 @@ def fix(path: Path, sets: Iterable[str], hand: Hand, loop: Loop, out: Path, cach
     """
     pipeline = Pipeline.from_yaml(path, sets := list(sets))
     if not cached:
-        pipeline.cache = None
+        pipeline.engine.cache = None
     found = cured(with_overrides(read_text(path), path, sets), path, pipeline, hand, loop)
     changes = {key: change.value for key, change in found.changes.items()}
     return Fixed(changes, found.flight, found.verdicts, moved(found.text, path, found.pipeline.config, out))

@@ -139,7 +139,7 @@ def _pipeline(
     made = starter(pictures, file)
     chosen = f"texture={{use: {in_yaml(method)}}}" if method else f"texture.segments={ASKED_FOR * most}"
     config = parse_config(made.text, file, registry, [chosen, *overrides])
-    return Pipeline.of(config.changed(scene=made.scene), registry, cache)
+    return Pipeline.from_config(config.changed(scene=made.scene), registry, cache)
 
 
 def _heights(pipeline: Pipeline, parts: PartMap) -> PartHeights:

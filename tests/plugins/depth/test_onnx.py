@@ -255,7 +255,7 @@ def test_another_network_or_card_in_the_same_file_is_another_result(tmp_path: Pa
 
     def made() -> tuple[str, np.ndarray]:
         pipeline = Pipeline(Scene.of(photo=seen), depth=Onnx(model=tmp_path / "m.onnx"), workspace={"finest_m": 0})
-        pipeline.cache = cache
+        pipeline.engine.cache = cache
         disparity = pipeline.disparity
         assert disparity is not None
         outcome = {each.product: each.outcome for each in pipeline.outcomes}["disparity"]

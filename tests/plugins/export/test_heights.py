@@ -48,7 +48,7 @@ def test_they_are_read_back(tmp_path: Path, ending: str):
 def test_a_pipeline_file_reads_them_too(tmp_path: Path, ending: str):
     path = written(tmp_path, bumps())[ending]
     config = parse_config(f"scene: {{height: {path.name}}}", tmp_path / "p.yaml", default_registry())
-    relief = Pipeline.of(config, default_registry(), None).relief
+    relief = Pipeline.from_config(config, default_registry(), None).relief
     assert relief.extent_m[0] == pytest.approx(0.16)
     assert (relief.height_m.min(), relief.height_m.max()) == pytest.approx((0.0012, 0.01), abs=TENTH_UM)
     assert config.completed()["workspace"]["width_m"] == pytest.approx(0.16)

@@ -111,7 +111,7 @@ class Bench:
         config, before = self.config_of(text, path, sets), self.pipeline
         made = self.after(before, config) if before is not None else None
         if made is None:
-            made = Pipeline.of(config, self.registry, self._cache)
+            made = Pipeline.from_config(config, self.registry, self._cache)
             self._stamps[made] = stamp_of(config)
         return made
 

@@ -231,7 +231,7 @@ class TestSimplify:
         def made(height_m: float) -> Pipeline:
             said = {**SAID, "parts": {1: {"height_m": height_m}}}
             found = Pipeline(Scene.of(photo=PHOTO), texture=Counted(), simplify={}, cached=False, **said)
-            found.cache = Cache(tmp_path)
+            found.engine.cache = Cache(tmp_path)
             return found
 
         assert made(0.004).relief.height_m.max() > 0
@@ -245,7 +245,7 @@ class TestFiles:
         for title in ("one", "two"):
             said = [f"title={title}"]
             config = parse_config("scene: {height: map.npy}", tmp_path / "coins.yaml", default_registry(), said)
-            done = Pipeline.of(config, default_registry(), None).export(tmp_path, ["heights"])
+            done = Pipeline.from_config(config, default_registry(), None).export(tmp_path, ["heights"])
             assert [each.outcome for each in done.outcomes] == ["ran"]
         assert json.loads((tmp_path / "coins-heights.json").read_text())["title"] == "two"
 
@@ -511,7 +511,7 @@ class TestDocument:
         np.save(tmp_path / "map.npy", np.eye(8))
         text = "scene: {height: map.npy}\nexport: [{use: heights, width_m: 0.16}]"
         config = parse_config(text, tmp_path / "p.yaml", default_registry())
-        Pipeline.of(config, default_registry(), None).export(tmp_path, ["heights"])
+        Pipeline.from_config(config, default_registry(), None).export(tmp_path, ["heights"])
         assert json.loads((tmp_path / "p-heights.json").read_text())["width_mm"] == 160
 
     def test_a_pipeline_made_in_python_lists_them_too(self, tmp_path: Path):

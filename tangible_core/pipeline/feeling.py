@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from os import PathLike
 from threading import Event
-from typing import TYPE_CHECKING, TypedDict, TypeVar, final, get_args
+from typing import Any, Protocol, TypedDict, TypeVar, final, get_args
 
 import numpy as np
 
@@ -34,18 +34,26 @@ from ..session import (
 )
 from ..session.film import ByClock, Reliefs
 from .config.methods import check_kind, named_method
-from .engine.filmed import film_of, reliefs_of
+from .engine.engine import Engine
+from .engine.film import film_of, reliefs_of
 from .engine.rules import fitted
 from .output.following import felt_device, how_followed
 from .output.legible import legible, of_width
 from .output.runs import about
 
-if TYPE_CHECKING:
-    from .pipeline import Pipeline
-
 T = TypeVar("T")
 NO_ROWS = np.empty((0, len(TICK_COLUMNS)))
 """The rows of a recording without ticks."""
+
+
+class Felt(Protocol):
+    """A pipeline, as far as a session needs it."""
+
+    engine: Engine
+
+    def make(self, want: str | None = None) -> Any:
+        """Make a product."""
+        ...
 
 
 class FeelOptions(TypedDict, total=False):
@@ -64,7 +72,7 @@ class FeelOptions(TypedDict, total=False):
     """Called once a loop in real time runs."""
     stop: Event | None
     """Ends the session when it is set from another thread."""
-    then: "Sequence[Pipeline]"
+    then: Sequence[Felt]
     """The pipelines that are felt after this one, each for `each_s`, and then this one again; in real time alone."""
     each_s: float
     """Seconds for each pipeline of `then`; 60 by default."""
@@ -80,7 +88,7 @@ class FeelOptions(TypedDict, total=False):
 class Feeling:
     """The surface of a pipeline on a device, the given or the configured one."""
 
-    def __init__(self, pipeline: "Pipeline", device: HapticDevice | None = None) -> None:
+    def __init__(self, pipeline: Felt, device: HapticDevice | None = None) -> None:
         """Nothing runs, and no device is opened yet. Raises: ArgumentError for what is not a device."""
         if device is not None:
             check_kind("device", device)
@@ -99,7 +107,7 @@ class Feeling:
     @property
     def touch(self) -> Touch:
         """The force law on the surface, whose materials fit the device. Raises: TangibleError as `Pipeline.make`."""
-        return self.pipeline.touch if self.given is None else self.engine.touch_on(self.given)
+        return self.pipeline.make("touch") if self.given is None else self.engine.touch_on(self.given)
 
     @property
     def reliefs(self) -> Reliefs:
@@ -110,7 +118,7 @@ class Feeling:
         and `reliefs.made` makes its relief.
         Raises: ConfigError for a scene that does not move, or a relief that is made of parts.
         """
-        return reliefs_of(self.engine.config, self.pipeline.scene)
+        return reliefs_of(self.engine.config, self.engine.scene)
 
     def film(self, period_s: float = 0.001) -> Film:
         """Make the touch of the video's first frame, as a film that goes on from there.
@@ -132,7 +140,7 @@ class Feeling:
         on_report: Callable[[ServoReport], None] | None = None,
         on_start: Callable[[Servo], None] | None = None,
         stop: Event | None = None,
-        then: "Sequence[Pipeline]" = (),
+        then: Sequence[Felt] = (),
         each_s: float = 60.0,
         on_wait: Callable[[str], None] | None = None,
         beacon: str | int | None = None,
@@ -190,7 +198,7 @@ class Feeling:
         beacon: str | int | None,
     ) -> Recording:
         """Feel by the clock of a simulated device."""
-        tell = telling_parts(self.pipeline.surface, tell)
+        tell = telling_parts(self.pipeline.make("surface"), tell)
         touch, how = self._touch_or_film(), (self.engine.config.safety, stop, self._beacon(beacon))
         if not isinstance(touch, Film):
             return run_simulated(touch, device, seconds, tell, *how)
@@ -220,7 +228,7 @@ class Feeling:
 
         seen: the ticks, or one of `session.EVERY`. Raises: as `Pipeline.make`.
         """
-        return parts_felt(seen, self.pipeline.surface)
+        return parts_felt(seen, self.pipeline.make("surface"))
 
     def legible(self, medium: Medium, width_m: float | None = None) -> Legibility:
         """Check whether fingers can read the parts: on swell paper, as a print, on pins, or on a force device.
@@ -248,7 +256,7 @@ class Feeling:
         law = config.render
         if law is None:
             raise config.missing("render")
-        touch, surface = self.touch, fitted(self.pipeline.surface, config, device)[0]
+        touch, surface = self.touch, fitted(self.pipeline.make("surface"), config, device)[0]
         return survey(
             law.method.felt(surface) if isinstance(law.method, Reshaping) else surface,
             touch,
@@ -256,9 +264,9 @@ class Feeling:
             device,
             size=config.size,
             safety=config.safety,
-            scene_relief_m=self.pipeline.scene.relief_m,
+            scene_relief_m=self.engine.scene.relief_m,
             of_parts=config.heights is not None,
-            smoothed=self.pipeline.scene.height is None,
+            smoothed=self.engine.scene.height is None,
             law_name=law.name,
             fitted=config.materials.fit == "device",
             hand=hand,
@@ -270,7 +278,7 @@ class Feeling:
         ours, theirs = self.engine.config, first.engine.config
         own = self.given is None and ours.device is not None
         if ours.mapping != theirs.mapping or (own and ours.felt_device != theirs.felt_device):
-            here, before = (each.engine.config.path or each.pipeline.scene.name for each in (self, first))
+            here, before = (each.engine.config.path or each.engine.scene.name for each in (self, first))
             raise ConfigError(
                 f"{here}: has another `device:` or `mapping:` than {before}, which is felt before it; give both the "
                 "same, or leave `device:` out of all but the first"
@@ -278,16 +286,16 @@ class Feeling:
         on = self
         if self.given is None and ours.device is None and theirs.device is not None:
             on = Feeling(self.pipeline, theirs.device.method)
-        reliefs = None if self.pipeline.scene.video is None else lambda: self.reliefs
-        return Turn(on._touch_or_film(), ours.safety, self.pipeline.surface, self._beacon(beacon), reliefs)
+        reliefs = None if self.engine.scene.video is None else lambda: self.reliefs
+        return Turn(on._touch_or_film(), ours.safety, self.pipeline.make("surface"), self._beacon(beacon), reliefs)
 
     def _touch_or_film(self) -> Touch | Film:
         """Return what a loop feels: of a video, a film."""
-        return self.touch if self.pipeline.scene.video is None else self.film()
+        return self.touch if self.engine.scene.video is None else self.film()
 
     def _beacon(self, part: str | int | None) -> Beacon | None:
         """Return the beacon to a part, by its name or number. Raises: ConfigError for an unknown part."""
-        return None if part is None else beacon_to(self.pipeline.surface, part)
+        return None if part is None else beacon_to(self.pipeline.make("surface"), part)
 
     def _about(self) -> About:
         said = about(self.engine)

@@ -4,20 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ..plugins.interfaces import HapticDevice
 from .feeling import Feeling
 from .output.parts_text import part_heights, to_correct
 
-if TYPE_CHECKING:
-    from .pipeline import Pipeline
 
-
-def _on(verb: str) -> Callable[[Pipeline], Any]:
+def _on(verb: str) -> Callable[[Any], Any]:
     """Return a verb of `Feeling` that takes the device last, or by name, as that of `Pipeline` did."""
 
-    def verb_of(pipeline: Pipeline) -> Any:
+    def verb_of(pipeline: Any) -> Any:
         def call(*arguments: Any, device: HapticDevice | None = None, **options: Any) -> Any:
             *rest, last = arguments or (None,)
             if isinstance(last, HapticDevice):
@@ -29,7 +26,8 @@ def _on(verb: str) -> Callable[[Pipeline], Any]:
     return verb_of
 
 
-OLD_NAMES: Mapping[str, Callable[[Pipeline], Any]] = {
+OLD_NAMES: Mapping[str, Callable[[Any], Any]] = {
+    "changed": lambda pipeline: partial(type(pipeline).from_config, like=pipeline),
     "views": lambda pipeline: pipeline.scene.views,
     "parts": lambda pipeline: pipeline.make("parts"),
     "simplified": lambda pipeline: pipeline.make("simplified"),

@@ -144,14 +144,23 @@ class Pipeline:
 
     @classmethod
     def from_config(
-        cls, config: PipelineConfig, registry: Registry, cache: Cache | None, like: "Pipeline | None" = None
+        cls,
+        config: PipelineConfig,
+        registry: Registry | None = None,
+        cache: Cache | None = None,
+        *,
+        like: "Pipeline | None" = None,
     ) -> Self:
         """Make a pipeline of a configuration that was checked.
 
-        like: another pipeline; what the configuration makes alike is not made again, and its cache stays.
+        cache: where results are kept between runs; None keeps none. like: another pipeline, whose registry and cache
+        this one shares; what the configuration makes alike is not made again.
         """
         pipeline = cls.__new__(cls)
-        pipeline.engine = Engine(config, registry, cache) if like is None else like.engine.changed(config)
+        if like is None:
+            pipeline.engine = Engine(config, registry or default_registry(), cache)
+        else:
+            pipeline.engine = like.engine.changed(config)
         return pipeline
 
     def to_yaml(self, path: str | PathLike[str]) -> None:

@@ -119,7 +119,7 @@ class Bench:
         """A pipeline after another one; None if files of its scene are not those that were read for that one."""
         if (stamp := stamp_of(config)) != self._stamps.get(before):
             return None
-        made = before.changed(config)
+        made = Pipeline.from_config(config, like=before)
         self._stamps[made] = stamp
         return made
 

@@ -1,8 +1,8 @@
 """Jobs that make heights and materials of parts felt while they are changed, and that show them.
 
 What does not depend on the heights is made once and kept. What is felt is, to the bit, what the document gives once it
-says these heights: the same steps make it (`felt.layered`, `fitted`, the law's own `touch`). Only where that has more
-than MOST_CELLS it is felt on a coarser grid until it is saved: a hand that drags a height waits for nothing.
+says these heights: the same steps make it (`working_grid.layered`, `fitted`, the law's own `touch`). Only where that
+has more than MOST_CELLS it is felt on a coarser grid until it is saved: a hand that drags a height waits for nothing.
 """
 
 from collections.abc import Mapping, Sequence
@@ -20,8 +20,7 @@ from tangible_core.materials.assignment import find, load_library
 from tangible_core.parts import HeightChoice, Layering, PartChoice
 from tangible_core.pipeline.config.model import PipelineConfig
 from tangible_core.pipeline.config.part_checks import wrong_of_parts
-from tangible_core.pipeline.engine import felt as on_grid
-from tangible_core.pipeline.engine import parts_found
+from tangible_core.pipeline.engine import part_validation, working_grid
 from tangible_core.pipeline.engine.rules import fitted, part_heights
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.scene.scaling import felt_factor
@@ -46,7 +45,7 @@ class Kept:
     config: PipelineConfig
     """With nothing said of the parts but their names, by which rules may call them."""
     pipeline: Pipeline
-    grid: on_grid.FeltScene
+    grid: working_grid.WorkingGrid
     parts: PartMap
     """On the grid that is felt."""
     materials: tuple[Material, ...] | None
@@ -82,14 +81,14 @@ def parts_heights(
         raise config.missing("render")
     if pipeline.scene.segments is None and not pipeline.config.by_parts:
         raise ConfigError("no parts are saved yet; save what was drawn, and its heights can be felt")
-    kept = _kept(bench, pipeline.changed(config))
+    kept = _kept(bench, Pipeline.from_config(config, like=pipeline))
     said = {number: _checked(PartChoice, {"height_m": height_m}) for number, height_m in enumerate(heights_m)}
-    parts_found.check_found(config.changed(parts=said), kept.parts, kept.grid.scene.shape[1])
+    part_validation.check_found(config.changed(parts=said), kept.parts, kept.grid.scene.shape[1])
     known = _known(kept, heights_m, (heights or {}).get("by", config_heights(pipeline.config).by))
-    relief = on_grid.layered(kept.layering, known, config.size, kept.grid.shown)
-    own = parts_found.own_materials(config) if materials is None else dict(enumerate(materials))
+    relief = working_grid.layered(kept.layering, known, config.size, kept.grid.shown)
+    own = part_validation.own_materials(config) if materials is None else dict(enumerate(materials))
     made = None if kept.materials is None else _materials(kept.materials, own, config)
-    names = parts_found.surface_with_names
+    names = part_validation.surface_with_names
     kept.surface = names(config, HapticSurface(relief, kept.parts.labels, made, ("",) * kept.parts.count))
     device = config.felt_device
     surface = kept.surface if device is None else fitted(kept.surface, config, device)[0]
@@ -157,9 +156,9 @@ def _kept(bench: Bench, pipeline: Pipeline) -> Kept:
         return before
     if wrong := list(wrong_of_parts(config)):
         raise config.complained(*wrong)
-    made = pipeline.changed(bare)
-    grid = on_grid.FeltScene(made.scene, bare.size)
-    parts = on_grid.parts_on_grid(made.engine.felt(bare.felt_parts), grid.shape, bare.felt_parts)
+    made = Pipeline.from_config(bare, like=pipeline)
+    grid = working_grid.WorkingGrid(made.scene, bare.size)
+    parts = working_grid.parts_on_grid(made.engine.felt(bare.felt_parts), grid.shape, bare.felt_parts)
     uses = bare.render is None or bare.render.method.uses_materials
     chosen = made.make("materials") if uses else None
     layering = None if before is None else _same_layering(before, bare, parts, grid)
@@ -171,7 +170,9 @@ def _kept(bench: Bench, pipeline: Pipeline) -> Kept:
     return kept
 
 
-def _same_layering(before: Kept, config: PipelineConfig, parts: PartMap, grid: on_grid.FeltScene) -> Layering | None:
+def _same_layering(
+    before: Kept, config: PipelineConfig, parts: PartMap, grid: working_grid.WorkingGrid
+) -> Layering | None:
     """The one that is there, if it is of the same parts."""
     same = before.config.heights == config.heights and before.config.size == config.size
     return (

@@ -20,7 +20,7 @@ from tangible_core.parts import find_parts
 from tangible_core.pipeline.config.editing import REMOVE, edited, said
 from tangible_core.pipeline.config.model import PipelineConfig
 from tangible_core.pipeline.config.parsing import parse_config
-from tangible_core.pipeline.engine.parts_found import check_found
+from tangible_core.pipeline.engine.part_validation import check_found
 from tangible_core.scene.scene import Scene, builtin_files
 from tangible_core.scene.scene_files import BUILTINS, SceneFiles
 

@@ -12,27 +12,17 @@ import pytest
 
 from command_line import tangible
 from full_disk import files_up_to
-from tangible_core import (
-    DepthEstimator,
-    DisparityMap,
-    Exporter,
-    Pipeline,
-    Recording,
-    Scene,
-    Segmenter,
-    SegmentMap,
-    Views,
-    Work,
-)
+from tangible_core import DisparityMap, Pipeline, Recording, Scene, SegmentMap, Views
 from tangible_core.data import TICK_COLUMNS, PartMap
 from tangible_core.errors import ConfigError, OutputError, PictureError, Stopped, UnknownMethod
 from tangible_core.parts import reduced_parts
 from tangible_core.pipeline.config.model import PRODUCTS
 from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.pipeline.engine.cache import Cache
-from tangible_core.pipeline.engine.felt import parts_on_grid
+from tangible_core.pipeline.engine.working_grid import parts_on_grid
 from tangible_core.pipeline.output.export_folder import move, read_list
 from tangible_core.pipeline.output.exporting import EXPORTABLE, MOST_STEM_BYTES, stem_of
+from tangible_core.plugins import DepthEstimator, Exporter, Segmenter, Work
 from tangible_core.plugins.registry import default_registry
 
 LABELS = np.kron(np.int32([[0, 1, 1], [0, 2, 2]]), np.ones((24, 24), np.int32))

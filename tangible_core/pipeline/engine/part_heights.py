@@ -60,7 +60,7 @@ def hidden(parts: PartMap, shown: Bool[np.ndarray, "h w"] | None) -> list[int]:
     return np.flatnonzero((opaque == 0) & (there > 0)).tolist()
 
 
-def tell(found: PartHeights, heights: HeightChoice, given_m: Mapping[int, float]) -> None:
+def warn_missing_heights(found: PartHeights, heights: HeightChoice, given_m: Mapping[int, float]) -> None:
     """Note what nobody said: a guess is a warning."""
     left = [number for number, why in enumerate(found.reasons) if number not in given_m and "transparent" not in why]
     if not left:

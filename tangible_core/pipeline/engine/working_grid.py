@@ -17,7 +17,7 @@ from ...scene.workspace import FeltSize
 
 
 @final
-class FeltScene:
+class WorkingGrid:
     """What a scene has on the grid that is felt. Reduced when first asked for, and kept."""
 
     def __init__(self, scene: Scene, size: FeltSize) -> None:

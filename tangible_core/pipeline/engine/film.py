@@ -19,8 +19,8 @@ from ...session.film import FrameMaker, Reliefs
 from ..config.methods import NamedMethod
 from ..config.model import PipelineConfig
 from .engine import Engine
-from .felt import FeltScene
 from .rules import estimated, fitted, in_pictures_pixels, relief_of
+from .working_grid import WorkingGrid
 
 log = logging.getLogger(__name__)
 
@@ -40,7 +40,7 @@ class PipelineFrames(FrameMaker):
         self._depth: NamedMethod[DepthEstimator] = config.depth
         self._estimate: Callable[[Views], DisparityMap] = config.depth.method.estimate
         self._exchanged = False
-        self._still = FeltScene(scene, config.size)
+        self._still = WorkingGrid(scene, config.size)
 
     def begin(self, views: Views) -> DisparityMap:
         """Of the first frame, in pixels of the pictures; what is found once is found in it."""
@@ -60,7 +60,7 @@ class PipelineFrames(FrameMaker):
         assert grid.views is not None
         return self._put_right(estimated(self._depth, self._estimate, grid.views), grid)
 
-    def _put_right(self, made: DisparityMap, grid: FeltScene) -> DisparityMap:
+    def _put_right(self, made: DisparityMap, grid: WorkingGrid) -> DisparityMap:
         return in_pictures_pixels(view_order.put_right(made) if self._exchanged else made, grid)
 
     def nearness(self, disparity: DisparityMap) -> ValueRange:
@@ -72,8 +72,8 @@ class PipelineFrames(FrameMaker):
         """As the relief of a scene that stands still is made, within this range."""
         return relief_of(disparity, self._still, self._config.size, spans)
 
-    def _grid(self, views: Views) -> FeltScene:
-        return FeltScene(replace(self._scene, views=views), self._config.size)
+    def _grid(self, views: Views) -> WorkingGrid:
+        return WorkingGrid(replace(self._scene, views=views), self._config.size)
 
 
 def reliefs_of(config: PipelineConfig, scene: Scene) -> Reliefs:

@@ -57,7 +57,7 @@ def overhead_rows(runs: int = 7) -> list[str]:
     stages, engine, digest, store, recall = [], [], [], [], []
     for _ in range(runs + 1):
         pipeline = load_pipeline(ROOT / "configs" / "demo.yaml")
-        pipeline.cache = None
+        pipeline.engine.cache = None
         views: Views = pipeline.scene.views  # reading the scene is not the engine's
         start = perf_counter()
         records = [(product, pipeline.make(product)) for product in PRODUCTS]

@@ -17,6 +17,7 @@ import numpy as np
 
 from tangible_core import HapticSurface, Pipeline, Scene
 from tangible_core.data import TICK_COLUMNS, HapticState, Relief, ServoReport, TickFlag
+from tangible_core.pipeline.feeling import Feeling
 from tangible_core.runtime.threads import limited_threads
 from tangible_core.scene.geometry import smooth
 from tangible_core.servo import Safety, Servo
@@ -95,8 +96,8 @@ def _write(path: Path, size: tuple[int, int], fps: float) -> None:
 
 def _cost_ms(pipeline: Pipeline, frames: int = 100) -> float:
     """Of the processor, to read, match, steady and show a frame: one after the other, none left out."""
-    film = pipeline.film()
-    with pipeline.reliefs as reliefs, limited_threads(1):
+    film = Feeling(pipeline).film()
+    with Feeling(pipeline).reliefs as reliefs, limited_threads(1):
         for number, _, relief in islice(reliefs, 10):
             film.show(relief, number)
         begun_s = time.process_time()
@@ -113,7 +114,7 @@ def _played(
     on_report: Callable[[ServoReport], None] | None = None,
 ) -> ServoReport:
     """A session of a film on a device without Python; of its first frame alone, if it is not to play."""
-    turn = Turn(pipeline.film(), Safety(), reliefs=(lambda: pipeline.reliefs) if playing else None)
+    turn = Turn(Feeling(pipeline).film(), Safety(), reliefs=(lambda: Feeling(pipeline).reliefs) if playing else None)
     return run_in_turn([turn], Circling(), seconds, on_start=on_start, on_report=on_report)
 
 

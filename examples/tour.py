@@ -18,7 +18,8 @@ from pathlib import Path
 
 import numpy as np
 
-from tangible_core import DepthEstimator, DisparityMap, HapticState, Pipeline, Scene, Views, Workspace, show
+from tangible_core import DisparityMap, Feeling, HapticState, Pipeline, Scene, Views, Workspace, show
+from tangible_core.plugins import DepthEstimator
 from tangible_depth import SemiGlobal
 from tangible_devices import Mock
 from tangible_render import GreyLevel, Proxy
@@ -58,7 +59,7 @@ pipeline.outcomes
 
 # %%
 if pipeline.segments is not None:
-    show(pipeline.segments, views=pipeline.views, materials=pipeline.materials)
+    show(pipeline.segments, views=pipeline.scene.views, materials=pipeline.materials)
 
 # %% [markdown]
 # ## Forces
@@ -88,7 +89,7 @@ recording
 
 # %%
 grey = Pipeline(scene, depth=SemiGlobal(), workspace=pipeline.config.workspace, render=GreyLevel())
-again = grey.replay(recording)
+again = Feeling(grey).replay(recording)
 print(f"proxy: {recording.peak_force_n:.2f} N at most, grey level: {again.peak_force_n:.2f} N")
 
 # %% [markdown]

@@ -50,6 +50,7 @@ def feel(
 
     from .. import session
     from ..errors import check_positive
+    from ..pipeline.feeling import Feeling
     from ..servo import OVER, TERMINATED
     from . import sentences, show
 
@@ -88,8 +89,8 @@ def feel(
     )
     (report,) = reports
     felt = session.figures(report)
-    hand = None if then or wait else pipeline.followed(looks.recording())
-    parts = () if then else pipeline.parts_felt(looks.recording())
+    hand = None if then or wait else Feeling(pipeline).track(looks.recording())
+    parts = () if then else Feeling(pipeline).parts_felt(looks.recording())
     pulled = session.beacons_felt(looks.recording(), pipeline.surface)
     if as_json:
         figures = {"device": device.name, "spec": asdict(device.method.spec()), **felt}

@@ -41,8 +41,10 @@ def legible(
     Says by the rules of tactile graphics what is ok, what is not and where, and its cure. Writes nothing. Exit 1 if
     something is illegible.
     """
+    from ..pipeline.feeling import Feeling
+
     pipeline = open_pipeline(config, sets or [], not no_cache)
-    verdicts = pipeline.legible(medium.value, width_m)
+    verdicts = Feeling(pipeline).legible(medium.value, width_m)
     width_m = pipeline.config.size.width_m if width_m is None else width_m
     _print(pipeline.scene.name, medium.value, width_m, verdicts, as_json)
     if not verdicts.readable:

@@ -38,6 +38,7 @@ def preflight(
     are tried, and a file with what is needed of them is written; if that is not enough, none is, and the exit is 1.
     """
     from ..errors import OutputError
+    from ..pipeline.feeling import Feeling
     from ..preflight import Hand, Loop, judge
 
     hand, loop = Hand(speed, press), Loop(rate, seconds)
@@ -46,7 +47,7 @@ def preflight(
     pipeline = open_pipeline(config, sets or [], not no_cache)
     device = device_of(pipeline)
     if fix is None:
-        flight = pipeline.flight(hand=hand, loop=loop)
+        flight = Feeling(pipeline).flight(hand=hand, loop=loop)
         verdicts, more = judge(flight), {}
     else:
         flight, verdicts, more = _fixed(config, sets or [], hand, loop, fix, not no_cache)

@@ -32,20 +32,22 @@ def replay(
     from time import perf_counter
 
     from .. import session
+    from ..pipeline.feeling import Feeling
 
     if record is not None:
         session.check_record_path(record)
     before = session.Recording.load(recording)
     pipeline = open_pipeline(config, sets or [], not no_cache)
-    pipeline.replay(replace(before, rows=before.rows[:0]))  # what is compiled on first use is not timed
+    feeling = Feeling(pipeline)
+    feeling.replay(replace(before, rows=before.rows[:0]))  # what is compiled on first use is not timed
     start = perf_counter()
-    after = pipeline.replay(before)
+    after = feeling.replay(before)
     seconds = perf_counter() - start
     if record is not None:
         replace(after, about=replace(after.about, device=f"replay of {recording.name}")).save(record)
     figures = {**session.compared(before, after), "ns_per_tick": 1e9 * seconds / max(1, len(after.rows))}
     law = pipeline.config.render
-    parts = pipeline.parts_felt(after)
+    parts = feeling.parts_felt(after)
     pulled = session.beacons_felt(before, pipeline.surface)
     _print(before, figures, parts, pulled, record, as_json, law.name if law else "the law")
 

@@ -42,7 +42,7 @@ def demo(
 
     text = files("tangible_core").joinpath("demo.yaml").read_text(encoding="utf-8")
     config = parse_config(text, DEMO, default_registry())
-    pipeline = Pipeline.of(config, default_registry(), None if no_cache else Cache())
+    pipeline = Pipeline.from_config(config, default_registry(), None if no_cache else Cache())
     out = out or default_place(DEMO)
     done = pipeline.run(out, seconds=seconds)
     _print(done, as_json)
@@ -122,7 +122,7 @@ def open_pipeline(config: Path | Sequence[Path], sets: Sequence[str], cached: bo
     else:
         pipeline = load_pipeline(files[0], sets)
     if not cached:
-        pipeline.cache = None
+        pipeline.engine.cache = None
     return pipeline
 
 

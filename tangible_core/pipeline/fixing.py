@@ -11,6 +11,7 @@ from ..preflight.timing import Lateness
 from ..preflight.verdict import Change
 from .config.editing import edited, moved, with_overrides
 from .config.parsing import parse_config
+from .feeling import Feeling
 from .pipeline import Pipeline
 
 ROUNDS = 24
@@ -47,11 +48,11 @@ def fix(path: Path, sets: Iterable[str], hand: Hand, loop: Loop, out: Path, cach
     """Change what the cures say, the unsafe first, until nothing is left to change; `verdicts.safe` says if it passes.
 
     sets: `key.key=value` each, as `--set` takes them. out: where the file is to stand; nothing is written.
-    Raises: ConfigError as `load_config`; TangibleError as `Pipeline.flight`.
+    Raises: ConfigError as `load_config`; TangibleError as `Feeling.flight`.
     """
     pipeline = Pipeline.from_yaml(path, sets := list(sets))
     if not cached:
-        pipeline.cache = None
+        pipeline.engine.cache = None
     found = cured(with_overrides(read_text(path), path, sets), path, pipeline, hand, loop)
     changes = {key: change.value for key, change in found.changes.items()}
     return Fixed(changes, found.flight, found.verdicts, moved(found.text, path, found.pipeline.config, out))
@@ -71,7 +72,7 @@ def cured(
     sets: what the pipeline has beside the text. lateness: of a loop that runs, in place of this process's own.
     Raises: as `fix`.
     """
-    flight = pipeline.flight(hand=hand, loop=loop)
+    flight = Feeling(pipeline).flight(hand=hand, loop=loop)
     flight = replace(flight, lateness=(lateness := lateness or flight.lateness))
     done: dict[str, Change] = {}
     for _ in range(ROUNDS):
@@ -79,8 +80,8 @@ def cured(
             break
         text = edited(text, path, {change.key: change.setting})
         done[change.key] = change
-        pipeline = pipeline.changed(parse_config(text, path, pipeline.engine.registry, sets))
-        flight = pipeline.flight(hand=hand, loop=replace(loop, seconds=AT_ONCE))
+        pipeline = Pipeline.from_config(parse_config(text, path, pipeline.engine.registry, sets), like=pipeline)
+        flight = Feeling(pipeline).flight(hand=hand, loop=replace(loop, seconds=AT_ONCE))
         flight = replace(flight, lateness=lateness)
     return Cured(done, flight, judge(flight), text, pipeline)
 

@@ -84,7 +84,7 @@ def pipeline_of(pictures: Sequence[Path], overrides: Sequence[str] = ()) -> Pipe
     config = parse_config(made.text, path, registry, overrides)
     if not any(each.lstrip().startswith("scene") for each in overrides):
         config = config.changed(scene=made.scene)  # it need not be read again
-    return Pipeline.of(config, registry, Cache())
+    return Pipeline.from_config(config, registry, Cache())
 
 
 def _is_builtin(path: Path) -> bool:

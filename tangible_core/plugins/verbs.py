@@ -5,7 +5,7 @@ Around the verbs of every method and touch, ours and anyone else's, so that none
 
 from collections.abc import Callable
 from functools import wraps
-from typing import Any
+from typing import Any, NamedTuple
 
 from ..data.arguments import as_force, as_state
 from ..data.device import Force, HapticState
@@ -27,26 +27,36 @@ def taking(name: str, wanted: type, hint: str = "") -> Convert:
     return convert
 
 
-def guard_verb(cls: type, kind: str, verb: str, gives: type, take: Convert | None = None) -> None:
-    """Around a class's own verb, if it has one: what it takes is converted, and what it gives is of this type.
+class Verb(NamedTuple):
+    """A verb of a kind of plugin: what it takes and what it returns."""
 
-    Its caller then gets a BrokenMethod that names the plugin in place of something else.
+    kind: str
+    name: str
+    returns: type
+    take: Convert | None = None
+    """Converts each argument; None for a verb without arguments, or of any."""
+
+
+def guard_verb(cls: type, verb: Verb) -> None:
+    """Wrap a class's own verb, if it has one: arguments are converted, and the result is of the verb's type.
+
+    A caller gets a BrokenMethod that names the plugin in place of a result of another type.
     """
-    own = cls.__dict__.get(verb)
+    own = cls.__dict__.get(verb.name)
     if own is None or getattr(own, "__isabstractmethod__", False):
         return
 
     @wraps(own)
     def guarded(self: Any, *given: Any, **by_name: Any) -> Any:
-        if take is not None:
-            given, by_name = tuple(map(take, given)), {name: take(value) for name, value in by_name.items()}
+        if verb.take is not None:
+            given, by_name = tuple(map(verb.take, given)), {name: verb.take(each) for name, each in by_name.items()}
         with limited_threads():
-            found = own(self, *given, **by_name)
-        if not isinstance(found, gives):
-            raise _unexpected(self, kind, verb, found, gives)
-        return found
+            result = own(self, *given, **by_name)
+        if not isinstance(result, verb.returns):
+            raise _unexpected(self, verb.kind, verb.name, result, verb.returns)
+        return result
 
-    setattr(cls, verb, guarded)
+    setattr(cls, verb.name, guarded)
 
 
 def guard_force(cls: type) -> None:

@@ -3,8 +3,9 @@
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from tangible_core import DeviceSpec, Force, HapticDevice, HapticState, Link
+from tangible_core import Force, HapticState
 from tangible_core.errors import DeviceAbsent, DeviceError
+from tangible_core.plugins import DeviceSpec, HapticDevice, Link
 
 if TYPE_CHECKING:
     from .maker import Box

@@ -8,8 +8,8 @@ from xml.sax.saxutils import escape
 import numpy as np
 from pydantic import Field
 
-from tangible_core import Exporter, Work
 from tangible_core.errors import GeometryError
+from tangible_core.plugins import Exporter, Work
 from tangible_core.plugins.notes import note
 
 log = logging.getLogger(__name__)

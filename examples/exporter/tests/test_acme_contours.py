@@ -2,8 +2,9 @@ import numpy as np
 import pytest
 from acme_contours.contours import Contours
 
-from tangible_core import Relief, Work
+from tangible_core import Relief
 from tangible_core.errors import GeometryError
+from tangible_core.plugins import Work
 from tangible_core.testing import conforms
 
 test_contours = conforms("export", "acme-contours")

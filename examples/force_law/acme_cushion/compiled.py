@@ -5,8 +5,9 @@ from typing import Annotated, ClassVar
 import numpy as np
 from pydantic import Field
 
-from tangible_core import ForceRenderer, HapticSurface, Touch
+from tangible_core import HapticSurface
 from tangible_core.compiled.touch import CompiledTouch
+from tangible_core.plugins import ForceRenderer, Touch
 
 
 class CompiledCushion(ForceRenderer):

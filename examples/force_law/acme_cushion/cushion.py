@@ -6,8 +6,9 @@ from typing import Annotated, ClassVar
 import numpy as np
 from pydantic import Field
 
-from tangible_core import Force, ForceRenderer, HapticState, HapticSurface, PlainTouch, Touch
+from tangible_core import Force, HapticState, HapticSurface
 from tangible_core.data import NO_FORCE
+from tangible_core.plugins import ForceRenderer, PlainTouch, Touch
 
 
 class Cushion(ForceRenderer):

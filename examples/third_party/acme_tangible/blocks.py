@@ -5,9 +5,10 @@ from typing import Annotated, ClassVar
 import numpy as np
 from pydantic import Field
 
-from tangible_core import DepthEstimator, DisparityMap, Views
+from tangible_core import DisparityMap, Views
 from tangible_core.data.pictures import to_grey
 from tangible_core.errors import PictureError
+from tangible_core.plugins import DepthEstimator
 
 
 class Blocks(DepthEstimator):

@@ -3,7 +3,7 @@
 import os
 from pathlib import Path
 
-from tangible_core import Outcome, hookimpl
+from tangible_core.plugins import Outcome, hookimpl
 
 
 @hookimpl

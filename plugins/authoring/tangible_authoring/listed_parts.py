@@ -84,7 +84,7 @@ def list_parts(pipeline: Pipeline) -> ListedParts:
     `Pipeline.make`.
     """
     config, scene = pipeline.config, pipeline.scene
-    alone = pipeline.changed(config.changed(parts=None, heights=None, materials=MaterialChoice()))
+    alone = Pipeline.from_config(config.changed(parts=None, heights=None, materials=MaterialChoice()), like=pipeline)
     segments = alone.make("segments")
     if segments is None or scene.views is None:
         where = f"{config.path}: " if config.path else ""

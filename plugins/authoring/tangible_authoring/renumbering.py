@@ -63,7 +63,7 @@ def draw_numbers(
         check_free([numbered], force=force)
     text, cache = read_text(file), Cache() if cached else None
     config = parse_config(text, file, default_registry(), overrides)
-    listed = list_parts(Pipeline.of(config, default_registry(), cache))
+    listed = list_parts(Pipeline.from_config(config, default_registry(), cache))
     before = drawn.before(listed.found) if drawn else None
     by_rules = {rule.part: "" for rule in config.materials.rules if isinstance(rule.part, int)}
     moved = moves({**by_rules, **parts_in(text, file)}, before or ())
@@ -79,7 +79,7 @@ def draw_numbers(
         _check_rules(file, by_rules, moved)
         text = renumber_parts(text, file, before, listed.parts)
         config = parse_config(text, file, default_registry(), overrides)
-        listed = list_parts(Pipeline.of(config, default_registry(), cache))
+        listed = list_parts(Pipeline.from_config(config, default_registry(), cache))
         contents = {numbered: listed.numbered, file: text.encode()}
     _write_together(contents)
     return Numbers(listed, before, moved, title, tuple(contents), listed.wrong)

@@ -22,8 +22,8 @@ def write_card(pipeline: Pipeline, folder: Path) -> str:
     from PIL import Image
 
     parts = [_made(pipeline)]
-    if pipeline.views is not None:
-        parts.insert(0, _small(to_rgb8(pipeline.views.left)))
+    if pipeline.scene.views is not None:
+        parts.insert(0, _small(to_rgb8(pipeline.scene.views.left)))
     height = max(part.shape[0] for part in parts)
     whole = np.full((height, sum(part.shape[1] for part in parts), 3), 255, np.uint8)
     at = 0
@@ -42,8 +42,8 @@ def _made(pipeline: Pipeline) -> UInt8[np.ndarray, "r c 3"]:
     want = pipeline.config.want
     if want in ("views", "disparity") and pipeline.disparity is not None:
         return _grey(pipeline.disparity.disparity_px)
-    if want == "parts" and pipeline.parts is not None:
-        return _grey(pipeline.parts.labels)
+    if want == "parts" and (parts := pipeline.make(want)) is not None:
+        return _grey(parts.labels)
     if want in ("segments", "materials") and pipeline.segments is not None:
         return _grey(pipeline.segments.labels)
     return _lit(pipeline.relief.height_m, pipeline.relief.pitch_m)

@@ -80,7 +80,7 @@ def _named(job: Job, outcome: str, error: str | None) -> Row:
 def _made(job: Job) -> Row:
     registry = default_registry()
     config = parse_config(job.text, Path(job.path), registry, job.sets)
-    pipeline = Pipeline.of(config, registry, Cache(Path(job.cache)) if job.cache else None)
+    pipeline = Pipeline.from_config(config, registry, Cache(Path(job.cache)) if job.cache else None)
     folder = Path(job.folder)
     if job.sheet:
         run = pipeline.run(folder)

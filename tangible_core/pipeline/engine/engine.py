@@ -18,7 +18,7 @@ from ...plugins.interfaces import HapticDevice
 from ...plugins.notes import noted
 from ...plugins.registry import Registry
 from ...runtime.stopping import check_stopped, stoppable
-from ...runtime.threads import limited_threads
+from ...runtime.threads import check_threads, limited_threads
 from ...scene.scene import Scene
 from ..config.methods import NamedMethod
 from ..config.model import PipelineConfig
@@ -65,6 +65,15 @@ class Engine:
         self._substituted: frozenset[str] = frozenset()
         """The products that another engine handed over, and all that is made of them: they are not kept or reported."""
         self._progress: Progress = _ignore
+
+    def limit_threads(self, most: int | None) -> None:
+        """Let at most so many threads work at once, of kernels, OpenCV and torch; no result depends on it.
+
+        most: None for one a processor, or what the environment variable `TANGIBLE_THREADS` says.
+        Raises: ConfigError for less than one.
+        """
+        check_threads(most)
+        self.threads = most
 
     @contextmanager
     def watched(self, progress: Progress | None = None, stop: Event | None = None) -> Generator[None]:

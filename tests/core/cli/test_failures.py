@@ -13,7 +13,8 @@ from tangible_core.plugins.registry import default_registry
 
 ACME = """
 import numpy as np
-from tangible_core import DepthEstimator, DeviceSpec, DisparityMap, ForceRenderer, HapticDevice, PlainTouch, Segmenter
+from tangible_core import DisparityMap
+from tangible_core.plugins import DepthEstimator, DeviceSpec, ForceRenderer, HapticDevice, PlainTouch, Segmenter
 from tangible_core.data import Force
 
 

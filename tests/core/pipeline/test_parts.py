@@ -232,7 +232,7 @@ class TestCached:
 
     def test_nor_within_one_program(self, folder: Path):
         first = load_pipeline(written(folder, f"{SAID}heights: given\n"))
-        first.cache = None
+        first.engine.cache = None
         first.make("surface")
         config = first.config.changed(parts={**(first.config.parts or {}), 0: PartChoice(name="sky")})
         again = first.changed(config)

@@ -2,7 +2,9 @@
 
 import pytest
 
-from tangible_core import CompiledTouch, Force, PlainTouch
+from tangible_core import Force
+from tangible_core.compiled.touch import CompiledTouch
+from tangible_core.plugins import PlainTouch
 from tangible_core.plugins.failures import Place, place_of
 
 

@@ -10,7 +10,8 @@ from tangible_core.plugins.registry import KIND_NAMES, Registry, load_method
 
 MINE = '''
     import numpy as np
-    from tangible_core import DepthEstimator, DisparityMap, Views
+    from tangible_core import DisparityMap, Views
+    from tangible_core.plugins import DepthEstimator
 
     class Mine(DepthEstimator):
         """The same everywhere.

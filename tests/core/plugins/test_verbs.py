@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
-from tangible_core import DepthEstimator, DisparityMap, HapticState, HapticSurface, Recording, Views, load_method
+from tangible_core import DisparityMap, HapticState, HapticSurface, Recording, Views, load_method
 from tangible_core.data import Force
 from tangible_core.errors import ArgumentError, BrokenMethod, ConfigError
 from tangible_core.pipeline.pipeline import Pipeline
+from tangible_core.plugins import DepthEstimator
 from tangible_core.plugins.interfaces import KINDS
 from tangible_core.scene.scene import Scene
 

@@ -15,7 +15,8 @@ from functools import reduce
 from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field
-from tangible_core import DepthEstimator, DisparityMap, Views
+from tangible_core import DisparityMap, Views
+from tangible_core.plugins import DepthEstimator
 GAIN = 2.0
 TABLE = np.zeros(3)
 def inner(x): return x + 1

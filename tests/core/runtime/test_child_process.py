@@ -37,7 +37,8 @@ SURFACE = HapticSurface.from_heights(np.full((8, 8), 0.002, np.float32))
 ACME = '''
 import os, pathlib
 import numpy as np
-from tangible_core import DepthEstimator, DisparityMap, Force, ForceRenderer, HapticDevice
+from tangible_core import DisparityMap, Force
+from tangible_core.plugins import DepthEstimator, ForceRenderer, HapticDevice
 from tangible_core.compiled.touch import CompiledTouch
 from tangible_core.plugins.interfaces import PlainTouch
 from tangible_core.testing.loop_devices import SPEC

@@ -21,7 +21,8 @@ from tangible_core.runtime.standard_output import kept, stream
 TANGIBLE = str(Path(sys.executable).with_name("tangible"))
 NOISY = '''
 import ctypes, os, subprocess, sys
-from tangible_core import DepthEstimator, DisparityMap, hookimpl
+from tangible_core import DisparityMap
+from tangible_core.plugins import DepthEstimator, hookimpl
 import numpy as np
 
 C = ctypes.CDLL(None)

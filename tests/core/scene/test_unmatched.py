@@ -7,8 +7,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from tangible_core import DepthEstimator, Pipeline, Scene
+from tangible_core import Pipeline, Scene
 from tangible_core.data import DisparityMap, Views
+from tangible_core.plugins import DepthEstimator
 from tangible_core.scene.unmatched import hardly_matched, same_twice
 
 SHAPE = 10, 20

@@ -11,8 +11,9 @@ import numpy as np
 import pytest
 from pydantic import ConfigDict, Field
 
-from tangible_core import DepthEstimator, DisparityMap, Views
+from tangible_core import DisparityMap, Views
 from tangible_core.errors import BrokenMethod, UnknownMethod
+from tangible_core.plugins import DepthEstimator
 from tangible_core.plugins.registry import KIND_NAMES, Registry
 from tangible_core.testing import (
     CheckFailure,
@@ -26,7 +27,8 @@ from tangible_core.testing import (
 
 SOURCE = '''
     import numpy as np
-    from tangible_core import DepthEstimator, DisparityMap, Views
+    from tangible_core import DisparityMap, Views
+    from tangible_core.plugins import DepthEstimator
 
     class Mine(DepthEstimator):
         """Six pixels everywhere."""

@@ -9,26 +9,21 @@ from typing import Any, ClassVar
 import numpy as np
 import pytest
 
-from tangible_core import (
-    DepthEstimator,
-    DeviceSpec,
-    DisparityMap,
-    Exporter,
-    Force,
-    ForceRenderer,
-    HapticDevice,
-    HapticState,
-    HapticSurface,
-    Link,
-    Segmenter,
-    SegmentMap,
-    Touch,
-    Views,
-    Work,
-)
+from tangible_core import DisparityMap, Force, HapticState, HapticSurface, SegmentMap, Views
 from tangible_core.data import NO_FORCE
 from tangible_core.data.pictures import to_grey
 from tangible_core.errors import BrokenMethod, DeviceAbsent, DeviceError, PictureError
+from tangible_core.plugins import (
+    DepthEstimator,
+    DeviceSpec,
+    Exporter,
+    ForceRenderer,
+    HapticDevice,
+    Link,
+    Segmenter,
+    Touch,
+    Work,
+)
 from tangible_core.testing import (
     CheckFailure,
     checks_depth,

@@ -45,7 +45,7 @@ def test_the_errors_of_a_run_are_those_of_the_truth(folder: Path):
     config = parsed(
         folder, "{set: sintel, folder: films, name: alley_1/frame_0001}", rest="depth: {use: semi-global}\n"
     )
-    pipeline = Pipeline.of(config, default_registry(), None)
+    pipeline = Pipeline.from_config(config, default_registry(), None)
     truth = known().pair.truth_px
     assert np.nanmax(np.abs(pipeline.scene.truth - truth)) < 1e-4
     found = pipeline.make("disparity").disparity_px

@@ -257,7 +257,7 @@ def test_changed_network_or_card_changes_the_result(tmp_path: Path):
 
     def create() -> tuple[str, np.ndarray]:
         pipeline = Pipeline(Scene.of(photo=seen), depth=Onnx(model=tmp_path / "m.onnx"), workspace={"finest_m": 0})
-        pipeline.cache = cache
+        pipeline.engine.cache = cache
         disparity = pipeline.disparity
         assert disparity is not None
         outcome = {each.product: each.outcome for each in pipeline.outcomes}["disparity"]

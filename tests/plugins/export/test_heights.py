@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from tangible_core import Pipeline, Relief, Scene, Work, Workspace
+from tangible_core import Pipeline, Relief, Scene, Workspace
 from tangible_core.errors import ConfigError, PictureError
 from tangible_core.pipeline.config.parsing import parse_config
+from tangible_core.plugins import Work
 from tangible_core.plugins.registry import default_registry
 from tangible_export import Heights
 
@@ -48,7 +49,7 @@ def test_they_are_read_back(tmp_path: Path, ending: str):
 def test_a_pipeline_file_reads_them_too(tmp_path: Path, ending: str):
     path = written(tmp_path, bumps())[ending]
     config = parse_config(f"scene: {{height: {path.name}}}", tmp_path / "p.yaml", default_registry())
-    relief = Pipeline.of(config, default_registry(), None).relief
+    relief = Pipeline.from_config(config, default_registry(), None).relief
     assert relief.extent_m[0] == pytest.approx(0.16)
     assert (relief.height_m.min(), relief.height_m.max()) == pytest.approx((0.0012, 0.01), abs=TENTH_UM)
     assert config.completed()["workspace"]["width_m"] == pytest.approx(0.16)

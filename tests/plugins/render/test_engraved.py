@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from tangible_core import ForceRenderer, Pipeline, Scene
+from tangible_core import Pipeline, Scene
 from tangible_core.data import HapticState, HapticSurface, Relief
 from tangible_core.materials.assignment import library
+from tangible_core.plugins import ForceRenderer
 from tangible_core.plugins.notes import collected
 from tangible_core.plugins.registry import load_method
 from tangible_devices import Mock

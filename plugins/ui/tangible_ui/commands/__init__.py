@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from tangible_core import hookimpl
+from tangible_core.plugins import hookimpl
 
 if TYPE_CHECKING:
     from typer import Typer

@@ -111,7 +111,7 @@ class Bench:
         config, before = self.config_of(text, path, sets), self.pipeline
         made = self.after(before, config) if before is not None else None
         if made is None:
-            made = Pipeline.of(config, self.registry, self._cache)
+            made = Pipeline.from_config(config, self.registry, self._cache)
             self._stamps[made] = stamp_of(config)
         return made
 
@@ -119,7 +119,7 @@ class Bench:
         """A pipeline after another one; None if files of its scene are not those that were read for that one."""
         if (stamp := stamp_of(config)) != self._stamps.get(before):
             return None
-        made = before.changed(config)
+        made = Pipeline.from_config(config, like=before)
         self._stamps[made] = stamp
         return made
 

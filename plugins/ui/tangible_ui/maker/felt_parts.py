@@ -84,7 +84,7 @@ def parts_heights(
         raise config.missing("render")
     if pipeline.scene.segments is None and not pipeline.config.by_parts:
         raise ConfigError("no parts are saved yet; save what was drawn, and its heights can be felt")
-    kept = _kept(bench, pipeline.changed(config))
+    kept = _kept(bench, Pipeline.from_config(config, like=pipeline))
     said = {number: _checked(PartChoice, {"height_m": height_m}) for number, height_m in enumerate(heights_m)}
     part_validation.check_parts(config.changed(parts=said), kept.parts, kept.grid.scene.shape[1])
     part_validation.check_numbers(config, kept.parts.count)
@@ -164,7 +164,7 @@ def _kept(bench: Bench, pipeline: Pipeline) -> Kept:
         return before
     if wrong := list(wrong_of_parts(config)):
         raise config.complained(*wrong)
-    made = pipeline.changed(bare)
+    made = Pipeline.from_config(bare, like=pipeline)
     grid = working_grid.WorkingGrid(made.scene, bare.size)
     parts = working_grid.parts_on_grid(made.engine.felt(bare.felt_parts), grid.shape, bare.felt_parts)
     uses = bare.render is None or bare.render.method.uses_materials

@@ -6,6 +6,7 @@ from typing import Any, cast
 
 from tangible_core.errors import ConfigError, quoted
 from tangible_core.files.source import parse_value, plain
+from tangible_core.pipeline.pipeline import Pipeline
 
 from .bench import Bench, Job
 from .making import felt
@@ -36,7 +37,7 @@ def laws(bench: Bench, text: str, path: Path, sets: list[str], others: list[dict
     if first.config.render is None:
         raise first.config.missing("render")
     with_others = [bench.config_of(text, path, [*sets, f"render={json.dumps(each)}"]) for each in others]
-    return [felt(first), *(felt(first.changed(config)) for config in with_others)]
+    return [felt(first), *(felt(Pipeline.from_config(config, like=first)) for config in with_others)]
 
 
 JOBS = {

@@ -4,6 +4,7 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
+from tangible_core.pipeline.feeling import Feeling
 from tangible_core.plugins.interfaces import Medium
 from tangible_core.runtime.stopping import stoppable
 
@@ -17,7 +18,7 @@ def legible(
 ) -> dict[str, Any]:
     """Verdicts by the rules of one medium. width_m: of the whole picture there; that of the workspace without one.
 
-    Raises: TangibleError as `Pipeline.legible`.
+    Raises: TangibleError as `Feeling.legible`.
     """
     begun_s, digest = perf_counter(), digest_of(text)
     pipeline = bench.pipeline_of(text, path, sets)
@@ -25,7 +26,7 @@ def legible(
         bench.tell("making", want="legible", digest=digest)
         pipeline.make("parts", telling(bench, work), work.stop)
         with stoppable(work.stop):
-            judged = pipeline.legible(medium, width_m)
+            judged = Feeling(pipeline).legible(medium, width_m)
     width_m = pipeline.config.size.width_m if width_m is None else width_m
     found = {"digest": digest, "medium": medium, "width_m": width_m, **judged.as_data()}
     bench.tell("legible", **found)

@@ -5,6 +5,7 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
+from tangible_core.pipeline.feeling import Feeling
 from tangible_core.pipeline.fixing import AT_ONCE, cured
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.preflight import Hand, Loop, Preflight, judge
@@ -31,7 +32,7 @@ def preflight(
         bench.tell("making", want="preflight", digest=digest_of(text))
         pipeline.make("touch", telling(bench, work), work.stop)
         with stoppable(work.stop):
-            flight = pipeline.flight(loop=_loop(late))
+            flight = Feeling(pipeline).flight(loop=_loop(late))
     if late is not None:
         flight = replace(flight, lateness=Lateness(*late))
     found = _told(judge(flight), text, pipeline, is_own, late)

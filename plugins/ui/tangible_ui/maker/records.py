@@ -8,6 +8,7 @@ import numpy as np
 from tangible_core.data import TICK_COLUMNS
 from tangible_core.data.records import digest_of
 from tangible_core.errors import OutputError
+from tangible_core.pipeline.feeling import Feeling
 from tangible_core.session import Recording, beside, compared
 from tangible_core.session.recording_files import SUFFIXES
 
@@ -81,7 +82,7 @@ def compare_records(bench: Bench, path: Path, other: Path) -> dict[str, Any]:
 def try_law(bench: Bench, path: Path, text: str, document: Path, sets: list[str], folder: Path) -> dict[str, Any]:
     """Feel a recording's states with the document's law, keep that as a recording beside it, and compare."""
     before = Recording.load(path)
-    after = bench.pipeline_of(text, document, sets).replay(before)
+    after = Feeling(bench.pipeline_of(text, document, sets)).replay(before)
     out = _free(folder, f"{path.stem} with {after.about.renderer}")
     after.save(out)
     return {**_shown(bench, after, str(out)), "compared": compared(before, after)}

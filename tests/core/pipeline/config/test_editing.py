@@ -133,10 +133,10 @@ def test_exporters_stay_where_another_key_changes():
 
 
 def test_exporter_files_are_found_from_another_folder(tmp_path: Path):
-    from tangible_core import Exporter
     from tangible_core.pipeline.config.editing import moved
     from tangible_core.pipeline.config.methods import NamedMethod
     from tangible_core.pipeline.config.model import PipelineConfig
+    from tangible_core.plugins import Exporter
 
     class Framed(Exporter):
         frame: Path = Path()

@@ -12,18 +12,7 @@ import pytest
 
 from command_line import tangible
 from full_disk import files_up_to
-from tangible_core import (
-    DepthEstimator,
-    DisparityMap,
-    Exporter,
-    Pipeline,
-    Recording,
-    Scene,
-    Segmenter,
-    SegmentMap,
-    Views,
-    Work,
-)
+from tangible_core import DisparityMap, Pipeline, Recording, Scene, SegmentMap, Views
 from tangible_core.data import TICK_COLUMNS, PartMap
 from tangible_core.data.products import PRODUCTS
 from tangible_core.errors import ConfigError, OutputError, PictureError, Stopped, UnknownMethod
@@ -33,6 +22,7 @@ from tangible_core.pipeline.engine.cache import Cache
 from tangible_core.pipeline.engine.working_grid import parts_on_grid
 from tangible_core.pipeline.output.export_folder import move, read_list
 from tangible_core.pipeline.output.exporting import EXPORTABLE, MOST_STEM_BYTES, stem_of
+from tangible_core.plugins import DepthEstimator, Exporter, Segmenter, Work
 from tangible_core.plugins.registry import default_registry
 
 LABELS = np.kron(np.int32([[0, 1, 1], [0, 2, 2]]), np.ones((24, 24), np.int32))
@@ -231,7 +221,7 @@ class TestSimplify:
         def made(height_m: float) -> Pipeline:
             said = {**SAID, "parts": {1: {"height_m": height_m}}}
             found = Pipeline(Scene.of(photo=PHOTO), texture=Counted(), simplify={}, cached=False, **said)
-            found.cache = Cache(tmp_path)
+            found.engine.cache = Cache(tmp_path)
             return found
 
         assert made(0.004).relief.height_m.max() > 0
@@ -245,7 +235,7 @@ class TestFiles:
         for title in ("one", "two"):
             said = [f"title={title}"]
             config = parse_config("scene: {height: map.npy}", tmp_path / "coins.yaml", default_registry(), said)
-            done = Pipeline.of(config, default_registry(), None).export(tmp_path, ["heights"])
+            done = Pipeline.from_config(config, default_registry(), None).export(tmp_path, ["heights"])
             assert [each.outcome for each in done.outcomes] == ["ran"]
         assert json.loads((tmp_path / "coins-heights.json").read_text())["title"] == "two"
 
@@ -511,7 +501,7 @@ class TestDocument:
         np.save(tmp_path / "map.npy", np.eye(8))
         text = "scene: {height: map.npy}\nexport: [{use: heights, width_m: 0.16}]"
         config = parse_config(text, tmp_path / "p.yaml", default_registry())
-        Pipeline.of(config, default_registry(), None).export(tmp_path, ["heights"])
+        Pipeline.from_config(config, default_registry(), None).export(tmp_path, ["heights"])
         assert json.loads((tmp_path / "p-heights.json").read_text())["width_mm"] == 160
 
     def test_a_pipeline_made_in_python_lists_them_too(self, tmp_path: Path):

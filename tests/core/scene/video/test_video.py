@@ -387,7 +387,7 @@ class TestPipelineFile:
         for first, second in ((1, 2), (1, 3), (2, 3)):
             write_video(tmp_path / "film.avi", [grey(first), grey(second), grey(second)])
             config = parse_config(text, tmp_path / "p.yaml", default_registry())
-            keys.append(Pipeline.of(config, default_registry(), None).engine.key("disparity"))
+            keys.append(Pipeline.from_config(config, default_registry(), None).engine.key("disparity"))
         assert keys[0] == keys[1] != keys[2]
 
     def test_a_method_for_pairs_is_told_how_they_may_lie(self, film: Path):

@@ -1,27 +1,27 @@
-/** Who hears what: every part of the page subscribes here, and none knows another. */
-import type { Events } from "./server/messages";
+/** The event bus: every part of the page subscribes here, and none imports another for it. */
+import type { PageEvents } from "./events";
 
-type Hear<K extends keyof Events> = (event: Events[K]) => void;
+type Listener<K extends keyof PageEvents> = (event: PageEvents[K]) => void;
 
 export class Hub {
-  private hears = new Map<keyof Events, Hear<never>[]>();
-  private told = new Map<keyof Events, unknown>();
+  private listeners = new Map<keyof PageEvents, Listener<never>[]>();
+  private latest = new Map<keyof PageEvents, unknown>();
 
-  on<K extends keyof Events>(name: K, hear: Hear<K>): void {
-    this.hears.set(name, [...(this.hears.get(name) ?? []), hear as Hear<never>]);
+  on<K extends keyof PageEvents>(name: K, listener: Listener<K>): void {
+    this.listeners.set(name, [...(this.listeners.get(name) ?? []), listener as Listener<never>]);
   }
 
-  /** What was told last under this name, for what comes later than the page. */
-  last<K extends keyof Events>(name: K): Events[K] | undefined {
-    return this.told.get(name) as Events[K] | undefined;
+  /** Return the latest event of this name, for parts that are built later than the page. */
+  last<K extends keyof PageEvents>(name: K): PageEvents[K] | undefined {
+    return this.latest.get(name) as PageEvents[K] | undefined;
   }
 
-  /** One that fails is told in the console; the rest still hear. */
-  tell<K extends keyof Events>(name: K, event: Events[K]): void {
-    this.told.set(name, event);
-    for (const hear of this.hears.get(name) ?? []) {
+  /** Call every listener; an exception goes to the console and does not keep the event from the others. */
+  tell<K extends keyof PageEvents>(name: K, event: PageEvents[K]): void {
+    this.latest.set(name, event);
+    for (const listener of this.listeners.get(name) ?? []) {
       try {
-        (hear as Hear<K>)(event);
+        (listener as Listener<K>)(event);
       } catch (error) {
         console.error(error);
       }

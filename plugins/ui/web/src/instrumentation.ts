@@ -22,7 +22,7 @@ export const figures = {
   stoppedMs: 0,
 };
 
-export function measure(page: Page): void {
+export function measure(page: Pick<Page, "hub">): void {
   if (!measuring) return;
   document.body.classList.add("measure");
   Object.assign(window, { figures, page });

@@ -3,13 +3,17 @@ import "./app.css";
 import { Announcer, regions } from "./speech/announcer";
 import { frame } from "./frame/regions";
 import { Frames } from "./view/frames";
+import { touch } from "./hand/fingers";
+import { pad } from "./hand/game_pad";
 import { Hand } from "./hand/hand";
+import { keys } from "./hand/keyboard";
+import { mouse } from "./hand/mouse";
 import { Hub } from "./hub";
 import { Instrument } from "./sound/synthesizer";
-import { leisure } from "./server/idle";
+import { idle } from "./server/idle";
 import { measure, measuring } from "./instrumentation";
 import { Narrator } from "./speech/narrator";
-import { Net } from "./server/connection";
+import { Connection } from "./server/connection";
 import { notice } from "./frame/graphics_notice";
 import { Overlay } from "./overlay/overlay";
 import type { Page } from "./page";
@@ -39,7 +43,7 @@ const announcer = new Announcer((said) => {
   shown(said);
   speech.speak(said);
 });
-const net = new Net(hub);
+const net = new Connection(hub);
 const view = new View(canvas);
 const page: Page = {
   hub,
@@ -54,7 +58,7 @@ const page: Page = {
   sound: new Sound(hub, () => page.scene),
   speech,
   themes: new Themes(hub),
-  leisure: leisure(hub),
+  idle: idle(hub),
   say: (text, how) => announcer.say(text, how),
   forget: (topic) => announcer.forget(topic),
 };
@@ -87,7 +91,8 @@ splits();
 listen(canvas);
 new Status(page);
 new Narrator(page);
-page.hand = new Hand(page);
+const hand = (page.hand = new Hand(page));
+for (const attach of [mouse, touch, keys, pad]) attach(hand, page);
 notice(page);
 build(page, panels);
 dataCursor(page);

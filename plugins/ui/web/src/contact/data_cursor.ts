@@ -7,12 +7,14 @@ import type { Page } from "../page";
 import { on } from "../shortcuts";
 import { t } from "../overlay/words";
 
+type Parts = Pick<Page, "view" | "overlay" | "canvas" | "scene" | "say">;
+
 /** Ten times a second can be read, and costs nothing. */
 const EVERY_MS = 100;
 /** A surface so high has room for it. */
 const ROOMY_PX = 540;
 
-export function dataCursor(page: Page): void {
+export function dataCursor(page: Parts): void {
   const box = document.createElement("details");
   box.id = "data-cursor";
   box.open = innerWidth >= 768 && page.canvas.clientHeight >= ROOMY_PX; // elsewhere it would cover the surface
@@ -46,14 +48,14 @@ export function dataCursor(page: Page): void {
 }
 
 /** Whether the contact lies behind it. */
-function covers(box: HTMLElement, { overlay, view, canvas }: Page): boolean {
+function covers(box: HTMLElement, { overlay, view, canvas }: Parts): boolean {
   if (!overlay.live?.seen) return false;
   const [x, y] = view.toScreen(overlay.live.contact);
   return x > box.offsetLeft - canvas.offsetLeft && y > box.offsetTop - canvas.offsetTop;
 }
 
 /** The place on the surface under the mouse, looked up when it is asked for and the mouse or the view has moved. */
-function follow(page: Page): () => Place | null {
+function follow(page: Parts): () => Place | null {
   const { canvas, view } = page;
   let mouse: [number, number] | null = null;
   canvas.parentElement!.addEventListener("pointermove", (event) => {

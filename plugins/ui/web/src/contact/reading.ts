@@ -1,14 +1,12 @@
 /** What is drawn of a state: the numbers that its pieces and the data cursor share. */
 import type { Material } from "../server/messages";
-import { FLAGS, type State, type Vec } from "../server/protocol";
+import { FLAGS, NOBODY_M, type State, type Vec } from "../server/protocol";
 import type { Scene } from "../surface/scene";
 import { GripRule, type Grip } from "./grip";
 import { across, dot, length } from "./vectors";
 
-/** A device without a hand stands a metre high. */
-export const NOBODY_M = 0.5;
 
-export interface Live {
+export interface Reading {
   readonly state: State;
   /** Whether there is a hand at all. */
   readonly seen: boolean;
@@ -54,10 +52,10 @@ export function place(scene: Scene, x: number, y: number): Place {
 }
 
 /** Follows the states, and says what each means on the surface. */
-export class Reading {
+export class StateReader {
   private rule = new GripRule();
 
-  of(state: State, scene: Scene | null): Live {
+  of(state: State, scene: Scene | null): Reading {
     const { hand, force } = state;
     const seen = hand[2] < NOBODY_M;
     const touching = seen && (state.flags & FLAGS.TOUCHING) !== 0;

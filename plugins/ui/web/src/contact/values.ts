@@ -2,7 +2,7 @@
 import type { Vec } from "../server/protocol";
 import { t } from "../overlay/words";
 import { LIMITS } from "./limits";
-import type { Live, Place } from "./reading";
+import type { Reading, Place } from "./reading";
 
 /** A name, and one value or three. */
 export type Row = [name: string, ...values: string[]];
@@ -19,7 +19,7 @@ export function fixed(value: number, digits: number): string {
 
 const mm = (at: Vec | null): string[] => (at ? at.map((part) => fixed(MM * part, 2)) : [NONE, NONE, NONE]);
 
-export function rows(live: Live | null, pointer: Place | null): Row[] {
+export function rows(live: Reading | null, pointer: Place | null): Row[] {
   const held = live?.seen ? live : null;
   const found: Row[] = [
     [`${t("row_device")}, mm`, ...mm(held && held.hand)],
@@ -39,18 +39,18 @@ export function rows(live: Live | null, pointer: Place | null): Row[] {
   return found;
 }
 
-function made(at: Pick<Live, "material" | "part" | "name"> | null): string {
+function made(at: Pick<Reading, "material" | "part" | "name"> | null): string {
   if (!at || at.part === null) return NONE;
   if (at.name) return at.material ? `${at.name}, ${at.material.name}` : at.name;
   return at.material ? t("part", { name: at.material.name, number: at.part }) : t("noMaterial", { number: at.part });
 }
 
-const limitsOf = (live: Live) => LIMITS.filter(({ bit }) => live.state.flags & bit).map(({ word }) => word);
+const limitsOf = (live: Reading) => LIMITS.filter(({ bit }) => live.state.flags & bit).map(({ word }) => word);
 
 export const asText = (found: Row[]): string => found.map(([name, ...values]) => `${name}\t${values.join("\t")}`).join("\n");
 
 /** Metres, newtons, metres per second. */
-export function asJson(live: Live | null, pointer: Place | null): string {
+export function asJson(live: Reading | null, pointer: Place | null): string {
   const held = live?.seen ? live : null;
   const place = pointer && { at_m: pointer.at, normal: pointer.normal, material: pointer.material?.name ?? null, part: pointer.part, part_name: pointer.name || null };
   const device = held && {

@@ -11,7 +11,7 @@ export class Editor {
   /** Refusals, in the server's words. */
   onRefused: (why: string) => void = () => undefined;
 
-  constructor(private page: Page) {}
+  constructor(private page: Pick<Page, "net" | "document">) {}
 
   /** Whether what needs no slow stage is made and felt as soon as it was edited. */
   get apply(): boolean {

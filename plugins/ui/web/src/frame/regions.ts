@@ -3,7 +3,7 @@ import type { Page } from "../page";
 import { on } from "../shortcuts";
 import { t } from "./words";
 import { speak, language, LANGUAGES } from "../words/words";
-import { THEMES, type Theme, type Themes } from "./themes";
+import { THEMES, type Theme } from "./themes";
 
 /** Ids of the regions in the order in which F6 visits them, and of what takes the focus there. */
 const REGIONS = { main: "terrain", left: "left", right: "right", bottom: "bottom", head: "head", "parts-editor": "parts-picture" } as const;
@@ -14,7 +14,7 @@ const element = (id: string): HTMLElement => document.getElementById(id)!;
 /** Those that are there now: the editor of parts takes the place of the columns. */
 const shown = (): Region[] => regions.filter((each) => document.getElementById(each)?.checkVisibility());
 
-export function frame(page: Page): void {
+export function frame(page: Pick<Page, "hub" | "themes">): void {
   const { themes } = page;
   for (const region of shown()) element(region).setAttribute("aria-label", t(region));
   skipLinks();
@@ -53,7 +53,7 @@ function jump(by: number): void {
   (before?.isConnected && before.checkVisibility() ? before : element(REGIONS[to])).focus();
 }
 
-function chooseTheme(themes: Themes): void {
+function chooseTheme(themes: Page["themes"]): void {
   const choice = element("theme") as HTMLSelectElement;
   choice.setAttribute("aria-label", t("theme"));
   for (const each of THEMES) choice.add(new Option(t(each), each));

@@ -12,7 +12,7 @@ export class Status {
   /** What is so while nothing is made: forces are given, or not. */
   private rest: "idle" | "felt" = "idle";
 
-  constructor(private page: Page) {
+  constructor(private page: Pick<Page, "hub" | "net" | "say" | "forget">) {
     const { hub } = page;
     this.give("hold", t("takeHand"), () => this.ask("hold"));
     this.give("again", t("feelAgain"), () => void this.page.net.feel().catch((error: Error) => this.show("error", error.message)));

@@ -39,7 +39,6 @@ export const t = words({
   leftSize: ["Width of the left column", "Breite der linken Spalte"],
   rightSize: ["Width of the right column", "Breite der rechten Spalte"],
   bottomSize: ["Height of the log", "Höhe des Protokolls"],
-  panelFailed: ["This panel could not be shown: {error}", "Dieser Abschnitt konnte nicht gezeigt werden: {error}"],
   theme: ["Colours", "Farben"],
   system: ["Colours of the system", "Farben des Systems"],
   light: ["Light", "Hell"],

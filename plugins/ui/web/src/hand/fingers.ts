@@ -1,4 +1,5 @@
 /** The touch screen: one finger is the hand, where it is; two are the camera's, and the hand is gone until all are up. */
+import type { Page } from "../page";
 import type { Hand } from "./hand";
 
 /** Which fingers are there, and whose they are. */
@@ -39,13 +40,13 @@ export class Pressure {
   }
 }
 
-export function touch(hand: Hand): void {
-  const { canvas, view } = hand.page;
+export function touch(hand: Hand, page: Pick<Page, "canvas" | "view" | "scene">): void {
+  const { canvas, view } = page;
   const fingers = new Fingers();
   const pressure = new Pressure();
 
   function follow(event: PointerEvent): void {
-    const at = hand.page.scene?.pick(...view.ray(event.clientX, event.clientY));
+    const at = page.scene?.pick(...view.ray(event.clientX, event.clientY));
     if (!at) return;
     const share = pressure.share(event);
     if (share !== null) hand.pressShare(share);

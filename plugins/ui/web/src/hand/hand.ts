@@ -1,16 +1,11 @@
 /** The hand that this page moves: where it is wanted, where it is, and that it lives. What moves it stands beside. */
-import { keys } from "./keyboard";
-import { clamp, HOVER_M, moved, within, type Goal } from "./motion";
-import { mouse } from "./mouse";
-import { pad } from "./game_pad";
-import { parts, type Part } from "./part_centres";
-import { touch } from "./fingers";
+import type { Page, PageHand } from "../page";
 import type { Values } from "../server/messages";
-import type { Page } from "../page";
 import type { Vec } from "../server/protocol";
+import { clamp, HOVER_M, moved, within, type Goal } from "./motion";
+import { parts, type Part } from "./part_centres";
+import { type Mover, PRESS_M } from "./state";
 import { t } from "./words";
-
-export type Mover = "mouse" | "keys" | "touch" | "pad";
 
 /** So often the server hears that the page lives: it lets go after 100 ms of silence. */
 const ALIVE_MS = 30;
@@ -18,11 +13,10 @@ const ALIVE_MS = 30;
 const STEP_MS = 15;
 /** After a pause of the page the hand goes on where it was, and does not leap. */
 const LONGEST_STEP_S = 0.05;
-/** How deep it presses; of a hand that does not, how high it is, below 0 in the surface. */
-export const PRESS_M = { first: 0.0015, least: 0.0002, most: 0.006 };
+/** Height over the surface of a hand that does not press, metres; below 0 it penetrates. */
 const GAP_M = { least: -PRESS_M.most, most: 0.03 };
 
-export class Hand {
+export class Hand implements PageHand {
   /** Where it is; null while nothing moves it. */
   at: Vec | null = null;
   down = false;
@@ -50,8 +44,7 @@ export class Hand {
   private sentMs = -Infinity;
   private known: { scene: unknown; parts: Part[]; next: number } = { scene: null, parts: [], next: -1 };
 
-  constructor(readonly page: Page) {
-    for (const each of [mouse, touch, keys, pad]) each(this);
+  constructor(private page: Pick<Page, "hub" | "net" | "scene" | "document" | "say">) {
     setInterval(() => this.step(), STEP_MS);
     this.letGoWhenNobodyLooks();
     this.hear();

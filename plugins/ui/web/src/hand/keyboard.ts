@@ -1,4 +1,5 @@
 /** The keyboard: arrows and page keys move the hand, a tap by a step, held by a speed; space puts it down and lifts it. */
+import type { Page } from "../page";
 import type { Hand } from "./hand";
 
 /** A step and a speed, metres of the hand: alone, with Shift, with Ctrl. */
@@ -60,9 +61,8 @@ export class HeldKeys {
   }
 }
 
-export function keys(hand: Hand): void {
+export function keys(hand: Hand, { canvas }: Pick<Page, "canvas">): void {
   const held = new HeldKeys();
-  const { canvas } = hand.page;
   canvas.addEventListener("keydown", (event) => {
     if (event.altKey || event.metaKey) return;
     const step = held.down(event.key, event, performance.now());

@@ -1,5 +1,6 @@
 /** The mouse and the pen: over the terrain they are the hand, pressed they touch; the wheel is depth, a pen's own too. */
 import { figures, measuring } from "../instrumentation";
+import type { Page } from "../page";
 import type { Hand } from "./hand";
 import type { Vec } from "../server/protocol";
 
@@ -11,8 +12,10 @@ const AFTER_KEYS_MS = 1000;
 /** Buttons that are the camera's. */
 const CAMERA = 6;
 
-export function mouse(hand: Hand): void {
-  const { canvas, view } = hand.page;
+type Screen = Pick<Page, "canvas" | "view" | "scene">;
+
+export function mouse(hand: Hand, page: Screen): void {
+  const { canvas, view } = page;
   let before: PointerEvent | null = null;
 
   function follow(event: PointerEvent): void {
@@ -54,7 +57,7 @@ export function mouse(hand: Hand): void {
 
   function pick(x: number, y: number): Vec | null {
     const begun = performance.now();
-    const found = hand.page.scene?.pick(...view.ray(x, y)) ?? null;
+    const found = page.scene?.pick(...view.ray(x, y)) ?? null;
     if (measuring) figures.picks.push(performance.now() - begun);
     return found;
   }
@@ -66,13 +69,13 @@ export function mouse(hand: Hand): void {
       if (event.pointerType !== "touch") hand.release("mouse");
     });
   canvas.addEventListener("contextmenu", (event) => event.preventDefault());
-  canvas.addEventListener("wheel", (event) => wheel(hand, event), { passive: false });
+  canvas.addEventListener("wheel", (event) => wheel(hand, page, event), { passive: false });
 }
 
-function wheel(hand: Hand, event: WheelEvent): void {
+function wheel(hand: Hand, { view }: Screen, event: WheelEvent): void {
   event.preventDefault();
   const by = event.deltaMode === WheelEvent.DOM_DELTA_LINE ? LINE * event.deltaY : event.deltaY;
-  if (event.ctrlKey) hand.page.view.zoom(by < 0 ? 0.1 : -0.1);
+  if (event.ctrlKey) view.zoom(by < 0 ? 0.1 : -0.1);
   else hand.deeper("mouse", by * WHEEL_M);
 }
 

@@ -1,14 +1,14 @@
 /** All that is drawn over the surface and moves: its pieces, and the layer of words and handles over the canvas. */
 import "./overlay.css";
 import { DirectionalLight, HemisphereLight } from "three";
-import type { State, Vec } from "../server/protocol";
+import { NOBODY_M, type State, type Vec } from "../server/protocol";
 import type { Scene } from "../surface/scene";
 import type { View } from "../view/view";
 import { ForceArrow } from "./pieces/force_arrow";
 import { FrictionCone } from "./pieces/friction_cone";
 import { DevicePoint } from "./pieces/device_point";
 import { Labels } from "./pieces/contact_label";
-import { NOBODY_M, Reading, type Live } from "../contact/reading";
+import { type Reading, StateReader } from "../contact/reading";
 import { Picking } from "./picking";
 import type { Piece, Sight } from "./piece";
 import { Proxy } from "./pieces/proxy";
@@ -32,14 +32,14 @@ export class Overlay {
   /** Over the canvas, as large as it; what is in it does not catch the mouse unless it says so. */
   readonly layer = document.createElement("div");
   /** What was drawn last; null while there is no state. */
-  live: Live | null = null;
+  live: Reading | null = null;
   /** Set where something of it changed that is not a state: the next frame draws it. */
   changed = false;
   readonly sight: Sight;
   /** Who has the mouse in the hand's place. */
   readonly picking: Picking;
   private scene: Scene | null = null;
-  private reading = new Reading();
+  private reading = new StateReader();
   private rest = new Rest();
   private trace: Trace;
   private pieces: Piece[];

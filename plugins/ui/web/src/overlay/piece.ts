@@ -1,7 +1,7 @@
 /** A thing that is drawn over the surface, and what it is told in each frame. */
 import type { PerspectiveCamera } from "three";
 import type { Vec } from "../server/protocol";
-import type { Live } from "../contact/reading";
+import type { Reading } from "../contact/reading";
 import type { Settings } from "./settings";
 
 /** From where the surface is seen, and how large the canvas is, in CSS pixels. */
@@ -15,7 +15,7 @@ export interface Piece {
   /** Whether it shows less than it was told, as words change only so often: it wants another frame. */
   readonly late?: boolean;
   /** live: null while there is no hand. */
-  put(live: Live | null, settings: Settings, sight: Sight): void;
+  put(live: Reading | null, settings: Settings, sight: Sight): void;
 }
 
 /** How much of the workspace one CSS pixel of the canvas shows at a place: pieces keep their size on the screen. */

@@ -1,7 +1,7 @@
 /** A panel of the page: a part of it that stands for itself. */
 import type { Page } from "../page";
 import { recall, remember } from "../preferences";
-import { t } from "../frame/words";
+import { t } from "./words";
 
 export interface Panel {
   id: string;
@@ -11,7 +11,7 @@ export interface Panel {
   /** Whether it is open until a person says otherwise. */
   open: boolean;
   /** Called once, open or not. In `root` headings are <h3>; the classes for controls stand at the top of app.css. */
-  build(page: Page, root: HTMLElement): void;
+  build(page: Page, root: HTMLElement): void | Promise<void>;
 }
 
 const WAYS: Record<string, (all: HTMLElement[], at: number) => HTMLElement | undefined> = {
@@ -26,9 +26,9 @@ export function build(page: Page, panels: Panel[]): void {
   for (const panel of panels) {
     const root = place(panel);
     try {
-      panel.build(page, root);
+      void panel.build(page, root);
     } catch (error) {
-      root.textContent = t("panelFailed", { error: String(error) });
+      root.textContent = t("failed", { error: String(error) });
       root.classList.add("bad");
       console.error(error);
     }

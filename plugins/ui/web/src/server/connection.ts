@@ -12,8 +12,6 @@ const STOP_PATIENCE_MS = 300;
 /** How the server closes the websocket of a page whose key is not its own. */
 const WRONG_KEY = 4401;
 
-export { token };
-
 /** What the server keeps under an address. Throws if it is not there. */
 export async function bulk(path: string, asked: Record<string, number> = {}, signal?: AbortSignal): Promise<Response> {
   const query = new URLSearchParams({ token, ...Object.fromEntries(Object.entries(asked).map(([k, v]) => [k, `${v}`])) });
@@ -27,7 +25,7 @@ interface Waiting {
   refused: (error: Error) => void;
 }
 
-export class Net {
+export class Connection {
   latest: State | null = null;
   /** When each pointer was sent, by its tag: how long until its force is drawn. */
   readonly sentMs = new Map<number, number>();

@@ -1,8 +1,5 @@
 /** What the server says, by the name of the event; `at_s` is the Unix time. */
 import type { Plain } from "../forms/schema";
-import type { Hand } from "../hand/hand";
-import type { State } from "./protocol";
-import type { Scene } from "../surface/scene";
 
 export interface Material {
   name: string;
@@ -173,7 +170,7 @@ interface Said {
 }
 
 export interface Events {
-  hello: Said & { version: number; history: (Said & { event: keyof Events })[]; scene: (Said & Meta) | null };
+  hello: Said & { version: number; history: (Said & { event: keyof Events })[]; scene: (Said & Meta) | null; };
   gone: Said;
   /** Of this page alone: the program that answers is another one, by its key or by its version. */
   refused: Said & { why: "key" | "version" };
@@ -221,24 +218,4 @@ export interface Events {
   recorder: Said & { recording: boolean; path: string; ticks: number; why: string };
   /** What Python's logging and warnings say, in the server and in the maker. */
   log: Said & { level: "detail" | "warning" | "error"; logger: string; text: string };
-  /** Of this page alone: a state that arrived, one that was drawn, a surface that can be drawn. */
-  state: State;
-  drawn: State;
-  shown: Scene;
-  /** Something about this page's hand changed: what moves it, how, whether it is felt. */
-  hand: Hand;
-  /** What is to be shown of the surface, and what is: the picture, heights, segments ... */
-  "look at": { look: string };
-  look: { look: string };
-  /** Something finer of the surface on the screen has come. */
-  finer: Scene;
-  /** A recording was opened, a file of this machine. */
-  recording: { path: string };
-  /** Of this page alone: the colours are others now (see `colour` of themes.ts). */
-  theme: { chosen: string; dark: boolean; contrast: boolean };
-  /** Sound was switched; speech was, or has another voice ("": none). */
-  sound: { on: boolean };
-  aloud: { on: boolean; voice: string };
-  /** Whether every line of the log is to be read out. */
-  "read log": { on: boolean };
 }

@@ -100,3 +100,11 @@ export function ack(seq: number): ArrayBuffer {
 export function release(): ArrayBuffer {
   return new Uint8Array([RELEASE]).buffer;
 }
+
+/** A hand at or above this height, metres, is absent: the server puts a device without a hand a metre high. */
+export const NOBODY_M = 0.5;
+
+export const isRunning = (state: State): boolean => (state.status & STATUS.RUNNING) !== 0;
+/** Whether the loop runs and a hand holds the device. */
+export const isHeld = (state: State): boolean => isRunning(state) && state.hand[2] < NOBODY_M;
+export const isTouching = (state: State): boolean => isHeld(state) && (state.flags & FLAGS.TOUCHING) !== 0;

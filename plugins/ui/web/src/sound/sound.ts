@@ -1,8 +1,7 @@
 /** What is felt, to hear: taps, texture, force, and heights as pitch. Off until a person switches it on. */
 import type { Hub } from "../hub";
 import { Instrument } from "./synthesizer";
-import { held, touching } from "../speech/narrator";
-import type { State } from "../server/protocol";
+import { isHeld, isTouching, type State } from "../server/protocol";
 import { recall, remember } from "../preferences";
 import type { Scene } from "../surface/scene";
 import { force_level, pan, pitch_hz, stroke, tap } from "./sonification";
@@ -92,13 +91,13 @@ export class Sound {
     this.heardMs = performance.now();
     const [x, y] = state.hand;
     const material = scene.material(x, y);
-    const touched = touching(state);
+    const touched = isTouching(state);
     if (touched && !this.touched && this.has("contact")) instrument.tap(tap(material, state.velocity));
     this.touched = touched;
     instrument.pan(pan(x, scene.meta.extent_m[0]));
     instrument.stroke(touched && this.has("texture") ? stroke(material, state.force, state.velocity) : NONE);
     instrument.force(touched && this.has("force") ? force_level(Math.hypot(...state.force)) : 0);
-    const height = held(state) && this.has("height") ? scene.height(x, y) : NaN;
+    const height = isHeld(state) && this.has("height") ? scene.height(x, y) : NaN;
     instrument.heightAt(Number.isNaN(height) ? null : pitch_hz(height, scene.meta.height_m));
   }
 

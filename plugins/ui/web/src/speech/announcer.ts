@@ -1,7 +1,7 @@
 /** What is said to who listens: one sentence a second at most, of each topic the newest alone, nothing twice, nothing
  * stale. What it says goes to live regions, and aloud where a person asked for that. */
 
-export interface How {
+export interface Announcement {
   /** What replaces what: of two that wait the newer is said; and what a topic said last is not said again. */
   topic?: string;
   /** Said before all that waits, and into what a screen reader is reading: errors, the stop. */
@@ -45,7 +45,7 @@ export class Announcer {
     private clock: Clock = BROWSERS,
   ) {}
 
-  say(text: string, { topic = text, urgent = false, asked = false }: How = {}): void {
+  say(text: string, { topic = text, urgent = false, asked = false }: Announcement = {}): void {
     if (!text || this.hushed) return;
     const atMs = this.clock.now();
     this.queue = this.queue.filter((each) => each.topic !== topic);

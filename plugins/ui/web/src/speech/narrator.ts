@@ -1,14 +1,12 @@
 /** Says what changes under the hand: contact, material, part, limits; and, asked by a key, where it is and what there is. */
 import type { Events } from "../server/messages";
 import type { Page } from "../page";
-import { FLAGS, STATUS, type State } from "../server/protocol";
+import { FLAGS, isHeld, isRunning, isTouching, type State } from "../server/protocol";
 import type { Scene } from "../surface/scene";
 import { on } from "../shortcuts";
 import { t } from "./words";
 import { decimal, language } from "../words/words";
 
-/** A hand as high as this is none: nobody holds it. */
-const GONE_M = 0.5;
 /** States in a row that must have a flag, before it is said: one tick at its limit is nothing to know of. */
 const LASTING = 6;
 const LIMITS = {
@@ -18,10 +16,6 @@ const LIMITS = {
   STIFFNESS_LIMITED: FLAGS.STIFFNESS_LIMITED,
   DAMPED: FLAGS.DAMPED,
 } as const;
-
-export const running = (state: State): boolean => (state.status & STATUS.RUNNING) !== 0;
-export const held = (state: State): boolean => running(state) && state.hand[2] < GONE_M;
-export const touching = (state: State): boolean => held(state) && (state.flags & FLAGS.TOUCHING) !== 0;
 
 /** "door, wood", "wood, part 3"; the material alone where there is one part. names: of materials, in the page's language. */
 export function named(name: string | undefined, called: string, part: number | null, parts: number, names: Record<string, string>): string {
@@ -35,7 +29,7 @@ export class Narrator {
   private limits = new Set<number>();
   private described: Events["described"] | null = null;
 
-  constructor(private page: Page) {
+  constructor(private page: Pick<Page, "hub" | "net" | "scene" | "canvas" | "say" | "forget">) {
     page.hub.on("state", (state) => this.follow(state));
     page.hub.on("shown", (scene) => this.show(scene));
     page.hub.on("described", (said) => {
@@ -48,33 +42,33 @@ export class Narrator {
 
   private follow(state: State): void {
     const { page } = this;
-    if (!page.scene || !running(state)) return;
+    if (!page.scene || !isRunning(state)) return;
     page.say(this.contact(state, page.scene), { topic: "contact" });
     for (const [name, flag] of Object.entries(LIMITS)) this.limit(name as keyof typeof LIMITS, flag, state);
   }
 
   private contact(state: State, scene: Scene): string {
-    if (!held(state)) return t("noHand");
-    if (!touching(state)) return t("inTheAir");
+    if (!isHeld(state)) return t("noHand");
+    if (!isTouching(state)) return t("inTheAir");
     const [x, y] = state.hand;
     return t("touching", { what: this.under(scene, x, y) });
   }
 
   private limit(name: keyof typeof LIMITS, flag: number, state: State): void {
-    const count = touching(state) && state.flags & flag ? (this.lasting.get(flag) ?? 0) + 1 : 0;
+    const count = isTouching(state) && state.flags & flag ? (this.lasting.get(flag) ?? 0) + 1 : 0;
     this.lasting.set(flag, count);
     if (count === LASTING && !this.limits.has(flag)) {
       this.limits.add(flag);
       this.page.say(t(name), { topic: name });
     }
-    if (!touching(state) && this.limits.delete(flag)) this.page.forget(name); // said again at the next touch
+    if (!isTouching(state) && this.limits.delete(flag)) this.page.forget(name); // said again at the next touch
   }
 
   private where(): string {
     const { net, scene } = this.page;
     if (!scene) return t("nothing");
     const state = net.latest;
-    if (!state || !held(state)) return t("noHand");
+    if (!state || !isHeld(state)) return t("noHand");
     const [x, y] = state.hand;
     const at = { x: millimetres(Math.abs(x)), y: millimetres(Math.abs(y)) };
     return [
@@ -82,7 +76,7 @@ export class Narrator {
       t(y < 0 ? "near" : "far", at),
       t("high", { height: millimetres(scene.height(x, y)) }),
       this.under(scene, x, y),
-      touching(state) ? t("force", { force: decimal(Math.hypot(...state.force), 1) }) : t("inTheAir"),
+      isTouching(state) ? t("force", { force: decimal(Math.hypot(...state.force), 1) }) : t("inTheAir"),
     ].join(", ");
   }
 

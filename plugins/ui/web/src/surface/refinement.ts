@@ -18,7 +18,7 @@ export class Refiner {
   private scene: Scene | null = null;
   private ending = new AbortController();
 
-  constructor(private page: Page) {
+  constructor(private page: Pick<Page, "hub" | "net" | "view" | "canvas" | "scene">) {
     page.view.rested = () => this.refine();
   }
 

@@ -7,7 +7,7 @@ export class Frames {
   private last: State | null = null;
   private echoed = 0;
 
-  constructor(private page: Page) {
+  constructor(private page: Pick<Page, "hub" | "net" | "view" | "overlay" | "replayed">) {
     page.hub.on("shown", (scene) => page.overlay.show(scene));
     requestAnimationFrame(() => this.frame());
   }

@@ -32,7 +32,7 @@ export class Showing {
   /** Called when another look is shown, or another surface. */
   changed: () => void = () => {};
 
-  constructor(private page: Page) {
+  constructor(private page: Pick<Page, "hub" | "view" | "scene">) {
     this.page.view.eyeDome = this.settings.eyeDome;
   }
 

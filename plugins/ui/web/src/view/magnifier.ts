@@ -24,7 +24,7 @@ export class Lens {
   private lightSaid = "";
 
   constructor(
-    private page: Page,
+    private page: Pick<Page, "hub" | "net" | "canvas" | "scene">,
     private settings: Settings,
   ) {
     this.box.id = "lens";

@@ -30,7 +30,7 @@ const VERY_SLOW_MS = 80;
 const FINEST_RATIO = 2;
 const PATTERN_PX = 11;
 
-/** Why nothing is drawn: there is no WebGL, or it was taken away. */
+/** Why nothing is drawn: no WebGL 2, or its context was lost. */
 export type Trouble = "" | "missing" | "lost";
 
 export class View {

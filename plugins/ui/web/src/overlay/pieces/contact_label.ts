@@ -3,7 +3,7 @@ import type { View } from "../../view/view";
 import { t } from "../words";
 import { tip } from "./force_arrow";
 import { LIMITS, limited } from "../../contact/limits";
-import type { Live } from "../../contact/reading";
+import type { Reading } from "../../contact/reading";
 import type { Piece, Sight } from "../piece";
 import type { Settings } from "../settings";
 
@@ -36,7 +36,7 @@ export class Labels implements Piece {
     layer.append(this.box);
   }
 
-  put(live: Live | null, settings: Settings, sight: Sight): void {
+  put(live: Reading | null, settings: Settings, sight: Sight): void {
     const { show } = settings;
     const hidden = !live || (!live.touching && live.otherN === 0 && !limited(live.state.flags)) || !(show.labels || show.limits);
     if (this.box.hidden !== hidden) this.box.hidden = hidden;
@@ -46,7 +46,7 @@ export class Labels implements Piece {
     this.place(live, settings, sight);
   }
 
-  private words(live: Live, { show }: Settings): void {
+  private words(live: Reading, { show }: Settings): void {
     const now = performance.now();
     for (const { bit } of LIMITS) if (live.state.flags & bit) this.seenMs.set(bit, now);
     this.late = now - this.readMs < EVERY_MS;
@@ -62,7 +62,7 @@ export class Labels implements Piece {
   }
 
   /** Beside the arrow's end, and whole within the canvas. */
-  private place(live: Live, { metresPerNewton }: Settings, { width, height }: Sight): void {
+  private place(live: Reading, { metresPerNewton }: Settings, { width, height }: Sight): void {
     const [x, y] = this.view.toScreen(tip(live, live.state.force, metresPerNewton));
     const left = x + OFF_PX + this.wide > width ? x - OFF_PX - this.wide : x + OFF_PX;
     const [u, v] = [within(left, width - this.wide), within(y - this.high / 2, height - this.high)];

@@ -15,7 +15,7 @@ import { mergeGeometries } from "three/addons/utils/BufferGeometryUtils.js";
 import type { Vec } from "../../server/protocol";
 import type { View } from "../../view/view";
 import { COLOURS } from "../colours";
-import type { Live } from "../../contact/reading";
+import type { Reading } from "../../contact/reading";
 import { metresPerPixel, type Piece, type Sight } from "../piece";
 import { length } from "../../contact/vectors";
 import type { Settings } from "../settings";
@@ -57,7 +57,7 @@ export class ForceArrow implements Piece {
     view.overlay(this.group);
   }
 
-  put(live: Live | null, { show, metresPerNewton }: Settings, sight: Sight): void {
+  put(live: Reading | null, { show, metresPerNewton }: Settings, sight: Sight): void {
     const force: Vec = live?.state[this.which] ?? [0, 0, 0];
     const newtons = length(force);
     this.group.visible = live !== null && show.arrow && newtons > LEAST_N;
@@ -79,7 +79,7 @@ export class ForceArrow implements Piece {
 }
 
 /** Where the arrow of a force ends. */
-export function tip(live: Live, force: Vec, metresPerNewton: number): Vec {
+export function tip(live: Reading, force: Vec, metresPerNewton: number): Vec {
   const [x, y, z] = live.contact;
   return [x + force[0] * metresPerNewton, y + force[1] * metresPerNewton, z + force[2] * metresPerNewton];
 }

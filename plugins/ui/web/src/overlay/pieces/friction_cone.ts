@@ -7,7 +7,7 @@
 import { BufferAttribute, BufferGeometry, ConeGeometry, Group, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial, Vector3 } from "three";
 import type { View } from "../../view/view";
 import { COLOURS } from "../colours";
-import type { Live } from "../../contact/reading";
+import type { Reading } from "../../contact/reading";
 import type { Piece } from "../piece";
 import type { Settings } from "../settings";
 
@@ -44,7 +44,7 @@ export class FrictionCone implements Piece {
     view.overlay(this.group);
   }
 
-  put(live: Live | null, { show, metresPerNewton }: Settings): void {
+  put(live: Reading | null, { show, metresPerNewton }: Settings): void {
     const { static_friction, dynamic_friction } = live?.material ?? { static_friction: 0, dynamic_friction: 0 };
     this.group.visible = live !== null && live.touching && show.cone && static_friction > 0 && live.normalN > 0;
     if (!live || !this.group.visible) return;

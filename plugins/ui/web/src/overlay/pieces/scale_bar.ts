@@ -2,7 +2,7 @@
 import type { View } from "../../view/view";
 import { t } from "../words";
 import { metresPerPixel, type Piece, type Sight } from "../piece";
-import type { Live } from "../../contact/reading";
+import type { Reading } from "../../contact/reading";
 import { round, type Settings } from "../settings";
 
 const MOST_PX = 130;
@@ -24,7 +24,7 @@ export class ScaleBar implements Piece {
     layer.append(this.box);
   }
 
-  put(live: Live | null, { show, metresPerNewton }: Settings, sight: Sight): void {
+  put(live: Reading | null, { show, metresPerNewton }: Settings, sight: Sight): void {
     this.box.hidden = !show.arrow;
     const now = performance.now();
     this.late = !this.box.hidden && now - this.readMs < EVERY_MS;

@@ -2,7 +2,7 @@
 import { BufferGeometry, DataTexture, FloatType, Mesh, RGBAFormat, ShaderMaterial, Vector2 } from "three";
 import type { State, Vec } from "../../server/protocol";
 import type { View } from "../../view/view";
-import type { Live } from "../../contact/reading";
+import type { Reading } from "../../contact/reading";
 import type { Piece, Sight } from "../piece";
 import { SECONDS, type Settings } from "../settings";
 import { STRIDE, Trail } from "./trace_samples";
@@ -76,7 +76,7 @@ export class Trace implements Piece {
     this.samples.needsUpdate = true;
   }
 
-  put(live: Live | null, { show, seconds }: Settings, sight: Sight): void {
+  put(live: Reading | null, { show, seconds }: Settings, sight: Sight): void {
     if (live) this.add(live);
     else this.trail.lift();
     const now = performance.now() / 1000;
@@ -95,7 +95,7 @@ export class Trace implements Piece {
   }
 
   /** A frame may show a state again, from elsewhere. */
-  private add({ state, contact, hand, touching, newtons }: Live): void {
+  private add({ state, contact, hand, touching, newtons }: Reading): void {
     if (state === this.last) return;
     this.last = state;
     const nowMs = performance.now();

@@ -3,7 +3,7 @@ import { Line2 } from "three/addons/lines/Line2.js";
 import { LineGeometry } from "three/addons/lines/LineGeometry.js";
 import { LineMaterial } from "three/addons/lines/LineMaterial.js";
 import type { Scene } from "../../surface/scene";
-import type { View } from "../../view/view";
+import type { Page } from "../../page";
 import { COLOURS } from "../colours";
 
 /** Straight pieces of the whole line; in software each costs as much as a small thing. */
@@ -19,7 +19,7 @@ export class Draped {
   private pieces: number;
 
   /** sides: how many straight pieces, seen from above, it has. */
-  constructor(view: View, private sides: number, color: number, dashed = false) {
+  constructor(view: Pick<Page["view"], "overlay">, private sides: number, color: number, dashed = false) {
     this.pieces = Math.round(PIECES / sides);
     this.places = new Float32Array(3 * (sides * this.pieces + 1));
     const look = { depthTest: false, depthWrite: false, transparent: true };

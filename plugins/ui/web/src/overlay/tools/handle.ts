@@ -29,7 +29,7 @@ export class Handle {
   private away: () => void;
 
   constructor(
-    private page: Page,
+    private page: Pick<Page, "view" | "overlay" | "scene">,
     shape: "round" | "square" | "turn" | "move",
     label: string,
     private grasped: Grasped,

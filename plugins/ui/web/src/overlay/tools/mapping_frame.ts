@@ -1,12 +1,11 @@
 /** What the device reaches, as a frame on the picture that can be moved, sized and turned; and the region that is felt. */
-import type { Page } from "../../page";
+import type { Page, PointerTool } from "../../page";
 import type { Vec } from "../../server/protocol";
 import { on } from "../../shortcuts";
 import { t } from "../words";
 import { COLOURS } from "../colours";
 import { Draped } from "./draped_line";
 import { COARSE, Handle, STEP_M } from "./handle";
-import type { Picked } from "../picking";
 import { AS_IT_LIES, corners, type Mapping, moved, type Reach, reach, whole, zoomed } from "./placement";
 
 /** A device whose frame is wider than so many pictures, such as the mouse, has no edge to show. */
@@ -23,7 +22,7 @@ interface Reached {
   workspace_m: Vec | null;
 }
 
-export class MappingFrame implements Picked {
+export class MappingFrame implements PointerTool {
   shown = false;
   /** Called when anything of it changed. */
   changed: () => void = () => {};
@@ -36,7 +35,7 @@ export class MappingFrame implements Picked {
   private drawn: Draped;
   private from: Vec | null = null;
 
-  constructor(private page: Page) {
+  constructor(private page: Pick<Page, "hub" | "net" | "view" | "overlay" | "scene" | "document" | "say">) {
     const { view, hub } = page;
     this.line = new Draped(view, 4, COLOURS.frame);
     this.drawn = new Draped(view, 4, COLOURS.device, true);

@@ -17,7 +17,7 @@ export class Markers {
   changed: () => void = () => {};
   private last = 0;
 
-  constructor(private page: Page) {
+  constructor(private page: Pick<Page, "hub" | "view" | "overlay" | "scene" | "say">) {
     page.hub.on("shown", (scene) => {
       for (const each of this.list) each.at = scene.on(each.at[0], each.at[1]);
       this.changed();

@@ -1,5 +1,5 @@
 /** The ruler: two places on the surface, and what lies between them. */
-import type { Page } from "../../page";
+import type { Page, PointerTool } from "../../page";
 import type { Vec } from "../../server/protocol";
 import { on } from "../../shortcuts";
 import { t } from "../words";
@@ -7,10 +7,9 @@ import { COLOURS } from "../colours";
 import { Draped } from "./draped_line";
 import { Handle, STEP_M } from "./handle";
 import { measure, type Measured } from "./measurement";
-import type { Picked } from "../picking";
 import { plus } from "../../contact/vectors";
 
-export class Ruler implements Picked {
+export class Ruler implements PointerTool {
   /** None, one, or both. */
   ends: Vec[] = [];
   measured: Measured | null = null;
@@ -19,7 +18,7 @@ export class Ruler implements Picked {
   private line: Draped;
   private label = document.createElement("div");
 
-  constructor(private page: Page) {
+  constructor(private page: Pick<Page, "hub" | "view" | "overlay" | "scene" | "say">) {
     this.line = new Draped(page.view, 1, COLOURS.frame, true);
     this.label.className = "ruler-label";
     page.overlay.stay(this.label, () => this.middle());

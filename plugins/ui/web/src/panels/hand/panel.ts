@@ -1,6 +1,6 @@
 /** The hand of this page: whether it is felt, what moves it, and how deep it presses. */
 import { button, field, hint } from "../../elements";
-import { PRESS_M, type Hand } from "../../hand/hand";
+import { type HandState, PRESS_M } from "../../hand/state";
 import type { Page } from "../../page";
 import type { Panel } from "../panel";
 import { t } from "../../hand/words";
@@ -37,7 +37,7 @@ function build(page: Page, root: HTMLElement): void {
     press.setAttribute("aria-valuetext", value.textContent);
   }
 
-  function hear(hand: Hand): void {
+  function hear(hand: HandState): void {
     told.textContent = t(held(hand));
     take.hidden = !hand.there || hand.holding || hand.rests;
     moved.textContent = `${t("movedBy")}: ${t(hand.by ?? "nothing")}`;
@@ -59,7 +59,7 @@ function build(page: Page, root: HTMLElement): void {
 type Held = "gone" | "rests" | "holds" | "nobody" | "watches";
 
 /** Who holds the hand, as a word of the table. */
-export function held(hand: Pick<Hand, "there" | "holding" | "nobodyHolds" | "rests">): Held {
+export function held(hand: Pick<HandState, "there" | "holding" | "nobodyHolds" | "rests">): Held {
   if (!hand.there) return "gone";
   if (hand.rests) return "rests";
   if (hand.holding) return "holds";

@@ -54,7 +54,7 @@ function build(page: Page, root: HTMLElement): void {
   page.hub.on("materials", (said) => {
     segments = said.segments;
     refused.textContent = "";
-    void page.leisure.then(load);
+    void page.idle.then(load);
     show();
   });
   body.onchange = ({ target }) => {

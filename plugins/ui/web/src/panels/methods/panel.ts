@@ -47,7 +47,7 @@ function build(page: Page, root: HTMLElement): void {
   root.append(running(page, editor), refused, complaints, steps(page, editor), forms, compare);
   page.hub.on("document", () => {
     show();
-    void page.leisure.then(load).catch(() => undefined); // all methods are loaded for their schema
+    void page.idle.then(load).catch(() => undefined); // all methods are loaded for their schema
   });
 }
 

@@ -1,6 +1,6 @@
 /** Folders of this computer: what can be opened lies in a list, of which one file or a pair is chosen. */
 import { button, field } from "../../elements";
-import type { Net } from "../../server/connection";
+import type { Server } from "../../page";
 import { t } from "./words";
 
 type Kind = "folder" | "picture" | "video" | "heights" | "recording" | "pipeline";
@@ -12,7 +12,7 @@ interface Listed {
   more: number;
 }
 
-export function folder(net: Net, open: (paths: string[]) => void, say: (text: string) => void): HTMLElement {
+export function folder(net: Server, open: (paths: string[]) => void, say: (text: string) => void): HTMLElement {
   const box = document.createElement("div");
   const path = document.createElement("input");
   path.id = "open-folder";

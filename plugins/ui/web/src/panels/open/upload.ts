@@ -1,5 +1,6 @@
 /** Files from the browser to the program: sent one after the other, opened together. */
-import { token, type Net } from "../../server/connection";
+import type { Server } from "../../page";
+import { token } from "../../server/token";
 
 /** Hears how much of a file is sent, 0 to 100. */
 export type Progress = (name: string, percent: number) => void;
@@ -10,7 +11,7 @@ export interface Opened {
 }
 
 /** Send files and open them. Rejects with the server's words. */
-export async function send(net: Net, files: File[], progress: Progress): Promise<Opened> {
+export async function send(net: Server, files: File[], progress: Progress): Promise<Opened> {
   const batch = await net.ask<string>("batch");
   for (const file of files) await put(batch, file, progress);
   return net.ask<Opened>("open_batch", { batch });

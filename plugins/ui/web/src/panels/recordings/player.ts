@@ -11,7 +11,7 @@ export class Player {
 
   /** moved: told whenever it is somewhere else, or stops. */
   constructor(
-    private page: Page,
+    private page: Pick<Page, "replayed">,
     private moved: () => void,
   ) {}
 

@@ -1,5 +1,5 @@
 /** What the tools do where they are put down, moved and lifted: with a mouse, a finger, a pen, or the crosshair. */
-import type { Net } from "../../../server/connection";
+import type { Server } from "../../../page";
 import { proposed, snapped } from "../editor/requests";
 import { stroke } from "../pixels/brush";
 import type { Drawing } from "../drawing/drawing";
@@ -39,7 +39,7 @@ export class Pens {
 
   constructor(
     private drawing: Drawing,
-    private net: Net,
+    private net: Server,
     /** Pixels of the picture for one of the page. */
     private scale: () => number,
   ) {}

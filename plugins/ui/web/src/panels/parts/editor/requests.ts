@@ -1,5 +1,7 @@
 /** What the editor asks the program for. */
-import { bulk, type Net, token } from "../../../server/connection";
+import type { Server } from "../../../page";
+import { bulk } from "../../../server/connection";
+import { token } from "../../../server/token";
 import type { Part } from "../drawing/drawing";
 import type { Labels, Point } from "../pixels/labels";
 import type { Proposed } from "../pixels/mask";
@@ -33,7 +35,7 @@ export interface Saved {
   numbers: Record<string, number[]>;
 }
 
-export async function opened(net: Net): Promise<Opened> {
+export async function opened(net: Server): Promise<Opened> {
   const said = await net.ask<Answer>("parts_open");
   const [labels, picture] = await Promise.all([
     bulk(`/scene/${said.labels}`).then((each) => each.arrayBuffer()),
@@ -47,16 +49,16 @@ export async function opened(net: Net): Promise<Opened> {
   return { digest, heights, top_m, title, language, picture, parts, labels: { columns, rows, data: new Uint16Array(labels) } };
 }
 
-export const proposed = (net: Net, points: readonly Point[], width_px: number, kind: string): Promise<Proposed | null> =>
+export const proposed = (net: Server, points: readonly Point[], width_px: number, kind: string): Promise<Proposed | null> =>
   net.ask("parts_propose", { points: whole(points), width_px: Math.max(1, Math.round(width_px)), kind, within: null });
 
-export async function snapped(net: Net, points: readonly Point[], reach_px: number): Promise<Point[]> {
+export async function snapped(net: Server, points: readonly Point[], reach_px: number): Promise<Point[]> {
   const said = await net.ask<{ points: Point[] }>("parts_snap", { points: whole(points), reach_px: Math.max(1, Math.round(reach_px)) });
   return said.points;
 }
 
 /** Labels are sent as a file, then what is said of them. */
-export async function save(net: Net, labels: Labels, parts: readonly Part[], told: Record<string, unknown>): Promise<Saved> {
+export async function save(net: Server, labels: Labels, parts: readonly Part[], told: Record<string, unknown>): Promise<Saved> {
   const upload = await net.ask<string>("batch");
   const gzip = new Blob([labels.data as Uint16Array<ArrayBuffer>]).stream().pipeThrough(new CompressionStream("gzip"));
   const response = await fetch(`/upload/${upload}/labels.gz?token=${encodeURIComponent(token)}`, {

@@ -19,6 +19,7 @@ import { Overlay } from "./overlay/overlay";
 import type { Page } from "./page";
 import { build } from "./panels/panel";
 import { panels } from "./panels";
+import { pluginPanel } from "./panels/plugins";
 import { dataCursor } from "./contact/data_cursor";
 import { listen } from "./shortcuts";
 import { stroke } from "./sound/sonification";
@@ -70,6 +71,12 @@ hub.on("hello", ({ history, scene }) => {
   const all = [...history, ...(scene ? [{ ...scene, event: "scene" as const }] : [])].sort((a, b) => a.at_s - b.at_s);
   for (const each of all) if (each.at_s > net.heard_s) hub.tell(each.event, each as never);
   announcer.hushed = false;
+});
+const plugins = new Set<string>();
+hub.on("hello", ({ panels: brought = [] }) => {
+  const fresh = brought.filter(({ name }) => !plugins.has(name)); // hello comes again with each connection
+  for (const { name } of fresh) plugins.add(name);
+  build(page, fresh.map((each) => pluginPanel(each)));
 });
 hub.on("document", (said) => (page.document = said));
 let newest = "";

@@ -164,13 +164,20 @@ export interface Document {
   can_redo: boolean;
 }
 
+/** A panel that a plugin brings: its titles by language, and the address of its ES module. */
+export interface PluginPanel {
+  name: string;
+  title: Record<string, string>;
+  module: string;
+}
+
 interface Said {
   event: string;
   at_s: number;
 }
 
 export interface Events {
-  hello: Said & { version: number; history: (Said & { event: keyof Events })[]; scene: (Said & Meta) | null; };
+  hello: Said & { version: number; history: (Said & { event: keyof Events })[]; scene: (Said & Meta) | null; panels?: PluginPanel[] };
   gone: Said;
   /** Of this page alone: the program that answers is another one, by its key or by its version. */
   refused: Said & { why: "key" | "version" };

@@ -3,14 +3,14 @@ import { describe, test } from "node:test";
 import { stroke } from "../src/panels/parts/pixels/brush";
 import { Drawing, Full, type Part } from "../src/panels/parts/drawing/drawing";
 import { type Labels, labelAt, type Point, type Span } from "../src/panels/parts/pixels/labels";
-import { Mask, spansOf } from "../src/panels/parts/pixels/mask";
-import { fromFront, moved, spread } from "../src/panels/parts/drawing/order";
-import { neighboursOf, piecesOf, placesOf } from "../src/panels/parts/pixels/pieces";
-import { filled } from "../src/panels/parts/pixels/polygon";
+import { Mask, toSpans } from "../src/panels/parts/pixels/mask";
+import { frontToBack, reorder, spread } from "../src/panels/parts/drawing/order";
+import { findNeighbours, findPieces, findPlaces } from "../src/panels/parts/pixels/pieces";
+import { fillOutline } from "../src/panels/parts/pixels/polygon";
 import { borders } from "../src/panels/parts/board/borders";
 import { KEYS, TOOL_KEYS } from "../src/panels/parts/editor/keys";
-import { type Felt, Live } from "../src/panels/parts/editor/live_update";
-import { Sight } from "../src/panels/parts/board/viewport";
+import { type Update, LiveUpdate } from "../src/panels/parts/editor/live_update";
+import { Viewport } from "../src/panels/parts/board/viewport";
 import { SHORTCUTS } from "../src/shortcuts";
 
 const part = (label: number, more: Partial<Part> = {}): Part => ({ label, name: "", height_m: 0, material: null, automatic: false, ...more });
@@ -58,7 +58,7 @@ describe("brush", () => {
     assert.deepEqual(pixels(stroke([3.9, 2.1], [3.9, 2.1], 1, 9, 9)), new Set(["3 2"]));
     const labels = picture(...Array<string>(9).fill("aaaaaaaaa"));
     for (const [row, from, to] of stroke([0, 0], [8.9, 5.2], 1, 9, 9)) labels.data.fill(1, row * 9 + from, row * 9 + to);
-    assert.equal(piecesOf(labels, 1).pieces.length, 1);
+    assert.equal(findPieces(labels, 1).pieces.length, 1);
   });
 
   test("beside the picture it covers nothing", () => assert.deepEqual(stroke([-50, -50], [-40, -60], 8, 9, 9), []));
@@ -73,22 +73,22 @@ function away([x, y]: Point, [ax, ay]: Point, [bx, by]: Point): number {
 describe("outline", () => {
   test("it covers the centres that it goes around, also where it crosses itself", () => {
     const star: Point[] = [[10, 0.2], [15, 19], [0.3, 7], [19.6, 7], [5, 19]];
-    const found = pixels(filled(star, 20, 20));
+    const found = pixels(fillOutline(star, 20, 20));
     for (let y = 0; y < 20; y++)
       for (let x = 0; x < 20; x++) assert.equal(found.has(`${x} ${y}`), winds([x + 0.5, y + 0.5], star), `${x} ${y}`);
     assert.ok(found.has("10 9"), "its middle, which it goes around twice");
   });
 
   test("two outlines that share an edge share no pixel and leave none", () => {
-    const left = pixels(filled([[0, 0], [3.3, 0], [6.1, 10], [0, 10]], 10, 10));
-    const right = pixels(filled([[3.3, 0], [10, 0], [10, 10], [6.1, 10]], 10, 10));
+    const left = pixels(fillOutline([[0, 0], [3.3, 0], [6.1, 10], [0, 10]], 10, 10));
+    const right = pixels(fillOutline([[3.3, 0], [10, 0], [10, 10], [6.1, 10]], 10, 10));
     assert.equal(left.size + right.size, 100);
     assert.equal([...left].filter((each) => right.has(each)).length, 0);
   });
 
   test("of nothing, of a line and beside the picture it covers nothing", () => {
     for (const points of [[], [[1, 1]], [[1, 1], [5, 1], [3, 1]], [[-9, -9], [-5, -9], [-7, -3]]] as Point[][])
-      assert.deepEqual(filled(points, 9, 9), []);
+      assert.deepEqual(fillOutline(points, 9, 9), []);
   });
 });
 
@@ -108,26 +108,26 @@ describe("pieces", () => {
     for (let n = 0; n < 40; n++) {
       const [columns, rows] = [1 + Math.floor(12 * random()), 1 + Math.floor(9 * random())];
       const labels = { columns, rows, data: Uint16Array.from({ length: columns * rows }, () => Math.floor(3 * random())) };
-      const { pieces, starts } = piecesOf(labels);
+      const { pieces, starts } = findPieces(labels);
       assert.deepEqual(pieces.map(({ label, pixels, root }) => [label, pixels, starts[root]]), flooded(labels));
       for (const label of [0, 1, 2])
-        assert.deepEqual(piecesOf(labels, label).pieces.map((each) => each.pixels), pieces.filter((each) => each.label === label).map((each) => each.pixels));
+        assert.deepEqual(findPieces(labels, label).pieces.map((each) => each.pixels), pieces.filter((each) => each.label === label).map((each) => each.pixels));
     }
   });
 
   test("a name stands within its part, near the middle", () => {
     const labels = picture("aaaaaaaa", "abbbbbba", "abaaaaba", "abbbbbba", "aaaaaaaa");
-    for (const [label, { pixels, at }] of placesOf(labels)) {
+    for (const [label, { pixels, at }] of findPlaces(labels)) {
       assert.equal(labelAt(labels, ...at), label);
       assert.equal(pixels, labels.data.filter((each) => each === label).length);
     }
-    assert.deepEqual(placesOf(picture(...Array<string>(9).fill("aaaaa"))).get(0)!.at, [2.5, 4.5]);
+    assert.deepEqual(findPlaces(picture(...Array<string>(9).fill("aaaaa"))).get(0)!.at, [2.5, 4.5]);
   });
 
   test("neighbours touch along a side, not at a corner or around the rim", () => {
     const labels = picture("abba", "bccd", "eeef");
-    assert.deepEqual([...neighboursOf(labels, 0)], [1, 3]);
-    assert.deepEqual([...neighboursOf(labels, 2)].sort(), [1, 3, 4]);
+    assert.deepEqual([...findNeighbours(labels, 0)], [1, 3]);
+    assert.deepEqual([...findNeighbours(labels, 2)].sort(), [1, 3, 4]);
   });
 });
 
@@ -149,13 +149,13 @@ function flooded({ columns, data }: Labels): number[][] {
 describe("order", () => {
   test("the highest is the foremost", () => {
     const parts = [part(0), part(1, { height_m: 0.003 }), part(2, { height_m: 0.001 })];
-    assert.deepEqual(fromFront(parts).map((each) => each.label), [1, 2, 0]);
+    assert.deepEqual(frontToBack(parts).map((each) => each.label), [1, 2, 0]);
   });
 
   test("a part that is moved takes its place, and the heights that were there stay", () => {
     const parts = [part(0, { height_m: 0.001 }), part(1, { height_m: 0.003 }), part(2, { height_m: 0.002 })];
-    assert.deepEqual(moved(parts, 0, 2, 0.004).map((each) => [each.label, each.height_m]), [[0, 0.003], [1, 0.002], [2, 0.001]]);
-    assert.deepEqual(moved(parts, 1, 1, 0.004).map((each) => each.label), [1, 2, 0], "no farther than the front");
+    assert.deepEqual(reorder(parts, 0, 2, 0.004).map((each) => [each.label, each.height_m]), [[0, 0.003], [1, 0.002], [2, 0.001]]);
+    assert.deepEqual(reorder(parts, 1, 1, 0.004).map((each) => each.label), [1, 2, 0], "no farther than the front");
   });
 
   test("equal heights are spread so that each is felt, and none leaves the workspace", () => {
@@ -214,7 +214,7 @@ describe("drawing", () => {
     assert.deepEqual(drawn(it.labels), ["aaaaaa", "aaaaaa", "aaaaaa", "bbbbbb"]);
     assert.ok(it.split(0, [[0.5, -3], [3.5, 9]]), "also from beside it to beside it");
     assert.deepEqual([...new Set(it.labels.data)].sort(), [0, 1, 2]);
-    assert.equal(piecesOf(it.labels).pieces.length, 3);
+    assert.equal(findPieces(it.labels).pieces.length, 3);
     assert.equal(drawn(it.labels)[3], "bbbbbb");
     assert.deepEqual(it.parts.map((each) => each.name), ["part 0", "part 1", "part 0 2"]);
     it.undo();
@@ -224,7 +224,7 @@ describe("drawing", () => {
   test("pixels of a line along the rim of the picture do not go to a part at the rim across", () => {
     const it = drawing("aaaaaaa", "aaaaaaa", "aaaaaaa", "aaaaaaa");
     assert.ok(it.split(0, [[0.5, 0.5], [0.5, 3.5], [4.5, 3.5], [4.5, 0.5]]));
-    assert.equal(piecesOf(it.labels).pieces.length, 2);
+    assert.equal(findPieces(it.labels).pieces.length, 2);
   });
 
   test("pieces of a part become parts of their own, the largest stays it, and crumbs go to what is around them", () => {
@@ -293,7 +293,7 @@ function anything(seed: number): void {
   const place = (): Point => [16 * random() - 2, 10 * random() - 2];
   const acts: (() => void)[] = [
     () => (it.begin(random() < 0.5 ? any() : null), it.paint(stroke(place(), place(), 1 + 4 * random(), 12, 6)), it.paint(stroke(place(), place(), 2, 12, 6)), it.end()),
-    () => (it.begin(any()), it.paint(filled([place(), place(), place()], 12, 6)), it.cancel()),
+    () => (it.begin(any()), it.paint(fillOutline([place(), place(), place()], 12, 6)), it.cancel()),
     () => void it.join(any(), any()),
     () => void it.split(any(), [place(), place(), place()]),
     () => it.settle(upTo(4)),
@@ -319,7 +319,7 @@ function anything(seed: number): void {
 }
 
 test("a mask is what its runs say", () => {
-  const spans = spansOf({ box: [2, 3, 4, 3], runs: [3, 6, 2, 1] });
+  const spans = toSpans({ box: [2, 3, 4, 3], runs: [3, 6, 2, 1] });
   assert.deepEqual(spans, [[3, 5, 6], [4, 2, 6], [5, 2, 3], [5, 5, 6]]);
   const mask = new Mask(10, 10);
   mask.put(spans, true);
@@ -329,8 +329,8 @@ test("a mask is what its runs say", () => {
 });
 
 describe("sight", () => {
-  const seen = (): Sight => {
-    const sight = new Sight(400, 300);
+  const seen = (): Viewport => {
+    const sight = new Viewport(400, 300);
     sight.resize(800, 900);
     return sight;
   };
@@ -340,7 +340,7 @@ describe("sight", () => {
     assert.deepEqual([sight.zoom, sight.toBoard([0, 0]), sight.toBoard([400, 300])], [2, [0, 150], [800, 750]]);
     sight.resize(400, 300);
     assert.deepEqual([sight.zoom, sight.toBoard([0, 0])], [1, [0, 0]]);
-    sight.nearer(4);
+    sight.zoomBy(4);
     sight.resize(500, 300);
     assert.equal(sight.zoom, 4);
   });
@@ -348,7 +348,7 @@ describe("sight", () => {
   test("what is under the pointer stays there, and places lead back", () => {
     const sight = seen();
     const at = sight.toPicture([200, 400]);
-    sight.nearer(3, [200, 400]);
+    sight.zoomBy(3, [200, 400]);
     assert.deepEqual(sight.toPicture([200, 400]).map((each) => Math.round(1e6 * each)), at.map((each) => Math.round(1e6 * each)));
     assert.deepEqual(sight.toBoard(sight.toPicture([5, 7])).map((each) => Math.round(1e6 * each) / 1e6), [5, 7]);
   });
@@ -356,7 +356,7 @@ describe("sight", () => {
   test("a crosshair is brought into sight, and one that is seen moves nothing", () => {
     const sight = seen();
     assert.ok(!sight.reveal([0.5, 0.5]) && !sight.reveal([399.5, 299.5]));
-    sight.nearer(8, [400, 450]);
+    sight.zoomBy(8, [400, 450]);
     assert.ok(sight.reveal([399.5, 10.5]));
     const [x, y] = sight.toBoard([399.5, 10.5]);
     assert.ok(x > 0 && x < 800 && y > 0 && y < 900, `${x} ${y}`);
@@ -374,7 +374,7 @@ test("borders are a dark line beside a light one, the selected part's in the col
     }
   };
   const labels = picture(...Array<string>(10).fill("aaaaabbbbbccccc"));
-  const sight = new Sight(15, 10);
+  const sight = new Viewport(15, 10);
   sight.resize(15, 10);
   const look = { labels, selected: 2, proposed: null as Mask | null, accent: 7, against: 8, thin: 9, ratio: 0.67 };
   const row = (box = { left: 0, top: 4, right: 15, bottom: 5 }): number[] => [...new Uint32Array(borders(look, sight, box).data.buffer)];
@@ -392,23 +392,23 @@ test("borders are a dark line beside a light one, the selected part's in the col
 test("what is dragged is sent one at a time, the newest last, and what is felt already is not", async () => {
   const sent: number[] = [];
   const arrive: (() => void)[] = [];
-  const at = (height: number): Felt => ({ heights_m: [height], materials: [null], heights: {} });
-  const live = new Live(({ heights_m }) => {
+  const at = (height: number): Update => ({ heights_m: [height], materials: [null], heights: {} });
+  const live = new LiveUpdate(({ heights_m }) => {
     sent.push(heights_m[0]!);
     return new Promise<void>((done) => arrive.push(done));
   }, assert.fail);
-  live.feel(at(0), at(0));
-  for (const height of [1, 2, 3]) live.feel(at(height), at(0));
+  live.send(at(0), at(0));
+  for (const height of [1, 2, 3]) live.send(at(height), at(0));
   assert.deepEqual(sent, [1]);
   arrive[0]!();
   await new Promise(setImmediate);
   assert.deepEqual(sent, [1, 3]);
   arrive[1]!();
   await new Promise(setImmediate);
-  live.feel(at(3), at(0));
+  live.send(at(3), at(0));
   await new Promise(setImmediate);
   assert.deepEqual(sent, [1, 3]);
-  live.feel(at(0), at(0));
+  live.send(at(0), at(0));
   assert.deepEqual(sent, [1, 3, 0], "also back to what was opened");
 });
 

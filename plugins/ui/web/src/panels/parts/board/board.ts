@@ -1,11 +1,11 @@
 /** The picture with its parts: borders, numbers and names over it, and what a tool is doing. Drawn as large as the screen. */
 import { measuring } from "../../../instrumentation";
 import { colour } from "../../../frame/themes";
-import { borders, rimOf } from "./borders";
+import { borders, borderReach } from "./borders";
 import type { Drawing } from "../drawing/drawing";
-import { around, type Box, EMPTY, isEmpty, type Point } from "../pixels/labels";
+import { union, type Box, EMPTY, isEmpty, type Point } from "../pixels/labels";
 import type { Place } from "../pixels/pieces";
-import { Sight } from "./viewport";
+import { Viewport } from "./viewport";
 
 /** What a tool shows while it is used. */
 export interface Marks {
@@ -34,7 +34,7 @@ export class Board {
   readonly element = document.createElement("div");
   /** What is seen: one canvas without transparency, which browsers show soonest. */
   readonly canvas = document.createElement("canvas");
-  readonly sight: Sight;
+  readonly sight: Viewport;
   marks: Marks = { line: [], closed: false, at: null, cross: false, brush: 0 };
   private context = this.canvas.getContext("2d", { alpha: false })!;
   /** The picture and the borders at the size of the screen, to be put together where something changed. */
@@ -59,7 +59,7 @@ export class Board {
     private drawing: Drawing,
     private picture: ImageBitmap,
   ) {
-    this.sight = new Sight(drawing.labels.columns, drawing.labels.rows);
+    this.sight = new Viewport(drawing.labels.columns, drawing.labels.rows);
     this.element.className = "board";
     this.element.append(this.canvas);
     this.watching.observe(this.element);
@@ -90,7 +90,7 @@ export class Board {
 
   /** Something of the picture's parts is another; at: when it was asked for. */
   changed(box: Box, at = performance.now()): void {
-    this.stale = around(this.stale, box);
+    this.stale = union(this.stale, box);
     this.since ||= at;
     this.wake();
   }
@@ -147,10 +147,10 @@ export class Board {
     const whole = { left: 0, top: 0, right: sight.width, bottom: sight.height };
     const anew = this.moved || this.selected !== drawing.selected;
     if (this.moved) this.drawPicture();
-    const lines = anew ? whole : sight.covering(this.stale, rimOf(this.ratio));
+    const lines = anew ? whole : sight.covering(this.stale, borderReach(this.ratio));
     if (!isEmpty(lines)) this.drawBorders(lines);
     const marks = this.marksBox();
-    this.show(anew || this.anew ? whole : [lines, marks, this.marked].filter((each) => !isEmpty(each)).reduce(around, EMPTY));
+    this.show(anew || this.anew ? whole : [lines, marks, this.marked].filter((each) => !isEmpty(each)).reduce(union, EMPTY));
     this.marked = marks;
     this.moved = this.anew = false;
     this.selected = drawing.selected;
@@ -181,7 +181,7 @@ export class Board {
     let box = EMPTY;
     for (const each of at ? [...line, at] : line) {
       const [x, y] = sight.toBoard(each);
-      box = around(box, { left: x, top: y, right: x, bottom: y });
+      box = union(box, { left: x, top: y, right: x, bottom: y });
     }
     const within = (side: number, most: number): number => Math.max(0, Math.min(most, Math.round(side)));
     const [right, bottom] = [within(box.right + rim, sight.width), within(box.bottom + rim, sight.height)];

@@ -1,7 +1,7 @@
 /** Mouse, fingers and pens on the board: one uses the tool, the wheel, the other buttons and two fingers move the picture. */
 import type { Board } from "./board";
 import type { Point } from "../pixels/labels";
-import type { Pens } from "../controls/tools";
+import type { Tools } from "../controls/tools";
 
 const NOTCH = 0.0015;
 const LINE = 16;
@@ -13,7 +13,7 @@ export interface Hears {
   lifted: () => void;
 }
 
-export function pointers(board: Board, pens: Pens, hears: Hears): void {
+export function pointers(board: Board, pens: Tools, hears: Hears): void {
   const { canvas } = board;
   const fingers = new Map<number, PointerEvent>();
   /** Where the picture is held; null while a tool is used. */
@@ -57,7 +57,7 @@ export function pointers(board: Board, pens: Pens, hears: Hears): void {
   canvas.addEventListener("wheel", (event) => {
     event.preventDefault();
     const by = event.deltaMode === WheelEvent.DOM_DELTA_LINE ? LINE * event.deltaY : event.deltaY;
-    board.sight.nearer(Math.exp(-NOTCH * by), board.onBoard(event.clientX, event.clientY));
+    board.sight.zoomBy(Math.exp(-NOTCH * by), board.onBoard(event.clientX, event.clientY));
     board.look();
   }, { passive: false });
 
@@ -65,7 +65,7 @@ export function pointers(board: Board, pens: Pens, hears: Hears): void {
     const [x, y] = board.onBoard(now.x, now.y);
     const [x0, y0] = board.onBoard(held!.x, held!.y);
     board.sight.pan(x - x0, y - y0);
-    if (held!.far && now.far) board.sight.nearer(now.far / held!.far, [x, y]);
+    if (held!.far && now.far) board.sight.zoomBy(now.far / held!.far, [x, y]);
     held = now;
     board.look();
   }

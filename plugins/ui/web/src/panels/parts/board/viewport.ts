@@ -5,7 +5,7 @@ const NEAREST = 40;
 /** A picture is never smaller than so much of the board. */
 const SMALLEST = 0.5;
 
-export class Sight {
+export class Viewport {
   /** Pixels of the board for one of the picture. */
   zoom = 1;
   /** What of the picture is in the upper left corner of the board. */
@@ -26,18 +26,18 @@ export class Sight {
   }
 
   /** Nearer by a factor; what lies under a place of the board stays there. */
-  nearer(factor: number, [x, y]: Point = [this.width / 2, this.height / 2]): void {
+  zoomBy(factor: number, [x, y]: Point = [this.width / 2, this.height / 2]): void {
     const at = this.toPicture([x, y]);
     this.zoom = Math.max(SMALLEST * this.whole, Math.min(NEAREST, this.zoom * factor));
     this.left = at[0] - x / this.zoom;
     this.top = at[1] - y / this.zoom;
-    this.hold();
+    this.clamp();
   }
 
   pan(dx: number, dy: number): void {
     this.left -= dx / this.zoom;
     this.top -= dy / this.zoom;
-    this.hold();
+    this.clamp();
   }
 
   resize(width: number, height: number): void {
@@ -48,15 +48,15 @@ export class Sight {
     if (fitted || this.zoom <= this.whole) return this.fit();
     this.left = middle[0] - width / this.zoom / 2;
     this.top = middle[1] - height / this.zoom / 2;
-    this.hold();
+    this.clamp();
   }
 
   /** Move as little as is needed for a place of the picture to be seen; whether it moved. */
   reveal([x, y]: Point): boolean {
     const before = [this.left, this.top];
     const rim = Math.min(this.width, this.height) / 12 / this.zoom;
-    this.left = shown(this.left, this.width / this.zoom, x, rim, this.columns);
-    this.top = shown(this.top, this.height / this.zoom, y, rim, this.rows);
+    this.left = scrollInto(this.left, this.width / this.zoom, x, rim, this.columns);
+    this.top = scrollInto(this.top, this.height / this.zoom, y, rim, this.rows);
     return before[0] !== this.left || before[1] !== this.top;
   }
 
@@ -85,7 +85,7 @@ export class Sight {
   }
 
   /** The middle of the board always shows something of the picture. */
-  private hold(): void {
+  private clamp(): void {
     const [w, h] = [this.width / this.zoom / 2, this.height / this.zoom / 2];
     this.left = Math.max(-w, Math.min(this.columns - w, this.left));
     this.top = Math.max(-h, Math.min(this.rows - h, this.top));
@@ -93,6 +93,6 @@ export class Sight {
 }
 
 /** The beginning of what is seen along an axis, so that a place is in it with a rim where there is more to see. */
-function shown(from: number, length: number, at: number, rim: number, most: number): number {
+function scrollInto(from: number, length: number, at: number, rim: number, most: number): number {
   return Math.max(Math.min(most, at + rim) - length, Math.min(Math.max(0, at - rim), from));
 }

@@ -2,14 +2,14 @@
 import { button, field, hint } from "../../../elements";
 import { t } from "../editor/words";
 import type { Drawing, Part } from "../drawing/drawing";
-import { fromFront } from "../drawing/order";
-import { called, heightOf } from "../editor/part_words";
+import { frontToBack } from "../drawing/order";
+import { nameOf, heightOf } from "../editor/part_words";
 
 /** Of the keys in the list, in metres. */
 const STEPS_M = { usual: 0.0002, fine: 0.00005, coarse: 0.001 };
 const MM = 1000;
 
-export class Side {
+export class PartList {
   readonly list = document.createElement("ul");
   readonly said = document.createElement("fieldset");
   readonly name = input("parts-name", "text");
@@ -103,7 +103,7 @@ export class Side {
   }
 
   private showList(): void {
-    const wanted = fromFront(this.drawing.parts);
+    const wanted = frontToBack(this.drawing.parts);
     for (const [label, row] of this.rows)
       if (!this.drawing.part(label)) {
         row.remove();
@@ -131,7 +131,7 @@ export class Side {
 
   private fill(row: HTMLLIElement, part: Part): void {
     const number = this.numberOf(part.label);
-    const texts = [String(number), called(part, number), heightOf(part)];
+    const texts = [String(number), nameOf(part, number), heightOf(part)];
     texts.forEach((text, i) => row.children[i]!.textContent !== text && (row.children[i]!.textContent = text));
     (row.lastElementChild as HTMLMeterElement).value = part.height_m;
     const chosen = part.label === this.drawing.selected;
@@ -161,7 +161,7 @@ export class Side {
   }
 
   showNeighbours(): void {
-    const options = this.neighbours.map((each) => new Option(called(each, this.numberOf(each.label)), String(each.label)));
+    const options = this.neighbours.map((each) => new Option(nameOf(each, this.numberOf(each.label)), String(each.label)));
     const said = options.map((each) => each.outerHTML).join("");
     if (this.other.dataset.said === said) return;
     this.other.dataset.said = said;
@@ -202,7 +202,7 @@ export class Side {
 
   private key(event: KeyboardEvent): void {
     const { key, altKey, ctrlKey, shiftKey } = event;
-    const all = fromFront(this.drawing.parts).map((each) => each.label);
+    const all = frontToBack(this.drawing.parts).map((each) => each.label);
     const at = all.indexOf(this.drawing.selected);
     const walk: Record<string, number> = { ArrowDown: at + 1, ArrowUp: at - 1, Home: 0, End: all.length - 1 };
     if (altKey && (key === "ArrowUp" || key === "ArrowDown")) this.order(key === "ArrowUp" ? 1 : -1);

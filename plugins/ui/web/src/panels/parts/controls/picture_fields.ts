@@ -8,7 +8,7 @@ const SHAPES = ["round_m", "bulge_m", "detail_m"] as const;
 const MM = 1000;
 const MOST_MM = { round_m: 100, bulge_m: 10, detail_m: 10 };
 
-export class Words {
+export class PictureFields {
   readonly elements: HTMLElement[];
   changed = false;
   /** Hears that the shape of the parts is another. */
@@ -27,8 +27,8 @@ export class Words {
       return field(t(name), box);
     });
     this.elements = [
-      folded(t("picturesWords"), [field(t("pictureTitle"), this.title), field(t("language"), this.language)]),
-      folded(t("shapes"), shape),
+      foldable(t("picturesWords"), [field(t("pictureTitle"), this.title), field(t("language"), this.language)]),
+      foldable(t("shapes"), shape),
     ];
     for (const each of [this.title, this.language, ...this.shapes.values()]) each.addEventListener("input", () => (this.changed = true));
     for (const each of this.shapes.values()) each.addEventListener("input", () => each.checkValidity() && this.shaped());
@@ -47,7 +47,7 @@ export class Words {
   }
 }
 
-export function folded(title: string, inside: HTMLElement[]): HTMLElement {
+export function foldable(title: string, inside: HTMLElement[]): HTMLElement {
   const box = document.createElement("details");
   const heading = document.createElement("summary");
   heading.textContent = title;

@@ -5,7 +5,7 @@ import { caps } from "../../help/panel";
 import { KINDS } from "../editor/requests";
 import type { Drawing } from "../drawing/drawing";
 import { TOOL_KEYS } from "../editor/keys";
-import { type Pens, type Tool, TOOLS } from "./tools";
+import { type Tools, type Tool, TOOLS } from "./tools";
 import { input, select } from "./part_list";
 
 export interface Acts {
@@ -24,7 +24,7 @@ const FIELDS: Record<Tool, readonly ("width" | "snap" | "method")[]> = {
   select: [], brush: ["width"], lasso: ["snap"], propose: ["width", "method"], split: [], join: [],
 };
 
-export class Bar {
+export class Toolbar {
   readonly tools = group(t("tools"));
   readonly options = document.createElement("div");
   readonly width = input("parts-width", "range");
@@ -38,25 +38,25 @@ export class Bar {
 
   constructor(
     private drawing: Drawing,
-    private pens: Pens,
+    private pens: Tools,
     act: Acts,
   ) {
-    for (const tool of TOOLS) this.uses.set(tool, keyed(t(tool), TOOL_KEYS[tool], () => act.use(tool)));
-    this.fresh = keyed(t("fresh"), "t", act.fresh);
-    this.back = keyed(t("undo"), "Ctrl+z", act.undo);
-    this.again = keyed(t("redo"), "Ctrl+Shift+z", act.redo);
+    for (const tool of TOOLS) this.uses.set(tool, keyButton(t(tool), TOOL_KEYS[tool], () => act.use(tool)));
+    this.fresh = keyButton(t("fresh"), "t", act.fresh);
+    this.back = keyButton(t("undo"), "Ctrl+z", act.undo);
+    this.again = keyButton(t("redo"), "Ctrl+Shift+z", act.redo);
     this.tools.append(
       ...this.uses.values(), gap(), this.fresh, gap(), this.back, this.again, gap(),
-      keyed(t("zoomIn"), "+", () => act.nearer(1.5)), keyed(t("zoomOut"), "-", () => act.nearer(1 / 1.5)), keyed(t("fit"), "0", act.fit),
+      keyButton(t("zoomIn"), "+", () => act.nearer(1.5)), keyButton(t("zoomOut"), "-", () => act.nearer(1 / 1.5)), keyButton(t("fit"), "0", act.fit),
     );
     this.fields = { width: this.widthField(), snap: this.snapField(), method: this.methodField() };
     this.takes = button(t("takeAway"), () => {
-      pens.takesAway = !pens.takesAway;
+      pens.erases = !pens.erases;
       this.show();
     });
-    const accept = keyed(t("accept"), "Enter", act.accept);
+    const accept = keyButton(t("accept"), "Enter", act.accept);
     accept.className = "primary";
-    this.proposal = [accept, keyed(t("discard"), "Escape", act.discard), this.takes];
+    this.proposal = [accept, keyButton(t("discard"), "Escape", act.discard), this.takes];
     this.options.className = "bar";
     this.options.append(...Object.values(this.fields), ...this.proposal);
   }
@@ -64,8 +64,8 @@ export class Bar {
   show(): void {
     const { pens, drawing } = this;
     for (const [tool, each] of this.uses) each.ariaPressed = String(tool === pens.tool);
-    this.fresh.ariaPressed = String(pens.fresh);
-    this.takes.ariaPressed = String(pens.takesAway);
+    this.fresh.ariaPressed = String(pens.newPart);
+    this.takes.ariaPressed = String(pens.erases);
     this.back.disabled = !drawing.canUndo;
     this.again.disabled = !drawing.canRedo;
     for (const [name, each] of Object.entries(this.fields)) each.hidden = !(FIELDS[pens.tool] as readonly string[]).includes(name);
@@ -124,7 +124,7 @@ export function group(name: string): HTMLElement {
 }
 
 /** A button that shows its key. */
-export function keyed(text: string, key: string, press: () => void): HTMLButtonElement {
+export function keyButton(text: string, key: string, press: () => void): HTMLButtonElement {
   const made = button(text, press);
   const cap = caps(key);
   cap.setAttribute("aria-hidden", "true");

@@ -1,11 +1,11 @@
 /** What the tools do where they are put down, moved and lifted: with a mouse, a finger, a pen, or the crosshair. */
 import type { Server } from "../../../page";
-import { proposed, snapped } from "../editor/requests";
+import { proposePart, snapOutline } from "../editor/requests";
 import { stroke } from "../pixels/brush";
 import type { Drawing } from "../drawing/drawing";
 import { labelAt, type Point } from "../pixels/labels";
-import { filled } from "../pixels/polygon";
-import { lineOf } from "../pixels/split";
+import { fillOutline } from "../pixels/polygon";
+import { linePixels } from "../pixels/split";
 
 export const TOOLS = ["select", "brush", "lasso", "propose", "split", "join"] as const;
 export type Tool = (typeof TOOLS)[number];
@@ -17,13 +17,13 @@ const NEAR_PX = 2;
 /** How far an edge snaps, and a line that cuts goes on beyond its ends, in pixels of the page. */
 const REACH_PX = 10;
 
-export class Pens {
+export class Tools {
   tool: Tool = "select";
   /** Of the brush, in pixels of the picture. */
   width = 1;
   /** The next stroke makes a new part. */
-  fresh = false;
-  takesAway = false;
+  newPart = false;
+  erases = false;
   snaps = true;
   kind = "grabcut";
   down = false;
@@ -49,7 +49,7 @@ export class Pens {
     this.down = true;
     this.line = [at];
     if (this.tool !== "brush") return;
-    this.tried(() => {
+    this.attempt(() => {
       if (!this.drawing.proposed) this.drawing.begin(this.target);
       this.dab(at, at);
     });
@@ -86,17 +86,17 @@ export class Pens {
   }
 
   accept(): void {
-    this.tried(() => this.done(this.drawing.accept(this.target)));
+    this.attempt(() => this.finish(this.drawing.accept(this.target)));
   }
 
   private get target(): number | null {
-    return this.fresh ? null : this.drawing.selected;
+    return this.newPart ? null : this.drawing.selected;
   }
 
   private dab(from: Point, to: Point): void {
     const { columns, rows } = this.drawing.labels;
     const spans = stroke(from, to, this.width, columns, rows);
-    if (this.drawing.proposed) this.drawing.correct(spans, !this.takesAway);
+    if (this.drawing.proposed) this.drawing.correct(spans, !this.erases);
     else this.drawing.paint(spans);
   }
 
@@ -106,30 +106,30 @@ export class Pens {
   }
 
   private brush(): void {
-    if (!this.drawing.proposed) this.done(this.drawing.end());
+    if (!this.drawing.proposed) this.finish(this.drawing.end());
   }
 
   private async lasso(line: Point[]): Promise<void> {
     const { columns, rows } = this.drawing.labels;
-    const outline = this.snaps && line.length > 2 ? await this.asked(snapped(this.net, line, REACH_PX * this.scale())) : line;
-    const spans = filled(outline, columns, rows);
+    const outline = this.snaps && line.length > 2 ? await this.wait(snapOutline(this.net, line, REACH_PX * this.scale())) : line;
+    const spans = fillOutline(outline, columns, rows);
     if (!spans.length) return this.failed("notPainted");
-    if (this.drawing.proposed) return this.drawing.correct(spans, !this.takesAway);
+    if (this.drawing.proposed) return this.drawing.correct(spans, !this.erases);
     this.drawing.begin(this.target);
     this.drawing.paint(spans);
-    this.done(this.drawing.end());
+    this.finish(this.drawing.end());
   }
 
   private async propose(line: Point[]): Promise<void> {
-    const found = await this.asked(proposed(this.net, line, this.width, this.kind));
+    const found = await this.wait(proposePart(this.net, line, this.width, this.kind));
     if (found) this.drawing.propose(found); // none, if another stroke came before this one was looked at
   }
 
   private split(drawn: Point[]): void {
     const { labels, selected } = this.drawing;
-    const line = lengthened(drawn, REACH_PX * this.scale());
+    const line = extendLine(drawn, REACH_PX * this.scale());
     const met = new Map<number, number>();
-    for (const at of lineOf(line, labels)) met.set(labels.data[at]!, (met.get(labels.data[at]!) ?? 0) + 1);
+    for (const at of linePixels(line, labels)) met.set(labels.data[at]!, (met.get(labels.data[at]!) ?? 0) + 1);
     const most = [...met].sort((a, b) => b[1] - a[1])[0]?.[0] ?? selected;
     if (!this.drawing.split(met.has(selected) ? selected : most, line)) this.failed("notSplit");
   }
@@ -140,12 +140,12 @@ export class Pens {
     if (!this.drawing.join(label, this.drawing.selected)) this.failed("notJoined");
   }
 
-  private done(changed: boolean): void {
-    if (changed) this.fresh = false;
+  private finish(changed: boolean): void {
+    if (changed) this.newPart = false;
     else this.failed("nothingChanged");
   }
 
-  private tried(act: () => void): void {
+  private attempt(act: () => void): void {
     try {
       act();
     } catch (error) {
@@ -154,7 +154,7 @@ export class Pens {
     }
   }
 
-  private async asked<T>(work: Promise<T>): Promise<T> {
+  private async wait<T>(work: Promise<T>): Promise<T> {
     this.waits((this.busy = true));
     try {
       return await work;
@@ -165,7 +165,7 @@ export class Pens {
 }
 
 /** A line that goes on at both ends as it began and ended: nobody hits a rim to the pixel. */
-function lengthened(line: Point[], by: number): Point[] {
+function extendLine(line: Point[], by: number): Point[] {
   const beyond = (end: Point, before: Point): Point => {
     const [dx, dy] = [end[0] - before[0], end[1] - before[1]];
     const share = by / (Math.hypot(dx, dy) || Infinity);

@@ -1,10 +1,10 @@
 /** The parts as they are drawn now, and everything that was done to them, to be taken back and done again. */
-import { around, type Box, boxOf, counted, EMPTY, type Labels, type Point, type Span } from "../pixels/labels";
-import { Mask, type Proposed, spansOf } from "../pixels/mask";
-import { fromFront, moved } from "./order";
+import { union, type Box, boundingBox, countPixels, EMPTY, type Labels, type Point, type Span } from "../pixels/labels";
+import { Mask, type Proposal, toSpans } from "../pixels/mask";
+import { frontToBack, reorder } from "./order";
 import { Patch } from "../pixels/patch";
-import { type Found, piecesOf } from "../pixels/pieces";
-import { runs, split } from "../pixels/split";
+import { type Pieces, findPieces } from "../pixels/pieces";
+import { eachRun, split } from "../pixels/split";
 
 export interface Part {
   /** Its number in this picture, as long as it is edited. */
@@ -56,9 +56,9 @@ export class Drawing {
     public parts: readonly Part[],
     readonly top_m: number,
   ) {
-    this.counts = counted(labels);
+    this.counts = countPixels(labels);
     this.next = Math.max(-1, ...parts.map((each) => each.label)) + 1;
-    this.selected = fromFront(parts)[0]?.label ?? 0;
+    this.selected = frontToBack(parts)[0]?.label ?? 0;
   }
 
   get saved(): boolean {
@@ -111,7 +111,7 @@ export class Drawing {
   }
 
   order(label: number, by: number): void {
-    const heights = new Map(moved(this.parts, label, by, this.top_m).map(({ label, height_m }) => [label, { height_m }]));
+    const heights = new Map(reorder(this.parts, label, by, this.top_m).map(({ label, height_m }) => [label, { height_m }]));
     this.set(heights);
   }
 
@@ -125,8 +125,8 @@ export class Drawing {
     const { stroke } = this;
     if (!stroke || !spans.length) return;
     stroke.patch.paint(this.labels, spans, stroke.label);
-    const box = boxOf(spans);
-    stroke.box = around(stroke.box, box);
+    const box = boundingBox(spans);
+    stroke.box = union(stroke.box, box);
     this.changed(box, false);
   }
 
@@ -151,16 +151,16 @@ export class Drawing {
     this.changed(stroke.box, false);
   }
 
-  propose(proposal: Proposed): void {
+  propose(proposal: Proposal): void {
     this.discard();
     this.proposed = new Mask(this.labels.columns, this.labels.rows);
-    this.correct(spansOf(proposal), true);
+    this.correct(toSpans(proposal), true);
   }
 
   correct(spans: Span[], on: boolean): void {
     if (!this.proposed || !spans.length) return;
     this.proposed.put(spans, on);
-    this.changed(boxOf(spans), false);
+    this.changed(boundingBox(spans), false);
   }
 
   /** Make what was proposed a part, or (label) more of one. */
@@ -184,7 +184,7 @@ export class Drawing {
   join(label: number, into: number): boolean {
     if (label === into || !this.part(label) || !this.part(into)) return false;
     this.begin(into);
-    this.paint(this.spansOf(piecesOf(this.labels, label)));
+    this.paint(this.spansOf(findPieces(this.labels, label)));
     return this.end();
   }
 
@@ -204,7 +204,7 @@ export class Drawing {
   /** Parts that lie in several pieces, with the sizes of these, the largest first. */
   scattered(): Map<number, number[]> {
     const sizes = new Map<number, number[]>();
-    for (const { label, pixels } of piecesOf(this.labels).pieces) sizes.set(label, [...(sizes.get(label) ?? []), pixels]);
+    for (const { label, pixels } of findPieces(this.labels).pieces) sizes.set(label, [...(sizes.get(label) ?? []), pixels]);
     return new Map([...sizes].filter(([, all]) => all.length > 1).map(([label, all]) => [label, all.sort((a, b) => b - a)]));
   }
 
@@ -217,14 +217,14 @@ export class Drawing {
     for (let pass = 0; pass < PASSES && this.absorb(least, patch); pass++);
     const made: Part[] = [];
     const kept = new Set<number>();
-    const found = piecesOf(this.labels);
+    const found = findPieces(this.labels);
     for (const { label, root } of found.pieces.sort((a, b) => b.pixels - a.pixels)) {
       if (!kept.has(label)) kept.add(label);
       else {
         const part = this.part(label)!;
         const fresh = this.fresh();
         made.push({ ...part, label: fresh, name: this.free(part.name, made) });
-        runs(found, root, (from, to) => patch.put(this.labels.data, from, to, fresh));
+        eachRun(found, root, (from, to) => patch.put(this.labels.data, from, to, fresh));
       }
     }
     if (!patch.isEmpty)
@@ -234,7 +234,7 @@ export class Drawing {
   /** Give small pieces away; whether there were some. One may go to another that goes on in the next pass. */
   private absorb(least: number, patch: Patch): boolean {
     const { data, columns } = this.labels;
-    const found = piecesOf(this.labels);
+    const found = findPieces(this.labels);
     const largest = new Set<number>();
     let some = false;
     for (const { label, pixels, root } of found.pieces.sort((a, b) => b.pixels - a.pixels)) {
@@ -244,7 +244,7 @@ export class Drawing {
       const start = found.starts[root]!;
       const beside = start % columns ? start - 1 : start >= columns ? start - columns : found.ends[root]!;
       const taker = data[beside]!;
-      runs(found, root, (from, to) => patch.put(data, from, to, taker));
+      eachRun(found, root, (from, to) => patch.put(data, from, to, taker));
       some = true;
     }
     return some;
@@ -279,7 +279,7 @@ export class Drawing {
     const whole = { ...step, before: this.parts, from: this.selected };
     this.count(whole, 1);
     whole.after = step.after.filter(({ label }) => this.counts[label]);
-    if (!whole.after.some(({ label }) => label === whole.to)) whole.to = fromFront(whole.after)[0]?.label ?? 0;
+    if (!whole.after.some(({ label }) => label === whole.to)) whole.to = frontToBack(whole.after)[0]?.label ?? 0;
     if (this.kept > this.done.length) this.kept = -1; // what was saved cannot be come back to
     this.done.push(whole);
     this.undone = [];
@@ -299,7 +299,7 @@ export class Drawing {
     });
   }
 
-  private spansOf({ starts, ends }: Found): Span[] {
+  private spansOf({ starts, ends }: Pieces): Span[] {
     const { columns } = this.labels;
     return [...starts].map((start, i) => {
       const row = Math.floor(start / columns);

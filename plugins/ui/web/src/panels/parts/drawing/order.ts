@@ -9,7 +9,7 @@ export interface Standing {
 const STEP_M = 0.0005;
 
 /** The foremost first; of equal heights, the one with the lower number. */
-export function fromFront<T extends Standing>(parts: readonly T[]): T[] {
+export function frontToBack<T extends Standing>(parts: readonly T[]): T[] {
   return [...parts].sort((a, b) => b.height_m - a.height_m || a.label - b.label);
 }
 
@@ -17,8 +17,8 @@ export function fromFront<T extends Standing>(parts: readonly T[]): T[] {
  * The heights after a part went by so many places to the front (or to the back, below 0), in the order from the front.
  * The heights that were there stay where they can; equal ones are spread, so that each part is felt before the next.
  */
-export function moved<T extends Standing>(parts: readonly T[], label: number, by: number, top_m: number): T[] {
-  const before = fromFront(parts);
+export function reorder<T extends Standing>(parts: readonly T[], label: number, by: number, top_m: number): T[] {
+  const before = frontToBack(parts);
   const from = before.findIndex((each) => each.label === label);
   const to = Math.max(0, Math.min(before.length - 1, from - by));
   const after = before.filter((each) => each.label !== label);

@@ -5,20 +5,20 @@ import { letters, pressed } from "../../../shortcuts";
 import { t } from "./words";
 import { t as frame } from "../../../frame/words";
 import { caps } from "../../help/panel";
-import { opened, type Opened, save } from "./requests";
-import { Bar } from "../controls/toolbar";
+import { openParts, type Opened, saveParts } from "./requests";
+import { Toolbar } from "../controls/toolbar";
 import { Board } from "../board/board";
 import { Drawing, Full } from "../drawing/drawing";
 import { KEYS, TOOL_KEYS, WAYS } from "./keys";
 import { labelAt, type Point } from "../pixels/labels";
-import { type Felt, Live } from "./live_update";
-import { neighboursOf, type Place, placesOf } from "../pixels/pieces";
-import { type Fault, Pens, type Tool } from "../controls/tools";
+import { type Update, LiveUpdate } from "./live_update";
+import { findNeighbours, type Place, findPlaces } from "../pixels/pieces";
+import { type Fault, Tools, type Tool } from "../controls/tools";
 import { pointers } from "../board/pointers";
 import { question } from "./question";
-import { Side } from "../controls/part_list";
-import { called, heightOf, placeOf, shareOf, whereOf } from "./part_words";
-import { folded, Words } from "../controls/picture_fields";
+import { PartList } from "../controls/part_list";
+import { nameOf, heightOf, placeOf, shareOf, whereOf } from "./part_words";
+import { foldable, PictureFields } from "../controls/picture_fields";
 
 /** Names and sizes are found anew when nothing was drawn for so long. */
 const REST_MS = 150;
@@ -37,7 +37,7 @@ let hears = false;
 export async function edit(page: Page, back: HTMLElement): Promise<void> {
   if (!hears) page.hub.on("theme", () => current?.dress());
   hears = true;
-  const [scene, library] = await Promise.all([opened(page.net), page.net.ask<{ name: string }[]>("library").catch(() => [])]);
+  const [scene, library] = await Promise.all([openParts(page.net), page.net.ask<{ name: string }[]>("library").catch(() => [])]);
   current ??= new Editor(page, scene, library.map(({ name }) => name), back);
 }
 
@@ -47,16 +47,16 @@ class Editor {
   private helped = "";
   private drawing: Drawing;
   private board: Board;
-  private pens: Pens;
-  private bar: Bar;
-  private side: Side;
-  private words: Words;
-  private live: Live;
+  private pens: Tools;
+  private bar: Toolbar;
+  private side: PartList;
+  private words: PictureFields;
+  private live: LiveUpdate;
   private places = new Map<number, Place>();
   private order = new Map<number, number>();
   /** The numbers that labels were opened or saved with, and what was said of them. */
   private numbers: Map<number, number>;
-  private base: Felt;
+  private base: Update;
   private digest: string;
   private resting = 0;
   private cross: Point | null = null;
@@ -73,14 +73,14 @@ class Editor {
     this.drawing = new Drawing(scene.labels, scene.parts, scene.top_m);
     this.numbers = new Map(scene.parts.map(({ label }) => [label, label]));
     this.board = new Board(this.drawing, scene.picture);
-    this.pens = new Pens(this.drawing, page.net, () => this.board.scale);
+    this.pens = new Tools(this.drawing, page.net, () => this.board.scale);
     this.pens.width = Math.max(1, Math.round(Math.max(scene.labels.columns, scene.labels.rows) / 40));
-    this.pens.fresh = scene.parts.length === 1;
-    this.side = new Side(this.drawing, materials);
-    this.words = new Words(scene);
+    this.pens.newPart = scene.parts.length === 1;
+    this.side = new PartList(this.drawing, materials);
+    this.words = new PictureFields(scene);
     this.base = this.feltNow();
-    this.live = new Live((felt) => page.net.ask("parts_heights", { ...felt }), (error) => this.say(t("failed", { why: error.message })));
-    this.bar = new Bar(this.drawing, this.pens, {
+    this.live = new LiveUpdate((felt) => page.net.ask("parts_heights", { ...felt }), (error) => this.say(t("failed", { why: error.message })));
+    this.bar = new Toolbar(this.drawing, this.pens, {
       use: (tool) => this.use(tool),
       fresh: () => this.toggleFresh(),
       accept: () => this.pens.accept(),
@@ -116,7 +116,7 @@ class Editor {
     saves.className = "primary";
     ends.append(saves, button(t("close"), () => this.close()));
     const column = Object.assign(document.createElement("div"), { className: "side" });
-    column.append(ends, side.list, side.said, ...this.words.elements, folded(t("keys"), [table()]));
+    column.append(ends, side.list, side.said, ...this.words.elements, foldable(t("keys"), [table()]));
     root.append(stage, column);
     document.getElementById("main")!.before(root);
     document.body.classList.add("editing");
@@ -181,9 +181,9 @@ class Editor {
 
   private survey(): void {
     const { drawing, side, board } = this;
-    this.places = placesOf(drawing.labels);
+    this.places = findPlaces(drawing.labels);
     this.order = new Map([...this.places.keys()].map((label, i) => [label, i]));
-    const touching = neighboursOf(drawing.labels, drawing.selected);
+    const touching = findNeighbours(drawing.labels, drawing.selected);
     side.neighbours = drawing.parts.filter(({ label }) => touching.has(label));
     const named = drawing.parts.flatMap((part) => {
       const place = this.places.get(part.label);
@@ -197,14 +197,14 @@ class Editor {
   }
 
   private named(label: number): string {
-    return called(this.drawing.part(label), this.side.numberOf(label));
+    return nameOf(this.drawing.part(label), this.side.numberOf(label));
   }
 
   /** What the tool in use does, and to which part. */
   private help(): void {
     const { pens, drawing } = this;
     const paints = ["brush", "lasso", "propose"].includes(pens.tool);
-    const what = pens.fresh ? t("intoFresh") : t("into", { name: this.named(drawing.selected) });
+    const what = pens.newPart ? t("intoFresh") : t("into", { name: this.named(drawing.selected) });
     const help = drawing.proposed ? t("proposed") : t(`${pens.tool}Help`);
     this.told.textContent = this.helped = paints ? `${help} ${what}` : help;
     this.told.classList.remove("bad");
@@ -228,7 +228,7 @@ class Editor {
     const { drawing, pens } = this;
     drawing.endGesture();
     drawing.selected = label;
-    if (pens.tool !== "select") pens.fresh = false;
+    if (pens.tool !== "select") pens.newPart = false;
     this.survey();
     const part = drawing.part(label);
     const place = this.places.get(label);
@@ -265,7 +265,7 @@ class Editor {
   }
 
   private toggleFresh(): void {
-    this.pens.fresh = !this.pens.fresh || this.drawing.parts.length === 1; // there is nothing else to paint
+    this.pens.newPart = !this.pens.newPart || this.drawing.parts.length === 1; // there is nothing else to paint
     if (this.pens.tool === "select") this.pens.tool = "brush";
     this.bar.show();
     this.help();
@@ -290,7 +290,7 @@ class Editor {
 
   private nearer(factor: number): void {
     const { sight } = this.board;
-    sight.nearer(factor, this.cross ? sight.toBoard(this.cross) : undefined);
+    sight.zoomBy(factor, this.cross ? sight.toBoard(this.cross) : undefined);
     this.board.look();
   }
 
@@ -432,10 +432,10 @@ class Editor {
 
   /** What is said of parts that were opened or saved is felt at once. */
   private feel(): void {
-    this.live.feel(this.feltNow(), this.base);
+    this.live.send(this.feltNow(), this.base);
   }
 
-  private feltNow(): Felt {
+  private feltNow(): Update {
     const heights_m = [...(this.base?.heights_m ?? [])];
     const materials = [...(this.base?.materials ?? [])];
     const { parts } = this.drawing;
@@ -464,12 +464,12 @@ class Editor {
       const steps = drawing.steps;
       const { parts } = drawing;
       const automatic = parts.some((each) => each.automatic);
-      const said = await save(this.page.net, drawing.labels, parts, { ...this.words.said(automatic), of: this.digest });
+      const said = await saveParts(this.page.net, drawing.labels, parts, { ...this.words.said(automatic), of: this.digest });
       this.digest = said.digest;
       this.numbers = new Map(parts.map(({ label }) => [label, said.numbers[label]![0]!]));
       this.base = { heights_m: [], materials: [], heights: {} };
       this.base = this.feltNow();
-      this.live.settled();
+      this.live.reset();
       drawing.keep(steps);
       this.words.changed = false;
       this.survey();
@@ -520,7 +520,7 @@ class Editor {
     const answers = [["", t("goOn")], ["save", t("save")], ["lose", t("throwAway")]] as const;
     const answer = await question(t("unsaved"), [t("unsavedText")], answers);
     if (answer === "save") return this.save();
-    if (answer === "lose") this.live.feel(this.base, this.base);
+    if (answer === "lose") this.live.send(this.base, this.base);
     return answer === "lose";
   }
 }

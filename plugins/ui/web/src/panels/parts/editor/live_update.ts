@@ -1,32 +1,32 @@
 /** What is dragged is felt: the newest is sent when the one before has arrived. */
 
 /** By the number that a part was opened or saved with, no height where the program finds it; and the shape of all. */
-export interface Felt {
+export interface Update {
   heights_m: (number | null)[];
   materials: (string | null)[];
   heights: object;
 }
 
-export class Live {
-  private next: Felt | null = null;
+export class LiveUpdate {
+  private next: Update | null = null;
   private sending = false;
   /** What was sent last; nothing, while what is felt is what was opened or saved. */
   private sent = "";
 
   constructor(
-    private ask: (felt: Felt) => Promise<unknown>,
+    private ask: (felt: Update) => Promise<unknown>,
     private failed: (error: Error) => void,
   ) {}
 
   /** base: what was opened or saved. */
-  feel(felt: Felt, base: Felt): void {
+  send(felt: Update, base: Update): void {
     if (!this.sent && !this.sending && JSON.stringify(felt) === JSON.stringify(base)) return;
     this.next = felt;
     if (!this.sending) void this.go();
   }
 
   /** What was sent is what is felt for good: it was saved. */
-  settled(): void {
+  reset(): void {
     this.next = null;
     this.sent = "";
   }

@@ -6,7 +6,7 @@ import type { Part } from "../drawing/drawing";
 import type { Labels, Point } from "../pixels/labels";
 import type { Place } from "../pixels/pieces";
 
-export const called = (part: Part | undefined, number: number): string => part?.name || t("nameless", { number });
+export const nameOf = (part: Part | undefined, number: number): string => part?.name || t("nameless", { number });
 
 export const heightOf = ({ height_m, automatic }: Part): string =>
   automatic ? t("automatic") : t("mm", { height: decimal(1000 * height_m, 2) });

@@ -4,7 +4,7 @@ import { bulk } from "../../../server/connection";
 import { token } from "../../../server/token";
 import type { Part } from "../drawing/drawing";
 import type { Labels, Point } from "../pixels/labels";
-import type { Proposed } from "../pixels/mask";
+import type { Proposal } from "../pixels/mask";
 
 export type Heights = { by: "depth" | "given" | "guess"; round_m: number; bulge_m: number; detail_m: number };
 export const KINDS = ["grabcut", "watershed"] as const;
@@ -35,7 +35,7 @@ export interface Saved {
   numbers: Record<string, number[]>;
 }
 
-export async function opened(net: Server): Promise<Opened> {
+export async function openParts(net: Server): Promise<Opened> {
   const said = await net.ask<Answer>("parts_open");
   const [labels, picture] = await Promise.all([
     bulk(`/scene/${said.labels}`).then((each) => each.arrayBuffer()),
@@ -49,16 +49,16 @@ export async function opened(net: Server): Promise<Opened> {
   return { digest, heights, top_m, title, language, picture, parts, labels: { columns, rows, data: new Uint16Array(labels) } };
 }
 
-export const proposed = (net: Server, points: readonly Point[], width_px: number, kind: string): Promise<Proposed | null> =>
+export const proposePart = (net: Server, points: readonly Point[], width_px: number, kind: string): Promise<Proposal | null> =>
   net.ask("parts_propose", { points: whole(points), width_px: Math.max(1, Math.round(width_px)), kind, within: null });
 
-export async function snapped(net: Server, points: readonly Point[], reach_px: number): Promise<Point[]> {
+export async function snapOutline(net: Server, points: readonly Point[], reach_px: number): Promise<Point[]> {
   const said = await net.ask<{ points: Point[] }>("parts_snap", { points: whole(points), reach_px: Math.max(1, Math.round(reach_px)) });
   return said.points;
 }
 
 /** Labels are sent as a file, then what is said of them. */
-export async function save(net: Server, labels: Labels, parts: readonly Part[], told: Record<string, unknown>): Promise<Saved> {
+export async function saveParts(net: Server, labels: Labels, parts: readonly Part[], told: Record<string, unknown>): Promise<Saved> {
   const upload = await net.ask<string>("batch");
   const gzip = new Blob([labels.data as Uint16Array<ArrayBuffer>]).stream().pipeThrough(new CompressionStream("gzip"));
   const response = await fetch(`/upload/${upload}/labels.gz?token=${encodeURIComponent(token)}`, {

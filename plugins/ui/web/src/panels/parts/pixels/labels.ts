@@ -22,7 +22,7 @@ export const EMPTY: Box = { left: Infinity, top: Infinity, right: -Infinity, bot
 
 export const isEmpty = ({ left, right, top, bottom }: Box): boolean => !(left < right && top < bottom);
 
-export const around = (a: Box, b: Box): Box => ({
+export const union = (a: Box, b: Box): Box => ({
   left: Math.min(a.left, b.left),
   top: Math.min(a.top, b.top),
   right: Math.max(a.right, b.right),
@@ -30,7 +30,7 @@ export const around = (a: Box, b: Box): Box => ({
 });
 
 /** The box of spans that are within the picture. */
-export function boxOf(spans: readonly Span[]): Box {
+export function boundingBox(spans: readonly Span[]): Box {
   let { left, top, right, bottom } = EMPTY;
   for (const [row, from, to] of spans) {
     left = Math.min(left, from);
@@ -48,14 +48,14 @@ export function labelAt({ columns, rows, data }: Labels, x: number, y: number): 
 }
 
 /** The pixels that share a side with one. */
-export function beside({ columns, data }: Labels, at: number): number[] {
+export function adjacentPixels({ columns, data }: Labels, at: number): number[] {
   const column = at % columns;
   const all = [at - columns, at + columns, column ? at - 1 : -1, column < columns - 1 ? at + 1 : -1];
   return all.filter((each) => each >= 0 && each < data.length);
 }
 
 /** How many pixels each part has, by its number. */
-export function counted({ data }: Labels): Uint32Array {
+export function countPixels({ data }: Labels): Uint32Array {
   const counts = new Uint32Array(0x10000);
   for (let i = 0; i < data.length; i++) counts[data[i]!]!++;
   return counts;

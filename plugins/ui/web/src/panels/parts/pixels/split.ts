@@ -1,13 +1,13 @@
 /** A part cut in two by a line: what then no longer hangs together with its largest piece becomes a part of its own. */
-import { beside, type Labels, type Point } from "./labels";
+import { adjacentPixels, type Labels, type Point } from "./labels";
 import { Patch } from "./patch";
-import { type Found, piecesOf } from "./pieces";
+import { type Pieces, findPieces } from "./pieces";
 
 /** No part has this number. */
 const CUT = 0xffff;
 
 /** Pixels from place to place that no side of a pixel leads across, in their order. */
-export function lineOf(points: readonly Point[], { columns, rows }: Labels): number[] {
+export function linePixels(points: readonly Point[], { columns, rows }: Labels): number[] {
   const met = new Set<number>();
   for (let i = 0; i < Math.max(1, points.length - 1); i++) {
     const a = pixel(points[i]!);
@@ -30,17 +30,17 @@ const pixel = ([x, y]: Point): Point => [Math.floor(x), Math.floor(y)];
  */
 export function split(labels: Labels, label: number, points: readonly Point[], next: number): { patch: Patch; fresh: number[] } | null {
   const { data } = labels;
-  const line = lineOf(points, labels).filter((at) => data[at] === label);
+  const line = linePixels(points, labels).filter((at) => data[at] === label);
   const patch = new Patch();
   for (const at of line) patch.put(data, at, at + 1, CUT);
-  const found = piecesOf(labels, label);
-  const cut = besideLine(found, line, labels);
+  const found = findPieces(labels, label);
+  const cut = piecesAtLine(found, line, labels);
   if (cut.length < 2) {
     patch.undo(data);
     return null;
   }
   const fresh = cut.slice(1).map((root, i) => {
-    runs(found, root, (start, end) => patch.put(data, start, end, next + i));
+    eachRun(found, root, (start, end) => patch.put(data, start, end, next + i));
     return next + i;
   });
   heal(labels, line, new Set([label, ...fresh]), label, patch);
@@ -48,10 +48,10 @@ export function split(labels: Labels, label: number, points: readonly Point[], n
 }
 
 /** The pieces that touch the line, the largest first. */
-function besideLine(found: Found, line: number[], labels: Labels): number[] {
+function piecesAtLine(found: Pieces, line: number[], labels: Labels): number[] {
   const touched = new Set<number>();
   for (const at of line)
-    for (const near of beside(labels, at)) {
+    for (const near of adjacentPixels(labels, at)) {
       const run = runAt(found, near);
       if (run >= 0) touched.add(found.roots[run]!);
     }
@@ -61,7 +61,7 @@ function besideLine(found: Found, line: number[], labels: Labels): number[] {
     .map(({ root }) => root);
 }
 
-function runAt({ starts, ends }: Found, at: number): number {
+function runAt({ starts, ends }: Pieces, at: number): number {
   let [low, high] = [0, starts.length];
   while (low < high) {
     const middle = (low + high) >> 1;
@@ -72,7 +72,7 @@ function runAt({ starts, ends }: Found, at: number): number {
 }
 
 /** Each run of a piece. */
-export function runs({ starts, ends, roots }: Found, root: number, hear: (start: number, end: number) => void): void {
+export function eachRun({ starts, ends, roots }: Pieces, root: number, hear: (start: number, end: number) => void): void {
   for (let i = root; i < starts.length; i++) if (roots[i] === root) hear(starts[i]!, ends[i]!);
 }
 
@@ -82,7 +82,7 @@ function heal(labels: Labels, line: number[], parts: Set<number>, otherwise: num
   let left = line;
   while (left.length) {
     const healed = left.map((at) => {
-      const near = beside(labels, at).map((each) => data[each]!).filter((each) => parts.has(each));
+      const near = adjacentPixels(labels, at).map((each) => data[each]!).filter((each) => parts.has(each));
       return Math.max(-1, ...near);
     });
     const rest = left.filter((at, i) => {

@@ -194,7 +194,7 @@ describe("drawing", () => {
     const it = drawing("aab");
     it.begin(0);
     it.paint([[0, 0, 2]]);
-    assert.ok(!it.end() && !it.canUndo);
+    assert.ok(!it.end() && !it.history.canUndo);
     it.begin(null);
     it.paint([[0, 0, 3]]);
     it.cancel();
@@ -210,7 +210,7 @@ describe("drawing", () => {
 
   test("a part is cut by a line, every pixel of it stays a part's, and a line that does not cross cuts nothing", () => {
     const it = drawing("aaaaaa", "aaaaaa", "aaaaaa", "bbbbbb");
-    assert.ok(!it.split(0, [[1.5, 0.5], [2.5, 1.5]]) && !it.canUndo);
+    assert.ok(!it.split(0, [[1.5, 0.5], [2.5, 1.5]]) && !it.history.canUndo);
     assert.deepEqual(drawn(it.labels), ["aaaaaa", "aaaaaa", "aaaaaa", "bbbbbb"]);
     assert.ok(it.split(0, [[0.5, -3], [3.5, 9]]), "also from beside it to beside it");
     assert.deepEqual([...new Set(it.labels.data)].sort(), [0, 1, 2]);
@@ -259,19 +259,19 @@ describe("drawing", () => {
   test("a drag is one step, and saved is what is as it was saved", () => {
     const it = drawing("ab");
     for (const height_m of [0.001, 0.002, 0.003]) it.set(new Map([[1, { height_m }]]), "height 1");
-    it.endGesture();
+    it.history.endGesture();
     it.set(new Map([[1, { height_m: 0.004 }]]), "height 1");
     it.undo();
     assert.equal(it.part(1)!.height_m, 0.003);
-    it.keep();
+    it.history.markSaved();
     it.set(new Map([[1, { name: "b" }]]));
-    assert.ok(!it.saved);
+    assert.ok(!it.history.saved);
     it.undo();
-    assert.ok(it.saved);
+    assert.ok(it.history.saved);
     it.undo();
     assert.equal(it.part(1)!.height_m, 0);
     it.set(new Map([[1, { name: "c" }]]));
-    assert.ok(!it.saved, "as many steps, but others");
+    assert.ok(!it.history.saved, "as many steps, but others");
   });
 
   test("there is an end to the numbers", () => {

@@ -191,7 +191,7 @@ export class PartList {
   /** The drag is over: what moved to the front in it moves in the list. */
   private ended(): void {
     this.dragged = false;
-    this.drawing.endGesture();
+    this.drawing.history.endGesture();
     this.show();
   }
 

@@ -66,8 +66,8 @@ export class Toolbar {
     for (const [tool, each] of this.uses) each.ariaPressed = String(tool === pens.tool);
     this.fresh.ariaPressed = String(pens.newPart);
     this.takes.ariaPressed = String(pens.erases);
-    this.back.disabled = !drawing.canUndo;
-    this.again.disabled = !drawing.canRedo;
+    this.back.disabled = !drawing.history.canUndo;
+    this.again.disabled = !drawing.history.canRedo;
     for (const [name, each] of Object.entries(this.fields)) each.hidden = !(FIELDS[pens.tool] as readonly string[]).includes(name);
     for (const each of this.proposal) each.hidden = !drawing.proposed;
     this.takes.hidden ||= pens.tool !== "brush" && pens.tool !== "lasso";

@@ -159,7 +159,7 @@ class Editor {
   };
 
   private get isSaved(): boolean {
-    return this.drawing.saved && !this.words.changed;
+    return this.drawing.history.saved && !this.words.changed;
   }
 
   /** When what is done now was asked for, on the clock of drawings. */
@@ -226,7 +226,7 @@ class Editor {
 
   private choose(label: number): void {
     const { drawing, pens } = this;
-    drawing.endGesture();
+    drawing.history.endGesture();
     drawing.selected = label;
     if (pens.tool !== "select") pens.newPart = false;
     this.survey();
@@ -461,7 +461,7 @@ class Editor {
     try {
       if (!(await this.settled())) return false;
       this.say(t("saving"), false);
-      const steps = drawing.steps;
+      const steps = drawing.history.length;
       const { parts } = drawing;
       const automatic = parts.some((each) => each.automatic);
       const said = await saveParts(this.page.net, drawing.labels, parts, { ...this.words.said(automatic), of: this.digest });
@@ -470,7 +470,7 @@ class Editor {
       this.base = { heights_m: [], materials: [], heights: {} };
       this.base = this.feltNow();
       this.live.reset();
-      drawing.keep(steps);
+      drawing.history.markSaved(steps);
       this.words.changed = false;
       this.survey();
       this.say(t("saved", { path: said.path }), false);

@@ -1,27 +1,26 @@
 /** The event bus: every part of the page subscribes here, and none imports another for it. */
 import type { PageEvents } from "./events";
 
-type Listener<K extends keyof PageEvents> = (event: PageEvents[K]) => void;
+/** E: the events by name, with what each carries. */
+export class Hub<E extends object = PageEvents> {
+  private listeners = new Map<keyof E, ((event: never) => void)[]>();
+  private latest = new Map<keyof E, unknown>();
 
-export class Hub {
-  private listeners = new Map<keyof PageEvents, Listener<never>[]>();
-  private latest = new Map<keyof PageEvents, unknown>();
-
-  on<K extends keyof PageEvents>(name: K, listener: Listener<K>): void {
-    this.listeners.set(name, [...(this.listeners.get(name) ?? []), listener as Listener<never>]);
+  on<K extends keyof E>(name: K, listener: (event: E[K]) => void): void {
+    this.listeners.set(name, [...(this.listeners.get(name) ?? []), listener as (event: never) => void]);
   }
 
   /** Return the latest event of this name, for parts that are built later than the page. */
-  last<K extends keyof PageEvents>(name: K): PageEvents[K] | undefined {
-    return this.latest.get(name) as PageEvents[K] | undefined;
+  last<K extends keyof E>(name: K): E[K] | undefined {
+    return this.latest.get(name) as E[K] | undefined;
   }
 
   /** Call every listener; an exception goes to the console and does not keep the event from the others. */
-  tell<K extends keyof PageEvents>(name: K, event: PageEvents[K]): void {
+  tell<K extends keyof E>(name: K, event: E[K]): void {
     this.latest.set(name, event);
     for (const listener of this.listeners.get(name) ?? []) {
       try {
-        (listener as Listener<K>)(event);
+        (listener as (event: E[K]) => void)(event);
       } catch (error) {
         console.error(error);
       }

@@ -2,6 +2,7 @@
 import type { Page } from "../../page";
 import { reveal, type Panel } from "../panel";
 import { on, SHORTCUTS, type Name } from "../../shortcuts";
+import { caps } from "./key_caps";
 import { t } from "./words";
 import { t as does } from "./shortcut_words";
 
@@ -35,32 +36,5 @@ function table(): HTMLTableElement {
   }
   return made;
 }
-
-/** A key as it is printed on a keyboard. */
-export function caps(key: string): HTMLElement {
-  const made = document.createElement("kbd");
-  made.textContent = key
-    .split(/(?<=.)\+/)
-    .map((part) => (part in NAMES ? t(NAMES[part]) : part.length === 1 ? part.toUpperCase() : part))
-    .join(" + ");
-  return made;
-}
-
-const NAMES: Record<string, Parameters<typeof t>[0]> = {
-  " ": "Space",
-  Escape: "Escape",
-  Shift: "Shift",
-  Ctrl: "Ctrl",
-  Alt: "Alt",
-  ArrowLeft: "ArrowLeft",
-  ArrowRight: "ArrowRight",
-  ArrowUp: "ArrowUp",
-  ArrowDown: "ArrowDown",
-  PageUp: "PageUp",
-  PageDown: "PageDown",
-  Enter: "Enter",
-  Home: "Home",
-  End: "End",
-};
 
 export const help: Panel = { id: "help", title: t("title"), place: "right", open: false, build };

@@ -34,7 +34,7 @@ export class Board {
   readonly element = document.createElement("div");
   /** What is seen: one canvas without transparency, which browsers show soonest. */
   readonly canvas = document.createElement("canvas");
-  readonly sight: Viewport;
+  readonly viewport: Viewport;
   marks: Marks = { line: [], closed: false, at: null, cross: false, brush: 0 };
   private context = this.canvas.getContext("2d", { alpha: false })!;
   /** The picture and the borders at the size of the screen, to be put together where something changed. */
@@ -59,7 +59,7 @@ export class Board {
     private drawing: Drawing,
     private picture: ImageBitmap,
   ) {
-    this.sight = new Viewport(drawing.labels.columns, drawing.labels.rows);
+    this.viewport = new Viewport(drawing.labels.columns, drawing.labels.rows);
     this.element.className = "board";
     this.element.append(this.canvas);
     this.watching.observe(this.element);
@@ -109,7 +109,7 @@ export class Board {
 
   /** A place of the window, in the picture. */
   at({ clientX, clientY }: { clientX: number; clientY: number }): Point {
-    return this.sight.toPicture(this.onBoard(clientX, clientY));
+    return this.viewport.toPicture(this.onBoard(clientX, clientY));
   }
 
   onBoard(clientX: number, clientY: number): Point {
@@ -119,14 +119,14 @@ export class Board {
 
   /** Pixels of the picture for one of the page. */
   get scale(): number {
-    return this.ratio / this.sight.zoom;
+    return this.ratio / this.viewport.zoom;
   }
 
   private resize(): void {
     this.ratio = Math.max(1, devicePixelRatio);
     const [width, height] = [this.element.clientWidth, this.element.clientHeight].map((each) => Math.max(1, Math.round(each * this.ratio)));
     for (const { canvas } of [this.context, this.base, this.lines]) Object.assign(canvas, { width, height });
-    this.sight.resize(width!, height!);
+    this.viewport.resize(width!, height!);
     this.moved = true;
     this.draw(); // at once: a canvas of another size is empty
   }
@@ -143,11 +143,11 @@ export class Board {
   /** Only what changed, in the middle of a stroke. */
   private draw(): void {
     if (this.closed) return;
-    const { sight, drawing } = this;
-    const whole = { left: 0, top: 0, right: sight.width, bottom: sight.height };
+    const { viewport, drawing } = this;
+    const whole = { left: 0, top: 0, right: viewport.width, bottom: viewport.height };
     const anew = this.moved || this.selected !== drawing.selected;
     if (this.moved) this.drawPicture();
-    const lines = anew ? whole : sight.covering(this.stale, borderReach(this.ratio));
+    const lines = anew ? whole : viewport.covering(this.stale, borderReach(this.ratio));
     if (!isEmpty(lines)) this.drawBorders(lines);
     const marks = this.marksBox();
     this.show(anew || this.anew ? whole : [lines, marks, this.marked].filter((each) => !isEmpty(each)).reduce(union, EMPTY));
@@ -176,16 +176,16 @@ export class Board {
 
   private marksBox(): Box {
     const { line, at, brush } = this.marks;
-    const { ratio, sight } = this;
-    const rim = Math.ceil(22 * ratio + (brush / 2) * sight.zoom);
+    const { ratio, viewport } = this;
+    const rim = Math.ceil(22 * ratio + (brush / 2) * viewport.zoom);
     let box = EMPTY;
     for (const each of at ? [...line, at] : line) {
-      const [x, y] = sight.toBoard(each);
+      const [x, y] = viewport.toBoard(each);
       box = union(box, { left: x, top: y, right: x, bottom: y });
     }
     const within = (side: number, most: number): number => Math.max(0, Math.min(most, Math.round(side)));
-    const [right, bottom] = [within(box.right + rim, sight.width), within(box.bottom + rim, sight.height)];
-    return { left: within(box.left - rim, sight.width), top: within(box.top - rim, sight.height), right, bottom };
+    const [right, bottom] = [within(box.right + rim, viewport.width), within(box.bottom + rim, viewport.height)];
+    return { left: within(box.left - rim, viewport.width), top: within(box.top - rim, viewport.height), right, bottom };
   }
 
   private measured(start: number): void {
@@ -193,18 +193,18 @@ export class Board {
   }
 
   private drawPicture(): void {
-    const { sight, drawing, picture, base } = this;
+    const { viewport, drawing, picture, base } = this;
     const { columns, rows } = drawing.labels;
     base.fillStyle = this.ground;
-    base.fillRect(0, 0, sight.width, sight.height);
-    base.imageSmoothingEnabled = sight.zoom < 3;
-    const [x, y] = sight.toBoard([0, 0]);
-    base.drawImage(picture, x, y, columns * sight.zoom, rows * sight.zoom);
+    base.fillRect(0, 0, viewport.width, viewport.height);
+    base.imageSmoothingEnabled = viewport.zoom < 3;
+    const [x, y] = viewport.toBoard([0, 0]);
+    base.drawImage(picture, x, y, columns * viewport.zoom, rows * viewport.zoom);
   }
 
   private drawBorders(box: Box): void {
     const { labels, selected, proposed } = this.drawing;
-    const image = borders({ labels, selected, proposed, ...this.accent, ratio: this.ratio }, this.sight, box);
+    const image = borders({ labels, selected, proposed, ...this.accent, ratio: this.ratio }, this.viewport, box);
     this.lines.putImageData(image, box.left, box.top);
   }
 
@@ -212,14 +212,14 @@ export class Board {
     const { line, closed, at, cross, brush } = this.marks;
     if (line.length > 1) {
       const path = new Path2D();
-      line.forEach((each, i) => path[i ? "lineTo" : "moveTo"](...this.sight.toBoard(each)));
+      line.forEach((each, i) => path[i ? "lineTo" : "moveTo"](...this.viewport.toBoard(each)));
       if (closed) path.closePath();
       this.trace(context, path);
     }
     if (!at) return;
-    const [x, y] = this.sight.toBoard(at);
+    const [x, y] = this.viewport.toBoard(at);
     const ring = new Path2D();
-    if (brush) ring.arc(x, y, Math.max(2, (brush / 2) * this.sight.zoom), 0, 2 * Math.PI);
+    if (brush) ring.arc(x, y, Math.max(2, (brush / 2) * this.viewport.zoom), 0, 2 * Math.PI);
     if (cross) for (const [dx, dy] of [[1, 0], [-1, 0], [0, 1], [0, -1]] as const) {
       ring.moveTo(x + 5 * dx * this.ratio, y + 5 * dy * this.ratio);
       ring.lineTo(x + 18 * dx * this.ratio, y + 18 * dy * this.ratio);
@@ -246,17 +246,17 @@ export class Board {
     const first = this.names.filter(({ label }) => label === selected);
     for (const named of [...first, ...this.names.filter(({ label }) => label !== selected)]) {
       const chosen = named.label === selected;
-      if (!chosen && Math.sqrt(named.place.pixels) * this.sight.zoom < SMALLEST_PX * this.ratio) continue;
+      if (!chosen && Math.sqrt(named.place.pixels) * this.viewport.zoom < SMALLEST_PX * this.ratio) continue;
       this.drawName(context, named, chosen, taken);
     }
   }
 
   private drawName(context: CanvasRenderingContext2D, { text, place }: Named, chosen: boolean, taken: Box[]): void {
-    const [x, y] = this.sight.toBoard(place.at);
+    const [x, y] = this.viewport.toBoard(place.at);
     const half = context.measureText(text).width / 2 + 6 * this.ratio;
     const tall = 0.75 * TEXT_PX * this.ratio;
     const box = { left: x - half, right: x + half, top: y - tall, bottom: y + tall };
-    if (box.right < 0 || box.left > this.sight.width || box.bottom < 0 || box.top > this.sight.height) return;
+    if (box.right < 0 || box.left > this.viewport.width || box.bottom < 0 || box.top > this.viewport.height) return;
     if (taken.some((each) => each.left < box.right && box.left < each.right && each.top < box.bottom && box.top < each.bottom)) return;
     taken.push(box);
     context.beginPath();

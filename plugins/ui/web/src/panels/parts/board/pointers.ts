@@ -57,15 +57,15 @@ export function pointers(board: Board, pens: Tools, hears: Hears): void {
   canvas.addEventListener("wheel", (event) => {
     event.preventDefault();
     const by = event.deltaMode === WheelEvent.DOM_DELTA_LINE ? LINE * event.deltaY : event.deltaY;
-    board.sight.zoomBy(Math.exp(-NOTCH * by), board.onBoard(event.clientX, event.clientY));
+    board.viewport.zoomBy(Math.exp(-NOTCH * by), board.onBoard(event.clientX, event.clientY));
     board.look();
   }, { passive: false });
 
   function drag(now: { x: number; y: number; far: number }): void {
     const [x, y] = board.onBoard(now.x, now.y);
     const [x0, y0] = board.onBoard(held!.x, held!.y);
-    board.sight.pan(x - x0, y - y0);
-    if (held!.far && now.far) board.sight.zoomBy(now.far / held!.far, [x, y]);
+    board.viewport.pan(x - x0, y - y0);
+    if (held!.far && now.far) board.viewport.zoomBy(now.far / held!.far, [x, y]);
     held = now;
     board.look();
   }

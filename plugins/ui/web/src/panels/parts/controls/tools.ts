@@ -1,9 +1,8 @@
 /** What the tools do where they are put down, moved and lifted: with a mouse, a finger, a pen, or the crosshair. */
-import type { Server } from "../../../page";
-import { proposePart, snapOutline } from "../editor/requests";
 import { stroke } from "../pixels/brush";
 import type { Drawing } from "../drawing/drawing";
 import { labelAt, type Point } from "../pixels/labels";
+import type { Proposal } from "../pixels/mask";
 import { fillOutline } from "../pixels/polygon";
 import { linePixels } from "../pixels/split";
 
@@ -16,6 +15,14 @@ export type Fault = "notPainted" | "nothingChanged" | "notSplit" | "notJoined";
 const NEAR_PX = 2;
 /** How far an edge snaps, and a line that cuts goes on beyond its ends, in pixels of the page. */
 const REACH_PX = 10;
+
+/** What tools request of the server. */
+export interface ToolRequests {
+  /** Return the part that a stroke of this width lies on; null if a newer stroke replaced the request. */
+  propose(stroke: readonly Point[], width_px: number, kind: string): Promise<Proposal | null>;
+  /** Move an outline to edges of the picture within this distance. */
+  snap(outline: readonly Point[], reach_px: number): Promise<Point[]>;
+}
 
 export class Tools {
   tool: Tool = "select";
@@ -30,7 +37,9 @@ export class Tools {
   /** The program is looking for something. */
   busy = false;
   line: Point[] = [];
-  /** Hears what could not be done, and why. */
+  /** Return how many pixels of the picture a CSS pixel covers. */
+  scale: () => number = () => 1;
+  /** Called with the reason if something did not work. */
   failed: (why: Fault | Error) => void = () => undefined;
   /** Hears that the program is looking for something, or has looked. */
   waits: (busy: boolean) => void = () => undefined;
@@ -39,9 +48,7 @@ export class Tools {
 
   constructor(
     private drawing: Drawing,
-    private net: Server,
-    /** Pixels of the picture for one of the page. */
-    private scale: () => number,
+    private requests: ToolRequests,
   ) {}
 
   put(at: Point): void {
@@ -111,7 +118,7 @@ export class Tools {
 
   private async lasso(line: Point[]): Promise<void> {
     const { columns, rows } = this.drawing.labels;
-    const outline = this.snaps && line.length > 2 ? await this.wait(snapOutline(this.net, line, REACH_PX * this.scale())) : line;
+    const outline = this.snaps && line.length > 2 ? await this.wait(this.requests.snap(line, REACH_PX * this.scale())) : line;
     const spans = fillOutline(outline, columns, rows);
     if (!spans.length) return this.failed("notPainted");
     if (this.drawing.proposed) return this.drawing.correct(spans, !this.erases);
@@ -121,7 +128,7 @@ export class Tools {
   }
 
   private async propose(line: Point[]): Promise<void> {
-    const found = await this.wait(proposePart(this.net, line, this.width, this.kind));
+    const found = await this.wait(this.requests.propose(line, this.width, this.kind));
     if (found) this.drawing.propose(found); // none, if another stroke came before this one was looked at
   }
 

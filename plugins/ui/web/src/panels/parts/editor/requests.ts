@@ -1,12 +1,12 @@
-/** What the editor asks the program for. */
+/** Requests of the parts editor to the server. */
 import type { Server } from "../../../page";
 import { bulk } from "../../../server/connection";
 import { token } from "../../../server/token";
 import type { Part } from "../drawing/drawing";
+import type { Heights } from "../drawing/picture_details";
 import type { Labels, Point } from "../pixels/labels";
 import type { Proposal } from "../pixels/mask";
 
-export type Heights = { by: "depth" | "given" | "guess"; round_m: number; bulge_m: number; detail_m: number };
 export const KINDS = ["grabcut", "watershed"] as const;
 
 interface Answer {
@@ -31,7 +31,7 @@ export interface Opened extends Pick<Answer, "digest" | "heights" | "top_m" | "t
 export interface Saved {
   path: string;
   digest: string;
-  /** Of each label, the numbers that its pieces have now. */
+  /** The new numbers of each label's pieces. */
   numbers: Record<string, number[]>;
 }
 
@@ -57,7 +57,7 @@ export async function snapOutline(net: Server, points: readonly Point[], reach_p
   return said.points;
 }
 
-/** Labels are sent as a file, then what is said of them. */
+/** Save parts: their labels as a compressed file, then their properties. */
 export async function saveParts(net: Server, labels: Labels, parts: readonly Part[], told: Record<string, unknown>): Promise<Saved> {
   const upload = await net.ask<string>("batch");
   const gzip = new Blob([labels.data as Uint16Array<ArrayBuffer>]).stream().pipeThrough(new CompressionStream("gzip"));

@@ -49,8 +49,8 @@ export const t = words({
   picture: ["Picture with its parts", "Bild mit seinen Teilen"],
   pictureKeys: ["The arrow keys move a crosshair, with Shift by a pixel, with Control far. Space puts the tool down and lifts it, Enter finishes or accepts, I says where the crosshair is.",
     "Die Pfeiltasten bewegen ein Fadenkreuz, mit der Umschalttaste um einen Bildpunkt, mit Strg weit. Die Leertaste setzt das Werkzeug an und hebt es ab, die Eingabetaste schließt ab oder nimmt an, I sagt, wo das Fadenkreuz ist."],
-  down: ["{tool}: begun.", "{tool}: begonnen."],
-  up: ["{tool}: done.", "{tool}: fertig."],
+  down: ["{tool}: started.", "{tool}: begonnen."],
+  up: ["{tool}: finished.", "{tool}: fertig."],
   where: ["{x} % across, {y} % down: {name}", "{x} % von links, {y} % von oben: {name}"],
   outside: ["beside the picture", "neben dem Bild"],
   list: ["Parts, from front to back", "Teile, von vorn nach hinten"],
@@ -126,3 +126,5 @@ export const t = words({
   keyEscape: ["Discard what is begun; else close. It also takes all force away",
     "Begonnenes verwerfen; sonst schließen. Sie nimmt auch alle Kraft weg"],
 });
+
+export type Word = Parameters<typeof t>[0];

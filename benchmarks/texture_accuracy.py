@@ -12,7 +12,7 @@ from tangible_core.data import SegmentMap
 from tangible_core.metrics import segment_errors
 from tangible_core.plugins.notes import collected
 from tangible_core.plugins.registry import load_method
-from tangible_core.synthetic.texture_scenes import KnownSegments
+from tangible_core.testing.synthetic.texture_scenes import KnownSegments
 
 from .figures import Figure, table
 from .texture_opencv import segmented
@@ -144,7 +144,7 @@ def _guess(picture: np.ndarray) -> tuple[int, float]:
     """How many segments are found, and what the guess is worth; 1 where nothing was guessed."""
     with collected() as notes:
         count = load_method("texture", "gabor")().segment(picture).count
-    worth = [float(found[1]) for each in notes if (found := re.search(r"a guess worth ([\d.]+):", each))]
+    worth = [float(found[1]) for each in notes if (found := re.search(r"estimated with confidence ([\d.]+):", each))]
     return count, worth[0] if worth else 1.0
 
 

@@ -1,0 +1,136 @@
+"""Changes to a pipeline file, key by key, that keep its comments and its order."""
+
+import os
+from collections.abc import Iterable, Mapping
+from math import isfinite
+from pathlib import Path
+from typing import Any, cast
+
+from pydantic import BaseModel
+
+from ...errors import ConfigError, quoted
+from ...files.editing import REMOVE, Changes, change_text
+from ...files.paths import as_path
+from ...files.source import Location, parse_override, parse_source, plain
+from .keys import MethodBlock, MethodList
+from .keys.method import index_of
+from .model import KEYS, PipelineConfig
+from .parsing import EXPECTED, shorthand
+from .scene_readers import scene_reader_of
+
+__all__ = ["REMOVE", "Changes", "edited", "moved", "said", "with_overrides"]
+
+
+def edited(text: str, path: Path, changes: Changes) -> str:
+    """Return a pipeline file's text with other values of these keys; comments elsewhere, and the order, stay.
+
+    Another `depth.use` clears the options of the method before. A stage that is None is removed, as with `REMOVE`. The
+    key `export.NAME.key` is an option of the exporter of that name, which is listed if it is not yet.
+    path: the name in complaints. Nothing is checked but that it is YAML: see `parse_config`.
+    Raises: ConfigError if the text is not YAML, or a key leads into a list; ArgumentError for values that JSON has not.
+    """
+    changes = {key: REMOVE if value is None and _is_stage(key) else value for key, value in changes.items()}
+    within = {key: value for key, value in changes.items() if _is_within_list(key)}
+    text = change_text(text, path, {key: value for key, value in changes.items() if key not in within}, shorthand)
+    for key, value in within.items():
+        parts = _parts_of(key)
+        text = change_text(text, path, {parts[:1]: _list_with(text, path, parts, value)})
+    return text
+
+
+def _parts_of(key: str | Location) -> Location:
+    return tuple(key.split(".")) if isinstance(key, str) else tuple(key)
+
+
+def _is_within_list(key: str | Location) -> bool:
+    """Whether the key is an option of a method in a list, such as `export.swell.page`."""
+    parts = _parts_of(key)
+    return len(parts) > 2 and isinstance(KEYS.get(parts[0]), MethodList)
+
+
+def _list_with(text: str, path: Path, parts: Location, value: Any) -> list[Any]:
+    """Return the whole list of methods with another value of one option."""
+    listed = plain(parse_source(text, path, "it is a mapping", empty=True).tree.get(parts[0]) or [])
+    if not isinstance(listed, list):
+        raise ConfigError(f"{path}: {parts[0]}: takes a list of methods, not {quoted(listed)}")
+    methods = cast("list[Any]", listed)
+    index, keys = index_of(methods, str(parts[1])), parts[2:]
+    block = methods[index] = {"use": methods[index]} if isinstance(methods[index], str) else dict(methods[index])
+    if keys == ("use",) and block.get("use") != value:
+        block.clear()
+    for key in keys[:-1]:
+        block = block.setdefault(key, {})
+    if value is REMOVE:
+        block.pop(keys[-1], None)
+    else:
+        block[keys[-1]] = value
+    return methods
+
+
+def _is_stage(key: Any) -> bool:
+    return isinstance(KEYS.get(".".join(map(str, _parts_of(key)))), MethodBlock)
+
+
+def with_overrides(text: str, path: Path, overrides: Iterable[str]) -> str:
+    """Return the text with these overrides, `key.key=value` as `--set` takes them. Raises: ConfigError as `edited`."""
+    for each in overrides:
+        parts, value = parse_override(each)
+        text = edited(text, path, {parts: plain(value)})
+    return text
+
+
+def said(text: str, path: Path) -> dict[str, Any]:
+    """Read a pipeline file as plain values that JSON has, whether they are right or wrong.
+
+    Raises: ConfigError if it is not YAML, or not a mapping.
+    """
+    source = parse_source(text, path, EXPECTED, empty=True)
+    return _as_json(plain(source.tree))
+
+
+def _as_json(node: Any) -> Any:
+    """Return a value for JSON, whose keys are words; NaN and infinity become words."""
+    if isinstance(node, dict):
+        return {str(key): _as_json(value) for key, value in cast("dict[Any, Any]", node).items()}
+    if isinstance(node, list):
+        return [_as_json(value) for value in cast("list[Any]", node)]
+    if node is None or isinstance(node, bool | int | str):
+        return node
+    return node if isinstance(node, float) and isfinite(node) else str(node)
+
+
+def moved(text: str, path: Path, config: PipelineConfig, out: Path) -> str:
+    """Return a pipeline file's text for another place, from which its relative paths lead to the same files.
+
+    config: the configuration of the text at `path`.
+    """
+    if out.parent.absolute() == path.parent.absolute():
+        return text
+    blocks = {place: each for name, key in KEYS.items() for place, each in key.models(getattr(config, name)).items()}
+    tree, folder = said(text, path), out.parent.resolve()
+    return edited(text, path, {**dict(_lead_elsewhere(tree, blocks, folder)), **_scene_elsewhere(tree, path, folder)})
+
+
+def _scene_elsewhere(tree: Mapping[str, Any], path: Path, folder: Path) -> Mapping[tuple[str, str], str]:
+    """Return the relative paths of a scene reader's block, defaults included, from this folder."""
+    block = tree.get("scene")
+    if (reader := scene_reader_of(block)) is None:
+        return {}
+    paths = {name: value for name, value in reader.model_validate(block) if isinstance(value, Path)}
+    there = path.parent.resolve()
+    relative = {name: value for name, value in paths.items() if not as_path(value).is_absolute()}
+    return {("scene", name): os.path.relpath(there / value, folder) for name, value in relative.items()}
+
+
+def _lead_elsewhere(
+    tree: Mapping[str, Any], blocks: Mapping[Location, Any], folder: Path
+) -> Iterable[tuple[Location, str]]:
+    """Find the keys of relative paths, and these paths from another folder."""
+    for key, model in blocks.items():
+        block: Any = tree
+        for part in key:
+            block = cast(Any, block).get(part) if isinstance(block, dict) else block[part]
+        for name, value in model if isinstance(model, BaseModel) and isinstance(block, dict) else ():
+            written = cast("dict[str, Any]", block).get(name)
+            if isinstance(value, Path) and isinstance(written, str) and not Path(written).is_absolute():
+                yield (*key, name), os.path.relpath(value.parent.resolve() / value.name, folder)

@@ -29,7 +29,7 @@ export function hint(text: string): HTMLParagraphElement {
 }
 
 /** A table with its headings and no rows; its title is for who does not see where it stands. */
-export function headed(title: string, heads: string[], className: string): HTMLTableElement {
+export function tableWithHeads(title: string, heads: string[], className: string): HTMLTableElement {
   const table = document.createElement("table");
   table.className = className;
   const caption = table.createCaption();

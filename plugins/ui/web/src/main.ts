@@ -1,20 +1,20 @@
 /** The page: its parts are put together here. */
 import "./app.css";
-import { Announcer, regions } from "./speech/announcer";
-import { frame } from "./frame/regions";
+import { Announcer, liveRegions } from "./speech/announcer";
+import { buildRegions } from "./frame/regions";
 import { Frames } from "./view/frames";
-import { touch } from "./hand/fingers";
-import { pad } from "./hand/game_pad";
+import { attachFingers } from "./hand/fingers";
+import { attachGamePad } from "./hand/game_pad";
 import { Hand } from "./hand/hand";
-import { keys } from "./hand/keyboard";
-import { mouse } from "./hand/mouse";
+import { attachKeyboard } from "./hand/keyboard";
+import { attachMouse } from "./hand/mouse";
 import { Hub } from "./hub";
 import { Instrument } from "./sound/synthesizer";
-import { idle } from "./server/idle";
+import { whenIdle } from "./server/idle";
 import { measure, measuring } from "./instrumentation";
 import { Narrator } from "./speech/narrator";
 import { Connection } from "./server/connection";
-import { notice } from "./frame/graphics_notice";
+import { showGraphicsTrouble } from "./frame/graphics_notice";
 import { Overlay } from "./overlay/overlay";
 import type { Page } from "./page";
 import { build } from "./panels/panel";
@@ -25,10 +25,10 @@ import { listen } from "./shortcuts";
 import { stroke } from "./sound/sonification";
 import { Sound } from "./sound/sound";
 import { Speech } from "./speech/speech";
-import { splits } from "./frame/splitters";
+import { buildSplitters } from "./frame/splitters";
 import { Status } from "./frame/status";
 import { loadScene } from "./surface/loading";
-import { remembered } from "./view/settings";
+import { recallSettings } from "./view/settings";
 import { Themes } from "./frame/themes";
 import { View } from "./view/view";
 import { language } from "./words/words";
@@ -39,7 +39,7 @@ const element = <T extends HTMLElement>(id: string): T => document.getElementByI
 const canvas = element<HTMLCanvasElement>("terrain");
 const hub = new Hub();
 const speech = new Speech(hub);
-const shown = regions(element("said"), element("alerted"));
+const shown = liveRegions(element("said"), element("alerted"));
 const announcer = new Announcer((said) => {
   shown(said);
   speech.speak(said);
@@ -59,7 +59,7 @@ const page: Page = {
   sound: new Sound(hub, () => page.scene),
   speech,
   themes: new Themes(hub),
-  idle: idle(hub),
+  idle: whenIdle(hub),
   say: (text, how) => announcer.say(text, how),
   forget: (topic) => announcer.forget(topic),
 };
@@ -67,10 +67,10 @@ const page: Page = {
 measure(page);
 hub.on("hello", ({ history, scene }) => {
   // After a connection that was lost, what was heard before is not heard again; and what is long over is not said.
-  announcer.hushed = true;
+  announcer.muted = true;
   const all = [...history, ...(scene ? [{ ...scene, event: "scene" as const }] : [])].sort((a, b) => a.at_s - b.at_s);
   for (const each of all) if (each.at_s > net.heard_s) hub.tell(each.event, each as never);
-  announcer.hushed = false;
+  announcer.muted = false;
 });
 const plugins = new Set<string>();
 hub.on("hello", ({ panels: brought = [] }) => {
@@ -93,16 +93,16 @@ hub.on("scene", async (meta) => {
   }
 });
 
-frame(page);
-splits();
+buildRegions(page);
+buildSplitters();
 listen(canvas);
 new Status(page);
 new Narrator(page);
 const hand = (page.hand = new Hand(page));
-for (const attach of [mouse, touch, keys, pad]) attach(hand, page);
-notice(page);
+for (const attach of [attachMouse, attachFingers, attachKeyboard, attachGamePad]) attach(hand, page);
+showGraphicsTrouble(page);
 build(page, panels);
 dataCursor(page);
 new Frames(page);
-requestAnimationFrame(() => setTimeout(() => view.prepare(remembered()))); // once the page itself is to be seen
+requestAnimationFrame(() => setTimeout(() => view.prepare(recallSettings()))); // once the page itself is to be seen
 if (measuring) Object.assign(window, { Instrument, stroke }); // what tests look into

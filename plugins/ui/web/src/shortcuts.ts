@@ -64,7 +64,7 @@ export const SHORTCUTS = {
 export type Name = keyof typeof SHORTCUTS;
 
 const KEPT = "letters";
-const acts = new Map<Name, () => void>();
+const actions = new Map<Name, () => void>();
 const byKey = new Map<string, Name>();
 for (const [name, { keys }] of Object.entries<Shortcut>(SHORTCUTS)) for (const key of keys) byKey.set(key, name as Name);
 
@@ -80,29 +80,29 @@ export const letters = {
 
 /** What a shortcut does. */
 export function on(name: Name, act: () => void): void {
-  acts.set(name, act);
+  actions.set(name, act);
 }
 
 /** Hear the keys of a page; once. The stop key is heard before anything else can take it, and still closes what it
  * closes. */
 export function listen(surface: HTMLElement): void {
-  document.addEventListener("keydown", (event) => named(event) === "stop" && acts.get("stop")?.(), { capture: true });
+  document.addEventListener("keydown", (event) => shortcutOf(event) === "stop" && actions.get("stop")?.(), { capture: true });
   document.addEventListener("keydown", (event) => {
-    const name = named(event);
-    const act = name && acts.get(name);
+    const name = shortcutOf(event);
+    const act = name && actions.get(name);
     if (!act || name === "stop" || event.isComposing || event.defaultPrevented) return;
-    if (!heard(SHORTCUTS[name].where, event.target as Element, surface)) return;
+    if (!actsAt(SHORTCUTS[name].where, event.target as Element, surface)) return;
     event.preventDefault();
     if (!event.repeat) act();
   });
 }
 
-function named(event: KeyboardEvent): Name | undefined {
-  return byKey.get(pressed(event));
+function shortcutOf(event: KeyboardEvent): Name | undefined {
+  return byKey.get(keyName(event));
 }
 
 /** The key with what is held beside it, as the table says it. */
-export function pressed({ key, shiftKey, ctrlKey, altKey, metaKey }: KeyboardEvent): string {
+export function keyName({ key, shiftKey, ctrlKey, altKey, metaKey }: KeyboardEvent): string {
   const named = key.length > 1;
   const small = key.toLowerCase();
   const letter = small !== key.toUpperCase();
@@ -113,7 +113,7 @@ export function pressed({ key, shiftKey, ctrlKey, altKey, metaKey }: KeyboardEve
 /** Where letters are typed, or choose. */
 const TYPED = "input:not([type=checkbox], [type=radio], [type=range], [type=file]), select, textarea, [contenteditable]";
 
-function heard(where: Shortcut["where"], target: Element, surface: HTMLElement): boolean {
+function actsAt(where: Shortcut["where"], target: Element, surface: HTMLElement): boolean {
   if (where === "page" || target === surface) return true;
   return where === "letter" && letters.everywhere && !target.matches(TYPED);
 }

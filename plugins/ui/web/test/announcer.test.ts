@@ -112,9 +112,9 @@ describe("what is said", () => {
   });
 
   test("nothing while it is hushed, and nothing empty", () => {
-    announcer.hushed = true;
+    announcer.muted = true;
     announcer.say("long over");
-    announcer.hushed = false;
+    announcer.muted = false;
     announcer.say("");
     pass(10_000);
     assert.deepEqual(said, []);

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { Vector3 } from "three";
-import { Eye, key } from "../src/view/camera";
+import { Eye, handleKey } from "../src/view/camera";
 
 const still = { matches: true } as MediaQueryList;
 globalThis.matchMedia ??= () => still;
@@ -31,15 +31,15 @@ test("keys turn, move, zoom, and come home; nobody flies where motion is not wan
   const eye = new Eye();
   eye.frame(0.08, 0.06);
   const home = { ...eye.pose };
-  assert.ok(key(eye, pressed("ArrowLeft", { shiftKey: true, ctrlKey: true })) && eye.pose.azimuth < 0);
-  assert.ok(key(eye, pressed("ArrowUp", { shiftKey: true, ctrlKey: true })) && eye.pose.polar < home.polar);
-  assert.ok(key(eye, pressed("ArrowRight", { altKey: true })) && eye.pose.target[0] > 0);
-  assert.ok(key(eye, pressed("+")) && eye.pose.distance < home.distance);
-  assert.ok(key(eye, pressed("Home", { ctrlKey: true })));
+  assert.ok(handleKey(eye, pressed("ArrowLeft", { shiftKey: true, ctrlKey: true })) && eye.pose.azimuth < 0);
+  assert.ok(handleKey(eye, pressed("ArrowUp", { shiftKey: true, ctrlKey: true })) && eye.pose.polar < home.polar);
+  assert.ok(handleKey(eye, pressed("ArrowRight", { altKey: true })) && eye.pose.target[0] > 0);
+  assert.ok(handleKey(eye, pressed("+")) && eye.pose.distance < home.distance);
+  assert.ok(handleKey(eye, pressed("Home", { ctrlKey: true })));
   assert.deepEqual(eye.pose, home);
-  assert.ok(key(eye, pressed("End", { ctrlKey: true })) && eye.pose.polar < 0.01);
+  assert.ok(handleKey(eye, pressed("End", { ctrlKey: true })) && eye.pose.polar < 0.01);
   for (const other of [pressed("ArrowLeft"), pressed("x"), pressed("+", { ctrlKey: true }), ...HANDS])
-    assert.ok(!key(eye, other));
+    assert.ok(!handleKey(eye, other));
 });
 
 test("a zoom leaves the place under the pointer where it is", () => {

@@ -2,11 +2,11 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import { fieldOf } from "../src/forms/complaints";
-import { spelt } from "../src/forms/editor";
-import { bounded, type Kind, kindOf, type Option, step } from "../src/forms/kinds";
+import { expandMaterials } from "../src/forms/editor";
+import { formatRange, type Kind, kindOf, type Option, step } from "../src/forms/kinds";
 import { alternatives, type FileSchema, type Plain, type Schema } from "../src/forms/schema";
 import { sections } from "../src/forms/sections";
-import { asText, edit, fits, put, typedNumber, typedText, typedYaml } from "../src/forms/values";
+import { asText, edit, fits, setInside, typedNumber, typedText, typedYaml } from "../src/forms/values";
 import type { Document } from "../src/server/messages";
 
 const LENGTH = { type: "string", examples: ["6 mm"], pattern: "^[-+]?\\d+\\s*(m|cm|mm|um)$" };
@@ -81,19 +81,19 @@ test("an edit names its key alone", () => {
 
 test("one part of an entry of a list changes, and the rest of it stays", () => {
   const rule = { segment: 3, material: "ice" };
-  assert.deepEqual(put(rule, ["material"], { value: "sand" }), { segment: 3, material: "sand" });
-  assert.deepEqual(put(rule, ["segment"], { gone: true }), { material: "ice" });
-  assert.deepEqual(put({}, ["hand", "mass_kg"], { value: 2 }), { hand: { mass_kg: 2 } });
-  assert.deepEqual(put(rule, ["at"], { written: "[1, 2]" }), { ...rule, at: [1, 2] });
+  assert.deepEqual(setInside(rule, ["material"], { value: "sand" }), { segment: 3, material: "sand" });
+  assert.deepEqual(setInside(rule, ["segment"], { gone: true }), { material: "ice" });
+  assert.deepEqual(setInside({}, ["hand", "mass_kg"], { value: 2 }), { hand: { mass_kg: 2 } });
+  assert.deepEqual(setInside(rule, ["at"], { written: "[1, 2]" }), { ...rule, at: [1, 2] });
 });
 
 test("materials in short are spelt out before another key is set", () => {
   const document = { said: { materials: { "0": "ice" } } } as unknown as Document;
-  assert.deepEqual(spelt({ changes: { "materials.default": "sand" } }, document), {
+  assert.deepEqual(expandMaterials({ changes: { "materials.default": "sand" } }, document), {
     changes: { materials: { by: { "0": "ice" } }, "materials.default": "sand" },
   });
   const other = { changes: { "render.stiffness_n_per_m": 1 } };
-  assert.equal(spelt(other, document), other);
+  assert.equal(expandMaterials(other, document), other);
 });
 
 test("a complaint goes to its field, or to what is around it", () => {
@@ -110,7 +110,7 @@ test("a complaint goes to its field, or to what is around it", () => {
 
 test("bounds in words, and steps within them", () => {
   const said = (bounds: object, unit = "") =>
-    bounded({ above: false, below: false, ...bounds }, unit, "over", "under", "to");
+    formatRange({ above: false, below: false, ...bounds }, unit, "over", "under", "to");
   assert.equal(said({ least: 0.001, most: 10 }, "m"), "0.001 to 10 m");
   assert.equal(said({ least: 0, most: 1, above: true, below: true }), "over 0 to under 1");
   assert.equal(said({ least: 0, above: true }, "N/m"), "over 0 N/m");

@@ -1,16 +1,16 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { GripRule, type Held } from "../src/contact/grip";
+import { GripRule, type ContactSample } from "../src/contact/grip";
 import type { Vec } from "../src/server/protocol";
 
 const MU = 0.4;
 const PERIOD_MS = 1000 / 60;
 
 /** A contact for so many states: where it is and what the force is, by the time in seconds. */
-function follow(rule: GripRule, states: number, at: (s: number) => Partial<Held>): string[] {
+function follow(rule: GripRule, states: number, at: (s: number) => Partial<ContactSample>): string[] {
   return Array.from({ length: states }, (_, i) => {
-    const level: Held = { touching: true, atMs: i * PERIOD_MS, contact: [0, 0, 0], normal: [0, 0, 1], force: [0, 0, 2], dynamicFriction: MU };
-    return rule.next({ ...level, ...at((i * PERIOD_MS) / 1000) });
+    const level: ContactSample = { touching: true, atMs: i * PERIOD_MS, contact: [0, 0, 0], normal: [0, 0, 1], force: [0, 0, 2], dynamicFriction: MU };
+    return rule.update({ ...level, ...at((i * PERIOD_MS) / 1000) });
   });
 }
 
@@ -58,10 +58,10 @@ test("a contact that trembles by less than it can be seen to move neither slips 
 test("nothing of the last contact is left in the next, nor of a pause", () => {
   const rule = new GripRule();
   follow(rule, 30, (s) => ({ contact: [0.02 * s, 0, 0], force: [-2 * MU, 0, 2] }));
-  const level: Held = { touching: true, atMs: 1e4, contact: [0.5, 0, 0], normal: [0, 0, 1], force: [-0.5, 0, 2], dynamicFriction: MU };
-  assert.equal(rule.next({ ...level, touching: false }), "apart");
-  assert.equal(rule.next({ ...level, contact: [0.1, 0, 0] }), "sticks");
-  assert.equal(rule.next({ ...level, contact: [0.1, 0, 0], atMs: 1e4 + PERIOD_MS }), "sticks");
-  assert.equal(rule.next({ ...level, atMs: 2e4 }), "sticks");
-  assert.equal(rule.next({ ...level, force: [NaN, 0, NaN] }), "apart");
+  const level: ContactSample = { touching: true, atMs: 1e4, contact: [0.5, 0, 0], normal: [0, 0, 1], force: [-0.5, 0, 2], dynamicFriction: MU };
+  assert.equal(rule.update({ ...level, touching: false }), "apart");
+  assert.equal(rule.update({ ...level, contact: [0.1, 0, 0] }), "sticks");
+  assert.equal(rule.update({ ...level, contact: [0.1, 0, 0], atMs: 1e4 + PERIOD_MS }), "sticks");
+  assert.equal(rule.update({ ...level, atMs: 2e4 }), "sticks");
+  assert.equal(rule.update({ ...level, force: [NaN, 0, NaN] }), "apart");
 });

@@ -1,16 +1,16 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { enlargement } from "../src/hand/hand";
+import { magnificationOf } from "../src/hand/hand";
 import { HELD_MS, HeldKeys, PACES } from "../src/hand/keyboard";
-import { type Ground, HOVER_M, moved, SPEED, within } from "../src/hand/motion";
-import { level } from "../src/hand/mouse";
-import { Presses, REST, Shake, way } from "../src/hand/game_pad";
-import { parts } from "../src/hand/part_centres";
+import { type Ground, HOVER_M, nextPosition, SPEED, clampToRim } from "../src/hand/motion";
+import { meetLevel } from "../src/hand/mouse";
+import { Presses, DEAD_ZONE, Rumble, readPad } from "../src/hand/game_pad";
+import { findPartCentres } from "../src/hand/part_centres";
 import { Fingers, Pressure } from "../src/hand/fingers";
-import { bits, limits } from "../src/panels/devices/doctor";
-import { there } from "../src/panels/devices/list";
+import { pressedButtons, limits } from "../src/panels/devices/doctor";
+import { presenceOf } from "../src/panels/devices/list";
 import { points } from "../src/panels/devices/sparkline";
-import { held } from "../src/panels/hand/panel";
+import { holderOf } from "../src/panels/hand/panel";
 import type { Vec } from "../src/server/protocol";
 
 const PRESS_M = 0.0015;
@@ -26,14 +26,14 @@ const wall: Ground = {
 /** Every place on the way to a goal over the ground. */
 function path(from: Vec | null, over: [number, number], gapM: number, ground = wall, steps = 60, slower = 1): Vec[] {
   const found: Vec[] = [];
-  for (let i = 0; i < steps; i++) found.push(moved(found.at(-1) ?? from, { over, gapM }, STEP_S, ground, slower));
+  for (let i = 0; i < steps; i++) found.push(nextPosition(found.at(-1) ?? from, { over, gapM }, STEP_S, ground, slower));
   return found;
 }
 
 test("the first place is over the surface, whatever was picked", () => {
-  const at = moved(null, { over: [-0.02, 0], gapM: -PRESS_M }, 0, wall);
+  const at = nextPosition(null, { over: [-0.02, 0], gapM: -PRESS_M }, 0, wall);
   assert.deepEqual(at, [-0.02, 0, HOVER_M]);
-  assert.equal(moved(null, { at: [-0.02, 0, -0.5] }, 0, wall)[2], HOVER_M);
+  assert.equal(nextPosition(null, { at: [-0.02, 0, -0.5] }, 0, wall)[2], HOVER_M);
 });
 
 test("a leap over a wall presses no deeper than the hand does, and climbs no faster than a hand", () => {
@@ -44,7 +44,7 @@ test("a leap over a wall presses no deeper than the hand does, and climbs no fas
     assert.ok(wall.height(x, y) - z <= PRESS_M + 1e-5, `${wall.height(x, y) - z} m deep at ${x}`);
     assert.ok(z - way[i - 1]![2] <= SPEED.climb * STEP_S + 1e-9, "up");
     assert.ok(way[i - 1]![2] - z <= SPEED.sink * STEP_S + 1e-9, "down");
-    assert.ok(x - way[i - 1]![0] <= SPEED.along * STEP_S + 1e-9, "along");
+    assert.ok(x - way[i - 1]![0] <= SPEED.moveOverSurface * STEP_S + 1e-9, "along");
   }
   assert.ok(Math.hypot(way.at(-1)![0] - 0.04, way.at(-1)![2] - (0.01 - PRESS_M)) < 1e-6, "it arrives");
   const climbing = way.filter(([x]) => x > 0.0099 && x < 0.0106).length;
@@ -61,27 +61,27 @@ test("it falls off a wall no faster than a hand", () => {
 test("a place at the rim, and beside it, is within the rim", () => {
   for (const [x, y] of [[0.05, 0.03], [-0.3, -0.3], [0.05, 0]] as const) {
     const at = path(null, [x, y], -PRESS_M, wall, 200).at(-1)!;
-    const [u, v] = within(wall, x, y);
+    const [u, v] = clampToRim(wall, x, y);
     assert.ok(Math.hypot(at[0] - u, at[1] - v) < 1e-9);
     assert.ok(Math.abs(at[0]) < 0.05 && Math.abs(at[1]) < 0.03);
     assert.ok(Math.abs(wall.height(u, v) - PRESS_M - at[2]) < 1e-9);
   }
   const speck: Ground = { meta: { extent_m: [0.01, 0.01], height_m: [0, 0], columns: 1 }, height: () => 0 };
-  assert.deepEqual(within(speck, 0, 0), [0, 0]);
+  assert.deepEqual(clampToRim(speck, 0, 0), [0, 0]);
 });
 
 test("in a region that is felt enlarged the hand is as much slower", () => {
   const start: Vec = [-0.03, 0, 0];
-  assert.ok(Math.abs(moved(start, { over: [0.04, 0], gapM: 0 }, STEP_S, wall, 4)[0] + 0.03 - (SPEED.along * STEP_S) / 4) < 1e-9);
-  assert.equal(enlargement({ region_m: [0, 0, 0.02, 0.03] }, [0.1, 0.06]), 2);
-  assert.equal(enlargement({ region_m: [0, 0, 0.02, 0.03], scale: 3 }, [0.1, 0.06]), 3);
-  assert.equal(enlargement({}, [0.1, 0.06]), 1);
+  assert.ok(Math.abs(nextPosition(start, { over: [0.04, 0], gapM: 0 }, STEP_S, wall, 4)[0] + 0.03 - (SPEED.moveOverSurface * STEP_S) / 4) < 1e-9);
+  assert.equal(magnificationOf({ region_m: [0, 0, 0.02, 0.03] }, [0.1, 0.06]), 2);
+  assert.equal(magnificationOf({ region_m: [0, 0, 0.02, 0.03], scale: 3 }, [0.1, 0.06]), 3);
+  assert.equal(magnificationOf({}, [0.1, 0.06]), 1);
 });
 
 test("in space it goes straight on, no faster than a hand, and not out of reach", () => {
   let at: Vec = [0, 0, 0.02];
   for (let i = 0; i < 200; i++) {
-    const next = moved(at, { at: [-0.2, 0, -1] }, STEP_S, wall);
+    const next = nextPosition(at, { at: [-0.2, 0, -1] }, STEP_S, wall);
     assert.ok(Math.hypot(next[0] - at[0], next[1] - at[1], next[2] - at[2]) <= SPEED.free * STEP_S + 1e-9);
     at = next;
   }
@@ -140,22 +140,22 @@ const BUTTONS = Array.from({ length: 17 }, () => up);
 const pressing = (which: number, value: number) => BUTTONS.map((each, i) => (i === which ? { pressed: true, value } : each));
 
 test("a game pad at rest moves nothing; the stick moves in all directions alike, the trigger presses", () => {
-  assert.deepEqual(way({ axes: [REST, 0, 0, -REST], buttons: BUTTONS }), { x: 0, y: 0, z: 0, press: 0 });
-  const right = way({ axes: [1, 0, 0, 0], buttons: BUTTONS });
-  const away = way({ axes: [0, -1, 0, 0], buttons: BUTTONS });
+  assert.deepEqual(readPad({ axes: [DEAD_ZONE, 0, 0, -DEAD_ZONE], buttons: BUTTONS }), { x: 0, y: 0, z: 0, press: 0 });
+  const right = readPad({ axes: [1, 0, 0, 0], buttons: BUTTONS });
+  const away = readPad({ axes: [0, -1, 0, 0], buttons: BUTTONS });
   assert.ok(right.x > 0.05 && right.y === 0);
   assert.ok(Math.abs(away.y - right.x) < 1e-12);
-  assert.ok(way({ axes: [0, 0, 0, 1], buttons: BUTTONS }).z < 0);
-  assert.equal(way({ axes: [], buttons: pressing(7, 0.6) }).press, 0.6);
+  assert.ok(readPad({ axes: [0, 0, 0, 1], buttons: BUTTONS }).z < 0);
+  assert.equal(readPad({ axes: [], buttons: pressing(7, 0.6) }).press, 0.6);
 });
 
 test("a button of a game pad acts once", () => {
   const presses = new Presses();
   const pressed = { axes: [], buttons: pressing(1, 1) };
-  assert.deepEqual(presses.take(pressed), [1]);
-  assert.deepEqual(presses.take(pressed), []);
-  assert.deepEqual(presses.take({ axes: [], buttons: BUTTONS }), []);
-  assert.deepEqual(presses.take(pressed), [1]);
+  assert.deepEqual(presses.newPresses(pressed), [1]);
+  assert.deepEqual(presses.newPresses(pressed), []);
+  assert.deepEqual(presses.newPresses({ axes: [], buttons: BUTTONS }), []);
+  assert.deepEqual(presses.newPresses(pressed), [1]);
 });
 
 test("a game pad shakes with the force, up to its limit, and is still at once without", () => {
@@ -164,36 +164,36 @@ test("a game pad shakes with the force, up to its limit, and is still at once wi
     playEffect: (_: string, { strongMagnitude }: { strongMagnitude: number }) => said.push(strongMagnitude),
     reset: () => said.push("still"),
   };
-  const shake = new Shake();
-  shake.feel(shaker, 0, 0);
-  shake.feel(shaker, 2, 10);
-  shake.feel(shaker, 2, 20); // too soon
-  shake.feel(shaker, 80, 100);
-  shake.feel(shaker, NaN, 110);
-  shake.feel(shaker, 0, 120);
-  shake.feel(shaker, 1, 121);
-  shake.still(shaker);
+  const shake = new Rumble();
+  shake.play(shaker, 0, 0);
+  shake.play(shaker, 2, 10);
+  shake.play(shaker, 2, 20); // too soon
+  shake.play(shaker, 80, 100);
+  shake.play(shaker, NaN, 110);
+  shake.play(shaker, 0, 120);
+  shake.play(shaker, 1, 121);
+  shake.stop(shaker);
   assert.deepEqual(said, [0.4, 0.8, "still", 0.2, "still"]);
 });
 
 test("a part is found in its widest place", () => {
   // two parts side by side, a third of one place in a corner, and nothing beyond
   const label = (x: number, y: number): number | null => (x > 0.045 ? null : x > 0.04 && y > 0.025 ? 9 : x < 0 ? 2 : 5);
-  const found = parts(label, [0.1, 0.06]);
+  const found = findPartCentres(label, [0.1, 0.06]);
   assert.deepEqual(found.map((each) => each.label), [2, 5, 9]);
   for (const { label: each, at } of found) assert.equal(label(...at), each);
   assert.ok(Math.abs(found[0]!.at[0] + 0.025) < 0.01 && Math.abs(found[0]!.at[1]) < 0.01);
-  assert.deepEqual(parts(() => null, [0.1, 0.06]), []);
+  assert.deepEqual(findPartCentres(() => null, [0.1, 0.06]), []);
 });
 
 test("a ray meets a level before it, or not at all", () => {
-  assert.deepEqual(level([0, 0, 1], [0, 0, -1], 0.25), [0, 0, 0.25]);
-  assert.equal(level([0, 0, 1], [0, 0, 1], 0.25), null);
-  assert.equal(level([0, 0, 1], [1, 0, 0], 0.25), null);
+  assert.deepEqual(meetLevel([0, 0, 1], [0, 0, -1], 0.25), [0, 0, 0.25]);
+  assert.equal(meetLevel([0, 0, 1], [0, 0, 1], 0.25), null);
+  assert.equal(meetLevel([0, 0, 1], [1, 0, 0], 0.25), null);
 });
 
 test("the doctor says which buttons are pressed, which limits acted, and draws what was last on the right", () => {
-  assert.deepEqual(bits(0b101), [1, 3]);
+  assert.deepEqual(pressedButtons(0b101), [1, 3]);
   assert.equal(limits({ TOUCHING: 900, FORCE_LIMITED: 12, DAMPED: 0 }), "force limited 12");
   assert.equal(points([0, 2, 4], 60), "57,1.000 58,0.500 59,0.000");
   assert.equal(points([0], 60), "59,1.000");
@@ -201,17 +201,17 @@ test("the doctor says which buttons are pressed, which limits acted, and draws w
 
 test("a device is simulated, connected, not connected, or cannot be looked for", () => {
   const none = { name: "", summary: "", simulated: null, units: [], problem: "", usable: false };
-  assert.equal(there({ ...none, simulated: true }), "simulated");
-  assert.equal(there({ ...none, units: [{ name: "", serial: "", place: "", problem: "busy" }] }), "connected");
-  assert.equal(there({ ...none, simulated: false }), "notConnected");
-  assert.equal(there({ ...none, problem: "no driver" }), "notAsked");
+  assert.equal(presenceOf({ ...none, simulated: true }), "simulated");
+  assert.equal(presenceOf({ ...none, units: [{ name: "", serial: "", place: "", problem: "busy" }] }), "connected");
+  assert.equal(presenceOf({ ...none, simulated: false }), "notConnected");
+  assert.equal(presenceOf({ ...none, problem: "no driver" }), "notAsked");
 });
 
 test("who holds the hand is said in words", () => {
   const hand = { there: true, holding: false, nobodyHolds: false, rests: false };
-  assert.equal(held({ ...hand, there: false }), "gone");
-  assert.equal(held({ ...hand, holding: true, rests: true }), "rests");
-  assert.equal(held({ ...hand, holding: true }), "holds");
-  assert.equal(held({ ...hand, nobodyHolds: true }), "nobody");
-  assert.equal(held(hand), "watches");
+  assert.equal(holderOf({ ...hand, there: false }), "gone");
+  assert.equal(holderOf({ ...hand, holding: true, rests: true }), "rests");
+  assert.equal(holderOf({ ...hand, holding: true }), "holds");
+  assert.equal(holderOf({ ...hand, nobodyHolds: true }), "nobody");
+  assert.equal(holderOf(hand), "watches");
 });

@@ -1,14 +1,14 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { Hub } from "../src/hub";
-import { idle } from "../src/server/idle";
+import { whenIdle } from "../src/server/idle";
 import type { Events } from "../src/server/messages";
 
 /** Whether there is time by now, of a page that heard this. */
 async function begun(...said: { [K in keyof Events]: [K, Partial<Events[K]>] }[keyof Events][]): Promise<boolean> {
   const hub = new Hub();
   let there = false;
-  void idle(hub).then(() => (there = true));
+  void whenIdle(hub).then(() => (there = true));
   for (const [name, event] of said) hub.tell(name, event as never);
   await Promise.resolve();
   return there;
@@ -30,7 +30,7 @@ test("or where nothing comes to be felt", async () => {
 
 test("or after a while with a program that says nothing", async () => {
   const hub = new Hub();
-  const begun = idle(hub, 1);
+  const begun = whenIdle(hub, 1);
   hub.tell("hello", {} as never);
   await begun;
 });

@@ -1,16 +1,16 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { LIMITS, limited, perSecond } from "../src/contact/limits";
-import { round } from "../src/overlay/settings";
-import { fixed } from "../src/contact/values";
+import { LIMITS, isLimited, perSecond } from "../src/contact/limits";
+import { roundDown125 } from "../src/overlay/settings";
+import { formatFixed } from "../src/contact/values";
 import { FLAGS } from "../src/server/protocol";
 
 test("each flag that changes a force is a limit; touching, a swap and a beacon are none", () => {
   const bits = LIMITS.map(({ bit }) => bit as number);
   const { TOUCHING, SWAPPED, BEACON, ...limits } = FLAGS;
   assert.deepEqual([...bits].sort((a, b) => a - b), Object.values(limits).sort((a, b) => a - b));
-  assert.ok(!limited(TOUCHING | SWAPPED | BEACON));
-  assert.ok(bits.every((bit) => limited(bit | TOUCHING)));
+  assert.ok(!isLimited(TOUCHING | SWAPPED | BEACON));
+  assert.ok(bits.every((bit) => isLimited(bit | TOUCHING)));
 });
 
 test("counts are of the second between them, and none where the loop began anew", () => {
@@ -24,6 +24,6 @@ test("counts are of the second between them, and none where the loop began anew"
 });
 
 test("a scale is round, and numbers keep their width", () => {
-  assert.deepEqual([0.0067, 0.005, 0.0049999, 3, 12, 0].map(round), [0.005, 0.005, 0.002, 2, 10, 0]);
-  assert.deepEqual([fixed(-0.0001, 2), fixed(-1.5, 2), fixed(NaN, 2)], ["0.00", "−1.50", "–"]);
+  assert.deepEqual([0.0067, 0.005, 0.0049999, 3, 12, 0].map(roundDown125), [0.005, 0.005, 0.002, 2, 10, 0]);
+  assert.deepEqual([formatFixed(-0.0001, 2), formatFixed(-1.5, 2), formatFixed(NaN, 2)], ["0.00", "−1.50", "–"]);
 });

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { asText, Lines, MOST_LINES, seen, type Level } from "../src/panels/log/lines";
+import { asText, Lines, MOST_LINES, isShown, type Level } from "../src/panels/log/lines";
 
 const all = new Set<Level>(["event", "detail", "warning", "error"]);
 
@@ -22,10 +22,10 @@ test("the same line again counts up and has the newest time", () => {
 
 test("a line is seen if its level is, and all words are in it", () => {
   const line = { level: "warning", text: "The picture is DARK", foreign: "", at_s: 0, times: 1 } as const;
-  assert.ok(seen(line, all, ""));
-  assert.ok(seen(line, all, "dark  picture"));
-  assert.ok(!seen(line, all, "dark bright"));
-  assert.ok(!seen(line, new Set<Level>(["error"]), "dark"));
+  assert.ok(isShown(line, all, ""));
+  assert.ok(isShown(line, all, "dark  picture"));
+  assert.ok(!isShown(line, all, "dark bright"));
+  assert.ok(!isShown(line, new Set<Level>(["error"]), "dark"));
 });
 
 test("as text every line has its time, level and count", () => {

@@ -13,7 +13,7 @@ function rests(seconds: number, at: (s: number) => Partial<State>): boolean {
   const rest = new Rest();
   const found = Array.from({ length: Math.round(60 * seconds) }, (_, i) => {
     const s = i / 60;
-    return rest.lasts({ ...STILL, seq: i, overruns: i, lateUs: i, sampleMs: 1e3 * s, arrivedMs: 1e3 * s, ...at(s) });
+    return rest.isAtRest({ ...STILL, seq: i, overruns: i, lateUs: i, sampleMs: 1e3 * s, arrivedMs: 1e3 * s, ...at(s) });
   });
   return found.at(-1)!;
 }

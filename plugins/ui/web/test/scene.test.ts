@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { firstRoot, Grid } from "../src/surface/grid";
 import type { Material, Meta } from "../src/server/messages";
-import { named } from "../src/speech/narrator";
+import { describePlace } from "../src/speech/narrator";
 import { place } from "../src/contact/reading";
 import { asJson, rows } from "../src/contact/values";
 import type { Vec } from "../src/server/protocol";
@@ -187,7 +187,7 @@ test("the first root of a polynomial", () => {
 
 test("a part is called by its name, with its material; one without a name by material and number", () => {
   const made = scene(3, 3, () => 0);
-  const called = (x: number): string => named(made.material(x, 0)?.name, made.part(x, 0), made.label(x, 0), 3, { wood: "Holz" });
+  const called = (x: number): string => describePlace(made.material(x, 0)?.name, made.part(x, 0), made.label(x, 0), 3, { wood: "Holz" });
   assert.deepEqual([-0.03, 0, 0.03].map(called), ["Holz, part 0", "ice, part 1", "ice, part 2"]);
   (made.meta as { parts: string[] }).parts = ["door", "", "pane"];
   assert.deepEqual([-0.03, 0, 0.03].map(called), ["door, Holz", "ice, part 1", "pane, ice"]);

@@ -1,16 +1,16 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { STRIDE, Trail } from "../src/overlay/pieces/trace_samples";
+import { STRIDE, TraceSamples } from "../src/overlay/pieces/trace_samples";
 
 /** Lines that would be drawn, as pairs of the x of their ends. */
-function lines(trail: Trail, sinceS = -1): string[] {
+function lines(trail: TraceSamples, sinceS = -1): string[] {
   const x = (slot: number) => trail.data[slot * STRIDE];
   const all = Array.from({ length: trail.slots }, (_, slot) => slot);
   return all.filter((slot) => trail.joins(slot, sinceS)).map((slot) => `${x(slot)}-${x(slot + 1)}`);
 }
 
 test("samples are joined one to the next, round the end of the ring", () => {
-  const trail = new Trail(4);
+  const trail = new TraceSamples(4);
   for (let i = 1; i <= 3; i++) trail.add(i, 0, 0, 1, i);
   assert.deepEqual(lines(trail), ["1-2", "2-3"]);
   for (let i = 4; i <= 6; i++) trail.add(i, 0, 0, 1, i);
@@ -19,7 +19,7 @@ test("samples are joined one to the next, round the end of the ring", () => {
 });
 
 test("no line crosses a gap, and none is older than asked", () => {
-  const trail = new Trail(8);
+  const trail = new TraceSamples(8);
   trail.add(1, 0, 0, 1, 1);
   trail.add(2, 0, 0, 1, 2);
   trail.lift();
@@ -35,14 +35,14 @@ test("no line crosses a gap, and none is older than asked", () => {
 });
 
 test("only what is young enough is looked at", () => {
-  const trail = new Trail(4);
+  const trail = new TraceSamples(4);
   assert.equal(trail.since(0), 0);
   for (let i = 1; i <= 6; i++) trail.add(i, 0, 0, 1, i);
   assert.deepEqual([7, 6, 4.5, 0].map((seconds) => trail.since(seconds)), [0, 1, 2, 4]);
 });
 
 test("a long way allocates nothing, and keeps the newest", () => {
-  const trail = new Trail(64);
+  const trail = new TraceSamples(64);
   const { data } = trail;
   const before = process.memoryUsage().heapUsed;
   for (let i = 1; i <= 100_000; i++) trail.add(i % 1000, 0, 0, 1, i);

@@ -1,10 +1,10 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import type { Meta } from "../src/server/messages";
-import { heat, heatTexels, marked, PALETTE, PATTERNS, styleOf } from "../src/terrain/colours";
-import { checked, DEFAULTS } from "../src/view/settings";
-import { picked, strideOf, triangles, MOST_MOVING } from "../src/terrain/triangles";
-import { holds, MOST_CELLS, windowOf } from "../src/surface/detail_window";
+import { heat, heatTexels, isMarked, PALETTE, PATTERNS, styleOf } from "../src/terrain/colours";
+import { checkSettings, DEFAULTS } from "../src/view/settings";
+import { pickIndices, strideOf, triangles, MOST_MOVING } from "../src/terrain/triangles";
+import { includes, MOST_CELLS, windowOf } from "../src/surface/detail_window";
 
 function large(columns = 4300, rows = 4200): Meta {
   const levels = [1, 2, 4, 8].map((step) => ({ step, rows: Math.ceil(rows / step), columns: Math.ceil(columns / step) }));
@@ -24,8 +24,8 @@ test("what is looked at is fetched as finely as can be drawn, and no finer than 
   const pitch = 0.08 / 4300;
   assert.ok(near.column * pitch - 0.04 <= 0.007 && (near.column + near.columns) * pitch - 0.04 >= 0.013);
   assert.ok(0.08 * (4200 / 4300) / 2 - near.row * pitch >= -0.017);
-  assert.ok(holds(half, { ...half, row: half.row + 1, rows: half.rows - 2 }));
-  assert.ok(!holds(half, { ...half, row: half.row - 1 }) && !holds(half, near));
+  assert.ok(includes(half, { ...half, row: half.row + 1, rows: half.rows - 2 }));
+  assert.ok(!includes(half, { ...half, row: half.row - 1 }) && !includes(half, near));
 });
 
 test("a window stays within the surface, and a surface of one level has none", () => {
@@ -38,7 +38,7 @@ test("a window stays within the surface, and a surface of one level has none", (
 test("triangles cover the grid and its ring, whatever the stride", () => {
   for (const [rows, columns] of [[1, 1], [1, 9], [7, 5], [480, 640]])
     for (const stride of [1, 2, 3, 50]) {
-      const [across, along] = [picked(columns, stride), picked(rows, stride)];
+      const [across, along] = [pickIndices(columns, stride), pickIndices(rows, stride)];
       assert.deepEqual([across[0], across.at(-1), along.at(-1)], [0, columns + 1, rows + 1]);
       assert.ok(across.every((each, k) => k === 0 || each > across[k - 1]), String(across));
       const index = triangles(rows, columns, stride);
@@ -62,13 +62,13 @@ test("64 kinds differ in colour or pattern, and those of one colour in how much 
   assert.equal(new Set(styles.map(({ colour, pattern }) => `${colour} ${pattern}`)).size, 64);
   assert.equal(new Set(Array.from({ length: 8 }, (_, kind) => styleOf(kind).pattern)).size, 8);
   assert.equal(PALETTE.length, 8);
-  const drawn = (pattern: number): string => Array.from({ length: 400 }, (_, k) => +marked(pattern, (k % 20) / 20 + 0.025, Math.floor(k / 20) / 20 + 0.025)).join("");
+  const drawn = (pattern: number): string => Array.from({ length: 400 }, (_, k) => +isMarked(pattern, (k % 20) / 20 + 0.025, Math.floor(k / 20) / 20 + 0.025)).join("");
   assert.equal(new Set(Array.from({ length: PATTERNS }, (_, pattern) => drawn(pattern))).size, PATTERNS);
 });
 
 test("settings that were kept are taken as far as they make sense", () => {
-  assert.deepEqual(checked(null), DEFAULTS);
-  assert.deepEqual(checked("x"), DEFAULTS);
-  const found = checked({ look: "height", steep: "toString", raking: 7, normals: NaN, azimuthDeg: 90, other: 1 });
+  assert.deepEqual(checkSettings(null), DEFAULTS);
+  assert.deepEqual(checkSettings("x"), DEFAULTS);
+  const found = checkSettings({ look: "height", steep: "toString", raking: 7, normals: NaN, azimuthDeg: 90, other: 1 });
   assert.deepEqual(found, { ...DEFAULTS, look: "height", azimuthDeg: 90 });
 });

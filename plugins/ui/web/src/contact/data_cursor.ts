@@ -1,7 +1,7 @@
 /** The data cursor at the lower right of the surface: what is where the device, the contact and the mouse are. */
 import "./data_cursor.css";
 import { button } from "../elements";
-import { place, type Place } from "./reading";
+import { place, type SurfacePlace } from "./reading";
 import { asJson, asText, rows, type Row } from "./values";
 import type { Page } from "../page";
 import { on } from "../shortcuts";
@@ -55,7 +55,7 @@ function covers(box: HTMLElement, { overlay, view, canvas }: Parts): boolean {
 }
 
 /** The place on the surface under the mouse, looked up when it is asked for and the mouse or the view has moved. */
-function follow(page: Parts): () => Place | null {
+function follow(page: Parts): () => SurfacePlace | null {
   const { canvas, view } = page;
   let mouse: [number, number] | null = null;
   canvas.parentElement!.addEventListener("pointermove", (event) => {

@@ -12,7 +12,7 @@
  * - at rest otherwise: it rests, as nothing pulls at it.
  */
 import type { Vec } from "../server/protocol";
-import { across, dot, length, minus } from "./vectors";
+import { tangential, dot, length, minus } from "./vectors";
 
 export const GRIPS = ["apart", "rests", "sticks", "slips", "glides"] as const;
 export type Grip = (typeof GRIPS)[number];
@@ -26,7 +26,7 @@ const LEAST_N = 0.02;
 const LONGEST_S = 0.25;
 
 /** One state, as the rule needs it. */
-export interface Held {
+export interface ContactSample {
   touching: boolean;
   atMs: number;
   contact: Vec;
@@ -41,22 +41,22 @@ export class GripRule {
   /** Along the surface. */
   speedMPerS = 0;
   private velocity: Vec = [0, 0, 0];
-  private before: Held | null = null;
+  private before: ContactSample | null = null;
   private moving = false;
 
-  next(held: Held): Grip {
+  update(held: ContactSample): Grip {
     const normalN = dot(held.force, held.normal);
-    if (!held.touching || !(normalN > LEAST_N)) return this.leave();
+    if (!held.touching || !(normalN > LEAST_N)) return this.reset();
     this.move(held);
     this.before = held;
-    const tangential = across(held.force, held.normal);
-    if (!this.moving) return (this.grip = length(tangential) > HELD_SHARE * normalN ? "sticks" : "rests");
-    const opposing = -dot(tangential, this.velocity) / (this.speedMPerS || 1);
+    const pull = tangential(held.force, held.normal);
+    if (!this.moving) return (this.grip = length(pull) > HELD_SHARE * normalN ? "sticks" : "rests");
+    const opposing = -dot(pull, this.velocity) / (this.speedMPerS || 1);
     const friction = 0.5 * held.dynamicFriction * normalN;
     return (this.grip = friction > 0 && opposing >= friction ? "slips" : "glides");
   }
 
-  private leave(): Grip {
+  private reset(): Grip {
     this.before = null;
     this.moving = false;
     this.velocity = [0, 0, 0];
@@ -64,10 +64,10 @@ export class GripRule {
     return (this.grip = "apart");
   }
 
-  private move(held: Held): void {
+  private move(held: ContactSample): void {
     const passedS = this.before ? (held.atMs - this.before.atMs) / 1000 : 0;
     if (!this.before || passedS <= 0 || passedS > LONGEST_S) return;
-    const way = across(minus(held.contact, this.before.contact), held.normal);
+    const way = tangential(minus(held.contact, this.before.contact), held.normal);
     const share = 1 - Math.exp(-passedS / SMOOTH_S);
     for (const axis of [0, 1, 2]) this.velocity[axis] += share * (way[axis] / passedS - this.velocity[axis]);
     this.speedMPerS = length(this.velocity);

@@ -14,7 +14,7 @@ export const LIMITS = [
 
 const ANY = LIMITS.reduce((sum, { bit }) => sum | bit, 0);
 
-export const limited = (flags: number): boolean => (flags & ANY) !== 0;
+export const isLimited = (flags: number): boolean => (flags & ANY) !== 0;
 
 /** What the loop has counted since it began: ticks, and those with a flag, by its name. */
 export interface Counts {

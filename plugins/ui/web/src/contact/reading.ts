@@ -3,7 +3,7 @@ import type { Material } from "../server/messages";
 import { FLAGS, NOBODY_M, type State, type Vec } from "../server/protocol";
 import type { Scene } from "../surface/scene";
 import { GripRule, type Grip } from "./grip";
-import { across, dot, length } from "./vectors";
+import { tangential, dot, length } from "./vectors";
 
 
 export interface Reading {
@@ -36,7 +36,7 @@ export interface Reading {
 }
 
 /** What a place of the surface is: its height, what it is made of, and which part. */
-export interface Place {
+export interface SurfacePlace {
   at: Vec;
   normal: Vec;
   material: Material | null;
@@ -46,7 +46,7 @@ export interface Place {
   name: string;
 }
 
-export function place(scene: Scene, x: number, y: number): Place {
+export function place(scene: Scene, x: number, y: number): SurfacePlace {
   const [normal, material] = [scene.normal(x, y), scene.material(x, y)];
   return { at: [x, y, scene.height(x, y)], normal, material, part: scene.label(x, y), name: scene.part(x, y) };
 }
@@ -55,7 +55,7 @@ export function place(scene: Scene, x: number, y: number): Place {
 export class StateReader {
   private rule = new GripRule();
 
-  of(state: State, scene: Scene | null): Reading {
+  read(state: State, scene: Scene | null): Reading {
     const { hand, force } = state;
     const seen = hand[2] < NOBODY_M;
     const touching = seen && (state.flags & FLAGS.TOUCHING) !== 0;
@@ -70,12 +70,12 @@ export class StateReader {
       depthM: seen && hand[2] < surfaceM ? surfaceM - hand[2] : 0,
       newtons: length(force),
       normalN: dot(force, normal),
-      tangentialN: length(across(force, normal)),
+      tangentialN: length(tangential(force, normal)),
       otherN: length(state.other),
       speedMPerS: length(state.velocity),
       part: scene && seen ? scene.label(contact[0], contact[1]) : null,
       name: scene && seen ? scene.part(contact[0], contact[1]) : "",
-      grip: this.rule.next({ touching, atMs: state.sampleMs, contact, normal, force, dynamicFriction }),
+      grip: this.rule.update({ touching, atMs: state.sampleMs, contact, normal, force, dynamicFriction }),
     };
   }
 }

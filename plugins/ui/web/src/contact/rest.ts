@@ -12,20 +12,20 @@ export class Rest {
   private from: State | null = null;
 
   /** Whether all is as it was a while ago; states are asked for in the order in which they come. */
-  lasts(state: State): boolean {
-    if (!this.from || !alike(this.from, state)) this.from = state;
+  isAtRest(state: State): boolean {
+    if (!this.from || !areAlike(this.from, state)) this.from = state;
     return state.arrivedMs - this.from.arrivedMs > REST_MS;
   }
 }
 
-function alike(a: State, b: State): boolean {
+function areAlike(a: State, b: State): boolean {
   return (
-    a.flags === b.flags && a.status === b.status && near(a.hand, b.hand, ALIKE_M) && near(a.proxy, b.proxy, ALIKE_M) &&
-    near(a.force, b.force, ALIKE_N) && near(a.other, b.other, ALIKE_N)
+    a.flags === b.flags && a.status === b.status && areNear(a.hand, b.hand, ALIKE_M) && areNear(a.proxy, b.proxy, ALIKE_M) &&
+    areNear(a.force, b.force, ALIKE_N) && areNear(a.other, b.other, ALIKE_N)
   );
 }
 
 /** A law without a proxy has none both times. */
-function near(a: Vec, b: Vec, most: number): boolean {
+function areNear(a: Vec, b: Vec, most: number): boolean {
   return a.some(Number.isNaN) ? b.some(Number.isNaN) : length(minus(a, b)) <= most;
 }

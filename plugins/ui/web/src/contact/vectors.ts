@@ -7,4 +7,4 @@ export const plus = (a: Vec, b: Vec, times = 1): Vec => [a[0] + times * b[0], a[
 export const length = (a: Vec): number => Math.hypot(a[0], a[1], a[2]);
 
 /** What is left of a vector without its part along a unit vector. */
-export const across = (a: Vec, unit: Vec): Vec => plus(a, unit, -dot(a, unit));
+export const tangential = (a: Vec, unit: Vec): Vec => plus(a, unit, -dot(a, unit));

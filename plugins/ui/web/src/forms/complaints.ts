@@ -14,7 +14,7 @@ export function fieldOf({ location }: Complaint, isThere: (id: string) => boolea
 }
 
 /** Mark the fields of a form, and list everything; the fields marked before are not any more. */
-export function complain(root: HTMLElement, list: HTMLElement, complaints: Complaint[]): void {
+export function showComplaints(root: HTMLElement, list: HTMLElement, complaints: Complaint[]): void {
   clear(root);
   const found = complaints.map((each) => ({ each, id: fieldOf(each, (id) => document.getElementById(id) !== null) }));
   const byField = new Map<string, string[]>();
@@ -26,27 +26,27 @@ export function complain(root: HTMLElement, list: HTMLElement, complaints: Compl
   const lines = document.createElement("ul");
   for (const { each, id } of found) {
     const line = document.createElement("li");
-    line.append(id ? button(placed(each), () => lead(id)) : said(each));
+    line.append(id ? button(withKey(each), () => focusField(id)) : withLine(each));
     lines.append(line);
   }
   list.replaceChildren(heading, lines);
 }
 
 /** Open what is folded around a field, and go there. */
-export function lead(id: string): void {
+export function focusField(id: string): void {
   const field = document.getElementById(id);
   for (let box = field?.parentElement; box; box = box.parentElement) if (box instanceof HTMLDetailsElement) box.open = true;
   field?.focus();
   field?.scrollIntoView({ block: "center" });
 }
 
-function said(complaint: Complaint): string {
+function withLine(complaint: Complaint): string {
   const { line } = complaint;
-  return line === null ? placed(complaint) : `${placed(complaint)} (${t("line", { line })})`;
+  return line === null ? withKey(complaint) : `${withKey(complaint)} (${t("line", { line })})`;
 }
 
 /** With its key in front, once. */
-function placed({ location, text }: Complaint): string {
+function withKey({ location, text }: Complaint): string {
   const where = location.length ? `${location.join(".")}: ` : "";
   return text.startsWith(where) ? text : where + text;
 }

@@ -3,7 +3,7 @@ import { button } from "../elements";
 import { t } from "./words";
 import { type Kind, type Option, step } from "./kinds";
 import type { Plain } from "./schema";
-import { asText, fits, isMap, put, same, type Said, typedNumber, typedText, typedYaml } from "./values";
+import { asText, fits, isMap, setInside, same, type FieldChange, typedNumber, typedText, typedYaml } from "./values";
 
 export interface Control {
   root: HTMLElement;
@@ -14,7 +14,7 @@ export interface Control {
 }
 
 /** inside: where within the value, if it is not the whole. */
-export type Tell = (said: Said, inside?: string[]) => void;
+export type Tell = (said: FieldChange, inside?: string[]) => void;
 
 /** What is between a block's options and the page: a row with label and help around a control. */
 export type Row = (option: Option, id: string, tell: Tell) => { root: HTMLElement; show: Control["show"] };
@@ -43,7 +43,7 @@ export function control(kind: Kind, id: string, tell: Tell, row: Row): Control {
 }
 
 /** The control of a kind; for a value that it cannot show, a field of YAML takes its place. */
-export function tolerant(kind: Kind, id: string, tell: Tell, row: Row): Control {
+export function controlOrYaml(kind: Kind, id: string, tell: Tell, row: Row): Control {
   let shown = control(kind, id, tell, row);
   let inYaml = kind.kind === "yaml";
   const made: Control = {
@@ -212,8 +212,8 @@ function list(item: Kind, id: string, tell: Tell, row: Row): Control {
   }
 
   function entry(at: number): Control {
-    const made = tolerant(item, `${id}.${at}`, (said, inside = []) => {
-      now = now.map((each, one) => (one === at ? put(each, inside, said) : each));
+    const made = controlOrYaml(item, `${id}.${at}`, (said, inside = []) => {
+      now = now.map((each, one) => (one === at ? setInside(each, inside, said) : each));
       tell({ value: now });
     }, row);
     made.root.classList.add("item");

@@ -7,7 +7,7 @@ import { at, type Edit } from "./values";
 
 const KEPT = "apply-at-once";
 
-export class Editor {
+export class DocumentEditor {
   /** Refusals, in the server's words. */
   onRefused: (why: string) => void = () => undefined;
 
@@ -31,12 +31,12 @@ export class Editor {
   }
 
   change(edit: Edit): void {
-    void this.changed(edit);
+    void this.submit(edit);
   }
 
   /** Whether it was taken. */
-  changed(edit: Edit): Promise<boolean> {
-    return this.ask("set", { ...spelt(edit, this.page.document) });
+  submit(edit: Edit): Promise<boolean> {
+    return this.ask("set", { ...expandMaterials(edit, this.page.document) });
   }
 
   step(which: "undo" | "redo"): void {
@@ -55,7 +55,7 @@ export class Editor {
 }
 
 /** A map from label to material in short (`materials: {0: ice}`) has no room for other keys: it is spelt out first. */
-export function spelt(edit: Edit, document: Document | null): Edit {
+export function expandMaterials(edit: Edit, document: Document | null): Edit {
   const labels = at(document?.said, ["materials"]);
   const keys = [...Object.keys(edit.changes ?? {}), ...Object.keys(edit.written ?? {})];
   if (!isLabels(labels) || !keys.some((key) => key.startsWith("materials."))) return edit;

@@ -76,7 +76,7 @@ export function kindOf(schema: Schema, defs: Definitions): Kind {
 }
 
 /** Bounds and unit in words and signs: "0.001 to 10 m", "over 0 N/m"; empty where there are none. */
-export function bounded({ least, most, above, below }: Bounds, unit: string, over: string, under: string, to: string): string {
+export function formatRange({ least, most, above, below }: Bounds, unit: string, over: string, under: string, to: string): string {
   const behind = unit && ` ${unit}`;
   if (least !== undefined && most !== undefined) {
     const from = above ? `${over} ${number(least)}` : number(least);

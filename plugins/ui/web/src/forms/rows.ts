@@ -1,8 +1,8 @@
 /** A row of a form: name, control, unit, help, the way back to the default, and what the check complains of. */
 import { button } from "../elements";
 import { t } from "./words";
-import { type Row, tolerant } from "./controls";
-import { bounded, type Kind, type Option } from "./kinds";
+import { type Row, controlOrYaml } from "./controls";
+import { formatRange, type Kind, type Option } from "./kinds";
 import type { Plain } from "./schema";
 import { asText } from "./values";
 
@@ -20,16 +20,16 @@ export function rows(defaultOf: DefaultOf): Row {
   const row: Row = (option, id, tell) => {
     const box = document.createElement("div");
     box.className = `field kind-${option.kind.kind}`;
-    const made = tolerant(option.kind, id, tell, row);
+    const made = controlOrYaml(option.kind, id, tell, row);
     const key = id.slice(FIELD.length);
-    const label = named(option, id, made.main);
+    const label = labelOf(option, id, made.main);
     const reset = button(t("toDefault"), () => {
       tell({ gone: true });
       made.main.focus();
     });
     reset.className = "quiet reset";
     reset.setAttribute("aria-label", t("toDefaultOf", { name: option.title }));
-    const hint = help(option, id);
+    const hint = helpOf(option, id);
     const complaint = document.createElement("p");
     complaint.id = `${id}-complaint`;
     complaint.className = "bad complaint";
@@ -59,7 +59,7 @@ function describe(box: HTMLElement, id: string): void {
   }
 }
 
-function named({ title, unit, kind }: Option, id: string, main: HTMLElement): HTMLElement {
+function labelOf({ title, unit, kind }: Option, id: string, main: HTMLElement): HTMLElement {
   const isGroup = kind.kind === "block" || kind.kind === "tuple" || kind.kind === "list";
   const label = document.createElement(isGroup ? "span" : "label");
   label.className = "name";
@@ -77,7 +77,7 @@ function named({ title, unit, kind }: Option, id: string, main: HTMLElement): HT
   return label;
 }
 
-function help(option: Option, id: string): { root: HTMLElement; show(byDefault: Plain | undefined, isSet: boolean): void } {
+function helpOf(option: Option, id: string): { root: HTMLElement; show(byDefault: Plain | undefined, isSet: boolean): void } {
   const root = document.createElement("p");
   root.id = `${id}-hint`;
   root.className = "hint";
@@ -102,7 +102,7 @@ export function rangeOf(kind: Kind, unit: string): string {
     return all.every((each) => each === all[0]) ? all[0] : all.join("; ");
   }
   if (kind.kind !== "number") return "";
-  const range = bounded(kind.bounds, unit, t("over"), t("under"), t("to"));
+  const range = formatRange(kind.bounds, unit, t("over"), t("under"), t("to"));
   const words = kind.words.length ? `${range && ", "}${t("or")} ${kind.words.join(", ")}` : "";
   return range + words;
 }

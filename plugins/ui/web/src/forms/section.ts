@@ -104,10 +104,10 @@ export class SectionForm {
     const roots = made.map(({ root }) => root);
     const fold = roots.length > PLAIN + 1 ? PLAIN : roots.length;
     this.fields.replaceChildren(...roots.slice(0, fold));
-    if (fold < roots.length) this.fields.append(this.folded(options.slice(fold), roots.slice(fold)));
+    if (fold < roots.length) this.fields.append(this.foldRest(options.slice(fold), roots.slice(fold)));
   }
 
-  private folded(options: Choice[], roots: HTMLElement[]): HTMLElement {
+  private foldRest(options: Choice[], roots: HTMLElement[]): HTMLElement {
     const box = document.createElement("details");
     box.className = "more";
     const heading = document.createElement("summary");

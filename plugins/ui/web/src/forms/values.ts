@@ -3,7 +3,7 @@ import type { Kind } from "./kinds";
 import type { Plain } from "./schema";
 
 /** What a field says of its key: a value, a value written in YAML, or nothing, so that the default counts. */
-export type Said = { value: Plain } | { written: string } | { gone: true };
+export type FieldChange = { value: Plain } | { written: string } | { gone: true };
 
 /** Changes of the document, as the server takes them. */
 export interface Edit {
@@ -12,7 +12,7 @@ export interface Edit {
   removed?: string[];
 }
 
-export function edit(key: string, said: Said): Edit {
+export function edit(key: string, said: FieldChange): Edit {
   if ("value" in said) return { changes: { [key]: said.value } };
   return "written" in said ? { written: { [key]: said.written } } : { removed: [key] };
 }
@@ -26,7 +26,7 @@ export function asText(value: Plain | undefined, none: string): string {
 
 /** What was typed in a number's field: a number, a word that may stand there, or a text such as "6 mm", which the
  * document's check takes or complains of. Nothing is the default. */
-export function typedNumber(text: string, kind: Kind & { kind: "number" }, none: string): Said {
+export function typedNumber(text: string, kind: Kind & { kind: "number" }, none: string): FieldChange {
   const plain = text.trim();
   if (!plain) return { gone: true };
   if (kind.nullable && plain === none) return { value: null };
@@ -36,12 +36,12 @@ export function typedNumber(text: string, kind: Kind & { kind: "number" }, none:
   return { value: Number.isFinite(number) ? number : point };
 }
 
-export function typedText(text: string, nullable: boolean, none: string): Said {
+export function typedText(text: string, nullable: boolean, none: string): FieldChange {
   if (!text) return { gone: true };
   return { value: nullable && text === none ? null : text };
 }
 
-export function typedYaml(text: string): Said {
+export function typedYaml(text: string): FieldChange {
   return text.trim() ? { written: text } : { gone: true };
 }
 
@@ -63,7 +63,7 @@ export function fits(value: Plain | undefined, kind: Kind): boolean {
       return value === null ? kind.nullable : typeof value === "string";
     case "tuple":
       if (value === null) return kind.nullable;
-      return Array.isArray(value) && value.length === kind.parts.length && value.every((each, at) => fits(each, kind.parts[at]));
+      return Array.isArray(value) && value.length === kind.parts.length && value.every((each, valueAt) => fits(each, kind.parts[valueAt]));
     case "block":
       return isMap(value) && Object.keys(value).every((name) => kind.options.some((each) => each.name === name)) &&
         kind.options.every((each) => fits(value[each.name], each.kind));
@@ -81,12 +81,12 @@ export function isMap(value: Plain | undefined): value is { [key: string]: Plain
 }
 
 /** A value with what was said of one part of it. */
-export function put(value: Plain, inside: readonly string[], said: Said): Plain {
+export function setInside(value: Plain, inside: readonly string[], said: FieldChange): Plain {
   if (!inside.length) return "value" in said ? said.value : "written" in said ? fromText(said.written) : {};
   const [name, ...deeper] = inside;
   const { [name]: before, ...rest } = isMap(value) ? value : {};
   if ("gone" in said && !deeper.length) return rest;
-  return { ...rest, [name]: put(before ?? {}, deeper, said) };
+  return { ...rest, [name]: setInside(before ?? {}, deeper, said) };
 }
 
 /** Within a value that is set as a whole, YAML that is JSON is what it says, and any other a text. */

@@ -4,7 +4,7 @@ import type { Page } from "../page";
 import type { Trouble } from "../view/view";
 import { t } from "../view/words";
 
-export function notice(page: Pick<Page, "view" | "canvas">): void {
+export function showGraphicsTrouble(page: Pick<Page, "view" | "canvas">): void {
   const box = document.createElement("p");
   box.id = "no-terrain";
   box.setAttribute("role", "alert");

@@ -12,14 +12,14 @@ type Region = keyof typeof REGIONS;
 const regions = Object.keys(REGIONS) as Region[];
 const element = (id: string): HTMLElement => document.getElementById(id)!;
 /** Those that are there now: the editor of parts takes the place of the columns. */
-const shown = (): Region[] => regions.filter((each) => document.getElementById(each)?.checkVisibility());
+const visibleRegions = (): Region[] => regions.filter((each) => document.getElementById(each)?.checkVisibility());
 
-export function frame(page: Pick<Page, "hub" | "themes">): void {
+export function buildRegions(page: Pick<Page, "hub" | "themes">): void {
   const { themes } = page;
-  for (const region of shown()) element(region).setAttribute("aria-label", t(region));
+  for (const region of visibleRegions()) element(region).setAttribute("aria-label", t(region));
   skipLinks();
-  on("next region", () => jump(1));
-  on("previous region", () => jump(-1));
+  on("next region", () => focusRegion(1));
+  on("previous region", () => focusRegion(-1));
   chooseTheme(themes);
   page.hub.on("theme", () => (element("theme") as HTMLSelectElement).value = themes.chosen);
   switchLanguage();
@@ -44,8 +44,8 @@ function skipLinks(): void {
 /** To the next region that is there; where its focus was last, if it was there before. */
 const last = new Map<Region, HTMLElement>();
 
-function jump(by: number): void {
-  const regions = shown();
+function focusRegion(by: number): void {
+  const regions = visibleRegions();
   const from = regions.findIndex((each) => element(each).contains(document.activeElement));
   if (from >= 0) last.set(regions[from], document.activeElement as HTMLElement);
   const to = regions[from < 0 ? (by > 0 ? 0 : regions.length - 1) : (from + by + regions.length) % regions.length];

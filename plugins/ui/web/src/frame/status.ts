@@ -2,7 +2,7 @@
 import type { Page } from "../page";
 import { on } from "../shortcuts";
 import { t } from "./words";
-import { made } from "../words/product_words";
+import { productName } from "../words/product_words";
 import { language } from "../words/words";
 
 type What = "idle" | "busy" | "felt" | "stopped" | "error";
@@ -24,7 +24,7 @@ export class Status {
     hub.on("hello", () => page.forget("gone"));
     hub.on("error", ({ text }) => this.show("error", text));
     hub.on("stage", ({ product, method, done }) => {
-      if (!done.outcome) this.show("busy", t("making", { product: made(product), method }));
+      if (!done.outcome) this.show("busy", t("making", { product: productName(product), method }));
     });
     hub.on("made", ({ want, outcome, why }) => {
       if (outcome === "failed") this.show("error", why);

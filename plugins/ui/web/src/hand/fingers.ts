@@ -40,7 +40,7 @@ export class Pressure {
   }
 }
 
-export function touch(hand: Hand, page: Pick<Page, "canvas" | "view" | "scene">): void {
+export function attachFingers(hand: Hand, page: Pick<Page, "canvas" | "view" | "scene">): void {
   const { canvas, view } = page;
   const fingers = new Fingers();
   const pressure = new Pressure();
@@ -50,7 +50,7 @@ export function touch(hand: Hand, page: Pick<Page, "canvas" | "view" | "scene">)
     if (!at) return;
     const share = pressure.share(event);
     if (share !== null) hand.pressShare(share);
-    hand.over("touch", at[0], at[1], true);
+    hand.moveOver("touch", at[0], at[1], true);
   }
 
   canvas.addEventListener("pointerdown", (event) => {

@@ -2,8 +2,8 @@
 import type { Page, PageHand } from "../page";
 import type { Values } from "../server/messages";
 import type { Vec } from "../server/protocol";
-import { clamp, HOVER_M, moved, within, type Goal } from "./motion";
-import { parts, type Part } from "./part_centres";
+import { clamp, HOVER_M, nextPosition, clampToRim, type Goal } from "./motion";
+import { findPartCentres, type Part } from "./part_centres";
 import { type Mover, PRESS_M } from "./state";
 import { t } from "./words";
 
@@ -42,28 +42,28 @@ export class Hand implements PageHand {
   private movers: ((seconds: number) => void)[] = [];
   private steppedMs = performance.now();
   private sentMs = -Infinity;
-  private known: { scene: unknown; parts: Part[]; next: number } = { scene: null, parts: [], next: -1 };
+  private centres: { scene: unknown; parts: Part[]; next: number } = { scene: null, parts: [], next: -1 };
 
   constructor(private page: Pick<Page, "hub" | "net" | "scene" | "document" | "say">) {
     setInterval(() => this.step(), STEP_MS);
-    this.letGoWhenNobodyLooks();
-    this.hear();
+    this.releaseWhenUnattended();
+    this.subscribe();
   }
 
   /** How much larger than in the picture the hand finds everything: it is as much slower and gentler. */
-  get enlarged(): number {
+  get magnification(): number {
     const mapping = (this.page.document?.values?.mapping ?? {}) as Values;
-    return enlargement(mapping, this.page.scene?.meta.extent_m ?? [1, 1]);
+    return magnificationOf(mapping, this.page.scene?.meta.extent_m ?? [1, 1]);
   }
 
   /** Somebody who moves it on and on: called with the seconds that passed. */
-  moves(mover: (seconds: number) => void): void {
+  addMover(mover: (seconds: number) => void): void {
     this.movers.push(mover);
   }
 
   /** Over this place of the surface, pressing or not. */
-  over(by: Mover, x: number, y: number, down: boolean): void {
-    if (!this.may(by, down)) return;
+  moveOver(by: Mover, x: number, y: number, down: boolean): void {
+    if (!this.mayMove(by, down)) return;
     if (this.isFree) this.goal = { at: [x, y, this.height(x, y, down)] };
     else this.goal = { over: [x, y] };
     this.down = down;
@@ -71,33 +71,33 @@ export class Hand implements PageHand {
   }
 
   /** At this place in space. */
-  at3(by: Mover, at: Vec): void {
-    if (!this.may(by, false)) return;
+  moveTo(by: Mover, at: Vec): void {
+    if (!this.mayMove(by, false)) return;
     this.goal = { at };
     this.step();
   }
 
   /** By so much from where it is wanted, in metres of the hand. */
-  go(by: Mover, x: number, y: number, z: number): void {
-    if (!this.page.scene || !this.may(by, this.down)) return;
-    const goal = this.wanted();
-    const scale = this.enlarged;
+  moveBy(by: Mover, x: number, y: number, z: number): void {
+    if (!this.page.scene || !this.mayMove(by, this.down)) return;
+    const goal = this.goalOrDefault();
+    const scale = this.magnification;
     if ("at" in goal) this.goal = { at: [goal.at[0] + x / scale, goal.at[1] + y / scale, goal.at[2] + z / scale] };
     else {
-      this.goal = { over: within(this.page.scene, goal.over[0] + x / scale, goal.over[1] + y / scale) };
-      this.rise(z);
+      this.goal = { over: clampToRim(this.page.scene, goal.over[0] + x / scale, goal.over[1] + y / scale) };
+      this.changeHeight(z);
     }
   }
 
   /** The wheel: deeper, whether it touches or not. */
   deeper(by: Mover, metres: number): void {
-    if (this.goal && this.may(by, this.down)) this.go(by, 0, 0, -metres);
+    if (this.goal && this.mayMove(by, this.down)) this.moveBy(by, 0, 0, -metres);
   }
 
   /** Down into the surface, or off it. */
-  put(by: Mover, down: boolean): void {
-    if (!this.page.scene || !this.may(by, down)) return;
-    const goal = this.wanted();
+  press(by: Mover, down: boolean): void {
+    if (!this.page.scene || !this.mayMove(by, down)) return;
+    const goal = this.goalOrDefault();
     this.goal = "at" in goal ? { at: [goal.at[0], goal.at[1], this.height(goal.at[0], goal.at[1], down)] } : goal;
     this.down = down;
     this.gapM = HOVER_M;
@@ -110,7 +110,7 @@ export class Hand implements PageHand {
   }
 
   toMiddle(by: Mover): void {
-    this.lift(by, 0, 0);
+    this.liftTo(by, 0, 0);
     this.page.say(t("inTheMiddle"));
   }
 
@@ -118,16 +118,16 @@ export class Hand implements PageHand {
   toNextPart(by: Mover, step: 1 | -1): void {
     const { scene } = this.page;
     if (!scene) return;
-    if (this.known.scene !== scene)
-      this.known = { scene, parts: parts((x, y) => scene.label(x, y), scene.meta.extent_m), next: step > 0 ? -1 : 0 };
-    const { parts: all, next } = this.known;
+    if (this.centres.scene !== scene)
+      this.centres = { scene, parts: findPartCentres((x, y) => scene.label(x, y), scene.meta.extent_m), next: step > 0 ? -1 : 0 };
+    const { parts: all, next } = this.centres;
     if (!all.length) return this.page.say(t("noParts"));
-    this.known.next = (next + step + all.length) % all.length;
-    const { at } = all[this.known.next]!;
-    this.lift(by, ...at);
+    this.centres.next = (next + step + all.length) % all.length;
+    const { at } = all[this.centres.next]!;
+    this.liftTo(by, ...at);
     const called = scene.part(...at);
     const name = (called && `${called}, `) + (scene.material(...at)?.name ?? t("noMaterial"));
-    this.page.say(t("part", { number: this.known.next + 1, of: all.length, name }));
+    this.page.say(t("part", { number: this.centres.next + 1, of: all.length, name }));
   }
 
   /** In space, wherever it is moved to; or over the surface. */
@@ -140,7 +140,7 @@ export class Hand implements PageHand {
       this.goal = on ? { at: this.at ?? [x, y, this.height(x, y, false)] } : { over: [x, y] };
     }
     this.page.say(t(on ? "inSpace" : "overSurface"));
-    this.tell();
+    this.notify();
   }
 
   /** A coordinate of where it is wanted in space. */
@@ -155,7 +155,7 @@ export class Hand implements PageHand {
     this.down = false;
     this.gapM = HOVER_M;
     this.page.net.release();
-    this.tell();
+    this.notify();
   }
 
   /** This tab's hand is to be felt. */
@@ -168,44 +168,44 @@ export class Hand implements PageHand {
     void this.page.net.stop().catch(() => undefined);
   }
 
-  private may(by: Mover, down: boolean): boolean {
+  private mayMove(by: Mover, down: boolean): boolean {
     if (by === "keys") this.keyedMs = performance.now();
     if (!this.page.scene) return false;
     if (!this.holding) {
-      if (down && !this.down) this.askForIt();
+      if (down && !this.down) this.request();
       return false;
     }
     if (this.by !== by) {
       this.by = by;
-      this.tell();
+      this.notify();
     }
     return true;
   }
 
   /** Who presses where nobody holds the hand, wants it; one that is held is taken by its button alone. */
-  private askForIt(): void {
+  private request(): void {
     if (this.nobodyHolds) this.take();
     else this.page.say(t("another"));
   }
 
-  private lift(by: Mover, x: number, y: number): void {
+  private liftTo(by: Mover, x: number, y: number): void {
     if (!this.page.scene) return;
-    this.put(by, false);
-    this.over(by, x, y, false);
+    this.press(by, false);
+    this.moveOver(by, x, y, false);
   }
 
-  private wanted(): { over: [number, number] } | { at: Vec } {
+  private goalOrDefault(): { over: [number, number] } | { at: Vec } {
     return this.goal ?? (this.isFree ? { at: [0, 0, this.height(0, 0, false)] } : { over: [0, 0] });
   }
 
-  private rise(z: number): void {
+  private changeHeight(z: number): void {
     if (this.down) this.pressM = clamp(this.pressM - z, PRESS_M.least, PRESS_M.most);
     else this.gapM = clamp(this.gapM + z, GAP_M.least, GAP_M.most);
   }
 
   private height(x: number, y: number, down: boolean): number {
     const { scene } = this.page;
-    return scene ? scene.height(...within(scene, x, y)) + (down ? -this.pressM : HOVER_M) / this.enlarged : 0;
+    return scene ? scene.height(...clampToRim(scene, x, y)) + (down ? -this.pressM : HOVER_M) / this.magnification : 0;
   }
 
   /** Go on towards where it is wanted, and say where it is; also where it stands still, or the server lets go. */
@@ -218,10 +218,10 @@ export class Hand implements PageHand {
     const { scene, net } = this.page;
     if (!this.goal || !scene || !this.holding || this.rests) return;
     const before = this.at;
-    const scale = this.enlarged;
+    const scale = this.magnification;
     const gap = this.down ? Math.min(-this.pressM, this.gapM) : this.gapM;
     const goal: Goal = "at" in this.goal ? this.goal : { over: this.goal.over, gapM: gap / scale };
-    this.at = moved(before, goal, seconds, scene, scale);
+    this.at = nextPosition(before, goal, seconds, scene, scale);
     if (!this.at.every(Number.isFinite)) return this.release(); // a surface that is nowhere there
     const still = before?.every((part, i) => part === this.at![i]);
     if (still && nowMs - this.sentMs < ALIVE_MS) return;
@@ -229,7 +229,7 @@ export class Hand implements PageHand {
     net.point(this.at, this.down ? 1 : 0);
   }
 
-  private letGoWhenNobodyLooks(): void {
+  private releaseWhenUnattended(): void {
     const release = (): void => this.release();
     document.addEventListener("visibilitychange", () => document.hidden && release());
     for (const name of ["pagehide", "blur"]) window.addEventListener(name, release);
@@ -238,39 +238,39 @@ export class Hand implements PageHand {
     for (const name of ["gamepadconnected", "gamepaddisconnected"])
       window.addEventListener(name, () => {
         this.pads = navigator.getGamepads().some((each) => each?.connected);
-        this.tell();
+        this.notify();
       });
   }
 
-  private hear(): void {
+  private subscribe(): void {
     const { hub } = this.page;
     hub.on("holding", ({ holding, free }) => {
       if (!holding) this.release();
       this.holding = holding;
       this.nobodyHolds = free;
       this.there = true;
-      this.tell();
+      this.notify();
     });
     hub.on("gone", () => {
       this.release();
       this.holding = this.nobodyHolds = this.there = false;
-      this.tell();
+      this.notify();
     });
     hub.on("loop", ({ running, own_hand }) => {
       if (own_hand !== undefined) this.rests = !own_hand;
       if (!running) this.release();
-      this.tell();
+      this.notify();
     });
     hub.on("state", ({ force }) => (this.feltN = Math.hypot(...force)));
   }
 
-  private tell(): void {
+  private notify(): void {
     this.page.hub.tell("hand", this);
   }
 }
 
 /** As the server's mapping has it, for a hand whose own space is as large as the picture. */
-export function enlargement({ scale, region_m }: Values, [w, l]: [number, number]): number {
+export function magnificationOf({ scale, region_m }: Values, [w, l]: [number, number]): number {
   if (typeof scale === "number") return scale;
   if (!Array.isArray(region_m)) return 1;
   const [, , width, length] = region_m as number[];

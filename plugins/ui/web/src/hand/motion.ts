@@ -2,7 +2,7 @@
 import type { Vec } from "../server/protocol";
 
 /** Speeds of a hand, metres per second: along the surface, up, down; and in space, where no surface leads it. */
-export const SPEED = { along: 1.0, climb: 0.25, sink: 0.5, free: 0.25 };
+export const SPEED = { moveOverSurface: 1.0, climb: 0.25, sink: 0.5, free: 0.25 };
 /** Over the surface it comes from there, however it was moved to its first place. */
 export const HOVER_M = 0.002;
 /** So far a hand in space may go beside and above the surface, and below its lowest place. */
@@ -23,21 +23,21 @@ export interface Ground {
 export type Goal = { over: [number, number]; gapM: number } | { at: Vec };
 
 /** Within the rim: the outermost half cell has no neighbour to lean on, and a place beside it is a fall. */
-export function within(ground: Ground, x: number, y: number): [number, number] {
+export function clampToRim(ground: Ground, x: number, y: number): [number, number] {
   const [w, l] = ground.meta.extent_m;
   const rim = Math.min(pitch(ground) / 2, w / 4, l / 4);
   return [clamp(x, rim - w / 2, w / 2 - rim), clamp(y, rim - l / 2, l / 2 - rim)];
 }
 
 /** The place after `seconds`; the first one is over the surface. slower: by how much a region is felt enlarged. */
-export function moved(from: Vec | null, goal: Goal, seconds: number, ground: Ground, slower = 1): Vec {
-  if ("at" in goal) return through(from ?? above(ground, goal.at[0], goal.at[1], slower), goal.at, seconds, ground, slower);
-  const [x, y] = within(ground, ...goal.over);
-  return along(from ?? above(ground, x, y, slower), x, y, goal.gapM, seconds, ground, slower);
+export function nextPosition(from: Vec | null, goal: Goal, seconds: number, ground: Ground, slower = 1): Vec {
+  if ("at" in goal) return moveInSpace(from ?? startAbove(ground, goal.at[0], goal.at[1], slower), goal.at, seconds, ground, slower);
+  const [x, y] = clampToRim(ground, ...goal.over);
+  return along(from ?? startAbove(ground, x, y, slower), x, y, goal.gapM, seconds, ground, slower);
 }
 
 /** In a straight line. */
-function through(from: Vec, to: Vec, seconds: number, ground: Ground, slower: number): Vec {
+function moveInSpace(from: Vec, to: Vec, seconds: number, ground: Ground, slower: number): Vec {
   const [w, l] = ground.meta.extent_m;
   const [low, high] = ground.meta.height_m;
   const goal: Vec = [
@@ -58,7 +58,7 @@ function along(
   let [x, y, z] = from;
   const [dx, dy] = [goalX - x, goalY - y];
   const far = Math.hypot(dx, dy);
-  const reach = Math.min(far, (SPEED.along * seconds) / slower);
+  const reach = Math.min(far, (SPEED.moveOverSurface * seconds) / slower);
   const steps = clamp(Math.ceil(reach / (pitch(ground) / 2)), 1, MOST_STEPS);
   const [up, down] = [(SPEED.climb * seconds) / slower / steps, (SPEED.sink * seconds) / slower / steps];
   const [stepX, stepY] = far > 0 ? [(dx / far) * (reach / steps), (dy / far) * (reach / steps)] : [0, 0];
@@ -72,8 +72,8 @@ function along(
   return [x, y, z];
 }
 
-function above(ground: Ground, x: number, y: number, slower: number): Vec {
-  const [u, v] = within(ground, x, y);
+function startAbove(ground: Ground, x: number, y: number, slower: number): Vec {
+  const [u, v] = clampToRim(ground, x, y);
   return [u, v, ground.height(u, v) + HOVER_M / slower];
 }
 

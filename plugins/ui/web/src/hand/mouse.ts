@@ -14,7 +14,7 @@ const CAMERA = 6;
 
 type Screen = Pick<Page, "canvas" | "view" | "scene">;
 
-export function mouse(hand: Hand, page: Screen): void {
+export function attachMouse(hand: Hand, page: Screen): void {
   const { canvas, view } = page;
   let before: PointerEvent | null = null;
 
@@ -32,7 +32,7 @@ export function mouse(hand: Hand, page: Screen): void {
     const at = pick(event.clientX, event.clientY);
     if (!at) return;
     if (event.pointerType === "pen" && down) hand.pressShare(event.pressure);
-    hand.over("mouse", at[0], at[1], down);
+    hand.moveOver("mouse", at[0], at[1], down);
   }
 
   /** In its own level, and with Shift up and down. */
@@ -40,12 +40,12 @@ export function mouse(hand: Hand, page: Screen): void {
     const { at } = hand;
     if (!at) {
       const first = pick(event.clientX, event.clientY);
-      if (first) hand.at3("mouse", first);
+      if (first) hand.moveTo("mouse", first);
     } else if (event.shiftKey) {
-      if (before) hand.at3("mouse", [at[0], at[1], hand.goalM(2) - (event.clientY - before.clientY) * metresPerPixel(at)]);
+      if (before) hand.moveTo("mouse", [at[0], at[1], hand.goalM(2) - (event.clientY - before.clientY) * metresPerPixel(at)]);
     } else {
-      const found = level(...view.ray(event.clientX, event.clientY), hand.goalM(2));
-      if (found) hand.at3("mouse", found);
+      const found = meetLevel(...view.ray(event.clientX, event.clientY), hand.goalM(2));
+      if (found) hand.moveTo("mouse", found);
     }
   }
 
@@ -80,7 +80,7 @@ function wheel(hand: Hand, { view }: Screen, event: WheelEvent): void {
 }
 
 /** Where a ray meets the level at this height, if it does before it. */
-export function level(o: Vec, d: Vec, z: number): Vec | null {
+export function meetLevel(o: Vec, d: Vec, z: number): Vec | null {
   const t = (z - o[2]) / d[2];
   return t > 0 && Number.isFinite(t) ? [o[0] + t * d[0], o[1] + t * d[1], z] : null;
 }

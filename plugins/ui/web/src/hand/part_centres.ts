@@ -9,7 +9,7 @@ export interface Part {
 const COLUMNS = 96;
 
 /** By their labels. label: of a place; null where there is none. */
-export function parts(label: (x: number, y: number) => number | null, extent_m: [number, number]): Part[] {
+export function findPartCentres(label: (x: number, y: number) => number | null, extent_m: [number, number]): Part[] {
   const [w, l] = extent_m;
   const columns = COLUMNS;
   const rows = Math.max(1, Math.round((COLUMNS * l) / w));

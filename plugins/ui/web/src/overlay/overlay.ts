@@ -7,7 +7,7 @@ import type { View } from "../view/view";
 import { ForceArrow } from "./pieces/force_arrow";
 import { FrictionCone } from "./pieces/friction_cone";
 import { DevicePoint } from "./pieces/device_point";
-import { Labels } from "./pieces/contact_label";
+import { ContactLabel } from "./pieces/contact_label";
 import { type Reading, StateReader } from "../contact/reading";
 import { Picking } from "./picking";
 import type { Piece, Sight } from "./piece";
@@ -15,7 +15,7 @@ import { Proxy } from "./pieces/proxy";
 import { Rest } from "../contact/rest";
 import { ContactRing } from "./pieces/contact_ring";
 import { ScaleBar } from "./pieces/scale_bar";
-import { round, settings } from "./settings";
+import { roundDown125, settings } from "./settings";
 import { Trace } from "./pieces/trace";
 
 /** Of the picture's width: how long a newton is at first. */
@@ -59,7 +59,7 @@ export class Overlay {
     this.trace = new Trace(view);
     this.pieces = [
       this.trace, new ContactRing(view), new FrictionCone(view), new Proxy(view), new DevicePoint(view),
-      new ForceArrow(view, "force"), new ForceArrow(view, "other"), new Labels(this.layer, view), new ScaleBar(this.layer, view),
+      new ForceArrow(view, "force"), new ForceArrow(view, "other"), new ContactLabel(this.layer, view), new ScaleBar(this.layer, view),
     ];
     new ResizeObserver(() => this.size()).observe(canvas);
     this.size();
@@ -68,7 +68,7 @@ export class Overlay {
   /** Another surface: where its size is another, so is the length of a newton; the trace of the one before is gone. */
   show(scene: Scene): void {
     const wide = scene.meta.extent_m[0];
-    if (wide !== this.scene?.meta.extent_m[0]) this.settings.metresPerNewton = round(NEWTON_SHARE * wide) || NEWTON_M;
+    if (wide !== this.scene?.meta.extent_m[0]) this.settings.metresPerNewton = roundDown125(NEWTON_SHARE * wide) || NEWTON_M;
     this.scene = scene;
     this.trace.clear();
     this.changed = true;
@@ -77,7 +77,7 @@ export class Overlay {
   /** Whether a frame is wanted: something changed, or there is a hand that is not at rest, or its trace has yet to fade. */
   wants(state: State | null): boolean {
     const seen = (this.live?.seen ?? false) || (state !== null && state.hand[2] < NOBODY_M);
-    const stirs = seen && !(state !== null && this.rest.lasts(state));
+    const stirs = seen && !(state !== null && this.rest.isAtRest(state));
     return this.changed || stirs || this.trace.fades(this.settings.seconds);
   }
 
@@ -86,7 +86,7 @@ export class Overlay {
     this.changed = false;
     this.view.camera.updateMatrixWorld();
     if (!state) this.live = null;
-    else if (state !== this.live?.state) this.live = this.reading.of(state, this.scene);
+    else if (state !== this.live?.state) this.live = this.reading.read(state, this.scene);
     const live = this.live?.seen ? this.live : null;
     for (const each of this.pieces) each.put(live, this.settings, this.sight);
     for (const each of this.pinned) this.pin(each);

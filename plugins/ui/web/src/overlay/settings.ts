@@ -23,7 +23,7 @@ export function settings(): Settings {
 }
 
 /** 1, 2 or 5 times a power of ten: the greatest that is not above a value. */
-export function round(value: number): number {
+export function roundDown125(value: number): number {
   if (!(value > 0)) return 0;
   const power = 10 ** Math.floor(Math.log10(value) + 1e-9);
   const digit = value / power + 1e-9;

@@ -2,7 +2,7 @@
 import type { Hub } from "../hub";
 import { token } from "./token";
 import type { Events } from "./messages";
-import { ack, now, pointer, release, state, TAGS, VERSION, type State, type Vec } from "./protocol";
+import { encodeAck, now, encodePointer, encodeRelease, parseState, TAGS, VERSION, type State, type Vec } from "./protocol";
 
 const FIRST_PAUSE_MS = 250;
 const LONGEST_PAUSE_MS = 4000;
@@ -21,8 +21,8 @@ export async function bulk(path: string, asked: Record<string, number> = {}, sig
 }
 
 interface Waiting {
-  done: (value: unknown) => void;
-  refused: (error: Error) => void;
+  resolve: (value: unknown) => void;
+  reject: (error: Error) => void;
 }
 
 export class Connection {
@@ -48,15 +48,15 @@ export class Connection {
     const number = ++this.number;
     this.socket!.send(JSON.stringify({ number, ask: name, ...told }));
     return new Promise<T>((done, refused) => {
-      this.waiting.set(number, { done: done as (value: unknown) => void, refused });
+      this.waiting.set(number, { resolve: done as (value: unknown) => void, reject: refused });
     });
   }
 
   /** No force, whatever else goes on, and though the websocket may hang. */
   async stop(): Promise<void> {
-    if (!this.open) return this.stopBeside();
+    if (!this.open) return this.stopByHttp();
     clearTimeout(this.stopping);
-    this.stopping = window.setTimeout(() => void this.stopBeside().catch(() => undefined), STOP_PATIENCE_MS);
+    this.stopping = window.setTimeout(() => void this.stopByHttp().catch(() => undefined), STOP_PATIENCE_MS);
     return this.ask<void>("stop").finally(() => clearTimeout(this.stopping));
   }
 
@@ -66,7 +66,7 @@ export class Connection {
     return this.ask<void>("feel");
   }
 
-  private async stopBeside(): Promise<void> {
+  private async stopByHttp(): Promise<void> {
     await fetch(`/stop?token=${encodeURIComponent(token)}`, { method: "POST", keepalive: true });
   }
 
@@ -75,15 +75,15 @@ export class Connection {
     this.tag = (this.tag + 1) & TAGS;
     this.sentMs.set(this.tag, now());
     this.sentMs.delete((this.tag - KEPT_TAGS) & TAGS);
-    this.socket!.send(pointer(hand, buttons, this.tag));
+    this.socket!.send(encodePointer(hand, buttons, this.tag));
   }
 
   release(): void {
-    if (this.open) this.socket!.send(release());
+    if (this.open) this.socket!.send(encodeRelease());
   }
 
   drawn(seq: number): void {
-    if (this.open) this.socket!.send(ack(seq));
+    if (this.open) this.socket!.send(encodeAck(seq));
   }
 
   private get open(): boolean {
@@ -95,27 +95,27 @@ export class Connection {
     socket.binaryType = "arraybuffer";
     socket.onopen = () => (this.pauseMs = FIRST_PAUSE_MS);
     socket.onmessage = ({ data }: MessageEvent<string | ArrayBuffer>) =>
-      typeof data === "string" ? this.hear(JSON.parse(data)) : this.take(data);
-    socket.onclose = ({ code }) => this.lost(code === WRONG_KEY ? "key" : undefined);
+      typeof data === "string" ? this.onText(JSON.parse(data)) : this.onState(data);
+    socket.onclose = ({ code }) => this.onClosed(code === WRONG_KEY ? "key" : undefined);
     this.socket = socket;
   }
 
-  private hear(said: Events[keyof Events] & { event: string; number?: number; value?: unknown; text?: string }): void {
+  private onText(said: Events[keyof Events] & { event: string; number?: number; value?: unknown; text?: string }): void {
     const waits = said.number === undefined ? undefined : this.waiting.get(said.number);
     if (said.number !== undefined) {
       this.waiting.delete(said.number);
-      if (said.event === "answer") waits?.done(said.value);
-      else waits?.refused(new Error(said.text));
+      if (said.event === "answer") waits?.resolve(said.value);
+      else waits?.reject(new Error(said.text));
       return;
     }
-    if (said.event === "hello" && (said as Events["hello"]).version !== VERSION) return this.leave("version");
+    if (said.event === "hello" && (said as Events["hello"]).version !== VERSION) return this.abandon("version");
     this.hub.tell(said.event as keyof Events, said as never);
     const last = said.event === "hello" ? (said as Events["hello"]).history.at(-1) : said;
     this.heard_s = Math.max(this.heard_s, (last as { at_s?: number } | undefined)?.at_s ?? 0);
   }
 
-  private take(data: ArrayBuffer): void {
-    const fresh = state(data);
+  private onState(data: ArrayBuffer): void {
+    const fresh = parseState(data);
     if (!fresh) return;
     this.latest = fresh;
     this.hub.tell("state", fresh);
@@ -123,13 +123,13 @@ export class Connection {
   }
 
   /** This page cannot go on with that program. */
-  private leave(why: "version"): void {
-    this.socket!.onclose = () => this.lost(why);
+  private abandon(why: "version"): void {
+    this.socket!.onclose = () => this.onClosed(why);
     this.socket!.close();
   }
 
-  private lost(forGood?: "key" | "version"): void {
-    for (const { refused } of this.waiting.values()) refused(new Error("the program is gone"));
+  private onClosed(forGood?: "key" | "version"): void {
+    for (const { reject: refused } of this.waiting.values()) refused(new Error("the program is gone"));
     this.waiting.clear();
     this.latest = null;
     this.hub.tell("gone", { event: "gone", at_s: now() / 1000 });

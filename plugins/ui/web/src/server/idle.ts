@@ -5,7 +5,7 @@ import type { Hub } from "../hub";
 const PATIENCE_MS = 3000;
 
 /** Kept once a surface is felt, or nothing is being made that would be. */
-export function idle(hub: Hub, patienceMs = PATIENCE_MS): Promise<void> {
+export function whenIdle(hub: Hub, patienceMs = PATIENCE_MS): Promise<void> {
   return new Promise((begin) => {
     hub.on("touch", () => begin());
     hub.on("made", ({ want, outcome }) => {

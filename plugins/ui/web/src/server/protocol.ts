@@ -53,7 +53,7 @@ export interface State {
 /** Milliseconds of the Unix clock, finer than Date.now. */
 export const now = (): number => performance.timeOrigin + performance.now();
 
-export function state(buffer: ArrayBuffer): State | null {
+export function parseState(buffer: ArrayBuffer): State | null {
   const data = new DataView(buffer);
   if (buffer.byteLength !== STATE_BYTES || data.getUint8(0) !== STATE) return null;
   const at = (offset: number): Vec => [
@@ -78,7 +78,7 @@ export function state(buffer: ArrayBuffer): State | null {
   };
 }
 
-export function pointer(hand: Vec, buttons: number, tag: number): ArrayBuffer {
+export function encodePointer(hand: Vec, buttons: number, tag: number): ArrayBuffer {
   const buffer = new ArrayBuffer(POINTER_BYTES);
   const data = new DataView(buffer);
   data.setUint8(0, POINTER);
@@ -89,7 +89,7 @@ export function pointer(hand: Vec, buttons: number, tag: number): ArrayBuffer {
   return buffer;
 }
 
-export function ack(seq: number): ArrayBuffer {
+export function encodeAck(seq: number): ArrayBuffer {
   const buffer = new ArrayBuffer(ACK_BYTES);
   const data = new DataView(buffer);
   data.setUint8(0, ACK);
@@ -97,7 +97,7 @@ export function ack(seq: number): ArrayBuffer {
   return buffer;
 }
 
-export function release(): ArrayBuffer {
+export function encodeRelease(): ArrayBuffer {
   return new Uint8Array([RELEASE]).buffer;
 }
 

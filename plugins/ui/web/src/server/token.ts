@@ -1,10 +1,10 @@
 /** The key that the page's address holds: taken out of it, so that neither the address bar nor a bookmark shows it. */
 const KEPT = "key";
 
-export const token = taken();
+export const token = takeToken();
 
 /** A reload finds it again; in a browser that keeps nothing it stays in the address. */
-function taken(): string {
+function takeToken(): string {
   const address = new URL(location.href);
   const said = address.searchParams.get("token");
   try {

@@ -34,7 +34,7 @@ const BROWSERS: Clock = { now: () => performance.now(), after: (ms, act) => void
 
 export class Announcer {
   /** Nothing is said, as while a page hears what happened before it was opened. */
-  hushed = false;
+  muted = false;
   private queue: Waiting[] = [];
   private last = new Map<string, { text: string; atMs: number }>();
   private saidMs = -Infinity;
@@ -46,12 +46,12 @@ export class Announcer {
   ) {}
 
   say(text: string, { topic = text, urgent = false, asked = false }: Announcement = {}): void {
-    if (!text || this.hushed) return;
+    if (!text || this.muted) return;
     const atMs = this.clock.now();
     this.queue = this.queue.filter((each) => each.topic !== topic);
     if (asked) {
       this.queue = this.queue.filter((each) => each.urgent);
-      this.tell({ text, topic, urgent, atMs });
+      this.utterNow({ text, topic, urgent, atMs });
       return;
     }
     const before = this.last.get(topic);
@@ -73,7 +73,7 @@ export class Announcer {
     this.queue = this.queue.filter(({ urgent, atMs }) => urgent || now - atMs <= STALE_MS);
     if (!this.queue.length) return;
     const pause = this.saidMs + PAUSE_MS - now;
-    if (pause <= 0) this.tell(this.queue.shift()!);
+    if (pause <= 0) this.utterNow(this.queue.shift()!);
     if (!this.queue.length) return;
     this.due = true;
     this.clock.after(Math.max(pause, PAUSE_MS * +(pause <= 0)), () => {
@@ -82,7 +82,7 @@ export class Announcer {
     });
   }
 
-  private tell({ text, topic, urgent }: Waiting): void {
+  private utterNow({ text, topic, urgent }: Waiting): void {
     this.saidMs = this.clock.now();
     if (this.last.size > 200) this.last.clear();
     this.last.set(topic, { text, atMs: this.saidMs });
@@ -91,7 +91,7 @@ export class Announcer {
 }
 
 /** Puts what is said into the page's two live regions: #said waits its turn, #alerted does not. */
-export function regions(polite: HTMLElement, assertive: HTMLElement): (said: Said) => void {
+export function liveRegions(polite: HTMLElement, assertive: HTMLElement): (said: Said) => void {
   return ({ text, urgent }) => {
     const region = urgent ? assertive : polite;
     // A region that is given the text it has says nothing: a space that cannot break tells it apart.

@@ -18,7 +18,7 @@ const LIMITS = {
 } as const;
 
 /** "door, wood", "wood, part 3"; the material alone where there is one part. names: of materials, in the page's language. */
-export function named(name: string | undefined, called: string, part: number | null, parts: number, names: Record<string, string>): string {
+export function describePlace(name: string | undefined, called: string, part: number | null, parts: number, names: Record<string, string>): string {
   const said = name === undefined ? t("nameless") : (names[name] ?? name);
   if (called) return name === undefined ? called : `${called}, ${said}`;
   return part === null || parts < 2 ? said : t("part", { name: said, part });
@@ -34,7 +34,7 @@ export class Narrator {
     page.hub.on("shown", (scene) => this.show(scene));
     page.hub.on("described", (said) => {
       this.described = said;
-      this.tell();
+      this.updateDescription();
     });
     on("where", () => page.say(this.where(), { topic: "where", asked: true }));
     on("describe", () => page.say(this.description(), { topic: "describe", asked: true }));
@@ -44,17 +44,17 @@ export class Narrator {
     const { page } = this;
     if (!page.scene || !isRunning(state)) return;
     page.say(this.contact(state, page.scene), { topic: "contact" });
-    for (const [name, flag] of Object.entries(LIMITS)) this.limit(name as keyof typeof LIMITS, flag, state);
+    for (const [name, flag] of Object.entries(LIMITS)) this.announceLimit(name as keyof typeof LIMITS, flag, state);
   }
 
   private contact(state: State, scene: Scene): string {
     if (!isHeld(state)) return t("noHand");
     if (!isTouching(state)) return t("inTheAir");
     const [x, y] = state.hand;
-    return t("touching", { what: this.under(scene, x, y) });
+    return t("touching", { what: this.placeName(scene, x, y) });
   }
 
-  private limit(name: keyof typeof LIMITS, flag: number, state: State): void {
+  private announceLimit(name: keyof typeof LIMITS, flag: number, state: State): void {
     const count = isTouching(state) && state.flags & flag ? (this.lasting.get(flag) ?? 0) + 1 : 0;
     this.lasting.set(flag, count);
     if (count === LASTING && !this.limits.has(flag)) {
@@ -75,18 +75,18 @@ export class Narrator {
       t(x < 0 ? "left" : "right", at),
       t(y < 0 ? "near" : "far", at),
       t("high", { height: millimetres(scene.height(x, y)) }),
-      this.under(scene, x, y),
+      this.placeName(scene, x, y),
       isTouching(state) ? t("force", { force: decimal(Math.hypot(...state.force), 1) }) : t("inTheAir"),
     ].join(", ");
   }
 
   /** The material and the part at a place. */
-  private under(scene: Scene, x: number, y: number): string {
-    const names = this.known(scene)?.names[language] ?? {};
-    return named(scene.material(x, y)?.name, scene.part(x, y), scene.label(x, y), scene.meta.labels, names);
+  private placeName(scene: Scene, x: number, y: number): string {
+    const names = this.descriptionOf(scene)?.names[language] ?? {};
+    return describePlace(scene.material(x, y)?.name, scene.part(x, y), scene.label(x, y), scene.meta.labels, names);
   }
 
-  private known(scene: Scene): Events["described"] | null {
+  private descriptionOf(scene: Scene): Events["described"] | null {
     return this.described?.digest === scene.meta.digest ? this.described : null;
   }
 
@@ -94,7 +94,7 @@ export class Narrator {
   private description(): string {
     const scene = this.page.scene;
     if (!scene) return t("nothing");
-    const says = this.known(scene)?.says[language];
+    const says = this.descriptionOf(scene)?.says[language];
     if (says) return says;
     const { name, extent_m, height_m } = scene.meta;
     const heights = t("heights", { low: millimetres(height_m[0]), high: millimetres(height_m[1]) });
@@ -103,12 +103,12 @@ export class Narrator {
 
   private show(scene: Scene): void {
     this.page.canvas.setAttribute("aria-label", t("surface", { name: scene.meta.name }));
-    this.tell();
+    this.updateDescription();
     this.page.say(t("shown", { name: scene.meta.name }), { topic: "scene" });
   }
 
   /** What a screen reader finds at the surface. */
-  private tell(): void {
+  private updateDescription(): void {
     document.getElementById("described")!.textContent = `${this.description()} ${t("keys")}`;
   }
 }

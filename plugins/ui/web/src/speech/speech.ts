@@ -12,7 +12,7 @@ export class Speech {
   private reads: object | null = null;
 
   constructor(private hub: Hub) {
-    window.speechSynthesis?.addEventListener("voiceschanged", () => this.tell()); // they come late
+    window.speechSynthesis?.addEventListener("voiceschanged", () => this.notify()); // they come late
   }
 
   /** The voice that speaks: of this machine before one that needs a network. None: null. */
@@ -33,7 +33,7 @@ export class Speech {
     this.on = on;
     remember("aloud", on);
     if (!on) window.speechSynthesis?.cancel();
-    this.tell();
+    this.notify();
   }
 
   get rate(): number {
@@ -84,7 +84,7 @@ export class Speech {
     return Object.assign(new SpeechSynthesisUtterance(text), { voice, lang: voice.lang, rate: this.rate });
   }
 
-  private tell(): void {
+  private notify(): void {
     this.hub.tell("aloud", { on: this.aloud, voice: this.voice?.name ?? "" });
   }
 }

@@ -35,7 +35,7 @@ export function windowOf(meta: Meta, seen: Box, pixel_m: number): Window | null 
 }
 
 /** Whether a window shows what another one would. */
-export function holds(one: Window, other: Window): boolean {
+export function includes(one: Window, other: Window): boolean {
   const along = one.row <= other.row && one.row + one.rows >= other.row + other.rows;
   return one.level === other.level && along && one.column <= other.column && one.column + one.columns >= other.column + other.columns;
 }

@@ -14,6 +14,6 @@ export async function finePatch(
 }
 
 /** Whether any material has one. */
-export function textured(scene: Scene): boolean {
+export function hasTexture(scene: Scene): boolean {
   return scene.meta.labels > 0 && scene.meta.materials.some(({ roughness_m }) => roughness_m > 0);
 }

@@ -14,14 +14,14 @@ const BEYOND = 1e-7;
 const BLOCK = 8;
 
 /** Greatest heights over blocks of BLOCK^level x BLOCK^level squares, a square being what lies between four centres. */
-interface Tops {
+interface PyramidLevel {
   size: number;
   columns: number;
   top: Float32Array;
 }
 
 export class Grid {
-  private tops: Tops[] | null = null;
+  private tops: PyramidLevel[] | null = null;
 
   constructor(
     readonly heights: Float32Array,
@@ -38,16 +38,16 @@ export class Grid {
     const i = Math.min(Math.floor(c), Math.max(columns - 2, 0));
     const j = Math.min(Math.floor(r), Math.max(rows - 2, 0));
     const right = columns > 1 ? 1 : 0;
-    const below = rows > 1 ? columns : 0;
+    const meetVertical = rows > 1 ? columns : 0;
     const [fx, fy, k] = [c - i, r - j, j * columns + i];
     const upper = heights[k] * (1 - fx) + heights[k + right] * fx;
-    const lower = heights[k + below] * (1 - fx) + heights[k + below + right] * fx;
+    const lower = heights[k + meetVertical] * (1 - fx) + heights[k + meetVertical + right] * fx;
     return upper * (1 - fy) + lower * fy;
   }
 
   /** What `meet` needs, before it is needed. */
   prepare(): void {
-    this.tops ??= this.pile();
+    this.tops ??= this.buildPyramid();
   }
 
   /** The cell that a place is in, or is nearest to. */
@@ -59,7 +59,7 @@ export class Grid {
   }
 
   /** Whether the grid knows a place by itself, all four centres about it. */
-  knows(x: number, y: number): boolean {
+  covers(x: number, y: number): boolean {
     const { left, far, dx, dy } = this.place;
     const [u, v] = [(x - left) / dx, (far - y) / dy];
     return u >= 0.5 && v >= 0.5 && u <= this.columns - 0.5 && v <= this.rows - 0.5;
@@ -70,7 +70,7 @@ export class Grid {
    * Blocks that it passes above are leapt over; in every other square the bilinear surface is met exactly.
    */
   meet(o: Vec, d: Vec, from: number, to: number): number {
-    const tops = (this.tops ??= this.pile());
+    const tops = (this.tops ??= this.buildPyramid());
     const { left, far, dx, dy } = this.place;
     const [su, sv] = [d[0] / dx, -d[1] / dy];
     const speed = Math.max(Math.abs(su), Math.abs(sv));
@@ -84,7 +84,7 @@ export class Grid {
       const [u, v] = [u0 + su * (t + nudge), v0 + sv * (t + nudge)];
       const a = Math.min(Math.max(Math.floor(u / size), 0), columns - 1);
       const b = Math.min(Math.max(Math.floor(v / size), 0), top.length / columns - 1);
-      const out = Math.min(leaves(u0, su, a * size, size), leaves(v0, sv, b * size, size), to);
+      const out = Math.min(exitOf(u0, su, a * size, size), exitOf(v0, sv, b * size, size), to);
       const end = Math.max(out, t + nudge);
       if (o[2] + d[2] * (d[2] < 0 ? end : t) > top[b * columns + a]) {
         t = end;
@@ -125,7 +125,7 @@ export class Grid {
     return root <= to - from ? from + root : NaN;
   }
 
-  private pile(): Tops[] {
+  private buildPyramid(): PyramidLevel[] {
     const { heights, rows, columns } = this;
     let [n, m] = [columns + 1, rows + 1];
     let top = new Float32Array(n * m);
@@ -141,16 +141,16 @@ export class Grid {
         top[k] = most;
       }
     }
-    const found: Tops[] = [{ size: 1, columns: n, top }];
+    const found: PyramidLevel[] = [{ size: 1, columns: n, top }];
     for (let size = BLOCK; n > 1 || m > 1; size *= BLOCK) {
-      [top, n, m] = topsOf(top, n, m);
+      [top, n, m] = coarsen(top, n, m);
       found.push({ size, columns: n, top });
     }
     return found;
   }
 }
 
-function topsOf(top: Float32Array<ArrayBuffer>, n: number, m: number): [Float32Array<ArrayBuffer>, number, number] {
+function coarsen(top: Float32Array<ArrayBuffer>, n: number, m: number): [Float32Array<ArrayBuffer>, number, number] {
   const [columns, rows] = [Math.ceil(n / BLOCK), Math.ceil(m / BLOCK)];
   const found = new Float32Array(columns * rows).fill(-Infinity);
   for (let b = 0, k = 0; b < m; b++)
@@ -162,7 +162,7 @@ function topsOf(top: Float32Array<ArrayBuffer>, n: number, m: number): [Float32A
 }
 
 /** When a coordinate leaves an interval. */
-function leaves(start: number, speed: number, low: number, size: number): number {
+function exitOf(start: number, speed: number, low: number, size: number): number {
   return speed === 0 ? Infinity : ((speed > 0 ? low + size : low) - start) / speed;
 }
 

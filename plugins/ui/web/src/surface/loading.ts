@@ -56,11 +56,11 @@ function root(meta: Meta): string {
 /** Heights and labels of a window. */
 export async function fetchPart(meta: Meta, window: Window, signal?: AbortSignal): Promise<Part> {
   const { level, row, rows, column, columns } = window;
-  const asked = (bytes: number) => ({ row, rows, column, columns, bytes, of: meta.levels[level].columns });
+  const windowQuery = (bytes: number) => ({ row, rows, column, columns, bytes, of: meta.levels[level].columns });
   const [heights, labels] = await Promise.all([
-    bulk(`${root(meta)}/height-${level}.f32`, asked(4), signal).then((answer) => answer.arrayBuffer()),
+    bulk(`${root(meta)}/height-${level}.f32`, windowQuery(4), signal).then((answer) => answer.arrayBuffer()),
     meta.labels
-      ? bulk(`${root(meta)}/labels-${level}.u`, asked(meta.label_bytes), signal).then((answer) => answer.arrayBuffer())
+      ? bulk(`${root(meta)}/labels-${level}.u`, windowQuery(meta.label_bytes), signal).then((answer) => answer.arrayBuffer())
       : null,
   ]);
   const [w, l] = meta.extent_m;

@@ -31,8 +31,8 @@ export class Scene {
   /** The place on the surface over or under a point, within its rim. */
   on(x: number, y: number): Vec {
     const [w, l] = this.meta.extent_m;
-    const within = (part: number, side: number): number => Math.max(-side / 2, Math.min(side / 2, part));
-    const [u, v] = [within(x, w), within(y, l)];
+    const clipRay = (part: number, side: number): number => Math.max(-side / 2, Math.min(side / 2, part));
+    const [u, v] = [clipRay(x, w), clipRay(y, l)];
     return [u, v, this.height(u, v)];
   }
 
@@ -94,7 +94,7 @@ export class Scene {
   }
 
   private finest(x: number, y: number): Part {
-    return this.detail?.grid.knows(x, y) ? this.detail : this.whole;
+    return this.detail?.grid.covers(x, y) ? this.detail : this.whole;
   }
 
   private inside(x: number, y: number): boolean {

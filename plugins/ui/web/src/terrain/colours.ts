@@ -38,7 +38,7 @@ export function styleOf(kind: number): { colour: Colour; pattern: number } {
 }
 
 /** Whether the pattern marks a place; its period is 1. The twin of `marked` in the shader. */
-export function marked(pattern: number, x: number, y: number): boolean {
+export function isMarked(pattern: number, x: number, y: number): boolean {
   const part = (value: number): number => value - Math.floor(value);
   const [u, v] = [part(x), part(y)];
   return [
@@ -53,7 +53,7 @@ export function marked(pattern: number, x: number, y: number): boolean {
   ][pattern];
 }
 
-export function darker(colour: Colour): Colour {
+export function darken(colour: Colour): Colour {
   return colour.map((part) => MARK * part) as Colour;
 }
 

@@ -1,7 +1,7 @@
 /** What colours and patterns mean. */
 import type { Scene } from "../surface/scene";
 import { t } from "../view/words";
-import { darker, heat, marked, styleOf, type Colour } from "./colours";
+import { darken, heat, isMarked, styleOf, type Colour } from "./colours";
 
 const SWATCH_PX = 22;
 const PERIOD_PX = 11;
@@ -41,7 +41,7 @@ function scale(low: number, high: number, unit: string, unknowns: boolean): HTML
     ends.append(end);
   }
   box.append(bar, ends);
-  if (unknowns) box.append(swatched((x, y) => ((x + y) / PERIOD_PX) % 1 > 0.5 ? [80, 80, 80] : [115, 115, 115], t("unknown"), "p"));
+  if (unknowns) box.append(swatchItem((x, y) => ((x + y) / PERIOD_PX) % 1 > 0.5 ? [80, 80, 80] : [115, 115, 115], t("unknown"), "p"));
   return box;
 }
 
@@ -56,8 +56,8 @@ function kinds(names: string[]): HTMLElement {
   list.className = "legend";
   names.slice(0, MOST).forEach((name, kind) => {
     const { colour, pattern } = styleOf(kind);
-    const at = (x: number, y: number): Colour => (marked(pattern, x / PERIOD_PX, -y / PERIOD_PX) ? darker(colour) : colour);
-    list.append(swatched(at, name, "li"));
+    const at = (x: number, y: number): Colour => (isMarked(pattern, x / PERIOD_PX, -y / PERIOD_PX) ? darken(colour) : colour);
+    list.append(swatchItem(at, name, "li"));
   });
   if (names.length > MOST) {
     const more = document.createElement("li");
@@ -67,7 +67,7 @@ function kinds(names: string[]): HTMLElement {
   return list;
 }
 
-function swatched(colour: (x: number, y: number) => Colour, text: string, tag: "li" | "p"): HTMLElement {
+function swatchItem(colour: (x: number, y: number) => Colour, text: string, tag: "li" | "p"): HTMLElement {
   const item = document.createElement(tag);
   const swatch = picture(SWATCH_PX, SWATCH_PX, colour);
   swatch.ariaHidden = "true";

@@ -41,7 +41,7 @@ export interface FinePatch {
 export type Drawable = Pick<Scene, "whole" | "kinds" | "photo"> & { meta: Pick<Meta, "extent_m" | "labels" | "height_m"> };
 
 /** A surface of no use but to have the programs compiled with which any other is drawn. */
-export function flat(): Drawable {
+export function flatSurface(): Drawable {
   const grid = new Grid(new Float32Array(4), 2, 2, { left: -0.5, far: 0.5, dx: 0.5, dy: 0.5 });
   const meta: Drawable["meta"] = { extent_m: [1, 1], labels: 0, height_m: [0, 0] };
   return { meta, whole: { grid, labels: null }, kinds: new Uint16Array(1), photo: null };

@@ -4,8 +4,8 @@
 export const MOST_MOVING = 60_000;
 
 export function triangles(rows: number, columns: number, stride: number): Uint32Array {
-  const across = picked(columns, stride);
-  const along = picked(rows, stride);
+  const across = pickIndices(columns, stride);
+  const along = pickIndices(rows, stride);
   const wide = columns + 2;
   const index = new Uint32Array((across.length - 1) * (along.length - 1) * 6);
   let at = 0;
@@ -25,7 +25,7 @@ export function triangles(rows: number, columns: number, stride: number): Uint32
 }
 
 /** The ring's two ends, the first and the last cell, and every stride-th between. */
-export function picked(count: number, stride: number): number[] {
+export function pickIndices(count: number, stride: number): number[] {
   const found = [0];
   for (let k = 1; k < count; k += stride) found.push(k);
   return [...found, count, count + 1];

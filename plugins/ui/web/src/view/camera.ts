@@ -25,7 +25,7 @@ export class Eye {
   readonly camera = new PerspectiveCamera(FIELD_DEG, 1, 0.001, 1);
   pose: Pose = { target: [0, 0, 0], distance: 0.2, ...HOME };
   /** Called whenever it looks another way. */
-  changed: () => void = () => {};
+  onChange: () => void = () => {};
   /** Height of what is under a place; NaN where nothing is. */
   ground: (x: number, y: number) => number = () => NaN;
   private size: [number, number] = [0.08, 0.06];
@@ -47,22 +47,22 @@ export class Eye {
   }
 
   home(): void {
-    this.fly(this.whole(HOME.polar));
+    this.flyTo(this.whole(HOME.polar));
   }
 
   /** From above, the far side up. */
   top(): void {
-    this.fly(this.whole(STEEPEST));
+    this.flyTo(this.whole(STEEPEST));
   }
 
   focus(target: Vec, width_m: number): void {
     const distance = (1.15 * width_m) / (2 * Math.tan(this.halfField()) * Math.min(this.camera.aspect, 1.4));
-    this.fly({ ...this.pose, target, distance: this.bounded(distance) });
+    this.flyTo({ ...this.pose, target, distance: this.clampDistance(distance) });
   }
 
   orbit(azimuth: number, polar: number): void {
     const { pose } = this;
-    this.go({
+    this.jumpTo({
       ...pose,
       azimuth: pose.azimuth + azimuth,
       polar: Math.min(Math.max(pose.polar + polar, STEEPEST), FLATTEST),
@@ -77,17 +77,17 @@ export class Eye {
     const [w, l] = this.size;
     const [x, y] = [target[0] + seen * (right * cosine - up * sine), target[1] + seen * (right * sine + up * cosine)];
     const within = (value: number, side: number): number => Math.min(Math.max(value, -0.6 * side), 0.6 * side);
-    this.go({ ...this.pose, target: [within(x, w), within(y, l), target[2]] });
+    this.jumpTo({ ...this.pose, target: [within(x, w), within(y, l), target[2]] });
   }
 
   /** The distance times this; the place `about` stays where it is on the screen. */
   zoom(times: number, about: Vec | null = null): void {
     const { distance, target } = this.pose;
-    const next = this.bounded(distance * times);
+    const next = this.clampDistance(distance * times);
     const share = next / distance;
     const kept = about ?? target;
     const moved = target.map((part, k) => kept[k] + (part - kept[k]) * share) as Vec;
-    this.go({ ...this.pose, distance: next, target: moved });
+    this.jumpTo({ ...this.pose, distance: next, target: moved });
   }
 
   /** Whether it flies on: to be called once a frame. */
@@ -110,33 +110,33 @@ export class Eye {
 
   resize(width: number, height: number): void {
     const atHome = this.pose.azimuth === HOME.azimuth && this.pose.polar === HOME.polar && !this.flight;
-    const whole = atHome && Math.abs(this.pose.distance / this.whole(HOME.polar).distance - 1) < 1e-6;
+    const wholePose = atHome && Math.abs(this.pose.distance / this.whole(HOME.polar).distance - 1) < 1e-6;
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
-    if (whole) this.pose = this.whole(HOME.polar);
+    if (wholePose) this.pose = this.whole(HOME.polar);
     this.place();
   }
 
-  private go(pose: Pose): void {
+  private jumpTo(pose: Pose): void {
     this.flight = null;
-    this.pose = { ...pose, target: this.grounded(pose) };
+    this.pose = { ...pose, target: this.keepNearGround(pose) };
     this.place();
   }
 
   /** The nearer one looks, the nearer to the ground is what one looks at, so that nobody dives under it. */
-  private grounded({ target, distance }: Pose): Vec {
+  private keepNearGround({ target, distance }: Pose): Vec {
     const [x, y, z] = target;
     const ground = this.ground(x, y);
     const within = Math.min(Math.max(z, ground - NEAR_GROUND * distance), ground + NEAR_GROUND * distance);
     return [x, y, Number.isNaN(within) ? z : within];
   }
 
-  private fly(to: Pose): void {
-    if (matchMedia("(prefers-reduced-motion: reduce)").matches) return this.go(to);
+  private flyTo(to: Pose): void {
+    if (matchMedia("(prefers-reduced-motion: reduce)").matches) return this.jumpTo(to);
     const turns = Math.round((this.pose.azimuth - to.azimuth) / (2 * Math.PI));
     const from = { ...this.pose, azimuth: this.pose.azimuth - turns * 2 * Math.PI };
     this.flight = { from, to, begunMs: performance.now() };
-    this.changed();
+    this.onChange();
   }
 
   /** So far away that all corners are seen. */
@@ -147,12 +147,12 @@ export class Eye {
     let [near, far] = [0.05 * (w + l), 20 * (w + l)];
     for (let k = 0; k < 40; k++) {
       const middle = Math.sqrt(near * far);
-      this.put(pose(middle));
+      this.setCamera(pose(middle));
       const corners = [-w / 2, w / 2].flatMap((x) => [-l / 2, l / 2].flatMap((y) => [low, high].map((z) => [x, y, z] as Vec)));
       const seen = corners.every((each) => this.sees(each));
       [near, far] = seen ? [near, middle] : [middle, far];
     }
-    this.put(this.pose);
+    this.setCamera(this.pose);
     return pose(far);
   }
 
@@ -161,7 +161,7 @@ export class Eye {
     return Math.abs(x) < MARGIN && Math.abs(y) < MARGIN && z < 1;
   }
 
-  private bounded(distance: number): number {
+  private clampDistance(distance: number): number {
     const size = Math.max(...this.size);
     return Math.min(Math.max(distance, 0.02 * size), 20 * size);
   }
@@ -171,11 +171,11 @@ export class Eye {
   }
 
   private place(): void {
-    this.put(this.pose);
-    this.changed();
+    this.setCamera(this.pose);
+    this.onChange();
   }
 
-  private put({ target, distance, azimuth, polar }: Pose): void {
+  private setCamera({ target, distance, azimuth, polar }: Pose): void {
     const { camera } = this;
     const flat = distance * Math.sin(polar);
     camera.position.set(
@@ -208,7 +208,7 @@ const WAYS: Record<string, [number, number]> = {
 };
 
 /** Whether the key is one of the camera's: none that is the hand's (shortcuts.ts). */
-export function key(eye: Eye, event: KeyboardEvent): boolean {
+export function handleKey(eye: Eye, event: KeyboardEvent): boolean {
   const way = WAYS[event.key];
   const { ctrlKey, shiftKey, altKey } = event;
   if (event.metaKey) return false;
@@ -228,7 +228,7 @@ export function key(eye: Eye, event: KeyboardEvent): boolean {
  * Mouse, fingers, wheel and keys that are the camera's: they are taken before anything else on the canvas hears of them.
  * One finger and the plain left button are the hand's. When a second finger comes, the first one's hand is let go.
  */
-export function steer(canvas: HTMLCanvasElement, eye: Eye, ground: (x: number, y: number) => Vec | null): void {
+export function attachCameraInput(canvas: HTMLCanvasElement, eye: Eye, ground: (x: number, y: number) => Vec | null): void {
   const fingers = new Map<number, [number, number]>();
   let grip: { pointer: number; orbits: boolean; at: [number, number] } | null = null;
   let pinching = false;
@@ -313,5 +313,5 @@ export function steer(canvas: HTMLCanvasElement, eye: Eye, ground: (x: number, y
     },
     first,
   );
-  canvas.addEventListener("keydown", (event) => key(eye, event) && take(event), first);
+  canvas.addEventListener("keydown", (event) => handleKey(eye, event) && take(event), first);
 }

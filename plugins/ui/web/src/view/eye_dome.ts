@@ -9,7 +9,7 @@ precision highp float; in vec3 position;
 void main() { gl_Position = vec4(position.xy, 0., 1.); }`;
 
 /** Something drawn over the whole of what is drawn on. */
-export function screen(fragmentShader: string, uniforms: Record<string, { value: unknown }>): Mesh<PlaneGeometry, RawShaderMaterial> {
+export function fullScreenQuad(fragmentShader: string, uniforms: Record<string, { value: unknown }>): Mesh<PlaneGeometry, RawShaderMaterial> {
   const material = new RawShaderMaterial({
     glslVersion: GLSL3,
     depthFunc: AlwaysDepth,
@@ -24,7 +24,7 @@ export function screen(fragmentShader: string, uniforms: Record<string, { value:
 
 export class EyeDome {
   private uniforms = { colours: { value: null as Texture | null }, depths: { value: null as Texture | null }, near: { value: 0 }, far: { value: 1 }, strength: { value: 0 }, reach: { value: REACH_PX } };
-  readonly quad = screen(
+  readonly quad = fullScreenQuad(
     `precision highp float; precision highp sampler2D;
 uniform sampler2D colours, depths; uniform float near, far, strength, reach; out vec4 colour;
 float away(vec2 p) {
@@ -44,7 +44,7 @@ void main() {
   );
 
   /** Shade what was drawn from this camera; strength 0 leaves it as it is. */
-  of(colours: Texture, depths: Texture, camera: PerspectiveCamera, strength: number, ratio: number): Mesh {
+  shade(colours: Texture, depths: Texture, camera: PerspectiveCamera, strength: number, ratio: number): Mesh {
     const { uniforms } = this;
     uniforms.colours.value = colours;
     uniforms.depths.value = depths;

@@ -29,11 +29,11 @@ export class Frames {
     const at = now();
     if (first) figures.firstMs = at;
     this.last = state;
-    if (fresh && state) this.drawn(state, at);
+    if (fresh && state) this.acknowledge(state, at);
   }
 
   /** A state that shows nothing new, as nobody holds the device, counts as drawn. */
-  private drawn(state: State, at: number): void {
+  private acknowledge(state: State, at: number): void {
     const { net, hub } = this.page;
     if (state === net.latest) net.drawn(state.seq);
     hub.tell("drawn", state);

@@ -2,7 +2,7 @@
 import type { Meta } from "../server/messages";
 import type { Page } from "../page";
 import { fetchLayer, type Layer } from "../surface/loading";
-import { remember, remembered, type Settings } from "./settings";
+import { rememberSettings, recallSettings, type Settings } from "./settings";
 
 /** The looks that a surface has, in the order in which they are offered. */
 export function looksOf(meta: Meta): string[] {
@@ -24,13 +24,13 @@ export function lookFor(meta: Meta, chosen: string): string {
   return there.includes(chosen) ? chosen : there[0];
 }
 
-export class Showing {
-  readonly settings: Settings = remembered();
+export class Look {
+  readonly settings: Settings = recallSettings();
   /** What is shown now; the chosen one is `settings.look`. */
   look = this.settings.look;
   layer: Layer | null = null;
   /** Called when another look is shown, or another surface. */
-  changed: () => void = () => {};
+  onChange: () => void = () => {};
 
   constructor(private page: Pick<Page, "hub" | "view" | "scene">) {
     this.page.view.eyeDome = this.settings.eyeDome;
@@ -48,7 +48,7 @@ export class Showing {
 
   set(changes: Partial<Settings>): void {
     Object.assign(this.settings, changes);
-    remember(this.settings);
+    rememberSettings(this.settings);
     if (changes.look) this.look = changes.look;
     void this.draw();
   }
@@ -69,6 +69,6 @@ export class Showing {
     view.terrain?.show({ ...this.settings, look }, this.layer);
     view.dirty = true;
     hub.tell("look", { look });
-    this.changed();
+    this.onChange();
   }
 }

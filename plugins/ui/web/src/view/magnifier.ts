@@ -13,7 +13,7 @@ const FOLLOWS = 0.22;
 const PAUSE_MS = 150;
 const AWAY_M = 0.5;
 
-export class Lens {
+export class Magnifier {
   private box = document.createElement("figure");
   private canvas = document.createElement("canvas");
   private cross = document.createElement("span");
@@ -109,12 +109,12 @@ export class Lens {
     if (!patch || !scene) return;
     const { azimuthDeg, elevationDeg } = this.settings;
     const around = (x: number, y: number): number => scene.on(x, y)[2];
-    this.canvas.getContext("2d")!.putImageData(shaded(patch, around, azimuthDeg, elevationDeg), 0, 0);
+    this.canvas.getContext("2d")!.putImageData(shadePatch(patch, around, azimuthDeg, elevationDeg), 0, 0);
   }
 }
 
 /** A patch and what lies under it, in raking light, its slopes as they are. */
-export function shaded(
+export function shadePatch(
   { x_m, y_m, side_m, pixels, heights }: FinePatch, around: (x: number, y: number) => number, azimuthDeg: number, elevationDeg: number,
 ): ImageData {
   const pitch = side_m / pixels;

@@ -37,7 +37,7 @@ export const BOUNDS: Partial<Record<keyof Settings, [number, number]>> = {
 };
 
 /** What was kept, as far as it makes sense. */
-export function checked(kept: unknown): Settings {
+export function checkSettings(kept: unknown): Settings {
   const found: Record<string, unknown> = { ...DEFAULTS };
   if (typeof kept !== "object" || kept === null) return { ...DEFAULTS };
   for (const [name, value] of Object.entries(kept)) {
@@ -50,14 +50,14 @@ export function checked(kept: unknown): Settings {
   return found as unknown as Settings;
 }
 
-export function remembered(): Settings {
+export function recallSettings(): Settings {
   try {
-    return checked(JSON.parse(recall(KEPT, "null")));
+    return checkSettings(JSON.parse(recall(KEPT, "null")));
   } catch {
     return { ...DEFAULTS }; // not ours
   }
 }
 
-export function remember(settings: Settings): void {
+export function rememberSettings(settings: Settings): void {
   keep(KEPT, JSON.stringify(settings));
 }

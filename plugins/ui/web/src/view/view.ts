@@ -12,11 +12,11 @@ import {
   WebGLRenderer,
   WebGLRenderTarget,
 } from "three";
-import { Eye, steer } from "./camera";
-import { EyeDome, screen } from "./eye_dome";
+import { Eye, attachCameraInput } from "./camera";
+import { EyeDome, fullScreenQuad } from "./eye_dome";
 import type { Vec } from "../server/protocol";
 import type { Scene } from "../surface/scene";
-import { flat, type Looks, Terrain } from "../terrain/terrain";
+import { flatSurface, type Looks, Terrain } from "../terrain/terrain";
 
 const REST_MS = 140;
 /** Surfaces that follow each other sooner, as while a height is dragged, are drawn coarsely until the last one stays. */
@@ -54,7 +54,7 @@ export class View {
   private drawn: WebGLRenderTarget | null = null;
   private shaded: WebGLRenderTarget | null = null;
   private copied = { colours: { value: null as unknown }, depths: { value: null as unknown } };
-  private copy: Mesh = screen(
+  private copy: Mesh = fullScreenQuad(
     `precision highp float; precision highp sampler2D; uniform sampler2D colours, depths; out vec4 colour;
 void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 0); gl_FragDepth = texelFetch(depths, p, 0).r; }`,
     this.copied,
@@ -76,10 +76,10 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
     this.renderer = rendererOf(canvas);
     if (!this.renderer) this.trouble = "missing";
     this.eye.ground = (x, y) => this.scene?.height(x, y) ?? NaN;
-    this.eye.changed = () => this.moved();
-    steer(canvas, this.eye, (x, y) => this.scene?.pick(...this.ray(x, y)) ?? this.onGround(x, y));
-    canvas.addEventListener("webglcontextlost", (event) => this.lost(event));
-    canvas.addEventListener("webglcontextrestored", () => this.restored());
+    this.eye.onChange = () => this.onMove();
+    attachCameraInput(canvas, this.eye, (x, y) => this.scene?.pick(...this.ray(x, y)) ?? this.onGround(x, y));
+    canvas.addEventListener("webglcontextlost", (event) => this.onContextLost(event));
+    canvas.addEventListener("webglcontextrestored", () => this.onContextRestored());
     new ResizeObserver(() => this.size()).observe(canvas);
     this.size();
   }
@@ -88,7 +88,7 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
   prepare(looks: Looks): void {
     const { renderer, drawn } = this;
     if (!renderer || !drawn || this.trouble || this.terrain || this.prepared) return;
-    this.prepared = new Terrain(flat(), looks);
+    this.prepared = new Terrain(flatSurface(), looks);
     renderer.setRenderTarget(drawn);
     renderer.render(this.prepared.group, this.camera);
     this.dirty = true;
@@ -107,7 +107,7 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
     }
     if (String(before?.extent_m) !== String(scene.meta.extent_m)) this.frame(...scene.meta.extent_m);
     const now = performance.now();
-    this.moved(!before ? FIRST_MS : now - this.putMs < FOLLOWING_MS ? FOLLOWING_MS : REST_MS);
+    this.onMove(!before ? FIRST_MS : now - this.putMs < FOLLOWING_MS ? FOLLOWING_MS : REST_MS);
     this.putMs = now;
   }
 
@@ -175,11 +175,11 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
     renderer.setRenderTarget(drawn);
     renderer.clear();
     renderer.render(this.fixed, this.camera);
-    if (this.terrain) this.unprepare();
+    if (this.terrain) this.dropPrepared();
     let colours = drawn.texture;
     if (this.eyeDome > 0 && this.shaded) {
       this.stage.clear();
-      this.stage.add(this.dome.of(drawn.texture, drawn.depthTexture!, this.camera, this.eyeDome, this.ratio));
+      this.stage.add(this.dome.shade(drawn.texture, drawn.depthTexture!, this.camera, this.eyeDome, this.ratio));
       renderer.setRenderTarget(this.shaded);
       renderer.render(this.stage, this.none);
       colours = this.shaded.texture;
@@ -194,7 +194,7 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
     this.drawFixed(renderer, this.drawn!);
   }
 
-  private unprepare(): void {
+  private dropPrepared(): void {
     this.prepared?.dispose();
     this.prepared = null;
   }
@@ -211,14 +211,14 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
     return t > 0 ? [o[0] + t * d[0], o[1] + t * d[1], o[2] + t * d[2]] : null;
   }
 
-  private moved(restMs = REST_MS): void {
+  private onMove(restMs = REST_MS): void {
     this.dirty = true;
     if (this.terrain && this.takesMs > SLOW_MS) this.terrain.moving = true;
     clearTimeout(this.resting);
-    this.resting = window.setTimeout(() => this.rest(), restMs);
+    this.resting = window.setTimeout(() => this.onRest(), restMs);
   }
 
-  private rest(): void {
+  private onRest(): void {
     if (this.terrain) this.terrain.moving = false;
     this.dirty = true;
     this.rested();
@@ -229,13 +229,13 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
     gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, this.pixel);
   }
 
-  private lost(event: Event): void {
+  private onContextLost(event: Event): void {
     event.preventDefault(); // it may come back
     this.trouble = "lost";
     this.troubled("lost");
   }
 
-  private restored(): void {
+  private onContextRestored(): void {
     this.trouble = "";
     this.size();
     this.troubled("");

@@ -13,7 +13,7 @@ const t = words({
 });
 
 /** In which ninth of the picture a place is; shares of its width from the left, of its length from the top. */
-export function ninth(x: number, y: number): string {
+export function ninthOfPicture(x: number, y: number): string {
   const third = (share: number): number => Math.max(0, Math.min(2, Math.floor(3 * share)));
   return t(`place${third(x)}${third(y)}` as Parameters<typeof t>[0]);
 }

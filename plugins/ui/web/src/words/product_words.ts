@@ -17,7 +17,7 @@ const t = words({
 const EXPORT = "export: ";
 
 /** A product's name for people; one that is not known keeps the name that it has in the pipeline file. */
-export function made(product: string): string {
+export function productName(product: string): string {
   if (product.startsWith(EXPORT)) return t("export", { name: product.slice(EXPORT.length) });
   return t.has(product) ? t(product) : product;
 }

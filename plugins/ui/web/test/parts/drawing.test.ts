@@ -127,13 +127,13 @@ describe("drawing", () => {
     assert.equal(it.part(1)!.height_m, 0.003);
     it.history.markSaved();
     it.set(new Map([[1, { name: "b" }]]));
-    assert.ok(!it.history.saved);
+    assert.ok(!it.history.isSaved);
     it.undo();
-    assert.ok(it.history.saved);
+    assert.ok(it.history.isSaved);
     it.undo();
     assert.equal(it.part(1)!.height_m, 0);
     it.set(new Map([[1, { name: "c" }]]));
-    assert.ok(!it.history.saved, "as many steps, but others");
+    assert.ok(!it.history.isSaved, "as many steps, but others");
   });
 
   test("there is an end to the numbers", () => {

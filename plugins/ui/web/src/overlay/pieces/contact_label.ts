@@ -2,7 +2,7 @@
 import type { View } from "../../view/view";
 import { t } from "../words";
 import { tip } from "./force_arrow";
-import { LIMITS, limited } from "../../contact/limits";
+import { LIMITS, isLimited } from "../../contact/limits";
 import type { Reading } from "../../contact/reading";
 import type { Piece, Sight } from "../piece";
 import type { Settings } from "../settings";
@@ -15,7 +15,7 @@ const OFF_PX = 14;
 /** Shapes that go with the words. */
 export const GLYPHS = { apart: "", rests: "●", sticks: "■", slips: "»", glides: "○" } as const;
 
-export class Labels implements Piece {
+export class ContactLabel implements Piece {
   late = false;
   private box = document.createElement("div");
   private force = line(this.box, "force");
@@ -38,7 +38,7 @@ export class Labels implements Piece {
 
   put(live: Reading | null, settings: Settings, sight: Sight): void {
     const { show } = settings;
-    const hidden = !live || (!live.touching && live.otherN === 0 && !limited(live.state.flags)) || !(show.labels || show.limits);
+    const hidden = !live || (!live.touching && live.otherN === 0 && !isLimited(live.state.flags)) || !(show.labels || show.limits);
     if (this.box.hidden !== hidden) this.box.hidden = hidden;
     this.late = false;
     if (!live || hidden) return;

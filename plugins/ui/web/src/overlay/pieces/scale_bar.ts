@@ -3,7 +3,7 @@ import type { View } from "../../view/view";
 import { t } from "../words";
 import { metresPerPixel, type Piece, type Sight } from "../piece";
 import type { Reading } from "../../contact/reading";
-import { round, type Settings } from "../settings";
+import { roundDown125, type Settings } from "../settings";
 
 const MOST_PX = 130;
 const EVERY_MS = 100;
@@ -31,7 +31,7 @@ export class ScaleBar implements Piece {
     if (this.box.hidden || this.late) return;
     this.readMs = now;
     const pixel = metresPerPixel(sight, live?.contact ?? this.view.eye.pose.target);
-    const newtons = round((MOST_PX * pixel) / metresPerNewton);
+    const newtons = roundDown125((MOST_PX * pixel) / metresPerNewton);
     const metres = newtons * metresPerNewton;
     this.bar.style.width = `${(metres / pixel).toFixed(1)}px`;
     const text = t("scale", { newtons, mm: Number((1000 * metres).toPrecision(3)) });

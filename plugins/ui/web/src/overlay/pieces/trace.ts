@@ -5,7 +5,7 @@ import type { View } from "../../view/view";
 import type { Reading } from "../../contact/reading";
 import type { Piece, Sight } from "../piece";
 import { SECONDS, type Settings } from "../settings";
-import { STRIDE, Trail } from "./trace_samples";
+import { STRIDE, TraceSamples } from "./trace_samples";
 import { length, minus } from "../../contact/vectors";
 
 const HZ = 60;
@@ -44,7 +44,7 @@ varying float force, age;
 void main() { gl_FragColor = vec4(mix(vec3(.75, .9, 1.), vec3(1., .62, .1), force), (1. - age) * (.45 + .55 * force)); }`;
 
 export class Trace implements Piece {
-  private trail = new Trail(SECONDS.most * HZ + HZ);
+  private trail = new TraceSamples(SECONDS.most * HZ + HZ);
   private samples = new DataTexture(this.trail.data, STRIDE / 4, this.trail.slots + 1, RGBAFormat, FloatType);
   private geometry = new BufferGeometry();
   private uniforms = {

@@ -6,7 +6,7 @@ const NEWTONS = 3;
 const SECONDS = 4;
 const JOINED = 5;
 
-export class Trail {
+export class TraceSamples {
   /** Slots, and after them the first one again: a line from each slot to the next is then a plain pair. */
   readonly data: Float32Array;
   /** Samples that were ever added. */

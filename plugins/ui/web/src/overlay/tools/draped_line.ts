@@ -11,7 +11,7 @@ const PIECES = 96;
 const DASHES = 30;
 const WIDTH_PX = { rim: 4, line: 2 };
 
-export class Draped {
+export class DrapedLine {
   private rim: Line2;
   private line: Line2;
   private places: Float32Array;
@@ -23,15 +23,15 @@ export class Draped {
     this.pieces = Math.round(PIECES / sides);
     this.places = new Float32Array(3 * (sides * this.pieces + 1));
     const look = { depthTest: false, depthWrite: false, transparent: true };
-    const drawn = (material: LineMaterial, order: number): Line2 => {
+    const addLine = (material: LineMaterial, order: number): Line2 => {
       const line = new Line2(new LineGeometry(), material);
       line.frustumCulled = line.visible = false;
       line.renderOrder = order;
       view.overlay(line);
       return line;
     };
-    this.rim = drawn(new LineMaterial({ ...look, color: COLOURS.rim, opacity: 0.75, linewidth: WIDTH_PX.rim }), 6);
-    this.line = drawn(new LineMaterial({ ...look, color, linewidth: WIDTH_PX.line, dashed }), 7);
+    this.rim = addLine(new LineMaterial({ ...look, color: COLOURS.rim, opacity: 0.75, linewidth: WIDTH_PX.rim }), 6);
+    this.line = addLine(new LineMaterial({ ...look, color, linewidth: WIDTH_PX.line, dashed }), 7);
   }
 
   set visible(on: boolean) {

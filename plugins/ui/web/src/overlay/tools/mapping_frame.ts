@@ -4,9 +4,9 @@ import type { Vec } from "../../server/protocol";
 import { on } from "../../shortcuts";
 import { t } from "../words";
 import { COLOURS } from "../colours";
-import { Draped } from "./draped_line";
+import { DrapedLine } from "./draped_line";
 import { COARSE, Handle, STEP_M } from "./handle";
-import { AS_IT_LIES, corners, type Mapping, moved, type Reach, reach, whole, zoomed } from "./placement";
+import { IDENTITY, corners, type Mapping, movePlacement, type Reach, reachOf, wholePicture, zoomTo } from "./placement";
 
 /** A device whose frame is wider than so many pictures, such as the mouse, has no edge to show. */
 const MOST_PICTURES = 4;
@@ -25,20 +25,20 @@ interface Reached {
 export class MappingFrame implements PointerTool {
   shown = false;
   /** Called when anything of it changed. */
-  changed: () => void = () => {};
+  onChange: () => void = () => {};
   device = "";
   private workspace: Vec | null = null;
   /** While it is dragged or written: what the document will say. */
   private draft: Mapping | null = null;
   private writing = false;
-  private line: Draped;
-  private drawn: Draped;
+  private line: DrapedLine;
+  private drawn: DrapedLine;
   private from: Vec | null = null;
 
   constructor(private page: Pick<Page, "hub" | "net" | "view" | "overlay" | "scene" | "document" | "say">) {
     const { view, hub } = page;
-    this.line = new Draped(view, 4, COLOURS.frame);
-    this.drawn = new Draped(view, 4, COLOURS.device, true);
+    this.line = new DrapedLine(view, 4, COLOURS.frame);
+    this.drawn = new DrapedLine(view, 4, COLOURS.device, true);
     const done = (): void => void (this.draft && this.write());
     const keep = { done, drag: () => {}, nudge: () => {} };
     new Handle(page, "move", t("frameMove"), {
@@ -61,13 +61,13 @@ export class MappingFrame implements PointerTool {
   /** As the document has it, or as it is being dragged. */
   get mapping(): Mapping {
     const said = this.page.document?.values?.mapping as Partial<Mapping> | null | undefined;
-    return this.draft ?? { ...AS_IT_LIES, ...said };
+    return this.draft ?? { ...IDENTITY, ...said };
   }
 
   /** Whether the device has an edge that can be seen. */
-  get bounded(): boolean {
+  get isBounded(): boolean {
     const { scene } = this.page;
-    const found = this.workspace && reach(this.mapping, this.workspace);
+    const found = this.workspace && reachOf(this.mapping, this.workspace);
     return scene !== null && found !== null && found.size[0] < MOST_PICTURES * scene.meta.extent_m[0];
   }
 
@@ -76,7 +76,7 @@ export class MappingFrame implements PointerTool {
     const { scene } = this.page;
     if (!scene) return null;
     const { extent_m } = scene.meta;
-    if (this.bounded && this.workspace) return reach(this.mapping, this.workspace);
+    if (this.isBounded && this.workspace) return reachOf(this.mapping, this.workspace);
     const [x, y, width, length] = this.mapping.region_m ?? [0, 0, ...extent_m];
     return { centre: [x, y], size: [width, length], turnDeg: 0 };
   }
@@ -93,7 +93,7 @@ export class MappingFrame implements PointerTool {
 
   toggleRegion(): void {
     this.page.overlay.picking.take(this.picking ? null : this);
-    this.changed();
+    this.onChange();
   }
 
   begin(at: Vec): void {
@@ -120,7 +120,7 @@ export class MappingFrame implements PointerTool {
     this.from = null;
     this.drawn.visible = false;
     this.page.overlay.changed = true;
-    this.changed();
+    this.onChange();
   }
 
   /** Half of what is felt now, about the hand. */
@@ -139,14 +139,14 @@ export class MappingFrame implements PointerTool {
     const { scene, view } = this.page;
     if (!scene) return;
     view.focus(scene.on(x, y), Math.max(width, length));
-    this.draft = zoomed(this.mapping, x, y, width, length);
+    this.draft = zoomTo(this.mapping, x, y, width, length);
     void this.write();
   }
 
   whole(): void {
     const { scene, view } = this.page;
     if (scene) view.frame(...scene.meta.extent_m);
-    this.draft = whole(this.mapping);
+    this.draft = wholePicture(this.mapping);
     void this.write();
   }
 
@@ -189,8 +189,8 @@ export class MappingFrame implements PointerTool {
   private change(centre: [number, number], larger: number, turnDeg: number | null): void {
     const now = this.reach;
     if (!now) return;
-    if (this.bounded && this.workspace) this.draft = moved(this.mapping, this.workspace, centre, larger, turnDeg ?? now.turnDeg);
-    else this.draft = zoomed(this.mapping, ...centre, now.size[0] * larger, now.size[1] * larger);
+    if (this.isBounded && this.workspace) this.draft = movePlacement(this.mapping, this.workspace, centre, larger, turnDeg ?? now.turnDeg);
+    else this.draft = zoomTo(this.mapping, ...centre, now.size[0] * larger, now.size[1] * larger);
     this.draw();
   }
 
@@ -233,7 +233,7 @@ export class MappingFrame implements PointerTool {
       this.line.put(scene, [...around, around[0]]);
     }
     overlay.changed = true;
-    this.changed();
+    this.onChange();
   }
 
   /** A place of the frame, its sides at 1 and -1, on the surface; null while it is not shown. */
@@ -254,7 +254,7 @@ export class MappingFrame implements PointerTool {
 /** What the document has to say of a mapping: nothing of what is as by default. */
 function changes(mapping: Mapping): { changes: Record<string, unknown>; removed: string[] } {
   const keys = ["scale", "region_m", "rotation_deg", "offset_m"] as const;
-  const usual = (key: (typeof keys)[number]): boolean => String(mapping[key]) === String(AS_IT_LIES[key]);
+  const usual = (key: (typeof keys)[number]): boolean => String(mapping[key]) === String(IDENTITY[key]);
   const said = keys.filter((key) => !usual(key)).map((key) => [`mapping.${key}`, mapping[key]]);
   return { changes: Object.fromEntries(said), removed: keys.filter(usual).map((key) => `mapping.${key}`) };
 }

@@ -7,7 +7,7 @@ export interface Surface {
   height(x: number, y: number): number;
 }
 
-export interface Measured {
+export interface Measurement {
   straightM: number;
   horizontalM: number;
   /** As a thread would lie that follows every rise and fall. */
@@ -25,7 +25,7 @@ const MOST_STEPS = 8192;
 const A_CELL = 8;
 
 /** Two places measured. cellM: size of the surface's cells. */
-export function measure(surface: Surface, from: Vec, to: Vec, cellM: number): Measured {
+export function measure(surface: Surface, from: Vec, to: Vec, cellM: number): Measurement {
   const horizontalM = Math.hypot(to[0] - from[0], to[1] - from[1]);
   const steps = Math.min(MOST_STEPS, Math.max(2, Math.ceil((A_CELL * horizontalM) / cellM)));
   const heightsM = new Float64Array(steps + 1);

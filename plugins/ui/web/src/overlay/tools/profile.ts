@@ -1,7 +1,7 @@
 /** Heights along a ruler as a small plot with axes in millimetres. */
 import { t } from "../words";
-import type { Measured } from "./measurement";
-import { round } from "../settings";
+import type { Measurement } from "./measurement";
+import { roundDown125 } from "../settings";
 
 const NS = "http://www.w3.org/2000/svg";
 const SIZE = { width: 230, height: 118, left: 34, right: 8, top: 8, bottom: 32 };
@@ -10,13 +10,13 @@ const MOST_POINTS = 500;
 
 /** Round numbers within a span, in millimetres. */
 export function marks(lowMm: number, highMm: number): number[] {
-  const step = round((highMm - lowMm) / MARKS) || 1;
+  const step = roundDown125((highMm - lowMm) / MARKS) || 1;
   const first = Math.ceil(lowMm / step - 1e-9);
   const last = Math.floor(highMm / step + 1e-9);
   return Array.from({ length: Math.max(0, last - first + 1) }, (_, i) => Number(((first + i) * step).toPrecision(6)));
 }
 
-export function profile(measured: Measured): SVGSVGElement {
+export function profile(measured: Measurement): SVGSVGElement {
   const heights = Array.from(measured.heightsM, (each) => 1000 * each).filter(Number.isFinite);
   const far = Math.max(1000 * measured.horizontalM, 1e-6);
   const [low, high] = span(heights);

@@ -4,35 +4,35 @@ import type { Vec } from "../../server/protocol";
 import { on } from "../../shortcuts";
 import { t } from "../words";
 import { COLOURS } from "../colours";
-import { Draped } from "./draped_line";
+import { DrapedLine } from "./draped_line";
 import { Handle, STEP_M } from "./handle";
-import { measure, type Measured } from "./measurement";
+import { measure, type Measurement } from "./measurement";
 import { plus } from "../../contact/vectors";
 
 export class Ruler implements PointerTool {
   /** None, one, or both. */
   ends: Vec[] = [];
-  measured: Measured | null = null;
+  measured: Measurement | null = null;
   /** Called when anything of it changed. */
-  changed: () => void = () => {};
-  private line: Draped;
+  onChange: () => void = () => {};
+  private line: DrapedLine;
   private label = document.createElement("div");
 
   constructor(private page: Pick<Page, "hub" | "view" | "overlay" | "scene" | "say">) {
-    this.line = new Draped(page.view, 1, COLOURS.frame, true);
+    this.line = new DrapedLine(page.view, 1, COLOURS.frame, true);
     this.label.className = "ruler-label";
     page.overlay.stay(this.label, () => this.middle());
     for (const end of [0, 1]) {
       const grasped = {
         at: () => this.ends[end] ?? null,
-        drag: (to: Vec) => this.put(end, to),
+        drag: (to: Vec) => this.setEnd(end, to),
         nudge: (right: number, away: number) => this.nudge(end, right * STEP_M, away * STEP_M),
-        done: () => this.tell(),
+        done: () => this.announce(),
       };
       new Handle(page, "round", t(end ? "rulerEnd" : "rulerStart"), grasped).element.dataset.sign = "AB"[end];
     }
-    page.hub.on("shown", () => this.again());
-    on("measure here", () => this.here());
+    page.hub.on("shown", () => this.measureAgain());
+    on("measure here", () => this.addHere());
     on("remove ruler", () => this.remove());
   }
 
@@ -43,48 +43,48 @@ export class Ruler implements PointerTool {
 
   toggle(): void {
     this.page.overlay.picking.take(this.picking ? null : this);
-    this.changed();
+    this.onChange();
   }
 
   begin(at: Vec): void {
-    this.next(at);
+    this.addEnd(at);
   }
 
   drag(at: Vec): void {
-    if (this.ends.length === 2) this.put(1, at);
-    else if (Math.hypot(at[0] - this.ends[0][0], at[1] - this.ends[0][1]) > STEP_M) this.put(1, at);
+    if (this.ends.length === 2) this.setEnd(1, at);
+    else if (Math.hypot(at[0] - this.ends[0][0], at[1] - this.ends[0][1]) > STEP_M) this.setEnd(1, at);
   }
 
   left(): void {
-    this.changed();
+    this.onChange();
   }
 
   /** The next place: the first, the second, or the first of another measurement. */
-  next(at: Vec): void {
+  addEnd(at: Vec): void {
     if (this.ends.length === 2) this.ends = [];
-    this.put(this.ends.length, at);
-    this.tell();
+    this.setEnd(this.ends.length, at);
+    this.announce();
   }
 
-  put(end: number, at: Vec): void {
+  setEnd(end: number, at: Vec): void {
     this.ends[end] = at;
-    this.again();
+    this.measureAgain();
   }
 
   remove(): void {
     this.ends = [];
-    this.again();
+    this.measureAgain();
   }
 
   /** The next place is where the hand is, or in the middle of what is seen. */
-  here(): void {
+  addHere(): void {
     const { scene, overlay, view } = this.page;
     const live = overlay.live?.seen ? overlay.live : null;
     const [x, y] = live ? live.hand : view.eye.pose.target;
-    if (scene) this.next(scene.on(x, y));
+    if (scene) this.addEnd(scene.on(x, y));
   }
 
-  private tell(): void {
+  private announce(): void {
     if (this.measured) this.page.say(t("measured", { mm: (1000 * this.measured.straightM).toFixed(2) }));
     else if (this.ends.length) this.page.say(t("rulerBegun"));
   }
@@ -92,11 +92,11 @@ export class Ruler implements PointerTool {
   private nudge(end: number, right: number, away: number): void {
     const { scene } = this.page;
     const at = plus(this.ends[end], [right, away, 0]);
-    if (scene) this.put(end, scene.on(at[0], at[1]));
+    if (scene) this.setEnd(end, scene.on(at[0], at[1]));
   }
 
   /** Measured again: an end moved, or the surface is another. */
-  private again(): void {
+  private measureAgain(): void {
     const { scene, overlay } = this.page;
     if (scene) this.ends = this.ends.map(([x, y]) => scene.on(x, y));
     const [from, to] = this.ends;
@@ -108,7 +108,7 @@ export class Ruler implements PointerTool {
       this.label.textContent = t("length", { mm: (1000 * this.measured.straightM).toFixed(2) });
     }
     overlay.changed = true;
-    this.changed();
+    this.onChange();
   }
 
   private middle(): Vec | null {

@@ -10,7 +10,7 @@ export interface About {
 }
 
 /** Whether the person said yes; anything else is no, and the first thing that has the focus is no. */
-export function sure(about: About): Promise<boolean> {
+export function confirmStart(about: About): Promise<boolean> {
   const dialog = document.createElement("dialog");
   dialog.className = "sure";
   const heading = Object.assign(document.createElement("h2"), { id: "sure-title", textContent: t("sureTitle", { name: about.name }) });

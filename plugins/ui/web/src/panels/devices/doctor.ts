@@ -30,7 +30,7 @@ interface Figures {
 }
 
 /** open: whether somebody can see it. */
-export function doctor(page: Page, open: () => boolean): HTMLElement {
+export function loopFigures(page: Page, open: () => boolean): HTMLElement {
   const box = document.createElement("section");
   const heading = document.createElement("h3");
   heading.textContent = t("doctor");
@@ -42,7 +42,7 @@ export function doctor(page: Page, open: () => boolean): HTMLElement {
   const how = Object.assign(document.createElement("p"), { className: "hint" });
   const late = new Spark(t("worstLine"), 0);
   const force = new Spark(t("forceLine"), 2);
-  box.append(heading, none, list, how, captioned(t("worstLine"), late), captioned(t("forceLine"), force));
+  box.append(heading, none, list, how, figureWithCaption(t("worstLine"), late), figureWithCaption(t("forceLine"), force));
   let asking = false;
 
   async function look(): Promise<void> {
@@ -61,7 +61,7 @@ export function doctor(page: Page, open: () => boolean): HTMLElement {
     none.hidden = found !== null;
     for (const each of [list, how, late.element.parentElement!, force.element.parentElement!]) each.hidden = !found;
     if (!found) return;
-    list.replaceChildren(...rows(found).flatMap(([name, value]) => [made("dt", name), made("dd", value)]));
+    list.replaceChildren(...rows(found).flatMap(([name, value]) => [element("dt", name), element("dd", value)]));
     how.textContent = t("how", { how: found.how });
     late.add(found.late_us?.most ?? 0);
     force.add(found.force_n);
@@ -83,7 +83,7 @@ function rows(found: Figures): [string, string][] {
     [t("overruns"), t("overrunsOf", { overruns: found.overruns, ticks: found.ticks })],
     [t("force"), t("newtons", { now: found.force_n.toFixed(2), most: found.most_force_n.toFixed(2) })],
     [t("position"), t("millimetres", { x: x!, y: y!, z: z! })],
-    [t("buttons"), bits(found.buttons).join(", ") || t("none")],
+    [t("buttons"), pressedButtons(found.buttons).join(", ") || t("none")],
     [t("limits"), limits(found.flagged) || t("none")],
   ];
 }
@@ -94,7 +94,7 @@ function spread(found: Spread | null): string {
 }
 
 /** The first button is 1, as people count. */
-export function bits(buttons: number): number[] {
+export function pressedButtons(buttons: number): number[] {
   return Array.from({ length: 8 }, (_, i) => i + 1).filter((each) => buttons & (1 << (each - 1)));
 }
 
@@ -105,12 +105,12 @@ export function limits(flagged: Record<string, number>): string {
     .join(", ");
 }
 
-function captioned(text: string, spark: Spark): HTMLElement {
+function figureWithCaption(text: string, spark: Spark): HTMLElement {
   const box = document.createElement("figure");
-  box.append(made("figcaption", text), spark.element as unknown as HTMLElement);
+  box.append(element("figcaption", text), spark.element as unknown as HTMLElement);
   return box;
 }
 
-function made(tag: string, text: string): HTMLElement {
+function element(tag: string, text: string): HTMLElement {
   return Object.assign(document.createElement(tag), { textContent: text });
 }

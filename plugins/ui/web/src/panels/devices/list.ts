@@ -27,10 +27,10 @@ interface Finding {
 }
 
 /** One device. use: called when it is to be felt. */
-export function device(page: Page, found: Device, use: () => void): HTMLLIElement {
+export function deviceItem(page: Page, found: Device, use: () => void): HTMLLIElement {
   const line = document.createElement("li");
-  const name = made("h4", found.name);
-  const chip = made("span", t(there(found)));
+  const name = element("h4", found.name);
+  const chip = element("span", t(presenceOf(found)));
   chip.className = `chip ${found.usable ? "good" : found.problem ? "bad" : ""}`;
   name.append(" ", chip);
   const findings = document.createElement("ul");
@@ -41,40 +41,40 @@ export function device(page: Page, found: Device, use: () => void): HTMLLIElemen
   const buttons = document.createElement("div");
   buttons.className = "buttons";
   buttons.append(uses, examines);
-  line.append(name, made("p", found.summary), ...troubles(found), buttons, findings);
+  line.append(name, element("p", found.summary), ...problemTexts(found), buttons, findings);
   return line;
 }
 
-export function there({ simulated, units, problem }: Device): "simulated" | "connected" | "notAsked" | "notConnected" {
+export function presenceOf({ simulated, units, problem }: Device): "simulated" | "connected" | "notAsked" | "notConnected" {
   if (simulated) return "simulated";
   if (units.length) return "connected";
   return problem ? "notAsked" : "notConnected";
 }
 
-function troubles({ units, problem }: Device): HTMLElement[] {
+function problemTexts({ units, problem }: Device): HTMLElement[] {
   const said = units.map((each) => [t("unit", { ...each }).trim(), each.problem].filter(Boolean).join(": "));
   if (problem) said.push(problem);
-  return said.map((text) => Object.assign(made("p", text), { className: "hint" }));
+  return said.map((text) => Object.assign(element("p", text), { className: "hint" }));
 }
 
 async function examine(page: Page, name: string, into: HTMLElement): Promise<void> {
   try {
     const found = await page.net.ask<Finding[]>("examine", { name });
-    into.replaceChildren(...found.map(finding));
+    into.replaceChildren(...found.map(findingItem));
     page.say(found.map(({ check, verdict }) => `${check}: ${t(verdict)}`).join("; "));
   } catch (error) {
-    into.replaceChildren(made("li", t("refused", { why: (error as Error).message })));
+    into.replaceChildren(element("li", t("refused", { why: (error as Error).message })));
   }
 }
 
-function finding({ check, verdict, says, cure }: Finding): HTMLElement {
-  const line = made("li", `${check}: `);
-  const mark = Object.assign(made("strong", t(verdict)), { className: { fine: "good", failed: "bad", "not asked": "" }[verdict] });
+function findingItem({ check, verdict, says, cure }: Finding): HTMLElement {
+  const line = element("li", `${check}: `);
+  const mark = Object.assign(element("strong", t(verdict)), { className: { fine: "good", failed: "bad", "not asked": "" }[verdict] });
   line.append(mark, `. ${says}`);
-  if (cure) line.append(made("p", t("cure", { cure })));
+  if (cure) line.append(element("p", t("cure", { cure })));
   return line;
 }
 
-function made(tag: string, text: string): HTMLElement {
+function element(tag: string, text: string): HTMLElement {
   return Object.assign(document.createElement(tag), { textContent: text });
 }

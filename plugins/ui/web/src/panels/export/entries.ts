@@ -10,7 +10,7 @@ export interface Entry {
 
 /** Every exporter once, more often where the file says it more often; those that the file says are on. */
 export function entriesOf(said: Plain | undefined, names: string[]): Entry[] {
-  const given = listed(said);
+  const given = parseEntries(said);
   const known = [...names, ...given.map(({ use }) => use).filter((use) => !names.includes(use))];
   return [...new Set(known)].flatMap((use) => {
     const those = given.filter((each) => each.use === use);
@@ -24,11 +24,11 @@ export function blocksOf(entries: Entry[]): Plain[] {
 }
 
 /** Whether the file says the same already, in whatever words. */
-export function says(said: Plain | undefined, blocks: Plain[]): boolean {
-  return same(blocksOf(listed(said)), blocks);
+export function equals(said: Plain | undefined, blocks: Plain[]): boolean {
+  return same(blocksOf(parseEntries(said)), blocks);
 }
 
-function listed(said: Plain | undefined): Entry[] {
+function parseEntries(said: Plain | undefined): Entry[] {
   const all = Array.isArray(said) ? said : said === undefined || said === null ? [] : [said];
   return all.flatMap((each) => {
     if (typeof each === "string") return [{ use: each, options: {}, on: true }];

@@ -4,8 +4,8 @@ import { token } from "../../server/token";
 import type { Exported, Outcome } from "../../server/messages";
 import { t } from "./words";
 import { decimal } from "../../words/words";
-import { type Cure, sentence, verdicts } from "../verdicts/verdicts";
-import { called } from "./choices";
+import { type Cure, gradeSentence, verdictTables } from "../verdicts/verdicts";
+import { exporterName } from "./choices";
 
 const SHAPES: Partial<Record<Outcome["outcome"], string>> = { ran: "✓", refused: "⊘", failed: "✕" };
 const UNITS = [["megabytes", 1e6, 1], ["kilobytes", 1e3, 0], ["bytes", 1, 0]] as const;
@@ -23,12 +23,12 @@ function outcome(folder: string, said: Exported["exports"][number], cure: Cure):
   const box = document.createElement("section");
   box.className = `outcome ${said.outcome}`;
   const heading = document.createElement("h3");
-  heading.textContent = called(said.name);
+  heading.textContent = exporterName(said.name);
   const became = document.createElement("span");
   became.className = "became";
   const known = said.outcome === "refused" || said.outcome === "failed" ? said.outcome : "ran";
   const seconds = known === "ran" ? t("seconds", { seconds: decimal(said.seconds, 1) }) : "";
-  became.append(shape(known), [t(known), seconds].filter(Boolean).join(", "));
+  became.append(symbolOf(known), [t(known), seconds].filter(Boolean).join(", "));
   box.append(heading, became);
   if (known !== "ran") box.append(english(said.why, "bad"));
   if (said.files.length) box.append(files(folder, said.files));
@@ -48,7 +48,7 @@ function files(folder: string, all: Exported["exports"][number]["files"]): HTMLE
     const item = document.createElement("li");
     const size = document.createElement("span");
     size.className = "size";
-    size.textContent = sized(bytes);
+    size.textContent = formatBytes(bytes);
     item.append(link, " ", size);
     list.append(item);
   }
@@ -57,17 +57,17 @@ function files(folder: string, all: Exported["exports"][number]["files"]): HTMLE
 
 function legible(said: NonNullable<Exported["exports"][number]["legible"]>, cure: Cure): HTMLElement {
   const box = document.createElement("div");
-  box.append(sentence(said.grade, said.sentence));
+  box.append(gradeSentence(said.grade, said.sentence));
   const wrong = said.verdicts.filter(({ verdict }) => verdict !== "ok");
-  if (wrong.length) box.append(folded(t("verdicts", { count: wrong.length }), verdicts(wrong, cure)));
+  if (wrong.length) box.append(foldable(t("verdicts", { count: wrong.length }), verdictTables(wrong, cure)));
   return box;
 }
 
 function notes(all: Outcome["notes"]): HTMLElement {
-  return folded(t("notes", { count: all.length }), all.map(({ kind, text }) => english(text, kind === "decision" ? "hint" : "hint warn")));
+  return foldable(t("notes", { count: all.length }), all.map(({ kind, text }) => english(text, kind === "decision" ? "hint" : "hint warn")));
 }
 
-function folded(title: string, inside: HTMLElement[]): HTMLElement {
+function foldable(title: string, inside: HTMLElement[]): HTMLElement {
   const box = document.createElement("details");
   const heading = document.createElement("summary");
   heading.textContent = title;
@@ -81,14 +81,14 @@ function english(text: string, className: string): HTMLElement {
   return made;
 }
 
-function shape(known: Outcome["outcome"]): HTMLElement {
+function symbolOf(known: Outcome["outcome"]): HTMLElement {
   const made = document.createElement("span");
   made.setAttribute("aria-hidden", "true");
   made.textContent = `${SHAPES[known] ?? ""} `;
   return made;
 }
 
-export function sized(bytes: number): string {
+export function formatBytes(bytes: number): string {
   const [unit, of, digits] = UNITS.find((each) => bytes >= each[1]) ?? UNITS[2];
   return t(unit, { size: decimal(bytes / of, digits) });
 }

@@ -38,7 +38,7 @@ function build(page: Page, root: HTMLElement): void {
   }
 
   function hear(hand: HandState): void {
-    told.textContent = t(held(hand));
+    told.textContent = t(holderOf(hand));
     take.hidden = !hand.there || hand.holding || hand.rests;
     moved.textContent = `${t("movedBy")}: ${t(hand.by ?? "nothing")}`;
     pad.hidden = !hand.pads;
@@ -59,7 +59,7 @@ function build(page: Page, root: HTMLElement): void {
 type Held = "gone" | "rests" | "holds" | "nobody" | "watches";
 
 /** Who holds the hand, as a word of the table. */
-export function held(hand: Pick<HandState, "there" | "holding" | "nobodyHolds" | "rests">): Held {
+export function holderOf(hand: Pick<HandState, "there" | "holding" | "nobodyHolds" | "rests">): Held {
   if (!hand.there) return "gone";
   if (hand.rests) return "rests";
   if (hand.holding) return "holds";

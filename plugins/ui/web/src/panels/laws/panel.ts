@@ -19,7 +19,7 @@ function build(page: Page, root: HTMLElement): void {
   const { hub, net } = page;
   const told = document.createElement("p");
   const result = document.createElement("ul");
-  const tried = async (work: () => Promise<unknown>): Promise<void> => {
+  const attempt = async (work: () => Promise<unknown>): Promise<void> => {
     try {
       await work();
     } catch (error) {
@@ -31,30 +31,30 @@ function build(page: Page, root: HTMLElement): void {
     page.say(text);
   };
 
-  const choice = setup((use, options) => tried(() => net.ask("compare_laws", { use, options })));
+  const choice = setup((use, options) => attempt(() => net.ask("compare_laws", { use, options })));
   const two = group(t("felt"));
-  const letters = LETTERS.map((to) => button(to, () => tried(() => net.ask("switch_law", { to }))));
+  const letters = LETTERS.map((to) => button(to, () => attempt(() => net.ask("switch_law", { to }))));
   const question = input("laws-question");
   question.value = t("questionFirst");
   two.append(
     ...letters,
     field(t("question"), question),
     hint(t("blindHelp")),
-    button(t("blind"), () => tried(() => net.ask("begin_blind", { question: question.value }))),
-    button(t("end"), () => tried(() => net.ask("end_laws"))),
+    button(t("blind"), () => attempt(() => net.ask("begin_blind", { question: question.value }))),
+    button(t("end"), () => attempt(() => net.ask("end_laws"))),
   );
   const blind = group("");
   const asked = blind.querySelector("legend")!;
   const trial = document.createElement("p");
-  const feel = ([1, 2] as const).map((called) => button(t(`feel${called}`), () => tried(() => net.ask("feel_blind", { called }))));
-  const choose = (choice: number): Promise<void> => tried(() => net.ask("choose_blind", { choice }));
+  const feel = ([1, 2] as const).map((called) => button(t(`feel${called}`), () => attempt(() => net.ask("feel_blind", { called }))));
+  const choose = (choice: number): Promise<void> => attempt(() => net.ask("choose_blind", { choice }));
   blind.append(
     trial,
     ...feel,
     button(t("choose1"), () => choose(1)),
     button(t("choose2"), () => choose(2)),
     button(t("chooseNone"), () => choose(0)),
-    button(t("reveal"), () => tried(async () => reveal(await net.ask<Tally>("end_blind")))),
+    button(t("reveal"), () => attempt(async () => reveal(await net.ask<Tally>("end_blind")))),
   );
 
   function reveal({ laws, chosen, neither, chance, path }: Tally): void {

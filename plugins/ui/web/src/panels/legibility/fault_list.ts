@@ -3,20 +3,20 @@ import { button, paragraph } from "../../elements";
 import type { Verdict } from "../../server/messages";
 import type { Page } from "../../page";
 import { t } from "./words";
-import { ninth } from "../../words/place_words";
-import type { Fault, Marks } from "./fault_marks";
+import { ninthOfPicture } from "../../words/place_words";
+import type { Fault, FaultMarks } from "./fault_marks";
 
 /** Of one verdict; a picture with more than that has one fault all over. */
 const MOST = 9;
 
 /** The places of all verdicts that fail, numbered in their order. */
-export function faults(verdicts: Verdict[]): Map<Verdict, Fault[]> {
+export function numberFaults(verdicts: Verdict[]): Map<Verdict, Fault[]> {
   let number = 0;
   const failing = verdicts.filter((each) => each.verdict !== "ok" && each.at?.length);
   return new Map(failing.map((each) => [each, each.at!.slice(0, MOST).map((at) => ({ number: ++number, at }))]));
 }
 
-export function places(page: Page, said: Verdict, all: Fault[], marks: Marks): HTMLElement {
+export function faultList(page: Page, said: Verdict, all: Fault[], marks: FaultMarks): HTMLElement {
   const box = document.createElement("div");
   box.className = "places";
   const list = document.createElement("ol");
@@ -28,9 +28,9 @@ export function places(page: Page, said: Verdict, all: Fault[], marks: Marks): H
   return box;
 }
 
-function line(page: Page, fault: Fault, marks: Marks): HTMLElement {
+function line(page: Page, fault: Fault, marks: FaultMarks): HTMLElement {
   const { number, at } = fault;
-  const where = ninth(...at);
+  const where = ninthOfPicture(...at);
   const part = partAt(page, at);
   const go = button(`${number}`, () => {
     marks.look(at);

@@ -11,7 +11,7 @@ export interface Fault {
 /** How much of the width is looked at when a place is. */
 const NEAR = 0.3;
 
-export class Marks {
+export class FaultMarks {
   private shown = true;
   private away: (() => void)[] = [];
   private elements = new Map<number, HTMLElement>();
@@ -23,7 +23,7 @@ export class Marks {
     this.page.overlay.changed = true;
   }
 
-  put(faults: Fault[]): void {
+  replace(faults: Fault[]): void {
     for (const each of this.away) each();
     this.elements.clear();
     this.away = faults.map(({ number, at }) => {

@@ -1,21 +1,21 @@
 /** Verdicts of legibility by medium; their places on the surface and in words; their cures as buttons. */
 import { button, field, hint, paragraph } from "../../elements";
-import { Editor } from "../../forms/editor";
+import { DocumentEditor } from "../../forms/editor";
 import type { Legible, Medium } from "../../server/messages";
 import type { Page } from "../../page";
 import { t } from "./words";
 import { decimal } from "../../words/words";
-import { type Cure, sentence, verdicts } from "../verdicts/verdicts";
-import { Marks } from "./fault_marks";
-import { faults, places } from "./fault_list";
+import { type Cure, gradeSentence, verdictTables } from "../verdicts/verdicts";
+import { FaultMarks } from "./fault_marks";
+import { numberFaults, faultList } from "./fault_list";
 
 const MEDIA: Medium[] = ["swell", "print", "pins", "force"];
 const SIMPLIFY = "simplify";
 const WIDTH_MM = { least: 10, most: 2000 };
 
 export function build(page: Page, root: HTMLElement): void {
-  const editor = new Editor(page);
-  const marks = new Marks(page);
+  const editor = new DocumentEditor(page);
+  const marks = new FaultMarks(page);
   const medium = choice();
   const width = widthField();
   const told = document.createElement("p");
@@ -24,10 +24,10 @@ export function build(page: Page, root: HTMLElement): void {
   const stale = paragraph(t("stale"), "warn");
   stale.hidden = true;
   const found = document.createElement("div");
-  const marked = ticked(t("marks"), () => age());
+  const marked = checkbox(t("marks"), () => age());
   marked.input.checked = true;
   marked.root.hidden = true;
-  const coloured = ticked(t("parts"), (on) => page.hub.tell("look at", { look: on ? "segments" : "photo" }));
+  const coloured = checkbox(t("parts"), (on) => page.hub.tell("look at", { look: on ? "segments" : "photo" }));
   coloured.root.hidden = true;
   page.hub.on("look", ({ look }) => (coloured.input.checked = look === "segments"));
   coloured.input.checked = page.hub.last("look")?.look === "segments";
@@ -59,21 +59,21 @@ export function build(page: Page, root: HTMLElement): void {
     marks.visible = stale.hidden && marked.input.checked;
   };
   const cure: Cure = (key, value) => {
-    void editor.changed({ changes: { [key]: value } }).then((done) => (done ? work() : undefined));
+    void editor.submit({ changes: { [key]: value } }).then((done) => (done ? work() : undefined));
   };
   const show = (said: Legible): void => {
     judged = said;
     check.textContent = t("again");
     medium.value = said.medium;
-    const failing = faults(said.verdicts);
+    const failing = numberFaults(said.verdicts);
     const more = (each: Legible["verdicts"][number]): HTMLElement | null =>
-      failing.has(each) ? places(page, each, failing.get(each)!, marks) : null;
+      failing.has(each) ? faultList(page, each, failing.get(each)!, marks) : null;
     const of = paragraph(t("of", { medium: t(`${said.medium}Of`), width: decimal(1000 * said.width_m, 0) }), "hint");
-    found.replaceChildren(sentence(said.grade, said.sentence), of, ...simplifying(said, editor, work), ...verdicts(said.verdicts, cure, more));
+    found.replaceChildren(gradeSentence(said.grade, said.sentence), of, ...simplifyButton(said, editor, work), ...verdictTables(said.verdicts, cure, more));
     const all = [...failing.values()].flat();
     marked.root.hidden = !all.length;
     coloured.root.hidden = false;
-    marks.put(all);
+    marks.replace(all);
     age();
   };
   page.hub.on("legible", show);
@@ -83,12 +83,12 @@ export function build(page: Page, root: HTMLElement): void {
 }
 
 /** Everything that would make parts legible, as one edit; nothing where that is no cure. */
-function simplifying({ verdicts: all }: Legible, editor: Editor, check: () => Promise<void>): HTMLElement[] {
+function simplifyButton({ verdicts: all }: Legible, editor: DocumentEditor, check: () => Promise<void>): HTMLElement[] {
   const wanted = all.flatMap((each) => each.changes).filter(({ key }) => key === SIMPLIFY || key.startsWith(`${SIMPLIFY}.`));
   if (!wanted.length) return [];
   const changes = Object.fromEntries(wanted.reverse().map(({ key, value }) => [key, value])); // the first of a key counts
   const written = Object.entries(changes).map(([key, value]) => `${key}: ${JSON.stringify(value)}`);
-  const cure = button(t("simplify"), () => void editor.changed({ changes }).then((done) => (done ? check() : undefined)));
+  const cure = button(t("simplify"), () => void editor.submit({ changes }).then((done) => (done ? check() : undefined)));
   cure.id = "legible-simplify";
   cure.className = "primary";
   const about = hint(t("simplifyHint", { changes: written.join(", ") }));
@@ -111,7 +111,7 @@ function widthField(): HTMLInputElement {
   return made;
 }
 
-function ticked(text: string, change: (on: boolean) => void): { root: HTMLLabelElement; input: HTMLInputElement } {
+function checkbox(text: string, change: (on: boolean) => void): { root: HTMLLabelElement; input: HTMLInputElement } {
   const root = document.createElement("label");
   const input = document.createElement("input");
   input.type = "checkbox";

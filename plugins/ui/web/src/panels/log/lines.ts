@@ -39,7 +39,7 @@ export class Lines {
 }
 
 /** Whether a line is to be seen: its level is, and every word that was looked for is in it. */
-export function seen({ level, text }: Line, levels: ReadonlySet<Level>, wanted: string): boolean {
+export function isShown({ level, text }: Line, levels: ReadonlySet<Level>, wanted: string): boolean {
   const small = text.toLowerCase();
   return levels.has(level) && wanted.toLowerCase().split(/\s+/).every((word) => small.includes(word));
 }

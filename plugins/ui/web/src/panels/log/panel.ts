@@ -6,9 +6,9 @@ import type { Page } from "../../page";
 import type { Panel } from "../panel";
 import { recall, remember } from "../../preferences";
 import { t } from "./words";
-import { made } from "../../words/product_words";
+import { productName } from "../../words/product_words";
 import { decimal, language } from "../../words/words";
-import { asText, LEVELS, Lines, seen, type Level, type Line } from "./lines";
+import { asText, LEVELS, Lines, isShown, type Level, type Line } from "./lines";
 import "./log.css";
 
 const AT_FIRST: Record<Level, boolean> = { event: true, detail: false, warning: true, error: true };
@@ -91,8 +91,8 @@ class Log {
   }
 
   private stage({ at_s, product, method, done: { outcome, seconds, why } }: Events["stage"]): void {
-    if (!outcome) return this.add("detail", t("begun", { product: made(product), method }), at_s);
-    const told = { product: made(product), method, outcome: t(outcome), seconds: decimal(seconds ?? 0, 3) };
+    if (!outcome) return this.add("detail", t("begun", { product: productName(product), method }), at_s);
+    const told = { product: productName(product), method, outcome: t(outcome), seconds: decimal(seconds ?? 0, 3) };
     this.add(outcome === "failed" ? "error" : "event", `${t(method ? "stage" : "given by", told)}${why ? ": " : ""}`, at_s, why);
   }
 
@@ -107,14 +107,14 @@ class Log {
     if (level === "warning") this.page.say(t("said", { level: t(level), text }));
     if (!again || !this.items.has(line)) this.fresh.push(line);
     else fill(this.items.get(line)!, line);
-    if (this.fresh.length === 1) setTimeout(() => this.put());
+    if (this.fresh.length === 1) setTimeout(() => this.flush());
   }
 
-  private put(): void {
+  private flush(): void {
     const follows = this.follows;
     const made = this.fresh.splice(0).filter((line) => this.lines.all.includes(line) && !this.items.has(line));
     for (const line of made) this.items.set(line, fill(document.createElement("li"), line));
-    for (const line of made) this.items.get(line)!.hidden = !seen(line, this.levels, this.wanted);
+    for (const line of made) this.items.get(line)!.hidden = !isShown(line, this.levels, this.wanted);
     this.list.append(...made.map((line) => this.items.get(line)!));
     this.tell();
     if (follows) this.scroller.scrollTop = this.scroller.scrollHeight;
@@ -132,11 +132,11 @@ class Log {
   }
 
   private get shown(): Line[] {
-    return this.lines.all.filter((line) => seen(line, this.levels, this.wanted));
+    return this.lines.all.filter((line) => isShown(line, this.levels, this.wanted));
   }
 
   private show(): void {
-    for (const [line, item] of this.items) item.hidden = !seen(line, this.levels, this.wanted);
+    for (const [line, item] of this.items) item.hidden = !isShown(line, this.levels, this.wanted);
     this.tell();
   }
 

@@ -7,7 +7,7 @@ import type { Plain } from "../../forms/schema";
  * In a map from label to material, that segment's entry alone. Where segments go by roughness, or a rule decided this
  * one, a rule for it comes first, and what decides the others stays as it is.
  */
-export function chosen(said: unknown, label: number, material: string, why: string): Edit {
+export function materialEdit(said: unknown, label: number, material: string, why: string): Edit {
   const block = at(said, ["materials"]);
   if (isLabels(block)) return { changes: { [`materials.${label}`]: material } };
   const byRule = /^segment \d+: rule \d+,/.test(why);

@@ -1,18 +1,18 @@
 /** Which segment is which material, why, and how much of the surface; and the library with figures and sources. */
-import { headed } from "../../elements";
-import { Editor } from "../../forms/editor";
+import { tableWithHeads } from "../../elements";
+import { DocumentEditor } from "../../forms/editor";
 import { LIBRARY } from "../../forms/rows";
 import type { Material, Segment } from "../../server/messages";
 import type { Page } from "../../page";
 import type { Panel } from "../panel";
 import { t } from "./words";
-import { chosen } from "./edit";
+import { materialEdit } from "./edit";
 import "./materials.css";
 
 type Listed = Material & { source: string };
 
 function build(page: Page, root: HTMLElement): void {
-  const editor = new Editor(page);
+  const editor = new DocumentEditor(page);
   const none = document.createElement("p");
   none.className = "hint";
   none.textContent = t("none");
@@ -20,7 +20,7 @@ function build(page: Page, root: HTMLElement): void {
   refused.className = "bad";
   refused.setAttribute("role", "status");
   editor.onRefused = (why) => (refused.textContent = why);
-  const table = headed(t("segments"), [t("segment"), t("material"), t("share")], "materials");
+  const table = tableWithHeads(t("segments"), [t("segment"), t("material"), t("share")], "materials");
   const body = table.createTBody();
   const library = document.createElement("details");
   const heading = document.createElement("summary");
@@ -61,7 +61,7 @@ function build(page: Page, root: HTMLElement): void {
     const select = target as HTMLSelectElement;
     const { label, why } = segments[Number(select.dataset.at)];
     refused.textContent = "";
-    editor.change(chosen(page.document?.said, label, select.value, why));
+    editor.change(materialEdit(page.document?.said, label, select.value, why));
   };
 }
 
@@ -102,7 +102,7 @@ function figures(library: Listed[]): HTMLElement {
   box.setAttribute("role", "region");
   box.setAttribute("aria-label", t("libraryAlone"));
   const columns = ["name", "stiffness", "damping", "friction", "roughness", "grain", "texture", "source"] as const;
-  const table = headed(t("libraryAlone"), columns.map((each) => t(each)), "materials");
+  const table = tableWithHeads(t("libraryAlone"), columns.map((each) => t(each)), "materials");
   const body = table.createTBody();
   for (const each of library) {
     const row = body.insertRow();

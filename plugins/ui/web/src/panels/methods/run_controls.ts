@@ -1,10 +1,10 @@
 /** Run depth, texture or all of it; stop; and whether what is felt is what the document says. */
 import { button } from "../../elements";
-import type { Editor } from "../../forms/editor";
+import type { DocumentEditor } from "../../forms/editor";
 import type { Page } from "../../page";
 import { t } from "../../forms/words";
 
-export function running(page: Page, editor: Editor): HTMLElement {
+export function runControls(page: Page, editor: DocumentEditor): HTMLElement {
   const box = document.createElement("div");
   const told = document.createElement("p");
   told.setAttribute("role", "status");
@@ -63,7 +63,7 @@ export function running(page: Page, editor: Editor): HTMLElement {
   return box;
 }
 
-function atOnce(editor: Editor): HTMLElement {
+function atOnce(editor: DocumentEditor): HTMLElement {
   const label = document.createElement("label");
   const input = document.createElement("input");
   input.type = "checkbox";

@@ -4,7 +4,7 @@ import type { Page } from "../../page";
 import { language } from "../../words/words";
 import { t } from "./draft_words";
 
-export function restored({ hub, net, say }: Page): HTMLElement {
+export function draftOffer({ hub, net, say }: Page): HTMLElement {
   const box = document.createElement("div");
   const text = document.createElement("p");
   const ask = (name: string) => (): Promise<unknown> => net.ask(name).catch((error: Error) => say(error.message));

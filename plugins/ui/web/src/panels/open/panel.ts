@@ -6,8 +6,8 @@ import { t } from "./words";
 import { camera } from "./camera";
 import { onDrop } from "./drop";
 import { folder } from "./folder";
-import { restored } from "./draft";
-import { send, type Opened } from "./upload";
+import { draftOffer } from "./draft";
+import { uploadAndOpen, type Opened } from "./upload";
 import "./open.css";
 
 function build(page: Page, root: HTMLElement): void {
@@ -18,7 +18,7 @@ function build(page: Page, root: HTMLElement): void {
     page.say(text);
   };
 
-  async function opened(names: string, work: Promise<Opened>): Promise<void> {
+  async function openAndTell(names: string, work: Promise<Opened>): Promise<void> {
     say(t("opening", { names }));
     try {
       const { recording } = await work;
@@ -31,18 +31,18 @@ function build(page: Page, root: HTMLElement): void {
 
   const progress = (name: string, percent: number): string => (told.textContent = t("sending", { name, percent }));
   const take = (files: File[]): void => {
-    if (files.length) void opened(files.map(({ name }) => name).join(", "), send(page.net, files, progress));
+    if (files.length) void openAndTell(files.map(({ name }) => name).join(", "), uploadAndOpen(page.net, files, progress));
   };
   const open = (paths: string[]): void =>
-    void opened(paths.map((path) => path.split("/").at(-1)).join(", "), page.net.ask<Opened>("begin", { files: paths }));
+    void openAndTell(paths.map((path) => path.split("/").at(-1)).join(", "), page.net.ask<Opened>("begin", { files: paths }));
 
   onDrop(take);
   root.append(
-    restored(page),
+    draftOffer(page),
     ...chooser(take),
     examples(page, open),
-    folded(t("folder"), folder(page.net, open, say)),
-    folded(t("camera"), camera(take, say)),
+    foldable(t("folder"), folder(page.net, open, say)),
+    foldable(t("camera"), camera(take, say)),
     exchange(page),
     told,
   );
@@ -95,7 +95,7 @@ function exchange(page: Page): HTMLElement {
   return made;
 }
 
-function folded(title: string, inside: HTMLElement): HTMLElement {
+function foldable(title: string, inside: HTMLElement): HTMLElement {
   const box = document.createElement("details");
   const heading = document.createElement("summary");
   heading.textContent = title;

@@ -11,13 +11,13 @@ export interface Opened {
 }
 
 /** Send files and open them. Rejects with the server's words. */
-export async function send(net: Server, files: File[], progress: Progress): Promise<Opened> {
+export async function uploadAndOpen(net: Server, files: File[], progress: Progress): Promise<Opened> {
   const batch = await net.ask<string>("batch");
-  for (const file of files) await put(batch, file, progress);
+  for (const file of files) await sendFile(batch, file, progress);
   return net.ask<Opened>("open_batch", { batch });
 }
 
-function put(batch: string, file: File, progress: Progress): Promise<void> {
+function sendFile(batch: string, file: File, progress: Progress): Promise<void> {
   const request = new XMLHttpRequest(); // fetch does not say how much was sent
   const name = encodeURIComponent(file.name);
   return new Promise((done, refused) => {

@@ -9,7 +9,7 @@ interface Named {
   name: string;
 }
 
-export function named(page: Page): HTMLElement {
+export function namedParts(page: Page): HTMLElement {
   const box = document.createElement("section");
   const heading = document.createElement("h3");
   heading.textContent = t("named");

@@ -3,7 +3,7 @@ import { button, hint } from "../../elements";
 import type { Page } from "../../page";
 import type { Panel } from "../panel";
 import { t } from "./words";
-import { named } from "./guidance";
+import { namedParts } from "./guidance";
 import "./parts.css";
 
 function build(page: Page, root: HTMLElement): void {
@@ -25,7 +25,7 @@ function build(page: Page, root: HTMLElement): void {
   });
   edit.id = "parts-edit";
   edit.className = "primary";
-  root.append(hint(t("about")), edit, told, named(page));
+  root.append(hint(t("about")), edit, told, namedParts(page));
 }
 
 export const parts: Panel = { id: "parts", title: t("title"), place: "left", open: true, build };

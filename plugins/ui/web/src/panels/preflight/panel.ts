@@ -1,17 +1,17 @@
 /** Preflight: what is safe and what will be felt, in words, with cures that change the document. */
 import { button, paragraph } from "../../elements";
-import { Editor } from "../../forms/editor";
+import { DocumentEditor } from "../../forms/editor";
 import type { Judged } from "../../server/messages";
 import type { Page } from "../../page";
 import type { Panel } from "../panel";
 import { t } from "./words";
-import { type Cure, sentence, verdicts } from "../verdicts/verdicts";
+import { type Cure, gradeSentence, verdictTables } from "../verdicts/verdicts";
 import "../verdicts/verdicts.css";
 
 type Fixed = { changes: Record<string, string | number>; safe: boolean; sentence: string } | null;
 
 function build(page: Page, root: HTMLElement): void {
-  const editor = new Editor(page);
+  const editor = new DocumentEditor(page);
   const about = paragraph(t("about"), "hint");
   const told = document.createElement("p");
   told.setAttribute("role", "status");
@@ -45,20 +45,20 @@ function build(page: Page, root: HTMLElement): void {
     judged = said;
     check.textContent = t("again");
     fix.hidden = !said.verdicts.some(({ changes }) => changes.length);
-    found.replaceChildren(...shown(said, cure));
+    found.replaceChildren(...verdictElements(said, cure));
     age();
   });
   page.hub.on("document", age);
 
   function cure(...[key, value]: Parameters<Cure>): void {
-    void editor.changed({ changes: { [key]: value } }).then((done) => (done ? work("preflight") : undefined));
+    void editor.submit({ changes: { [key]: value } }).then((done) => (done ? work("preflight") : undefined));
   }
 }
 
-function shown(said: Judged, cure: Cure): HTMLElement[] {
+function verdictElements(said: Judged, cure: Cure): HTMLElement[] {
   const device = said.device ? t("device", { device: said.device, law: said.law }) : t("ownHand", { law: said.law });
   const about = paragraph(`${device} ${t(said.of_loop ? "ofLoop" : "ofMaker")}`, "hint");
-  return [sentence(said.grade, said.sentence), about, ...verdicts(said.verdicts, cure)];
+  return [gradeSentence(said.grade, said.sentence), about, ...verdictTables(said.verdicts, cure)];
 }
 
 function fixedInWords(fixed: Fixed): string {

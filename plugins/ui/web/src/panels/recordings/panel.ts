@@ -36,7 +36,7 @@ function build(page: Page, root: HTMLElement): void {
     told.textContent = text;
     page.say(text);
   };
-  const tried = async (work: () => Promise<void>): Promise<void> => {
+  const attempt = async (work: () => Promise<void>): Promise<void> => {
     try {
       await work();
     } catch (error) {
@@ -58,10 +58,10 @@ function build(page: Page, root: HTMLElement): void {
   }
 
   async function show(path: string): Promise<void> {
-    put(await net.ask<Shown>("show_record", { path }));
+    load(await net.ask<Shown>("show_record", { path }));
   }
 
-  async function put(shown: Shown): Promise<void> {
+  async function load(shown: Shown): Promise<void> {
     const rows = await (await bulk(`/scene/${shown.digest}/ticks.f32`)).arrayBuffer();
     if (shown.columns !== COLUMNS) throw new Error(`${shown.columns} columns`);
     view.load(new Ticks(new Float32Array(rows)), shown.name);
@@ -75,33 +75,33 @@ function build(page: Page, root: HTMLElement): void {
     return paths;
   }
 
-  const record = button(t("record"), () => tried(async () => void (await net.ask("record"))));
-  const stop = button(t("stop"), () => tried(async () => void (await net.ask("stop_recording"))));
+  const record = button(t("record"), () => attempt(async () => void (await net.ask("record"))));
+  const stop = button(t("stop"), () => attempt(async () => void (await net.ask("stop_recording"))));
   stop.hidden = true;
   hub.on("recorder", ({ recording, path, ticks, why }) => {
     record.hidden = recording;
     stop.hidden = !recording;
     if (recording) say(t("recording", { path }));
     else say(why && why !== BY_HAND ? t("endedEarly", { why }) : t("kept", { path, seconds: (ticks / 1000).toFixed(1) }));
-    if (!recording) void tried(look);
+    if (!recording) void attempt(look);
   });
-  hub.on("recording", ({ path }) => void tried(() => show(path)));
-  list.ondblclick = () => void tried(() => show(chosen(1)[0]!));
+  hub.on("recording", ({ path }) => void attempt(() => show(path)));
+  list.ondblclick = () => void attempt(() => show(chosen(1)[0]!));
 
   root.append(
     record,
     stop,
     field(t("list"), list),
-    button(t("refresh"), () => tried(look)),
-    button(t("open"), () => tried(() => show(chosen(1)[0]!))),
+    button(t("refresh"), () => attempt(look)),
+    button(t("open"), () => attempt(() => show(chosen(1)[0]!))),
     button(t("tryLaw"), () =>
-      tried(async () => {
-        await put(await net.ask<Shown>("try_law", { path: chosen(1)[0] }));
+      attempt(async () => {
+        await load(await net.ask<Shown>("try_law", { path: chosen(1)[0] }));
         await look();
       }),
     ),
     button(t("compare"), () =>
-      tried(async () => {
+      attempt(async () => {
         const [path, other] = chosen(2);
         figures.replaceChildren(table(await net.ask<Record<string, number>>("compare_records", { path, other })));
       }),
@@ -112,7 +112,7 @@ function build(page: Page, root: HTMLElement): void {
   );
   let looked = false;
   hub.on("maker", () => {
-    if (!looked) void tried(look);
+    if (!looked) void attempt(look);
     looked = true;
   });
 }

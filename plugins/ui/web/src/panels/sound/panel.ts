@@ -10,11 +10,11 @@ import "./sound.css";
 
 function build(page: Page, root: HTMLElement): void {
   const heading = (text: string): HTMLElement => Object.assign(document.createElement("h3"), { textContent: text });
-  root.append(switching(page), meter(page), volume(page), voices(page), heights(page));
-  root.append(heading(t("speech")), ...speaking(page));
+  root.append(soundButton(page), meter(page), volume(page), voices(page), heights(page));
+  root.append(heading(t("speech")), ...speechControls(page));
 }
 
-function switching(page: Page): HTMLElement {
+function soundButton(page: Page): HTMLElement {
   const toggle = (): void => void page.sound.toggle().catch((error: Error) => page.say(error.message, { urgent: true }));
   const made = button(t("sound"), toggle);
   made.id = "sound-on";
@@ -42,7 +42,7 @@ function meter(page: Page): HTMLElement {
 function volume(page: Page): HTMLElement {
   const input = range({ least: 0, most: 100, step: 5 }, 100 * page.sound.volume);
   input.oninput = () => (page.sound.volume = input.valueAsNumber / 100);
-  return labelled(t("volume"), input);
+  return labelAround(t("volume"), input);
 }
 
 function voices(page: Page): HTMLElement {
@@ -76,7 +76,7 @@ function heights(page: Page): HTMLElement {
   return made;
 }
 
-function speaking(page: Page): HTMLElement[] {
+function speechControls(page: Page): HTMLElement[] {
   const { speech } = page;
   const toggle = (): void => {
     if (!speech.voice) return page.say(t("noVoice"), { asked: true });
@@ -89,7 +89,7 @@ function speaking(page: Page): HTMLElement[] {
   on("aloud", toggle);
   const rate = range(RATES, speech.rate);
   rate.onchange = () => (speech.rate = rate.valueAsNumber);
-  const rated = labelled(t("rate"), rate);
+  const rated = labelAround(t("rate"), rate);
   const hint = document.createElement("p");
   hint.className = "hint";
   const show = (): void => {
@@ -109,7 +109,7 @@ function range({ least, most, step }: { least: number; most: number; step: numbe
   return input;
 }
 
-function labelled(text: string, control: HTMLElement): HTMLElement {
+function labelAround(text: string, control: HTMLElement): HTMLElement {
   const label = document.createElement("label");
   label.append(text, control);
   return label;

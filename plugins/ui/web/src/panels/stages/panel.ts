@@ -1,9 +1,9 @@
 /** All products of the pipeline: which method makes each, what became of it, why, and how long it took. */
 import type { Page } from "../../page";
 import type { Panel } from "../panel";
-import { made } from "../../words/product_words";
+import { productName } from "../../words/product_words";
 import { t } from "./words";
-import { type Row, share, StageTable, type StateOf } from "./table";
+import { type Row, progressOf, StageTable, type StateOf } from "./table";
 import "./stages.css";
 
 const REFRESH_MS = 200;
@@ -34,20 +34,20 @@ function build(page: Page, root: HTMLElement): void {
     timer = 0;
   };
   page.hub.on("plan", (plan) => {
-    table.plan(plan);
+    table.setPlan(plan);
     show();
   });
   page.hub.on("making", ({ digest }) => {
-    table.making(digest);
+    table.start(digest);
     ended.textContent = "";
     show();
   });
   page.hub.on("stage", ({ product, method, done }) => {
-    table.stage(product, method, done, performance.now());
+    table.update(product, method, done, performance.now());
     show();
   });
   page.hub.on("made", ({ want, outcome, why }) => {
-    table.made(outcome);
+    table.end(outcome);
     ended.className = outcome === "failed" ? "bad" : "";
     if (outcome === "failed") ended.textContent = t("ended", { why });
     else if (outcome === "stopped") ended.textContent = t("endedStopped");
@@ -64,7 +64,7 @@ function line(row: Row): HTMLElement {
   head.className = "head";
   head.append(
     part("shape", SHAPES[row.state], true),
-    part("product", named(row.product)),
+    part("product", stageName(row.product)),
     part("state", t(row.state)),
     part("time", time(row, performance.now())),
   );
@@ -82,8 +82,8 @@ function line(row: Row): HTMLElement {
 
 function bar(row: Row): HTMLElement {
   const made = document.createElement("progress");
-  made.setAttribute("aria-label", t("progress", { product: named(row.product) }));
-  const done = share(row, performance.now());
+  made.setAttribute("aria-label", t("progress", { product: stageName(row.product) }));
+  const done = progressOf(row, performance.now());
   if (done !== null) made.value = done;
   return made;
 }
@@ -95,7 +95,7 @@ function progress(list: HTMLElement, table: StageTable): void {
     if (row.state !== "running") return;
     const box = list.children[at];
     box.querySelector(".time")!.textContent = time(row, now);
-    const done = share(row, now);
+    const done = progressOf(row, now);
     const made = box.querySelector("progress");
     if (made && done !== null) made.value = done;
   });
@@ -111,9 +111,9 @@ function time(row: Row, nowMs: number): string {
   return row.state === "ran" || row.state === "failed" ? t("seconds", { seconds: row.seconds.toPrecision(2) }) : "";
 }
 
-function named(product: string): string {
+function stageName(product: string): string {
   const known = PRODUCTS.find((each) => each === product);
-  return known ? t(known) : made(product);
+  return known ? t(known) : productName(product);
 }
 
 function part(name: string, said: string, hidden = false): HTMLElement {

@@ -1,5 +1,5 @@
 /** Verdicts as tables, each with what it stands on, its cure in words, and buttons that change the document. */
-import { button, headed, paragraph } from "../../elements";
+import { button, tableWithHeads, paragraph } from "../../elements";
 import type { Grade, Verdict } from "../../server/messages";
 import { t } from "./words";
 
@@ -12,16 +12,16 @@ type Setting = Verdict["changes"][number]["value"];
 export type More = (said: Verdict) => HTMLElement | null;
 
 /** What failed first; what passed is folded. */
-export function verdicts(all: Verdict[], cure: Cure, more: More = () => null): HTMLElement[] {
+export function verdictTables(all: Verdict[], cure: Cure, more: More = () => null): HTMLElement[] {
   const wrong = all.filter(({ verdict }) => verdict !== "ok");
   const fine = all.filter(({ verdict }) => verdict === "ok");
   const made = wrong.length ? [table(t("wrong"), wrong, cure, more)] : [];
   const passed = t("passed", { count: fine.length });
-  return fine.length ? [...made, folded(passed, table(passed, fine, cure, more))] : made;
+  return fine.length ? [...made, foldable(passed, table(passed, fine, cure, more))] : made;
 }
 
 /** The whole in a sentence of the program, with its shape. */
-export function sentence(grade: Grade, text: string): HTMLElement {
+export function gradeSentence(grade: Grade, text: string): HTMLElement {
   const made = paragraph("", `sentence ${grade}`);
   made.lang = "en";
   made.append(mark(grade), text);
@@ -29,7 +29,7 @@ export function sentence(grade: Grade, text: string): HTMLElement {
 }
 
 function table(caption: string, all: Verdict[], cure: Cure, more: More): HTMLElement {
-  const made = headed(caption, [t("verdict"), t("what"), t("stands")], "verdicts");
+  const made = tableWithHeads(caption, [t("verdict"), t("what"), t("stands")], "verdicts");
   const body = made.createTBody();
   const said = new Set<string>();
   /** A source, a cure or its button that several verdicts have stands at the first of them. */
@@ -70,7 +70,7 @@ function written(value: Setting): string {
   return typeof value === "string" ? value : JSON.stringify(value);
 }
 
-function folded(title: string, inside: HTMLElement): HTMLElement {
+function foldable(title: string, inside: HTMLElement): HTMLElement {
   const box = document.createElement("details");
   const heading = document.createElement("summary");
   heading.textContent = title;

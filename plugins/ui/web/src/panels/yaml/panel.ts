@@ -1,7 +1,7 @@
 /** The pipeline file on the screen, as text: to read, edit, copy, download and save. */
 import { button, field } from "../../elements";
 import { copy, download } from "../../files";
-import { Editor } from "../../forms/editor";
+import { DocumentEditor } from "../../forms/editor";
 import type { Complaint } from "../../server/messages";
 import type { Page } from "../../page";
 import type { Panel } from "../panel";
@@ -25,7 +25,7 @@ function build(page: Page, root: HTMLElement): void {
     told.textContent = words;
     page.say(words);
   };
-  const editor = new Editor(page);
+  const editor = new DocumentEditor(page);
   let timer = 0;
   let of: string | null = null;
 

@@ -155,7 +155,7 @@ export class Board {
     this.moved = this.anew = false;
     this.selected = drawing.selected;
     this.stale = EMPTY;
-    if (measuring && this.since) this.measured(this.since);
+    if (measuring && this.since) this.markShown(this.since);
     this.since = 0;
   }
 
@@ -188,7 +188,7 @@ export class Board {
     return { left: within(box.left - rim, viewport.width), top: within(box.top - rim, viewport.height), right, bottom };
   }
 
-  private measured(start: number): void {
+  private markShown(start: number): void {
     setTimeout(() => performance.measure("parts shown", { start, end: performance.now() }));
   }
 

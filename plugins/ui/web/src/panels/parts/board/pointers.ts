@@ -13,7 +13,7 @@ export interface Hears {
   lifted: () => void;
 }
 
-export function pointers(board: Board, pens: Tools, hears: Hears): void {
+export function attachPointers(board: Board, pens: Tools, hears: Hears): void {
   const { canvas } = board;
   const fingers = new Map<number, PointerEvent>();
   /** Where the picture is held; null while a tool is used. */
@@ -33,7 +33,7 @@ export function pointers(board: Board, pens: Tools, hears: Hears): void {
   });
   canvas.addEventListener("pointermove", (event) => {
     if (fingers.has(event.pointerId)) fingers.set(event.pointerId, event);
-    if (!held && pens.down && pens.tool === "select" && first && away(first, event) > STILL_PX) {
+    if (!held && pens.down && pens.tool === "select" && first && distance(first, event) > STILL_PX) {
       pens.cancel(); // the picture is dragged and not clicked
       held = middle(fingers);
     }
@@ -75,10 +75,10 @@ export function pointers(board: Board, pens: Tools, hears: Hears): void {
 function middle(fingers: Map<number, PointerEvent>): { x: number; y: number; far: number } {
   const all = [...fingers.values()];
   const mean = (of: (each: PointerEvent) => number): number => all.reduce((sum, each) => sum + of(each), 0) / all.length;
-  return { x: mean((each) => each.clientX), y: mean((each) => each.clientY), far: all[1] ? away(all[0]!, all[1]) : 0 };
+  return { x: mean((each) => each.clientX), y: mean((each) => each.clientY), far: all[1] ? distance(all[0]!, all[1]) : 0 };
 }
 
-const away = (a: PointerEvent, b: PointerEvent): number => Math.hypot(a.clientX - b.clientX, a.clientY - b.clientY);
+const distance = (a: PointerEvent, b: PointerEvent): number => Math.hypot(a.clientX - b.clientX, a.clientY - b.clientY);
 
 /** All places since the last event, which a screen drawn 60 times a second passes over. */
 function all(event: PointerEvent): PointerEvent[] {

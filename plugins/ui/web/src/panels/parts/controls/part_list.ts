@@ -18,16 +18,16 @@ export class PartList {
   /** Whether a part is felt as it is drawn; which parts touch the selected one; hears which one was selected, and moved. */
   isFelt: (label: number) => boolean = () => true;
   neighbours: Part[] = [];
-  chose: (label: number) => void = () => undefined;
-  ordered: () => void = () => undefined;
-  joined: (label: number) => void = () => undefined;
+  onSelect: (label: number) => void = () => undefined;
+  onReorder: () => void = () => undefined;
+  onJoin: (label: number) => void = () => undefined;
   private rows = new Map<number, HTMLLIElement>();
   private height = input("parts-height", "range");
   private exact = input("parts-height-mm", "number");
   private material = select("parts-material");
   private other = select("parts-join");
   private later = hint(t("feltLater"));
-  private join = button(t("join"), () => this.other.value && this.joined(Number(this.other.value)));
+  private join = button(t("join"), () => this.other.value && this.onJoin(Number(this.other.value)));
   private complaints = new Map<HTMLElement, HTMLElement>();
   private dragged = false;
 
@@ -42,7 +42,7 @@ export class PartList {
     this.list.addEventListener("keydown", (event) => this.key(event));
     this.list.addEventListener("click", ({ target }) => {
       const label = (target as HTMLElement).closest("li")?.dataset.label;
-      if (label !== undefined) this.chose(Number(label));
+      if (label !== undefined) this.onSelect(Number(label));
     });
     this.material.add(new Option(t("byRules"), ""));
     for (const each of materials) this.material.add(new Option(each, each));
@@ -69,7 +69,7 @@ export class PartList {
     this.name.addEventListener("keydown", (event) => event.key === "Enter" && this.list.focus());
     this.height.addEventListener("input", () => this.raise(this.height.valueAsNumber / MM, true));
     this.exact.addEventListener("input", () => this.raise(this.exact.valueAsNumber / MM, true));
-    for (const each of [this.name, this.height, this.exact]) each.addEventListener("change", () => this.ended());
+    for (const each of [this.name, this.height, this.exact]) each.addEventListener("change", () => this.endDrag());
     this.material.addEventListener("change", () => this.set({ material: this.material.value || null }));
     const order = document.createElement("div");
     order.className = "buttons";
@@ -189,7 +189,7 @@ export class PartList {
   }
 
   /** The drag is over: what moved to the front in it moves in the list. */
-  private ended(): void {
+  private endDrag(): void {
     this.dragged = false;
     this.drawing.history.endGesture();
     this.show();
@@ -197,7 +197,7 @@ export class PartList {
 
   private order(by: number): void {
     this.drawing.order(this.drawing.selected, by);
-    this.ordered();
+    this.onReorder();
   }
 
   private key(event: KeyboardEvent): void {
@@ -209,7 +209,7 @@ export class PartList {
     else if (key === "ArrowLeft" || key === "ArrowRight") {
       const step = STEPS_M[ctrlKey ? "coarse" : shiftKey ? "fine" : "usual"];
       this.nudge(key === "ArrowRight" ? step : -step);
-    } else if (key in walk) this.chose(all[Math.max(0, Math.min(all.length - 1, walk[key]!))]!);
+    } else if (key in walk) this.onSelect(all[Math.max(0, Math.min(all.length - 1, walk[key]!))]!);
     else if (key === "Enter") this.name.select();
     else return;
     event.preventDefault();
@@ -220,7 +220,7 @@ export class PartList {
     if (!part) return;
     const height = Math.round(1e5 * (part.height_m + by)) / 1e5;
     this.raise(Math.max(0, Math.min(Number(this.exact.max) / MM, height)), false);
-    this.ordered();
+    this.onReorder();
   }
 }
 

@@ -11,7 +11,7 @@ const MOST_MM = { round_m: 100, bulge_m: 10, detail_m: 10 };
 export class PictureFields {
   readonly elements: HTMLElement[];
   /** Called when the shape of the parts changed. */
-  shaped: () => void = () => undefined;
+  onShape: () => void = () => undefined;
   private shapes: HTMLInputElement[];
 
   constructor(private state: EditorState) {
@@ -45,7 +45,7 @@ export class PictureFields {
       if (!box.checkValidity()) return this.state.setDetails({});
       const metres = Math.round((1e5 * (box.valueAsNumber || 0)) / MM) / 1e5;
       this.state.setDetails({ heights: { ...details.heights, [name]: metres } });
-      this.shaped();
+      this.onShape();
     });
     return box;
   }

@@ -40,11 +40,11 @@ export class Tools {
   /** Return how many pixels of the picture a CSS pixel covers. */
   scale: () => number = () => 1;
   /** Called with the reason if something did not work. */
-  failed: (why: Fault | Error) => void = () => undefined;
+  onFailure: (why: Fault | Error) => void = () => undefined;
   /** Hears that the program is looking for something, or has looked. */
-  waits: (busy: boolean) => void = () => undefined;
+  onWait: (busy: boolean) => void = () => undefined;
   /** Hears which part was pointed at. */
-  chose: (label: number) => void = () => undefined;
+  onSelect: (label: number) => void = () => undefined;
 
   constructor(
     private drawing: Drawing,
@@ -79,7 +79,7 @@ export class Tools {
     try {
       await this[this.tool](line);
     } catch (error) {
-      this.failed(error as Error);
+      this.onFailure(error as Error);
     }
   }
 
@@ -109,7 +109,7 @@ export class Tools {
 
   private select([at]: Point[]): void {
     const label = labelAt(this.drawing.labels, ...at!);
-    if (label >= 0) this.chose(label);
+    if (label >= 0) this.onSelect(label);
   }
 
   private brush(): void {
@@ -120,7 +120,7 @@ export class Tools {
     const { columns, rows } = this.drawing.labels;
     const outline = this.snaps && line.length > 2 ? await this.wait(this.requests.snap(line, REACH_PX * this.scale())) : line;
     const spans = fillOutline(outline, columns, rows);
-    if (!spans.length) return this.failed("notPainted");
+    if (!spans.length) return this.onFailure("notPainted");
     if (this.drawing.proposed) return this.drawing.correct(spans, !this.erases);
     this.drawing.begin(this.target);
     this.drawing.paint(spans);
@@ -138,18 +138,18 @@ export class Tools {
     const met = new Map<number, number>();
     for (const at of linePixels(line, labels)) met.set(labels.data[at]!, (met.get(labels.data[at]!) ?? 0) + 1);
     const most = [...met].sort((a, b) => b[1] - a[1])[0]?.[0] ?? selected;
-    if (!this.drawing.split(met.has(selected) ? selected : most, line)) this.failed("notSplit");
+    if (!this.drawing.split(met.has(selected) ? selected : most, line)) this.onFailure("notSplit");
   }
 
   private join([at]: Point[]): void {
     const label = labelAt(this.drawing.labels, ...at!);
     if (label < 0) return;
-    if (!this.drawing.join(label, this.drawing.selected)) this.failed("notJoined");
+    if (!this.drawing.join(label, this.drawing.selected)) this.onFailure("notJoined");
   }
 
   private finish(changed: boolean): void {
     if (changed) this.newPart = false;
-    else this.failed("nothingChanged");
+    else this.onFailure("nothingChanged");
   }
 
   private attempt(act: () => void): void {
@@ -157,16 +157,16 @@ export class Tools {
       act();
     } catch (error) {
       this.down = false;
-      this.failed(error as Error);
+      this.onFailure(error as Error);
     }
   }
 
   private async wait<T>(work: Promise<T>): Promise<T> {
-    this.waits((this.busy = true));
+    this.onWait((this.busy = true));
     try {
       return await work;
     } finally {
-      this.waits((this.busy = false));
+      this.onWait((this.busy = false));
     }
   }
 }

@@ -24,7 +24,7 @@ export class Drawing {
   proposed: Mask | null = null;
   readonly history = new History();
   /** Called with the box of pixels that look different, and whether parts changed too. */
-  changed: (box: Box, parts: boolean) => void = () => undefined;
+  onChange: (box: Box, parts: boolean) => void = () => undefined;
   private counts: Uint32Array;
   private next: number;
   private stroke: { patch: Patch; label: number; box: Box; isNew: boolean } | null = null;
@@ -53,7 +53,7 @@ export class Drawing {
     const after = this.parts.map((each) => ({ ...each, ...changes.get(each.label) }));
     if (this.history.extend(gesture, after)) {
       this.parts = after;
-      this.changed(EMPTY, true);
+      this.onChange(EMPTY, true);
     } else this.record({ patch: null, box: EMPTY, after, to: this.selected, gesture });
   }
 
@@ -75,7 +75,7 @@ export class Drawing {
     stroke.patch.paint(this.labels, spans, stroke.label);
     const box = boundingBox(spans);
     stroke.box = union(stroke.box, box);
-    this.changed(box, false);
+    this.onChange(box, false);
   }
 
   /** End the stroke as one step; return whether it changed a pixel. */
@@ -95,7 +95,7 @@ export class Drawing {
     this.stroke = null;
     if (!stroke) return;
     stroke.patch.undo(this.labels.data);
-    this.changed(stroke.box, false);
+    this.onChange(stroke.box, false);
   }
 
   propose(proposal: Proposal): void {
@@ -108,7 +108,7 @@ export class Drawing {
   correct(spans: Span[], on: boolean): void {
     if (!this.proposed || !spans.length) return;
     this.proposed.put(spans, on);
-    this.changed(boundingBox(spans), false);
+    this.onChange(boundingBox(spans), false);
   }
 
   /** Add the proposal to a part, or make it a new one (null); return whether that changed a pixel. */
@@ -118,14 +118,14 @@ export class Drawing {
     this.proposed = null;
     this.begin(label);
     this.paint([...mask.spans()]);
-    this.changed(mask.box, false);
+    this.onChange(mask.box, false);
     return this.end();
   }
 
   discard(): void {
     const mask = this.proposed;
     this.proposed = null;
-    if (mask) this.changed(mask.box, false);
+    if (mask) this.onChange(mask.box, false);
   }
 
   /** Merge a part into another; return whether both exist and differ. */
@@ -213,7 +213,7 @@ export class Drawing {
   private show(parts: readonly Part[], selected: number, box: Box): void {
     this.parts = parts;
     this.selected = selected;
-    this.changed(box, true);
+    this.onChange(box, true);
   }
 
   private count({ patch }: Step, sign: 1 | -1): void {

@@ -36,7 +36,7 @@ export class History {
     return this.done.length;
   }
 
-  get saved(): boolean {
+  get isSaved(): boolean {
     return this.done.length === this.savedAt;
   }
 
@@ -63,7 +63,7 @@ export class History {
   /** Extend the last step if it is part of this gesture; return whether it is. */
   extend(gesture: string, after: readonly Part[]): boolean {
     const last = this.done.at(-1);
-    if (!gesture || last?.gesture !== gesture || this.saved) return false;
+    if (!gesture || last?.gesture !== gesture || this.isSaved) return false;
     last.after = after;
     this.undone = [];
     return true;

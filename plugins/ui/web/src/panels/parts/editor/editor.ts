@@ -1,6 +1,6 @@
 /** The parts editor: the picture with the borders of its parts, in place of the page's columns. */
 import type { Page } from "../../../page";
-import { letters, pressed } from "../../../shortcuts";
+import { letters, keyName } from "../../../shortcuts";
 import { type Action, actionOf } from "./keys";
 import { type Opened, openParts, proposePart, snapOutline } from "./requests";
 import { Saving } from "./saving";
@@ -45,7 +45,7 @@ class Editor {
     });
     this.view = new EditorView(this.state, scene.picture, materials, { save: () => this.saving.save(), close: () => this.close() });
     this.saving = new Saving(this.state, net, () => this.view.fields.reportValidity());
-    this.view.fields.shaped = () => this.saving.update();
+    this.view.fields.onShape = () => this.saving.update();
     announce(this.state, (text, options) => page.say(text, options));
     this.view.root.addEventListener("keydown", (event) => this.key(event));
     window.addEventListener("beforeunload", this.leaving);
@@ -65,7 +65,7 @@ class Editor {
     if (event.isComposing || event.defaultPrevented) return;
     const target = event.target as HTMLElement;
     const where = { typing: target.matches(TYPING), onPicture: target === this.view.board.canvas, letters: letters.everywhere };
-    const action = actionOf(pressed(event), event, where);
+    const action = actionOf(keyName(event), event, where);
     if (!action) return;
     event.preventDefault();
     this.act(action);

@@ -1,6 +1,6 @@
 /** Parts in words: their names, heights, sizes and places. */
 import { t } from "./words";
-import { ninth } from "../../../words/place_words";
+import { ninthOfPicture } from "../../../words/place_words";
 import { decimal } from "../../../words/words";
 import type { Part } from "../drawing/drawing";
 import type { Labels } from "../pixels/labels";
@@ -13,4 +13,4 @@ export const heightOf = ({ height_m, automatic }: Part): string =>
 
 export const shareOf = (share: number): string => t("percent", { share: decimal(100 * share, share < 0.01 ? 2 : share < 0.1 ? 1 : 0) });
 
-export const placeOf = ({ at: [x, y] }: Place, { columns, rows }: Labels): string => ninth(x / columns, y / rows);
+export const placeOf = ({ at: [x, y] }: Place, { columns, rows }: Labels): string => ninthOfPicture(x / columns, y / rows);

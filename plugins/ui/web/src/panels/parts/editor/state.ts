@@ -86,14 +86,14 @@ export class EditorState {
     this.tools.width = Math.max(1, Math.round(Math.max(labels.columns, labels.rows) / FIRST_BRUSHES));
     this.tools.newPart = parts.length === 1;
     this.baseline = this.update({ heights_m: [], materials: [], heights: {} });
-    this.drawing.changed = (box, partsToo) => this.onDrawing(box, partsToo);
-    this.tools.failed = (why) => this.fail(why);
-    this.tools.waits = (busy) => (busy ? this.notify("proposing", false) : this.clearNotice());
-    this.tools.chose = (label) => this.select(label);
+    this.drawing.onChange = (box, partsToo) => this.onDrawing(box, partsToo);
+    this.tools.onFailure = (why) => this.fail(why);
+    this.tools.onWait = (busy) => (busy ? this.notify("proposing", false) : this.clearNotice());
+    this.tools.onSelect = (label) => this.select(label);
   }
 
   get isSaved(): boolean {
-    return this.drawing.history.saved && this.detailsSaved;
+    return this.drawing.history.isSaved && this.detailsSaved;
   }
 
   /** Return the number of a part in the file. */

@@ -1,9 +1,9 @@
 /** The elements of the parts editor: they show its state and change with it. */
-import { button, headed } from "../../../elements";
+import { button, tableWithHeads } from "../../../elements";
 import { t as frame } from "../../../frame/words";
 import { caps } from "../../help/key_caps";
 import { Board } from "../board/board";
-import { pointers } from "../board/pointers";
+import { attachPointers } from "../board/pointers";
 import { PartList } from "../controls/part_list";
 import { foldable, PictureFields } from "../controls/picture_fields";
 import { Toolbar } from "../controls/toolbar";
@@ -111,12 +111,12 @@ export class EditorView {
 
   private listen(): void {
     const { state, board, list } = this;
-    list.chose = (label) => state.select(label);
-    list.joined = (label) => state.join(label);
-    list.ordered = () => state.events.tell("reordered", null);
+    list.onSelect = (label) => state.select(label);
+    list.onJoin = (label) => state.join(label);
+    list.onReorder = () => state.events.tell("reordered", null);
     list.numberOf = (label) => state.numberOf(label);
     list.isFelt = (label) => state.isFelt(label);
-    pointers(board, state.tools, {
+    attachPointers(board, state.tools, {
       moved: (at, event) => this.showPointer(at, event.pointerType !== "touch"),
       lifted: () => state.lifted(),
     });
@@ -169,7 +169,7 @@ export class EditorView {
 }
 
 function keyTable(): HTMLTableElement {
-  const table = headed(t("keys"), [t("key"), t("does")], "keys");
+  const table = tableWithHeads(t("keys"), [t("key"), t("does")], "keys");
   const body = table.createTBody();
   for (const [name, keys] of Object.entries(KEYS)) {
     const row = body.insertRow();

@@ -1,4 +1,4 @@
-/** Native elements, made in one line. */
+/** Native elements, created in one line. */
 
 export function button(text: string, press: () => unknown): HTMLButtonElement {
   const made = document.createElement("button");
@@ -23,12 +23,12 @@ export function paragraph(text: string, className = ""): HTMLParagraphElement {
   return Object.assign(document.createElement("p"), { className, textContent: text });
 }
 
-/** What helps to understand a control, in small letters. */
+/** Return a hint under a control, in small letters. */
 export function hint(text: string): HTMLParagraphElement {
   return paragraph(text, "hint");
 }
 
-/** A table with its headings and no rows; its title is for who does not see where it stands. */
+/** Return a table with headings and no rows; its title is for screen readers alone. */
 export function tableWithHeads(title: string, heads: string[], className: string): HTMLTableElement {
   const table = document.createElement("table");
   table.className = className;

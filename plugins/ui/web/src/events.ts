@@ -27,6 +27,6 @@ export interface PageEvents extends Events {
   sound: { on: boolean };
   /** Speech was switched, or has another voice ("": none). */
   aloud: { on: boolean; voice: string };
-  /** Whether a screen reader reads every line of the log. */
+  /** True if a screen reader reads every line of the log. */
   "read log": { on: boolean };
 }

@@ -1,4 +1,4 @@
-/** The page: its parts are put together here. */
+/** Composition of the page: creates its parts and connects them. */
 import "./app.css";
 import { Announcer, liveRegions } from "./speech/announcer";
 import { buildRegions } from "./frame/regions";
@@ -66,7 +66,7 @@ const page: Page = {
 
 measure(page);
 hub.on("hello", ({ history, scene }) => {
-  // After a connection that was lost, what was heard before is not heard again; and what is long over is not said.
+  // after a lost connection, known messages are not announced again, and old ones not at all
   announcer.muted = true;
   const all = [...history, ...(scene ? [{ ...scene, event: "scene" as const }] : [])].sort((a, b) => a.at_s - b.at_s);
   for (const each of all) if (each.at_s > net.heard_s) hub.tell(each.event, each as never);
@@ -85,7 +85,7 @@ hub.on("scene", async (meta) => {
   newest = meta.digest;
   try {
     const loaded = await loadScene(meta);
-    if (newest !== meta.digest) return; // another one was made meanwhile
+    if (newest !== meta.digest) return; // a newer surface was computed meanwhile
     page.scene = loaded;
     hub.tell("shown", loaded);
   } catch (error) {
@@ -104,5 +104,5 @@ showGraphicsTrouble(page);
 build(page, panels);
 dataCursor(page);
 new Frames(page);
-requestAnimationFrame(() => setTimeout(() => view.prepare(recallSettings()))); // once the page itself is to be seen
-if (measuring) Object.assign(window, { Instrument, stroke }); // what tests look into
+requestAnimationFrame(() => setTimeout(() => view.prepare(recallSettings()))); // after the first paint
+if (measuring) Object.assign(window, { Instrument, stroke }); // for tests

@@ -1,7 +1,7 @@
-/** What the parts of the page need of one another, as small interfaces; main.ts puts the parts behind them.
+/** Interfaces by which the parts of the page know one another; main.ts puts the parts behind them.
  *
- * A part takes as few of these as it uses, `Pick<Page, "hub" | "scene">`; a panel takes them all. No part imports the class
- * of another for its type: a test fails for a circle of imports. */
+ * A part takes as few of these as it uses, `Pick<Page, "hub" | "scene">`; a panel takes them all. No part imports the
+ * class of another for its type: a test fails for a circle of imports. */
 import type { Object3D, PerspectiveCamera } from "three";
 import type { Reading } from "./contact/reading";
 import type { Theme } from "./frame/themes";
@@ -29,7 +29,7 @@ export interface Server {
   feel(): Promise<void>;
 }
 
-/** The hand's own line to the server. */
+/** The hand's connection to the server. */
 export interface Pointer {
   /** Send where the hand is wanted, metres, and which buttons are down. */
   point(hand: Vec, buttons: number): void;
@@ -92,7 +92,7 @@ export interface PointerTool {
 /** The layer over the surface: the contact, labels and tools. */
 export interface Overlay {
   readonly settings: OverlaySettings;
-  /** The newest reading of a state; null while there is no state. */
+  /** The latest reading of a state; null while there is no state. */
   readonly live: Reading | null;
   /** Set to have the next frame draw the overlay again. */
   changed: boolean;
@@ -163,7 +163,7 @@ export interface Page {
   readonly sound: Sound;
   readonly speech: Speech;
   readonly themes: Themes;
-  /** Resolves when the server has time for requests that nobody waits for (server/idle.ts). */
+  /** Resolved once the server has time for low-priority requests (server/idle.ts). */
   readonly idle: Promise<void>;
   /** Announce a text in a live region, and aloud if speech is on (speech/announcer.ts). */
   say(text: string, options?: Announcement): void;

@@ -1,6 +1,4 @@
-/**
- * Whether the contact sticks or slips, from what can be seen of it: how it moves along the surface, and how much of the
- * force is tangential.
+/** State of the contact, sticking or slipping, from its motion along the surface and the tangential part of the force.
  *
  * The contact is the proxy where the law has one, else the surface above the hand. Its speed along the surface is taken
  * between two states and smoothed over SMOOTH_S. It counts as moving above MOVES_M_PER_S and until it is below
@@ -9,8 +7,7 @@
  * - moving, and T opposes the motion with at least half of dynamic friction times N: it slips;
  * - moving otherwise: it glides, as there is no friction to speak of;
  * - at rest, and T is over HELD_SHARE of N: it sticks, as friction holds what pulls at it;
- * - at rest otherwise: it rests, as nothing pulls at it.
- */
+ * - at rest otherwise: it rests, as nothing pulls at it. */
 import type { Vec } from "../server/protocol";
 import { tangential, dot, length, minus } from "./vectors";
 
@@ -22,10 +19,10 @@ export const RESTS_M_PER_S = 0.0015;
 export const SMOOTH_S = 0.05;
 export const HELD_SHARE = 0.05;
 const LEAST_N = 0.02;
-/** States farther apart say nothing of a speed. */
+/** Longest time between two states from which a speed is taken. */
 const LONGEST_S = 0.25;
 
-/** One state, as the rule needs it. */
+/** A state as input of the rule. */
 export interface ContactSample {
   touching: boolean;
   atMs: number;
@@ -35,10 +32,10 @@ export interface ContactSample {
   dynamicFriction: number;
 }
 
-/** Follows a contact from state to state. */
+/** The rule that follows a contact from state to state. */
 export class GripRule {
   grip: Grip = "apart";
-  /** Along the surface. */
+  /** Speed along the surface. */
   speedMPerS = 0;
   private velocity: Vec = [0, 0, 0];
   private before: ContactSample | null = null;

@@ -1,16 +1,16 @@
-/** The values of the data cursor: as rows of words, as text, and as JSON. */
+/** Values of the data cursor: as rows of words, as text, and as JSON. */
 import type { Vec } from "../server/protocol";
 import { t } from "../overlay/words";
 import { LIMITS } from "./limits";
 import type { Reading, SurfacePlace } from "./reading";
 
-/** A name, and one value or three. */
+/** A row: a name, and one value or three. */
 export type Row = [name: string, ...values: string[]];
 
 const NONE = "–";
 const MM = 1000;
 
-/** A number of fixed width after the point; never a minus before zero. */
+/** Return a number with fixed digits; never a minus before zero. */
 export function formatFixed(value: number, digits: number): string {
   if (!Number.isFinite(value)) return NONE;
   const text = value.toFixed(digits);
@@ -49,7 +49,7 @@ const limitsOf = (live: Reading) => LIMITS.filter(({ bit }) => live.state.flags 
 
 export const asText = (found: Row[]): string => found.map(([name, ...values]) => `${name}\t${values.join("\t")}`).join("\n");
 
-/** Metres, newtons, metres per second. */
+/** Return the values as JSON, in metres, newtons, metres per second. */
 export function asJson(live: Reading | null, pointer: SurfacePlace | null): string {
   const held = live?.seen ? live : null;
   const place = pointer && { at_m: pointer.at, normal: pointer.normal, material: pointer.material?.name ?? null, part: pointer.part, part_name: pointer.name || null };

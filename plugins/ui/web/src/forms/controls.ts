@@ -1,4 +1,4 @@
-/** Native controls for values of every kind. A control shows a value, and says when a person gives it another. */
+/** Native controls for values of every kind. A control shows a value and reports changes by a person. */
 import { button } from "../elements";
 import { t } from "./words";
 import { type Kind, type Option, step } from "./kinds";
@@ -7,16 +7,16 @@ import { asText, fits, isMap, setInside, same, type FieldChange, typedNumber, ty
 
 export interface Control {
   root: HTMLElement;
-  /** What has the label, and to which a complaint leads. */
+  /** The labelled element, to which a complaint leads. */
   main: HTMLElement;
-  /** Show a value, unless somebody is typing here; whether the document says it, or it is the default. */
+  /** Show a value, unless it is being edited. isSet: the document has it, else it is the default. */
   show(value: Plain | undefined, isSet: boolean): void;
 }
 
-/** inside: where within the value, if it is not the whole. */
+/** Reports a change. inside: path within the value, if it is not the whole. */
 export type Tell = (said: FieldChange, inside?: string[]) => void;
 
-/** What is between a block's options and the page: a row with label and help around a control. */
+/** Builds a row with label and help around a control. */
 export type Row = (option: Option, id: string, tell: Tell) => { root: HTMLElement; show: Control["show"] };
 
 export function control(kind: Kind, id: string, tell: Tell, row: Row): Control {
@@ -42,7 +42,7 @@ export function control(kind: Kind, id: string, tell: Tell, row: Row): Control {
   }
 }
 
-/** The control of a kind; for a value that it cannot show, a field of YAML takes its place. */
+/** Return the control of a kind; a field of YAML replaces it for a value that it cannot show. */
 export function controlOrYaml(kind: Kind, id: string, tell: Tell, row: Row): Control {
   let shown = control(kind, id, tell, row);
   let inYaml = kind.kind === "yaml";
@@ -110,7 +110,7 @@ function number(kind: Kind & { kind: "number" }, id: string, tell: Tell): Contro
   return made;
 }
 
-/** One line of text; it is told when it is left, or on Enter, and not overwritten while it is typed in. */
+/** Return a line of text; reported when left or on Enter, and not overwritten while typing. */
 function text(id: string, typed: (text: string, input: HTMLInputElement) => void, isYaml = false): Control {
   const input = document.createElement("input");
   input.id = id;
@@ -130,7 +130,7 @@ function text(id: string, typed: (text: string, input: HTMLInputElement) => void
   });
   input.addEventListener("blur", () => {
     typing = false;
-    if (!input.value && !input.validity.badInput) show(shown); // nothing: the default, which is shown
+    if (!input.value && !input.validity.badInput) show(shown); // empty: the default is shown
   });
   input.addEventListener("keydown", (event) => {
     if (event.key !== "Escape" || !typing) return;

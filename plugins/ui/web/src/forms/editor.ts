@@ -1,4 +1,4 @@
-/** The one way in which forms change the document: by key, applied at once where that is wished. */
+/** Changes of the document by forms, applied at once if the person chose that. */
 import type { Document } from "../server/messages";
 import type { Page } from "../page";
 import { isLabels } from "./section";
@@ -8,12 +8,12 @@ import { at, type Edit } from "./values";
 const KEPT = "apply-at-once";
 
 export class DocumentEditor {
-  /** Refusals, in the server's words. */
+  /** Called with the server's text if an edit is refused. */
   onRefused: (why: string) => void = () => undefined;
 
   constructor(private page: Pick<Page, "net" | "document">) {}
 
-  /** Whether what needs no slow stage is made and felt as soon as it was edited. */
+  /** The setting that changes without a slow stage take effect at once. */
   get apply(): boolean {
     try {
       return localStorage.getItem(KEPT) !== "no";
@@ -26,7 +26,7 @@ export class DocumentEditor {
     try {
       localStorage.setItem(KEPT, wished ? "yes" : "no");
     } catch {
-      return; // then it holds for this page's life alone
+      return; // without storage the setting lasts as long as the page
     }
   }
 
@@ -34,7 +34,7 @@ export class DocumentEditor {
     void this.submit(edit);
   }
 
-  /** Whether it was taken. */
+  /** Submit an edit; return whether it was accepted. */
   submit(edit: Edit): Promise<boolean> {
     return this.ask("set", { ...expandMaterials(edit, this.page.document) });
   }
@@ -54,7 +54,7 @@ export class DocumentEditor {
   }
 }
 
-/** A map from label to material in short (`materials: {0: ice}`) has no room for other keys: it is spelt out first. */
+/** Return an edit of materials in short form (`materials: {0: ice}`) with the block expanded first, so that other keys fit. */
 export function expandMaterials(edit: Edit, document: Document | null): Edit {
   const labels = at(document?.said, ["materials"]);
   const keys = [...Object.keys(edit.changes ?? {}), ...Object.keys(edit.written ?? {})];

@@ -1,4 +1,4 @@
-/** A row of a form: name, control, unit, help, the way back to the default, and what the check complains of. */
+/** A row of a form: name, control, unit, help, reset to the default, and complaint. */
 import { button } from "../elements";
 import { t } from "./words";
 import { type Row, controlOrYaml } from "./controls";
@@ -6,14 +6,14 @@ import { formatRange, type Kind, type Option } from "./kinds";
 import type { Plain } from "./schema";
 import { asText } from "./values";
 
-/** Of the fields of all forms; what follows is the key, as in "field:render.stiffness_n_per_m". */
+/** Prefix of the fields' ids; the key follows, as in "field:render.stiffness_n_per_m". */
 export const FIELD = "field:";
 
-/** Of the list of the library's names, which the panel of materials keeps. */
+/** Id of the list of the library's names, which the materials panel fills. */
 export const LIBRARY = "materials-library";
 const MATERIAL = /^materials\..*\b(default|material)$|^render\.material$/;
 
-/** What counts where the document says nothing, which may depend on the scene. */
+/** Returns the value of a key that the document does not set, which may depend on the scene. */
 export type DefaultOf = (key: string) => Plain | undefined;
 
 export function rows(defaultOf: DefaultOf): Row {
@@ -51,7 +51,7 @@ export function rows(defaultOf: DefaultOf): Row {
   return row;
 }
 
-/** Every control of a row tells what helps with it. */
+/** Connect each control of a row with its help and complaint. */
 function describe(box: HTMLElement, id: string): void {
   if (MATERIAL.test(id.slice(FIELD.length))) box.querySelector("input")?.setAttribute("list", LIBRARY);
   for (const each of box.querySelectorAll(":scope > .control :is(input, select), :scope > .control > .group > button")) {

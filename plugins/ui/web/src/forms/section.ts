@@ -1,4 +1,4 @@
-/** The form of one part of the file: which method, and its options, the rarer ones folded. */
+/** Form of a section of the file: method and options, rarer ones folded. */
 import type { Document } from "../server/messages";
 import { t } from "./words";
 import { FIELD, rows } from "./rows";
@@ -37,7 +37,7 @@ export class SectionForm {
     if (!section.methods.length) this.build(null, section.options);
   }
 
-  /** What the document says now; a control that is typed in keeps what is typed. */
+  /** Show the document; a control being edited keeps its text. */
   show(document: Document): void {
     this.said = document;
     const said = this.block(document);
@@ -120,7 +120,7 @@ export class SectionForm {
   }
 }
 
-/** Whether a block of materials is a map from label to material, written in short. */
+/** Return whether a block of materials is a short map from label to material. */
 export function isLabels(block: Plain | undefined): boolean {
   return isMap(block) && Object.keys(block).some((key) => /^\d+$/.test(key));
 }

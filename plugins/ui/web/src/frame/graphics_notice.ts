@@ -1,4 +1,4 @@
-/** Why nothing is drawn, over the place where it would be. */
+/** A notice over the canvas that says why nothing is drawn. */
 import "./graphics_notice.css";
 import type { Page } from "../page";
 import type { Trouble } from "../view/view";

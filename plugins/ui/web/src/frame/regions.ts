@@ -5,13 +5,13 @@ import { t } from "./words";
 import { speak, language, LANGUAGES } from "../words/words";
 import { THEMES, type Theme } from "./themes";
 
-/** Ids of the regions in the order in which F6 visits them, and of what takes the focus there. */
+/** Ids of the regions in the order of F6, and of the elements that take the focus there. */
 const REGIONS = { main: "terrain", left: "left", right: "right", bottom: "bottom", head: "head", "parts-editor": "parts-picture" } as const;
 type Region = keyof typeof REGIONS;
 
 const regions = Object.keys(REGIONS) as Region[];
 const element = (id: string): HTMLElement => document.getElementById(id)!;
-/** Those that are there now: the editor of parts takes the place of the columns. */
+/** Return the visible regions: the parts editor replaces the columns. */
 const visibleRegions = (): Region[] => regions.filter((each) => document.getElementById(each)?.checkVisibility());
 
 export function buildRegions(page: Pick<Page, "hub" | "themes">): void {
@@ -34,14 +34,14 @@ function skipLinks(): void {
     link.href = `#${REGIONS[region]}`;
     link.textContent = t(region);
     link.onclick = (event) => {
-      event.preventDefault(); // the address keeps the key alone
+      event.preventDefault(); // the address must not change
       element(REGIONS[region]).focus();
     };
     skip.append(link);
   }
 }
 
-/** To the next region that is there; where its focus was last, if it was there before. */
+/** Last focused element of each region. */
 const last = new Map<Region, HTMLElement>();
 
 function focusRegion(by: number): void {
@@ -61,7 +61,7 @@ function chooseTheme(themes: Page["themes"]): void {
   choice.onchange = () => themes.choose(choice.value as Theme);
 }
 
-/** The button names the other language in that language. */
+/** Label the button with the other language's own name. */
 function switchLanguage(): void {
   const other = LANGUAGES.find((each) => each !== language)!;
   const button = element("language");

@@ -1,12 +1,12 @@
-/** The lines between regions: dragged, or moved by the arrow keys, they make a region wider; it stays so. */
+/** Splitters between regions, moved by the pointer or the arrow keys; the sizes are kept. */
 import { recall, remember } from "../preferences";
 import { t } from "./words";
 
 interface Split {
-  /** Which region it sizes, by the token --left, --right, --bottom. */
+  /** The region that it sizes, by the token --left, --right, --bottom. */
   region: "left" | "right" | "bottom";
   upright: boolean;
-  /** 1 if the region grows to the right or down. */
+  /** 1 if the region grows to the right or down, else -1. */
   way: 1 | -1;
 }
 
@@ -24,7 +24,7 @@ export function buildSplitters(): void {
   for (const split of SPLITS) splitters.push(new Splitter(split));
 }
 
-/** Sizes of all regions as the page chooses them. */
+/** Reset the sizes of all regions. */
 export function resetSizes(): void {
   for (const { region } of SPLITS) {
     remember(region, 0);
@@ -32,7 +32,7 @@ export function resetSizes(): void {
   }
 }
 
-/** All regions larger or smaller by some steps. */
+/** Enlarge all regions by some steps; shrink them if negative. */
 export function resize(steps: number): void {
   for (const line of splitters) line.step(4 * steps);
 }

@@ -1,4 +1,4 @@
-/** The head of the page: what goes on, the stop button, and who holds the hand. */
+/** The header: status line, stop button, and button for the hand. */
 import type { Page } from "../page";
 import { on } from "../shortcuts";
 import { t } from "./words";
@@ -9,7 +9,7 @@ type What = "idle" | "busy" | "felt" | "stopped" | "error";
 
 export class Status {
   private line = document.getElementById("status")!;
-  /** What is so while nothing is made: forces are given, or not. */
+  /** Status while nothing is computed: forces on or off. */
   private rest: "idle" | "felt" = "idle";
 
   constructor(private page: Pick<Page, "hub" | "net" | "say" | "forget">) {
@@ -67,12 +67,12 @@ export class Status {
   private show(what: What, text: string, topic = what === "error" ? text : "status"): void {
     this.line.dataset.state = what;
     this.line.textContent = text;
-    this.line.lang = what === "error" && topic !== "gone" ? "en" : language; // the program's own words are English
+    this.line.lang = what === "error" && topic !== "gone" ? "en" : language; // the program's texts are English
     this.page.say(text, { topic, urgent: what === "error" || what === "stopped" });
     this.reach();
   }
 
-  /** A text that is longer than its place is scrolled, by the keyboard as well. */
+  /** Make a text longer than its place reachable, so that the keyboard scrolls it. */
   private reach(): void {
     const { line } = this;
     if (line.scrollHeight > line.clientHeight) line.tabIndex = 0;

@@ -1,19 +1,19 @@
-/** The game pad: the left stick moves the hand, the right trigger presses; what it feels shakes the pad. */
+/** The game pad: the left stick moves the hand, the right trigger presses; forces shake the pad. */
 import type { Hand } from "./hand";
 
-/** Metres per second with a stick all the way out: along, and up or down. */
+/** Speed at full deflection: along, and up or down, metres per second. */
 const MOST_M_PER_S = 0.1;
 const RISE_M_PER_S = 0.02;
-/** A stick at rest says up to so much. */
+/** Greatest deflection of a stick at rest. */
 export const DEAD_ZONE = 0.15;
-/** A trigger says no more than this where it is not pressed. */
+/** Greatest value of a released trigger. */
 const TRIGGER_REST = 0.05;
-/** The force that shakes as much as allowed, and how much that is. */
+/** Force of the strongest rumble, and its magnitude. */
 const FULL_N = 4;
 const MOST_SHAKE = 0.8;
 const SHAKE_MS = 120;
 const SHAKE_EVERY_MS = 60;
-/** By the standard mapping: the lower, right, left and upper one of four, and the right trigger. */
+/** Buttons of the standard mapping: the lower, right, left and upper one of four, and the right trigger. */
 const PUT_DOWN = 0;
 const STOP = 1;
 const MIDDLE = 2;
@@ -27,15 +27,15 @@ export interface PadState {
 }
 
 export interface PadMotion {
-  /** Metres per second. */
+  /** Velocity, metres per second. */
   x: number;
   y: number;
   z: number;
-  /** How far the trigger is pressed, 0 to 1. */
+  /** Deflection of the trigger, 0 to 1. */
   press: number;
 }
 
-/** What sticks and trigger say. */
+/** Return velocity and press of sticks and trigger. */
 export function readPad({ axes, buttons }: PadState): PadMotion {
   const [x = 0, y = 0, , z = 0] = axes;
   const trigger = buttons[TRIGGER]?.value ?? 0;
@@ -49,7 +49,7 @@ export function readPad({ axes, buttons }: PadState): PadMotion {
   };
 }
 
-/** Nothing around its rest, then slowly first. */
+/** Return 0 in the dead zone, then a square curve to 1. */
 function applyDeadZone(out: number): number {
   const share = Math.min(1, Math.max(0, (out - DEAD_ZONE) / (1 - DEAD_ZONE)));
   return share * share;
@@ -60,7 +60,7 @@ interface Shaker {
   reset(): unknown;
 }
 
-/** Force as shaking: never more than allowed, and still at once when there is none. */
+/** Rumble of a force, limited, and stopped at once when there is none. */
 export class Rumble {
   private atMs = -Infinity;
   private shaking = false;
@@ -82,7 +82,7 @@ export class Rumble {
   }
 }
 
-/** Buttons that went down since the last look. */
+/** The buttons pressed since the last poll. */
 export class Presses {
   private before = new Set<number>();
 

@@ -1,4 +1,4 @@
-/** The hand that this page moves: where it is wanted, where it is, and that it lives. What moves it stands beside. */
+/** This page's hand: its goal, its motion, and the messages that keep it alive. Mouse, keys, fingers and game pad move it. */
 import type { Page, PageHand } from "../page";
 import type { Values } from "../server/messages";
 import type { Vec } from "../server/protocol";
@@ -7,35 +7,35 @@ import { findPartCentres, type Part } from "./part_centres";
 import { type Mover, PRESS_M } from "./state";
 import { t } from "./words";
 
-/** So often the server hears that the page lives: it lets go after 100 ms of silence. */
+/** Interval of messages for a hand at rest, ms: the server releases it after 100 ms of silence. */
 const ALIVE_MS = 30;
-/** So often the hand goes on. */
+/** Interval of the hand's steps, ms. */
 const STEP_MS = 15;
-/** After a pause of the page the hand goes on where it was, and does not leap. */
+/** Longest step, seconds: after a pause of the page the hand does not leap. */
 const LONGEST_STEP_S = 0.05;
 /** Height over the surface of a hand that does not press, metres; below 0 it penetrates. */
 const GAP_M = { least: -PRESS_M.most, most: 0.03 };
 
 export class Hand implements PageHand {
-  /** Where it is; null while nothing moves it. */
+  /** Position; null while nothing moves it. */
   at: Vec | null = null;
   down = false;
-  /** In metres of the hand: a region that is felt enlarged has smaller ones. */
+  /** Penetration in metres of the hand: a magnified region has smaller ones. */
   pressM = PRESS_M.first;
   isFree = false;
-  /** Whether this tab's hand is the one that is felt; whether none is. */
+  /** True if this tab's hand is active. */
   holding = false;
   nobodyHolds = false;
-  /** Whether the program is there. */
+  /** True if the server is connected. */
   there = false;
-  /** Whether the loop has another device. */
+  /** True if the loop uses another device. */
   rests = false;
   by: Mover | null = null;
-  /** When a key last moved it. */
+  /** Time of the last move by a key. */
   keyedMs = -Infinity;
-  /** Whether a game pad was there. */
+  /** True if a game pad is connected. */
   pads = false;
-  /** The force on it. */
+  /** Magnitude of the force, newtons. */
   feltN = 0;
   private goal: { over: [number, number] } | { at: Vec } | null = null;
   private gapM = HOVER_M;
@@ -50,18 +50,18 @@ export class Hand implements PageHand {
     this.subscribe();
   }
 
-  /** How much larger than in the picture the hand finds everything: it is as much slower and gentler. */
+  /** Magnification of the picture for the hand: it moves that much slower and gentler. */
   get magnification(): number {
     const mapping = (this.page.document?.values?.mapping ?? {}) as Values;
     return magnificationOf(mapping, this.page.scene?.meta.extent_m ?? [1, 1]);
   }
 
-  /** Somebody who moves it on and on: called with the seconds that passed. */
+  /** Add a mover, called in each step with the seconds that passed. */
   addMover(mover: (seconds: number) => void): void {
     this.movers.push(mover);
   }
 
-  /** Over this place of the surface, pressing or not. */
+  /** Move over a place of the surface, pressing or not. */
   moveOver(by: Mover, x: number, y: number, down: boolean): void {
     if (!this.mayMove(by, down)) return;
     if (this.isFree) this.goal = { at: [x, y, this.height(x, y, down)] };
@@ -70,14 +70,14 @@ export class Hand implements PageHand {
     this.step();
   }
 
-  /** At this place in space. */
+  /** Move to a place in space. */
   moveTo(by: Mover, at: Vec): void {
     if (!this.mayMove(by, false)) return;
     this.goal = { at };
     this.step();
   }
 
-  /** By so much from where it is wanted, in metres of the hand. */
+  /** Move by a distance in metres of the hand. */
   moveBy(by: Mover, x: number, y: number, z: number): void {
     if (!this.page.scene || !this.mayMove(by, this.down)) return;
     const goal = this.goalOrDefault();
@@ -89,12 +89,12 @@ export class Hand implements PageHand {
     }
   }
 
-  /** The wheel: deeper, whether it touches or not. */
+  /** Move deeper, whether it touches or not. */
   deeper(by: Mover, metres: number): void {
     if (this.goal && this.mayMove(by, this.down)) this.moveBy(by, 0, 0, -metres);
   }
 
-  /** Down into the surface, or off it. */
+  /** Press into the surface, or lift. */
   press(by: Mover, down: boolean): void {
     if (!this.page.scene || !this.mayMove(by, down)) return;
     const goal = this.goalOrDefault();
@@ -104,7 +104,7 @@ export class Hand implements PageHand {
     this.step();
   }
 
-  /** How hard it presses, as a share of the most. */
+  /** Set the penetration as a share of the greatest. */
   pressShare(share: number): void {
     this.pressM = PRESS_M.least + clamp(share, 0, 1) * (PRESS_M.most - PRESS_M.least);
   }
@@ -114,7 +114,7 @@ export class Hand implements PageHand {
     this.page.say(t("inTheMiddle"));
   }
 
-  /** To the widest place of the next part, or the one before. */
+  /** Move to the centre of the next part, or of the previous one. */
   toNextPart(by: Mover, step: 1 | -1): void {
     const { scene } = this.page;
     if (!scene) return;
@@ -130,7 +130,7 @@ export class Hand implements PageHand {
     this.page.say(t("part", { number: this.centres.next + 1, of: all.length, name }));
   }
 
-  /** In space, wherever it is moved to; or over the surface. */
+  /** Move freely in space, or over the surface. */
   free(on: boolean): void {
     this.isFree = on;
     this.down = false;
@@ -143,12 +143,12 @@ export class Hand implements PageHand {
     this.notify();
   }
 
-  /** A coordinate of where it is wanted in space. */
+  /** Return a coordinate of the goal in space. */
   goalM(axis: 0 | 1 | 2): number {
     return this.goal && "at" in this.goal ? this.goal.at[axis] : (this.at?.[axis] ?? 0);
   }
 
-  /** Let go: nothing is felt. by: whoever does not move it, cannot. */
+  /** Release the device: no force. by: only if this mover moves the hand. */
   release(by: Mover | null = null): void {
     if (!this.goal || (by && by !== this.by)) return;
     this.goal = this.at = this.by = null;
@@ -158,9 +158,9 @@ export class Hand implements PageHand {
     this.notify();
   }
 
-  /** This tab's hand is to be felt. */
+  /** Make this tab's hand the active one. */
   take(): void {
-    void this.page.net.ask("hold").catch(() => undefined); // the head of the page says that the program is gone
+    void this.page.net.ask("hold").catch(() => undefined); // the header shows that the program is gone
   }
 
   stop(): void {
@@ -182,7 +182,7 @@ export class Hand implements PageHand {
     return true;
   }
 
-  /** Who presses where nobody holds the hand, wants it; one that is held is taken by its button alone. */
+  /** Take a hand that no tab holds; one that another tab holds is taken by its button alone. */
   private request(): void {
     if (this.nobodyHolds) this.take();
     else this.page.say(t("another"));
@@ -208,11 +208,11 @@ export class Hand implements PageHand {
     return scene ? scene.height(...clampToRim(scene, x, y)) + (down ? -this.pressM : HOVER_M) / this.magnification : 0;
   }
 
-  /** Go on towards where it is wanted, and say where it is; also where it stands still, or the server lets go. */
+  /** Step towards the goal and send the position, also while it rests or the server released it. */
   private step(): void {
     const nowMs = performance.now();
     const seconds = Math.min((nowMs - this.steppedMs) / 1000, LONGEST_STEP_S);
-    if (seconds < 0.001) return; // several events of a mouse at once
+    if (seconds < 0.001) return; // several mouse events at once
     this.steppedMs = nowMs;
     for (const mover of this.movers) mover(seconds);
     const { scene, net } = this.page;
@@ -222,7 +222,7 @@ export class Hand implements PageHand {
     const gap = this.down ? Math.min(-this.pressM, this.gapM) : this.gapM;
     const goal: Goal = "at" in this.goal ? this.goal : { over: this.goal.over, gapM: gap / scale };
     this.at = nextPosition(before, goal, seconds, scene, scale);
-    if (!this.at.every(Number.isFinite)) return this.release(); // a surface that is nowhere there
+    if (!this.at.every(Number.isFinite)) return this.release(); // a surface without any height
     const still = before?.every((part, i) => part === this.at![i]);
     if (still && nowMs - this.sentMs < ALIVE_MS) return;
     this.sentMs = nowMs;
@@ -269,7 +269,7 @@ export class Hand implements PageHand {
   }
 }
 
-/** As the server's mapping has it, for a hand whose own space is as large as the picture. */
+/** Return the magnification of the server's mapping, for a hand whose workspace is as large as the picture. */
 export function magnificationOf({ scale, region_m }: Values, [w, l]: [number, number]): number {
   if (typeof scale === "number") return scale;
   if (!Array.isArray(region_m)) return 1;

@@ -1,16 +1,16 @@
-/** The keyboard: arrows and page keys move the hand, a tap by a step, held by a speed; space puts it down and lifts it. */
+/** The keyboard: arrows and page keys move the hand, by a step when tapped and at a speed when held; Space presses and lifts. */
 import type { Page } from "../page";
 import type { Hand } from "./hand";
 
-/** A step and a speed, metres of the hand: alone, with Shift, with Ctrl. */
+/** Step and speed, metres of the hand: plain, with Shift, with Ctrl. */
 export const PACES = {
   plain: { stepM: 0.001, mPerS: 0.04 },
   fine: { stepM: 0.0002, mPerS: 0.008 },
   coarse: { stepM: 0.005, mPerS: 0.16 },
 } as const;
-/** Up and down it goes with this share of that. */
+/** Share of the speed up and down. */
 const UPRIGHT = 0.2;
-/** A key that is down for longer is held. */
+/** Milliseconds after which a key counts as held. */
 export const HELD_MS = 200;
 
 type Displacement = readonly [x: number, y: number, z: number];
@@ -23,12 +23,12 @@ const DIRECTIONS: Record<string, Displacement> = {
   PageDown: [0, 0, -UPRIGHT],
 };
 
-/** What keys that are down say of the hand's way; key repeat says nothing. */
+/** The held keys, and the displacement that they cause; key repeat is ignored. */
 export class HeldKeys {
   private since = new Map<string, number>();
   private pace: keyof typeof PACES = "plain";
 
-  /** The step of a key that went down, metres; null if it is none of the hand's. */
+  /** Return the step of a pressed key, metres; null if it is not the hand's. */
   down(key: string, held: { shiftKey: boolean; ctrlKey: boolean }, nowMs: number): Displacement | null {
     this.setPace(held);
     const displacement = DIRECTIONS[key];
@@ -47,12 +47,12 @@ export class HeldKeys {
     this.since.clear();
   }
 
-  /** How far the held ones move the hand in so many seconds up to now, metres. */
+  /** Return the displacement by the held keys during some seconds up to now, metres. */
   way(seconds: number, nowMs: number): Displacement {
     const held = [...this.since].filter(([, sinceMs]) => nowMs - sinceMs >= HELD_MS).map(([key]) => DIRECTIONS[key]!);
     const sum = [0, 1, 2].map((axis) => held.reduce((total, way) => total + way[axis]!, 0));
     const far = Math.hypot(sum[0]!, sum[1]!);
-    const level = far > 1 ? 1 / far : 1; // two at once are no faster than one
+    const level = far > 1 ? 1 / far : 1; // two keys at once are not faster than one
     return scale([sum[0]! * level, sum[1]! * level, sum[2]!], PACES[this.pace].mPerS * seconds);
   }
 
@@ -79,7 +79,7 @@ export function attachKeyboard(hand: Hand, { canvas }: Pick<Page, "canvas">): vo
   });
 }
 
-/** Whether the key is one of the hand's. */
+/** Act on a key; return whether it is the hand's. */
 function act(hand: Hand, { key, shiftKey, ctrlKey, repeat }: KeyboardEvent): boolean {
   if (ctrlKey) return false;
   if (key === " ") {

@@ -1,15 +1,15 @@
-/** The mouse and the pen: over the terrain they are the hand, pressed they touch; the wheel is depth, a pen's own too. */
+/** Mouse and pen: over the terrain they move the hand, pressed they touch; wheel and pen pressure set the depth. */
 import { figures, measuring } from "../instrumentation";
 import type { Page } from "../page";
 import type { Hand } from "./hand";
 import type { Vec } from "../server/protocol";
 
-/** Metres of depth for a unit of the wheel; a notch has a hundred. */
+/** Depth per unit of the wheel, metres; a notch has a hundred. */
 const WHEEL_M = 2e-6;
 const LINE = 16;
-/** A mouse that is not pressed is not heard for so long after a key: somebody's sleeve may have moved it. */
+/** Milliseconds after a key in which an unpressed mouse is ignored: it may have been moved by accident. */
 const AFTER_KEYS_MS = 1000;
-/** Buttons that are the camera's. */
+/** Bits of the camera's buttons. */
 const CAMERA = 6;
 
 type Screen = Pick<Page, "canvas" | "view" | "scene">;
@@ -35,7 +35,7 @@ export function attachMouse(hand: Hand, page: Screen): void {
     hand.moveOver("mouse", at[0], at[1], down);
   }
 
-  /** In its own level, and with Shift up and down. */
+  /** Move in the hand's level, and with Shift up and down. */
   function inSpace(event: PointerEvent): void {
     const { at } = hand;
     if (!at) {
@@ -79,7 +79,7 @@ function wheel(hand: Hand, { view }: Screen, event: WheelEvent): void {
   else hand.deeper("mouse", by * WHEEL_M);
 }
 
-/** Where a ray meets the level at this height, if it does before it. */
+/** Return where a ray meets the level at this height; null if it does not. */
 export function meetLevel(o: Vec, d: Vec, z: number): Vec | null {
   const t = (z - o[2]) / d[2];
   return t > 0 && Number.isFinite(t) ? [o[0] + t * d[0], o[1] + t * d[1], z] : null;

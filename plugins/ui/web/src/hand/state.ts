@@ -3,19 +3,19 @@
 export type Mover = "mouse" | "keys" | "touch" | "pad";
 
 export interface HandState {
-  /** What moves the hand; null while nothing does. */
+  /** Mover of the hand; null while it rests. */
   readonly by: Mover | null;
-  /** Whether it moves freely in space, and not over the surface. */
+  /** True if it moves freely in space, and not over the surface. */
   readonly isFree: boolean;
-  /** Whether this tab's hand is the active one. */
+  /** True if this tab's hand is the active one. */
   readonly holding: boolean;
-  /** Whether no tab's hand is active. */
+  /** True if no tab's hand is active. */
   readonly nobodyHolds: boolean;
-  /** Whether the server is connected. */
+  /** True if the server is connected. */
   readonly there: boolean;
-  /** Whether the loop uses another device. */
+  /** True if the loop uses another device. */
   readonly rests: boolean;
-  /** Whether a game pad is connected. */
+  /** True if a game pad is connected. */
   readonly pads: boolean;
 }
 

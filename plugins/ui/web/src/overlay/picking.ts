@@ -1,10 +1,10 @@
-/** A tool that takes the mouse from the hand: its main button then means places on the surface. */
+/** Tools that take the mouse from the hand: its main button then means places on the surface. */
 import type { PointerTool } from "../page";
 import type { Vec } from "../server/protocol";
 import type { Scene } from "../surface/scene";
 import type { View } from "../view/view";
 
-/** One tool at a time. */
+/** The holder of the pointer: one tool at a time. */
 export class Picking {
   private tool: PointerTool | null = null;
   private last: Vec | null = null;

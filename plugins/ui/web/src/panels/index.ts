@@ -1,4 +1,4 @@
-/** All built-in panels, in the order in which they stand. */
+/** The built-in panels, in their order. */
 import { devices } from "./devices/panel";
 import { hand } from "./hand/panel";
 import { help } from "./help/panel";
@@ -25,7 +25,7 @@ import "./description/description.css";
 import "./export/export.css";
 import "./legibility/legibility.css";
 
-/** Left: what is made. */
+/** Left: the pipeline. */
 const LEFT: Panel[] = [
   open, methods, stages, parts, materials, preflight,
   lazy({ id: "legible", title: t("legible"), place: "left", open: false }, () => import("./legibility/panel")),
@@ -33,7 +33,7 @@ const LEFT: Panel[] = [
   lazy({ id: "export", title: t("export"), place: "left", open: false }, () => import("./export/panel")),
   yaml,
 ];
-/** Right: what is seen, heard and felt; settings and help last. */
+/** Right: view, sound and touch; settings and help last. */
 const RIGHT: Panel[] = [view, overlay, ruler, mapping, hand, devices, sound, laws, recordings, settings, help];
 const BOTTOM: Panel[] = [log];
 

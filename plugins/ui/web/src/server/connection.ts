@@ -1,4 +1,4 @@
-/** The one websocket: states in, pointers and acknowledgements out, JSON for what is rare. It comes back by itself. */
+/** The websocket: states in, pointers and acknowledgements out, JSON for requests and messages. It reconnects by itself. */
 import type { Hub } from "../hub";
 import { token } from "./token";
 import type { Events } from "./messages";
@@ -7,12 +7,12 @@ import { encodeAck, now, encodePointer, encodeRelease, parseState, TAGS, VERSION
 const FIRST_PAUSE_MS = 250;
 const LONGEST_PAUSE_MS = 4000;
 const KEPT_TAGS = 512;
-/** After so long without an answer, stop is asked for beside the websocket as well. */
+/** Milliseconds without an answer after which stop is sent by HTTP as well. */
 const STOP_PATIENCE_MS = 300;
-/** How the server closes the websocket of a page whose key is not its own. */
+/** Close code of the server for a page with a wrong key. */
 const WRONG_KEY = 4401;
 
-/** What the server keeps under an address. Throws if it is not there. */
+/** Fetch a file of the server. Throws if it is not there. */
 export async function bulk(path: string, asked: Record<string, number> = {}, signal?: AbortSignal): Promise<Response> {
   const query = new URLSearchParams({ token, ...Object.fromEntries(Object.entries(asked).map(([k, v]) => [k, `${v}`])) });
   const response = await fetch(`${path}?${query}`, { signal });
@@ -27,9 +27,9 @@ interface Waiting {
 
 export class Connection {
   latest: State | null = null;
-  /** When each pointer was sent, by its tag: how long until its force is drawn. */
+  /** Send time of each pointer by its tag, to measure the time until its force is drawn. */
   readonly sentMs = new Map<number, number>();
-  /** When the newest event was said that this page heard. */
+  /** Time of the latest message, Unix seconds. */
   heard_s = 0;
   private tag = 0;
   private stopping = 0;
@@ -42,7 +42,7 @@ export class Connection {
     this.connect();
   }
 
-  /** Ask the server for something; rejects with its words where it refuses. */
+  /** Send a request; rejects with the server's text if it is refused. */
   ask<T>(name: string, told: Record<string, unknown> = {}): Promise<T> {
     if (!this.open) return Promise.reject(new Error("the program is not there"));
     const number = ++this.number;
@@ -52,7 +52,7 @@ export class Connection {
     });
   }
 
-  /** No force, whatever else goes on, and though the websocket may hang. */
+  /** Take all force away, also if the websocket hangs. */
   async stop(): Promise<void> {
     if (!this.open) return this.stopByHttp();
     clearTimeout(this.stopping);
@@ -60,7 +60,7 @@ export class Connection {
     return this.ask<void>("stop").finally(() => clearTimeout(this.stopping));
   }
 
-  /** Feel again: a stop from before that was not answered yet does not come after it. */
+  /** Switch forces on; a stop that was not answered yet no longer follows. */
   feel(): Promise<void> {
     clearTimeout(this.stopping);
     return this.ask<void>("feel");
@@ -119,10 +119,10 @@ export class Connection {
     if (!fresh) return;
     this.latest = fresh;
     this.hub.tell("state", fresh);
-    if (document.hidden) this.drawn(fresh.seq); // nothing is drawn then
+    if (document.hidden) this.drawn(fresh.seq); // a hidden page draws nothing
   }
 
-  /** This page cannot go on with that program. */
+  /** Close the connection for good: the server is another version. */
   private abandon(why: "version"): void {
     this.socket!.onclose = () => this.onClosed(why);
     this.socket!.close();

@@ -1,12 +1,12 @@
-/** What is said to who listens: one sentence a second at most, of each topic the newest alone, nothing twice, nothing
- * stale. What it says goes to live regions, and aloud where a person asked for that. */
+/** Announcements for screen readers and speech: at most one a second, only the newest of each topic, no repetition, none
+ * stale. */
 
 export interface Announcement {
-  /** What replaces what: of two that wait the newer is said; and what a topic said last is not said again. */
+  /** Topic: of two waiting texts the newer is announced, and a topic's last text is not repeated. */
   topic?: string;
-  /** Said before all that waits, and into what a screen reader is reading: errors, the stop. */
+  /** True for errors and the stop: announced first, interrupting a screen reader. */
   urgent?: boolean;
-  /** A person asked for it: at once, and again if it is the same as before. */
+  /** True if a person requested it: announced at once, also if it repeats the last text. */
   asked?: boolean;
 }
 
@@ -27,13 +27,13 @@ interface Waiting extends Said {
 
 export const PAUSE_MS = 1000;
 export const STALE_MS = 5000;
-/** A sentence without a topic may come again after so long. */
+/** Milliseconds after which a text without a topic may be repeated. */
 export const AGAIN_MS = 10_000;
 
 const BROWSERS: Clock = { now: () => performance.now(), after: (ms, act) => void setTimeout(act, ms) };
 
 export class Announcer {
-  /** Nothing is said, as while a page hears what happened before it was opened. */
+  /** True while nothing is announced, as while a page replays earlier messages. */
   muted = false;
   private queue: Waiting[] = [];
   private last = new Map<string, { text: string; atMs: number }>();
@@ -61,7 +61,7 @@ export class Announcer {
     this.next();
   }
 
-  /** What a topic says no longer holds: the same may be said again. */
+  /** Allow a topic's last text to be announced again. */
   forget(topic: string): void {
     this.last.delete(topic);
     this.queue = this.queue.filter((each) => each.topic !== topic);
@@ -90,11 +90,11 @@ export class Announcer {
   }
 }
 
-/** Puts what is said into the page's two live regions: #said waits its turn, #alerted does not. */
+/** Return a function that writes announcements into the two live regions: #said is polite, #alerted assertive. */
 export function liveRegions(polite: HTMLElement, assertive: HTMLElement): (said: Said) => void {
   return ({ text, urgent }) => {
     const region = urgent ? assertive : polite;
-    // A region that is given the text it has says nothing: a space that cannot break tells it apart.
+    // a region with an unchanged text is not read: a no-break space makes it different
     region.textContent = region.textContent === text ? `${text}\u00a0` : text;
   };
 }

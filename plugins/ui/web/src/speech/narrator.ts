@@ -1,4 +1,4 @@
-/** Says what changes under the hand: contact, material, part, limits; and, asked by a key, where it is and what there is. */
+/** Narration of changes under the hand: contact, material, part, limits; and, on a key, of place and surface. */
 import type { Events } from "../server/messages";
 import type { Page } from "../page";
 import { FLAGS, isHeld, isRunning, isTouching, type State } from "../server/protocol";
@@ -7,7 +7,7 @@ import { on } from "../shortcuts";
 import { t } from "./words";
 import { decimal, language } from "../words/words";
 
-/** States in a row that must have a flag, before it is said: one tick at its limit is nothing to know of. */
+/** Consecutive states with a flag before it is announced: a single tick at its limit does not matter. */
 const LASTING = 6;
 const LIMITS = {
   STALE: FLAGS.STALE,
@@ -17,7 +17,8 @@ const LIMITS = {
   DAMPED: FLAGS.DAMPED,
 } as const;
 
-/** "door, wood", "wood, part 3"; the material alone where there is one part. names: of materials, in the page's language. */
+/** Return "door, wood" or "wood, part 3"; the material alone if there is one part. names: of materials, in the page's
+ * language. */
 export function describePlace(name: string | undefined, called: string, part: number | null, parts: number, names: Record<string, string>): string {
   const said = name === undefined ? t("nameless") : (names[name] ?? name);
   if (called) return name === undefined ? called : `${called}, ${said}`;
@@ -61,7 +62,7 @@ export class Narrator {
       this.limits.add(flag);
       this.page.say(t(name), { topic: name });
     }
-    if (!isTouching(state) && this.limits.delete(flag)) this.page.forget(name); // said again at the next touch
+    if (!isTouching(state) && this.limits.delete(flag)) this.page.forget(name); // announce it again at the next touch
   }
 
   private where(): string {
@@ -80,7 +81,7 @@ export class Narrator {
     ].join(", ");
   }
 
-  /** The material and the part at a place. */
+  /** Return material and part of a place. */
   private placeName(scene: Scene, x: number, y: number): string {
     const names = this.descriptionOf(scene)?.names[language] ?? {};
     return describePlace(scene.material(x, y)?.name, scene.part(x, y), scene.label(x, y), scene.meta.labels, names);
@@ -90,7 +91,7 @@ export class Narrator {
     return this.described?.digest === scene.meta.digest ? this.described : null;
   }
 
-  /** The maker's, when it has told it; until then what the page knows itself. */
+  /** Return the program's description if there is one, else the page's own. */
   private description(): string {
     const scene = this.page.scene;
     if (!scene) return t("nothing");
@@ -107,7 +108,7 @@ export class Narrator {
     this.page.say(t("shown", { name: scene.meta.name }), { topic: "scene" });
   }
 
-  /** What a screen reader finds at the surface. */
+  /** Update the description that screen readers find at the surface. */
   private updateDescription(): void {
     document.getElementById("described")!.textContent = `${this.description()} ${t("keys")}`;
   }

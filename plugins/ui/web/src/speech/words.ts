@@ -1,6 +1,6 @@
 import { words } from "../words/words";
 
-/** What is said of the hand and of the surface under it. */
+/** Texts of the narration. */
 export const t = words({
   nameless: ["surface", "Oberfläche"],
   part: ["{name}, part {part}", "{name}, Teil {part}"],

@@ -1,4 +1,4 @@
-/** The fine textures of a square, as laws feel them: fetched from what makes them. */
+/** Fine texture of a square, as force laws use it, fetched from the server. */
 import type { Server } from "../page";
 import { bulk } from "../server/connection";
 import type { Scene } from "./scene";
@@ -13,7 +13,7 @@ export async function finePatch(
   return { x_m: x, y_m: y, side_m, pixels, heights: new Float32Array(heights) };
 }
 
-/** Whether any material has one. */
+/** Return whether any material has a texture. */
 export function hasTexture(scene: Scene): boolean {
   return scene.meta.labels > 0 && scene.meta.materials.some(({ roughness_m }) => roughness_m > 0);
 }

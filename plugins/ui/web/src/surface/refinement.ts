@@ -1,4 +1,4 @@
-/** When the camera rests, what it looks at is fetched finer: heights and picture of a large surface, fine textures. */
+/** Refinement where the camera rests: finer heights and picture of a large surface, fine textures. */
 import { bulk } from "../server/connection";
 import type { Page } from "../page";
 import type { Scene } from "./scene";
@@ -28,7 +28,7 @@ export class Refiner {
     const visibleBox = scene && this.seen(scene);
     if (!scene || !visibleBox || !view.terrain) return;
     const fail = (error: Error): void => {
-      if (error.name !== "AbortError") console.warn(error.message); // coarser is no harm
+      if (error.name !== "AbortError") console.warn(error.message); // the coarser surface stays
     };
     void this.heights(scene, visibleBox).catch(fail);
     void this.textures(scene, visibleBox).catch(fail);
@@ -65,7 +65,7 @@ export class Refiner {
     this.page.view.dirty = true;
   }
 
-  /** The finer picture of a window, and where it lies. */
+  /** Return the finer picture of a window, and its place. */
   private async cropPicture(scene: Scene, window: Window) {
     const { extent_m, fine_photo, levels, digest } = scene.meta;
     if (!fine_photo) return null;
@@ -110,7 +110,7 @@ export class Refiner {
     this.page.view.dirty = true;
   }
 
-  /** The part of the surface within the window; null where none is. */
+  /** Return the visible part of the surface; null if none is. */
   private seen(scene: Scene): Box | null {
     const { canvas, view } = this.page;
     const { left, top, width, height } = canvas.getBoundingClientRect();

@@ -1,4 +1,4 @@
-/** What colours and patterns mean. */
+/** Legends of colours and patterns. */
 import type { Scene } from "../surface/scene";
 import { t } from "../view/words";
 import { darken, heat, isMarked, styleOf, type Colour } from "./colours";
@@ -6,10 +6,10 @@ import { darken, heat, isMarked, styleOf, type Colour } from "./colours";
 const SWATCH_PX = 22;
 const PERIOD_PX = 11;
 const BAR_PX = 220;
-/** Materials and segments that are listed; of more, how many there are. */
+/** Materials and segments listed; of more, the number is shown. */
 const MOST = 24;
 
-/** The legend of a look; null where it needs none. */
+/** Return the legend of a look; null if it needs none. */
 export function legend(scene: Scene, look: string): HTMLElement | null {
   const { meta } = scene;
   if (look === "height") return scale(meta.height_m[0] * 1000, meta.height_m[1] * 1000, "mm", false);
@@ -45,7 +45,7 @@ function scale(low: number, high: number, unit: string, unknowns: boolean): HTML
   return box;
 }
 
-/** Numbers of a scale that spans so much, so that its ends differ. */
+/** Return a number of a scale with enough digits for its span. */
 export function number(value: number, span: number): string {
   const digits = Math.min(Math.max(2 - Math.floor(Math.log10(Math.max(Math.abs(span), 1e-9))), 0), 6);
   return value.toFixed(digits).replace(/(\.\d*?)0+$/, "$1").replace(/\.$/, "");

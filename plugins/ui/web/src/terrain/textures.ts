@@ -1,4 +1,4 @@
-/** Arrays as textures. */
+/** Textures of arrays. */
 import {
   DataTexture,
   DataUtils,
@@ -37,7 +37,7 @@ export function integers(values: Labels, columns: number, rows: number): DataTex
   return ready(found);
 }
 
-/** One number for each label, in rows of KINDS_WIDE. */
+/** Return a texture of a number per label, in rows of KINDS_WIDE. */
 export function kindsTexture(kinds: Uint16Array): DataTexture {
   const rows = Math.max(1, Math.ceil(kinds.length / KINDS_WIDE));
   const padded = new Uint16Array(rows * KINDS_WIDE);
@@ -52,7 +52,7 @@ export function heatTexture(): DataTexture {
   return found;
 }
 
-/** Slopes dh/dx and dh/dy, central differences and one-sided ones at the border, smooth between cells. */
+/** Return a texture of slopes dh/dx and dh/dy: central differences, one-sided at the border, interpolated between cells. */
 export function gradientTexture({ heights, rows, columns, place }: Grid): DataTexture {
   const slopes = new Uint16Array(2 * rows * columns);
   for (let j = 0, k = 0; j < rows; j++) {

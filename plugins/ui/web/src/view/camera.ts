@@ -1,4 +1,4 @@
-/** Where one looks from: around a place on the surface, by mouse, fingers and keys. */
+/** The camera: it orbits a place on the surface. */
 import { PerspectiveCamera, Vector3 } from "three";
 import type { Vec } from "../server/protocol";
 
@@ -13,7 +13,7 @@ const KEY_TURN = 0.12;
 const KEY_SHARE = 0.06;
 const TURN_PER_PIXEL = 0.008;
 
-/** Around which place, from how far, and from where: the azimuth is that of the eye, 0 from the near side. */
+/** Pose: target, distance and angles; azimuth 0 is the near side. */
 export interface Pose {
   target: Vec;
   distance: number;
@@ -24,9 +24,9 @@ export interface Pose {
 export class Eye {
   readonly camera = new PerspectiveCamera(FIELD_DEG, 1, 0.001, 1);
   pose: Pose = { target: [0, 0, 0], distance: 0.2, ...HOME };
-  /** Called whenever it looks another way. */
+  /** Called when the view changes. */
   onChange: () => void = () => {};
-  /** Height of what is under a place; NaN where nothing is. */
+  /** Returns the height of the surface at a place; NaN outside. */
   ground: (x: number, y: number) => number = () => NaN;
   private size: [number, number] = [0.08, 0.06];
   private span: [number, number] = [0, 0];
@@ -37,7 +37,7 @@ export class Eye {
     this.place();
   }
 
-  /** The whole of a surface of this size, from the near side. */
+  /** Show the whole of a surface of this size from the near side. */
   frame(width_m: number, length_m: number, height_m: [number, number] = [0, 0]): void {
     this.size = [width_m, length_m];
     this.span = height_m;
@@ -50,7 +50,7 @@ export class Eye {
     this.flyTo(this.whole(HOME.polar));
   }
 
-  /** From above, the far side up. */
+  /** Show the whole surface from above, the far side up. */
   top(): void {
     this.flyTo(this.whole(STEEPEST));
   }
@@ -69,7 +69,7 @@ export class Eye {
     });
   }
 
-  /** By parts of what is seen of the height, to the right and up; what is seen moves the other way. */
+  /** Pan by shares of the visible height, to the right and up. */
   pan(right: number, up: number): void {
     const { azimuth, distance, target } = this.pose;
     const [sine, cosine] = [Math.sin(azimuth), Math.cos(azimuth)];
@@ -80,7 +80,7 @@ export class Eye {
     this.jumpTo({ ...this.pose, target: [within(x, w), within(y, l), target[2]] });
   }
 
-  /** The distance times this; the place `about` stays where it is on the screen. */
+  /** Scale the distance; the place `about` stays on the screen. */
   zoom(times: number, about: Vec | null = null): void {
     const { distance, target } = this.pose;
     const next = this.clampDistance(distance * times);
@@ -90,7 +90,7 @@ export class Eye {
     this.jumpTo({ ...this.pose, distance: next, target: moved });
   }
 
-  /** Whether it flies on: to be called once a frame. */
+  /** Advance a flight; return whether one is under way. Call once per frame. */
   advance(nowMs: number): boolean {
     if (!this.flight) return false;
     const { from, to, begunMs } = this.flight;
@@ -123,7 +123,7 @@ export class Eye {
     this.place();
   }
 
-  /** The nearer one looks, the nearer to the ground is what one looks at, so that nobody dives under it. */
+  /** Keep the target near the ground, the nearer the camera is, so that it does not dive under it. */
   private keepNearGround({ target, distance }: Pose): Vec {
     const [x, y, z] = target;
     const ground = this.ground(x, y);
@@ -139,7 +139,7 @@ export class Eye {
     this.onChange();
   }
 
-  /** So far away that all corners are seen. */
+  /** Return the pose that shows all corners. */
   private whole(polar: number): Pose {
     const [w, l] = this.size;
     const [low, high] = this.span;
@@ -207,7 +207,7 @@ const WAYS: Record<string, [number, number]> = {
   ArrowDown: [0, -1],
 };
 
-/** Whether the key is one of the camera's: none that is the hand's (shortcuts.ts). */
+/** Return whether the key is one of the camera's: none that is the hand's (shortcuts.ts). */
 export function handleKey(eye: Eye, event: KeyboardEvent): boolean {
   const way = WAYS[event.key];
   const { ctrlKey, shiftKey, altKey } = event;

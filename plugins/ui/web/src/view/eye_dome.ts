@@ -1,4 +1,4 @@
-/** Eye-dome shading: what lies before something else gets a dark rim, by the depth alone (Boucheny 2009). */
+/** Eye-dome shading: dark rims at depth edges, from the depth alone (Boucheny 2009). */
 import { AlwaysDepth, GLSL3, Mesh, PlaneGeometry, RawShaderMaterial, type PerspectiveCamera, type Texture } from "three";
 
 const REACH_PX = 1.6;
@@ -8,7 +8,7 @@ export const FULL_SCREEN = `
 precision highp float; in vec3 position;
 void main() { gl_Position = vec4(position.xy, 0., 1.); }`;
 
-/** Something drawn over the whole of what is drawn on. */
+/** Return a quad over the whole target. */
 export function fullScreenQuad(fragmentShader: string, uniforms: Record<string, { value: unknown }>): Mesh<PlaneGeometry, RawShaderMaterial> {
   const material = new RawShaderMaterial({
     glslVersion: GLSL3,
@@ -43,7 +43,7 @@ void main() {
     this.uniforms,
   );
 
-  /** Shade what was drawn from this camera; strength 0 leaves it as it is. */
+  /** Return the quad that shades a rendered image; strength 0 leaves it as it is. */
   shade(colours: Texture, depths: Texture, camera: PerspectiveCamera, strength: number, ratio: number): Mesh {
     const { uniforms } = this;
     uniforms.colours.value = colours;

@@ -1,4 +1,4 @@
-/** A magnifier: the surface under the hand at the scale of a finger, with the fine texture that is felt there. */
+/** A magnifier: the surface under the hand at the scale of a finger, with its fine texture. */
 import "./magnifier.css";
 import type { Page } from "../page";
 import type { State } from "../server/protocol";
@@ -8,7 +8,7 @@ import type { FinePatch } from "../terrain/terrain";
 import { t } from "./words";
 
 const PIXELS = 192;
-/** It follows when the hand has gone this share of its width from its middle. */
+/** Share of its width that the hand leaves its middle by before it follows. */
 const FOLLOWS = 0.22;
 const PAUSE_MS = 150;
 const AWAY_M = 0.5;
@@ -41,7 +41,7 @@ export class Magnifier {
     page.hub.on("finer", () => this.draw());
   }
 
-  /** Its width or the light may be others. */
+  /** Take over changed width or light. */
   change(): void {
     if (!this.settings.lensMm) return this.close();
     const { azimuthDeg, elevationDeg } = this.settings;
@@ -79,7 +79,7 @@ export class Magnifier {
       this.point(...at, patch);
       this.describe(patch);
     } catch {
-      this.close(); // the surface is gone, or what makes textures is busy starting: the next move asks again
+      this.close(); // the surface is gone, or the texture process is starting: the next move asks again
     } finally {
       this.asking = false;
     }
@@ -113,7 +113,7 @@ export class Magnifier {
   }
 }
 
-/** A patch and what lies under it, in raking light, its slopes as they are. */
+/** Return a patch on its ground in raking light. */
 export function shadePatch(
   { x_m, y_m, side_m, pixels, heights }: FinePatch, around: (x: number, y: number) => number, azimuthDeg: number, elevationDeg: number,
 ): ImageData {

@@ -1,11 +1,11 @@
-/** How the surface is drawn, kept from one visit to the next where the browser allows it. */
+/** Settings of drawing, kept in the browser. */
 import { recall, remember as keep } from "../preferences";
 import { STEEPS } from "../terrain/shader";
 import type { Looks } from "../terrain/terrain";
 
 export interface Settings extends Looks {
   eyeDome: number;
-  /** Width of what the magnifier shows, millimetres; 0 without one. */
+  /** Width of the magnified square, millimetres; 0 without magnifier. */
   lensMm: number;
 }
 
@@ -24,7 +24,7 @@ export const DEFAULTS: Settings = {
   lensMm: 0,
 };
 
-/** From to: what a number may be. */
+/** Bounds of numbers. */
 export const BOUNDS: Partial<Record<keyof Settings, [number, number]>> = {
   cover: [0, 1],
   steepDeg: [45, 89],
@@ -36,7 +36,7 @@ export const BOUNDS: Partial<Record<keyof Settings, [number, number]>> = {
   lensMm: [0, 20],
 };
 
-/** What was kept, as far as it makes sense. */
+/** Return kept settings as far as they are valid. */
 export function checkSettings(kept: unknown): Settings {
   const found: Record<string, unknown> = { ...DEFAULTS };
   if (typeof kept !== "object" || kept === null) return { ...DEFAULTS };
@@ -54,7 +54,7 @@ export function recallSettings(): Settings {
   try {
     return checkSettings(JSON.parse(recall(KEPT, "null")));
   } catch {
-    return { ...DEFAULTS }; // not ours
+    return { ...DEFAULTS }; // a foreign value
   }
 }
 

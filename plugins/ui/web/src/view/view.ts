@@ -1,4 +1,4 @@
-/** Layers: the terrain is drawn once into a colour and depth target; a frame is a copy of that, and what moves. */
+/** The renderer: the terrain is drawn once into a colour and depth target; a frame is a copy of that, and what moves. */
 import {
   Camera,
   Color,
@@ -19,13 +19,13 @@ import type { Scene } from "../surface/scene";
 import { flatSurface, type Looks, Terrain } from "../terrain/terrain";
 
 const REST_MS = 140;
-/** Surfaces that follow each other sooner, as while a height is dragged, are drawn coarsely until the last one stays. */
+/** Interval of surfaces, ms, below which they are drawn coarsely until the last one stays, as while a height is dragged. */
 const FOLLOWING_MS = 800;
-/** So is the first surface meanwhile: what is felt of it is being made, and to draw all of it takes as much. */
+/** Time for which the first surface is drawn coarsely, ms: its touch is being computed meanwhile. */
 const FIRST_MS = 1200;
-/** A terrain that takes longer is drawn coarser while the camera moves. */
+/** Drawing time from which a terrain is drawn coarser while the camera moves, ms. */
 const SLOW_MS = 22;
-/** One that takes as long is drawn with a pixel of the page, however fine the screen is. */
+/** Drawing time from which a terrain is drawn at CSS resolution, ms. */
 const VERY_SLOW_MS = 80;
 const FINEST_RATIO = 2;
 const PATTERN_PX = 11;
@@ -36,18 +36,18 @@ export type Trouble = "" | "missing" | "lost";
 export class View {
   readonly eye = new Eye();
   readonly camera = this.eye.camera;
-  /** What is drawn again only when `dirty`. */
+  /** Objects drawn again only when `dirty`. */
   readonly fixed = new Stage();
-  /** What is drawn over it in every frame. */
+  /** Objects drawn over it in every frame. */
   readonly moving = new Stage();
   terrain: Terrain | null = null;
   dirty = true;
   trouble: Trouble = "";
-  /** Called when that changes. */
+  /** Called when `trouble` changes. */
   troubled: (trouble: Trouble) => void = () => {};
   /** Called when the camera has come to rest. */
   rested: () => void = () => {};
-  /** 0 none to 1. */
+  /** Strength of the eye-dome shading, 0 to 1. */
   eyeDome = 0;
   private renderer: WebGLRenderer | null;
   private dome = new EyeDome();
@@ -62,13 +62,13 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
   private stage = new Stage();
   private none = new Camera();
   private pixel = new Uint8Array(4);
-  /** Keeps what `prepare` compiled until a surface uses it. */
+  /** Terrain of `prepare`, which keeps compiled shaders until a surface uses them. */
   private prepared: Terrain | null = null;
   private resting = 0;
   private putMs = -Infinity;
-  /** To draw all of the terrain; infinite until that was measured. */
+  /** Time to draw all of the terrain, ms; infinite until measured. */
   private takesMs = Infinity;
-  /** Pixels that are drawn for one of the page, to the side. */
+  /** Pixels drawn per CSS pixel, per side. */
   private ratio = 1;
   private scene: Scene | null = null;
 
@@ -84,7 +84,7 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
     this.size();
   }
 
-  /** Compile what any surface is drawn with, while there is none yet: that takes a fifth of a second in software. */
+  /** Compile the shaders of any surface while there is none yet: that takes a fifth of a second in software. */
   prepare(looks: Looks): void {
     const { renderer, drawn } = this;
     if (!renderer || !drawn || this.trouble || this.terrain || this.prepared) return;
@@ -94,7 +94,7 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
     this.dirty = true;
   }
 
-  /** Draw this surface from now on; where the size is another one, the whole of it is looked at. */
+  /** Draw another surface; one of a different size is shown whole. */
   put(scene: Scene, looks: Looks): void {
     const before = this.scene?.meta;
     this.scene = scene;
@@ -111,33 +111,33 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
     this.putMs = now;
   }
 
-  /** What lies behind the surface, as styles say a colour. */
+  /** Set the background, as a CSS colour. */
   set ground(colour: string) {
-    this.fixed.background = new Color(colour).convertLinearToSRGB(); // targets hold what the screen shows
+    this.fixed.background = new Color(colour).convertLinearToSRGB(); // targets hold screen colours
     this.dirty = true;
   }
 
-  /** Something that moves; the caller sets `visible` and position before the frame is drawn. */
+  /** Add an object that moves; its owner sets visibility and position before each frame. */
   overlay(object: Object3D): void {
     this.moving.add(object);
   }
 
-  /** Look at the whole of a surface of this size. */
+  /** Show the whole of a surface of this size. */
   frame(width_m: number, length_m: number): void {
     this.eye.frame(width_m, length_m, this.scene?.meta.height_m);
   }
 
-  /** Look at a region this wide, from the side from which the camera looks. */
+  /** Show a region of this width from the camera's present side. */
   focus(centre: Vec, width_m: number): void {
     this.eye.focus(centre, width_m);
   }
 
-  /** Nearer by this share of the way, or farther. */
+  /** Zoom in by this share of the distance; out if negative. */
   zoom(share: number): void {
     this.eye.zoom(1 - share);
   }
 
-  /** From the eye through a place of the window: where from, and which way. */
+  /** Return origin and direction of the ray through a place of the window. */
   ray(clientX: number, clientY: number): [Vec, Vec] {
     const { left, top, width, height } = this.canvas.getBoundingClientRect();
     const through = new Vector3(((clientX - left) / width) * 2 - 1, 1 - ((clientY - top) / height) * 2, 0.5);
@@ -146,13 +146,13 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
     return [from.toArray(), way.toArray()];
   }
 
-  /** Where a point of the workspace is on the canvas, in its CSS pixels from its upper left corner. */
+  /** Return where a point of the workspace is on the canvas, CSS pixels from its upper left corner. */
   toScreen(point: Vec): [number, number] {
     const { x, y } = new Vector3(...point).project(this.camera);
     return [((x + 1) / 2) * this.canvas.clientWidth, ((1 - y) / 2) * this.canvas.clientHeight];
   }
 
-  /** Draw a frame; wait until it is drawn where that is to be measured. */
+  /** Draw a frame; wait for its pixels if it is timed. */
   draw(wait: boolean): void {
     const { renderer, drawn } = this;
     const flies = this.eye.advance(performance.now());
@@ -199,7 +199,7 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
     this.prepared = null;
   }
 
-  /** Width of a pixel at the place that is looked at. */
+  /** Return the width of a pixel at the camera's target, metres. */
   pixel_m(): number {
     const { fov } = this.camera;
     return (2 * this.eye.pose.distance * Math.tan((fov * Math.PI) / 360)) / Math.max(1, this.canvas.clientHeight);
@@ -230,7 +230,7 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
   }
 
   private onContextLost(event: Event): void {
-    event.preventDefault(); // it may come back
+    event.preventDefault(); // the context may be restored
     this.trouble = "lost";
     this.troubled("lost");
   }

@@ -1,4 +1,4 @@
-/** Beside the cursor: the force in newtons, whether the contact sticks or slips, and what the guard limits. */
+/** Label next to the cursor: force in newtons, whether the contact sticks or slips, active limits. */
 import type { View } from "../../view/view";
 import { t } from "../words";
 import { tip } from "./force_arrow";
@@ -7,12 +7,12 @@ import type { Reading } from "../../contact/reading";
 import type { Piece, Sight } from "../piece";
 import type { Settings } from "../settings";
 
-/** Words change at most so often, so that they can be read. */
+/** Shortest time between changes of the text, for legibility. */
 const EVERY_MS = 100;
-/** A limit that was seen is named for so long. */
+/** Time for which a limit stays named. */
 const KEPT_MS = 600;
 const OFF_PX = 14;
-/** Shapes that go with the words. */
+/** Symbols next to the words. */
 export const GLYPHS = { apart: "", rests: "●", sticks: "■", slips: "»", glides: "○" } as const;
 
 export class ContactLabel implements Piece {
@@ -32,7 +32,7 @@ export class ContactLabel implements Piece {
     private view: View,
   ) {
     this.box.className = "live-label";
-    this.box.setAttribute("aria-hidden", "true"); // the same is said in words elsewhere
+    this.box.setAttribute("aria-hidden", "true"); // screen readers get the same elsewhere
     layer.append(this.box);
   }
 
@@ -61,7 +61,7 @@ export class ContactLabel implements Piece {
     this.high = this.box.offsetHeight;
   }
 
-  /** Beside the arrow's end, and whole within the canvas. */
+  /** Place the label next to the arrow's end, within the canvas. */
   private place(live: Reading, { metresPerNewton }: Settings, { width, height }: Sight): void {
     const [x, y] = this.view.toScreen(tip(live, live.state.force, metresPerNewton));
     const left = x + OFF_PX + this.wide > width ? x - OFF_PX - this.wide : x + OFF_PX;

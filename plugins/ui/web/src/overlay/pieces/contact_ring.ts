@@ -1,4 +1,4 @@
-/** The contact: a ring that lies on the surface; whole while the contact holds, in pieces while it moves. */
+/** The contact: a ring on the surface; solid while the contact sticks, broken while it moves. */
 import { Group, Mesh, MeshBasicMaterial, RingGeometry, Vector3 } from "three";
 import { mergeGeometries } from "three/addons/utils/BufferGeometryUtils.js";
 import type { View } from "../../view/view";

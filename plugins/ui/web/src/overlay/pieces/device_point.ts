@@ -1,4 +1,4 @@
-/** The device's point: a disc of one size on the screen, seen through the surface. */
+/** The device's point: a disc of constant size on the screen, visible through the surface. */
 import { Group, Mesh, MeshBasicMaterial, SphereGeometry } from "three";
 import type { View } from "../../view/view";
 import { COLOURS } from "../colours";

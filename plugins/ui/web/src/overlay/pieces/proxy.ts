@@ -1,4 +1,4 @@
-/** The proxy where the law has one: a diamond, and a line to the hand that is joined to it. */
+/** The proxy, if the law has one: a diamond, and a line to the hand. */
 import { BufferAttribute, BufferGeometry, Group, Line, LineBasicMaterial, Mesh, MeshBasicMaterial, OctahedronGeometry } from "three";
 import type { View } from "../../view/view";
 import { COLOURS } from "../colours";

@@ -1,4 +1,4 @@
-/** How long a newton is, and how long a length of the picture, where the cursor is: a bar at the lower left. */
+/** Scale bar at the lower left: length of a newton and of the picture at the cursor. */
 import type { View } from "../../view/view";
 import { t } from "../words";
 import { metresPerPixel, type Piece, type Sight } from "../piece";

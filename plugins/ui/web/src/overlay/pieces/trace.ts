@@ -1,4 +1,4 @@
-/** The way of the contact in the last seconds: broad and bright where the force was great. */
+/** Trace of the contact in the last seconds: broad and bright where the force was great. */
 import { BufferGeometry, DataTexture, FloatType, Mesh, RGBAFormat, ShaderMaterial, Vector2 } from "three";
 import type { State, Vec } from "../../server/protocol";
 import type { View } from "../../view/view";
@@ -10,12 +10,12 @@ import { length, minus } from "../../contact/vectors";
 
 const HZ = 60;
 const GREAT_N = 4;
-/** No hand moves that far between two states: it was put down elsewhere, or is being let go. */
+/** Distance between two states from which the trace is interrupted: the hand was put down elsewhere. */
 const LEAP_M = 0.02;
-/** Two triangles between two samples. */
+/** Vertices between two samples: two triangles. */
 const VERTICES = 6;
 
-/** A vertex looks its samples up by its number: a line costs a vertex more or less, and no instance. */
+/** Vertex shader that reads samples from a texture by vertex number, so that lines need no instances. */
 const vertexShader = `
 uniform sampler2D samples; uniform vec2 canvas; uniform float now, seconds; uniform int first, slots;
 varying float force, age;
@@ -57,7 +57,7 @@ export class Trace implements Piece {
   };
   private mesh: Mesh;
   private last: State | null = null;
-  /** When the contact moved last. */
+  /** Time of the last movement. */
   private movedMs = -Infinity;
   private at: Vec = [0, 0, 0];
 
@@ -70,7 +70,7 @@ export class Trace implements Piece {
     view.overlay(this.mesh);
   }
 
-  /** Forget the way: another surface is shown. */
+  /** Clear the trace: another surface is shown. */
   clear(): void {
     this.trail.clear();
     this.samples.needsUpdate = true;
@@ -89,12 +89,12 @@ export class Trace implements Piece {
     this.geometry.setDrawRange(0, VERTICES * Math.max(0, shown - 1));
   }
 
-  /** Whether some of it has yet to fade. */
+  /** Return whether part of the trace has yet to fade. */
   fades(seconds: number): boolean {
     return this.mesh.visible && performance.now() - this.movedMs < 1000 * seconds;
   }
 
-  /** A frame may show a state again, from elsewhere. */
+  /** Add a reading; a frame may show the same state again from another camera. */
   private add({ state, contact, hand, touching, newtons }: Reading): void {
     if (state === this.last) return;
     this.last = state;

@@ -1,4 +1,4 @@
-/** A handle on the surface: a button that is dragged with the pointer, or moved with the arrow keys. */
+/** A handle on the surface: a button moved by the pointer or the arrow keys. */
 import type { Page } from "../../page";
 import type { Vec } from "../../server/protocol";
 
@@ -14,13 +14,13 @@ const DIRECTIONS: Record<string, [number, number]> = {
 };
 
 export interface HandleTarget {
-  /** Where it is; null while it is not shown. */
+  /** Return the handle's place; null while it is hidden. */
   at(): Vec | null;
-  /** The pointer has dragged it to a place on the surface. */
+  /** Called when the pointer drags it to a place on the surface. */
   drag(to: Vec): void;
-  /** Steps by the keys, right and away from the user; Shift makes ten of one. */
+  /** Called for steps by keys, right and away from the user; Shift makes ten of one. */
   nudge(right: number, away: number): void;
-  /** It was let go, or the key was. */
+  /** Called when the handle or the key is released. */
   done?(): void;
 }
 

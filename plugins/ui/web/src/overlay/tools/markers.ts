@@ -1,4 +1,4 @@
-/** Places that were marked, numbered: to find them again, and to speak of them. */
+/** Numbered markers on the surface. */
 import type { Page } from "../../page";
 import type { Vec } from "../../server/protocol";
 import { on } from "../../shortcuts";
@@ -13,7 +13,7 @@ export interface Marker {
 
 export class Markers {
   list: Marker[] = [];
-  /** Called when anything of it changed. */
+  /** Called when the markers changed. */
   onChange: () => void = () => {};
   private last = 0;
 
@@ -25,7 +25,7 @@ export class Markers {
     on("mark", () => this.addHere());
   }
 
-  /** Where the hand is, or in the middle of what is seen. */
+  /** Add a marker at the hand, or at the middle of the view. */
   addHere(): void {
     const { scene, overlay, view } = this.page;
     const live = overlay.live?.seen ? overlay.live : null;

@@ -1,4 +1,4 @@
-/** Heights along a ruler as a small plot with axes in millimetres. */
+/** Profile of heights along a ruler, with axes in millimetres. */
 import { t } from "../words";
 import type { Measurement } from "./measurement";
 import { roundDown125 } from "../settings";
@@ -8,7 +8,7 @@ const SIZE = { width: 230, height: 118, left: 34, right: 8, top: 8, bottom: 32 }
 const MARKS = 4;
 const MOST_POINTS = 500;
 
-/** Round numbers within a span, in millimetres. */
+/** Return round numbers within a span, in millimetres. */
 export function marks(lowMm: number, highMm: number): number[] {
   const step = roundDown125((highMm - lowMm) / MARKS) || 1;
   const first = Math.ceil(lowMm / step - 1e-9);
@@ -37,7 +37,7 @@ export function profile(measured: Measurement): SVGSVGElement {
   return svg as SVGSVGElement;
 }
 
-/** Lowest and highest, a little apart where all is level. */
+/** Return lowest and highest height, a little apart if all are equal. */
 function span(heights: number[]): [number, number] {
   const [low, high] = [Math.min(...heights), Math.max(...heights)];
   const more = Math.max(0.05 * (high - low), 0.01);

@@ -1,4 +1,4 @@
-/** The ruler: two places on the surface, and what lies between them. */
+/** The ruler: measures between two places on the surface. */
 import type { Page, PointerTool } from "../../page";
 import type { Vec } from "../../server/protocol";
 import { on } from "../../shortcuts";
@@ -10,10 +10,10 @@ import { measure, type Measurement } from "./measurement";
 import { plus } from "../../contact/vectors";
 
 export class Ruler implements PointerTool {
-  /** None, one, or both. */
+  /** Ends so far: none, one, or both. */
   ends: Vec[] = [];
   measured: Measurement | null = null;
-  /** Called when anything of it changed. */
+  /** Called when the ruler changed. */
   onChange: () => void = () => {};
   private line: DrapedLine;
   private label = document.createElement("div");
@@ -36,7 +36,7 @@ export class Ruler implements PointerTool {
     on("remove ruler", () => this.remove());
   }
 
-  /** Whether clicks are its own. */
+  /** True while clicks set the ruler's ends. */
   get picking(): boolean {
     return this.page.overlay.picking.busy === this;
   }
@@ -59,7 +59,7 @@ export class Ruler implements PointerTool {
     this.onChange();
   }
 
-  /** The next place: the first, the second, or the first of another measurement. */
+  /** Add an end: the first, the second, or the first of another measurement. */
   addEnd(at: Vec): void {
     if (this.ends.length === 2) this.ends = [];
     this.setEnd(this.ends.length, at);
@@ -76,7 +76,7 @@ export class Ruler implements PointerTool {
     this.measureAgain();
   }
 
-  /** The next place is where the hand is, or in the middle of what is seen. */
+  /** Add an end at the hand, or at the middle of the view. */
   addHere(): void {
     const { scene, overlay, view } = this.page;
     const live = overlay.live?.seen ? overlay.live : null;
@@ -95,7 +95,7 @@ export class Ruler implements PointerTool {
     if (scene) this.setEnd(end, scene.on(at[0], at[1]));
   }
 
-  /** Measured again: an end moved, or the surface is another. */
+  /** Measure again after an end moved or the surface changed. */
   private measureAgain(): void {
     const { scene, overlay } = this.page;
     if (scene) this.ends = this.ends.map(([x, y]) => scene.on(x, y));

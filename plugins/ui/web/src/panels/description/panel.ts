@@ -1,4 +1,4 @@
-/** The long description in a language of one's choice: to read, hear, copy and download. */
+/** The long description in a chosen language: to read, hear, copy and download. */
 import { button, field, hint, paragraph } from "../../elements";
 import { copy, download } from "../../files";
 import type { Page } from "../../page";
@@ -8,7 +8,7 @@ import { language as ours } from "../../words/words";
 const LANGUAGES = ["en", "de", "fr"] as const;
 type Language = (typeof LANGUAGES)[number];
 
-/** What the program says of the surface with this digest; text and html say all of it. */
+/** The program's description of the surface with this digest; text and html contain all of it. */
 interface Description {
   digest: string;
   title: string;
@@ -77,7 +77,7 @@ export function build(page: Page, root: HTMLElement): void {
   void load();
 }
 
-/** That of the document, where it says one that the program speaks; else the page's. */
+/** Return the document's language if descriptions exist in it, else the page's. */
 function languageOf({ document }: Page): Language {
   const said = String(document?.said?.language ?? "").slice(0, 2);
   return LANGUAGES.find((each) => each === said) ?? ours;
@@ -108,7 +108,7 @@ function inElements({ title, overview, heading, parts, left_out }: Description):
   return [...made, second, list, ...(left_out ? [paragraph(left_out)] : [])];
 }
 
-/** It scrolls, so that it takes the focus; it is no live region: a new text is announced, not read out. */
+/** Return a scrolling region, focusable; not a live region: a new text is announced, not read out. */
 function region(): HTMLElement {
   const made = document.createElement("div");
   made.className = "description";

@@ -1,6 +1,6 @@
 import { words } from "../../words/words";
 
-/** The description of what is felt. */
+/** Texts of the description panel. */
 export const t = words({
   about: ["The surface in words, to read before touching it or instead. “Export” writes the text into files.",
     "Was zu fühlen ist, in Worten: um es vorher zu lesen oder stattdessen. „Weitergeben“ schreibt den Text in Dateien."],

@@ -1,4 +1,4 @@
-/** Asks whether a device with a motor may be started, and says what will happen. */
+/** Dialog that asks before a device with a motor is started, and says what will happen. */
 import { button } from "../../elements";
 import { t } from "./words";
 
@@ -9,7 +9,7 @@ export interface About {
   relief_m: number;
 }
 
-/** Whether the person said yes; anything else is no, and the first thing that has the focus is no. */
+/** Return whether the person agreed; "no" has the focus first, and anything else means no. */
 export function confirmStart(about: About): Promise<boolean> {
   const dialog = document.createElement("dialog");
   dialog.className = "sure";

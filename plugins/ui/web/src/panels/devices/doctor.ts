@@ -1,4 +1,4 @@
-/** How the force loop runs, four times a second while somebody looks. */
+/** Figures of the force loop, four times a second while visible. */
 import type { Page } from "../../page";
 import { LIMITS } from "../../contact/limits";
 import { t } from "./words";
@@ -29,7 +29,7 @@ interface Figures {
   how: string;
 }
 
-/** open: whether somebody can see it. */
+/** Return the figures. open: whether the panel is visible. */
 export function loopFigures(page: Page, open: () => boolean): HTMLElement {
   const box = document.createElement("section");
   const heading = document.createElement("h3");
@@ -51,7 +51,7 @@ export function loopFigures(page: Page, open: () => boolean): HTMLElement {
     try {
       show(await page.net.ask<Figures | null>("doctor"));
     } catch {
-      show(null); // the program is gone, which the head of the page says
+      show(null); // the header shows that the program is gone
     } finally {
       asking = false;
     }
@@ -93,12 +93,12 @@ function spread(found: Spread | null): string {
   return t("spread", { p50: found.p50.toFixed(0), p99: found.p99.toFixed(0), most: found.most.toFixed(0) });
 }
 
-/** The first button is 1, as people count. */
+/** Return the numbers of the pressed buttons, from 1. */
 export function pressedButtons(buttons: number): number[] {
   return Array.from({ length: 8 }, (_, i) => i + 1).filter((each) => buttons & (1 << (each - 1)));
 }
 
-/** "force limited 12": how many ticks each limit changed; overruns have a line of their own. */
+/** Return "force limited 12": ticks changed by each limit; overruns are shown separately. */
 export function limits(flagged: Record<string, number>): string {
   return LIMITS.filter(({ name }) => name !== "OVERRUN" && flagged[name])
     .map(({ name, word }) => `${named(word)} ${flagged[name]}`)

@@ -1,4 +1,4 @@
-/** Every installed device: what it is, whether it is there, and why not. */
+/** List items of installed devices: kind, presence, problems. */
 import { button } from "../../elements";
 import type { Page } from "../../page";
 import { t } from "./words";
@@ -26,7 +26,7 @@ interface Finding {
   cure: string;
 }
 
-/** One device. use: called when it is to be felt. */
+/** Return the item of a device. use: called when it is chosen. */
 export function deviceItem(page: Page, found: Device, use: () => void): HTMLLIElement {
   const line = document.createElement("li");
   const name = element("h4", found.name);

@@ -1,4 +1,4 @@
-/** Devices: which there are and why one is not, which one is felt, and how its loop runs. */
+/** The devices panel: installed devices, the choice of one, and figures of its loop. */
 import { button } from "../../elements";
 import type { Page } from "../../page";
 import { type Panel, reveal } from "../panel";

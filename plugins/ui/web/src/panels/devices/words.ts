@@ -1,6 +1,6 @@
 import { words } from "../../words/words";
 
-/** Devices: which there are, which one is felt, and how its loop runs. */
+/** Texts of the devices panel. */
 export const t = words({
   title: ["Devices", "Geräte"],
   felt: ["In use: {device}", "Gefühlt mit: {device}"],

@@ -1,4 +1,4 @@
-/** Which exporters, each with its options: a form that belongs to the panel until it is written into the file. */
+/** Selection of exporters with options, local to the panel until written into the file. */
 import { button, paragraph } from "../../elements";
 import type { Option } from "../../forms/kinds";
 import { FIELD, rows } from "../../forms/rows";
@@ -13,12 +13,12 @@ export interface Exporter {
   options: Option[];
 }
 
-/** What an exporter is called; one that is not known says what it does. */
+/** Return the name of an exporter; an unknown one keeps the name of the pipeline file. */
 export const exporterName = (name: string): string => (t.has(name) ? t(name) : name);
 
 export class Choices {
   readonly root = document.createElement("ul");
-  /** Hears that another one is chosen, or another option. */
+  /** Called when the selection or an option changed. */
   onChange: () => void = () => undefined;
   private entries: Entry[] = [];
 
@@ -31,7 +31,7 @@ export class Choices {
     return blocksOf(this.entries);
   }
 
-  /** Show what the file says. */
+  /** Show the file's exporters. */
   show(said: Plain | undefined): void {
     this.build(entriesOf(said, this.exporters.map(({ name }) => name)));
   }
@@ -54,7 +54,7 @@ export class Choices {
     const label = document.createElement("label");
     label.append(input, exporterName(entry.use));
     box.append(label);
-    const known = this.exporters.find(({ name }) => name === entry.use); // a file may name one that is not installed
+    const known = this.exporters.find(({ name }) => name === entry.use); // a file may name an exporter that is not installed
     if (known) box.append(this.options(entry, at, known, input));
     return box;
   }
@@ -76,7 +76,7 @@ export class Choices {
     const made = known.options.map((option) => {
       const one = row(option, `${FIELD}export-${at}-${entry.use}.${option.name}`, (said: FieldChange, inside: string[] = []) => {
         entry.options = setInside(entry.options, [option.name, ...inside], said) as Entry["options"];
-        if (!entry.on) on.click(); // who sets its options wants it
+        if (!entry.on) on.click(); // setting options implies the exporter
         show();
         this.onChange();
       });
@@ -91,7 +91,7 @@ export class Choices {
     return box;
   }
 
-  /** Two pin displays want two pictures. */
+  /** Return buttons to add or remove a variant: two pin displays need two files. */
   private more(entry: Entry, at: number): HTMLElement {
     const box = document.createElement("div");
     box.className = "buttons";

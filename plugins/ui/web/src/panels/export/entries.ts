@@ -1,4 +1,4 @@
-/** What is to be exported, as the pipeline file says it: a list of names, or of blocks with options. */
+/** Entries of the `export` key: a list of names, or of blocks with options. */
 import type { Plain } from "../../forms/schema";
 import { isMap, same } from "../../forms/values";
 
@@ -8,7 +8,7 @@ export interface Entry {
   on: boolean;
 }
 
-/** Every exporter once, more often where the file says it more often; those that the file says are on. */
+/** Return an entry for every exporter, more if the file lists it more often; the file's entries are on. */
 export function entriesOf(said: Plain | undefined, names: string[]): Entry[] {
   const given = parseEntries(said);
   const known = [...names, ...given.map(({ use }) => use).filter((use) => !names.includes(use))];
@@ -18,12 +18,12 @@ export function entriesOf(said: Plain | undefined, names: string[]): Entry[] {
   });
 }
 
-/** Those that are on, as short as the file can say them. */
+/** Return the entries that are on, in the shortest form of the file. */
 export function blocksOf(entries: Entry[]): Plain[] {
   return entries.filter(({ on }) => on).map(({ use, options }) => (Object.keys(options).length ? { use, ...options } : use));
 }
 
-/** Whether the file says the same already, in whatever words. */
+/** Return whether the file lists the same exports already, in any form. */
 export function equals(said: Plain | undefined, blocks: Plain[]): boolean {
   return same(blocksOf(parseEntries(said)), blocks);
 }

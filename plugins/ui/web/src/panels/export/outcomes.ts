@@ -1,4 +1,4 @@
-/** What became of each exporter: its files, what was decided, and whether fingers can read it. */
+/** Outcome of each exporter: files, decisions, and tactile legibility. */
 import { paragraph } from "../../elements";
 import { token } from "../../server/token";
 import type { Exported, Outcome } from "../../server/messages";
@@ -14,7 +14,7 @@ export function outcomes(said: Exported, cure: Cure): HTMLElement[] {
   return said.exports.map((each) => outcome(said.folder, each, cure));
 }
 
-/** An address of the server's; the key is that of this page. */
+/** Return the address of an exported file, with this page's key. */
 export function address(folder: string, name: string): string {
   return `/export/${folder}/${encodeURIComponent(name)}?token=${encodeURIComponent(token)}`;
 }

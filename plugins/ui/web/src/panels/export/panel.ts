@@ -1,4 +1,4 @@
-/** Choose exporters, run them, stop, and take the files. */
+/** The export panel: choose exporters, run them, stop, and download the files. */
 import { button, hint, paragraph } from "../../elements";
 import { DocumentEditor } from "../../forms/editor";
 import { options } from "../../forms/kinds";
@@ -87,10 +87,10 @@ export function build(page: Page, root: HTMLElement): void {
   if (before) show(before);
 }
 
-/** What most look for comes first; exporters that are not known here follow. */
+/** Order of known exporters by frequency of use; others follow. */
 const ORDER = ["stl", "3mf", "glb", "swell", "pins", "text", "heights"];
 
-/** Exporters that are installed, with their options, of the file's schema. */
+/** Return installed exporters with their options, from the file's schema. */
 function exportersOf({ properties, $defs }: FileSchema): Exporter[] {
   const lists = properties.export ? alternatives(properties.export, $defs) : [];
   const items = lists.flatMap((each) => (each.items ? alternatives(each.items, $defs) : [each]));
@@ -104,7 +104,7 @@ function exportersOf({ properties, $defs }: FileSchema): Exporter[] {
   return found.sort((one, other) => place(one) - place(other));
 }
 
-/** It ends what is being made, as everywhere. */
+/** Return a button that stops the computation. */
 function stopButton(page: Page): HTMLElement {
   const stop = button(t("stop"), () => page.net.ask("stop_making"));
   stop.id = "export-stop";
@@ -114,7 +114,7 @@ function stopButton(page: Page): HTMLElement {
   return stop;
 }
 
-/** What is being made for it now. Not spoken: the status says when it begins and ends. */
+/** Return the progress of the export. Not spoken: the status line announces start and end. */
 function progress(page: Page): HTMLElement {
   const box = document.createElement("p");
   box.className = "hint progress";
@@ -142,7 +142,7 @@ function summaryOf({ exports }: Exported): [string, string] {
   return [count === 1 ? t("doneOne") : t("done", { count }), "good"];
 }
 
-/** All files in one, where there are several. */
+/** Return a button that downloads all files as a ZIP, if there are several. */
 function zipButton(page: Page, { folder, exports }: Exported, tell: (text: string, className?: string) => void): HTMLElement[] {
   const files = exports.flatMap((each) => each.files);
   if (files.length < 2) return [];

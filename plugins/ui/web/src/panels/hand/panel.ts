@@ -1,4 +1,4 @@
-/** The hand of this page: whether it is felt, what moves it, and how deep it presses. */
+/** Settings of this page's hand: whether it is active, its mover, and its penetration. */
 import { button, field, hint } from "../../elements";
 import { type HandState, PRESS_M } from "../../hand/state";
 import type { Page } from "../../page";
@@ -47,7 +47,7 @@ function build(page: Page, root: HTMLElement): void {
 
   page.hub.on("hand", hear);
   page.hub.on("drawn", () => {
-    const mm = (1000 * (page.hand?.pressM ?? 0)).toFixed(1); // wheel, trigger and pen change it too
+    const mm = (1000 * (page.hand?.pressM ?? 0)).toFixed(1); // wheel, trigger and pen change the penetration too
     if (document.activeElement === press || Number(press.value).toFixed(1) === mm) return;
     press.value = mm;
     show();
@@ -58,7 +58,7 @@ function build(page: Page, root: HTMLElement): void {
 
 type Held = "gone" | "rests" | "holds" | "nobody" | "watches";
 
-/** Who holds the hand, as a word of the table. */
+/** Return the holder of the hand, as a key of the words. */
 export function holderOf(hand: Pick<HandState, "there" | "holding" | "nobodyHolds" | "rests">): Held {
   if (!hand.there) return "gone";
   if (hand.rests) return "rests";

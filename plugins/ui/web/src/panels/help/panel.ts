@@ -1,4 +1,4 @@
-/** All keys, from the one table of shortcuts, and the ten main tasks in short. */
+/** Help: all keys, from the table of shortcuts, and the ten main tasks. */
 import type { Page } from "../../page";
 import { reveal, type Panel } from "../panel";
 import { on, SHORTCUTS, type Name } from "../../shortcuts";

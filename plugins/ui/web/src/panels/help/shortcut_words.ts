@@ -1,6 +1,6 @@
 import { words } from "../../words/words";
 
-/** What each shortcut does, by its name in shortcuts.ts. */
+/** Texts of the shortcuts, by their names in shortcuts.ts. */
 export const t = words({
   stop: ["Stop: no force", "Stopp: keine Kraft"],
   "next region": ["Go to the next part of the page", "Zum nächsten Bereich der Seite"],

@@ -1,4 +1,4 @@
-/** The places at which a verdict fails, in words, each with a button that leads there. */
+/** List of the places at which a verdict fails, each with a button that leads there. */
 import { button, paragraph } from "../../elements";
 import type { Verdict } from "../../server/messages";
 import type { Page } from "../../page";
@@ -6,10 +6,10 @@ import { t } from "./words";
 import { ninthOfPicture } from "../../words/place_words";
 import type { Fault, FaultMarks } from "./fault_marks";
 
-/** Of one verdict; a picture with more than that has one fault all over. */
+/** Greatest number of places listed per verdict. */
 const MOST = 9;
 
-/** The places of all verdicts that fail, numbered in their order. */
+/** Return the failing places of all verdicts, numbered in order. */
 export function numberFaults(verdicts: Verdict[]): Map<Verdict, Fault[]> {
   let number = 0;
   const failing = verdicts.filter((each) => each.verdict !== "ok" && each.at?.length);

@@ -1,4 +1,4 @@
-/** Verdicts of legibility by medium; their places on the surface and in words; their cures as buttons. */
+/** Verdicts of tactile legibility by medium, with places and cures. */
 import { button, field, hint, paragraph } from "../../elements";
 import { DocumentEditor } from "../../forms/editor";
 import type { Legible, Medium } from "../../server/messages";
@@ -82,11 +82,11 @@ export function build(page: Page, root: HTMLElement): void {
   if (before) show(before);
 }
 
-/** Everything that would make parts legible, as one edit; nothing where that is no cure. */
+/** Return a button that applies all simplifications as one edit, if there are any. */
 function simplifyButton({ verdicts: all }: Legible, editor: DocumentEditor, check: () => Promise<void>): HTMLElement[] {
   const wanted = all.flatMap((each) => each.changes).filter(({ key }) => key === SIMPLIFY || key.startsWith(`${SIMPLIFY}.`));
   if (!wanted.length) return [];
-  const changes = Object.fromEntries(wanted.reverse().map(({ key, value }) => [key, value])); // the first of a key counts
+  const changes = Object.fromEntries(wanted.reverse().map(({ key, value }) => [key, value])); // the first value of a key counts
   const written = Object.entries(changes).map(([key, value]) => `${key}: ${JSON.stringify(value)}`);
   const cure = button(t("simplify"), () => void editor.submit({ changes }).then((done) => (done ? check() : undefined)));
   cure.id = "legible-simplify";

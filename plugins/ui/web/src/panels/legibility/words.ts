@@ -1,6 +1,6 @@
 import { words } from "../../words/words";
 
-/** Whether fingers can read it. */
+/** Texts of the legibility panel. */
 export const t = words({
   about: ["Checks the picture against the rules of tactile graphics: gaps, sizes of parts, steps, textures.",
     "Ob Finger es lesen können, nach den Regeln für taktile Grafiken: Abstände, Größe der Teile, Stufen, Texturen."],

@@ -1,4 +1,4 @@
-/** The log: what happened, with filters and search. */
+/** The log panel, with filters and search. */
 import { button } from "../../elements";
 import { download } from "../../files";
 import type { Events } from "../../server/messages";
@@ -30,7 +30,7 @@ class Log {
     box.id = "log";
     box.tabIndex = 0;
     box.setAttribute("role", "log");
-    box.setAttribute("aria-live", "off"); // the announcer says what matters, once a second at most; but who wants all
+    box.setAttribute("aria-live", "off"); // the announcer reads what matters; a person can choose to hear every line
     this.page.hub.on("read log", ({ on }) => box.setAttribute("aria-live", on ? "polite" : "off"));
     box.setAttribute("aria-label", t("lines"));
     box.append(this.list);
@@ -96,7 +96,7 @@ class Log {
     this.add(outcome === "failed" ? "error" : "event", `${t(method ? "stage" : "given by", told)}${why ? ": " : ""}`, at_s, why);
   }
 
-  /** Many may come at once: they are put on the page together, before it is drawn. */
+  /** Add a line; many lines at once are rendered together. */
   private add(level: Level, own: string, at_s: number, foreign = ""): void {
     const text = own + foreign;
     const { line, again, dropped } = this.lines.add(level, text, at_s, foreign);
@@ -125,7 +125,7 @@ class Log {
     return getComputedStyle(region).overflowY === "auto" ? region : this.list.parentElement!;
   }
 
-  /** Whether its end is in sight: then new lines are scrolled to. */
+  /** True if the end is in sight: then new lines are scrolled to. */
   private get follows(): boolean {
     const { scrollTop, clientHeight, scrollHeight } = this.scroller;
     return scrollTop + clientHeight >= scrollHeight - 40;
@@ -150,7 +150,7 @@ class Log {
       await navigator.clipboard.writeText(asText(this.shown));
       this.page.say(t("copied", { count: this.shown.length }), { asked: true });
     } catch {
-      getSelection()?.selectAllChildren(this.list); // the browser forbids it: Ctrl+C then does it
+      getSelection()?.selectAllChildren(this.list); // the browser forbids copying: Ctrl+C then works
       this.page.say(t("selected"), { asked: true });
     }
   }

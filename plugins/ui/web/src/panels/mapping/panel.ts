@@ -1,4 +1,4 @@
-/** How the picture lies under the hand: a frame to drag, and a part to feel enlarged. */
+/** Mapping of the picture to the hand: a frame to drag, and a region to enlarge. */
 import "../overlay/overlay.css";
 import { button } from "../../elements";
 import { MappingFrame } from "../../overlay/tools/mapping_frame";

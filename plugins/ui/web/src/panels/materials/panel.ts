@@ -1,4 +1,4 @@
-/** Which segment is which material, why, and how much of the surface; and the library with figures and sources. */
+/** Materials of the segments with reasons and areas; and the library with figures and sources. */
 import { tableWithHeads } from "../../elements";
 import { DocumentEditor } from "../../forms/editor";
 import { LIBRARY } from "../../forms/rows";
@@ -78,7 +78,7 @@ function line(row: HTMLTableRowElement): HTMLTableRowElement {
   return row;
 }
 
-/** A row that is there stays, so that a select which has focus keeps it. */
+/** Fill a row in place, so that a focused select keeps the focus. */
 function fill(row: HTMLTableRowElement, { label, material, why, share }: Segment, names: string[]): void {
   const [head, choice, area] = row.cells;
   head.textContent = String(label);

@@ -1,4 +1,4 @@
-/** The methods of the document, as forms; run and stop; one step back and forth. */
+/** The methods panel: forms of the document; run and stop; undo and redo. */
 import { button } from "../../elements";
 import { showComplaints } from "../../forms/complaints";
 import { DocumentEditor } from "../../forms/editor";
@@ -47,7 +47,7 @@ function build(page: Page, root: HTMLElement): void {
   root.append(runControls(page, editor), refused, complaints, steps(page, editor), forms, compare);
   page.hub.on("document", () => {
     show();
-    void page.idle.then(load).catch(() => undefined); // all methods are loaded for their schema
+    void page.idle.then(load).catch(() => undefined); // the server loads all methods for their schema
   });
 }
 

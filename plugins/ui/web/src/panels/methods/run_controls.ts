@@ -1,4 +1,4 @@
-/** Run depth, texture or all of it; stop; and whether what is felt is what the document says. */
+/** Buttons to compute depth, texture or everything, to stop, and a note if the surface is outdated. */
 import { button } from "../../elements";
 import type { DocumentEditor } from "../../forms/editor";
 import type { Page } from "../../page";

@@ -1,4 +1,4 @@
-/** What was edited and not saved when the program ended before: opened again, or thrown away. */
+/** Offer of unsaved edits of a previous program: to open or discard. */
 import { button } from "../../elements";
 import type { Page } from "../../page";
 import { language } from "../../words/words";

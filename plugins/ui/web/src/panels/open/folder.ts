@@ -1,4 +1,4 @@
-/** Folders of this computer: what can be opened lies in a list, of which one file or a pair is chosen. */
+/** Browser of folders on this computer: one file or a pair is chosen from a list. */
 import { button, field } from "../../elements";
 import type { Server } from "../../page";
 import { t } from "./words";

@@ -59,7 +59,7 @@ function chooser(take: (files: File[]) => void): HTMLElement[] {
   input.setAttribute("aria-describedby", help.id);
   input.onchange = () => {
     take([...(input.files ?? [])]);
-    input.value = ""; // the same file may be chosen again
+    input.value = ""; // allow choosing the same file again
   };
   return [field(t("choose"), input), help];
 }
@@ -84,7 +84,7 @@ function examples(page: Page, open: (paths: string[]) => void): HTMLElement {
   return box;
 }
 
-/** Left and right of a pair change places in the document. */
+/** Return a button that swaps left and right of a pair in the document. */
 function exchange(page: Page): HTMLElement {
   const made = button(t("exchange"), () => page.net.ask("exchange").catch((error: Error) => page.say(error.message)));
   made.hidden = true;

@@ -1,6 +1,6 @@
 import { words } from "../../words/words";
 
-/** Opening pictures, and the pipeline file on the screen. */
+/** Texts of the open panel. */
 export const t = words({
   title: ["Open", "Öffnen"],
   choose: ["Choose files…", "Dateien wählen …"],

@@ -1,4 +1,4 @@
-/** The named parts of what is felt, and a device that guides a hand to one of them. */
+/** List of named parts, and guidance of the hand to one of them by a device. */
 import { button } from "../../elements";
 import type { Events } from "../../server/messages";
 import type { Page } from "../../page";

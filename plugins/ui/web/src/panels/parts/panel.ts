@@ -1,4 +1,4 @@
-/** Parts: the way into their editor, which comes when it is opened. */
+/** The parts panel: opens the editor, whose module is loaded then. */
 import { button, hint } from "../../elements";
 import type { Page } from "../../page";
 import type { Panel } from "../panel";

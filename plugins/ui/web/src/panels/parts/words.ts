@@ -1,6 +1,6 @@
 import { words } from "../../words/words";
 
-/** Parts: what the panel says; what their editor says stands in editor/words.ts, which comes when it is opened. */
+/** Texts of the parts panel; those of the editor are in editor/words.ts, loaded with it. */
 export const t = words({
   title: ["Parts", "Teile"],
   about: ["Draw the parts of the picture, name them, and give each a height: parts in front are higher.",

@@ -1,4 +1,4 @@
-/** Preflight: what is safe and what will be felt, in words, with cures that change the document. */
+/** Preflight: verdicts on safety and perceptibility, with cures that change the document. */
 import { button, paragraph } from "../../elements";
 import { DocumentEditor } from "../../forms/editor";
 import type { Judged } from "../../server/messages";

@@ -1,4 +1,4 @@
-/** Recordings: keep what is felt, list what was kept, play it, feel it again with another law, compare two. */
+/** Recordings: record touch, list recordings, play them, replay them with another law, compare two. */
 import { button, field } from "../../elements";
 import { bulk } from "../../server/connection";
 import type { Page } from "../../page";
@@ -117,7 +117,7 @@ function build(page: Page, root: HTMLElement): void {
   });
 }
 
-/** What the server says of a recording that was ended on purpose. */
+/** The server's reason for a recording that was ended on purpose. */
 const BY_HAND = "stopped by hand";
 
 function line({ name, trouble, law, figures }: Listed): string {
@@ -125,7 +125,7 @@ function line({ name, trouble, law, figures }: Listed): string {
   return t("line", { name, law: law || "?", seconds: (figures?.seconds ?? 0).toFixed(1) });
 }
 
-/** The player's controls, hidden while nothing is loaded. */
+/** Return the player's controls, hidden while nothing is loaded. */
 function playback(page: Page): { box: HTMLElement; load: (ticks: Ticks, name: string) => void } {
   const box = document.createElement("fieldset");
   box.hidden = true;

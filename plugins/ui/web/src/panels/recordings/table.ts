@@ -1,4 +1,4 @@
-/** Figures by name, as a table. */
+/** Table of figures by name. */
 import { t } from "./words";
 
 export function table(figures: Record<string, number>): HTMLTableElement {

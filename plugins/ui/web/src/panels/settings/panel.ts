@@ -1,4 +1,4 @@
-/** How a person wants the page: colours, language, sizes, keys. This browser remembers it; no pipeline file holds it. */
+/** Settings of the person: colours, language, sizes, keys. Kept in this browser, not in the pipeline file. */
 import { button } from "../../elements";
 import type { Page } from "../../page";
 import type { Panel } from "../panel";
@@ -28,7 +28,7 @@ function languages(): HTMLElement {
   return labelAround(t("language"), choice);
 }
 
-/** For who does not drag: the lines between the regions can be dragged, too. */
+/** Return buttons for the sizes of the regions, as an alternative to dragging. */
 function sizes(): HTMLElement {
   const box = document.createElement("fieldset");
   const legend = document.createElement("legend");
@@ -70,7 +70,7 @@ function readLogSwitch(page: Page): HTMLElement {
     remember("read", input.checked);
     tell();
   };
-  queueMicrotask(tell); // when all panels are there
+  queueMicrotask(tell); // after all panels are built
   const label = document.createElement("label");
   label.append(input, t("read"));
   return label;

@@ -1,4 +1,4 @@
-/** What is to be heard: the surface as sound, and speech. */
+/** Settings of sound and speech. */
 import { button } from "../../elements";
 import type { Page } from "../../page";
 import type { Panel } from "../panel";
@@ -28,7 +28,7 @@ function soundButton(page: Page): HTMLElement {
   return made;
 }
 
-/** What is heard, to see. */
+/** Return a meter of the loudness. */
 function meter(page: Page): HTMLElement {
   const bar = document.createElement("meter");
   Object.assign(bar, { min: 0, max: 0.3, value: 0, id: "sound-level" });

@@ -1,4 +1,4 @@
-/** All products of the pipeline: which method makes each, what became of it, why, and how long it took. */
+/** Products of the pipeline: method, outcome, reason and time of each. */
 import type { Page } from "../../page";
 import type { Panel } from "../panel";
 import { productName } from "../../words/product_words";
@@ -7,7 +7,7 @@ import { type Row, progressOf, StageTable, type StateOf } from "./table";
 import "./stages.css";
 
 const REFRESH_MS = 200;
-/** A shape for each state, beside its word. */
+/** A symbol for each state, next to its word. */
 const SHAPES: Record<StateOf, string> = {
   waiting: "○", running: "◐", ran: "●", cached: "◆", given: "▣", skipped: "–", refused: "⊘", failed: "✕", stopped: "■",
 };
@@ -88,7 +88,7 @@ function bar(row: Row): HTMLElement {
   return made;
 }
 
-/** Times and bars alone change while a stage runs: what has focus or is read stays. */
+/** Update times and bars alone, so that focus and reading position stay. */
 function progress(list: HTMLElement, table: StageTable): void {
   const now = performance.now();
   table.rows.forEach((row, at) => {

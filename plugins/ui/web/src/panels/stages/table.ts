@@ -1,4 +1,4 @@
-/** What becomes of each product, from what the program says: first the plan, then what runs, then what became of it. */
+/** State of each product from the program's messages: first the plan, then running stages, then outcomes. */
 import type { Note, Outcome, Plan } from "../../server/messages";
 
 export type StateOf = "waiting" | "running" | "ran" | "cached" | "given" | "skipped" | "refused" | "failed" | "stopped";
@@ -10,21 +10,21 @@ export interface Row {
   why: string;
   notes: Note[];
   seconds: number;
-  /** When it began, by the page's clock; 0 where it does not run. */
+  /** Start by the page's clock; 0 if it is not running. */
   beganMs: number;
-  /** What it took last time, in seconds; 0 where that is not known. */
+  /** Duration of the last run, seconds; 0 if unknown. */
   expected: number;
 }
 
 export class StageTable {
-  /** In the order of making. */
+  /** Rows in the order of computation. */
   rows: Row[] = [];
   running = false;
   private took = new Map<string, number>();
   private digest = "";
   private later: Plan | null = null;
 
-  /** What making would do. While something is made, a plan for another text waits. */
+  /** Take over a plan; while something is computed, a plan for another text waits. */
   setPlan(plan: Plan): void {
     if (this.running && plan.digest !== this.digest) this.later = plan;
     else if (plan.steps.length) this.rows = plan.steps.map((step) => this.plannedRow(step));
@@ -53,7 +53,7 @@ export class StageTable {
     if (done.outcome === "ran") this.took.set(`${product} ${row.method}`, row.seconds);
   }
 
-  /** Making ended; what had begun and was not finished was stopped, or failed. */
+  /** End the computation; unfinished stages were stopped, or failed. */
   end(outcome: "made" | "stopped" | "failed"): void {
     this.running = false;
     for (const row of this.rows) {
@@ -80,13 +80,13 @@ export class StageTable {
   }
 }
 
-/** Why, without the notes that follow it in one sentence: they are listed by themselves. */
+/** Return the reason without the notes that follow it: these are listed separately. */
 export function withoutNotes(why: string, notes: Note[]): string {
   const behind = notes.map(({ text }) => `; ${text}`).join("");
   return behind && why.endsWith(behind) ? why.slice(0, -behind.length) : why;
 }
 
-/** How far a running stage is, 0 to 1, by what it took last time; null where that is not known. */
+/** Return the progress of a running stage, 0 to 1, by its last duration; null if unknown. */
 export function progressOf({ beganMs, expected }: Row, nowMs: number): number | null {
   if (!expected) return null;
   return Math.min(0.98, (nowMs - beganMs) / 1000 / expected);

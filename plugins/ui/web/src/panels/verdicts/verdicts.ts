@@ -1,17 +1,17 @@
-/** Verdicts as tables, each with what it stands on, its cure in words, and buttons that change the document. */
+/** Verdicts as tables, with source, cure in words, and buttons that change the document. */
 import { button, tableWithHeads, paragraph } from "../../elements";
 import type { Grade, Verdict } from "../../server/messages";
 import { t } from "./words";
 
 const SHAPES: Record<Grade, string> = { ok: "✓", warn: "▲", unsafe: "✕", illegible: "✕" };
 
-/** Change this key of the document. */
+/** Changes a key of the document. */
 export type Cure = (key: string, value: Setting) => void;
 type Setting = Verdict["changes"][number]["value"];
-/** What stands below a verdict beside its cure; null for nothing. */
+/** Returns an element below a verdict; null for none. */
 export type More = (said: Verdict) => HTMLElement | null;
 
-/** What failed first; what passed is folded. */
+/** Return tables of verdicts: failed ones first, passed ones folded. */
 export function verdictTables(all: Verdict[], cure: Cure, more: More = () => null): HTMLElement[] {
   const wrong = all.filter(({ verdict }) => verdict !== "ok");
   const fine = all.filter(({ verdict }) => verdict === "ok");
@@ -20,7 +20,7 @@ export function verdictTables(all: Verdict[], cure: Cure, more: More = () => nul
   return fine.length ? [...made, foldable(passed, table(passed, fine, cure, more))] : made;
 }
 
-/** The whole in a sentence of the program, with its shape. */
+/** Return the program's overall sentence with its symbol. */
 export function gradeSentence(grade: Grade, text: string): HTMLElement {
   const made = paragraph("", `sentence ${grade}`);
   made.lang = "en";
@@ -32,7 +32,7 @@ function table(caption: string, all: Verdict[], cure: Cure, more: More): HTMLEle
   const made = tableWithHeads(caption, [t("verdict"), t("what"), t("stands")], "verdicts");
   const body = made.createTBody();
   const said = new Set<string>();
-  /** A source, a cure or its button that several verdicts have stands at the first of them. */
+  /** Return whether a source, cure or button is new: repeated ones are shown once. */
   const fresh = (text: string): boolean => said.size !== said.add(text).size;
   for (const each of all) row(body, each, cure, more, fresh);
   return made;
@@ -65,7 +65,7 @@ function row(body: HTMLTableSectionElement, said: Verdict, cure: Cure, more: Mor
   for (const { key, value } of changes) below.append(button(t("set", { key, value: written(value) }), () => cure(key, value)));
 }
 
-/** A value as the pipeline file writes it. */
+/** Return a value as the pipeline file writes it. */
 function written(value: Setting): string {
   return typeof value === "string" ? value : JSON.stringify(value);
 }
@@ -78,7 +78,7 @@ function foldable(title: string, inside: HTMLElement): HTMLElement {
   return box;
 }
 
-/** The verdict's shape; its word stands beside it, or in the sentence. */
+/** Return the verdict's symbol; its word is next to it, or in the sentence. */
 function mark(verdict: Grade): HTMLElement {
   const made = document.createElement("span");
   made.className = "shape";

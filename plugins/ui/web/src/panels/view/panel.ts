@@ -1,4 +1,4 @@
-/** How the surface is drawn, and from where one looks. */
+/** Settings of the view: colouring, light, magnifier and camera. */
 import "./view.css";
 import { CAMERA_KEYS } from "../../view/camera";
 import { Magnifier } from "../../view/magnifier";
@@ -33,7 +33,7 @@ function build(page: Page, root: HTMLElement): void {
   grounded();
 }
 
-/** What the surface shows, and what its colours mean. */
+/** Return the choice of colouring, with its legend. */
 function looks(page: Page, showing: Look, set: (changes: Partial<Settings>) => void, slider: Slider): HTMLElement {
   const box = fieldset("shows");
   const choices = document.createElement("div");
@@ -116,7 +116,7 @@ function magnifier(settings: Settings, set: (changes: Partial<Settings>) => void
   return label;
 }
 
-/** Where one looks from. */
+/** Return buttons and keys of the camera. */
 function camera(page: Page): HTMLElement {
   const box = fieldset("camera");
   const buttons = document.createElement("div");

@@ -1,4 +1,4 @@
-/** The pipeline file on the screen, as text: to read, edit, copy, download and save. */
+/** The pipeline file as text: to read, edit, copy, download and save. */
 import { button, field } from "../../elements";
 import { copy, download } from "../../files";
 import { DocumentEditor } from "../../forms/editor";
@@ -8,7 +8,7 @@ import type { Panel } from "../panel";
 import { t } from "./words";
 import "./yaml.css";
 
-/** A text is checked when nothing was typed for so long. */
+/** Milliseconds without typing after which the text is checked. */
 const PAUSE_MS = 600;
 
 function build(page: Page, root: HTMLElement): void {
@@ -36,7 +36,7 @@ function build(page: Page, root: HTMLElement): void {
     timer = window.setTimeout(() => {
       const told = { text: text.value, of, apply: editor.apply };
       timer = 0;
-      of = null; // who goes on typing has seen what was said
+      of = null; // further typing is based on the answer
       void page.net.ask("edit", told).catch((error: Error) => say(error.message));
     }, PAUSE_MS);
   };
@@ -76,7 +76,7 @@ function build(page: Page, root: HTMLElement): void {
   );
 }
 
-/** Another text in place of this one, the caret where it was. */
+/** Replace the text and keep the caret. */
 function replace(area: HTMLTextAreaElement, text: string): void {
   const { selectionStart, selectionEnd, scrollTop } = area;
   area.value = text;

@@ -1,4 +1,4 @@
-/** The picture with its parts: borders, numbers and names over it, and what a tool is doing. Drawn as large as the screen. */
+/** The picture with borders, numbers and names of its parts, and the marks of the tool, at screen resolution. */
 import { measuring } from "../../../instrumentation";
 import { colour } from "../../../frame/themes";
 import { borders, borderReach } from "./borders";
@@ -7,14 +7,14 @@ import { union, type Box, EMPTY, isEmpty, type Point } from "../pixels/labels";
 import type { Place } from "../pixels/pieces";
 import { Viewport } from "./viewport";
 
-/** What a tool shows while it is used. */
+/** Marks of a tool in use. */
 export interface Marks {
   line: readonly Point[];
   closed: boolean;
-  /** Where the pointer or the crosshair is, in the picture. */
+  /** Position of pointer or crosshair in the picture. */
   at: Point | null;
   cross: boolean;
-  /** In pixels of the picture; 0 for none. */
+  /** Width of the brush in pixels of the picture; 0 for none. */
   brush: number;
 }
 
@@ -25,19 +25,19 @@ export interface Named {
 }
 
 const TEXT_PX = 13;
-/** Smaller parts on the board have no name on it. */
+/** Size below which a part has no name on the board. */
 const SMALLEST_PX = 12;
 const DARK = "#0b0e13";
 const LIGHT = "#ffffff";
 
 export class Board {
   readonly element = document.createElement("div");
-  /** What is seen: one canvas without transparency, which browsers show soonest. */
+  /** The visible canvas, opaque, which browsers draw fastest. */
   readonly canvas = document.createElement("canvas");
   readonly viewport: Viewport;
   marks: Marks = { line: [], closed: false, at: null, cross: false, brush: 0 };
   private context = this.canvas.getContext("2d", { alpha: false })!;
-  /** The picture and the borders at the size of the screen, to be put together where something changed. */
+  /** Picture and borders at screen size, composed where something changed. */
   private base = hidden();
   private lines = hidden();
   private names: Named[] = [];
@@ -46,7 +46,7 @@ export class Board {
   private stale: Box = EMPTY;
   private moved = true;
   private anew = true;
-  /** Where marks were drawn last. */
+  /** Box of the last marks. */
   private marked: Box = EMPTY;
   private due = false;
   private closed = false;
@@ -66,48 +66,48 @@ export class Board {
   }
 
   close(): void {
-    this.closed = true; // a frame may be due
+    this.closed = true; // a frame may be pending
     this.watching.disconnect();
     this.picture.close();
   }
 
-  /** The colours are others. */
+  /** Take over the theme's colours. */
   dress(): void {
     const css = colour("--accent");
     const wanted = colour("--accent-ink");
-    const ink = wanted !== css ? wanted : isLight(css) ? DARK : LIGHT; // forced colours are few
+    const ink = wanted !== css ? wanted : isLight(css) ? DARK : LIGHT; // forced colours may be equal
     this.accent = { css, ink, accent: asPixel(css, 0xff), against: asPixel(ink, 0xe6), thin: asPixel(css, 0x40) };
     this.ground = getComputedStyle(this.element).backgroundColor;
     this.look();
   }
 
-  /** What stands on the parts; the largest first. */
+  /** Set the names on the parts, the largest first. */
   name(names: Named[]): void {
     this.names = names;
     this.anew = true;
     this.wake();
   }
 
-  /** Something of the picture's parts is another; at: when it was asked for. */
+  /** Redraw a box of the picture's parts. at: time of the event. */
   changed(box: Box, at = performance.now()): void {
     this.stale = union(this.stale, box);
     this.since ||= at;
     this.wake();
   }
 
-  /** What is seen is another. */
+  /** Redraw after the view changed. */
   look(): void {
     this.moved = true;
     this.wake();
   }
 
-  /** What a tool shows is another. */
+  /** Redraw the tool's marks. */
   mark(marks: Partial<Marks>): void {
     Object.assign(this.marks, marks);
     this.wake();
   }
 
-  /** A place of the window, in the picture. */
+  /** Return the place of the picture at a place of the window. */
   at({ clientX, clientY }: { clientX: number; clientY: number }): Point {
     return this.viewport.toPicture(this.onBoard(clientX, clientY));
   }
@@ -117,7 +117,7 @@ export class Board {
     return [(clientX - left) * this.ratio, (clientY - top) * this.ratio];
   }
 
-  /** Pixels of the picture for one of the page. */
+  /** Pixels of the picture per CSS pixel. */
   get scale(): number {
     return this.ratio / this.viewport.zoom;
   }
@@ -128,7 +128,7 @@ export class Board {
     for (const { canvas } of [this.context, this.base, this.lines]) Object.assign(canvas, { width, height });
     this.viewport.resize(width!, height!);
     this.moved = true;
-    this.draw(); // at once: a canvas of another size is empty
+    this.draw(); // at once: a resized canvas is empty
   }
 
   private wake(): void {
@@ -140,7 +140,7 @@ export class Board {
     });
   }
 
-  /** Only what changed, in the middle of a stroke. */
+  /** Draw, during a stroke only the changed box. */
   private draw(): void {
     if (this.closed) return;
     const { viewport, drawing } = this;
@@ -159,7 +159,7 @@ export class Board {
     this.since = 0;
   }
 
-  /** Put together what lies in a box. */
+  /** Compose a box. */
   private show(box: Box): void {
     if (isEmpty(box)) return;
     const { context } = this;
@@ -227,7 +227,7 @@ export class Board {
     this.trace(context, ring);
   }
 
-  /** A light line in a dark one. */
+  /** Draw a light line in a dark one. */
   private trace(context: CanvasRenderingContext2D, path: Path2D): void {
     for (const [style, width] of [[DARK, 3.5], [LIGHT, 1.5]] as const) {
       context.strokeStyle = style;
@@ -236,7 +236,7 @@ export class Board {
     }
   }
 
-  /** Names that would lie over another one are left out; the selected part's never is. */
+  /** Draw names that do not overlap; the selected part's comes first. */
   private drawNames(context: CanvasRenderingContext2D): void {
     const { selected } = this.drawing;
     context.font = `600 ${TEXT_PX * this.ratio}px system-ui, sans-serif`;
@@ -275,7 +275,7 @@ export class Board {
   }
 }
 
-/** rgb(...), or six digits, as four bytes. */
+/** Return rgb(...) or six digits as four bytes. */
 function asPixel(css: string, alpha: number): number {
   const [r, g, b] = bytes(css);
   return ((alpha << 24) | (b << 16) | (g << 8) | r) >>> 0;

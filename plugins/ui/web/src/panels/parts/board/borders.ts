@@ -1,4 +1,4 @@
-/** Borders of the parts as pixels of the board: a dark line beside a light one, which is seen on every picture. */
+/** Borders of the parts as pixels of the board: a dark line next to a light one, visible on every picture. */
 import type { Box, Labels } from "../pixels/labels";
 import type { Mask } from "../pixels/mask";
 import type { Viewport } from "./viewport";
@@ -7,31 +7,31 @@ const DARK = 0xd0000000;
 const LIGHT = 0xe6ffffff;
 const FAINT_DARK = 0x66000000;
 const FAINT_LIGHT = 0x80ffffff;
-/** How far apart the stripes are that lie over the selected part, and over what is proposed. */
+/** Distances of the stripes over the selected part and the proposal, in line widths. */
 const STRIPES = { selected: 20, proposed: 8 };
 
 export interface BorderStyle {
   labels: Labels;
   selected: number;
   proposed: Mask | null;
-  /** Of the theme, as a pixel; what stands on it; and the same, thin. */
+  /** Theme colours as pixels: accent, its contrast, and a translucent accent. */
   accent: number;
   against: number;
   thin: number;
-  /** Pixels of the board for one of the page. */
+  /** Pixels of the board per CSS pixel. */
   ratio: number;
 }
 
 const OUTSIDE = -1;
 const PROPOSED = 0x10000;
 
-/** Samples with a rim, kept from one time to the next. */
+/** Buffer of samples with a rim, reused. */
 let samples = new Int32Array(0);
 
-/** How thick a line is, in pixels of the board. */
+/** Return the width of a line, pixels of the board. */
 const thickness = (ratio: number): number => Math.round(1.5 * ratio);
 
-/** How far around what changed the lines can change too. */
+/** Return the distance from a change at which lines can change too. */
 export const borderReach = (ratio: number): number => 2 * thickness(ratio) + 1;
 
 export function borders(shown: BorderStyle, sight: Viewport, box: Box): ImageData {
@@ -78,7 +78,7 @@ function pixel(at: number, stride: number, thick: number, shown: BorderStyle, x:
   return here > other ? LIGHT : DARK;
 }
 
-/** What lies on the other side of a border that is so near; the same, where none is. */
+/** Return the label across a border nearby; the same label if there is none. */
 function labelAcross(at: number, far: number, stride: number, here: number): number {
   const right = samples[at + far]!;
   if (right !== here) return right;

@@ -1,11 +1,11 @@
-/** Mouse, fingers and pens on the board: one uses the tool, the wheel, the other buttons and two fingers move the picture. */
+/** Mouse, fingers and pens on the board: one uses the tool; wheel, other buttons and two fingers move the picture. */
 import type { Board } from "./board";
 import type { Point } from "../pixels/labels";
 import type { Tools } from "../controls/tools";
 
 const NOTCH = 0.0015;
 const LINE = 16;
-/** A click that moves no farther than this is one. */
+/** Greatest movement of a click. */
 const STILL_PX = 5;
 
 export interface Hears {
@@ -16,7 +16,7 @@ export interface Hears {
 export function attachPointers(board: Board, pens: Tools, hears: Hears): void {
   const { canvas } = board;
   const fingers = new Map<number, PointerEvent>();
-  /** Where the picture is held; null while a tool is used. */
+  /** Place at which the picture is dragged; null while a tool is used. */
   let held: { x: number; y: number; far: number } | null = null;
   let first: PointerEvent | null = null;
 
@@ -34,7 +34,7 @@ export function attachPointers(board: Board, pens: Tools, hears: Hears): void {
   canvas.addEventListener("pointermove", (event) => {
     if (fingers.has(event.pointerId)) fingers.set(event.pointerId, event);
     if (!held && pens.down && pens.tool === "select" && first && distance(first, event) > STILL_PX) {
-      pens.cancel(); // the picture is dragged and not clicked
+      pens.cancel(); // a drag, not a click
       held = middle(fingers);
     }
     if (held) drag(middle(fingers));
@@ -71,7 +71,7 @@ export function attachPointers(board: Board, pens: Tools, hears: Hears): void {
   }
 }
 
-/** Between the fingers, and how far they are from one another. */
+/** Return the middle of the fingers and their distance. */
 function middle(fingers: Map<number, PointerEvent>): { x: number; y: number; far: number } {
   const all = [...fingers.values()];
   const mean = (of: (each: PointerEvent) => number): number => all.reduce((sum, each) => sum + of(each), 0) / all.length;
@@ -80,7 +80,7 @@ function middle(fingers: Map<number, PointerEvent>): { x: number; y: number; far
 
 const distance = (a: PointerEvent, b: PointerEvent): number => Math.hypot(a.clientX - b.clientX, a.clientY - b.clientY);
 
-/** All places since the last event, which a screen drawn 60 times a second passes over. */
+/** Return all positions since the last event, including those between frames. */
 function all(event: PointerEvent): PointerEvent[] {
   const found = event.getCoalescedEvents?.() ?? [];
   return found.length ? found : [event];

@@ -1,11 +1,11 @@
-/** The list of the parts from front to back, and what is said of the selected one. */
+/** List of the parts from front to back, and fields of the selected one. */
 import { button, field, hint } from "../../../elements";
 import { t } from "../editor/words";
 import type { Drawing, Part } from "../drawing/drawing";
 import { frontToBack } from "../drawing/order";
 import { nameOf, heightOf } from "../editor/part_words";
 
-/** Of the keys in the list, in metres. */
+/** Steps of the keys in the list, metres. */
 const STEPS_M = { usual: 0.0002, fine: 0.00005, coarse: 0.001 };
 const MM = 1000;
 
@@ -13,9 +13,9 @@ export class PartList {
   readonly list = document.createElement("ul");
   readonly said = document.createElement("fieldset");
   readonly name = input("parts-name", "text");
-  /** What number a part will have in the file. */
+  /** Returns the number of a part in the file. */
   numberOf: (label: number) => number = (label) => label;
-  /** Whether a part is felt as it is drawn; which parts touch the selected one; hears which one was selected, and moved. */
+  /** Returns whether changes of a part take effect before saving. */
   isFelt: (label: number) => boolean = () => true;
   neighbours: Part[] = [];
   onSelect: (label: number) => void = () => undefined;
@@ -49,7 +49,7 @@ export class PartList {
     this.build();
   }
 
-  /** As the drawing is now. */
+  /** Update list and fields. */
   show(): void {
     const { parts, selected } = this.drawing;
     if (!this.dragged) this.showList();
@@ -90,7 +90,7 @@ export class PartList {
     return box;
   }
 
-  /** At the field, or (empty) nothing any more. */
+  /** Show a complaint at a field, none if empty; return whether it is empty. */
   private complain(control: HTMLElement, text: string): boolean {
     const box = this.complaints.get(control)!;
     box.hidden = !text;
@@ -188,7 +188,7 @@ export class PartList {
     this.set({ height_m, automatic: false }, "height");
   }
 
-  /** The drag is over: what moved to the front in it moves in the list. */
+  /** End a drag: the list is sorted again. */
   private endDrag(): void {
     this.dragged = false;
     this.drawing.history.endGesture();

@@ -1,4 +1,4 @@
-/** A question that is answered with one of its buttons; Escape is the first of them, which changes nothing. */
+/** A dialog with a question, answered by a button; Escape is the first answer, which changes nothing. */
 import { button } from "../../../elements";
 
 export function question<T extends string>(title: string, texts: string[], answers: readonly (readonly [T, string])[]): Promise<T> {

@@ -1,4 +1,4 @@
-/** The tools, what the one in use can be told, and what is done with the drawing as a whole. */
+/** Toolbar of the tools, their options, and undo, redo and zoom. */
 import { button, field } from "../../../elements";
 import { t } from "../editor/words";
 import { caps } from "../../help/key_caps";
@@ -76,7 +76,7 @@ export class Toolbar {
     return 2 ** this.width.valueAsNumber;
   }
 
-  /** As wide as one likes: each step is the same share. */
+  /** Return the field of the brush's width, on a logarithmic scale. */
   private widthField(): HTMLElement {
     const most = Math.max(this.state.drawing.labels.columns, this.state.drawing.labels.rows);
     Object.assign(this.width, { min: "0", max: String(Math.log2(most)), step: "0.1" });
@@ -118,7 +118,7 @@ export function group(name: string): HTMLElement {
   return box;
 }
 
-/** A button that shows its key. */
+/** Return a button that shows its key. */
 export function keyButton(text: string, key: string, press: () => void): HTMLButtonElement {
   const made = button(text, press);
   const cap = caps(key);

@@ -1,4 +1,4 @@
-/** What the tools do where they are put down, moved and lifted: with a mouse, a finger, a pen, or the crosshair. */
+/** Tools of the editor: what they do when put down, moved and lifted by mouse, finger, pen, or crosshair. */
 import { stroke } from "../pixels/brush";
 import type { Drawing } from "../drawing/drawing";
 import { labelAt, type Point } from "../pixels/labels";
@@ -11,12 +11,12 @@ export type Tool = (typeof TOOLS)[number];
 
 export type Fault = "notPainted" | "nothingChanged" | "notSplit" | "notJoined";
 
-/** Places of an outline that are nearer to one another than so much of the page are one. */
+/** Distance under which places of an outline are merged, CSS pixels. */
 const NEAR_PX = 2;
-/** How far an edge snaps, and a line that cuts goes on beyond its ends, in pixels of the page. */
+/** Reach of snapping, and extension of a splitting line, CSS pixels. */
 const REACH_PX = 10;
 
-/** What tools request of the server. */
+/** Requests of the tools to the server. */
 export interface ToolRequests {
   /** Return the part that a stroke of this width lies on; null if a newer stroke replaced the request. */
   propose(stroke: readonly Point[], width_px: number, kind: string): Promise<Proposal | null>;
@@ -26,24 +26,24 @@ export interface ToolRequests {
 
 export class Tools {
   tool: Tool = "select";
-  /** Of the brush, in pixels of the picture. */
+  /** Width of the brush, pixels of the picture. */
   width = 1;
-  /** The next stroke makes a new part. */
+  /** True if the next stroke makes a new part. */
   newPart = false;
   erases = false;
   snaps = true;
   kind = "grabcut";
   down = false;
-  /** The program is looking for something. */
+  /** True while a request is under way. */
   busy = false;
   line: Point[] = [];
   /** Return how many pixels of the picture a CSS pixel covers. */
   scale: () => number = () => 1;
   /** Called with the reason if something did not work. */
   onFailure: (why: Fault | Error) => void = () => undefined;
-  /** Hears that the program is looking for something, or has looked. */
+  /** Called when a request starts (true) or ends. */
   onWait: (busy: boolean) => void = () => undefined;
-  /** Hears which part was pointed at. */
+  /** Called with the part that was pointed at. */
   onSelect: (label: number) => void = () => undefined;
 
   constructor(
@@ -83,7 +83,7 @@ export class Tools {
     }
   }
 
-  /** As if it had not been put down. */
+  /** Cancel the stroke; return whether there was one. */
   cancel(): boolean {
     const was = this.down;
     this.down = false;
@@ -129,7 +129,7 @@ export class Tools {
 
   private async propose(line: Point[]): Promise<void> {
     const found = await this.wait(this.requests.propose(line, this.width, this.kind));
-    if (found) this.drawing.propose(found); // none, if another stroke came before this one was looked at
+    if (found) this.drawing.propose(found); // null if a newer stroke replaced the request
   }
 
   private split(drawn: Point[]): void {
@@ -171,7 +171,7 @@ export class Tools {
   }
 }
 
-/** A line that goes on at both ends as it began and ended: nobody hits a rim to the pixel. */
+/** Return a line extended at both ends, as rims are hard to hit exactly. */
 function extendLine(line: Point[], by: number): Point[] {
   const beyond = (end: Point, before: Point): Point => {
     const [dx, dy] = [end[0] - before[0], end[1] - before[1]];

@@ -9,7 +9,7 @@ export interface Part {
   readonly height_m: number;
   /** Null: the rules for materials decide. */
   readonly material: string | null;
-  /** Whether the program finds the height. */
+  /** True if the program finds the height. */
   readonly automatic: boolean;
 }
 
@@ -69,7 +69,7 @@ export class History {
     return true;
   }
 
-  /** Make the next step a gesture of its own. */
+  /** Separate the next step from this gesture. */
   endGesture(): void {
     const last = this.done.at(-1);
     if (last) last.gesture = "";

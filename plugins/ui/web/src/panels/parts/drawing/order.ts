@@ -1,22 +1,21 @@
-/** Front to back: what is higher stands in front of what is lower. */
+/** Order from front to back: higher parts are in front. */
 
 export interface Standing {
   label: number;
   height_m: number;
 }
 
-/** A difference that a finger finds. */
+/** Height difference that a finger notices, metres. */
 const STEP_M = 0.0005;
 
-/** The foremost first; of equal heights, the one with the lower number. */
+/** Return parts from front to back; of equal heights, the lower number first. */
 export function frontToBack<T extends Standing>(parts: readonly T[]): T[] {
   return [...parts].sort((a, b) => b.height_m - a.height_m || a.label - b.label);
 }
 
-/**
- * The heights after a part went by so many places to the front (or to the back, below 0), in the order from the front.
- * The heights that were there stay where they can; equal ones are spread, so that each part is felt before the next.
- */
+/** Return parts with the heights after one moved some places to the front (or back, if negative), from the front.
+ *
+ * Present heights stay if possible; equal ones are spread so that neighbours differ noticeably. */
 export function reorder<T extends Standing>(parts: readonly T[], label: number, by: number, top_m: number): T[] {
   const before = frontToBack(parts);
   const from = before.findIndex((each) => each.label === label);
@@ -28,7 +27,7 @@ export function reorder<T extends Standing>(parts: readonly T[], label: number, 
   return after.map((each, i) => ({ ...each, height_m: heights[i]! }));
 }
 
-/** Heights from low to high: none nearer to the next than a step that is felt, and none above the top. */
+/** Return heights, from low to high, spread by a noticeable step and not above the top. */
 export function spread(heights_m: readonly number[], top_m: number): number[] {
   const step = Math.min(STEP_M, top_m / Math.max(1, heights_m.length - 1));
   const made = [...heights_m];

@@ -1,4 +1,4 @@
-/** What is saved of a picture along with its parts: title, language and the shape of all parts. */
+/** Details saved along with the parts: title, language and the shape of all parts. */
 
 export type Heights = { by: "depth" | "given" | "guess"; round_m: number; bulge_m: number; detail_m: number };
 /** Title, language and the shape of all parts, which are saved along with them. */

@@ -29,14 +29,14 @@ const DIRECTIONS: Record<string, readonly [number, number]> = {
   ArrowDown: [0, 1],
 };
 
-/** What a key does. Moves of the crosshair: a pixel of the picture, a step, or far. */
+/** Action of a key. Moves of the crosshair: a pixel of the picture, a step, or far. */
 export type Action =
   | { do: "escape" | "undo" | "redo" | "save" | "new part" | "list" | "narrower" | "wider" | "where" | "keys" }
   | { do: "pen" | "finish" | "nearer" | "farther" | "fit" | "nothing" }
   | { do: "use"; tool: Tool }
   | { do: "move"; x: number; y: number; pace: "pixel" | "step" | "far" };
 
-/** Where a key was pressed: in a field of text, on the picture; whether letters act everywhere. */
+/** Context of a key: in a text field, on the picture; whether letters act everywhere. */
 export interface Context {
   typing: boolean;
   onPicture: boolean;

@@ -1,4 +1,4 @@
-/** Latest-wins sending: while one update is under way, only the newest of those that follow is kept. */
+/** Latest-wins sending: while an update is under way, only the newest of the following ones is kept. */
 
 /** Heights and materials by the number of the part in the file (null: the program finds it), and the shape of all parts. */
 export interface Update {
@@ -18,7 +18,7 @@ export class LiveUpdate {
     private failed: (error: Error) => void,
   ) {}
 
-  /** Send an update, unless the surface is like it already. base: what was opened or saved. */
+  /** Send an update, unless the surface equals it already. base: the update of the opened or saved parts. */
   send(update: Update, base: Update): void {
     if (!this.sent && !this.sending && JSON.stringify(update) === JSON.stringify(base)) return;
     this.next = update;

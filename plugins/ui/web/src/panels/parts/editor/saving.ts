@@ -1,4 +1,4 @@
-/** Saving of the parts, with the questions before it, and the updates that are felt while heights are dragged. */
+/** Saving of the parts after questions, and live updates of heights and materials. */
 import type { Server } from "../../../page";
 import { LiveUpdate } from "./live_update";
 import { shareOf } from "./part_words";
@@ -20,14 +20,14 @@ export class Saving {
   constructor(
     private state: EditorState,
     private net: Server,
-    /** Return whether every field is valid. */
+    /** Returns whether every field is valid. */
     private isValid: () => boolean,
   ) {
     this.live = new LiveUpdate((update) => net.ask("parts_heights", { ...update }), (error) => state.fail(error));
     state.events.on("parts", () => this.update());
   }
 
-  /** Send heights and materials, so that they are felt before they are saved. */
+  /** Send heights and materials, so that they take effect before saving. */
   update(): void {
     this.live.send(this.state.update(), this.state.base);
   }

@@ -1,4 +1,4 @@
-/** The state of the parts editor: drawing, tools, crosshair, notice and what was saved. It knows neither elements nor texts;
+/** State of the parts editor: drawing, tools, crosshair, notice and saved state. It knows neither elements nor texts;
  * view, speech and saving subscribe to it. */
 import { Hub } from "../../../hub";
 import { type Fault, type Tool, type ToolRequests, Tools } from "../controls/tools";
@@ -24,7 +24,7 @@ export interface Notice {
   bad: boolean;
 }
 
-/** What subscribers are told. */
+/** Events of the state for its subscribers. */
 export interface EditorEvents {
   /** Pixels in this box look different. */
   pixels: Box;
@@ -36,11 +36,11 @@ export interface EditorEvents {
   selected: number;
   /** The selected part was moved to the front or back, or its height changed by a key. */
   reordered: null;
-  /** Another tool, or a new part in place of the selected one. */
+  /** Change of tool, or of painting a new part. */
   tool: Tool | "newPart";
   /** The brush's width was changed by a key. */
   width: number;
-  /** Something that the toolbar shows changed. */
+  /** Change of anything that the toolbar shows. */
   options: null;
   /** The crosshair was moved by keys. */
   crosshair: Point;
@@ -58,13 +58,13 @@ export class EditorState {
   readonly drawing: Drawing;
   readonly tools: Tools;
   readonly details: PictureDetails;
-  /** Where the crosshair or the pointer is; null before the first. */
+  /** Position of the crosshair or pointer; null before the first. */
   crosshair: Point | null = null;
   places = new Map<number, Place>();
   neighbours: Part[] = [];
   /** Shown in place of the tool's help; null for the help. */
   notice: Notice | null = null;
-  /** Whether a save is running: undo waits for it. */
+  /** True while a save runs: undo waits for it. */
   saving = false;
   /** Digest of the document that the parts were read from, or saved to. */
   digest: string;
@@ -73,7 +73,7 @@ export class EditorState {
   /** Numbers that parts had when they were opened or saved. */
   private numbers: Map<number, number>;
   private detailsSaved = true;
-  /** The update that equals what was opened or saved. */
+  /** The update of the opened or saved parts. */
   private baseline: Update;
 
   constructor(scene: Omit<Opened, "picture">, requests: ToolRequests) {
@@ -101,7 +101,7 @@ export class EditorState {
     return this.order.get(label) ?? label;
   }
 
-  /** Return whether a part was opened or saved: its height and material can be felt at once. */
+  /** Return whether a part was opened or saved: its height and material take effect at once. */
   isFelt(label: number): boolean {
     return this.numbers.has(label);
   }
@@ -189,7 +189,7 @@ export class EditorState {
     else this.notify(done ? "redone" : "nothingToRedo", false);
   }
 
-  /** Give up what is begun; return whether there was something. */
+  /** Cancel the stroke or the proposal; return whether there was one. */
   cancel(): boolean {
     if (this.tools.cancel()) this.lifted();
     else if (this.drawing.proposed) this.drawing.discard();
@@ -282,7 +282,7 @@ export class EditorState {
     return this.baseline;
   }
 
-  /** Take over what was saved. parts and steps: those of the start of the save. */
+  /** Take over a save. parts and steps: those at its start. */
   markSaved(saved: Saved, parts: readonly Part[], steps: number): void {
     this.digest = saved.digest;
     this.numbers = new Map(parts.map(({ label }) => [label, saved.numbers[label]![0]!]));

@@ -1,8 +1,8 @@
-/** What was proposed and is not a part yet: pixels that a brush adds to and takes away from. */
+/** The mask of a proposed part, which brush and outline correct. */
 import { union, type Box, boundingBox, EMPTY, type Labels, type Span } from "./labels";
 import type { Patch } from "./patch";
 
-/** A mask within a box, as runs from its first row on: the first is outside, then they take turns. */
+/** A run-length mask within a box: the first run is outside, then they alternate. */
 export interface Proposal {
   box: [x: number, y: number, columns: number, rows: number];
   runs: number[];
@@ -30,7 +30,7 @@ export class Mask {
     this.box = EMPTY;
   }
 
-  /** Its pixels, as spans of rows. */
+  /** Yield its pixels as spans. */
   *spans(): Generator<Span> {
     const { data, columns } = this;
     const { left, right, top, bottom } = this.box;
@@ -44,7 +44,7 @@ export class Mask {
     }
   }
 
-  /** Make them a part. */
+  /** Paint its pixels with a label. */
   accept(labels: Labels, label: number, patch: Patch): void {
     patch.paint(labels, this.spans(), label);
   }

@@ -1,11 +1,11 @@
-/** What hangs together: pixels of one part that touch along a side. */
+/** Connected pieces of the parts: pixels that share sides. */
 import type { Labels, Point } from "./labels";
 
-/** Runs of equal pixels, row by row, and of each the piece that it belongs to. */
+/** Runs of equal pixels, row by row, and the piece of each. */
 export interface Pieces {
   starts: Uint32Array;
   ends: Uint32Array;
-  /** Index of the run in which its piece begins. */
+  /** Index of the first run of the piece, for each run. */
   roots: Uint32Array;
   pieces: Piece[];
 }
@@ -17,13 +17,13 @@ export interface Piece {
   root: number;
 }
 
-/** Where the name of a part is written: in the longest row of it that is near its middle. */
+/** Place of a part's name: the longest row near its middle. */
 export interface Place {
   pixels: number;
   at: Point;
 }
 
-/** The pieces of all parts, or of one; in the order of their first pixels. */
+/** Return the pieces of all parts, or of one, in the order of their first pixels. */
 export function findPieces({ columns, data }: Labels, only = -1): Pieces {
   const { starts, ends } = findRuns(data, columns, only);
   const parent = starts.map((_, i) => i);
@@ -77,7 +77,7 @@ function doubleLength(of: Uint32Array): Uint32Array {
   return more;
 }
 
-/** Of every part its size, and where its name is written. */
+/** Return each part's size and place of its name. */
 export function findPlaces({ columns, data }: Labels): Map<number, Place> {
   const { starts, ends } = findRuns(data, columns, -1);
   const sums = new Map<number, { pixels: number; y: number; best: number; at: Point }>();
@@ -102,7 +102,7 @@ export function findPlaces({ columns, data }: Labels): Map<number, Place> {
   return new Map([...sums].map(([label, { pixels, at }]) => [label, { pixels, at }]));
 }
 
-/** Which parts touch a part along a side. */
+/** Return the parts that share a side with a part. */
 export function findNeighbours({ columns, data }: Labels, label: number): Set<number> {
   const { starts, ends } = findRuns(data, columns, label);
   const met = new Set<number>([label]);

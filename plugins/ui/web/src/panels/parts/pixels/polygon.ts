@@ -1,10 +1,10 @@
-/** The pixels within an outline that a hand drew: what it goes around once or more, also where it crosses itself. */
+/** Pixels within a hand-drawn outline, by the nonzero winding rule. */
 import type { Point, Span } from "./labels";
 
 interface Edge {
   top: number;
   bottom: number;
-  /** Where it is at y = 0, and how far it goes for each row. */
+  /** x at y = 0, and dx per row. */
   x: number;
   slope: number;
   way: 1 | -1;

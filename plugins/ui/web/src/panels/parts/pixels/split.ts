@@ -1,12 +1,12 @@
-/** A part cut in two by a line: what then no longer hangs together with its largest piece becomes a part of its own. */
+/** Splitting of a part by a line: pieces cut off from its largest become parts. */
 import { adjacentPixels, type Labels, type Point } from "./labels";
 import { Patch } from "./patch";
 import { type Pieces, findPieces } from "./pieces";
 
-/** No part has this number. */
+/** Label of pixels on the line, used by no part. */
 const CUT = 0xffff;
 
-/** Pixels from place to place that no side of a pixel leads across, in their order. */
+/** Return the pixels of a polyline, 8-connected, in order. */
 export function linePixels(points: readonly Point[], { columns, rows }: Labels): number[] {
   const met = new Set<number>();
   for (let i = 0; i < Math.max(1, points.length - 1); i++) {
@@ -24,10 +24,8 @@ export function linePixels(points: readonly Point[], { columns, rows }: Labels):
 
 const pixel = ([x, y]: Point): Point => [Math.floor(x), Math.floor(y)];
 
-/**
- * Cut a part. The largest of the pieces on the line keeps the number, the others take the next ones from `next` on.
- * Null, and nothing is changed, if the line leaves it in one piece.
- */
+/** Split a part. The largest piece at the line keeps the label, the others take labels from `next` on. Returns null, and
+ * changes nothing, if the line leaves it in one piece. */
 export function split(labels: Labels, label: number, points: readonly Point[], next: number): { patch: Patch; fresh: number[] } | null {
   const { data } = labels;
   const line = linePixels(points, labels).filter((at) => data[at] === label);
@@ -47,7 +45,7 @@ export function split(labels: Labels, label: number, points: readonly Point[], n
   return { patch: patch.close(), fresh };
 }
 
-/** The pieces that touch the line, the largest first. */
+/** Return the pieces that touch the line, the largest first. */
 function piecesAtLine(found: Pieces, line: number[], labels: Labels): number[] {
   const touched = new Set<number>();
   for (const at of line)
@@ -71,12 +69,12 @@ function runAt({ starts, ends }: Pieces, at: number): number {
   return low > 0 && at < ends[low - 1]! ? low - 1 : -1;
 }
 
-/** Each run of a piece. */
+/** Call a function with each run of a piece. */
 export function eachRun({ starts, ends, roots }: Pieces, root: number, hear: (start: number, end: number) => void): void {
   for (let i = root; i < starts.length; i++) if (roots[i] === root) hear(starts[i]!, ends[i]!);
 }
 
-/** The line's own pixels go to a part that they touch: first to a new one, so that none is left alone. */
+/** Give the line's pixels to adjacent parts, new ones first. */
 function heal(labels: Labels, line: number[], parts: Set<number>, otherwise: number, patch: Patch): void {
   const { data } = labels;
   let left = line;

@@ -1,4 +1,4 @@
-/** Small pieces of parts are merged into what is next to them. */
+/** Merging of small pieces into adjacent parts. */
 import type { Labels } from "./labels";
 import type { Patch } from "./patch";
 import { findPieces } from "./pieces";

@@ -1,11 +1,11 @@
 /** Native elements, created in one line. */
 
 export function button(text: string, press: () => unknown): HTMLButtonElement {
-  const made = document.createElement("button");
-  made.type = "button";
-  made.textContent = text;
-  made.addEventListener("click", () => void press());
-  return made;
+  const toggle = document.createElement("button");
+  toggle.type = "button";
+  toggle.textContent = text;
+  toggle.addEventListener("click", () => void press());
+  return toggle;
 }
 
 /** A control under its name; the control needs an id. */

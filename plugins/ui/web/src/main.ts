@@ -1,5 +1,11 @@
 /** Composition of the page: creates its parts and connects them. */
-import "./app.css";
+import "./style/tokens.css";
+import "./style/ground.css";
+import "./style/frame.css";
+import "./style/wide.css";
+import "./style/panels.css";
+import "./style/controls.css";
+import "./style/preferences.css";
 import { Announcer, liveRegions } from "./speech/announcer";
 import { buildRegions } from "./frame/regions";
 import { Frames } from "./view/frames";
@@ -40,9 +46,9 @@ const canvas = element<HTMLCanvasElement>("terrain");
 const hub = new Hub();
 const speech = new Speech(hub);
 const shown = liveRegions(element("said"), element("alerted"));
-const announcer = new Announcer((said) => {
-  shown(said);
-  speech.speak(said);
+const announcer = new Announcer((message) => {
+  shown(message);
+  speech.speak(message);
 });
 const net = new Connection(hub);
 const view = new View(canvas);

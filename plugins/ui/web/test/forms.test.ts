@@ -67,9 +67,9 @@ test("a value that is shown and told again is the same", () => {
   }
   for (const value of ["a b", "ü", "#!"]) assert.deepEqual(typedText(asText(value, none), true, none), { value });
   for (const value of [[1, [2]], { a: { b: null } }]) {
-    const said = typedYaml(asText(value, none));
-    assert.ok("written" in said);
-    assert.deepEqual(JSON.parse(said.written), value);
+    const change = typedYaml(asText(value, none));
+    assert.ok("written" in change);
+    assert.deepEqual(JSON.parse(change.written), value);
   }
 });
 

@@ -25,9 +25,9 @@ const wall: Ground = {
 
 /** Every place on the way to a goal over the ground. */
 function path(from: Vec | null, over: [number, number], gapM: number, ground = wall, steps = 60, slower = 1): Vec[] {
-  const found: Vec[] = [];
-  for (let i = 0; i < steps; i++) found.push(nextPosition(found.at(-1) ?? from, { over, gapM }, STEP_S, ground, slower));
-  return found;
+  const hit: Vec[] = [];
+  for (let i = 0; i < steps; i++) hit.push(nextPosition(hit.at(-1) ?? from, { over, gapM }, STEP_S, ground, slower));
+  return hit;
 }
 
 test("the first place is over the surface, whatever was picked", () => {
@@ -179,10 +179,10 @@ test("a game pad shakes with the force, up to its limit, and is still at once wi
 test("a part is found in its widest place", () => {
   // two parts side by side, a third of one place in a corner, and nothing beyond
   const label = (x: number, y: number): number | null => (x > 0.045 ? null : x > 0.04 && y > 0.025 ? 9 : x < 0 ? 2 : 5);
-  const found = findPartCentres(label, [0.1, 0.06]);
-  assert.deepEqual(found.map((each) => each.label), [2, 5, 9]);
-  for (const { label: each, at } of found) assert.equal(label(...at), each);
-  assert.ok(Math.abs(found[0]!.at[0] + 0.025) < 0.01 && Math.abs(found[0]!.at[1]) < 0.01);
+  const parts = findPartCentres(label, [0.1, 0.06]);
+  assert.deepEqual(parts.map((each) => each.label), [2, 5, 9]);
+  for (const { label: each, at } of parts) assert.equal(label(...at), each);
+  assert.ok(Math.abs(parts[0]!.at[0] + 0.025) < 0.01 && Math.abs(parts[0]!.at[1]) < 0.01);
   assert.deepEqual(findPartCentres(() => null, [0.1, 0.06]), []);
 });
 

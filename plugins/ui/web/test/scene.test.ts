@@ -89,8 +89,8 @@ test("a ray meets a plane where it should", () => {
     const [x, y] = [0.9 * W * (next() - 0.5) * 0.9, 0.05 * (next() - 0.5)];
     const from: Vec = [x + 0.1 * (next() - 0.5), y - 0.05, 0.1];
     const at: Vec = [x, y, 0.02 + 0.1 * x + 0.2 * y];
-    const found = made.pick(from, at.map((part, i) => part - from[i]) as Vec);
-    for (let i = 0; i < 3; i++) assert.ok(Math.abs(found![i] - at[i]) < 1e-7, `${found} ${at}`);
+    const hit = made.pick(from, at.map((part, i) => part - from[i]) as Vec);
+    for (let i = 0; i < 3; i++) assert.ok(Math.abs(hit![i] - at[i]) < 1e-7, `${hit} ${at}`);
   }
 });
 
@@ -99,8 +99,8 @@ test("a ray meets a sphere where it should", () => {
   const made = scene(480, 640, (x, y) => Math.sqrt(Math.max(radius * radius - x * x - y * y, 0)));
   for (const [x, y] of [[0, 0], [0.01, 0.013], [-0.02, 0.005]]) {
     const z = Math.sqrt(radius * radius - x * x - y * y);
-    const found = made.pick([3 * x, 3 * y, 3 * z], [-x, -y, -z]);
-    assert.ok(Math.hypot(found![0] - x, found![1] - y, found![2] - z) < 1e-6);
+    const hit = made.pick([3 * x, 3 * y, 3 * z], [-x, -y, -z]);
+    assert.ok(Math.hypot(hit![0] - x, hit![1] - y, hit![2] - z) < 1e-6);
   }
 });
 
@@ -128,10 +128,10 @@ function compare(made: Scene, rays: number, near: number): void {
     const from: Vec = [0.2 * (next() - 0.5), 0.2 * (next() - 0.5), 0.02 + 0.05 * next()];
     const at: Vec = [0.1 * (next() - 0.5), 0.08 * (next() - 0.5), 0.004 * next()];
     const way = at.map((part, i) => part - from[i]) as Vec;
-    const found = made.pick(from, way);
+    const hit = made.pick(from, way);
     const wanted = walked(made, from, way);
-    if (wanted === null) assert.ok(found === null || grazes(made, from, way), `ray ${k} meets ${found}`);
-    else assert.ok(found && Math.hypot(found[0] - wanted[0], found[1] - wanted[1]) < near, `ray ${k}: ${found}, ${wanted}`);
+    if (wanted === null) assert.ok(hit === null || grazes(made, from, way), `ray ${k} meets ${hit}`);
+    else assert.ok(hit && Math.hypot(hit[0] - wanted[0], hit[1] - wanted[1]) < near, `ray ${k}: ${hit}, ${wanted}`);
     if (wanted) met++;
     else missed++;
   }
@@ -163,8 +163,8 @@ function grazes(made: Scene, o: Vec, d: Vec): boolean {
 
 test("a spike of one cell is not leapt over", () => {
   const made = scene(480, 640, (x, y) => (Math.hypot(x - 0.01, y) < 0.0001 ? 0.01 : 0));
-  const found = made.pick([0.2, 0.00001, 0.008], [-1, 0, -0.001]);
-  assert.ok(found && Math.abs(found[0] - 0.01) < 0.0003);
+  const hit = made.pick([0.2, 0.00001, 0.008], [-1, 0, -0.001]);
+  assert.ok(hit && Math.abs(hit[0] - 0.01) < 0.0003);
 });
 
 test("a ray onto the side of the block is felt at its rim, one past it or away from it nowhere", () => {

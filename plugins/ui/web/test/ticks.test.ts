@@ -30,10 +30,10 @@ test("a tick is the state that was felt", () => {
 });
 
 test("the outline keeps every span's strongest force", () => {
-  const found = rising().outline(10);
-  assert.equal(found.length, 10);
-  for (let k = 1; k < 10; k++) assert.ok(found[k]! > found[k - 1]!);
-  assert.ok(Math.abs(found[9]! - 1) < 1e-6);
+  const coarse = rising().outline(10);
+  assert.equal(coarse.length, 10);
+  for (let k = 1; k < 10; k++) assert.ok(coarse[k]! > coarse[k - 1]!);
+  assert.ok(Math.abs(coarse[9]! - 1) < 1e-6);
 });
 
 test("nothing recorded is nothing shown", () => {

@@ -21,7 +21,7 @@ const mm = (at: Vec | null): string[] => (at ? at.map((part) => formatFixed(MM *
 
 export function rows(live: Reading | null, pointer: SurfacePlace | null): Row[] {
   const held = live?.seen ? live : null;
-  const found: Row[] = [
+  const table: Row[] = [
     [`${t("row_device")}, mm`, ...mm(held && held.hand)],
     [`${t("row_proxy")}, mm`, ...mm(held && held.proxy)],
     [`${t("row_contact")}, mm`, ...mm(held?.touching ? held.contact : null)],
@@ -35,8 +35,8 @@ export function rows(live: Reading | null, pointer: SurfacePlace | null): Row[] 
     [t("row_grip"), held ? `${t(held.grip)}, ${formatFixed(MM * held.speedMPerS, 0)} mm/s` : NONE],
     [t("row_limits"), held ? limitsOf(held).map((word) => t(word)).join(", ") || t("none") : NONE],
   ];
-  if (held && held.otherN > 0) found.splice(7, 0, [t("row_other"), `${formatFixed(held.otherN, 3)} N`]);
-  return found;
+  if (held && held.otherN > 0) table.splice(7, 0, [t("row_other"), `${formatFixed(held.otherN, 3)} N`]);
+  return table;
 }
 
 function materialName(at: Pick<Reading, "material" | "part" | "name"> | null): string {
@@ -47,7 +47,7 @@ function materialName(at: Pick<Reading, "material" | "part" | "name"> | null): s
 
 const limitsOf = (live: Reading) => LIMITS.filter(({ bit }) => live.state.flags & bit).map(({ word }) => word);
 
-export const asText = (found: Row[]): string => found.map(([name, ...values]) => `${name}\t${values.join("\t")}`).join("\n");
+export const asText = (table: Row[]): string => table.map(([name, ...values]) => `${name}\t${values.join("\t")}`).join("\n");
 
 /** Return the values as JSON, in metres, newtons, metres per second. */
 export function asJson(live: Reading | null, pointer: SurfacePlace | null): string {

@@ -14,7 +14,7 @@ export interface Control {
 }
 
 /** Reports a change. inside: path within the value, if it is not the whole. */
-export type Tell = (said: FieldChange, inside?: string[]) => void;
+export type Tell = (change: FieldChange, inside?: string[]) => void;
 
 /** Builds a row with label and help around a control. */
 export type Row = (option: Option, id: string, tell: Tell) => { root: HTMLElement; show: Control["show"] };
@@ -46,20 +46,20 @@ export function control(kind: Kind, id: string, tell: Tell, row: Row): Control {
 export function controlOrYaml(kind: Kind, id: string, tell: Tell, row: Row): Control {
   let shown = control(kind, id, tell, row);
   let inYaml = kind.kind === "yaml";
-  const made: Control = {
+  const inner: Control = {
     root: holder(shown.root),
     main: shown.main,
     show: (value, isSet) => {
       if (kind.kind !== "yaml" && fits(value, kind) === inYaml) {
         inYaml = !inYaml;
         shown = control(inYaml ? { kind: "yaml" } : kind, id, tell, row);
-        made.root.replaceChildren(shown.root);
-        made.main = shown.main;
+        inner.root.replaceChildren(shown.root);
+        inner.main = shown.main;
       }
       shown.show(value, isSet);
     },
   };
-  return made;
+  return inner;
 }
 
 function holder(inside: HTMLElement): HTMLElement {
@@ -91,11 +91,11 @@ function choice(values: Plain[], id: string, tell: Tell): Control {
 
 function number(kind: Kind & { kind: "number" }, id: string, tell: Tell): Control {
   const plain = !kind.units.length && !kind.words.length && !kind.nullable;
-  const made = text(id, (typed, input) => {
+  const control = text(id, (typed, input) => {
     if (input.validity.badInput) input.reportValidity();
     else tell(typedNumber(typed, kind, t("none")));
   });
-  const input = made.main as HTMLInputElement;
+  const input = control.main as HTMLInputElement;
   const { least, most } = kind.bounds;
   if (plain) {
     input.type = "number";
@@ -105,9 +105,9 @@ function number(kind: Kind & { kind: "number" }, id: string, tell: Tell): Contro
   } else {
     input.inputMode = kind.words.length || kind.units.length ? "text" : "decimal";
     const words = [...kind.words, ...(kind.nullable ? [t("none")] : [])];
-    if (words.length) suggest(made.root, input, words);
+    if (words.length) suggest(control.root, input, words);
   }
-  return made;
+  return control;
 }
 
 /** Return a line of text; reported when left or on Enter, and not overwritten while typing. */
@@ -154,14 +154,14 @@ function tuple(kind: Kind & { kind: "tuple" }, id: string, tell: Tell, row: Row)
   box.classList.add("tuple");
   let now: (Plain | undefined)[] = kind.parts.map(() => undefined);
   const parts = kind.parts.map((part, at) => {
-    const made = control(part, `${id}.${at}`, (said) => {
-      now[at] = "value" in said ? said.value : undefined;
+    const inner = control(part, `${id}.${at}`, (change) => {
+      now[at] = "value" in change ? change.value : undefined;
       if (now.every((each) => each !== undefined)) tell({ value: now as Plain[] });
       else if (now.every((each) => each === undefined)) tell({ gone: true });
     }, row);
-    made.main.setAttribute("aria-label", t("part", { number: at + 1, of: kind.parts.length }));
-    box.append(made.root);
-    return made;
+    inner.main.setAttribute("aria-label", t("part", { number: at + 1, of: kind.parts.length }));
+    box.append(inner.root);
+    return inner;
   });
   return {
     root: box,
@@ -177,7 +177,7 @@ function tuple(kind: Kind & { kind: "tuple" }, id: string, tell: Tell, row: Row)
 function block(options: Option[], id: string, tell: Tell, row: Row): Control {
   const box = group();
   const rows = options.map((option) => {
-    const made = row(option, `${id}.${option.name}`, (said, inside = []) => tell(said, [option.name, ...inside]));
+    const made = row(option, `${id}.${option.name}`, (change, inside = []) => tell(change, [option.name, ...inside]));
     box.append(made.root);
     return made;
   });
@@ -212,21 +212,21 @@ function list(item: Kind, id: string, tell: Tell, row: Row): Control {
   }
 
   function entry(at: number): Control {
-    const made = controlOrYaml(item, `${id}.${at}`, (said, inside = []) => {
-      now = now.map((each, one) => (one === at ? setInside(each, inside, said) : each));
+    const control = controlOrYaml(item, `${id}.${at}`, (change, inside = []) => {
+      now = now.map((each, one) => (one === at ? setInside(each, inside, change) : each));
       tell({ value: now });
     }, row);
-    made.root.classList.add("item");
-    made.root.setAttribute("role", "group");
-    made.root.setAttribute("aria-label", t("entry", { number: at + 1 }));
+    control.root.classList.add("item");
+    control.root.setAttribute("role", "group");
+    control.root.setAttribute("aria-label", t("entry", { number: at + 1 }));
     const remove = button(t("remove", { number: at + 1 }), () => {
       const left = now.filter((_, one) => one !== at);
       tell(left.length ? { value: left } : { gone: true });
       add.focus();
     });
     remove.className = "quiet";
-    made.root.append(remove);
-    return made;
+    control.root.append(remove);
+    return control;
   }
 
   return {

@@ -43,9 +43,9 @@ export class DocumentEditor {
     void this.ask(which, {});
   }
 
-  private async ask(name: string, told: Record<string, unknown>): Promise<boolean> {
+  private async ask(name: string, args: Record<string, unknown>): Promise<boolean> {
     try {
-      await this.page.net.ask(name, { ...told, apply: this.apply });
+      await this.page.net.ask(name, { ...args, apply: this.apply });
       return true;
     } catch (error) {
       this.onRefused((error as Error).message);

@@ -20,12 +20,12 @@ export function rows(defaultOf: DefaultOf): Row {
   const row: Row = (option, id, tell) => {
     const box = document.createElement("div");
     box.className = `field kind-${option.kind.kind}`;
-    const made = controlOrYaml(option.kind, id, tell, row);
+    const control = controlOrYaml(option.kind, id, tell, row);
     const key = id.slice(FIELD.length);
-    const label = labelOf(option, id, made.main);
+    const label = labelOf(option, id, control.main);
     const reset = button(t("toDefault"), () => {
       tell({ gone: true });
-      made.main.focus();
+      control.main.focus();
     });
     reset.className = "quiet reset";
     reset.setAttribute("aria-label", t("toDefaultOf", { name: option.title }));
@@ -34,7 +34,7 @@ export function rows(defaultOf: DefaultOf): Row {
     complaint.id = `${id}-complaint`;
     complaint.className = "bad complaint";
     complaint.hidden = true;
-    box.append(label, made.root, reset, complaint, hint.root);
+    box.append(label, control.root, reset, complaint, hint.root);
     describe(box, id);
     return {
       root: box,
@@ -42,7 +42,7 @@ export function rows(defaultOf: DefaultOf): Row {
         const byDefault = (isSet ? undefined : (value ?? defaultOf(key))) ?? option.byDefault;
         reset.hidden = !isSet || option.byDefault === undefined;
         box.classList.toggle("set", isSet);
-        made.show(isSet ? value : byDefault, isSet);
+        control.show(isSet ? value : byDefault, isSet);
         hint.show(byDefault, isSet);
         describe(box, id);
       },

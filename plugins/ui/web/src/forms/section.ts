@@ -17,7 +17,7 @@ export class SectionForm {
   private readonly select = document.createElement("select");
   private readonly about = document.createElement("p");
   private readonly fields = document.createElement("div");
-  private shows: ((said: Plain | undefined) => void)[] = [];
+  private shows: ((given: Plain | undefined) => void)[] = [];
   private method: string | null = null;
   private said: Document | null = null;
 
@@ -40,10 +40,10 @@ export class SectionForm {
   /** Show the document; a control being edited keeps its text. */
   show(document: Document): void {
     this.said = document;
-    const said = this.block(document);
-    if (this.section.methods.length) this.choose(said);
+    const written = this.block(document);
+    if (this.section.methods.length) this.choose(written);
     else this.chosen.textContent = "";
-    for (const each of this.shows) each(said);
+    for (const each of this.shows) each(written);
   }
 
   private block({ said }: Document): Plain | undefined {
@@ -91,8 +91,8 @@ export class SectionForm {
     const row = rows((key) => at(this.said?.values, key.split(".")));
     const made = options.map((option) => {
       const key = `${this.section.name}.${option.name}`;
-      const tell = (said: Parameters<typeof edit>[1], inside: string[] = []): void =>
-        this.change(edit([key, ...inside].join("."), said));
+      const tell = (typed: Parameters<typeof edit>[1], inside: string[] = []): void =>
+        this.change(edit([key, ...inside].join("."), typed));
       const one = row(option, `${FIELD}${key}`, tell);
       const show = (said: Plain | undefined): void => {
         const value = at(said, [option.name]);

@@ -12,9 +12,9 @@ export interface Edit {
   removed?: string[];
 }
 
-export function edit(key: string, said: FieldChange): Edit {
-  if ("value" in said) return { changes: { [key]: said.value } };
-  return "written" in said ? { written: { [key]: said.written } } : { removed: [key] };
+export function edit(key: string, change: FieldChange): Edit {
+  if ("value" in change) return { changes: { [key]: change.value } };
+  return "written" in change ? { written: { [key]: change.written } } : { removed: [key] };
 }
 
 /** Return a value as text of a field; structured values as JSON, which is YAML. */
@@ -81,12 +81,12 @@ export function isMap(value: Plain | undefined): value is { [key: string]: Plain
 }
 
 /** Return a value with a change applied inside. */
-export function setInside(value: Plain, inside: readonly string[], said: FieldChange): Plain {
-  if (!inside.length) return "value" in said ? said.value : "written" in said ? fromText(said.written) : {};
+export function setInside(value: Plain, inside: readonly string[], change: FieldChange): Plain {
+  if (!inside.length) return "value" in change ? change.value : "written" in change ? fromText(change.written) : {};
   const [name, ...deeper] = inside;
   const { [name]: before, ...rest } = isMap(value) ? value : {};
-  if ("gone" in said && !deeper.length) return rest;
-  return { ...rest, [name]: setInside(before ?? {}, deeper, said) };
+  if ("gone" in change && !deeper.length) return rest;
+  return { ...rest, [name]: setInside(before ?? {}, deeper, change) };
 }
 
 /** Return written YAML as JSON if it is JSON, else as text, within a value that is set as a whole. */

@@ -106,16 +106,16 @@ export function attachGamePad(hand: Hand): void {
   let pressing = false;
 
   function look(seconds: number): void {
-    const found = navigator.getGamepads().find((each) => each?.connected && each.mapping === "standard");
-    if (!found) return;
-    for (const each of presses.newPresses(found)) acts[each]!();
-    if (!document.hasFocus()) return rest(found);
-    const { x, y, z, press } = readPad(found);
+    const gamepad = navigator.getGamepads().find((each) => each?.connected && each.mapping === "standard");
+    if (!gamepad) return;
+    for (const each of presses.newPresses(gamepad)) acts[each]!();
+    if (!document.hasFocus()) return rest(gamepad);
+    const { x, y, z, press } = readPad(gamepad);
     if (x || y || z) hand.moveBy("pad", x * seconds, y * seconds, z * seconds);
     if (press) hand.pressShare(press);
     if (press || pressing) hand.press("pad", press > 0);
     pressing = press > 0;
-    const shaker = found.vibrationActuator;
+    const shaker = gamepad.vibrationActuator;
     if (shaker) shake.play(shaker, hand.feltN, performance.now());
   }
 

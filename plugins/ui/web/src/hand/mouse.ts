@@ -44,8 +44,8 @@ export function attachMouse(hand: Hand, page: Screen): void {
     } else if (event.shiftKey) {
       if (before) hand.moveTo("mouse", [at[0], at[1], hand.goalM(2) - (event.clientY - before.clientY) * metresPerPixel(at)]);
     } else {
-      const found = meetLevel(...view.ray(event.clientX, event.clientY), hand.goalM(2));
-      if (found) hand.moveTo("mouse", found);
+      const hit = meetLevel(...view.ray(event.clientX, event.clientY), hand.goalM(2));
+      if (hit) hand.moveTo("mouse", hit);
     }
   }
 
@@ -57,9 +57,9 @@ export function attachMouse(hand: Hand, page: Screen): void {
 
   function pick(x: number, y: number): Vec | null {
     const begun = performance.now();
-    const found = page.scene?.pick(...view.ray(x, y)) ?? null;
+    const place = page.scene?.pick(...view.ray(x, y)) ?? null;
     if (measuring) figures.picks.push(performance.now() - begun);
-    return found;
+    return place;
   }
 
   for (const type of ["pointermove", "pointerdown", "pointerup"] as const) canvas.addEventListener(type, follow);

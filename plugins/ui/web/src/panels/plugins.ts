@@ -12,7 +12,7 @@ type Message = (typeof MESSAGES)[number];
 
 /** The one argument of a module's default export, `export default function (panel) { ... }`, which fills `root`. */
 export interface PanelInterface {
-  /** The empty panel. Headings in it are <h3>; classes for controls stand at the top of app.css. */
+  /** The empty panel. Headings in it are <h3>; classes for controls stand at the top of style/tokens.css. */
   readonly root: HTMLElement;
   readonly language: Language;
   /** Send a request that the plugin answers; rejects with the text of its error. */

@@ -43,10 +43,10 @@ export class Connection {
   }
 
   /** Send a request; rejects with the server's text if it is refused. */
-  ask<T>(name: string, told: Record<string, unknown> = {}): Promise<T> {
+  ask<T>(name: string, args: Record<string, unknown> = {}): Promise<T> {
     if (!this.open) return Promise.reject(new Error("the program is not there"));
     const number = ++this.number;
-    this.socket!.send(JSON.stringify({ number, ask: name, ...told }));
+    this.socket!.send(JSON.stringify({ number, ask: name, ...args }));
     return new Promise<T>((done, refused) => {
       this.waiting.set(number, { resolve: done as (value: unknown) => void, reject: refused });
     });
@@ -100,17 +100,17 @@ export class Connection {
     this.socket = socket;
   }
 
-  private onText(said: Events[keyof Events] & { event: string; number?: number; value?: unknown; text?: string }): void {
-    const waits = said.number === undefined ? undefined : this.waiting.get(said.number);
-    if (said.number !== undefined) {
-      this.waiting.delete(said.number);
-      if (said.event === "answer") waits?.resolve(said.value);
-      else waits?.reject(new Error(said.text));
+  private onText(message: Events[keyof Events] & { event: string; number?: number; value?: unknown; text?: string }): void {
+    const waits = message.number === undefined ? undefined : this.waiting.get(message.number);
+    if (message.number !== undefined) {
+      this.waiting.delete(message.number);
+      if (message.event === "answer") waits?.resolve(message.value);
+      else waits?.reject(new Error(message.text));
       return;
     }
-    if (said.event === "hello" && (said as Events["hello"]).version !== VERSION) return this.abandon("version");
-    this.hub.tell(said.event as keyof Events, said as never);
-    const last = said.event === "hello" ? (said as Events["hello"]).history.at(-1) : said;
+    if (message.event === "hello" && (message as Events["hello"]).version !== VERSION) return this.abandon("version");
+    this.hub.tell(message.event as keyof Events, message as never);
+    const last = message.event === "hello" ? (message as Events["hello"]).history.at(-1) : message;
     this.heard_s = Math.max(this.heard_s, (last as { at_s?: number } | undefined)?.at_s ?? 0);
   }
 

@@ -6,14 +6,14 @@ export const token = takeToken();
 /** Return the key; a reload finds it in the session's storage, or else in the address. */
 function takeToken(): string {
   const address = new URL(location.href);
-  const said = address.searchParams.get("token");
+  const text = address.searchParams.get("token");
   try {
-    if (said === null) return sessionStorage.getItem(KEPT) ?? "";
-    sessionStorage.setItem(KEPT, said);
+    if (text === null) return sessionStorage.getItem(KEPT) ?? "";
+    sessionStorage.setItem(KEPT, text);
     address.searchParams.delete("token");
     history.replaceState(history.state, "", address);
   } catch {
     // without storage the address keeps the key
   }
-  return said ?? "";
+  return text ?? "";
 }

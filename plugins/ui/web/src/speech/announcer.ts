@@ -41,7 +41,7 @@ export class Announcer {
   private due = false;
 
   constructor(
-    private utter: (said: Said) => void,
+    private utter: (message: Said) => void,
     private clock: Clock = BROWSERS,
   ) {}
 
@@ -91,7 +91,7 @@ export class Announcer {
 }
 
 /** Return a function that writes announcements into the two live regions: #said is polite, #alerted assertive. */
-export function liveRegions(polite: HTMLElement, assertive: HTMLElement): (said: Said) => void {
+export function liveRegions(polite: HTMLElement, assertive: HTMLElement): (message: Said) => void {
   return ({ text, urgent }) => {
     const region = urgent ? assertive : polite;
     // a region with an unchanged text is not read: a no-break space makes it different

@@ -20,9 +20,9 @@ const LIMITS = {
 /** Return "door, wood" or "wood, part 3"; the material alone if there is one part. names: of materials, in the page's
  * language. */
 export function describePlace(name: string | undefined, called: string, part: number | null, parts: number, names: Record<string, string>): string {
-  const said = name === undefined ? t("nameless") : (names[name] ?? name);
-  if (called) return name === undefined ? called : `${called}, ${said}`;
-  return part === null || parts < 2 ? said : t("part", { name: said, part });
+  const text = name === undefined ? t("nameless") : (names[name] ?? name);
+  if (called) return name === undefined ? called : `${called}, ${text}`;
+  return part === null || parts < 2 ? text : t("part", { name: text, part });
 }
 
 export class Narrator {
@@ -33,8 +33,8 @@ export class Narrator {
   constructor(private page: Pick<Page, "hub" | "net" | "scene" | "canvas" | "say" | "forget">) {
     page.hub.on("state", (state) => this.follow(state));
     page.hub.on("shown", (scene) => this.show(scene));
-    page.hub.on("described", (said) => {
-      this.described = said;
+    page.hub.on("described", (message) => {
+      this.described = message;
       this.updateDescription();
     });
     on("where", () => page.say(this.where(), { topic: "where", asked: true }));

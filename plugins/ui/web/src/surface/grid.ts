@@ -140,24 +140,24 @@ export class Grid {
         top[k] = most;
       }
     }
-    const found: PyramidLevel[] = [{ size: 1, columns: n, top }];
+    const levels: PyramidLevel[] = [{ size: 1, columns: n, top }];
     for (let size = BLOCK; n > 1 || m > 1; size *= BLOCK) {
       [top, n, m] = coarsen(top, n, m);
-      found.push({ size, columns: n, top });
+      levels.push({ size, columns: n, top });
     }
-    return found;
+    return levels;
   }
 }
 
 function coarsen(top: Float32Array<ArrayBuffer>, n: number, m: number): [Float32Array<ArrayBuffer>, number, number] {
   const [columns, rows] = [Math.ceil(n / BLOCK), Math.ceil(m / BLOCK)];
-  const found = new Float32Array(columns * rows).fill(-Infinity);
+  const coarse = new Float32Array(columns * rows).fill(-Infinity);
   for (let b = 0, k = 0; b < m; b++)
     for (let a = 0, at = Math.floor(b / BLOCK) * columns; a < n; a++, k++) {
       const place = at + ((a / BLOCK) | 0);
-      if (top[k] > found[place]) found[place] = top[k];
+      if (top[k] > coarse[place]) coarse[place] = top[k];
     }
-  return [found, columns, rows];
+  return [coarse, columns, rows];
 }
 
 /** Return when a coordinate leaves an interval. */

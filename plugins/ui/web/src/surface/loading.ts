@@ -38,15 +38,15 @@ export async function loadScene(meta: Meta): Promise<Scene> {
 export function fetchLayer(scene: Scene, name: string): Promise<Layer> {
   if (!layers.has(scene)) layers.set(scene, new Map());
   const known = layers.get(scene)!;
-  const found =
+  const layer =
     known.get(name) ??
     bulk(`${root(scene.meta)}/${name}.f32`).then(async (answer) => ({
       ...scene.meta.layers[name],
       values: new Float32Array(await answer.arrayBuffer()),
     }));
-  known.set(name, found);
-  found.catch(() => known.delete(name));
-  return found;
+  known.set(name, layer);
+  layer.catch(() => known.delete(name));
+  return layer;
 }
 
 function root(meta: Meta): string {

@@ -115,19 +115,19 @@ export class Refiner {
     const { canvas, view } = this.page;
     const { left, top, width, height } = canvas.getBoundingClientRect();
     const [w, l] = scene.meta.extent_m;
-    const found: Box = { left: Infinity, near: Infinity, right: -Infinity, far: -Infinity };
+    const box: Box = { left: Infinity, near: Infinity, right: -Infinity, far: -Infinity };
     for (const x of SAMPLES)
       for (const y of SAMPLES) {
         const [o, d] = view.ray(left + x * width, top + y * height);
         const t = d[2] < 0 ? (view.eye.pose.target[2] - o[2]) / d[2] : Infinity;
         const reach = Math.min(t, view.camera.far);
         const [u, v] = [clamp(o[0] + reach * d[0], w), clamp(o[1] + reach * d[1], l)];
-        found.left = Math.min(found.left, u);
-        found.right = Math.max(found.right, u);
-        found.near = Math.min(found.near, v);
-        found.far = Math.max(found.far, v);
+        box.left = Math.min(box.left, u);
+        box.right = Math.max(box.right, u);
+        box.near = Math.min(box.near, v);
+        box.far = Math.max(box.far, v);
       }
-    return found.left < found.right && found.near < found.far ? found : null;
+    return box.left < box.right && box.near < box.far ? box : null;
   }
 }
 

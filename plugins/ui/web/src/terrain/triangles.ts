@@ -26,9 +26,9 @@ export function triangles(rows: number, columns: number, stride: number): Uint32
 
 /** Return the indices of the ring, the first and the last cell, and every stride-th between. */
 export function pickIndices(count: number, stride: number): number[] {
-  const found = [0];
-  for (let k = 1; k < count; k += stride) found.push(k);
-  return [...found, count, count + 1];
+  const indices = [0];
+  for (let k = 1; k < count; k += stride) indices.push(k);
+  return [...indices, count, count + 1];
 }
 
 /** Return the stride for at most MOST_MOVING triangles. */

@@ -45,9 +45,9 @@ export class Magnifier {
   change(): void {
     if (!this.settings.lensMm) return this.close();
     const { azimuthDeg, elevationDeg } = this.settings;
-    const said = `${azimuthDeg} ${elevationDeg}`;
-    if (said !== this.lightSaid) this.draw();
-    this.lightSaid = said;
+    const text = `${azimuthDeg} ${elevationDeg}`;
+    if (text !== this.lightSaid) this.draw();
+    this.lightSaid = text;
     if (this.patch && this.patch.side_m !== this.settings.lensMm / 1000) void this.look([this.patch.x_m, this.patch.y_m]);
   }
 
@@ -125,7 +125,7 @@ export function shadePatch(
     }
   const [a, e] = [azimuthDeg, elevationDeg].map((deg) => (deg * Math.PI) / 180);
   const key = [Math.sin(a) * Math.cos(e), Math.cos(a) * Math.cos(e), Math.sin(e)];
-  const found = new ImageData(pixels, pixels);
+  const image = new ImageData(pixels, pixels);
   const last = pixels - 1;
   for (let j = 0, k = 0; j < pixels; j++)
     for (let i = 0; i < pixels; i++, k += 4) {
@@ -135,7 +135,7 @@ export function shadePatch(
       const gy = (whole[up * pixels + i] - whole[down * pixels + i]) / (Math.max(down - up, 1) * pitch);
       const light = (key[2] - gx * key[0] - gy * key[1]) / Math.hypot(gx, gy, 1);
       const tone = 30 + 200 * Math.max(light, 0);
-      found.data.set([tone, 0.96 * tone, 0.88 * tone, 255], k);
+      image.data.set([tone, 0.96 * tone, 0.88 * tone, 255], k);
     }
-  return found;
+  return image;
 }

@@ -38,16 +38,16 @@ export const BOUNDS: Partial<Record<keyof Settings, [number, number]>> = {
 
 /** Return kept settings as far as they are valid. */
 export function checkSettings(kept: unknown): Settings {
-  const found: Record<string, unknown> = { ...DEFAULTS };
+  const args: Record<string, unknown> = { ...DEFAULTS };
   if (typeof kept !== "object" || kept === null) return { ...DEFAULTS };
   for (const [name, value] of Object.entries(kept)) {
     const bounds = BOUNDS[name as keyof Settings];
-    if (bounds && typeof value === "number" && value >= bounds[0] && value <= bounds[1]) found[name] = value;
+    if (bounds && typeof value === "number" && value >= bounds[0] && value <= bounds[1]) args[name] = value;
   }
   const { look, steep } = kept as Partial<Settings>;
-  if (typeof look === "string") found.look = look;
-  if (typeof steep === "string" && Object.hasOwn(STEEPS, steep)) found.steep = steep;
-  return found as unknown as Settings;
+  if (typeof look === "string") args.look = look;
+  if (typeof steep === "string" && Object.hasOwn(STEEPS, steep)) args.steep = steep;
+  return args as unknown as Settings;
 }
 
 export function recallSettings(): Settings {

@@ -12,7 +12,8 @@ import {
   WebGLRenderer,
   WebGLRenderTarget,
 } from "three";
-import { Eye, attachCameraInput } from "./camera";
+import { Eye } from "./camera";
+import { attachCameraInput } from "./camera_input";
 import { EyeDome, fullScreenQuad } from "./eye_dome";
 import type { Vec } from "../server/protocol";
 import type { Scene } from "../surface/scene";

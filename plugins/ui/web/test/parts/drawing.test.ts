@@ -24,8 +24,8 @@ describe("order", () => {
     assert.deepEqual(spread([0, 0, 0], 0.004), [0, 0.0005, 0.001]);
     assert.deepEqual(spread([0, 0.004, 0.004], 0.004), [0, 0.0035, 0.004]);
     for (const count of [1, 2, 40]) {
-      const made = spread(Array<number>(count).fill(0.002), 0.004);
-      assert.ok(made.every((each, i) => each >= 0 && each <= 0.004 && (!i || each > made[i - 1]!)), `${made}`);
+      const indices = spread(Array<number>(count).fill(0.002), 0.004);
+      assert.ok(indices.every((each, i) => each >= 0 && each <= 0.004 && (!i || each > indices[i - 1]!)), `${indices}`);
     }
     assert.deepEqual(spread([0, 0], 0), [0, 0]);
   });

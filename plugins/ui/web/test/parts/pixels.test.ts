@@ -98,7 +98,7 @@ describe("pieces", () => {
 
 function flooded({ columns, data }: Labels): number[][] {
   const seen = new Set<number>();
-  const found: number[][] = [];
+  const indices: number[][] = [];
   for (let at = 0; at < data.length; at++) {
     if (seen.has(at)) continue;
     const todo = [at];
@@ -106,9 +106,9 @@ function flooded({ columns, data }: Labels): number[][] {
     for (const here of todo)
       for (const near of [here % columns ? here - 1 : -1, (here + 1) % columns ? here + 1 : -1, here - columns, here + columns])
         if (near >= 0 && near < data.length && data[near] === data[at] && !seen.has(near)) todo.push(near), seen.add(near);
-    found.push([data[at]!, todo.length, at]);
+    indices.push([data[at]!, todo.length, at]);
   }
-  return found;
+  return indices;
 }
 
 test("a mask is what its runs say", () => {

@@ -73,10 +73,10 @@ export class ContactLabel implements Piece {
 const within = (at: number, most: number): number => Math.max(0, Math.min(at, most));
 
 function line(box: HTMLElement, name: string): HTMLElement {
-  const made = document.createElement("div");
-  made.className = name;
-  box.append(made);
-  return made;
+  const results = document.createElement("div");
+  results.className = name;
+  box.append(results);
+  return results;
 }
 
 function say(element: HTMLElement, text: string): void {

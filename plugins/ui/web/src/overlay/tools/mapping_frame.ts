@@ -67,8 +67,8 @@ export class MappingFrame implements PointerTool {
   /** True if the device's reach has a visible edge. */
   get isBounded(): boolean {
     const { scene } = this.page;
-    const found = this.workspace && reachOf(this.mapping, this.workspace);
-    return scene !== null && found !== null && found.size[0] < MOST_PICTURES * scene.meta.extent_m[0];
+    const area = this.workspace && reachOf(this.mapping, this.workspace);
+    return scene !== null && area !== null && area.size[0] < MOST_PICTURES * scene.meta.extent_m[0];
   }
 
   /** The device's reach, or the enlarged region if the device reaches everything. */

@@ -15,12 +15,12 @@ export function confirmStart(about: About): Promise<boolean> {
   dialog.className = "sure";
   const heading = Object.assign(document.createElement("h2"), { id: "sure-title", textContent: t("sureTitle", { name: about.name }) });
   dialog.setAttribute("aria-labelledby", heading.id);
-  const said = [
+  const value = [
     t("sure"),
     t("sureForce", { force: about.most_force_n.toFixed(1) }),
     t("sureRelief", { relief: (1000 * about.relief_m).toFixed(0) }),
   ].join(" ");
-  const texts = [said, t("sureHands")].map((text) => Object.assign(document.createElement("p"), { textContent: text }));
+  const texts = [value, t("sureHands")].map((text) => Object.assign(document.createElement("p"), { textContent: text }));
   const buttons = document.createElement("div");
   buttons.className = "buttons";
   const no = button(t("no"), () => dialog.close());

@@ -57,14 +57,14 @@ export function loopFigures(page: Page, open: () => boolean): HTMLElement {
     }
   }
 
-  function show(found: Figures | null): void {
-    none.hidden = found !== null;
-    for (const each of [list, how, late.element.parentElement!, force.element.parentElement!]) each.hidden = !found;
-    if (!found) return;
-    list.replaceChildren(...rows(found).flatMap(([name, value]) => [element("dt", name), element("dd", value)]));
-    how.textContent = t("how", { how: found.how });
-    late.add(found.late_us?.most ?? 0);
-    force.add(found.force_n);
+  function show(figures: Figures | null): void {
+    none.hidden = figures !== null;
+    for (const each of [list, how, late.element.parentElement!, force.element.parentElement!]) each.hidden = !figures;
+    if (!figures) return;
+    list.replaceChildren(...rows(figures).flatMap(([name, value]) => [element("dt", name), element("dd", value)]));
+    how.textContent = t("how", { how: figures.how });
+    late.add(figures.late_us?.most ?? 0);
+    force.add(figures.force_n);
   }
 
   setInterval(() => void look(), LOOK_MS);
@@ -72,25 +72,25 @@ export function loopFigures(page: Page, open: () => boolean): HTMLElement {
   return box;
 }
 
-function rows(found: Figures): [string, string][] {
-  const [x, y, z] = found.position_m.map((part) => (1000 * part).toFixed(1));
-  const share = { now: (100 * found.late_share).toFixed(1), whole: (100 * found.whole_late_share).toFixed(2) };
+function rows(figures: Figures): [string, string][] {
+  const [x, y, z] = figures.position_m.map((part) => (1000 * part).toFixed(1));
+  const share = { now: (100 * figures.late_share).toFixed(1), whole: (100 * figures.whole_late_share).toFixed(2) };
   return [
-    [t("rate"), t("hertz", { value: found.rate_hz.toFixed(0) })],
-    [t("late"), spread(found.late_us)],
+    [t("rate"), t("hertz", { value: figures.rate_hz.toFixed(0) })],
+    [t("late"), spread(figures.late_us)],
     [t("share"), t("percent", share)],
-    [t("whole"), spread(found.whole_late_us)],
-    [t("overruns"), t("overrunsOf", { overruns: found.overruns, ticks: found.ticks })],
-    [t("force"), t("newtons", { now: found.force_n.toFixed(2), most: found.most_force_n.toFixed(2) })],
+    [t("whole"), spread(figures.whole_late_us)],
+    [t("overruns"), t("overrunsOf", { overruns: figures.overruns, ticks: figures.ticks })],
+    [t("force"), t("newtons", { now: figures.force_n.toFixed(2), most: figures.most_force_n.toFixed(2) })],
     [t("position"), t("millimetres", { x: x!, y: y!, z: z! })],
-    [t("buttons"), pressedButtons(found.buttons).join(", ") || t("none")],
-    [t("limits"), limits(found.flagged) || t("none")],
+    [t("buttons"), pressedButtons(figures.buttons).join(", ") || t("none")],
+    [t("limits"), limits(figures.flagged) || t("none")],
   ];
 }
 
-function spread(found: Spread | null): string {
-  if (!found) return "–";
-  return t("spread", { p50: found.p50.toFixed(0), p99: found.p99.toFixed(0), most: found.most.toFixed(0) });
+function spread(values: Spread | null): string {
+  if (!values) return "–";
+  return t("spread", { p50: values.p50.toFixed(0), p99: values.p99.toFixed(0), most: values.most.toFixed(0) });
 }
 
 /** Return the numbers of the pressed buttons, from 1. */

@@ -27,21 +27,21 @@ interface Finding {
 }
 
 /** Return the item of a device. use: called when it is chosen. */
-export function deviceItem(page: Page, found: Device, use: () => void): HTMLLIElement {
+export function deviceItem(page: Page, about: Device, use: () => void): HTMLLIElement {
   const line = document.createElement("li");
-  const name = element("h4", found.name);
-  const chip = element("span", t(presenceOf(found)));
-  chip.className = `chip ${found.usable ? "good" : found.problem ? "bad" : ""}`;
+  const name = element("h4", about.name);
+  const chip = element("span", t(presenceOf(about)));
+  chip.className = `chip ${about.usable ? "good" : about.problem ? "bad" : ""}`;
   name.append(" ", chip);
   const findings = document.createElement("ul");
   const uses = button(t("use"), use);
-  uses.setAttribute("aria-label", t("useNamed", { name: found.name }));
-  const examines = button(t("examine"), () => examine(page, found.name, findings));
-  examines.setAttribute("aria-label", t("examineNamed", { name: found.name }));
+  uses.setAttribute("aria-label", t("useNamed", { name: about.name }));
+  const examines = button(t("examine"), () => examine(page, about.name, findings));
+  examines.setAttribute("aria-label", t("examineNamed", { name: about.name }));
   const buttons = document.createElement("div");
   buttons.className = "buttons";
   buttons.append(uses, examines);
-  line.append(name, element("p", found.summary), ...problemTexts(found), buttons, findings);
+  line.append(name, element("p", about.summary), ...problemTexts(about), buttons, findings);
   return line;
 }
 
@@ -59,9 +59,9 @@ function problemTexts({ units, problem }: Device): HTMLElement[] {
 
 async function examine(page: Page, name: string, into: HTMLElement): Promise<void> {
   try {
-    const found = await page.net.ask<Finding[]>("examine", { name });
-    into.replaceChildren(...found.map(findingItem));
-    page.say(found.map(({ check, verdict }) => `${check}: ${t(verdict)}`).join("; "));
+    const findings = await page.net.ask<Finding[]>("examine", { name });
+    into.replaceChildren(...findings.map(findingItem));
+    page.say(findings.map(({ check, verdict }) => `${check}: ${t(verdict)}`).join("; "));
   } catch (error) {
     into.replaceChildren(element("li", t("refused", { why: (error as Error).message })));
   }

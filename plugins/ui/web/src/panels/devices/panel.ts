@@ -12,7 +12,7 @@ type Kind = "hand" | "document" | "other";
 
 function build(page: Page, root: HTMLElement): void {
   const { hub, net } = page;
-  const told = Object.assign(document.createElement("p"), { id: "device-felt" });
+  const status = Object.assign(document.createElement("p"), { id: "device-felt" });
   const list = Object.assign(document.createElement("ul"), { className: "devices" });
   const panel = root.closest("details")!;
 
@@ -25,7 +25,7 @@ function build(page: Page, root: HTMLElement): void {
   }
 
   function say(text: string): void {
-    told.textContent = text;
+    status.textContent = text;
     page.say(text);
   }
 
@@ -58,8 +58,8 @@ function build(page: Page, root: HTMLElement): void {
   hub.on("loop", ({ running, why, waiting, lost, device: name, own_hand }) => {
     wait.hidden = running || !lost || waiting === true;
     again.hidden = running;
-    if (running) told.textContent = t("felt", { device: own_hand ? t("ownHand") : (name ?? "") });
-    else told.textContent = t(waiting ? "waiting" : "nothingFelt", { why });
+    if (running) status.textContent = t("felt", { device: own_hand ? t("ownHand") : (name ?? "") });
+    else status.textContent = t(waiting ? "waiting" : "nothingFelt", { why });
   });
   panel.addEventListener("toggle", () => {
     preflight.hidden = !document.getElementById("preflight");
@@ -67,14 +67,14 @@ function build(page: Page, root: HTMLElement): void {
   });
   hub.on("hello", () => panel.open && void attempt(look));
   const heading = Object.assign(document.createElement("h3"), { textContent: t("installed") });
-  root.append(told, row(wait, again), row(hand, ofDocument, preflight), loopFigures(page, () => panel.open), heading, list, row(refresh));
+  root.append(status, row(wait, again), row(hand, ofDocument, preflight), loopFigures(page, () => panel.open), heading, list, row(refresh));
 }
 
 function row(...buttons: HTMLElement[]): HTMLElement {
-  const made = document.createElement("div");
-  made.className = "buttons";
-  made.append(...buttons);
-  return made;
+  const results = document.createElement("div");
+  results.className = "buttons";
+  results.append(...buttons);
+  return results;
 }
 
 export const devices: Panel = { id: "devices", title: t("title"), place: "right", open: false, build };

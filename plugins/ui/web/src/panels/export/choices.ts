@@ -32,8 +32,8 @@ export class Choices {
   }
 
   /** Show the file's exporters. */
-  show(said: Plain | undefined): void {
-    this.build(entriesOf(said, this.exporters.map(({ name }) => name)));
+  show(value: Plain | undefined): void {
+    this.build(entriesOf(value, this.exporters.map(({ name }) => name)));
   }
 
   private build(entries: Entry[]): void {
@@ -74,8 +74,8 @@ export class Choices {
     };
     const row = rows(() => undefined);
     const made = known.options.map((option) => {
-      const one = row(option, `${FIELD}export-${at}-${entry.use}.${option.name}`, (said: FieldChange, inside: string[] = []) => {
-        entry.options = setInside(entry.options, [option.name, ...inside], said) as Entry["options"];
+      const one = row(option, `${FIELD}export-${at}-${entry.use}.${option.name}`, (change: FieldChange, inside: string[] = []) => {
+        entry.options = setInside(entry.options, [option.name, ...inside], change) as Entry["options"];
         if (!entry.on) on.click(); // setting options implies the exporter
         show();
         this.onChange();

@@ -9,8 +9,8 @@ export interface Entry {
 }
 
 /** Return an entry for every exporter, more if the file lists it more often; the file's entries are on. */
-export function entriesOf(said: Plain | undefined, names: string[]): Entry[] {
-  const given = parseEntries(said);
+export function entriesOf(value: Plain | undefined, names: string[]): Entry[] {
+  const given = parseEntries(value);
   const known = [...names, ...given.map(({ use }) => use).filter((use) => !names.includes(use))];
   return [...new Set(known)].flatMap((use) => {
     const those = given.filter((each) => each.use === use);
@@ -24,12 +24,12 @@ export function blocksOf(entries: Entry[]): Plain[] {
 }
 
 /** Return whether the file lists the same exports already, in any form. */
-export function equals(said: Plain | undefined, blocks: Plain[]): boolean {
-  return same(blocksOf(parseEntries(said)), blocks);
+export function equals(value: Plain | undefined, blocks: Plain[]): boolean {
+  return same(blocksOf(parseEntries(value)), blocks);
 }
 
-function parseEntries(said: Plain | undefined): Entry[] {
-  const all = Array.isArray(said) ? said : said === undefined || said === null ? [] : [said];
+function parseEntries(value: Plain | undefined): Entry[] {
+  const all = Array.isArray(value) ? value : value === undefined || value === null ? [] : [value];
   return all.flatMap((each) => {
     if (typeof each === "string") return [{ use: each, options: {}, on: true }];
     if (!isMap(each) || typeof each.use !== "string") return [];

@@ -10,8 +10,8 @@ import { exporterName } from "./choices";
 const SHAPES: Partial<Record<Outcome["outcome"], string>> = { ran: "✓", refused: "⊘", failed: "✕" };
 const UNITS = [["megabytes", 1e6, 1], ["kilobytes", 1e3, 0], ["bytes", 1, 0]] as const;
 
-export function outcomes(said: Exported, cure: Cure): HTMLElement[] {
-  return said.exports.map((each) => outcome(said.folder, each, cure));
+export function outcomes(exported: Exported, cure: Cure): HTMLElement[] {
+  return exported.exports.map((each) => outcome(exported.folder, each, cure));
 }
 
 /** Return the address of an exported file, with this page's key. */
@@ -19,21 +19,21 @@ export function address(folder: string, name: string): string {
   return `/export/${folder}/${encodeURIComponent(name)}?token=${encodeURIComponent(token)}`;
 }
 
-function outcome(folder: string, said: Exported["exports"][number], cure: Cure): HTMLElement {
+function outcome(folder: string, exported: Exported["exports"][number], cure: Cure): HTMLElement {
   const box = document.createElement("section");
-  box.className = `outcome ${said.outcome}`;
+  box.className = `outcome ${exported.outcome}`;
   const heading = document.createElement("h3");
-  heading.textContent = exporterName(said.name);
+  heading.textContent = exporterName(exported.name);
   const became = document.createElement("span");
   became.className = "became";
-  const known = said.outcome === "refused" || said.outcome === "failed" ? said.outcome : "ran";
-  const seconds = known === "ran" ? t("seconds", { seconds: decimal(said.seconds, 1) }) : "";
+  const known = exported.outcome === "refused" || exported.outcome === "failed" ? exported.outcome : "ran";
+  const seconds = known === "ran" ? t("seconds", { seconds: decimal(exported.seconds, 1) }) : "";
   became.append(symbolOf(known), [t(known), seconds].filter(Boolean).join(", "));
   box.append(heading, became);
-  if (known !== "ran") box.append(english(said.why, "bad"));
-  if (said.files.length) box.append(files(folder, said.files));
-  if (said.legible) box.append(legible(said.legible, cure));
-  if (said.notes.length) box.append(notes(said.notes));
+  if (known !== "ran") box.append(english(exported.why, "bad"));
+  if (exported.files.length) box.append(files(folder, exported.files));
+  if (exported.legible) box.append(legible(exported.legible, cure));
+  if (exported.notes.length) box.append(notes(exported.notes));
   return box;
 }
 
@@ -55,10 +55,10 @@ function files(folder: string, all: Exported["exports"][number]["files"]): HTMLE
   return list;
 }
 
-function legible(said: NonNullable<Exported["exports"][number]["legible"]>, cure: Cure): HTMLElement {
+function legible(judgement: NonNullable<Exported["exports"][number]["legible"]>, cure: Cure): HTMLElement {
   const box = document.createElement("div");
-  box.append(gradeSentence(said.grade, said.sentence));
-  const wrong = said.verdicts.filter(({ verdict }) => verdict !== "ok");
+  box.append(gradeSentence(judgement.grade, judgement.sentence));
+  const wrong = judgement.verdicts.filter(({ verdict }) => verdict !== "ok");
   if (wrong.length) box.append(foldable(t("verdicts", { count: wrong.length }), verdictTables(wrong, cure)));
   return box;
 }
@@ -76,16 +76,16 @@ function foldable(title: string, inside: HTMLElement[]): HTMLElement {
 }
 
 function english(text: string, className: string): HTMLElement {
-  const made = paragraph(text, className);
-  made.lang = "en";
-  return made;
+  const status = paragraph(text, className);
+  status.lang = "en";
+  return status;
 }
 
 function symbolOf(known: Outcome["outcome"]): HTMLElement {
-  const made = document.createElement("span");
-  made.setAttribute("aria-hidden", "true");
-  made.textContent = `${SHAPES[known] ?? ""} `;
-  return made;
+  const span = document.createElement("span");
+  span.setAttribute("aria-hidden", "true");
+  span.textContent = `${SHAPES[known] ?? ""} `;
+  return span;
 }
 
 export function formatBytes(bytes: number): string {

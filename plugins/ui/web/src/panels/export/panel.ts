@@ -15,9 +15,9 @@ import { address, outcomes, formatBytes } from "./outcomes";
 
 export function build(page: Page, root: HTMLElement): void {
   const editor = new DocumentEditor(page);
-  const told = document.createElement("p");
-  told.setAttribute("role", "status");
-  const tell = (text: string, className = ""): void => void Object.assign(told, { textContent: text, className });
+  const status = document.createElement("p");
+  status.setAttribute("role", "status");
+  const tell = (text: string, className = ""): void => void Object.assign(status, { textContent: text, className });
   editor.onRefused = (why) => tell(why, "bad");
   const list = document.createElement("div");
   list.textContent = t("waiting");
@@ -32,8 +32,8 @@ export function build(page: Page, root: HTMLElement): void {
     choices.show(shown);
   };
   const load = async (): Promise<void> => {
-    const found = await page.net.ask<FileSchema>("schema");
-    choices = new Choices(exportersOf(found));
+    const schema = await page.net.ask<FileSchema>("schema");
+    choices = new Choices(exportersOf(schema));
     shown = said();
     choices.show(shown);
     list.replaceChildren(choices.root);
@@ -43,8 +43,8 @@ export function build(page: Page, root: HTMLElement): void {
     if (!exports.length) return tell(t("none"), "warn");
     tell(t("running"));
     try {
-      const found = await page.net.ask<Exported | null>("export", { exports });
-      if (found) tell(...summaryOf(found));
+      const outcome = await page.net.ask<Exported | null>("export", { exports });
+      if (outcome) tell(...summaryOf(outcome));
       else tell(t("stopped"), "warn");
     } catch (error) {
       tell((error as Error).message, "bad");
@@ -67,7 +67,7 @@ export function build(page: Page, root: HTMLElement): void {
   const buttons = document.createElement("div");
   buttons.className = "buttons";
   buttons.append(start, stopButton(page), button(t("add"), add));
-  root.append(hint(t("about")), list, buttons, progress(page), told, results);
+  root.append(hint(t("about")), list, buttons, progress(page), status, results);
   void load().catch((error: Error) => (list.textContent = error.message));
 
   const stale = paragraph(t("stale"), "warn");

@@ -6,7 +6,7 @@ import type { Panel } from "../panel";
 import { t } from "../../hand/words";
 
 function build(page: Page, root: HTMLElement): void {
-  const told = Object.assign(document.createElement("p"), { id: "hand-held" });
+  const status = Object.assign(document.createElement("p"), { id: "hand-held" });
   const take = Object.assign(button(t("take"), () => page.hand?.take()), { hidden: true });
   const moved = document.createElement("p");
   const press = slider();
@@ -22,7 +22,7 @@ function build(page: Page, root: HTMLElement): void {
   depth.append(value);
   const hints = (["howMouse", "howFinger", "howKeys"] as const).map((each) => hint(t(each)));
   const pad = hint(t("padThere"));
-  root.append(told, take, moved, ways, depth, ...hints, pad);
+  root.append(status, take, moved, ways, depth, ...hints, pad);
 
   function way(name: "surface" | "space", free: boolean): HTMLLabelElement {
     const label = document.createElement("label");
@@ -38,7 +38,7 @@ function build(page: Page, root: HTMLElement): void {
   }
 
   function hear(hand: HandState): void {
-    told.textContent = t(holderOf(hand));
+    status.textContent = t(holderOf(hand));
     take.hidden = !hand.there || hand.holding || hand.rests;
     moved.textContent = `${t("movedBy")}: ${t(hand.by ?? "nothing")}`;
     pad.hidden = !hand.pads;
@@ -67,9 +67,9 @@ export function holderOf(hand: Pick<HandState, "there" | "holding" | "nobodyHold
 }
 
 function slider(): HTMLInputElement {
-  const made = document.createElement("input");
+  const input = document.createElement("input");
   const mm = (metres: number): string => (1000 * metres).toFixed(1);
-  return Object.assign(made, {
+  return Object.assign(input, {
     id: "press", type: "range", min: mm(PRESS_M.least), max: mm(PRESS_M.most), step: "0.1", value: mm(PRESS_M.first),
   });
 }

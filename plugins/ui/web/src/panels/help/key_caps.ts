@@ -3,12 +3,12 @@ import { t } from "./words";
 
 /** Return the element of a key as it is printed on a keyboard; key: as in shortcuts.ts. */
 export function caps(key: string): HTMLElement {
-  const made = document.createElement("kbd");
-  made.textContent = key
+  const element = document.createElement("kbd");
+  element.textContent = key
     .split(/(?<=.)\+/)
     .map((part) => (part in NAMES ? t(NAMES[part]) : part.length === 1 ? part.toUpperCase() : part))
     .join(" + ");
-  return made;
+  return element;
 }
 
 const NAMES: Record<string, Parameters<typeof t>[0]> = {

@@ -18,23 +18,23 @@ function build(_: Page, root: HTMLElement): void {
 }
 
 function table(): HTMLTableElement {
-  const made = document.createElement("table");
-  made.createCaption().textContent = t("caption");
-  made.caption!.className = "visually-hidden";
-  const head = made.createTHead().insertRow();
+  const tableElement = document.createElement("table");
+  tableElement.createCaption().textContent = t("caption");
+  tableElement.caption!.className = "visually-hidden";
+  const head = tableElement.createTHead().insertRow();
   for (const text of [t("key"), t("does")]) {
     const cell = document.createElement("th");
     cell.scope = "col";
     cell.textContent = text;
     head.append(cell);
   }
-  const body = made.createTBody();
+  const body = tableElement.createTBody();
   for (const [name, { keys, where }] of Object.entries(SHORTCUTS)) {
     const row = body.insertRow();
     row.insertCell().append(...keys.flatMap((each) => [caps(each), " "]));
     row.insertCell().textContent = does(name as Name) + (where === "surface" ? ` ${t("onSurface")}` : "");
   }
-  return made;
+  return tableElement;
 }
 
 export const help: Panel = { id: "help", title: t("title"), place: "right", open: false, build };

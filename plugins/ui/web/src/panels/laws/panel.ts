@@ -17,7 +17,7 @@ const LETTERS = ["a", "b"] as const;
 
 function build(page: Page, root: HTMLElement): void {
   const { hub, net } = page;
-  const told = document.createElement("p");
+  const status = document.createElement("p");
   const result = document.createElement("ul");
   const attempt = async (work: () => Promise<unknown>): Promise<void> => {
     try {
@@ -27,7 +27,7 @@ function build(page: Page, root: HTMLElement): void {
     }
   };
   const say = (text: string): void => {
-    told.textContent = text;
+    status.textContent = text;
     page.say(text);
   };
 
@@ -65,27 +65,27 @@ function build(page: Page, root: HTMLElement): void {
     page.say(lines.slice(0, 2).join(" "));
   }
 
-  function show(said: Events["laws"]): void {
-    choice.hidden = said.state !== "one";
-    two.hidden = said.state !== "two";
-    blind.hidden = said.state !== "blind";
-    if (said.state === "two") {
+  function show(message: Events["laws"]): void {
+    choice.hidden = message.state !== "one";
+    two.hidden = message.state !== "two";
+    blind.hidden = message.state !== "blind";
+    if (message.state === "two") {
       letters.forEach((each, i) => {
-        each.textContent = t("named", { letter: LETTERS[i]!, law: said.named[i]! });
-        each.setAttribute("aria-pressed", String(said.felt === i));
+        each.textContent = t("named", { letter: LETTERS[i]!, law: message.named[i]! });
+        each.setAttribute("aria-pressed", String(message.felt === i));
       });
-      say(t("feeling", { letter: LETTERS[said.felt]!, law: said.named[said.felt]! }));
-    } else if (said.state === "blind") {
-      asked.textContent = said.question;
-      trial.textContent = t("trial", { number: said.trials + 1, called: said.called });
-      feel.forEach((each, i) => each.setAttribute("aria-pressed", String(said.called === i + 1)));
+      say(t("feeling", { letter: LETTERS[message.felt]!, law: message.named[message.felt]! }));
+    } else if (message.state === "blind") {
+      asked.textContent = message.question;
+      trial.textContent = t("trial", { number: message.trials + 1, called: message.called });
+      feel.forEach((each, i) => each.setAttribute("aria-pressed", String(message.called === i + 1)));
       page.say(trial.textContent);
-    } else told.textContent = "";
+    } else status.textContent = "";
   }
 
   hub.on("laws", show);
   show({ event: "laws", at_s: 0, state: "one" });
-  root.append(hint(t("about")), choice, two, blind, result, told);
+  root.append(hint(t("about")), choice, two, blind, result, status);
   let known = false;
   hub.on("touch", () => {
     if (known) return;
@@ -120,9 +120,9 @@ function group(title: string): HTMLFieldSetElement {
 }
 
 function input(id: string): HTMLInputElement {
-  const made = document.createElement("input");
-  made.id = id;
-  return made;
+  const control = document.createElement("input");
+  control.id = id;
+  return control;
 }
 
 export const laws: Panel = { id: "laws", title: t("title"), place: "right", open: false, build };

@@ -16,14 +16,14 @@ export function numberFaults(verdicts: Verdict[]): Map<Verdict, Fault[]> {
   return new Map(failing.map((each) => [each, each.at!.slice(0, MOST).map((at) => ({ number: ++number, at }))]));
 }
 
-export function faultList(page: Page, said: Verdict, all: Fault[], marks: FaultMarks): HTMLElement {
+export function faultList(page: Page, verdict: Verdict, all: Fault[], marks: FaultMarks): HTMLElement {
   const box = document.createElement("div");
   box.className = "places";
   const list = document.createElement("ol");
   list.setAttribute("aria-label", t("places"));
   list.append(...all.map((each) => line(page, each, marks)));
   box.append(list);
-  const rest = said.at!.length - all.length;
+  const rest = verdict.at!.length - all.length;
   if (rest) box.append(paragraph(t("more", { count: rest }), "hint"));
   return box;
 }

@@ -18,12 +18,12 @@ export function build(page: Page, root: HTMLElement): void {
   const marks = new FaultMarks(page);
   const medium = choice();
   const width = widthField();
-  const told = document.createElement("p");
-  told.setAttribute("role", "status");
-  editor.onRefused = (why) => (told.textContent = why);
+  const status = document.createElement("p");
+  status.setAttribute("role", "status");
+  editor.onRefused = (why) => (status.textContent = why);
   const stale = paragraph(t("stale"), "warn");
   stale.hidden = true;
-  const found = document.createElement("div");
+  const results = document.createElement("div");
   const marked = checkbox(t("marks"), () => age());
   marked.input.checked = true;
   marked.root.hidden = true;
@@ -35,14 +35,14 @@ export function build(page: Page, root: HTMLElement): void {
 
   const work = async (): Promise<void> => {
     if (!width.reportValidity()) return;
-    told.textContent = t("checking");
+    status.textContent = t("checking");
     const width_m = width.value ? width.valueAsNumber / 1000 : null;
     try {
-      const said = await page.net.ask<Legible | null>("legible", { medium: medium.value, width_m });
-      told.textContent = said ? "" : t("stopped");
-      if (said) page.say(said.sentence, { topic: "legible", asked: true });
+      const legible = await page.net.ask<Legible | null>("legible", { medium: medium.value, width_m });
+      status.textContent = legible ? "" : t("stopped");
+      if (legible) page.say(legible.sentence, { topic: "legible", asked: true });
     } catch (error) {
-      told.textContent = (error as Error).message;
+      status.textContent = (error as Error).message;
     }
   };
   const check = button(t("check"), work);
@@ -52,7 +52,7 @@ export function build(page: Page, root: HTMLElement): void {
   buttons.append(check);
   const widthBox = field(t("width"), width);
   widthBox.append(Object.assign(hint(t("widthHint")), { id: "legible-width-hint" }));
-  root.append(hint(t("about")), field(t("medium"), medium), widthBox, buttons, told, stale, found, marked.root, coloured.root);
+  root.append(hint(t("about")), field(t("medium"), medium), widthBox, buttons, status, stale, results, marked.root, coloured.root);
 
   const age = (): void => {
     stale.hidden = !judged || judged.digest === page.document?.digest;
@@ -61,15 +61,15 @@ export function build(page: Page, root: HTMLElement): void {
   const cure: Cure = (key, value) => {
     void editor.submit({ changes: { [key]: value } }).then((done) => (done ? work() : undefined));
   };
-  const show = (said: Legible): void => {
-    judged = said;
+  const show = (verdict: Legible): void => {
+    judged = verdict;
     check.textContent = t("again");
-    medium.value = said.medium;
-    const failing = numberFaults(said.verdicts);
+    medium.value = verdict.medium;
+    const failing = numberFaults(verdict.verdicts);
     const more = (each: Legible["verdicts"][number]): HTMLElement | null =>
       failing.has(each) ? faultList(page, each, failing.get(each)!, marks) : null;
-    const of = paragraph(t("of", { medium: t(`${said.medium}Of`), width: decimal(1000 * said.width_m, 0) }), "hint");
-    found.replaceChildren(gradeSentence(said.grade, said.sentence), of, ...simplifyButton(said, editor, work), ...verdictTables(said.verdicts, cure, more));
+    const of = paragraph(t("of", { medium: t(`${verdict.medium}Of`), width: decimal(1000 * verdict.width_m, 0) }), "hint");
+    results.replaceChildren(gradeSentence(verdict.grade, verdict.sentence), of, ...simplifyButton(verdict, editor, work), ...verdictTables(verdict.verdicts, cure, more));
     const all = [...failing.values()].flat();
     marked.root.hidden = !all.length;
     coloured.root.hidden = false;
@@ -98,17 +98,17 @@ function simplifyButton({ verdicts: all }: Legible, editor: DocumentEditor, chec
 }
 
 function choice(): HTMLSelectElement {
-  const made = document.createElement("select");
-  made.id = "legible-medium";
-  for (const each of MEDIA) made.add(new Option(t(each), each));
-  return made;
+  const select = document.createElement("select");
+  select.id = "legible-medium";
+  for (const each of MEDIA) select.add(new Option(t(each), each));
+  return select;
 }
 
 function widthField(): HTMLInputElement {
-  const made = document.createElement("input");
-  Object.assign(made, { id: "legible-width", type: "number", min: `${WIDTH_MM.least}`, max: `${WIDTH_MM.most}`, step: "any" });
-  made.setAttribute("aria-describedby", "legible-width-hint");
-  return made;
+  const input = document.createElement("input");
+  Object.assign(input, { id: "legible-width", type: "number", min: `${WIDTH_MM.least}`, max: `${WIDTH_MM.most}`, step: "any" });
+  input.setAttribute("aria-describedby", "legible-width-hint");
+  return input;
 }
 
 function checkbox(text: string, change: (on: boolean) => void): { root: HTMLLabelElement; input: HTMLInputElement } {

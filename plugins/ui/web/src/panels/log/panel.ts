@@ -178,10 +178,10 @@ function fill(item: HTMLElement, { level, text, foreign, at_s, times }: Line): H
   const mark = document.createElement("span");
   mark.className = "level";
   mark.textContent = t(`one ${level}`);
-  const said = document.createElement("span");
-  said.lang = "en";
-  said.textContent = foreign;
-  item.replaceChildren(at, " ", mark, " ", text.slice(0, text.length - foreign.length), said);
+  const span = document.createElement("span");
+  span.lang = "en";
+  span.textContent = foreign;
+  item.replaceChildren(at, " ", mark, " ", text.slice(0, text.length - foreign.length), span);
   if (times > 1) item.append(" ", t("times", { times }));
   return item;
 }

@@ -5,8 +5,8 @@ import type { Plain } from "../../forms/schema";
 
 /** Return the edit: in a map from label to material, the segment's entry alone. If segments go by roughness, or a rule
  * decided this one, a rule for it comes first, and the others stay as they are. */
-export function materialEdit(said: unknown, label: number, material: string, why: string): Edit {
-  const block = at(said, ["materials"]);
+export function materialEdit(value: unknown, label: number, material: string, why: string): Edit {
+  const block = at(value, ["materials"]);
   if (isLabels(block)) return { changes: { [`materials.${label}`]: material } };
   const byRule = /^segment \d+: rule \d+,/.test(why);
   if (isMap(at(block, ["by"])) && !byRule) return { changes: { [`materials.by.${label}`]: material } };

@@ -43,16 +43,16 @@ function build(page: Page, root: HTMLElement): void {
     const file = JSON.stringify(page.document?.values?.materials ?? "");
     if (!page.document?.values || of === file) return;
     of = file;
-    const found = await page.net.ask<Listed[]>("library").catch(() => null);
-    if (!found) return void (of = "");
-    names = found.map(({ name }) => name);
+    const listed = await page.net.ask<Listed[]>("library").catch(() => null);
+    if (!listed) return void (of = "");
+    names = listed.map(({ name }) => name);
     list.replaceChildren(...names.map((each) => new Option(each, each)));
-    heading.textContent = t("library", { count: found.length });
-    library.replaceChildren(heading, figures(found));
+    heading.textContent = t("library", { count: listed.length });
+    library.replaceChildren(heading, figures(listed));
     show();
   };
-  page.hub.on("materials", (said) => {
-    segments = said.segments;
+  page.hub.on("materials", (message) => {
+    segments = message.segments;
     refused.textContent = "";
     void page.idle.then(load);
     show();
@@ -110,10 +110,10 @@ function figures(library: Listed[]): HTMLElement {
     name.scope = "row";
     name.textContent = each.name;
     row.append(name);
-    for (const said of [
+    for (const text of [
       each.stiffness_n_per_m, each.damping_n_s_per_m, `${each.static_friction} / ${each.dynamic_friction}`,
       round(1e6 * each.roughness_m), round(1e3 * each.grain_m), each.texture, each.source,
-    ]) row.insertCell().textContent = String(said);
+    ]) row.insertCell().textContent = String(text);
   }
   box.append(table);
   return box;

@@ -21,7 +21,7 @@ export function folder(net: Server, open: (paths: string[]) => void, say: (text:
   list.id = "open-entries";
   list.multiple = true;
   list.size = 8;
-  const told = document.createElement("p");
+  const status = document.createElement("p");
   let shown: Listed | null = null;
 
   async function show(place: string): Promise<void> {
@@ -34,7 +34,7 @@ export function folder(net: Server, open: (paths: string[]) => void, say: (text:
     list.replaceChildren(
       ...shown.entries.map(({ name, kind }) => new Option(t("entry", { name, kind: t(`kind_${kind}`) }), name)),
     );
-    told.textContent = !shown.entries.length ? t("nothing") : shown.more ? t("more", { count: shown.more }) : "";
+    status.textContent = !shown.entries.length ? t("nothing") : shown.more ? t("more", { count: shown.more }) : "";
   }
 
   function chosen(): void {
@@ -55,7 +55,7 @@ export function folder(net: Server, open: (paths: string[]) => void, say: (text:
     button(t("go"), () => void show(path.value)),
     button(t("up"), () => void show(shown?.parent ?? "")),
     field(t("entries"), list),
-    told,
+    status,
     button(t("openChosen"), chosen),
   );
   return box;

@@ -11,10 +11,10 @@ import { uploadAndOpen, type Opened } from "./upload";
 import "./open.css";
 
 function build(page: Page, root: HTMLElement): void {
-  const told = document.createElement("p");
-  told.className = "told";
+  const status = document.createElement("p");
+  status.className = "told";
   const say = (text: string): void => {
-    told.textContent = text;
+    status.textContent = text;
     page.say(text);
   };
 
@@ -29,7 +29,7 @@ function build(page: Page, root: HTMLElement): void {
     }
   }
 
-  const progress = (name: string, percent: number): string => (told.textContent = t("sending", { name, percent }));
+  const progress = (name: string, percent: number): string => (status.textContent = t("sending", { name, percent }));
   const take = (files: File[]): void => {
     if (files.length) void openAndTell(files.map(({ name }) => name).join(", "), uploadAndOpen(page.net, files, progress));
   };
@@ -44,7 +44,7 @@ function build(page: Page, root: HTMLElement): void {
     foldable(t("folder"), folder(page.net, open, say)),
     foldable(t("camera"), camera(take, say)),
     exchange(page),
-    told,
+    status,
   );
 }
 
@@ -86,13 +86,13 @@ function examples(page: Page, open: (paths: string[]) => void): HTMLElement {
 
 /** Return a button that swaps left and right of a pair in the document. */
 function exchange(page: Page): HTMLElement {
-  const made = button(t("exchange"), () => page.net.ask("exchange").catch((error: Error) => page.say(error.message)));
-  made.hidden = true;
+  const toggle = button(t("exchange"), () => page.net.ask("exchange").catch((error: Error) => page.say(error.message)));
+  toggle.hidden = true;
   page.hub.on("document", ({ values }) => {
     const scene = values?.scene;
-    made.hidden = !(scene && typeof scene === "object" && "left" in scene && "right" in scene);
+    toggle.hidden = !(scene && typeof scene === "object" && "left" in scene && "right" in scene);
   });
-  return made;
+  return toggle;
 }
 
 function foldable(title: string, inside: HTMLElement): HTMLElement {

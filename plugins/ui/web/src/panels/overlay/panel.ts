@@ -98,8 +98,8 @@ function limits(page: Page, root: HTMLElement): HTMLElement {
   let before: { counts: Counts; atMs: number } | null = null;
   setInterval(async () => {
     if (document.hidden || !root.closest("details")?.open) return void (before = null);
-    const found = await page.net.ask<Counts | null>("limits").catch(() => null);
-    const now = found && { counts: found, atMs: performance.now() };
+    const answer = await page.net.ask<Counts | null>("limits").catch(() => null);
+    const now = answer && { counts: answer, atMs: performance.now() };
     const rates = now && before && perSecond(before.counts, now.counts, (now.atMs - before.atMs) / 1000);
     before = now;
     for (const [i, count] of counts.entries()) {

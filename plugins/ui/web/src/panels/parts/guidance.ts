@@ -53,9 +53,9 @@ export function namedParts(page: Page): HTMLElement {
     if (!running) guided = null;
     show();
   });
-  page.hub.on("beacon", (said: Events["beacon"]) => {
-    if (said.part !== guided) page.say(inWords(said), { topic: "beacon", asked: true });
-    guided = said.part;
+  page.hub.on("beacon", (message: Events["beacon"]) => {
+    if (message.part !== guided) page.say(inWords(message), { topic: "beacon", asked: true });
+    guided = message.part;
     show();
   });
   show();
@@ -68,7 +68,7 @@ function inWords({ part, name, why }: Events["beacon"]): string {
 }
 
 function item(): HTMLLIElement {
-  const made = document.createElement("li");
-  made.append(document.createElement("span"), button("", () => undefined));
-  return made;
+  const row = document.createElement("li");
+  row.append(document.createElement("span"), button("", () => undefined));
+  return row;
 }

@@ -13,21 +13,21 @@ type Fixed = { changes: Record<string, string | number>; safe: boolean; sentence
 function build(page: Page, root: HTMLElement): void {
   const editor = new DocumentEditor(page);
   const about = paragraph(t("about"), "hint");
-  const told = document.createElement("p");
-  told.setAttribute("role", "status");
+  const status = document.createElement("p");
+  status.setAttribute("role", "status");
   const stale = paragraph(t("stale"), "warn");
   stale.hidden = true;
-  const found = document.createElement("div");
-  editor.onRefused = (why) => (told.textContent = why);
+  const results = document.createElement("div");
+  editor.onRefused = (why) => (status.textContent = why);
   let judged: Judged | null = null;
 
   const work = async (name: "preflight" | "fix"): Promise<void> => {
-    told.textContent = t("checking");
+    status.textContent = t("checking");
     try {
       const answer = await page.net.ask<Fixed>(name, name === "fix" ? { apply: editor.apply } : {});
-      told.textContent = name === "fix" ? fixedInWords(answer) : answer ? "" : t("stopped");
+      status.textContent = name === "fix" ? fixedInWords(answer) : answer ? "" : t("stopped");
     } catch (error) {
-      told.textContent = (error as Error).message;
+      status.textContent = (error as Error).message;
     }
   };
   const check = button(t("check"), () => work("preflight"));
@@ -38,14 +38,14 @@ function build(page: Page, root: HTMLElement): void {
   const buttons = document.createElement("div");
   buttons.className = "buttons";
   buttons.append(check, fix);
-  root.append(about, buttons, told, stale, found);
+  root.append(about, buttons, status, stale, results);
 
   const age = (): void => void (stale.hidden = !judged || judged.digest === page.document?.digest);
-  page.hub.on("preflight", (said) => {
-    judged = said;
+  page.hub.on("preflight", (message) => {
+    judged = message;
     check.textContent = t("again");
-    fix.hidden = !said.verdicts.some(({ changes }) => changes.length);
-    found.replaceChildren(...verdictElements(said, cure));
+    fix.hidden = !message.verdicts.some(({ changes }) => changes.length);
+    results.replaceChildren(...verdictElements(message, cure));
     age();
   });
   page.hub.on("document", age);
@@ -55,10 +55,10 @@ function build(page: Page, root: HTMLElement): void {
   }
 }
 
-function verdictElements(said: Judged, cure: Cure): HTMLElement[] {
-  const device = said.device ? t("device", { device: said.device, law: said.law }) : t("ownHand", { law: said.law });
-  const about = paragraph(`${device} ${t(said.of_loop ? "ofLoop" : "ofMaker")}`, "hint");
-  return [gradeSentence(said.grade, said.sentence), about, ...verdictTables(said.verdicts, cure)];
+function verdictElements(judgement: Judged, cure: Cure): HTMLElement[] {
+  const device = judgement.device ? t("device", { device: judgement.device, law: judgement.law }) : t("ownHand", { law: judgement.law });
+  const about = paragraph(`${device} ${t(judgement.of_loop ? "ofLoop" : "ofMaker")}`, "hint");
+  return [gradeSentence(judgement.grade, judgement.sentence), about, ...verdictTables(judgement.verdicts, cure)];
 }
 
 function fixedInWords(fixed: Fixed): string {

@@ -31,9 +31,9 @@ const SPANS = 240;
 
 function build(page: Page, root: HTMLElement): void {
   const { hub, net } = page;
-  const told = document.createElement("p");
+  const status = document.createElement("p");
   const say = (text: string): void => {
-    told.textContent = text;
+    status.textContent = text;
     page.say(text);
   };
   const attempt = async (work: () => Promise<void>): Promise<void> => {
@@ -52,9 +52,9 @@ function build(page: Page, root: HTMLElement): void {
   const view = playback(page);
 
   async function look(): Promise<void> {
-    const found = await net.ask<Listed[]>("records");
-    list.replaceChildren(...found.map((each) => new Option(line(each), each.path)));
-    if (!found.length) say(t("none"));
+    const listed = await net.ask<Listed[]>("records");
+    list.replaceChildren(...listed.map((each) => new Option(line(each), each.path)));
+    if (!listed.length) say(t("none"));
   }
 
   async function show(path: string): Promise<void> {
@@ -108,7 +108,7 @@ function build(page: Page, root: HTMLElement): void {
     ),
     view.box,
     figures,
-    told,
+    status,
   );
   let looked = false;
   hub.on("maker", () => {

@@ -20,12 +20,12 @@ function build(page: Page, root: HTMLElement): void {
   const buttons = document.createElement("div");
   buttons.className = "buttons";
   buttons.append(mouse, here, remove);
-  const found = document.createElement("div");
-  root.append(buttons, help, found, markers(page));
+  const results = document.createElement("div");
+  root.append(buttons, help, results, markers(page));
   ruler.onChange = () => {
     mouse.setAttribute("aria-pressed", `${ruler.picking}`);
     remove.disabled = ruler.ends.length === 0;
-    found.replaceChildren(...(ruler.measured ? [figures(ruler.measured), profile(ruler.measured)] : []));
+    results.replaceChildren(...(ruler.measured ? [figures(ruler.measured), profile(ruler.measured)] : []));
   };
   ruler.onChange();
 }

@@ -16,16 +16,16 @@ function build(page: Page, root: HTMLElement): void {
 
 function soundButton(page: Page): HTMLElement {
   const toggle = (): void => void page.sound.toggle().catch((error: Error) => page.say(error.message, { urgent: true }));
-  const made = button(t("sound"), toggle);
-  made.id = "sound-on";
-  made.setAttribute("aria-pressed", "false");
-  made.setAttribute("aria-keyshortcuts", "S");
+  const element = button(t("sound"), toggle);
+  element.id = "sound-on";
+  element.setAttribute("aria-pressed", "false");
+  element.setAttribute("aria-keyshortcuts", "S");
   page.hub.on("sound", (told) => {
-    made.setAttribute("aria-pressed", String(told.on));
+    element.setAttribute("aria-pressed", String(told.on));
     page.say(t(told.on ? "soundOn" : "soundOff"), { topic: "sound", asked: true });
   });
   on("sound", toggle);
-  return made;
+  return element;
 }
 
 /** Return a meter of the loudness. */
@@ -70,10 +70,10 @@ function heights(page: Page): HTMLElement {
     const y = net.latest && net.latest.hand[2] < 0.5 ? net.latest.hand[1] : 0;
     void page.sound.sweep(scene, y);
   };
-  const made = button(t("sweep"), sweep);
-  made.setAttribute("aria-keyshortcuts", "H");
+  const toggle = button(t("sweep"), sweep);
+  toggle.setAttribute("aria-keyshortcuts", "H");
   on("hear heights", sweep);
-  return made;
+  return toggle;
 }
 
 function speechControls(page: Page): HTMLElement[] {
@@ -83,9 +83,9 @@ function speechControls(page: Page): HTMLElement[] {
     speech.aloud = !speech.aloud;
     page.say(t(speech.aloud ? "speechOn" : "speechOff"), { topic: "speech", asked: true });
   };
-  const made = button(t("aloud"), toggle);
-  made.id = "speech-on";
-  made.setAttribute("aria-keyshortcuts", "A");
+  const element = button(t("aloud"), toggle);
+  element.id = "speech-on";
+  element.setAttribute("aria-keyshortcuts", "A");
   on("aloud", toggle);
   const rate = range(RATES, speech.rate);
   rate.onchange = () => (speech.rate = rate.valueAsNumber);
@@ -93,13 +93,13 @@ function speechControls(page: Page): HTMLElement[] {
   const hint = document.createElement("p");
   hint.className = "hint";
   const show = (): void => {
-    made.hidden = rated.hidden = !speech.voice;
-    made.setAttribute("aria-pressed", String(speech.aloud));
+    element.hidden = rated.hidden = !speech.voice;
+    element.setAttribute("aria-pressed", String(speech.aloud));
     hint.textContent = speech.voice ? t("voice", { name: speech.voice.name }) : t("noVoice");
   };
   page.hub.on("aloud", show);
   show();
-  return [made, rated, hint];
+  return [element, rated, hint];
 }
 
 function range({ least, most, step }: { least: number; most: number; step: number }, value: number): HTMLInputElement {

@@ -72,8 +72,8 @@ function line(row: Row): HTMLElement {
   if (row.state === "running") box.append(bar(row));
   const method = row.method === "core" ? "" : row.method;
   if (method || row.why) box.append(text([method, row.why].filter(Boolean).join(": ")));
-  for (const { kind, text: said } of row.notes) {
-    const note = text(t(kind) + said);
+  for (const { kind, text: value } of row.notes) {
+    const note = text(t(kind) + value);
     if (kind !== "decision") note.classList.add("warn");
     box.append(note);
   }
@@ -81,11 +81,11 @@ function line(row: Row): HTMLElement {
 }
 
 function bar(row: Row): HTMLElement {
-  const made = document.createElement("progress");
-  made.setAttribute("aria-label", t("progress", { product: stageName(row.product) }));
+  const progressBar = document.createElement("progress");
+  progressBar.setAttribute("aria-label", t("progress", { product: stageName(row.product) }));
   const done = progressOf(row, performance.now());
-  if (done !== null) made.value = done;
-  return made;
+  if (done !== null) progressBar.value = done;
+  return progressBar;
 }
 
 /** Update times and bars alone, so that focus and reading position stay. */
@@ -96,8 +96,8 @@ function progress(list: HTMLElement, table: StageTable): void {
     const box = list.children[at];
     box.querySelector(".time")!.textContent = time(row, now);
     const done = progressOf(row, now);
-    const made = box.querySelector("progress");
-    if (made && done !== null) made.value = done;
+    const progressBar = box.querySelector("progress");
+    if (progressBar && done !== null) progressBar.value = done;
   });
 }
 
@@ -116,20 +116,20 @@ function stageName(product: string): string {
   return known ? t(known) : productName(product);
 }
 
-function part(name: string, said: string, hidden = false): HTMLElement {
-  const made = document.createElement("span");
-  made.className = name;
-  made.textContent = said;
-  if (hidden) made.setAttribute("aria-hidden", "true");
-  return made;
+function part(name: string, text: string, hidden = false): HTMLElement {
+  const span = document.createElement("span");
+  span.className = name;
+  span.textContent = text;
+  if (hidden) span.setAttribute("aria-hidden", "true");
+  return span;
 }
 
-function text(said: string): HTMLElement {
-  const made = document.createElement("p");
-  made.className = "hint";
-  made.lang = "en";
-  made.textContent = said;
-  return made;
+function text(value: string): HTMLElement {
+  const status = document.createElement("p");
+  status.className = "hint";
+  status.lang = "en";
+  status.textContent = value;
+  return status;
 }
 
 export const stages: Panel = { id: "stages", title: t("title"), place: "left", open: true, build };

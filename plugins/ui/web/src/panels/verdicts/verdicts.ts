@@ -15,41 +15,41 @@ export type More = (said: Verdict) => HTMLElement | null;
 export function verdictTables(all: Verdict[], cure: Cure, more: More = () => null): HTMLElement[] {
   const wrong = all.filter(({ verdict }) => verdict !== "ok");
   const fine = all.filter(({ verdict }) => verdict === "ok");
-  const made = wrong.length ? [table(t("wrong"), wrong, cure, more)] : [];
+  const element = wrong.length ? [table(t("wrong"), wrong, cure, more)] : [];
   const passed = t("passed", { count: fine.length });
-  return fine.length ? [...made, foldable(passed, table(passed, fine, cure, more))] : made;
+  return fine.length ? [...element, foldable(passed, table(passed, fine, cure, more))] : element;
 }
 
 /** Return the program's overall sentence with its symbol. */
 export function gradeSentence(grade: Grade, text: string): HTMLElement {
-  const made = paragraph("", `sentence ${grade}`);
-  made.lang = "en";
-  made.append(mark(grade), text);
-  return made;
+  const status = paragraph("", `sentence ${grade}`);
+  status.lang = "en";
+  status.append(mark(grade), text);
+  return status;
 }
 
 function table(caption: string, all: Verdict[], cure: Cure, more: More): HTMLElement {
-  const made = tableWithHeads(caption, [t("verdict"), t("what"), t("stands")], "verdicts");
-  const body = made.createTBody();
+  const tableElement = tableWithHeads(caption, [t("verdict"), t("what"), t("stands")], "verdicts");
+  const body = tableElement.createTBody();
   const said = new Set<string>();
   /** Return whether a source, cure or button is new: repeated ones are shown once. */
   const fresh = (text: string): boolean => said.size !== said.add(text).size;
   for (const each of all) row(body, each, cure, more, fresh);
-  return made;
+  return tableElement;
 }
 
 function row(body: HTMLTableSectionElement, said: Verdict, cure: Cure, more: More, fresh: (text: string) => boolean): void {
-  const made = body.insertRow();
-  made.className = said.verdict;
-  const verdict = made.insertCell();
+  const element = body.insertRow();
+  element.className = said.verdict;
+  const verdict = element.insertCell();
   verdict.className = said.verdict;
   verdict.append(mark(said.verdict), t(said.verdict));
   const what = document.createElement("th");
   what.scope = "row";
   what.lang = "en";
   what.textContent = `${said.check}: ${said.of}`;
-  made.append(what);
-  made.insertCell().append(said.stands);
+  element.append(what);
+  element.insertCell().append(said.stands);
   const texts = [said.note, said.source, said.verdict === "ok" ? "" : said.cure].filter((text) => text && fresh(`${said.check} ${text}`));
   const changes = said.changes.filter((each) => fresh(JSON.stringify(each)));
   const also = more(said);
@@ -80,9 +80,9 @@ function foldable(title: string, inside: HTMLElement): HTMLElement {
 
 /** Return the verdict's symbol; its word is next to it, or in the sentence. */
 function mark(verdict: Grade): HTMLElement {
-  const made = document.createElement("span");
-  made.className = "shape";
-  made.setAttribute("aria-hidden", "true");
-  made.textContent = `${SHAPES[verdict]} `;
-  return made;
+  const span = document.createElement("span");
+  span.className = "shape";
+  span.setAttribute("aria-hidden", "true");
+  span.textContent = `${SHAPES[verdict]} `;
+  return span;
 }

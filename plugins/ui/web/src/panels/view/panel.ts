@@ -1,6 +1,6 @@
 /** Settings of the view: colouring, light, magnifier and camera. */
 import "./view.css";
-import { CAMERA_KEYS } from "../../view/camera";
+import { CAMERA_KEYS } from "../../view/camera_input";
 import { Magnifier } from "../../view/magnifier";
 import type { Page } from "../../page";
 import type { Panel } from "../panel";
@@ -50,8 +50,8 @@ function looks(page: Page, showing: Look, set: (changes: Partial<Settings>) => v
     if (stands.join() !== there.join())
       choices.replaceChildren(...there.map((look) => radio("look", look, look as Word, () => set({ look }))));
     for (const input of choices.querySelectorAll("input")) input.checked = input.value === showing.look;
-    const said = legend(scene, showing.look);
-    meaning.replaceChildren(...(said ? [said] : []));
+    const element = legend(scene, showing.look);
+    meaning.replaceChildren(...(element ? [element] : []));
     cover.hidden = showing.look === "photo" || !scene.meta.photo;
   };
   return box;

@@ -20,9 +20,9 @@ function build(page: Page, root: HTMLElement): void {
   const state = document.createElement("div");
   state.id = "yaml-state";
   text.setAttribute("aria-describedby", state.id);
-  const told = document.createElement("p");
+  const status = document.createElement("p");
   const say = (words: string): void => {
-    told.textContent = words;
+    status.textContent = words;
     page.say(words);
   };
   const editor = new DocumentEditor(page);
@@ -40,11 +40,11 @@ function build(page: Page, root: HTMLElement): void {
       void page.net.ask("edit", told).catch((error: Error) => say(error.message));
     }, PAUSE_MS);
   };
-  page.hub.on("document", (said) => {
-    if (!timer && text.value !== said.text) replace(text, said.text);
-    if (!timer) state.replaceChildren(...complaints(said.complaints));
-    path.value ||= said.path;
-    if (document.activeElement !== path) path.value = said.path;
+  page.hub.on("document", (message) => {
+    if (!timer && text.value !== message.text) replace(text, message.text);
+    if (!timer) state.replaceChildren(...complaints(message.complaints));
+    path.value ||= message.path;
+    if (document.activeElement !== path) path.value = message.path;
   });
 
   const path = document.createElement("input");
@@ -72,7 +72,7 @@ function build(page: Page, root: HTMLElement): void {
     field(t("path"), path),
     field(t("replace"), instead),
     button(t("save"), save),
-    told,
+    status,
   );
 }
 

@@ -82,6 +82,6 @@ const distance = (a: PointerEvent, b: PointerEvent): number => Math.hypot(a.clie
 
 /** Return all positions since the last event, including those between frames. */
 function all(event: PointerEvent): PointerEvent[] {
-  const found = event.getCoalescedEvents?.() ?? [];
-  return found.length ? found : [event];
+  const events = event.getCoalescedEvents?.() ?? [];
+  return events.length ? events : [event];
 }

@@ -162,9 +162,9 @@ export class PartList {
 
   showNeighbours(): void {
     const options = this.neighbours.map((each) => new Option(nameOf(each, this.numberOf(each.label)), String(each.label)));
-    const said = options.map((each) => each.outerHTML).join("");
-    if (this.other.dataset.said === said) return;
-    this.other.dataset.said = said;
+    const value = options.map((each) => each.outerHTML).join("");
+    if (this.other.dataset.said === value) return;
+    this.other.dataset.said = value;
     this.other.replaceChildren(...(options.length ? options : [new Option(t("noNeighbour"), "")]));
     this.join.disabled = !options.length;
   }

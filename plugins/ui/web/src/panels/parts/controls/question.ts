@@ -6,12 +6,12 @@ export function question<T extends string>(title: string, texts: string[], answe
   dialog.className = "sure";
   const heading = Object.assign(document.createElement("h2"), { id: "parts-question", textContent: title });
   dialog.setAttribute("aria-labelledby", heading.id);
-  const said = texts.map((text) => Object.assign(document.createElement("p"), { textContent: text }));
+  const status = texts.map((text) => Object.assign(document.createElement("p"), { textContent: text }));
   const buttons = document.createElement("div");
   buttons.className = "buttons";
   buttons.append(...answers.map(([answer, text]) => button(text, () => dialog.close(answer))));
   (buttons.firstElementChild as HTMLElement).autofocus = true;
-  dialog.append(heading, ...said, buttons);
+  dialog.append(heading, ...status, buttons);
   document.body.append(dialog);
   dialog.showModal();
   return new Promise((done) => {

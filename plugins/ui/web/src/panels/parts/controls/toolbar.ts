@@ -120,10 +120,10 @@ export function group(name: string): HTMLElement {
 
 /** Return a button that shows its key. */
 export function keyButton(text: string, key: string, press: () => void): HTMLButtonElement {
-  const made = button(text, press);
+  const toggle = button(text, press);
   const cap = caps(key);
   cap.setAttribute("aria-hidden", "true");
-  made.append(" ", cap);
-  made.setAttribute("aria-keyshortcuts", key.replace("Ctrl", "Control"));
-  return made;
+  toggle.append(" ", cap);
+  toggle.setAttribute("aria-keyshortcuts", key.replace("Ctrl", "Control"));
+  return toggle;
 }

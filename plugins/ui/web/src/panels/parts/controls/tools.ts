@@ -128,8 +128,8 @@ export class Tools {
   }
 
   private async propose(line: Point[]): Promise<void> {
-    const found = await this.wait(this.requests.propose(line, this.width, this.kind));
-    if (found) this.drawing.propose(found); // null if a newer stroke replaced the request
+    const proposal = await this.wait(this.requests.propose(line, this.width, this.kind));
+    if (proposal) this.drawing.propose(proposal); // null if a newer stroke replaced the request
   }
 
   private split(drawn: Point[]): void {

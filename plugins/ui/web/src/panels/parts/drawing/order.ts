@@ -30,12 +30,12 @@ export function reorder<T extends Standing>(parts: readonly T[], label: number, 
 /** Return heights, from low to high, spread by a noticeable step and not above the top. */
 export function spread(heights_m: readonly number[], top_m: number): number[] {
   const step = Math.min(STEP_M, top_m / Math.max(1, heights_m.length - 1));
-  const made = [...heights_m];
-  for (let i = 1; i < made.length; i++) made[i] = Math.max(made[i]!, made[i - 1]! + step);
+  const indices = [...heights_m];
+  for (let i = 1; i < indices.length; i++) indices[i] = Math.max(indices[i]!, indices[i - 1]! + step);
   let most = top_m;
-  for (let i = made.length - 1; i >= 0; i--) {
-    made[i] = Math.max(0, Math.min(made[i]!, most));
-    most = made[i]! - step;
+  for (let i = indices.length - 1; i >= 0; i--) {
+    indices[i] = Math.max(0, Math.min(indices[i]!, most));
+    most = indices[i]! - step;
   }
-  return made;
+  return indices;
 }

@@ -36,13 +36,13 @@ export interface Saved {
 }
 
 export async function openParts(net: Server): Promise<Opened> {
-  const said = await net.ask<Answer>("parts_open");
+  const answer = await net.ask<Answer>("parts_open");
   const [labels, picture] = await Promise.all([
-    bulk(`/scene/${said.labels}`).then((each) => each.arrayBuffer()),
-    bulk(`/scene/${said.picture}`).then(async (each) => createImageBitmap(await each.blob())),
+    bulk(`/scene/${answer.labels}`).then((each) => each.arrayBuffer()),
+    bulk(`/scene/${answer.picture}`).then(async (each) => createImageBitmap(await each.blob())),
   ]);
-  const { columns, rows, digest, heights, top_m, title, language } = said;
-  const parts = said.parts.map(({ number, name, height_m, material }) => {
+  const { columns, rows, digest, heights, top_m, title, language } = answer;
+  const parts = answer.parts.map(({ number, name, height_m, material }) => {
     const automatic = height_m === null && heights.by !== "given";
     return { label: number, name, height_m: height_m ?? 0, material, automatic };
   });
@@ -53,12 +53,12 @@ export const proposePart = (net: Server, points: readonly Point[], width_px: num
   net.ask("parts_propose", { points: whole(points), width_px: Math.max(1, Math.round(width_px)), kind, within: null });
 
 export async function snapOutline(net: Server, points: readonly Point[], reach_px: number): Promise<Point[]> {
-  const said = await net.ask<{ points: Point[] }>("parts_snap", { points: whole(points), reach_px: Math.max(1, Math.round(reach_px)) });
-  return said.points;
+  const answer = await net.ask<{ points: Point[] }>("parts_snap", { points: whole(points), reach_px: Math.max(1, Math.round(reach_px)) });
+  return answer.points;
 }
 
 /** Save parts: their labels as a compressed file, then their properties. */
-export async function saveParts(net: Server, labels: Labels, parts: readonly Part[], told: Record<string, unknown>): Promise<Saved> {
+export async function saveParts(net: Server, labels: Labels, parts: readonly Part[], args: Record<string, unknown>): Promise<Saved> {
   const upload = await net.ask<string>("batch");
   const gzip = new Blob([labels.data as Uint16Array<ArrayBuffer>]).stream().pipeThrough(new CompressionStream("gzip"));
   const response = await fetch(`/upload/${upload}/labels.gz?token=${encodeURIComponent(token)}`, {
@@ -69,7 +69,7 @@ export async function saveParts(net: Server, labels: Labels, parts: readonly Par
   const said = parts.map(({ label, name, height_m, material, automatic }) => {
     return { label, name, height_m: automatic ? null : height_m, material };
   });
-  return net.ask<Saved>("parts_save", { upload, parts: said, ...told });
+  return net.ask<Saved>("parts_save", { upload, parts: said, ...args });
 }
 
 const whole = (points: readonly Point[]): number[][] => points.map((each) => each.map((part) => Math.round(10 * part) / 10));

@@ -134,15 +134,6 @@ export class EditorState {
     else this.notify(why, true);
   }
 
-  /** Run an action of the drawing; show why it fails. */
-  attempt(action: () => unknown): void {
-    try {
-      action();
-    } catch (error) {
-      this.fail(error as Error);
-    }
-  }
-
   select(label: number): void {
     this.drawing.history.endGesture();
     this.drawing.selected = label;
@@ -151,8 +142,13 @@ export class EditorState {
     this.events.tell("selected", label);
   }
 
+  /** Merge a part into the selected one. */
   join(label: number): void {
-    this.attempt(() => this.drawing.join(label, this.drawing.selected));
+    try {
+      this.drawing.join(label, this.drawing.selected);
+    } catch (error) {
+      this.fail(error as Error);
+    }
   }
 
   use(tool: Tool): void {

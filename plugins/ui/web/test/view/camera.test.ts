@@ -1,8 +1,8 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { Vector3 } from "three";
-import { Eye } from "../src/view/camera";
-import { handleKey } from "../src/view/camera_input";
+import { Eye } from "../../src/view/camera";
+import { handleKey } from "../../src/view/camera_input";
 
 const still = { matches: true } as MediaQueryList;
 globalThis.matchMedia ??= () => still;

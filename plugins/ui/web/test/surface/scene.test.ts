@@ -1,12 +1,12 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { firstRoot, Grid } from "../src/surface/grid";
-import type { Material, Meta } from "../src/server/messages";
-import { describePlace } from "../src/speech/narrator";
-import { place } from "../src/contact/reading";
-import { asJson, rows } from "../src/contact/values";
-import type { Vec } from "../src/server/protocol";
-import { Scene, type Part } from "../src/surface/scene";
+import { firstRoot, Grid } from "../../src/surface/grid";
+import type { Material, Meta } from "../../src/server/messages";
+import { describePlace } from "../../src/speech/narrator";
+import { place } from "../../src/contact/reading";
+import { asJson, rows } from "../../src/contact/values";
+import type { Vec } from "../../src/server/protocol";
+import { Scene, type Part } from "../../src/surface/scene";
 
 const W = 0.08;
 

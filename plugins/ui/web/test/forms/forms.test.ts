@@ -1,13 +1,13 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
-import { fieldOf } from "../src/forms/complaints";
-import { expandMaterials } from "../src/forms/editor";
-import { formatRange, type Kind, kindOf, type Option, step } from "../src/forms/kinds";
-import { alternatives, type FileSchema, type Plain, type Schema } from "../src/forms/schema";
-import { sections } from "../src/forms/sections";
-import { asText, edit, fits, setInside, typedNumber, typedText, typedYaml } from "../src/forms/values";
-import type { Document } from "../src/server/messages";
+import { fieldOf } from "../../src/forms/complaints";
+import { expandMaterials } from "../../src/forms/editor";
+import { formatRange, type Kind, kindOf, type Option, step } from "../../src/forms/kinds";
+import { alternatives, type FileSchema, type Plain, type Schema } from "../../src/forms/schema";
+import { sections } from "../../src/forms/sections";
+import { asText, edit, fits, setInside, typedNumber, typedText, typedYaml } from "../../src/forms/values";
+import type { Document } from "../../src/server/messages";
 
 const LENGTH = { type: "string", examples: ["6 mm"], pattern: "^[-+]?\\d+\\s*(m|cm|mm|um)$" };
 const DEFS = { Hand: { type: "object", title: "Hand", properties: { mass_kg: { type: "number", minimum: 0, default: 1 } } } };

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { asText, Lines, MOST_LINES, isShown, type Level } from "../src/panels/log/lines";
+import { asText, Lines, MOST_LINES, isShown, type Level } from "../../src/panels/log/lines";
 
 const all = new Set<Level>(["event", "detail", "warning", "error"]);
 

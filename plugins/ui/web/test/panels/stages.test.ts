@@ -1,8 +1,8 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import type { Outcome, Plan } from "../src/server/messages";
-import { materialEdit } from "../src/panels/materials/edit";
-import { withoutNotes, progressOf, StageTable } from "../src/panels/stages/table";
+import type { Outcome, Plan } from "../../src/server/messages";
+import { materialEdit } from "../../src/panels/materials/edit";
+import { withoutNotes, progressOf, StageTable } from "../../src/panels/stages/table";
 
 const step = (product: string, outcome: Outcome["outcome"], method = ""): Outcome =>
   ({ product, outcome, method, why: "", seconds: 0, notes: [] });

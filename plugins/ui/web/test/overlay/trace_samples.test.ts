@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { STRIDE, TraceSamples } from "../src/overlay/pieces/trace_samples";
+import { STRIDE, TraceSamples } from "../../src/overlay/pieces/trace_samples";
 
 /** Lines that would be drawn, as pairs of the x of their ends. */
 function lines(trail: TraceSamples, sinceS = -1): string[] {

@@ -1,9 +1,9 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { LIMITS, isLimited, perSecond } from "../src/contact/limits";
-import { roundDown125 } from "../src/overlay/settings";
-import { formatFixed } from "../src/contact/values";
-import { FLAGS } from "../src/server/protocol";
+import { LIMITS, isLimited, perSecond } from "../../src/contact/limits";
+import { roundDown125 } from "../../src/overlay/settings";
+import { formatFixed } from "../../src/contact/values";
+import { FLAGS } from "../../src/server/protocol";
 
 test("each flag that changes a force is a limit; touching, a swap and a beacon are none", () => {
   const bits = LIMITS.map(({ bit }) => bit as number);

@@ -313,7 +313,7 @@ class TestKeys:
         page.keyboard.type("ddd")
         assert page.evaluate(asked) == 1
         open_all(page)
-        page.get_by_label("Letters are keys everywhere").uncheck()
+        page.get_by_label("Single letters are keys everywhere").uncheck()
         page.locator("#left").focus()
         page.keyboard.press("d")
         assert page.evaluate(asked) == 1

@@ -172,18 +172,18 @@ def test_another_device_is_felt_and_examined_and_a_motor_asks_first(page: Any) -
     page.locator("#devices > summary").click()
     page.get_by_role("button", name="Examine mock").click()
     until(lambda: "needs nothing" in page.locator(".devices").text_content())
-    page.get_by_role("button", name="Feel with it: mock").click()
-    until(lambda: felt.text_content() == "Felt with: mock")
+    page.get_by_role("button", name="Use mock").click()
+    until(lambda: felt.text_content() == "In use: mock")
     until(lambda: "Hz" in page.locator("#devices .figures").text_content())
 
-    page.get_by_role("button", name="Feel with it: falcon", exact=True).click()
+    page.get_by_role("button", name="Use falcon", exact=True).click()
     dialog = page.get_by_role("dialog", name="falcon has a motor")
     dialog.wait_for()
-    assert felt.text_content() == "Felt with: mock"
+    assert felt.text_content() == "In use: mock"
     assert page.evaluate("document.activeElement.textContent") == "No"
     page.keyboard.press("Escape")  # it closes what it closes, and stops all force
     until(lambda: dialog.count() == 0)
     until(lambda: "Stopped" in page.locator("#status").text_content())
 
     page.locator("#use-hand").click()
-    until(lambda: felt.text_content() == "Felt with: this page's hand")
+    until(lambda: felt.text_content() == "In use: this page's hand")

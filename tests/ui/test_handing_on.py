@@ -127,7 +127,7 @@ class TestExport:
         assert "Options: 1" in panel.locator("summary", has_text="3D print (STL)").inner_text()
         write = panel.get_by_role("button", name="Write into the pipeline file")
         write.press("Enter")
-        until(lambda: "says this already" in panel.inner_text(), "nothing to say")
+        until(lambda: "lists these exports already" in panel.inner_text(), "nothing to say")
         panel.get_by_label("3D print (3MF)").press(" ")
         panel.get_by_label("Heights (PNG, TIFF)").press(" ")
         write.press("Enter")

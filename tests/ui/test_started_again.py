@@ -14,7 +14,7 @@ def test_an_address_of_an_earlier_start_is_said_to_be_one(serve, open_page, comp
     server = serve("builtin/brick")
     page = open_page(re.sub("token=.*", "token=of-yesterday", server.url))
     status = page.locator("#status")
-    status.filter(has_text="that of an earlier start").wait_for(timeout=SHOWN_MS)
+    status.filter(has_text="belongs to an earlier start").wait_for(timeout=SHOWN_MS)
     assert "tangible ui" in status.inner_text()
     assert page.evaluate("document.getElementById('said').textContent + document.getElementById('alerted').textContent")
     assert page.locator("#stop").is_visible()

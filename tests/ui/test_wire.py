@@ -26,14 +26,14 @@ const page = await import("data:text/javascript," + encodeURIComponent(code));
 const hex = (buffer) => Buffer.from(buffer).toString("hex");
 const bytes = (text) => Uint8Array.from(Buffer.from(text, "hex")).buffer;
 const constants = Object.fromEntries(Object.entries(page).filter(([, value]) => typeof value !== "function"));
-const read = page.state(bytes(process.argv[1]));
+const read = page.parseState(bytes(process.argv[1]));
 console.log(JSON.stringify({
   constants, read,
-  short: page.state(bytes(process.argv[1].slice(2))),
-  other: page.state(bytes("02" + process.argv[1].slice(2))),
-  pointer: hex(page.pointer([0.5, -0.25, 0.125], 3, 4194303)),
-  ack: hex(page.ack(4000000000)),
-  release: hex(page.release()),
+  short: page.parseState(bytes(process.argv[1].slice(2))),
+  other: page.parseState(bytes("02" + process.argv[1].slice(2))),
+  pointer: hex(page.encodePointer([0.5, -0.25, 0.125], 3, 4194303)),
+  ack: hex(page.encodeAck(4000000000)),
+  release: hex(page.encodeRelease()),
 }));
 """
 

@@ -1,11 +1,11 @@
-/** Native elements, made in one line. */
+/** Native elements, created in one line. */
 
 export function button(text: string, press: () => unknown): HTMLButtonElement {
-  const made = document.createElement("button");
-  made.type = "button";
-  made.textContent = text;
-  made.addEventListener("click", () => void press());
-  return made;
+  const toggle = document.createElement("button");
+  toggle.type = "button";
+  toggle.textContent = text;
+  toggle.addEventListener("click", () => void press());
+  return toggle;
 }
 
 /** A control under its name; the control needs an id. */
@@ -23,13 +23,13 @@ export function paragraph(text: string, className = ""): HTMLParagraphElement {
   return Object.assign(document.createElement("p"), { className, textContent: text });
 }
 
-/** What helps to understand a control, in small letters. */
+/** Return a hint under a control, in small letters. */
 export function hint(text: string): HTMLParagraphElement {
   return paragraph(text, "hint");
 }
 
-/** A table with its headings and no rows; its title is for who does not see where it stands. */
-export function headed(title: string, heads: string[], className: string): HTMLTableElement {
+/** Return a table with headings and no rows; its title is for screen readers alone. */
+export function tableWithHeads(title: string, heads: string[], className: string): HTMLTableElement {
   const table = document.createElement("table");
   table.className = className;
   const caption = table.createCaption();

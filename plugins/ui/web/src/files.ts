@@ -1,11 +1,11 @@
-/** Texts that leave the page: to the clipboard, or as a file. */
+/** Texts copied to the clipboard or downloaded as files. */
 
 export async function copy(text: string): Promise<void> {
   try {
     await navigator.clipboard.writeText(text);
   } catch {
     const focused = document.activeElement as HTMLElement | null;
-    const area = document.createElement("textarea"); // where the browser forbids it, what is selected can still be copied
+    const area = document.createElement("textarea"); // where the browser forbids it, a selected text can still be copied
     area.value = text;
     document.body.append(area);
     area.select();

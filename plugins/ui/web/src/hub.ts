@@ -1,27 +1,26 @@
-/** Who hears what: every part of the page subscribes here, and none knows another. */
-import type { Events } from "./server/messages";
+/** The event bus: every part of the page subscribes here, and none imports another for it. */
+import type { PageEvents } from "./events";
 
-type Hear<K extends keyof Events> = (event: Events[K]) => void;
+/** E: the events by name, with what each carries. */
+export class Hub<E extends object = PageEvents> {
+  private listeners = new Map<keyof E, ((event: never) => void)[]>();
+  private latest = new Map<keyof E, unknown>();
 
-export class Hub {
-  private hears = new Map<keyof Events, Hear<never>[]>();
-  private told = new Map<keyof Events, unknown>();
-
-  on<K extends keyof Events>(name: K, hear: Hear<K>): void {
-    this.hears.set(name, [...(this.hears.get(name) ?? []), hear as Hear<never>]);
+  on<K extends keyof E>(name: K, listener: (event: E[K]) => void): void {
+    this.listeners.set(name, [...(this.listeners.get(name) ?? []), listener as (event: never) => void]);
   }
 
-  /** What was told last under this name, for what comes later than the page. */
-  last<K extends keyof Events>(name: K): Events[K] | undefined {
-    return this.told.get(name) as Events[K] | undefined;
+  /** Return the latest event of this name, for parts that are built later than the page. */
+  last<K extends keyof E>(name: K): E[K] | undefined {
+    return this.latest.get(name) as E[K] | undefined;
   }
 
-  /** One that fails is told in the console; the rest still hear. */
-  tell<K extends keyof Events>(name: K, event: Events[K]): void {
-    this.told.set(name, event);
-    for (const hear of this.hears.get(name) ?? []) {
+  /** Call every listener; an exception goes to the console and does not keep the event from the others. */
+  tell<K extends keyof E>(name: K, event: E[K]): void {
+    this.latest.set(name, event);
+    for (const listener of this.listeners.get(name) ?? []) {
       try {
-        (hear as Hear<K>)(event);
+        (listener as (event: E[K]) => void)(event);
       } catch (error) {
         console.error(error);
       }

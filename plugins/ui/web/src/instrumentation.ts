@@ -1,28 +1,28 @@
-/** Figures for tests and benchmarks, kept only where the address says ?measure: window.figures, window.page. */
+/** Figures for tests and benchmarks, recorded only if the address has ?measure: window.figures, window.page. */
 import type { Page } from "./page";
 import { now } from "./server/protocol";
 
 export const measuring = new URLSearchParams(globalThis.location?.search).has("measure");
 
 export const figures = {
-  /** seq, ms from tick to drawn, ms from tick to arrived, when drawn. */
+  /** State number, ms from tick to drawn, ms from tick to arrived, time drawn. */
   drawn: [] as number[][],
-  /** ms from a pointer that was sent until its force was drawn. */
+  /** Milliseconds from sending a pointer until its force is drawn. */
   trips: [] as number[],
-  /** ms that each pick took. */
+  /** Duration of each pick, ms. */
   picks: [] as number[],
-  /** When the surface was drawn first, a law felt first, and each law since; ms of the Unix clock, 0 for not yet. */
+  /** Time of the first drawing, of the first touch, and of each touch since; ms of the Unix clock, 0 for not yet. */
   firstMs: 0,
   feltMs: 0,
   touches: [] as number[],
-  /** The product that is being made, and when making was last stopped. */
+  /** The product being computed, and when computing was last stopped. */
   stage: "",
-  /** Whether each frame waits for its pixels, so that `drawn` says when they were there. */
+  /** True if each frame waits for its pixels, so that `drawn` holds when they were visible. */
   waits: true,
   stoppedMs: 0,
 };
 
-export function measure(page: Page): void {
+export function measure(page: Pick<Page, "hub">): void {
   if (!measuring) return;
   document.body.classList.add("measure");
   Object.assign(window, { figures, page });

@@ -1,29 +1,40 @@
-/** The page: its parts are put together here. */
-import "./app.css";
-import { Announcer, regions } from "./speech/announcer";
-import { frame } from "./frame/regions";
+/** Composition of the page: creates its parts and connects them. */
+import "./style/tokens.css";
+import "./style/ground.css";
+import "./style/frame.css";
+import "./style/wide.css";
+import "./style/panels.css";
+import "./style/controls.css";
+import "./style/preferences.css";
+import { Announcer, liveRegions } from "./speech/announcer";
+import { buildRegions } from "./frame/regions";
 import { Frames } from "./view/frames";
+import { attachFingers } from "./hand/fingers";
+import { attachGamePad } from "./hand/game_pad";
 import { Hand } from "./hand/hand";
+import { attachKeyboard } from "./hand/keyboard";
+import { attachMouse } from "./hand/mouse";
 import { Hub } from "./hub";
 import { Instrument } from "./sound/synthesizer";
-import { leisure } from "./server/idle";
+import { whenIdle } from "./server/idle";
 import { measure, measuring } from "./instrumentation";
 import { Narrator } from "./speech/narrator";
-import { Net } from "./server/connection";
-import { notice } from "./frame/graphics_notice";
+import { Connection } from "./server/connection";
+import { showGraphicsTrouble } from "./frame/graphics_notice";
 import { Overlay } from "./overlay/overlay";
 import type { Page } from "./page";
 import { build } from "./panels/panel";
 import { panels } from "./panels";
+import { pluginPanel } from "./panels/plugins";
 import { dataCursor } from "./contact/data_cursor";
 import { listen } from "./shortcuts";
 import { stroke } from "./sound/sonification";
 import { Sound } from "./sound/sound";
 import { Speech } from "./speech/speech";
-import { splits } from "./frame/splitters";
+import { buildSplitters } from "./frame/splitters";
 import { Status } from "./frame/status";
 import { loadScene } from "./surface/loading";
-import { remembered } from "./view/settings";
+import { recallSettings } from "./view/settings";
 import { Themes } from "./frame/themes";
 import { View } from "./view/view";
 import { language } from "./words/words";
@@ -34,12 +45,12 @@ const element = <T extends HTMLElement>(id: string): T => document.getElementByI
 const canvas = element<HTMLCanvasElement>("terrain");
 const hub = new Hub();
 const speech = new Speech(hub);
-const shown = regions(element("said"), element("alerted"));
-const announcer = new Announcer((said) => {
-  shown(said);
-  speech.speak(said);
+const shown = liveRegions(element("said"), element("alerted"));
+const announcer = new Announcer((message) => {
+  shown(message);
+  speech.speak(message);
 });
-const net = new Net(hub);
+const net = new Connection(hub);
 const view = new View(canvas);
 const page: Page = {
   hub,
@@ -54,18 +65,24 @@ const page: Page = {
   sound: new Sound(hub, () => page.scene),
   speech,
   themes: new Themes(hub),
-  leisure: leisure(hub),
+  idle: whenIdle(hub),
   say: (text, how) => announcer.say(text, how),
   forget: (topic) => announcer.forget(topic),
 };
 
 measure(page);
 hub.on("hello", ({ history, scene }) => {
-  // After a connection that was lost, what was heard before is not heard again; and what is long over is not said.
-  announcer.hushed = true;
+  // after a lost connection, known messages are not announced again, and old ones not at all
+  announcer.muted = true;
   const all = [...history, ...(scene ? [{ ...scene, event: "scene" as const }] : [])].sort((a, b) => a.at_s - b.at_s);
   for (const each of all) if (each.at_s > net.heard_s) hub.tell(each.event, each as never);
-  announcer.hushed = false;
+  announcer.muted = false;
+});
+const plugins = new Set<string>();
+hub.on("hello", ({ panels: brought = [] }) => {
+  const fresh = brought.filter(({ name }) => !plugins.has(name)); // hello comes again with each connection
+  for (const { name } of fresh) plugins.add(name);
+  build(page, fresh.map((each) => pluginPanel(each)));
 });
 hub.on("document", (said) => (page.document = said));
 let newest = "";
@@ -74,7 +91,7 @@ hub.on("scene", async (meta) => {
   newest = meta.digest;
   try {
     const loaded = await loadScene(meta);
-    if (newest !== meta.digest) return; // another one was made meanwhile
+    if (newest !== meta.digest) return; // a newer surface was computed meanwhile
     page.scene = loaded;
     hub.tell("shown", loaded);
   } catch (error) {
@@ -82,15 +99,16 @@ hub.on("scene", async (meta) => {
   }
 });
 
-frame(page);
-splits();
+buildRegions(page);
+buildSplitters();
 listen(canvas);
 new Status(page);
 new Narrator(page);
-page.hand = new Hand(page);
-notice(page);
+const hand = (page.hand = new Hand(page));
+for (const attach of [attachMouse, attachFingers, attachKeyboard, attachGamePad]) attach(hand, page);
+showGraphicsTrouble(page);
 build(page, panels);
 dataCursor(page);
 new Frames(page);
-requestAnimationFrame(() => setTimeout(() => view.prepare(remembered()))); // once the page itself is to be seen
-if (measuring) Object.assign(window, { Instrument, stroke }); // what tests look into
+requestAnimationFrame(() => setTimeout(() => view.prepare(recallSettings()))); // after the first paint
+if (measuring) Object.assign(window, { Instrument, stroke }); // for tests

@@ -1,8 +1,8 @@
-/** All keys of the page, in one table: the help panel shows it, a test looks for conflicts.
+/** Table of all keys of the page: the help panel shows it, a test looks for conflicts.
  *
- * To add one: a line in SHORTCUTS, its text in panels/help/shortcut_words.ts under the same name, and where it acts
- * `on("its name", () => ...)`. Keys that a part hears itself, like the hand's arrows, have a line too, with `own`,
- * so that they are shown and collide with none; that part does not call `on`.
+ * To add one: a line in SHORTCUTS, its text in panels/help/shortcut_words.ts under the same name, and `on("its name",
+ * () => ...)` where it acts. Keys that a part handles itself, like the hand's arrows, have a line too, with `own`, so
+ * that they are shown and collide with none; that part does not call `on`.
  *
  * `where`: "page", wherever the focus is (function keys and such alone, or with Ctrl or Alt); "surface", while the
  * surface has the focus; "letter", wherever no text is typed: a person can switch these off (settings panel), and then
@@ -10,10 +10,10 @@
 import { recall, remember } from "./preferences";
 
 interface Shortcut {
-  /** As KeyboardEvent.key says it, letters small; with Shift+, Ctrl+, Alt+ before it. Shift is not said for signs. */
+  /** Keys as in KeyboardEvent.key, letters in lower case, with Shift+, Ctrl+, Alt+ before. Signs are written without Shift. */
   keys: string[];
   where: "page" | "surface" | "letter";
-  /** The part that has the key hears it itself. */
+  /** True if a part handles the key itself. */
   own?: true;
 }
 
@@ -64,11 +64,11 @@ export const SHORTCUTS = {
 export type Name = keyof typeof SHORTCUTS;
 
 const KEPT = "letters";
-const acts = new Map<Name, () => void>();
+const actions = new Map<Name, () => void>();
 const byKey = new Map<string, Name>();
 for (const [name, { keys }] of Object.entries<Shortcut>(SHORTCUTS)) for (const key of keys) byKey.set(key, name as Name);
 
-/** Whether letters act wherever the focus is. */
+/** The setting that single letters act wherever the focus is. */
 export const letters = {
   get everywhere(): boolean {
     return recall(KEPT, true);
@@ -78,31 +78,30 @@ export const letters = {
   },
 };
 
-/** What a shortcut does. */
+/** Set the action of a shortcut. */
 export function on(name: Name, act: () => void): void {
-  acts.set(name, act);
+  actions.set(name, act);
 }
 
-/** Hear the keys of a page; once. The stop key is heard before anything else can take it, and still closes what it
- * closes. */
+/** Listen to the keys of the page; call once. The stop key acts before any part can take it, and stays available to them. */
 export function listen(surface: HTMLElement): void {
-  document.addEventListener("keydown", (event) => named(event) === "stop" && acts.get("stop")?.(), { capture: true });
+  document.addEventListener("keydown", (event) => shortcutOf(event) === "stop" && actions.get("stop")?.(), { capture: true });
   document.addEventListener("keydown", (event) => {
-    const name = named(event);
-    const act = name && acts.get(name);
+    const name = shortcutOf(event);
+    const act = name && actions.get(name);
     if (!act || name === "stop" || event.isComposing || event.defaultPrevented) return;
-    if (!heard(SHORTCUTS[name].where, event.target as Element, surface)) return;
+    if (!actsAt(SHORTCUTS[name].where, event.target as Element, surface)) return;
     event.preventDefault();
     if (!event.repeat) act();
   });
 }
 
-function named(event: KeyboardEvent): Name | undefined {
-  return byKey.get(pressed(event));
+function shortcutOf(event: KeyboardEvent): Name | undefined {
+  return byKey.get(keyName(event));
 }
 
-/** The key with what is held beside it, as the table says it. */
-export function pressed({ key, shiftKey, ctrlKey, altKey, metaKey }: KeyboardEvent): string {
+/** Return a key with its modifiers as the table writes it. */
+export function keyName({ key, shiftKey, ctrlKey, altKey, metaKey }: KeyboardEvent): string {
   const named = key.length > 1;
   const small = key.toLowerCase();
   const letter = small !== key.toUpperCase();
@@ -110,10 +109,10 @@ export function pressed({ key, shiftKey, ctrlKey, altKey, metaKey }: KeyboardEve
   return held.filter(Boolean).join("") + (named ? key : small);
 }
 
-/** Where letters are typed, or choose. */
+/** Elements in which letters type or choose. */
 const TYPED = "input:not([type=checkbox], [type=radio], [type=range], [type=file]), select, textarea, [contenteditable]";
 
-function heard(where: Shortcut["where"], target: Element, surface: HTMLElement): boolean {
+function actsAt(where: Shortcut["where"], target: Element, surface: HTMLElement): boolean {
   if (where === "page" || target === surface) return true;
   return where === "letter" && letters.everywhere && !target.matches(TYPED);
 }

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { corners, type Mapping, moved, placement, reach, toPicture, whole, zoomed } from "../src/overlay/tools/placement";
+import { corners, type Mapping, movePlacement, placement, reachOf, toPicture, wholePicture, zoomTo } from "../src/overlay/tools/placement";
 import type { Vec } from "../src/server/protocol";
 import { cases } from "./placement.json";
 
@@ -28,7 +28,7 @@ test("a hand is over the place of the picture that the core says", () => {
 test("the frame is what the workspace covers", () => {
   for (const mapping of mappings) {
     const to = placement(mapping, WORKSPACE);
-    const found = corners(reach(mapping, WORKSPACE));
+    const found = corners(reachOf(mapping, WORKSPACE));
     const sides = [[-1, -1], [1, -1], [1, 1], [-1, 1]];
     for (const [i, [u, v]] of sides.entries()) near(found[i], toPicture(to, [(u * WORKSPACE[0]) / 2, (v * WORKSPACE[1]) / 2, 0]).slice(0, 2), 1e-12);
   }
@@ -36,31 +36,31 @@ test("the frame is what the workspace covers", () => {
 
 test("a frame that is dragged is where it was dragged to", () => {
   for (const mapping of mappings) {
-    const before = reach(mapping, WORKSPACE);
-    const there = reach(moved(mapping, WORKSPACE, [0.012, -0.007], 1, before.turnDeg), WORKSPACE);
+    const before = reachOf(mapping, WORKSPACE);
+    const there = reachOf(movePlacement(mapping, WORKSPACE, [0.012, -0.007], 1, before.turnDeg), WORKSPACE);
     near(there.centre, [0.012, -0.007], 1e-5 / placement(mapping, WORKSPACE).scale + 1e-5);
     near(there.size, before.size, 1e-4 * before.size[0]);
-    const larger = reach(moved(mapping, WORKSPACE, before.centre, 1.5, before.turnDeg), WORKSPACE);
+    const larger = reachOf(movePlacement(mapping, WORKSPACE, before.centre, 1.5, before.turnDeg), WORKSPACE);
     near(larger.size, before.size.map((side) => 1.5 * side), 1e-3 * before.size[0]);
     near(larger.centre, before.centre, 3e-5);
-    const turned = moved(mapping, WORKSPACE, before.centre, 1, before.turnDeg + 40);
-    near([reach(turned, WORKSPACE).turnDeg], [before.turnDeg + 40], 0.01);
-    near(reach(turned, WORKSPACE).centre, before.centre, 3e-5);
+    const turned = movePlacement(mapping, WORKSPACE, before.centre, 1, before.turnDeg + 40);
+    near([reachOf(turned, WORKSPACE).turnDeg], [before.turnDeg + 40], 0.01);
+    near(reachOf(turned, WORKSPACE).centre, before.centre, 3e-5);
     assert.equal(turned.offset_m[2], mapping.offset_m[2]);
   }
 });
 
 test("a region fills the workspace, and the whole picture is what it was", () => {
-  const close = zoomed(mappings[1], 0.01, 0.005, 0.02, 0.01);
-  const { size, centre } = reach({ ...close, rotation_deg: 0 }, WORKSPACE);
+  const close = zoomTo(mappings[1], 0.01, 0.005, 0.02, 0.01);
+  const { size, centre } = reachOf({ ...close, rotation_deg: 0 }, WORKSPACE);
   near(centre, [0.01, 0.005], 1e-9);
   near([size[0]], [0.02], 1e-9);
   assert.ok(size[1] >= 0.01);
-  assert.deepEqual(whole(close), { ...mappings[1], scale: null, offset_m: [0, 0, 0.005] });
+  assert.deepEqual(wholePicture(close), { ...mappings[1], scale: null, offset_m: [0, 0, 0.005] });
 });
 
 test("a frame cannot be dragged to where no mapping reaches", () => {
-  const { scale, offset_m } = moved(plain, WORKSPACE, [5, 0], 1e-9, 0);
+  const { scale, offset_m } = movePlacement(plain, WORKSPACE, [5, 0], 1e-9, 0);
   assert.ok(scale !== null && scale <= 1e3);
   assert.ok(Math.abs(offset_m[0]) <= 10);
 });

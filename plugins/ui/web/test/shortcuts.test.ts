@@ -1,10 +1,10 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { pressed, SHORTCUTS } from "../src/shortcuts";
+import { keyName, SHORTCUTS } from "../src/shortcuts";
 import { t } from "../src/panels/help/shortcut_words";
 
 const press = (key: string, held: Partial<KeyboardEvent> = {}): string =>
-  pressed({ key, shiftKey: false, ctrlKey: false, altKey: false, metaKey: false, ...held } as KeyboardEvent);
+  keyName({ key, shiftKey: false, ctrlKey: false, altKey: false, metaKey: false, ...held } as KeyboardEvent);
 
 test("no key means two things", () => {
   const keys = Object.values(SHORTCUTS).flatMap(({ keys }) => [...keys]);

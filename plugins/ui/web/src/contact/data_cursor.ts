@@ -1,21 +1,23 @@
-/** The data cursor at the lower right of the surface: what is where the device, the contact and the mouse are. */
+/** The data cursor at the lower right of the surface: values at the device, the contact and the mouse. */
 import "./data_cursor.css";
 import { button } from "../elements";
-import { place, type Place } from "./reading";
+import { place, type SurfacePlace } from "./reading";
 import { asJson, asText, rows, type Row } from "./values";
 import type { Page } from "../page";
 import { on } from "../shortcuts";
 import { t } from "../overlay/words";
 
-/** Ten times a second can be read, and costs nothing. */
+type Parts = Pick<Page, "view" | "overlay" | "canvas" | "scene" | "say">;
+
+/** Interval of updates, ms, which can be read. */
 const EVERY_MS = 100;
-/** A surface so high has room for it. */
+/** Height of the canvas from which the data cursor is open at first. */
 const ROOMY_PX = 540;
 
-export function dataCursor(page: Page): void {
+export function dataCursor(page: Parts): void {
   const box = document.createElement("details");
   box.id = "data-cursor";
-  box.open = innerWidth >= 768 && page.canvas.clientHeight >= ROOMY_PX; // elsewhere it would cover the surface
+  box.open = innerWidth >= 768 && page.canvas.clientHeight >= ROOMY_PX; // otherwise it would cover the surface
   const heading = document.createElement("summary");
   heading.textContent = t("cursor");
   const table = document.createElement("table");
@@ -45,15 +47,15 @@ export function dataCursor(page: Page): void {
   }
 }
 
-/** Whether the contact lies behind it. */
-function covers(box: HTMLElement, { overlay, view, canvas }: Page): boolean {
+/** Return whether the data cursor covers the contact. */
+function covers(box: HTMLElement, { overlay, view, canvas }: Parts): boolean {
   if (!overlay.live?.seen) return false;
   const [x, y] = view.toScreen(overlay.live.contact);
   return x > box.offsetLeft - canvas.offsetLeft && y > box.offsetTop - canvas.offsetTop;
 }
 
-/** The place on the surface under the mouse, looked up when it is asked for and the mouse or the view has moved. */
-function follow(page: Page): () => Place | null {
+/** Return a function that looks up the surface under the mouse. */
+function follow(page: Parts): () => SurfacePlace | null {
   const { canvas, view } = page;
   let mouse: [number, number] | null = null;
   canvas.parentElement!.addEventListener("pointermove", (event) => {
@@ -67,7 +69,7 @@ function follow(page: Page): () => Place | null {
   };
 }
 
-/** Only what changed is written. */
+/** Fill the table, writing only changed cells. */
 function fill(table: HTMLTableElement, wanted: Row[]): void {
   const body = table.tBodies[0];
   while (body.rows.length > wanted.length) body.deleteRow(-1);

@@ -1,4 +1,4 @@
-/** What the guard did to a force, by the bits of a state's flags; docs/safety.md says what each means. */
+/** Limits of the guard by the bits of a state's flags; docs/safety.md explains each. */
 import { FLAGS } from "../server/protocol";
 
 export const LIMITS = [
@@ -14,16 +14,16 @@ export const LIMITS = [
 
 const ANY = LIMITS.reduce((sum, { bit }) => sum | bit, 0);
 
-export const limited = (flags: number): boolean => (flags & ANY) !== 0;
+export const isLimited = (flags: number): boolean => (flags & ANY) !== 0;
 
-/** What the loop has counted since it began: ticks, and those with a flag, by its name. */
+/** Counts of the loop since its start: ticks, and ticks with each flag. */
 export interface Counts {
   ticks: number;
   overruns: number;
   flagged: Record<string, number>;
 }
 
-/** Of each limit, how often a second between two counts; null where the loop began anew between them, or stood still. */
+/** Return each limit's rate per second between two counts; null if the loop was restarted or stood still. */
 export function perSecond(before: Counts, after: Counts, passedS: number): number[] | null {
   if (!(passedS > 0) || after.ticks <= before.ticks) return null;
   const of = (counts: Counts, name: string): number => (name === "OVERRUN" ? counts.overruns : (counts.flagged[name] ?? 0));

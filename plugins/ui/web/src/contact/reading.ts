@@ -1,63 +1,61 @@
-/** What is drawn of a state: the numbers that its pieces and the data cursor share. */
+/** A reading of a state: the numbers that overlay and data cursor share. */
 import type { Material } from "../server/messages";
-import { FLAGS, type State, type Vec } from "../server/protocol";
+import { FLAGS, NOBODY_M, type State, type Vec } from "../server/protocol";
 import type { Scene } from "../surface/scene";
 import { GripRule, type Grip } from "./grip";
-import { across, dot, length } from "./vectors";
+import { tangential, dot, length } from "./vectors";
 
-/** A device without a hand stands a metre high. */
-export const NOBODY_M = 0.5;
 
-export interface Live {
+export interface Reading {
   readonly state: State;
-  /** Whether there is a hand at all. */
+  /** True if there is a hand. */
   readonly seen: boolean;
   readonly touching: boolean;
   readonly hand: Vec;
-  /** Null where the law has none. */
+  /** Proxy; null for a law without one. */
   readonly proxy: Vec | null;
-  /** The proxy, or the surface above the hand. */
+  /** Contact: the proxy, or the surface above the hand. */
   readonly contact: Vec;
-  /** Of the surface at the contact. */
+  /** Normal of the surface at the contact. */
   readonly normal: Vec;
-  /** Of the surface above or under the hand; NaN beside it. */
+  /** Height of the surface above or under the hand; NaN outside. */
   readonly surfaceM: number;
-  /** How far the hand is under the surface; 0 above it. */
+  /** Penetration; 0 above the surface. */
   readonly depthM: number;
   readonly newtons: number;
-  /** The force's parts along the normal, and along the surface. */
+  /** Parts of the force along the normal and along the surface. */
   readonly normalN: number;
   readonly tangentialN: number;
   readonly otherN: number;
   readonly speedMPerS: number;
   readonly material: Material | null;
   readonly part: number | null;
-  /** Of the part; empty where it has none. */
+  /** Name of the part; empty if it has none. */
   readonly name: string;
   readonly grip: Grip;
 }
 
-/** What a place of the surface is: its height, what it is made of, and which part. */
-export interface Place {
+/** Properties of a place of the surface. */
+export interface SurfacePlace {
   at: Vec;
   normal: Vec;
   material: Material | null;
-  /** Number of the segment; null beside the surface. */
+  /** Number of the segment; null outside. */
   part: number | null;
-  /** Its name; empty where it has none. */
+  /** Name of the part; empty if it has none. */
   name: string;
 }
 
-export function place(scene: Scene, x: number, y: number): Place {
+export function place(scene: Scene, x: number, y: number): SurfacePlace {
   const [normal, material] = [scene.normal(x, y), scene.material(x, y)];
   return { at: [x, y, scene.height(x, y)], normal, material, part: scene.label(x, y), name: scene.part(x, y) };
 }
 
-/** Follows the states, and says what each means on the surface. */
-export class Reading {
+/** Reader of consecutive states: the contact's motion depends on earlier ones. */
+export class StateReader {
   private rule = new GripRule();
 
-  of(state: State, scene: Scene | null): Live {
+  read(state: State, scene: Scene | null): Reading {
     const { hand, force } = state;
     const seen = hand[2] < NOBODY_M;
     const touching = seen && (state.flags & FLAGS.TOUCHING) !== 0;
@@ -72,12 +70,12 @@ export class Reading {
       depthM: seen && hand[2] < surfaceM ? surfaceM - hand[2] : 0,
       newtons: length(force),
       normalN: dot(force, normal),
-      tangentialN: length(across(force, normal)),
+      tangentialN: length(tangential(force, normal)),
       otherN: length(state.other),
       speedMPerS: length(state.velocity),
       part: scene && seen ? scene.label(contact[0], contact[1]) : null,
       name: scene && seen ? scene.part(contact[0], contact[1]) : "",
-      grip: this.rule.next({ touching, atMs: state.sampleMs, contact, normal, force, dynamicFriction }),
+      grip: this.rule.update({ touching, atMs: state.sampleMs, contact, normal, force, dynamicFriction }),
     };
   }
 }

@@ -1,10 +1,10 @@
-/** What the check of a document complains of: at its field where there is one, and as a list that leads there. */
+/** Complaints of the document's check: at their fields, and as a list that leads there. */
 import { button } from "../elements";
 import type { Complaint } from "../server/messages";
 import { t } from "./words";
 import { FIELD } from "./rows";
 
-/** The field that a complaint belongs to: that of its key, or of what is around it. Null where no form has it. */
+/** Return the field of a complaint: of its key, or of the enclosing one. Null if no form has it. */
 export function fieldOf({ location }: Complaint, isThere: (id: string) => boolean): string | null {
   for (let depth = location.length; depth > 0; depth--) {
     const id = FIELD + location.slice(0, depth).filter((part, at) => !(at === 1 && part === "use")).join(".");
@@ -13,8 +13,8 @@ export function fieldOf({ location }: Complaint, isThere: (id: string) => boolea
   return null;
 }
 
-/** Mark the fields of a form, and list everything; the fields marked before are not any more. */
-export function complain(root: HTMLElement, list: HTMLElement, complaints: Complaint[]): void {
+/** Mark fields and list all complaints; earlier marks are removed. */
+export function showComplaints(root: HTMLElement, list: HTMLElement, complaints: Complaint[]): void {
   clear(root);
   const found = complaints.map((each) => ({ each, id: fieldOf(each, (id) => document.getElementById(id) !== null) }));
   const byField = new Map<string, string[]>();
@@ -26,27 +26,27 @@ export function complain(root: HTMLElement, list: HTMLElement, complaints: Compl
   const lines = document.createElement("ul");
   for (const { each, id } of found) {
     const line = document.createElement("li");
-    line.append(id ? button(placed(each), () => lead(id)) : said(each));
+    line.append(id ? button(withKey(each), () => focusField(id)) : withLine(each));
     lines.append(line);
   }
   list.replaceChildren(heading, lines);
 }
 
-/** Open what is folded around a field, and go there. */
-export function lead(id: string): void {
+/** Open the foldings around a field and focus it. */
+export function focusField(id: string): void {
   const field = document.getElementById(id);
   for (let box = field?.parentElement; box; box = box.parentElement) if (box instanceof HTMLDetailsElement) box.open = true;
   field?.focus();
   field?.scrollIntoView({ block: "center" });
 }
 
-function said(complaint: Complaint): string {
+function withLine(complaint: Complaint): string {
   const { line } = complaint;
-  return line === null ? placed(complaint) : `${placed(complaint)} (${t("line", { line })})`;
+  return line === null ? withKey(complaint) : `${withKey(complaint)} (${t("line", { line })})`;
 }
 
-/** With its key in front, once. */
-function placed({ location, text }: Complaint): string {
+/** Return the complaint with its key in front, once. */
+function withKey({ location, text }: Complaint): string {
   const where = location.length ? `${location.join(".")}: ` : "";
   return text.startsWith(where) ? text : where + text;
 }

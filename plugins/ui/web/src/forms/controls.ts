@@ -1,22 +1,22 @@
-/** Native controls for values of every kind. A control shows a value, and says when a person gives it another. */
+/** Native controls for values of every kind. A control shows a value and reports changes by a person. */
 import { button } from "../elements";
 import { t } from "./words";
 import { type Kind, type Option, step } from "./kinds";
 import type { Plain } from "./schema";
-import { asText, fits, isMap, put, same, type Said, typedNumber, typedText, typedYaml } from "./values";
+import { asText, fits, isMap, setInside, same, type FieldChange, typedNumber, typedText, typedYaml } from "./values";
 
 export interface Control {
   root: HTMLElement;
-  /** What has the label, and to which a complaint leads. */
+  /** The labelled element, to which a complaint leads. */
   main: HTMLElement;
-  /** Show a value, unless somebody is typing here; whether the document says it, or it is the default. */
+  /** Show a value, unless it is being edited. isSet: the document has it, else it is the default. */
   show(value: Plain | undefined, isSet: boolean): void;
 }
 
-/** inside: where within the value, if it is not the whole. */
-export type Tell = (said: Said, inside?: string[]) => void;
+/** Reports a change. inside: path within the value, if it is not the whole. */
+export type Tell = (change: FieldChange, inside?: string[]) => void;
 
-/** What is between a block's options and the page: a row with label and help around a control. */
+/** Builds a row with label and help around a control. */
 export type Row = (option: Option, id: string, tell: Tell) => { root: HTMLElement; show: Control["show"] };
 
 export function control(kind: Kind, id: string, tell: Tell, row: Row): Control {
@@ -42,24 +42,24 @@ export function control(kind: Kind, id: string, tell: Tell, row: Row): Control {
   }
 }
 
-/** The control of a kind; for a value that it cannot show, a field of YAML takes its place. */
-export function tolerant(kind: Kind, id: string, tell: Tell, row: Row): Control {
+/** Return the control of a kind; a field of YAML replaces it for a value that it cannot show. */
+export function controlOrYaml(kind: Kind, id: string, tell: Tell, row: Row): Control {
   let shown = control(kind, id, tell, row);
   let inYaml = kind.kind === "yaml";
-  const made: Control = {
+  const inner: Control = {
     root: holder(shown.root),
     main: shown.main,
     show: (value, isSet) => {
       if (kind.kind !== "yaml" && fits(value, kind) === inYaml) {
         inYaml = !inYaml;
         shown = control(inYaml ? { kind: "yaml" } : kind, id, tell, row);
-        made.root.replaceChildren(shown.root);
-        made.main = shown.main;
+        inner.root.replaceChildren(shown.root);
+        inner.main = shown.main;
       }
       shown.show(value, isSet);
     },
   };
-  return made;
+  return inner;
 }
 
 function holder(inside: HTMLElement): HTMLElement {
@@ -91,11 +91,11 @@ function choice(values: Plain[], id: string, tell: Tell): Control {
 
 function number(kind: Kind & { kind: "number" }, id: string, tell: Tell): Control {
   const plain = !kind.units.length && !kind.words.length && !kind.nullable;
-  const made = text(id, (typed, input) => {
+  const control = text(id, (typed, input) => {
     if (input.validity.badInput) input.reportValidity();
     else tell(typedNumber(typed, kind, t("none")));
   });
-  const input = made.main as HTMLInputElement;
+  const input = control.main as HTMLInputElement;
   const { least, most } = kind.bounds;
   if (plain) {
     input.type = "number";
@@ -105,12 +105,12 @@ function number(kind: Kind & { kind: "number" }, id: string, tell: Tell): Contro
   } else {
     input.inputMode = kind.words.length || kind.units.length ? "text" : "decimal";
     const words = [...kind.words, ...(kind.nullable ? [t("none")] : [])];
-    if (words.length) suggest(made.root, input, words);
+    if (words.length) suggest(control.root, input, words);
   }
-  return made;
+  return control;
 }
 
-/** One line of text; it is told when it is left, or on Enter, and not overwritten while it is typed in. */
+/** Return a line of text; reported when left or on Enter, and not overwritten while typing. */
 function text(id: string, typed: (text: string, input: HTMLInputElement) => void, isYaml = false): Control {
   const input = document.createElement("input");
   input.id = id;
@@ -130,7 +130,7 @@ function text(id: string, typed: (text: string, input: HTMLInputElement) => void
   });
   input.addEventListener("blur", () => {
     typing = false;
-    if (!input.value && !input.validity.badInput) show(shown); // nothing: the default, which is shown
+    if (!input.value && !input.validity.badInput) show(shown); // empty: the default is shown
   });
   input.addEventListener("keydown", (event) => {
     if (event.key !== "Escape" || !typing) return;
@@ -154,14 +154,14 @@ function tuple(kind: Kind & { kind: "tuple" }, id: string, tell: Tell, row: Row)
   box.classList.add("tuple");
   let now: (Plain | undefined)[] = kind.parts.map(() => undefined);
   const parts = kind.parts.map((part, at) => {
-    const made = control(part, `${id}.${at}`, (said) => {
-      now[at] = "value" in said ? said.value : undefined;
+    const inner = control(part, `${id}.${at}`, (change) => {
+      now[at] = "value" in change ? change.value : undefined;
       if (now.every((each) => each !== undefined)) tell({ value: now as Plain[] });
       else if (now.every((each) => each === undefined)) tell({ gone: true });
     }, row);
-    made.main.setAttribute("aria-label", t("part", { number: at + 1, of: kind.parts.length }));
-    box.append(made.root);
-    return made;
+    inner.main.setAttribute("aria-label", t("part", { number: at + 1, of: kind.parts.length }));
+    box.append(inner.root);
+    return inner;
   });
   return {
     root: box,
@@ -177,7 +177,7 @@ function tuple(kind: Kind & { kind: "tuple" }, id: string, tell: Tell, row: Row)
 function block(options: Option[], id: string, tell: Tell, row: Row): Control {
   const box = group();
   const rows = options.map((option) => {
-    const made = row(option, `${id}.${option.name}`, (said, inside = []) => tell(said, [option.name, ...inside]));
+    const made = row(option, `${id}.${option.name}`, (change, inside = []) => tell(change, [option.name, ...inside]));
     box.append(made.root);
     return made;
   });
@@ -212,21 +212,21 @@ function list(item: Kind, id: string, tell: Tell, row: Row): Control {
   }
 
   function entry(at: number): Control {
-    const made = tolerant(item, `${id}.${at}`, (said, inside = []) => {
-      now = now.map((each, one) => (one === at ? put(each, inside, said) : each));
+    const control = controlOrYaml(item, `${id}.${at}`, (change, inside = []) => {
+      now = now.map((each, one) => (one === at ? setInside(each, inside, change) : each));
       tell({ value: now });
     }, row);
-    made.root.classList.add("item");
-    made.root.setAttribute("role", "group");
-    made.root.setAttribute("aria-label", t("entry", { number: at + 1 }));
+    control.root.classList.add("item");
+    control.root.setAttribute("role", "group");
+    control.root.setAttribute("aria-label", t("entry", { number: at + 1 }));
     const remove = button(t("remove", { number: at + 1 }), () => {
       const left = now.filter((_, one) => one !== at);
       tell(left.length ? { value: left } : { gone: true });
       add.focus();
     });
     remove.className = "quiet";
-    made.root.append(remove);
-    return made;
+    control.root.append(remove);
+    return control;
   }
 
   return {

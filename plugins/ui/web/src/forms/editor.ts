@@ -1,4 +1,4 @@
-/** The one way in which forms change the document: by key, applied at once where that is wished. */
+/** Changes of the document by forms, applied at once if the person chose that. */
 import type { Document } from "../server/messages";
 import type { Page } from "../page";
 import { isLabels } from "./section";
@@ -7,13 +7,13 @@ import { at, type Edit } from "./values";
 
 const KEPT = "apply-at-once";
 
-export class Editor {
-  /** Refusals, in the server's words. */
+export class DocumentEditor {
+  /** Called with the server's text if an edit is refused. */
   onRefused: (why: string) => void = () => undefined;
 
-  constructor(private page: Page) {}
+  constructor(private page: Pick<Page, "net" | "document">) {}
 
-  /** Whether what needs no slow stage is made and felt as soon as it was edited. */
+  /** The setting that changes without a slow stage take effect at once. */
   get apply(): boolean {
     try {
       return localStorage.getItem(KEPT) !== "no";
@@ -26,26 +26,26 @@ export class Editor {
     try {
       localStorage.setItem(KEPT, wished ? "yes" : "no");
     } catch {
-      return; // then it holds for this page's life alone
+      return; // without storage the setting lasts as long as the page
     }
   }
 
   change(edit: Edit): void {
-    void this.changed(edit);
+    void this.submit(edit);
   }
 
-  /** Whether it was taken. */
-  changed(edit: Edit): Promise<boolean> {
-    return this.ask("set", { ...spelt(edit, this.page.document) });
+  /** Submit an edit; return whether it was accepted. */
+  submit(edit: Edit): Promise<boolean> {
+    return this.ask("set", { ...expandMaterials(edit, this.page.document) });
   }
 
   step(which: "undo" | "redo"): void {
     void this.ask(which, {});
   }
 
-  private async ask(name: string, told: Record<string, unknown>): Promise<boolean> {
+  private async ask(name: string, args: Record<string, unknown>): Promise<boolean> {
     try {
-      await this.page.net.ask(name, { ...told, apply: this.apply });
+      await this.page.net.ask(name, { ...args, apply: this.apply });
       return true;
     } catch (error) {
       this.onRefused((error as Error).message);
@@ -54,8 +54,8 @@ export class Editor {
   }
 }
 
-/** A map from label to material in short (`materials: {0: ice}`) has no room for other keys: it is spelt out first. */
-export function spelt(edit: Edit, document: Document | null): Edit {
+/** Return an edit of materials in short form (`materials: {0: ice}`) with the block expanded first, so that other keys fit. */
+export function expandMaterials(edit: Edit, document: Document | null): Edit {
   const labels = at(document?.said, ["materials"]);
   const keys = [...Object.keys(edit.changes ?? {}), ...Object.keys(edit.written ?? {})];
   if (!isLabels(labels) || !keys.some((key) => key.startsWith("materials."))) return edit;

@@ -1,10 +1,10 @@
-/** Which control an option gets, by its schema. What no other control can say is written in YAML. */
+/** Kinds of controls by schema. Values without a control are written in YAML. */
 import { alternatives, type Definitions, type Plain, type Schema } from "./schema";
 
 export interface Bounds {
   least?: number;
   most?: number;
-  /** Whether the bound itself is no value any more. */
+  /** True if the bound itself is excluded. */
   above: boolean;
   below: boolean;
 }
@@ -12,13 +12,13 @@ export interface Bounds {
 export type Kind =
   | { kind: "switch" }
   | { kind: "choice"; values: Plain[] }
-  /** words: what may stand in place of a number; units: whether it may be written with a unit. */
+  /** A number. words: allowed instead of a number; units: those it may be written with. */
   | { kind: "number"; integer: boolean; bounds: Bounds; words: string[]; units: string[]; nullable: boolean }
   | { kind: "text"; nullable: boolean; suggest: Plain[] }
   | { kind: "tuple"; parts: Kind[]; nullable: boolean }
   | { kind: "block"; options: Option[] }
   | { kind: "list"; item: Kind }
-  /** One of a few words, or something of another kind. */
+  /** A choice of words, or a value of another kind. */
   | { kind: "either"; words: Plain[]; other: Kind }
   | { kind: "yaml" };
 
@@ -27,7 +27,7 @@ export interface Option {
   title: string;
   unit: string;
   about: string;
-  /** Undefined for one that must be given. */
+  /** Default; undefined for a required option. */
   byDefault: Plain | undefined;
   kind: Kind;
 }
@@ -75,8 +75,8 @@ export function kindOf(schema: Schema, defs: Definitions): Kind {
   return words.length || nullable ? { kind: "either", words: [...words, ...nulls], other: alone } : alone;
 }
 
-/** Bounds and unit in words and signs: "0.001 to 10 m", "over 0 N/m"; empty where there are none. */
-export function bounded({ least, most, above, below }: Bounds, unit: string, over: string, under: string, to: string): string {
+/** Return bounds and unit in words: "0.001 to 10 m", "over 0 N/m"; empty without bounds. */
+export function formatRange({ least, most, above, below }: Bounds, unit: string, over: string, under: string, to: string): string {
   const behind = unit && ` ${unit}`;
   if (least !== undefined && most !== undefined) {
     const from = above ? `${over} ${number(least)}` : number(least);
@@ -87,7 +87,7 @@ export function bounded({ least, most, above, below }: Bounds, unit: string, ove
   return "";
 }
 
-/** How far an arrow key goes: a round step, a twentieth of the range or less. */
+/** Return the step of an arrow key: a power of ten, a twentieth of the range or less. */
 export function step(integer: boolean, { least, most }: Bounds): number {
   if (integer) return 1;
   if (least === undefined || most === undefined) return 1;
@@ -116,7 +116,7 @@ function isNumber({ type }: Schema): boolean {
   return type === "number" || type === "integer";
 }
 
-/** A quantity's pattern ends with its units: ...(m|cm|mm|um)$ */
+/** Return the units of a quantity, the end of its pattern: ...(m|cm|mm|um)$ */
 function unitsOf({ pattern }: Schema): string[] {
   return /\(([^()]+)\)\$$/.exec(pattern!)?.[1].split("|") ?? [];
 }

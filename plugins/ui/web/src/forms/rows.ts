@@ -1,40 +1,40 @@
-/** A row of a form: name, control, unit, help, the way back to the default, and what the check complains of. */
+/** A row of a form: name, control, unit, help, reset to the default, and complaint. */
 import { button } from "../elements";
 import { t } from "./words";
-import { type Row, tolerant } from "./controls";
-import { bounded, type Kind, type Option } from "./kinds";
+import { type Row, controlOrYaml } from "./controls";
+import { formatRange, type Kind, type Option } from "./kinds";
 import type { Plain } from "./schema";
 import { asText } from "./values";
 
-/** Of the fields of all forms; what follows is the key, as in "field:render.stiffness_n_per_m". */
+/** Prefix of the fields' ids; the key follows, as in "field:render.stiffness_n_per_m". */
 export const FIELD = "field:";
 
-/** Of the list of the library's names, which the panel of materials keeps. */
+/** Id of the list of the library's names, which the materials panel fills. */
 export const LIBRARY = "materials-library";
 const MATERIAL = /^materials\..*\b(default|material)$|^render\.material$/;
 
-/** What counts where the document says nothing, which may depend on the scene. */
+/** Returns the value of a key that the document does not set, which may depend on the scene. */
 export type DefaultOf = (key: string) => Plain | undefined;
 
 export function rows(defaultOf: DefaultOf): Row {
   const row: Row = (option, id, tell) => {
     const box = document.createElement("div");
     box.className = `field kind-${option.kind.kind}`;
-    const made = tolerant(option.kind, id, tell, row);
+    const control = controlOrYaml(option.kind, id, tell, row);
     const key = id.slice(FIELD.length);
-    const label = named(option, id, made.main);
+    const label = labelOf(option, id, control.main);
     const reset = button(t("toDefault"), () => {
       tell({ gone: true });
-      made.main.focus();
+      control.main.focus();
     });
     reset.className = "quiet reset";
     reset.setAttribute("aria-label", t("toDefaultOf", { name: option.title }));
-    const hint = help(option, id);
+    const hint = helpOf(option, id);
     const complaint = document.createElement("p");
     complaint.id = `${id}-complaint`;
     complaint.className = "bad complaint";
     complaint.hidden = true;
-    box.append(label, made.root, reset, complaint, hint.root);
+    box.append(label, control.root, reset, complaint, hint.root);
     describe(box, id);
     return {
       root: box,
@@ -42,7 +42,7 @@ export function rows(defaultOf: DefaultOf): Row {
         const byDefault = (isSet ? undefined : (value ?? defaultOf(key))) ?? option.byDefault;
         reset.hidden = !isSet || option.byDefault === undefined;
         box.classList.toggle("set", isSet);
-        made.show(isSet ? value : byDefault, isSet);
+        control.show(isSet ? value : byDefault, isSet);
         hint.show(byDefault, isSet);
         describe(box, id);
       },
@@ -51,7 +51,7 @@ export function rows(defaultOf: DefaultOf): Row {
   return row;
 }
 
-/** Every control of a row tells what helps with it. */
+/** Connect each control of a row with its help and complaint. */
 function describe(box: HTMLElement, id: string): void {
   if (MATERIAL.test(id.slice(FIELD.length))) box.querySelector("input")?.setAttribute("list", LIBRARY);
   for (const each of box.querySelectorAll(":scope > .control :is(input, select), :scope > .control > .group > button")) {
@@ -59,7 +59,7 @@ function describe(box: HTMLElement, id: string): void {
   }
 }
 
-function named({ title, unit, kind }: Option, id: string, main: HTMLElement): HTMLElement {
+function labelOf({ title, unit, kind }: Option, id: string, main: HTMLElement): HTMLElement {
   const isGroup = kind.kind === "block" || kind.kind === "tuple" || kind.kind === "list";
   const label = document.createElement(isGroup ? "span" : "label");
   label.className = "name";
@@ -77,7 +77,7 @@ function named({ title, unit, kind }: Option, id: string, main: HTMLElement): HT
   return label;
 }
 
-function help(option: Option, id: string): { root: HTMLElement; show(byDefault: Plain | undefined, isSet: boolean): void } {
+function helpOf(option: Option, id: string): { root: HTMLElement; show(byDefault: Plain | undefined, isSet: boolean): void } {
   const root = document.createElement("p");
   root.id = `${id}-hint`;
   root.className = "hint";
@@ -102,7 +102,7 @@ export function rangeOf(kind: Kind, unit: string): string {
     return all.every((each) => each === all[0]) ? all[0] : all.join("; ");
   }
   if (kind.kind !== "number") return "";
-  const range = bounded(kind.bounds, unit, t("over"), t("under"), t("to"));
+  const range = formatRange(kind.bounds, unit, t("over"), t("under"), t("to"));
   const words = kind.words.length ? `${range && ", "}${t("or")} ${kind.words.join(", ")}` : "";
   return range + words;
 }

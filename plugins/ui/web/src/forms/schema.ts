@@ -1,4 +1,4 @@
-/** JSON Schema, as far as pipeline files use it. */
+/** The part of JSON Schema that pipeline files use. */
 
 export type Plain = string | number | boolean | null | Plain[] | { [key: string]: Plain };
 
@@ -24,7 +24,7 @@ export interface Schema {
   default?: Plain;
   title?: string;
   description?: string;
-  /** Of a number: what it is in where nothing stands behind it. */
+  /** Unit of a number written without one. */
   unit?: string;
 }
 
@@ -35,7 +35,7 @@ export interface FileSchema extends Schema {
   $defs: Definitions;
 }
 
-/** All that a schema may be, references followed, alternatives side by side. */
+/** Return the alternatives of a schema, references resolved. */
 export function alternatives(schema: Schema, defs: Definitions): Schema[] {
   if (schema.$ref) return alternatives(defs[schema.$ref.split("/").at(-1)!] ?? {}, defs);
   return (schema.anyOf ?? schema.oneOf)?.flatMap((each) => alternatives(each, defs)) ?? [schema];

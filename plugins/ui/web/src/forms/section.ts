@@ -1,4 +1,4 @@
-/** The form of one part of the file: which method, and its options, the rarer ones folded. */
+/** Form of a section of the file: method and options, rarer ones folded. */
 import type { Document } from "../server/messages";
 import { t } from "./words";
 import { FIELD, rows } from "./rows";
@@ -17,7 +17,7 @@ export class SectionForm {
   private readonly select = document.createElement("select");
   private readonly about = document.createElement("p");
   private readonly fields = document.createElement("div");
-  private shows: ((said: Plain | undefined) => void)[] = [];
+  private shows: ((given: Plain | undefined) => void)[] = [];
   private method: string | null = null;
   private said: Document | null = null;
 
@@ -37,13 +37,13 @@ export class SectionForm {
     if (!section.methods.length) this.build(null, section.options);
   }
 
-  /** What the document says now; a control that is typed in keeps what is typed. */
+  /** Show the document; a control being edited keeps its text. */
   show(document: Document): void {
     this.said = document;
-    const said = this.block(document);
-    if (this.section.methods.length) this.choose(said);
+    const written = this.block(document);
+    if (this.section.methods.length) this.choose(written);
     else this.chosen.textContent = "";
-    for (const each of this.shows) each(said);
+    for (const each of this.shows) each(written);
   }
 
   private block({ said }: Document): Plain | undefined {
@@ -91,8 +91,8 @@ export class SectionForm {
     const row = rows((key) => at(this.said?.values, key.split(".")));
     const made = options.map((option) => {
       const key = `${this.section.name}.${option.name}`;
-      const tell = (said: Parameters<typeof edit>[1], inside: string[] = []): void =>
-        this.change(edit([key, ...inside].join("."), said));
+      const tell = (typed: Parameters<typeof edit>[1], inside: string[] = []): void =>
+        this.change(edit([key, ...inside].join("."), typed));
       const one = row(option, `${FIELD}${key}`, tell);
       const show = (said: Plain | undefined): void => {
         const value = at(said, [option.name]);
@@ -104,10 +104,10 @@ export class SectionForm {
     const roots = made.map(({ root }) => root);
     const fold = roots.length > PLAIN + 1 ? PLAIN : roots.length;
     this.fields.replaceChildren(...roots.slice(0, fold));
-    if (fold < roots.length) this.fields.append(this.folded(options.slice(fold), roots.slice(fold)));
+    if (fold < roots.length) this.fields.append(this.foldRest(options.slice(fold), roots.slice(fold)));
   }
 
-  private folded(options: Choice[], roots: HTMLElement[]): HTMLElement {
+  private foldRest(options: Choice[], roots: HTMLElement[]): HTMLElement {
     const box = document.createElement("details");
     box.className = "more";
     const heading = document.createElement("summary");
@@ -120,7 +120,7 @@ export class SectionForm {
   }
 }
 
-/** Whether a block of materials is a map from label to material, written in short. */
+/** Return whether a block of materials is a short map from label to material. */
 export function isLabels(block: Plain | undefined): boolean {
   return isMap(block) && Object.keys(block).some((key) => /^\d+$/.test(key));
 }

@@ -1,13 +1,13 @@
-/** The parts of a pipeline file that have a form: stages with a choice of method, and blocks. */
+/** Sections of a pipeline file with a form: stages with a choice of method, and blocks. */
 import { type Option, options, sentence } from "./kinds";
 import { alternatives, type FileSchema, type Schema } from "./schema";
 
 /** The order of the forms; a key that is not in it stands behind the others. */
 const ORDER = ["depth", "texture", "heights", "simplify", "materials", "workspace", "mapping", "render", "device", "safety"];
-/** Keys with a panel of their own. */
+/** Keys that have a panel of their own, without a form. */
 const ELSEWHERE = ["scene", "parts", "export"];
 
-/** So many options are seen at once; the others are folded. */
+/** Number of options that are not folded. */
 export const PLAIN = 4;
 
 export interface Method {
@@ -20,9 +20,9 @@ export interface Section {
   name: string;
   /** The name in words, for a section that the page has no words for. */
   title: string;
-  /** Empty where nothing is to be chosen. */
+  /** Methods to choose from; empty for a block. */
   methods: Method[];
-  /** Of a section without methods. */
+  /** Options of a section without methods. */
   options: Option[];
   /** The option that a word alone stands for. */
   word?: string;

@@ -2,31 +2,31 @@
 import type { Kind } from "./kinds";
 import type { Plain } from "./schema";
 
-/** What a field says of its key: a value, a value written in YAML, or nothing, so that the default counts. */
-export type Said = { value: Plain } | { written: string } | { gone: true };
+/** Change of a key by its field: a value, a value written in YAML, or removal, so that the default applies. */
+export type FieldChange = { value: Plain } | { written: string } | { gone: true };
 
-/** Changes of the document, as the server takes them. */
+/** An edit of the document, as the server takes it. */
 export interface Edit {
   changes?: Record<string, Plain>;
   written?: Record<string, string>;
   removed?: string[];
 }
 
-export function edit(key: string, said: Said): Edit {
-  if ("value" in said) return { changes: { [key]: said.value } };
-  return "written" in said ? { written: { [key]: said.written } } : { removed: [key] };
+export function edit(key: string, change: FieldChange): Edit {
+  if ("value" in change) return { changes: { [key]: change.value } };
+  return "written" in change ? { written: { [key]: change.written } } : { removed: [key] };
 }
 
-/** A value in a text field. JSON is YAML, so that whatever a file says can stand there. */
+/** Return a value as text of a field; structured values as JSON, which is YAML. */
 export function asText(value: Plain | undefined, none: string): string {
   if (value === undefined) return "";
   if (value === null) return none;
   return typeof value === "object" ? JSON.stringify(value) : String(value);
 }
 
-/** What was typed in a number's field: a number, a word that may stand there, or a text such as "6 mm", which the
- * document's check takes or complains of. Nothing is the default. */
-export function typedNumber(text: string, kind: Kind & { kind: "number" }, none: string): Said {
+/** Return the change by a text typed into a number field: a number, an allowed word, or a text such as "6 mm", which the
+ * document's check judges. Empty removes the key. */
+export function typedNumber(text: string, kind: Kind & { kind: "number" }, none: string): FieldChange {
   const plain = text.trim();
   if (!plain) return { gone: true };
   if (kind.nullable && plain === none) return { value: null };
@@ -36,12 +36,12 @@ export function typedNumber(text: string, kind: Kind & { kind: "number" }, none:
   return { value: Number.isFinite(number) ? number : point };
 }
 
-export function typedText(text: string, nullable: boolean, none: string): Said {
+export function typedText(text: string, nullable: boolean, none: string): FieldChange {
   if (!text) return { gone: true };
   return { value: nullable && text === none ? null : text };
 }
 
-export function typedYaml(text: string): Said {
+export function typedYaml(text: string): FieldChange {
   return text.trim() ? { written: text } : { gone: true };
 }
 
@@ -49,7 +49,7 @@ export function same(one: Plain | undefined, other: Plain | undefined): boolean 
   return JSON.stringify(one) === JSON.stringify(other);
 }
 
-/** Whether a control of this kind can show this value; if not, it is shown in YAML. */
+/** Return whether a control of this kind can show this value; if not, it is shown in YAML. */
 export function fits(value: Plain | undefined, kind: Kind): boolean {
   if (value === undefined) return true;
   switch (kind.kind) {
@@ -63,7 +63,7 @@ export function fits(value: Plain | undefined, kind: Kind): boolean {
       return value === null ? kind.nullable : typeof value === "string";
     case "tuple":
       if (value === null) return kind.nullable;
-      return Array.isArray(value) && value.length === kind.parts.length && value.every((each, at) => fits(each, kind.parts[at]));
+      return Array.isArray(value) && value.length === kind.parts.length && value.every((each, valueAt) => fits(each, kind.parts[valueAt]));
     case "block":
       return isMap(value) && Object.keys(value).every((name) => kind.options.some((each) => each.name === name)) &&
         kind.options.every((each) => fits(value[each.name], each.kind));
@@ -80,16 +80,16 @@ export function isMap(value: Plain | undefined): value is { [key: string]: Plain
   return typeof value === "object" && value !== null && !Array.isArray(value);
 }
 
-/** A value with what was said of one part of it. */
-export function put(value: Plain, inside: readonly string[], said: Said): Plain {
-  if (!inside.length) return "value" in said ? said.value : "written" in said ? fromText(said.written) : {};
+/** Return a value with a change applied inside. */
+export function setInside(value: Plain, inside: readonly string[], change: FieldChange): Plain {
+  if (!inside.length) return "value" in change ? change.value : "written" in change ? fromText(change.written) : {};
   const [name, ...deeper] = inside;
   const { [name]: before, ...rest } = isMap(value) ? value : {};
-  if ("gone" in said && !deeper.length) return rest;
-  return { ...rest, [name]: put(before ?? {}, deeper, said) };
+  if ("gone" in change && !deeper.length) return rest;
+  return { ...rest, [name]: setInside(before ?? {}, deeper, change) };
 }
 
-/** Within a value that is set as a whole, YAML that is JSON is what it says, and any other a text. */
+/** Return written YAML as JSON if it is JSON, else as text, within a value that is set as a whole. */
 function fromText(written: string): Plain {
   try {
     return JSON.parse(written) as Plain;
@@ -98,7 +98,7 @@ function fromText(written: string): Plain {
   }
 }
 
-/** The value at a path of keys. */
+/** Return the value at a path of keys. */
 export function at(value: unknown, path: readonly (string | number)[]): Plain | undefined {
   let here = value;
   for (const part of path) {

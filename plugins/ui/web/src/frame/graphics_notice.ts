@@ -1,10 +1,10 @@
-/** Why nothing is drawn, over the place where it would be. */
+/** A notice over the canvas that says why nothing is drawn. */
 import "./graphics_notice.css";
 import type { Page } from "../page";
 import type { Trouble } from "../view/view";
 import { t } from "../view/words";
 
-export function notice(page: Page): void {
+export function showGraphicsTrouble(page: Pick<Page, "view" | "canvas">): void {
   const box = document.createElement("p");
   box.id = "no-terrain";
   box.setAttribute("role", "alert");

@@ -3,23 +3,23 @@ import type { Page } from "../page";
 import { on } from "../shortcuts";
 import { t } from "./words";
 import { speak, language, LANGUAGES } from "../words/words";
-import { THEMES, type Theme, type Themes } from "./themes";
+import { THEMES, type Theme } from "./themes";
 
-/** Ids of the regions in the order in which F6 visits them, and of what takes the focus there. */
+/** Ids of the regions in the order of F6, and of the elements that take the focus there. */
 const REGIONS = { main: "terrain", left: "left", right: "right", bottom: "bottom", head: "head", "parts-editor": "parts-picture" } as const;
 type Region = keyof typeof REGIONS;
 
 const regions = Object.keys(REGIONS) as Region[];
 const element = (id: string): HTMLElement => document.getElementById(id)!;
-/** Those that are there now: the editor of parts takes the place of the columns. */
-const shown = (): Region[] => regions.filter((each) => document.getElementById(each)?.checkVisibility());
+/** Return the visible regions: the parts editor replaces the columns. */
+const visibleRegions = (): Region[] => regions.filter((each) => document.getElementById(each)?.checkVisibility());
 
-export function frame(page: Page): void {
+export function buildRegions(page: Pick<Page, "hub" | "themes">): void {
   const { themes } = page;
-  for (const region of shown()) element(region).setAttribute("aria-label", t(region));
+  for (const region of visibleRegions()) element(region).setAttribute("aria-label", t(region));
   skipLinks();
-  on("next region", () => jump(1));
-  on("previous region", () => jump(-1));
+  on("next region", () => focusRegion(1));
+  on("previous region", () => focusRegion(-1));
   chooseTheme(themes);
   page.hub.on("theme", () => (element("theme") as HTMLSelectElement).value = themes.chosen);
   switchLanguage();
@@ -34,18 +34,18 @@ function skipLinks(): void {
     link.href = `#${REGIONS[region]}`;
     link.textContent = t(region);
     link.onclick = (event) => {
-      event.preventDefault(); // the address keeps the key alone
+      event.preventDefault(); // the address must not change
       element(REGIONS[region]).focus();
     };
     skip.append(link);
   }
 }
 
-/** To the next region that is there; where its focus was last, if it was there before. */
+/** Last focused element of each region. */
 const last = new Map<Region, HTMLElement>();
 
-function jump(by: number): void {
-  const regions = shown();
+function focusRegion(by: number): void {
+  const regions = visibleRegions();
   const from = regions.findIndex((each) => element(each).contains(document.activeElement));
   if (from >= 0) last.set(regions[from], document.activeElement as HTMLElement);
   const to = regions[from < 0 ? (by > 0 ? 0 : regions.length - 1) : (from + by + regions.length) % regions.length];
@@ -53,7 +53,7 @@ function jump(by: number): void {
   (before?.isConnected && before.checkVisibility() ? before : element(REGIONS[to])).focus();
 }
 
-function chooseTheme(themes: Themes): void {
+function chooseTheme(themes: Page["themes"]): void {
   const choice = element("theme") as HTMLSelectElement;
   choice.setAttribute("aria-label", t("theme"));
   for (const each of THEMES) choice.add(new Option(t(each), each));
@@ -61,7 +61,7 @@ function chooseTheme(themes: Themes): void {
   choice.onchange = () => themes.choose(choice.value as Theme);
 }
 
-/** The button names the other language in that language. */
+/** Label the button with the other language's own name. */
 function switchLanguage(): void {
   const other = LANGUAGES.find((each) => each !== language)!;
   const button = element("language");

@@ -1,12 +1,12 @@
-/** The lines between regions: dragged, or moved by the arrow keys, they make a region wider; it stays so. */
+/** Splitters between regions, moved by the pointer or the arrow keys; the sizes are kept. */
 import { recall, remember } from "../preferences";
 import { t } from "./words";
 
 interface Split {
-  /** Which region it sizes, by the token --left, --right, --bottom. */
+  /** The region that it sizes, by the token --left, --right, --bottom. */
   region: "left" | "right" | "bottom";
   upright: boolean;
-  /** 1 if the region grows to the right or down. */
+  /** 1 if the region grows to the right or down, else -1. */
   way: 1 | -1;
 }
 
@@ -19,12 +19,12 @@ const STEP_PX = 16;
 const LEAST_PX = 80;
 const KEYS: Record<string, number> = { ArrowLeft: -1, ArrowUp: -1, ArrowRight: 1, ArrowDown: 1 };
 
-export function splits(): void {
+export function buildSplitters(): void {
   document.getElementById("sizes")!.setAttribute("aria-label", t("sizes"));
-  for (const split of SPLITS) lines.push(new Line(split));
+  for (const split of SPLITS) splitters.push(new Splitter(split));
 }
 
-/** Sizes of all regions as the page chooses them. */
+/** Reset the sizes of all regions. */
 export function resetSizes(): void {
   for (const { region } of SPLITS) {
     remember(region, 0);
@@ -32,14 +32,14 @@ export function resetSizes(): void {
   }
 }
 
-/** All regions larger or smaller by some steps. */
+/** Enlarge all regions by some steps; shrink them if negative. */
 export function resize(steps: number): void {
-  for (const line of lines) line.step(4 * steps);
+  for (const line of splitters) line.step(4 * steps);
 }
 
-const lines: Line[] = [];
+const splitters: Splitter[] = [];
 
-class Line {
+class Splitter {
   private line: HTMLElement;
   private region: HTMLElement;
 
@@ -55,7 +55,7 @@ class Line {
     this.line.addEventListener("dblclick", () => resetSizes());
     new ResizeObserver(() => this.tell()).observe(this.region);
     const kept = recall(split.region, 0);
-    if (kept) this.put(kept);
+    if (kept) this.setSize(kept);
   }
 
   private get size(): number {
@@ -70,7 +70,7 @@ class Line {
   }
 
   step(steps: number): void {
-    this.put(this.size + steps * STEP_PX);
+    this.setSize(this.size + steps * STEP_PX);
     remember(this.split.region, this.size);
   }
 
@@ -78,7 +78,7 @@ class Line {
     const { upright, way, region } = this.split;
     const along = (event: PointerEvent): number => (upright ? event.clientX : event.clientY);
     const [first, size] = [along(begun), this.size];
-    const move = (event: PointerEvent): void => this.put(size + way * (along(event) - first));
+    const move = (event: PointerEvent): void => this.setSize(size + way * (along(event) - first));
     this.line.setPointerCapture(begun.pointerId);
     this.line.classList.add("moving");
     this.line.addEventListener("pointermove", move);
@@ -90,7 +90,7 @@ class Line {
     this.line.addEventListener("lostpointercapture", end, { once: true });
   }
 
-  private put(px: number): void {
+  private setSize(px: number): void {
     const whole = this.split.upright ? innerWidth : innerHeight;
     const kept = Math.round(Math.min(Math.max(px, LEAST_PX), 0.6 * whole));
     document.documentElement.style.setProperty(`--${this.split.region}`, `${kept}px`);

@@ -1,18 +1,18 @@
-/** The head of the page: what goes on, the stop button, and who holds the hand. */
+/** The header: status line, stop button, and button for the hand. */
 import type { Page } from "../page";
 import { on } from "../shortcuts";
 import { t } from "./words";
-import { made } from "../words/product_words";
+import { productName } from "../words/product_words";
 import { language } from "../words/words";
 
 type What = "idle" | "busy" | "felt" | "stopped" | "error";
 
 export class Status {
   private line = document.getElementById("status")!;
-  /** What is so while nothing is made: forces are given, or not. */
+  /** Status while nothing is computed: forces on or off. */
   private rest: "idle" | "felt" = "idle";
 
-  constructor(private page: Page) {
+  constructor(private page: Pick<Page, "hub" | "net" | "say" | "forget">) {
     const { hub } = page;
     this.give("hold", t("takeHand"), () => this.ask("hold"));
     this.give("again", t("feelAgain"), () => void this.page.net.feel().catch((error: Error) => this.show("error", error.message)));
@@ -24,7 +24,7 @@ export class Status {
     hub.on("hello", () => page.forget("gone"));
     hub.on("error", ({ text }) => this.show("error", text));
     hub.on("stage", ({ product, method, done }) => {
-      if (!done.outcome) this.show("busy", t("making", { product: made(product), method }));
+      if (!done.outcome) this.show("busy", t("making", { product: productName(product), method }));
     });
     hub.on("made", ({ want, outcome, why }) => {
       if (outcome === "failed") this.show("error", why);
@@ -67,12 +67,12 @@ export class Status {
   private show(what: What, text: string, topic = what === "error" ? text : "status"): void {
     this.line.dataset.state = what;
     this.line.textContent = text;
-    this.line.lang = what === "error" && topic !== "gone" ? "en" : language; // the program's own words are English
+    this.line.lang = what === "error" && topic !== "gone" ? "en" : language; // the program's texts are English
     this.page.say(text, { topic, urgent: what === "error" || what === "stopped" });
     this.reach();
   }
 
-  /** A text that is longer than its place is scrolled, by the keyboard as well. */
+  /** Make a text longer than its place reachable, so that the keyboard scrolls it. */
   private reach(): void {
     const { line } = this;
     if (line.scrollHeight > line.clientHeight) line.tabIndex = 0;

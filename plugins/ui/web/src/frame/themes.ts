@@ -1,4 +1,4 @@
-/** Light, dark, and high contrast: as the system says, or as was chosen. The colours are the tokens of app.css. */
+/** Themes: light, dark and high contrast, by the system or by choice. The colours are the tokens of style/tokens.css. */
 import type { Hub } from "../hub";
 import { recall, remember } from "../preferences";
 
@@ -36,7 +36,7 @@ export class Themes {
   }
 }
 
-/** Whether a theme has high contrast, and its scheme; what it leaves to the system is left out. */
+/** Return whether a theme has high contrast, and its scheme; undefined for what the system decides. */
 function split(theme: Theme): [more?: boolean, scheme?: "light" | "dark"] {
   if (theme === "system") return [];
   return [theme.startsWith("contrast"), theme.endsWith("dark") ? "dark" : "light"];
@@ -44,7 +44,7 @@ function split(theme: Theme): [more?: boolean, scheme?: "light" | "dark"] {
 
 const probe = document.createElement("span");
 
-/** What a token of app.css is now, as rgb(...): for what is drawn and not styled. Ask again on the event `theme`. */
+/** Return a token's present colour as rgb(...), for drawings. Ask again on the event `theme`. */
 export function colour(token: `--${string}`): string {
   probe.hidden = true;
   probe.style.setProperty("color", `var(${token})`);

@@ -1,12 +1,13 @@
-/** The touch screen: one finger is the hand, where it is; two are the camera's, and the hand is gone until all are up. */
+/** The touch screen: one finger is the hand; two move the camera, and the hand is released until all are up. */
+import type { Page } from "../page";
 import type { Hand } from "./hand";
 
-/** Which fingers are there, and whose they are. */
+/** The fingers on the screen, and whether they move hand or camera. */
 export class Fingers {
   private there = new Set<number>();
   private camera = false;
 
-  /** Whether the finger that came is the hand. */
+  /** Add a finger; return whether it is the hand. */
   down(id: number): boolean {
     this.there.add(id);
     if (this.there.size > 1) this.camera = true;
@@ -23,12 +24,12 @@ export class Fingers {
   }
 }
 
-/** How hard fingers press, 0 to 1, where the browser says so: by force, else by the size of the contact. */
+/** Pressure of fingers, 0 to 1: by force if the browser measures it, else by the size of the contact. */
 export class Pressure {
   private forces = new Set<number>();
   private sizes: [number, number] = [Infinity, -Infinity];
 
-  /** Null where it says nothing: a screen without either gives the same at every touch. */
+  /** Return the pressure; null if unknown: a screen without sensors gives the same at every touch. */
   share({ pressure, width, height }: { pressure: number; width: number; height: number }): number | null {
     if (pressure !== 0 && pressure !== 0.5 && pressure !== 1) this.forces.add(pressure);
     if (this.forces.size >= 3) return pressure;
@@ -39,17 +40,17 @@ export class Pressure {
   }
 }
 
-export function touch(hand: Hand): void {
-  const { canvas, view } = hand.page;
+export function attachFingers(hand: Hand, page: Pick<Page, "canvas" | "view" | "scene">): void {
+  const { canvas, view } = page;
   const fingers = new Fingers();
   const pressure = new Pressure();
 
   function follow(event: PointerEvent): void {
-    const at = hand.page.scene?.pick(...view.ray(event.clientX, event.clientY));
+    const at = page.scene?.pick(...view.ray(event.clientX, event.clientY));
     if (!at) return;
     const share = pressure.share(event);
     if (share !== null) hand.pressShare(share);
-    hand.over("touch", at[0], at[1], true);
+    hand.moveOver("touch", at[0], at[1], true);
   }
 
   canvas.addEventListener("pointerdown", (event) => {

@@ -1,19 +1,19 @@
-/** The game pad: the left stick moves the hand, the right trigger presses; what it feels shakes the pad. */
+/** The game pad: the left stick moves the hand, the right trigger presses; forces shake the pad. */
 import type { Hand } from "./hand";
 
-/** Metres per second with a stick all the way out: along, and up or down. */
+/** Speed at full deflection: along, and up or down, metres per second. */
 const MOST_M_PER_S = 0.1;
 const RISE_M_PER_S = 0.02;
-/** A stick at rest says up to so much. */
-export const REST = 0.15;
-/** A trigger says no more than this where it is not pressed. */
+/** Greatest deflection of a stick at rest. */
+export const DEAD_ZONE = 0.15;
+/** Greatest value of a released trigger. */
 const TRIGGER_REST = 0.05;
-/** The force that shakes as much as allowed, and how much that is. */
+/** Force of the strongest rumble, and its magnitude. */
 const FULL_N = 4;
 const MOST_SHAKE = 0.8;
 const SHAKE_MS = 120;
 const SHAKE_EVERY_MS = 60;
-/** By the standard mapping: the lower, right, left and upper one of four, and the right trigger. */
+/** Buttons of the standard mapping: the lower, right, left and upper one of four, and the right trigger. */
 const PUT_DOWN = 0;
 const STOP = 1;
 const MIDDLE = 2;
@@ -26,32 +26,32 @@ export interface PadState {
   buttons: readonly { pressed: boolean; value: number }[];
 }
 
-export interface PadWay {
-  /** Metres per second. */
+export interface PadMotion {
+  /** Velocity, metres per second. */
   x: number;
   y: number;
   z: number;
-  /** How far the trigger is pressed, 0 to 1. */
+  /** Deflection of the trigger, 0 to 1. */
   press: number;
 }
 
-/** What sticks and trigger say. */
-export function way({ axes, buttons }: PadState): PadWay {
+/** Return velocity and press of sticks and trigger. */
+export function readPad({ axes, buttons }: PadState): PadMotion {
   const [x = 0, y = 0, , z = 0] = axes;
   const trigger = buttons[TRIGGER]?.value ?? 0;
   const far = Math.hypot(x, y);
-  const along = far > 0 ? (bent(far) / far) * MOST_M_PER_S : 0;
+  const along = far > 0 ? (applyDeadZone(far) / far) * MOST_M_PER_S : 0;
   return {
     x: x * along,
     y: 0 - y * along,
-    z: 0 - Math.sign(z) * bent(Math.abs(z)) * RISE_M_PER_S,
+    z: 0 - Math.sign(z) * applyDeadZone(Math.abs(z)) * RISE_M_PER_S,
     press: trigger > TRIGGER_REST ? Math.min(1, trigger) : 0,
   };
 }
 
-/** Nothing around its rest, then slowly first. */
-function bent(out: number): number {
-  const share = Math.min(1, Math.max(0, (out - REST) / (1 - REST)));
+/** Return 0 in the dead zone, then a square curve to 1. */
+function applyDeadZone(out: number): number {
+  const share = Math.min(1, Math.max(0, (out - DEAD_ZONE) / (1 - DEAD_ZONE)));
   return share * share;
 }
 
@@ -60,21 +60,21 @@ interface Shaker {
   reset(): unknown;
 }
 
-/** Force as shaking: never more than allowed, and still at once when there is none. */
-export class Shake {
+/** Rumble of a force, limited, and stopped at once when there is none. */
+export class Rumble {
   private atMs = -Infinity;
   private shaking = false;
 
-  feel(shaker: Shaker, forceN: number, nowMs: number): void {
+  play(shaker: Shaker, forceN: number, nowMs: number): void {
     const share = Number.isFinite(forceN) ? Math.min(1, Math.max(0, forceN / FULL_N)) * MOST_SHAKE : 0;
-    if (share < 0.01) return this.still(shaker);
+    if (share < 0.01) return this.stop(shaker);
     if (nowMs - this.atMs < SHAKE_EVERY_MS) return;
     this.atMs = nowMs;
     this.shaking = true;
     void shaker.playEffect("dual-rumble", { duration: SHAKE_MS, strongMagnitude: share, weakMagnitude: share / 2 });
   }
 
-  still(shaker: Shaker): void {
+  stop(shaker: Shaker): void {
     if (!this.shaking) return;
     this.shaking = false;
     this.atMs = -Infinity;
@@ -82,11 +82,11 @@ export class Shake {
   }
 }
 
-/** Buttons that went down since the last look. */
+/** The buttons pressed since the last poll. */
 export class Presses {
   private before = new Set<number>();
 
-  take({ buttons }: PadState): number[] {
+  newPresses({ buttons }: PadState): number[] {
     const now = new Set(BUTTONS.filter((each) => buttons[each]?.pressed));
     const fresh = [...now].filter((each) => !this.before.has(each));
     this.before = now;
@@ -94,11 +94,11 @@ export class Presses {
   }
 }
 
-export function pad(hand: Hand): void {
+export function attachGamePad(hand: Hand): void {
   const presses = new Presses();
-  const shake = new Shake();
+  const shake = new Rumble();
   const acts: Record<number, () => void> = {
-    [PUT_DOWN]: () => hand.put("pad", !hand.down),
+    [PUT_DOWN]: () => hand.press("pad", !hand.down),
     [STOP]: () => hand.stop(),
     [MIDDLE]: () => hand.toMiddle("pad"),
     [TAKE]: () => hand.take(),
@@ -106,28 +106,28 @@ export function pad(hand: Hand): void {
   let pressing = false;
 
   function look(seconds: number): void {
-    const found = navigator.getGamepads().find((each) => each?.connected && each.mapping === "standard");
-    if (!found) return;
-    for (const each of presses.take(found)) acts[each]!();
-    if (!document.hasFocus()) return rest(found);
-    const { x, y, z, press } = way(found);
-    if (x || y || z) hand.go("pad", x * seconds, y * seconds, z * seconds);
+    const gamepad = navigator.getGamepads().find((each) => each?.connected && each.mapping === "standard");
+    if (!gamepad) return;
+    for (const each of presses.newPresses(gamepad)) acts[each]!();
+    if (!document.hasFocus()) return rest(gamepad);
+    const { x, y, z, press } = readPad(gamepad);
+    if (x || y || z) hand.moveBy("pad", x * seconds, y * seconds, z * seconds);
     if (press) hand.pressShare(press);
-    if (press || pressing) hand.put("pad", press > 0);
+    if (press || pressing) hand.press("pad", press > 0);
     pressing = press > 0;
-    const shaker = found.vibrationActuator;
-    if (shaker) shake.feel(shaker, hand.feltN, performance.now());
+    const shaker = gamepad.vibrationActuator;
+    if (shaker) shake.play(shaker, hand.feltN, performance.now());
   }
 
   function rest(found: Gamepad): void {
-    if (found.vibrationActuator) shake.still(found.vibrationActuator);
+    if (found.vibrationActuator) shake.stop(found.vibrationActuator);
   }
 
   function quiet(): void {
     for (const each of navigator.getGamepads()) if (each) rest(each);
   }
 
-  hand.moves((seconds) => {
+  hand.addMover((seconds) => {
     if (hand.pads) look(seconds);
   });
   document.addEventListener("visibilitychange", () => document.hidden && quiet());

@@ -1,18 +1,21 @@
-/** The mouse and the pen: over the terrain they are the hand, pressed they touch; the wheel is depth, a pen's own too. */
+/** Mouse and pen: over the terrain they move the hand, pressed they touch; wheel and pen pressure set the depth. */
 import { figures, measuring } from "../instrumentation";
+import type { Page } from "../page";
 import type { Hand } from "./hand";
 import type { Vec } from "../server/protocol";
 
-/** Metres of depth for a unit of the wheel; a notch has a hundred. */
+/** Depth per unit of the wheel, metres; a notch has a hundred. */
 const WHEEL_M = 2e-6;
 const LINE = 16;
-/** A mouse that is not pressed is not heard for so long after a key: somebody's sleeve may have moved it. */
+/** Milliseconds after a key in which an unpressed mouse is ignored: it may have been moved by accident. */
 const AFTER_KEYS_MS = 1000;
-/** Buttons that are the camera's. */
+/** Bits of the camera's buttons. */
 const CAMERA = 6;
 
-export function mouse(hand: Hand): void {
-  const { canvas, view } = hand.page;
+type Screen = Pick<Page, "canvas" | "view" | "scene">;
+
+export function attachMouse(hand: Hand, page: Screen): void {
+  const { canvas, view } = page;
   let before: PointerEvent | null = null;
 
   function follow(event: PointerEvent): void {
@@ -29,20 +32,20 @@ export function mouse(hand: Hand): void {
     const at = pick(event.clientX, event.clientY);
     if (!at) return;
     if (event.pointerType === "pen" && down) hand.pressShare(event.pressure);
-    hand.over("mouse", at[0], at[1], down);
+    hand.moveOver("mouse", at[0], at[1], down);
   }
 
-  /** In its own level, and with Shift up and down. */
+  /** Move in the hand's level, and with Shift up and down. */
   function inSpace(event: PointerEvent): void {
     const { at } = hand;
     if (!at) {
       const first = pick(event.clientX, event.clientY);
-      if (first) hand.at3("mouse", first);
+      if (first) hand.moveTo("mouse", first);
     } else if (event.shiftKey) {
-      if (before) hand.at3("mouse", [at[0], at[1], hand.goalM(2) - (event.clientY - before.clientY) * metresPerPixel(at)]);
+      if (before) hand.moveTo("mouse", [at[0], at[1], hand.goalM(2) - (event.clientY - before.clientY) * metresPerPixel(at)]);
     } else {
-      const found = level(...view.ray(event.clientX, event.clientY), hand.goalM(2));
-      if (found) hand.at3("mouse", found);
+      const hit = meetLevel(...view.ray(event.clientX, event.clientY), hand.goalM(2));
+      if (hit) hand.moveTo("mouse", hit);
     }
   }
 
@@ -54,9 +57,9 @@ export function mouse(hand: Hand): void {
 
   function pick(x: number, y: number): Vec | null {
     const begun = performance.now();
-    const found = hand.page.scene?.pick(...view.ray(x, y)) ?? null;
+    const place = page.scene?.pick(...view.ray(x, y)) ?? null;
     if (measuring) figures.picks.push(performance.now() - begun);
-    return found;
+    return place;
   }
 
   for (const type of ["pointermove", "pointerdown", "pointerup"] as const) canvas.addEventListener(type, follow);
@@ -66,18 +69,18 @@ export function mouse(hand: Hand): void {
       if (event.pointerType !== "touch") hand.release("mouse");
     });
   canvas.addEventListener("contextmenu", (event) => event.preventDefault());
-  canvas.addEventListener("wheel", (event) => wheel(hand, event), { passive: false });
+  canvas.addEventListener("wheel", (event) => wheel(hand, page, event), { passive: false });
 }
 
-function wheel(hand: Hand, event: WheelEvent): void {
+function wheel(hand: Hand, { view }: Screen, event: WheelEvent): void {
   event.preventDefault();
   const by = event.deltaMode === WheelEvent.DOM_DELTA_LINE ? LINE * event.deltaY : event.deltaY;
-  if (event.ctrlKey) hand.page.view.zoom(by < 0 ? 0.1 : -0.1);
+  if (event.ctrlKey) view.zoom(by < 0 ? 0.1 : -0.1);
   else hand.deeper("mouse", by * WHEEL_M);
 }
 
-/** Where a ray meets the level at this height, if it does before it. */
-export function level(o: Vec, d: Vec, z: number): Vec | null {
+/** Return where a ray meets the level at this height; null if it does not. */
+export function meetLevel(o: Vec, d: Vec, z: number): Vec | null {
   const t = (z - o[2]) / d[2];
   return t > 0 && Number.isFinite(t) ? [o[0] + t * d[0], o[1] + t * d[1], z] : null;
 }

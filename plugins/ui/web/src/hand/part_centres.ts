@@ -1,15 +1,15 @@
-/** The parts of a surface, and where a hand finds each: in its widest place. */
+/** Centres of the parts of a surface: the place of each with the greatest clearance. */
 
 export interface Part {
   label: number;
   at: [number, number];
 }
 
-/** So many places are looked at along the width. */
+/** Places sampled along the width. */
 const COLUMNS = 96;
 
-/** By their labels. label: of a place; null where there is none. */
-export function parts(label: (x: number, y: number) => number | null, extent_m: [number, number]): Part[] {
+/** Return the centres by label. label: returns the label of a place, null outside of all parts. */
+export function findPartCentres(label: (x: number, y: number) => number | null, extent_m: [number, number]): Part[] {
   const [w, l] = extent_m;
   const columns = COLUMNS;
   const rows = Math.max(1, Math.round((COLUMNS * l) / w));
@@ -26,7 +26,7 @@ export function parts(label: (x: number, y: number) => number | null, extent_m: 
   return [...best].sort(([a], [b]) => a - b).map(([each, i]) => ({ label: each, at: at(i) }));
 }
 
-/** How many cells from each to the nearest of another label or the rim, by two passes. */
+/** Return the distance of each cell to the nearest of another label or the rim, cells, in two passes. */
 function clearances(labels: (number | null)[], rows: number, columns: number): Float64Array {
   const clear = new Float64Array(labels.length);
   const near = (i: number, j: number, inside: boolean): number => (inside && labels[i] === labels[j] ? clear[j]! : 0);

@@ -1,4 +1,4 @@
-/** Colours of what is drawn over a photograph: light ones have a dark rim, so that none needs a certain ground. */
+/** Colours of the overlay: light ones have a dark rim, so that they are visible on any photograph. */
 export const COLOURS = {
   device: 0xff5d8f,
   proxy: 0x35d0ff,

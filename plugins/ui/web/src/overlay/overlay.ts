@@ -1,24 +1,24 @@
-/** All that is drawn over the surface and moves: its pieces, and the layer of words and handles over the canvas. */
+/** The overlay: moving pieces over the surface, and the layer of texts and handles over the canvas. */
 import "./overlay.css";
 import { DirectionalLight, HemisphereLight } from "three";
-import type { State, Vec } from "../server/protocol";
+import { NOBODY_M, type State, type Vec } from "../server/protocol";
 import type { Scene } from "../surface/scene";
 import type { View } from "../view/view";
 import { ForceArrow } from "./pieces/force_arrow";
 import { FrictionCone } from "./pieces/friction_cone";
 import { DevicePoint } from "./pieces/device_point";
-import { Labels } from "./pieces/contact_label";
-import { NOBODY_M, Reading, type Live } from "../contact/reading";
+import { ContactLabel } from "./pieces/contact_label";
+import { type Reading, StateReader } from "../contact/reading";
 import { Picking } from "./picking";
 import type { Piece, Sight } from "./piece";
 import { Proxy } from "./pieces/proxy";
 import { Rest } from "../contact/rest";
 import { ContactRing } from "./pieces/contact_ring";
 import { ScaleBar } from "./pieces/scale_bar";
-import { round, settings } from "./settings";
+import { roundDown125, settings } from "./settings";
 import { Trace } from "./pieces/trace";
 
-/** Of the picture's width: how long a newton is at first. */
+/** First length of a newton, as a share of the picture's width. */
 const NEWTON_SHARE = 1 / 12;
 const NEWTON_M = 0.005;
 
@@ -29,17 +29,17 @@ interface Pinned {
 
 export class Overlay {
   readonly settings = settings();
-  /** Over the canvas, as large as it; what is in it does not catch the mouse unless it says so. */
+  /** Layer over the canvas, of its size; its elements let the mouse through unless they ask for it. */
   readonly layer = document.createElement("div");
-  /** What was drawn last; null while there is no state. */
-  live: Live | null = null;
-  /** Set where something of it changed that is not a state: the next frame draws it. */
+  /** The latest reading; null while there is no state. */
+  live: Reading | null = null;
+  /** Set when something besides the state changed: the next frame draws it. */
   changed = false;
   readonly sight: Sight;
-  /** Who has the mouse in the hand's place. */
+  /** The tool that takes the mouse from the hand. */
   readonly picking: Picking;
   private scene: Scene | null = null;
-  private reading = new Reading();
+  private reading = new StateReader();
   private rest = new Rest();
   private trace: Trace;
   private pieces: Piece[];
@@ -59,41 +59,41 @@ export class Overlay {
     this.trace = new Trace(view);
     this.pieces = [
       this.trace, new ContactRing(view), new FrictionCone(view), new Proxy(view), new DevicePoint(view),
-      new ForceArrow(view, "force"), new ForceArrow(view, "other"), new Labels(this.layer, view), new ScaleBar(this.layer, view),
+      new ForceArrow(view, "force"), new ForceArrow(view, "other"), new ContactLabel(this.layer, view), new ScaleBar(this.layer, view),
     ];
     new ResizeObserver(() => this.size()).observe(canvas);
     this.size();
   }
 
-  /** Another surface: where its size is another, so is the length of a newton; the trace of the one before is gone. */
+  /** Use another surface: a different size changes the length of a newton; the trace is cleared. */
   show(scene: Scene): void {
     const wide = scene.meta.extent_m[0];
-    if (wide !== this.scene?.meta.extent_m[0]) this.settings.metresPerNewton = round(NEWTON_SHARE * wide) || NEWTON_M;
+    if (wide !== this.scene?.meta.extent_m[0]) this.settings.metresPerNewton = roundDown125(NEWTON_SHARE * wide) || NEWTON_M;
     this.scene = scene;
     this.trace.clear();
     this.changed = true;
   }
 
-  /** Whether a frame is wanted: something changed, or there is a hand that is not at rest, or its trace has yet to fade. */
+  /** Return whether a frame is needed: a change, a hand that is not at rest, or a trace that has yet to fade. */
   wants(state: State | null): boolean {
     const seen = (this.live?.seen ?? false) || (state !== null && state.hand[2] < NOBODY_M);
-    const stirs = seen && !(state !== null && this.rest.lasts(state));
+    const stirs = seen && !(state !== null && this.rest.isAtRest(state));
     return this.changed || stirs || this.trace.fades(this.settings.seconds);
   }
 
-  /** Everything where this state has it, before the frame is drawn. */
+  /** Move everything to this state, before the frame is drawn. */
   put(state: State | null): void {
     this.changed = false;
     this.view.camera.updateMatrixWorld();
     if (!state) this.live = null;
-    else if (state !== this.live?.state) this.live = this.reading.of(state, this.scene);
+    else if (state !== this.live?.state) this.live = this.reading.read(state, this.scene);
     const live = this.live?.seen ? this.live : null;
     for (const each of this.pieces) each.put(live, this.settings, this.sight);
     for (const each of this.pinned) this.pin(each);
     this.changed = this.pieces.some((each) => each.late);
   }
 
-  /** Keep an element of the layer at a place of the workspace; hidden while that is null. The answer takes it away. */
+  /** Pin an element to a point of the workspace, hidden while that is null; return a function that removes it. */
   stay(element: HTMLElement, at: () => Vec | null): () => void {
     const pinned = { element, at };
     element.classList.add("pinned");

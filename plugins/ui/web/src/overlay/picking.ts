@@ -1,19 +1,12 @@
-/** A tool that takes the mouse from the hand: its main button then means places on the surface. */
+/** Tools that take the mouse from the hand: its main button then means places on the surface. */
+import type { PointerTool } from "../page";
 import type { Vec } from "../server/protocol";
 import type { Scene } from "../surface/scene";
 import type { View } from "../view/view";
 
-export interface Picked {
-  begin(at: Vec): void;
-  drag?(at: Vec): void;
-  end?(at: Vec): void;
-  /** Another tool took the mouse, or it was put away. */
-  left?(): void;
-}
-
-/** One tool at a time. */
+/** The holder of the pointer: one tool at a time. */
 export class Picking {
-  private tool: Picked | null = null;
+  private tool: PointerTool | null = null;
   private last: Vec | null = null;
 
   constructor(
@@ -26,11 +19,11 @@ export class Picking {
       around.addEventListener(type, (event) => this.hear(event), { capture: true });
   }
 
-  get busy(): Picked | null {
+  get busy(): PointerTool | null {
     return this.tool;
   }
 
-  take(tool: Picked | null): void {
+  take(tool: PointerTool | null): void {
     const before = this.tool;
     this.tool = tool;
     this.last = null;

@@ -1,10 +1,10 @@
-/** A thing that is drawn over the surface, and what it is told in each frame. */
+/** A piece of the overlay, and its input in each frame. */
 import type { PerspectiveCamera } from "three";
 import type { Vec } from "../server/protocol";
-import type { Live } from "../contact/reading";
+import type { Reading } from "../contact/reading";
 import type { Settings } from "./settings";
 
-/** From where the surface is seen, and how large the canvas is, in CSS pixels. */
+/** The camera, and the size of the canvas in CSS pixels. */
 export interface Sight {
   readonly camera: PerspectiveCamera;
   width: number;
@@ -12,13 +12,13 @@ export interface Sight {
 }
 
 export interface Piece {
-  /** Whether it shows less than it was told, as words change only so often: it wants another frame. */
+  /** True if the piece is not up to date, as texts change only so often: another frame is needed. */
   readonly late?: boolean;
-  /** live: null while there is no hand. */
-  put(live: Live | null, settings: Settings, sight: Sight): void;
+  /** Move to this reading; null while there is no hand. */
+  put(live: Reading | null, settings: Settings, sight: Sight): void;
 }
 
-/** How much of the workspace one CSS pixel of the canvas shows at a place: pieces keep their size on the screen. */
+/** Return metres per CSS pixel at a place: pieces keep their size on the screen. */
 export function metresPerPixel({ camera, height }: Sight, at: Vec): number {
   const { elements } = camera.matrixWorldInverse;
   const ahead = -(elements[2] * at[0] + elements[6] * at[1] + elements[10] * at[2] + elements[14]);

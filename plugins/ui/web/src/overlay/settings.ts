@@ -1,13 +1,13 @@
-/** What of the overlay is shown, and how large. */
+/** Settings of the overlay: what is shown, and how large. */
 
 export const SWITCHES = ["device", "proxy", "ring", "arrow", "cone", "trace", "labels", "limits", "markers"] as const;
 export type Switch = (typeof SWITCHES)[number];
 
 export interface Settings {
   show: Record<Switch, boolean>;
-  /** Of the trace. */
+  /** Length of the trace. */
   seconds: number;
-  /** Length of the force arrow: metres of the picture for a newton. */
+  /** Length of the force arrow, metres per newton. */
   metresPerNewton: number;
 }
 
@@ -22,8 +22,8 @@ export function settings(): Settings {
   };
 }
 
-/** 1, 2 or 5 times a power of ten: the greatest that is not above a value. */
-export function round(value: number): number {
+/** Return the greatest 1, 2 or 5 times a power of ten that is not above a value. */
+export function roundDown125(value: number): number {
   if (!(value > 0)) return 0;
   const power = 10 ** Math.floor(Math.log10(value) + 1e-9);
   const digit = value / power + 1e-9;

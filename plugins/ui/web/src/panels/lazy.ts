@@ -1,25 +1,27 @@
-/** A panel whose contents come when it is opened first: the page is there sooner. */
+/** A panel whose module is loaded when it is first opened, so that the page starts sooner. */
 import type { Page } from "../page";
 import type { Panel } from "./panel";
-import { t } from "../frame/words";
+import { t } from "./words";
 
-/** load: brings what builds it; where that fails, as without the program, it is tried again when it is opened again. */
-export function late(about: Omit<Panel, "build">, load: () => Promise<Panel["build"]>): Panel {
+/** Return a panel that builds itself from a module when it is first opened.
+ *
+ * If loading or building fails, the panel shows why and tries again when it is opened the next time. */
+export function lazy(about: Omit<Panel, "build">, load: () => Promise<Pick<Panel, "build">>): Panel {
   return { ...about, build };
 
   function build(page: Page, root: HTMLElement): void {
     const box = root.closest("details")!;
-    let begun = false;
+    let started = false;
     const fill = async (): Promise<void> => {
-      if (begun || !box.open) return;
-      begun = true;
+      if (started || !box.open) return;
+      started = true;
       try {
-        const make = await load();
+        const panel = await load();
         root.replaceChildren();
-        make(page, root);
+        await panel.build(page, root);
       } catch (error) {
-        begun = false;
-        root.textContent = t("panelFailed", { error: (error as Error).message });
+        started = false;
+        root.textContent = t("failed", { error: (error as Error).message });
       }
     };
     box.addEventListener("toggle", () => void fill());

@@ -1,17 +1,17 @@
-/** A panel of the page: a part of it that stands for itself. */
+/** A panel of the page: an independent section under a heading. */
 import type { Page } from "../page";
 import { recall, remember } from "../preferences";
-import { t } from "../frame/words";
+import { t } from "./words";
 
 export interface Panel {
   id: string;
   title: string;
-  /** Left: what is made. Right: what is seen, heard and felt. Bottom: what happened. */
+  /** Column: left the pipeline, right view, sound and touch, bottom the log. */
   place: "left" | "right" | "bottom";
-  /** Whether it is open until a person says otherwise. */
+  /** True if it is open at first. */
   open: boolean;
-  /** Called once, open or not. In `root` headings are <h3>; the classes for controls stand at the top of app.css. */
-  build(page: Page, root: HTMLElement): void;
+  /** Build the contents, once, open or not. Headings in `root` are <h3>; classes for controls are listed in style/tokens.css. */
+  build(page: Page, root: HTMLElement): void | Promise<void>;
 }
 
 const WAYS: Record<string, (all: HTMLElement[], at: number) => HTMLElement | undefined> = {
@@ -21,21 +21,21 @@ const WAYS: Record<string, (all: HTMLElement[], at: number) => HTMLElement | und
   End: (all) => all.at(-1),
 };
 
-/** Put panels where they belong, each under a heading that opens and closes it. One that fails leaves the others. */
+/** Add panels to their columns, each under a heading that opens and closes it. A panel that fails leaves the others. */
 export function build(page: Page, panels: Panel[]): void {
   for (const panel of panels) {
     const root = place(panel);
     try {
-      panel.build(page, root);
+      void panel.build(page, root);
     } catch (error) {
-      root.textContent = t("panelFailed", { error: String(error) });
+      root.textContent = t("failed", { error: String(error) });
       root.classList.add("bad");
       console.error(error);
     }
   }
 }
 
-/** Open a panel and go to its heading. */
+/** Open a panel and focus its heading. */
 export function reveal(id: string): void {
   const box = document.getElementById(id) as HTMLDetailsElement;
   box.open = true;
@@ -54,7 +54,7 @@ function place(panel: Panel): HTMLElement {
   title.textContent = panel.title;
   heading.append(title);
   heading.addEventListener("keydown", walk);
-  heading.addEventListener("click", () => remember(`panel.${panel.id}`, !box.open)); // "toggle" comes later than a reload may
+  heading.addEventListener("click", () => remember(`panel.${panel.id}`, !box.open)); // "toggle" may come after a reload
   const root = document.createElement("div");
   root.className = "inside";
   box.append(heading, root);
@@ -62,7 +62,7 @@ function place(panel: Panel): HTMLElement {
   return root;
 }
 
-/** The arrow keys go from heading to heading within a region. */
+/** Move the focus between headings of a region by arrow keys. */
 function walk(event: KeyboardEvent): void {
   const way = WAYS[event.key];
   if (!way) return;

@@ -1,8 +1,9 @@
 import { words } from "../words/words";
 
-/** Titles of the panels from which the picture is handed on; what is in them comes when they are opened. */
+/** Titles of the panels that are loaded when they are opened, and why one cannot be shown. */
 export const t = words({
   legible: ["Legible to fingers", "Für Finger lesbar"],
   description: ["Description", "Beschreibung"],
   export: ["Export", "Weitergeben"],
+  failed: ["This panel could not be shown: {error}", "Dieser Abschnitt konnte nicht gezeigt werden: {error}"],
 });

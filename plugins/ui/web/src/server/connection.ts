@@ -1,20 +1,18 @@
-/** The one websocket: states in, pointers and acknowledgements out, JSON for what is rare. It comes back by itself. */
+/** The websocket: states in, pointers and acknowledgements out, JSON for requests and messages. It reconnects by itself. */
 import type { Hub } from "../hub";
 import { token } from "./token";
 import type { Events } from "./messages";
-import { ack, now, pointer, release, state, TAGS, VERSION, type State, type Vec } from "./protocol";
+import { encodeAck, now, encodePointer, encodeRelease, parseState, TAGS, VERSION, type State, type Vec } from "./protocol";
 
 const FIRST_PAUSE_MS = 250;
 const LONGEST_PAUSE_MS = 4000;
 const KEPT_TAGS = 512;
-/** After so long without an answer, stop is asked for beside the websocket as well. */
+/** Milliseconds without an answer after which stop is sent by HTTP as well. */
 const STOP_PATIENCE_MS = 300;
-/** How the server closes the websocket of a page whose key is not its own. */
+/** Close code of the server for a page with a wrong key. */
 const WRONG_KEY = 4401;
 
-export { token };
-
-/** What the server keeps under an address. Throws if it is not there. */
+/** Fetch a file of the server. Throws if it is not there. */
 export async function bulk(path: string, asked: Record<string, number> = {}, signal?: AbortSignal): Promise<Response> {
   const query = new URLSearchParams({ token, ...Object.fromEntries(Object.entries(asked).map(([k, v]) => [k, `${v}`])) });
   const response = await fetch(`${path}?${query}`, { signal });
@@ -23,15 +21,15 @@ export async function bulk(path: string, asked: Record<string, number> = {}, sig
 }
 
 interface Waiting {
-  done: (value: unknown) => void;
-  refused: (error: Error) => void;
+  resolve: (value: unknown) => void;
+  reject: (error: Error) => void;
 }
 
-export class Net {
+export class Connection {
   latest: State | null = null;
-  /** When each pointer was sent, by its tag: how long until its force is drawn. */
+  /** Send time of each pointer by its tag, to measure the time until its force is drawn. */
   readonly sentMs = new Map<number, number>();
-  /** When the newest event was said that this page heard. */
+  /** Time of the latest message, Unix seconds. */
   heard_s = 0;
   private tag = 0;
   private stopping = 0;
@@ -44,31 +42,31 @@ export class Net {
     this.connect();
   }
 
-  /** Ask the server for something; rejects with its words where it refuses. */
-  ask<T>(name: string, told: Record<string, unknown> = {}): Promise<T> {
+  /** Send a request; rejects with the server's text if it is refused. */
+  ask<T>(name: string, args: Record<string, unknown> = {}): Promise<T> {
     if (!this.open) return Promise.reject(new Error("the program is not there"));
     const number = ++this.number;
-    this.socket!.send(JSON.stringify({ number, ask: name, ...told }));
+    this.socket!.send(JSON.stringify({ number, ask: name, ...args }));
     return new Promise<T>((done, refused) => {
-      this.waiting.set(number, { done: done as (value: unknown) => void, refused });
+      this.waiting.set(number, { resolve: done as (value: unknown) => void, reject: refused });
     });
   }
 
-  /** No force, whatever else goes on, and though the websocket may hang. */
+  /** Take all force away, also if the websocket hangs. */
   async stop(): Promise<void> {
-    if (!this.open) return this.stopBeside();
+    if (!this.open) return this.stopByHttp();
     clearTimeout(this.stopping);
-    this.stopping = window.setTimeout(() => void this.stopBeside().catch(() => undefined), STOP_PATIENCE_MS);
+    this.stopping = window.setTimeout(() => void this.stopByHttp().catch(() => undefined), STOP_PATIENCE_MS);
     return this.ask<void>("stop").finally(() => clearTimeout(this.stopping));
   }
 
-  /** Feel again: a stop from before that was not answered yet does not come after it. */
+  /** Switch forces on; a stop that was not answered yet no longer follows. */
   feel(): Promise<void> {
     clearTimeout(this.stopping);
     return this.ask<void>("feel");
   }
 
-  private async stopBeside(): Promise<void> {
+  private async stopByHttp(): Promise<void> {
     await fetch(`/stop?token=${encodeURIComponent(token)}`, { method: "POST", keepalive: true });
   }
 
@@ -77,15 +75,15 @@ export class Net {
     this.tag = (this.tag + 1) & TAGS;
     this.sentMs.set(this.tag, now());
     this.sentMs.delete((this.tag - KEPT_TAGS) & TAGS);
-    this.socket!.send(pointer(hand, buttons, this.tag));
+    this.socket!.send(encodePointer(hand, buttons, this.tag));
   }
 
   release(): void {
-    if (this.open) this.socket!.send(release());
+    if (this.open) this.socket!.send(encodeRelease());
   }
 
   drawn(seq: number): void {
-    if (this.open) this.socket!.send(ack(seq));
+    if (this.open) this.socket!.send(encodeAck(seq));
   }
 
   private get open(): boolean {
@@ -97,41 +95,41 @@ export class Net {
     socket.binaryType = "arraybuffer";
     socket.onopen = () => (this.pauseMs = FIRST_PAUSE_MS);
     socket.onmessage = ({ data }: MessageEvent<string | ArrayBuffer>) =>
-      typeof data === "string" ? this.hear(JSON.parse(data)) : this.take(data);
-    socket.onclose = ({ code }) => this.lost(code === WRONG_KEY ? "key" : undefined);
+      typeof data === "string" ? this.onText(JSON.parse(data)) : this.onState(data);
+    socket.onclose = ({ code }) => this.onClosed(code === WRONG_KEY ? "key" : undefined);
     this.socket = socket;
   }
 
-  private hear(said: Events[keyof Events] & { event: string; number?: number; value?: unknown; text?: string }): void {
-    const waits = said.number === undefined ? undefined : this.waiting.get(said.number);
-    if (said.number !== undefined) {
-      this.waiting.delete(said.number);
-      if (said.event === "answer") waits?.done(said.value);
-      else waits?.refused(new Error(said.text));
+  private onText(message: Events[keyof Events] & { event: string; number?: number; value?: unknown; text?: string }): void {
+    const waits = message.number === undefined ? undefined : this.waiting.get(message.number);
+    if (message.number !== undefined) {
+      this.waiting.delete(message.number);
+      if (message.event === "answer") waits?.resolve(message.value);
+      else waits?.reject(new Error(message.text));
       return;
     }
-    if (said.event === "hello" && (said as Events["hello"]).version !== VERSION) return this.leave("version");
-    this.hub.tell(said.event as keyof Events, said as never);
-    const last = said.event === "hello" ? (said as Events["hello"]).history.at(-1) : said;
+    if (message.event === "hello" && (message as Events["hello"]).version !== VERSION) return this.abandon("version");
+    this.hub.tell(message.event as keyof Events, message as never);
+    const last = message.event === "hello" ? (message as Events["hello"]).history.at(-1) : message;
     this.heard_s = Math.max(this.heard_s, (last as { at_s?: number } | undefined)?.at_s ?? 0);
   }
 
-  private take(data: ArrayBuffer): void {
-    const fresh = state(data);
+  private onState(data: ArrayBuffer): void {
+    const fresh = parseState(data);
     if (!fresh) return;
     this.latest = fresh;
     this.hub.tell("state", fresh);
-    if (document.hidden) this.drawn(fresh.seq); // nothing is drawn then
+    if (document.hidden) this.drawn(fresh.seq); // a hidden page draws nothing
   }
 
-  /** This page cannot go on with that program. */
-  private leave(why: "version"): void {
-    this.socket!.onclose = () => this.lost(why);
+  /** Close the connection for good: the server is another version. */
+  private abandon(why: "version"): void {
+    this.socket!.onclose = () => this.onClosed(why);
     this.socket!.close();
   }
 
-  private lost(forGood?: "key" | "version"): void {
-    for (const { refused } of this.waiting.values()) refused(new Error("the program is gone"));
+  private onClosed(forGood?: "key" | "version"): void {
+    for (const { reject: refused } of this.waiting.values()) refused(new Error("the program is gone"));
     this.waiting.clear();
     this.latest = null;
     this.hub.tell("gone", { event: "gone", at_s: now() / 1000 });

@@ -1,11 +1,11 @@
-/** When there is time for what a person does not wait for: the program has its hands full until a surface is felt. */
+/** Low-priority requests wait until the server is idle: at first it computes the surface. */
 import type { Hub } from "../hub";
 
-/** After so long with the program there is time anyway: it may have nothing that is felt. */
+/** Milliseconds after which the server counts as idle anyway: there may be nothing to compute. */
 const PATIENCE_MS = 3000;
 
-/** Kept once a surface is felt, or nothing is being made that would be. */
-export function leisure(hub: Hub, patienceMs = PATIENCE_MS): Promise<void> {
+/** Return a promise that resolves once a surface can be felt, or none is being computed. */
+export function whenIdle(hub: Hub, patienceMs = PATIENCE_MS): Promise<void> {
   return new Promise((begin) => {
     hub.on("touch", () => begin());
     hub.on("made", ({ want, outcome }) => {

@@ -1,8 +1,5 @@
-/** What the server says, by the name of the event; `at_s` is the Unix time. */
+/** Messages of the server by name; `at_s` is the Unix time. */
 import type { Plain } from "../forms/schema";
-import type { Hand } from "../hand/hand";
-import type { State } from "./protocol";
-import type { Scene } from "../surface/scene";
 
 export interface Material {
   name: string;
@@ -19,7 +16,7 @@ export interface Material {
   drag_n_s_per_m: number;
 }
 
-/** Values that can be warped over a surface; colours run from low to high. */
+/** Values that can be drawn on a surface; colours run from low to high. */
 export interface LayerMeta {
   unit: string;
   low: number;
@@ -28,29 +25,29 @@ export interface LayerMeta {
   columns: number;
 }
 
-/** A surface: what the arrays at /scene/<digest>/ mean. */
+/** Metadata of a surface: the meaning of the arrays at /scene/<digest>/. */
 export interface Meta {
   digest: string;
   name: string;
-  /** Heights and materials; heights alone; or segments over whatever heights there are. */
+  /** Contents: heights and materials; heights alone; or segments over any heights. */
   shows: "surface" | "relief" | "segments";
-  /** Of the finest level. */
+  /** Size of the finest level, cells. */
   rows: number;
   columns: number;
   extent_m: [number, number];
-  /** Lowest and highest. */
+  /** Lowest and highest height. */
   height_m: [number, number];
-  /** Level 0 is the finest; a cell of another is a mean over step x step of its cells. The last is drawn at once. */
+  /** Levels of detail, the finest first; a cell is the mean of step x step cells of level 0. The last is drawn first. */
   levels: { step: number; rows: number; columns: number }[];
-  /** How many labels there are; 0 without any. */
+  /** Number of labels; 0 without any. */
   labels: number;
   label_bytes: 2 | 4;
-  /** Each once; which of them a label has is in materials.u16. */
+  /** Materials without repetition; materials.u16 maps labels to them. */
   materials: Material[];
-  /** Names of the parts, by their labels; null where the parts have none. */
+  /** Names of the parts by label; null if parts have none. */
   parts: string[] | null;
   photo: boolean;
-  /** Width and height of the finer picture beside the one that is drawn at once; null where that is the finest. */
+  /** Size of the finer picture; null if the first one is the finest. */
   fine_photo: [number, number] | null;
   layers: Record<string, LayerMeta>;
 }
@@ -76,14 +73,14 @@ export interface Complaint {
   column: number | null;
 }
 
-/** What making a product would do; `digest` is that of the text. */
+/** Steps that computing a product would take; `digest` identifies the text. */
 export interface Plan {
   digest: string;
   want: string;
   steps: Outcome[];
-  /** Products that take seconds and would be made. */
+  /** Products that would be computed and take seconds. */
   slow: string[];
-  /** Why it cannot be made; empty where it can. */
+  /** Reason why the product cannot be computed; empty if it can. */
   refusal: string;
 }
 
@@ -91,48 +88,48 @@ export interface Segment {
   label: number;
   material: string;
   why: string;
-  /** Of the area, 0 to 1. */
+  /** Share of the area, 0 to 1. */
   share: number;
 }
 
-/** `unsafe` is preflight's worst, `illegible` that of legibility. */
+/** Grades; `unsafe` is preflight's worst, `illegible` that of legibility. */
 export type Grade = "ok" | "warn" | "unsafe" | "illegible";
 
 export interface Verdict {
   check: string;
   of: string;
   verdict: Grade;
-  /** How the value stands to its bound, in words. */
+  /** Comparison of the value with its bound, in words. */
   stands: string;
   source: string;
   note: string;
   cure: string;
   says: string;
   changes: { key: string; value: Plain }[];
-  /** Places that fail, as shares of the picture from the left and from the top. */
+  /** Failing places, as shares of the picture from the left and from the top. */
   at?: [number, number][];
 }
 
-/** Plain values of a pipeline file. */
+/** Values of a pipeline file. */
 export type Values = Record<string, unknown>;
 
-/** A preflight of the text with this digest. */
+/** Preflight of the text with this digest. */
 export interface Judged {
   digest: string;
   grade: Grade;
   sentence: string;
-  /** Empty for the page's own hand. */
+  /** Name of the device; empty for this page's hand. */
   device: string;
   law: string;
-  /** Whether lateness is that of the loop that gives the forces, and not of the process that judged. */
+  /** True if lateness was measured in the force loop, false if in the computing process. */
   of_loop: boolean;
   verdicts: Verdict[];
 }
 
-/** What a finger reads. */
+/** Medium of a tactile picture. */
 export type Medium = "swell" | "print" | "pins" | "force";
 
-/** Whether fingers can read the text with this digest. */
+/** Tactile legibility of the text with this digest. */
 export interface Legible {
   digest: string;
   medium: Medium;
@@ -142,14 +139,14 @@ export interface Legible {
   verdicts: Verdict[];
 }
 
-/** What was exported of the text with this digest; the files lie at /export/<folder>/. */
+/** Exports of the text with this digest; the files are at /export/<folder>/. */
 export interface Exported {
   digest: string;
   folder: string;
   exports: (Pick<Outcome, "outcome" | "why" | "seconds" | "notes"> & {
     name: string;
     files: { name: string; bytes: number }[];
-    /** Null for what is not felt. */
+    /** Legibility; null for files that are not tactile. */
     legible: Pick<Legible, "grade" | "sentence" | "verdicts"> | null;
   })[];
 }
@@ -158,13 +155,20 @@ export interface Document {
   text: string;
   path: string;
   digest: string;
-  /** What the text says; null if it is no YAML. */
+  /** Values as written; null if the text is not YAML. */
   said: Values | null;
-  /** The same with every default filled in; null if something is wrong. */
+  /** Values with all defaults filled in; null if something is wrong. */
   values: Values | null;
   complaints: Complaint[];
   can_undo: boolean;
   can_redo: boolean;
+}
+
+/** A panel that a plugin brings: its titles by language, and the address of its ES module. */
+export interface PluginPanel {
+  name: string;
+  title: Record<string, string>;
+  module: string;
 }
 
 interface Said {
@@ -173,16 +177,16 @@ interface Said {
 }
 
 export interface Events {
-  hello: Said & { version: number; history: (Said & { event: keyof Events })[]; scene: (Said & Meta) | null };
+  hello: Said & { version: number; history: (Said & { event: keyof Events })[]; scene: (Said & Meta) | null; panels?: PluginPanel[] };
   gone: Said;
-  /** Of this page alone: the program that answers is another one, by its key or by its version. */
+  /** Told by the page itself: the server is another one, by its key or by its version. */
   refused: Said & { why: "key" | "version" };
-  /** A program before this one ended while this file was edited and not saved; none any more, if path is empty. */
+  /** A previous program ended while this file had unsaved edits; an empty path withdraws the offer. */
   restored: Said & { path: string; edited_s: number };
-  /** free: no tab holds the hand. */
+  /** free: true if no tab holds the hand. */
   holding: Said & { holding: boolean; free: boolean };
   maker: Said;
-  /** The maker does not start, and is not tried any more. */
+  /** The computing process does not start, and is not tried again. */
   maker_gone: Said & { why: string };
   making: Said & { want: string; digest: string };
   made: Said & { want: string; digest: string; outcome: "made" | "stopped" | "failed"; why: string; seconds: number };
@@ -193,11 +197,11 @@ export interface Events {
   exported: Said & Exported;
   stage: Said & { product: string; method: string; done: Partial<Outcome> };
   scene: Said & Meta;
-  /** The surface with this digest in words, and its materials' names, by language. */
+  /** Description of the surface with this digest, and names of its materials, by language. */
   described: Said & { digest: string; says: Record<string, string>; names: Record<string, Record<string, string>> };
   document: Said & Document;
   touch: Said & { law: string; seconds: number; how: string };
-  /** stopped: somebody pressed stop; lost: the device went; waiting: it is looked for again and again. */
+  /** stopped: by the stop button; lost: the device was disconnected; waiting: the device is being searched for. */
   loop: Said & {
     running: boolean;
     why: string;
@@ -207,9 +211,9 @@ export interface Events {
     device?: string;
     own_hand?: boolean;
   };
-  /** To which part a device guides the hand; null for none. */
+  /** Part that the device guides the hand to; null for none. */
   beacon: Said & { part: number | null; name: string; why: "asked" | "button" | "scene" | "ended" };
-  /** Another device was chosen. */
+  /** The chosen device changed. */
   device: Said & { kind: "hand" | "document" | "other"; name: string };
   error: Said & { text: string };
   laws: Said &
@@ -219,26 +223,6 @@ export interface Events {
       | { state: "blind"; called: number; trials: number; question: string }
     );
   recorder: Said & { recording: boolean; path: string; ticks: number; why: string };
-  /** What Python's logging and warnings say, in the server and in the maker. */
+  /** Records of Python's logging and warnings, in the server and in the computing process. */
   log: Said & { level: "detail" | "warning" | "error"; logger: string; text: string };
-  /** Of this page alone: a state that arrived, one that was drawn, a surface that can be drawn. */
-  state: State;
-  drawn: State;
-  shown: Scene;
-  /** Something about this page's hand changed: what moves it, how, whether it is felt. */
-  hand: Hand;
-  /** What is to be shown of the surface, and what is: the picture, heights, segments ... */
-  "look at": { look: string };
-  look: { look: string };
-  /** Something finer of the surface on the screen has come. */
-  finer: Scene;
-  /** A recording was opened, a file of this machine. */
-  recording: { path: string };
-  /** Of this page alone: the colours are others now (see `colour` of themes.ts). */
-  theme: { chosen: string; dark: boolean; contrast: boolean };
-  /** Sound was switched; speech was, or has another voice ("": none). */
-  sound: { on: boolean };
-  aloud: { on: boolean; voice: string };
-  /** Whether every line of the log is to be read out. */
-  "read log": { on: boolean };
 }

@@ -1,4 +1,4 @@
-/** The binary frames of the websocket, little-endian; the twin of tangible_ui/wire.py. */
+/** Binary frames of the websocket, little-endian; the counterpart of tangible_ui/wire.py. */
 
 export const VERSION = 1;
 export const STATE = 1;
@@ -11,7 +11,7 @@ export const ACK_BYTES = 8;
 export const RELEASE_BYTES = 1;
 export const STATUS = { RUNNING: 1, HOLDING: 2, RECORDING: 4 } as const;
 export const TAGS = 0x3fffff;
-/** Bits of `flags`: `TickFlag` of the core. */
+/** Bits of `flags`, as `TickFlag` of the core. */
 export const FLAGS = {
   TOUCHING: 1,
   FORCE_LIMITED: 2,
@@ -26,34 +26,34 @@ export const FLAGS = {
   BEACON: 1024,
 } as const;
 
-/** x right, y away, z up; metres, newtons, metres per second. */
+/** Vector: x right, y away, z up; metres, newtons, metres per second. */
 export type Vec = [number, number, number];
 
-/** The newest tick of the force loop. */
+/** State of the newest tick of the force loop. */
 export interface State {
   status: number;
   flags: number;
   seq: number;
-  /** Of the pointer that this tick acted on. */
+  /** Tag of the pointer that this tick acted on. */
   tag: number;
   overruns: number;
-  /** When the tick began, ms of the Unix clock. */
+  /** Start of the tick, ms of the Unix clock. */
   sampleMs: number;
   hand: Vec;
-  /** NaN where the law has none. */
+  /** Proxy position; NaN for a law without a proxy. */
   proxy: Vec;
   force: Vec;
   velocity: Vec;
-  /** The force that the other of two laws would give; 0 without one. */
+  /** Force of the second law in a comparison; 0 without one. */
   other: Vec;
   lateUs: number;
   arrivedMs: number;
 }
 
-/** Milliseconds of the Unix clock, finer than Date.now. */
+/** Return milliseconds of the Unix clock, finer than Date.now. */
 export const now = (): number => performance.timeOrigin + performance.now();
 
-export function state(buffer: ArrayBuffer): State | null {
+export function parseState(buffer: ArrayBuffer): State | null {
   const data = new DataView(buffer);
   if (buffer.byteLength !== STATE_BYTES || data.getUint8(0) !== STATE) return null;
   const at = (offset: number): Vec => [
@@ -78,7 +78,7 @@ export function state(buffer: ArrayBuffer): State | null {
   };
 }
 
-export function pointer(hand: Vec, buttons: number, tag: number): ArrayBuffer {
+export function encodePointer(hand: Vec, buttons: number, tag: number): ArrayBuffer {
   const buffer = new ArrayBuffer(POINTER_BYTES);
   const data = new DataView(buffer);
   data.setUint8(0, POINTER);
@@ -89,7 +89,7 @@ export function pointer(hand: Vec, buttons: number, tag: number): ArrayBuffer {
   return buffer;
 }
 
-export function ack(seq: number): ArrayBuffer {
+export function encodeAck(seq: number): ArrayBuffer {
   const buffer = new ArrayBuffer(ACK_BYTES);
   const data = new DataView(buffer);
   data.setUint8(0, ACK);
@@ -97,6 +97,14 @@ export function ack(seq: number): ArrayBuffer {
   return buffer;
 }
 
-export function release(): ArrayBuffer {
+export function encodeRelease(): ArrayBuffer {
   return new Uint8Array([RELEASE]).buffer;
 }
+
+/** Height from which a hand counts as absent, metres: the server puts a device without a hand a metre high. */
+export const NOBODY_M = 0.5;
+
+export const isRunning = (state: State): boolean => (state.status & STATUS.RUNNING) !== 0;
+/** Return whether the loop runs and a hand holds the device. */
+export const isHeld = (state: State): boolean => isRunning(state) && state.hand[2] < NOBODY_M;
+export const isTouching = (state: State): boolean => isHeld(state) && (state.flags & FLAGS.TOUCHING) !== 0;

@@ -1,19 +1,19 @@
-/** The key that the page's address holds: taken out of it, so that neither the address bar nor a bookmark shows it. */
+/** The key of the page's address, removed from it so that neither the address bar nor a bookmark shows it. */
 const KEPT = "key";
 
-export const token = taken();
+export const token = takeToken();
 
-/** A reload finds it again; in a browser that keeps nothing it stays in the address. */
-function taken(): string {
+/** Return the key; a reload finds it in the session's storage, or else in the address. */
+function takeToken(): string {
   const address = new URL(location.href);
-  const said = address.searchParams.get("token");
+  const text = address.searchParams.get("token");
   try {
-    if (said === null) return sessionStorage.getItem(KEPT) ?? "";
-    sessionStorage.setItem(KEPT, said);
+    if (text === null) return sessionStorage.getItem(KEPT) ?? "";
+    sessionStorage.setItem(KEPT, text);
     address.searchParams.delete("token");
     history.replaceState(history.state, "", address);
   } catch {
-    // it is used as it was said
+    // without storage the address keeps the key
   }
-  return said ?? "";
+  return text ?? "";
 }

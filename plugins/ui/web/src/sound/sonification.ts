@@ -1,8 +1,8 @@
-/** What a stroke sounds like, from the material's own figures: numbers alone, no sound is made here. */
+/** Sound of a stroke, from the material's own figures; numbers alone, no sound is made here. */
 import type { Material } from "../server/messages";
 import type { Vec } from "../server/protocol";
 
-/** A voice of the instrument: how high, how loud (root mean square, of full scale), how narrow a band of noise. */
+/** A voice of the synthesizer: frequency, level (root mean square, of full scale), and quality of a band of noise. */
 export interface Voice {
   hz: number;
   level: number;
@@ -12,23 +12,23 @@ export interface Voice {
 export interface Stroke {
   noise: Voice;
   tone: Voice;
-  /** The tone of friction that sticks and slips is a creak. */
+  /** True for a creak: friction that sticks and slips. */
   creaks: boolean;
 }
 
-/** No louder, before the volume. */
+/** Greatest level before the volume. */
 export const MOST_LEVEL = 0.25;
 const BAND_HZ = { least: 50, most: 6000 };
-/** The stroke of a rough material that is taken for full: 0.1 mm, 2 N, 0.1 m/s. */
+/** A stroke at full level: 0.1 mm, 2 N, 0.1 m/s, 1 N of drag. */
 const FULL = { roughness_m: 1e-4, force_n: 2, speed_m_per_s: 0.1, drag_n: 1 };
-/** Loudness grows more slowly than power (Stevens). */
+/** Exponent of loudness over power (Stevens). */
 const EXPONENT = 0.6;
 const SILENT: Voice = { hz: BAND_HZ.least, level: 0, q: 1 };
 
 const clamp = (value: number, least: number, most: number): number => Math.min(most, Math.max(least, value));
 const loudness = (share: number): number => MOST_LEVEL * clamp(share, 0, 1) ** EXPONENT;
 
-/** How often a stroke meets a grain, a second: along the lines of a material never, across them speed over grain. */
+/** Return grains met per second: none along the lines of a material, speed over grain across them. */
 export function grains_hz(material: Material, velocity: Vec): number {
   const [vx, vy] = velocity;
   const angle = (material.direction_deg * Math.PI) / 180;
@@ -37,7 +37,7 @@ export function grains_hz(material: Material, velocity: Vec): number {
   return (share * across + (1 - share) * Math.hypot(vx, vy)) / material.grain_m;
 }
 
-/** Silent at rest, without force, and on what is smooth. */
+/** Return the sound of a stroke; silent at rest, without force, and on smooth materials. */
 export function stroke(material: Material | null, force: Vec, velocity: Vec): Stroke {
   const silent = { noise: SILENT, tone: SILENT, creaks: false };
   const speed = Math.hypot(velocity[0], velocity[1]);
@@ -61,7 +61,7 @@ export function stroke(material: Material | null, force: Vec, velocity: Vec): St
   };
 }
 
-/** A tap: the harder, the higher and the shorter; the faster the hand arrives, the louder. */
+/** Return a tap: harder materials sound higher and shorter, faster contacts louder. */
 export function tap(material: Material | null, velocity: Vec): { hz: number; level: number; seconds: number } {
   const hardness = Math.sqrt((material?.stiffness_n_per_m ?? 300) / 300);
   return {
@@ -74,23 +74,23 @@ export function tap(material: Material | null, velocity: Vec): { hz: number; lev
 const LOWEST_HZ = 220;
 const OCTAVES = 2;
 
-/** The pitch of a height: two octaves from the lowest place to the highest. A flat surface has the lowest. */
+/** Return the pitch of a height: two octaves from the lowest place to the highest. A flat surface has the lowest. */
 export function pitch_hz(height_m: number, [low, high]: readonly [number, number]): number {
   const share = high > low ? clamp((height_m - low) / (high - low), 0, 1) : 0;
   return LOWEST_HZ * 2 ** (OCTAVES * share);
 }
 
-/** The pitch of a force; the level says how much of what is allowed it is. */
+/** Return the level of the force's tone, relative to 8 N. */
 export function force_level(force_n: number): number {
   return 0.5 * loudness(force_n / 8);
 }
 
-/** -1 at the left rim, 1 at the right. */
+/** Return the stereo position: -1 at the left rim, 1 at the right. */
 export function pan(x_m: number, width_m: number): number {
   return width_m > 0 ? clamp((2 * x_m) / width_m, -1, 1) : 0;
 }
 
-/** How much a band of noise must be raised to be as loud as its level says. Noise between -1 and 1 has 1/sqrt(3). */
+/** Return the gain that brings a band of noise to its level. Noise between -1 and 1 has 1/sqrt(3). */
 export function makeup({ hz, q }: Voice, rate_hz: number): number {
   const band = (Math.PI / 2) * (hz / q);
   return Math.sqrt(3) / Math.sqrt(clamp(band / (rate_hz / 2), 1e-3, 1));

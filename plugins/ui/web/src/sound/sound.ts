@@ -1,19 +1,18 @@
-/** What is felt, to hear: taps, texture, force, and heights as pitch. Off until a person switches it on. */
+/** Touch as sound: taps, texture, force, and heights as pitch. Off until a person switches it on. */
 import type { Hub } from "../hub";
 import { Instrument } from "./synthesizer";
-import { held, touching } from "../speech/narrator";
-import type { State } from "../server/protocol";
+import { isHeld, isTouching, type State } from "../server/protocol";
 import { recall, remember } from "../preferences";
 import type { Scene } from "../surface/scene";
 import { force_level, pan, pitch_hz, stroke, tap } from "./sonification";
 
-/** What is heard; each can be switched. */
+/** Sounds that can be switched. */
 export const VOICES = { texture: true, contact: true, force: false, height: false } as const;
 export type VoiceName = keyof typeof VOICES;
 
 const SWEEP_S = 2.5;
 const SWEEP_STEPS = 200;
-/** Without a state for so long nothing is heard. */
+/** Milliseconds without a state after which all is silent. */
 const SILENT_MS = 250;
 const NONE = stroke(null, [0, 0, 0], [0, 0, 0]);
 
@@ -60,7 +59,7 @@ export class Sound {
     remember(`hear.${voice}`, on);
   }
 
-  /** How loud it is now, root mean square of full scale. */
+  /** Present loudness, root mean square of full scale. */
   get level(): number {
     if (!this.instrument) return 0;
     const { meter } = this.instrument;
@@ -69,7 +68,7 @@ export class Sound {
     return Math.sqrt(data.reduce((sum, each) => sum + each * each, 0) / data.length);
   }
 
-  /** The heights of a row from left to right, as pitches. It is heard with the sound off too: a person asked for it. */
+  /** Play the heights of a row from left to right, as pitches, also while the sound is off. */
   async sweep(scene: Scene, y: number): Promise<void> {
     const instrument = await this.wake();
     this.sweeping?.stop();
@@ -77,7 +76,7 @@ export class Sound {
     await new Promise((ended) => (this.sweeping!.onended = ended));
   }
 
-  /** There is one context, made when a person first asks for sound: before that browsers allow none. */
+  /** Return the one audio context, created by the person's first use: browsers allow none before. */
   private async wake(): Promise<Instrument> {
     this.instrument ??= new Instrument(new AudioContext({ latencyHint: "interactive" }));
     this.instrument.volume = this.volume;
@@ -92,13 +91,13 @@ export class Sound {
     this.heardMs = performance.now();
     const [x, y] = state.hand;
     const material = scene.material(x, y);
-    const touched = touching(state);
+    const touched = isTouching(state);
     if (touched && !this.touched && this.has("contact")) instrument.tap(tap(material, state.velocity));
     this.touched = touched;
     instrument.pan(pan(x, scene.meta.extent_m[0]));
     instrument.stroke(touched && this.has("texture") ? stroke(material, state.force, state.velocity) : NONE);
     instrument.force(touched && this.has("force") ? force_level(Math.hypot(...state.force)) : 0);
-    const height = held(state) && this.has("height") ? scene.height(x, y) : NaN;
+    const height = isHeld(state) && this.has("height") ? scene.height(x, y) : NaN;
     instrument.heightAt(Number.isNaN(height) ? null : pitch_hz(height, scene.meta.height_m));
   }
 
@@ -110,7 +109,7 @@ export class Sound {
   }
 }
 
-/** The pitches of a row of a surface. */
+/** Return the pitches of a row of a surface. */
 export function row(scene: Scene, y: number): Float32Array {
   const { extent_m, height_m } = scene.meta;
   return Float32Array.from({ length: SWEEP_STEPS }, (_, i) =>

@@ -1,8 +1,8 @@
-/** The voices that are heard, as a graph of Web Audio: the same for the loudspeaker and for a test that renders it. */
+/** The voices as a graph of Web Audio, for the loudspeaker and for tests that render it. */
 import { makeup, type Stroke } from "./sonification";
 
 const SMOOTH_S = 0.012;
-/** The height's own voice: soft, it lasts. */
+/** Level of the height's voice: soft, as it lasts. */
 const HEIGHT_LEVEL = 0.08;
 const FORCE_HZ = 110;
 
@@ -36,7 +36,7 @@ export class Instrument {
     this.voice("sine", FORCE_HZ, this.forceGain);
   }
 
-  /** From 0 to 1; not above, whatever is asked. */
+  /** Set the volume, clamped to 0 to 1. */
   set volume(volume: number) {
     this.out.gain.setTargetAtTime(Math.min(1, Math.max(0, volume)), this.context.currentTime, SMOOTH_S);
   }
@@ -50,7 +50,7 @@ export class Instrument {
     this.glide(this.toneGain.gain, tone.level);
   }
 
-  /** The height as pitch; null: not heard. */
+  /** Set the pitch of the height; null: silent. */
   heightAt(hz: number | null): void {
     if (hz !== null) this.glide(this.height.frequency, hz);
     this.glide(this.heightGain.gain, hz === null ? 0 : HEIGHT_LEVEL);
@@ -76,7 +76,7 @@ export class Instrument {
     voice.stop(from + seconds);
   }
 
-  /** A row of pitches from left to right; returns what ends when it has been heard. */
+  /** Play a row of pitches from left to right; return the oscillator, which ends with it. */
   sweep(pitches_hz: Float32Array, seconds: number): OscillatorNode {
     const { context } = this;
     const from = context.currentTime + 0.03;
@@ -111,7 +111,7 @@ export class Instrument {
   }
 }
 
-/** Two seconds of noise, over and over. */
+/** Return a loop of two seconds of noise. */
 function hiss(context: BaseAudioContext): AudioBufferSourceNode {
   const buffer = context.createBuffer(1, 2 * context.sampleRate, context.sampleRate);
   const data = buffer.getChannelData(0);

@@ -1,12 +1,12 @@
-/** What is said to who listens: one sentence a second at most, of each topic the newest alone, nothing twice, nothing
- * stale. What it says goes to live regions, and aloud where a person asked for that. */
+/** Announcements for screen readers and speech: at most one a second, only the newest of each topic, no repetition, none
+ * stale. */
 
-export interface How {
-  /** What replaces what: of two that wait the newer is said; and what a topic said last is not said again. */
+export interface Announcement {
+  /** Topic: of two waiting texts the newer is announced, and a topic's last text is not repeated. */
   topic?: string;
-  /** Said before all that waits, and into what a screen reader is reading: errors, the stop. */
+  /** True for errors and the stop: announced first, interrupting a screen reader. */
   urgent?: boolean;
-  /** A person asked for it: at once, and again if it is the same as before. */
+  /** True if a person requested it: announced at once, also if it repeats the last text. */
   asked?: boolean;
 }
 
@@ -27,31 +27,31 @@ interface Waiting extends Said {
 
 export const PAUSE_MS = 1000;
 export const STALE_MS = 5000;
-/** A sentence without a topic may come again after so long. */
+/** Milliseconds after which a text without a topic may be repeated. */
 export const AGAIN_MS = 10_000;
 
 const BROWSERS: Clock = { now: () => performance.now(), after: (ms, act) => void setTimeout(act, ms) };
 
 export class Announcer {
-  /** Nothing is said, as while a page hears what happened before it was opened. */
-  hushed = false;
+  /** True while nothing is announced, as while a page replays earlier messages. */
+  muted = false;
   private queue: Waiting[] = [];
   private last = new Map<string, { text: string; atMs: number }>();
   private saidMs = -Infinity;
   private due = false;
 
   constructor(
-    private utter: (said: Said) => void,
+    private utter: (message: Said) => void,
     private clock: Clock = BROWSERS,
   ) {}
 
-  say(text: string, { topic = text, urgent = false, asked = false }: How = {}): void {
-    if (!text || this.hushed) return;
+  say(text: string, { topic = text, urgent = false, asked = false }: Announcement = {}): void {
+    if (!text || this.muted) return;
     const atMs = this.clock.now();
     this.queue = this.queue.filter((each) => each.topic !== topic);
     if (asked) {
       this.queue = this.queue.filter((each) => each.urgent);
-      this.tell({ text, topic, urgent, atMs });
+      this.utterNow({ text, topic, urgent, atMs });
       return;
     }
     const before = this.last.get(topic);
@@ -61,7 +61,7 @@ export class Announcer {
     this.next();
   }
 
-  /** What a topic says no longer holds: the same may be said again. */
+  /** Allow a topic's last text to be announced again. */
   forget(topic: string): void {
     this.last.delete(topic);
     this.queue = this.queue.filter((each) => each.topic !== topic);
@@ -73,7 +73,7 @@ export class Announcer {
     this.queue = this.queue.filter(({ urgent, atMs }) => urgent || now - atMs <= STALE_MS);
     if (!this.queue.length) return;
     const pause = this.saidMs + PAUSE_MS - now;
-    if (pause <= 0) this.tell(this.queue.shift()!);
+    if (pause <= 0) this.utterNow(this.queue.shift()!);
     if (!this.queue.length) return;
     this.due = true;
     this.clock.after(Math.max(pause, PAUSE_MS * +(pause <= 0)), () => {
@@ -82,7 +82,7 @@ export class Announcer {
     });
   }
 
-  private tell({ text, topic, urgent }: Waiting): void {
+  private utterNow({ text, topic, urgent }: Waiting): void {
     this.saidMs = this.clock.now();
     if (this.last.size > 200) this.last.clear();
     this.last.set(topic, { text, atMs: this.saidMs });
@@ -90,11 +90,11 @@ export class Announcer {
   }
 }
 
-/** Puts what is said into the page's two live regions: #said waits its turn, #alerted does not. */
-export function regions(polite: HTMLElement, assertive: HTMLElement): (said: Said) => void {
+/** Return a function that writes announcements into the two live regions: #said is polite, #alerted assertive. */
+export function liveRegions(polite: HTMLElement, assertive: HTMLElement): (message: Said) => void {
   return ({ text, urgent }) => {
     const region = urgent ? assertive : polite;
-    // A region that is given the text it has says nothing: a space that cannot break tells it apart.
+    // a region with an unchanged text is not read: a no-break space makes it different
     region.textContent = region.textContent === text ? `${text}\u00a0` : text;
   };
 }

@@ -1,4 +1,4 @@
-/** Speech aloud: what the live regions say, in the page's language, where the browser has a voice for it. */
+/** Speech synthesis of announcements, in the page's language, if the browser has a voice for it. */
 import type { Said } from "./announcer";
 import type { Hub } from "../hub";
 import { recall, remember } from "../preferences";
@@ -8,14 +8,14 @@ export const RATES = { least: 0.5, most: 3, step: 0.25 };
 
 export class Speech {
   private on = recall<boolean>("aloud", false);
-  /** What is being read, until its last line was spoken or something else is. */
+  /** The lines being read; null after the last one, or if something else is spoken. */
   private reads: object | null = null;
 
   constructor(private hub: Hub) {
-    window.speechSynthesis?.addEventListener("voiceschanged", () => this.tell()); // they come late
+    window.speechSynthesis?.addEventListener("voiceschanged", () => this.notify()); // voices load late
   }
 
-  /** The voice that speaks: of this machine before one that needs a network. None: null. */
+  /** The voice: a local one before one that needs a network; null if there is none. */
   get voice(): SpeechSynthesisVoice | null {
     return this.voiceOf(language);
   }
@@ -33,7 +33,7 @@ export class Speech {
     this.on = on;
     remember("aloud", on);
     if (!on) window.speechSynthesis?.cancel();
-    this.tell();
+    this.notify();
   }
 
   get rate(): number {
@@ -44,7 +44,7 @@ export class Speech {
     remember("rate", Math.min(RATES.most, Math.max(RATES.least, rate)));
   }
 
-  /** What it still spoke is stale, and ends. */
+  /** Speak a text; an unfinished one is stale, and ends. */
   speak({ text }: Said): void {
     const voice = this.voice;
     if (!this.on || !voice) return;
@@ -52,8 +52,8 @@ export class Speech {
     speechSynthesis.speak(this.utterance(text, voice));
   }
 
-  /** Read lines in a language, whether or not speech is switched on; false where there is no voice for it.
-   * ended: once nothing of it is spoken any more. */
+  /** Read lines in a language, whether or not speech is switched on; false if there is no voice. ended: called when
+   * reading ends. */
   read(lines: string[], tongue: string, ended: () => void): boolean {
     const voice = this.voiceOf(tongue);
     if (!voice || !lines.length) return false;
@@ -65,7 +65,7 @@ export class Speech {
       ended();
     };
     all.at(-1)!.onend = end;
-    for (const each of all) each.onerror = end; // something else was spoken
+    for (const each of all) each.onerror = end; // something else is spoken
     for (const each of all) speechSynthesis.speak(each);
     return true;
   }
@@ -74,7 +74,7 @@ export class Speech {
     return this.reads !== null;
   }
 
-  /** Read no further. */
+  /** Stop reading. */
   hush(): void {
     this.reads = null;
     window.speechSynthesis?.cancel();
@@ -84,7 +84,7 @@ export class Speech {
     return Object.assign(new SpeechSynthesisUtterance(text), { voice, lang: voice.lang, rate: this.rate });
   }
 
-  private tell(): void {
+  private notify(): void {
     this.hub.tell("aloud", { on: this.aloud, voice: this.voice?.name ?? "" });
   }
 }

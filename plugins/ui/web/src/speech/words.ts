@@ -1,6 +1,6 @@
 import { words } from "../words/words";
 
-/** What is said of the hand and of the surface under it. */
+/** Texts of the narration. */
 export const t = words({
   nameless: ["surface", "Oberfläche"],
   part: ["{name}, part {part}", "{name}, Teil {part}"],
@@ -21,9 +21,9 @@ export const t = words({
   keys: ["The arrow keys move the hand, Space presses and lifts. W says where the hand is, D describes the surface, question mark shows all keys, Escape takes all force away.",
     "Die Pfeiltasten bewegen die Hand, die Leertaste drückt und hebt sie. W sagt, wo die Hand ist, D beschreibt die Oberfläche, das Fragezeichen zeigt alle Tasten, Escape nimmt alle Kraft weg."],
   FORCE_LIMITED: ["The force is at its limit.", "Die Kraft ist an ihrer Grenze."],
-  STIFFNESS_LIMITED: ["The surface is softer than the law asks, so that it stays stable.",
+  STIFFNESS_LIMITED: ["The surface is softer than requested, to stay stable.",
     "Die Oberfläche ist weicher als verlangt, damit sie stabil bleibt."],
-  DAMPED: ["The force is damped, so that it stays stable.", "Die Kraft wird gedämpft, damit sie stabil bleibt."],
-  NOT_FINITE: ["The law gives no number here: no force.", "Das Kraftgesetz ergibt hier keine Zahl: keine Kraft."],
-  STALE: ["The hand is not heard any more: no force.", "Von der Hand kommt nichts mehr: keine Kraft."],
+  DAMPED: ["The force is damped to stay stable.", "Die Kraft wird gedämpft, damit sie stabil bleibt."],
+  NOT_FINITE: ["The force law returned no number here: no force.", "Das Kraftgesetz ergibt hier keine Zahl: keine Kraft."],
+  STALE: ["The hand sends no position: no force.", "Von der Hand kommt nichts mehr: keine Kraft."],
 });

@@ -1,15 +1,15 @@
-/** Which part of a large surface is drawn finer: what the camera sees, in cells no smaller than is seen. */
+/** The window of a large surface that is drawn finer: the visible part, in cells not finer than visible. */
 import type { Meta } from "../server/messages";
 import type { Window } from "./loading";
 
-/** What is drawn of it in a fraction of a second; 300 000 cells are 600 000 triangles. */
+/** Greatest number of cells, drawn in a fraction of a second; 300 000 cells are 600 000 triangles. */
 export const MOST_CELLS = 300_000;
 const MOST_SIDE = 4000;
 const MARGIN = 0.08;
-/** A cell need not be narrower than this share of a pixel. */
+/** Least width of a cell in pixels. */
 const FINEST_PIXEL = 0.5;
 
-/** Of the workspace, metres. */
+/** A box of the workspace, metres. */
 export interface Box {
   left: number;
   near: number;
@@ -17,7 +17,7 @@ export interface Box {
   far: number;
 }
 
-/** The window of the finest level that can be drawn; null where the whole is as fine. */
+/** Return the finest window that can be drawn; null if the whole is as fine. */
 export function windowOf(meta: Meta, seen: Box, pixel_m: number): Window | null {
   const [w, l] = meta.extent_m;
   const [mx, my] = [MARGIN * (seen.right - seen.left), MARGIN * (seen.far - seen.near)];
@@ -34,8 +34,8 @@ export function windowOf(meta: Meta, seen: Box, pixel_m: number): Window | null 
   return null;
 }
 
-/** Whether a window shows what another one would. */
-export function holds(one: Window, other: Window): boolean {
+/** Return whether a window includes another one. */
+export function includes(one: Window, other: Window): boolean {
   const along = one.row <= other.row && one.row + one.rows >= other.row + other.rows;
   return one.level === other.level && along && one.column <= other.column && one.column + one.columns >= other.column + other.columns;
 }

@@ -1,10 +1,11 @@
-/** The fine textures of a square, as laws feel them: fetched from what makes them. */
-import { bulk, type Net } from "../server/connection";
+/** Fine texture of a square, as force laws use it, fetched from the server. */
+import type { Server } from "../page";
+import { bulk } from "../server/connection";
 import type { Scene } from "./scene";
 import type { FinePatch } from "../terrain/terrain";
 
 export async function finePatch(
-  net: Net, scene: Scene, [x, y]: [number, number], side_m: number, pixels: number,
+  net: Server, scene: Scene, [x, y]: [number, number], side_m: number, pixels: number,
 ): Promise<FinePatch> {
   const told = { digest: scene.meta.digest, x_m: x, y_m: y, side_m, pixels };
   const { file } = await net.ask<{ file: string }>("texture_patch", told);
@@ -12,7 +13,7 @@ export async function finePatch(
   return { x_m: x, y_m: y, side_m, pixels, heights: new Float32Array(heights) };
 }
 
-/** Whether any material has one. */
-export function textured(scene: Scene): boolean {
+/** Return whether any material has a texture. */
+export function hasTexture(scene: Scene): boolean {
   return scene.meta.labels > 0 && scene.meta.materials.some(({ roughness_m }) => roughness_m > 0);
 }

@@ -1,7 +1,7 @@
-/** Heights on a grid of equal cells, each for its cell's centre; bilinear between, constant to the rim, as laws have it. */
+/** Heights on a grid of equal cells, at the cells' centres; bilinear between, constant to the rim, as in force laws. */
 import type { Vec } from "../server/protocol";
 
-/** Where a grid lies: its left and far rim, and the width and length of a cell, metres. */
+/** Place of a grid: its left and far rim, and the width and length of a cell, metres. */
 export interface Place {
   left: number;
   far: number;
@@ -9,19 +9,19 @@ export interface Place {
   dy: number;
 }
 
-/** So much is a ray moved on beyond a border, in cells: it is then surely in the next one. */
+/** Distance a ray is moved beyond a border, in cells, so that it is surely in the next one. */
 const BEYOND = 1e-7;
 const BLOCK = 8;
 
-/** Greatest heights over blocks of BLOCK^level x BLOCK^level squares, a square being what lies between four centres. */
-interface Tops {
+/** Greatest heights over blocks of BLOCK^level x BLOCK^level squares; a square lies between four centres. */
+interface PyramidLevel {
   size: number;
   columns: number;
   top: Float32Array;
 }
 
 export class Grid {
-  private tops: Tops[] | null = null;
+  private tops: PyramidLevel[] | null = null;
 
   constructor(
     readonly heights: Float32Array,
@@ -38,19 +38,19 @@ export class Grid {
     const i = Math.min(Math.floor(c), Math.max(columns - 2, 0));
     const j = Math.min(Math.floor(r), Math.max(rows - 2, 0));
     const right = columns > 1 ? 1 : 0;
-    const below = rows > 1 ? columns : 0;
+    const meetVertical = rows > 1 ? columns : 0;
     const [fx, fy, k] = [c - i, r - j, j * columns + i];
     const upper = heights[k] * (1 - fx) + heights[k + right] * fx;
-    const lower = heights[k + below] * (1 - fx) + heights[k + below + right] * fx;
+    const lower = heights[k + meetVertical] * (1 - fx) + heights[k + meetVertical + right] * fx;
     return upper * (1 - fy) + lower * fy;
   }
 
-  /** What `meet` needs, before it is needed. */
+  /** Build the pyramid of `meet` ahead of its use. */
   prepare(): void {
-    this.tops ??= this.pile();
+    this.tops ??= this.buildPyramid();
   }
 
-  /** The cell that a place is in, or is nearest to. */
+  /** Return the cell that contains a place, or is nearest to it. */
   cell(x: number, y: number): number {
     const { left, far, dx, dy } = this.place;
     const i = Math.min(Math.max(Math.floor((x - left) / dx), 0), this.columns - 1);
@@ -58,25 +58,24 @@ export class Grid {
     return j * this.columns + i;
   }
 
-  /** Whether the grid knows a place by itself, all four centres about it. */
-  knows(x: number, y: number): boolean {
+  /** Return whether a place lies between four centres of the grid. */
+  covers(x: number, y: number): boolean {
     const { left, far, dx, dy } = this.place;
     const [u, v] = [(x - left) / dx, (far - y) / dy];
     return u >= 0.5 && v >= 0.5 && u <= this.columns - 0.5 && v <= this.rows - 0.5;
   }
 
-  /**
-   * Where a ray from o along d first is on the surface or below it, between t = from and to; NaN if nowhere.
-   * Blocks that it passes above are leapt over; in every other square the bilinear surface is met exactly.
-   */
+  /** Return where a ray from o along d first is on the surface or below it, between t = from and to; NaN if nowhere.
+   *
+   * Blocks that it passes above are skipped; in every other square the bilinear surface is met exactly. */
   meet(o: Vec, d: Vec, from: number, to: number): number {
-    const tops = (this.tops ??= this.pile());
+    const tops = (this.tops ??= this.buildPyramid());
     const { left, far, dx, dy } = this.place;
     const [su, sv] = [d[0] / dx, -d[1] / dy];
     const speed = Math.max(Math.abs(su), Math.abs(sv));
     if (speed * (to - from) < BEYOND) return this.below(o, d, from, to);
     const nudge = BEYOND / speed;
-    const [u0, v0] = [(o[0] - left) / dx + 0.5, (far - o[1]) / dy + 0.5]; // square a lies between centres a - 1 and a
+    const [u0, v0] = [(o[0] - left) / dx + 0.5, (far - o[1]) / dy + 0.5]; // square a lies
     let level = tops.length - 1;
     let t = from;
     while (t < to) {
@@ -84,7 +83,7 @@ export class Grid {
       const [u, v] = [u0 + su * (t + nudge), v0 + sv * (t + nudge)];
       const a = Math.min(Math.max(Math.floor(u / size), 0), columns - 1);
       const b = Math.min(Math.max(Math.floor(v / size), 0), top.length / columns - 1);
-      const out = Math.min(leaves(u0, su, a * size, size), leaves(v0, sv, b * size, size), to);
+      const out = Math.min(exitOf(u0, su, a * size, size), exitOf(v0, sv, b * size, size), to);
       const end = Math.max(out, t + nudge);
       if (o[2] + d[2] * (d[2] < 0 ? end : t) > top[b * columns + a]) {
         t = end;
@@ -99,7 +98,7 @@ export class Grid {
     return NaN;
   }
 
-  /** A ray that stays over one place. */
+  /** Meet a vertical ray. */
   private below(o: Vec, d: Vec, from: number, to: number): number {
     const z = this.height(o[0] + from * d[0], o[1] + from * d[1]);
     if (o[2] + from * d[2] <= z) return from;
@@ -107,7 +106,7 @@ export class Grid {
     return t >= from && t <= to ? t : NaN;
   }
 
-  /** In one square, height - ray is a polynomial of second degree in t. */
+  /** Meet a ray in one square, where height - ray is a quadratic polynomial in t. */
   private meetSquare(
     a: number, b: number, u0: number, v0: number, su: number, sv: number, oz: number, dz: number, from: number, to: number,
   ): number {
@@ -125,7 +124,7 @@ export class Grid {
     return root <= to - from ? from + root : NaN;
   }
 
-  private pile(): Tops[] {
+  private buildPyramid(): PyramidLevel[] {
     const { heights, rows, columns } = this;
     let [n, m] = [columns + 1, rows + 1];
     let top = new Float32Array(n * m);
@@ -141,36 +140,36 @@ export class Grid {
         top[k] = most;
       }
     }
-    const found: Tops[] = [{ size: 1, columns: n, top }];
+    const levels: PyramidLevel[] = [{ size: 1, columns: n, top }];
     for (let size = BLOCK; n > 1 || m > 1; size *= BLOCK) {
-      [top, n, m] = topsOf(top, n, m);
-      found.push({ size, columns: n, top });
+      [top, n, m] = coarsen(top, n, m);
+      levels.push({ size, columns: n, top });
     }
-    return found;
+    return levels;
   }
 }
 
-function topsOf(top: Float32Array<ArrayBuffer>, n: number, m: number): [Float32Array<ArrayBuffer>, number, number] {
+function coarsen(top: Float32Array<ArrayBuffer>, n: number, m: number): [Float32Array<ArrayBuffer>, number, number] {
   const [columns, rows] = [Math.ceil(n / BLOCK), Math.ceil(m / BLOCK)];
-  const found = new Float32Array(columns * rows).fill(-Infinity);
+  const coarse = new Float32Array(columns * rows).fill(-Infinity);
   for (let b = 0, k = 0; b < m; b++)
     for (let a = 0, at = Math.floor(b / BLOCK) * columns; a < n; a++, k++) {
       const place = at + ((a / BLOCK) | 0);
-      if (top[k] > found[place]) found[place] = top[k];
+      if (top[k] > coarse[place]) coarse[place] = top[k];
     }
-  return [found, columns, rows];
+  return [coarse, columns, rows];
 }
 
-/** When a coordinate leaves an interval. */
-function leaves(start: number, speed: number, low: number, size: number): number {
+/** Return when a coordinate leaves an interval. */
+function exitOf(start: number, speed: number, low: number, size: number): number {
   return speed === 0 ? Infinity : ((speed > 0 ? low + size : low) - start) / speed;
 }
 
-/** The smallest t > 0 of a t^2 + b t + c = 0, where c > 0; Infinity if there is none. */
+/** Return the smallest t > 0 of a t^2 + b t + c = 0, where c > 0; Infinity if there is none. */
 export function firstRoot(a: number, b: number, c: number): number {
   const under = b * b - 4 * a * c;
   if (under < 0) return Infinity;
-  const q = -0.5 * (b + (b < 0 ? -1 : 1) * Math.sqrt(under)); // no difference of near numbers
+  const q = -0.5 * (b + (b < 0 ? -1 : 1) * Math.sqrt(under)); // avoids cancellation
   const [one, other] = [q / a, c / q];
   const least = Math.min(one > 0 ? one : Infinity, other > 0 ? other : Infinity);
   return Number.isNaN(least) ? Infinity : least;

@@ -1,10 +1,10 @@
-/** What the server keeps of a surface, as the page has it. */
+/** Loading of a surface's arrays from the server. */
 import { Grid } from "./grid";
 import type { LayerMeta, Meta } from "../server/messages";
 import { bulk } from "../server/connection";
 import { Scene, type Part } from "./scene";
 
-/** Cells of a level: from a row and a column on, so many. */
+/** A window of a level: first row and column, and their numbers. */
 export interface Window {
   level: number;
   row: number;
@@ -17,12 +17,12 @@ export interface Layer extends LayerMeta {
   values: Float32Array;
 }
 
-/** When it has been drawn for the first time. */
+/** Delay of building pyramids, ms: after the first drawing. */
 const PREPARED_MS = 400;
 
 const layers = new WeakMap<Scene, Map<string, Promise<Layer>>>();
 
-/** The coarsest level, which can be drawn at once. */
+/** Load the coarsest level, which is drawn first. */
 export async function loadScene(meta: Meta): Promise<Scene> {
   const level = meta.levels.length - 1;
   const { rows, columns } = meta.levels[level];
@@ -34,33 +34,33 @@ export async function loadScene(meta: Meta): Promise<Scene> {
   return new Scene(meta, whole, new Uint16Array(kinds), photo);
 }
 
-/** Values to be warped over the surface: fetched when they are first asked for. */
+/** Load a layer of values, once. */
 export function fetchLayer(scene: Scene, name: string): Promise<Layer> {
   if (!layers.has(scene)) layers.set(scene, new Map());
   const known = layers.get(scene)!;
-  const found =
+  const layer =
     known.get(name) ??
     bulk(`${root(scene.meta)}/${name}.f32`).then(async (answer) => ({
       ...scene.meta.layers[name],
       values: new Float32Array(await answer.arrayBuffer()),
     }));
-  known.set(name, found);
-  found.catch(() => known.delete(name));
-  return found;
+  known.set(name, layer);
+  layer.catch(() => known.delete(name));
+  return layer;
 }
 
 function root(meta: Meta): string {
   return `/scene/${meta.digest}`;
 }
 
-/** Heights and labels of a window. */
+/** Load heights and labels of a window. */
 export async function fetchPart(meta: Meta, window: Window, signal?: AbortSignal): Promise<Part> {
   const { level, row, rows, column, columns } = window;
-  const asked = (bytes: number) => ({ row, rows, column, columns, bytes, of: meta.levels[level].columns });
+  const windowQuery = (bytes: number) => ({ row, rows, column, columns, bytes, of: meta.levels[level].columns });
   const [heights, labels] = await Promise.all([
-    bulk(`${root(meta)}/height-${level}.f32`, asked(4), signal).then((answer) => answer.arrayBuffer()),
+    bulk(`${root(meta)}/height-${level}.f32`, windowQuery(4), signal).then((answer) => answer.arrayBuffer()),
     meta.labels
-      ? bulk(`${root(meta)}/labels-${level}.u`, asked(meta.label_bytes), signal).then((answer) => answer.arrayBuffer())
+      ? bulk(`${root(meta)}/labels-${level}.u`, windowQuery(meta.label_bytes), signal).then((answer) => answer.arrayBuffer())
       : null,
   ]);
   const [w, l] = meta.extent_m;

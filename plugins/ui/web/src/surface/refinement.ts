@@ -1,10 +1,10 @@
-/** When the camera rests, what it looks at is fetched finer: heights and picture of a large surface, fine textures. */
+/** Refinement where the camera rests: finer heights and picture of a large surface, fine textures. */
 import { bulk } from "../server/connection";
 import type { Page } from "../page";
 import type { Scene } from "./scene";
 import { fetchPart, type Window } from "./loading";
-import { finePatch, textured } from "./fine_texture";
-import { holds, windowOf, type Box } from "./detail_window";
+import { finePatch, hasTexture } from "./fine_texture";
+import { includes, windowOf, type Box } from "./detail_window";
 
 const LARGEST_TEXTURE_M = 0.03;
 const TEXTURE_PIXELS = 512;
@@ -18,23 +18,23 @@ export class Refiner {
   private scene: Scene | null = null;
   private ending = new AbortController();
 
-  constructor(private page: Page) {
+  constructor(private page: Pick<Page, "hub" | "net" | "view" | "canvas" | "scene">) {
     page.view.rested = () => this.refine();
   }
 
   private refine(): void {
     const { scene, view } = this.page;
-    if (scene !== this.scene) this.begin(scene);
-    const seen = scene && this.seen(scene);
-    if (!scene || !seen || !view.terrain) return;
+    if (scene !== this.scene) this.reset(scene);
+    const visibleBox = scene && this.seen(scene);
+    if (!scene || !visibleBox || !view.terrain) return;
     const fail = (error: Error): void => {
-      if (error.name !== "AbortError") console.warn(error.message); // coarser is no harm
+      if (error.name !== "AbortError") console.warn(error.message); // the coarser surface stays
     };
-    void this.heights(scene, seen).catch(fail);
-    void this.textures(scene, seen).catch(fail);
+    void this.heights(scene, visibleBox).catch(fail);
+    void this.textures(scene, visibleBox).catch(fail);
   }
 
-  private begin(scene: Scene | null): void {
+  private reset(scene: Scene | null): void {
     this.ending.abort();
     this.scene = scene;
     this.window = this.texture = this.picture = null;
@@ -42,21 +42,21 @@ export class Refiner {
 
   private async heights(scene: Scene, seen: Box): Promise<void> {
     const window = windowOf(scene.meta, seen, this.page.view.pixel_m());
-    if (window && this.window && holds(this.window, window)) return;
+    if (window && this.window && includes(this.window, window)) return;
     this.ending.abort();
     this.ending = new AbortController();
-    if (!window) return this.put(scene, null);
+    if (!window) return this.setWindow(scene, null);
     const { signal } = this.ending;
-    const [part, picture] = await Promise.all([fetchPart(scene.meta, window, signal), this.cropped(scene, window)]);
+    const [part, picture] = await Promise.all([fetchPart(scene.meta, window, signal), this.cropPicture(scene, window)]);
     if (signal.aborted || this.page.scene !== scene) return;
-    this.put(scene, window);
+    this.setWindow(scene, window);
     scene.detail = part;
     this.page.view.terrain?.refine(part, picture?.bitmap ?? null, picture?.place);
     this.page.view.dirty = true;
     this.page.hub.tell("finer", scene);
   }
 
-  private put(scene: Scene, window: Window | null): void {
+  private setWindow(scene: Scene, window: Window | null): void {
     const had = this.window !== null;
     this.window = window;
     if (window || !had) return;
@@ -65,8 +65,8 @@ export class Refiner {
     this.page.view.dirty = true;
   }
 
-  /** The finer picture of a window, and where it lies. */
-  private async cropped(scene: Scene, window: Window) {
+  /** Return the finer picture of a window, and its place. */
+  private async cropPicture(scene: Scene, window: Window) {
     const { extent_m, fine_photo, levels, digest } = scene.meta;
     if (!fine_photo) return null;
     const blob = await (this.picture ??= bulk(`/scene/${digest}/photo-fine.jpg`).then((answer) => answer.blob()));
@@ -92,7 +92,7 @@ export class Refiner {
     const [wide, long] = [seen.right - seen.left, seen.far - seen.near];
     const side = 1.15 * Math.max(wide, long);
     const had = this.texture;
-    if (side > LARGEST_TEXTURE_M || !textured(scene)) {
+    if (side > LARGEST_TEXTURE_M || !hasTexture(scene)) {
       this.texture = null;
       if (!had) return;
       this.page.view.terrain?.refineTexture(null);
@@ -110,24 +110,24 @@ export class Refiner {
     this.page.view.dirty = true;
   }
 
-  /** The part of the surface within the window; null where none is. */
+  /** Return the visible part of the surface; null if none is. */
   private seen(scene: Scene): Box | null {
     const { canvas, view } = this.page;
     const { left, top, width, height } = canvas.getBoundingClientRect();
     const [w, l] = scene.meta.extent_m;
-    const found: Box = { left: Infinity, near: Infinity, right: -Infinity, far: -Infinity };
+    const box: Box = { left: Infinity, near: Infinity, right: -Infinity, far: -Infinity };
     for (const x of SAMPLES)
       for (const y of SAMPLES) {
         const [o, d] = view.ray(left + x * width, top + y * height);
         const t = d[2] < 0 ? (view.eye.pose.target[2] - o[2]) / d[2] : Infinity;
         const reach = Math.min(t, view.camera.far);
         const [u, v] = [clamp(o[0] + reach * d[0], w), clamp(o[1] + reach * d[1], l)];
-        found.left = Math.min(found.left, u);
-        found.right = Math.max(found.right, u);
-        found.near = Math.min(found.near, v);
-        found.far = Math.max(found.far, v);
+        box.left = Math.min(box.left, u);
+        box.right = Math.max(box.right, u);
+        box.near = Math.min(box.near, v);
+        box.far = Math.max(box.far, v);
       }
-    return found.left < found.right && found.near < found.far ? found : null;
+    return box.left < box.right && box.near < box.far ? box : null;
   }
 }
 

@@ -1,42 +1,42 @@
-/** What is felt, as the page has it: heights, labels, materials, the picture; metres, x right, y away, z up. */
+/** A surface: heights, labels, materials, picture; metres, x right, y away, z up. */
 import { Grid } from "./grid";
 import type { Material, Meta } from "../server/messages";
 import type { Vec } from "../server/protocol";
 
 export type Labels = Uint16Array | Uint32Array;
 
-/** A part of the surface at a level of detail. */
+/** Heights and labels at a level of detail. */
 export interface Part {
   grid: Grid;
   labels: Labels | null;
 }
 
 export class Scene {
-  /** What is finer than the whole, of where the camera looks. */
+  /** A finer part, where the camera looks. */
   detail: Part | null = null;
 
   constructor(
     readonly meta: Meta,
     readonly whole: Part,
-    /** Of each label, which of `meta.materials` it has. */
+    /** Index into `meta.materials` for each label. */
     readonly kinds: Uint16Array,
     readonly photo: ImageBitmap | null,
   ) {}
 
-  /** Bilinear height; the rim's beyond the last cell centres, NaN outside. */
+  /** Return the bilinear height; constant beyond the last cell centres, NaN outside. */
   height(x: number, y: number): number {
     return this.inside(x, y) ? this.finest(x, y).grid.height(x, y) : NaN;
   }
 
-  /** The place on the surface over or under a point, within its rim. */
+  /** Return the place on the surface over or under a point, clamped to its rim. */
   on(x: number, y: number): Vec {
     const [w, l] = this.meta.extent_m;
-    const within = (part: number, side: number): number => Math.max(-side / 2, Math.min(side / 2, part));
-    const [u, v] = [within(x, w), within(y, l)];
+    const clipRay = (part: number, side: number): number => Math.max(-side / 2, Math.min(side / 2, part));
+    const [u, v] = [clipRay(x, w), clipRay(y, l)];
     return [u, v, this.height(u, v)];
   }
 
-  /** Out of the surface: differences over two cells of the finest that is loaded, fewer at the rim. */
+  /** Return the outward normal, by differences over two cells of the finest level loaded. */
   normal(x: number, y: number): Vec {
     const { dx, dy } = this.finest(x, y).grid.place;
     const [left, right] = [this.on(x - dx, y), this.on(x + dx, y)];
@@ -47,14 +47,14 @@ export class Scene {
     return [-gx / n, -gy / n, 1 / n];
   }
 
-  /** The segment there; null outside and where there are none. */
+  /** Return the segment at a place; null outside, or without segments. */
   label(x: number, y: number): number | null {
     if (!this.inside(x, y)) return null;
     const { grid, labels } = this.finest(x, y);
     return labels ? labels[grid.cell(x, y)] : null;
   }
 
-  /** The name of the part there; empty where it has none. */
+  /** Return the name of the part at a place; empty if it has none. */
   part(x: number, y: number): string {
     return this.meta.parts?.[this.label(x, y) ?? -1] ?? "";
   }
@@ -64,7 +64,7 @@ export class Scene {
     return label === null ? null : (this.meta.materials[this.kinds[label]] ?? null);
   }
 
-  /** Where a ray meets the surface first, of what is loaded the finest. */
+  /** Return where a ray first meets the surface, at the finest level loaded. */
   pick(o: Vec, d: Vec): Vec | null {
     const [w, l] = this.meta.extent_m;
     const [low, high] = this.meta.height_m;
@@ -74,7 +74,7 @@ export class Scene {
     const t = this.meet(o, d, from, to);
     if (t !== t) return null;
     const at = this.on(o[0] + t * d[0], o[1] + t * d[1]);
-    if (t > from) at[2] = o[2] + t * d[2]; // else it is an upright side, which is felt at its rim
+    if (t > from) at[2] = o[2] + t * d[2]; // otherwise an upright side, touched at its rim
     return at;
   }
 
@@ -94,7 +94,7 @@ export class Scene {
   }
 
   private finest(x: number, y: number): Part {
-    return this.detail?.grid.knows(x, y) ? this.detail : this.whole;
+    return this.detail?.grid.covers(x, y) ? this.detail : this.whole;
   }
 
   private inside(x: number, y: number): boolean {
@@ -103,7 +103,7 @@ export class Scene {
   }
 }
 
-/** Where a ray is within a box, from t to t; none if the first is not smaller. */
+/** Return where a ray is within a box, from t to t; empty if the first is not smaller. */
 function within(o: Vec, d: Vec, low: Vec, high: Vec): [number, number] {
   let [from, to] = [0, Infinity];
   for (let k = 0; k < 3; k++) {

@@ -1,16 +1,16 @@
-/** Colours and patterns: the same numbers for what is drawn and for its legend. */
+/** Colours and patterns, shared by drawing and legend. */
 
-/** Viridis (Smith & van der Walt, CC0): as much lighter as a value is greater, also in grey and to who sees no red. */
+/** Viridis (Smith & van der Walt, CC0): lightness grows with the value, also in grey and with colour blindness. */
 // prettier-ignore
 const VIRIDIS = (
   "440154 470d60 48186a 482374 472d7b 453781 424086 3e4989 3b528b 375b8d 33638d 2f6b8e 2c728e 297a8e 26828e 23898e 21918c " +
   "1f988b 1fa088 22a785 28ae80 32b67a 3fbc73 4ec36b 5ec962 70cf57 84d44b 98d83e addc30 c2df23 d8e219 ece51b fde725"
 ).split(" ").map(rgb);
 
-/** Eight colours that are told apart whatever colours one sees (Okabe & Ito), the darkest ones lightened. */
+/** Eight colours that are distinct with any colour vision (Okabe & Ito), the darkest ones lightened. */
 export const PALETTE = "e69f00 56b4e9 009e73 f0e442 4a86c8 d55e00 cc79a7 a6a6a6".split(" ").map(rgb);
 
-/** What is drawn over a colour, so that none has to be told by its colour. */
+/** Number of patterns over the colours, so that no kind depends on its colour alone. */
 export const PATTERNS = 8;
 const MARK = 0.5;
 
@@ -20,25 +20,25 @@ function rgb(hex: string): Colour {
   return [0, 2, 4].map((at) => parseInt(hex.slice(at, at + 2), 16)) as Colour;
 }
 
-/** The colour of a value, 0 the lowest and 1 the highest; 0 to 255 each. */
+/** Return the colour of a value, 0 the lowest and 1 the highest; 0 to 255 each. */
 export function heat(share: number): Colour {
   const at = Math.min(Math.max(share, 0), 1) * (VIRIDIS.length - 1);
   const low = Math.min(Math.floor(at), VIRIDIS.length - 2);
   return VIRIDIS[low].map((part, k) => part + (at - low) * (VIRIDIS[low + 1][k] - part)) as Colour;
 }
 
-/** The map as 256 texels. */
+/** Return the colour map as 256 texels. */
 export function heatTexels(): Uint8Array {
   return Uint8Array.from({ length: 256 * 4 }, (_, k) => (k % 4 === 3 ? 255 : Math.round(heat((k >> 2) / 255)[k % 4])));
 }
 
-/** Colour and pattern of a kind: 64 kinds have as many of both together. */
+/** Return colour and pattern of a kind: 64 combinations. */
 export function styleOf(kind: number): { colour: Colour; pattern: number } {
   return { colour: PALETTE[kind % 8], pattern: (kind + Math.floor(kind / 8)) % PATTERNS };
 }
 
-/** Whether the pattern marks a place; its period is 1. The twin of `marked` in the shader. */
-export function marked(pattern: number, x: number, y: number): boolean {
+/** Return whether the pattern marks a place; its period is 1. The counterpart of `marked` in the shader. */
+export function isMarked(pattern: number, x: number, y: number): boolean {
   const part = (value: number): number => value - Math.floor(value);
   const [u, v] = [part(x), part(y)];
   return [
@@ -53,7 +53,7 @@ export function marked(pattern: number, x: number, y: number): boolean {
   ][pattern];
 }
 
-export function darker(colour: Colour): Colour {
+export function darken(colour: Colour): Colour {
   return colour.map((part) => MARK * part) as Colour;
 }
 

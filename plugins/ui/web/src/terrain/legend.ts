@@ -1,15 +1,15 @@
-/** What colours and patterns mean. */
+/** Legends of colours and patterns. */
 import type { Scene } from "../surface/scene";
 import { t } from "../view/words";
-import { darker, heat, marked, styleOf, type Colour } from "./colours";
+import { darken, heat, isMarked, styleOf, type Colour } from "./colours";
 
 const SWATCH_PX = 22;
 const PERIOD_PX = 11;
 const BAR_PX = 220;
-/** Materials and segments that are listed; of more, how many there are. */
+/** Materials and segments listed; of more, the number is shown. */
 const MOST = 24;
 
-/** The legend of a look; null where it needs none. */
+/** Return the legend of a look; null if it needs none. */
 export function legend(scene: Scene, look: string): HTMLElement | null {
   const { meta } = scene;
   if (look === "height") return scale(meta.height_m[0] * 1000, meta.height_m[1] * 1000, "mm", false);
@@ -41,11 +41,11 @@ function scale(low: number, high: number, unit: string, unknowns: boolean): HTML
     ends.append(end);
   }
   box.append(bar, ends);
-  if (unknowns) box.append(swatched((x, y) => ((x + y) / PERIOD_PX) % 1 > 0.5 ? [80, 80, 80] : [115, 115, 115], t("unknown"), "p"));
+  if (unknowns) box.append(swatchItem((x, y) => ((x + y) / PERIOD_PX) % 1 > 0.5 ? [80, 80, 80] : [115, 115, 115], t("unknown"), "p"));
   return box;
 }
 
-/** Numbers of a scale that spans so much, so that its ends differ. */
+/** Return a number of a scale with enough digits for its span. */
 export function number(value: number, span: number): string {
   const digits = Math.min(Math.max(2 - Math.floor(Math.log10(Math.max(Math.abs(span), 1e-9))), 0), 6);
   return value.toFixed(digits).replace(/(\.\d*?)0+$/, "$1").replace(/\.$/, "");
@@ -56,8 +56,8 @@ function kinds(names: string[]): HTMLElement {
   list.className = "legend";
   names.slice(0, MOST).forEach((name, kind) => {
     const { colour, pattern } = styleOf(kind);
-    const at = (x: number, y: number): Colour => (marked(pattern, x / PERIOD_PX, -y / PERIOD_PX) ? darker(colour) : colour);
-    list.append(swatched(at, name, "li"));
+    const at = (x: number, y: number): Colour => (isMarked(pattern, x / PERIOD_PX, -y / PERIOD_PX) ? darken(colour) : colour);
+    list.append(swatchItem(at, name, "li"));
   });
   if (names.length > MOST) {
     const more = document.createElement("li");
@@ -67,7 +67,7 @@ function kinds(names: string[]): HTMLElement {
   return list;
 }
 
-function swatched(colour: (x: number, y: number) => Colour, text: string, tag: "li" | "p"): HTMLElement {
+function swatchItem(colour: (x: number, y: number) => Colour, text: string, tag: "li" | "p"): HTMLElement {
   const item = document.createElement(tag);
   const swatch = picture(SWATCH_PX, SWATCH_PX, colour);
   swatch.ariaHidden = "true";

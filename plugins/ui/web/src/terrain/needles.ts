@@ -1,8 +1,8 @@
-/** Normals as needles: their feet and tips are found from the heights where they are drawn, so that many cost little. */
+/** Normals as needles, computed from the heights on the graphics card, so that many cost little. */
 import { BufferGeometry, GLSL3, LineSegments, RawShaderMaterial, Vector2 } from "three";
 import type { Sheet, Uniforms } from "./sheet";
 
-/** Steps of the density: each has twice as many to the side as the one before; 0 none, the last every cell. */
+/** Steps of the density: each doubles the number per side; 0 none, the last every cell. */
 export const DENSITIES = 8;
 export const COARSEST = 5;
 
@@ -38,7 +38,7 @@ export class Needles {
     this.lines.visible = false;
   }
 
-  /** How many: 0 none, DENSITIES one for every cell. */
+  /** Set the density: 0 none, DENSITIES one per cell. */
   set density(density: number) {
     const { rows, columns, place } = this.sheet.part.grid;
     const wide = density >= DENSITIES ? columns : Math.min(columns, COARSEST * 2 ** density);

@@ -1,11 +1,11 @@
-/** How a surface is coloured and lit. */
+/** Shaders that colour and light a surface. */
 import { COLOURS_GLSL } from "./colours";
 
-/** What the surface shows; a layer of values of the server is one more, `values`. */
+/** Looks of the surface; a layer of the server's values is one more, `values`. */
 export const LOOKS = { photo: 0, height: 1, materials: 2, segments: 3, relief: 4, slope: 5, values: 6 } as const;
 export const STEEPS = { shown: 0, grey: 1, cut: 2 } as const;
 
-/** Vertices are the cells' centres, and a ring on the rim; the index tells which cell. */
+/** Vertex shader: vertices are the cells' centres and a ring on the rim; the index determines the cell. */
 export const VERTEX = `
 precision highp float; precision highp sampler2D;
 uniform mat4 modelViewMatrix, projectionMatrix; uniform sampler2D heights;

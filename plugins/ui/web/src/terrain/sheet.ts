@@ -1,4 +1,4 @@
-/** A part of the surface as it is drawn: a grid whose heights are a texture, and no vertex is stored. */
+/** A part of the surface as a mesh: its heights are a texture, and no vertex is stored. */
 import { BufferAttribute, BufferGeometry, GLSL3, Mesh, RawShaderMaterial, Vector4, type IUniform, type Texture } from "three";
 import type { Part } from "../surface/scene";
 import { FRAGMENT, VERTEX } from "./shader";
@@ -12,11 +12,11 @@ const NO_LABELS = new Uint16Array(1);
 export class Sheet {
   readonly mesh: Mesh<BufferGeometry, RawShaderMaterial>;
   readonly own: Uniforms;
-  /** All triangles, and fewer; each is made when it is first drawn. */
+  /** Indices of all triangles, and of fewer; created when first drawn. */
   private finest: BufferAttribute | null = null;
   private coarse: BufferAttribute | null = null;
 
-  /** common: uniforms that all sheets share. picture: where it lies, x of its left, y of its far rim, width, length. */
+  /** Create a sheet. common: uniforms shared by all sheets. pictured: place of the picture: left x, far y, width, length. */
   constructor(
     readonly part: Part,
     common: Uniforms,
@@ -47,7 +47,7 @@ export class Sheet {
     this.moving = moving;
   }
 
-  /** Fewer triangles, while the camera moves; the shading stays as fine. */
+  /** Draw fewer triangles while the camera moves; the shading stays as fine. */
   set moving(moving: boolean) {
     const { rows, columns } = this.part.grid;
     const stride = moving ? strideOf(rows, columns) : 1;
@@ -55,7 +55,7 @@ export class Sheet {
     this.mesh.geometry.setIndex(stride > 1 ? (this.coarse ??= made()) : (this.finest ??= made()));
   }
 
-  /** Where another sheet is drawn instead; none where it is empty. */
+  /** Leave out a box that another sheet draws; none if it is empty. */
   cut(left: number, near: number, right: number, far: number): void {
     this.own.hole.value.set(left, near, right, far);
   }

@@ -1,4 +1,4 @@
-/** The surface as it is drawn: the whole of it, and something finer of where the camera looks. */
+/** The drawn surface: the whole, and a finer part where the camera looks. */
 import { Group, Vector2, Vector3, Vector4, type Texture } from "three";
 import { Grid } from "../surface/grid";
 import type { Meta } from "../server/messages";
@@ -12,14 +12,14 @@ import { heatTexture, kindsTexture, numbers } from "./textures";
 const MOST_MOVING_NEEDLES = 4;
 const NOTHING = new Float32Array(1);
 
-/** How a surface is drawn. */
+/** Options of drawing a surface. */
 export interface Looks {
   look: string;
-  /** How much of the picture a layer covers. */
+  /** Opacity of a layer over the picture. */
   cover: number;
-  /** Curtains at edges of the depth. */
+  /** Style of steep walls at depth edges. */
   steep: keyof typeof STEEPS;
-  /** Steeper than that is a curtain. */
+  /** Angle from which a wall counts as steep. */
   steepDeg: number;
   azimuthDeg: number;
   elevationDeg: number;
@@ -28,7 +28,7 @@ export interface Looks {
   normals: number;
 }
 
-/** What is drawn of fine textures: heights of a square. */
+/** Heights of a square of fine texture. */
 export interface FinePatch {
   x_m: number;
   y_m: number;
@@ -37,11 +37,11 @@ export interface FinePatch {
   heights: Float32Array;
 }
 
-/** What is drawn of a surface. */
+/** A surface as it is drawn. */
 export type Drawable = Pick<Scene, "whole" | "kinds" | "photo"> & { meta: Pick<Meta, "extent_m" | "labels" | "height_m"> };
 
-/** A surface of no use but to have the programs compiled with which any other is drawn. */
-export function flat(): Drawable {
+/** Return a flat surface, to compile the shaders that any other uses. */
+export function flatSurface(): Drawable {
   const grid = new Grid(new Float32Array(4), 2, 2, { left: -0.5, far: 0.5, dx: 0.5, dy: 0.5 });
   const meta: Drawable["meta"] = { extent_m: [1, 1], labels: 0, height_m: [0, 0] };
   return { meta, whole: { grid, labels: null }, kinds: new Uint16Array(1), photo: null };
@@ -82,7 +82,7 @@ export class Terrain {
     this.show(looks);
   }
 
-  /** Draw it so; `layer` where the look is one of values. */
+  /** Set the options; `layer` for a look of values. */
   show(looks: Looks, layer: Layer | null = null): void {
     this.looks = looks;
     const kind = LOOKS[looks.look as keyof typeof LOOKS] ?? (layer ? LOOKS.values : LOOKS.relief);
@@ -98,7 +98,7 @@ export class Terrain {
     this.needles.density = looks.normals;
   }
 
-  /** Something finer, with the picture of that place; none with null. */
+  /** Draw a finer part with its picture; none with null. */
   refine(part: Part | null, picture: ImageBitmap | null = null, pictured?: [number, number, number, number]): void {
     if (this.detail) this.drop(this.detail);
     this.detail = null;
@@ -111,7 +111,7 @@ export class Terrain {
     this.group.add(this.needles.lines);
   }
 
-  /** The fine texture of a square, as slopes that the light shows. */
+  /** Set the fine texture of a square, shown as slopes in the light. */
   refineTexture(patch: FinePatch | null): void {
     const place = this.common.finePlace.value as Vector4;
     if (!patch) place.set(0, 0, 0, 0);
@@ -121,7 +121,7 @@ export class Terrain {
     }
   }
 
-  /** While the camera moves, fewer triangles are drawn, where all of them take long. */
+  /** Draw fewer triangles while the camera moves, if all take long. */
   set moving(moving: boolean) {
     this.coarse = moving;
     for (const sheet of [this.whole, this.detail]) if (sheet) sheet.moving = moving;
@@ -132,7 +132,7 @@ export class Terrain {
     return this.coarse;
   }
 
-  /** Patterns are this wide, metres. */
+  /** Set the period of patterns, metres. */
   set period(metres: number) {
     this.set("period", metres);
   }
@@ -149,7 +149,7 @@ export class Terrain {
     this.detail = new Sheet(part, this.common, picture ?? this.scene.photo, pictured ?? [-w / 2, l / 2, w, l]);
     this.group.add(this.detail.mesh);
     const { rows, columns, place } = part.grid;
-    const { dx, dy } = this.scene.whole.grid.place; // the two overlap by a cell, so that there is no gap
+    const { dx, dy } = this.scene.whole.grid.place; // the sheets overlap by a cell, so that there is no gap
     const [right, near] = [place.left + columns * place.dx, place.far - rows * place.dy];
     const inner = (value: number, rim: number, by: number): number => (Math.abs(value) < rim ? value + by : 2 * value);
     const [left, far] = [inner(place.left, 0.4999 * w, dx), inner(place.far, 0.4999 * l, -dy)];

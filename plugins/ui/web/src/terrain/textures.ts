@@ -1,4 +1,4 @@
-/** Arrays as textures. */
+/** Textures of arrays. */
 import {
   DataTexture,
   DataUtils,
@@ -31,13 +31,13 @@ export function numbers(values: Float32Array, columns: number, rows: number): Da
 export function integers(values: Labels, columns: number, rows: number): DataTexture {
   const short = values instanceof Uint16Array;
   const type = short ? UnsignedShortType : UnsignedIntType;
-  const found = new DataTexture(values as Uint16Array<ArrayBuffer>, columns, rows, RedIntegerFormat, type);
-  found.internalFormat = short ? "R16UI" : "R32UI";
-  found.unpackAlignment = values.BYTES_PER_ELEMENT;
-  return ready(found);
+  const texture = new DataTexture(values as Uint16Array<ArrayBuffer>, columns, rows, RedIntegerFormat, type);
+  texture.internalFormat = short ? "R16UI" : "R32UI";
+  texture.unpackAlignment = values.BYTES_PER_ELEMENT;
+  return ready(texture);
 }
 
-/** One number for each label, in rows of KINDS_WIDE. */
+/** Return a texture of a number per label, in rows of KINDS_WIDE. */
 export function kindsTexture(kinds: Uint16Array): DataTexture {
   const rows = Math.max(1, Math.ceil(kinds.length / KINDS_WIDE));
   const padded = new Uint16Array(rows * KINDS_WIDE);
@@ -46,13 +46,13 @@ export function kindsTexture(kinds: Uint16Array): DataTexture {
 }
 
 export function heatTexture(): DataTexture {
-  const found = new DataTexture(heatTexels() as Uint8Array<ArrayBuffer>, 256, 1, RGBAFormat, UnsignedByteType);
-  found.minFilter = found.magFilter = LinearFilter;
-  found.needsUpdate = true;
-  return found;
+  const texture = new DataTexture(heatTexels() as Uint8Array<ArrayBuffer>, 256, 1, RGBAFormat, UnsignedByteType);
+  texture.minFilter = texture.magFilter = LinearFilter;
+  texture.needsUpdate = true;
+  return texture;
 }
 
-/** Slopes dh/dx and dh/dy, central differences and one-sided ones at the border, smooth between cells. */
+/** Return a texture of slopes dh/dx and dh/dy: central differences, one-sided at the border, interpolated between cells. */
 export function gradientTexture({ heights, rows, columns, place }: Grid): DataTexture {
   const slopes = new Uint16Array(2 * rows * columns);
   for (let j = 0, k = 0; j < rows; j++) {
@@ -67,12 +67,12 @@ export function gradientTexture({ heights, rows, columns, place }: Grid): DataTe
       slopes[k + 1] = half((heights[up + i] - heights[down + i]) * perY);
     }
   }
-  const found = new DataTexture(slopes, columns, rows, RGFormat, HalfFloatType);
-  found.unpackAlignment = 4;
-  found.magFilter = LinearFilter;
-  found.minFilter = LinearFilter;
-  found.needsUpdate = true;
-  return found;
+  const texture = new DataTexture(slopes, columns, rows, RGFormat, HalfFloatType);
+  texture.unpackAlignment = 4;
+  texture.magFilter = LinearFilter;
+  texture.minFilter = LinearFilter;
+  texture.needsUpdate = true;
+  return texture;
 }
 
 function half(value: number): number {
@@ -80,14 +80,14 @@ function half(value: number): number {
 }
 
 export function pictureTexture(picture: ImageBitmap | null): Texture {
-  const found = picture ? new Texture(picture) : new DataTexture(new Uint8Array(4), 1, 1);
-  found.flipY = false;
-  found.colorSpace = SRGBColorSpace;
-  found.generateMipmaps = picture !== null;
-  found.minFilter = picture ? LinearMipmapLinearFilter : NearestFilter;
-  found.magFilter = LinearFilter;
-  found.needsUpdate = true;
-  return found;
+  const texture = picture ? new Texture(picture) : new DataTexture(new Uint8Array(4), 1, 1);
+  texture.flipY = false;
+  texture.colorSpace = SRGBColorSpace;
+  texture.generateMipmaps = picture !== null;
+  texture.minFilter = picture ? LinearMipmapLinearFilter : NearestFilter;
+  texture.magFilter = LinearFilter;
+  texture.needsUpdate = true;
+  return texture;
 }
 
 function ready(texture: DataTexture): DataTexture {

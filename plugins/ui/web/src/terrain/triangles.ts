@@ -1,11 +1,11 @@
-/** Triangles between the vertices of a grid with a ring around it: (rows + 2) x (columns + 2), every stride-th of them. */
+/** Triangles of a grid with a ring around it: (rows + 2) x (columns + 2) vertices, every stride-th of them. */
 
-/** So many triangles are drawn in every frame of a camera that moves, where all of them take too long. */
+/** Greatest number of triangles per frame while the camera moves, on slow graphics. */
 export const MOST_MOVING = 60_000;
 
 export function triangles(rows: number, columns: number, stride: number): Uint32Array {
-  const across = picked(columns, stride);
-  const along = picked(rows, stride);
+  const across = pickIndices(columns, stride);
+  const along = pickIndices(rows, stride);
   const wide = columns + 2;
   const index = new Uint32Array((across.length - 1) * (along.length - 1) * 6);
   let at = 0;
@@ -24,14 +24,14 @@ export function triangles(rows: number, columns: number, stride: number): Uint32
   return index;
 }
 
-/** The ring's two ends, the first and the last cell, and every stride-th between. */
-export function picked(count: number, stride: number): number[] {
-  const found = [0];
-  for (let k = 1; k < count; k += stride) found.push(k);
-  return [...found, count, count + 1];
+/** Return the indices of the ring, the first and the last cell, and every stride-th between. */
+export function pickIndices(count: number, stride: number): number[] {
+  const indices = [0];
+  for (let k = 1; k < count; k += stride) indices.push(k);
+  return [...indices, count, count + 1];
 }
 
-/** How coarse a grid is drawn so that it has no more than MOST_MOVING triangles. */
+/** Return the stride for at most MOST_MOVING triangles. */
 export function strideOf(rows: number, columns: number): number {
   return Math.max(1, Math.ceil(Math.sqrt((2 * rows * columns) / MOST_MOVING)));
 }

@@ -1,4 +1,4 @@
-/** Where one looks from: around a place on the surface, by mouse, fingers and keys. */
+/** The camera: it orbits a place on the surface. */
 import { PerspectiveCamera, Vector3 } from "three";
 import type { Vec } from "../server/protocol";
 
@@ -9,11 +9,8 @@ const STEEPEST = 0.002;
 const HOME = { azimuth: 0, polar: 0.86 };
 const MARGIN = 0.94;
 const NEAR_GROUND = 0.3;
-const KEY_TURN = 0.12;
-const KEY_SHARE = 0.06;
-const TURN_PER_PIXEL = 0.008;
 
-/** Around which place, from how far, and from where: the azimuth is that of the eye, 0 from the near side. */
+/** Pose: target, distance and angles; azimuth 0 is the near side. */
 export interface Pose {
   target: Vec;
   distance: number;
@@ -24,9 +21,9 @@ export interface Pose {
 export class Eye {
   readonly camera = new PerspectiveCamera(FIELD_DEG, 1, 0.001, 1);
   pose: Pose = { target: [0, 0, 0], distance: 0.2, ...HOME };
-  /** Called whenever it looks another way. */
-  changed: () => void = () => {};
-  /** Height of what is under a place; NaN where nothing is. */
+  /** Called when the view changes. */
+  onChange: () => void = () => {};
+  /** Returns the height of the surface at a place; NaN outside. */
   ground: (x: number, y: number) => number = () => NaN;
   private size: [number, number] = [0.08, 0.06];
   private span: [number, number] = [0, 0];
@@ -37,7 +34,7 @@ export class Eye {
     this.place();
   }
 
-  /** The whole of a surface of this size, from the near side. */
+  /** Show the whole of a surface of this size from the near side. */
   frame(width_m: number, length_m: number, height_m: [number, number] = [0, 0]): void {
     this.size = [width_m, length_m];
     this.span = height_m;
@@ -47,29 +44,29 @@ export class Eye {
   }
 
   home(): void {
-    this.fly(this.whole(HOME.polar));
+    this.flyTo(this.whole(HOME.polar));
   }
 
-  /** From above, the far side up. */
+  /** Show the whole surface from above, the far side up. */
   top(): void {
-    this.fly(this.whole(STEEPEST));
+    this.flyTo(this.whole(STEEPEST));
   }
 
   focus(target: Vec, width_m: number): void {
     const distance = (1.15 * width_m) / (2 * Math.tan(this.halfField()) * Math.min(this.camera.aspect, 1.4));
-    this.fly({ ...this.pose, target, distance: this.bounded(distance) });
+    this.flyTo({ ...this.pose, target, distance: this.clampDistance(distance) });
   }
 
   orbit(azimuth: number, polar: number): void {
     const { pose } = this;
-    this.go({
+    this.jumpTo({
       ...pose,
       azimuth: pose.azimuth + azimuth,
       polar: Math.min(Math.max(pose.polar + polar, STEEPEST), FLATTEST),
     });
   }
 
-  /** By parts of what is seen of the height, to the right and up; what is seen moves the other way. */
+  /** Pan by shares of the visible height, to the right and up. */
   pan(right: number, up: number): void {
     const { azimuth, distance, target } = this.pose;
     const [sine, cosine] = [Math.sin(azimuth), Math.cos(azimuth)];
@@ -77,20 +74,20 @@ export class Eye {
     const [w, l] = this.size;
     const [x, y] = [target[0] + seen * (right * cosine - up * sine), target[1] + seen * (right * sine + up * cosine)];
     const within = (value: number, side: number): number => Math.min(Math.max(value, -0.6 * side), 0.6 * side);
-    this.go({ ...this.pose, target: [within(x, w), within(y, l), target[2]] });
+    this.jumpTo({ ...this.pose, target: [within(x, w), within(y, l), target[2]] });
   }
 
-  /** The distance times this; the place `about` stays where it is on the screen. */
+  /** Scale the distance; the place `about` stays on the screen. */
   zoom(times: number, about: Vec | null = null): void {
     const { distance, target } = this.pose;
-    const next = this.bounded(distance * times);
+    const next = this.clampDistance(distance * times);
     const share = next / distance;
     const kept = about ?? target;
     const moved = target.map((part, k) => kept[k] + (part - kept[k]) * share) as Vec;
-    this.go({ ...this.pose, distance: next, target: moved });
+    this.jumpTo({ ...this.pose, distance: next, target: moved });
   }
 
-  /** Whether it flies on: to be called once a frame. */
+  /** Advance a flight; return whether one is under way. Call once per frame. */
   advance(nowMs: number): boolean {
     if (!this.flight) return false;
     const { from, to, begunMs } = this.flight;
@@ -110,36 +107,36 @@ export class Eye {
 
   resize(width: number, height: number): void {
     const atHome = this.pose.azimuth === HOME.azimuth && this.pose.polar === HOME.polar && !this.flight;
-    const whole = atHome && Math.abs(this.pose.distance / this.whole(HOME.polar).distance - 1) < 1e-6;
+    const wholePose = atHome && Math.abs(this.pose.distance / this.whole(HOME.polar).distance - 1) < 1e-6;
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
-    if (whole) this.pose = this.whole(HOME.polar);
+    if (wholePose) this.pose = this.whole(HOME.polar);
     this.place();
   }
 
-  private go(pose: Pose): void {
+  private jumpTo(pose: Pose): void {
     this.flight = null;
-    this.pose = { ...pose, target: this.grounded(pose) };
+    this.pose = { ...pose, target: this.keepNearGround(pose) };
     this.place();
   }
 
-  /** The nearer one looks, the nearer to the ground is what one looks at, so that nobody dives under it. */
-  private grounded({ target, distance }: Pose): Vec {
+  /** Keep the target near the ground, the nearer the camera is, so that it does not dive under it. */
+  private keepNearGround({ target, distance }: Pose): Vec {
     const [x, y, z] = target;
     const ground = this.ground(x, y);
     const within = Math.min(Math.max(z, ground - NEAR_GROUND * distance), ground + NEAR_GROUND * distance);
     return [x, y, Number.isNaN(within) ? z : within];
   }
 
-  private fly(to: Pose): void {
-    if (matchMedia("(prefers-reduced-motion: reduce)").matches) return this.go(to);
+  private flyTo(to: Pose): void {
+    if (matchMedia("(prefers-reduced-motion: reduce)").matches) return this.jumpTo(to);
     const turns = Math.round((this.pose.azimuth - to.azimuth) / (2 * Math.PI));
     const from = { ...this.pose, azimuth: this.pose.azimuth - turns * 2 * Math.PI };
     this.flight = { from, to, begunMs: performance.now() };
-    this.changed();
+    this.onChange();
   }
 
-  /** So far away that all corners are seen. */
+  /** Return the pose that shows all corners. */
   private whole(polar: number): Pose {
     const [w, l] = this.size;
     const [low, high] = this.span;
@@ -147,12 +144,12 @@ export class Eye {
     let [near, far] = [0.05 * (w + l), 20 * (w + l)];
     for (let k = 0; k < 40; k++) {
       const middle = Math.sqrt(near * far);
-      this.put(pose(middle));
+      this.setCamera(pose(middle));
       const corners = [-w / 2, w / 2].flatMap((x) => [-l / 2, l / 2].flatMap((y) => [low, high].map((z) => [x, y, z] as Vec)));
       const seen = corners.every((each) => this.sees(each));
       [near, far] = seen ? [near, middle] : [middle, far];
     }
-    this.put(this.pose);
+    this.setCamera(this.pose);
     return pose(far);
   }
 
@@ -161,7 +158,7 @@ export class Eye {
     return Math.abs(x) < MARGIN && Math.abs(y) < MARGIN && z < 1;
   }
 
-  private bounded(distance: number): number {
+  private clampDistance(distance: number): number {
     const size = Math.max(...this.size);
     return Math.min(Math.max(distance, 0.02 * size), 20 * size);
   }
@@ -171,11 +168,11 @@ export class Eye {
   }
 
   private place(): void {
-    this.put(this.pose);
-    this.changed();
+    this.setCamera(this.pose);
+    this.onChange();
   }
 
-  private put({ target, distance, azimuth, polar }: Pose): void {
+  private setCamera({ target, distance, azimuth, polar }: Pose): void {
     const { camera } = this;
     const flat = distance * Math.sin(polar);
     camera.position.set(
@@ -189,129 +186,4 @@ export class Eye {
     camera.lookAt(...target);
     camera.updateMatrixWorld();
   }
-}
-
-/** The keys of the camera, as they are pressed on the terrain. */
-export const CAMERA_KEYS = [
-  { keys: ["Ctrl", "Shift", "← → ↑ ↓"], does: "orbit" },
-  { keys: ["Alt", "← → ↑ ↓"], does: "pan" },
-  { keys: ["+", "−"], does: "zoom" },
-  { keys: ["Ctrl", "Home"], does: "home" },
-  { keys: ["Ctrl", "End"], does: "top" },
-] as const;
-
-const WAYS: Record<string, [number, number]> = {
-  ArrowLeft: [-1, 0],
-  ArrowRight: [1, 0],
-  ArrowUp: [0, 1],
-  ArrowDown: [0, -1],
-};
-
-/** Whether the key is one of the camera's: none that is the hand's (shortcuts.ts). */
-export function key(eye: Eye, event: KeyboardEvent): boolean {
-  const way = WAYS[event.key];
-  const { ctrlKey, shiftKey, altKey } = event;
-  if (event.metaKey) return false;
-  if (way && ctrlKey && shiftKey && !altKey) eye.orbit(way[0] * KEY_TURN, -way[1] * KEY_TURN);
-  else if (way && altKey && !ctrlKey && !shiftKey) eye.pan(way[0] * KEY_SHARE, way[1] * KEY_SHARE);
-  else if (altKey) return false;
-  else if (event.key === "Home" && ctrlKey) eye.home();
-  else if (event.key === "End" && ctrlKey) eye.top();
-  else if (ctrlKey) return false;
-  else if (event.key === "+") eye.zoom(0.85);
-  else if (event.key === "-") eye.zoom(1 / 0.85);
-  else return false;
-  return true;
-}
-
-/**
- * Mouse, fingers, wheel and keys that are the camera's: they are taken before anything else on the canvas hears of them.
- * One finger and the plain left button are the hand's. When a second finger comes, the first one's hand is let go.
- */
-export function steer(canvas: HTMLCanvasElement, eye: Eye, ground: (x: number, y: number) => Vec | null): void {
-  const fingers = new Map<number, [number, number]>();
-  let grip: { pointer: number; orbits: boolean; at: [number, number] } | null = null;
-  let pinching = false;
-
-  const take = (event: Event): void => {
-    event.preventDefault();
-    event.stopImmediatePropagation();
-  };
-
-  function down(event: PointerEvent): void {
-    if (event.pointerType === "touch") return finger(event);
-    const orbits = event.button === 1 || (event.button === 0 && event.altKey);
-    const pans = event.button === 2 || (event.button === 0 && event.shiftKey);
-    if (!orbits && !pans) return;
-    grip = { pointer: event.pointerId, orbits, at: [event.clientX, event.clientY] };
-    canvas.setPointerCapture(event.pointerId);
-    canvas.focus({ preventScroll: true });
-    take(event);
-  }
-
-  function finger(event: PointerEvent): void {
-    fingers.set(event.pointerId, [event.clientX, event.clientY]);
-    if (fingers.size < 2) return;
-    if (!pinching)
-      for (const pointerId of fingers.keys())
-        if (pointerId !== event.pointerId) canvas.dispatchEvent(new PointerEvent("pointercancel", { pointerId, pointerType: "touch" }));
-    pinching = true;
-    take(event);
-  }
-
-  function move(event: PointerEvent): void {
-    if (fingers.has(event.pointerId)) {
-      if (pinching) pinch(event);
-      fingers.set(event.pointerId, [event.clientX, event.clientY]);
-      if (pinching) take(event);
-    } else if (grip?.pointer === event.pointerId) {
-      const [dx, dy] = [event.clientX - grip.at[0], event.clientY - grip.at[1]];
-      grip.at = [event.clientX, event.clientY];
-      if (grip.orbits) eye.orbit(-dx * TURN_PER_PIXEL, -dy * TURN_PER_PIXEL);
-      else eye.pan(-dx / canvas.clientHeight, dy / canvas.clientHeight);
-      take(event);
-    }
-  }
-
-  /** Two fingers: apart is nearer, turned is turned, together is along. */
-  function pinch(event: PointerEvent): void {
-    const other = [...fingers].find(([id]) => id !== event.pointerId)?.[1];
-    const was = fingers.get(event.pointerId)!;
-    if (!other || fingers.size !== 2) return;
-    const is: [number, number] = [event.clientX, event.clientY];
-    const [before, after] = [was, is].map(([x, y]) => [x - other[0], y - other[1]]);
-    const turn = Math.atan2(after[1], after[0]) - Math.atan2(before[1], before[0]);
-    const middle = ground((is[0] + other[0]) / 2, (is[1] + other[1]) / 2);
-    eye.zoom(Math.hypot(before[0], before[1]) / Math.max(Math.hypot(after[0], after[1]), 1), middle);
-    eye.orbit(Math.atan2(Math.sin(turn), Math.cos(turn)), 0);
-    eye.pan(-(is[0] - was[0]) / 2 / canvas.clientHeight, (is[1] - was[1]) / 2 / canvas.clientHeight);
-  }
-
-  function up(event: PointerEvent): void {
-    if (!event.isTrusted) return; // our own, for the hand
-    if (fingers.delete(event.pointerId)) {
-      if (pinching) take(event);
-      if (!fingers.size) pinching = false;
-    } else if (grip?.pointer === event.pointerId) {
-      grip = null;
-      take(event);
-    }
-  }
-
-  const first = { capture: true, passive: false };
-  canvas.addEventListener("pointerdown", down, first);
-  canvas.addEventListener("pointermove", move, first);
-  canvas.addEventListener("pointerup", up, first);
-  canvas.addEventListener("pointercancel", up, first);
-  canvas.addEventListener("contextmenu", (event) => event.preventDefault());
-  canvas.addEventListener(
-    "wheel",
-    (event) => {
-      if (!event.ctrlKey) return; // the hand's depth
-      eye.zoom(Math.exp(Math.min(Math.max(event.deltaY, -60), 60) * 0.004), ground(event.clientX, event.clientY));
-      take(event);
-    },
-    first,
-  );
-  canvas.addEventListener("keydown", (event) => key(eye, event) && take(event), first);
 }

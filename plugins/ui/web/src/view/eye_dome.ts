@@ -1,4 +1,4 @@
-/** Eye-dome shading: what lies before something else gets a dark rim, by the depth alone (Boucheny 2009). */
+/** Eye-dome shading: dark rims at depth edges, from the depth alone (Boucheny 2009). */
 import { AlwaysDepth, GLSL3, Mesh, PlaneGeometry, RawShaderMaterial, type PerspectiveCamera, type Texture } from "three";
 
 const REACH_PX = 1.6;
@@ -8,8 +8,8 @@ export const FULL_SCREEN = `
 precision highp float; in vec3 position;
 void main() { gl_Position = vec4(position.xy, 0., 1.); }`;
 
-/** Something drawn over the whole of what is drawn on. */
-export function screen(fragmentShader: string, uniforms: Record<string, { value: unknown }>): Mesh<PlaneGeometry, RawShaderMaterial> {
+/** Return a quad over the whole target. */
+export function fullScreenQuad(fragmentShader: string, uniforms: Record<string, { value: unknown }>): Mesh<PlaneGeometry, RawShaderMaterial> {
   const material = new RawShaderMaterial({
     glslVersion: GLSL3,
     depthFunc: AlwaysDepth,
@@ -24,7 +24,7 @@ export function screen(fragmentShader: string, uniforms: Record<string, { value:
 
 export class EyeDome {
   private uniforms = { colours: { value: null as Texture | null }, depths: { value: null as Texture | null }, near: { value: 0 }, far: { value: 1 }, strength: { value: 0 }, reach: { value: REACH_PX } };
-  readonly quad = screen(
+  readonly quad = fullScreenQuad(
     `precision highp float; precision highp sampler2D;
 uniform sampler2D colours, depths; uniform float near, far, strength, reach; out vec4 colour;
 float away(vec2 p) {
@@ -43,8 +43,8 @@ void main() {
     this.uniforms,
   );
 
-  /** Shade what was drawn from this camera; strength 0 leaves it as it is. */
-  of(colours: Texture, depths: Texture, camera: PerspectiveCamera, strength: number, ratio: number): Mesh {
+  /** Return the quad that shades a rendered image; strength 0 leaves it as it is. */
+  shade(colours: Texture, depths: Texture, camera: PerspectiveCamera, strength: number, ratio: number): Mesh {
     const { uniforms } = this;
     uniforms.colours.value = colours;
     uniforms.depths.value = depths;

@@ -1,4 +1,4 @@
-/** Drawing: each state once, and the whole again when the view or what lies over it changed. */
+/** The frame loop: draws each state once, and the whole when view or overlay changed. */
 import { figures, measuring } from "../instrumentation";
 import type { Page } from "../page";
 import { now, type State } from "../server/protocol";
@@ -7,7 +7,7 @@ export class Frames {
   private last: State | null = null;
   private echoed = 0;
 
-  constructor(private page: Page) {
+  constructor(private page: Pick<Page, "hub" | "net" | "view" | "overlay" | "replayed">) {
     page.hub.on("shown", (scene) => page.overlay.show(scene));
     requestAnimationFrame(() => this.frame());
   }
@@ -16,7 +16,7 @@ export class Frames {
     requestAnimationFrame(() => this.frame());
     const { net, view, overlay, replayed } = this.page;
     const state = replayed ?? net.latest;
-    if (replayed && net.latest) net.drawn(net.latest.seq); // it will not be drawn
+    if (replayed && net.latest) net.drawn(net.latest.seq); // the loop's state is not drawn
     const fresh = state !== this.last;
     if (!view.dirty && !overlay.changed && !fresh) return;
     const first = view.terrain !== null && !figures.firstMs;
@@ -24,16 +24,16 @@ export class Frames {
     if (moved || overlay.wants(state)) {
       overlay.put(state);
       view.draw(first || (measuring && figures.waits && view.terrain !== null));
-      overlay.changed ||= moved; // a camera that flies moves in `draw`: what stays at a place follows it
+      overlay.changed ||= moved; // a flying camera moves in `draw`: pinned elements follow
     }
     const at = now();
     if (first) figures.firstMs = at;
     this.last = state;
-    if (fresh && state) this.drawn(state, at);
+    if (fresh && state) this.acknowledge(state, at);
   }
 
-  /** A state that shows nothing new, as nobody holds the device, counts as drawn. */
-  private drawn(state: State, at: number): void {
+  /** Acknowledge a state; one that shows nothing new counts as drawn. */
+  private acknowledge(state: State, at: number): void {
     const { net, hub } = this.page;
     if (state === net.latest) net.drawn(state.seq);
     hub.tell("drawn", state);

@@ -1,10 +1,10 @@
-/** What is shown of the surface on the screen: the chosen look where there is one such, and changes of it. */
+/** The look of the surface on the screen: the chosen one if the surface has it. */
 import type { Meta } from "../server/messages";
 import type { Page } from "../page";
 import { fetchLayer, type Layer } from "../surface/loading";
-import { remember, remembered, type Settings } from "./settings";
+import { rememberSettings, recallSettings, type Settings } from "./settings";
 
-/** The looks that a surface has, in the order in which they are offered. */
+/** Return the looks of a surface, in order. */
 export function looksOf(meta: Meta): string[] {
   return [
     ...(meta.photo ? ["photo"] : []),
@@ -17,26 +17,26 @@ export function looksOf(meta: Meta): string[] {
   ];
 }
 
-/** What is shown at first: what was asked to be made, then what was chosen, then what there is. */
+/** Return the first look: the computed product's, then the chosen one, then the first available. */
 export function lookFor(meta: Meta, chosen: string): string {
   const there = looksOf(meta);
   if (meta.shows === "segments" && there.includes("segments")) return "segments";
   return there.includes(chosen) ? chosen : there[0];
 }
 
-export class Showing {
-  readonly settings: Settings = remembered();
-  /** What is shown now; the chosen one is `settings.look`. */
+export class Look {
+  readonly settings: Settings = recallSettings();
+  /** The present look; the chosen one is `settings.look`. */
   look = this.settings.look;
   layer: Layer | null = null;
-  /** Called when another look is shown, or another surface. */
-  changed: () => void = () => {};
+  /** Called when look or surface changed. */
+  onChange: () => void = () => {};
 
-  constructor(private page: Page) {
+  constructor(private page: Pick<Page, "hub" | "view" | "scene">) {
     this.page.view.eyeDome = this.settings.eyeDome;
   }
 
-  /** Draw the page's surface, which is another one than before. */
+  /** Draw the page's new surface. */
   begin(): void {
     const { scene, view } = this.page;
     if (!scene) return;
@@ -48,7 +48,7 @@ export class Showing {
 
   set(changes: Partial<Settings>): void {
     Object.assign(this.settings, changes);
-    remember(this.settings);
+    rememberSettings(this.settings);
     if (changes.look) this.look = changes.look;
     void this.draw();
   }
@@ -69,6 +69,6 @@ export class Showing {
     view.terrain?.show({ ...this.settings, look }, this.layer);
     view.dirty = true;
     hub.tell("look", { look });
-    this.changed();
+    this.onChange();
   }
 }

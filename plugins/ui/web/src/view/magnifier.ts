@@ -1,4 +1,4 @@
-/** A magnifier: the surface under the hand at the scale of a finger, with the fine texture that is felt there. */
+/** A magnifier: the surface under the hand at the scale of a finger, with its fine texture. */
 import "./magnifier.css";
 import type { Page } from "../page";
 import type { State } from "../server/protocol";
@@ -8,12 +8,12 @@ import type { FinePatch } from "../terrain/terrain";
 import { t } from "./words";
 
 const PIXELS = 192;
-/** It follows when the hand has gone this share of its width from its middle. */
+/** Share of its width that the hand leaves its middle by before it follows. */
 const FOLLOWS = 0.22;
 const PAUSE_MS = 150;
 const AWAY_M = 0.5;
 
-export class Lens {
+export class Magnifier {
   private box = document.createElement("figure");
   private canvas = document.createElement("canvas");
   private cross = document.createElement("span");
@@ -24,7 +24,7 @@ export class Lens {
   private lightSaid = "";
 
   constructor(
-    private page: Page,
+    private page: Pick<Page, "hub" | "net" | "canvas" | "scene">,
     private settings: Settings,
   ) {
     this.box.id = "lens";
@@ -41,13 +41,13 @@ export class Lens {
     page.hub.on("finer", () => this.draw());
   }
 
-  /** Its width or the light may be others. */
+  /** Take over changed width or light. */
   change(): void {
     if (!this.settings.lensMm) return this.close();
     const { azimuthDeg, elevationDeg } = this.settings;
-    const said = `${azimuthDeg} ${elevationDeg}`;
-    if (said !== this.lightSaid) this.draw();
-    this.lightSaid = said;
+    const text = `${azimuthDeg} ${elevationDeg}`;
+    if (text !== this.lightSaid) this.draw();
+    this.lightSaid = text;
     if (this.patch && this.patch.side_m !== this.settings.lensMm / 1000) void this.look([this.patch.x_m, this.patch.y_m]);
   }
 
@@ -79,7 +79,7 @@ export class Lens {
       this.point(...at, patch);
       this.describe(patch);
     } catch {
-      this.close(); // the surface is gone, or what makes textures is busy starting: the next move asks again
+      this.close(); // the surface is gone, or the texture process is starting: the next move asks again
     } finally {
       this.asking = false;
     }
@@ -109,12 +109,12 @@ export class Lens {
     if (!patch || !scene) return;
     const { azimuthDeg, elevationDeg } = this.settings;
     const around = (x: number, y: number): number => scene.on(x, y)[2];
-    this.canvas.getContext("2d")!.putImageData(shaded(patch, around, azimuthDeg, elevationDeg), 0, 0);
+    this.canvas.getContext("2d")!.putImageData(shadePatch(patch, around, azimuthDeg, elevationDeg), 0, 0);
   }
 }
 
-/** A patch and what lies under it, in raking light, its slopes as they are. */
-export function shaded(
+/** Return a patch on its ground in raking light. */
+export function shadePatch(
   { x_m, y_m, side_m, pixels, heights }: FinePatch, around: (x: number, y: number) => number, azimuthDeg: number, elevationDeg: number,
 ): ImageData {
   const pitch = side_m / pixels;
@@ -125,7 +125,7 @@ export function shaded(
     }
   const [a, e] = [azimuthDeg, elevationDeg].map((deg) => (deg * Math.PI) / 180);
   const key = [Math.sin(a) * Math.cos(e), Math.cos(a) * Math.cos(e), Math.sin(e)];
-  const found = new ImageData(pixels, pixels);
+  const image = new ImageData(pixels, pixels);
   const last = pixels - 1;
   for (let j = 0, k = 0; j < pixels; j++)
     for (let i = 0; i < pixels; i++, k += 4) {
@@ -135,7 +135,7 @@ export function shaded(
       const gy = (whole[up * pixels + i] - whole[down * pixels + i]) / (Math.max(down - up, 1) * pitch);
       const light = (key[2] - gx * key[0] - gy * key[1]) / Math.hypot(gx, gy, 1);
       const tone = 30 + 200 * Math.max(light, 0);
-      found.data.set([tone, 0.96 * tone, 0.88 * tone, 255], k);
+      image.data.set([tone, 0.96 * tone, 0.88 * tone, 255], k);
     }
-  return found;
+  return image;
 }

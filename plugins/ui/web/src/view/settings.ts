@@ -1,11 +1,11 @@
-/** How the surface is drawn, kept from one visit to the next where the browser allows it. */
+/** Settings of drawing, kept in the browser. */
 import { recall, remember as keep } from "../preferences";
 import { STEEPS } from "../terrain/shader";
 import type { Looks } from "../terrain/terrain";
 
 export interface Settings extends Looks {
   eyeDome: number;
-  /** Width of what the magnifier shows, millimetres; 0 without one. */
+  /** Width of the magnified square, millimetres; 0 without magnifier. */
   lensMm: number;
 }
 
@@ -24,7 +24,7 @@ export const DEFAULTS: Settings = {
   lensMm: 0,
 };
 
-/** From to: what a number may be. */
+/** Bounds of numbers. */
 export const BOUNDS: Partial<Record<keyof Settings, [number, number]>> = {
   cover: [0, 1],
   steepDeg: [45, 89],
@@ -36,28 +36,28 @@ export const BOUNDS: Partial<Record<keyof Settings, [number, number]>> = {
   lensMm: [0, 20],
 };
 
-/** What was kept, as far as it makes sense. */
-export function checked(kept: unknown): Settings {
-  const found: Record<string, unknown> = { ...DEFAULTS };
+/** Return kept settings as far as they are valid. */
+export function checkSettings(kept: unknown): Settings {
+  const args: Record<string, unknown> = { ...DEFAULTS };
   if (typeof kept !== "object" || kept === null) return { ...DEFAULTS };
   for (const [name, value] of Object.entries(kept)) {
     const bounds = BOUNDS[name as keyof Settings];
-    if (bounds && typeof value === "number" && value >= bounds[0] && value <= bounds[1]) found[name] = value;
+    if (bounds && typeof value === "number" && value >= bounds[0] && value <= bounds[1]) args[name] = value;
   }
   const { look, steep } = kept as Partial<Settings>;
-  if (typeof look === "string") found.look = look;
-  if (typeof steep === "string" && Object.hasOwn(STEEPS, steep)) found.steep = steep;
-  return found as unknown as Settings;
+  if (typeof look === "string") args.look = look;
+  if (typeof steep === "string" && Object.hasOwn(STEEPS, steep)) args.steep = steep;
+  return args as unknown as Settings;
 }
 
-export function remembered(): Settings {
+export function recallSettings(): Settings {
   try {
-    return checked(JSON.parse(recall(KEPT, "null")));
+    return checkSettings(JSON.parse(recall(KEPT, "null")));
   } catch {
-    return { ...DEFAULTS }; // not ours
+    return { ...DEFAULTS }; // a foreign value
   }
 }
 
-export function remember(settings: Settings): void {
+export function rememberSettings(settings: Settings): void {
   keep(KEPT, JSON.stringify(settings));
 }

@@ -1,4 +1,4 @@
-/** Layers: the terrain is drawn once into a colour and depth target; a frame is a copy of that, and what moves. */
+/** The renderer: the terrain is drawn once into a colour and depth target; a frame is a copy of that, and what moves. */
 import {
   Camera,
   Color,
@@ -12,49 +12,50 @@ import {
   WebGLRenderer,
   WebGLRenderTarget,
 } from "three";
-import { Eye, steer } from "./camera";
-import { EyeDome, screen } from "./eye_dome";
+import { Eye } from "./camera";
+import { attachCameraInput } from "./camera_input";
+import { EyeDome, fullScreenQuad } from "./eye_dome";
 import type { Vec } from "../server/protocol";
 import type { Scene } from "../surface/scene";
-import { flat, type Looks, Terrain } from "../terrain/terrain";
+import { flatSurface, type Looks, Terrain } from "../terrain/terrain";
 
 const REST_MS = 140;
-/** Surfaces that follow each other sooner, as while a height is dragged, are drawn coarsely until the last one stays. */
+/** Interval of surfaces, ms, below which they are drawn coarsely until the last one stays, as while a height is dragged. */
 const FOLLOWING_MS = 800;
-/** So is the first surface meanwhile: what is felt of it is being made, and to draw all of it takes as much. */
+/** Time for which the first surface is drawn coarsely, ms: its touch is being computed meanwhile. */
 const FIRST_MS = 1200;
-/** A terrain that takes longer is drawn coarser while the camera moves. */
+/** Drawing time from which a terrain is drawn coarser while the camera moves, ms. */
 const SLOW_MS = 22;
-/** One that takes as long is drawn with a pixel of the page, however fine the screen is. */
+/** Drawing time from which a terrain is drawn at CSS resolution, ms. */
 const VERY_SLOW_MS = 80;
 const FINEST_RATIO = 2;
 const PATTERN_PX = 11;
 
-/** Why nothing is drawn: there is no WebGL, or it was taken away. */
+/** Why nothing is drawn: no WebGL 2, or its context was lost. */
 export type Trouble = "" | "missing" | "lost";
 
 export class View {
   readonly eye = new Eye();
   readonly camera = this.eye.camera;
-  /** What is drawn again only when `dirty`. */
+  /** Objects drawn again only when `dirty`. */
   readonly fixed = new Stage();
-  /** What is drawn over it in every frame. */
+  /** Objects drawn over it in every frame. */
   readonly moving = new Stage();
   terrain: Terrain | null = null;
   dirty = true;
   trouble: Trouble = "";
-  /** Called when that changes. */
+  /** Called when `trouble` changes. */
   troubled: (trouble: Trouble) => void = () => {};
   /** Called when the camera has come to rest. */
   rested: () => void = () => {};
-  /** 0 none to 1. */
+  /** Strength of the eye-dome shading, 0 to 1. */
   eyeDome = 0;
   private renderer: WebGLRenderer | null;
   private dome = new EyeDome();
   private drawn: WebGLRenderTarget | null = null;
   private shaded: WebGLRenderTarget | null = null;
   private copied = { colours: { value: null as unknown }, depths: { value: null as unknown } };
-  private copy: Mesh = screen(
+  private copy: Mesh = fullScreenQuad(
     `precision highp float; precision highp sampler2D; uniform sampler2D colours, depths; out vec4 colour;
 void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 0); gl_FragDepth = texelFetch(depths, p, 0).r; }`,
     this.copied,
@@ -62,13 +63,13 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
   private stage = new Stage();
   private none = new Camera();
   private pixel = new Uint8Array(4);
-  /** Keeps what `prepare` compiled until a surface uses it. */
+  /** Terrain of `prepare`, which keeps compiled shaders until a surface uses them. */
   private prepared: Terrain | null = null;
   private resting = 0;
   private putMs = -Infinity;
-  /** To draw all of the terrain; infinite until that was measured. */
+  /** Time to draw all of the terrain, ms; infinite until measured. */
   private takesMs = Infinity;
-  /** Pixels that are drawn for one of the page, to the side. */
+  /** Pixels drawn per CSS pixel, per side. */
   private ratio = 1;
   private scene: Scene | null = null;
 
@@ -76,25 +77,25 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
     this.renderer = rendererOf(canvas);
     if (!this.renderer) this.trouble = "missing";
     this.eye.ground = (x, y) => this.scene?.height(x, y) ?? NaN;
-    this.eye.changed = () => this.moved();
-    steer(canvas, this.eye, (x, y) => this.scene?.pick(...this.ray(x, y)) ?? this.onGround(x, y));
-    canvas.addEventListener("webglcontextlost", (event) => this.lost(event));
-    canvas.addEventListener("webglcontextrestored", () => this.restored());
+    this.eye.onChange = () => this.onMove();
+    attachCameraInput(canvas, this.eye, (x, y) => this.scene?.pick(...this.ray(x, y)) ?? this.onGround(x, y));
+    canvas.addEventListener("webglcontextlost", (event) => this.onContextLost(event));
+    canvas.addEventListener("webglcontextrestored", () => this.onContextRestored());
     new ResizeObserver(() => this.size()).observe(canvas);
     this.size();
   }
 
-  /** Compile what any surface is drawn with, while there is none yet: that takes a fifth of a second in software. */
+  /** Compile the shaders of any surface while there is none yet: that takes a fifth of a second in software. */
   prepare(looks: Looks): void {
     const { renderer, drawn } = this;
     if (!renderer || !drawn || this.trouble || this.terrain || this.prepared) return;
-    this.prepared = new Terrain(flat(), looks);
+    this.prepared = new Terrain(flatSurface(), looks);
     renderer.setRenderTarget(drawn);
     renderer.render(this.prepared.group, this.camera);
     this.dirty = true;
   }
 
-  /** Draw this surface from now on; where the size is another one, the whole of it is looked at. */
+  /** Draw another surface; one of a different size is shown whole. */
   put(scene: Scene, looks: Looks): void {
     const before = this.scene?.meta;
     this.scene = scene;
@@ -107,37 +108,37 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
     }
     if (String(before?.extent_m) !== String(scene.meta.extent_m)) this.frame(...scene.meta.extent_m);
     const now = performance.now();
-    this.moved(!before ? FIRST_MS : now - this.putMs < FOLLOWING_MS ? FOLLOWING_MS : REST_MS);
+    this.onMove(!before ? FIRST_MS : now - this.putMs < FOLLOWING_MS ? FOLLOWING_MS : REST_MS);
     this.putMs = now;
   }
 
-  /** What lies behind the surface, as styles say a colour. */
+  /** Set the background, as a CSS colour. */
   set ground(colour: string) {
-    this.fixed.background = new Color(colour).convertLinearToSRGB(); // targets hold what the screen shows
+    this.fixed.background = new Color(colour).convertLinearToSRGB(); // targets hold screen colours
     this.dirty = true;
   }
 
-  /** Something that moves; the caller sets `visible` and position before the frame is drawn. */
+  /** Add an object that moves; its owner sets visibility and position before each frame. */
   overlay(object: Object3D): void {
     this.moving.add(object);
   }
 
-  /** Look at the whole of a surface of this size. */
+  /** Show the whole of a surface of this size. */
   frame(width_m: number, length_m: number): void {
     this.eye.frame(width_m, length_m, this.scene?.meta.height_m);
   }
 
-  /** Look at a region this wide, from the side from which the camera looks. */
+  /** Show a region of this width from the camera's present side. */
   focus(centre: Vec, width_m: number): void {
     this.eye.focus(centre, width_m);
   }
 
-  /** Nearer by this share of the way, or farther. */
+  /** Zoom in by this share of the distance; out if negative. */
   zoom(share: number): void {
     this.eye.zoom(1 - share);
   }
 
-  /** From the eye through a place of the window: where from, and which way. */
+  /** Return origin and direction of the ray through a place of the window. */
   ray(clientX: number, clientY: number): [Vec, Vec] {
     const { left, top, width, height } = this.canvas.getBoundingClientRect();
     const through = new Vector3(((clientX - left) / width) * 2 - 1, 1 - ((clientY - top) / height) * 2, 0.5);
@@ -146,13 +147,13 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
     return [from.toArray(), way.toArray()];
   }
 
-  /** Where a point of the workspace is on the canvas, in its CSS pixels from its upper left corner. */
+  /** Return where a point of the workspace is on the canvas, CSS pixels from its upper left corner. */
   toScreen(point: Vec): [number, number] {
     const { x, y } = new Vector3(...point).project(this.camera);
     return [((x + 1) / 2) * this.canvas.clientWidth, ((1 - y) / 2) * this.canvas.clientHeight];
   }
 
-  /** Draw a frame; wait until it is drawn where that is to be measured. */
+  /** Draw a frame; wait for its pixels if it is timed. */
   draw(wait: boolean): void {
     const { renderer, drawn } = this;
     const flies = this.eye.advance(performance.now());
@@ -175,11 +176,11 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
     renderer.setRenderTarget(drawn);
     renderer.clear();
     renderer.render(this.fixed, this.camera);
-    if (this.terrain) this.unprepare();
+    if (this.terrain) this.dropPrepared();
     let colours = drawn.texture;
     if (this.eyeDome > 0 && this.shaded) {
       this.stage.clear();
-      this.stage.add(this.dome.of(drawn.texture, drawn.depthTexture!, this.camera, this.eyeDome, this.ratio));
+      this.stage.add(this.dome.shade(drawn.texture, drawn.depthTexture!, this.camera, this.eyeDome, this.ratio));
       renderer.setRenderTarget(this.shaded);
       renderer.render(this.stage, this.none);
       colours = this.shaded.texture;
@@ -194,12 +195,12 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
     this.drawFixed(renderer, this.drawn!);
   }
 
-  private unprepare(): void {
+  private dropPrepared(): void {
     this.prepared?.dispose();
     this.prepared = null;
   }
 
-  /** Width of a pixel at the place that is looked at. */
+  /** Return the width of a pixel at the camera's target, metres. */
   pixel_m(): number {
     const { fov } = this.camera;
     return (2 * this.eye.pose.distance * Math.tan((fov * Math.PI) / 360)) / Math.max(1, this.canvas.clientHeight);
@@ -211,14 +212,14 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
     return t > 0 ? [o[0] + t * d[0], o[1] + t * d[1], o[2] + t * d[2]] : null;
   }
 
-  private moved(restMs = REST_MS): void {
+  private onMove(restMs = REST_MS): void {
     this.dirty = true;
     if (this.terrain && this.takesMs > SLOW_MS) this.terrain.moving = true;
     clearTimeout(this.resting);
-    this.resting = window.setTimeout(() => this.rest(), restMs);
+    this.resting = window.setTimeout(() => this.onRest(), restMs);
   }
 
-  private rest(): void {
+  private onRest(): void {
     if (this.terrain) this.terrain.moving = false;
     this.dirty = true;
     this.rested();
@@ -229,13 +230,13 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
     gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, this.pixel);
   }
 
-  private lost(event: Event): void {
-    event.preventDefault(); // it may come back
+  private onContextLost(event: Event): void {
+    event.preventDefault(); // the context may be restored
     this.trouble = "lost";
     this.troubled("lost");
   }
 
-  private restored(): void {
+  private onContextRestored(): void {
     this.trouble = "";
     this.size();
     this.troubled("");

@@ -12,8 +12,8 @@ const t = words({
   place22: ["lower right", "unten rechts"],
 });
 
-/** In which ninth of the picture a place is; shares of its width from the left, of its length from the top. */
-export function ninth(x: number, y: number): string {
+/** Return the ninth of the picture that contains a place: shares of its width from the left, of its length from the top. */
+export function ninthOfPicture(x: number, y: number): string {
   const third = (share: number): number => Math.max(0, Math.min(2, Math.floor(3 * share)));
   return t(`place${third(x)}${third(y)}` as Parameters<typeof t>[0]);
 }

@@ -13,11 +13,11 @@ const t = words({
   export: ["Export as {name}", "Ausgabe als {name}"],
 });
 
-/** How the program names what an exporter writes. */
+/** The program's prefix of exported products. */
 const EXPORT = "export: ";
 
-/** A product's name for people; one that is not known keeps the name that it has in the pipeline file. */
-export function made(product: string): string {
+/** Return a product's name; an unknown one keeps the name of the pipeline file. */
+export function productName(product: string): string {
   if (product.startsWith(EXPORT)) return t("export", { name: product.slice(EXPORT.length) });
   return t.has(product) ? t(product) : product;
 }

@@ -1,4 +1,4 @@
-/** The page's texts in the languages it speaks: tables of [English, German], one file each area, in this folder. */
+/** Texts of the page: tables of [English, German], one per area, next to the code that uses them. */
 import { recall, remember } from "../preferences";
 
 export type Table = Record<string, readonly [english: string, german: string]>;
@@ -9,7 +9,7 @@ const KEPT = "language";
 
 export const language: Language = chosen();
 
-/** Which language the page is in: the one that was chosen, or the first of the browser's that it speaks, or English. */
+/** Return the chosen language, or the browser's first supported one, or English. */
 function chosen(): Language {
   const browsers = globalThis.navigator?.languages ?? []; // tests run without a browser
   const wanted = [recall(KEPT, ""), ...browsers.map((each) => each.slice(0, 2))];
@@ -20,19 +20,19 @@ function isLanguage(text: string): text is Language {
   return (LANGUAGES as readonly string[]).includes(text);
 }
 
-/** Speak another language from now on: the page loads again. */
+/** Switch the language; the page reloads. */
 export function speak(other: Language): void {
   remember(KEPT, other);
   location.reload();
 }
 
-/** Every table of texts that was loaded. */
+/** Tables of texts loaded so far. */
 export const tables: Table[] = [];
 
-/** A table as a function: t("opened", { name }) puts values in for {name}. */
+/** A table as a function: t("opened", { name }) fills in {name}. */
 export interface Words<T extends Table> {
   (key: keyof T, values?: Record<string, string | number>): string;
-  /** Whether there is a text for what the program names. */
+  /** Return whether the table has a text of this name. */
   has(name: string): name is keyof T & string;
 }
 
@@ -44,7 +44,7 @@ export function words<T extends Table>(table: T): Words<T> {
   return Object.assign(t, { has: (name: string): name is keyof T & string => Object.hasOwn(table, name) });
 }
 
-/** A number as the language writes it. */
+/** Return a number in the language's notation. */
 export function decimal(value: number, digits: number): string {
   return value.toLocaleString(language, { minimumFractionDigits: digits, maximumFractionDigits: digits });
 }

@@ -1,21 +1,21 @@
-/** Beside the cursor: the force in newtons, whether the contact sticks or slips, and what the guard limits. */
+/** Label next to the cursor: force in newtons, whether the contact sticks or slips, active limits. */
 import type { View } from "../../view/view";
 import { t } from "../words";
 import { tip } from "./force_arrow";
-import { LIMITS, limited } from "../../contact/limits";
-import type { Live } from "../../contact/reading";
+import { LIMITS, isLimited } from "../../contact/limits";
+import type { Reading } from "../../contact/reading";
 import type { Piece, Sight } from "../piece";
 import type { Settings } from "../settings";
 
-/** Words change at most so often, so that they can be read. */
+/** Shortest time between changes of the text, for legibility. */
 const EVERY_MS = 100;
-/** A limit that was seen is named for so long. */
+/** Time for which a limit stays named. */
 const KEPT_MS = 600;
 const OFF_PX = 14;
-/** Shapes that go with the words. */
+/** Symbols next to the words. */
 export const GLYPHS = { apart: "", rests: "●", sticks: "■", slips: "»", glides: "○" } as const;
 
-export class Labels implements Piece {
+export class ContactLabel implements Piece {
   late = false;
   private box = document.createElement("div");
   private force = line(this.box, "force");
@@ -32,13 +32,13 @@ export class Labels implements Piece {
     private view: View,
   ) {
     this.box.className = "live-label";
-    this.box.setAttribute("aria-hidden", "true"); // the same is said in words elsewhere
+    this.box.setAttribute("aria-hidden", "true"); // screen readers get the same elsewhere
     layer.append(this.box);
   }
 
-  put(live: Live | null, settings: Settings, sight: Sight): void {
+  put(live: Reading | null, settings: Settings, sight: Sight): void {
     const { show } = settings;
-    const hidden = !live || (!live.touching && live.otherN === 0 && !limited(live.state.flags)) || !(show.labels || show.limits);
+    const hidden = !live || (!live.touching && live.otherN === 0 && !isLimited(live.state.flags)) || !(show.labels || show.limits);
     if (this.box.hidden !== hidden) this.box.hidden = hidden;
     this.late = false;
     if (!live || hidden) return;
@@ -46,7 +46,7 @@ export class Labels implements Piece {
     this.place(live, settings, sight);
   }
 
-  private words(live: Live, { show }: Settings): void {
+  private words(live: Reading, { show }: Settings): void {
     const now = performance.now();
     for (const { bit } of LIMITS) if (live.state.flags & bit) this.seenMs.set(bit, now);
     this.late = now - this.readMs < EVERY_MS;
@@ -61,8 +61,8 @@ export class Labels implements Piece {
     this.high = this.box.offsetHeight;
   }
 
-  /** Beside the arrow's end, and whole within the canvas. */
-  private place(live: Live, { metresPerNewton }: Settings, { width, height }: Sight): void {
+  /** Place the label next to the arrow's end, within the canvas. */
+  private place(live: Reading, { metresPerNewton }: Settings, { width, height }: Sight): void {
     const [x, y] = this.view.toScreen(tip(live, live.state.force, metresPerNewton));
     const left = x + OFF_PX + this.wide > width ? x - OFF_PX - this.wide : x + OFF_PX;
     const [u, v] = [within(left, width - this.wide), within(y - this.high / 2, height - this.high)];
@@ -73,10 +73,10 @@ export class Labels implements Piece {
 const within = (at: number, most: number): number => Math.max(0, Math.min(at, most));
 
 function line(box: HTMLElement, name: string): HTMLElement {
-  const made = document.createElement("div");
-  made.className = name;
-  box.append(made);
-  return made;
+  const results = document.createElement("div");
+  results.className = name;
+  box.append(results);
+  return results;
 }
 
 function say(element: HTMLElement, text: string): void {

@@ -1,9 +1,9 @@
-/** The contact: a ring that lies on the surface; whole while the contact holds, in pieces while it moves. */
+/** The contact: a ring on the surface; solid while the contact sticks, broken while it moves. */
 import { Group, Mesh, MeshBasicMaterial, RingGeometry, Vector3 } from "three";
 import { mergeGeometries } from "three/addons/utils/BufferGeometryUtils.js";
 import type { View } from "../../view/view";
 import { COLOURS } from "../colours";
-import type { Live } from "../../contact/reading";
+import type { Reading } from "../../contact/reading";
 import { metresPerPixel, type Piece, type Sight } from "../piece";
 import type { Settings } from "../settings";
 
@@ -35,7 +35,7 @@ export class ContactRing implements Piece {
     view.overlay(this.group);
   }
 
-  put(live: Live | null, { show }: Settings, sight: Sight): void {
+  put(live: Reading | null, { show }: Settings, sight: Sight): void {
     this.group.visible = live !== null && live.touching && show.ring;
     if (!live || !this.group.visible) return;
     const moving = live.grip === "slips" || live.grip === "glides";

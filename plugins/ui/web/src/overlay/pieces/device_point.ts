@@ -1,8 +1,8 @@
-/** The device's point: a disc of one size on the screen, seen through the surface. */
+/** The device's point: a disc of constant size on the screen, visible through the surface. */
 import { Group, Mesh, MeshBasicMaterial, SphereGeometry } from "three";
 import type { View } from "../../view/view";
 import { COLOURS } from "../colours";
-import type { Live } from "../../contact/reading";
+import type { Reading } from "../../contact/reading";
 import { metresPerPixel, type Piece, type Sight } from "../piece";
 import type { Settings } from "../settings";
 
@@ -24,7 +24,7 @@ export class DevicePoint implements Piece {
     view.overlay(this.group);
   }
 
-  put(live: Live | null, { show }: Settings, sight: Sight): void {
+  put(live: Reading | null, { show }: Settings, sight: Sight): void {
     this.group.visible = live !== null && show.device;
     if (!live) return;
     this.group.position.set(...live.hand);

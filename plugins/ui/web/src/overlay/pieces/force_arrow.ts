@@ -1,4 +1,4 @@
-/** A force as an arrow from the contact: as long as the scale says, its tip where the force ends. */
+/** A force as an arrow from the contact; its length follows the scale. */
 import {
   BackSide,
   BoxGeometry,
@@ -15,7 +15,7 @@ import { mergeGeometries } from "three/addons/utils/BufferGeometryUtils.js";
 import type { Vec } from "../../server/protocol";
 import type { View } from "../../view/view";
 import { COLOURS } from "../colours";
-import type { Live } from "../../contact/reading";
+import type { Reading } from "../../contact/reading";
 import { metresPerPixel, type Piece, type Sight } from "../piece";
 import { length } from "../../contact/vectors";
 import type { Settings } from "../settings";
@@ -24,13 +24,13 @@ const UP = new Vector3(0, 1, 0);
 const LEAST_N = 1e-3;
 const SHAFT_PX = 2.6;
 const HEAD_PX = { radius: 7.5, length: 19 };
-/** The head of a short arrow is at most this share of it. */
+/** Greatest share of the head in a short arrow. */
 const MOST_HEAD = 0.6;
 const DASHES = 5;
-/** A dark hull around it, of which the far side is seen: it stands out from any ground. */
+/** Width of the dark hull, whose back faces make the arrow visible on any ground. */
 const RIM_PX = 1.3;
 
-/** The felt force is round and whole; the other law's is square and dashed, so that no colour is needed. */
+/** Shapes: the active force is round and solid, the other law's square and dashed, so that colour is not needed. */
 const SHAPES: Record<"force" | "other", () => [shaft: BufferGeometry, head: BufferGeometry]> = {
   force: () => [new CylinderGeometry(1, 1, 1, 16).translate(0, 0.5, 0), new ConeGeometry(1, 1, 24).translate(0, 0.5, 0)],
   other: () => {
@@ -57,7 +57,7 @@ export class ForceArrow implements Piece {
     view.overlay(this.group);
   }
 
-  put(live: Live | null, { show, metresPerNewton }: Settings, sight: Sight): void {
+  put(live: Reading | null, { show, metresPerNewton }: Settings, sight: Sight): void {
     const force: Vec = live?.state[this.which] ?? [0, 0, 0];
     const newtons = length(force);
     this.group.visible = live !== null && show.arrow && newtons > LEAST_N;
@@ -78,8 +78,8 @@ export class ForceArrow implements Piece {
   }
 }
 
-/** Where the arrow of a force ends. */
-export function tip(live: Live, force: Vec, metresPerNewton: number): Vec {
+/** Return the tip of a force's arrow. */
+export function tip(live: Reading, force: Vec, metresPerNewton: number): Vec {
   const [x, y, z] = live.contact;
   return [x + force[0] * metresPerNewton, y + force[1] * metresPerNewton, z + force[2] * metresPerNewton];
 }

@@ -1,13 +1,11 @@
-/**
- * The friction cone of the material under the contact: atan(mu) wide, as high as the force's part along the normal.
+/** The friction cone of the material under the contact: atan(mu) wide, as high as the normal part of the force.
  *
- * So the arrow always ends in the plane of the rims: within the whole rim, of static friction, while the contact sticks,
- * and at the dashed one, of dynamic friction, while it slips.
- */
+ * The arrow ends in the plane of the rims: within the solid rim, of static friction, while the contact sticks, and at
+ * the dashed one, of dynamic friction, while it slips. */
 import { BufferAttribute, BufferGeometry, ConeGeometry, Group, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial, Vector3 } from "three";
 import type { View } from "../../view/view";
 import { COLOURS } from "../colours";
-import type { Live } from "../../contact/reading";
+import type { Reading } from "../../contact/reading";
 import type { Piece } from "../piece";
 import type { Settings } from "../settings";
 
@@ -15,7 +13,7 @@ const UP = new Vector3(0, 0, 1);
 const AROUND = 48;
 const SIDES = 8;
 
-/** Lines of a cone of height 1 and radius 1, its point at the origin: every second piece of the rim, or all. */
+/** Return lines of a cone of height 1 and radius 1 with its apex at the origin: every step-th piece of the rim. */
 function lines(step: number, sides: number): BufferGeometry {
   const at = (i: number): number[] => [Math.cos((2 * Math.PI * i) / AROUND), Math.sin((2 * Math.PI * i) / AROUND), 1];
   const ends: number[] = [];
@@ -44,7 +42,7 @@ export class FrictionCone implements Piece {
     view.overlay(this.group);
   }
 
-  put(live: Live | null, { show, metresPerNewton }: Settings): void {
+  put(live: Reading | null, { show, metresPerNewton }: Settings): void {
     const { static_friction, dynamic_friction } = live?.material ?? { static_friction: 0, dynamic_friction: 0 };
     this.group.visible = live !== null && live.touching && show.cone && static_friction > 0 && live.normalN > 0;
     if (!live || !this.group.visible) return;

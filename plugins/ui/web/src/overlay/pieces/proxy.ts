@@ -1,8 +1,8 @@
-/** The proxy where the law has one: a diamond, and a line to the hand that is joined to it. */
+/** The proxy, if the law has one: a diamond, and a line to the hand. */
 import { BufferAttribute, BufferGeometry, Group, Line, LineBasicMaterial, Mesh, MeshBasicMaterial, OctahedronGeometry } from "three";
 import type { View } from "../../view/view";
 import { COLOURS } from "../colours";
-import type { Live } from "../../contact/reading";
+import type { Reading } from "../../contact/reading";
 import { metresPerPixel, type Piece, type Sight } from "../piece";
 import type { Settings } from "../settings";
 
@@ -32,7 +32,7 @@ export class Proxy implements Piece {
     view.overlay(this.line);
   }
 
-  put(live: Live | null, { show }: Settings, sight: Sight): void {
+  put(live: Reading | null, { show }: Settings, sight: Sight): void {
     const at = live?.proxy ?? null;
     this.group.visible = this.line.visible = at !== null && show.proxy;
     if (!live || !at) return;

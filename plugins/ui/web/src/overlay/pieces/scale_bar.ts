@@ -1,9 +1,9 @@
-/** How long a newton is, and how long a length of the picture, where the cursor is: a bar at the lower left. */
+/** Scale bar at the lower left: length of a newton and of the picture at the cursor. */
 import type { View } from "../../view/view";
 import { t } from "../words";
 import { metresPerPixel, type Piece, type Sight } from "../piece";
-import type { Live } from "../../contact/reading";
-import { round, type Settings } from "../settings";
+import type { Reading } from "../../contact/reading";
+import { roundDown125, type Settings } from "../settings";
 
 const MOST_PX = 130;
 const EVERY_MS = 100;
@@ -24,14 +24,14 @@ export class ScaleBar implements Piece {
     layer.append(this.box);
   }
 
-  put(live: Live | null, { show, metresPerNewton }: Settings, sight: Sight): void {
+  put(live: Reading | null, { show, metresPerNewton }: Settings, sight: Sight): void {
     this.box.hidden = !show.arrow;
     const now = performance.now();
     this.late = !this.box.hidden && now - this.readMs < EVERY_MS;
     if (this.box.hidden || this.late) return;
     this.readMs = now;
     const pixel = metresPerPixel(sight, live?.contact ?? this.view.eye.pose.target);
-    const newtons = round((MOST_PX * pixel) / metresPerNewton);
+    const newtons = roundDown125((MOST_PX * pixel) / metresPerNewton);
     const metres = newtons * metresPerNewton;
     this.bar.style.width = `${(metres / pixel).toFixed(1)}px`;
     const text = t("scale", { newtons, mm: Number((1000 * metres).toPrecision(3)) });

@@ -1,21 +1,21 @@
-/** The way of the contact in the last seconds: broad and bright where the force was great. */
+/** Trace of the contact in the last seconds: broad and bright where the force was great. */
 import { BufferGeometry, DataTexture, FloatType, Mesh, RGBAFormat, ShaderMaterial, Vector2 } from "three";
 import type { State, Vec } from "../../server/protocol";
 import type { View } from "../../view/view";
-import type { Live } from "../../contact/reading";
+import type { Reading } from "../../contact/reading";
 import type { Piece, Sight } from "../piece";
 import { SECONDS, type Settings } from "../settings";
-import { STRIDE, Trail } from "./trace_samples";
+import { STRIDE, TraceSamples } from "./trace_samples";
 import { length, minus } from "../../contact/vectors";
 
 const HZ = 60;
 const GREAT_N = 4;
-/** No hand moves that far between two states: it was put down elsewhere, or is being let go. */
+/** Distance between two states from which the trace is interrupted: the hand was put down elsewhere. */
 const LEAP_M = 0.02;
-/** Two triangles between two samples. */
+/** Vertices between two samples: two triangles. */
 const VERTICES = 6;
 
-/** A vertex looks its samples up by its number: a line costs a vertex more or less, and no instance. */
+/** Vertex shader that reads samples from a texture by vertex number, so that lines need no instances. */
 const vertexShader = `
 uniform sampler2D samples; uniform vec2 canvas; uniform float now, seconds; uniform int first, slots;
 varying float force, age;
@@ -44,7 +44,7 @@ varying float force, age;
 void main() { gl_FragColor = vec4(mix(vec3(.75, .9, 1.), vec3(1., .62, .1), force), (1. - age) * (.45 + .55 * force)); }`;
 
 export class Trace implements Piece {
-  private trail = new Trail(SECONDS.most * HZ + HZ);
+  private trail = new TraceSamples(SECONDS.most * HZ + HZ);
   private samples = new DataTexture(this.trail.data, STRIDE / 4, this.trail.slots + 1, RGBAFormat, FloatType);
   private geometry = new BufferGeometry();
   private uniforms = {
@@ -57,7 +57,7 @@ export class Trace implements Piece {
   };
   private mesh: Mesh;
   private last: State | null = null;
-  /** When the contact moved last. */
+  /** Time of the last movement. */
   private movedMs = -Infinity;
   private at: Vec = [0, 0, 0];
 
@@ -70,13 +70,13 @@ export class Trace implements Piece {
     view.overlay(this.mesh);
   }
 
-  /** Forget the way: another surface is shown. */
+  /** Clear the trace: another surface is shown. */
   clear(): void {
     this.trail.clear();
     this.samples.needsUpdate = true;
   }
 
-  put(live: Live | null, { show, seconds }: Settings, sight: Sight): void {
+  put(live: Reading | null, { show, seconds }: Settings, sight: Sight): void {
     if (live) this.add(live);
     else this.trail.lift();
     const now = performance.now() / 1000;
@@ -89,13 +89,13 @@ export class Trace implements Piece {
     this.geometry.setDrawRange(0, VERTICES * Math.max(0, shown - 1));
   }
 
-  /** Whether some of it has yet to fade. */
+  /** Return whether part of the trace has yet to fade. */
   fades(seconds: number): boolean {
     return this.mesh.visible && performance.now() - this.movedMs < 1000 * seconds;
   }
 
-  /** A frame may show a state again, from elsewhere. */
-  private add({ state, contact, hand, touching, newtons }: Live): void {
+  /** Add a reading; a frame may show the same state again from another camera. */
+  private add({ state, contact, hand, touching, newtons }: Reading): void {
     if (state === this.last) return;
     this.last = state;
     const nowMs = performance.now();

@@ -1,15 +1,15 @@
-/** Where the contact was in the last seconds: a ring of numbers that is allocated once. */
+/** Ring buffer of the contact's positions in the last seconds, allocated once. */
 
-/** Of a sample: x, y, z, newtons, seconds, 1 if it goes on from the sample before, and two that fill two texels. */
+/** Numbers per sample: x, y, z, newtons, seconds, 1 if it continues the previous sample, and two that fill two texels. */
 export const STRIDE = 8;
 const NEWTONS = 3;
 const SECONDS = 4;
 const JOINED = 5;
 
-export class Trail {
-  /** Slots, and after them the first one again: a line from each slot to the next is then a plain pair. */
+export class TraceSamples {
+  /** Slots, followed by a copy of the first one: a line from each slot to the next is then a plain pair. */
   readonly data: Float32Array;
-  /** Samples that were ever added. */
+  /** Number of samples added so far. */
   added = 0;
   private lifted = true;
 
@@ -17,12 +17,12 @@ export class Trail {
     this.data = new Float32Array((slots + 1) * STRIDE);
   }
 
-  /** Where the newest sample lies. */
+  /** Slot of the newest sample. */
   get newest(): number {
     return (this.added + this.slots - 1) % this.slots;
   }
 
-  /** Samples since then, the newest included; those before it need not be looked at. */
+  /** Return the number of samples since a time, the newest included. */
   since(seconds: number): number {
     const most = Math.min(this.added, this.slots);
     let found = 0;
@@ -38,7 +38,7 @@ export class Trail {
     this.added++;
   }
 
-  /** The next sample begins another line. */
+  /** Start another line with the next sample. */
   lift(): void {
     this.lifted = true;
   }
@@ -49,7 +49,7 @@ export class Trail {
     this.lifted = true;
   }
 
-  /** Whether a line is drawn from this slot to the one after it: younger than that, and of one stroke. */
+  /** Return whether a line leads from this slot to the next: it is younger, and of the same stroke. */
   joins(slot: number, sinceS: number): boolean {
     const from = slot * STRIDE;
     const to = from + STRIDE;

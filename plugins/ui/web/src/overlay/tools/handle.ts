@@ -1,10 +1,10 @@
-/** A handle on the surface: a button that is dragged with the pointer, or moved with the arrow keys. */
+/** A handle on the surface: a button moved by the pointer or the arrow keys. */
 import type { Page } from "../../page";
 import type { Vec } from "../../server/protocol";
 
 export const STEP_M = 0.0005;
 export const COARSE = 10;
-const WAYS: Record<string, [number, number]> = {
+const DIRECTIONS: Record<string, [number, number]> = {
   ArrowLeft: [-1, 0],
   ArrowRight: [1, 0],
   ArrowUp: [0, 1],
@@ -13,14 +13,14 @@ const WAYS: Record<string, [number, number]> = {
   "+": [1, 1],
 };
 
-export interface Grasped {
-  /** Where it is; null while it is not shown. */
+export interface HandleTarget {
+  /** Return the handle's place; null while it is hidden. */
   at(): Vec | null;
-  /** The pointer has dragged it to a place on the surface. */
+  /** Called when the pointer drags it to a place on the surface. */
   drag(to: Vec): void;
-  /** Steps by the keys, right and away from the user; Shift makes ten of one. */
+  /** Called for steps by keys, right and away from the user; Shift makes ten of one. */
   nudge(right: number, away: number): void;
-  /** It was let go, or the key was. */
+  /** Called when the handle or the key is released. */
   done?(): void;
 }
 
@@ -29,21 +29,21 @@ export class Handle {
   private away: () => void;
 
   constructor(
-    private page: Page,
+    private page: Pick<Page, "view" | "overlay" | "scene">,
     shape: "round" | "square" | "turn" | "move",
     label: string,
-    private grasped: Grasped,
+    private grasped: HandleTarget,
   ) {
     this.element.type = "button";
     this.element.className = `handle ${shape}`;
     this.element.setAttribute("aria-label", label);
     this.element.title = label;
     this.element.onpointerdown = (event) => this.element.setPointerCapture(event.pointerId);
-    this.element.onpointermove = (event) => this.dragged(event);
+    this.element.onpointermove = (event) => this.onDrag(event);
     this.element.onlostpointercapture = () => grasped.done?.();
-    this.element.onkeydown = (event) => this.pressed(event);
+    this.element.onkeydown = (event) => this.onKey(event);
     this.element.onkeyup = (event) => {
-      if (WAYS[event.key]) grasped.done?.();
+      if (DIRECTIONS[event.key]) grasped.done?.();
     };
     this.away = page.overlay.stay(this.element, () => grasped.at());
   }
@@ -52,14 +52,14 @@ export class Handle {
     this.away();
   }
 
-  private dragged(event: PointerEvent): void {
+  private onDrag(event: PointerEvent): void {
     if (!this.element.hasPointerCapture(event.pointerId) || !event.buttons) return;
     const to = this.page.scene?.pick(...this.page.view.ray(event.clientX, event.clientY));
     if (to) this.grasped.drag(to);
   }
 
-  private pressed(event: KeyboardEvent): void {
-    const way = WAYS[event.key === "=" ? "+" : event.key];
+  private onKey(event: KeyboardEvent): void {
+    const way = DIRECTIONS[event.key === "=" ? "+" : event.key];
     if (!way || event.ctrlKey || event.metaKey || event.altKey) return;
     event.preventDefault();
     const steps = event.shiftKey && event.key.startsWith("Arrow") ? COARSE : 1;

@@ -1,19 +1,18 @@
-/** What the device reaches, as a frame on the picture that can be moved, sized and turned; and the region that is felt. */
-import type { Page } from "../../page";
+/** The device's reach as a frame on the picture that can be moved, sized and turned; and the enlarged region. */
+import type { Page, PointerTool } from "../../page";
 import type { Vec } from "../../server/protocol";
 import { on } from "../../shortcuts";
 import { t } from "../words";
 import { COLOURS } from "../colours";
-import { Draped } from "./draped_line";
+import { DrapedLine } from "./draped_line";
 import { COARSE, Handle, STEP_M } from "./handle";
-import type { Picked } from "../picking";
-import { AS_IT_LIES, corners, type Mapping, moved, type Reach, reach, whole, zoomed } from "./placement";
+import { IDENTITY, corners, type Mapping, movePlacement, type Reach, reachOf, wholePicture, zoomTo } from "./placement";
 
-/** A device whose frame is wider than so many pictures, such as the mouse, has no edge to show. */
+/** Width in pictures from which a device's frame is not shown, as for the mouse. */
 const MOST_PICTURES = 4;
 const TURN_DEG = 1;
 const LARGER = 1.02;
-/** How far the handle for turning stands off the frame, of its length. */
+/** Distance of the turning handle from the frame, as a share of its length. */
 const TURN_OFF = 0.12;
 const LEAST_REGION_M = 0.0005;
 const HALF = 0.5;
@@ -23,23 +22,23 @@ interface Reached {
   workspace_m: Vec | null;
 }
 
-export class MappingFrame implements Picked {
+export class MappingFrame implements PointerTool {
   shown = false;
-  /** Called when anything of it changed. */
-  changed: () => void = () => {};
+  /** Called when the frame changed. */
+  onChange: () => void = () => {};
   device = "";
   private workspace: Vec | null = null;
-  /** While it is dragged or written: what the document will say. */
+  /** The mapping while it is dragged or written. */
   private draft: Mapping | null = null;
   private writing = false;
-  private line: Draped;
-  private drawn: Draped;
+  private line: DrapedLine;
+  private drawn: DrapedLine;
   private from: Vec | null = null;
 
-  constructor(private page: Page) {
+  constructor(private page: Pick<Page, "hub" | "net" | "view" | "overlay" | "scene" | "document" | "say">) {
     const { view, hub } = page;
-    this.line = new Draped(view, 4, COLOURS.frame);
-    this.drawn = new Draped(view, 4, COLOURS.device, true);
+    this.line = new DrapedLine(view, 4, COLOURS.frame);
+    this.drawn = new DrapedLine(view, 4, COLOURS.device, true);
     const done = (): void => void (this.draft && this.write());
     const keep = { done, drag: () => {}, nudge: () => {} };
     new Handle(page, "move", t("frameMove"), {
@@ -59,25 +58,25 @@ export class MappingFrame implements Picked {
     on("whole picture", () => this.whole());
   }
 
-  /** As the document has it, or as it is being dragged. */
+  /** The document's mapping, or the one being dragged. */
   get mapping(): Mapping {
     const said = this.page.document?.values?.mapping as Partial<Mapping> | null | undefined;
-    return this.draft ?? { ...AS_IT_LIES, ...said };
+    return this.draft ?? { ...IDENTITY, ...said };
   }
 
-  /** Whether the device has an edge that can be seen. */
-  get bounded(): boolean {
+  /** True if the device's reach has a visible edge. */
+  get isBounded(): boolean {
     const { scene } = this.page;
-    const found = this.workspace && reach(this.mapping, this.workspace);
-    return scene !== null && found !== null && found.size[0] < MOST_PICTURES * scene.meta.extent_m[0];
+    const area = this.workspace && reachOf(this.mapping, this.workspace);
+    return scene !== null && area !== null && area.size[0] < MOST_PICTURES * scene.meta.extent_m[0];
   }
 
-  /** What the device reaches, or, where it reaches everything, the region that is felt. */
+  /** The device's reach, or the enlarged region if the device reaches everything. */
   get reach(): Reach | null {
     const { scene } = this.page;
     if (!scene) return null;
     const { extent_m } = scene.meta;
-    if (this.bounded && this.workspace) return reach(this.mapping, this.workspace);
+    if (this.isBounded && this.workspace) return reachOf(this.mapping, this.workspace);
     const [x, y, width, length] = this.mapping.region_m ?? [0, 0, ...extent_m];
     return { centre: [x, y], size: [width, length], turnDeg: 0 };
   }
@@ -87,14 +86,14 @@ export class MappingFrame implements Picked {
     this.draw();
   }
 
-  /** A rectangle is drawn with the mouse: only that is felt, enlarged. */
+  /** True while a region is drawn with the mouse. */
   get picking(): boolean {
     return this.page.overlay.picking.busy === this;
   }
 
   toggleRegion(): void {
     this.page.overlay.picking.take(this.picking ? null : this);
-    this.changed();
+    this.onChange();
   }
 
   begin(at: Vec): void {
@@ -121,10 +120,10 @@ export class MappingFrame implements Picked {
     this.from = null;
     this.drawn.visible = false;
     this.page.overlay.changed = true;
-    this.changed();
+    this.onChange();
   }
 
-  /** Half of what is felt now, about the hand. */
+  /** Enlarge the half of the region around the hand. */
   zoomHere(): void {
     const { overlay, view, scene } = this.page;
     const now = this.reach;
@@ -135,19 +134,19 @@ export class MappingFrame implements Picked {
     this.zoom(x, y, size[0], size[1]);
   }
 
-  /** Feel this part alone, and look at it. */
+  /** Enlarge a region and show it. */
   zoom(x: number, y: number, width: number, length: number): void {
     const { scene, view } = this.page;
     if (!scene) return;
     view.focus(scene.on(x, y), Math.max(width, length));
-    this.draft = zoomed(this.mapping, x, y, width, length);
+    this.draft = zoomTo(this.mapping, x, y, width, length);
     void this.write();
   }
 
   whole(): void {
     const { scene, view } = this.page;
     if (scene) view.frame(...scene.meta.extent_m);
-    this.draft = whole(this.mapping);
+    this.draft = wholePicture(this.mapping);
     void this.write();
   }
 
@@ -165,7 +164,7 @@ export class MappingFrame implements Picked {
     if (now) this.change(now.centre, factor, null);
   }
 
-  /** A corner is where the pointer is; the frame keeps its shape and its middle. */
+  /** Move a corner to the pointer; the frame keeps its shape and its middle. */
   private stretch(to: Vec): void {
     const now = this.reach;
     if (!now) return;
@@ -178,7 +177,7 @@ export class MappingFrame implements Picked {
     if (now) this.change(now.centre, 1, now.turnDeg + degrees);
   }
 
-  /** The far side of the frame looks at the pointer; near quarter turns it is one. */
+  /** Turn the frame's far side towards the pointer, snapping to quarter turns. */
   private aim(to: Vec): void {
     const now = this.reach;
     if (!now) return;
@@ -190,12 +189,12 @@ export class MappingFrame implements Picked {
   private change(centre: [number, number], larger: number, turnDeg: number | null): void {
     const now = this.reach;
     if (!now) return;
-    if (this.bounded && this.workspace) this.draft = moved(this.mapping, this.workspace, centre, larger, turnDeg ?? now.turnDeg);
-    else this.draft = zoomed(this.mapping, ...centre, now.size[0] * larger, now.size[1] * larger);
+    if (this.isBounded && this.workspace) this.draft = movePlacement(this.mapping, this.workspace, centre, larger, turnDeg ?? now.turnDeg);
+    else this.draft = zoomTo(this.mapping, ...centre, now.size[0] * larger, now.size[1] * larger);
     this.draw();
   }
 
-  /** Into the document, where what is felt follows; one write after the other, and of several the last. */
+  /** Write the mapping into the document; writes follow one another, and only the newest waiting one is sent. */
   private async write(): Promise<void> {
     this.draw();
     if (this.writing) return;
@@ -214,7 +213,7 @@ export class MappingFrame implements Picked {
     this.draw();
   }
 
-  /** What the document's device reaches. */
+  /** Request the reach of the document's device. */
   private async ask(): Promise<void> {
     try {
       const { device, workspace_m } = await this.page.net.ask<Reached>("reach");
@@ -234,10 +233,10 @@ export class MappingFrame implements Picked {
       this.line.put(scene, [...around, around[0]]);
     }
     overlay.changed = true;
-    this.changed();
+    this.onChange();
   }
 
-  /** A place of the frame, its sides at 1 and -1, on the surface; null while it is not shown. */
+  /** Return a place of the frame on the surface, its sides at 1 and -1; null while it is hidden. */
   private corner(u: number, v: number): Vec | null {
     const { scene } = this.page;
     const now = this.shown ? this.reach : null;
@@ -252,10 +251,10 @@ export class MappingFrame implements Picked {
   }
 }
 
-/** What the document has to say of a mapping: nothing of what is as by default. */
+/** Return the edit that sets a mapping; default values are removed. */
 function changes(mapping: Mapping): { changes: Record<string, unknown>; removed: string[] } {
   const keys = ["scale", "region_m", "rotation_deg", "offset_m"] as const;
-  const usual = (key: (typeof keys)[number]): boolean => String(mapping[key]) === String(AS_IT_LIES[key]);
+  const usual = (key: (typeof keys)[number]): boolean => String(mapping[key]) === String(IDENTITY[key]);
   const said = keys.filter((key) => !usual(key)).map((key) => [`mapping.${key}`, mapping[key]]);
   return { changes: Object.fromEntries(said), removed: keys.filter(usual).map((key) => `mapping.${key}`) };
 }

@@ -1,4 +1,4 @@
-/** Places that were marked, numbered: to find them again, and to speak of them. */
+/** Numbered markers on the surface. */
 import type { Page } from "../../page";
 import type { Vec } from "../../server/protocol";
 import { on } from "../../shortcuts";
@@ -13,20 +13,20 @@ export interface Marker {
 
 export class Markers {
   list: Marker[] = [];
-  /** Called when anything of it changed. */
-  changed: () => void = () => {};
+  /** Called when the markers changed. */
+  onChange: () => void = () => {};
   private last = 0;
 
-  constructor(private page: Page) {
+  constructor(private page: Pick<Page, "hub" | "view" | "overlay" | "scene" | "say">) {
     page.hub.on("shown", (scene) => {
       for (const each of this.list) each.at = scene.on(each.at[0], each.at[1]);
-      this.changed();
+      this.onChange();
     });
-    on("mark", () => this.here());
+    on("mark", () => this.addHere());
   }
 
-  /** Where the hand is, or in the middle of what is seen. */
-  here(): void {
+  /** Add a marker at the hand, or at the middle of the view. */
+  addHere(): void {
     const { scene, overlay, view } = this.page;
     const live = overlay.live?.seen ? overlay.live : null;
     const [x, y] = live ? live.hand : view.eye.pose.target;
@@ -39,7 +39,7 @@ export class Markers {
     const put = (to: Vec): void => {
       marker.at = to;
       overlay.changed = true;
-      this.changed();
+      this.onChange();
     };
     const handle = new Handle(this.page, "round", t("marker", { number }), {
       at: () => (overlay.settings.show.markers ? marker.at : null),
@@ -53,11 +53,11 @@ export class Markers {
       remove: () => {
         handle.remove();
         this.list = this.list.filter((each) => each !== marker);
-        this.changed();
+        this.onChange();
       },
     };
     this.list.push(marker);
     this.page.say(t("marked", { number }));
-    this.changed();
+    this.onChange();
   }
 }

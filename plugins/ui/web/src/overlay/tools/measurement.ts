@@ -1,31 +1,31 @@
-/** What a ruler on the surface says. */
+/** Measurements of a ruler on the surface. */
 import type { Vec } from "../../server/protocol";
 import { length, minus } from "../../contact/vectors";
 
-/** A surface as it is asked for its height; metres, NaN outside. */
+/** A surface that returns its height; metres, NaN outside. */
 export interface Surface {
   height(x: number, y: number): number;
 }
 
-export interface Measured {
+export interface Measurement {
   straightM: number;
   horizontalM: number;
-  /** As a thread would lie that follows every rise and fall. */
+  /** Length along the surface. */
   surfaceM: number;
-  /** How much higher the end is. */
+  /** Height of the end above the start. */
   riseM: number;
-  /** Of the straight line from end to end, radians; 0 where both are one place. */
+  /** Slope of the straight line, radians; 0 if both ends are equal. */
   slope: number;
-  /** Heights at even steps from the first end to the second. */
+  /** Heights at even steps from start to end. */
   heightsM: Float64Array;
 }
 
 const MOST_STEPS = 8192;
-/** The surface bends at its cells, wherever they lie along the ruler: so many steps a cell miss little of a corner. */
+/** Steps per cell, so that corners between cells are not missed. */
 const A_CELL = 8;
 
-/** Two places measured. cellM: size of the surface's cells. */
-export function measure(surface: Surface, from: Vec, to: Vec, cellM: number): Measured {
+/** Measure between two places. cellM: size of the surface's cells. */
+export function measure(surface: Surface, from: Vec, to: Vec, cellM: number): Measurement {
   const horizontalM = Math.hypot(to[0] - from[0], to[1] - from[1]);
   const steps = Math.min(MOST_STEPS, Math.max(2, Math.ceil((A_CELL * horizontalM) / cellM)));
   const heightsM = new Float64Array(steps + 1);

@@ -1,22 +1,22 @@
-/** Heights along a ruler as a small plot with axes in millimetres. */
+/** Profile of heights along a ruler, with axes in millimetres. */
 import { t } from "../words";
-import type { Measured } from "./measurement";
-import { round } from "../settings";
+import type { Measurement } from "./measurement";
+import { roundDown125 } from "../settings";
 
 const NS = "http://www.w3.org/2000/svg";
 const SIZE = { width: 230, height: 118, left: 34, right: 8, top: 8, bottom: 32 };
 const MARKS = 4;
 const MOST_POINTS = 500;
 
-/** Round numbers within a span, in millimetres. */
+/** Return round numbers within a span, in millimetres. */
 export function marks(lowMm: number, highMm: number): number[] {
-  const step = round((highMm - lowMm) / MARKS) || 1;
+  const step = roundDown125((highMm - lowMm) / MARKS) || 1;
   const first = Math.ceil(lowMm / step - 1e-9);
   const last = Math.floor(highMm / step + 1e-9);
   return Array.from({ length: Math.max(0, last - first + 1) }, (_, i) => Number(((first + i) * step).toPrecision(6)));
 }
 
-export function profile(measured: Measured): SVGSVGElement {
+export function profile(measured: Measurement): SVGSVGElement {
   const heights = Array.from(measured.heightsM, (each) => 1000 * each).filter(Number.isFinite);
   const far = Math.max(1000 * measured.horizontalM, 1e-6);
   const [low, high] = span(heights);
@@ -37,7 +37,7 @@ export function profile(measured: Measured): SVGSVGElement {
   return svg as SVGSVGElement;
 }
 
-/** Lowest and highest, a little apart where all is level. */
+/** Return lowest and highest height, a little apart if all are equal. */
 function span(heights: number[]): [number, number] {
   const [low, high] = [Math.min(...heights), Math.max(...heights)];
   const more = Math.max(0.05 * (high - low), 0.01);

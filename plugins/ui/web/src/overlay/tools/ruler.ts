@@ -1,91 +1,90 @@
-/** The ruler: two places on the surface, and what lies between them. */
-import type { Page } from "../../page";
+/** The ruler: measures between two places on the surface. */
+import type { Page, PointerTool } from "../../page";
 import type { Vec } from "../../server/protocol";
 import { on } from "../../shortcuts";
 import { t } from "../words";
 import { COLOURS } from "../colours";
-import { Draped } from "./draped_line";
+import { DrapedLine } from "./draped_line";
 import { Handle, STEP_M } from "./handle";
-import { measure, type Measured } from "./measurement";
-import type { Picked } from "../picking";
+import { measure, type Measurement } from "./measurement";
 import { plus } from "../../contact/vectors";
 
-export class Ruler implements Picked {
-  /** None, one, or both. */
+export class Ruler implements PointerTool {
+  /** Ends so far: none, one, or both. */
   ends: Vec[] = [];
-  measured: Measured | null = null;
-  /** Called when anything of it changed. */
-  changed: () => void = () => {};
-  private line: Draped;
+  measured: Measurement | null = null;
+  /** Called when the ruler changed. */
+  onChange: () => void = () => {};
+  private line: DrapedLine;
   private label = document.createElement("div");
 
-  constructor(private page: Page) {
-    this.line = new Draped(page.view, 1, COLOURS.frame, true);
+  constructor(private page: Pick<Page, "hub" | "view" | "overlay" | "scene" | "say">) {
+    this.line = new DrapedLine(page.view, 1, COLOURS.frame, true);
     this.label.className = "ruler-label";
     page.overlay.stay(this.label, () => this.middle());
     for (const end of [0, 1]) {
       const grasped = {
         at: () => this.ends[end] ?? null,
-        drag: (to: Vec) => this.put(end, to),
+        drag: (to: Vec) => this.setEnd(end, to),
         nudge: (right: number, away: number) => this.nudge(end, right * STEP_M, away * STEP_M),
-        done: () => this.tell(),
+        done: () => this.announce(),
       };
       new Handle(page, "round", t(end ? "rulerEnd" : "rulerStart"), grasped).element.dataset.sign = "AB"[end];
     }
-    page.hub.on("shown", () => this.again());
-    on("measure here", () => this.here());
+    page.hub.on("shown", () => this.measureAgain());
+    on("measure here", () => this.addHere());
     on("remove ruler", () => this.remove());
   }
 
-  /** Whether clicks are its own. */
+  /** True while clicks set the ruler's ends. */
   get picking(): boolean {
     return this.page.overlay.picking.busy === this;
   }
 
   toggle(): void {
     this.page.overlay.picking.take(this.picking ? null : this);
-    this.changed();
+    this.onChange();
   }
 
   begin(at: Vec): void {
-    this.next(at);
+    this.addEnd(at);
   }
 
   drag(at: Vec): void {
-    if (this.ends.length === 2) this.put(1, at);
-    else if (Math.hypot(at[0] - this.ends[0][0], at[1] - this.ends[0][1]) > STEP_M) this.put(1, at);
+    if (this.ends.length === 2) this.setEnd(1, at);
+    else if (Math.hypot(at[0] - this.ends[0][0], at[1] - this.ends[0][1]) > STEP_M) this.setEnd(1, at);
   }
 
   left(): void {
-    this.changed();
+    this.onChange();
   }
 
-  /** The next place: the first, the second, or the first of another measurement. */
-  next(at: Vec): void {
+  /** Add an end: the first, the second, or the first of another measurement. */
+  addEnd(at: Vec): void {
     if (this.ends.length === 2) this.ends = [];
-    this.put(this.ends.length, at);
-    this.tell();
+    this.setEnd(this.ends.length, at);
+    this.announce();
   }
 
-  put(end: number, at: Vec): void {
+  setEnd(end: number, at: Vec): void {
     this.ends[end] = at;
-    this.again();
+    this.measureAgain();
   }
 
   remove(): void {
     this.ends = [];
-    this.again();
+    this.measureAgain();
   }
 
-  /** The next place is where the hand is, or in the middle of what is seen. */
-  here(): void {
+  /** Add an end at the hand, or at the middle of the view. */
+  addHere(): void {
     const { scene, overlay, view } = this.page;
     const live = overlay.live?.seen ? overlay.live : null;
     const [x, y] = live ? live.hand : view.eye.pose.target;
-    if (scene) this.next(scene.on(x, y));
+    if (scene) this.addEnd(scene.on(x, y));
   }
 
-  private tell(): void {
+  private announce(): void {
     if (this.measured) this.page.say(t("measured", { mm: (1000 * this.measured.straightM).toFixed(2) }));
     else if (this.ends.length) this.page.say(t("rulerBegun"));
   }
@@ -93,11 +92,11 @@ export class Ruler implements Picked {
   private nudge(end: number, right: number, away: number): void {
     const { scene } = this.page;
     const at = plus(this.ends[end], [right, away, 0]);
-    if (scene) this.put(end, scene.on(at[0], at[1]));
+    if (scene) this.setEnd(end, scene.on(at[0], at[1]));
   }
 
-  /** Measured again: an end moved, or the surface is another. */
-  private again(): void {
+  /** Measure again after an end moved or the surface changed. */
+  private measureAgain(): void {
     const { scene, overlay } = this.page;
     if (scene) this.ends = this.ends.map(([x, y]) => scene.on(x, y));
     const [from, to] = this.ends;
@@ -109,7 +108,7 @@ export class Ruler implements Picked {
       this.label.textContent = t("length", { mm: (1000 * this.measured.straightM).toFixed(2) });
     }
     overlay.changed = true;
-    this.changed();
+    this.onChange();
   }
 
   private middle(): Vec | null {

@@ -1,15 +1,15 @@
 import { words } from "../../words/words";
 
-/** The description of what is felt. */
+/** Texts of the description panel. */
 export const t = words({
-  about: ["What there is to feel, in words: to be read before it is felt, or instead. “Export” writes it into files.",
+  about: ["The surface in words, to read before touching it or instead. “Export” writes the text into files.",
     "Was zu fühlen ist, in Worten: um es vorher zu lesen oder stattdessen. „Weitergeben“ schreibt den Text in Dateien."],
   language: ["Language", "Sprache"],
   en: ["English", "Englisch"],
   de: ["German", "Deutsch"],
   fr: ["French", "Französisch"],
   text: ["Description", "Beschreibung"],
-  waiting: ["The description comes as soon as something is made.", "Die Beschreibung erscheint, sobald etwas berechnet ist."],
+  waiting: ["The description appears as soon as a surface is computed.", "Die Beschreibung erscheint, sobald etwas berechnet ist."],
   read: ["Read aloud", "Vorlesen"],
   quiet: ["Stop reading", "Nicht weiterlesen"],
   noVoice: ["The browser has no voice for this language. A screen reader reads the text above.",
@@ -18,6 +18,6 @@ export const t = words({
   copied: ["The description is in the clipboard.", "Die Beschreibung ist in der Zwischenablage."],
   asText: ["Save as text", "Als Text sichern"],
   asHtml: ["Save as HTML", "Als HTML sichern"],
-  fresh: ["The description is another one now.", "Die Beschreibung ist jetzt eine andere."],
+  fresh: ["The description has changed.", "Die Beschreibung ist jetzt eine andere."],
   failed: ["There is no description: {why}", "Es gibt keine Beschreibung: {why}"],
 });

@@ -1,4 +1,4 @@
-/** Asks whether a device with a motor may be started, and says what will happen. */
+/** Dialog that asks before a device with a motor is started, and says what will happen. */
 import { button } from "../../elements";
 import { t } from "./words";
 
@@ -9,18 +9,18 @@ export interface About {
   relief_m: number;
 }
 
-/** Whether the person said yes; anything else is no, and the first thing that has the focus is no. */
-export function sure(about: About): Promise<boolean> {
+/** Return whether the person agreed; "no" has the focus first, and anything else means no. */
+export function confirmStart(about: About): Promise<boolean> {
   const dialog = document.createElement("dialog");
   dialog.className = "sure";
   const heading = Object.assign(document.createElement("h2"), { id: "sure-title", textContent: t("sureTitle", { name: about.name }) });
   dialog.setAttribute("aria-labelledby", heading.id);
-  const said = [
+  const value = [
     t("sure"),
     t("sureForce", { force: about.most_force_n.toFixed(1) }),
     t("sureRelief", { relief: (1000 * about.relief_m).toFixed(0) }),
   ].join(" ");
-  const texts = [said, t("sureHands")].map((text) => Object.assign(document.createElement("p"), { textContent: text }));
+  const texts = [value, t("sureHands")].map((text) => Object.assign(document.createElement("p"), { textContent: text }));
   const buttons = document.createElement("div");
   buttons.className = "buttons";
   const no = button(t("no"), () => dialog.close());

@@ -1,4 +1,4 @@
-/** Every installed device: what it is, whether it is there, and why not. */
+/** List items of installed devices: kind, presence, problems. */
 import { button } from "../../elements";
 import type { Page } from "../../page";
 import { t } from "./words";
@@ -26,55 +26,55 @@ interface Finding {
   cure: string;
 }
 
-/** One device. use: called when it is to be felt. */
-export function device(page: Page, found: Device, use: () => void): HTMLLIElement {
+/** Return the item of a device. use: called when it is chosen. */
+export function deviceItem(page: Page, about: Device, use: () => void): HTMLLIElement {
   const line = document.createElement("li");
-  const name = made("h4", found.name);
-  const chip = made("span", t(there(found)));
-  chip.className = `chip ${found.usable ? "good" : found.problem ? "bad" : ""}`;
+  const name = element("h4", about.name);
+  const chip = element("span", t(presenceOf(about)));
+  chip.className = `chip ${about.usable ? "good" : about.problem ? "bad" : ""}`;
   name.append(" ", chip);
   const findings = document.createElement("ul");
   const uses = button(t("use"), use);
-  uses.setAttribute("aria-label", t("useNamed", { name: found.name }));
-  const examines = button(t("examine"), () => examine(page, found.name, findings));
-  examines.setAttribute("aria-label", t("examineNamed", { name: found.name }));
+  uses.setAttribute("aria-label", t("useNamed", { name: about.name }));
+  const examines = button(t("examine"), () => examine(page, about.name, findings));
+  examines.setAttribute("aria-label", t("examineNamed", { name: about.name }));
   const buttons = document.createElement("div");
   buttons.className = "buttons";
   buttons.append(uses, examines);
-  line.append(name, made("p", found.summary), ...troubles(found), buttons, findings);
+  line.append(name, element("p", about.summary), ...problemTexts(about), buttons, findings);
   return line;
 }
 
-export function there({ simulated, units, problem }: Device): "simulated" | "connected" | "notAsked" | "notConnected" {
+export function presenceOf({ simulated, units, problem }: Device): "simulated" | "connected" | "notAsked" | "notConnected" {
   if (simulated) return "simulated";
   if (units.length) return "connected";
   return problem ? "notAsked" : "notConnected";
 }
 
-function troubles({ units, problem }: Device): HTMLElement[] {
+function problemTexts({ units, problem }: Device): HTMLElement[] {
   const said = units.map((each) => [t("unit", { ...each }).trim(), each.problem].filter(Boolean).join(": "));
   if (problem) said.push(problem);
-  return said.map((text) => Object.assign(made("p", text), { className: "hint" }));
+  return said.map((text) => Object.assign(element("p", text), { className: "hint" }));
 }
 
 async function examine(page: Page, name: string, into: HTMLElement): Promise<void> {
   try {
-    const found = await page.net.ask<Finding[]>("examine", { name });
-    into.replaceChildren(...found.map(finding));
-    page.say(found.map(({ check, verdict }) => `${check}: ${t(verdict)}`).join("; "));
+    const findings = await page.net.ask<Finding[]>("examine", { name });
+    into.replaceChildren(...findings.map(findingItem));
+    page.say(findings.map(({ check, verdict }) => `${check}: ${t(verdict)}`).join("; "));
   } catch (error) {
-    into.replaceChildren(made("li", t("refused", { why: (error as Error).message })));
+    into.replaceChildren(element("li", t("refused", { why: (error as Error).message })));
   }
 }
 
-function finding({ check, verdict, says, cure }: Finding): HTMLElement {
-  const line = made("li", `${check}: `);
-  const mark = Object.assign(made("strong", t(verdict)), { className: { fine: "good", failed: "bad", "not asked": "" }[verdict] });
+function findingItem({ check, verdict, says, cure }: Finding): HTMLElement {
+  const line = element("li", `${check}: `);
+  const mark = Object.assign(element("strong", t(verdict)), { className: { fine: "good", failed: "bad", "not asked": "" }[verdict] });
   line.append(mark, `. ${says}`);
-  if (cure) line.append(made("p", t("cure", { cure })));
+  if (cure) line.append(element("p", t("cure", { cure })));
   return line;
 }
 
-function made(tag: string, text: string): HTMLElement {
+function element(tag: string, text: string): HTMLElement {
   return Object.assign(document.createElement(tag), { textContent: text });
 }

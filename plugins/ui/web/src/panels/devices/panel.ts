@@ -1,22 +1,22 @@
-/** Devices: which there are and why one is not, which one is felt, and how its loop runs. */
+/** The devices panel: installed devices, the choice of one, and figures of its loop. */
 import { button } from "../../elements";
 import type { Page } from "../../page";
 import { type Panel, reveal } from "../panel";
 import { t } from "./words";
-import { device, type Device } from "./list";
-import { doctor } from "./doctor";
-import { sure, type About } from "./confirmation";
+import { deviceItem, type Device } from "./list";
+import { loopFigures } from "./doctor";
+import { confirmStart, type About } from "./confirmation";
 import "./devices.css";
 
 type Kind = "hand" | "document" | "other";
 
 function build(page: Page, root: HTMLElement): void {
   const { hub, net } = page;
-  const told = Object.assign(document.createElement("p"), { id: "device-felt" });
+  const status = Object.assign(document.createElement("p"), { id: "device-felt" });
   const list = Object.assign(document.createElement("ul"), { className: "devices" });
   const panel = root.closest("details")!;
 
-  async function tried(work: () => Promise<unknown>): Promise<void> {
+  async function attempt(work: () => Promise<unknown>): Promise<void> {
     try {
       await work();
     } catch (error) {
@@ -25,14 +25,14 @@ function build(page: Page, root: HTMLElement): void {
   }
 
   function say(text: string): void {
-    told.textContent = text;
+    status.textContent = text;
     page.say(text);
   }
 
   const choose = (kind: Kind, name = ""): Promise<void> =>
-    tried(async () => {
+    attempt(async () => {
       const about = await net.ask<About>("about_device", { kind, name });
-      if (!about.simulated && !(await sure(about))) return;
+      if (!about.simulated && !(await confirmStart(about))) return;
       if (kind !== "hand") say(t("starting", { name: about.name }));
       await net.ask("choose_device", { kind, name, sure: !about.simulated });
     });
@@ -40,15 +40,15 @@ function build(page: Page, root: HTMLElement): void {
   async function look(): Promise<void> {
     list.replaceChildren(Object.assign(document.createElement("li"), { textContent: t("looking") }));
     const { devices } = await net.ask<{ devices: Device[] }>("devices");
-    list.replaceChildren(...devices.map((each) => device(page, each, () => void choose("other", each.name))));
+    list.replaceChildren(...devices.map((each) => deviceItem(page, each, () => void choose("other", each.name))));
   }
 
   const hand = Object.assign(button(t("useHand"), () => choose("hand")), { id: "use-hand" });
   const ofDocument = Object.assign(button("", () => choose("document")), { id: "use-document", hidden: true });
-  const wait = Object.assign(button(t("wait"), () => tried(() => net.ask("wait_for_device"))), { hidden: true });
-  const again = Object.assign(button(t("again"), () => tried(() => net.feel())), { hidden: true });
+  const wait = Object.assign(button(t("wait"), () => attempt(() => net.ask("wait_for_device"))), { hidden: true });
+  const again = Object.assign(button(t("again"), () => attempt(() => net.feel())), { hidden: true });
   const preflight = Object.assign(button(t("preflight"), () => reveal("preflight")), { hidden: true });
-  const refresh = button(t("refresh"), () => tried(look));
+  const refresh = button(t("refresh"), () => attempt(look));
 
   hub.on("document", ({ values }) => {
     const name = (values?.device as { use?: string } | undefined)?.use;
@@ -58,23 +58,23 @@ function build(page: Page, root: HTMLElement): void {
   hub.on("loop", ({ running, why, waiting, lost, device: name, own_hand }) => {
     wait.hidden = running || !lost || waiting === true;
     again.hidden = running;
-    if (running) told.textContent = t("felt", { device: own_hand ? t("ownHand") : (name ?? "") });
-    else told.textContent = t(waiting ? "waiting" : "nothingFelt", { why });
+    if (running) status.textContent = t("felt", { device: own_hand ? t("ownHand") : (name ?? "") });
+    else status.textContent = t(waiting ? "waiting" : "nothingFelt", { why });
   });
   panel.addEventListener("toggle", () => {
     preflight.hidden = !document.getElementById("preflight");
-    if (panel.open && !list.children.length) void tried(look);
+    if (panel.open && !list.children.length) void attempt(look);
   });
-  hub.on("hello", () => panel.open && void tried(look));
+  hub.on("hello", () => panel.open && void attempt(look));
   const heading = Object.assign(document.createElement("h3"), { textContent: t("installed") });
-  root.append(told, row(wait, again), row(hand, ofDocument, preflight), doctor(page, () => panel.open), heading, list, row(refresh));
+  root.append(status, row(wait, again), row(hand, ofDocument, preflight), loopFigures(page, () => panel.open), heading, list, row(refresh));
 }
 
 function row(...buttons: HTMLElement[]): HTMLElement {
-  const made = document.createElement("div");
-  made.className = "buttons";
-  made.append(...buttons);
-  return made;
+  const results = document.createElement("div");
+  results.className = "buttons";
+  results.append(...buttons);
+  return results;
 }
 
 export const devices: Panel = { id: "devices", title: t("title"), place: "right", open: false, build };

@@ -1,4 +1,4 @@
-/** A line of the last values, and what it says in words. */
+/** Sparkline of the last values, with a text for screen readers. */
 import { t } from "./words";
 
 const KEPT = 60;
@@ -25,7 +25,7 @@ export class Spark {
   }
 }
 
-/** From left to right, the newest at the right; from 0 up to the greatest. */
+/** Return the line's points, the newest at the right, scaled from 0 to the greatest. */
 export function points(values: number[], kept = KEPT): string {
   const most = Math.max(...values, Number.MIN_VALUE);
   return values.map((value, i) => `${kept - values.length + i},${(1 - value / most).toFixed(3)}`).join(" ");

@@ -1,9 +1,9 @@
-/** Which exporters, each with its options: a form that belongs to the panel until it is written into the file. */
+/** Selection of exporters with options, local to the panel until written into the file. */
 import { button, paragraph } from "../../elements";
 import type { Option } from "../../forms/kinds";
 import { FIELD, rows } from "../../forms/rows";
 import type { Plain } from "../../forms/schema";
-import { put, type Said } from "../../forms/values";
+import { setInside, type FieldChange } from "../../forms/values";
 import { t } from "./words";
 import { blocksOf, entriesOf, type Entry } from "./entries";
 
@@ -13,13 +13,13 @@ export interface Exporter {
   options: Option[];
 }
 
-/** What an exporter is called; one that is not known says what it does. */
-export const called = (name: string): string => (t.has(name) ? t(name) : name);
+/** Return the name of an exporter; an unknown one keeps the name of the pipeline file. */
+export const exporterName = (name: string): string => (t.has(name) ? t(name) : name);
 
 export class Choices {
   readonly root = document.createElement("ul");
-  /** Hears that another one is chosen, or another option. */
-  changed: () => void = () => undefined;
+  /** Called when the selection or an option changed. */
+  onChange: () => void = () => undefined;
   private entries: Entry[] = [];
 
   constructor(private exporters: Exporter[]) {
@@ -31,9 +31,9 @@ export class Choices {
     return blocksOf(this.entries);
   }
 
-  /** Show what the file says. */
-  show(said: Plain | undefined): void {
-    this.build(entriesOf(said, this.exporters.map(({ name }) => name)));
+  /** Show the file's exporters. */
+  show(value: Plain | undefined): void {
+    this.build(entriesOf(value, this.exporters.map(({ name }) => name)));
   }
 
   private build(entries: Entry[]): void {
@@ -49,12 +49,12 @@ export class Choices {
     input.id = `export-${at}-${entry.use}`;
     input.onchange = () => {
       entry.on = input.checked;
-      this.changed();
+      this.onChange();
     };
     const label = document.createElement("label");
-    label.append(input, called(entry.use));
+    label.append(input, exporterName(entry.use));
     box.append(label);
-    const known = this.exporters.find(({ name }) => name === entry.use); // a file may name one that is not installed
+    const known = this.exporters.find(({ name }) => name === entry.use); // a file may name an exporter that is not installed
     if (known) box.append(this.options(entry, at, known, input));
     return box;
   }
@@ -65,7 +65,7 @@ export class Choices {
     const heading = document.createElement("summary");
     const name = document.createElement("span");
     name.className = "visually-hidden";
-    name.textContent = t("optionsOf", { name: called(entry.use) });
+    name.textContent = t("optionsOf", { name: exporterName(entry.use) });
     const about = paragraph(known.about.split("\n")[0], "hint");
     about.lang = "en";
     const count = (): void => {
@@ -74,11 +74,11 @@ export class Choices {
     };
     const row = rows(() => undefined);
     const made = known.options.map((option) => {
-      const one = row(option, `${FIELD}export-${at}-${entry.use}.${option.name}`, (said: Said, inside: string[] = []) => {
-        entry.options = put(entry.options, [option.name, ...inside], said) as Entry["options"];
-        if (!entry.on) on.click(); // who sets its options wants it
+      const one = row(option, `${FIELD}export-${at}-${entry.use}.${option.name}`, (change: FieldChange, inside: string[] = []) => {
+        entry.options = setInside(entry.options, [option.name, ...inside], change) as Entry["options"];
+        if (!entry.on) on.click(); // setting options implies the exporter
         show();
-        this.changed();
+        this.onChange();
       });
       return { root: one.root, show: () => one.show(entry.options[option.name], option.name in entry.options) };
     });
@@ -91,7 +91,7 @@ export class Choices {
     return box;
   }
 
-  /** Two pin displays want two pictures. */
+  /** Return buttons to add or remove a variant: two pin displays need two files. */
   private more(entry: Entry, at: number): HTMLElement {
     const box = document.createElement("div");
     box.className = "buttons";
@@ -107,7 +107,7 @@ export class Choices {
         this.open(at - 1);
       });
       remove.className = "quiet";
-      remove.setAttribute("aria-label", t("removeThis", { name: called(entry.use) }));
+      remove.setAttribute("aria-label", t("removeThis", { name: exporterName(entry.use) }));
       box.append(remove);
     }
     return box;
@@ -117,6 +117,6 @@ export class Choices {
     const line = this.root.children[Math.max(0, at)]!;
     line.querySelector("details")!.open = true;
     line.querySelector("input")!.focus();
-    this.changed();
+    this.onChange();
   }
 }

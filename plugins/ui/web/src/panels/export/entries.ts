@@ -1,4 +1,4 @@
-/** What is to be exported, as the pipeline file says it: a list of names, or of blocks with options. */
+/** Entries of the `export` key: a list of names, or of blocks with options. */
 import type { Plain } from "../../forms/schema";
 import { isMap, same } from "../../forms/values";
 
@@ -8,9 +8,9 @@ export interface Entry {
   on: boolean;
 }
 
-/** Every exporter once, more often where the file says it more often; those that the file says are on. */
-export function entriesOf(said: Plain | undefined, names: string[]): Entry[] {
-  const given = listed(said);
+/** Return an entry for every exporter, more if the file lists it more often; the file's entries are on. */
+export function entriesOf(value: Plain | undefined, names: string[]): Entry[] {
+  const given = parseEntries(value);
   const known = [...names, ...given.map(({ use }) => use).filter((use) => !names.includes(use))];
   return [...new Set(known)].flatMap((use) => {
     const those = given.filter((each) => each.use === use);
@@ -18,18 +18,18 @@ export function entriesOf(said: Plain | undefined, names: string[]): Entry[] {
   });
 }
 
-/** Those that are on, as short as the file can say them. */
+/** Return the entries that are on, in the shortest form of the file. */
 export function blocksOf(entries: Entry[]): Plain[] {
   return entries.filter(({ on }) => on).map(({ use, options }) => (Object.keys(options).length ? { use, ...options } : use));
 }
 
-/** Whether the file says the same already, in whatever words. */
-export function says(said: Plain | undefined, blocks: Plain[]): boolean {
-  return same(blocksOf(listed(said)), blocks);
+/** Return whether the file lists the same exports already, in any form. */
+export function equals(value: Plain | undefined, blocks: Plain[]): boolean {
+  return same(blocksOf(parseEntries(value)), blocks);
 }
 
-function listed(said: Plain | undefined): Entry[] {
-  const all = Array.isArray(said) ? said : said === undefined || said === null ? [] : [said];
+function parseEntries(value: Plain | undefined): Entry[] {
+  const all = Array.isArray(value) ? value : value === undefined || value === null ? [] : [value];
   return all.flatMap((each) => {
     if (typeof each === "string") return [{ use: each, options: {}, on: true }];
     if (!isMap(each) || typeof each.use !== "string") return [];

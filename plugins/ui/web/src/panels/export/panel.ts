@@ -1,23 +1,23 @@
-/** Choose exporters, run them, stop, and take the files. */
+/** The export panel: choose exporters, run them, stop, and download the files. */
 import { button, hint, paragraph } from "../../elements";
-import { Editor } from "../../forms/editor";
+import { DocumentEditor } from "../../forms/editor";
 import { options } from "../../forms/kinds";
 import { alternatives, type FileSchema, type Plain } from "../../forms/schema";
 import { same } from "../../forms/values";
 import type { Exported } from "../../server/messages";
 import type { Page } from "../../page";
 import { t } from "./words";
-import { made } from "../../words/product_words";
+import { productName } from "../../words/product_words";
 import type { Cure } from "../verdicts/verdicts";
 import { Choices, type Exporter } from "./choices";
-import { says } from "./entries";
-import { address, outcomes, sized } from "./outcomes";
+import { equals } from "./entries";
+import { address, outcomes, formatBytes } from "./outcomes";
 
 export function build(page: Page, root: HTMLElement): void {
-  const editor = new Editor(page);
-  const told = document.createElement("p");
-  told.setAttribute("role", "status");
-  const tell = (text: string, className = ""): void => void Object.assign(told, { textContent: text, className });
+  const editor = new DocumentEditor(page);
+  const status = document.createElement("p");
+  status.setAttribute("role", "status");
+  const tell = (text: string, className = ""): void => void Object.assign(status, { textContent: text, className });
   editor.onRefused = (why) => tell(why, "bad");
   const list = document.createElement("div");
   list.textContent = t("waiting");
@@ -32,8 +32,8 @@ export function build(page: Page, root: HTMLElement): void {
     choices.show(shown);
   };
   const load = async (): Promise<void> => {
-    const found = await page.net.ask<FileSchema>("schema");
-    choices = new Choices(exportersOf(found));
+    const schema = await page.net.ask<FileSchema>("schema");
+    choices = new Choices(exportersOf(schema));
     shown = said();
     choices.show(shown);
     list.replaceChildren(choices.root);
@@ -43,8 +43,8 @@ export function build(page: Page, root: HTMLElement): void {
     if (!exports.length) return tell(t("none"), "warn");
     tell(t("running"));
     try {
-      const found = await page.net.ask<Exported | null>("export", { exports });
-      if (found) tell(...inWords(found));
+      const outcome = await page.net.ask<Exported | null>("export", { exports });
+      if (outcome) tell(...summaryOf(outcome));
       else tell(t("stopped"), "warn");
     } catch (error) {
       tell((error as Error).message, "bad");
@@ -52,13 +52,13 @@ export function build(page: Page, root: HTMLElement): void {
   };
   const add = async (): Promise<void> => {
     const exports = choices?.blocks ?? [];
-    if (says(said(), exports)) return tell(t("same"));
+    if (equals(said(), exports)) return tell(t("same"));
     shown = exports.length ? exports : undefined;
     const change = exports.length ? { changes: { export: exports } } : { removed: ["export"] };
-    if (await editor.changed(change)) tell(t("added"));
+    if (await editor.submit(change)) tell(t("added"));
   };
   const cure: Cure = (key, value) => {
-    void editor.changed({ changes: { [key]: value } }).then((done) => (done ? run() : undefined));
+    void editor.submit({ changes: { [key]: value } }).then((done) => (done ? run() : undefined));
   };
 
   const start = button(t("run"), run);
@@ -66,8 +66,8 @@ export function build(page: Page, root: HTMLElement): void {
   start.className = "primary";
   const buttons = document.createElement("div");
   buttons.className = "buttons";
-  buttons.append(start, stopping(page), button(t("add"), add));
-  root.append(hint(t("about")), list, buttons, progress(page), told, results);
+  buttons.append(start, stopButton(page), button(t("add"), add));
+  root.append(hint(t("about")), list, buttons, progress(page), status, results);
   void load().catch((error: Error) => (list.textContent = error.message));
 
   const stale = paragraph(t("stale"), "warn");
@@ -75,7 +75,7 @@ export function build(page: Page, root: HTMLElement): void {
   const age = (): void => void (stale.hidden = !exported || exported.digest === page.document?.digest);
   const show = (fresh: Exported): void => {
     exported = fresh;
-    results.replaceChildren(stale, ...outcomes(fresh, cure), ...packed(page, fresh, tell));
+    results.replaceChildren(stale, ...outcomes(fresh, cure), ...zipButton(page, fresh, tell));
     age();
   };
   page.hub.on("exported", show);
@@ -87,10 +87,10 @@ export function build(page: Page, root: HTMLElement): void {
   if (before) show(before);
 }
 
-/** What most look for comes first; exporters that are not known here follow. */
+/** Order of known exporters by frequency of use; others follow. */
 const ORDER = ["stl", "3mf", "glb", "swell", "pins", "text", "heights"];
 
-/** Exporters that are installed, with their options, of the file's schema. */
+/** Return installed exporters with their options, from the file's schema. */
 function exportersOf({ properties, $defs }: FileSchema): Exporter[] {
   const lists = properties.export ? alternatives(properties.export, $defs) : [];
   const items = lists.flatMap((each) => (each.items ? alternatives(each.items, $defs) : [each]));
@@ -104,8 +104,8 @@ function exportersOf({ properties, $defs }: FileSchema): Exporter[] {
   return found.sort((one, other) => place(one) - place(other));
 }
 
-/** It ends what is being made, as everywhere. */
-function stopping(page: Page): HTMLElement {
+/** Return a button that stops the computation. */
+function stopButton(page: Page): HTMLElement {
   const stop = button(t("stop"), () => page.net.ask("stop_making"));
   stop.id = "export-stop";
   stop.hidden = true;
@@ -114,7 +114,7 @@ function stopping(page: Page): HTMLElement {
   return stop;
 }
 
-/** What is being made for it now. Not spoken: the status says when it begins and ends. */
+/** Return the progress of the export. Not spoken: the status line announces start and end. */
 function progress(page: Page): HTMLElement {
   const box = document.createElement("p");
   box.className = "hint progress";
@@ -128,13 +128,13 @@ function progress(page: Page): HTMLElement {
     text.textContent = "";
   });
   page.hub.on("stage", ({ product, done }) => {
-    if (!done.outcome) text.textContent = t("making", { product: made(product) });
+    if (!done.outcome) text.textContent = t("making", { product: productName(product) });
   });
   for (const name of ["made", "gone"] as const) page.hub.on(name, () => (box.hidden = true));
   return box;
 }
 
-function inWords({ exports }: Exported): [string, string] {
+function summaryOf({ exports }: Exported): [string, string] {
   const count = exports.reduce((sum, { files }) => sum + files.length, 0);
   const wrong = exports.filter(({ outcome }) => outcome === "failed" || outcome === "refused").length;
   if (!count) return [t("nothing"), "bad"];
@@ -142,11 +142,11 @@ function inWords({ exports }: Exported): [string, string] {
   return [count === 1 ? t("doneOne") : t("done", { count }), "good"];
 }
 
-/** All files in one, where there are several. */
-function packed(page: Page, { folder, exports }: Exported, tell: (text: string, className?: string) => void): HTMLElement[] {
+/** Return a button that downloads all files as a ZIP, if there are several. */
+function zipButton(page: Page, { folder, exports }: Exported, tell: (text: string, className?: string) => void): HTMLElement[] {
   const files = exports.flatMap((each) => each.files);
   if (files.length < 2) return [];
-  const all = button(t("size", { name: t("all"), size: sized(files.reduce((sum, { bytes }) => sum + bytes, 0)) }), async () => {
+  const all = button(t("size", { name: t("all"), size: formatBytes(files.reduce((sum, { bytes }) => sum + bytes, 0)) }), async () => {
     tell(t("packing"));
     try {
       const name = await page.net.ask<string>("export_zip", { folder });

@@ -1,12 +1,12 @@
-/** The hand of this page: whether it is felt, what moves it, and how deep it presses. */
+/** Settings of this page's hand: whether it is active, its mover, and its penetration. */
 import { button, field, hint } from "../../elements";
-import { PRESS_M, type Hand } from "../../hand/hand";
+import { type HandState, PRESS_M } from "../../hand/state";
 import type { Page } from "../../page";
 import type { Panel } from "../panel";
 import { t } from "../../hand/words";
 
 function build(page: Page, root: HTMLElement): void {
-  const told = Object.assign(document.createElement("p"), { id: "hand-held" });
+  const status = Object.assign(document.createElement("p"), { id: "hand-held" });
   const take = Object.assign(button(t("take"), () => page.hand?.take()), { hidden: true });
   const moved = document.createElement("p");
   const press = slider();
@@ -22,7 +22,7 @@ function build(page: Page, root: HTMLElement): void {
   depth.append(value);
   const hints = (["howMouse", "howFinger", "howKeys"] as const).map((each) => hint(t(each)));
   const pad = hint(t("padThere"));
-  root.append(told, take, moved, ways, depth, ...hints, pad);
+  root.append(status, take, moved, ways, depth, ...hints, pad);
 
   function way(name: "surface" | "space", free: boolean): HTMLLabelElement {
     const label = document.createElement("label");
@@ -37,8 +37,8 @@ function build(page: Page, root: HTMLElement): void {
     press.setAttribute("aria-valuetext", value.textContent);
   }
 
-  function hear(hand: Hand): void {
-    told.textContent = t(held(hand));
+  function hear(hand: HandState): void {
+    status.textContent = t(holderOf(hand));
     take.hidden = !hand.there || hand.holding || hand.rests;
     moved.textContent = `${t("movedBy")}: ${t(hand.by ?? "nothing")}`;
     pad.hidden = !hand.pads;
@@ -47,7 +47,7 @@ function build(page: Page, root: HTMLElement): void {
 
   page.hub.on("hand", hear);
   page.hub.on("drawn", () => {
-    const mm = (1000 * (page.hand?.pressM ?? 0)).toFixed(1); // wheel, trigger and pen change it too
+    const mm = (1000 * (page.hand?.pressM ?? 0)).toFixed(1); // wheel, trigger and pen change the penetration too
     if (document.activeElement === press || Number(press.value).toFixed(1) === mm) return;
     press.value = mm;
     show();
@@ -58,8 +58,8 @@ function build(page: Page, root: HTMLElement): void {
 
 type Held = "gone" | "rests" | "holds" | "nobody" | "watches";
 
-/** Who holds the hand, as a word of the table. */
-export function held(hand: Pick<Hand, "there" | "holding" | "nobodyHolds" | "rests">): Held {
+/** Return the holder of the hand, as a key of the words. */
+export function holderOf(hand: Pick<HandState, "there" | "holding" | "nobodyHolds" | "rests">): Held {
   if (!hand.there) return "gone";
   if (hand.rests) return "rests";
   if (hand.holding) return "holds";
@@ -67,9 +67,9 @@ export function held(hand: Pick<Hand, "there" | "holding" | "nobodyHolds" | "res
 }
 
 function slider(): HTMLInputElement {
-  const made = document.createElement("input");
+  const input = document.createElement("input");
   const mm = (metres: number): string => (1000 * metres).toFixed(1);
-  return Object.assign(made, {
+  return Object.assign(input, {
     id: "press", type: "range", min: mm(PRESS_M.least), max: mm(PRESS_M.most), step: "0.1", value: mm(PRESS_M.first),
   });
 }

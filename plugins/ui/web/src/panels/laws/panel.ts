@@ -17,9 +17,9 @@ const LETTERS = ["a", "b"] as const;
 
 function build(page: Page, root: HTMLElement): void {
   const { hub, net } = page;
-  const told = document.createElement("p");
+  const status = document.createElement("p");
   const result = document.createElement("ul");
-  const tried = async (work: () => Promise<unknown>): Promise<void> => {
+  const attempt = async (work: () => Promise<unknown>): Promise<void> => {
     try {
       await work();
     } catch (error) {
@@ -27,34 +27,34 @@ function build(page: Page, root: HTMLElement): void {
     }
   };
   const say = (text: string): void => {
-    told.textContent = text;
+    status.textContent = text;
     page.say(text);
   };
 
-  const choice = setup((use, options) => tried(() => net.ask("compare_laws", { use, options })));
+  const choice = setup((use, options) => attempt(() => net.ask("compare_laws", { use, options })));
   const two = group(t("felt"));
-  const letters = LETTERS.map((to) => button(to, () => tried(() => net.ask("switch_law", { to }))));
+  const letters = LETTERS.map((to) => button(to, () => attempt(() => net.ask("switch_law", { to }))));
   const question = input("laws-question");
   question.value = t("questionFirst");
   two.append(
     ...letters,
     field(t("question"), question),
     hint(t("blindHelp")),
-    button(t("blind"), () => tried(() => net.ask("begin_blind", { question: question.value }))),
-    button(t("end"), () => tried(() => net.ask("end_laws"))),
+    button(t("blind"), () => attempt(() => net.ask("begin_blind", { question: question.value }))),
+    button(t("end"), () => attempt(() => net.ask("end_laws"))),
   );
   const blind = group("");
   const asked = blind.querySelector("legend")!;
   const trial = document.createElement("p");
-  const feel = ([1, 2] as const).map((called) => button(t(`feel${called}`), () => tried(() => net.ask("feel_blind", { called }))));
-  const choose = (choice: number): Promise<void> => tried(() => net.ask("choose_blind", { choice }));
+  const feel = ([1, 2] as const).map((called) => button(t(`feel${called}`), () => attempt(() => net.ask("feel_blind", { called }))));
+  const choose = (choice: number): Promise<void> => attempt(() => net.ask("choose_blind", { choice }));
   blind.append(
     trial,
     ...feel,
     button(t("choose1"), () => choose(1)),
     button(t("choose2"), () => choose(2)),
     button(t("chooseNone"), () => choose(0)),
-    button(t("reveal"), () => tried(async () => reveal(await net.ask<Tally>("end_blind")))),
+    button(t("reveal"), () => attempt(async () => reveal(await net.ask<Tally>("end_blind")))),
   );
 
   function reveal({ laws, chosen, neither, chance, path }: Tally): void {
@@ -65,27 +65,27 @@ function build(page: Page, root: HTMLElement): void {
     page.say(lines.slice(0, 2).join(" "));
   }
 
-  function show(said: Events["laws"]): void {
-    choice.hidden = said.state !== "one";
-    two.hidden = said.state !== "two";
-    blind.hidden = said.state !== "blind";
-    if (said.state === "two") {
+  function show(message: Events["laws"]): void {
+    choice.hidden = message.state !== "one";
+    two.hidden = message.state !== "two";
+    blind.hidden = message.state !== "blind";
+    if (message.state === "two") {
       letters.forEach((each, i) => {
-        each.textContent = t("named", { letter: LETTERS[i]!, law: said.named[i]! });
-        each.setAttribute("aria-pressed", String(said.felt === i));
+        each.textContent = t("named", { letter: LETTERS[i]!, law: message.named[i]! });
+        each.setAttribute("aria-pressed", String(message.felt === i));
       });
-      say(t("feeling", { letter: LETTERS[said.felt]!, law: said.named[said.felt]! }));
-    } else if (said.state === "blind") {
-      asked.textContent = said.question;
-      trial.textContent = t("trial", { number: said.trials + 1, called: said.called });
-      feel.forEach((each, i) => each.setAttribute("aria-pressed", String(said.called === i + 1)));
+      say(t("feeling", { letter: LETTERS[message.felt]!, law: message.named[message.felt]! }));
+    } else if (message.state === "blind") {
+      asked.textContent = message.question;
+      trial.textContent = t("trial", { number: message.trials + 1, called: message.called });
+      feel.forEach((each, i) => each.setAttribute("aria-pressed", String(message.called === i + 1)));
       page.say(trial.textContent);
-    } else told.textContent = "";
+    } else status.textContent = "";
   }
 
   hub.on("laws", show);
   show({ event: "laws", at_s: 0, state: "one" });
-  root.append(hint(t("about")), choice, two, blind, result, told);
+  root.append(hint(t("about")), choice, two, blind, result, status);
   let known = false;
   hub.on("touch", () => {
     if (known) return;
@@ -120,9 +120,9 @@ function group(title: string): HTMLFieldSetElement {
 }
 
 function input(id: string): HTMLInputElement {
-  const made = document.createElement("input");
-  made.id = id;
-  return made;
+  const control = document.createElement("input");
+  control.id = id;
+  return control;
 }
 
 export const laws: Panel = { id: "laws", title: t("title"), place: "right", open: false, build };

@@ -1,36 +1,36 @@
-/** The places at which a verdict fails, in words, each with a button that leads there. */
+/** List of the places at which a verdict fails, each with a button that leads there. */
 import { button, paragraph } from "../../elements";
 import type { Verdict } from "../../server/messages";
 import type { Page } from "../../page";
 import { t } from "./words";
-import { ninth } from "../../words/place_words";
-import type { Fault, Marks } from "./fault_marks";
+import { ninthOfPicture } from "../../words/place_words";
+import type { Fault, FaultMarks } from "./fault_marks";
 
-/** Of one verdict; a picture with more than that has one fault all over. */
+/** Greatest number of places listed per verdict. */
 const MOST = 9;
 
-/** The places of all verdicts that fail, numbered in their order. */
-export function faults(verdicts: Verdict[]): Map<Verdict, Fault[]> {
+/** Return the failing places of all verdicts, numbered in order. */
+export function numberFaults(verdicts: Verdict[]): Map<Verdict, Fault[]> {
   let number = 0;
   const failing = verdicts.filter((each) => each.verdict !== "ok" && each.at?.length);
   return new Map(failing.map((each) => [each, each.at!.slice(0, MOST).map((at) => ({ number: ++number, at }))]));
 }
 
-export function places(page: Page, said: Verdict, all: Fault[], marks: Marks): HTMLElement {
+export function faultList(page: Page, verdict: Verdict, all: Fault[], marks: FaultMarks): HTMLElement {
   const box = document.createElement("div");
   box.className = "places";
   const list = document.createElement("ol");
   list.setAttribute("aria-label", t("places"));
   list.append(...all.map((each) => line(page, each, marks)));
   box.append(list);
-  const rest = said.at!.length - all.length;
+  const rest = verdict.at!.length - all.length;
   if (rest) box.append(paragraph(t("more", { count: rest }), "hint"));
   return box;
 }
 
-function line(page: Page, fault: Fault, marks: Marks): HTMLElement {
+function line(page: Page, fault: Fault, marks: FaultMarks): HTMLElement {
   const { number, at } = fault;
-  const where = ninth(...at);
+  const where = ninthOfPicture(...at);
   const part = partAt(page, at);
   const go = button(`${number}`, () => {
     marks.look(at);

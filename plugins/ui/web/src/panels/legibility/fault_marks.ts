@@ -1,17 +1,17 @@
-/** Numbered places of the picture, drawn over the surface; in words they stand in the panel, so these are hidden there. */
+/** Numbered marks over the surface, hidden from screen readers: the panel lists them in words. */
 import type { Page } from "../../page";
 import type { Vec } from "../../server/protocol";
 
-/** A place of the picture: shares from the left and from the top. */
+/** A failing place: shares from the left and from the top. */
 export interface Fault {
   number: number;
   at: [number, number];
 }
 
-/** How much of the width is looked at when a place is. */
+/** Share of the width shown around a place. */
 const NEAR = 0.3;
 
-export class Marks {
+export class FaultMarks {
   private shown = true;
   private away: (() => void)[] = [];
   private elements = new Map<number, HTMLElement>();
@@ -23,7 +23,7 @@ export class Marks {
     this.page.overlay.changed = true;
   }
 
-  put(faults: Fault[]): void {
+  replace(faults: Fault[]): void {
     for (const each of this.away) each();
     this.elements.clear();
     this.away = faults.map(({ number, at }) => {
@@ -37,12 +37,12 @@ export class Marks {
     this.page.overlay.changed = true;
   }
 
-  /** Which one is spoken of; none with null. */
+  /** Highlight a mark; null for none. */
   point(number: number | null): void {
     for (const [each, element] of this.elements) element.classList.toggle("pointed", each === number);
   }
 
-  /** Bring the camera near a place. */
+  /** Focus the camera on a place. */
   look(at: [number, number]): void {
     const { scene, view } = this.page;
     const there = this.where(at);

@@ -1,33 +1,33 @@
-/** Verdicts of legibility by medium; their places on the surface and in words; their cures as buttons. */
+/** Verdicts of tactile legibility by medium, with places and cures. */
 import { button, field, hint, paragraph } from "../../elements";
-import { Editor } from "../../forms/editor";
+import { DocumentEditor } from "../../forms/editor";
 import type { Legible, Medium } from "../../server/messages";
 import type { Page } from "../../page";
 import { t } from "./words";
 import { decimal } from "../../words/words";
-import { type Cure, sentence, verdicts } from "../verdicts/verdicts";
-import { Marks } from "./fault_marks";
-import { faults, places } from "./fault_list";
+import { type Cure, gradeSentence, verdictTables } from "../verdicts/verdicts";
+import { FaultMarks } from "./fault_marks";
+import { numberFaults, faultList } from "./fault_list";
 
 const MEDIA: Medium[] = ["swell", "print", "pins", "force"];
 const SIMPLIFY = "simplify";
 const WIDTH_MM = { least: 10, most: 2000 };
 
 export function build(page: Page, root: HTMLElement): void {
-  const editor = new Editor(page);
-  const marks = new Marks(page);
+  const editor = new DocumentEditor(page);
+  const marks = new FaultMarks(page);
   const medium = choice();
   const width = widthField();
-  const told = document.createElement("p");
-  told.setAttribute("role", "status");
-  editor.onRefused = (why) => (told.textContent = why);
+  const status = document.createElement("p");
+  status.setAttribute("role", "status");
+  editor.onRefused = (why) => (status.textContent = why);
   const stale = paragraph(t("stale"), "warn");
   stale.hidden = true;
-  const found = document.createElement("div");
-  const marked = ticked(t("marks"), () => age());
+  const results = document.createElement("div");
+  const marked = checkbox(t("marks"), () => age());
   marked.input.checked = true;
   marked.root.hidden = true;
-  const coloured = ticked(t("parts"), (on) => page.hub.tell("look at", { look: on ? "segments" : "photo" }));
+  const coloured = checkbox(t("parts"), (on) => page.hub.tell("look at", { look: on ? "segments" : "photo" }));
   coloured.root.hidden = true;
   page.hub.on("look", ({ look }) => (coloured.input.checked = look === "segments"));
   coloured.input.checked = page.hub.last("look")?.look === "segments";
@@ -35,14 +35,14 @@ export function build(page: Page, root: HTMLElement): void {
 
   const work = async (): Promise<void> => {
     if (!width.reportValidity()) return;
-    told.textContent = t("checking");
+    status.textContent = t("checking");
     const width_m = width.value ? width.valueAsNumber / 1000 : null;
     try {
-      const said = await page.net.ask<Legible | null>("legible", { medium: medium.value, width_m });
-      told.textContent = said ? "" : t("stopped");
-      if (said) page.say(said.sentence, { topic: "legible", asked: true });
+      const legible = await page.net.ask<Legible | null>("legible", { medium: medium.value, width_m });
+      status.textContent = legible ? "" : t("stopped");
+      if (legible) page.say(legible.sentence, { topic: "legible", asked: true });
     } catch (error) {
-      told.textContent = (error as Error).message;
+      status.textContent = (error as Error).message;
     }
   };
   const check = button(t("check"), work);
@@ -52,28 +52,28 @@ export function build(page: Page, root: HTMLElement): void {
   buttons.append(check);
   const widthBox = field(t("width"), width);
   widthBox.append(Object.assign(hint(t("widthHint")), { id: "legible-width-hint" }));
-  root.append(hint(t("about")), field(t("medium"), medium), widthBox, buttons, told, stale, found, marked.root, coloured.root);
+  root.append(hint(t("about")), field(t("medium"), medium), widthBox, buttons, status, stale, results, marked.root, coloured.root);
 
   const age = (): void => {
     stale.hidden = !judged || judged.digest === page.document?.digest;
     marks.visible = stale.hidden && marked.input.checked;
   };
   const cure: Cure = (key, value) => {
-    void editor.changed({ changes: { [key]: value } }).then((done) => (done ? work() : undefined));
+    void editor.submit({ changes: { [key]: value } }).then((done) => (done ? work() : undefined));
   };
-  const show = (said: Legible): void => {
-    judged = said;
+  const show = (verdict: Legible): void => {
+    judged = verdict;
     check.textContent = t("again");
-    medium.value = said.medium;
-    const failing = faults(said.verdicts);
+    medium.value = verdict.medium;
+    const failing = numberFaults(verdict.verdicts);
     const more = (each: Legible["verdicts"][number]): HTMLElement | null =>
-      failing.has(each) ? places(page, each, failing.get(each)!, marks) : null;
-    const of = paragraph(t("of", { medium: t(`${said.medium}Of`), width: decimal(1000 * said.width_m, 0) }), "hint");
-    found.replaceChildren(sentence(said.grade, said.sentence), of, ...simplifying(said, editor, work), ...verdicts(said.verdicts, cure, more));
+      failing.has(each) ? faultList(page, each, failing.get(each)!, marks) : null;
+    const of = paragraph(t("of", { medium: t(`${verdict.medium}Of`), width: decimal(1000 * verdict.width_m, 0) }), "hint");
+    results.replaceChildren(gradeSentence(verdict.grade, verdict.sentence), of, ...simplifyButton(verdict, editor, work), ...verdictTables(verdict.verdicts, cure, more));
     const all = [...failing.values()].flat();
     marked.root.hidden = !all.length;
     coloured.root.hidden = false;
-    marks.put(all);
+    marks.replace(all);
     age();
   };
   page.hub.on("legible", show);
@@ -82,13 +82,13 @@ export function build(page: Page, root: HTMLElement): void {
   if (before) show(before);
 }
 
-/** Everything that would make parts legible, as one edit; nothing where that is no cure. */
-function simplifying({ verdicts: all }: Legible, editor: Editor, check: () => Promise<void>): HTMLElement[] {
+/** Return a button that applies all simplifications as one edit, if there are any. */
+function simplifyButton({ verdicts: all }: Legible, editor: DocumentEditor, check: () => Promise<void>): HTMLElement[] {
   const wanted = all.flatMap((each) => each.changes).filter(({ key }) => key === SIMPLIFY || key.startsWith(`${SIMPLIFY}.`));
   if (!wanted.length) return [];
-  const changes = Object.fromEntries(wanted.reverse().map(({ key, value }) => [key, value])); // the first of a key counts
+  const changes = Object.fromEntries(wanted.reverse().map(({ key, value }) => [key, value])); // the first value of a key counts
   const written = Object.entries(changes).map(([key, value]) => `${key}: ${JSON.stringify(value)}`);
-  const cure = button(t("simplify"), () => void editor.changed({ changes }).then((done) => (done ? check() : undefined)));
+  const cure = button(t("simplify"), () => void editor.submit({ changes }).then((done) => (done ? check() : undefined)));
   cure.id = "legible-simplify";
   cure.className = "primary";
   const about = hint(t("simplifyHint", { changes: written.join(", ") }));
@@ -98,20 +98,20 @@ function simplifying({ verdicts: all }: Legible, editor: Editor, check: () => Pr
 }
 
 function choice(): HTMLSelectElement {
-  const made = document.createElement("select");
-  made.id = "legible-medium";
-  for (const each of MEDIA) made.add(new Option(t(each), each));
-  return made;
+  const select = document.createElement("select");
+  select.id = "legible-medium";
+  for (const each of MEDIA) select.add(new Option(t(each), each));
+  return select;
 }
 
 function widthField(): HTMLInputElement {
-  const made = document.createElement("input");
-  Object.assign(made, { id: "legible-width", type: "number", min: `${WIDTH_MM.least}`, max: `${WIDTH_MM.most}`, step: "any" });
-  made.setAttribute("aria-describedby", "legible-width-hint");
-  return made;
+  const input = document.createElement("input");
+  Object.assign(input, { id: "legible-width", type: "number", min: `${WIDTH_MM.least}`, max: `${WIDTH_MM.most}`, step: "any" });
+  input.setAttribute("aria-describedby", "legible-width-hint");
+  return input;
 }
 
-function ticked(text: string, change: (on: boolean) => void): { root: HTMLLabelElement; input: HTMLInputElement } {
+function checkbox(text: string, change: (on: boolean) => void): { root: HTMLLabelElement; input: HTMLInputElement } {
   const root = document.createElement("label");
   const input = document.createElement("input");
   input.type = "checkbox";

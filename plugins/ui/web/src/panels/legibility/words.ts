@@ -1,8 +1,8 @@
 import { words } from "../../words/words";
 
-/** Whether fingers can read it. */
+/** Texts of the legibility panel. */
 export const t = words({
-  about: ["Whether fingers can read it, by the rules of tactile graphics: gaps, sizes of parts, steps, textures.",
+  about: ["Checks the picture against the rules of tactile graphics: gaps, sizes of parts, steps, textures.",
     "Ob Finger es lesen können, nach den Regeln für taktile Grafiken: Abstände, Größe der Teile, Stufen, Texturen."],
   medium: ["Read on", "Gelesen auf"],
   swell: ["swell paper", "Schwellpapier"],
@@ -10,16 +10,16 @@ export const t = words({
   pins: ["a pin display", "einem Stiftdisplay"],
   force: ["a force device", "einem Kraftgerät"],
   width: ["Width, mm", "Breite, mm"],
-  widthHint: ["Of the whole picture as it is made; without one, as “Size” says.",
+  widthHint: ["Width of the whole picture as it is produced; if empty, the one under “Size”.",
     "Die des ganzen Bildes, wie es hergestellt wird; ohne Angabe gilt, was unter „Größe“ steht."],
   check: ["Check now", "Jetzt prüfen"],
   again: ["Check again", "Noch einmal prüfen"],
   checking: ["Checking …", "Prüfung läuft …"],
   stopped: ["The check was stopped.", "Die Prüfung wurde abgebrochen."],
-  stale: ["The document changed since this check.", "Seit dieser Prüfung hat sich das Dokument geändert."],
+  stale: ["The document has changed since this check.", "Seit dieser Prüfung hat sich das Dokument geändert."],
   of: ["Judged for {medium}, {width} mm wide.", "Geprüft für {medium}, {width} mm breit."],
   simplify: ["Simplify the parts", "Die Teile vereinfachen"],
-  simplifyHint: ["Places that are too narrow go to the parts beside them, until fingers can read it: {changes}.",
+  simplifyHint: ["Narrow places are merged into neighbouring parts until the result is legible: {changes}.",
     "Zu schmale Stellen gehen an die Teile daneben, bis Finger es lesen können: {changes}."],
   parts: ["Show the parts in colours", "Die Teile farbig zeigen"],
   marks: ["Show the places on the surface", "Die Stellen auf der Oberfläche zeigen"],

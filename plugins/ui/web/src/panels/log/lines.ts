@@ -1,4 +1,4 @@
-/** The lines of the log: at most so many, the same one again counts up. */
+/** Lines of the log, a limited number; a repeated line counts up. */
 
 export const LEVELS = ["event", "detail", "warning", "error"] as const;
 export type Level = (typeof LEVELS)[number];
@@ -6,9 +6,9 @@ export type Level = (typeof LEVELS)[number];
 export interface Line {
   level: Level;
   text: string;
-  /** The end of the text, that the program says and in English. */
+  /** The end of the text that comes from the program, in English. */
   foreign: string;
-  /** Unix time of the last time. */
+  /** Unix time of the last occurrence. */
   at_s: number;
   times: number;
 }
@@ -20,7 +20,7 @@ export class Lines {
 
   constructor(private most = MOST_LINES) {}
 
-  /** Add a line; what was dropped for it is said, and whether it is the last one over again. */
+  /** Add a line; return it, whether it repeats the last one, and the line dropped for it. */
   add(level: Level, text: string, at_s: number, foreign = ""): { line: Line; again: boolean; dropped: Line | undefined } {
     const before = this.all.at(-1);
     if (before && before.level === level && before.text === text) {
@@ -38,13 +38,13 @@ export class Lines {
   }
 }
 
-/** Whether a line is to be seen: its level is, and every word that was looked for is in it. */
-export function seen({ level, text }: Line, levels: ReadonlySet<Level>, wanted: string): boolean {
+/** Return whether a line is shown: its level is, and it contains every word of the search. */
+export function isShown({ level, text }: Line, levels: ReadonlySet<Level>, wanted: string): boolean {
   const small = text.toLowerCase();
   return levels.has(level) && wanted.toLowerCase().split(/\s+/).every((word) => small.includes(word));
 }
 
-/** As text: one line each, with the whole time, for who is sent it. */
+/** Return lines as text, with full times. */
 export function asText(lines: Line[]): string {
   return lines.map(({ level, text, at_s, times }) => `${new Date(1000 * at_s).toISOString()} ${level} ${text}${times > 1 ? ` (x ${times})` : ""}\n`).join("");
 }

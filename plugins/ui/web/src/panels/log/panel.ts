@@ -1,4 +1,4 @@
-/** The log: what happened, with filters and search. */
+/** The log panel, with filters and search. */
 import { button } from "../../elements";
 import { download } from "../../files";
 import type { Events } from "../../server/messages";
@@ -6,9 +6,9 @@ import type { Page } from "../../page";
 import type { Panel } from "../panel";
 import { recall, remember } from "../../preferences";
 import { t } from "./words";
-import { made } from "../../words/product_words";
+import { productName } from "../../words/product_words";
 import { decimal, language } from "../../words/words";
-import { asText, LEVELS, Lines, seen, type Level, type Line } from "./lines";
+import { asText, LEVELS, Lines, isShown, type Level, type Line } from "./lines";
 import "./log.css";
 
 const AT_FIRST: Record<Level, boolean> = { event: true, detail: false, warning: true, error: true };
@@ -30,7 +30,7 @@ class Log {
     box.id = "log";
     box.tabIndex = 0;
     box.setAttribute("role", "log");
-    box.setAttribute("aria-live", "off"); // the announcer says what matters, once a second at most; but who wants all
+    box.setAttribute("aria-live", "off"); // the announcer reads what matters; a person can choose to hear every line
     this.page.hub.on("read log", ({ on }) => box.setAttribute("aria-live", on ? "polite" : "off"));
     box.setAttribute("aria-label", t("lines"));
     box.append(this.list);
@@ -91,12 +91,12 @@ class Log {
   }
 
   private stage({ at_s, product, method, done: { outcome, seconds, why } }: Events["stage"]): void {
-    if (!outcome) return this.add("detail", t("begun", { product: made(product), method }), at_s);
-    const told = { product: made(product), method, outcome: t(outcome), seconds: decimal(seconds ?? 0, 3) };
+    if (!outcome) return this.add("detail", t("begun", { product: productName(product), method }), at_s);
+    const told = { product: productName(product), method, outcome: t(outcome), seconds: decimal(seconds ?? 0, 3) };
     this.add(outcome === "failed" ? "error" : "event", `${t(method ? "stage" : "given by", told)}${why ? ": " : ""}`, at_s, why);
   }
 
-  /** Many may come at once: they are put on the page together, before it is drawn. */
+  /** Add a line; many lines at once are rendered together. */
   private add(level: Level, own: string, at_s: number, foreign = ""): void {
     const text = own + foreign;
     const { line, again, dropped } = this.lines.add(level, text, at_s, foreign);
@@ -107,14 +107,14 @@ class Log {
     if (level === "warning") this.page.say(t("said", { level: t(level), text }));
     if (!again || !this.items.has(line)) this.fresh.push(line);
     else fill(this.items.get(line)!, line);
-    if (this.fresh.length === 1) setTimeout(() => this.put());
+    if (this.fresh.length === 1) setTimeout(() => this.flush());
   }
 
-  private put(): void {
+  private flush(): void {
     const follows = this.follows;
     const made = this.fresh.splice(0).filter((line) => this.lines.all.includes(line) && !this.items.has(line));
     for (const line of made) this.items.set(line, fill(document.createElement("li"), line));
-    for (const line of made) this.items.get(line)!.hidden = !seen(line, this.levels, this.wanted);
+    for (const line of made) this.items.get(line)!.hidden = !isShown(line, this.levels, this.wanted);
     this.list.append(...made.map((line) => this.items.get(line)!));
     this.tell();
     if (follows) this.scroller.scrollTop = this.scroller.scrollHeight;
@@ -125,18 +125,18 @@ class Log {
     return getComputedStyle(region).overflowY === "auto" ? region : this.list.parentElement!;
   }
 
-  /** Whether its end is in sight: then new lines are scrolled to. */
+  /** True if the end is in sight: then new lines are scrolled to. */
   private get follows(): boolean {
     const { scrollTop, clientHeight, scrollHeight } = this.scroller;
     return scrollTop + clientHeight >= scrollHeight - 40;
   }
 
   private get shown(): Line[] {
-    return this.lines.all.filter((line) => seen(line, this.levels, this.wanted));
+    return this.lines.all.filter((line) => isShown(line, this.levels, this.wanted));
   }
 
   private show(): void {
-    for (const [line, item] of this.items) item.hidden = !seen(line, this.levels, this.wanted);
+    for (const [line, item] of this.items) item.hidden = !isShown(line, this.levels, this.wanted);
     this.tell();
   }
 
@@ -150,7 +150,7 @@ class Log {
       await navigator.clipboard.writeText(asText(this.shown));
       this.page.say(t("copied", { count: this.shown.length }), { asked: true });
     } catch {
-      getSelection()?.selectAllChildren(this.list); // the browser forbids it: Ctrl+C then does it
+      getSelection()?.selectAllChildren(this.list); // the browser forbids copying: Ctrl+C then works
       this.page.say(t("selected"), { asked: true });
     }
   }
@@ -178,10 +178,10 @@ function fill(item: HTMLElement, { level, text, foreign, at_s, times }: Line): H
   const mark = document.createElement("span");
   mark.className = "level";
   mark.textContent = t(`one ${level}`);
-  const said = document.createElement("span");
-  said.lang = "en";
-  said.textContent = foreign;
-  item.replaceChildren(at, " ", mark, " ", text.slice(0, text.length - foreign.length), said);
+  const span = document.createElement("span");
+  span.lang = "en";
+  span.textContent = foreign;
+  item.replaceChildren(at, " ", mark, " ", text.slice(0, text.length - foreign.length), span);
   if (times > 1) item.append(" ", t("times", { times }));
   return item;
 }

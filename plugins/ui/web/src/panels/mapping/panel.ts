@@ -1,4 +1,4 @@
-/** How the picture lies under the hand: a frame to drag, and a part to feel enlarged. */
+/** Mapping of the picture to the hand: a frame to drag, and a region to enlarge. */
 import "../overlay/overlay.css";
 import { button } from "../../elements";
 import { MappingFrame } from "../../overlay/tools/mapping_frame";
@@ -21,19 +21,19 @@ function build(page: Page, root: HTMLElement): void {
   const region = button(t("zoomRegion"), () => frame.toggleRegion());
   buttons.append(region, button(t("zoomHere"), () => frame.zoomHere()), button(t("whole"), () => frame.whole()));
   root.append(label, says, help, buttons);
-  frame.changed = () => {
+  frame.onChange = () => {
     region.setAttribute("aria-pressed", `${frame.picking}`);
     help.hidden = !frame.shown;
     says.textContent = words(frame);
   };
-  frame.changed();
+  frame.onChange();
 }
 
 function words(frame: MappingFrame): string {
   const now = frame.reach;
   if (!now) return "";
   const [width, length] = now.size.map((side) => (1000 * side).toFixed(1));
-  return frame.bounded
+  return frame.isBounded
     ? t("reaches", { device: frame.device, width, length, degrees: now.turnDeg.toFixed(0) })
     : t("reachesAll", { width, length });
 }

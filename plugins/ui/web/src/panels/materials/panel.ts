@@ -1,18 +1,18 @@
-/** Which segment is which material, why, and how much of the surface; and the library with figures and sources. */
-import { headed } from "../../elements";
-import { Editor } from "../../forms/editor";
+/** Materials of the segments with reasons and areas; and the library with figures and sources. */
+import { tableWithHeads } from "../../elements";
+import { DocumentEditor } from "../../forms/editor";
 import { LIBRARY } from "../../forms/rows";
 import type { Material, Segment } from "../../server/messages";
 import type { Page } from "../../page";
 import type { Panel } from "../panel";
 import { t } from "./words";
-import { chosen } from "./edit";
+import { materialEdit } from "./edit";
 import "./materials.css";
 
 type Listed = Material & { source: string };
 
 function build(page: Page, root: HTMLElement): void {
-  const editor = new Editor(page);
+  const editor = new DocumentEditor(page);
   const none = document.createElement("p");
   none.className = "hint";
   none.textContent = t("none");
@@ -20,7 +20,7 @@ function build(page: Page, root: HTMLElement): void {
   refused.className = "bad";
   refused.setAttribute("role", "status");
   editor.onRefused = (why) => (refused.textContent = why);
-  const table = headed(t("segments"), [t("segment"), t("material"), t("share")], "materials");
+  const table = tableWithHeads(t("segments"), [t("segment"), t("material"), t("share")], "materials");
   const body = table.createTBody();
   const library = document.createElement("details");
   const heading = document.createElement("summary");
@@ -43,25 +43,25 @@ function build(page: Page, root: HTMLElement): void {
     const file = JSON.stringify(page.document?.values?.materials ?? "");
     if (!page.document?.values || of === file) return;
     of = file;
-    const found = await page.net.ask<Listed[]>("library").catch(() => null);
-    if (!found) return void (of = "");
-    names = found.map(({ name }) => name);
+    const listed = await page.net.ask<Listed[]>("library").catch(() => null);
+    if (!listed) return void (of = "");
+    names = listed.map(({ name }) => name);
     list.replaceChildren(...names.map((each) => new Option(each, each)));
-    heading.textContent = t("library", { count: found.length });
-    library.replaceChildren(heading, figures(found));
+    heading.textContent = t("library", { count: listed.length });
+    library.replaceChildren(heading, figures(listed));
     show();
   };
-  page.hub.on("materials", (said) => {
-    segments = said.segments;
+  page.hub.on("materials", (message) => {
+    segments = message.segments;
     refused.textContent = "";
-    void page.leisure.then(load);
+    void page.idle.then(load);
     show();
   });
   body.onchange = ({ target }) => {
     const select = target as HTMLSelectElement;
     const { label, why } = segments[Number(select.dataset.at)];
     refused.textContent = "";
-    editor.change(chosen(page.document?.said, label, select.value, why));
+    editor.change(materialEdit(page.document?.said, label, select.value, why));
   };
 }
 
@@ -78,7 +78,7 @@ function line(row: HTMLTableRowElement): HTMLTableRowElement {
   return row;
 }
 
-/** A row that is there stays, so that a select which has focus keeps it. */
+/** Fill a row in place, so that a focused select keeps the focus. */
 function fill(row: HTMLTableRowElement, { label, material, why, share }: Segment, names: string[]): void {
   const [head, choice, area] = row.cells;
   head.textContent = String(label);
@@ -102,7 +102,7 @@ function figures(library: Listed[]): HTMLElement {
   box.setAttribute("role", "region");
   box.setAttribute("aria-label", t("libraryAlone"));
   const columns = ["name", "stiffness", "damping", "friction", "roughness", "grain", "texture", "source"] as const;
-  const table = headed(t("libraryAlone"), columns.map((each) => t(each)), "materials");
+  const table = tableWithHeads(t("libraryAlone"), columns.map((each) => t(each)), "materials");
   const body = table.createTBody();
   for (const each of library) {
     const row = body.insertRow();
@@ -110,10 +110,10 @@ function figures(library: Listed[]): HTMLElement {
     name.scope = "row";
     name.textContent = each.name;
     row.append(name);
-    for (const said of [
+    for (const text of [
       each.stiffness_n_per_m, each.damping_n_s_per_m, `${each.static_friction} / ${each.dynamic_friction}`,
       round(1e6 * each.roughness_m), round(1e3 * each.grain_m), each.texture, each.source,
-    ]) row.insertCell().textContent = String(said);
+    ]) row.insertCell().textContent = String(text);
   }
   box.append(table);
   return box;

@@ -2,7 +2,7 @@ import { words } from "../../words/words";
 
 export const t = words({
   title: ["Materials", "Materialien"],
-  none: ["The surface is one material: no texture method found segments, or the law uses none.",
+  none: ["The surface has a single material: no texture method found segments, or the force law uses none.",
     "Die Oberfläche ist ein einziges Material: Es wurden keine Segmente gefunden, oder das Kraftgesetz braucht keine."],
   segments: ["Segments of the surface", "Segmente der Oberfläche"],
   segment: ["Segment", "Segment"],

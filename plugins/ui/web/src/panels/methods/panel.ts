@@ -1,18 +1,18 @@
-/** The methods of the document, as forms; run and stop; one step back and forth. */
+/** The methods panel: forms of the document; run and stop; undo and redo. */
 import { button } from "../../elements";
-import { complain } from "../../forms/complaints";
-import { Editor } from "../../forms/editor";
+import { showComplaints } from "../../forms/complaints";
+import { DocumentEditor } from "../../forms/editor";
 import { SectionForm } from "../../forms/section";
 import { sections } from "../../forms/sections";
 import type { FileSchema } from "../../forms/schema";
 import type { Page } from "../../page";
 import type { Panel } from "../panel";
 import { t } from "../../forms/words";
-import { running } from "./run_controls";
+import { runControls } from "./run_controls";
 import "./methods.css";
 
 function build(page: Page, root: HTMLElement): void {
-  const editor = new Editor(page);
+  const editor = new DocumentEditor(page);
   const complaints = document.createElement("div");
   complaints.className = "complaints";
   complaints.tabIndex = -1;
@@ -30,7 +30,7 @@ function build(page: Page, root: HTMLElement): void {
     if (!page.document) return;
     refused.textContent = "";
     if (page.document.said) for (const each of shown) each.show(page.document);
-    complain(root, complaints, page.document.complaints);
+    showComplaints(root, complaints, page.document.complaints);
   };
   const load = async (): Promise<void> => {
     if (shown.length || loading) return;
@@ -44,14 +44,14 @@ function build(page: Page, root: HTMLElement): void {
   const compare = document.createElement("p");
   compare.className = "hint";
   compare.textContent = t("compare");
-  root.append(running(page, editor), refused, complaints, steps(page, editor), forms, compare);
+  root.append(runControls(page, editor), refused, complaints, steps(page, editor), forms, compare);
   page.hub.on("document", () => {
     show();
-    void page.leisure.then(load).catch(() => undefined); // all methods are loaded for their schema
+    void page.idle.then(load).catch(() => undefined); // the server loads all methods for their schema
   });
 }
 
-function steps(page: Page, editor: Editor): HTMLElement {
+function steps(page: Page, editor: DocumentEditor): HTMLElement {
   const box = document.createElement("div");
   box.className = "buttons";
   const undo = button(t("undo"), () => editor.step("undo"));

@@ -1,20 +1,20 @@
-/** Run depth, texture or all of it; stop; and whether what is felt is what the document says. */
+/** Buttons to compute depth, texture or everything, to stop, and a note if the surface is outdated. */
 import { button } from "../../elements";
-import type { Editor } from "../../forms/editor";
+import type { DocumentEditor } from "../../forms/editor";
 import type { Page } from "../../page";
 import { t } from "../../forms/words";
 
-export function running(page: Page, editor: Editor): HTMLElement {
+export function runControls(page: Page, editor: DocumentEditor): HTMLElement {
   const box = document.createElement("div");
-  const told = document.createElement("p");
-  told.setAttribute("role", "status");
+  const status = document.createElement("p");
+  status.setAttribute("role", "status");
   const make = (want: string) => async (): Promise<void> => {
-    told.textContent = "";
+    status.textContent = "";
     try {
       await page.net.ask("make", { want });
     } catch (error) {
-      told.textContent = (error as Error).message;
-      told.className = "bad";
+      status.textContent = (error as Error).message;
+      status.className = "bad";
     }
   };
   const all = button(t("make"), make("touch"));
@@ -27,25 +27,25 @@ export function running(page: Page, editor: Editor): HTMLElement {
   buttons.append(all, button(t("runDepth"), make("relief")), button(t("runTexture"), make("materials")), stop);
   const again = button(t("tryAgain"), () => page.net.ask("try_again"));
   again.hidden = true;
-  box.append(buttons, atOnce(editor), told, again);
+  box.append(buttons, atOnce(editor), status, again);
 
   let busy = false;
-  let made = "";
+  let text = "";
   const show = (): void => {
     stop.setAttribute("aria-disabled", String(!busy));
-    const pending = !busy && made !== "" && page.document !== null && page.document.digest !== made;
+    const pending = !busy && text !== "" && page.document !== null && page.document.digest !== text;
     all.classList.toggle("pending", pending);
-    if (pending || told.textContent === t("pending")) told.textContent = pending ? t("pending") : "";
-    if (pending) told.className = "warn";
+    if (pending || status.textContent === t("pending")) status.textContent = pending ? t("pending") : "";
+    if (pending) status.className = "warn";
   };
   page.hub.on("making", () => {
     busy = true;
-    told.textContent = "";
+    status.textContent = "";
     show();
   });
   page.hub.on("made", ({ want, outcome, digest }) => {
     busy = false;
-    if (outcome === "made" && want === "touch") made = digest;
+    if (outcome === "made" && want === "touch") text = digest;
     show();
   });
   page.hub.on("document", show);
@@ -54,8 +54,8 @@ export function running(page: Page, editor: Editor): HTMLElement {
     show();
   });
   page.hub.on("maker_gone", ({ why }) => {
-    told.textContent = t("makerGone", { why });
-    told.className = "bad";
+    status.textContent = t("makerGone", { why });
+    status.className = "bad";
     again.hidden = false;
   });
   page.hub.on("maker", () => (again.hidden = true));
@@ -63,7 +63,7 @@ export function running(page: Page, editor: Editor): HTMLElement {
   return box;
 }
 
-function atOnce(editor: Editor): HTMLElement {
+function atOnce(editor: DocumentEditor): HTMLElement {
   const label = document.createElement("label");
   const input = document.createElement("input");
   input.type = "checkbox";

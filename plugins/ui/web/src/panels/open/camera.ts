@@ -1,4 +1,4 @@
-/** A picture from the camera: shown only after it was asked for, and off again when it was taken. */
+/** A picture from the camera, which is on only between the person's start and the picture. */
 import { button } from "../../elements";
 import { t } from "./words";
 

@@ -1,10 +1,10 @@
-/** What was edited and not saved when the program ended before: opened again, or thrown away. */
+/** Offer of unsaved edits of a previous program: to open or discard. */
 import { button } from "../../elements";
 import type { Page } from "../../page";
 import { language } from "../../words/words";
 import { t } from "./draft_words";
 
-export function restored({ hub, net, say }: Page): HTMLElement {
+export function draftOffer({ hub, net, say }: Page): HTMLElement {
   const box = document.createElement("div");
   const text = document.createElement("p");
   const ask = (name: string) => (): Promise<unknown> => net.ask(name).catch((error: Error) => say(error.message));

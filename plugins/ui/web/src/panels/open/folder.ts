@@ -1,6 +1,6 @@
-/** Folders of this computer: what can be opened lies in a list, of which one file or a pair is chosen. */
+/** Browser of folders on this computer: one file or a pair is chosen from a list. */
 import { button, field } from "../../elements";
-import type { Net } from "../../server/connection";
+import type { Server } from "../../page";
 import { t } from "./words";
 
 type Kind = "folder" | "picture" | "video" | "heights" | "recording" | "pipeline";
@@ -12,7 +12,7 @@ interface Listed {
   more: number;
 }
 
-export function folder(net: Net, open: (paths: string[]) => void, say: (text: string) => void): HTMLElement {
+export function folder(net: Server, open: (paths: string[]) => void, say: (text: string) => void): HTMLElement {
   const box = document.createElement("div");
   const path = document.createElement("input");
   path.id = "open-folder";
@@ -21,7 +21,7 @@ export function folder(net: Net, open: (paths: string[]) => void, say: (text: st
   list.id = "open-entries";
   list.multiple = true;
   list.size = 8;
-  const told = document.createElement("p");
+  const status = document.createElement("p");
   let shown: Listed | null = null;
 
   async function show(place: string): Promise<void> {
@@ -34,7 +34,7 @@ export function folder(net: Net, open: (paths: string[]) => void, say: (text: st
     list.replaceChildren(
       ...shown.entries.map(({ name, kind }) => new Option(t("entry", { name, kind: t(`kind_${kind}`) }), name)),
     );
-    told.textContent = !shown.entries.length ? t("nothing") : shown.more ? t("more", { count: shown.more }) : "";
+    status.textContent = !shown.entries.length ? t("nothing") : shown.more ? t("more", { count: shown.more }) : "";
   }
 
   function chosen(): void {
@@ -55,7 +55,7 @@ export function folder(net: Net, open: (paths: string[]) => void, say: (text: st
     button(t("go"), () => void show(path.value)),
     button(t("up"), () => void show(shown?.parent ?? "")),
     field(t("entries"), list),
-    told,
+    status,
     button(t("openChosen"), chosen),
   );
   return box;

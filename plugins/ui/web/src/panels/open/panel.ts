@@ -6,19 +6,19 @@ import { t } from "./words";
 import { camera } from "./camera";
 import { onDrop } from "./drop";
 import { folder } from "./folder";
-import { restored } from "./draft";
-import { send, type Opened } from "./upload";
+import { draftOffer } from "./draft";
+import { uploadAndOpen, type Opened } from "./upload";
 import "./open.css";
 
 function build(page: Page, root: HTMLElement): void {
-  const told = document.createElement("p");
-  told.className = "told";
+  const status = document.createElement("p");
+  status.className = "told";
   const say = (text: string): void => {
-    told.textContent = text;
+    status.textContent = text;
     page.say(text);
   };
 
-  async function opened(names: string, work: Promise<Opened>): Promise<void> {
+  async function openAndTell(names: string, work: Promise<Opened>): Promise<void> {
     say(t("opening", { names }));
     try {
       const { recording } = await work;
@@ -29,22 +29,22 @@ function build(page: Page, root: HTMLElement): void {
     }
   }
 
-  const progress = (name: string, percent: number): string => (told.textContent = t("sending", { name, percent }));
+  const progress = (name: string, percent: number): string => (status.textContent = t("sending", { name, percent }));
   const take = (files: File[]): void => {
-    if (files.length) void opened(files.map(({ name }) => name).join(", "), send(page.net, files, progress));
+    if (files.length) void openAndTell(files.map(({ name }) => name).join(", "), uploadAndOpen(page.net, files, progress));
   };
   const open = (paths: string[]): void =>
-    void opened(paths.map((path) => path.split("/").at(-1)).join(", "), page.net.ask<Opened>("begin", { files: paths }));
+    void openAndTell(paths.map((path) => path.split("/").at(-1)).join(", "), page.net.ask<Opened>("begin", { files: paths }));
 
   onDrop(take);
   root.append(
-    restored(page),
+    draftOffer(page),
     ...chooser(take),
     examples(page, open),
-    folded(t("folder"), folder(page.net, open, say)),
-    folded(t("camera"), camera(take, say)),
+    foldable(t("folder"), folder(page.net, open, say)),
+    foldable(t("camera"), camera(take, say)),
     exchange(page),
-    told,
+    status,
   );
 }
 
@@ -59,7 +59,7 @@ function chooser(take: (files: File[]) => void): HTMLElement[] {
   input.setAttribute("aria-describedby", help.id);
   input.onchange = () => {
     take([...(input.files ?? [])]);
-    input.value = ""; // the same file may be chosen again
+    input.value = ""; // allow choosing the same file again
   };
   return [field(t("choose"), input), help];
 }
@@ -84,18 +84,18 @@ function examples(page: Page, open: (paths: string[]) => void): HTMLElement {
   return box;
 }
 
-/** Left and right of a pair change places in the document. */
+/** Return a button that swaps left and right of a pair in the document. */
 function exchange(page: Page): HTMLElement {
-  const made = button(t("exchange"), () => page.net.ask("exchange").catch((error: Error) => page.say(error.message)));
-  made.hidden = true;
+  const toggle = button(t("exchange"), () => page.net.ask("exchange").catch((error: Error) => page.say(error.message)));
+  toggle.hidden = true;
   page.hub.on("document", ({ values }) => {
     const scene = values?.scene;
-    made.hidden = !(scene && typeof scene === "object" && "left" in scene && "right" in scene);
+    toggle.hidden = !(scene && typeof scene === "object" && "left" in scene && "right" in scene);
   });
-  return made;
+  return toggle;
 }
 
-function folded(title: string, inside: HTMLElement): HTMLElement {
+function foldable(title: string, inside: HTMLElement): HTMLElement {
   const box = document.createElement("details");
   const heading = document.createElement("summary");
   heading.textContent = title;

@@ -1,23 +1,24 @@
-/** Files from the browser to the program: sent one after the other, opened together. */
-import { token, type Net } from "../../server/connection";
+/** Upload of files, one after the other; then they are opened together. */
+import type { Server } from "../../page";
+import { token } from "../../server/token";
 
-/** Hears how much of a file is sent, 0 to 100. */
+/** Called with the share of a file that is sent, 0 to 100. */
 export type Progress = (name: string, percent: number) => void;
 
-/** What opening says: the path of a recording, if it is one. */
+/** Answer of opening: the path of a recording, if it is one. */
 export interface Opened {
   recording?: string;
 }
 
-/** Send files and open them. Rejects with the server's words. */
-export async function send(net: Net, files: File[], progress: Progress): Promise<Opened> {
+/** Upload files and open them. Rejects with the server's text. */
+export async function uploadAndOpen(net: Server, files: File[], progress: Progress): Promise<Opened> {
   const batch = await net.ask<string>("batch");
-  for (const file of files) await put(batch, file, progress);
+  for (const file of files) await sendFile(batch, file, progress);
   return net.ask<Opened>("open_batch", { batch });
 }
 
-function put(batch: string, file: File, progress: Progress): Promise<void> {
-  const request = new XMLHttpRequest(); // fetch does not say how much was sent
+function sendFile(batch: string, file: File, progress: Progress): Promise<void> {
+  const request = new XMLHttpRequest(); // fetch reports no progress
   const name = encodeURIComponent(file.name);
   return new Promise((done, refused) => {
     request.upload.onprogress = ({ loaded, total }) => progress(file.name, Math.round((100 * loaded) / (total || 1)));

@@ -1,11 +1,11 @@
 import { words } from "../../words/words";
 
-/** Opening pictures, and the pipeline file on the screen. */
+/** Texts of the open panel. */
 export const t = words({
   title: ["Open", "Öffnen"],
   choose: ["Choose files…", "Dateien wählen …"],
   chooseHelp: [
-    "A photograph, left and right of a pair, a height map, a video (its first frame), a recording, or a pipeline file with its pictures. You can also drop them anywhere on this page.",
+    "A photograph, the left and right picture of a pair, a height map, a video (its first frame), a recording, or a pipeline file with its pictures. You can also drop them anywhere on this page.",
     "Ein Foto, linkes und rechtes Bild eines Paares, eine Höhenkarte, ein Video (das erste Bild), eine Aufzeichnung oder eine Pipeline-Datei mit ihren Bildern. Sie können sie auch irgendwo auf dieser Seite ablegen.",
   ],
   sending: ["{name}: {percent} % sent", "{name}: {percent} % gesendet"],
@@ -15,25 +15,25 @@ export const t = words({
   examples: ["Examples", "Beispiele"],
   folder: ["Folder of this computer", "Ordner auf diesem Computer"],
   go: ["Show", "Anzeigen"],
-  up: ["The folder above", "Der Ordner darüber"],
+  up: ["Parent folder", "Der Ordner darüber"],
   entries: ["In this folder", "In diesem Ordner"],
   entry: ["{name} ({kind})", "{name} ({kind})"],
   nothing: ["Nothing here can be opened.", "Hier lässt sich nichts öffnen."],
   more: ["and {count} more", "und {count} weitere"],
-  openChosen: ["Open what is chosen", "Auswahl öffnen"],
-  chooseFirst: ["Choose one file, or left and right of a pair.", "Wählen Sie eine Datei, oder das linke und das rechte Bild eines Paares."],
+  openChosen: ["Open the selection", "Auswahl öffnen"],
+  chooseFirst: ["Choose one file, or the left and right picture of a pair.", "Wählen Sie eine Datei, oder das linke und das rechte Bild eines Paares."],
   kind_folder: ["folder", "Ordner"],
   kind_picture: ["picture", "Bild"],
   kind_video: ["video, its first frame", "Video, das erste Bild"],
   kind_heights: ["height map", "Höhenkarte"],
   kind_recording: ["recording", "Aufzeichnung"],
   kind_pipeline: ["pipeline file", "Pipeline-Datei"],
-  exchange: ["Exchange left and right", "Links und rechts tauschen"],
+  exchange: ["Swap left and right", "Links und rechts tauschen"],
   camera: ["Camera", "Kamera"],
   cameraStart: ["Show the camera's picture", "Kamerabild anzeigen"],
   cameraTake: ["Take this picture", "Dieses Bild nehmen"],
   cameraStop: ["Switch the camera off", "Kamera ausschalten"],
-  cameraPicture: ["What the camera sees", "Was die Kamera sieht"],
+  cameraPicture: ["Camera picture", "Was die Kamera sieht"],
   cameraNone: ["There is no camera, or the browser may not use it: {why}", "Es gibt keine Kamera, oder der Browser darf sie nicht benutzen: {why}"],
-  failed: ["It could not be opened: {why}", "Das ließ sich nicht öffnen: {why}"],
+  failed: ["Could not be opened: {why}", "Das ließ sich nicht öffnen: {why}"],
 });

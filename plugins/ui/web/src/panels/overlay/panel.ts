@@ -1,4 +1,4 @@
-/** What is shown over the surface, how large, and what limits the force. */
+/** Settings of the overlay, and what limits the force. */
 import "./overlay.css";
 import { GLYPHS } from "../../overlay/pieces/contact_label";
 import { LIMITS, perSecond, type Counts } from "../../contact/limits";
@@ -42,7 +42,7 @@ function build(page: Page, root: HTMLElement): void {
   root.append(box, seconds, scale, grips(), limits(page, root));
 }
 
-/** A number with its bounds; what is not within them is not taken. */
+/** Return a number field; values outside of the bounds are not taken. */
 function number(text: string, least: number, most: number, step: number, first: number, take: (value: number) => void): HTMLLabelElement {
   const label = document.createElement("label");
   const input = document.createElement("input");
@@ -58,7 +58,7 @@ function number(text: string, least: number, most: number, step: number, first: 
   return label;
 }
 
-/** What the words and shapes beside the cursor mean. */
+/** Return a legend of the words and symbols next to the cursor. */
 function grips(): HTMLElement {
   const box = document.createElement("section");
   const heading = document.createElement("h3");
@@ -76,7 +76,7 @@ function grips(): HTMLElement {
   return box;
 }
 
-/** How often each limit acted in the last second, as the loop counted it; asked for while the panel is open. */
+/** Return a list of how often each limit acted in the last second, polled while the panel is open. */
 function limits(page: Page, root: HTMLElement): HTMLElement {
   const box = document.createElement("section");
   const heading = document.createElement("h3");
@@ -98,8 +98,8 @@ function limits(page: Page, root: HTMLElement): HTMLElement {
   let before: { counts: Counts; atMs: number } | null = null;
   setInterval(async () => {
     if (document.hidden || !root.closest("details")?.open) return void (before = null);
-    const found = await page.net.ask<Counts | null>("limits").catch(() => null);
-    const now = found && { counts: found, atMs: performance.now() };
+    const answer = await page.net.ask<Counts | null>("limits").catch(() => null);
+    const now = answer && { counts: answer, atMs: performance.now() };
     const rates = now && before && perSecond(before.counts, now.counts, (now.atMs - before.atMs) / 1000);
     before = now;
     for (const [i, count] of counts.entries()) {

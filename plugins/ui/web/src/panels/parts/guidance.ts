@@ -1,4 +1,4 @@
-/** The named parts of what is felt, and a device that guides a hand to one of them. */
+/** List of named parts, and guidance of the hand to one of them by a device. */
 import { button } from "../../elements";
 import type { Events } from "../../server/messages";
 import type { Page } from "../../page";
@@ -9,7 +9,7 @@ interface Named {
   name: string;
 }
 
-export function named(page: Page): HTMLElement {
+export function namedParts(page: Page): HTMLElement {
   const box = document.createElement("section");
   const heading = document.createElement("h3");
   heading.textContent = t("named");
@@ -53,9 +53,9 @@ export function named(page: Page): HTMLElement {
     if (!running) guided = null;
     show();
   });
-  page.hub.on("beacon", (said: Events["beacon"]) => {
-    if (said.part !== guided) page.say(inWords(said), { topic: "beacon", asked: true });
-    guided = said.part;
+  page.hub.on("beacon", (message: Events["beacon"]) => {
+    if (message.part !== guided) page.say(inWords(message), { topic: "beacon", asked: true });
+    guided = message.part;
     show();
   });
   show();
@@ -68,7 +68,7 @@ function inWords({ part, name, why }: Events["beacon"]): string {
 }
 
 function item(): HTMLLIElement {
-  const made = document.createElement("li");
-  made.append(document.createElement("span"), button("", () => undefined));
-  return made;
+  const row = document.createElement("li");
+  row.append(document.createElement("span"), button("", () => undefined));
+  return row;
 }

@@ -1,31 +1,31 @@
-/** Parts: the way into their editor, which comes when it is opened. */
+/** The parts panel: opens the editor, whose module is loaded then. */
 import { button, hint } from "../../elements";
 import type { Page } from "../../page";
 import type { Panel } from "../panel";
 import { t } from "./words";
-import { named } from "./guidance";
+import { namedParts } from "./guidance";
 import "./parts.css";
 
 function build(page: Page, root: HTMLElement): void {
-  const told = document.createElement("p");
-  told.className = "bad";
-  told.setAttribute("role", "status");
+  const status = document.createElement("p");
+  status.className = "bad";
+  status.setAttribute("role", "status");
   const edit = button(t("edit"), async () => {
     edit.disabled = true;
-    told.textContent = "";
+    status.textContent = "";
     page.say(t("opening"));
     try {
       const { edit: begin } = await import("./editor/editor");
       await begin(page, edit);
     } catch (error) {
-      told.textContent = t("failed", { why: (error as Error).message });
+      status.textContent = t("failed", { why: (error as Error).message });
     } finally {
       edit.disabled = false;
     }
   });
   edit.id = "parts-edit";
   edit.className = "primary";
-  root.append(hint(t("about")), edit, told, named(page));
+  root.append(hint(t("about")), edit, status, namedParts(page));
 }
 
 export const parts: Panel = { id: "parts", title: t("title"), place: "left", open: true, build };

@@ -1,12 +1,12 @@
 import { words } from "../../words/words";
 
-/** Parts: what the panel says; what their editor says stands in editor/words.ts, which comes when it is opened. */
+/** Texts of the parts panel; those of the editor are in editor/words.ts, loaded with it. */
 export const t = words({
   title: ["Parts", "Teile"],
-  about: ["Draw the parts of the picture, name them, and give each a height: what stands in front is higher.",
+  about: ["Draw the parts of the picture, name them, and give each a height: parts in front are higher.",
     "Zeichnen Sie die Teile des Bildes, benennen Sie sie und geben Sie jedem eine Höhe: Was vorn steht, ist höher."],
   edit: ["Edit the parts", "Teile bearbeiten"],
-  opening: ["The parts are being opened.", "Die Teile werden geöffnet."],
+  opening: ["Opening the parts.", "Die Teile werden geöffnet."],
   named: ["Named parts", "Benannte Teile"],
   guideHint: ["The device pulls gently towards the part, until you press again, press Escape or a button of the device.",
     "Das Gerät zieht sanft zu dem Teil hin, bis Sie noch einmal, Escape oder eine Taste des Geräts drücken."],

@@ -1,4 +1,4 @@
-/** The force over time, as a small plot. */
+/** Plot of the force over time. */
 import { t } from "./words";
 
 const SVG = "http://www.w3.org/2000/svg";

@@ -1,4 +1,4 @@
-/** Recordings: keep what is felt, list what was kept, play it, feel it again with another law, compare two. */
+/** Recordings: record touch, list recordings, play them, replay them with another law, compare two. */
 import { button, field } from "../../elements";
 import { bulk } from "../../server/connection";
 import type { Page } from "../../page";
@@ -31,12 +31,12 @@ const SPANS = 240;
 
 function build(page: Page, root: HTMLElement): void {
   const { hub, net } = page;
-  const told = document.createElement("p");
+  const status = document.createElement("p");
   const say = (text: string): void => {
-    told.textContent = text;
+    status.textContent = text;
     page.say(text);
   };
-  const tried = async (work: () => Promise<void>): Promise<void> => {
+  const attempt = async (work: () => Promise<void>): Promise<void> => {
     try {
       await work();
     } catch (error) {
@@ -52,16 +52,16 @@ function build(page: Page, root: HTMLElement): void {
   const view = playback(page);
 
   async function look(): Promise<void> {
-    const found = await net.ask<Listed[]>("records");
-    list.replaceChildren(...found.map((each) => new Option(line(each), each.path)));
-    if (!found.length) say(t("none"));
+    const listed = await net.ask<Listed[]>("records");
+    list.replaceChildren(...listed.map((each) => new Option(line(each), each.path)));
+    if (!listed.length) say(t("none"));
   }
 
   async function show(path: string): Promise<void> {
-    put(await net.ask<Shown>("show_record", { path }));
+    load(await net.ask<Shown>("show_record", { path }));
   }
 
-  async function put(shown: Shown): Promise<void> {
+  async function load(shown: Shown): Promise<void> {
     const rows = await (await bulk(`/scene/${shown.digest}/ticks.f32`)).arrayBuffer();
     if (shown.columns !== COLUMNS) throw new Error(`${shown.columns} columns`);
     view.load(new Ticks(new Float32Array(rows)), shown.name);
@@ -75,49 +75,49 @@ function build(page: Page, root: HTMLElement): void {
     return paths;
   }
 
-  const record = button(t("record"), () => tried(async () => void (await net.ask("record"))));
-  const stop = button(t("stop"), () => tried(async () => void (await net.ask("stop_recording"))));
+  const record = button(t("record"), () => attempt(async () => void (await net.ask("record"))));
+  const stop = button(t("stop"), () => attempt(async () => void (await net.ask("stop_recording"))));
   stop.hidden = true;
   hub.on("recorder", ({ recording, path, ticks, why }) => {
     record.hidden = recording;
     stop.hidden = !recording;
     if (recording) say(t("recording", { path }));
     else say(why && why !== BY_HAND ? t("endedEarly", { why }) : t("kept", { path, seconds: (ticks / 1000).toFixed(1) }));
-    if (!recording) void tried(look);
+    if (!recording) void attempt(look);
   });
-  hub.on("recording", ({ path }) => void tried(() => show(path)));
-  list.ondblclick = () => void tried(() => show(chosen(1)[0]!));
+  hub.on("recording", ({ path }) => void attempt(() => show(path)));
+  list.ondblclick = () => void attempt(() => show(chosen(1)[0]!));
 
   root.append(
     record,
     stop,
     field(t("list"), list),
-    button(t("refresh"), () => tried(look)),
-    button(t("open"), () => tried(() => show(chosen(1)[0]!))),
+    button(t("refresh"), () => attempt(look)),
+    button(t("open"), () => attempt(() => show(chosen(1)[0]!))),
     button(t("tryLaw"), () =>
-      tried(async () => {
-        await put(await net.ask<Shown>("try_law", { path: chosen(1)[0] }));
+      attempt(async () => {
+        await load(await net.ask<Shown>("try_law", { path: chosen(1)[0] }));
         await look();
       }),
     ),
     button(t("compare"), () =>
-      tried(async () => {
+      attempt(async () => {
         const [path, other] = chosen(2);
         figures.replaceChildren(table(await net.ask<Record<string, number>>("compare_records", { path, other })));
       }),
     ),
     view.box,
     figures,
-    told,
+    status,
   );
   let looked = false;
   hub.on("maker", () => {
-    if (!looked) void tried(look);
+    if (!looked) void attempt(look);
     looked = true;
   });
 }
 
-/** What the server says of a recording that was ended on purpose. */
+/** The server's reason for a recording that was ended on purpose. */
 const BY_HAND = "stopped by hand";
 
 function line({ name, trouble, law, figures }: Listed): string {
@@ -125,7 +125,7 @@ function line({ name, trouble, law, figures }: Listed): string {
   return t("line", { name, law: law || "?", seconds: (figures?.seconds ?? 0).toFixed(1) });
 }
 
-/** The player's controls, hidden while nothing is loaded. */
+/** Return the player's controls, hidden while nothing is loaded. */
 function playback(page: Page): { box: HTMLElement; load: (ticks: Ticks, name: string) => void } {
   const box = document.createElement("fieldset");
   box.hidden = true;
@@ -170,4 +170,4 @@ function playback(page: Page): { box: HTMLElement; load: (ticks: Ticks, name: st
   };
 }
 
-export const records: Panel = { id: "records", title: t("title"), place: "right", open: false, build };
+export const recordings: Panel = { id: "records", title: t("title"), place: "right", open: false, build };

@@ -1,4 +1,4 @@
-/** Plays a recording: what is drawn, heard and said is then its tick, and not the loop's. */
+/** Player of a recording: its ticks replace the loop's in drawing and announcements. */
 import type { Page } from "../../page";
 import type { Ticks } from "./ticks";
 
@@ -9,9 +9,9 @@ export class Player {
   private ticks: Ticks | null = null;
   private beforeMs = 0;
 
-  /** moved: told whenever it is somewhere else, or stops. */
+  /** moved: called when the position changes, or it stops. */
   constructor(
-    private page: Page,
+    private page: Pick<Page, "replayed">,
     private moved: () => void,
   ) {}
 
@@ -25,7 +25,7 @@ export class Player {
     this.seek(0);
   }
 
-  /** Back to what is felt now. */
+  /** Return to the live state. */
   close(): void {
     this.ticks = null;
     this.playing = false;

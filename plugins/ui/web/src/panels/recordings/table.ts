@@ -1,16 +1,16 @@
-/** Figures by name, as a table. */
+/** Table of figures by name. */
 import { t } from "./words";
 
 export function table(figures: Record<string, number>): HTMLTableElement {
-  const made = document.createElement("table");
-  const head = made.createTHead().insertRow();
+  const tableElement = document.createElement("table");
+  const head = tableElement.createTHead().insertRow();
   for (const text of [t("figure"), t("value")]) {
     const cell = document.createElement("th");
     cell.scope = "col";
     cell.textContent = text;
     head.append(cell);
   }
-  const body = made.createTBody();
+  const body = tableElement.createTBody();
   for (const [name, value] of Object.entries(figures)) {
     const row = body.insertRow();
     const title = document.createElement("th");
@@ -19,5 +19,5 @@ export function table(figures: Record<string, number>): HTMLTableElement {
     row.append(title);
     row.insertCell().textContent = value === null ? "–" : String(Number(value.toPrecision(4)));
   }
-  return made;
+  return tableElement;
 }

@@ -1,4 +1,4 @@
-/** A recording as the page has it: a row a tick, as the core's TICK_COLUMNS, and each as a state that can be drawn. */
+/** A recording: a row per tick, as the core's TICK_COLUMNS, each convertible to a state. */
 import { FLAGS, now, type State, type Vec } from "../../server/protocol";
 
 export const COLUMNS = 17;
@@ -23,7 +23,7 @@ export class Ticks {
     return Math.hypot(...this.vector(i, AT.force));
   }
 
-  /** The last tick that began by then; 0 before the first. */
+  /** Return the last tick that began by then; 0 before the first. */
   at(seconds: number): number {
     let [low, high] = [0, this.count - 1];
     while (low < high) {
@@ -53,7 +53,7 @@ export class Ticks {
     };
   }
 
-  /** The strongest force of each of so many equal spans of time, newtons. */
+  /** Return the strongest force in each of equal spans of time, newtons. */
   outline(spans: number): Float32Array {
     const most = new Float32Array(spans);
     const [from, span] = [this.count ? this.time(0) : 0, this.seconds / spans || 1];

@@ -2,10 +2,10 @@
 import "../overlay/overlay.css";
 import { button } from "../../elements";
 import { Markers } from "../../overlay/tools/markers";
-import type { Measured } from "../../overlay/tools/measurement";
+import type { Measurement } from "../../overlay/tools/measurement";
 import { profile } from "../../overlay/tools/profile";
 import { Ruler } from "../../overlay/tools/ruler";
-import { fixed } from "../../contact/values";
+import { formatFixed } from "../../contact/values";
 import type { Page } from "../../page";
 import type { Panel } from "../panel";
 import { t } from "../../overlay/words";
@@ -13,35 +13,35 @@ import { t } from "../../overlay/words";
 function build(page: Page, root: HTMLElement): void {
   const ruler = new Ruler(page);
   const mouse = button(t("rulerMouse"), () => ruler.toggle());
-  const here = button(t("rulerHere"), () => ruler.here());
+  const here = button(t("rulerHere"), () => ruler.addHere());
   const remove = button(t("rulerRemove"), () => ruler.remove());
   const help = document.createElement("small");
   help.textContent = t("rulerHelp");
   const buttons = document.createElement("div");
   buttons.className = "buttons";
   buttons.append(mouse, here, remove);
-  const found = document.createElement("div");
-  root.append(buttons, help, found, markers(page));
-  ruler.changed = () => {
+  const results = document.createElement("div");
+  root.append(buttons, help, results, markers(page));
+  ruler.onChange = () => {
     mouse.setAttribute("aria-pressed", `${ruler.picking}`);
     remove.disabled = ruler.ends.length === 0;
-    found.replaceChildren(...(ruler.measured ? [figures(ruler.measured), profile(ruler.measured)] : []));
+    results.replaceChildren(...(ruler.measured ? [figures(ruler.measured), profile(ruler.measured)] : []));
   };
-  ruler.changed();
+  ruler.onChange();
 }
 
-function figures(measured: Measured): HTMLElement {
+function figures(measured: Measurement): HTMLElement {
   const list = document.createElement("dl");
   list.className = "ruler-figures";
-  const mm = (metres: number): string => `${fixed(1000 * metres, 2)} mm`;
+  const mm = (metres: number): string => `${formatFixed(1000 * metres, 2)} mm`;
   const degrees = (measured.slope * 180) / Math.PI;
-  const steep = Math.abs(degrees) > 89.99 ? "" : ` (${fixed(100 * Math.tan(measured.slope), 0)} %)`;
+  const steep = Math.abs(degrees) > 89.99 ? "" : ` (${formatFixed(100 * Math.tan(measured.slope), 0)} %)`;
   const rows: [string, string][] = [
     [t("straight"), mm(measured.straightM)],
     [t("horizontal"), mm(measured.horizontalM)],
     [t("surface"), mm(measured.surfaceM)],
     [t("rise"), mm(measured.riseM)],
-    [t("slope"), `${fixed(degrees, 1)}°${steep}`],
+    [t("slope"), `${formatFixed(degrees, 1)}°${steep}`],
   ];
   for (const [name, value] of rows) {
     const [term, says] = [document.createElement("dt"), document.createElement("dd")];
@@ -59,8 +59,8 @@ function markers(page: Page): HTMLElement {
   heading.textContent = t("markersTitle");
   const list = document.createElement("ul");
   list.className = "marker-list";
-  box.append(heading, button(t("markHere"), () => all.here()), list);
-  all.changed = () => {
+  box.append(heading, button(t("markHere"), () => all.addHere()), list);
+  all.onChange = () => {
     const lines = all.list.map((marker) => {
       const line = document.createElement("li");
       const [x, y, z] = marker.at.map((part) => (1000 * part).toFixed(1));

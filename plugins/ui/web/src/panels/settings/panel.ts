@@ -1,4 +1,4 @@
-/** How a person wants the page: colours, language, sizes, keys. This browser remembers it; no pipeline file holds it. */
+/** Settings of the person: colours, language, sizes, keys. Kept in this browser, not in the pipeline file. */
 import { button } from "../../elements";
 import type { Page } from "../../page";
 import type { Panel } from "../panel";
@@ -10,14 +10,14 @@ import { t } from "./words";
 import { LANGUAGES, language, speak, type Language } from "../../words/words";
 
 function build(page: Page, root: HTMLElement): void {
-  root.append(colours(page), languages(), sizes(), keys(), reading(page));
+  root.append(colours(page), languages(), sizes(), keys(), readLogSwitch(page));
 }
 
 function colours(page: Page): HTMLElement {
   const choice = choose(THEMES.map((each) => [each, t(each)]), page.themes.chosen);
   choice.onchange = () => page.themes.choose(choice.value as Theme);
   page.hub.on("theme", () => (choice.value = page.themes.chosen));
-  return labelled(t("colours"), choice);
+  return labelAround(t("colours"), choice);
 }
 
 function languages(): HTMLElement {
@@ -25,10 +25,10 @@ function languages(): HTMLElement {
   const choice = choose(named, language);
   for (const option of choice.options) option.lang = option.value;
   choice.onchange = () => speak(choice.value as Language);
-  return labelled(t("language"), choice);
+  return labelAround(t("language"), choice);
 }
 
-/** For who does not drag: the lines between the regions can be dragged, too. */
+/** Return buttons for the sizes of the regions, as an alternative to dragging. */
 function sizes(): HTMLElement {
   const box = document.createElement("fieldset");
   const legend = document.createElement("legend");
@@ -61,7 +61,7 @@ function keys(): HTMLElement {
   return box;
 }
 
-function reading(page: Page): HTMLElement {
+function readLogSwitch(page: Page): HTMLElement {
   const input = document.createElement("input");
   input.type = "checkbox";
   input.checked = recall("read", false);
@@ -70,7 +70,7 @@ function reading(page: Page): HTMLElement {
     remember("read", input.checked);
     tell();
   };
-  queueMicrotask(tell); // when all panels are there
+  queueMicrotask(tell); // after all panels are built
   const label = document.createElement("label");
   label.append(input, t("read"));
   return label;
@@ -83,7 +83,7 @@ function choose(options: (readonly [value: string, text: string])[], value: stri
   return choice;
 }
 
-function labelled(text: string, control: HTMLElement): HTMLElement {
+function labelAround(text: string, control: HTMLElement): HTMLElement {
   const label = document.createElement("label");
   label.append(text, control);
   return label;

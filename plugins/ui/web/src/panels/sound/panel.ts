@@ -1,4 +1,4 @@
-/** What is to be heard: the surface as sound, and speech. */
+/** Settings of sound and speech. */
 import { button } from "../../elements";
 import type { Page } from "../../page";
 import type { Panel } from "../panel";
@@ -10,25 +10,25 @@ import "./sound.css";
 
 function build(page: Page, root: HTMLElement): void {
   const heading = (text: string): HTMLElement => Object.assign(document.createElement("h3"), { textContent: text });
-  root.append(switching(page), meter(page), volume(page), voices(page), heights(page));
-  root.append(heading(t("speech")), ...speaking(page));
+  root.append(soundButton(page), meter(page), volume(page), voices(page), heights(page));
+  root.append(heading(t("speech")), ...speechControls(page));
 }
 
-function switching(page: Page): HTMLElement {
+function soundButton(page: Page): HTMLElement {
   const toggle = (): void => void page.sound.toggle().catch((error: Error) => page.say(error.message, { urgent: true }));
-  const made = button(t("sound"), toggle);
-  made.id = "sound-on";
-  made.setAttribute("aria-pressed", "false");
-  made.setAttribute("aria-keyshortcuts", "S");
+  const element = button(t("sound"), toggle);
+  element.id = "sound-on";
+  element.setAttribute("aria-pressed", "false");
+  element.setAttribute("aria-keyshortcuts", "S");
   page.hub.on("sound", (told) => {
-    made.setAttribute("aria-pressed", String(told.on));
+    element.setAttribute("aria-pressed", String(told.on));
     page.say(t(told.on ? "soundOn" : "soundOff"), { topic: "sound", asked: true });
   });
   on("sound", toggle);
-  return made;
+  return element;
 }
 
-/** What is heard, to see. */
+/** Return a meter of the loudness. */
 function meter(page: Page): HTMLElement {
   const bar = document.createElement("meter");
   Object.assign(bar, { min: 0, max: 0.3, value: 0, id: "sound-level" });
@@ -42,7 +42,7 @@ function meter(page: Page): HTMLElement {
 function volume(page: Page): HTMLElement {
   const input = range({ least: 0, most: 100, step: 5 }, 100 * page.sound.volume);
   input.oninput = () => (page.sound.volume = input.valueAsNumber / 100);
-  return labelled(t("volume"), input);
+  return labelAround(t("volume"), input);
 }
 
 function voices(page: Page): HTMLElement {
@@ -70,36 +70,36 @@ function heights(page: Page): HTMLElement {
     const y = net.latest && net.latest.hand[2] < 0.5 ? net.latest.hand[1] : 0;
     void page.sound.sweep(scene, y);
   };
-  const made = button(t("sweep"), sweep);
-  made.setAttribute("aria-keyshortcuts", "H");
+  const toggle = button(t("sweep"), sweep);
+  toggle.setAttribute("aria-keyshortcuts", "H");
   on("hear heights", sweep);
-  return made;
+  return toggle;
 }
 
-function speaking(page: Page): HTMLElement[] {
+function speechControls(page: Page): HTMLElement[] {
   const { speech } = page;
   const toggle = (): void => {
     if (!speech.voice) return page.say(t("noVoice"), { asked: true });
     speech.aloud = !speech.aloud;
     page.say(t(speech.aloud ? "speechOn" : "speechOff"), { topic: "speech", asked: true });
   };
-  const made = button(t("aloud"), toggle);
-  made.id = "speech-on";
-  made.setAttribute("aria-keyshortcuts", "A");
+  const element = button(t("aloud"), toggle);
+  element.id = "speech-on";
+  element.setAttribute("aria-keyshortcuts", "A");
   on("aloud", toggle);
   const rate = range(RATES, speech.rate);
   rate.onchange = () => (speech.rate = rate.valueAsNumber);
-  const rated = labelled(t("rate"), rate);
+  const rated = labelAround(t("rate"), rate);
   const hint = document.createElement("p");
   hint.className = "hint";
   const show = (): void => {
-    made.hidden = rated.hidden = !speech.voice;
-    made.setAttribute("aria-pressed", String(speech.aloud));
+    element.hidden = rated.hidden = !speech.voice;
+    element.setAttribute("aria-pressed", String(speech.aloud));
     hint.textContent = speech.voice ? t("voice", { name: speech.voice.name }) : t("noVoice");
   };
   page.hub.on("aloud", show);
   show();
-  return [made, rated, hint];
+  return [element, rated, hint];
 }
 
 function range({ least, most, step }: { least: number; most: number; step: number }, value: number): HTMLInputElement {
@@ -109,7 +109,7 @@ function range({ least, most, step }: { least: number; most: number; step: numbe
   return input;
 }
 
-function labelled(text: string, control: HTMLElement): HTMLElement {
+function labelAround(text: string, control: HTMLElement): HTMLElement {
   const label = document.createElement("label");
   label.append(text, control);
   return label;

@@ -1,13 +1,13 @@
-/** All products of the pipeline: which method makes each, what became of it, why, and how long it took. */
+/** Products of the pipeline: method, outcome, reason and time of each. */
 import type { Page } from "../../page";
 import type { Panel } from "../panel";
-import { made } from "../../words/product_words";
+import { productName } from "../../words/product_words";
 import { t } from "./words";
-import { type Row, share, StageTable, type StateOf } from "./table";
+import { type Row, progressOf, StageTable, type StateOf } from "./table";
 import "./stages.css";
 
 const REFRESH_MS = 200;
-/** A shape for each state, beside its word. */
+/** A symbol for each state, next to its word. */
 const SHAPES: Record<StateOf, string> = {
   waiting: "○", running: "◐", ran: "●", cached: "◆", given: "▣", skipped: "–", refused: "⊘", failed: "✕", stopped: "■",
 };
@@ -34,20 +34,20 @@ function build(page: Page, root: HTMLElement): void {
     timer = 0;
   };
   page.hub.on("plan", (plan) => {
-    table.plan(plan);
+    table.setPlan(plan);
     show();
   });
   page.hub.on("making", ({ digest }) => {
-    table.making(digest);
+    table.start(digest);
     ended.textContent = "";
     show();
   });
   page.hub.on("stage", ({ product, method, done }) => {
-    table.stage(product, method, done, performance.now());
+    table.update(product, method, done, performance.now());
     show();
   });
   page.hub.on("made", ({ want, outcome, why }) => {
-    table.made(outcome);
+    table.end(outcome);
     ended.className = outcome === "failed" ? "bad" : "";
     if (outcome === "failed") ended.textContent = t("ended", { why });
     else if (outcome === "stopped") ended.textContent = t("endedStopped");
@@ -64,7 +64,7 @@ function line(row: Row): HTMLElement {
   head.className = "head";
   head.append(
     part("shape", SHAPES[row.state], true),
-    part("product", named(row.product)),
+    part("product", stageName(row.product)),
     part("state", t(row.state)),
     part("time", time(row, performance.now())),
   );
@@ -72,8 +72,8 @@ function line(row: Row): HTMLElement {
   if (row.state === "running") box.append(bar(row));
   const method = row.method === "core" ? "" : row.method;
   if (method || row.why) box.append(text([method, row.why].filter(Boolean).join(": ")));
-  for (const { kind, text: said } of row.notes) {
-    const note = text(t(kind) + said);
+  for (const { kind, text: value } of row.notes) {
+    const note = text(t(kind) + value);
     if (kind !== "decision") note.classList.add("warn");
     box.append(note);
   }
@@ -81,23 +81,23 @@ function line(row: Row): HTMLElement {
 }
 
 function bar(row: Row): HTMLElement {
-  const made = document.createElement("progress");
-  made.setAttribute("aria-label", t("progress", { product: named(row.product) }));
-  const done = share(row, performance.now());
-  if (done !== null) made.value = done;
-  return made;
+  const progressBar = document.createElement("progress");
+  progressBar.setAttribute("aria-label", t("progress", { product: stageName(row.product) }));
+  const done = progressOf(row, performance.now());
+  if (done !== null) progressBar.value = done;
+  return progressBar;
 }
 
-/** Times and bars alone change while a stage runs: what has focus or is read stays. */
+/** Update times and bars alone, so that focus and reading position stay. */
 function progress(list: HTMLElement, table: StageTable): void {
   const now = performance.now();
   table.rows.forEach((row, at) => {
     if (row.state !== "running") return;
     const box = list.children[at];
     box.querySelector(".time")!.textContent = time(row, now);
-    const done = share(row, now);
-    const made = box.querySelector("progress");
-    if (made && done !== null) made.value = done;
+    const done = progressOf(row, now);
+    const progressBar = box.querySelector("progress");
+    if (progressBar && done !== null) progressBar.value = done;
   });
 }
 
@@ -111,25 +111,25 @@ function time(row: Row, nowMs: number): string {
   return row.state === "ran" || row.state === "failed" ? t("seconds", { seconds: row.seconds.toPrecision(2) }) : "";
 }
 
-function named(product: string): string {
+function stageName(product: string): string {
   const known = PRODUCTS.find((each) => each === product);
-  return known ? t(known) : made(product);
+  return known ? t(known) : productName(product);
 }
 
-function part(name: string, said: string, hidden = false): HTMLElement {
-  const made = document.createElement("span");
-  made.className = name;
-  made.textContent = said;
-  if (hidden) made.setAttribute("aria-hidden", "true");
-  return made;
+function part(name: string, text: string, hidden = false): HTMLElement {
+  const span = document.createElement("span");
+  span.className = name;
+  span.textContent = text;
+  if (hidden) span.setAttribute("aria-hidden", "true");
+  return span;
 }
 
-function text(said: string): HTMLElement {
-  const made = document.createElement("p");
-  made.className = "hint";
-  made.lang = "en";
-  made.textContent = said;
-  return made;
+function text(value: string): HTMLElement {
+  const status = document.createElement("p");
+  status.className = "hint";
+  status.lang = "en";
+  status.textContent = value;
+  return status;
 }
 
 export const stages: Panel = { id: "stages", title: t("title"), place: "left", open: true, build };

@@ -1,4 +1,4 @@
-/** What becomes of each product, from what the program says: first the plan, then what runs, then what became of it. */
+/** State of each product from the program's messages: first the plan, then running stages, then outcomes. */
 import type { Note, Outcome, Plan } from "../../server/messages";
 
 export type StateOf = "waiting" | "running" | "ran" | "cached" | "given" | "skipped" | "refused" | "failed" | "stopped";
@@ -10,33 +10,33 @@ export interface Row {
   why: string;
   notes: Note[];
   seconds: number;
-  /** When it began, by the page's clock; 0 where it does not run. */
+  /** Start by the page's clock; 0 if it is not running. */
   beganMs: number;
-  /** What it took last time, in seconds; 0 where that is not known. */
+  /** Duration of the last run, seconds; 0 if unknown. */
   expected: number;
 }
 
 export class StageTable {
-  /** In the order of making. */
+  /** Rows in the order of computation. */
   rows: Row[] = [];
   running = false;
   private took = new Map<string, number>();
   private digest = "";
   private later: Plan | null = null;
 
-  /** What making would do. While something is made, a plan for another text waits. */
-  plan(plan: Plan): void {
+  /** Take over a plan; while something is computed, a plan for another text waits. */
+  setPlan(plan: Plan): void {
     if (this.running && plan.digest !== this.digest) this.later = plan;
-    else if (plan.steps.length) this.rows = plan.steps.map((step) => this.planned(step));
+    else if (plan.steps.length) this.rows = plan.steps.map((step) => this.plannedRow(step));
   }
 
-  making(digest: string): void {
+  start(digest: string): void {
     this.running = true;
     this.digest = digest;
     this.later = null;
   }
 
-  stage(product: string, method: string, done: Partial<Outcome>, nowMs: number): void {
+  update(product: string, method: string, done: Partial<Outcome>, nowMs: number): void {
     const row = this.row(product);
     row.method = method || row.method;
     if (!done.outcome) {
@@ -48,27 +48,27 @@ export class StageTable {
     row.state = done.outcome;
     row.beganMs = 0;
     row.notes = done.notes ?? [];
-    row.why = alone(done.why ?? "", row.notes);
+    row.why = withoutNotes(done.why ?? "", row.notes);
     row.seconds = done.seconds ?? 0;
     if (done.outcome === "ran") this.took.set(`${product} ${row.method}`, row.seconds);
   }
 
-  /** Making ended; what had begun and was not finished was stopped, or failed. */
-  made(outcome: "made" | "stopped" | "failed"): void {
+  /** End the computation; unfinished stages were stopped, or failed. */
+  end(outcome: "made" | "stopped" | "failed"): void {
     this.running = false;
     for (const row of this.rows) {
       if (row.state === "running") row.state = outcome === "failed" ? "failed" : "stopped";
       else if (row.state === "waiting" && outcome !== "made") row.state = "stopped";
       row.beganMs = 0;
     }
-    if (this.later) this.plan(this.later);
+    if (this.later) this.setPlan(this.later);
     this.later = null;
   }
 
-  private planned(step: Outcome): Row {
+  private plannedRow(step: Outcome): Row {
     const state: StateOf = step.outcome === "ran" ? "waiting" : step.outcome;
     const { product, method, why, notes } = step;
-    return { product, method, state, why: alone(why, notes), notes, seconds: 0, beganMs: 0, expected: this.took.get(`${product} ${method}`) ?? 0 };
+    return { product, method, state, why: withoutNotes(why, notes), notes, seconds: 0, beganMs: 0, expected: this.took.get(`${product} ${method}`) ?? 0 };
   }
 
   private row(product: string): Row {
@@ -80,14 +80,14 @@ export class StageTable {
   }
 }
 
-/** Why, without the notes that follow it in one sentence: they are listed by themselves. */
-export function alone(why: string, notes: Note[]): string {
+/** Return the reason without the notes that follow it: these are listed separately. */
+export function withoutNotes(why: string, notes: Note[]): string {
   const behind = notes.map(({ text }) => `; ${text}`).join("");
   return behind && why.endsWith(behind) ? why.slice(0, -behind.length) : why;
 }
 
-/** How far a running stage is, 0 to 1, by what it took last time; null where that is not known. */
-export function share({ beganMs, expected }: Row, nowMs: number): number | null {
+/** Return the progress of a running stage, 0 to 1, by its last duration; null if unknown. */
+export function progressOf({ beganMs, expected }: Row, nowMs: number): number | null {
   if (!expected) return null;
   return Math.min(0.98, (nowMs - beganMs) / 1000 / expected);
 }

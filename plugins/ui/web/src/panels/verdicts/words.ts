@@ -8,8 +8,8 @@ export const t = words({
   illegible: ["not legible", "nicht lesbar"],
   verdict: ["Verdict", "Urteil"],
   what: ["What was checked", "Was geprüft wurde"],
-  stands: ["Found", "Befund"],
+  stands: ["Finding", "Befund"],
   passed: ["Checks that passed ({count})", "Bestandene Prüfungen ({count})"],
-  wrong: ["Checks with something to say", "Prüfungen mit Befund"],
+  wrong: ["Checks with findings", "Prüfungen mit Befund"],
   set: ["Set {key} to {value}", "{key} auf {value} setzen"],
 });

@@ -1,7 +1,7 @@
-/** How the surface is drawn, and from where one looks. */
+/** Settings of the view: colouring, light, magnifier and camera. */
 import "./view.css";
-import { CAMERA_KEYS } from "../../view/camera";
-import { Lens } from "../../view/magnifier";
+import { CAMERA_KEYS } from "../../view/camera_input";
+import { Magnifier } from "../../view/magnifier";
 import type { Page } from "../../page";
 import type { Panel } from "../panel";
 import { legend } from "../../terrain/legend";
@@ -9,7 +9,7 @@ import { COARSEST, DENSITIES } from "../../terrain/needles";
 import { Refiner } from "../../surface/refinement";
 import { STEEPS } from "../../terrain/shader";
 import { BOUNDS, type Settings } from "../../view/settings";
-import { looksOf, Showing } from "../../view/look";
+import { looksOf, Look } from "../../view/look";
 import { colour } from "../../frame/themes";
 import { t } from "../../view/words";
 
@@ -17,8 +17,8 @@ type Word = Parameters<typeof t>[0];
 const LENSES_MM = [0, 5, 10, 20];
 
 function build(page: Page, root: HTMLElement): void {
-  const showing = new Showing(page);
-  const lens = new Lens(page, showing.settings);
+  const showing = new Look(page);
+  const lens = new Magnifier(page, showing.settings);
   new Refiner(page);
   const set = (changes: Partial<Settings>): void => {
     showing.set(changes);
@@ -33,15 +33,15 @@ function build(page: Page, root: HTMLElement): void {
   grounded();
 }
 
-/** What the surface shows, and what its colours mean. */
-function looks(page: Page, showing: Showing, set: (changes: Partial<Settings>) => void, slider: Slider): HTMLElement {
+/** Return the choice of colouring, with its legend. */
+function looks(page: Page, showing: Look, set: (changes: Partial<Settings>) => void, slider: Slider): HTMLElement {
   const box = fieldset("shows");
   const choices = document.createElement("div");
   const meaning = document.createElement("div");
   const cover = slider("cover", "cover", 0.05, percent);
   box.append(choices, meaning, cover);
   box.hidden = true;
-  showing.changed = () => {
+  showing.onChange = () => {
     const { scene } = page;
     if (!scene) return;
     box.hidden = false;
@@ -50,8 +50,8 @@ function looks(page: Page, showing: Showing, set: (changes: Partial<Settings>) =
     if (stands.join() !== there.join())
       choices.replaceChildren(...there.map((look) => radio("look", look, look as Word, () => set({ look }))));
     for (const input of choices.querySelectorAll("input")) input.checked = input.value === showing.look;
-    const said = legend(scene, showing.look);
-    meaning.replaceChildren(...(said ? [said] : []));
+    const element = legend(scene, showing.look);
+    meaning.replaceChildren(...(element ? [element] : []));
     cover.hidden = showing.look === "photo" || !scene.meta.photo;
   };
   return box;
@@ -116,7 +116,7 @@ function magnifier(settings: Settings, set: (changes: Partial<Settings>) => void
   return label;
 }
 
-/** Where one looks from. */
+/** Return buttons and keys of the camera. */
 function camera(page: Page): HTMLElement {
   const box = fieldset("camera");
   const buttons = document.createElement("div");

@@ -1,14 +1,14 @@
-/** The pipeline file on the screen, as text: to read, edit, copy, download and save. */
+/** The pipeline file as text: to read, edit, copy, download and save. */
 import { button, field } from "../../elements";
 import { copy, download } from "../../files";
-import { Editor } from "../../forms/editor";
+import { DocumentEditor } from "../../forms/editor";
 import type { Complaint } from "../../server/messages";
 import type { Page } from "../../page";
 import type { Panel } from "../panel";
 import { t } from "./words";
 import "./yaml.css";
 
-/** A text is checked when nothing was typed for so long. */
+/** Milliseconds without typing after which the text is checked. */
 const PAUSE_MS = 600;
 
 function build(page: Page, root: HTMLElement): void {
@@ -20,12 +20,12 @@ function build(page: Page, root: HTMLElement): void {
   const state = document.createElement("div");
   state.id = "yaml-state";
   text.setAttribute("aria-describedby", state.id);
-  const told = document.createElement("p");
+  const status = document.createElement("p");
   const say = (words: string): void => {
-    told.textContent = words;
+    status.textContent = words;
     page.say(words);
   };
-  const editor = new Editor(page);
+  const editor = new DocumentEditor(page);
   let timer = 0;
   let of: string | null = null;
 
@@ -36,15 +36,15 @@ function build(page: Page, root: HTMLElement): void {
     timer = window.setTimeout(() => {
       const told = { text: text.value, of, apply: editor.apply };
       timer = 0;
-      of = null; // who goes on typing has seen what was said
+      of = null; // further typing is based on the answer
       void page.net.ask("edit", told).catch((error: Error) => say(error.message));
     }, PAUSE_MS);
   };
-  page.hub.on("document", (said) => {
-    if (!timer && text.value !== said.text) replace(text, said.text);
-    if (!timer) state.replaceChildren(...complaints(said.complaints));
-    path.value ||= said.path;
-    if (document.activeElement !== path) path.value = said.path;
+  page.hub.on("document", (message) => {
+    if (!timer && text.value !== message.text) replace(text, message.text);
+    if (!timer) state.replaceChildren(...complaints(message.complaints));
+    path.value ||= message.path;
+    if (document.activeElement !== path) path.value = message.path;
   });
 
   const path = document.createElement("input");
@@ -72,11 +72,11 @@ function build(page: Page, root: HTMLElement): void {
     field(t("path"), path),
     field(t("replace"), instead),
     button(t("save"), save),
-    told,
+    status,
   );
 }
 
-/** Another text in place of this one, the caret where it was. */
+/** Replace the text and keep the caret. */
 function replace(area: HTMLTextAreaElement, text: string): void {
   const { selectionStart, selectionEnd, scrollTop } = area;
   area.value = text;

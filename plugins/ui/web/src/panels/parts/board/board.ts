@@ -1,20 +1,20 @@
-/** The picture with its parts: borders, numbers and names over it, and what a tool is doing. Drawn as large as the screen. */
+/** The picture with borders, numbers and names of its parts, and the marks of the tool, at screen resolution. */
 import { measuring } from "../../../instrumentation";
 import { colour } from "../../../frame/themes";
-import { borders, rimOf } from "./borders";
+import { borders, borderReach } from "./borders";
 import type { Drawing } from "../drawing/drawing";
-import { around, type Box, EMPTY, isEmpty, type Point } from "../pixels/labels";
+import { union, type Box, EMPTY, isEmpty, type Point } from "../pixels/labels";
 import type { Place } from "../pixels/pieces";
-import { Sight } from "./viewport";
+import { Viewport } from "./viewport";
 
-/** What a tool shows while it is used. */
+/** Marks of a tool in use. */
 export interface Marks {
   line: readonly Point[];
   closed: boolean;
-  /** Where the pointer or the crosshair is, in the picture. */
+  /** Position of pointer or crosshair in the picture. */
   at: Point | null;
   cross: boolean;
-  /** In pixels of the picture; 0 for none. */
+  /** Width of the brush in pixels of the picture; 0 for none. */
   brush: number;
 }
 
@@ -25,19 +25,19 @@ export interface Named {
 }
 
 const TEXT_PX = 13;
-/** Smaller parts on the board have no name on it. */
+/** Size below which a part has no name on the board. */
 const SMALLEST_PX = 12;
 const DARK = "#0b0e13";
 const LIGHT = "#ffffff";
 
 export class Board {
   readonly element = document.createElement("div");
-  /** What is seen: one canvas without transparency, which browsers show soonest. */
+  /** The visible canvas, opaque, which browsers draw fastest. */
   readonly canvas = document.createElement("canvas");
-  readonly sight: Sight;
+  readonly viewport: Viewport;
   marks: Marks = { line: [], closed: false, at: null, cross: false, brush: 0 };
   private context = this.canvas.getContext("2d", { alpha: false })!;
-  /** The picture and the borders at the size of the screen, to be put together where something changed. */
+  /** Picture and borders at screen size, composed where something changed. */
   private base = hidden();
   private lines = hidden();
   private names: Named[] = [];
@@ -46,7 +46,7 @@ export class Board {
   private stale: Box = EMPTY;
   private moved = true;
   private anew = true;
-  /** Where marks were drawn last. */
+  /** Box of the last marks. */
   private marked: Box = EMPTY;
   private due = false;
   private closed = false;
@@ -59,57 +59,57 @@ export class Board {
     private drawing: Drawing,
     private picture: ImageBitmap,
   ) {
-    this.sight = new Sight(drawing.labels.columns, drawing.labels.rows);
+    this.viewport = new Viewport(drawing.labels.columns, drawing.labels.rows);
     this.element.className = "board";
     this.element.append(this.canvas);
     this.watching.observe(this.element);
   }
 
   close(): void {
-    this.closed = true; // a frame may be due
+    this.closed = true; // a frame may be pending
     this.watching.disconnect();
     this.picture.close();
   }
 
-  /** The colours are others. */
+  /** Take over the theme's colours. */
   dress(): void {
     const css = colour("--accent");
     const wanted = colour("--accent-ink");
-    const ink = wanted !== css ? wanted : isLight(css) ? DARK : LIGHT; // forced colours are few
+    const ink = wanted !== css ? wanted : isLight(css) ? DARK : LIGHT; // forced colours may be equal
     this.accent = { css, ink, accent: asPixel(css, 0xff), against: asPixel(ink, 0xe6), thin: asPixel(css, 0x40) };
     this.ground = getComputedStyle(this.element).backgroundColor;
     this.look();
   }
 
-  /** What stands on the parts; the largest first. */
+  /** Set the names on the parts, the largest first. */
   name(names: Named[]): void {
     this.names = names;
     this.anew = true;
     this.wake();
   }
 
-  /** Something of the picture's parts is another; at: when it was asked for. */
+  /** Redraw a box of the picture's parts. at: time of the event. */
   changed(box: Box, at = performance.now()): void {
-    this.stale = around(this.stale, box);
+    this.stale = union(this.stale, box);
     this.since ||= at;
     this.wake();
   }
 
-  /** What is seen is another. */
+  /** Redraw after the view changed. */
   look(): void {
     this.moved = true;
     this.wake();
   }
 
-  /** What a tool shows is another. */
+  /** Redraw the tool's marks. */
   mark(marks: Partial<Marks>): void {
     Object.assign(this.marks, marks);
     this.wake();
   }
 
-  /** A place of the window, in the picture. */
+  /** Return the place of the picture at a place of the window. */
   at({ clientX, clientY }: { clientX: number; clientY: number }): Point {
-    return this.sight.toPicture(this.onBoard(clientX, clientY));
+    return this.viewport.toPicture(this.onBoard(clientX, clientY));
   }
 
   onBoard(clientX: number, clientY: number): Point {
@@ -117,18 +117,18 @@ export class Board {
     return [(clientX - left) * this.ratio, (clientY - top) * this.ratio];
   }
 
-  /** Pixels of the picture for one of the page. */
+  /** Pixels of the picture per CSS pixel. */
   get scale(): number {
-    return this.ratio / this.sight.zoom;
+    return this.ratio / this.viewport.zoom;
   }
 
   private resize(): void {
     this.ratio = Math.max(1, devicePixelRatio);
     const [width, height] = [this.element.clientWidth, this.element.clientHeight].map((each) => Math.max(1, Math.round(each * this.ratio)));
     for (const { canvas } of [this.context, this.base, this.lines]) Object.assign(canvas, { width, height });
-    this.sight.resize(width!, height!);
+    this.viewport.resize(width!, height!);
     this.moved = true;
-    this.draw(); // at once: a canvas of another size is empty
+    this.draw(); // at once: a resized canvas is empty
   }
 
   private wake(): void {
@@ -140,26 +140,26 @@ export class Board {
     });
   }
 
-  /** Only what changed, in the middle of a stroke. */
+  /** Draw, during a stroke only the changed box. */
   private draw(): void {
     if (this.closed) return;
-    const { sight, drawing } = this;
-    const whole = { left: 0, top: 0, right: sight.width, bottom: sight.height };
+    const { viewport, drawing } = this;
+    const whole = { left: 0, top: 0, right: viewport.width, bottom: viewport.height };
     const anew = this.moved || this.selected !== drawing.selected;
     if (this.moved) this.drawPicture();
-    const lines = anew ? whole : sight.covering(this.stale, rimOf(this.ratio));
+    const lines = anew ? whole : viewport.covering(this.stale, borderReach(this.ratio));
     if (!isEmpty(lines)) this.drawBorders(lines);
     const marks = this.marksBox();
-    this.show(anew || this.anew ? whole : [lines, marks, this.marked].filter((each) => !isEmpty(each)).reduce(around, EMPTY));
+    this.show(anew || this.anew ? whole : [lines, marks, this.marked].filter((each) => !isEmpty(each)).reduce(union, EMPTY));
     this.marked = marks;
     this.moved = this.anew = false;
     this.selected = drawing.selected;
     this.stale = EMPTY;
-    if (measuring && this.since) this.measured(this.since);
+    if (measuring && this.since) this.markShown(this.since);
     this.since = 0;
   }
 
-  /** Put together what lies in a box. */
+  /** Compose a box. */
   private show(box: Box): void {
     if (isEmpty(box)) return;
     const { context } = this;
@@ -176,35 +176,35 @@ export class Board {
 
   private marksBox(): Box {
     const { line, at, brush } = this.marks;
-    const { ratio, sight } = this;
-    const rim = Math.ceil(22 * ratio + (brush / 2) * sight.zoom);
+    const { ratio, viewport } = this;
+    const rim = Math.ceil(22 * ratio + (brush / 2) * viewport.zoom);
     let box = EMPTY;
     for (const each of at ? [...line, at] : line) {
-      const [x, y] = sight.toBoard(each);
-      box = around(box, { left: x, top: y, right: x, bottom: y });
+      const [x, y] = viewport.toBoard(each);
+      box = union(box, { left: x, top: y, right: x, bottom: y });
     }
     const within = (side: number, most: number): number => Math.max(0, Math.min(most, Math.round(side)));
-    const [right, bottom] = [within(box.right + rim, sight.width), within(box.bottom + rim, sight.height)];
-    return { left: within(box.left - rim, sight.width), top: within(box.top - rim, sight.height), right, bottom };
+    const [right, bottom] = [within(box.right + rim, viewport.width), within(box.bottom + rim, viewport.height)];
+    return { left: within(box.left - rim, viewport.width), top: within(box.top - rim, viewport.height), right, bottom };
   }
 
-  private measured(start: number): void {
+  private markShown(start: number): void {
     setTimeout(() => performance.measure("parts shown", { start, end: performance.now() }));
   }
 
   private drawPicture(): void {
-    const { sight, drawing, picture, base } = this;
+    const { viewport, drawing, picture, base } = this;
     const { columns, rows } = drawing.labels;
     base.fillStyle = this.ground;
-    base.fillRect(0, 0, sight.width, sight.height);
-    base.imageSmoothingEnabled = sight.zoom < 3;
-    const [x, y] = sight.toBoard([0, 0]);
-    base.drawImage(picture, x, y, columns * sight.zoom, rows * sight.zoom);
+    base.fillRect(0, 0, viewport.width, viewport.height);
+    base.imageSmoothingEnabled = viewport.zoom < 3;
+    const [x, y] = viewport.toBoard([0, 0]);
+    base.drawImage(picture, x, y, columns * viewport.zoom, rows * viewport.zoom);
   }
 
   private drawBorders(box: Box): void {
     const { labels, selected, proposed } = this.drawing;
-    const image = borders({ labels, selected, proposed, ...this.accent, ratio: this.ratio }, this.sight, box);
+    const image = borders({ labels, selected, proposed, ...this.accent, ratio: this.ratio }, this.viewport, box);
     this.lines.putImageData(image, box.left, box.top);
   }
 
@@ -212,14 +212,14 @@ export class Board {
     const { line, closed, at, cross, brush } = this.marks;
     if (line.length > 1) {
       const path = new Path2D();
-      line.forEach((each, i) => path[i ? "lineTo" : "moveTo"](...this.sight.toBoard(each)));
+      line.forEach((each, i) => path[i ? "lineTo" : "moveTo"](...this.viewport.toBoard(each)));
       if (closed) path.closePath();
       this.trace(context, path);
     }
     if (!at) return;
-    const [x, y] = this.sight.toBoard(at);
+    const [x, y] = this.viewport.toBoard(at);
     const ring = new Path2D();
-    if (brush) ring.arc(x, y, Math.max(2, (brush / 2) * this.sight.zoom), 0, 2 * Math.PI);
+    if (brush) ring.arc(x, y, Math.max(2, (brush / 2) * this.viewport.zoom), 0, 2 * Math.PI);
     if (cross) for (const [dx, dy] of [[1, 0], [-1, 0], [0, 1], [0, -1]] as const) {
       ring.moveTo(x + 5 * dx * this.ratio, y + 5 * dy * this.ratio);
       ring.lineTo(x + 18 * dx * this.ratio, y + 18 * dy * this.ratio);
@@ -227,7 +227,7 @@ export class Board {
     this.trace(context, ring);
   }
 
-  /** A light line in a dark one. */
+  /** Draw a light line in a dark one. */
   private trace(context: CanvasRenderingContext2D, path: Path2D): void {
     for (const [style, width] of [[DARK, 3.5], [LIGHT, 1.5]] as const) {
       context.strokeStyle = style;
@@ -236,7 +236,7 @@ export class Board {
     }
   }
 
-  /** Names that would lie over another one are left out; the selected part's never is. */
+  /** Draw names that do not overlap; the selected part's comes first. */
   private drawNames(context: CanvasRenderingContext2D): void {
     const { selected } = this.drawing;
     context.font = `600 ${TEXT_PX * this.ratio}px system-ui, sans-serif`;
@@ -246,17 +246,17 @@ export class Board {
     const first = this.names.filter(({ label }) => label === selected);
     for (const named of [...first, ...this.names.filter(({ label }) => label !== selected)]) {
       const chosen = named.label === selected;
-      if (!chosen && Math.sqrt(named.place.pixels) * this.sight.zoom < SMALLEST_PX * this.ratio) continue;
+      if (!chosen && Math.sqrt(named.place.pixels) * this.viewport.zoom < SMALLEST_PX * this.ratio) continue;
       this.drawName(context, named, chosen, taken);
     }
   }
 
   private drawName(context: CanvasRenderingContext2D, { text, place }: Named, chosen: boolean, taken: Box[]): void {
-    const [x, y] = this.sight.toBoard(place.at);
+    const [x, y] = this.viewport.toBoard(place.at);
     const half = context.measureText(text).width / 2 + 6 * this.ratio;
     const tall = 0.75 * TEXT_PX * this.ratio;
     const box = { left: x - half, right: x + half, top: y - tall, bottom: y + tall };
-    if (box.right < 0 || box.left > this.sight.width || box.bottom < 0 || box.top > this.sight.height) return;
+    if (box.right < 0 || box.left > this.viewport.width || box.bottom < 0 || box.top > this.viewport.height) return;
     if (taken.some((each) => each.left < box.right && box.left < each.right && each.top < box.bottom && box.top < each.bottom)) return;
     taken.push(box);
     context.beginPath();
@@ -275,7 +275,7 @@ export class Board {
   }
 }
 
-/** rgb(...), or six digits, as four bytes. */
+/** Return rgb(...) or six digits as four bytes. */
 function asPixel(css: string, alpha: number): number {
   const [r, g, b] = bytes(css);
   return ((alpha << 24) | (b << 16) | (g << 8) | r) >>> 0;

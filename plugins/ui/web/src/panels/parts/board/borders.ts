@@ -1,41 +1,41 @@
-/** Borders of the parts as pixels of the board: a dark line beside a light one, which is seen on every picture. */
+/** Borders of the parts as pixels of the board: a dark line next to a light one, visible on every picture. */
 import type { Box, Labels } from "../pixels/labels";
 import type { Mask } from "../pixels/mask";
-import type { Sight } from "./viewport";
+import type { Viewport } from "./viewport";
 
 const DARK = 0xd0000000;
 const LIGHT = 0xe6ffffff;
 const FAINT_DARK = 0x66000000;
 const FAINT_LIGHT = 0x80ffffff;
-/** How far apart the stripes are that lie over the selected part, and over what is proposed. */
+/** Distances of the stripes over the selected part and the proposal, in line widths. */
 const STRIPES = { selected: 20, proposed: 8 };
 
-export interface Shown {
+export interface BorderStyle {
   labels: Labels;
   selected: number;
   proposed: Mask | null;
-  /** Of the theme, as a pixel; what stands on it; and the same, thin. */
+  /** Theme colours as pixels: accent, its contrast, and a translucent accent. */
   accent: number;
   against: number;
   thin: number;
-  /** Pixels of the board for one of the page. */
+  /** Pixels of the board per CSS pixel. */
   ratio: number;
 }
 
-const BESIDE = -1;
+const OUTSIDE = -1;
 const PROPOSED = 0x10000;
 
-/** Samples with a rim, kept from one time to the next. */
+/** Buffer of samples with a rim, reused. */
 let samples = new Int32Array(0);
 
-/** How thick a line is, in pixels of the board. */
+/** Return the width of a line, pixels of the board. */
 const thickness = (ratio: number): number => Math.round(1.5 * ratio);
 
-/** How far around what changed the lines can change too. */
-export const rimOf = (ratio: number): number => 2 * thickness(ratio) + 1;
+/** Return the distance from a change at which lines can change too. */
+export const borderReach = (ratio: number): number => 2 * thickness(ratio) + 1;
 
-export function borders(shown: Shown, sight: Sight, box: Box): ImageData {
-  const rim = rimOf(shown.ratio);
+export function borders(shown: BorderStyle, sight: Viewport, box: Box): ImageData {
+  const rim = borderReach(shown.ratio);
   const [width, height] = [box.right - box.left, box.bottom - box.top];
   const stride = width + 2 * rim;
   sample(shown, sight, { left: box.left - rim, top: box.top - rim, right: box.right + rim, bottom: box.bottom + rim });
@@ -49,7 +49,7 @@ export function borders(shown: Shown, sight: Sight, box: Box): ImageData {
   return image;
 }
 
-function sample({ labels, proposed }: Shown, sight: Sight, box: Box): void {
+function sample({ labels, proposed }: BorderStyle, sight: Viewport, box: Box): void {
   const { columns, rows, data } = labels;
   const width = box.right - box.left;
   const count = width * (box.bottom - box.top);
@@ -61,25 +61,25 @@ function sample({ labels, proposed }: Shown, sight: Sight, box: Box): void {
     const inside = row >= 0 && row < rows;
     for (let i = 0; i < width; i++) {
       const x = xs[i]!;
-      if (!inside || x < 0 || x >= columns) samples[at++] = BESIDE;
+      if (!inside || x < 0 || x >= columns) samples[at++] = OUTSIDE;
       else samples[at++] = proposed?.data[row * columns + x] ? PROPOSED : data[row * columns + x]!;
     }
   }
 }
 
-function pixel(at: number, stride: number, thick: number, shown: Shown, x: number, y: number): number {
+function pixel(at: number, stride: number, thick: number, shown: BorderStyle, x: number, y: number): number {
   const here = samples[at]!;
-  if (here === BESIDE) return 0;
-  const other = beyond(at, here === shown.selected ? thick + 1 : thick, stride, here);
-  if (here === PROPOSED) return other !== here ? (((x + y) >> 2) & 1 ? DARK : LIGHT) : striped(x - y, STRIPES.proposed * thick, shown.ratio, shown.thin);
-  if (here === shown.selected) return other !== here ? shown.accent : striped(x + y, STRIPES.selected * thick, shown.ratio, 0);
+  if (here === OUTSIDE) return 0;
+  const other = labelAcross(at, here === shown.selected ? thick + 1 : thick, stride, here);
+  if (here === PROPOSED) return other !== here ? (((x + y) >> 2) & 1 ? DARK : LIGHT) : stripe(x - y, STRIPES.proposed * thick, shown.ratio, shown.thin);
+  if (here === shown.selected) return other !== here ? shown.accent : stripe(x + y, STRIPES.selected * thick, shown.ratio, 0);
   if (other === here) return 0;
   if (other === shown.selected) return shown.against;
   return here > other ? LIGHT : DARK;
 }
 
-/** What lies on the other side of a border that is so near; the same, where none is. */
-function beyond(at: number, far: number, stride: number, here: number): number {
+/** Return the label across a border nearby; the same label if there is none. */
+function labelAcross(at: number, far: number, stride: number, here: number): number {
   const right = samples[at + far]!;
   if (right !== here) return right;
   const below = samples[at + far * stride]!;
@@ -88,7 +88,7 @@ function beyond(at: number, far: number, stride: number, here: number): number {
   return left !== here ? left : samples[at - far * stride]!;
 }
 
-function striped(along: number, period: number, thick: number, otherwise: number): number {
+function stripe(along: number, period: number, thick: number, otherwise: number): number {
   const at = ((along % period) + period) % period;
   return at < thick ? FAINT_LIGHT : at < 2 * thick ? FAINT_DARK : otherwise;
 }

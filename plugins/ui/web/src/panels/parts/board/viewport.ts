@@ -1,14 +1,14 @@
-/** Which part of the picture is seen on the board, and how large. Pixels of the board are those of the screen. */
+/** The visible part of the picture. Pixels of the board are those of the screen. */
 import type { Box, Point } from "../pixels/labels";
 
 const NEAREST = 40;
-/** A picture is never smaller than so much of the board. */
+/** Least share of the board that the whole picture fills. */
 const SMALLEST = 0.5;
 
-export class Sight {
-  /** Pixels of the board for one of the picture. */
+export class Viewport {
+  /** Pixels of the board per pixel of the picture. */
   zoom = 1;
-  /** What of the picture is in the upper left corner of the board. */
+  /** Place of the picture in the upper left corner of the board. */
   left = 0;
   top = 0;
   width = 1;
@@ -25,19 +25,19 @@ export class Sight {
     this.top = (this.rows - this.height / this.zoom) / 2;
   }
 
-  /** Nearer by a factor; what lies under a place of the board stays there. */
-  nearer(factor: number, [x, y]: Point = [this.width / 2, this.height / 2]): void {
+  /** Zoom by a factor; the place under a point of the board stays. */
+  zoomBy(factor: number, [x, y]: Point = [this.width / 2, this.height / 2]): void {
     const at = this.toPicture([x, y]);
     this.zoom = Math.max(SMALLEST * this.whole, Math.min(NEAREST, this.zoom * factor));
     this.left = at[0] - x / this.zoom;
     this.top = at[1] - y / this.zoom;
-    this.hold();
+    this.clamp();
   }
 
   pan(dx: number, dy: number): void {
     this.left -= dx / this.zoom;
     this.top -= dy / this.zoom;
-    this.hold();
+    this.clamp();
   }
 
   resize(width: number, height: number): void {
@@ -48,15 +48,15 @@ export class Sight {
     if (fitted || this.zoom <= this.whole) return this.fit();
     this.left = middle[0] - width / this.zoom / 2;
     this.top = middle[1] - height / this.zoom / 2;
-    this.hold();
+    this.clamp();
   }
 
-  /** Move as little as is needed for a place of the picture to be seen; whether it moved. */
+  /** Move as little as needed to show a place; return whether it moved. */
   reveal([x, y]: Point): boolean {
     const before = [this.left, this.top];
     const rim = Math.min(this.width, this.height) / 12 / this.zoom;
-    this.left = shown(this.left, this.width / this.zoom, x, rim, this.columns);
-    this.top = shown(this.top, this.height / this.zoom, y, rim, this.rows);
+    this.left = scrollInto(this.left, this.width / this.zoom, x, rim, this.columns);
+    this.top = scrollInto(this.top, this.height / this.zoom, y, rim, this.rows);
     return before[0] !== this.left || before[1] !== this.top;
   }
 
@@ -68,7 +68,7 @@ export class Sight {
     return [(x - this.left) * this.zoom, (y - this.top) * this.zoom];
   }
 
-  /** The pixels of the board that show a box of the picture and what is next to it. */
+  /** Return the pixels of the board that show a box of the picture and a rim. */
   covering({ left, top, right, bottom }: Box, rim: number): Box {
     const [x0, y0] = this.toBoard([left, top]);
     const [x1, y1] = this.toBoard([right, bottom]);
@@ -84,15 +84,15 @@ export class Sight {
     return Math.min(this.width / this.columns, this.height / this.rows);
   }
 
-  /** The middle of the board always shows something of the picture. */
-  private hold(): void {
+  /** Keep a part of the picture at the middle of the board. */
+  private clamp(): void {
     const [w, h] = [this.width / this.zoom / 2, this.height / this.zoom / 2];
     this.left = Math.max(-w, Math.min(this.columns - w, this.left));
     this.top = Math.max(-h, Math.min(this.rows - h, this.top));
   }
 }
 
-/** The beginning of what is seen along an axis, so that a place is in it with a rim where there is more to see. */
-function shown(from: number, length: number, at: number, rim: number, most: number): number {
+/** Return the start of the visible range along an axis, so that it includes a place with a rim. */
+function scrollInto(from: number, length: number, at: number, rim: number, most: number): number {
   return Math.max(Math.min(most, at + rim) - length, Math.min(Math.max(0, at - rim), from));
 }

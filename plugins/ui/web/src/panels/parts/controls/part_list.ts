@@ -1,33 +1,33 @@
-/** The list of the parts from front to back, and what is said of the selected one. */
+/** List of the parts from front to back, and fields of the selected one. */
 import { button, field, hint } from "../../../elements";
 import { t } from "../editor/words";
 import type { Drawing, Part } from "../drawing/drawing";
-import { fromFront } from "../drawing/order";
-import { called, heightOf } from "../editor/part_words";
+import { frontToBack } from "../drawing/order";
+import { nameOf, heightOf } from "../editor/part_words";
 
-/** Of the keys in the list, in metres. */
+/** Steps of the keys in the list, metres. */
 const STEPS_M = { usual: 0.0002, fine: 0.00005, coarse: 0.001 };
 const MM = 1000;
 
-export class Side {
+export class PartList {
   readonly list = document.createElement("ul");
   readonly said = document.createElement("fieldset");
   readonly name = input("parts-name", "text");
-  /** What number a part will have in the file. */
+  /** Returns the number of a part in the file. */
   numberOf: (label: number) => number = (label) => label;
-  /** Whether a part is felt as it is drawn; which parts touch the selected one; hears which one was selected, and moved. */
+  /** Returns whether changes of a part take effect before saving. */
   isFelt: (label: number) => boolean = () => true;
   neighbours: Part[] = [];
-  chose: (label: number) => void = () => undefined;
-  ordered: () => void = () => undefined;
-  joined: (label: number) => void = () => undefined;
+  onSelect: (label: number) => void = () => undefined;
+  onReorder: () => void = () => undefined;
+  onJoin: (label: number) => void = () => undefined;
   private rows = new Map<number, HTMLLIElement>();
   private height = input("parts-height", "range");
   private exact = input("parts-height-mm", "number");
   private material = select("parts-material");
   private other = select("parts-join");
   private later = hint(t("feltLater"));
-  private join = button(t("join"), () => this.other.value && this.joined(Number(this.other.value)));
+  private join = button(t("join"), () => this.other.value && this.onJoin(Number(this.other.value)));
   private complaints = new Map<HTMLElement, HTMLElement>();
   private dragged = false;
 
@@ -42,14 +42,14 @@ export class Side {
     this.list.addEventListener("keydown", (event) => this.key(event));
     this.list.addEventListener("click", ({ target }) => {
       const label = (target as HTMLElement).closest("li")?.dataset.label;
-      if (label !== undefined) this.chose(Number(label));
+      if (label !== undefined) this.onSelect(Number(label));
     });
     this.material.add(new Option(t("byRules"), ""));
     for (const each of materials) this.material.add(new Option(each, each));
     this.build();
   }
 
-  /** As the drawing is now. */
+  /** Update list and fields. */
   show(): void {
     const { parts, selected } = this.drawing;
     if (!this.dragged) this.showList();
@@ -69,7 +69,7 @@ export class Side {
     this.name.addEventListener("keydown", (event) => event.key === "Enter" && this.list.focus());
     this.height.addEventListener("input", () => this.raise(this.height.valueAsNumber / MM, true));
     this.exact.addEventListener("input", () => this.raise(this.exact.valueAsNumber / MM, true));
-    for (const each of [this.name, this.height, this.exact]) each.addEventListener("change", () => this.ended());
+    for (const each of [this.name, this.height, this.exact]) each.addEventListener("change", () => this.endDrag());
     this.material.addEventListener("change", () => this.set({ material: this.material.value || null }));
     const order = document.createElement("div");
     order.className = "buttons";
@@ -90,7 +90,7 @@ export class Side {
     return box;
   }
 
-  /** At the field, or (empty) nothing any more. */
+  /** Show a complaint at a field, none if empty; return whether it is empty. */
   private complain(control: HTMLElement, text: string): boolean {
     const box = this.complaints.get(control)!;
     box.hidden = !text;
@@ -103,7 +103,7 @@ export class Side {
   }
 
   private showList(): void {
-    const wanted = fromFront(this.drawing.parts);
+    const wanted = frontToBack(this.drawing.parts);
     for (const [label, row] of this.rows)
       if (!this.drawing.part(label)) {
         row.remove();
@@ -131,7 +131,7 @@ export class Side {
 
   private fill(row: HTMLLIElement, part: Part): void {
     const number = this.numberOf(part.label);
-    const texts = [String(number), called(part, number), heightOf(part)];
+    const texts = [String(number), nameOf(part, number), heightOf(part)];
     texts.forEach((text, i) => row.children[i]!.textContent !== text && (row.children[i]!.textContent = text));
     (row.lastElementChild as HTMLMeterElement).value = part.height_m;
     const chosen = part.label === this.drawing.selected;
@@ -161,10 +161,10 @@ export class Side {
   }
 
   showNeighbours(): void {
-    const options = this.neighbours.map((each) => new Option(called(each, this.numberOf(each.label)), String(each.label)));
-    const said = options.map((each) => each.outerHTML).join("");
-    if (this.other.dataset.said === said) return;
-    this.other.dataset.said = said;
+    const options = this.neighbours.map((each) => new Option(nameOf(each, this.numberOf(each.label)), String(each.label)));
+    const value = options.map((each) => each.outerHTML).join("");
+    if (this.other.dataset.said === value) return;
+    this.other.dataset.said = value;
     this.other.replaceChildren(...(options.length ? options : [new Option(t("noNeighbour"), "")]));
     this.join.disabled = !options.length;
   }
@@ -188,28 +188,28 @@ export class Side {
     this.set({ height_m, automatic: false }, "height");
   }
 
-  /** The drag is over: what moved to the front in it moves in the list. */
-  private ended(): void {
+  /** End a drag: the list is sorted again. */
+  private endDrag(): void {
     this.dragged = false;
-    this.drawing.endGesture();
+    this.drawing.history.endGesture();
     this.show();
   }
 
   private order(by: number): void {
     this.drawing.order(this.drawing.selected, by);
-    this.ordered();
+    this.onReorder();
   }
 
   private key(event: KeyboardEvent): void {
     const { key, altKey, ctrlKey, shiftKey } = event;
-    const all = fromFront(this.drawing.parts).map((each) => each.label);
+    const all = frontToBack(this.drawing.parts).map((each) => each.label);
     const at = all.indexOf(this.drawing.selected);
     const walk: Record<string, number> = { ArrowDown: at + 1, ArrowUp: at - 1, Home: 0, End: all.length - 1 };
     if (altKey && (key === "ArrowUp" || key === "ArrowDown")) this.order(key === "ArrowUp" ? 1 : -1);
     else if (key === "ArrowLeft" || key === "ArrowRight") {
       const step = STEPS_M[ctrlKey ? "coarse" : shiftKey ? "fine" : "usual"];
       this.nudge(key === "ArrowRight" ? step : -step);
-    } else if (key in walk) this.chose(all[Math.max(0, Math.min(all.length - 1, walk[key]!))]!);
+    } else if (key in walk) this.onSelect(all[Math.max(0, Math.min(all.length - 1, walk[key]!))]!);
     else if (key === "Enter") this.name.select();
     else return;
     event.preventDefault();
@@ -220,7 +220,7 @@ export class Side {
     if (!part) return;
     const height = Math.round(1e5 * (part.height_m + by)) / 1e5;
     this.raise(Math.max(0, Math.min(Number(this.exact.max) / MM, height)), false);
-    this.ordered();
+    this.onReorder();
   }
 }
 

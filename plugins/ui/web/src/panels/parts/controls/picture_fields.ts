@@ -1,53 +1,57 @@
-/** What is said of the picture and of the shape of all parts: fields that are saved along. */
+/** Fields for the picture's title and language, and for the shape of all parts. */
 import { field } from "../../../elements";
+import { SHAPES } from "../drawing/picture_details";
+import type { EditorState } from "../editor/state";
 import { t } from "../editor/words";
-import type { Heights, Opened } from "../editor/requests";
 import { input } from "./part_list";
 
-const SHAPES = ["round_m", "bulge_m", "detail_m"] as const;
 const MM = 1000;
 const MOST_MM = { round_m: 100, bulge_m: 10, detail_m: 10 };
 
-export class Words {
+export class PictureFields {
   readonly elements: HTMLElement[];
-  changed = false;
-  /** Hears that the shape of the parts is another. */
-  shaped: () => void = () => undefined;
-  private title = input("parts-title", "text");
-  private language = input("parts-language", "text");
-  private shapes = new Map(SHAPES.map((name) => [name, input(`parts-${name}`, "number")]));
+  /** Called when the shape of the parts changed. */
+  onShape: () => void = () => undefined;
+  private shapes: HTMLInputElement[];
 
-  constructor(private opened: Opened) {
-    this.title.value = opened.title;
-    this.language.value = opened.language;
-    this.language.size = 5;
-    const shape = SHAPES.map((name) => {
-      const box = this.shapes.get(name)!;
-      Object.assign(box, { min: "0", max: String(MOST_MM[name]), step: "any", value: String(Math.round(1e5 * opened.heights[name]) / 100) });
-      return field(t(name), box);
-    });
+  constructor(private state: EditorState) {
+    const { title, language } = state.details;
+    this.shapes = SHAPES.map((name) => this.shape(name));
+    const texts = [field(t("pictureTitle"), this.text("title", title)), field(t("language"), this.text("language", language))];
+    (texts[1]!.lastElementChild as HTMLInputElement).size = 5;
     this.elements = [
-      folded(t("picturesWords"), [field(t("pictureTitle"), this.title), field(t("language"), this.language)]),
-      folded(t("shapes"), shape),
+      foldable(t("picturesWords"), texts),
+      foldable(t("shapes"), SHAPES.map((name, i) => field(t(name), this.shapes[i]!))),
     ];
-    for (const each of [this.title, this.language, ...this.shapes.values()]) each.addEventListener("input", () => (this.changed = true));
-    for (const each of this.shapes.values()) each.addEventListener("input", () => each.checkValidity() && this.shaped());
   }
 
-  /** A field that cannot be sent as it is: it has the focus then. */
-  get wrong(): boolean {
-    const wrong = [...this.shapes.values()].find((each) => !each.reportValidity());
-    return wrong !== undefined;
+  /** Return whether every field is valid; the first that is not gets the focus. */
+  reportValidity(): boolean {
+    return this.shapes.every((each) => each.reportValidity());
   }
 
-  said(automatic: boolean): { heights: Heights; title: string; language: string } {
-    const shapes = Object.fromEntries([...this.shapes].map(([name, each]) => [name, Math.round(1e5 * (each.valueAsNumber || 0) / MM) / 1e5]));
-    const by = automatic ? this.opened.heights.by : "given";
-    return { heights: { ...this.opened.heights, ...shapes, by }, title: this.title.value.trim(), language: this.language.value.trim() || "en" };
+  private text(name: "title" | "language", value: string): HTMLInputElement {
+    const box = input(`parts-${name}`, "text");
+    box.value = value;
+    box.addEventListener("input", () => this.state.setDetails({ [name]: box.value }));
+    return box;
+  }
+
+  private shape(name: (typeof SHAPES)[number]): HTMLInputElement {
+    const { details } = this.state;
+    const box = input(`parts-${name}`, "number");
+    Object.assign(box, { min: "0", max: String(MOST_MM[name]), step: "any", value: String(Math.round(1e5 * details.heights[name]) / 100) });
+    box.addEventListener("input", () => {
+      if (!box.checkValidity()) return this.state.setDetails({});
+      const metres = Math.round((1e5 * (box.valueAsNumber || 0)) / MM) / 1e5;
+      this.state.setDetails({ heights: { ...details.heights, [name]: metres } });
+      this.onShape();
+    });
+    return box;
   }
 }
 
-export function folded(title: string, inside: HTMLElement[]): HTMLElement {
+export function foldable(title: string, inside: HTMLElement[]): HTMLElement {
   const box = document.createElement("details");
   const heading = document.createElement("summary");
   heading.textContent = title;

@@ -1,79 +1,74 @@
-/** The tools, what the one in use can be told, and what is done with the drawing as a whole. */
+/** Toolbar of the tools, their options, and undo, redo and zoom. */
 import { button, field } from "../../../elements";
 import { t } from "../editor/words";
-import { caps } from "../../help/panel";
+import { caps } from "../../help/key_caps";
 import { KINDS } from "../editor/requests";
-import type { Drawing } from "../drawing/drawing";
 import { TOOL_KEYS } from "../editor/keys";
-import { type Pens, type Tool, TOOLS } from "./tools";
+import type { EditorState } from "../editor/state";
+import { type Tool, TOOLS } from "./tools";
 import { input, select } from "./part_list";
 
-export interface Acts {
-  use: (tool: Tool) => void;
-  fresh: () => void;
-  accept: () => void;
-  discard: () => void;
-  undo: () => void;
-  redo: () => void;
-  nearer: (factor: number) => void;
-  fit: () => void;
+/** Changes of what the board shows. */
+export interface Zoom {
+  zoomBy(factor: number): void;
+  fit(): void;
 }
 
-/** Which fields a tool has; what was proposed is corrected with the first two kinds of tool. */
+/** The fields of each tool; a proposal is corrected with brush and lasso. */
 const FIELDS: Record<Tool, readonly ("width" | "snap" | "method")[]> = {
   select: [], brush: ["width"], lasso: ["snap"], propose: ["width", "method"], split: [], join: [],
 };
 
-export class Bar {
+export class Toolbar {
   readonly tools = group(t("tools"));
   readonly options = document.createElement("div");
   readonly width = input("parts-width", "range");
   private uses = new Map<Tool, HTMLButtonElement>();
-  private fresh: HTMLButtonElement;
+  private newPart: HTMLButtonElement;
   private back: HTMLButtonElement;
   private again: HTMLButtonElement;
   private proposal: HTMLElement[];
-  private takes: HTMLButtonElement;
+  private erases: HTMLButtonElement;
   private fields: Record<"width" | "snap" | "method", HTMLElement>;
 
   constructor(
-    private drawing: Drawing,
-    private pens: Pens,
-    act: Acts,
+    private state: EditorState,
+    zoom: Zoom,
   ) {
-    for (const tool of TOOLS) this.uses.set(tool, keyed(t(tool), TOOL_KEYS[tool], () => act.use(tool)));
-    this.fresh = keyed(t("fresh"), "t", act.fresh);
-    this.back = keyed(t("undo"), "Ctrl+z", act.undo);
-    this.again = keyed(t("redo"), "Ctrl+Shift+z", act.redo);
+    const { tools, drawing } = state;
+    for (const tool of TOOLS) this.uses.set(tool, keyButton(t(tool), TOOL_KEYS[tool], () => state.use(tool)));
+    this.newPart = keyButton(t("fresh"), "t", () => state.toggleNewPart());
+    this.back = keyButton(t("undo"), "Ctrl+z", () => state.step("undo"));
+    this.again = keyButton(t("redo"), "Ctrl+Shift+z", () => state.step("redo"));
     this.tools.append(
-      ...this.uses.values(), gap(), this.fresh, gap(), this.back, this.again, gap(),
-      keyed(t("zoomIn"), "+", () => act.nearer(1.5)), keyed(t("zoomOut"), "-", () => act.nearer(1 / 1.5)), keyed(t("fit"), "0", act.fit),
+      ...this.uses.values(), gap(), this.newPart, gap(), this.back, this.again, gap(),
+      keyButton(t("zoomIn"), "+", () => zoom.zoomBy(1.5)), keyButton(t("zoomOut"), "-", () => zoom.zoomBy(1 / 1.5)), keyButton(t("fit"), "0", () => zoom.fit()),
     );
     this.fields = { width: this.widthField(), snap: this.snapField(), method: this.methodField() };
-    this.takes = button(t("takeAway"), () => {
-      pens.takesAway = !pens.takesAway;
+    this.erases = button(t("takeAway"), () => {
+      tools.erases = !tools.erases;
       this.show();
     });
-    const accept = keyed(t("accept"), "Enter", act.accept);
+    const accept = keyButton(t("accept"), "Enter", () => tools.accept());
     accept.className = "primary";
-    this.proposal = [accept, keyed(t("discard"), "Escape", act.discard), this.takes];
+    this.proposal = [accept, keyButton(t("discard"), "Escape", () => drawing.discard()), this.erases];
     this.options.className = "bar";
     this.options.append(...Object.values(this.fields), ...this.proposal);
   }
 
   show(): void {
-    const { pens, drawing } = this;
-    for (const [tool, each] of this.uses) each.ariaPressed = String(tool === pens.tool);
-    this.fresh.ariaPressed = String(pens.fresh);
-    this.takes.ariaPressed = String(pens.takesAway);
-    this.back.disabled = !drawing.canUndo;
-    this.again.disabled = !drawing.canRedo;
-    for (const [name, each] of Object.entries(this.fields)) each.hidden = !(FIELDS[pens.tool] as readonly string[]).includes(name);
+    const { tools, drawing } = this.state;
+    for (const [tool, each] of this.uses) each.ariaPressed = String(tool === tools.tool);
+    this.newPart.ariaPressed = String(tools.newPart);
+    this.erases.ariaPressed = String(tools.erases);
+    this.back.disabled = !drawing.history.canUndo;
+    this.again.disabled = !drawing.history.canRedo;
+    for (const [name, each] of Object.entries(this.fields)) each.hidden = !(FIELDS[tools.tool] as readonly string[]).includes(name);
     for (const each of this.proposal) each.hidden = !drawing.proposed;
-    this.takes.hidden ||= pens.tool !== "brush" && pens.tool !== "lasso";
+    this.erases.hidden ||= tools.tool !== "brush" && tools.tool !== "lasso";
     this.options.hidden = [...this.options.children].every((each) => (each as HTMLElement).hidden);
-    if (Math.abs(this.shownWidth - pens.width) >= 1) this.width.value = String(Math.log2(pens.width));
-    this.width.setAttribute("aria-valuetext", t("pixels", { count: Math.round(pens.width) }));
+    if (Math.abs(this.shownWidth - tools.width) >= 1) this.width.value = String(Math.log2(tools.width));
+    this.width.setAttribute("aria-valuetext", t("pixels", { count: Math.round(tools.width) }));
     this.width.nextElementSibling!.textContent = this.width.getAttribute("aria-valuetext");
   }
 
@@ -81,12 +76,12 @@ export class Bar {
     return 2 ** this.width.valueAsNumber;
   }
 
-  /** As wide as one likes: each step is the same share. */
+  /** Return the field of the brush's width, on a logarithmic scale. */
   private widthField(): HTMLElement {
-    const most = Math.max(this.drawing.labels.columns, this.drawing.labels.rows);
+    const most = Math.max(this.state.drawing.labels.columns, this.state.drawing.labels.rows);
     Object.assign(this.width, { min: "0", max: String(Math.log2(most)), step: "0.1" });
     this.width.addEventListener("input", () => {
-      this.pens.width = Math.round(this.shownWidth);
+      this.state.tools.width = Math.round(this.shownWidth);
       this.show();
     });
     const box = field(t("width"), this.width);
@@ -96,8 +91,8 @@ export class Bar {
 
   private snapField(): HTMLElement {
     const check = input("parts-snap", "checkbox");
-    check.checked = this.pens.snaps;
-    check.addEventListener("change", () => (this.pens.snaps = check.checked));
+    check.checked = this.state.tools.snaps;
+    check.addEventListener("change", () => (this.state.tools.snaps = check.checked));
     const label = document.createElement("label");
     label.append(check, t("snap"));
     return label;
@@ -106,7 +101,7 @@ export class Bar {
   private methodField(): HTMLElement {
     const choice = select("parts-method");
     for (const kind of KINDS) choice.add(new Option(t(kind), kind));
-    choice.addEventListener("change", () => (this.pens.kind = choice.value));
+    choice.addEventListener("change", () => (this.state.tools.kind = choice.value));
     return field(t("method"), choice);
   }
 }
@@ -123,12 +118,12 @@ export function group(name: string): HTMLElement {
   return box;
 }
 
-/** A button that shows its key. */
-export function keyed(text: string, key: string, press: () => void): HTMLButtonElement {
-  const made = button(text, press);
+/** Return a button that shows its key. */
+export function keyButton(text: string, key: string, press: () => void): HTMLButtonElement {
+  const toggle = button(text, press);
   const cap = caps(key);
   cap.setAttribute("aria-hidden", "true");
-  made.append(" ", cap);
-  made.setAttribute("aria-keyshortcuts", key.replace("Ctrl", "Control"));
-  return made;
+  toggle.append(" ", cap);
+  toggle.setAttribute("aria-keyshortcuts", key.replace("Ctrl", "Control"));
+  return toggle;
 }

@@ -1,47 +1,54 @@
-/** What the tools do where they are put down, moved and lifted: with a mouse, a finger, a pen, or the crosshair. */
-import type { Net } from "../../../server/connection";
-import { proposed, snapped } from "../editor/requests";
+/** Tools of the editor: what they do when put down, moved and lifted by mouse, finger, pen, or crosshair. */
 import { stroke } from "../pixels/brush";
 import type { Drawing } from "../drawing/drawing";
 import { labelAt, type Point } from "../pixels/labels";
-import { filled } from "../pixels/polygon";
-import { lineOf } from "../pixels/split";
+import type { Proposal } from "../pixels/mask";
+import { fillOutline } from "../pixels/polygon";
+import { linePixels } from "../pixels/split";
 
 export const TOOLS = ["select", "brush", "lasso", "propose", "split", "join"] as const;
 export type Tool = (typeof TOOLS)[number];
 
 export type Fault = "notPainted" | "nothingChanged" | "notSplit" | "notJoined";
 
-/** Places of an outline that are nearer to one another than so much of the page are one. */
+/** Distance under which places of an outline are merged, CSS pixels. */
 const NEAR_PX = 2;
-/** How far an edge snaps, and a line that cuts goes on beyond its ends, in pixels of the page. */
+/** Reach of snapping, and extension of a splitting line, CSS pixels. */
 const REACH_PX = 10;
 
-export class Pens {
+/** Requests of the tools to the server. */
+export interface ToolRequests {
+  /** Return the part that a stroke of this width lies on; null if a newer stroke replaced the request. */
+  propose(stroke: readonly Point[], width_px: number, kind: string): Promise<Proposal | null>;
+  /** Move an outline to edges of the picture within this distance. */
+  snap(outline: readonly Point[], reach_px: number): Promise<Point[]>;
+}
+
+export class Tools {
   tool: Tool = "select";
-  /** Of the brush, in pixels of the picture. */
+  /** Width of the brush, pixels of the picture. */
   width = 1;
-  /** The next stroke makes a new part. */
-  fresh = false;
-  takesAway = false;
+  /** True if the next stroke makes a new part. */
+  newPart = false;
+  erases = false;
   snaps = true;
   kind = "grabcut";
   down = false;
-  /** The program is looking for something. */
+  /** True while a request is under way. */
   busy = false;
   line: Point[] = [];
-  /** Hears what could not be done, and why. */
-  failed: (why: Fault | Error) => void = () => undefined;
-  /** Hears that the program is looking for something, or has looked. */
-  waits: (busy: boolean) => void = () => undefined;
-  /** Hears which part was pointed at. */
-  chose: (label: number) => void = () => undefined;
+  /** Return how many pixels of the picture a CSS pixel covers. */
+  scale: () => number = () => 1;
+  /** Called with the reason if something did not work. */
+  onFailure: (why: Fault | Error) => void = () => undefined;
+  /** Called when a request starts (true) or ends. */
+  onWait: (busy: boolean) => void = () => undefined;
+  /** Called with the part that was pointed at. */
+  onSelect: (label: number) => void = () => undefined;
 
   constructor(
     private drawing: Drawing,
-    private net: Net,
-    /** Pixels of the picture for one of the page. */
-    private scale: () => number,
+    private requests: ToolRequests,
   ) {}
 
   put(at: Point): void {
@@ -49,7 +56,7 @@ export class Pens {
     this.down = true;
     this.line = [at];
     if (this.tool !== "brush") return;
-    this.tried(() => {
+    this.attempt(() => {
       if (!this.drawing.proposed) this.drawing.begin(this.target);
       this.dab(at, at);
     });
@@ -72,11 +79,11 @@ export class Pens {
     try {
       await this[this.tool](line);
     } catch (error) {
-      this.failed(error as Error);
+      this.onFailure(error as Error);
     }
   }
 
-  /** As if it had not been put down. */
+  /** Cancel the stroke; return whether there was one. */
   cancel(): boolean {
     const was = this.down;
     this.down = false;
@@ -86,86 +93,86 @@ export class Pens {
   }
 
   accept(): void {
-    this.tried(() => this.done(this.drawing.accept(this.target)));
+    this.attempt(() => this.finish(this.drawing.accept(this.target)));
   }
 
   private get target(): number | null {
-    return this.fresh ? null : this.drawing.selected;
+    return this.newPart ? null : this.drawing.selected;
   }
 
   private dab(from: Point, to: Point): void {
     const { columns, rows } = this.drawing.labels;
     const spans = stroke(from, to, this.width, columns, rows);
-    if (this.drawing.proposed) this.drawing.correct(spans, !this.takesAway);
+    if (this.drawing.proposed) this.drawing.correct(spans, !this.erases);
     else this.drawing.paint(spans);
   }
 
   private select([at]: Point[]): void {
     const label = labelAt(this.drawing.labels, ...at!);
-    if (label >= 0) this.chose(label);
+    if (label >= 0) this.onSelect(label);
   }
 
   private brush(): void {
-    if (!this.drawing.proposed) this.done(this.drawing.end());
+    if (!this.drawing.proposed) this.finish(this.drawing.end());
   }
 
   private async lasso(line: Point[]): Promise<void> {
     const { columns, rows } = this.drawing.labels;
-    const outline = this.snaps && line.length > 2 ? await this.asked(snapped(this.net, line, REACH_PX * this.scale())) : line;
-    const spans = filled(outline, columns, rows);
-    if (!spans.length) return this.failed("notPainted");
-    if (this.drawing.proposed) return this.drawing.correct(spans, !this.takesAway);
+    const outline = this.snaps && line.length > 2 ? await this.wait(this.requests.snap(line, REACH_PX * this.scale())) : line;
+    const spans = fillOutline(outline, columns, rows);
+    if (!spans.length) return this.onFailure("notPainted");
+    if (this.drawing.proposed) return this.drawing.correct(spans, !this.erases);
     this.drawing.begin(this.target);
     this.drawing.paint(spans);
-    this.done(this.drawing.end());
+    this.finish(this.drawing.end());
   }
 
   private async propose(line: Point[]): Promise<void> {
-    const found = await this.asked(proposed(this.net, line, this.width, this.kind));
-    if (found) this.drawing.propose(found); // none, if another stroke came before this one was looked at
+    const proposal = await this.wait(this.requests.propose(line, this.width, this.kind));
+    if (proposal) this.drawing.propose(proposal); // null if a newer stroke replaced the request
   }
 
   private split(drawn: Point[]): void {
     const { labels, selected } = this.drawing;
-    const line = lengthened(drawn, REACH_PX * this.scale());
+    const line = extendLine(drawn, REACH_PX * this.scale());
     const met = new Map<number, number>();
-    for (const at of lineOf(line, labels)) met.set(labels.data[at]!, (met.get(labels.data[at]!) ?? 0) + 1);
+    for (const at of linePixels(line, labels)) met.set(labels.data[at]!, (met.get(labels.data[at]!) ?? 0) + 1);
     const most = [...met].sort((a, b) => b[1] - a[1])[0]?.[0] ?? selected;
-    if (!this.drawing.split(met.has(selected) ? selected : most, line)) this.failed("notSplit");
+    if (!this.drawing.split(met.has(selected) ? selected : most, line)) this.onFailure("notSplit");
   }
 
   private join([at]: Point[]): void {
     const label = labelAt(this.drawing.labels, ...at!);
     if (label < 0) return;
-    if (!this.drawing.join(label, this.drawing.selected)) this.failed("notJoined");
+    if (!this.drawing.join(label, this.drawing.selected)) this.onFailure("notJoined");
   }
 
-  private done(changed: boolean): void {
-    if (changed) this.fresh = false;
-    else this.failed("nothingChanged");
+  private finish(changed: boolean): void {
+    if (changed) this.newPart = false;
+    else this.onFailure("nothingChanged");
   }
 
-  private tried(act: () => void): void {
+  private attempt(act: () => void): void {
     try {
       act();
     } catch (error) {
       this.down = false;
-      this.failed(error as Error);
+      this.onFailure(error as Error);
     }
   }
 
-  private async asked<T>(work: Promise<T>): Promise<T> {
-    this.waits((this.busy = true));
+  private async wait<T>(work: Promise<T>): Promise<T> {
+    this.onWait((this.busy = true));
     try {
       return await work;
     } finally {
-      this.waits((this.busy = false));
+      this.onWait((this.busy = false));
     }
   }
 }
 
-/** A line that goes on at both ends as it began and ended: nobody hits a rim to the pixel. */
-function lengthened(line: Point[], by: number): Point[] {
+/** Return a line extended at both ends, as rims are hard to hit exactly. */
+function extendLine(line: Point[], by: number): Point[] {
   const beyond = (end: Point, before: Point): Point => {
     const [dx, dy] = [end[0] - before[0], end[1] - before[1]];
     const share = by / (Math.hypot(dx, dy) || Infinity);

@@ -1,46 +1,46 @@
-/** What is dragged is felt: the newest is sent when the one before has arrived. */
+/** Latest-wins sending: while an update is under way, only the newest of the following ones is kept. */
 
-/** By the number that a part was opened or saved with, no height where the program finds it; and the shape of all. */
-export interface Felt {
+/** Heights and materials by the number of the part in the file (null: the program finds it), and the shape of all parts. */
+export interface Update {
   heights_m: (number | null)[];
   materials: (string | null)[];
   heights: object;
 }
 
-export class Live {
-  private next: Felt | null = null;
+export class LiveUpdate {
+  private next: Update | null = null;
   private sending = false;
-  /** What was sent last; nothing, while what is felt is what was opened or saved. */
+  /** The update that was sent last, as JSON; empty while the surface is as it was opened or saved. */
   private sent = "";
 
   constructor(
-    private ask: (felt: Felt) => Promise<unknown>,
+    private ask: (update: Update) => Promise<unknown>,
     private failed: (error: Error) => void,
   ) {}
 
-  /** base: what was opened or saved. */
-  feel(felt: Felt, base: Felt): void {
-    if (!this.sent && !this.sending && JSON.stringify(felt) === JSON.stringify(base)) return;
-    this.next = felt;
-    if (!this.sending) void this.go();
+  /** Send an update, unless the surface equals it already. base: the update of the opened or saved parts. */
+  send(update: Update, base: Update): void {
+    if (!this.sent && !this.sending && JSON.stringify(update) === JSON.stringify(base)) return;
+    this.next = update;
+    if (!this.sending) void this.run();
   }
 
-  /** What was sent is what is felt for good: it was saved. */
-  settled(): void {
+  /** Take the present surface as the base: it was saved. */
+  reset(): void {
     this.next = null;
     this.sent = "";
   }
 
-  private async go(): Promise<void> {
+  private async run(): Promise<void> {
     this.sending = true;
     try {
       while (this.next) {
-        const felt = this.next;
+        const update = this.next;
         this.next = null;
-        const said = JSON.stringify(felt);
-        if (said === this.sent) continue;
-        this.sent = said;
-        await this.ask(felt);
+        const text = JSON.stringify(update);
+        if (text === this.sent) continue;
+        this.sent = text;
+        await this.ask(update);
       }
     } catch (error) {
       this.next = null;

@@ -1,10 +1,10 @@
-/** The pixels under a round brush that goes from one place to another. */
+/** Pixels under a round brush that moves from one place to another. */
 import type { Point, Span } from "./labels";
 
-/** Thinner than this, a stroke would have holes between its pixels. */
+/** Least radius that leaves no hole between pixels. */
 const LEAST_RADIUS = 0.75;
 
-/** Pixels whose centres are under it, within the picture. */
+/** Return the pixels whose centres are under it, within the picture. */
 export function stroke(a: Point, b: Point, width: number, columns: number, rows: number): Span[] {
   const thin = width < 3;
   const [from, to] = thin ? [centre(a), centre(b)] : [a, b];
@@ -24,7 +24,7 @@ export function stroke(a: Point, b: Point, width: number, columns: number, rows:
 
 const centre = ([x, y]: Point): Point => [Math.floor(x) + 0.5, Math.floor(y) + 0.5];
 
-/** The two straight sides of the stroke. */
+/** Return the two straight sides of the stroke. */
 function edges(a: Point, b: Point, radius: number): [Point, Point][] {
   const length = Math.hypot(b[0] - a[0], b[1] - a[1]);
   if (!length) return [];
@@ -35,7 +35,7 @@ function edges(a: Point, b: Point, radius: number): [Point, Point][] {
   ]);
 }
 
-/** A row of something convex is one piece: from the leftmost to the rightmost of what bounds it. */
+/** Return the interval of a row within the convex stroke. */
 function across(y: number, a: Point, b: Point, radius: number, sides: [Point, Point][]): [number, number] {
   let [left, right] = [Infinity, -Infinity];
   const meet = (x: number): void => {

@@ -1,9 +1,9 @@
-/** What was proposed and is not a part yet: pixels that a brush adds to and takes away from. */
-import { around, type Box, boxOf, EMPTY, type Labels, type Span } from "./labels";
+/** The mask of a proposed part, which brush and outline correct. */
+import { union, type Box, boundingBox, EMPTY, type Labels, type Span } from "./labels";
 import type { Patch } from "./patch";
 
-/** A mask within a box, as runs from its first row on: the first is outside, then they take turns. */
-export interface Proposed {
+/** A run-length mask within a box: the first run is outside, then they alternate. */
+export interface Proposal {
   box: [x: number, y: number, columns: number, rows: number];
   runs: number[];
 }
@@ -21,7 +21,7 @@ export class Mask {
 
   put(spans: Span[], on: boolean): void {
     for (const [row, from, to] of spans) this.data.fill(+on, row * this.columns + from, row * this.columns + to);
-    if (on) this.box = around(this.box, boxOf(spans));
+    if (on) this.box = union(this.box, boundingBox(spans));
   }
 
   clear(): void {
@@ -30,7 +30,7 @@ export class Mask {
     this.box = EMPTY;
   }
 
-  /** Its pixels, as spans of rows. */
+  /** Yield its pixels as spans. */
   *spans(): Generator<Span> {
     const { data, columns } = this;
     const { left, right, top, bottom } = this.box;
@@ -44,13 +44,13 @@ export class Mask {
     }
   }
 
-  /** Make them a part. */
+  /** Paint its pixels with a label. */
   accept(labels: Labels, label: number, patch: Patch): void {
     patch.paint(labels, this.spans(), label);
   }
 }
 
-export function spansOf({ box: [left, top, columns], runs }: Proposed): Span[] {
+export function toSpans({ box: [left, top, columns], runs }: Proposal): Span[] {
   const spans: Span[] = [];
   let at = 0;
   runs.forEach((length, i) => {

@@ -1,11 +1,11 @@
-/** What hangs together: pixels of one part that touch along a side. */
+/** Connected pieces of the parts: pixels that share sides. */
 import type { Labels, Point } from "./labels";
 
-/** Runs of equal pixels, row by row, and of each the piece that it belongs to. */
-export interface Found {
+/** Runs of equal pixels, row by row, and the piece of each. */
+export interface Pieces {
   starts: Uint32Array;
   ends: Uint32Array;
-  /** Index of the run in which its piece begins. */
+  /** Index of the first run of the piece, for each run. */
   roots: Uint32Array;
   pieces: Piece[];
 }
@@ -17,15 +17,15 @@ export interface Piece {
   root: number;
 }
 
-/** Where the name of a part is written: in the longest row of it that is near its middle. */
+/** Place of a part's name: the longest row near its middle. */
 export interface Place {
   pixels: number;
   at: Point;
 }
 
-/** The pieces of all parts, or of one; in the order of their first pixels. */
-export function piecesOf({ columns, data }: Labels, only = -1): Found {
-  const { starts, ends } = runsOf(data, columns, only);
+/** Return the pieces of all parts, or of one, in the order of their first pixels. */
+export function findPieces({ columns, data }: Labels, only = -1): Pieces {
+  const { starts, ends } = findRuns(data, columns, only);
   const parent = starts.map((_, i) => i);
   const root = (i: number): number => {
     while (parent[i] !== i) i = parent[i] = parent[parent[i]!]!;
@@ -51,7 +51,7 @@ export function piecesOf({ columns, data }: Labels, only = -1): Found {
   return { starts, ends, roots: parent, pieces: [...pieces.values()] };
 }
 
-function runsOf(data: Uint16Array, columns: number, only: number): { starts: Uint32Array; ends: Uint32Array } {
+function findRuns(data: Uint16Array, columns: number, only: number): { starts: Uint32Array; ends: Uint32Array } {
   let starts: Uint32Array = new Uint32Array(1024);
   let ends: Uint32Array = new Uint32Array(1024);
   let count = 0;
@@ -61,7 +61,7 @@ function runsOf(data: Uint16Array, columns: number, only: number): { starts: Uin
       let end = at + 1;
       while (end < row + columns && data[end] === label) end++;
       if (only < 0 || label === only) {
-        if (count === starts.length) [starts, ends] = [grown(starts), grown(ends)];
+        if (count === starts.length) [starts, ends] = [doubleLength(starts), doubleLength(ends)];
         starts[count] = at;
         ends[count++] = end;
       }
@@ -71,15 +71,15 @@ function runsOf(data: Uint16Array, columns: number, only: number): { starts: Uin
   return { starts: starts.slice(0, count), ends: ends.slice(0, count) };
 }
 
-function grown(of: Uint32Array): Uint32Array {
+function doubleLength(of: Uint32Array): Uint32Array {
   const more = new Uint32Array(2 * of.length);
   more.set(of);
   return more;
 }
 
-/** Of every part its size, and where its name is written. */
-export function placesOf({ columns, data }: Labels): Map<number, Place> {
-  const { starts, ends } = runsOf(data, columns, -1);
+/** Return each part's size and place of its name. */
+export function findPlaces({ columns, data }: Labels): Map<number, Place> {
+  const { starts, ends } = findRuns(data, columns, -1);
   const sums = new Map<number, { pixels: number; y: number; best: number; at: Point }>();
   const each = (act: (sum: { pixels: number; y: number; best: number; at: Point }, start: number, length: number, y: number) => void): void => {
     for (let i = 0; i < starts.length; i++) {
@@ -102,9 +102,9 @@ export function placesOf({ columns, data }: Labels): Map<number, Place> {
   return new Map([...sums].map(([label, { pixels, at }]) => [label, { pixels, at }]));
 }
 
-/** Which parts touch a part along a side. */
-export function neighboursOf({ columns, data }: Labels, label: number): Set<number> {
-  const { starts, ends } = runsOf(data, columns, label);
+/** Return the parts that share a side with a part. */
+export function findNeighbours({ columns, data }: Labels, label: number): Set<number> {
+  const { starts, ends } = findRuns(data, columns, label);
   const met = new Set<number>([label]);
   const look = (from: number, to: number): void => {
     let last = label;

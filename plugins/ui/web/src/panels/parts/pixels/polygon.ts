@@ -1,17 +1,17 @@
-/** The pixels within an outline that a hand drew: what it goes around once or more, also where it crosses itself. */
+/** Pixels within a hand-drawn outline, by the nonzero winding rule. */
 import type { Point, Span } from "./labels";
 
 interface Edge {
   top: number;
   bottom: number;
-  /** Where it is at y = 0, and how far it goes for each row. */
+  /** x at y = 0, and dx per row. */
   x: number;
   slope: number;
   way: 1 | -1;
 }
 
-export function filled(outline: readonly Point[], columns: number, rows: number): Span[] {
-  const edges = edgesOf(outline);
+export function fillOutline(outline: readonly Point[], columns: number, rows: number): Span[] {
+  const edges = findEdges(outline);
   const top = Math.max(0, Math.floor(Math.min(...edges.map((each) => each.top))));
   const bottom = Math.min(rows, Math.ceil(Math.max(...edges.map((each) => each.bottom))));
   const spans: Span[] = [];
@@ -19,7 +19,7 @@ export function filled(outline: readonly Point[], columns: number, rows: number)
   return spans;
 }
 
-function edgesOf(outline: readonly Point[]): Edge[] {
+function findEdges(outline: readonly Point[]): Edge[] {
   return outline.flatMap(([x0, y0], i) => {
     const [x1, y1] = outline[(i + 1) % outline.length]!;
     if (y0 === y1) return [];

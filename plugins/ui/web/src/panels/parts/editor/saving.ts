@@ -1,0 +1,94 @@
+/** Saving of the parts after questions, and live updates of heights and materials. */
+import type { Server } from "../../../page";
+import { LiveUpdate } from "./live_update";
+import { shareOf } from "./part_words";
+import { question } from "../controls/question";
+import { saveParts } from "./requests";
+import { nameIn } from "./speech";
+import type { EditorState } from "./state";
+import { t } from "./words";
+
+/** Pieces of a smaller share of the picture can be merged before saving. */
+const CRUMB = 0.0005;
+/** Parts in pieces, and sizes of each, that a question lists. */
+const MOST_LISTED = 6;
+
+export class Saving {
+  private running: Promise<boolean> | null = null;
+  private live: LiveUpdate;
+
+  constructor(
+    private state: EditorState,
+    private net: Server,
+    /** Returns whether every field is valid. */
+    private isValid: () => boolean,
+  ) {
+    this.live = new LiveUpdate((update) => net.ask("parts_heights", { ...update }), (error) => state.fail(error));
+    state.events.on("parts", () => this.update());
+  }
+
+  /** Send heights and materials, so that they take effect before saving. */
+  update(): void {
+    this.live.send(this.state.update(), this.state.base);
+  }
+
+  /** Save the parts; return whether they were saved. A save that runs is waited for. */
+  save(): Promise<boolean> {
+    const { tools } = this.state;
+    if (tools.down || tools.busy || !this.isValid()) return Promise.resolve(false);
+    this.running ??= this.run().finally(() => {
+      this.running = null;
+      this.state.saving = false;
+    });
+    this.state.saving = true;
+    return this.running;
+  }
+
+  /** Return whether the editor may close, after a question if something would be lost. */
+  async mayClose(): Promise<boolean> {
+    await this.running;
+    if (this.state.isSaved) return true;
+    const answers = [["", t("goOn")], ["save", t("save")], ["lose", t("throwAway")]] as const;
+    const answer = await question(t("unsaved"), [t("unsavedText")], answers);
+    if (answer === "save") return this.save();
+    if (answer === "lose") this.live.send(this.state.base, this.state.base);
+    return answer === "lose";
+  }
+
+  private async run(): Promise<boolean> {
+    const { state } = this;
+    const { drawing } = state;
+    drawing.discard();
+    try {
+      if (!(await this.settle())) return false;
+      state.notify("saving", false);
+      const { parts } = drawing;
+      const steps = drawing.history.length;
+      const saved = await saveParts(this.net, drawing.labels, parts, { ...state.savedDetails, of: state.digest });
+      this.live.reset();
+      state.markSaved(saved, parts, steps);
+      state.notify("saved", false, { path: saved.path });
+      return true;
+    } catch (error) {
+      state.fail(error as Error);
+      return false;
+    }
+  }
+
+  /** Make every part one piece, after a question if some are not; return whether to go on. */
+  private async settle(): Promise<boolean> {
+    const { drawing } = this.state;
+    const scattered = [...drawing.scattered()];
+    if (!scattered.length) return true;
+    const pixels = drawing.labels.data.length;
+    const texts = scattered.slice(0, MOST_LISTED).map(([label, sizes]) => {
+      const listed = sizes.slice(0, MOST_LISTED).map((each) => shareOf(each / pixels)).join(", ");
+      return t("inPieces", { name: nameIn(this.state, label), count: sizes.length, sizes: listed + (sizes.length > MOST_LISTED ? " …" : "") });
+    });
+    if (scattered.length > MOST_LISTED) texts.push(t("morePieces", { count: scattered.length - MOST_LISTED }));
+    texts.push(t("eachBecomes", { share: shareOf(CRUMB) }));
+    const answer = await question(t("scattered"), texts, [["", t("goOn")], ["tidy", t("saveTidy")], ["pieces", t("savePieces")]]);
+    if (answer) drawing.settle(answer === "tidy" ? CRUMB * pixels : 0);
+    return answer !== "";
+  }
+}

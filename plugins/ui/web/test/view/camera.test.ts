@@ -1,0 +1,63 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { Vector3 } from "three";
+import { Eye } from "../../src/view/camera";
+import { handleKey } from "../../src/view/camera_input";
+
+const still = { matches: true } as MediaQueryList;
+globalThis.matchMedia ??= () => still;
+
+const pressed = (name: string, more: Partial<KeyboardEvent> = {}) => ({ key: name, ...more }) as KeyboardEvent;
+
+function seen(eye: Eye, x: number, y: number): Vector3 {
+  return new Vector3(x, y, 0).project(eye.camera);
+}
+
+for (const [w, l] of [[0.08, 0.06], [0.06, 0.3], [10, 0.001], [1e-6, 1e-6]])
+  for (const aspect of [1.6, 0.5])
+    test(`the whole of ${w} x ${l} m is seen at first, far side up, at an aspect of ${aspect}`, () => {
+      const eye = new Eye();
+      eye.resize(640, 640 / aspect);
+      eye.frame(w, l);
+      const corners = [-1, 1].flatMap((x) => [-1, 1].map((y) => seen(eye, (x * w) / 2, (y * l) / 2)));
+      assert.ok(corners.every(({ x, y, z }) => Math.abs(x) < 1 && Math.abs(y) < 1 && Math.abs(z) < 1));
+      assert.ok(corners.some(({ x, y }) => Math.max(Math.abs(x), Math.abs(y)) > 0.9));
+      assert.ok(seen(eye, 0, l / 2).y > seen(eye, 0, -l / 2).y && seen(eye, w / 2, 0).x > seen(eye, -w / 2, 0).x);
+    });
+
+/** The hand's, with Shift finely and with Ctrl coarsely. */
+const HANDS = [{}, { shiftKey: true }, { ctrlKey: true }].flatMap((held) => ["ArrowLeft", "ArrowUp"].map((each) => pressed(each, held)));
+
+test("keys turn, move, zoom, and come home; nobody flies where motion is not wanted", () => {
+  const eye = new Eye();
+  eye.frame(0.08, 0.06);
+  const home = { ...eye.pose };
+  assert.ok(handleKey(eye, pressed("ArrowLeft", { shiftKey: true, ctrlKey: true })) && eye.pose.azimuth < 0);
+  assert.ok(handleKey(eye, pressed("ArrowUp", { shiftKey: true, ctrlKey: true })) && eye.pose.polar < home.polar);
+  assert.ok(handleKey(eye, pressed("ArrowRight", { altKey: true })) && eye.pose.target[0] > 0);
+  assert.ok(handleKey(eye, pressed("+")) && eye.pose.distance < home.distance);
+  assert.ok(handleKey(eye, pressed("Home", { ctrlKey: true })));
+  assert.deepEqual(eye.pose, home);
+  assert.ok(handleKey(eye, pressed("End", { ctrlKey: true })) && eye.pose.polar < 0.01);
+  for (const other of [pressed("ArrowLeft"), pressed("x"), pressed("+", { ctrlKey: true }), ...HANDS])
+    assert.ok(!handleKey(eye, other));
+});
+
+test("a zoom leaves the place under the pointer where it is", () => {
+  const eye = new Eye();
+  eye.frame(0.08, 0.06);
+  const before = seen(eye, 0.02, 0.01);
+  eye.zoom(0.6, [0.02, 0.01, 0]);
+  const after = seen(eye, 0.02, 0.01);
+  assert.ok(Math.hypot(before.x - after.x, before.y - after.y) < 1e-6);
+});
+
+test("however near, one looks at the ground and not from under it", () => {
+  const eye = new Eye();
+  eye.frame(0.08, 0.06);
+  eye.ground = () => 0.02;
+  for (let k = 0; k < 60; k++) eye.zoom(0.85);
+  eye.orbit(0, 3);
+  assert.ok(Math.abs(eye.pose.target[2] - 0.02) <= 0.3 * eye.pose.distance + 1e-12);
+  assert.ok(eye.pose.distance > 1e-3);
+});

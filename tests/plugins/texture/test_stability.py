@@ -1,6 +1,7 @@
 """Pictures that break segmenters, over every texture method that is installed: one table of cases, each with a demand.
 
 Method by method exactness is tested beside the method; here every cell of cases x methods gets the same questions.
+`SLOW_PEERS`, which the conformance kit asks most of them every day, are asked all of them in the nightly tests.
 """
 
 import subprocess
@@ -26,6 +27,8 @@ METHODS = [
     for each in default_registry().listings
     if (each.kind, each.distribution) == ("texture", "tangible-images")
 ]
+SLOW_PEERS = {"kornia-gabor", "kornia-gradient", "report"}
+"""Methods that others replace, and that take nine tenths of the time of all."""
 OF_GREY = {"gradient", "histogram", "kornia-gradient"}
 """They tell things apart by brightness. The others do so by texture, to which the squares of a board are one thing."""
 SHAPE = 64, 88
@@ -140,7 +143,10 @@ def cells() -> list[Any]:
             name,
             number,
             id=f"{case}-{name}-{number}",
-            marks=[pytest.mark.xfail(reason=NOT_KEPT[case, name], strict=True)] if (case, name) in NOT_KEPT else [],
+            marks=[
+                *([pytest.mark.xfail(reason=NOT_KEPT[case, name], strict=True)] if (case, name) in NOT_KEPT else []),
+                *([pytest.mark.nightly] if name in SLOW_PEERS else []),
+            ],
         )
         for case in CASES
         for name in METHODS
@@ -160,7 +166,9 @@ def test_a_cell(case: str, name: str, number: int | str):
 
 # What a table of pictures does not hold
 
-by_method = pytest.mark.parametrize("name", METHODS)
+by_method = pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.nightly if name in SLOW_PEERS else ()) for name in METHODS]
+)
 SIZES = (*TINY, (3, 1), (5, 4), (8, 8), (9, 17), (16, 9), (31, 33), (61, 97), (100, 63))
 
 

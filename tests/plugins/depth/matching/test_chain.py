@@ -5,7 +5,7 @@ from collections import deque
 import cv2
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
@@ -75,7 +75,6 @@ def islands(disparity, step):
     return label
 
 
-@settings(max_examples=60)
 @given(MAPS, st.integers(0, 9))
 def test_speckles_are_the_small_islands(disparity, largest):
     label = islands(disparity, 16)
@@ -109,7 +108,6 @@ def test_among_few_matches_small_islands_are_errors():
         assert np.count_nonzero(disparity == 300) == left
 
 
-@settings(max_examples=40)
 @given(MAPS, st.integers(0, 255))
 def test_filling_keeps_what_is_known_and_leaves_nothing_unknown(disparity, seed):
     grey = np.random.default_rng(seed).integers(0, 255, disparity.shape, np.uint8)

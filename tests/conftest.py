@@ -178,3 +178,11 @@ def patient(monkeypatch: pytest.MonkeyPatch) -> None:
     from tangible_core.servo import host
 
     monkeypatch.setattr(host, "STANDSTILL_S", STANDSTILL_S)
+
+
+@pytest.fixture
+def loop_in_thread(monkeypatch: pytest.MonkeyPatch, patient: None) -> None:
+    """Force loops are threads of this process; see the helper of this name."""
+    from loop_in_thread import loops_in_threads  # after `check`
+
+    loops_in_threads(monkeypatch)

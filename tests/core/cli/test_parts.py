@@ -286,6 +286,7 @@ def test_on_a_full_disk_files_are_whole_or_not_there(folder: Path):
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("loop_in_thread")
 def test_names_go_from_the_file_through_a_session_to_its_replay(folder: Path):
     well(tangible("parts", "still.png", cwd=folder))
     file = folder / "still.yaml"
@@ -311,6 +312,7 @@ def test_names_go_from_the_file_through_a_session_to_its_replay(folder: Path):
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("loop_in_thread")
 def test_a_beacon_is_asked_for_by_name_and_said_by_the_recording_and_its_replay(folder: Path):
     well(tangible("parts", "still.png", cwd=folder))
     file = folder / "still.yaml"

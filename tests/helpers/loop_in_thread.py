@@ -1,7 +1,7 @@
-"""A force loop in a thread of this process, where `Servo` starts a process: all that a loop does, and no Python started.
+"""A force loop in a thread of this process, where `Servo` starts a process: all that a loop does, but no Python.
 
-The host speaks to it over two pipes as to a process, and it takes scenes out of the same shared memory. Tests of signals,
-of kills, of laws that block and of what a process leaves behind need the process.
+The host speaks to it over two pipes as to a process, and it takes scenes out of the same shared memory. Tests of
+signals, of kills, of laws that block and of what a process leaves behind need the process.
 """
 
 import io

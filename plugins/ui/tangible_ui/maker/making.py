@@ -11,8 +11,8 @@ import numpy as np
 from tangible_core.data import HapticSurface, Outcome, Plan
 from tangible_core.errors import TangibleError
 from tangible_core.mapping import over
-from tangible_core.pipeline.config import PRODUCTS, PipelineConfig
-from tangible_core.pipeline.engine import Progress, Stage
+from tangible_core.pipeline.config.config import PRODUCTS, PipelineConfig
+from tangible_core.pipeline.engine.engine import Progress, Stage
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.plugins.interfaces import Touch
 from tangible_core.runtime.child_process import dumps

@@ -63,8 +63,9 @@ class _Commands(io.FileIO):
 
 
 def loops_in_threads(patch: pytest.MonkeyPatch) -> None:
-    """Start each loop in a thread from now on; it asks the system for nothing, and leaves collecting garbage alone."""
+    """Start each loop in a thread from now on; it locks no memory, and leaves collecting garbage alone."""
     popen: dict[str, Any] = {**vars(subprocess), "Popen": LoopThread}
     patch.setattr(host, "subprocess", SimpleNamespace(**popen))
-    patch.setattr(priority, "ask", lambda: (False, "nothing asked"))
     patch.setattr(child, "gc", SimpleNamespace(freeze=lambda: None, collect=lambda: None))
+    asked = priority._c
+    patch.setattr(priority, "_c", lambda name: (lambda *_: -1) if name == "mlockall" else asked(name))

@@ -36,7 +36,6 @@ def folder(tmp_path: Path) -> Path:
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("loop_in_thread")
 def test_files_in_turn_and_a_recording_that_is_never_in_memory(folder: Path):
     words = ("a.yaml", "b.yaml", "--each", 1, "--record", "hand.nc", "--json")
     with patch.object(Recording, "load", pytest.fail):

@@ -2,7 +2,7 @@
 
 from collections.abc import Generator, Iterable, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import floor
 from pathlib import Path
 from time import perf_counter
@@ -15,15 +15,15 @@ from tangible_core.files.writing import atomic_write
 from tangible_core.parts import HeightChoice, PartHeights
 from tangible_core.parts.label_picture import label_picture
 from tangible_core.parts.large import large_parts
-from tangible_core.pipeline.config.config import parse_config
+from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.pipeline.engine.cache import Cache
 from tangible_core.pipeline.engine.layers import heights_of
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.pipeline.starter import MAPS, SIDE_MM, in_yaml, starter
 from tangible_core.plugins import hooks
 from tangible_core.plugins.registry import Registry, default_registry
-from tangible_core.report.numbered_parts import numbered_parts
 from tangible_core.scene.scene import Scene
+from tangible_report.numbered_parts import numbered_parts
 
 from .listed_parts import ListedPart, listed
 from .parts_starter import RELIEF_MM, parts_starter, title_of
@@ -139,7 +139,7 @@ def _pipeline(
     made = starter(pictures, file)
     chosen = f"texture={{use: {in_yaml(method)}}}" if method else f"texture.segments={ASKED_FOR * most}"
     config = parse_config(made.text, file, registry, [chosen, *overrides])
-    return Pipeline.of(replace(config, scene=made.scene), registry, cache)
+    return Pipeline.of(config.changed(scene=made.scene), registry, cache)
 
 
 def _heights(pipeline: Pipeline, parts: PartMap) -> PartHeights:

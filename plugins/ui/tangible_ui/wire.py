@@ -1,4 +1,4 @@
-"""The binary frames of the websocket, little-endian. The page's twin is web/src/server/protocol.ts; a test compares both."""
+"""The websocket's binary frames, little-endian; a test compares them with web/src/server/protocol.ts, their twin."""
 
 import struct
 

@@ -24,7 +24,8 @@ from ...plugins.registry import Registry
 from ...runtime.stopping import check_stopped, stoppable
 from ...scene.scene import Scene
 from ...scene.scene_files import SceneFiles
-from ..config.config import NamedMethod, PipelineConfig
+from ..config.methods import NamedMethod
+from ..config.model import PipelineConfig
 from ..engine.engine import Engine, Progress, Stage
 from .export_folder import check_writable, check_written, move, scratch
 from .legible import judged, names, of_width
@@ -243,6 +244,7 @@ def work_for(engine: Engine, exporter: Exporter) -> Work:
         products,
         None if views is None else views.left,
         names(engine.config, products),
+        {"views": views, "truth": engine.scene.truth},
     )
 
 

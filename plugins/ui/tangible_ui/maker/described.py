@@ -2,10 +2,10 @@
 
 from typing import Any
 
-from tangible_core.description import LANGUAGES, describe
-from tangible_core.description.languages import TABLES
+from tangible_core.parts.words.languages import LANGUAGES, TABLES
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.scene.workspace import kind_of
+from tangible_report.description import describe
 
 from .seen import Seen
 

@@ -2,10 +2,11 @@
 
 from typing import Any
 
-from tangible_core.description import Language, describe_at_length, facts, page_of
-from tangible_core.description.at_length import tell
+from tangible_core.parts.words.languages import Language
 from tangible_core.pipeline.output.exporting import title_of
 from tangible_core.scene.workspace import kind_of
+from tangible_report.description import describe_at_length, facts, page_of
+from tangible_report.description.at_length import tell
 
 from .bench import Bench, Job
 

@@ -11,7 +11,7 @@ import numpy as np
 from tangible_core.data import HapticSurface, Outcome, Plan
 from tangible_core.errors import TangibleError
 from tangible_core.mapping import over
-from tangible_core.pipeline.config.config import PRODUCTS, PipelineConfig
+from tangible_core.pipeline.config.model import PRODUCTS, PipelineConfig
 from tangible_core.pipeline.engine.engine import Progress, Stage
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.plugins.interfaces import Touch

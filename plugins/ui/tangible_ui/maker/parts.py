@@ -2,7 +2,6 @@
 
 import shutil
 from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -14,7 +13,7 @@ from tangible_core.data.parts import PartMap, beside_border
 from tangible_core.data.pictures import to_rgb8
 from tangible_core.data.records import digest_of
 from tangible_core.parts import HeightChoice, PartChoice, find_parts, part_sizes
-from tangible_core.pipeline.config.config import PipelineConfig
+from tangible_core.pipeline.config.model import PipelineConfig
 from tangible_core.pipeline.engine.parts_found import parts_of
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.scene.scene import Scene
@@ -50,7 +49,7 @@ def parts_open(bench: Bench, text: str, path: Path, sets: list[str]) -> dict[str
     opened, config = opened_of(bench, pipeline), pipeline.config
     at = f"{FOLDER}{digest_of((opened.picture, opened.parts))}"
     _leave(opened, bench.folder / at)
-    by_parts = replace(config, heights=config_heights(config))
+    by_parts = config.changed(heights=config_heights(config))
     rows, columns = opened.parts.labels.shape
     return {
         "columns": columns,

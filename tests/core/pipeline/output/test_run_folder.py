@@ -5,6 +5,7 @@ import shutil
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,7 @@ import pytest
 from command_line import tangible
 from tangible_core import Pipeline, Scene
 from tangible_core.errors import OutputError
-from tangible_core.pipeline.config.config import Product
+from tangible_core.pipeline.config.model import Product
 from tangible_core.pipeline.output import runs
 from tangible_core.pipeline.output.run_folder import NAMES, default_folder, read_manifest, rewritten
 from tangible_devices import Mock
@@ -25,7 +26,8 @@ HEIGHTS = np.arange(16.0).reshape(4, 4)
 @pytest.fixture(autouse=True)
 def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
     """Drawing takes most of the time of a run."""
-    monkeypatch.setattr(runs, "draw_sheet", lambda path, **_: str(path.write_bytes(b"a sheet")))
+    sheet = SimpleNamespace(draw=lambda work, path: str(path.write_bytes(b"a sheet")))
+    monkeypatch.setattr(runs, "drawing", lambda: sheet)
 
 
 def run(out: Path, want: Product = "touch", heights: np.ndarray = HEIGHTS):

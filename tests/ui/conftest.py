@@ -98,8 +98,8 @@ def lasting(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LastingServer]
 def opened(lasting: LastingServer) -> Opened:
     """`opened("p.yaml")`: the file is opened and felt in the worker's server; gives the page's address.
 
-    As after a start there are no recordings and no unsaved documents, and the page's own hand is felt; what was made of
-    earlier files is cached, and the log still tells of them.
+    As after a start there are no recordings, no unsaved documents and no verdicts, and the page's own hand is felt;
+    what was made of earlier files is cached.
     """
     return lasting.open
 
